@@ -1,4 +1,4 @@
-"""Unit quaternions (w x y z): conversions, algebra, interpolation and rigid fits."""
+"""Unit quaternions (w x y z): conversions, algebra, interpolation and least-squares fits."""
 
 from .quaternion_algebra import multiply_components, rotate_components
 from .representations import (

@@ -1,7 +1,7 @@
-"""Quaternion products with the components first: the inner loops of `rotations`.
+"""Quaternion products of separate component arrays, the inner loops of `rotations`.
 
-A quaternion is four arrays w, x, y, z and a vector three, of any shapes that broadcast. numpy
-is several times faster on one array per component than on components that lie side by side.
+A quaternion is four arrays w, x, y, z; a vector is three. All shapes broadcast. numpy is
+several times faster on one array per component than on interleaved components.
 """
 
 from collections.abc import Iterable
@@ -34,7 +34,7 @@ def cross_components(a: Components, b: Components) -> tuple[Array, Array, Array]
 
 
 def rotate_components(rotation: Components, vector: Components) -> tuple[Array, Array, Array]:
-    """Return the vector turned by the rotation: v + 2 w (u x v) + 2 u x (u x v)."""
+    """Return the rotated vector: v + 2 w (u x v) + 2 u x (u x v)."""
     w, *axis = rotation
     x, y, z = (2.0 * component for component in cross_components(axis, vector))
     vx, vy, vz = vector

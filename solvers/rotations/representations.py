@@ -1,7 +1,7 @@
 """Rotations as unit quaternions w x y z, arrays of shape (..., 4); leading axes broadcast.
 
-NaN in a rotation gives NaN in whatever is computed from it, and disturbs nothing else.
-SciPy's order x y z w never leaves this module.
+NaN in a rotation gives NaN in its results only. SciPy's order x y z w is confined to this
+module.
 """
 
 import numpy as np
@@ -17,11 +17,11 @@ from .quaternion_algebra import (
 
 Array = NDArray[np.float64]
 IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
-SMALL_ANGLE = 1e-6
-GIMBAL_LOCK = 1e-7
-"""Cosine of the middle Euler angle below which the other two turn about one axis."""
-BLOCK = 8192
-"""Quaternions that are multiplied at a time: few enough for the processor's cache."""
+SMALL_ANGLE_RAD = 1e-6
+GIMBAL_LOCK_COSINE = 1e-7
+"""Cosine of the middle Euler angle below which the other two share one axis."""
+QUATERNIONS_PER_BLOCK = 8192
+"""Quaternions multiplied at a time, so that they fit into the processor's cache."""
 
 
 def multiply(a: Array, b: Array) -> Array:
@@ -29,58 +29,58 @@ def multiply(a: Array, b: Array) -> Array:
     a, b = np.broadcast_arrays(np.asarray(a), np.asarray(b))
     result = np.empty(a.shape)
     flat_a, flat_b, flat = (x.reshape(-1, 4) for x in (a, b, result))
-    for start in range(0, len(flat), BLOCK):
-        block = slice(start, start + BLOCK)
+    for start in range(0, len(flat), QUATERNIONS_PER_BLOCK):
+        block = slice(start, start + QUATERNIONS_PER_BLOCK)
         first, second = (np.ascontiguousarray(x[block].T) for x in (flat_a, flat_b))
         flat[block] = np.stack(multiply_components(first, second), axis=-1)
     return result
 
 
 def inverse(rotations: Array) -> Array:
-    """Return the opposite rotations."""
+    """Return the inverse rotations."""
     return np.asarray(rotations) * (1.0, -1.0, -1.0, -1.0)
 
 
 def rotate(rotations: Array, vectors: ArrayLike) -> Array:
-    """Turn vectors, shape (..., 3), by rotations, shape (..., 4)."""
+    """Rotate vectors, shape (..., 3), by rotations, shape (..., 4)."""
     rotations, vectors = np.asarray(rotations), np.asarray(vectors, dtype=np.float64)
     components = np.moveaxis(rotations, -1, 0), np.moveaxis(vectors, -1, 0)
     return np.stack(rotate_components(*components), axis=-1)
 
 
 def normalize(rotations: Array) -> Array:
-    """Return unit quaternions; raises nothing, zero quaternions become NaN."""
+    """Return unit quaternions; zero quaternions become NaN."""
     norms = np.linalg.norm(rotations, axis=-1, keepdims=True)
     return np.asarray(rotations / np.where(norms > 0.0, norms, np.nan))
 
 
 def quaternion_from_rotation_vector(vectors: ArrayLike) -> Array:
-    """Exponential map: axis times angle in radians, shape (..., 3), to quaternions.
+    """Return quaternions of rotation vectors (exponential map), shape (..., 3), radians.
 
-    Exact at zero: the series of sin(x/2)/x replaces the quotient for small angles.
+    Exact at zero: for small angles the series of sin(x/2)/x replaces the quotient.
     """
     vectors = np.asarray(vectors, dtype=np.float64)
     angle = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    small = angle < SMALL_ANGLE
+    small = angle < SMALL_ANGLE_RAD
     quotient = np.sin(angle / 2) / np.where(small, 1.0, angle)
     scale = np.where(small, 0.5 - angle**2 / 48.0, quotient)
     return np.concatenate([np.cos(angle / 2), scale * vectors], axis=-1)
 
 
 def rotation_vector_from_quaternion(rotations: Array) -> Array:
-    """Logarithm: quaternions to axis times angle (at most pi) in radians, shape (..., 3)."""
+    """Return rotation vectors (logarithm), shape (..., 3), radians, of length at most pi."""
     rotations = np.asarray(rotations)
     rotations = np.where(rotations[..., :1] < 0.0, -rotations, rotations)
     w, axis = rotations[..., :1], rotations[..., 1:]
     sine = np.linalg.norm(axis, axis=-1, keepdims=True)
-    small = sine < SMALL_ANGLE
+    small = sine < SMALL_ANGLE_RAD
     # 2 atan2(s, w) / s tends to 2/w as s tends to 0, and w is near 1 there.
     scale = np.where(small, 2.0, 2.0 * np.arctan2(sine, w) / np.where(small, 1.0, sine))
     return np.asarray(scale * axis)
 
 
 def matrix_from_quaternion(rotations: Array) -> Array:
-    """Return rotation matrices, shape (..., 3, 3), whose columns are the turned axes."""
+    """Return rotation matrices, shape (..., 3, 3), whose columns are the rotated axes."""
     components = np.ascontiguousarray(np.moveaxis(np.asarray(rotations), -1, 0))
     columns = [np.stack(rotate_components(components, axis), axis=-1) for axis in np.eye(3)]
     return np.stack(columns, axis=-1)
@@ -89,61 +89,60 @@ def matrix_from_quaternion(rotations: Array) -> Array:
 def quaternion_from_matrix(matrices: ArrayLike) -> Array:
     """Return quaternions, shape (..., 4), w >= 0, of rotation matrices, shape (..., 3, 3).
 
-    A matrix that is not quite orthogonal gives the nearest rotation that SciPy finds; one with
-    NaN gives NaN.
+    A nearly orthogonal matrix gives the rotation that SciPy finds for it; NaN gives NaN.
     """
     matrices = np.asarray(matrices, dtype=np.float64)
     flat = matrices.reshape(-1, 3, 3)
-    known = np.isfinite(flat).all(axis=(1, 2))
+    valid = np.isfinite(flat).all(axis=(1, 2))
     result = np.full((len(flat), 4), np.nan)
-    if known.any():
-        result[known] = _from_scipy(Rotation.from_matrix(flat[known]))
+    if valid.any():
+        result[valid] = _from_scipy(Rotation.from_matrix(flat[valid]))
     return result.reshape(*matrices.shape[:-2], 4)
 
 
 def quaternion_from_euler(angles: ArrayLike, order: str) -> Array:
-    """Compose turns about the moving axes, in the order in which they are listed.
+    """Return quaternions of intrinsic Euler angles, applied in the listed order.
 
     Parameters
     ----------
     angles : shape (..., 3), radians
         In the order of `order`.
     order : str
-        Such as "ZYX" for Rz Ry Rx: the order of BVH's channels, and the reverse of the name
-        that Blender gives to the same thing ("XYZ").
+        Such as "ZYX" for Rz Ry Rx: the order of BVH channels, and the reverse of Blender's
+        name ("XYZ").
     """
     halves = np.moveaxis(np.asarray(angles, dtype=np.float64), -1, 0) / 2
     result: Components = IDENTITY
     for axis, half in zip(order, halves, strict=True):
-        turn = np.zeros((4, *half.shape))
-        turn[0], turn[1 + "XYZ".index(axis)] = np.cos(half), np.sin(half)
-        result = multiply_components(result, turn)
+        rotation = np.zeros((4, *half.shape))
+        rotation[0], rotation[1 + "XYZ".index(axis)] = np.cos(half), np.sin(half)
+        result = multiply_components(result, rotation)
     return np.stack(tuple(result), axis=-1)
 
 
 def euler_from_quaternion(rotations: Array, order: str) -> Array:
-    """Return angles in radians, shape (..., 3), that `quaternion_from_euler` turns back.
+    """Return Euler angles in radians, shape (..., 3); inverse of `quaternion_from_euler`.
 
-    The order names three different axes. The middle angle lies within a quarter turn; at gimbal
-    lock, the last angle is zero. Along time, see `unwrap_euler`.
+    The order names three different axes. The middle angle is within a quarter turn; at gimbal
+    lock the last angle is zero. For continuous angles over time see `unwrap_euler`.
     """
     i, j, k = ("XYZ".index(axis) for axis in order)
     sign = 1.0 if (j - i) % 3 == 1 else -1.0
     matrix = np.moveaxis(matrix_from_quaternion(rotations), (-2, -1), (0, 1))
     # R = R_i(a) R_j(b) R_k(c): row i is (cos b cos c, -+cos b sin c, +-sin b) in i, j, k.
-    level = np.hypot(matrix[i, i], matrix[i, j])
-    locked = level < GIMBAL_LOCK
+    cosine = np.hypot(matrix[i, i], matrix[i, j])
+    locked = cosine < GIMBAL_LOCK_COSINE
     first = np.where(
         locked,
         np.arctan2(sign * matrix[k, j], matrix[j, j]),
         np.arctan2(-sign * matrix[j, k], matrix[k, k]),
     )
     last = np.where(locked, 0.0, np.arctan2(-sign * matrix[i, j], matrix[i, i]))
-    return np.stack([first, np.arctan2(sign * matrix[i, k], level), last], axis=-1)
+    return np.stack([first, np.arctan2(sign * matrix[i, k], cosine), last], axis=-1)
 
 
 def unwrap_euler(angles: Array) -> Array:
-    """Choose, frame after frame, the equal Euler angles nearest to the frame before.
+    """Choose in each frame the equivalent Euler angles nearest to those of the frame before.
 
     Parameters
     ----------
@@ -152,48 +151,50 @@ def unwrap_euler(angles: Array) -> Array:
     Returns
     -------
     Array
-        Same rotations, without jumps: every triple has the two forms (a, b, c) and
-        (a + pi, pi - b, c + pi), each modulo full turns. NaN frames are passed over.
+        Same rotations without jumps: every triple has the two forms (a, b, c) and
+        (a + pi, pi - b, c + pi), each modulo full turns. NaN frames are skipped.
     """
     angles = np.array(angles, dtype=np.float64)
     if not len(angles):
         return angles
-    known = np.isfinite(angles).all(axis=-1)
-    frames = np.arange(len(angles)).reshape(-1, *[1] * (known.ndim - 1))
-    last = np.maximum.accumulate(np.where(known, frames, -1), axis=0)
-    filled = np.take_along_axis(angles, np.maximum(last, 0)[..., None], axis=0)
-    filled[last < 0] = 0.0
-    # Both forms change alike from one frame to the next, so that whether to change over is
-    # the same question in either: no frame has to wait for the one before.
-    other = filled * (1, -1, 1) + np.pi
-    stay, change = (
-        np.abs(_within_half_turn(form[1:] - filled[:-1])).sum(axis=-1)
-        for form in (filled, other)
+    valid = np.isfinite(angles).all(axis=-1)
+    frames = np.arange(len(angles)).reshape(-1, *[1] * (valid.ndim - 1))
+    last = np.maximum.accumulate(np.where(valid, frames, -1), axis=0)
+    continuous = np.take_along_axis(angles, np.maximum(last, 0)[..., None], axis=0)
+    continuous[last < 0] = 0.0
+    # Both forms change by the same amount between frames, so that the choice does not depend
+    # on the form chosen before and all frames are computed at once.
+    other = continuous * (1, -1, 1) + np.pi
+    cost_same, cost_other = (
+        np.abs(_within_half_turn(form[1:] - continuous[:-1])).sum(axis=-1)
+        for form in (continuous, other)
     )
-    changed = np.cumsum(change < stay, axis=0) % 2 == 1
-    filled[1:] = np.where(changed[..., None], other[1:], filled[1:])
-    filled[1:] = filled[0] + np.cumsum(_within_half_turn(np.diff(filled, axis=0)), axis=0)
-    return np.where(known[..., None], filled, np.nan)
+    use_other = np.cumsum(cost_other < cost_same, axis=0) % 2 == 1
+    continuous[1:] = np.where(use_other[..., None], other[1:], continuous[1:])
+    continuous[1:] = continuous[0] + np.cumsum(
+        _within_half_turn(np.diff(continuous, axis=0)), axis=0
+    )
+    return np.where(valid[..., None], continuous, np.nan)
 
 
 def unroll(rotations: Array) -> Array:
-    """Choose signs along the first axis so that no quaternion jumps to the far hemisphere.
+    """Choose signs along the first axis so that consecutive quaternions share a hemisphere.
 
-    NaN frames are passed over.
+    NaN frames are skipped.
     """
     result = np.array(rotations, dtype=np.float64)
-    known = np.isfinite(result).all(axis=-1)
-    frames = np.arange(len(result)).reshape(-1, *[1] * (known.ndim - 1))
-    last = np.maximum.accumulate(np.where(known, frames, -1), axis=0)
-    filled = np.take_along_axis(result, np.maximum(last, 0)[..., None], axis=0)
-    agree = np.einsum("...i,...i->...", filled[1:], filled[:-1])
-    signs = np.cumprod(np.where(agree < 0.0, -1.0, 1.0), axis=0)
+    valid = np.isfinite(result).all(axis=-1)
+    frames = np.arange(len(result)).reshape(-1, *[1] * (valid.ndim - 1))
+    last = np.maximum.accumulate(np.where(valid, frames, -1), axis=0)
+    continuous = np.take_along_axis(result, np.maximum(last, 0)[..., None], axis=0)
+    agreement = np.einsum("...i,...i->...", continuous[1:], continuous[:-1])
+    signs = np.cumprod(np.where(agreement < 0.0, -1.0, 1.0), axis=0)
     result[1:] *= signs[..., None]
     return result
 
 
 def slerp(start: Array, stop: Array, fraction: ArrayLike) -> Array:
-    """Turn from `start` towards `stop` by the shorter way; `fraction`, shape (...), 0 to 1."""
+    """Interpolate along the shortest rotation; `fraction`, shape (...), is 0 to 1."""
     between = rotation_vector_from_quaternion(multiply(inverse(start), stop))
     step = quaternion_from_rotation_vector(np.asarray(fraction)[..., None] * between)
     return multiply(start, step)
@@ -207,15 +208,15 @@ def angle_between(a: Array, b: Array) -> Array:
 
 
 def mean_rotation(rotations: Array, weights: Array | None = None) -> Array:
-    """Return the mean over the first axis, shape (..., 4): the rotation whose squared chordal
-    distances sum to the least (Markley et al. 2007, doi:10.2514/1.28949).
+    """Return the mean over the first axis, shape (..., 4), that minimizes chordal distances.
 
-    NaN rotations are left out; where all are NaN the mean is the identity. `weights`, shape
-    (n, ...) as the rotations without their components, are not negative.
+    The sum of squared chordal distances is least (Markley et al. 2007, doi:10.2514/1.28949).
+    NaN rotations are left out; where all are NaN the mean is the identity. `weights` have the
+    shape of the rotations without their components, (n, ...), and are not negative.
     """
-    known = np.isfinite(rotations).all(axis=-1)
-    weight = known * (1.0 if weights is None else weights)
-    safe = np.where(known[..., None], rotations, 0.0)
+    valid = np.isfinite(rotations).all(axis=-1)
+    weight = valid * (1.0 if weights is None else weights)
+    safe = np.where(valid[..., None], rotations, 0.0)
     outer = np.einsum("f...,f...i,f...j->...ij", weight, safe, safe)
     mean = np.linalg.eigh(outer)[1][..., -1]
     mean = np.where(weight.any(axis=0)[..., None], mean, IDENTITY)
@@ -223,27 +224,27 @@ def mean_rotation(rotations: Array, weights: Array | None = None) -> Array:
 
 
 def rotation_between(start: ArrayLike, stop: ArrayLike) -> Array:
-    """Return the smallest turn from directions `start` to directions `stop`, shape (..., 3).
+    """Return the shortest rotation from directions `start` to `stop`, shape (..., 3).
 
-    For opposite directions any perpendicular axis serves; zero vectors give the identity.
+    Opposite directions use any perpendicular axis; zero vectors give the identity.
     """
     start, stop = np.broadcast_arrays(np.asarray(start, float), np.asarray(stop, float))
     lengths = np.linalg.norm(start, axis=-1) * np.linalg.norm(stop, axis=-1)
-    agree = (lengths + np.einsum("...i,...i->...", start, stop))[..., None]
-    real = np.concatenate([agree, _cross(start, stop)], axis=-1)
-    spare = _cross(start, np.eye(3)[np.abs(start).argmin(axis=-1)])
-    turn_back = np.concatenate([np.zeros_like(lengths)[..., None], spare], axis=-1)
-    opposite = (real[..., 0] <= 1e-12 * lengths) & (lengths > 0.0)
-    result = np.where(opposite[..., None], turn_back, real)
+    agreement = (lengths + np.einsum("...i,...i->...", start, stop))[..., None]
+    shortest = np.concatenate([agreement, _cross(start, stop)], axis=-1)
+    axis = _cross(start, np.eye(3)[np.abs(start).argmin(axis=-1)])
+    half_turn = np.concatenate([np.zeros_like(lengths)[..., None], axis], axis=-1)
+    opposite = (shortest[..., 0] <= 1e-12 * lengths) & (lengths > 0.0)
+    result = np.where(opposite[..., None], half_turn, shortest)
     result = np.where((lengths == 0.0)[..., None], IDENTITY, result)
     return normalize(result)
 
 
 def twist_about(rotations: Array, axis: ArrayLike) -> Array:
-    """Return the part of each rotation that turns about `axis`, shape (..., 3), of unit length.
+    """Return the twist of each rotation about the unit vector `axis`, shape (..., 3).
 
-    With `twist`, `multiply(rotations, inverse(twist))` is the swing: it moves the axis the
-    short way. A half turn of the axis itself has no twist and gives the identity.
+    This is the swing-twist decomposition: `multiply(rotations, inverse(twist))` is the swing,
+    the shortest rotation of the axis. If the swing is a half turn, the twist is the identity.
     """
     rotations = np.asarray(rotations)
     axis = np.asarray(axis, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Plain arrays over time: noise, spikes, gaps, smoothing and smooth corrections."""
+"""Filter signals over time: noise, spikes, gaps, smoothing and smooth corrections."""
 
 from .gaussian_smoothing import smooth_gaussian
 from .linear_gaps import fill_gaps, fill_rotation_gaps

@@ -1,4 +1,4 @@
-"""Gaps bridged the plainest way: places along straight lines, rotations along the short way."""
+"""Fill gaps: positions by linear interpolation, rotations by slerp."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,75 +10,77 @@ Flags = NDArray[np.bool_]
 
 
 def fill_gaps(values: Array, known: Flags | None = None, *, ahead: bool = True) -> Array:
-    """Bridge the gaps of each point along straight lines; before and after all known, hold.
+    """Fill the gaps of each point by linear interpolation; hold the ends.
 
     Parameters
     ----------
     values : shape (n_frames, ..., n)
-        Points over time; NaN: not known.
+        Points over time; NaN: missing.
     known : shape (n_frames, ...), optional
-        Which of them to believe, where not all that are finite.
+        Valid mask: False treats a finite value as missing too.
     ahead : bool
-        Whether it is known where a gap leads to. If not, hold what was known last; before the
-        first that is known, that.
+        True: interpolate up to the value after the gap. False: use no later frame, but hold the
+        last valid value; before the first valid value, hold that.
 
     Returns
     -------
     NDArray, same shape
-        What is known stays as it is. A point that is never known is NaN throughout.
+        Valid values are unchanged. A point that is missing in all frames is NaN throughout.
     """
-    told = np.isfinite(values).all(axis=-1)
+    valid = np.isfinite(values).all(axis=-1)
     if known is not None:
-        told &= known
+        valid &= known
     result = np.array(values, dtype=np.float64)
-    if told.all():
+    if valid.all():
         return result
     flat = result.reshape(len(values), -1, values.shape[-1])
-    told = told.reshape(len(values), -1)
+    valid = valid.reshape(len(values), -1)
     frames = np.arange(len(values))
-    for point in np.flatnonzero(~told.all(axis=0)):
-        here = told[:, point]
-        if not here.any():
+    for point in np.flatnonzero(~valid.all(axis=0)):
+        valid_frames = valid[:, point]
+        if not valid_frames.any():
             flat[:, point] = np.nan
             continue
         if not ahead:
-            last = np.maximum.accumulate(np.where(here, frames, here.argmax()))
-            flat[:, point] = flat[last, point]
+            last_valid = np.maximum.accumulate(
+                np.where(valid_frames, frames, valid_frames.argmax())
+            )
+            flat[:, point] = flat[last_valid, point]
             continue
         for axis in range(values.shape[-1]):
-            flat[~here, point, axis] = np.interp(
-                frames[~here], frames[here], flat[here, point, axis]
+            flat[~valid_frames, point, axis] = np.interp(
+                frames[~valid_frames], frames[valid_frames], flat[valid_frames, point, axis]
             )
     return result
 
 
 def fill_rotation_gaps(rotations: Array) -> Array:
-    """Turn each joint evenly from the last known rotation to the next; hold at the ends.
+    """Fill the gaps of each joint by slerp between the valid rotations; hold the ends.
 
     Parameters
     ----------
     rotations : shape (n_frames, n_joints, 4)
-        Unit quaternions w x y z; NaN: not known.
+        Unit quaternions w x y z; NaN: missing.
 
     Returns
     -------
     NDArray, same shape
-        What is known stays as it is. A joint that is never known is in its rest pose.
+        Valid rotations are unchanged. A joint that is missing in all frames gets the identity.
     """
     result = np.array(rotations, dtype=np.float64)
-    told = np.isfinite(result).all(axis=-1)
+    valid = np.isfinite(result).all(axis=-1)
     frames = np.arange(len(result))
-    for joint in np.flatnonzero(~told.all(axis=0)):
-        here = np.flatnonzero(told[:, joint])
-        gap = frames[~told[:, joint]]
-        if not len(here):
+    for joint in np.flatnonzero(~valid.all(axis=0)):
+        valid_frames = np.flatnonzero(valid[:, joint])
+        gap = frames[~valid[:, joint]]
+        if not len(valid_frames):
             result[:, joint] = IDENTITY
             continue
-        after = np.searchsorted(here, gap).clip(max=len(here) - 1)
-        before = (np.searchsorted(here, gap) - 1).clip(min=0)
-        start, stop = here[before], here[after]
-        share = (gap - start) / np.maximum(stop - start, 1)
+        after = np.searchsorted(valid_frames, gap).clip(max=len(valid_frames) - 1)
+        before = (np.searchsorted(valid_frames, gap) - 1).clip(min=0)
+        start, stop = valid_frames[before], valid_frames[after]
+        fraction = (gap - start) / np.maximum(stop - start, 1)
         result[gap, joint] = slerp(
-            result[start, joint], result[stop, joint], share.clip(0.0, 1.0)
+            result[start, joint], result[stop, joint], fraction.clip(0.0, 1.0)
         )
     return result

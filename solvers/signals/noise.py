@@ -1,4 +1,4 @@
-"""What can be said of the noise before any model of the motion is known."""
+"""Estimate noise and reject outliers without a model of the motion."""
 
 from typing import Any
 
@@ -10,23 +10,23 @@ Array = NDArray[np.float64]
 
 MAD_TO_SIGMA = 1.4826
 """Standard deviation of a Gaussian over its median absolute deviation."""
-# Third differences pass smooth motion down to almost nothing; on white noise they have the
-# variance 1 + 9 + 9 + 1 times that of one sample.
+# Third differences nearly cancel smooth motion; on white noise their variance is
+# 1 + 9 + 9 + 1 times that of one sample.
 DIFFERENCE_ORDER = 3
 DIFFERENCE_GAIN = np.sqrt(20.0)
 SHRINKAGE_LIMIT_SIGMAS = 3.0
-"""Standard deviations by which chance alone hardly ever moves an estimate."""
+"""Sampling error beyond which a channel keeps its own estimate (three-sigma rule)."""
 
 
 def estimate_noise(values: Array) -> Array:
-    """Return the standard deviation of the fast jitter of each channel, shape (n_channels,).
+    """Return the standard deviation of the jitter of each channel, shape (n_channels,).
 
-    The robust spread of third differences: spikes and smooth motion count for little.
+    The median absolute third difference, scaled: spikes and smooth motion contribute little.
 
     Parameters
     ----------
     values : shape (n_frames, n_channels)
-        NaN where not observed. Channels with too few neighbouring frames give 0.
+        NaN where missing. Channels with too few consecutive frames give 0.
     """
     if len(values) <= DIFFERENCE_ORDER:
         return np.zeros(values.shape[1])
@@ -35,78 +35,79 @@ def estimate_noise(values: Array) -> Array:
 
 
 def shrink_noise(noise: Array, n_samples: NDArray[Any], efficiency: float = 1.0) -> Array:
-    """Draw the noise of all channels together, as far as their spread is mere chance.
+    """Shrink the noise estimates of all channels toward their median (empirical Bayes).
 
-    The logarithm of a standard deviation from n samples is uncertain by 1 / (2 n); what spread
-    there is beyond that is real (empirical Bayes, robustly). A channel that is farther off
-    than chance explains, as a root's place may be among rotations, keeps what is its own.
+    The logarithm of a standard deviation from n samples has sampling variance 1 / (2 n). Spread
+    beyond that is true variation between channels, estimated robustly. A channel farther away
+    than sampling explains, such as the root's position among rotations, keeps its own estimate.
 
     Parameters
     ----------
     noise : shape (n_channels,)
         Estimated standard deviations, positive.
     n_samples : shape (n_channels,)
-        That each was estimated from; where 0, the others tell all.
+        Number of samples behind each estimate; a channel with 0 gets the median of the others.
     efficiency : float
-        Of the estimate, relative to that of the standard deviation of a Gaussian.
+        Statistical efficiency of the estimate, relative to the sample standard deviation.
     """
-    seen = n_samples > 0
-    if not seen.any():
+    estimated = n_samples > 0
+    if not estimated.any():
         return noise
     logs = np.log(noise)
-    middle = np.median(logs[seen])
-    chance = 0.5 / np.maximum(efficiency * n_samples, 1.0)
-    spread = (MAD_TO_SIGMA * np.median(np.abs(logs[seen] - middle))) ** 2
-    real = max(float(spread - np.median(chance[seen])), 0.0)
-    real = real + np.maximum((logs - middle) ** 2 - SHRINKAGE_LIMIT_SIGMAS**2 * chance, 0.0)
-    trust = np.where(seen, real / (real + chance), 0.0)
-    return np.asarray(np.exp(middle + trust * (logs - middle)))
+    center = np.median(logs[estimated])
+    sampling = 0.5 / np.maximum(efficiency * n_samples, 1.0)
+    spread = (MAD_TO_SIGMA * np.median(np.abs(logs[estimated] - center))) ** 2
+    excess = max(float(spread - np.median(sampling[estimated])), 0.0)
+    excess = excess + np.maximum(
+        (logs - center) ** 2 - SHRINKAGE_LIMIT_SIGMAS**2 * sampling, 0.0
+    )
+    weight = np.where(estimated, excess / (excess + sampling), 0.0)
+    return np.asarray(np.exp(center + weight * (logs - center)))
 
 
 def remove_outliers(values: Array, half_width: int, tolerance: float) -> Array:
-    """Return the channels with every sample that stands out from its neighbours made NaN.
+    """Return the channels with outliers replaced by NaN (Hampel filter).
 
     Parameters
     ----------
     values : shape (n_frames, n_channels)
-        NaN where not observed.
+        NaN where missing.
     half_width : int, frames to either side
     tolerance : float
-        In robust standard deviations of the neighbourhood.
+        In robust standard deviations of the moving window.
     """
     filled = fill_channel_gaps(values)
     size = (2 * half_width + 1, 1)
-    middle = median_filter(filled, size, mode="nearest")
-    departure = np.abs(filled - middle)
-    spread = MAD_TO_SIGMA * median_filter(departure, size, mode="nearest")
+    center = median_filter(filled, size, mode="nearest")
+    deviation = np.abs(filled - center)
+    spread = MAD_TO_SIGMA * median_filter(deviation, size, mode="nearest")
     floor = 1e-9 + np.median(spread, axis=0)
-    return np.where(departure > tolerance * np.maximum(spread, floor), np.nan, values)
+    return np.where(deviation > tolerance * np.maximum(spread, floor), np.nan, values)
 
 
 def fill_channel_gaps(values: Array) -> Array:
-    """Return the channels with NaN replaced on straight lines between what is observed.
+    """Return the channels with NaN replaced by linear interpolation.
 
-    Before the first and after the last observation its value is held; channels that are never
-    observed become 0.
+    The first and the last valid value are held at the ends; channels without one become 0.
     """
     result = values.copy()
     frames = np.arange(len(values))
     for channel in np.flatnonzero(np.isnan(values).any(axis=0)):
-        known = np.isfinite(values[:, channel])
-        if known.any():
-            line = np.interp(frames, frames[known], values[known, channel])
-            result[:, channel] = line
+        valid = np.isfinite(values[:, channel])
+        if valid.any():
+            interpolation = np.interp(frames, frames[valid], values[valid, channel])
+            result[:, channel] = interpolation
         else:
             result[:, channel] = 0.0
     return result
 
 
 def _nan_median(values: Array) -> Array:
-    """Median over the first axis without NaN; 0 where all are NaN."""
-    known = np.isfinite(values)
-    safe = np.where(known, values, np.inf)
+    """Return the median over the first axis without NaN; 0 where all are NaN."""
+    valid = np.isfinite(values)
+    safe = np.where(valid, values, np.inf)
     ordered = np.sort(safe, axis=0)
-    count = known.sum(axis=0)
+    count = valid.sum(axis=0)
     low = np.take_along_axis(ordered, np.maximum((count - 1) // 2, 0)[None], axis=0)[0]
     high = np.take_along_axis(ordered, np.minimum(count // 2, len(values) - 1)[None], axis=0)[0]
     with np.errstate(invalid="ignore"):

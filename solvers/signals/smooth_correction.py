@@ -1,4 +1,4 @@
-"""The smoothest change of a curve that gives it the speed it should have here and there."""
+"""Correct a curve as smoothly as possible so that it has a given velocity in some frames."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,9 +7,9 @@ from scipy.linalg import solveh_banded
 Array = NDArray[np.float64]
 
 FADE_TIME_CONSTANTS = np.pi * np.sqrt(2.0)
-"""A free correction has faded to 4 % after this many of its time constants."""
+"""Time constants after which a free correction has faded to exp(-pi), 4 %."""
 PULL_WEIGHT = 100.0
-"""So large that a goal is met to a hundredth."""
+"""Weight of a goal; at 100 the goal is met to one hundredth."""
 
 
 def smooth_correction(
@@ -22,31 +22,32 @@ def smooth_correction(
     goal: Array | None = None,
     pulled: Array | None = None,
 ) -> Array:
-    """Return what to add to a curve so that it has a given speed where it is held.
+    """Return the smoothest correction that gives a curve a target velocity where it is held.
 
     The correction d minimises the integral of
 
         |d|^2 + tau^4 |d''|^2 + held hold^2 |d' - speed|^2 + pulled p |d - goal|^2
 
-    with long `hold` and large p: it stays small, sets in and fades smoothly, and chooses the
-    place in which a held curve rests so that it moves least. Free of any hold it decays as
-    exp(-t / (tau sqrt 2)), whatever the frame rate. Sums in place of the integrals lead to
-    one banded linear system per component.
+    with long `hold` and large p. It stays small, eases in and out, and a held curve rests at
+    the position that needs the least correction. Outside of holds it decays as
+    exp(-t / (tau sqrt 2)) at every frame rate. Discretized, this is one banded linear system
+    per component.
 
     Parameters
     ----------
     speed : shape (n_frames - 1, n_components), per second
-        From each frame to the next; what is not held is ignored.
+        From each frame to the next; ignored where the curve is not held.
     held : shape (n_frames - 1,) or (n_frames - 1, n_components), 0 to 1
-        How strictly the speed is asked for.
+        Weight of the target velocity.
     frame_rate : float, hertz
     blend : float, seconds
-        Time over which a correction fades.
+        Time in which a correction fades.
     hold : float, seconds
-        A curve held for much longer than this may creep, so that it does not end far away.
+        A curve held for much longer than this may drift slowly, which bounds the correction.
     goal : shape (n_frames, n_components)
-        Where the correction should be, as far as it is `pulled`.
+        Target value of the correction.
     pulled : shape (n_frames, n_components), 0 to 1
+        Weight of the goal.
 
     Returns
     -------
@@ -57,27 +58,27 @@ def smooth_correction(
     held = np.broadcast_to(held if held.ndim == 2 else held[:, None], speed.shape)
     goal = np.zeros((n_frames, n_components)) if goal is None else goal
     pulled = np.zeros((n_frames, n_components)) if pulled is None else pulled
-    bending = (blend / FADE_TIME_CONSTANTS * frame_rate) ** 4
-    found = np.empty((n_frames, n_components))
+    stiffness = (blend / FADE_TIME_CONSTANTS * frame_rate) ** 4
+    correction = np.empty((n_frames, n_components))
     for component in range(n_components):
-        stiffness = (hold * frame_rate) ** 2 * held[:, component]
-        pull = PULL_WEIGHT * pulled[:, component]
+        hold_weight = (hold * frame_rate) ** 2 * held[:, component]
+        pull_weight = PULL_WEIGHT * pulled[:, component]
         # Rows of the upper banded form: second, first and main diagonal.
         bands = np.zeros((3, n_frames))
-        bands[2] = 1.0 + pull
-        bands[2, :-1] += stiffness
-        bands[2, 1:] += stiffness
-        bands[1, 1:] -= stiffness
-        for place, (left, right) in enumerate(((0, 2), (1, 1), (2, 0))):
-            bands[2, left : n_frames - right] += bending * (1.0, 4.0, 1.0)[place]
-        bands[1, 1:-1] -= 2.0 * bending
-        bands[1, 2:] -= 2.0 * bending
-        bands[0, 2:] += bending
+        bands[2] = 1.0 + pull_weight
+        bands[2, :-1] += hold_weight
+        bands[2, 1:] += hold_weight
+        bands[1, 1:] -= hold_weight
+        for diagonal, (left, right) in enumerate(((0, 2), (1, 1), (2, 0))):
+            bands[2, left : n_frames - right] += stiffness * (1.0, 4.0, 1.0)[diagonal]
+        bands[1, 1:-1] -= 2.0 * stiffness
+        bands[1, 2:] -= 2.0 * stiffness
+        bands[0, 2:] += stiffness
         force = (
-            stiffness * np.where(held[:, component] > 0, speed[:, component], 0) / frame_rate
+            hold_weight * np.where(held[:, component] > 0, speed[:, component], 0) / frame_rate
         )
-        right_side = pull * goal[:, component]
+        right_side = pull_weight * goal[:, component]
         right_side[1:] += force
         right_side[:-1] -= force
-        found[:, component] = solveh_banded(bands, right_side)
-    return found
+        correction[:, component] = solveh_banded(bands, right_side)
+    return correction

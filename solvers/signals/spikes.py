@@ -1,4 +1,4 @@
-"""Tell what a signal does from what disturbs it: a local fit that ignores outliers."""
+"""Separate a smooth signal from spikes and noise by a robust local fit (LOWESS)."""
 
 from dataclasses import dataclass
 
@@ -12,21 +12,21 @@ Array = NDArray[np.float64]
 
 N_REFITS = 8
 MAX_WEIGHT_CHANGE = 0.02
-"""Weights that change by less than this are final."""
+"""Change of the weights below which the iteration has converged."""
 TUKEY_SIGMAS = 4.685
-"""Residuals beyond this many standard deviations lose all weight (95 % efficiency)."""
+"""Standard deviations beyond which a residual has no weight (95 % efficiency)."""
 
 
 @dataclass(frozen=True, eq=False)
 class LowessFit:
-    """How far a signal is from its own smooth course.
+    """Residuals of a signal about its robust local fit.
 
     Attributes
     ----------
     residual : shape (n_frames, n_components), the signal's unit
-        What is left when the robust local fit is taken away; NaN where nothing was observed.
+        Signal minus the robust local fit; NaN where missing.
     scale : float, the signal's unit
-        Robust standard deviation of one component of the noise, outliers left out.
+        Standard deviation of one component of the noise, without outliers.
     """
 
     residual: Array
@@ -34,71 +34,71 @@ class LowessFit:
 
     @property
     def deviation(self) -> Array:
-        """Distance from the smooth course, shape (n_frames,)."""
+        """Distance from the fit, shape (n_frames,)."""
         return np.asarray(np.linalg.norm(self.residual, axis=1))
 
     def spikes(self, threshold: float) -> NDArray[np.bool_]:
-        """Return the frames that jump away by more than `threshold` and jump back.
+        """Return the frames of transient outliers larger than `threshold`, shape (n_frames,).
 
-        A quick but honest movement (a foot that strikes the floor) leaves the smooth course
-        gradually; a spike enters and leaves with steps of half its height or more.
+        A fast but genuine movement, such as a foot strike, leaves the fit gradually. A spike
+        begins and ends with steps of half its height or more.
         """
-        found = np.zeros(len(self.residual), dtype=np.bool_)
+        is_spike = np.zeros(len(self.residual), dtype=np.bool_)
         steps = np.linalg.norm(np.diff(self.residual, axis=0), axis=1)
         steps = np.concatenate([[np.inf], np.where(np.isnan(steps), np.inf, steps), [np.inf]])
         height = np.nan_to_num(self.deviation)
         for start, stop in find_runs(height > threshold):
             half = 0.5 * height[start:stop].max()
-            found[start:stop] = steps[start] > half and steps[stop] > half
-        return found
+            is_spike[start:stop] = steps[start] > half and steps[stop] > half
+        return is_spike
 
 
 def find_runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Return (start, stop) of every stretch of True."""
+    """Return (start, stop) of every run of True."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]])))
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
-def fit_lowess(signal: Array, half_window: int, smallest: float) -> LowessFit:
-    """Compare a signal with a robust local quadratic through its neighbourhood.
+def fit_lowess(signal: Array, half_window: int, min_scale: float) -> LowessFit:
+    """Fit a robust local quadratic to a signal and return the residuals.
 
-    Around each frame a parabola is fitted by iteratively reweighted least squares (Cleveland
-    1979, LOWESS, doi:10.1080/01621459.1979.10481038) with tricube weights over time and
-    bisquare weights that reject outliers. The components of one frame share one weight.
+    Each frame gets a parabola through its neighbors, fitted by iteratively reweighted least
+    squares (Cleveland 1979, LOWESS, doi:10.1080/01621459.1979.10481038). Weights are tricube
+    over time, and bisquare to reject outliers. The components of a frame share one weight.
 
     Parameters
     ----------
-    signal : shape (n_frames, n_components); NaN marks frames that were not observed
+    signal : shape (n_frames, n_components); NaN marks missing frames
     half_window : int, frames
-        Reach of the fit to either side; spikes up to a third of the window are seen whole.
-    smallest : float, the signal's unit
-        Deviations that are never called outliers, however clean the rest of the signal is.
+        Half the window of the fit; spikes up to a third of the window are found completely.
+    min_scale : float, the signal's unit
+        Lower bound of the outlier cutoff: smaller residuals are never outliers.
     """
-    known = np.isfinite(signal).all(axis=1)
-    signal = np.where(known[:, None], signal, 0.0)
+    observed = np.isfinite(signal).all(axis=1)
+    signal = np.where(observed[:, None], signal, 0.0)
     offsets = np.arange(-half_window, half_window + 1) / (half_window + 1)
     window = (1.0 - np.abs(offsets) ** 3) ** 3
-    weights = known.astype(np.float64)
+    weights = observed.astype(np.float64)
     residual = signal
     for _ in range(N_REFITS):
         residual = signal - _local_fit(signal, weights, offsets, window)
         distance = np.linalg.norm(residual, axis=1)
-        cut = TUKEY_SIGMAS * MAD_TO_SIGMA * _median(distance[known])
-        before, weights = weights, known * _bisquare(distance / max(cut, smallest))
-        if np.abs(weights - before).max() < MAX_WEIGHT_CHANGE:
+        cutoff = TUKEY_SIGMAS * MAD_TO_SIGMA * _median(distance[observed])
+        previous, weights = weights, observed * _bisquare(distance / max(cutoff, min_scale))
+        if np.abs(weights - previous).max() < MAX_WEIGHT_CHANGE:
             break
-    residual = np.where(known[:, None], residual, np.nan)
+    residual = np.where(observed[:, None], residual, np.nan)
     noise = estimate_noise(np.where(weights[:, None] > 0.0, signal, np.nan))
     return LowessFit(residual, float(np.sqrt(np.mean(noise**2))))
 
 
 def _bisquare(distance: Array) -> Array:
-    """Return Tukey's weights, which vanish from distance 1 on."""
+    """Return Tukey's biweight, which is zero from distance 1."""
     return np.asarray(np.maximum(0.0, 1.0 - distance**2) ** 2)
 
 
 def _local_fit(signal: Array, weights: Array, offsets: Array, window: Array) -> Array:
-    """Value at each frame of the weighted parabola around it; a mean where few are known."""
+    """Return the weighted parabola at each frame; the mean where too few frames are valid."""
 
     def moment(values: Array, power: int) -> Array:
         kernel = window * offsets**power
@@ -110,11 +110,11 @@ def _local_fit(signal: Array, weights: Array, offsets: Array, window: Array) -> 
     # First row of the adjugate of the normal equations: Cramer's rule for the value at 0.
     c0, c1, c2 = s2 * s4 - s3**2, s2 * s3 - s1 * s4, s1 * s3 - s2**2
     determinant = s0 * c0 + s1 * c1 + s2 * c2
-    enough = determinant > 1e-6 * np.maximum(s0, 1e-6) ** 3
-    parabola = (c0 * t0 + c1 * t1 + c2 * t2) / np.where(enough, determinant, 1.0)
+    well_posed = determinant > 1e-6 * np.maximum(s0, 1e-6) ** 3
+    parabola = (c0 * t0 + c1 * t1 + c2 * t2) / np.where(well_posed, determinant, 1.0)
     mean = t0 / np.where(s0 > 1e-9, s0, 1.0)
-    alone = np.where(s0 > 1e-9, mean, signal)
-    return np.where(enough, parabola, alone)
+    fallback = np.where(s0 > 1e-9, mean, signal)
+    return np.where(well_posed, parabola, fallback)
 
 
 def _median(values: Array) -> float:

@@ -1,4 +1,4 @@
-"""The human body on any skeleton: roles of joints, rest poses, standard postures, contacts."""
+"""The human body on any skeleton: humanoid roles, rest poses, postures and foot contacts."""
 
 from .body_size import (
     ADULT_BONE_LENGTHS_M,

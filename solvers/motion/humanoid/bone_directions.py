@@ -1,4 +1,4 @@
-"""Postures as directions of bones, which tell nothing of how large a body is."""
+"""Postures as bone directions, which do not depend on the size of the body."""
 
 from typing import TypeVar
 
@@ -10,55 +10,57 @@ from .posture_joints import N_JOINTS, PARENTS, POSTURE_JOINTS
 Array = NDArray[np.float64]
 Real = TypeVar("Real", np.float32, np.float64)
 
-SHORT = 5e-3
-"""Metres. A bone that is shorter tells no direction."""
-REACH = 0.1
-"""Seconds to both sides over which a change is measured."""
+MIN_BONE_M = 5e-3
+"""Length below which a bone has no direction."""
+RATE_WINDOW_S = 0.1
+"""Seconds to each side over which a rate is measured."""
 PARENT_INDICES = np.maximum(PARENTS, 0)
-STANDS_FOR = {"spine": "chest", "chest": "spine", "leftToes": "", "rightToes": ""}
-"""Whose direction a bone without one has, where it is not that of the joint above."""
+SUBSTITUTES = {"spine": "chest", "chest": "spine", "leftToes": "", "rightToes": ""}
+"""Joint whose direction a missing bone takes, if not its parent; empty: forward."""
 FORWARD = (0.0, -1.0, 0.0)
 
 
 def bone_directions(postures: Array) -> Array:
-    """Return unit vectors from the joint above to each joint, shape (n_frames, 20, 3).
+    """Return unit vectors from each joint's parent to it, shape (n_frames, 20, 3).
 
-    The hips' is zero. A bone that is never told, as in a body without hands, goes on as the one
-    above it, and a foot forward. NaN where a joint is not told in one frame only.
+    That of the hips is zero. A bone that is missing in all frames, as in a body without hands,
+    continues its parent; a foot points forward. NaN where a joint is missing in some frames.
     """
     bones = postures - postures[:, PARENT_INDICES]
-    sizes = np.linalg.norm(bones, axis=-1, keepdims=True)
-    long = sizes > SHORT
-    directions = np.where(long, bones, np.nan) / np.where(long, sizes, 1.0)
-    never = ~np.isfinite(directions).any(axis=(0, 2))
+    lengths = np.linalg.norm(bones, axis=-1, keepdims=True)
+    is_long = lengths > MIN_BONE_M
+    directions = np.where(is_long, bones, np.nan) / np.where(is_long, lengths, 1.0)
+    is_missing = ~np.isfinite(directions).any(axis=(0, 2))
     directions[:, 0] = 0.0
     for joint in range(1, N_JOINTS):
-        if never[joint]:
+        if is_missing[joint]:
             name = POSTURE_JOINTS[joint]
-            other = STANDS_FOR.get(name, POSTURE_JOINTS[PARENTS[joint]])
+            substitute = SUBSTITUTES.get(name, POSTURE_JOINTS[PARENTS[joint]])
             directions[:, joint] = (
-                directions[:, POSTURE_JOINTS.index(other)] if other else FORWARD
+                directions[:, POSTURE_JOINTS.index(substitute)] if substitute else FORWARD
             )
     return np.asarray(directions)
 
 
 def rates_from_directions(directions: Array, frame_rate: float) -> Array:
-    """Return how directions, or whatever else goes on in time, change per second.
+    """Return the rates of change of directions, or of other values over time, per second.
 
-    The slope between the values a tenth of a second before and after; at the ends, between
-    those that there are.
+    The slope between the values a tenth of a second before and after; one-sided at the ends.
     """
     n_frames = len(directions)
-    reach = max(round(REACH * frame_rate), 1)
+    half_window = max(round(RATE_WINDOW_S * frame_rate), 1)
     frames = np.arange(n_frames)
-    before, after = np.maximum(frames - reach, 0), np.minimum(frames + reach, n_frames - 1)
-    time = np.maximum(after - before, 1) / frame_rate
-    ways = directions[after] - directions[before]
-    return np.asarray(ways / time.reshape(-1, *(1,) * (directions.ndim - 1)))
+    before, after = (
+        np.maximum(frames - half_window, 0),
+        np.minimum(frames + half_window, n_frames - 1),
+    )
+    duration = np.maximum(after - before, 1) / frame_rate
+    displacements = directions[after] - directions[before]
+    return np.asarray(displacements / duration.reshape(-1, *(1,) * (directions.ndim - 1)))
 
 
 def positions_from_directions(vectors: NDArray[Real], lengths: NDArray[Real]) -> NDArray[Real]:
-    """Return joints relative to the hips from directions, or speeds from changes.
+    """Return joints relative to the hips from directions, or velocities from rates.
 
     Parameters
     ----------

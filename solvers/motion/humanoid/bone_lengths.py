@@ -1,4 +1,4 @@
-"""Give a body the bone lengths of another, and its motion to that body."""
+"""Fit positions to bone lengths, and transfer a motion to a skeleton of other lengths."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,19 +10,19 @@ from .roles import HumanoidMap, find_humanoid_map
 
 
 def fit_bone_lengths(positions: NDArray[np.float64], skeleton: Skeleton) -> NDArray[np.float64]:
-    """Move joints along their bones until every bone is as long as in the skeleton.
+    """Move joints along their bones so that every bone has the length of the skeleton.
 
     Parameters
     ----------
     positions : shape (n_frames, n_joints, 3), metres
-        Joints of any body with this skeleton's tree; NaN where not observed.
+        Joints of a body with this skeleton's hierarchy; NaN: missing.
     skeleton : Skeleton
 
     Returns
     -------
     NDArray, shape (n_frames, n_joints, 3), metres
-        The root stays where it is and every bone keeps its direction. A bone of no length has
-        none and takes that of the rest pose. Below a joint that is not observed, all is NaN.
+        The root does not move and every bone keeps its direction. A bone of length 0 takes the
+        direction of the rest pose. All descendants of a missing joint are NaN.
 
     Raises
     ------
@@ -39,9 +39,9 @@ def fit_bone_lengths(positions: NDArray[np.float64], skeleton: Skeleton) -> NDAr
     for joint, parent in enumerate(skeleton.parents[1:], start=1):
         bone = positions[:, joint] - positions[:, parent]
         bone = np.where((bone == 0.0).all(axis=-1)[:, None], skeleton.offsets[joint], bone)
-        present = np.linalg.norm(bone, axis=-1, keepdims=True)
-        scale = lengths[joint] / np.where(present > 0.0, present, 1.0)
-        scale = np.where(np.isfinite(present), scale, np.nan)
+        length = np.linalg.norm(bone, axis=-1, keepdims=True)
+        scale = lengths[joint] / np.where(length > 0.0, length, 1.0)
+        scale = np.where(np.isfinite(length), scale, np.nan)
         result[:, joint] = result[:, parent] + scale * bone
     return result
 
@@ -49,24 +49,25 @@ def fit_bone_lengths(positions: NDArray[np.float64], skeleton: Skeleton) -> NDAr
 def transfer_motion(
     motion: Motion, skeleton: Skeleton, humanoid_map: HumanoidMap | None = None
 ) -> Motion:
-    """Let a body of other lengths, with the same joints, make the same motion.
+    """Transfer a motion to a skeleton with the same joints and other bone lengths.
 
-    Rotations stay. Root positions grow with the legs, from the ground (height 0) under the
-    first place seen, so that longer legs make longer steps and no foot slides more than before.
+    Rotations are unchanged. Root positions are scaled by the leg lengths about the ground
+    (height 0) below the first observed position, so that steps scale and feet do not slide
+    more.
 
     Parameters
     ----------
     motion : Motion
     skeleton : Skeleton
-        The same names in the same tree.
+        The same joint names and hierarchy.
     humanoid_map : HumanoidMap, optional
-        Says where the legs are; found by `find_humanoid_map` where it is not given. Bodies
-        without legs are compared by height.
+        Roles of the leg joints; by default from `find_humanoid_map`. Bodies without legs are
+        compared by height.
 
     Returns
     -------
     Motion
-        Of `skeleton`, with the frames and gaps of `motion`.
+        The motion of `skeleton`, with the frames and gaps of `motion`.
 
     Raises
     ------
@@ -78,17 +79,19 @@ def transfer_motion(
             "The two skeletons have different joints; retarget the motion instead."
         )
     humanoid = humanoid_map or find_humanoid_map(motion.skeleton)
-    growth = _growth(motion.skeleton, skeleton, humanoid)
-    places = motion.root_positions
-    seen = np.isfinite(places).all(axis=-1)
-    start = places[seen.argmax()] * (1.0, 1.0, 0.0) if seen.any() else np.zeros(3)
+    scale = _leg_ratio(motion.skeleton, skeleton, humanoid)
+    root_positions = motion.root_positions
+    observed = np.isfinite(root_positions).all(axis=-1)
+    start = (
+        root_positions[observed.argmax()] * (1.0, 1.0, 0.0) if observed.any() else np.zeros(3)
+    )
     return Motion(
-        skeleton, motion.rotations, start + growth * (places - start), motion.frame_rate
+        skeleton, motion.rotations, start + scale * (root_positions - start), motion.frame_rate
     )
 
 
-def _growth(old: Skeleton, new: Skeleton, humanoid: HumanoidMap) -> float:
-    """Return the ratio of leg lengths; of heights for what has no legs; 1 for what has none."""
+def _leg_ratio(old: Skeleton, new: Skeleton, humanoid: HumanoidMap) -> float:
+    """Return the ratio of leg lengths; without legs, of heights; 1 without heights."""
     legs = [
         f"{side}{part}"
         for side in ("left", "right")

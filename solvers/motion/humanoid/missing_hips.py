@@ -1,4 +1,4 @@
-"""Hips that a tracker never saw, from the legs that hang on them."""
+"""Fill in hips that a tracker does not report."""
 
 from dataclasses import replace
 
@@ -9,15 +9,15 @@ UPPER_LEG_ROLES = ("leftUpperLeg", "rightUpperLeg")
 
 
 def fill_missing_hips(recording: JointRecording) -> JointRecording:
-    """Return the recording with hips that no frame shows between the legs.
+    """Return the recording with missing hips placed between the upper legs.
 
-    Their tracking state is that of the less sure leg. A recording without hips or legs among
-    its joints is returned as it is, as is one whose hips were ever seen.
+    Their tracking state is the lower one of both legs. A recording without a joint for the hips
+    or the legs, or with hips observed in any frame, is returned unchanged.
     """
     tracks, state = recording.tracks, recording.tracking_state
-    places = posture_joint_indices(tracks.names)
-    legs = [places[role] for role in UPPER_LEG_ROLES if role in places]
-    hips = places.get("hips")
+    indices = posture_joint_indices(tracks.names)
+    legs = [indices[role] for role in UPPER_LEG_ROLES if role in indices]
+    hips = indices.get("hips")
     if hips is None or tracks.visible[:, hips].any() or len(legs) < len(UPPER_LEG_ROLES):
         return recording
     positions = tracks.positions.copy()

@@ -1,4 +1,4 @@
-"""Which way the palms face in a rest pose, by the knuckles."""
+"""Palm orientation in a rest pose, from the knuckles."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,56 +8,55 @@ from ..skeletons import Skeleton
 
 Array = NDArray[np.float64]
 
-ASLANT, TURNED = np.radians([30.0, 60.0])
-"""Palms that are turned less than the first from facing down, in rests as most rigs have them,
-stay as they are: knuckles lie a little aslant in all hands. From the second on they are turned
-back wholly, in between partly, so that nearly equal rests are treated nearly alike."""
-ALIKE = np.radians([30.0, 60.0])
-"""By how much both hands may differ, wholly and at all."""
+MIN_PALM_ROLL_RAD, MAX_PALM_ROLL_RAD = np.radians([30.0, 60.0])
+"""Roll of the palms from facing down below which they are unchanged, since all knuckles are a
+little oblique, and from which the roll is fully removed. The transition is smooth."""
+PALM_ROLL_DIFFERENCE_RAD = np.radians([30.0, 60.0])
+"""Difference between both hands up to which the roll is fully removed, and not at all."""
 ALONG_ARM = np.array([1.0, 0.0, 0.0])
 FINGERS = ("Little", "Ring", "Middle")
 
 
 def with_palms_down(alignment: Array, skeleton: Skeleton, joints: dict[str, int]) -> Array:
-    """Return the alignment of arms whose palms face down, as the T-pose has them.
+    """Return the alignment with the palms of the T-pose facing down.
 
-    Bones alone do not tell how a hand is turned about the arm. Its knuckles do: in the T-pose
-    they lie one behind the other, the index finger in front. Where those of both hands are
-    turned from there, alike and by more than a little (palms that face forward), hands are
-    taken to be turned, and forearms by half, as forearms twist.
+    The bones of an arm do not determine the roll of the hand; its knuckles do. In the T-pose
+    they are in one row, the index finger in front. If the knuckles of both hands have a
+    similar, large roll (palms that face forward), it is removed from the hands, and half of it
+    from the forearms.
 
     Parameters
     ----------
     alignment : shape (n_joints, 4)
-        World rotations from the T-pose to the rest pose, whatever the palms.
+        World rotations from the T-pose to the rest pose, without regard to the palms.
     skeleton : Skeleton
     joints : dict of role to joint
     """
     left, right = (_roll(alignment, skeleton, joints, side) for side in ("left", "right"))
     if left is None or right is None:
         return alignment
-    apart = (right - left + np.pi) % (2.0 * np.pi) - np.pi
-    share = _rising(min(abs(left), abs(right)), ASLANT, TURNED)
-    share *= 1.0 - _rising(abs(apart), *ALIKE)
-    if share == 0.0:
+    difference = (right - left + np.pi) % (2.0 * np.pi) - np.pi
+    fraction = _smoothstep(min(abs(left), abs(right)), MIN_PALM_ROLL_RAD, MAX_PALM_ROLL_RAD)
+    fraction *= 1.0 - _smoothstep(abs(difference), *PALM_ROLL_DIFFERENCE_RAD)
+    if fraction == 0.0:
         return alignment
-    turned, roll = alignment.copy(), share * (left + 0.5 * apart)
-    half, whole = (
-        quaternion_from_rotation_vector(part * roll * ALONG_ARM) for part in (0.5, 1.0)
+    result, roll = alignment.copy(), fraction * (left + 0.5 * difference)
+    half, full = (
+        quaternion_from_rotation_vector(fraction * roll * ALONG_ARM) for fraction in (0.5, 1.0)
     )
     for side in ("left", "right"):
         hand = skeleton.subtree(joints[f"{side}Hand"])
         if f"{side}LowerArm" in joints:
             arm = [j for j in skeleton.subtree(joints[f"{side}LowerArm"]) if j not in hand]
-            turned[arm] = multiply(turned[arm], half)
-        turned[hand] = multiply(turned[hand], whole)
-    return turned
+            result[arm] = multiply(result[arm], half)
+        result[hand] = multiply(result[hand], full)
+    return result
 
 
 def _roll(
     alignment: Array, skeleton: Skeleton, joints: dict[str, int], side: str
 ) -> float | None:
-    """Return by how much a hand is turned about the arm, radians, if its knuckles are known."""
+    """Return the roll of a hand about the arm, radians; None without knuckles."""
     index = joints.get(f"{side}IndexProximal")
     others = (joints.get(f"{side}{finger}Proximal") for finger in FINGERS)
     other = next((joint for joint in others if joint is not None), None)
@@ -69,7 +68,7 @@ def _roll(
     return float(np.arctan2(backwards[2], backwards[1]))
 
 
-def _rising(value: float, start: float, stop: float) -> float:
-    """Return 0 up to `start`, 1 from `stop` on, smoothly in between."""
-    share = float(np.clip((value - start) / (stop - start), 0.0, 1.0))
-    return share * share * (3.0 - 2.0 * share)
+def _smoothstep(value: float, start: float, stop: float) -> float:
+    """Return 0 up to `start`, 1 from `stop`, and a smooth transition between them."""
+    fraction = float(np.clip((value - start) / (stop - start), 0.0, 1.0))
+    return fraction * fraction * (3.0 - 2.0 * fraction)

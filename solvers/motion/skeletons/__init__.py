@@ -1,4 +1,4 @@
-"""Skeletons, motions and tracks: what all families pass to each other, and its kinematics."""
+"""Skeletons, motions and tracks, the data that all families exchange, and kinematics."""
 
 from .depth_sensors import SENSOR_JOINTS, UI_PRMD, Sensor, joint_parents, rest_direction
 from .frame_rate import check_frame_rate

@@ -1,8 +1,8 @@
-"""Which joints the makers' trackers find in the picture of a depth camera, in their order.
+"""Joints that body trackers find in depth images, in the order of each tracker.
 
 Sources: NuiSensor.h of the Kinect for Windows SDK 1.8 (NUI_SKELETON_POSITION_INDEX), Kinect.h
 of the SDK 2.0 (JointType), k4abttypes.h of the Azure Kinect Body Tracking SDK 1.1
-(k4abt_joint_id_t), whose names are spelt here as the other two are.
+(k4abt_joint_id_t), whose names are spelled here like those of the other two.
 """
 
 import re
@@ -13,7 +13,7 @@ from .mediapipe import MEDIAPIPE, MEDIAPIPE_T_POSE
 
 
 class Sensor(Enum):
-    """The camera or the tracker that a joint recording comes from."""
+    """Camera or body tracker that a joint recording comes from."""
 
     KINECT_V1 = "kinect_v1"
     KINECT_V2 = "kinect_v2"
@@ -22,7 +22,7 @@ class Sensor(Enum):
     OTHER = "other"
 
 
-# Each row is a joint and its parent, in the order of the tracker's own numbers.
+# Each row is a joint and its parent, in the order of the tracker's joint indices.
 KINECT_V1 = {
     "HipCenter": "", "Spine": "HipCenter", "ShoulderCenter": "Spine", "Head": "ShoulderCenter",
     "ShoulderLeft": "ShoulderCenter", "ElbowLeft": "ShoulderLeft", "WristLeft": "ElbowLeft",
@@ -63,7 +63,7 @@ AZURE_KINECT = {
     "Head": "Neck", "Nose": "Head", "EyeLeft": "Head", "EarLeft": "Head", "EyeRight": "Head",
     "EarRight": "Head",
 }  # fmt: skip
-UI_PRMD = {  # Kinect v2, as that data set keeps it
+UI_PRMD = {  # Kinect v2, with the joint names of the UI-PRMD data set
     "Waist": "", "Spine": "Waist", "Chest": "Spine", "Neck": "Chest", "Head": "Neck",
     "HeadTip": "Head",
     "LCollar": "Chest", "LUpArm": "LCollar", "LForeArm": "LUpArm", "LHand": "LForeArm",
@@ -77,9 +77,9 @@ SENSOR_JOINTS = {
     Sensor.KINECT_V2: tuple(KINECT_V2),
     Sensor.AZURE_KINECT: tuple(AZURE_KINECT),
 }
-"""Names of the joints of each sensor, in the order of the tracker's own numbers."""
+"""Joint names of each sensor, in the order of the tracker's joint indices."""
 
-# Ways from the parent to a joint of the left side, or of the middle, in a T-pose that faces -Y.
+# Directions from the parent to a left or central joint, in a T-pose that faces -Y.
 UP, DOWN, OUT = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)
 T_POSE = {
     "HipLeft": (1.0, 0.0, -0.5), "LUpLeg": (1.0, 0.0, -0.5),
@@ -95,31 +95,31 @@ T_POSE = {
 
 
 def rest_direction(name: str) -> tuple[float, float, float]:
-    """Return the way from its parent to a joint in a T-pose that faces -Y, of length 1.
+    """Return the unit direction from a joint's parent to it, in a T-pose that faces -Y.
 
-    What is not known by name, such as the joints of the spine, goes up.
+    Joints without an entry in the table, such as those of the spine, point up.
     """
-    left = re.sub("^R(?=[A-Z])", "L", name)
-    left = left.replace("Right", "Left").replace("right", "left")
-    x, y, z = T_POSE.get(left, UP)
+    left_name = re.sub("^R(?=[A-Z])", "L", name)
+    left_name = left_name.replace("Right", "Left").replace("right", "left")
+    x, y, z = T_POSE.get(left_name, UP)
     length = (x * x + y * y + z * z) ** 0.5
-    return (x if left == name else -x) / length, y / length, z / length
+    return (x if left_name == name else -x) / length, y / length, z / length
 
 
 def joint_parents(names: Sequence[str]) -> tuple[int, ...]:
-    """Return which joint each joint hangs on, as a place among `names`; -1: on none of them.
+    """Return the index of each joint's parent among `names`; -1 for a joint without one.
 
-    The tree is that of the tracker which knows most of the names. A joint whose parent is left
-    out hangs on its nearest ancestor that is there. In the order of the Kinect v2 a parent may
-    come after its children.
+    The hierarchy is that of the tracker with most of the names. A joint whose parent is left
+    out is a child of its nearest ancestor in `names`. In the order of the Kinect v2 a parent
+    may come after its children.
     """
     tables = (KINECT_V2, KINECT_V1, AZURE_KINECT, UI_PRMD, MEDIAPIPE)
     table = max(tables, key=lambda known: len(known.keys() & set(names)))
-    places = {name: place for place, name in enumerate(names)}
+    indices = {name: index for index, name in enumerate(names)}
     parents = []
     for name in names:
-        above = table.get(name, "")
-        while above and above not in places:
-            above = table[above]
-        parents.append(places.get(above, -1))
+        parent = table.get(name, "")
+        while parent and parent not in indices:
+            parent = table[parent]
+        parents.append(indices.get(parent, -1))
     return tuple(parents)

@@ -1,4 +1,4 @@
-"""How far each joint may turn."""
+"""Limits of joint rotations, as boxes of angles."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,24 +33,24 @@ EULER_ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 
 @dataclass(frozen=True, eq=False)
 class JointLimits:
-    """A box of allowed angles per joint.
+    """Box of allowed angles for each joint.
 
-    A local rotation L is seen as left^-1 L right, and its three coordinates must lie between
-    `lower` and `upper`. A limit constraint of Blender speaks of turns about the bone's own rest
-    axes: left and right are both those axes, in the world. Learned limits are centred on the
-    mean rotation and aligned with the directions in which the joint moves most.
+    A local rotation L is transformed to left^-1 L right, and its three coordinates must be
+    between `lower` and `upper`. A Limit Rotation constraint of Blender uses the bone's rest
+    axes: left and right are both those axes, in world space. Learned limits are centered on the
+    mean rotation and aligned with the principal directions of the joint's motion.
 
     Attributes
     ----------
     names : tuple of str
-        Joints; or humanoid roles, for which see `by_role`.
+        Names of joints or, where `by_role`, humanoid roles.
     by_role : bool array, shape (n_limits,)
-        True: the name is a humanoid role, and the rotation is that of the canonical T-pose, so
-        that the limit holds for any rig. False: it is a joint's.
+        True: the name is a humanoid role and the rotation is relative to the canonical T-pose,
+        so that the limit holds for any rig. False: the name is that of a joint.
     left, right : shape (n_limits, 4), unit quaternions w x y z
     orders : tuple of str
-        Per limit: the order of `quaternion_from_euler` ("ZYX" for Blender's "XYZ"), whose
-        angles are limited in the order in which it lists them; or "" for the rotation vector.
+        Euler order of each limit, as in `quaternion_from_euler` ("ZYX" for Blender's "XYZ"),
+        and the order of its limited angles; "" for the rotation vector.
     lower, upper : shape (n_limits, 3), radians; -inf and inf where an axis is free
     """
 
@@ -74,16 +74,18 @@ class JointLimits:
         }
         if lengths != {n_limits}:
             raise InvalidMotionError(
-                f"{n_limits} joint limits need as many of every attribute."
+                f"{n_limits} joint limits need {n_limits} entries in every attribute."
             )
-        wrong = [
+        unknown = [
             order for order in self.orders if order not in (ROTATION_VECTOR, *EULER_ORDERS)
         ]
-        if wrong:
-            raise InvalidMotionError(f"There are no such Euler orders: {', '.join(wrong)}.")
+        if unknown:
+            raise InvalidMotionError(
+                f"There are no such Euler orders: {', '.join(unknown)}. Use an order such as XYZ."
+            )
         empty = ~(self.lower <= self.upper).all(axis=1)
         if empty.any():
-            names = [name for name, none in zip(self.names, empty, strict=True) if none]
+            names = [name for name, is_empty in zip(self.names, empty, strict=True) if is_empty]
             raise InvalidMotionError(
                 f"The lower limit must not exceed the upper one: {', '.join(names)}."
             )
@@ -101,12 +103,12 @@ class JointLimits:
 
 
 def load_joint_limits(path: Path | str) -> JointLimits:
-    """Read what `JointLimits.save` wrote.
+    """Read joint limits from an archive that `JointLimits.save` wrote.
 
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, or holds something else.
+        The file is missing, damaged, or not an archive of joint limits.
     """
     saved = LAYOUT.read(path)
     try:

@@ -1,4 +1,4 @@
-"""What the tracker of a depth camera tells: joints, and how well it saw each of them."""
+"""Joints that a depth camera tracked, with the tracking state of each."""
 
 from dataclasses import dataclass, replace
 
@@ -14,15 +14,15 @@ NOT_TRACKED, INFERRED, TRACKED = 0, 1, 2
 
 @dataclass(frozen=True, eq=False)
 class JointRecording:
-    """Joints of one body as a depth camera tracked them. NaN means: not observed.
+    """Joints of one body as a depth camera tracked them. NaN: missing.
 
     Attributes
     ----------
     tracks : Tracks
         One point per joint, in the order of the tracker or of the file.
     tracking_state : int8 array, shape (n_frames, n_joints), or None
-        2 tracked, 1 inferred from other joints, 0 not tracked; None where the tracker did not
-        say it.
+        2 tracked, 1 inferred from other joints, 0 not tracked; None if the tracker did not
+        report it.
     sensor : Sensor
     """
 
@@ -33,24 +33,24 @@ class JointRecording:
     def __post_init__(self) -> None:
         if not isinstance(self.sensor, Sensor):
             raise InvalidMotionError(
-                f"{self.sensor!r} is no sensor; choose one of"
+                f"{self.sensor!r} is not a sensor; choose one of"
                 f" {', '.join(f'Sensor.{sensor.name}' for sensor in Sensor)}."
             )
         if self.tracking_state is not None:
             object.__setattr__(self, "tracking_state", self._checked(self.tracking_state))
 
     def _checked(self, tracking_state: NDArray[np.int8]) -> NDArray[np.int8]:
-        given = np.asarray(tracking_state)
-        if given.shape != self.tracks.positions.shape[:2]:
+        state = np.asarray(tracking_state)
+        if state.shape != self.tracks.positions.shape[:2]:
             raise InvalidMotionError(
                 f"Tracking states need shape {self.tracks.positions.shape[:2]}, not"
-                f" {given.shape}."
+                f" {state.shape}."
             )
-        if not np.isin(given, (NOT_TRACKED, INFERRED, TRACKED)).all():
+        if not np.isin(state, (NOT_TRACKED, INFERRED, TRACKED)).all():
             raise InvalidMotionError(
                 "Tracking states must be 0 (not tracked), 1 (inferred) or 2 (tracked)."
             )
-        return given.astype(np.int8)
+        return state.astype(np.int8)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -59,12 +59,12 @@ class JointRecording:
 
     @property
     def parents(self) -> tuple[int, ...]:
-        """Which joint each joint hangs on (`joint_parents`); -1 for the root."""
+        """Index of each joint's parent (`joint_parents`); -1 for the root."""
         return joint_parents(self.tracks.names)
 
     @property
     def n_frames(self) -> int:
-        """Number of moments."""
+        """Number of frames."""
         return self.tracks.n_frames
 
     @property
@@ -78,7 +78,7 @@ class JointRecording:
         return self.tracks.frame_rate
 
     def with_tracks(self, tracks: Tracks) -> "JointRecording":
-        """Return the same joints, elsewhere; the tracking state stays."""
+        """Return the recording with other positions and the same tracking state."""
         return replace(self, tracks=tracks)
 
     def slice(self, start: int, stop: int) -> "JointRecording":

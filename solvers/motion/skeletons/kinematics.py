@@ -1,4 +1,4 @@
-"""Where the joints of a motion are in the world."""
+"""Forward kinematics: positions and rotations of joints in world space."""
 
 from typing import NamedTuple
 
@@ -11,16 +11,16 @@ from .skeleton import Skeleton
 
 
 class WorldPoses(NamedTuple):
-    """Every joint in the world."""
+    """World-space poses of all joints."""
 
     rotations: NDArray[np.float64]
     """Unit quaternions w x y z, rest pose to world, shape (n_frames, n_joints, 4)."""
     positions: NDArray[np.float64]
-    """Rotation centres, shape (n_frames, n_joints, 3), metres."""
+    """Joint centers, shape (n_frames, n_joints, 3), metres."""
 
 
 def forward_kinematics(motion: Motion) -> WorldPoses:
-    """Return world rotations and positions of all joints and frames; NaN spreads downwards."""
+    """Return world rotations and positions of all joints; NaN propagates to descendants."""
     return world_poses(motion.skeleton, motion.rotations, motion.root_positions)
 
 
@@ -29,7 +29,7 @@ def world_poses(
     rotations: NDArray[np.float64],
     root_positions: NDArray[np.float64],
 ) -> WorldPoses:
-    """Forward kinematics of bare arrays.
+    """Compute forward kinematics from arrays.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def world_poses(
     WorldPoses
         Arrays of shape (..., n_joints, 4) and (..., n_joints, 3).
     """
-    # Components come first and frames last here, so that each step runs over whole arrays.
+    # Components come first and frames last here, so that each step runs over complete arrays.
     local = np.ascontiguousarray(
         np.moveaxis(rotations.reshape(-1, *rotations.shape[-2:]), 0, -1)
     )
@@ -64,8 +64,8 @@ def world_poses(
 def local_rotations(
     skeleton: Skeleton, world_rotations: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return local rotations from world ones, both (..., n_joints, 4): undoes `world_poses`."""
+    """Return the local rotations of world ones, (..., n_joints, 4); see `world_poses`."""
     local = np.array(world_rotations, dtype=np.float64)
-    above = local[..., list(skeleton.parents[1:]), :]
-    local[..., 1:, :] = multiply(inverse(above), local[..., 1:, :])
+    parents = local[..., list(skeleton.parents[1:]), :]
+    local[..., 1:, :] = multiply(inverse(parents), local[..., 1:, :])
     return local

@@ -1,4 +1,4 @@
-"""Bring the end of an arm or a leg to a place by turning its two bones."""
+"""Analytic two-bone inverse kinematics of arms and legs."""
 
 from dataclasses import dataclass
 
@@ -19,18 +19,18 @@ from .motion import Motion
 from .skeleton import Skeleton
 
 MIN_PLANE_FLEXION_RAD, RELIABLE_PLANE_FLEXION_RAD = np.radians([5.0, 25.0])
-"""Flexions at which the pose itself begins to tell, and fully tells, the plane of bending."""
+"""Flexions, radians, from which the pose defines the plane of flexion partly and fully."""
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReachSettings(Settings):
-    """How a limb stretches."""
+    """How a limb extends toward a target."""
 
     softness: float = setting(
-        0.01, "Part of the limb's length over which it eases into full extension, and into full"
-        " folding; higher keeps knees from popping but falls short of far targets",
+        0.01, "Fraction of the limb's length over which it eases into full extension and into"
+        " full folding; higher avoids knee pops but falls short of far targets",
         minimum=0.0, maximum=0.5,
     )  # fmt: skip
 
@@ -43,15 +43,15 @@ def reach(
     *,
     keep_orientation: bool = True,
 ) -> Motion:
-    """Turn a limb's upper and lower joint so that its end comes to the targets.
+    """Rotate the upper and lower joint of a limb so that its end reaches the targets.
 
-    The hinge bends or opens until the end is as far from the limb's start as the target is
-    (law of cosines), then the whole limb turns the short way onto the target. It bends in the
-    plane of the pose itself; where that is too straight to tell, about the axis in which the
-    limb bends elsewhere in the clip. Joints between the three, such as twist bones, turn along.
-    Farther than the limb reaches, it points at the target and eases into full extension: from
-    `softness` before it, or from as far as the pose already is, the distance approaches the
-    full length exponentially; so it does towards full folding.
+    The hinge flexes until the distance from the limb's start to its end equals that to the
+    target (law of cosines); then the shortest rotation brings the limb onto the target. The
+    plane of flexion is that of the pose; a nearly straight limb uses its mean axis of flexion
+    in the clip. Joints between the three, such as twist bones, follow. A limb that is too short
+    points at the target and eases into full extension: within `softness` of the full length,
+    or from the pose's own extension, the distance approaches the full length exponentially.
+    Full folding is approached in the same way.
 
     Parameters
     ----------
@@ -59,48 +59,50 @@ def reach(
     limb : upper, lower and end joint
         Indices such as those of hip, knee and ankle, each an ancestor of the next.
     targets : shape (n_frames, 3), metres, world space
-        NaN leaves the pose as it is.
+        NaN: the pose is unchanged.
     settings : ReachSettings
     keep_orientation : bool
-        Let the end joint keep its orientation in the world; it keeps its local rotation if not.
+        True: the end joint keeps its world rotation. False: it keeps its local rotation.
 
     Returns
     -------
     Motion
-        Other rotations for two or three joints. Unchanged, to rounding, where the end already
-        is at the target.
+        With new rotations of two or three joints. Unchanged, to rounding, where the end is
+        already at the target.
 
     Raises
     ------
     InvalidMotionError
-        The three joints do not follow one another, or the targets have another shape.
+        The three joints are not one chain, or the targets have another shape.
     """
     _check(motion, limb, targets)
     world = forward_kinematics(motion)
     upper, lower, end = limb
     start, hinge, tip = (world.positions[:, joint] for joint in limb)
     axis = rotate(world.rotations[:, upper], bending_axis(motion, limb, world))
-    bent = _hinge_turn(hinge - start, tip - hinge, targets - start, axis, settings.softness)
-    moved_tip = hinge + rotate(bent, tip - hinge)
-    swung = rotation_between(moved_tip - start, targets - start)
-    turns = [(upper, swung), (lower, bent)]
+    hinge_rotation = _hinge_rotation(
+        hinge - start, tip - hinge, targets - start, axis, settings.softness
+    )
+    moved_tip = hinge + rotate(hinge_rotation, tip - hinge)
+    swing = rotation_between(moved_tip - start, targets - start)
+    changes = [(upper, swing), (lower, hinge_rotation)]
     if keep_orientation:
-        turns.append((end, inverse(multiply(swung, bent))))
+        changes.append((end, inverse(multiply(swing, hinge_rotation))))
     rotations = motion.rotations.copy()
-    idle = ~np.isfinite(targets).all(axis=-1)
-    for joint, turn in turns:
-        turned = _turned(motion, world, joint, turn)
-        rotations[:, joint] = np.where(idle[:, None], rotations[:, joint], turned)
+    no_target = ~np.isfinite(targets).all(axis=-1)
+    for joint, rotation in changes:
+        rotated = _rotate_local(motion, world, joint, rotation)
+        rotations[:, joint] = np.where(no_target[:, None], rotations[:, joint], rotated)
     return motion.with_poses(rotations)
 
 
 def bending_axis(
     motion: Motion, limb: tuple[int, int, int], world: WorldPoses | None = None
 ) -> Array:
-    """Return the axis about which the limb mostly flexes, shape (3,), in rest-pose axes.
+    """Return the mean axis of flexion of the limb, shape (3,), in rest-pose axes.
 
-    It is fixed in the upper joint, as a knee's is in the thigh. A limb that never bends bends
-    like a knee if it hangs in the rest pose, backwards, and like an elbow if not, forwards.
+    It is fixed in the upper joint, as the axis of a knee is in the thigh. For a limb that never
+    flexes it is that of a knee if the limb points down in the rest pose, else of an elbow.
     """
     upper, lower, end = limb
     world = forward_kinematics(motion) if world is None else world
@@ -114,23 +116,28 @@ def bending_axis(
         return np.asarray(flexion / np.linalg.norm(flexion))
     rest = motion.skeleton.rest_positions
     bone = rest[lower] - rest[upper]
-    hangs = -bone[2] > np.abs(bone[:2]).max()
-    fallback = np.cross(bone, (0.0, 1.0 if hangs else -1.0, 0.0))
+    points_down = -bone[2] > np.abs(bone[:2]).max()
+    fallback = np.cross(bone, (0.0, 1.0 if points_down else -1.0, 0.0))
     length = np.linalg.norm(fallback)
     return np.asarray(fallback / length) if length > 0.0 else np.array([1.0, 0.0, 0.0])
 
 
-def _hinge_turn(first: Array, second: Array, wanted: Array, axis: Array, soft: float) -> Array:
-    """Return the world turns, (n_frames, 4), of the lower bone that give the limb its reach.
+def _hinge_rotation(
+    first: Array, second: Array, target: Array, axis: Array, softness: float
+) -> Array:
+    """Return the world rotations, (n_frames, 4), of the lower bone that set the limb's length.
 
-    `first` and `second` are the bones, `wanted` leads from the limb's start to the target.
+    `first` and `second` are the bones, `wanted` is the vector from the limb's start to the
+    target.
     """
     a, b = np.linalg.norm(first, axis=-1), np.linalg.norm(second, axis=-1)
-    present = np.linalg.norm(first + second, axis=-1)
-    distance = _softened(np.linalg.norm(wanted, axis=-1), present, a + b, soft)
-    distance = _unfolded(distance, present, np.abs(a - b), soft * (a + b))
+    current = np.linalg.norm(first + second, axis=-1)
+    distance = _limit_extension(np.linalg.norm(target, axis=-1), current, a + b, softness)
+    distance = _limit_folding(distance, current, np.abs(a - b), softness * (a + b))
     cosine = (distance**2 - a**2 - b**2) / np.maximum(2 * a * b, 1e-12)
-    after = np.arccos(np.clip(cosine, -1.0, 1.0))  # nearer than it can fold, it folds
+    after = np.arccos(
+        np.clip(cosine, -1.0, 1.0)
+    )  # a target that is too near folds the limb fully
 
     along = first / np.maximum(a, 1e-12)[:, None]
     normal = np.cross(along, second / np.maximum(b, 1e-12)[:, None])
@@ -140,53 +147,56 @@ def _hinge_turn(first: Array, second: Array, wanted: Array, axis: Array, soft: f
     level /= np.maximum(np.linalg.norm(level, axis=-1), 1e-12)[:, None]
     normal = np.where(sine[:, None] > 1e-9, normal / np.maximum(sine, 1e-9)[:, None], level)
 
-    # The plane in which it bends lies at `aside` from the limb's usual one. A nearly straight
-    # limb that must bend much more turns into the usual plane as it does so.
-    aside = np.arctan2(
+    # The plane of flexion is rotated by `aside` from the mean one. A nearly straight limb that
+    # must flex much more rotates into the mean plane.
+    roll_angle = np.arctan2(
         np.einsum("fi,fi->f", np.cross(level, normal), along),
         np.einsum("fi,fi->f", level, normal),
     )
-    trust = np.clip(
+    reliability = np.clip(
         (before - MIN_PLANE_FLEXION_RAD) / (RELIABLE_PLANE_FLEXION_RAD - MIN_PLANE_FLEXION_RAD),
         0.0,
         1.0,
     )
-    trust = trust * trust * (3.0 - 2.0 * trust)
-    share = np.minimum(before / np.maximum(after, 1e-12), 1.0) ** 2
-    kept = (trust + (1.0 - trust) * share) * aside
-    new_normal = rotate(quaternion_from_rotation_vector(kept[:, None] * along), level)
+    reliability = reliability * reliability * (3.0 - 2.0 * reliability)
+    fraction = np.minimum(before / np.maximum(after, 1e-12), 1.0) ** 2
+    roll = (reliability + (1.0 - reliability) * fraction) * roll_angle
+    new_normal = rotate(quaternion_from_rotation_vector(roll[:, None] * along), level)
     straighten = quaternion_from_rotation_vector(-before[:, None] * normal)
     return multiply(quaternion_from_rotation_vector(after[:, None] * new_normal), straighten)
 
 
-def _softened(wanted: Array, present: Array, full: Array, soft: float) -> Array:
-    """Return a distance that never exceeds `full` and leaves `present` as it is."""
-    begin = np.minimum(np.maximum((1.0 - soft) * full, present), full)
-    room = full - begin
-    excess = np.maximum(wanted - begin, 0.0)
-    eased = room * -np.expm1(-excess / np.maximum(room, 1e-12))
-    return np.minimum(wanted, begin + eased)
+def _limit_extension(target: Array, current: Array, full: Array, softness: float) -> Array:
+    """Return distances of at most `full`; `present` is unchanged."""
+    start_distance = np.minimum(np.maximum((1.0 - softness) * full, current), full)
+    margin = full - start_distance
+    excess = np.maximum(target - start_distance, 0.0)
+    approach = margin * -np.expm1(-excess / np.maximum(margin, 1e-12))
+    return np.minimum(target, start_distance + approach)
 
 
-def _unfolded(wanted: Array, present: Array, folded: Array, soft: Array) -> Array:
-    """Return a distance not less than that of the folded limb; leaves `present` as it is."""
-    begin = np.maximum(np.minimum(folded + soft, present), folded)
-    room = begin - folded
-    lacking = np.maximum(begin - wanted, 0.0)
-    eased = room * -np.expm1(-lacking / np.maximum(room, 1e-12))
-    return np.asarray(np.maximum(wanted, begin - eased))
+def _limit_folding(target: Array, current: Array, folded: Array, softness: Array) -> Array:
+    """Return distances of at least that of the folded limb; `present` is unchanged."""
+    start_distance = np.maximum(np.minimum(folded + softness, current), folded)
+    margin = start_distance - folded
+    shortfall = np.maximum(start_distance - target, 0.0)
+    approach = margin * -np.expm1(-shortfall / np.maximum(margin, 1e-12))
+    return np.asarray(np.maximum(target, start_distance - approach))
 
 
-def _turned(motion: Motion, world: WorldPoses, joint: int, turn: Array) -> Array:
-    """Return the local rotations of a joint whose parent's present frame sees `turn` added.
+def _rotate_local(motion: Motion, world: WorldPoses, joint: int, rotation: Array) -> Array:
+    """Return the local rotations of a joint with a world rotation added.
 
-    Turns of the joints above cancel: each is expressed in the unturned world.
+    Rotations added to the joints above cancel: each is relative to the original pose.
     """
     parent = motion.skeleton.parents[joint]
     if parent < 0:
-        return multiply(turn, motion.rotations[:, joint])
-    above = world.rotations[:, parent]
-    return multiply(multiply(multiply(inverse(above), turn), above), motion.rotations[:, joint])
+        return multiply(rotation, motion.rotations[:, joint])
+    parent_rotation = world.rotations[:, parent]
+    return multiply(
+        multiply(multiply(inverse(parent_rotation), rotation), parent_rotation),
+        motion.rotations[:, joint],
+    )
 
 
 def _check(motion: Motion, limb: tuple[int, int, int], targets: Array) -> None:
@@ -195,7 +205,7 @@ def _check(motion: Motion, limb: tuple[int, int, int], targets: Array) -> None:
     if upper not in skeleton.ancestors(lower) or lower not in skeleton.ancestors(end):
         names = ", ".join(skeleton.names[joint] for joint in limb)
         raise InvalidMotionError(
-            f"A limb's three joints must follow one another; {names} do not."
+            f"The three joints of a limb must be one chain; {names} are not."
         )
     if np.shape(targets) != (motion.n_frames, 3):
         raise InvalidMotionError(

@@ -1,8 +1,8 @@
-"""Which points MediaPipe finds in a picture, and how they hang together as joints.
+"""Points that MediaPipe finds in an image, and their joint hierarchy.
 
 Sources: mediapipe/python/solutions/pose.py (PoseLandmark), hands.py (HandLandmark). It finds no
-joint on the middle of the body; four are computed as freemocap does ("virtual markers" of its
-skeletons): means of the points at their sides.
+joint on the midline of the body; four are computed like the virtual markers of freemocap:
+means of the points on both sides.
 """
 
 BODY_POINTS = (
@@ -16,7 +16,7 @@ BODY_POINTS = (
 """Points of the body in MediaPipe's order."""
 FINGERS = ("thumb", "index", "middle", "ring", "pinky")
 HAND_POINTS = ("wrist", *(f"{finger}_{part}" for finger in FINGERS for part in (1, 2, 3, 4)))
-"""Points of one hand in MediaPipe's order; to be called left_hand_… or right_hand_…"""
+"""Points of one hand in MediaPipe's order, without the prefix left_hand_ or right_hand_."""
 
 HIPS = ("left_hip", "right_hip")
 SHOULDERS = ("left_shoulder", "right_shoulder")
@@ -26,7 +26,7 @@ COMPUTED_JOINTS = {
     "neck_center": SHOULDERS,
     "head_center": ("left_ear", "right_ear"),
 }
-"""Computed joints, and the points that each is the mean of."""
+"""Computed joints, each the mean of the listed points."""
 
 _FACE = (*BODY_POINTS[:9], "mouth_left", "mouth_right")
 _LIMBS = {
@@ -38,15 +38,15 @@ _LIMBS = {
 
 
 def _parents() -> dict[str, str]:
-    """Each joint and its parent; the root's is empty."""
+    """Return each joint's parent; empty for the root."""
     parents = {
         "hips_center": "", "trunk_center": "hips_center", "neck_center": "trunk_center",
         "head_center": "neck_center", **dict.fromkeys(_FACE, "head_center"),
     }  # fmt: skip
     for side in ("left", "right"):
-        for joint, above in _LIMBS.items():
+        for joint, parent in _LIMBS.items():
             parents[f"{side}_{joint}"] = (
-                above if above in COMPUTED_JOINTS else f"{side}_{above}"
+                parent if parent in COMPUTED_JOINTS else f"{side}_{parent}"
             )
         for finger in FINGERS:
             chain = [f"{side}_hand_{finger}_{part}" for part in (1, 2, 3, 4)]
@@ -55,9 +55,9 @@ def _parents() -> dict[str, str]:
 
 
 MEDIAPIPE = _parents()
-"""Each joint and its parent. A hand's own wrist is the body's once more, and no joint."""
+"""Each joint and its parent. A hand's wrist is not a joint: it duplicates the body's."""
 
-# Ways from the parent in a T-pose that faces -Y; see `depth_sensors.rest_direction`.
+# Directions from the parent in a T-pose that faces -Y; see `depth_sensors.rest_direction`.
 _OUT, _DOWN, _THUMB = (1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.6, -0.8, 0.0)
 MEDIAPIPE_T_POSE = {
     **dict.fromkeys(("left_hip", "left_shoulder", "left_elbow", "left_wrist"), _OUT),

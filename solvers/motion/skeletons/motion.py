@@ -11,24 +11,24 @@ from .skeleton import MAX_DISTANCE_M, Skeleton
 
 UNIT_TOLERANCE = 1e-3
 ROUNDING = 1e-14
-"""Lengths this near to one are left alone, so that what nobody changes stays bit for bit."""
+"""Norms this near to 1 are not normalized, so that unchanged rotations stay identical bits."""
 
 FRAMES_AT_ONCE = 2000
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """A skeleton in motion. NaN means: not observed.
+    """Poses of a skeleton over time. NaN: missing.
 
     Attributes
     ----------
     skeleton : Skeleton
     rotations : float array, shape (n_frames, n_joints, 4), unit quaternions w x y z
-        Local: turns the parent's frame into the joint's own; identity in the rest pose.
+        Local: rotates the parent's frame to the joint's frame; identity in the rest pose.
         Where any component is NaN, all four are.
     root_positions : float array, shape (n_frames, 3), metres, world space, Z up
     frame_rate : float, hertz
-        Frame i is seen at time i / frame_rate.
+        Frame i is at time i / frame_rate.
     """
 
     skeleton: Skeleton
@@ -53,10 +53,10 @@ class Motion:
         check_frame_rate(self.frame_rate)
         if np.isinf(root_positions).any():
             raise InvalidMotionError("The root has infinite positions; NaN marks missing ones.")
-        if (farthest := np.nanmax(np.abs(root_positions), initial=0.0)) > MAX_DISTANCE_M:
+        if (distance := np.nanmax(np.abs(root_positions), initial=0.0)) > MAX_DISTANCE_M:
             raise InvalidMotionError(
-                f"The root goes as far as {farthest:.3g} m; give the scale of the recording, or"
-                " take those frames out."
+                f"The root is up to {distance:.3g} m from the origin; set the scale of the"
+                " recording, or remove those frames."
             )
         self._normalize(rotations)
         object.__setattr__(self, "rotations", rotations)
@@ -64,17 +64,17 @@ class Motion:
         object.__setattr__(self, "frame_rate", float(self.frame_rate))
 
     def _normalize(self, rotations: NDArray[np.float64]) -> None:
-        """Change rotations to unit length, if they are nearly; block by block saves memory."""
-        wrong = np.zeros(self.skeleton.n_joints, dtype=np.bool_)
+        """Normalize nearly unit rotations in place, block by block to save memory."""
+        not_unit = np.zeros(self.skeleton.n_joints, dtype=np.bool_)
         for start in range(0, len(rotations), FRAMES_AT_ONCE):
             block = rotations[start : start + FRAMES_AT_ONCE]
             norms = np.linalg.norm(block, axis=-1, keepdims=True)
-            off = np.abs(norms - 1.0)
-            wrong |= (off > UNIT_TOLERANCE).any(axis=(0, 2))
-            if not wrong.any():
-                np.divide(block, norms, out=block, where=~(off <= ROUNDING))
-        if wrong.any():
-            names = [self.skeleton.names[joint] for joint in np.flatnonzero(wrong)]
+            deviation = np.abs(norms - 1.0)
+            not_unit |= (deviation > UNIT_TOLERANCE).any(axis=(0, 2))
+            if not not_unit.any():
+                np.divide(block, norms, out=block, where=~(deviation <= ROUNDING))
+        if not_unit.any():
+            names = [self.skeleton.names[joint] for joint in np.flatnonzero(not_unit)]
             raise InvalidMotionError(
                 f"Rotations must be unit quaternions; these are not: {', '.join(names)}."
             )
@@ -96,20 +96,20 @@ class Motion:
 
     @property
     def observed(self) -> NDArray[np.bool_]:
-        """Whether each joint's rotation is known, shape (n_frames, n_joints).
+        """Whether each joint's rotation is observed, shape (n_frames, n_joints).
 
-        The root counts as known only where its position is known too.
+        The root is observed only where its position is observed too.
         """
-        known = np.isfinite(self.rotations).all(axis=-1)
-        known[:, 0] &= np.isfinite(self.root_positions).all(axis=-1)
-        return np.asarray(known)
+        observed = np.isfinite(self.rotations).all(axis=-1)
+        observed[:, 0] &= np.isfinite(self.root_positions).all(axis=-1)
+        return np.asarray(observed)
 
     def with_poses(
         self,
         rotations: NDArray[np.float64] | None = None,
         root_positions: NDArray[np.float64] | None = None,
     ) -> "Motion":
-        """Return the same skeleton with other rotations, root positions, or both."""
+        """Return the motion with other rotations, root positions, or both."""
         return replace(
             self,
             rotations=self.rotations if rotations is None else rotations,

@@ -1,4 +1,4 @@
-"""The same recording at another frame rate, with the same seconds."""
+"""Resample a recording to another frame rate."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -13,34 +13,33 @@ from .frame_rate import check_frame_rate
 from .motion import Motion
 from .tracks import Tracks
 
-STOPBAND = 60.0
-"""Decibels by which what the new rate cannot carry is weakened."""
+STOPBAND_DB = 60.0
+"""Attenuation of frequencies above the new Nyquist frequency, decibels."""
 
-PASSED = 0.7
-"""Part of the new Nyquist frequency up to which motion is kept."""
+PASSBAND = 0.7
+"""Edge of the passband, as a fraction of the new Nyquist frequency."""
 
-NUMBERS_AT_ONCE = 4_000_000
-"""Of which more would need much memory: two hours of a skeleton are thirty times as many."""
+MAX_VALUES_PER_BLOCK = 4_000_000
+"""Limits the memory: two hours of a skeleton have thirty times as many values."""
 
-ROWS_AT_ONCE = 32
-"""New frames that one product filters."""
+ROWS_PER_BLOCK = 32
+"""New frames that one matrix product filters."""
 
-STENCIL = 4
-"""Frames that take part in one interpolated value."""
+N_NODES = 4
+"""Frames from which one value is interpolated."""
 
 Recording = TypeVar("Recording", Motion, Tracks)
 
 
 def resample(recording: Recording, frame_rate: float) -> Recording:
-    """Return the recording seen at `frame_rate` hertz.
+    """Return the recording resampled to `frame_rate` hertz.
 
-    Frame k is the moment k / `frame_rate`; the last frame is the last such moment that is not
-    after the recording's own last frame. Values between frames come from the cubic through the
-    four frames around them (for rotations: of the unrolled quaternions, normalised), so frames
-    that coincide stay as they are. When the rate falls, a zero-phase low-pass filter comes
-    first (Kaiser-windowed sinc): all below 0.7 of the new Nyquist frequency passes, what
-    would come back as false slow motion is removed. Gaps stay gaps: a moment is observed where
-    the frames on either side of it are. Confidence is interpolated linearly.
+    Frame k is at time k / `frame_rate`; the last frame is not later than the recording's last
+    frame. Values between frames come from the cubic through the four nearest frames (for
+    rotations: of the unrolled quaternions, normalized). Frames that coincide are unchanged.
+    Before downsampling, a zero-phase low-pass filter (Kaiser-windowed sinc) prevents aliasing:
+    frequencies below 0.7 of the new Nyquist frequency pass. Gaps stay gaps: a new frame is
+    observed if the frames on both sides are. Confidence is interpolated linearly.
 
     Parameters
     ----------
@@ -50,30 +49,32 @@ def resample(recording: Recording, frame_rate: float) -> Recording:
     Returns
     -------
     Motion or Tracks
-        As the recording; one of one frame stays one of one frame.
+        Same type as the recording; a recording of one frame keeps one frame.
 
     Raises
     ------
     InvalidMotionError
-        No recording has this frame rate.
+        The frame rate is outside the valid range.
     """
     check_frame_rate(frame_rate)
-    times = _moments(recording.n_frames, recording.frame_rate, frame_rate)
+    times = _sample_times(recording.n_frames, recording.frame_rate, frame_rate)
     slowdown = frame_rate / recording.frame_rate
     if isinstance(recording, Motion):
-        rotations = _sampled_rotations(recording.rotations, times, slowdown)
-        places = _sampled(recording.root_positions, times, slowdown)
-        return Motion(recording.skeleton, rotations, places, frame_rate)
+        rotations = _sample_rotations(recording.rotations, times, slowdown)
+        root_positions = _sample(recording.root_positions, times, slowdown)
+        return Motion(recording.skeleton, rotations, root_positions, frame_rate)
     confidence = recording.confidence
     if confidence is not None:
         frames = np.arange(recording.n_frames)
-        confidence = np.stack([np.interp(times, frames, one) for one in confidence.T], axis=-1)
-    positions = _sampled(recording.positions, times, slowdown)
+        confidence = np.stack(
+            [np.interp(times, frames, column) for column in confidence.T], axis=-1
+        )
+    positions = _sample(recording.positions, times, slowdown)
     return replace(recording, positions=positions, confidence=confidence, frame_rate=frame_rate)
 
 
-def _moments(n_frames: int, old_rate: float, new_rate: float) -> NDArray[np.float64]:
-    """Return the new frames' times, counted in old frames."""
+def _sample_times(n_frames: int, old_rate: float, new_rate: float) -> NDArray[np.float64]:
+    """Return the times of the new frames, in old frames."""
     n_new = int(np.floor((n_frames - 1) * new_rate / old_rate + 1e-6)) + 1
     times = np.arange(n_new) * (old_rate / new_rate)
     nearest = np.round(times)
@@ -81,19 +82,19 @@ def _moments(n_frames: int, old_rate: float, new_rate: float) -> NDArray[np.floa
     return np.asarray(np.minimum(times, n_frames - 1))
 
 
-def _sampled_rotations(
+def _sample_rotations(
     rotations: NDArray[np.float64], times: NDArray[np.float64], slowdown: float
 ) -> NDArray[np.float64]:
-    """Return rotations at fractional frames, some joints at a time."""
+    """Return rotations at fractional frames, in blocks of joints."""
     result = np.empty((len(times), *rotations.shape[1:]))
-    step = max(NUMBERS_AT_ONCE // (4 * len(rotations)), 1)
+    step = max(MAX_VALUES_PER_BLOCK // (4 * len(rotations)), 1)
     for joint in range(0, rotations.shape[1], step):
-        some = slice(joint, joint + step)
-        result[:, some] = normalize(_sampled(unroll(rotations[:, some]), times, slowdown))
+        columns = slice(joint, joint + step)
+        result[:, columns] = normalize(_sample(unroll(rotations[:, columns]), times, slowdown))
     return result
 
 
-def _sampled(
+def _sample(
     values: NDArray[np.float64], times: NDArray[np.float64], slowdown: float
 ) -> NDArray[np.float64]:
     """Return `values`, shape (n_frames, ..., n), at fractional frames; gaps stay NaN."""
@@ -101,65 +102,65 @@ def _sampled(
     filled = np.nan_to_num(fill_gaps(values))
     step = round(1.0 / slowdown)
     if slowdown >= 1.0 or len(values) < 2:
-        result = _interpolated(filled, times)
+        result = _interpolate(filled, times)
     elif len(times) > 1 and np.array_equal(times, step * np.arange(len(times))):
-        result = _low_passed(filled, slowdown, step)
+        result = _low_pass(filled, slowdown, step)
     else:
-        result = _interpolated(_low_passed(filled, slowdown), times)
-    seen = observed[np.floor(times).astype(int)] & observed[np.ceil(times).astype(int)]
-    result[~seen] = np.nan
+        result = _interpolate(_low_pass(filled, slowdown), times)
+    valid = observed[np.floor(times).astype(int)] & observed[np.ceil(times).astype(int)]
+    result[~valid] = np.nan
     return result
 
 
-def _low_passed(
+def _low_pass(
     values: NDArray[np.float64], slowdown: float, step: int = 1
 ) -> NDArray[np.float64]:
-    """Remove what lies above the new Nyquist frequency; the ends keep their trend.
+    """Remove frequencies above the new Nyquist frequency; the ends keep their trend.
 
-    With `step`, return that many-th frames only.
+    Return every `step`-th frame.
     """
     kernel = _kernel(slowdown)
     half = len(kernel) // 2
     width = [(half, half)] + [(0, 0)] * (values.ndim - 1)
     padded = np.pad(values, width, mode="reflect", reflect_type="odd")
     flat = padded.reshape(len(padded), -1)
-    passed = np.empty((-(-len(values) // step), flat.shape[1]))
+    filtered = np.empty((-(-len(values) // step), flat.shape[1]))
     rows = _kernel_rows(slowdown, step)
-    for first in range(0, len(passed), ROWS_AT_ONCE):
-        n_rows = min(ROWS_AT_ONCE, len(passed) - first)
-        n_seen = (n_rows - 1) * step + len(kernel)
-        seen = flat[first * step : first * step + n_seen]
-        np.matmul(rows[:n_rows, :n_seen], seen, out=passed[first : first + n_rows])
-    return passed.reshape(len(passed), *values.shape[1:])
+    for first in range(0, len(filtered), ROWS_PER_BLOCK):
+        n_rows = min(ROWS_PER_BLOCK, len(filtered) - first)
+        n_samples = (n_rows - 1) * step + len(kernel)
+        valid = flat[first * step : first * step + n_samples]
+        np.matmul(rows[:n_rows, :n_samples], valid, out=filtered[first : first + n_rows])
+    return filtered.reshape(len(filtered), *values.shape[1:])
 
 
 @lru_cache(maxsize=16)
 def _kernel_rows(slowdown: float, step: int) -> NDArray[np.float64]:
-    """Return the kernel once in each row, `step` further on than in the one above.
+    """Return the convolution matrix: the kernel in each row, shifted by `step`.
 
-    A product with it is several times as fast as a convolution, though half of it is zeros.
+    A product with it is several times faster than a convolution, although half of it is zeros.
     """
     kernel = _kernel(slowdown)
-    rows = np.zeros((ROWS_AT_ONCE, (ROWS_AT_ONCE - 1) * step + len(kernel)))
-    for number, row in enumerate(rows):
-        row[number * step : number * step + len(kernel)] = kernel
+    rows = np.zeros((ROWS_PER_BLOCK, (ROWS_PER_BLOCK - 1) * step + len(kernel)))
+    for index, row in enumerate(rows):
+        row[index * step : index * step + len(kernel)] = kernel
     return rows
 
 
 @lru_cache(maxsize=16)
 def _kernel(slowdown: float) -> NDArray[np.float64]:
-    from scipy.signal import firwin, kaiserord  # takes a second: only when needed
+    from scipy.signal import firwin, kaiserord  # takes a second: imported only when needed
 
-    n_taps, beta = kaiserord(STOPBAND, (1.0 - PASSED) * slowdown)
-    cutoff = (1.0 + PASSED) / 2 * slowdown
+    n_taps, beta = kaiserord(STOPBAND_DB, (1.0 - PASSBAND) * slowdown)
+    cutoff = (1.0 + PASSBAND) / 2 * slowdown
     return np.asarray(firwin(2 * (n_taps // 2) + 1, cutoff, window=("kaiser", beta)))
 
 
-def _interpolated(
+def _interpolate(
     values: NDArray[np.float64], times: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Lagrange's polynomial through the nearest frames, at fractional frames."""
-    n_nodes = min(STENCIL, len(values))
+    """Evaluate the Lagrange polynomial through the nearest frames at fractional frames."""
+    n_nodes = min(N_NODES, len(values))
     first = np.clip(np.floor(times).astype(int) - 1, 0, len(values) - n_nodes)
     inside = times - first
     result = np.zeros((len(times), *values.shape[1:]))

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from ...errors import InvalidMotionError
 
 MAX_DISTANCE_M = 1e9
-"""Metres. Nobody is captured beyond; a unit was misread there, and squares may overflow."""
+"""No capture is larger: a larger value has a wrong unit, and its square may overflow."""
 
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
-    """Joints, who hangs on whom, and where each one sits in the rest pose.
+    """Named joints, their hierarchy, and their offsets in the rest pose.
 
     Rest-pose axes of every joint are the world's: Z up, right-handed; the character faces -Y.
 
@@ -27,8 +27,8 @@ class Skeleton:
         Index of each joint's parent, which comes before it; -1 for the root, which is joint 0
         and the only one without a parent.
     offsets : float array, shape (n_joints, 3), metres
-        From the parent's rotation centre to the joint's own, in the rest pose. The root's is
-        its rest position.
+        From the parent's joint center to the joint's, in the rest pose. The root's is its rest
+        position.
     """
 
     names: tuple[str, ...]
@@ -47,9 +47,9 @@ class Skeleton:
         if not n_joints:
             return ["A skeleton needs at least one joint."]
         faults = []
-        twice = sorted(name for name, times in Counter(self.names).items() if times > 1)
-        if twice:
-            faults.append(f"Joint names must differ; more than one is {', '.join(twice)}.")
+        duplicates = sorted(name for name, count in Counter(self.names).items() if count > 1)
+        if duplicates:
+            faults.append(f"Joint names must be unique; duplicates: {', '.join(duplicates)}.")
         if len(self.parents) != n_joints or self.offsets.shape != (n_joints, 3):
             faults.append(
                 f"A skeleton of {n_joints} joints needs as many parents"
@@ -60,18 +60,18 @@ class Skeleton:
             faults.append("The rest pose has offsets that are not finite numbers.")
         elif np.abs(self.offsets).max() > MAX_DISTANCE_M:
             faults.append(
-                f"The rest pose has a bone of {np.abs(self.offsets).max():.3g} m; give the"
-                " scale of the file, or mend that bone."
+                f"The rest pose has a bone of {np.abs(self.offsets).max():.3g} m; set the"
+                " scale of the file, or correct that bone."
             )
         if self.parents and self.parents[0] != -1:
             faults.append("The first joint must be the root (parent -1).")
-        late = [
+        misordered = [
             name
             for joint, (name, parent) in enumerate(zip(self.names, self.parents, strict=False))
             if joint and not 0 <= parent < joint
         ]
-        if late:
-            faults.append(f"A parent must come before its children: {', '.join(late)}.")
+        if misordered:
+            faults.append(f"A parent must come before its children: {', '.join(misordered)}.")
         return faults
 
     @property
@@ -82,11 +82,11 @@ class Skeleton:
     @cached_property
     def children(self) -> tuple[tuple[int, ...], ...]:
         """Indices of each joint's children."""
-        found: list[list[int]] = [[] for _ in self.names]
+        result: list[list[int]] = [[] for _ in self.names]
         for joint, parent in enumerate(self.parents):
             if parent >= 0:
-                found[parent].append(joint)
-        return tuple(tuple(joints) for joints in found)
+                result[parent].append(joint)
+        return tuple(tuple(joints) for joints in result)
 
     @cached_property
     def depths(self) -> NDArray[np.intp]:
@@ -98,7 +98,7 @@ class Skeleton:
 
     @cached_property
     def rest_positions(self) -> NDArray[np.float64]:
-        """Rotation centres in the rest pose, shape (n_joints, 3), metres."""
+        """Joint centers in the rest pose, shape (n_joints, 3), metres."""
         positions = self.offsets.copy()
         for joint, parent in enumerate(self.parents[1:], start=1):
             positions[joint] += positions[parent]
@@ -120,10 +120,10 @@ class Skeleton:
 
     def ancestors(self, joint: int) -> list[int]:
         """Return the joints above `joint`, nearest first."""
-        found = []
+        result = []
         while (joint := self.parents[joint]) >= 0:
-            found.append(joint)
-        return found
+            result.append(joint)
+        return result
 
     def subtree(self, joint: int) -> list[int]:
         """Return `joint` and all joints below it, in order of index."""
@@ -134,7 +134,7 @@ class Skeleton:
         return sorted(inside)
 
     def is_end_site(self, joint: int) -> bool:
-        """Whether the joint is a mere end point (named `<parent>_end`), which never rotates."""
+        """Whether the joint is an end site (named `<parent>_end`), which never rotates."""
         return self.names[joint].endswith("_end") and not self.children[joint]
 
     def same_joints(self, other: "Skeleton") -> bool:
@@ -142,15 +142,15 @@ class Skeleton:
         return self.names == other.names and self.parents == other.parents
 
     def select(self, joints: Sequence[int]) -> "Skeleton":
-        """Return the skeleton of these joints only; the root must be among them.
+        """Return the skeleton of these joints; the root must be among them.
 
-        A joint whose parent is left out hangs on its nearest kept ancestor.
+        A joint whose parent is left out becomes a child of its nearest selected ancestor.
         """
-        place = {joint: index for index, joint in enumerate(joints)}
+        new_index = {joint: index for index, joint in enumerate(joints)}
         parents, offsets = [], []
         for joint in joints:
-            kept = next((up for up in self.ancestors(joint) if up in place), -1)
-            parents.append(place.get(kept, -1))
+            kept = next((up for up in self.ancestors(joint) if up in new_index), -1)
+            parents.append(new_index.get(kept, -1))
             start = self.rest_positions[kept] if kept >= 0 else np.zeros(3)
             offsets.append(self.rest_positions[joint] - start)
         names = tuple(self.names[joint] for joint in joints)

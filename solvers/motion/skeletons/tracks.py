@@ -1,4 +1,4 @@
-"""Point trajectories: what an optical system or a depth camera measures."""
+"""Point trajectories, as an optical system or a depth camera measures them."""
 
 from collections import Counter
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from .skeleton import MAX_DISTANCE_M
 
 @dataclass(frozen=True, eq=False)
 class Tracks:
-    """Named points moving through space. NaN means: not observed.
+    """Trajectories of named points. NaN: missing.
 
     Attributes
     ----------
@@ -21,7 +21,7 @@ class Tracks:
     positions : float array, shape (n_frames, n_points, 3), metres, world space, Z up
     frame_rate : float, hertz
     confidence : float array, shape (n_frames, n_points), 0 to 1, or None
-        How sure the sensor is of each point.
+        Confidence of the sensor in each point.
     """
 
     names: tuple[str, ...]
@@ -36,17 +36,19 @@ class Tracks:
                 "Tracks need at least one frame and one point, and positions of shape"
                 f" (n_frames, {len(self.names)}, 3), not {positions.shape}."
             )
-        twice = sorted(name for name, times in Counter(self.names).items() if times > 1)
-        if twice:
-            raise InvalidMotionError(f"Point names must differ; twice: {', '.join(twice)}.")
-        check_frame_rate(self.frame_rate)
-        farthest = max(np.nanmax(positions, initial=0.0), -np.nanmin(positions, initial=0.0))
-        if np.isinf(farthest):
-            raise InvalidMotionError("There are infinite positions; NaN marks missing ones.")
-        if farthest > MAX_DISTANCE_M:
+        duplicates = sorted(name for name, count in Counter(self.names).items() if count > 1)
+        if duplicates:
             raise InvalidMotionError(
-                f"A point is as far as {farthest:.3g} m; give the scale of the recording, or"
-                " take those frames out."
+                f"Point names must be unique; duplicates: {', '.join(duplicates)}."
+            )
+        check_frame_rate(self.frame_rate)
+        distance = max(np.nanmax(positions, initial=0.0), -np.nanmin(positions, initial=0.0))
+        if np.isinf(distance):
+            raise InvalidMotionError("There are infinite positions; NaN marks missing ones.")
+        if distance > MAX_DISTANCE_M:
+            raise InvalidMotionError(
+                f"A point is up to {distance:.3g} m from the origin; set the scale of the"
+                " recording, or remove those frames."
             )
         object.__setattr__(self, "names", tuple(self.names))
         object.__setattr__(self, "positions", positions)
@@ -61,12 +63,12 @@ class Tracks:
                 f"Confidence needs shape {self.positions.shape[:2]}, not {confidence.shape}."
             )
         if not ((confidence >= 0.0) & (confidence <= 1.0)).all():
-            raise InvalidMotionError("Confidence must lie between 0 and 1.")
+            raise InvalidMotionError("Confidence must be between 0 and 1.")
         return confidence
 
     @property
     def n_frames(self) -> int:
-        """Number of moments."""
+        """Number of frames."""
         return len(self.positions)
 
     @property
@@ -81,11 +83,11 @@ class Tracks:
 
     @property
     def visible(self) -> NDArray[np.bool_]:
-        """Whether each point was seen, shape (n_frames, n_points)."""
+        """Whether each point is observed, shape (n_frames, n_points)."""
         return np.asarray(np.isfinite(self.positions).all(axis=-1))
 
     def with_positions(self, positions: NDArray[np.float64]) -> "Tracks":
-        """Return the same points, elsewhere; the sensor's confidence stays."""
+        """Return the tracks with other positions and the same confidence."""
         return replace(self, positions=positions)
 
     def slice(self, start: int, stop: int) -> "Tracks":

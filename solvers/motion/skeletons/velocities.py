@@ -1,4 +1,4 @@
-"""How fast points move and joints turn."""
+"""Linear and angular velocities by finite differences."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,7 +7,7 @@ from ...rotations import inverse, multiply, rotation_vector_from_quaternion
 
 
 def linear_velocities(positions: NDArray[np.float64], frame_rate: float) -> NDArray[np.float64]:
-    """Return the velocity at each frame, from the steps to the frames before and after it.
+    """Return the velocity at each frame by central differences.
 
     Parameters
     ----------
@@ -17,9 +17,8 @@ def linear_velocities(positions: NDArray[np.float64], frame_rate: float) -> NDAr
     Returns
     -------
     NDArray, shape (n_frames, ..., 3), metres per second
-        The mean of both steps (central difference, exact for constant acceleration); one step
-        alone at the ends and beside gaps. NaN where the point is not observed or has no
-        observed neighbour; zero for a recording of one frame.
+        Exact for constant acceleration. One-sided at the ends and next to gaps. NaN where the
+        point is missing or has no observed neighbor; zero for a recording of one frame.
     """
     return _from_steps(np.diff(positions, axis=0), np.isfinite(positions), frame_rate)
 
@@ -27,19 +26,18 @@ def linear_velocities(positions: NDArray[np.float64], frame_rate: float) -> NDAr
 def angular_velocities(
     rotations: NDArray[np.float64], frame_rate: float
 ) -> NDArray[np.float64]:
-    """Return the angular velocity at each frame, by the same rule as `linear_velocities`.
+    """Return the angular velocity at each frame, by the method of `linear_velocities`.
 
     Parameters
     ----------
     rotations : shape (n_frames, ..., 4), unit quaternions w x y z
-        Each step is taken the short way.
+        Each step is the shortest rotation between two frames.
     frame_rate : float, hertz
 
     Returns
     -------
     NDArray, shape (n_frames, ..., 3), radians per second
-        In the frame that the rotations turn to: the parent's for local rotations, the world's
-        for world rotations.
+        In the parent's axes for local rotations, in the world's axes for world rotations.
     """
     steps = rotation_vector_from_quaternion(multiply(rotations[1:], inverse(rotations[:-1])))
     return _from_steps(steps, np.isfinite(rotations[..., 1:]), frame_rate)
@@ -48,7 +46,7 @@ def angular_velocities(
 def _from_steps(
     steps: NDArray[np.float64], observed: NDArray[np.bool_], frame_rate: float
 ) -> NDArray[np.float64]:
-    """Average the known steps into and out of each frame."""
+    """Average the valid steps into and out of each frame."""
     if not len(steps):
         return np.where(observed, 0.0, np.nan)
     known = np.isfinite(steps)

@@ -1,4 +1,4 @@
-"""Line up two motions in time: dynamic time warping."""
+"""Align two motions in time by dynamic time warping."""
 
 from dataclasses import dataclass
 
@@ -11,13 +11,13 @@ from ...errors import InvalidMotionError
 
 @dataclass(frozen=True, eq=False)
 class Alignment:
-    """Which frames of two motions belong together."""
+    """Correspondence between the frames of two motions."""
 
     cost: float
     """Mean distance per step of the path, in the units of the data."""
     path: NDArray[np.intp]
     """Pairs (frame of the first, frame of the second), shape (n_steps, 2), from the first
-    frames of both to the last of both; neither ever goes back or skips."""
+    frames of both to the last of both, monotonic and without skipped frames."""
     distances: NDArray[np.float64]
     """Distance of each pair, shape (n_steps,)."""
 
@@ -33,17 +33,17 @@ def warp(
     Parameters
     ----------
     a, b : shape (n_frames, n_features) or (n_frames, n_joints, n_features)
-        Two frames are apart by the Euclidean distance of their features, the mean over joints.
-        Joints that either frame lacks (NaN) are left out of the mean.
+        The distance of two frames is the Euclidean distance of their features, averaged over
+        joints. Joints that are missing (NaN) in either frame are left out of the mean.
     window : float, optional
-        Half width of the Sakoe-Chiba band [1]_ around the diagonal, as a part of the longer
-        sequence, 0 to 1. Narrower forbids strong warping. Without it every path is allowed.
+        Half width of the Sakoe-Chiba band [1]_ around the diagonal, as a fraction of the
+        longer sequence, 0 to 1. A narrow band forbids strong warping. None allows every path.
 
     Returns
     -------
     Alignment
-        Same cost for `warp(b, a)`. While it works it needs some 45 bytes for each pair of
-        frames: two clips of 3,000 frames take 0.4 GB.
+        Symmetric: `warp(b, a)` has the same cost. Needs about 45 bytes for each pair of frames:
+        0.4 GB for two clips of 3,000 frames.
 
     Raises
     ------
@@ -65,14 +65,14 @@ def warp(
     distances = frame_distances(a, b)
     allowed = np.where(_band(len(a), len(b), window), distances, np.inf)
     path = _cheapest_path(_accumulated(allowed))
-    along = distances[path[:, 0], path[:, 1]]
-    return Alignment(float(along.mean()), path, along)
+    path_distances = distances[path[:, 0], path[:, 1]]
+    return Alignment(float(path_distances.mean()), path, path_distances)
 
 
 def frame_distances(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return how far each frame of `a` is from each of `b`, shape (n_frames_a, n_frames_b).
+    """Return the distance of each frame of `a` to each of `b`, shape (n_frames_a, n_frames_b).
 
-    The rule of `warp`; pairs without a common joint are as far apart as the mean pair.
+    As in `warp`; pairs without a common joint get the mean distance of all others.
 
     Raises
     ------
@@ -83,10 +83,10 @@ def frame_distances(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[n
     total = np.zeros((len(a), len(b)))
     common = np.zeros((len(a), len(b)))
     for joint in range(a.shape[1]):
-        apart = cdist(a[:, joint], b[:, joint])
-        seen = np.isfinite(apart)
-        total += np.where(seen, apart, 0.0)
-        common += seen
+        separation = cdist(a[:, joint], b[:, joint])
+        valid = np.isfinite(separation)
+        total += np.where(valid, separation, 0.0)
+        common += valid
     if not common.any():
         raise InvalidMotionError("No two frames have an observed joint in common.")
     mean = total / np.maximum(common, 1.0)
@@ -94,19 +94,19 @@ def frame_distances(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[n
 
 
 def _band(n: int, m: int, window: float | None) -> NDArray[np.bool_]:
-    """Tell which pairs lie near the diagonal; at least the diagonal's own always do."""
+    """Return which pairs are inside the Sakoe-Chiba band; the diagonal always is."""
     if window is None:
         return np.ones((n, m), dtype=bool)
     slope = (m - 1) / max(n - 1, 1)
-    off = np.abs(np.arange(m) - slope * np.arange(n)[:, None])
-    return np.asarray(off <= max(window * max(n, m), slope, 1.0))
+    offset = np.abs(np.arange(m) - slope * np.arange(n)[:, None])
+    return np.asarray(offset <= max(window * max(n, m), slope, 1.0))
 
 
 def _accumulated(distances: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the least total up to each pair, shape (n + 1, m + 1), with a rim of infinity.
+    """Return the least total cost up to each pair, shape (n + 1, m + 1), padded with infinity.
 
     All pairs (i, j) of one anti-diagonal i + j = k depend only on the two before it, so one
-    numpy expression serves them all.
+    numpy expression computes them all.
     """
     n, m = distances.shape
     total = np.full((n + 1, m + 1), np.inf)
@@ -120,7 +120,7 @@ def _accumulated(distances: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _cheapest_path(total: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Walk back from the last pair to the first, over the cheaper neighbour each time."""
+    """Backtrack from the last pair to the first along the cheapest neighbors."""
     i, j = total.shape[0] - 2, total.shape[1] - 2
     path = [(i, j)]
     while i or j:

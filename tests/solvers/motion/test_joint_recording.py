@@ -115,6 +115,6 @@ def test_refuses_states_that_are_none(recording, wrong):
 
 def test_refuses_a_sensor_that_is_none(recording):
     with pytest.raises(
-        InvalidMotionError, match=r"'kinect' is no sensor.*Sensor\.AZURE_KINECT"
+        InvalidMotionError, match=r"'kinect' is not a sensor.*Sensor\.AZURE_KINECT"
     ):
         JointRecording(recording.tracks, None, "kinect")

@@ -126,7 +126,7 @@ def test_confidence_follows_the_frames(tracks):
     (("a",), (0, 1, 3), 30.0, None, "at least one frame"),
     ((), (4, 0, 3), 30.0, None, "at least one frame and one point"),
     (("a",), (4, 2, 3), 30.0, None, r"shape \(n_frames, 1, 3\), not \(4, 2, 3\)"),
-    (("a", "a"), (4, 2, 3), 30.0, None, "twice: a"),
+    (("a", "a"), (4, 2, 3), 30.0, None, "duplicates: a"),
     (("a",), (4, 1, 3), -1.0, None, "frame rate of -1 Hz"),
     (("a",), (4, 1, 3), 30.0, np.ones((3, 1)), r"shape \(4, 1\), not \(3, 1\)"),
     (("a",), (4, 1, 3), 30.0, np.full((4, 1), 1.5), "between 0 and 1"),

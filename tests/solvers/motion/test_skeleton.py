@@ -58,7 +58,7 @@ def test_does_not_share_its_offsets_with_whoever_made_it():
 
 @pytest.mark.parametrize(("names", "parents", "shape", "sentence"), [
     ((), (), (0, 3), "at least one joint"),
-    (("a", "a"), (-1, 0), (2, 3), "Joint names must differ; more than one is a"),
+    (("a", "a"), (-1, 0), (2, 3), "Joint names must be unique; duplicates: a"),
     (("a", "b"), (-1,), (2, 3), r"as many parents \(not 1\)"),
     (("a", "b"), (-1, 0), (3, 3), r"not \(3, 3\)"),
     (("a", "b"), (0, -1), (2, 3), "first joint must be the root"),

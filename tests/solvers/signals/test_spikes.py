@@ -12,7 +12,7 @@ def test_a_parabola_has_no_residual_even_at_its_ends(rng):
     time = np.arange(60.0)[:, None]
     course = rng.normal(size=3) + rng.normal(size=3) * time + rng.normal(size=3) * time**2
 
-    told = fit_lowess(course, 4, smallest=1e-3)
+    told = fit_lowess(course, 4, min_scale=1e-3)
 
     assert_allclose(told.residual, 0.0, atol=1e-7)
     assert told.scale < 1e-7
@@ -23,7 +23,7 @@ def test_gaps_disturb_nothing_else():
     gapped = course.copy()
     gapped[50:53] = np.nan
 
-    told = fit_lowess(gapped, 5, smallest=0.1)
+    told = fit_lowess(gapped, 5, min_scale=0.1)
 
     assert np.isnan(told.residual[50:53]).all()
     assert np.nanmax(told.deviation) < 0.01
@@ -36,7 +36,7 @@ def test_a_spike_is_found_whole_and_with_its_height(rng, length):
     course += rng.normal(scale=0.01, size=course.shape)
     course[100 : 100 + length] += [0.5, 0.0, 0.0]
 
-    told = fit_lowess(course, 8, smallest=0.05)
+    told = fit_lowess(course, 8, min_scale=0.05)
 
     assert find_runs(told.spikes(0.1)) == [(100, 100 + length)]
     assert_allclose(told.deviation[100 : 100 + length], 0.5, atol=0.06)
@@ -48,7 +48,7 @@ def test_the_noise_is_measured_through_spikes_and_motion(rng):
     hit = rng.random(3000) < 0.2
     course[hit] += rng.normal(size=(hit.sum(), 3))
 
-    assert_allclose(fit_lowess(course, 8, smallest=0.05).scale, 0.02, rtol=0.25)
+    assert_allclose(fit_lowess(course, 8, min_scale=0.05).scale, 0.02, rtol=0.25)
 
 
 def test_a_quick_but_honest_movement_is_no_spike():
@@ -56,7 +56,7 @@ def test_a_quick_but_honest_movement_is_no_spike():
     time = np.arange(120) / 120.0
     course = np.exp(-(((time - 0.5) / 0.05) ** 2))[:, None] * [1.0, 0.0, 0.0]
 
-    assert not fit_lowess(course, 14, smallest=0.1).spikes(0.1).any()
+    assert not fit_lowess(course, 14, min_scale=0.1).spikes(0.1).any()
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -66,7 +66,7 @@ def test_a_lasting_change_is_no_spike(seed):
     course = np.sin(np.arange(300.0) / 30.0)[:, None] + noise
     course[150:] += [0.5, 0.0, 0.0]
 
-    assert not fit_lowess(course, 8, smallest=0.05).spikes(0.1).any()
+    assert not fit_lowess(course, 8, min_scale=0.05).spikes(0.1).any()
 
 
 def test_spikes_are_told_apart_where_a_third_of_the_frames_are_spikes(rng):
@@ -74,7 +74,7 @@ def test_spikes_are_told_apart_where_a_third_of_the_frames_are_spikes(rng):
     hit = rng.random(1200) < 0.33
     course[hit] += rng.normal(scale=0.8, size=(hit.sum(), 3))
 
-    found = fit_lowess(course, 8, smallest=0.05).spikes(0.15)
+    found = fit_lowess(course, 8, min_scale=0.05).spikes(0.15)
 
     assert (found & hit).sum() > 0.75 * hit.sum()
     assert (found & ~hit).sum() < 0.01 * (~hit).sum()

@@ -128,7 +128,7 @@ def test_a_pose_apart_stays_and_does_not_touch_what_follows(walk):
     assert (
         whole.cuts == (1,) and not whole.outliers[0].any() and (whole.confidence[0] == 1).all()
     )
-    assert whole.prior_used.endswith("Frame 1 is a pose apart and was kept as recorded.")
+    assert whole.prior_used.endswith("Frame 1 is a separate pose and was kept as recorded.")
 
 
 def test_gaps_of_a_short_piece_are_filled(walk):
@@ -148,7 +148,7 @@ def test_pieces_of_a_joined_take_are_cleaned_apart(walk):
     cleaned = denoise(joined(noisy, other))
 
     assert cleaned.cuts == (walk.n_frames,)
-    assert "cut before frame 181; its pieces were cleaned apart" in cleaned.prior_used
+    assert "cut before frame 181; its shots were cleaned separately" in cleaned.prior_used
     jump = angle_between(cleaned.recording.rotations[180], cleaned.recording.rotations[179])
     assert np.median(jump) > 0.3
 
@@ -196,6 +196,6 @@ def test_the_sentence_names_frames_from_one(walk):
 
     assert describe_shots(take, ()) == ""
     assert describe_shots(take, (2, 182)) == (
-        "The take is cut before frame 183; its pieces were cleaned apart."
-        " Frames 1 to 2 are poses apart and were kept as recorded."
+        "The take has a cut before frame 183; its shots were cleaned separately."
+        " Frames 1 to 2 are separate poses and were kept as recorded."
     )
