@@ -1,4 +1,4 @@
-"""Bring hands to where the source's are, grown with the arms."""
+"""Retarget hands: positions relative to the shoulders, scaled by the arms."""
 
 from itertools import repeat
 
@@ -7,55 +7,58 @@ from numpy.typing import NDArray
 
 from ..motion import world_poses
 from .body import SIDES
-from .limbs import Transfer, limb_pairs, limb_reaches
-from .low_hands import Ground, above_ground, near_ground, within_reach
-from .meeting_hands import Arms, meeting_hands
+from .limbs import Transfer, limb_pairs, reach_with_limb
+from .low_hands import Ground, ease_into_extension, keep_above_ground, pull_to_ground
+from .meeting_hands import Arms, match_meeting_hands
 from .placement import leg_length
 
 Array = NDArray[np.float64]
 
 
-def place_hands(transfer: Transfer, rotations: Array, places: Array) -> Array:
-    """Let the hands be as far from the shoulders as the source's, for the length of the arm.
+def place_hands(transfer: Transfer, rotations: Array, root_positions: Array) -> Array:
+    """Place the hands relative to the shoulders like the source's, scaled by the arm length.
 
-    Hands near the ground are as near to it as in the source, and lean on the same place; see
-    `low_hands`. Hands that meet in the source meet, as far apart as there for the length of the
-    arm; see `meeting_hands`.
+    Hands near the ground keep their height above it and their support position; see
+    `low_hands`. Hands that meet in the source keep their distance, scaled by the arm length;
+    see `meeting_hands`.
     """
     source, target = transfer.source, transfer.target
     pairs = limb_pairs(source, target, "Arm")
     if not pairs:
         return rotations
-    world = world_poses(target.skeleton, rotations, places)
-    seen = transfer.seen.positions
-    growths = [target.limb_length(ours) / source.limb_length(theirs) for theirs, ours in pairs]
-    ways = [
-        growth * (seen[:, theirs[2]] - seen[:, theirs[0]])
-        for (theirs, _), growth in zip(pairs, growths, strict=True)
+    world = world_poses(target.skeleton, rotations, root_positions)
+    source_positions = transfer.seen.positions
+    scales = [
+        target.limb_length(target_arm) / source.limb_length(source_arm)
+        for source_arm, target_arm in pairs
     ]
-    shoulders = np.stack([world.positions[:, ours[0]] for _, ours in pairs])
-    lengths = np.array([target.limb_length(ours) for _, ours in pairs])
-    hands = [seen[:, theirs[2]] for theirs, _ in pairs]
+    arm_vectors = [
+        scale * (source_positions[:, source_arm[2]] - source_positions[:, source_arm[0]])
+        for (source_arm, _), scale in zip(pairs, scales, strict=True)
+    ]
+    shoulders = np.stack([world.positions[:, target_arm[0]] for _, target_arm in pairs])
+    lengths = np.array([target.limb_length(target_arm) for _, target_arm in pairs])
+    hands = [source_positions[:, source_arm[2]] for source_arm, _ in pairs]
     ground = _ground(transfer)
-    wanted = shoulders + ways
+    wanted = shoulders + arm_vectors
     if ground:
         wanted = np.stack(
-            list(map(near_ground, wanted, hands, shoulders, lengths, repeat(ground)))
+            list(map(pull_to_ground, wanted, hands, shoulders, lengths, repeat(ground)))
         )
     if len(pairs) == len(SIDES):
         arms = Arms(shoulders, wanted, lengths)
-        wanted = meeting_hands(arms, np.mean(growths) * (hands[0] - hands[1]))
+        wanted = match_meeting_hands(arms, np.mean(scales) * (hands[0] - hands[1]))
     if ground:
-        wanted = np.stack(list(map(above_ground, wanted, hands, repeat(ground))))
-        reached = map(within_reach, wanted - shoulders, ways, lengths)
+        wanted = np.stack(list(map(keep_above_ground, wanted, hands, repeat(ground))))
+        reached = map(ease_into_extension, wanted - shoulders, arm_vectors, lengths)
         wanted = shoulders + np.stack(list(reached))
-    for (_, ours), targets in zip(pairs, wanted, strict=True):
-        rotations = limb_reaches(target, rotations, world, ours, targets)
+    for (_, target_arm), targets in zip(pairs, wanted, strict=True):
+        rotations = reach_with_limb(target, rotations, world, target_arm, targets)
     return rotations
 
 
 def _ground(transfer: Transfer) -> Ground | None:
-    """Return what hands must know of the ground; None where no legs tell where it is."""
+    """Return the ground as hands need it; None without legs to estimate it."""
     placement = transfer.placement
     if placement.floors is None:
         return None

@@ -1,4 +1,4 @@
-"""Bring the ends of arms and legs to places."""
+"""Move the ends of arms and legs to target positions."""
 
 from dataclasses import dataclass
 
@@ -17,55 +17,59 @@ Limb = tuple[int, int, int]
 
 @dataclass(frozen=True, eq=False)
 class Transfer:
-    """What is known when limbs are placed."""
+    """Source, target and measured quantities for placing limbs."""
 
     source: Body
     target: Body
     seen: WorldPoses
-    """The source's."""
+    """World poses of the source."""
     placement: Placement
     frame_rate: float
     contacts: Flags | None
-    """Of the source's feet, shape (n_frames, 2)."""
+    """Contacts of the source's feet, shape (n_frames, 2)."""
     stances: tuple[Stance, Stance] | None
-    """Of the source's feet, where the rest pose does not tell."""
+    """Stances of the source's feet, if the rest pose does not show them."""
 
 
 def limb_pairs(source: Body, target: Body, part: str) -> list[tuple[Limb, Limb]]:
-    """Return the limbs that both have, the source's first."""
+    """Return the limbs of both bodies in pairs, the source's first."""
     limbs = [(source.limb(side, part), target.limb(side, part)) for side in SIDES]
-    return [(theirs, ours) for theirs, ours in limbs if theirs and ours]
+    return [
+        (source_limb, target_limb)
+        for source_limb, target_limb in limbs
+        if source_limb and target_limb
+    ]
 
 
-def stretch(body: Body, world: WorldPoses, limb: Limb) -> Array:
-    """Return how straight a limb is: 1 for fully, shape (n_frames,)."""
-    way = world.positions[:, limb[2]] - world.positions[:, limb[0]]
-    return np.asarray(np.linalg.norm(way, axis=1) / body.limb_length(limb))
+def limb_extension(body: Body, world: WorldPoses, limb: Limb) -> Array:
+    """Return the extension of a limb: 1 for fully straight, shape (n_frames,)."""
+    path = world.positions[:, limb[2]] - world.positions[:, limb[0]]
+    return np.asarray(np.linalg.norm(path, axis=1) / body.limb_length(limb))
 
 
-def limb_reaches(
+def reach_with_limb(
     body: Body, rotations: Array, world: WorldPoses, limb: Limb, targets: Array
 ) -> Array:
     """Return the body's local rotations with a limb's end at the targets.
 
-    Only the chain from the joint above the limb to its end is looked at, which makes bodies of
-    many joints as fast as others.
+    Only the chain from the limb's parent to its end is solved, so that the time does not depend
+    on the number of joints.
     """
     upper, hinge, end = limb
     skeleton = body.skeleton
-    above = skeleton.parents[upper]
-    way = [end, *skeleton.ancestors(end)]
-    joints = way[: way.index(above) + 1][::-1]
+    parent = skeleton.parents[upper]
+    path = [end, *skeleton.ancestors(end)]
+    joints = path[: path.index(parent) + 1][::-1]
     local = rotations[:, joints]
-    local[:, 0] = world.rotations[:, above]
+    local[:, 0] = world.rotations[:, parent]
     names = tuple(skeleton.names[joint] for joint in joints)
     chain = Skeleton(names, tuple(range(-1, len(joints) - 1)), skeleton.offsets[joints])
-    found = reach(
-        Motion(chain, local, world.positions[:, above], 1.0),
+    solved = reach(
+        Motion(chain, local, world.positions[:, parent], 1.0),
         (joints.index(upper), joints.index(hinge), joints.index(end)),
         targets,
         ReachSettings(softness=0.0),
     )
     result = rotations.copy()
-    result[:, joints[1:]] = found.rotations[:, 1:]
+    result[:, joints[1:]] = solved.rotations[:, 1:]
     return result

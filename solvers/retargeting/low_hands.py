@@ -1,4 +1,4 @@
-"""Let hands that are near the ground in the source be near it, and go through it nowhere."""
+"""Retarget hands near the ground: match their height and keep them above it."""
 
 from typing import NamedTuple
 
@@ -10,116 +10,131 @@ from .placement import Placement
 
 Array = NDArray[np.float64]
 
-LOW, HIGH = 0.2, 0.4
-"""Parts of the leg's length: wrists lower than the first are as far above the ground as in the
-source, grown with the legs; those beyond the second know nothing of it."""
-TOUCHING = (0.12, 0.18)
-"""Likewise for hands that lean on the ground."""
-SLOW, FAST = 0.25, 1.0
-"""Lengths of the leg per second: low hands slower than the first lean on a place on the ground;
-those faster than the second only pass."""
-STEADY = 0.1
-"""Standard deviation of the blur of the speed, seconds."""
-GENTLE = 0.07
-"""Standard deviation of the blur of how much hands are shifted, seconds."""
-EASE = 0.07
-"""Seconds before and after over which hands are lifted off the ground."""
-STRAIGHT = 0.9
-"""Part of its length from which on an arm eases into full extension to reach the ground."""
-ROUNDING = 0.05
-"""Part of the leg's length over which a hand slows down before its least height."""
+LOW_WRIST_FRACTION, HIGH_WRIST_FRACTION = 0.2, 0.4
+"""Heights of the wrist, as fractions of the leg length. Below the first, the height above ground
+is the source's, scaled by the legs; above the second, the ground has no influence."""
+SUPPORT_HEIGHT_FRACTIONS = (0.12, 0.18)
+"""The same heights for hands that support themselves on the ground."""
+SUPPORT_SPEED, PASSING_SPEED = 0.25, 1.0
+"""Speeds in leg lengths per second: low hands slower than the first support themselves on the
+ground; hands faster than the second only pass."""
+SPEED_SMOOTHING_S = 0.1
+"""Standard deviation of the Gaussian that smooths the speed."""
+SHIFT_SMOOTHING_S = 0.07
+"""Standard deviation of the Gaussian that smooths the displacement of the hands."""
+LIFT_EASE_S = 0.07
+"""Seconds over which the lift of hands off the ground eases in and out."""
+EASE_EXTENSION_FRACTION = 0.9
+"""Fraction of its length from which an arm eases into full extension."""
+ROUNDING_FRACTION = 0.05
+"""Height over which a hand is decelerated above its minimum height, in leg lengths."""
 
 
 class Ground(NamedTuple):
-    """What is known of the ground where hands are placed."""
+    """The ground of source and target."""
 
     placement: Placement
     floors: tuple[float, float]
     """Height of the ground of source and target, metres."""
     leg: float
-    """Length of the source's, metres."""
+    """Leg length of the source, metres."""
     frame_rate: float
 
 
-def near_ground(
-    hand: Array, seen: Array, shoulder: Array, length: float, ground: Ground
+def pull_to_ground(
+    hand: Array, source_hand: Array, shoulder: Array, length: float, ground: Ground
 ) -> Array:
-    """Return where a hand comes that is near the ground in the source.
+    """Return the hand, moved to the source's height above ground where that is low.
 
     Parameters
     ----------
     hand : shape (n_frames, 3), metres
-        Where it would be by the arm alone.
-    seen : shape (n_frames, 3), metres
+        Position from the arm alone.
+    source_hand : shape (n_frames, 3), metres
         The source's hand.
     shoulder : shape (n_frames, 3), metres
-        Where the arm begins.
+        Start of the arm.
     length : float, metres
-        Of the arm.
+        Length of the arm.
     ground : Ground
 
     Returns
     -------
     NDArray, shape (n_frames, 3), metres
-        The lower the source's hand, the more the height is that of the source's, grown with
-        the legs; the lower and slower, the more is the whole place, if within the arm's reach.
+        The lower the source's hand, the more the height follows the source's, scaled by the
+        legs. The lower and slower it is, the more the position does, within the arm's reach.
     """
-    height = seen[:, 2] - ground.floors[0]
-    low = _falling(height / ground.leg, LOW, HIGH)
-    if not low.any():
+    height = source_hand[:, 2] - ground.floors[0]
+    height_weight = _falling_smoothstep(
+        height / ground.leg, LOW_WRIST_FRACTION, HIGH_WRIST_FRACTION
+    )
+    if not height_weight.any():
         return hand
-    velocity = np.gradient(seen, axis=0) * ground.frame_rate if len(seen) > 1 else 0.0 * seen
+    velocity = (
+        np.gradient(source_hand, axis=0) * ground.frame_rate
+        if len(source_hand) > 1
+        else 0.0 * source_hand
+    )
     speed = np.linalg.norm(velocity, axis=1)
-    speed = gaussian_filter1d(speed, STEADY * ground.frame_rate, mode="nearest")
-    leans = _falling(height / ground.leg, *TOUCHING) * _falling(speed / ground.leg, SLOW, FAST)
-    there = ground.placement.points(seen)
-    there[:, 2] = ground.floors[1] + ground.placement.rise * height
-    leans *= _falling(np.linalg.norm(there - shoulder, axis=1) / length, STRAIGHT, 1.0)
-    shares = np.stack([leans, leans, low], axis=1)
+    speed = gaussian_filter1d(speed, SPEED_SMOOTHING_S * ground.frame_rate, mode="nearest")
+    support_weight = _falling_smoothstep(
+        height / ground.leg, *SUPPORT_HEIGHT_FRACTIONS
+    ) * _falling_smoothstep(speed / ground.leg, SUPPORT_SPEED, PASSING_SPEED)
+    target = ground.placement.points(source_hand)
+    target[:, 2] = ground.floors[1] + ground.placement.rise * height
+    support_weight *= _falling_smoothstep(
+        np.linalg.norm(target - shoulder, axis=1) / length, EASE_EXTENSION_FRACTION, 1.0
+    )
+    weights = np.stack([support_weight, support_weight, height_weight], axis=1)
     shift = gaussian_filter1d(
-        shares * (there - hand), GENTLE * ground.frame_rate, axis=0, mode="nearest"
+        weights * (target - hand), SHIFT_SMOOTHING_S * ground.frame_rate, axis=0, mode="nearest"
     )
     return np.asarray(hand + shift)
 
 
-def above_ground(hand: Array, seen: Array, ground: Ground) -> Array:
-    """Return the hand, shape (n_frames, 3), not below where the source's is, grown.
+def keep_above_ground(hand: Array, source_hand: Array, ground: Ground) -> Array:
+    """Return the hand, shape (n_frames, 3), not below the scaled height of the source's.
 
-    A hand higher than `LOW` in the source is not below that height. It is lifted smoothly, and
-    a little earlier and longer than it must be: a nearly straight arm would fling its elbow.
+    A hand above `LOW_WRIST_FRACTION` in the source stays above that height. The lift eases in
+    early and out late, so that the elbow of a nearly straight arm does not accelerate.
     """
-    height = np.minimum(seen[:, 2] - ground.floors[0], LOW * ground.leg)
-    least = ground.floors[1] + ground.placement.rise * height
-    rounding = ROUNDING * ground.placement.rise * ground.leg
-    gap = np.abs(hand[:, 2] - least)
+    height = np.minimum(source_hand[:, 2] - ground.floors[0], LOW_WRIST_FRACTION * ground.leg)
+    min_height = ground.floors[1] + ground.placement.rise * height
+    rounding = ROUNDING_FRACTION * ground.placement.rise * ground.leg
+    gap = np.abs(hand[:, 2] - min_height)
     raised = hand.copy()
-    # A polynomial that leaves the hand as it is from `rounding` above the least height on.
-    near = np.maximum(rounding - gap, 0.0) ** 2 / (4.0 * rounding)
-    raised[:, 2] += _early(np.maximum(least - hand[:, 2], 0.0) + near, ground.frame_rate)
+    # A polynomial that is zero from `rounding` above the minimum height.
+    blend = np.maximum(rounding - gap, 0.0) ** 2 / (4.0 * rounding)
+    raised[:, 2] += _envelope(
+        np.maximum(min_height - hand[:, 2], 0.0) + blend, ground.frame_rate
+    )
     return raised
 
 
-def within_reach(way: Array, arm_alone: Array, length: float) -> Array:
-    """Return the way from shoulder to hand, shape (n_frames, 3), eased into full extension.
+def ease_into_extension(arm_vector: Array, arm_alone: Array, length: float) -> Array:
+    """Return the vector from shoulder to hand, shape (n_frames, 3), eased into full extension.
 
-    The arm does not snap straight where the ground is too far away for it. `arm_alone` is the
-    way that the arm would have by itself, which may be as straight as it is.
+    The arm does not snap straight if the ground is out of reach. `arm_alone` is the vector
+    without the ground, whose extension is not reduced.
     """
-    wanted, usual = np.linalg.norm(way, axis=1), np.linalg.norm(arm_alone, axis=1)
-    begin = np.minimum(np.maximum(STRAIGHT * length, usual), length)
-    room = np.maximum(length - begin, 1e-9)
-    eased = begin + room * -np.expm1(-np.maximum(wanted - begin, 0.0) / room)
-    return np.asarray(way * np.minimum(eased / np.maximum(wanted, 1e-9), 1.0)[:, None])
+    wanted, unconstrained = (
+        np.linalg.norm(arm_vector, axis=1),
+        np.linalg.norm(arm_alone, axis=1),
+    )
+    begin = np.minimum(np.maximum(EASE_EXTENSION_FRACTION * length, unconstrained), length)
+    margin = np.maximum(length - begin, 1e-9)
+    reached = begin + margin * -np.expm1(-np.maximum(wanted - begin, 0.0) / margin)
+    return np.asarray(arm_vector * np.minimum(reached / np.maximum(wanted, 1e-9), 1.0)[:, None])
 
 
-def _early(lift: Array, frame_rate: float) -> Array:
-    """Return a lift that is nowhere less and sets in and fades smoothly, (n_frames,)."""
-    window = 2 * round(EASE * frame_rate) + 1
+def _envelope(lift: Array, frame_rate: float) -> Array:
+    """Return a smooth upper envelope of the lift, shape (n_frames,)."""
+    window = 2 * round(LIFT_EASE_S * frame_rate) + 1
     envelope = maximum_filter1d(lift, window, mode="nearest")
     return np.asarray(uniform_filter1d(envelope, window, mode="nearest"))
 
 
-def _falling(values: Array, start: float, stop: float) -> Array:
-    """Return 1 up to `start`, 0 from `stop` on, and smoothly less in between."""
-    share = np.clip((stop - values) / (stop - start), 0.0, 1.0)
-    return np.asarray(share * share * (3.0 - 2.0 * share))
+def _falling_smoothstep(values: Array, start: float, stop: float) -> Array:
+    """Return 1 up to `start`, 0 from `stop`, and a smooth transition between them."""
+    fraction = np.clip((stop - values) / (stop - start), 0.0, 1.0)
+    return np.asarray(fraction * fraction * (3.0 - 2.0 * fraction))

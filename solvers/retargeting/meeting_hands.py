@@ -1,4 +1,4 @@
-"""Let hands that meet in the source meet."""
+"""Retarget hands that meet: match their distance."""
 
 from typing import NamedTuple
 
@@ -7,70 +7,72 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-TOUCHING, APART = 0.15, 0.4
-"""Parts of the arm's length: hands nearer to each other than the first meet, and beyond the
-second they have nothing to do with each other."""
-STRAIGHTEST = 0.999
-"""Part of its length to which an arm may stretch for hands to meet."""
+MEETING_FRACTION, INDEPENDENT_FRACTION = 0.15, 0.4
+"""Distances of both hands, as fractions of the arm length: below the first they meet, above the
+second they are independent."""
+MAX_EXTENSION_FRACTION = 0.999
+"""Fraction of its length to which an arm may extend for hands to meet."""
 
 
 class Arms(NamedTuple):
     """Both arms of the target, left and right."""
 
     shoulders: Array
-    """Where the upper arms begin, shape (2, n_frames, 3), metres."""
+    """Start of the upper arms, shape (2, n_frames, 3), metres."""
     hands: Array
-    """Where the hands would be if each arm were alone, shape (2, n_frames, 3), metres."""
+    """Positions of the hands from each arm alone, shape (2, n_frames, 3), metres."""
     lengths: Array
     """Shape (2,), metres."""
 
 
-def meeting_hands(arms: Arms, apart: Array) -> Array:
-    """Return the places of the hands, shape (2, n_frames, 3), metres.
+def match_meeting_hands(arms: Arms, separation: Array) -> Array:
+    """Return the positions of the hands, shape (2, n_frames, 3), metres.
 
     Parameters
     ----------
     arms : Arms
-    apart : shape (n_frames, 3), metres
+    separation : shape (n_frames, 3), metres
         From the right hand to the left in the source, scaled by the arms.
 
     Returns
     -------
     NDArray
-        Hands that are close in the source are `apart` from each other, around the middle of
-        where they would be alone; nearer to the shoulders where those are too broad for it.
+        Hands that are close in the source have this `separation`, around the midpoint of their
+        independent positions; nearer to the shoulders if the arms are too short.
     """
-    distance = np.linalg.norm(apart, axis=1) / arms.lengths.mean()
-    share = np.clip((APART - distance) / (APART - TOUCHING), 0.0, 1.0)
-    share = (share * share * (3.0 - 2.0 * share))[:, None]
+    distance = np.linalg.norm(separation, axis=1) / arms.lengths.mean()
+    weight = np.clip(
+        (INDEPENDENT_FRACTION - distance) / (INDEPENDENT_FRACTION - MEETING_FRACTION), 0.0, 1.0
+    )
+    weight = (weight * weight * (3.0 - 2.0 * weight))[:, None]
     left, right = arms.hands
-    correction = 0.5 * share * (apart - (left - right))
+    correction = 0.5 * weight * (separation - (left - right))
     hands = np.stack([left + correction, right - correction])
     inwards = (arms.shoulders - hands).mean(axis=0)
     inwards /= np.maximum(np.linalg.norm(inwards, axis=1, keepdims=True), 1e-12)
-    lacking = [
-        way_into_reach(hand - shoulder, inwards, STRAIGHTEST * length)
+    required = [
+        distance_to_reach(hand - shoulder, inwards, MAX_EXTENSION_FRACTION * length)
         for hand, shoulder, length in zip(hands, arms.shoulders, arms.lengths, strict=True)
     ]
-    return np.asarray(hands + share * np.maximum(*lacking)[:, None] * inwards)
+    return np.asarray(hands + weight * np.maximum(*required)[:, None] * inwards)
 
 
-def way_into_reach(way: Array, direction: Array, reach: Array | float) -> Array:
-    """Return how far a point must go in a direction to be within reach, shape (n_frames,).
+def distance_to_reach(offset: Array, direction: Array, reach: Array | float) -> Array:
+    """Return the distance along a direction that brings a point within reach, (n_frames,).
 
     Parameters
     ----------
-    way : shape (n_frames, 3), metres
-        From where the limb begins to the point.
+    offset : shape (n_frames, 3), metres
+        From the start of the limb to the point.
     direction : shape (n_frames, 3) or (3,), unit vectors
     reach : metres, one for all frames or shape (n_frames,)
 
     Returns
     -------
     NDArray
-        Not negative; where no way leads within reach, to where the point is nearest.
+        Not negative; where no distance suffices, that of the nearest approach.
     """
-    along = (way * direction).sum(axis=1)
-    beside = np.maximum((way * way).sum(axis=1) - along**2, 0.0)
-    room = np.sqrt(np.maximum(reach**2 - beside, 0.0))
-    return np.asarray(np.maximum(-along - room, 0.0))
+    along = (offset * direction).sum(axis=1)
+    lateral_square = np.maximum((offset * offset).sum(axis=1) - along**2, 0.0)
+    margin = np.sqrt(np.maximum(reach**2 - lateral_square, 0.0))
+    return np.asarray(np.maximum(-along - margin, 0.0))

@@ -8,7 +8,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..motion import HumanoidMap, Motion, t_pose_alignment
 from ..rotations import IDENTITY, inverse, multiply, rotate, twist_about
-from .body import held, hips_of
+from .body import hips_of, hold_gaps
 
 Array = NDArray[np.float64]
 
@@ -99,11 +99,11 @@ def on_root_bone(
 
 def hips_in_world(motion: Motion, hips: int) -> tuple[Array, Array]:
     """Return world rotations (n_frames, 4) and positions (n_frames, 3) of the hips, no gaps."""
-    rotations = held(motion.rotations[:, 0], IDENTITY)
-    places = held(motion.root_positions, motion.skeleton.rest_positions[0])
+    rotations = hold_gaps(motion.rotations[:, 0], IDENTITY)
+    places = hold_gaps(motion.root_positions, motion.skeleton.rest_positions[0])
     for joint in [hips, *motion.skeleton.ancestors(hips)][-2::-1]:
         places = places + rotate(rotations, motion.skeleton.offsets[joint])
-        rotations = multiply(rotations, held(motion.rotations[:, joint], IDENTITY))
+        rotations = multiply(rotations, hold_gaps(motion.rotations[:, joint], IDENTITY))
     return rotations, places
 
 

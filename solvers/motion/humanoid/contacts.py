@@ -1,4 +1,4 @@
-"""When each foot stands on the ground."""
+"""Detect foot contacts with the ground."""
 
 from dataclasses import dataclass
 
@@ -12,44 +12,44 @@ from ..skeletons import Motion, Skeleton, forward_kinematics, linear_velocities
 from .roles import HumanoidMap, find_humanoid_map
 
 HUMAN_LEG_LENGTH_M = 0.9
-"""Metres from hip to ankle for which the settings are meant; they grow with the leg."""
+"""Leg length, hip to ankle, for which the settings are defined; they scale with the leg."""
 
 GROUND_PERCENTILE = 5.0
-"""The ground is where the lowest of the slow frames are; a few lower ones are noise."""
+"""Percentile of the heights of slow frames that is the ground; lower ones are noise."""
 
-GROUND_REACH = 1.0
-"""Seconds before and after a moment in which a foot shows where the ground is."""
+GROUND_WINDOW_S = 1.0
+"""Seconds before and after a frame from which the height of its ground is estimated."""
 
-GROUND_DRIFT = 0.1
-"""Metres by which the ground of a moment may differ from that of the whole clip."""
+MAX_GROUND_DRIFT_M = 0.1
+"""Maximum difference between the ground of a frame and that of the complete clip."""
 
-ENOUGH_SLOW = 0.02
-"""Part of all frames that must be slow to judge the ground by them alone."""
+MIN_SLOW_FRACTION = 0.02
+"""Fraction of slow frames from which the ground is estimated from these alone."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ContactSettings(Settings):
-    """When a foot counts as planted. Lengths and speeds are for a leg of 0.9 m."""
+    """Thresholds of foot contact. Lengths and speeds are for a leg of 0.9 m."""
 
     height: float = setting(
-        0.05, "A foot nearer to the ground may stand on it; higher finds more contacts",
+        0.05, "Maximum height of a foot in contact; higher finds more contacts",
         unit="m", minimum=1e-3, maximum=1.0,
     )  # fmt: skip
     speed: float = setting(
-        0.3, "A slower foot may stand; higher finds more and longer contacts",
+        0.3, "Maximum speed of a foot in contact; higher finds more and longer contacts",
         unit="m/s", minimum=1e-3, maximum=10.0,
     )  # fmt: skip
     release: float = setting(
-        1.5, "A planted foot is let go above height and speed times this; higher holds longer",
+        1.5, "A contact ends above height and speed times this; higher makes contacts longer",
         minimum=1.0, maximum=10.0, advanced=True,
     )  # fmt: skip
     minimum_duration: float = setting(
-        0.1, "Shorter contacts are ignored, gaps half as long are closed",
+        0.1, "Shorter contacts are removed, and gaps shorter than half of this are closed",
         unit="s", minimum=0.0, maximum=10.0, advanced=True,
     )  # fmt: skip
     smoothing: float = setting(
-        0.03, "Standard deviation of the Gaussian that calms the feet first; higher ignores"
-        " more jitter but blurs when a contact starts",
+        0.03, "Standard deviation of the Gaussian that first smooths the feet; higher removes"
+        " more jitter but blurs the start of contacts",
         unit="s", minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
 
@@ -59,30 +59,29 @@ def detect_contacts(
     humanoid_map: HumanoidMap | None = None,
     settings: ContactSettings = ContactSettings(),
 ) -> NDArray[np.bool_]:
-    """Tell when the left and the right foot stand on level ground.
+    """Return when the left and the right foot are in contact with level ground.
 
-    A foot stands while its ankle or its toes are both low and slow. The feet are smoothed
-    first; the ground's height is that of the lowest slow frames within a second, of both feet
-    together, since one may never touch it. A contact begins where height and speed are within
-    the settings and lasts while they are within `release` times those. Stairs are not level
-    ground.
+    A foot is in contact while its ankle or its toes are low and slow. The feet are smoothed
+    first. The height of the ground is that of the lowest slow frames of both feet within a
+    second. A contact begins where height and speed are within the settings and lasts while
+    they are within `release` times the settings (hysteresis). Stairs are not level ground.
 
     Parameters
     ----------
     motion : Motion
     humanoid_map : HumanoidMap, optional
-        Found by `find_humanoid_map` where it is not given.
+        By default from `find_humanoid_map`.
     settings : ContactSettings
 
     Returns
     -------
     NDArray of bool, shape (n_frames, 2)
-        Left foot, right foot. False where the foot is not observed.
+        Left foot, right foot. False where the foot is missing.
 
     Raises
     ------
     InvalidMotionError
-        The skeleton has not two feet.
+        The skeleton does not have two feet.
     """
     humanoid = humanoid_map or find_humanoid_map(motion.skeleton)
     feet = foot_points(motion.skeleton, humanoid)
@@ -97,12 +96,12 @@ def contacts_of_points(
     size: float = 1.0,
     settings: ContactSettings = ContactSettings(),
 ) -> NDArray[np.bool_]:
-    """Tell when feet stand of which only points are known; see `detect_contacts`.
+    """Return foot contacts from positions alone; see `detect_contacts`.
 
     Parameters
     ----------
     positions : shape (n_frames, 2, 2, 3), metres
-        Left and right, ankle and toes (the same point twice where there is but one).
+        Left and right, ankle and toes (the same point twice if there is only one).
     frame_rate : float, hertz
     size : float
         Length of a leg over 0.9 m.
@@ -111,7 +110,7 @@ def contacts_of_points(
     Returns
     -------
     NDArray of bool, shape (n_frames, 2)
-        Left foot, right foot. False where the foot is not observed.
+        Left foot, right foot. False where the foot is missing.
     """
     positions = _smoothed(positions, settings.smoothing * frame_rate)
     speeds = np.linalg.norm(linear_velocities(positions, frame_rate), axis=-1)
@@ -122,18 +121,22 @@ def contacts_of_points(
     ]
     heights = positions[..., 2] - np.stack(ground, axis=-1)[:, None]
     # 1 is the edge of what the settings call low and slow.
-    badness = np.maximum(heights / settings.height, speeds / settings.speed) / size
-    badness = np.where(np.isfinite(badness), badness, np.inf).min(axis=2)
-    shortest = settings.minimum_duration * frame_rate
+    exceedance = np.maximum(heights / settings.height, speeds / settings.speed) / size
+    exceedance = np.where(np.isfinite(exceedance), exceedance, np.inf).min(axis=2)
+    min_frames = settings.minimum_duration * frame_rate
     return np.stack(
-        [_held(foot <= 1.0, foot <= settings.release, shortest) for foot in badness.T], axis=-1
+        [
+            _sustained(foot <= 1.0, foot <= settings.release, min_frames)
+            for foot in exceedance.T
+        ],
+        axis=-1,
     )
 
 
 def foot_points(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.intp]:
-    """Return the joints that stand: rows left and right, columns ankle and toes.
+    """Return the joints of foot contact: rows left and right, columns ankle and toes.
 
-    Without a joint for the toes, the end site of the foot stands for them, or the ankle again.
+    Without a toe joint, the end site of the foot replaces it, or else the ankle.
 
     Raises
     ------
@@ -156,7 +159,7 @@ def foot_points(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.intp]:
 def leg_length(skeleton: Skeleton, humanoid: HumanoidMap) -> float:
     """Return the mean length of both legs from hip to ankle along the bones, in metres.
 
-    Legs without hip or knee count as human ones of 0.9 m.
+    Legs without hip or knee get a length of 0.9 m.
     """
     joints = humanoid.indices(skeleton)
     lengths = []
@@ -169,56 +172,60 @@ def leg_length(skeleton: Skeleton, humanoid: HumanoidMap) -> float:
 
 
 def _smoothed(positions: NDArray[np.float64], sigma: float) -> NDArray[np.float64]:
-    """Blur over time by what is observed; gaps stay gaps."""
+    """Smooth observed frames over time; gaps stay gaps."""
     if sigma <= 0.0:
         return positions
-    seen = np.isfinite(positions)
-    total = gaussian_filter1d(np.where(seen, positions, 0.0), sigma, axis=0, mode="nearest")
-    weight = gaussian_filter1d(seen.astype(float), sigma, axis=0, mode="nearest")
-    return np.asarray(np.where(seen, total / np.maximum(weight, 1e-12), np.nan))
+    observed = np.isfinite(positions)
+    total = gaussian_filter1d(np.where(observed, positions, 0.0), sigma, axis=0, mode="nearest")
+    weight = gaussian_filter1d(observed.astype(float), sigma, axis=0, mode="nearest")
+    return np.asarray(np.where(observed, total / np.maximum(weight, 1e-12), np.nan))
 
 
 def _ground(
     heights: NDArray[np.float64], slow: NDArray[np.bool_], frame_rate: float, size: float
 ) -> NDArray[np.float64]:
-    """Return the height at which ankles (or toes) stand, frame by frame, shape (n_frames,).
+    """Return the height of ankles (or toes) in contact in each frame, shape (n_frames,).
 
-    Both feet together show it, by their slow frames within a second; captured floors are
-    seldom quite level. Where no foot does, neighbours in time do; no moment's ground is far
-    from the whole clip's, lest a hanging foot counts as standing.
+    It is estimated from slow frames of both feet within a second, since captured floors are
+    seldom level, and interpolated where there are none. It stays near the ground of the clip,
+    so that a foot in the air is not classified as standing.
     """
-    known = np.isfinite(heights)
-    chosen = known & slow if (known & slow).sum() >= ENOUGH_SLOW * slow.size else known
-    if not chosen.any():
+    observed = np.isfinite(heights)
+    selected = (
+        observed & slow
+        if (observed & slow).sum() >= MIN_SLOW_FRACTION * slow.size
+        else observed
+    )
+    if not selected.any():
         return np.full(len(heights), np.nan)
-    overall = np.percentile(heights[chosen], GROUND_PERCENTILE)
-    reach = int(np.ceil(GROUND_REACH * frame_rate))
+    overall = np.percentile(heights[selected], GROUND_PERCENTILE)
+    half_window = int(np.ceil(GROUND_WINDOW_S * frame_rate))
     knots, levels = [], []
-    for knot in range(0, len(heights), max(reach // 4, 1)):
-        near = slice(max(knot - reach, 0), knot + reach + 1)
-        if chosen[near].any():
+    for knot in range(0, len(heights), max(half_window // 4, 1)):
+        window = slice(max(knot - half_window, 0), knot + half_window + 1)
+        if selected[window].any():
             knots.append(knot)
-            levels.append(np.percentile(heights[near][chosen[near]], GROUND_PERCENTILE))
+            levels.append(np.percentile(heights[window][selected[window]], GROUND_PERCENTILE))
     level = np.interp(np.arange(len(heights)), knots, levels)
-    drift = GROUND_DRIFT * size
+    drift = MAX_GROUND_DRIFT_M * size
     return np.clip(level, overall - drift, overall + drift)
 
 
-def _held(
-    sure: NDArray[np.bool_], held: NDArray[np.bool_], shortest: float
+def _sustained(
+    certain: NDArray[np.bool_], sustained: NDArray[np.bool_], min_frames: float
 ) -> NDArray[np.bool_]:
-    """Return the runs of `held` with something `sure`, without short gaps and short runs."""
-    runs, _ = label(held)
-    keep = np.isin(runs, np.unique(runs[sure])) & held
-    keep = ~_without_short(~keep, shortest / 2.0)
-    return _without_short(keep, shortest)
+    """Return the runs of `sustained` with a `certain` frame, without short gaps and runs."""
+    labels, _ = label(sustained)
+    contact = np.isin(labels, np.unique(labels[certain])) & sustained
+    contact = ~_without_short(~contact, min_frames / 2.0)
+    return _without_short(contact, min_frames)
 
 
-def _without_short(flags: NDArray[np.bool_], shortest: float) -> NDArray[np.bool_]:
-    """Clear the runs of True that last fewer frames; runs at the clip's ends may go on."""
-    runs, n_runs = label(flags)
-    lengths = np.bincount(runs, minlength=n_runs + 1)
-    short = lengths < shortest
-    short[0] = False
-    short[runs[[0, -1]]] = False
-    return np.asarray(flags & ~short[runs])
+def _without_short(flags: NDArray[np.bool_], min_frames: float) -> NDArray[np.bool_]:
+    """Clear shorter runs of True, except at the ends of the clip, where they may continue."""
+    labels, n_runs = label(flags)
+    lengths = np.bincount(labels, minlength=n_runs + 1)
+    is_short = lengths < min_frames
+    is_short[0] = False
+    is_short[labels[[0, -1]]] = False
+    return np.asarray(flags & ~is_short[labels])

@@ -1,4 +1,4 @@
-"""Read which joint plays which humanoid role from the joints' names."""
+"""Assign humanoid roles to joints by their names."""
 
 import re
 from collections import Counter
@@ -9,10 +9,10 @@ from operator import and_, eq
 from .tables import CENTRAL_ROLES, COLUMNS, FINGERS, TABLES
 
 SIDES = {"left": "left", "right": "right", "l": "left", "r": "right"}
-OTHER = {"left": "right", "right": "left", "l": "r", "r": "l"}
+OPPOSITE = {"left": "right", "right": "left", "l": "r", "r": "l"}
 
-SHARED = 0.75
-"""A first word that so many joints have is the rig's prefix ("mixamorig", "Bip01")."""
+MIN_PREFIX_FRACTION = 0.75
+"""Fraction of joints that share a first word which is a prefix ("mixamorig", "Bip01")."""
 
 WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 FINGER = re.compile(
@@ -26,28 +26,28 @@ PARTS = {
 }  # fmt: skip
 
 Key = tuple[str, str]
-"""Side ("left", "right" or "") and the name without it, in small letters and digits."""
+"""Side ("left", "right" or "") and the name without it, in lower case."""
 
 
 def roles_by_name(names: Sequence[str]) -> dict[str, str]:
-    """Return joint names by humanoid role, from the table that finds most roles.
+    """Return joint names by humanoid role, from the table that matches most roles.
 
     Parameters
     ----------
     names : sequence of str
-        The joints of one skeleton. Earlier ones win where two names say the same.
+        The joints of one skeleton. Of equivalent names the first one is used.
 
     Returns
     -------
-    dict of role to joint name; empty where no table knows any name.
+    dict of role to joint name; empty if no table has any of the names.
     """
     keys = _keys(names)
-    found = max((_looked_up(row, keys) for row in TABLES.values()), key=len)
+    found = max((_match_table(row, keys) for row in TABLES.values()), key=len)
     return found | _fingers(names, found)
 
 
-def _looked_up(row: Sequence[str], keys: dict[Key, str]) -> dict[str, str]:
-    """Return the joints that one table finds, by role."""
+def _match_table(row: Sequence[str], keys: dict[Key, str]) -> dict[str, str]:
+    """Return the joints that one table matches, by role."""
     found: dict[str, str] = {}
     for column, spellings in zip(COLUMNS, row, strict=True):
         for side in ("",) if column in CENTRAL_ROLES else ("left", "right"):
@@ -60,7 +60,7 @@ def _looked_up(row: Sequence[str], keys: dict[Key, str]) -> dict[str, str]:
 
 
 def _keys(names: Sequence[str]) -> dict[Key, str]:
-    """Return each joint by side and bare name, with and without the rig's prefix."""
+    """Return joints by side and name, with and without the rig's prefix."""
     bare = _bare_names(names)
     split = [_side_and_words(name, bare) for name in names]
     keys: dict[Key, str] = {}
@@ -76,40 +76,42 @@ def _keys(names: Sequence[str]) -> dict[Key, str]:
 def _shared_first_word(split: Sequence[Sequence[str]]) -> str:
     counts = Counter(words[0] for words in split if len(words) > 1)
     word, count = counts.most_common(1)[0] if counts else ("", 0)
-    return word if count >= max(3, SHARED * len(split)) else ""
+    return word if count >= max(3, MIN_PREFIX_FRACTION * len(split)) else ""
 
 
 def _side_and_words(name: str, all_names: frozenset[str]) -> tuple[str, list[str]]:
     """Split "mixamorig:LeftUpLeg" into "left" and its other words.
 
-    A lone letter, or one glued to the name as in "lfemur", is a side only where the other side
-    has the same joint: "L5" is a vertebra and "lowerback" no left "owerback".
+    A single letter, or one attached to the name as in "lfemur", is a side only if the other
+    side has the same joint: "L5" is a vertebra and "lowerback" is not a left "owerback".
     """
     words = _words(re.split(r"[:|]", name)[-1])
-    for place, word in enumerate(words):
-        if word in SIDES and (len(word) > 1 or _mirrored(words, place) in all_names):
-            return SIDES[word], words[:place] + words[place + 1 :]
-    for place in {0, len(words) - 1} if words else ():
-        word = words[place]
+    for index, word in enumerate(words):
+        if word in SIDES and (len(word) > 1 or _mirrored(words, index) in all_names):
+            return SIDES[word], words[:index] + words[index + 1 :]
+    for index in {0, len(words) - 1} if words else ():
+        word = words[index]
         for side in SIDES:
-            rest = word.removeprefix(side) if place == 0 else word
-            rest = word.removesuffix(side) if rest == word and len(side) > 1 else rest
-            other = [*words[:place], _swapped(word, side, rest), *words[place + 1 :]]
-            if rest not in {word, ""} and "".join(other) in all_names:
-                return SIDES[side], [*words[:place], rest, *words[place + 1 :]]
+            remainder = word.removeprefix(side) if index == 0 else word
+            remainder = (
+                word.removesuffix(side) if remainder == word and len(side) > 1 else remainder
+            )
+            other = [*words[:index], _swapped(word, side, remainder), *words[index + 1 :]]
+            if remainder not in {word, ""} and "".join(other) in all_names:
+                return SIDES[side], [*words[:index], remainder, *words[index + 1 :]]
     return "", words
 
 
-def _mirrored(words: list[str], place: int) -> str:
-    return "".join([*words[:place], OTHER[words[place]], *words[place + 1 :]])
+def _mirrored(words: list[str], index: int) -> str:
+    return "".join([*words[:index], OPPOSITE[words[index]], *words[index + 1 :]])
 
 
-def _swapped(word: str, side: str, rest: str) -> str:
-    return OTHER[side] + rest if word.startswith(side) else rest + OTHER[side]
+def _swapped(word: str, side: str, remainder: str) -> str:
+    return OPPOSITE[side] + remainder if word.startswith(side) else remainder + OPPOSITE[side]
 
 
 def _words(name: str) -> list[str]:
-    """Split at separators, digits and humps: "J_Bip_L_UpperArm" is j, bip, l, upper, arm."""
+    """Split at separators, digits and capitals: "J_Bip_L_UpperArm" is j, bip, l, upper, arm."""
     return [word.lower() for word in WORD.findall(name)]
 
 
@@ -120,10 +122,10 @@ def _bare_names(names: Sequence[str]) -> frozenset[str]:
 def _fingers(names: Sequence[str], found: Mapping[str, str]) -> dict[str, str]:
     """Return the finger joints by role; a finger of one joint only (CMU) has no role.
 
-    Where several joints claim one role (DEF- and ORG- bones), the one that is named most like
-    the hand has it.
+    If several joints match one role (DEF- and ORG- bones), the name most similar to the hand's
+    is used.
     """
-    claims: dict[tuple[str, str], dict[int, list[str]]] = {}
+    candidates_by_finger: dict[tuple[str, str], dict[int, list[str]]] = {}
     bare = _bare_names(names)
     for name in names:
         side, words = _side_and_words(name, bare)
@@ -131,17 +133,21 @@ def _fingers(names: Sequence[str], found: Mapping[str, str]) -> dict[str, str]:
         if side and match and not name.endswith("_end"):
             finger = SPELLINGS.get(match[1], match[1].capitalize())
             part = PARTS[match[2].lstrip("0")] + (finger == "Thumb" and match[2] == "proximal")
-            claims.setdefault((side, finger), {}).setdefault(part, []).append(name)
+            candidates_by_finger.setdefault((side, finger), {}).setdefault(part, []).append(
+                name
+            )
     return {
-        side + finger + _part(finger, part): _most_like(found.get(f"{side}Hand", ""), alike)
-        for (side, finger), joints in claims.items()
+        side + finger + _part(finger, part): _best_match(
+            found.get(f"{side}Hand", ""), candidates
+        )
+        for (side, finger), joints in candidates_by_finger.items()
         if len(joints) > 1
-        for part, alike in sorted(joints.items())
+        for part, candidates in sorted(joints.items())
     }
 
 
-def _most_like(hand: str, names: Sequence[str]) -> str:
-    """Return the name that agrees with the hand's longest from its beginning."""
+def _best_match(hand: str, names: Sequence[str]) -> str:
+    """Return the name with the longest common prefix with the hand's."""
     return max(names, key=lambda name: sum(accumulate(map(eq, hand, name), and_)))
 
 

@@ -1,4 +1,4 @@
-"""A motion of a skeleton that follows tracked joints, of which only positions are known."""
+"""Fit the motion of a skeleton to tracked joint positions."""
 
 from collections.abc import Sequence
 
@@ -11,76 +11,79 @@ from ..skeletons import Motion, Skeleton, Tracks, local_rotations
 from .points_skeleton import skeleton_from_points
 
 Array = NDArray[np.float64]
-SHORT = 1e-3
-"""Metres. Joints that lie nearer to each other tell no direction."""
+MIN_BONE_M = 1e-3
+"""Distance below which two joints define no direction."""
 
 
 def motion_from_points(
     tracks: Tracks, parents: Sequence[int], skeleton: Skeleton | None = None
 ) -> Motion:
-    """Let a skeleton of constant bone lengths follow tracked joints.
+    """Fit the motion of a skeleton with constant bone lengths to tracked joints.
 
-    The root is where it was seen. A joint with several children turns so that they come
-    nearest to where they were seen (`best_turns`). A joint with one child turns the short way
-    from how its parent has turned it, for positions tell nothing of the twist about a bone. A
-    joint without children does not turn.
+    The root is at its tracked position. A joint with several children gets the rotation that
+    brings them nearest to their tracked positions (`fit_rotations`). A joint with one child
+    gets the shortest rotation from its parent's: positions do not determine the twist about a
+    bone. A joint without children does not rotate.
 
     Parameters
     ----------
     tracks : Tracks
         One point for each joint, in any order.
     parents : sequence of int, length n_points
-        The point that each hangs on; -1 for the only root.
+        Index of each point's parent; -1 for the only root.
     skeleton : Skeleton, optional
-        Its joints are points of `tracks`; that of `skeleton_from_points` by default.
+        With points of `tracks` as joints; by default from `skeleton_from_points`.
 
     Returns
     -------
     Motion
-        A joint is turned in a way that nothing tells where it, its only child, or all but one
-        of its children were not seen. There its rotation is NaN, and so are those of its
-        children, which are measured from it.
+        A rotation is undetermined where the joint, its only child, or all but one of its
+        children are missing. It is NaN there, and so are the local rotations of its children.
 
     Raises
     ------
     InvalidMotionError
-        The points do not form one tree of which anything was seen, or the skeleton has joints
-        that are not among them.
+        The points do not form one hierarchy with observed bones, or the skeleton has other
+        joints.
     """
     body = skeleton_from_points(tracks, parents) if skeleton is None else skeleton
-    if lost := [name for name in body.names if name not in tracks.names]:
+    if untracked := [name for name in body.names if name not in tracks.names]:
         raise InvalidMotionError(
-            f"The skeleton has joints that were not tracked: {', '.join(lost)}. Give none, or"
-            " that of these points."
+            f"The skeleton has joints that were not tracked: {', '.join(untracked)}. Pass no"
+            " skeleton, or one of these points."
         )
     order = [tracks.names.index(name) for name in body.names]
     positions = tracks.positions[:, order]
     world = np.empty((tracks.n_frames, body.n_joints, 4))
     for joint, parent in enumerate(body.parents):
-        above = (
+        parent_rotation = (
             world[:, parent] if parent >= 0 else np.broadcast_to(IDENTITY, world[:, 0].shape)
         )
-        world[:, joint] = _turned(body, joint, positions, above)
+        world[:, joint] = _world_rotations(body, joint, positions, parent_rotation)
     rotations = local_rotations(body, world)
     rotations[:, [not children for children in body.children]] = IDENTITY
     return Motion(body, rotations, positions[:, 0], tracks.frame_rate)
 
 
-def _turned(body: Skeleton, joint: int, positions: Array, above: Array) -> Array:
-    """World rotations of a joint, shape (n_frames, 4), below one that is turned so."""
+def _world_rotations(
+    body: Skeleton, joint: int, positions: Array, parent_rotation: Array
+) -> Array:
+    """Return the world rotations of a joint, shape (n_frames, 4), given its parent's."""
     children = [
-        child for child in body.children[joint] if np.linalg.norm(body.offsets[child]) > SHORT
+        child
+        for child in body.children[joint]
+        if np.linalg.norm(body.offsets[child]) > MIN_BONE_M
     ]
     if not children:
-        return above
-    ways = positions[:, children] - positions[:, [joint]]
-    short = np.linalg.norm(np.nan_to_num(ways), axis=-1, keepdims=True) < SHORT
-    ways = np.where(short, np.nan, ways)
+        return parent_rotation
+    directions = positions[:, children] - positions[:, [joint]]
+    is_short = np.linalg.norm(np.nan_to_num(directions), axis=-1, keepdims=True) < MIN_BONE_M
+    directions = np.where(is_short, np.nan, directions)
     if len(children) > 1:
-        return fit_rotations(body.offsets[children], ways)
-    way, rest = ways[:, 0], rotate(above, body.offsets[children[0]])
-    told = np.isfinite(way).all(axis=-1) & np.isfinite(rest).all(axis=-1)
+        return fit_rotations(body.offsets[children], directions)
+    direction, rest = directions[:, 0], rotate(parent_rotation, body.offsets[children[0]])
+    determined = np.isfinite(direction).all(axis=-1) & np.isfinite(rest).all(axis=-1)
     swing = rotation_between(
-        np.where(told[:, None], rest, 1.0), np.where(told[:, None], way, 1.0)
+        np.where(determined[:, None], rest, 1.0), np.where(determined[:, None], direction, 1.0)
     )
-    return np.where(told[:, None], multiply(swing, above), np.nan)
+    return np.where(determined[:, None], multiply(swing, parent_rotation), np.nan)

@@ -1,4 +1,4 @@
-"""The skeleton of a body of which only the positions of its joints were tracked."""
+"""Build the skeleton of a body from tracked joint positions."""
 
 from collections.abc import Sequence
 
@@ -10,107 +10,115 @@ from ...rotations import fit_rotations, matrix_from_quaternion
 from ..skeletons import Skeleton, Tracks, rest_direction
 
 Array = NDArray[np.float64]
-ROUNDS = 5
-"""Times that a shape is laid over its frames and averaged again."""
+N_ITERATIONS = 5
+"""Iterations of the Procrustes analysis."""
 
 
 def skeleton_from_points(tracks: Tracks, parents: Sequence[int]) -> Skeleton:
-    """Return the skeleton of tracked joints: lengths as measured, rest pose a standing T-pose.
+    """Return the skeleton of tracked joints, with measured lengths and a T-pose as rest pose.
 
-    A bone is as long as the median over the frames that show both its ends. Where a joint has
-    several children, as hips have, their places about it are those of the mean shape
-    (generalised Procrustes analysis: each frame is turned onto the mean, which is then taken
-    anew [1]_), turned towards the T-pose as a whole; a bone of its own points as it does in a
-    T-pose.
+    The length of a bone is the median over the frames that show both ends. The children of a
+    joint with several ones, such as the hips, form the mean shape (generalized Procrustes
+    analysis [1]_: each frame is rotated onto the mean, which is then computed again), rotated
+    onto the T-pose. A single child has the direction of the T-pose.
 
     Parameters
     ----------
     tracks : Tracks
         One point for each joint, in any order.
     parents : sequence of int, length n_points
-        The point that each hangs on; -1 for the only root.
+        Index of each point's parent; -1 for the only root.
 
     Returns
     -------
     Skeleton
-        Standing on the ground (Z = 0) at the origin, facing -Y. A joint that is never seen has
-        no place in it; what hangs on it hangs on the joint above. Nor has a joint that is never
-        seen together with the one it hangs on.
+        Standing on the ground (Z = 0) at the origin, facing -Y. Joints that are never observed,
+        or never together with their parent, are left out; their children get the next ancestor.
 
     Raises
     ------
     InvalidMotionError
-        The points do not form one tree, or no two of them are ever seen together.
+        The points do not form one hierarchy, or no bone is ever observed.
 
     References
     ----------
     .. [1] Gower (1975). Generalized Procrustes analysis. Psychometrika 40(1).
        doi:10.1007/BF02291478
     """
-    parents = _seen_parents(tracks, parents)
-    order = _seen_tree(tracks, parents)
+    parents = _observed_parents(tracks, parents)
+    order = _observed_order(tracks, parents)
     names = tuple(tracks.names[point] for point in order)
-    above = tuple(-1 if parents[point] < 0 else order.index(parents[point]) for point in order)
+    new_parents = tuple(
+        -1 if parents[point] < 0 else order.index(parents[point]) for point in order
+    )
     positions = tracks.positions[:, order]
     offsets = np.zeros((len(order), 3))
     for joint in range(len(order)):
-        children = [child for child, parent in enumerate(above) if parent == joint]
+        children = [child for child, parent in enumerate(new_parents) if parent == joint]
         if not children:
             continue
-        ways = positions[:, children] - positions[:, [joint]]
-        lengths = np.nanmedian(np.linalg.norm(ways, axis=-1), axis=0)
-        usual = np.array([rest_direction(names[child]) for child in children])
-        shape = lengths[:, None] * usual
-        offsets[children] = _mean_shape(ways, lengths, shape) if len(children) > 1 else shape
-    skeleton = Skeleton(names, above, offsets)
+        displacements = positions[:, children] - positions[:, [joint]]
+        lengths = np.nanmedian(np.linalg.norm(displacements, axis=-1), axis=0)
+        directions = np.array([rest_direction(names[child]) for child in children])
+        shape = lengths[:, None] * directions
+        offsets[children] = (
+            _mean_shape(displacements, lengths, shape) if len(children) > 1 else shape
+        )
+    skeleton = Skeleton(names, new_parents, offsets)
     offsets[0, 2] = -skeleton.rest_positions[:, 2].min()
-    return Skeleton(names, above, offsets)
+    return Skeleton(names, new_parents, offsets)
 
 
-def _seen_parents(tracks: Tracks, parents: Sequence[int]) -> list[int]:
-    """Return the nearest joint above each that is ever seen; the root stays what it is."""
-    seen = tracks.visible.any(axis=0)
-    found = list(parents)
-    for point in range(len(found)):
-        above = set()
-        while found[point] >= 0 and not seen[found[point]] and found[point] not in above:
-            above.add(found[point])
-            if parents[found[point]] < 0:
+def _observed_parents(tracks: Tracks, parents: Sequence[int]) -> list[int]:
+    """Return the nearest ancestor of each joint that is observed in any frame."""
+    observed = tracks.visible.any(axis=0)
+    result = list(parents)
+    for point in range(len(result)):
+        new_parents = set()
+        while (
+            result[point] >= 0
+            and not observed[result[point]]
+            and result[point] not in new_parents
+        ):
+            new_parents.add(result[point])
+            if parents[result[point]] < 0:
                 break
-            found[point] = parents[found[point]]
-    return found
+            result[point] = parents[result[point]]
+    return result
 
 
-def _seen_tree(tracks: Tracks, parents: Sequence[int]) -> list[int]:
-    """Return the root, and then each point after its parent, where both are ever seen."""
+def _observed_order(tracks: Tracks, parents: Sequence[int]) -> list[int]:
+    """Return the points, parents first, that are observed together with their parents."""
     roots = [point for point, parent in enumerate(parents) if parent < 0]
     if len(roots) != 1:
-        loose = ", ".join(tracks.names[point] for point in roots)
+        root_names = ", ".join(tracks.names[point] for point in roots)
         raise InvalidMotionError(
-            f"Joints must hang together in one tree; these hang on no other: {loose or 'none'}."
+            f"Joints must form one hierarchy; these have no parent: {root_names or 'none'}."
         )
     order = roots
     for point in order:
         children = [child for child, parent in enumerate(parents) if parent == point]
         both = tracks.visible[:, [point]] & tracks.visible[:, children]
-        order += [child for child, seen in zip(children, both.T, strict=True) if seen.any()]
+        order += [
+            child for child, observed in zip(children, both.T, strict=True) if observed.any()
+        ]
     if len(order) == 1:
         raise InvalidMotionError(
-            f"{tracks.names[order[0]]} is never seen together with a joint that hangs on it."
+            f"{tracks.names[order[0]]} is never observed together with one of its children."
         )
     return order
 
 
-def _mean_shape(ways: Array, lengths: Array, usual: Array) -> Array:
-    """Places of children about their joint, shape (n_children, 3), turned as `usual` is."""
-    whole = ways[np.isfinite(ways).all(axis=(1, 2))]
-    shape = usual
-    for _ in range(ROUNDS if len(whole) else 0):
-        turns = matrix_from_quaternion(fit_rotations(shape, whole))
-        laid = np.einsum("fij,fpi->fpj", turns, whole)  # turned back
-        laid = laid[np.isfinite(laid).all(axis=(1, 2))]
-        if not len(laid):
-            return usual
-        shape = np.median(laid, axis=0)
-    sizes = np.linalg.norm(shape, axis=-1, keepdims=True)
-    return np.asarray(lengths[:, None] * shape / np.where(sizes > 0.0, sizes, 1.0))
+def _mean_shape(displacements: Array, lengths: Array, directions: Array) -> Array:
+    """Return the offsets of the children, shape (n_children, 3), aligned with `directions`."""
+    complete = displacements[np.isfinite(displacements).all(axis=(1, 2))]
+    shape = directions
+    for _ in range(N_ITERATIONS if len(complete) else 0):
+        rotations = matrix_from_quaternion(fit_rotations(shape, complete))
+        aligned = np.einsum("fij,fpi->fpj", rotations, complete)  # rotated back
+        aligned = aligned[np.isfinite(aligned).all(axis=(1, 2))]
+        if not len(aligned):
+            return directions
+        shape = np.median(aligned, axis=0)
+    lengths_now = np.linalg.norm(shape, axis=-1, keepdims=True)
+    return np.asarray(lengths[:, None] * shape / np.where(lengths_now > 0.0, lengths_now, 1.0))

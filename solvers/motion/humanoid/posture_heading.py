@@ -1,4 +1,4 @@
-"""Postures as if all actors stood in one place and faced one way [SHJT13, section V-A]."""
+"""Normalize the position and heading of postures [SHJT13, section V-A]."""
 
 from dataclasses import dataclass
 
@@ -12,33 +12,36 @@ from .posture_joints import HIPS, MIRROR_JOINTS, POSTURE_JOINTS
 Array = NDArray[np.float64]
 
 LATERAL_JOINTS = tuple(
-    tuple(POSTURE_JOINTS.index(name) for name in (f"left{part}", f"right{part}", middle))
-    for part, middle in (("UpperLeg", "hips"), ("UpperArm", "chest"))
+    tuple(
+        POSTURE_JOINTS.index(name) for name in (f"left{half_line}", f"right{half_line}", middle)
+    )
+    for half_line, middle in (("UpperLeg", "hips"), ("UpperArm", "chest"))
 )
-"""Joints on the left and on the right, and one between for where either is not tracked."""
-STEADY = 0.1
-"""Seconds of the Gaussian that steadies the heading: jitter must not turn the whole body."""
-SHORTEST = 0.02
-"""Metres. A level line from right to left that is shorter tells no heading."""
+"""Left and right joints of hips and shoulders, and the joint between them if one is missing."""
+HEADING_SMOOTHING_S = 0.1
+"""Standard deviation of the Gaussian that smooths the heading, so that jitter does not rotate
+the body."""
+MIN_LATERAL_M = 0.02
+"""Horizontal distance of left and right joint below which there is no heading."""
 
-AROUND = 1.0
-"""Seconds in which most frames must tell one heading, for those against it to be wrong."""
-AGREED = 0.3
-"""Length of the mean of unit vectors from which on they do: 0 is none, 1 the same."""
+REVERSAL_WINDOW_S = 1.0
+"""Window over which opposite headings are compared with the mean, to detect swaps."""
+MIN_AGREEMENT = 0.3
+"""Length of the mean of unit vectors above which they agree: 0 is random, 1 identical."""
 
 
 @dataclass(frozen=True, eq=False)
 class NormalizedPostures:
-    """Postures without heading and place.
+    """Postures with heading and position removed.
 
     Attributes
     ----------
     postures : shape (n_frames, 20, 3), metres
-        Relative to the hips; the actor faces -Y, his left is +X. NaN: not tracked.
+        Relative to the hips; the actor faces -Y, the actor's left is +X. NaN: missing.
     places : shape (n_frames, 3), metres
-        Where the hips are.
+        Positions of the hips.
     headings : shape (n_frames,), radians
-        Turn about Z that brings a posture back.
+        Rotation about Z that restores the heading.
     """
 
     postures: Array
@@ -46,74 +49,80 @@ class NormalizedPostures:
     headings: Array
 
     def put_back(self, postures: Array) -> Array:
-        """Return postures of these frames in the world, same shape."""
+        """Return postures of these frames in world space, same shape."""
         return rotate_about_vertical(postures, self.headings) + self.places[:, None]
 
 
 def normalize_postures(
     positions: Array, frame_rate: float, weights: Array | None = None, *, ahead: bool = True
 ) -> NormalizedPostures:
-    """Take heading and place out.
+    """Remove heading and position from postures.
 
-    The heading follows the level lines from the right to the left hip and shoulder, and is
-    steadied over a tenth of a second.
+    The heading is that of the horizontal lines from right to left hip and shoulder, smoothed
+    over a tenth of a second.
 
     Parameters
     ----------
     positions : shape (n_frames, 20, 3), metres
     frame_rate : float, hertz
     weights : shape (n_frames, 20), 0 to 1, optional
-        How far each joint is to be trusted.
+        Reliability of each joint.
     ahead : bool
-        Whether later frames tell of a heading, and of hips that are lost.
+        Whether later frames are used for the heading and for missing hips.
     """
-    trust = np.ones(positions.shape[:2]) if weights is None else weights
-    places = np.nan_to_num(fill_gaps(positions[:, HIPS], trust[:, HIPS] > 0.0, ahead=ahead))
-    left = np.zeros((len(positions), 2))
-    for one, other, middle in LATERAL_JOINTS:
-        line, sure = _to_the_left(positions, trust, one, other)
-        for half in ((one, middle), (middle, other)):
-            part, known = _to_the_left(positions, trust, *half)
-            lost = ~np.isfinite(line[:, 0])
-            line[lost], sure[lost] = 2.0 * part[lost], known[lost]
-        left += np.where(np.isfinite(line), line, 0.0) * (1e-3 + sure[:, None])
-    told = np.linalg.norm(left, axis=-1) > SHORTEST * 1e-3
-    if not told.any():
-        left[:], told = (1.0, 0.0), np.ones(len(left), bool)
-    unit = left / np.maximum(np.linalg.norm(left, axis=-1, keepdims=True), 1e-9)
-    unit = fill_gaps(unit, told, ahead=ahead)
+    reliability = np.ones(positions.shape[:2]) if weights is None else weights
+    places = np.nan_to_num(
+        fill_gaps(positions[:, HIPS], reliability[:, HIPS] > 0.0, ahead=ahead)
+    )
+    lateral = np.zeros((len(positions), 2))
+    for left_joint, right_joint, middle in LATERAL_JOINTS:
+        line, weight = _lateral_line(positions, reliability, left_joint, right_joint)
+        for half in ((left_joint, middle), (middle, right_joint)):
+            half_line, half_weight = _lateral_line(positions, reliability, *half)
+            missing = ~np.isfinite(line[:, 0])
+            line[missing], weight[missing] = 2.0 * half_line[missing], half_weight[missing]
+        lateral += np.where(np.isfinite(line), line, 0.0) * (1e-3 + weight[:, None])
+    determined = np.linalg.norm(lateral, axis=-1) > MIN_LATERAL_M * 1e-3
+    if not determined.any():
+        lateral[:], determined = (1.0, 0.0), np.ones(len(lateral), bool)
+    unit = lateral / np.maximum(np.linalg.norm(lateral, axis=-1, keepdims=True), 1e-9)
+    unit = fill_gaps(unit, determined, ahead=ahead)
     if ahead:
-        unit = fill_gaps(unit, ~_reversed(unit, frame_rate))
-    unit = smooth_gaussian(np.nan_to_num(unit), STEADY * frame_rate, ahead=ahead)
+        unit = fill_gaps(unit, ~_is_reversed(unit, frame_rate))
+    unit = smooth_gaussian(np.nan_to_num(unit), HEADING_SMOOTHING_S * frame_rate, ahead=ahead)
     headings = np.arctan2(unit[:, 1], unit[:, 0])
     return NormalizedPostures(
         rotate_about_vertical(positions - places[:, None], -headings), places, headings
     )
 
 
-def _to_the_left(positions: Array, trust: Array, left: int, right: int) -> tuple[Array, Array]:
-    """Return the level way from one joint to another, and how far both are to be trusted."""
-    line = (positions[:, left] - positions[:, right])[:, :2]
-    return line, np.minimum(trust[:, left], trust[:, right])
+def _lateral_line(
+    positions: Array, reliability: Array, lateral: int, right: int
+) -> tuple[Array, Array]:
+    """Return the horizontal line from right to left joint, and its reliability."""
+    line = (positions[:, lateral] - positions[:, right])[:, :2]
+    return line, np.minimum(reliability[:, lateral], reliability[:, right])
 
 
-def _reversed(unit: Array, frame_rate: float) -> NDArray[np.bool_]:
-    """Tell where left points against most of the second around: nobody turns so fast.
+def _is_reversed(unit: Array, frame_rate: float) -> NDArray[np.bool_]:
+    """Return where the heading is opposite to the mean of a second, as in left-right swaps.
 
-    A tracker that exchanges left and right does so. Nothing is told of who spins.
+    No frame of a spinning actor is returned: its headings have no consistent mean.
     """
-    most = uniform_filter1d(unit, 2 * round(0.5 * AROUND * frame_rate) + 1, axis=0)
-    agreed = np.linalg.norm(most, axis=-1) > AGREED
-    return np.asarray(agreed & ((unit * most).sum(axis=-1) < 0.0))
+    mean_direction = uniform_filter1d(
+        unit, 2 * round(0.5 * REVERSAL_WINDOW_S * frame_rate) + 1, axis=0
+    )
+    consistent = np.linalg.norm(mean_direction, axis=-1) > MIN_AGREEMENT
+    return np.asarray(consistent & ((unit * mean_direction).sum(axis=-1) < 0.0))
 
 
 def rotate_about_vertical(postures: Array, angles: Array) -> Array:
-    """Turn each frame about Z by its angle, in radians."""
+    """Rotate each frame about Z by its angle, in radians."""
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
     x, y, z = np.moveaxis(postures, -1, 0)
     return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
 
 def mirror_postures(vectors: Array) -> Array:
-    """Return vectors of joints without heading, (..., 20, 3), as a mirror shows them."""
+    """Return the mirror image of joint vectors without heading, shape (..., 20, 3)."""
     return np.asarray(vectors[..., list(MIRROR_JOINTS), :] * (-1.0, 1.0, 1.0))

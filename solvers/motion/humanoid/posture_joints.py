@@ -1,7 +1,7 @@
-"""The twenty joints that postures are made of: those of the first Kinect, named by their roles.
+"""The twenty joints of a posture: those of the first Kinect, named by humanoid roles.
 
-All that is learned of postures is told in these joints, so that whatever tracks at least them
-(each Kinect, and any skeleton with humanoid roles) can be compared with whatever else does.
+All posture models use these joints, so that every source with at least these joints (each
+Kinect, and any skeleton with humanoid roles) can be compared.
 """
 
 from collections.abc import Sequence
@@ -24,31 +24,31 @@ POSTURE_JOINTS = (
     "leftUpperLeg", "leftLowerLeg", "leftFoot", "leftToes",
     "rightUpperLeg", "rightLowerLeg", "rightFoot", "rightToes",
 )  # fmt: skip
-"""Humanoid roles, by which the joint is meant where that bone begins; "chest" is the point
-between the shoulders, and a "HandEnd" the middle of the hand or what comes after the wrist."""
+"""Humanoid roles, each for the joint at the start of that bone. "chest" is the point between
+the shoulders, "HandEnd" the middle of the hand or the joint after the wrist."""
 
 PARENTS = (-1, 0, 1, 2, 2, 4, 5, 6, 2, 8, 9, 10, 0, 12, 13, 14, 0, 16, 17, 18)
 N_JOINTS = len(POSTURE_JOINTS)
 MIRROR_JOINTS = (0, 1, 2, 3, 8, 9, 10, 11, 4, 5, 6, 7, 16, 17, 18, 19, 12, 13, 14, 15)
-"""The joint of the other side; joints of the middle are their own."""
+"""Index of the joint on the other side; central joints have their own index."""
 HIPS, SPINE, CHEST = 0, 1, 2
 
 BETWEEN_SHOULDERS = ("SpineShoulder", "Chest", "SpineChest", "ShoulderCenter")
-"""What trackers call the point between the shoulders; the first that is there."""
+"""Names of the point between the shoulders; the first one present is used."""
 HAND_ENDS = ("HandLeft", "HandRight")
 SIDES = ("left", "right")
-PALM = 0.13
-"""Metres from the wrist within which the end of a hand is looked for."""
+MAX_HAND_END_M = 0.13
+"""Maximum distance of the end of a hand from the wrist."""
 
 
 def posture_joint_indices(names: Sequence[str]) -> dict[str, int]:
-    """Return which of these tracked joints plays which of `POSTURE_JOINTS`."""
-    return dict(_found(tuple(names)))
+    """Return the index in `names` of each of the `POSTURE_JOINTS`."""
+    return dict(_cached_indices(tuple(names)))
 
 
 @lru_cache(maxsize=64)
-def _found(names: tuple[str, ...]) -> tuple[tuple[str, int], ...]:
-    """Return roles and joints; a solve asks many times for the same names."""
+def _cached_indices(names: tuple[str, ...]) -> tuple[tuple[str, int], ...]:
+    """Return roles and indices, cached because a solve queries the same names many times."""
     roles = dict(roles_by_name(names))
     between = [name for name in BETWEEN_SHOULDERS if name in names]
     if between or "neck" in roles:
@@ -63,32 +63,32 @@ def _found(names: tuple[str, ...]) -> tuple[tuple[str, int], ...]:
 
 
 def posture_positions(recording: JointRecording | Tracks) -> Array:
-    """Return where the joints of postures are, shape (n_frames, 20, 3); NaN: not tracked.
+    """Return the positions of the posture joints, shape (n_frames, 20, 3); NaN: missing.
 
     Raises
     ------
     InvalidMotionError
-        The recording has no hips, or no joint besides them.
+        The recording has no hips, or no other posture joint.
     """
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording
-    places = posture_joint_indices(tracks.names)
-    if "hips" not in places or len(places) < 2:
+    indices = posture_joint_indices(tracks.names)
+    if "hips" not in indices or len(indices) < 2:
         raise InvalidMotionError(
             "No body was recognised in the names of the joints"
             f" ({', '.join(tracks.names[:4])} ...); they must be those of a Kinect, or"
             " humanoid roles, and hips must be among them."
         )
     positions = np.full((tracks.n_frames, N_JOINTS, 3), np.nan)
-    for role, place in places.items():
-        positions[:, POSTURE_JOINTS.index(role)] = tracks.positions[:, place]
+    for role, index in indices.items():
+        positions[:, POSTURE_JOINTS.index(role)] = tracks.positions[:, index]
     return positions
 
 
 def postures_from_motion(motion: Motion, humanoid_map: HumanoidMap | None = None) -> Array:
-    """Return where the joints of postures are in a motion, shape (n_frames, 20, 3), metres.
+    """Return the positions of the posture joints of a motion, shape (n_frames, 20, 3), metres.
 
-    "chest" is the joint that both arms hang on, "spine" that half way to it from the hips, and
-    a "HandEnd" what is farthest from the wrist within half a hand's length.
+    "chest" is the common ancestor of both arms, "spine" the joint nearest to the middle between
+    it and the hips, "HandEnd" the farthest descendant of the wrist within the hand.
 
     Raises
     ------
@@ -96,28 +96,28 @@ def postures_from_motion(motion: Motion, humanoid_map: HumanoidMap | None = None
         The skeleton lacks hips, arms or legs.
     """
     skeleton = motion.skeleton
-    places = (humanoid_map or find_humanoid_map(skeleton)).indices(skeleton)
+    indices = (humanoid_map or find_humanoid_map(skeleton)).indices(skeleton)
     needed = [f"{side}{part}" for side in SIDES for part in ("UpperArm", "UpperLeg")]
-    if lost := [role for role in ("hips", *needed) if role not in places]:
+    if missing := [role for role in ("hips", *needed) if role not in indices]:
         raise InvalidMotionError(
-            f"The skeleton has no joint for {', '.join(lost)}; postures are those of bodies"
+            f"The skeleton has no joint for {', '.join(missing)}; postures need a body"
             " with two arms and two legs."
         )
-    played = {role: place for role, place in places.items() if role in POSTURE_JOINTS}
-    arms = [skeleton.ancestors(places[f"{side}UpperArm"]) for side in SIDES]
-    played["chest"] = next(joint for joint in arms[0] if joint in arms[1])
-    played["spine"] = _half_way(skeleton, places["hips"], played["chest"])
+    selected = {role: index for role, index in indices.items() if role in POSTURE_JOINTS}
+    arms = [skeleton.ancestors(indices[f"{side}UpperArm"]) for side in SIDES]
+    selected["chest"] = next(joint for joint in arms[0] if joint in arms[1])
+    selected["spine"] = _middle_joint(skeleton, indices["hips"], selected["chest"])
     for side in SIDES:
-        if f"{side}Hand" in played:
-            played[f"{side}HandEnd"] = _hand_end(skeleton, played[f"{side}Hand"])
+        if f"{side}Hand" in selected:
+            selected[f"{side}HandEnd"] = _hand_end(skeleton, selected[f"{side}Hand"])
     world = forward_kinematics(motion).positions
     positions = np.full((motion.n_frames, N_JOINTS, 3), np.nan)
-    for role, place in played.items():
-        positions[:, POSTURE_JOINTS.index(role)] = world[:, place]
+    for role, index in selected.items():
+        positions[:, POSTURE_JOINTS.index(role)] = world[:, index]
     return positions
 
 
-def _half_way(skeleton: Skeleton, hips: int, chest: int) -> int:
+def _middle_joint(skeleton: Skeleton, hips: int, chest: int) -> int:
     """Return the joint between hips and chest that rests nearest to the middle."""
     rest = skeleton.rest_positions
     chain = [chest, *skeleton.ancestors(chest)]
@@ -127,10 +127,13 @@ def _half_way(skeleton: Skeleton, hips: int, chest: int) -> int:
 
 
 def _hand_end(skeleton: Skeleton, wrist: int) -> int:
-    """Return what hangs on the wrist farthest from it, as far as the palm reaches."""
+    """Return the farthest descendant of the wrist within the length of the palm."""
     rest = skeleton.rest_positions
-    ways = {
+    distances = {
         joint: float(np.linalg.norm(rest[joint] - rest[wrist]))
         for joint in skeleton.subtree(wrist)
     }
-    return max((joint for joint in ways if ways[joint] <= PALM), key=ways.__getitem__)
+    return max(
+        (joint for joint in distances if distances[joint] <= MAX_HAND_END_M),
+        key=distances.__getitem__,
+    )

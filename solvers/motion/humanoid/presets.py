@@ -1,4 +1,4 @@
-"""Keep humanoid maps in files, so that a rig is mapped once."""
+"""Read and write humanoid maps as JSON files."""
 
 import json
 from pathlib import Path
@@ -12,12 +12,12 @@ from .roles import HumanoidMap
 
 KIND = "mocap_assist humanoid map"
 VERSION = 1
-LONGEST = 1_000_000
-"""Bytes; a file that is longer is not a map."""
+MAX_FILE_BYTES = 1_000_000
+"""A longer file is not a map."""
 
 
 def write_humanoid_map(humanoid: HumanoidMap, path: Path | str) -> None:
-    """Write a map as JSON, whole or not at all.
+    """Write a map as JSON, atomically.
 
     Raises
     ------
@@ -25,36 +25,36 @@ def write_humanoid_map(humanoid: HumanoidMap, path: Path | str) -> None:
         The file cannot be written.
     """
     content = {"kind": KIND, "version": VERSION, "joints": dict(humanoid.joints)}
-    with written_whole(path) as part:
-        part.write_text(
+    with written_whole(path) as temporary:
+        temporary.write_text(
             json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8"
         )
 
 
 def read_humanoid_map(path: Path | str, skeleton: Skeleton | None = None) -> HumanoidMap:
-    """Read what `write_humanoid_map` wrote.
+    """Read a map that `write_humanoid_map` wrote.
 
     Parameters
     ----------
     path : Path or str
     skeleton : Skeleton, optional
-        Its joints must include all that the map names.
+        Must have all joints of the map.
 
     Returns
     -------
     HumanoidMap
-        With score 1: an animator has approved of it.
+        With score 1, since a user confirmed it.
 
     Raises
     ------
     InvalidFileError
-        The file is missing, is no such map, comes from a later version, or names unknown roles,
+        The file is missing, is not a map, comes from a later version, or names unknown roles,
         a role or a joint twice, or a joint that the skeleton lacks.
     """
     try:
         with open_regular(path) as file:
-            text = file.read(LONGEST).decode("utf-8-sig")
-        content = parse_json(text, object_pairs_hook=_each_once)
+            text = file.read(MAX_FILE_BYTES).decode("utf-8-sig")
+        content = parse_json(text, object_pairs_hook=_unique_keys)
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except (OSError, ValueError) as error:
@@ -65,20 +65,20 @@ def read_humanoid_map(path: Path | str, skeleton: Skeleton | None = None) -> Hum
     except InvalidMotionError as error:
         raise InvalidFileError(f"{path}: {error}") from None
     if skeleton is not None:
-        lost = [name for name in joints.values() if name not in skeleton.names]
-        if lost:
+        missing = [name for name in joints.values() if name not in skeleton.names]
+        if missing:
             raise InvalidFileError(
-                f"{path} names joints that the skeleton lacks: {', '.join(lost)}. Choose the"
+                f"{path} names joints that the skeleton lacks: {', '.join(missing)}. Choose the"
                 " map of this rig."
             )
     return humanoid
 
 
-def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Refuse JSON that says a key twice, of which the last one would win unseen."""
+def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Refuse JSON with duplicate keys, of which the last one would silently win."""
     names = [name for name, _ in pairs]
-    if twice := sorted({name for name in names if names.count(name) > 1}):
-        raise ValueError(f"it says {', '.join(twice)} more than once")
+    if duplicates := sorted({name for name in names if names.count(name) > 1}):
+        raise ValueError(f"it says {', '.join(duplicates)} more than once")
     return dict(pairs)
 
 

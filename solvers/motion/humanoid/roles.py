@@ -1,4 +1,4 @@
-"""Which joint of a skeleton plays which humanoid role: the hinge between rigs."""
+"""Humanoid maps: the role of each joint, shared by all rigs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -25,21 +25,21 @@ ESSENTIAL_ROLES = (
 )  # fmt: skip
 """What VRM requires of every humanoid."""
 
-SURE_ENOUGH = 0.7
-"""From this score on, names are believed and the shape of the body is not asked."""
+MIN_NAME_SCORE = 0.7
+"""Score from which the roles by name are used, without those by structure."""
 
 
 @dataclass(frozen=True)
 class HumanoidMap:
-    """Which joint plays which humanoid role.
+    """Assignment of joints to humanoid roles.
 
     Attributes
     ----------
     joints : mapping of role to joint name
-        Roles of `HUMANOID_ROLES`; no joint plays two. It cannot be changed; `with_joint` makes
-        another map.
+        Roles of `HUMANOID_ROLES`; no joint has two. Immutable; `with_joint` returns another
+        map.
     score : float
-        0 to 1: how sure the finding is. An edited map keeps the score of its origin.
+        Confidence, 0 to 1. An edited map keeps the score of the original.
     """
 
     joints: Mapping[str, str] = field(default_factory=dict)
@@ -49,12 +49,12 @@ class HumanoidMap:
         joints = {role: self.joints[role] for role in HUMANOID_ROLES if role in self.joints}
         unknown = [role for role in self.joints if role not in joints]
         if unknown:
-            raise InvalidMotionError(f"These are no humanoid roles: {', '.join(unknown)}.")
+            raise InvalidMotionError(f"These are not humanoid roles: {', '.join(unknown)}.")
         names = list(joints.values())
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
+        duplicates = sorted({name for name in names if names.count(name) > 1})
+        if duplicates:
             raise InvalidMotionError(
-                f"A joint can play one role only; more than one has {', '.join(twice)}."
+                f"A joint can play one role only; more than one has {', '.join(duplicates)}."
             )
         object.__setattr__(self, "joints", MappingProxyType(joints))
 
@@ -71,38 +71,38 @@ class HumanoidMap:
         return next((role for role, name in self.joints.items() if name == joint_name), None)
 
     def has(self, *roles: str) -> bool:
-        """Tell whether all these roles are played."""
+        """Return whether all these roles have a joint."""
         return all(role in self.joints for role in roles)
 
     def with_joint(self, role: str, joint: str | None) -> "HumanoidMap":
-        """Return the map in which `joint` plays `role` and no other; None leaves it empty."""
+        """Return the map with `role` assigned to `joint` only; None leaves the role empty."""
         others = {r: name for r, name in self.joints.items() if r != role and name != joint}
         return replace(self, joints=others if joint is None else {**others, role: joint})
 
     def indices(self, skeleton: Skeleton) -> dict[str, int]:
-        """Return each role's joint as its index; roles whose joint is missing are left out."""
-        place = {name: index for index, name in enumerate(skeleton.names)}
-        return {role: place[name] for role, name in self.joints.items() if name in place}
+        """Return the index of each role's joint; roles whose joint is missing are left out."""
+        index_of = {name: index for index, name in enumerate(skeleton.names)}
+        return {role: index_of[name] for role, name in self.joints.items() if name in index_of}
 
 
 def find_humanoid_map(skeleton: Skeleton) -> HumanoidMap:
-    """Find out which joint plays which humanoid role.
+    """Assign humanoid roles to the joints of a skeleton.
 
     Names are compared with the tables of the known rig families, without regard to case,
-    separators, prefixes and spelling of sides. Where that finds less than most of a body, the
-    rest pose is asked, which must stand upright and face -Y. Helper joints, twist bones, props
-    and faces have no role.
+    separators, prefixes and spelling of sides. If that assigns too few roles, the structure of
+    the rest pose is used, which must stand upright and face -Y. Helper joints, twist bones,
+    props and faces have no role.
 
     Returns
     -------
     HumanoidMap
-        Empty, with score 0, where nothing looks human. The score of names is the share of
-        essential roles (VRM's) found, less where joints hang on the wrong parents; that of
-        structure is how human the proportions are, and at most 0.8.
+        Empty, with score 0, if the skeleton is not humanoid. The score by names is the fraction
+        of VRM's essential roles found, lowered by wrong parents. The score by structure, up to
+        0.8, measures how human the proportions are.
     """
     joints = roles_by_name(skeleton.names)
     by_name = HumanoidMap(joints, _coverage(joints) * _coherence(skeleton, joints))
-    if by_name.score >= SURE_ENOUGH:
+    if by_name.score >= MIN_NAME_SCORE:
         return by_name
     joints, humanness = roles_by_structure(skeleton)
     by_structure = HumanoidMap(joints, 0.8 * humanness * _coverage(joints))
@@ -114,7 +114,7 @@ def _coverage(joints: Mapping[str, str]) -> float:
 
 
 def _coherence(skeleton: Skeleton, joints: Mapping[str, str]) -> float:
-    """Return the share of limb joints that hang below the joint of the role before."""
+    """Return the fraction of limb joints that descend from the joint before, 0.5 to 1."""
     pairs = [
         (joints[f"{side}{upper}"], joints[f"{side}{lower}"])
         for side in ("left", "right")
@@ -124,8 +124,8 @@ def _coherence(skeleton: Skeleton, joints: Mapping[str, str]) -> float:
         )
         if f"{side}{upper}" in joints and f"{side}{lower}" in joints
     ]  # fmt: skip
-    hanging = [
+    connected = [
         skeleton.index(upper) in skeleton.ancestors(skeleton.index(lower))
         for upper, lower in pairs
     ]
-    return 0.5 + 0.5 * sum(hanging) / len(hanging) if hanging else 0.5
+    return 0.5 + 0.5 * sum(connected) / len(connected) if connected else 0.5

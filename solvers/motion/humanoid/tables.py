@@ -1,8 +1,8 @@
-"""What rigs call their joints: one table per family, from humanoid role to joint name.
+"""Joint names of rig families: one table per family, by humanoid role.
 
 A name is written without its side: "UpLeg" stands for LeftUpLeg, mixamorig:RightUpLeg or
-UpLeg.L. Case and separators do not count. Where a family has had several names for one role,
-they stand side by side and the first that a skeleton has is taken.
+UpLeg.L. Case and separators are ignored. Several names for one role are separated by spaces,
+and the first one in the skeleton is used.
 """
 
 CENTRAL_ROLES = ("hips", "spine", "chest", "upperChest", "neck", "head")

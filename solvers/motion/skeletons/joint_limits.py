@@ -81,7 +81,7 @@ class JointLimits:
         ]
         if unknown:
             raise InvalidMotionError(
-                f"There are no such Euler orders: {', '.join(unknown)}. Use an order such as XYZ."
+                f"There are no such Euler orders: {', '.join(unknown)}. Use XYZ or another."
             )
         empty = ~(self.lower <= self.upper).all(axis=1)
         if empty.any():

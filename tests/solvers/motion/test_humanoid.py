@@ -178,7 +178,7 @@ def test_cannot_be_changed_in_place():
 
 
 def test_refuses_unknown_roles_and_joints_with_two():
-    with pytest.raises(InvalidMotionError, match="These are no humanoid roles: tail"):
+    with pytest.raises(InvalidMotionError, match="These are not humanoid roles: tail"):
         HumanoidMap({"tail": "Tail"})
     with pytest.raises(InvalidMotionError, match="more than one has Spine"):
         HumanoidMap({"chest": "Spine", "spine": "Spine"})

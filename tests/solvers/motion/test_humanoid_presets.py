@@ -51,7 +51,7 @@ def test_names_in_any_script_return(tmp_path_factory, joints):
         (json.dumps({**HEAD, "version": 2, "joints": {}}), "version 2"),
         (json.dumps({**HEAD, "joints": ["Hips"]}), "must name a joint"),
         (json.dumps({**HEAD, "joints": {"hips": 3}}), "must name a joint"),
-        (json.dumps({**HEAD, "joints": {"tail": "Tail"}}), "no humanoid roles: tail"),
+        (json.dumps({**HEAD, "joints": {"tail": "Tail"}}), "not humanoid roles: tail"),
         (json.dumps({**HEAD, "joints": {"hips": "A", "head": "A"}}), "more than one has A"),
         (json.dumps({**HEAD, "joints": {"hips": "Pelvis"}}), "lacks: Pelvis"),
         (

@@ -235,7 +235,7 @@ def test_moving_and_turning_everything_moves_the_result(swinging_leg, rng):
 
 
 def test_refuses_joints_that_are_no_limb(swinging_leg):
-    with pytest.raises(InvalidMotionError, match="knee, hip, ankle do not"):
+    with pytest.raises(InvalidMotionError, match="knee, hip, ankle are not"):
         reach(swinging_leg, (1, 0, 2), np.zeros((120, 3)))
     with pytest.raises(InvalidMotionError, match="Targets need shape"):
         reach(swinging_leg, LEG, np.zeros((7, 3)))

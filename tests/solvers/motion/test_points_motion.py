@@ -216,9 +216,9 @@ def test_what_hangs_on_a_joint_that_is_never_seen_hangs_on_the_one_above(body, d
 @pytest.mark.parametrize(
     ("parents", "words"),
     [
-        ((-1, -1, 0), "hang on no other: a, b"),
-        ((1, 2, 0), "hang on no other: none"),
-        ((-1, 2, 1), "never seen together"),
+        ((-1, -1, 0), "have no parent: a, b"),
+        ((1, 2, 0), "have no parent: none"),
+        ((-1, 2, 1), "never observed together"),
     ],
 )
 def test_what_is_no_tree_is_refused(parents, words):
