@@ -11,7 +11,7 @@
 60
 """
 
-from .judged_points import find_error_points
+from .error_points import find_error_points
 from .key_curves import KeyCurve, fit_curve
 from .reduce_keys import SparseMotion, UnbakeSettings, load_sparse_motion, reduce_keys
 from .retarget import RetargetSettings, RootMotion, retarget

@@ -1,4 +1,4 @@
-"""Curves through few keys, such as Blender's F-Curves with Bezier handles."""
+"""Fit curves with few keys, such as Blender's F-Curves with Bezier handles."""
 
 from dataclasses import dataclass
 
@@ -9,22 +9,22 @@ from scipy.linalg import solveh_banded
 Array = NDArray[np.float64]
 Frames = NDArray[np.intp]
 
-CALM = 1e-3
-"""Weight with which the fit prefers the slope of the samples themselves."""
-ENDS = 100.0
-"""Weight of the first and the last sample, at which clips are joined."""
+SLOPE_WEIGHT = 1e-3
+"""Weight of the samples' own slope at the keys, which regularizes the fit."""
+END_WEIGHT = 100.0
+"""Weight of the first and the last sample, where clips are joined."""
 
 
 @dataclass(frozen=True, eq=False)
 class KeyCurve:
-    """Channels that share the frames of their keys, and a slope at each.
+    """Channels with common key frames, and a slope at each key.
 
-    Between two keys every channel is the cubic polynomial with these values and slopes. That
-    is a Bezier F-Curve whose handles lie a third of the way to the neighbouring keys.
+    Between two keys every channel is the cubic polynomial with these values and slopes: a
+    Bezier F-Curve with handles at one third of the distance to the neighboring keys.
 
     Attributes
     ----------
-    frames : int array, shape (n_keys,), rising
+    frames : int array, shape (n_keys,), increasing
         Without keys, the channels are not animated.
     values : shape (n_keys, n_channels)
     slopes : shape (n_keys, n_channels), per frame
@@ -35,7 +35,7 @@ class KeyCurve:
     slopes: Array
 
     def at(self, frames: Frames | Array) -> Array:
-        """Return the channels at frames, shape (n, n_channels); held outside the keys."""
+        """Return the channels at frames, shape (n, n_channels); constant outside the keys."""
         if len(self.frames) < 2:
             return np.broadcast_to(self.values[:1], (len(frames), self.values.shape[1])).copy()
         times = np.clip(np.asarray(frames, float), self.frames[0], self.frames[-1])
@@ -54,7 +54,7 @@ class KeyCurve:
     def handles(self) -> tuple[Array, Array]:
         """Return frames (n_keys, 2) and values (n_keys, 2, n_channels) of both handles.
 
-        The left one first. Outermost handles are one frame long over three.
+        The left handle comes first. The outermost handles are one third of a frame long.
         """
         gaps = np.diff(self.frames).astype(np.float64)
         before = np.concatenate([[1.0], gaps])[: len(self.frames)]
@@ -65,14 +65,14 @@ class KeyCurve:
 
 
 def fit_curve(samples: Array, keys: Frames) -> KeyCurve:
-    """Return the curve with these keys that is nearest to the samples, in least squares.
+    """Return the least-squares fit of a curve with these keys to the samples.
 
     Parameters
     ----------
     samples : shape (n_frames, n_channels)
         One at each frame.
-    keys : int array, shape (n_keys,), rising
-        Frames of the keys; the first and last frame among them if there are more than one.
+    keys : int array, shape (n_keys,), increasing
+        Frames of the keys; several keys must include the first and the last frame.
     """
     if len(keys) < 2:
         return KeyCurve(keys, samples[keys], np.zeros((len(keys), samples.shape[1])))
@@ -80,17 +80,17 @@ def fit_curve(samples: Array, keys: Frames) -> KeyCurve:
     segment = np.clip(np.searchsorted(keys, frames, side="right") - 1, 0, len(keys) - 2)
     basis = np.stack(_basis(frames.astype(float), segment, keys), axis=1)[:, (0, 2, 1, 3)]
     weights = np.ones(len(samples))
-    weights[[0, -1]] = ENDS
+    weights[[0, -1]] = END_WEIGHT
     weighted = basis * weights[:, None]
     first = keys[:-1]
     squares = np.add.reduceat(weighted[:, :, None] * basis[:, None, :], first, axis=0)
     sides = np.add.reduceat(weighted[:, :, None] * samples[:, None, :], first, axis=0)
     banded, side = _assembled(squares, sides)
     lengths = np.diff(keys).astype(np.float64)
-    calm = CALM * (np.append(lengths, 0.0) ** 2 + np.append(0.0, lengths) ** 2)
-    banded[3, 1::2] += calm
+    slope_weights = SLOPE_WEIGHT * (np.append(lengths, 0.0) ** 2 + np.append(0.0, lengths) ** 2)
+    banded[3, 1::2] += slope_weights
     side[1::2] += (
-        calm[:, None]
+        slope_weights[:, None]
         * np.gradient(samples, axis=0, edge_order=2 if len(samples) > 2 else 1)[keys]
     )
     solution = solveh_banded(banded, side, check_finite=False)
@@ -98,7 +98,7 @@ def fit_curve(samples: Array, keys: Frames) -> KeyCurve:
 
 
 def _basis(times: Array, segment: Frames, keys: Frames) -> tuple[Array, Array, Array, Array]:
-    """Return the Hermite polynomials of start and stop values, then of their slopes."""
+    """Return the Hermite basis of start and stop values, then of their slopes."""
     length = (keys[segment + 1] - keys[segment]).astype(np.float64)
     u = (times - keys[segment]) / length
     stop = u * u * (3.0 - 2.0 * u)
@@ -112,6 +112,6 @@ def _assembled(squares: Array, sides: Array) -> tuple[Array, Array]:
     for row in range(4):
         side[row : row + 2 * n_keys - 2 : 2] += sides[:, row]
         for column in range(row, 4):
-            place = banded[3 - (column - row)]
-            place[column : column + 2 * n_keys - 2 : 2] += squares[:, row, column]
+            row_of_band = banded[3 - (column - row)]
+            row_of_band[column : column + 2 * n_keys - 2 : 2] += squares[:, row, column]
     return banded, side

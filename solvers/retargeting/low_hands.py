@@ -11,8 +11,8 @@ from .placement import Placement
 Array = NDArray[np.float64]
 
 LOW_WRIST_FRACTION, HIGH_WRIST_FRACTION = 0.2, 0.4
-"""Heights of the wrist, as fractions of the leg length. Below the first, the height above ground
-is the source's, scaled by the legs; above the second, the ground has no influence."""
+"""Heights of the wrist, as fractions of the leg length. Below the first, the height above
+ground is the source's, scaled by the legs; above the second, the ground has no influence."""
 SUPPORT_HEIGHT_FRACTIONS = (0.12, 0.18)
 """The same heights for hands that support themselves on the ground."""
 SUPPORT_SPEED, PASSING_SPEED = 0.25, 1.0

@@ -1,4 +1,4 @@
-"""Refuse humanoid maps that no body can have, in one sentence each."""
+"""Refuse humanoid maps that do not describe a body."""
 
 from itertools import pairwise
 
@@ -12,7 +12,7 @@ from ..rotations import angle_between
 Array = NDArray[np.float64]
 Joints = dict[str, int]
 SIDES = ("left", "right")
-BACKWARDS = np.radians(135.0)
+MIN_BACKWARD_ANGLE_RAD = np.radians(135.0)
 LIMBS = {
     "Leg": ("UpperLeg", "LowerLeg", "Foot"),
     "Arm": ("UpperArm", "LowerArm", "Hand"),
@@ -20,12 +20,12 @@ LIMBS = {
 
 
 def check_roles(skeleton: Skeleton, joints: Joints, whose: str) -> None:
-    """Refuse limbs off the hips or out of order, a head below the hips, sides that disagree.
+    """Refuse detached or unordered limbs, a head below the hips, and inconsistent sides.
 
     Raises
     ------
     InvalidMotionError
-        The sentence names the joints, their roles, and `whose` skeleton it is where that helps.
+        The message names the joints, their roles and, where needed, `whose` skeleton it is.
     """
     for side in SIDES:
         for parts in LIMBS.values():
@@ -42,8 +42,8 @@ def _check_limb(skeleton: Skeleton, joints: Joints, roles: list[str]) -> None:
             f" {skeleton.names[hips]} (hips) and would not follow it. Map bones of one tree,"
             " such as a rig's controls."
         )
-    known = [role for role in roles if role in joints]
-    for upper, lower in pairwise(known):
+    present = [role for role in roles if role in joints]
+    for upper, lower in pairwise(present):
         if joints[upper] not in skeleton.ancestors(joints[lower]):
             raise InvalidMotionError(
                 f"{skeleton.names[joints[lower]]} ({lower}) does not hang below"
@@ -53,7 +53,7 @@ def _check_limb(skeleton: Skeleton, joints: Joints, roles: list[str]) -> None:
 
 
 def _check_head(skeleton: Skeleton, joints: Joints, whose: str) -> None:
-    """Refuse a head or neck that the hips hang on, or on the legs' side of them."""
+    """Refuse a head or neck that is an ancestor of the hips, or rests below them."""
     rest, hips = skeleton.rest_positions, joints["hips"]
     for role in ("neck", "head"):
         if joints.get(role) in skeleton.ancestors(hips):
@@ -74,9 +74,9 @@ def _check_head(skeleton: Skeleton, joints: Joints, whose: str) -> None:
 
 
 def _check_sides(skeleton: Skeleton, joints: Joints, whose: str) -> None:
-    """Refuse left arm and left leg on different sides of the body."""
+    """Refuse a left arm and a left leg on different sides of the body."""
     rest = skeleton.rest_positions
-    legs, arms = (_to_the_left(rest, joints, parts[0]) for parts in LIMBS.values())
+    legs, arms = (_lateral_vector(rest, joints, parts[0]) for parts in LIMBS.values())
     if legs @ arms < 0.0:
         raise InvalidMotionError(
             f"Left arm and left leg of the {whose} skeleton are on different sides of the body."
@@ -84,10 +84,10 @@ def _check_sides(skeleton: Skeleton, joints: Joints, whose: str) -> None:
         )
 
 
-def _to_the_left(rest: Array, joints: Joints, part: str) -> Array:
-    """Return the way from the right to the left limb, metres; zero where one is not known.
+def _lateral_vector(rest: Array, joints: Joints, part: str) -> Array:
+    """Return the vector from the right to the left limb, metres; zero if one is missing.
 
-    From where the limbs begin: hands and feet may rest crossed.
+    It is measured at the start of the limbs, since hands and feet may be crossed.
     """
     left, right = (joints.get(f"{side}{part}") for side in SIDES)
     if left is None or right is None:
@@ -96,10 +96,10 @@ def _to_the_left(rest: Array, joints: Joints, part: str) -> Array:
 
 
 def check_feet(alignment: Array, joints: Joints, whose: str) -> None:
-    """Refuse a body whose both feet point backwards, as in mirrored recordings of Kinect."""
+    """Refuse a body with both feet pointing backwards, as in mirrored Kinect recordings."""
     feet = [joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in joints]
-    aside = angle_between(alignment[feet], alignment[joints["hips"]])
-    if len(feet) == len(SIDES) and (aside > BACKWARDS).all():
+    angles = angle_between(alignment[feet], alignment[joints["hips"]])
+    if len(feet) == len(SIDES) and (angles > MIN_BACKWARD_ANGLE_RAD).all():
         raise InvalidMotionError(
             f"The feet of the {whose} skeleton point backwards in the rest pose. Exchange left"
             " and right in the map, as for a mirrored recording, or give the toes their role."

@@ -1,4 +1,4 @@
-"""Where a body of another size stands, walks and sits."""
+"""Map positions of the source to a body of another size."""
 
 from dataclasses import dataclass
 
@@ -11,31 +11,31 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 UP = np.array([0.0, 0.0, 1.0])
-ANKLE_HEIGHT = 0.08
-"""Of the length of a leg: height of the ankle above the sole (Winter 2009, figure 4.1)."""
-STANDS_LOW, STANDS_HIGH = 0.02, 0.25
-"""Parts of the leg by which the lowest joint of a rig that stands on height 0 is below, and
-its ankles are above the ground at most."""
-FLOOR_MISREAD = 0.15
-"""Part of the leg by which the ground may seem to be off height 0 before it is believed."""
-FLAT = 20.0
-"""Percentile of the ankle's heights in contact at which the foot stands flat."""
+ANKLE_HEIGHT_FRACTION = 0.08
+"""Height of the ankle above the sole, in leg lengths (Winter 2009, figure 4.1)."""
+MAX_DEPTH_FRACTION, MAX_ANKLE_FRACTION = 0.02, 0.25
+"""Limits for a rig that stands on height 0, in leg lengths: depth of its lowest joint below the
+ground, and height of its ankles above it."""
+FLOOR_TOLERANCE_FRACTION = 0.15
+"""Measured heights of the ground below this, in leg lengths, are treated as 0."""
+FLAT_FOOT_PERCENTILE = 20.0
+"""Percentile of the ankle heights in contact that is the height of a flat foot."""
 
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """Takes places of the source's hip joints and ankles to those of the target.
+    """Map of the source's hip joints and ankles to positions of the target.
 
     Attributes
     ----------
     travel, rise : float
-        Growth over the ground, and upwards.
+        Horizontal and vertical scale.
     start : shape (3,), metres
-        The ground under the first place of the hips, which stays.
+        The ground below the first position of the hips, the fixed point of the map.
     ankles : (float, float), metres
-        Heights of source's and target's ankles when they stand.
+        Heights of the ankles of source and target in contact.
     floors : (float, float), metres, or None
-        Heights of the ground of source and target; None where no legs tell.
+        Heights of the ground of source and target; None without legs.
     """
 
     travel: float
@@ -45,11 +45,11 @@ class Placement:
     floors: tuple[float, float] | None
 
     def points(self, points: Array) -> Array:
-        """Return where points, shape (..., 3), of the source lie for the target."""
-        growth = np.array([self.travel, self.travel, self.rise])
+        """Return points of the source, shape (..., 3), mapped to the target."""
+        scale = np.array([self.travel, self.travel, self.rise])
         before = self.start + self.ankles[0] * UP
         after = self.start + self.ankles[1] * UP
-        return np.asarray(after + growth * (points - before))
+        return np.asarray(after + scale * (points - before))
 
 
 def find_placement(
@@ -61,37 +61,37 @@ def find_placement(
     travel: float,
     to_ground: bool,
 ) -> Placement:
-    """Compare the bodies' legs and how high their ankles stand.
+    """Return the placement from leg lengths and ankle heights of both bodies.
 
     Parameters
     ----------
     source, target : Body
     positions : shape (n_frames, n_source_joints, 3), metres
     height : float, metres
-        Of the source's ankles that stand; None where none do.
+        Height of the source's ankles in contact; None without contacts.
     travel : float
-        Growth over the ground; 0 for that of the legs.
+        Horizontal scale; 0 for the ratio of the legs.
     to_ground : bool
-        Whether the ground comes to height 0, wherever it is in the source.
+        Whether to move the ground to height 0, whatever its height in the source.
     """
-    growth = _growth(source, target)
+    scale = _size_ratio(source, target)
     hips = positions[0, source.hip_joints()].mean(axis=0)
     start = hips * (1.0, 1.0, 0.0)
     if not (leg_length(source) and leg_length(target)):
-        return Placement(travel or growth, growth, start, (0.0, 0.0), None)
+        return Placement(travel or scale, scale, start, (0.0, 0.0), None)
     source_ankle, target_ankle = standing_ankle(source), standing_ankle(target)
     height = source_ankle if height is None else height
     ground = height - source_ankle
-    misread = abs(ground) < FLOOR_MISREAD * leg_length(source)
-    floor = 0.0 if to_ground or misread else ground
-    if misread and not rests_on_ground(source):
+    is_near_zero = abs(ground) < FLOOR_TOLERANCE_FRACTION * leg_length(source)
+    floor = 0.0 if to_ground or is_near_zero else ground
+    if is_near_zero and not rests_on_ground(source):
         ground = 0.0
     ankles = height, floor + target_ankle
-    return Placement(travel or growth, growth, start, ankles, (ground, floor))
+    return Placement(travel or scale, scale, start, ankles, (ground, floor))
 
 
 def ankle_height(source: Body, positions: Array, contacts: Flags | None) -> float | None:
-    """Return at which height the ankles stand, metres; None where none do.
+    """Return the height of the ankles in contact, metres; None without contacts.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def ankle_height(source: Body, positions: Array, contacts: Flags | None) -> floa
     if contacts is None or not contacts.any():
         return None
     ankles = np.stack([positions[:, source.joints[f"{side}Foot"], 2] for side in SIDES], 1)
-    return float(np.percentile(ankles[contacts], FLAT))
+    return float(np.percentile(ankles[contacts], FLAT_FOOT_PERCENTILE))
 
 
 def leg_length(body: Body) -> float:
@@ -112,9 +112,9 @@ def leg_length(body: Body) -> float:
 
 
 def standing_ankle(body: Body) -> float:
-    """Return how high the ankles of a body that stands flat are above the ground, metres.
+    """Return the height of the ankles of a flat foot above the ground, metres.
 
-    Rigs that rest on height 0 show it. Of others, the lowest joint of the foot is above the
+    Rigs that rest on height 0 show it. In others, the lowest joint of the foot is above the
     sole by an unknown height: their ankles are at least as high as a human's.
     """
     feet, leg = _feet(body), leg_length(body)
@@ -123,20 +123,23 @@ def standing_ankle(body: Body) -> float:
     ankle = float(body.rest[feet, 2].mean())
     if rests_on_ground(body):
         return ankle
-    return max(ankle - _lowest(body, feet), ANKLE_HEIGHT * leg)
+    return max(ankle - _lowest(body, feet), ANKLE_HEIGHT_FRACTION * leg)
 
 
 def rests_on_ground(body: Body) -> bool:
-    """Tell whether the rest pose stands on height 0, or nearly."""
+    """Return whether the rest pose stands on height 0, approximately."""
     feet, leg = _feet(body), leg_length(body)
     if not feet or leg == 0.0:
         return False
     ankle = float(body.rest[feet, 2].mean())
-    return _lowest(body, feet) > -STANDS_LOW * leg and 0.0 < ankle < STANDS_HIGH * leg
+    return (
+        _lowest(body, feet) > -MAX_DEPTH_FRACTION * leg
+        and 0.0 < ankle < MAX_ANKLE_FRACTION * leg
+    )
 
 
 def trunk_length(body: Body) -> float:
-    """Return the way from the hips to the head, or to the neck, metres; 0 without either."""
+    """Return the distance from hips to head, or to neck, metres; 0 without either."""
     top = body.joints.get("head", body.joints.get("neck"))
     if top is None:
         return 0.0
@@ -152,10 +155,10 @@ def _lowest(body: Body, feet: list[int]) -> float:
     return float(min(body.rest[body.skeleton.subtree(foot), 2].min() for foot in feet))
 
 
-def _growth(source: Body, target: Body) -> float:
-    """Return the ratio of the legs; of the trunks where one has no legs; 1 without either."""
+def _size_ratio(source: Body, target: Body) -> float:
+    """Return the ratio of the legs; of the trunks if a body has no legs; 1 without either."""
     for measure in (leg_length, trunk_length):
-        theirs, ours = measure(source), measure(target)
-        if theirs > 0.0 and ours > 0.0:
-            return ours / theirs
+        source_length, target_length = measure(source), measure(target)
+        if source_length > 0.0 and target_length > 0.0:
+            return target_length / source_length
     return 1.0

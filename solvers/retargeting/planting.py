@@ -1,4 +1,4 @@
-"""Let feet slide over the ground no more than the source's."""
+"""Limit the sliding of feet to that of the source."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,45 +10,47 @@ Flags = NDArray[np.bool_]
 Foot = tuple[Array, Array]
 """Ankle and ball, each of shape (n_frames, 3), metres."""
 
-BLEND = 0.3
-"""Seconds over which the correction of a planted foot fades."""
-STRICTNESS = 8.0
-"""Power of the speeds whose ratio tells whether the ankle or the ball stands."""
-STILL = 1e-9
+BLEND_S = 0.3
+"""Seconds in which the correction of a planted foot fades."""
+SELECTION_POWER = 8.0
+"""Power of the speed ratio that selects ankle or ball as the standing point."""
+MIN_STEP_M = 1e-9
 
 
 def planting_shift(
-    theirs: Foot, ours: Foot, stands: Flags, growth: float, frame_rate: float
+    source_foot: Foot, target_foot: Foot, stands: Flags, scale: float, frame_rate: float
 ) -> Array:
-    """Return by how much the ankle must move for the foot to slide as the source's, grown.
+    """Return the displacement of the ankle for which the foot slides like the source's, scaled.
 
-    What stands is the slower of the source's ankle and ball. From frame to frame, the same
-    point of the target goes as far; the smoothest shift that does that is the result.
+    The slower of the source's ankle and ball stands. The same point of the target gets the
+    same step in each frame, scaled; the result is the smoothest displacement with that.
 
     Parameters
     ----------
-    theirs, ours : Foot
-        Of the source; and of the target without the shift.
+    source_foot, target_foot : Foot
+        The target is that without the displacement.
     stands : bool, shape (n_frames,)
-    growth : float
-        Over the ground.
+    scale : float
+        Horizontal scale.
     frame_rate : float, hertz
 
     Returns
     -------
     NDArray, shape (n_frames, 3), metres
-        Level; fades before and after each contact.
+        Horizontal; fades before and after each contact.
     """
-    shift = np.zeros_like(ours[0])
-    held = stands[1:] & stands[:-1]
-    if not held.any():
+    shift = np.zeros_like(target_foot[0])
+    in_contact = stands[1:] & stands[:-1]
+    if not in_contact.any():
         return shift
     source, target = (
-        [np.diff(point[:, :2], axis=0) for point in foot] for foot in (theirs, ours)
+        [np.diff(point[:, :2], axis=0) for point in foot] for foot in (source_foot, target_foot)
     )
-    ankle, ball = (np.linalg.norm(step, axis=1) + STILL for step in source)
-    on_ball = (1.0 / (1.0 + (ball / ankle) ** STRICTNESS))[:, None]
-    lacking = [growth * a - b for a, b in zip(source, target, strict=True)]
-    wanted = (lacking[0] + on_ball * (lacking[1] - lacking[0])) * frame_rate
-    shift[:, :2] = smooth_correction(wanted, held.astype(np.float64), frame_rate, BLEND)
+    ankle, ball = (np.linalg.norm(step, axis=1) + MIN_STEP_M for step in source)
+    on_ball = (1.0 / (1.0 + (ball / ankle) ** SELECTION_POWER))[:, None]
+    differences = [scale * a - b for a, b in zip(source, target, strict=True)]
+    velocity = (differences[0] + on_ball * (differences[1] - differences[0])) * frame_rate
+    shift[:, :2] = smooth_correction(
+        velocity, in_contact.astype(np.float64), frame_rate, BLEND_S
+    )
     return shift

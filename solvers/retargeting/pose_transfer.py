@@ -1,4 +1,4 @@
-"""Turn the joints of one body as those of another are turned in the world."""
+"""Transfer world rotations from the joints of one body to those of another."""
 
 from typing import NamedTuple
 
@@ -17,108 +17,115 @@ TRUNK = ("spine", "chest", "upperChest")
 NECK = ("neck", "head")
 
 
-class Turn(NamedTuple):
-    """How a part of the body is turned in the world, and which joints had a share in it."""
+class WorldRotation(NamedTuple):
+    """World rotation of a body part, and the source joints that it depends on."""
 
     rotations: Array
     """From the canonical T-pose, shape (n_frames, 4)."""
     joints: frozenset[int]
-    """Of the source's body."""
+    """Joints of the source's body."""
 
 
 def transfer_pose(
-    source: Body, seen: WorldPoses, unknown: Flags, target: Body
+    source: Body, source_poses: WorldPoses, missing: Flags, target: Body
 ) -> tuple[Array, Flags]:
-    """Return the target's local rotations that give each part the source's orientation.
+    """Return local rotations of the target that match the orientations of the source.
 
-    A role that both bodies have is turned in the world as in the source. The spine is a chain
-    whose lower end turns with the hips: where the numbers of joints differ, the turns of the
-    source are spread evenly over the target's, and the top is turned as in the source; so is
-    the neck, between chest and head. The spine swings a little for the neck to be where the
-    source's is (`leaning_swings`). All else rests relative to its parent.
+    A role of both bodies gets the source's world rotation. The spine is a chain that starts at
+    the hips: for different numbers of joints, the source's rotations are interpolated evenly
+    along the target's, and the top matches the source. The same holds for the neck, between
+    chest and head. A small swing of the spine matches the lean of the source
+    (`leaning_swings`). All other joints keep their rest rotation relative to their parent.
 
     Parameters
     ----------
     source, target : Body
-    seen : WorldPoses
-        Of the source.
-    unknown : bool, shape (n_frames, n_source_joints)
-        Where the source's local rotations were not observed.
+    source_poses : WorldPoses
+    missing : bool, shape (n_frames, n_source_joints)
+        Where the source's local rotations are missing.
 
     Returns
     -------
     rotations : shape (n_frames, n_target_joints, 4)
-    unknown : bool, shape (n_frames, n_target_joints)
-        Rotations that rest on something not observed.
+    missing : bool, shape (n_frames, n_target_joints)
+        Rotations that depend on missing ones.
     """
-    wanted = _leaning(source, seen, target, _wanted_turns(source, seen.rotations, target))
-    n_frames = len(seen.rotations)
+    targets = _apply_lean(
+        source, source_poses, target, _target_rotations(source, source_poses.rotations, target)
+    )
+    n_frames = len(source_poses.rotations)
     skeleton = target.skeleton
     local = np.tile(IDENTITY, (n_frames, skeleton.n_joints, 1))
-    missing = np.zeros((n_frames, skeleton.n_joints), dtype=np.bool_)
-    present: list[Turn] = []
+    target_missing = np.zeros((n_frames, skeleton.n_joints), dtype=np.bool_)
+    posed: list[WorldRotation] = []
     for joint, parent in enumerate(skeleton.parents):
-        above = present[parent] if parent >= 0 else Turn(IDENTITY, frozenset())
-        turn = wanted.get(joint)
-        if turn is None:
-            present.append(above)
+        parent_pose = posed[parent] if parent >= 0 else WorldRotation(IDENTITY, frozenset())
+        rotation = targets.get(joint)
+        if rotation is None:
+            posed.append(parent_pose)
             continue
-        # World rotations from the target's rest pose; `above` holds such, not canonical ones.
-        rotations = multiply(turn.rotations, inverse(target.alignment[joint]))
-        local[:, joint] = multiply(inverse(above.rotations), rotations)
-        shares = sorted(turn.joints ^ above.joints)
-        missing[:, joint] = unknown[:, shares].any(axis=1)
-        present.append(Turn(rotations, turn.joints))
-    return local, missing
+        # World rotations from the target's rest pose, as in `parent_pose`; not canonical ones.
+        rotations = multiply(rotation.rotations, inverse(target.alignment[joint]))
+        local[:, joint] = multiply(inverse(parent_pose.rotations), rotations)
+        sources = sorted(rotation.joints ^ parent_pose.joints)
+        target_missing[:, joint] = missing[:, sources].any(axis=1)
+        posed.append(WorldRotation(rotations, rotation.joints))
+    return local, target_missing
 
 
-def _wanted_turns(source: Body, world: Array, target: Body) -> dict[int, Turn]:
-    """Return the turn of each target joint that gets one."""
-    turns = {role: _turn(source, world, joint) for role, joint in source.joints.items()}
-    given = dict(turns)
-    trunk = [role for role in TRUNK if role in turns]
-    top = turns[trunk[-1]] if trunk else turns["hips"]
-    if trunk:
-        chain = [turns["hips"], *(turns[role] for role in trunk)]
-        given |= _spread(chain, [role for role in TRUNK if role in target.joints])
-    if "head" in turns:
-        chain = [top, *(turns[role] for role in NECK if role in turns)]
-        given |= _spread(chain, [role for role in NECK if role in target.joints])
-    return {target.joints[role]: turn for role, turn in given.items() if role in target.joints}
-
-
-def _leaning(
-    source: Body, seen: WorldPoses, target: Body, wanted: dict[int, Turn]
-) -> dict[int, Turn]:
-    """Return the turns with those of the trunk swung so that it leans as the source's."""
-    trunk = [target.joints[role] for role in TRUNK if target.joints.get(role) in wanted]
-    turned = {
-        joint: multiply(turn.rotations, inverse(target.alignment[joint]))
-        for joint, turn in wanted.items()
+def _target_rotations(source: Body, world: Array, target: Body) -> dict[int, WorldRotation]:
+    """Return the canonical world rotation of each target joint that has one."""
+    by_role = {
+        role: _canonical_rotation(source, world, joint) for role, joint in source.joints.items()
     }
-    hips = wanted[target.joints["hips"]].rotations
-    swings = leaning_swings(source, target, seen, hips, turned, trunk)
-    return wanted | {
-        joint: Turn(multiply(swing, wanted[joint].rotations), wanted[joint].joints)
+    available = dict(by_role)
+    trunk = [role for role in TRUNK if role in by_role]
+    top = by_role[trunk[-1]] if trunk else by_role["hips"]
+    if trunk:
+        chain = [by_role["hips"], *(by_role[role] for role in trunk)]
+        available |= _spread(chain, [role for role in TRUNK if role in target.joints])
+    if "head" in by_role:
+        chain = [top, *(by_role[role] for role in NECK if role in by_role)]
+        available |= _spread(chain, [role for role in NECK if role in target.joints])
+    return {
+        target.joints[role]: rotation
+        for role, rotation in available.items()
+        if role in target.joints
+    }
+
+
+def _apply_lean(
+    source: Body, source_poses: WorldPoses, target: Body, targets: dict[int, WorldRotation]
+) -> dict[int, WorldRotation]:
+    """Return the rotations with a swing of the trunk that matches the source's lean."""
+    trunk = [target.joints[role] for role in TRUNK if target.joints.get(role) in targets]
+    rotated = {
+        joint: multiply(rotation.rotations, inverse(target.alignment[joint]))
+        for joint, rotation in targets.items()
+    }
+    hips = targets[target.joints["hips"]].rotations
+    swings = leaning_swings(source, target, source_poses, hips, rotated, trunk)
+    return targets | {
+        joint: WorldRotation(multiply(swing, targets[joint].rotations), targets[joint].joints)
         for joint, swing in swings.items()
     }
 
 
-def _turn(source: Body, world: Array, joint: int) -> Turn:
-    shares = frozenset((joint, *source.skeleton.ancestors(joint)))
-    return Turn(multiply(world[:, joint], source.alignment[joint]), shares)
+def _canonical_rotation(source: Body, world: Array, joint: int) -> WorldRotation:
+    sources = frozenset((joint, *source.skeleton.ancestors(joint)))
+    return WorldRotation(multiply(world[:, joint], source.alignment[joint]), sources)
 
 
-def _spread(chain: list[Turn], roles: list[str]) -> dict[str, Turn]:
-    """Spread a chain's turns, its first being where it is rooted, evenly over the roles."""
+def _spread(chain: list[WorldRotation], roles: list[str]) -> dict[str, WorldRotation]:
+    """Interpolate the rotations of a chain, starting at its root, evenly over the roles."""
     spread = {}
     for number, role in enumerate(roles, start=1):
-        lower, rest = divmod(number * (len(chain) - 1), len(roles))
-        if rest == 0:
+        lower, remainder = divmod(number * (len(chain) - 1), len(roles))
+        if remainder == 0:
             spread[role] = chain[lower]
             continue
         start, stop = chain[lower], chain[lower + 1]
-        fraction = np.array(rest / len(roles))
+        fraction = np.array(remainder / len(roles))
         between = slerp(start.rotations, stop.rotations, fraction)
-        spread[role] = Turn(between, start.joints | stop.joints)
+        spread[role] = WorldRotation(between, start.joints | stop.joints)
     return spread

@@ -1,4 +1,4 @@
-"""Unbake: replace a key on every frame by few keys with handles."""
+"""Unbake: replace a key on every frame with few keys and handles."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ from .rotation_channels import RotationChannels
 from .thinning import ROOT, Thinning
 
 MAX_FRAMES = 10_000_000
-"""More than a day at 100 Hz."""
+"""Limit of a file: more than a day at 100 Hz."""
 LAYOUT = ArchiveLayout(
     "keys of a motion",
     1,
@@ -45,7 +45,7 @@ LAYOUT = ArchiveLayout(
 
 @dataclass(frozen=True, kw_only=True)
 class UnbakeSettings(Settings):
-    """How keys are thinned out."""
+    """How keys are reduced."""
 
     key_poses: bool = setting(
         False, "Key all joints at the same frames, as an animator blocks poses; takes more keys"
@@ -54,21 +54,21 @@ class UnbakeSettings(Settings):
 
 @dataclass(frozen=True, eq=False)
 class SparseMotion:
-    """A motion by few keys.
+    """A motion with few keys.
 
     Attributes
     ----------
     skeleton : Skeleton
     rotations : tuple of KeyCurve, one for each joint
-        In the joint's channels; without keys for joints that rest throughout. Between keys a
-        quaternion is that of the four curves, brought to length one.
+        In the joint's channels; without keys for joints that stay in the rest pose. Between
+        keys a quaternion is that of the four curves, normalized.
     channels : tuple of RotationChannels, one for each joint
     root : KeyCurve
         Root positions, three channels, metres.
     n_frames : int
     frame_rate : float, hertz
     error : float, metres
-        By how much any joint is off at most, at any frame; not between frames.
+        Maximum error of any joint at any frame; not between frames.
     """
 
     skeleton: Skeleton
@@ -86,7 +86,7 @@ class SparseMotion:
         return sum(curve.values.size for curve in curves)
 
     def save(self, path: Path | str) -> None:
-        """Save as npz, whole or not at all; `load_sparse_motion` reads it."""
+        """Save as npz, atomically; `load_sparse_motion` reads it."""
         curves = (*self.rotations, self.root)
         arrays = {
             "names": np.array(self.skeleton.names),
@@ -105,7 +105,7 @@ class SparseMotion:
         LAYOUT.write(path, arrays)
 
     def dense(self) -> Motion:
-        """Return the motion with a pose at every frame, as F-Curves would give it."""
+        """Return the motion with a pose at every frame, as F-Curves evaluate it."""
         frames = np.arange(self.n_frames)
         rotations = np.tile(IDENTITY, (self.n_frames, self.skeleton.n_joints, 1))
         for joint, (curve, each) in enumerate(zip(self.rotations, self.channels, strict=True)):
@@ -115,22 +115,22 @@ class SparseMotion:
 
 
 def load_sparse_motion(path: Path | str) -> SparseMotion:
-    """Load what `SparseMotion.save` saved.
+    """Load a motion that `SparseMotion.save` saved.
 
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, or holds something else.
+        The file is missing, damaged, or not an archive of keys.
     """
     arrays = LAYOUT.read(path)
     try:
-        return _motion_of(arrays)
+        return _motion_from_arrays(arrays)
     except InvalidMotionError as error:
         raise LAYOUT.damaged(path, str(error).removesuffix(".")) from None
 
 
-def _motion_of(arrays: dict[str, NDArray[Any]]) -> SparseMotion:
-    """Put the arrays of a file together; raises InvalidMotionError if they do not fit."""
+def _motion_from_arrays(arrays: dict[str, NDArray[Any]]) -> SparseMotion:
+    """Build the motion from the arrays of a file; raises InvalidMotionError if they differ."""
     skeleton = Skeleton(
         tuple(arrays["names"].tolist()), tuple(arrays["parents"].tolist()), arrays["offsets"]
     )
@@ -177,23 +177,23 @@ def reduce_keys(
     settings: UnbakeSettings = UnbakeSettings(),
     progress: Progress = unwatched,
 ) -> SparseMotion:
-    """Replace a key on every frame by few keys, off by the tolerance at most at every frame.
+    """Replace a key on every frame with few keys, within the tolerance at every frame.
 
-    Each joint's curves are fitted by least squares through their keys, values and slopes. At
-    first the curves of each joint alone are split until it moves what hangs on it by not much
-    more than the tolerance; then, wherever a joint is off by more than that, the joint above it
-    that does most of it gets another key, until none is. This is the splitting of [1]_, in the
-    middle of the worst segment, with the error measured where it is seen: in the world.
+    Each joint's curves are a least-squares fit of the values and slopes of their keys. First,
+    the curves of each joint alone are split until the error of its descendants is a small
+    multiple of the tolerance. Then, wherever the error of a joint exceeds the tolerance, the
+    ancestor with the largest contribution gets another key, until all are within it. This is
+    the splitting of [1]_ at the middle of the worst segment, with errors in world space.
 
     Parameters
     ----------
     motion : Motion
         Without gaps.
     tolerance : float, metres
-        Greatest distance by which any joint may be off at any frame, and with it two points
-        that show how a hand, foot or head is turned that has no further joints.
+        Maximum error of any joint at any frame. For a hand, foot or head without further
+        joints, it also applies to two points that show its rotation.
     channels : sequence of RotationChannels, one for each joint
-        How the rig keys its rotations; quaternions in the world's axes where not given.
+        How the rig keys its rotations; by default as quaternions in the world's axes.
     settings : UnbakeSettings
     progress : Progress
 
@@ -243,6 +243,6 @@ def _check(motion: Motion, tolerance: float, n_channels: int) -> None:
     if gaps.any():
         names = [motion.skeleton.names[joint] for joint in np.flatnonzero(gaps.any(axis=0))]
         raise InvalidMotionError(
-            "Keys can be thinned out only where all is known; these have gaps:"
+            "Only keys of a motion without gaps can be reduced; these joints have gaps:"
             f" {', '.join(names)}. Clean the take first."
         )

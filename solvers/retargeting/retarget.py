@@ -1,4 +1,4 @@
-"""Let another body make the same motion: retargeting."""
+"""Retarget a motion to another skeleton."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -33,7 +33,7 @@ Flags = NDArray[np.bool_]
 
 
 class RootMotion(Enum):
-    """What becomes of the way that the body covers."""
+    """Handling of the travel of the body."""
 
     KEEP = "keep"
     IN_PLACE = "in place"
@@ -42,41 +42,41 @@ class RootMotion(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class RetargetSettings(Settings):
-    """How a motion is given to another rig."""
+    """How a motion is retargeted to another rig."""
 
     root_motion: RootMotion = setting(
-        RootMotion.KEEP, "Keep the travel on the hips, take it out so that the body moves on"
-        " the spot, or put it on the bone above the hips"
+        RootMotion.KEEP, "Keep the travel on the hips, remove it so that the body moves in"
+        " place, or move it to the bone above the hips"
     )  # fmt: skip
     travel_scale: float = setting(
-        0.0, "The way over the ground is multiplied by this; higher goes farther, 1 hits the"
-        " source's marks, 0 lets it grow with the legs",
+        0.0, "Scale of the travel over the ground; higher goes farther, 1 keeps the source's"
+        " path, 0 scales it with the legs",
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
     keep_feet: bool = setting(
-        True, "Let the ankles follow the source's paths, grown with the legs, so that they"
-        " slide no more than there as far as the legs reach"
+        True, "Make the ankles follow the source's paths, scaled with the legs, so that feet"
+        " slide no more than the source's as far as the legs reach"
     )  # fmt: skip
     keep_hands: bool = setting(
-        True, "Let the hands reach as far as the source's, for the arm's length, and meet where"
-        " those do"
+        True, "Make the hands reach as far as the source's, scaled with the arms, and meet"
+        " where those meet"
     )  # fmt: skip
     to_ground: bool = setting(
-        False, "Put the ground that the source stands on to height 0: for sensors that measure"
-        " heights from themselves"
+        False, "Move the ground of the source to height 0, for sensors that measure heights"
+        " relative to themselves"
     )  # fmt: skip
     softness: float = setting(
-        0.005, "Part of the leg's length that is kept in reserve so that knees do not snap"
+        0.005, "Fraction of the leg's length kept in reserve so that knees do not snap"
         " straight; higher lowers the hips more",
         minimum=0.0, maximum=0.2, advanced=True,
     )  # fmt: skip
     travel_smoothing: float = setting(
-        0.5, "Standard deviation of the blur that tells travel from the sway of each step;"
-        " higher leaves more sway on the hips",
+        0.5, "Standard deviation of the Gaussian that separates travel from the sway of each"
+        " step; higher leaves more sway on the hips",
         unit="s", minimum=0.0, maximum=10.0, advanced=True,
     )  # fmt: skip
     turn_root: bool = setting(
-        True, "Let the root bone also turn to where the body faces", advanced=True
+        True, "Also rotate the root bone to the facing direction of the body", advanced=True
     )
 
 
@@ -89,20 +89,20 @@ def retarget(
     settings: RetargetSettings = RetargetSettings(),
     progress: Progress = unwatched,
 ) -> Motion:
-    """Return the motion as another skeleton makes it.
+    """Return the motion retargeted to another skeleton.
 
-    Both rigs are read as if they rested in one T-pose, so that any rest pose and bone roll
-    serves (`t_pose_alignment`). Every part of the body with a role in both is turned in the
-    world as in the source; spines of other numbers of joints share the turn. The middle of the
-    hip joints travels as far as the legs are longer, its height measured from the ankles of
-    the standing feet. Then feet and hands are brought to the source's places, scaled by leg
-    and arm, by turning two joints each [1]_; where a leg is too short, the hips are lowered
-    smoothly. Joints without a role rest relative to their parents: twist bones, face, props.
+    Both rigs are aligned with one T-pose, so that any rest pose and bone roll works
+    (`t_pose_alignment`). Every body part with a role in both gets the source's world rotation;
+    spines with other numbers of joints distribute it. The midpoint of the hip joints travels in
+    proportion to the legs, with its height relative to the ankles of standing feet. Then
+    two-bone inverse kinematics [1]_ moves feet and hands to the source's positions, scaled by
+    leg and arm. If a leg is too short, the hips are lowered smoothly. Joints without a role
+    keep their rest rotation relative to their parents: twist bones, face, props.
 
     Parameters
     ----------
     motion : Motion
-        Gaps stay gaps, in the joints that they concern.
+        Gaps stay gaps in the same joints.
     source_map : HumanoidMap
         Roles of the motion's joints.
     target_skeleton : Skeleton
@@ -114,15 +114,15 @@ def retarget(
     Returns
     -------
     Motion
-        Of `target_skeleton`, with the source's frames. Joints above the hips rest, and
-        the topmost carries the hips, as only the topmost joint of a Motion has a place; for
-        "root bone" it also turns to where the body faces.
+        Motion of `target_skeleton` with the source's frames. Joints above the hips keep their
+        rest pose. The root carries the hips, since only the root of a Motion has positions; for
+        "root bone" it also rotates to the facing direction.
 
     Raises
     ------
     InvalidMotionError
-        A map names no hips, or makes no body (see `map_checks`); or the target
-        has no joint above the hips for "root bone".
+        A map has no hips or does not describe a body (see `map_checks`), or the target has no
+        joint above the hips for "root bone".
     SolveCancelled
         Raised by `progress`.
 
@@ -141,66 +141,72 @@ def retarget(
             " hips, or add a root bone."
         )
     progress(0.05, "Reading the pose")
-    whole, unknown = without_gaps(motion, source)
-    seen = forward_kinematics(whole)
-    transfer = _compared(source, target, seen, _contacts(motion, source_map), motion, settings)
-    progress(0.3, "Turning the joints")
-    rotations, missing = transfer_pose(transfer.source, seen, unknown, target)
-    places = _root_places(transfer, rotations)
+    filled, gaps = without_gaps(motion, source)
+    source_poses = forward_kinematics(filled)
+    transfer = _compare_bodies(
+        source, target, source_poses, _find_contacts(motion, source_map), motion, settings
+    )
+    progress(0.3, "Rotating the joints")
+    rotations, missing = transfer_pose(transfer.source, source_poses, gaps, target)
+    root_positions = _root_positions(transfer, rotations)
     progress(0.5, "Placing the feet")
     if settings.keep_feet:
-        rotations, places = place_feet(transfer, rotations, places, settings.softness)
+        rotations, root_positions = place_feet(
+            transfer, rotations, root_positions, settings.softness
+        )
     progress(0.7, "Placing the hands")
     if settings.keep_hands:
-        rotations = place_hands(transfer, rotations, places)
-    places[~np.isfinite(motion.root_positions).all(axis=1)] = np.nan
+        rotations = place_hands(transfer, rotations, root_positions)
+    root_positions[~np.isfinite(motion.root_positions).all(axis=1)] = np.nan
     rotations[missing] = np.nan
-    everywhere = np.tile(IDENTITY, (motion.n_frames, target_skeleton.n_joints, 1))
-    everywhere[:, list(target.kept)] = rotations
-    result = Motion(target_skeleton, everywhere, places, motion.frame_rate)
-    progress(0.9, "Carrying the travel")
-    result = _with_travel(result, target_map, settings)
+    all_rotations = np.tile(IDENTITY, (motion.n_frames, target_skeleton.n_joints, 1))
+    all_rotations[:, list(target.kept)] = rotations
+    result = Motion(target_skeleton, all_rotations, root_positions, motion.frame_rate)
+    progress(0.9, "Applying root motion")
+    result = _apply_root_motion(result, target_map, settings)
     progress(1.0, "Retargeted")
     return result
 
 
-def _contacts(motion: Motion, humanoid: HumanoidMap) -> Flags | None:
+def _find_contacts(motion: Motion, humanoid: HumanoidMap) -> Flags | None:
     joints = humanoid.indices(motion.skeleton)
     if not all(f"{side}Foot" in joints for side in SIDES):
         return None
     return detect_contacts(motion, humanoid)
 
 
-def _compared(
+def _compare_bodies(
     source: Body,
     target: Body,
-    seen: WorldPoses,
+    source_poses: WorldPoses,
     contacts: Flags | None,
     motion: Motion,
     settings: RetargetSettings,
 ) -> Transfer:
-    """Find out how the source stands, and where the target does."""
-    stances = find_stances(source, target, seen, contacts, motion.frame_rate)
+    """Return the stances of the source and the placement of the target."""
+    stances = find_stances(source, target, source_poses, contacts, motion.frame_rate)
     if stances:
         source = with_level_soles(source, stances)
         height: float | None = float(np.mean([stance.ankle for stance in stances]))
     else:
-        height = ankle_height(source, seen.positions, contacts)
+        height = ankle_height(source, source_poses.positions, contacts)
     placement = find_placement(
         source,
         target,
-        seen.positions,
+        source_poses.positions,
         height,
         travel=settings.travel_scale,
         to_ground=settings.to_ground,
     )
-    return Transfer(source, target, seen, placement, motion.frame_rate, contacts, stances)
+    return Transfer(
+        source, target, source_poses, placement, motion.frame_rate, contacts, stances
+    )
 
 
-def _root_places(transfer: Transfer, rotations: Array) -> Array:
-    """Return the places of the target's topmost joint, (n_frames, 3), metres.
+def _root_positions(transfer: Transfer, rotations: Array) -> Array:
+    """Return the positions of the target's root, shape (n_frames, 3), metres.
 
-    The middle of the hip joints goes where the placement takes the source's.
+    The placement maps the midpoint of the source's hip joints to that of the target's.
     """
     source, target = transfer.source, transfer.target
     hips = transfer.seen.positions[:, source.hip_joints()].mean(axis=1)
@@ -209,7 +215,9 @@ def _root_places(transfer: Transfer, rotations: Array) -> Array:
     return np.asarray(middle - origin.positions[:, target.hip_joints()].mean(axis=1))
 
 
-def _with_travel(motion: Motion, humanoid: HumanoidMap, settings: RetargetSettings) -> Motion:
+def _apply_root_motion(
+    motion: Motion, humanoid: HumanoidMap, settings: RetargetSettings
+) -> Motion:
     if settings.root_motion is RootMotion.IN_PLACE:
         return in_place(motion, humanoid, settings.travel_smoothing)
     if settings.root_motion is RootMotion.ROOT_BONE:

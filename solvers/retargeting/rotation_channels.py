@@ -1,4 +1,4 @@
-"""The channels in which a rig keys the rotation of a joint."""
+"""Rotation channels, quaternion or Euler, in which a rig keys a joint."""
 
 from dataclasses import dataclass, field
 
@@ -23,16 +23,16 @@ ORDERS = ("", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 
 @dataclass(frozen=True, eq=False)
 class RotationChannels:
-    """Quaternion or Euler angles, about a joint's own axes.
+    """Rotation mode of a joint: quaternion or Euler angles about its own axes.
 
     Attributes
     ----------
     order : str
-        Of Euler angles, as in `quaternion_from_euler`: "ZYX" for what Blender calls XYZ; ""
+        Euler order, as in `quaternion_from_euler`: "ZYX" for Blender's XYZ; ""
         for a quaternion.
     axes : shape (4,)
-        Unit quaternion that turns the world's axes into the joint's own in the rest pose, such
-        as the rotation of a Blender bone's `matrix_local`.
+        Unit quaternion from the world's axes to the joint's in the rest pose, such as the
+        rotation of a Blender bone's `matrix_local`.
     """
 
     order: str = ""
@@ -57,6 +57,6 @@ class RotationChannels:
 
     def to_rotations(self, channels: Array) -> Array:
         """Return local rotations in the world's axes, shape (n_frames, 4)."""
-        turned = quaternion_from_euler(channels, self.order) if self.order else channels
-        own = normalize(turned)
+        quaternions = quaternion_from_euler(channels, self.order) if self.order else channels
+        own = normalize(quaternions)
         return multiply(multiply(self.axes, own), inverse(self.axes))

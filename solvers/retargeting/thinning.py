@@ -1,4 +1,4 @@
-"""Choose the frames of keys by what joints lose in the world."""
+"""Choose key frames by the error of the joints in world space."""
 
 from collections.abc import Sequence
 
@@ -9,27 +9,27 @@ from ..motion import Motion, forward_kinematics
 from ..motion.skeletons import world_poses
 from ..progress import Progress
 from ..rotations import IDENTITY
-from .judged_points import find_error_points
+from .error_points import find_error_points
 from .key_curves import KeyCurve, fit_curve
 from .rotation_channels import RotationChannels
 
 Array = NDArray[np.float64]
 Frames = NDArray[np.intp]
-Place = tuple[int, int]
+NewKey = tuple[int, int]
 """A joint, and the frame of a new key."""
 
-STILL = 1e-7
-"""A joint that turns less, in radians, and a root that moves less, in metres, needs one key."""
-LOOSE = 3.0
-"""Part of the tolerance by which each joint alone may be off to begin with."""
-SAME = 1e-12
-SAMPLED = 100
-"""Poses at which the reach of the joints is measured."""
+MIN_CHANGE = 1e-7
+"""Change, in radians or metres, below which a joint or the root needs only one key."""
+INITIAL_TOLERANCE_FACTOR = 3.0
+"""Initial error of each joint alone, as a multiple of the tolerance."""
+ROUNDING = 1e-12
+N_SAMPLED_POSES = 100
+"""Number of poses in which the distance of joints to their points is measured."""
 ROOT = -1
 
 
 class Thinning:
-    """Curves of all joints with the keys that they have so far. -1 stands for the root's place.
+    """Curves of all joints with their current keys; joint -1 is the root position.
 
     Attributes
     ----------
@@ -56,90 +56,92 @@ class Thinning:
             joint: each.from_rotations(motion.rotations[:, joint])
             for joint, each in enumerate(channels)
         }
-        self.wanted = {ROOT: motion.root_positions} | {
+        self.targets = {ROOT: motion.root_positions} | {
             joint: each.to_rotations(self.samples[joint]) for joint, each in enumerate(channels)
         }
         self.reach = self._reach()
         self.curves: dict[int, KeyCurve] = {}
         self.errors: dict[int, Array] = {}
-        self.fitted = {joint: np.zeros_like(each) for joint, each in self.wanted.items()}
+        self.fitted = {joint: np.zeros_like(each) for joint, each in self.targets.items()}
         self.changed = np.ones(motion.n_frames, dtype=np.bool_)
         self.off = np.zeros(self.truth.shape[:2])
         for joint, samples in self.samples.items():
-            rests = joint != ROOT and _rests(motion.rotations[:, joint])
-            self._refit(joint, _first_keys(samples, rests))
+            is_identity = joint != ROOT and _is_identity(motion.rotations[:, joint])
+            self._refit(joint, _first_keys(samples, is_identity))
 
     def begin(self, progress: Progress) -> None:
-        """Give each joint so many keys that it alone is off by little."""
+        """Add keys until the error of each joint alone is small."""
         for number, joint in enumerate(self.samples):
-            while places := self._too_far(joint):
-                self._add({(joint, frame) for frame in places})
+            while new_keys := self._too_far(joint):
+                self._add({(joint, frame) for frame in new_keys})
             progress((number + 1) / len(self.samples), "Thinning out the keys of each joint")
 
     def finish(self, progress: Progress) -> float:
-        """Add keys until no end is off by more than the tolerance; return what is left."""
+        """Add keys until all errors are within the tolerance; return the largest error."""
         start, done = 0.0, 0.0
         while True:
             self._measure()
             worst = float(self.off.max())
-            if worst <= self.tolerance or not self._add(self._wanted()):
+            if worst <= self.tolerance or not self._add(self._needed_keys()):
                 return worst
             start = max(start, worst)
             done = max(done, (start - worst) / (start - self.tolerance))
-            progress(done, "Adding keys where limbs are off")
+            progress(done, "Adding keys where errors are large")
 
     def _reach(self) -> dict[int, float]:
-        """Return how far from each joint the points are that it moves, at most."""
-        step = max(len(self.truth) // SAMPLED, 1)
+        """Return the maximum distance of each joint to the points that it moves."""
+        step = max(len(self.truth) // N_SAMPLED_POSES, 1)
         reach = {ROOT: 1.0, **dict.fromkeys(range(self.motion.n_joints), 0.0)}
         for point, chain in enumerate(self.points.chains):
-            ways = self.truth[::step, None, point] - self.joints[::step, chain]
-            farthest = np.linalg.norm(ways, axis=-1).max(axis=0)
-            for joint, far in zip(chain, farthest, strict=True):
+            vectors = self.truth[::step, None, point] - self.joints[::step, chain]
+            distances = np.linalg.norm(vectors, axis=-1).max(axis=0)
+            for joint, too_far in zip(chain, distances, strict=True):
                 # A quaternion's error is half that of its angle.
-                reach[int(joint)] = max(reach[int(joint)], 2.0 * float(far))
+                reach[int(joint)] = max(reach[int(joint)], 2.0 * float(too_far))
         return reach
 
     def _too_far(self, joint: int) -> list[int]:
-        """Return the middles of the segments in which a joint alone is off by too much."""
-        keys, away = self.curves[joint].frames, self.errors[joint] * self.reach[joint]
+        """Return the middles of the segments where the error of a joint alone is too large."""
+        keys, errors = self.curves[joint].frames, self.errors[joint] * self.reach[joint]
         if len(keys) < 2:
             return []
-        far = np.maximum.reduceat(away, keys[:-1]) > LOOSE * self.tolerance
-        far &= np.diff(keys) > 1
-        return [int(middle) for middle in (keys[:-1] + keys[1:])[far] // 2]
+        too_far = (
+            np.maximum.reduceat(errors, keys[:-1]) > INITIAL_TOLERANCE_FACTOR * self.tolerance
+        )
+        too_far &= np.diff(keys) > 1
+        return [int(middle) for middle in (keys[:-1] + keys[1:])[too_far] // 2]
 
-    def _wanted(self) -> set[Place]:
-        """Return where keys would help most: one place for each time that a point is off."""
-        places = set()
+    def _needed_keys(self) -> set[NewKey]:
+        """Return one new key for each interval in which a point exceeds the tolerance."""
+        new_keys = set()
         for point, chain in enumerate(self.points.chains):
             for frame in _peaks(self.off[:, point], self.tolerance):
-                if (place := self._culprit(point, chain, frame)) is not None:
-                    places.add(place)
-        return places
+                if (new_key := self._key_for_point(point, chain, frame)) is not None:
+                    new_keys.add(new_key)
+        return new_keys
 
-    def _culprit(self, point: int, chain: Frames, frame: int) -> Place | None:
-        """Return a new key for the joint that moves a point away most, or None."""
+    def _key_for_point(self, point: int, chain: Frames, frame: int) -> NewKey | None:
+        """Return a new key for the joint with the largest contribution to an error, or None."""
         arms = np.linalg.norm(self.truth[frame, point] - self.joints[frame, chain], axis=-1)
-        shares = [
+        contributions = [
             (2.0 * arm * self.errors[int(joint)][frame], int(joint))
             for joint, arm in zip(chain, arms, strict=True)
         ]
-        shares.append((self.errors[ROOT][frame], ROOT))
-        for _, joint in sorted(shares, reverse=True):
-            if (new := self._place_near(joint, frame)) is not None:
+        contributions.append((self.errors[ROOT][frame], ROOT))
+        for _, joint in sorted(contributions, reverse=True):
+            if (new := self._key_near(joint, frame)) is not None:
                 return joint, new
         return None
 
-    def _place_near(self, joint: int, frame: int) -> int | None:
-        """Return the middle of the worst segment here or next to it; None if all are short."""
+    def _key_near(self, joint: int, frame: int) -> int | None:
+        """Return the middle of the worst segment near a frame; None if all are too short."""
         keys = self.curves[joint].frames
         if len(keys) < 2:
             return None
         segment = min(int(np.searchsorted(keys, frame, side="right")), len(keys) - 1)
-        for wider in (0, 1):
-            start = int(keys[max(segment - 1 - wider, 0)])
-            stop = int(keys[min(segment + wider, len(keys) - 1)])
+        for extent in (0, 1):
+            start = int(keys[max(segment - 1 - extent, 0)])
+            stop = int(keys[min(segment + extent, len(keys) - 1)])
             errors = self.errors[joint][start:stop].copy()
             errors[keys[(keys >= start) & (keys < stop)] - start] = 0.0
             if errors.any():
@@ -148,24 +150,24 @@ class Thinning:
                 return int(keys[after - 1] + keys[after]) // 2
         return None
 
-    def _add(self, places: set[Place]) -> bool:
-        """Add keys; tell whether there were any to add."""
+    def _add(self, new_keys: set[NewKey]) -> bool:
+        """Add keys and return whether there were any."""
         if self.together:
             moving = [joint for joint, curve in self.curves.items() if len(curve.frames) > 1]
-            places = {(joint, frame) for joint in moving for _, frame in places}
+            new_keys = {(joint, frame) for joint in moving for _, frame in new_keys}
         new: dict[int, list[int]] = {}
-        for joint, frame in sorted(places):
+        for joint, frame in sorted(new_keys):
             new.setdefault(joint, []).append(frame)
         for joint, frames in new.items():
             self._refit(joint, np.union1d(self.curves[joint].frames, frames).astype(np.intp))
-        return bool(places)
+        return bool(new_keys)
 
     def _refit(self, joint: int, keys: Frames) -> None:
         curve = fit_curve(self.samples[joint], keys)
         fitted = self._evaluated(joint, curve)
-        self.changed |= (np.abs(fitted - self.fitted[joint]) > SAME).any(axis=1)
+        self.changed |= (np.abs(fitted - self.fitted[joint]) > ROUNDING).any(axis=1)
         self.curves[joint], self.fitted[joint] = curve, fitted
-        self.errors[joint] = np.linalg.norm(fitted - self.wanted[joint], axis=-1)
+        self.errors[joint] = np.linalg.norm(fitted - self.targets[joint], axis=-1)
 
     def _evaluated(self, joint: int, curve: KeyCurve) -> Array:
         frames = np.arange(self.motion.n_frames)
@@ -176,35 +178,35 @@ class Thinning:
         return self.channels[joint].to_rotations(curve.at(frames))
 
     def _measure(self) -> None:
-        """Find out anew how far off the points are, in the frames that have changed."""
-        here = self.changed
-        rotations = [self.fitted[joint][here] for joint in range(self.motion.n_joints)]
+        """Update the errors of the points in the changed frames."""
+        changed = self.changed
+        rotations = [self.fitted[joint][changed] for joint in range(self.motion.n_joints)]
         poses = world_poses(
-            self.motion.skeleton, np.stack(rotations, axis=1), self.fitted[ROOT][here]
+            self.motion.skeleton, np.stack(rotations, axis=1), self.fitted[ROOT][changed]
         )
-        away = self.points.positions(poses) - self.truth[here]
-        self.off[here] = np.linalg.norm(away, axis=-1)
-        self.changed = np.zeros_like(here)
+        errors = self.points.positions(poses) - self.truth[changed]
+        self.off[changed] = np.linalg.norm(errors, axis=-1)
+        self.changed = np.zeros_like(changed)
 
 
-def _rests(rotations: Array) -> bool:
-    """Tell whether all rotations are the identity, but for rounding."""
-    return bool(np.linalg.norm(rotations[:, 1:], axis=1).max() < STILL / 2.0)
+def _is_identity(rotations: Array) -> bool:
+    """Return whether all rotations are the identity, up to rounding."""
+    return bool(np.linalg.norm(rotations[:, 1:], axis=1).max() < MIN_CHANGE / 2.0)
 
 
-def _first_keys(samples: Array, rests: bool) -> Frames:
-    """Return no key for a joint at rest, one for what keeps still, both ends for all else."""
-    if rests:
+def _first_keys(samples: Array, is_identity: bool) -> Frames:
+    """Return no key for a joint in its rest pose, one for a constant, else both ends."""
+    if is_identity:
         return np.array([], dtype=np.intp)
-    if np.abs(samples - samples[0]).max() < STILL / 2.0:
+    if np.abs(samples - samples[0]).max() < MIN_CHANGE / 2.0:
         return np.array([0], dtype=np.intp)
     return np.unique([0, len(samples) - 1]).astype(np.intp)
 
 
 def _peaks(off: Array, tolerance: float) -> list[int]:
-    """Return the worst frame of each run of frames beyond the tolerance."""
-    beyond = np.flatnonzero(off > tolerance)
-    if not len(beyond):
+    """Return the worst frame of each interval above the tolerance."""
+    exceeding = np.flatnonzero(off > tolerance)
+    if not len(exceeding):
         return []
-    runs = np.split(beyond, np.flatnonzero(np.diff(beyond) > 1) + 1)
-    return [int(run[off[run].argmax()]) for run in runs]
+    segments = np.split(exceeding, np.flatnonzero(np.diff(exceeding) > 1) + 1)
+    return [int(run[off[run].argmax()]) for run in segments]

@@ -1,4 +1,4 @@
-"""Turn toes up about the axis across the foot, as far as toes bend."""
+"""Lift toes by extension about the axis across the foot, within a limit."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,31 +8,31 @@ from ..rotations import quaternion_from_rotation_vector, rotate
 
 Array = NDArray[np.float64]
 
-MOST = np.radians(32.0)
-"""By how much toes are bent up, beyond the rest pose, to lift their tips."""
-ABRUPTNESS = 4.0
-"""Power with which turns near their limit."""
-FACING = 0.4
-"""Cosines of the sole's tilt, from minus it to it, over which toes come to be lifted: those of
-soles that face up, as when kneeling, would turn into the ground."""
-EASE = 0.1
-"""Seconds before and after over which feet and toes are lifted."""
+MAX_TOE_FLEXION_RAD = np.radians(32.0)
+"""Maximum extension of toes beyond the rest pose to lift their tips."""
+LIMIT_POWER = 4.0
+"""Power of the smooth limit of the angle; higher is more abrupt."""
+FACING_COSINE = 0.4
+"""Cosine of the sole's tilt, from minus this to this, over which the lift sets in: toes of
+soles that face up, as when kneeling, would rotate into the ground."""
+LIFT_EASE_S = 0.1
+"""Seconds over which the lift of feet and toes eases in and out."""
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def toes_up(rest: Array, feet: Array, toes: Array, lift: Array, frame_rate: float) -> Array:
-    """Return the world rotations, (n_frames, 4), that lift tips of toes as far as toes bend.
+def lift_toes(rest: Array, feet: Array, toes: Array, lift: Array, frame_rate: float) -> Array:
+    """Return the world rotations, (n_frames, 4), that lift the tips of toes within the limit.
 
     Parameters
     ----------
     rest : shape (3, 3), metres
-        Where ankle, ball and tip rest.
+        Rest positions of ankle, ball and tip.
     feet : shape (n_frames, 4)
-        World rotations of the foot, from its rest.
+        World rotations of the foot, from its rest pose.
     toes : shape (n_frames, 3), metres
-        The way from ball to tip.
+        Vector from ball to tip.
     lift : shape (n_frames,), metres
-        By how much the tip is to rise; not negative.
+        Required lift of the tip; not negative.
     frame_rate : float, hertz
     """
     foot, toe = rest[1] - rest[0], rest[2] - rest[1]
@@ -41,38 +41,44 @@ def toes_up(rest: Array, feet: Array, toes: Array, lift: Array, frame_rate: floa
         return quaternion_from_rotation_vector(np.zeros_like(toes))
     across = across / np.linalg.norm(across)
     axis = rotate(feet, across)
-    bent = _angle(axis, rotate(feet, foot), toes) - _angle(across, foot, toe)
-    upright = np.clip(0.5 + 0.5 * rotate(feet, UP)[:, 2] / FACING, 0.0, 1.0)
-    most = upright * upright * (3.0 - 2.0 * upright) * np.maximum(MOST - bent, 0.0)
-    angle = eased(np.where(lift > 0.0, _turn(axis, toes, lift), 0.0), frame_rate)
-    share = 1.0 / np.maximum(most, 1e-9)
-    angle = angle / (1.0 + (angle * share) ** ABRUPTNESS) ** (1.0 / ABRUPTNESS)
+    flexion = _angle(axis, rotate(feet, foot), toes) - _angle(across, foot, toe)
+    upward = np.clip(0.5 + 0.5 * rotate(feet, UP)[:, 2] / FACING_COSINE, 0.0, 1.0)
+    limit = (
+        upward * upward * (3.0 - 2.0 * upward) * np.maximum(MAX_TOE_FLEXION_RAD - flexion, 0.0)
+    )
+    angle = smooth_envelope(
+        np.where(lift > 0.0, _lift_angle(axis, toes, lift), 0.0), frame_rate
+    )
+    inverse_limit = 1.0 / np.maximum(limit, 1e-9)
+    angle = angle / (1.0 + (angle * inverse_limit) ** LIMIT_POWER) ** (1.0 / LIMIT_POWER)
     return quaternion_from_rotation_vector(angle[:, None] * axis)
 
 
-def eased(values: Array, frame_rate: float) -> Array:
-    """Return values that are nowhere less, and come and go smoothly, shape (n_frames,)."""
-    window = 2 * round(0.5 * EASE * frame_rate) + 1
+def smooth_envelope(values: Array, frame_rate: float) -> Array:
+    """Return a smooth upper envelope of the values, shape (n_frames,)."""
+    window = 2 * round(0.5 * LIFT_EASE_S * frame_rate) + 1
     envelope = maximum_filter1d(values, window, mode="nearest")
     return np.asarray(uniform_filter1d(envelope, window, mode="nearest"))
 
 
-def _turn(axis: Array, way: Array, lift: Array) -> Array:
-    """Return the least angles about axes that lift ways so far, or as far as they can, radians.
+def _lift_angle(axis: Array, toe_vector: Array, lift: Array) -> Array:
+    """Return the smallest angles, radians, that lift vectors by `lift`, or as far as possible.
 
-    By an angle t, the height becomes c + a cos t + b sin t, which is greatest at one angle.
+    After a rotation by t the height is c + a cos t + b sin t, which has one maximum.
     """
-    steady = axis[:, 2] * (axis * way).sum(axis=1)
-    level = way[:, 2] - steady
-    rising = np.cross(axis, way)[:, 2]
-    highest = (np.arctan2(rising, level) + 0.5 * np.pi) % (2.0 * np.pi) - 0.5 * np.pi
-    reach = np.maximum(np.hypot(level, rising), 1e-9)
-    short = np.arccos(np.clip((level + lift) / reach, -1.0, 1.0))
-    return np.asarray(np.maximum(highest - short, 0.0))
+    axial_height = axis[:, 2] * (axis * toe_vector).sum(axis=1)
+    cosine_term = toe_vector[:, 2] - axial_height
+    sine_term = np.cross(axis, toe_vector)[:, 2]
+    angle_at_top = (np.arctan2(sine_term, cosine_term) + 0.5 * np.pi) % (
+        2.0 * np.pi
+    ) - 0.5 * np.pi
+    reach = np.maximum(np.hypot(cosine_term, sine_term), 1e-9)
+    angle_below_top = np.arccos(np.clip((cosine_term + lift) / reach, -1.0, 1.0))
+    return np.asarray(np.maximum(angle_at_top - angle_below_top, 0.0))
 
 
 def _angle(axis: Array, start: Array, stop: Array) -> Array:
-    """Return the angle about an axis from one way to another, radians."""
+    """Return the angle about an axis from one vector to another, radians."""
     across = (axis * np.cross(start, stop)).sum(axis=-1)
     along = (start * stop).sum(axis=-1) - (axis * start).sum(axis=-1) * (axis * stop).sum(
         axis=-1

@@ -1,4 +1,4 @@
-"""Lean trunks as far as the source's, wherever the joints of the spine lie."""
+"""Match the lean of the trunk to the source's for different positions of the spine joints."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,44 +16,42 @@ from .body import Body
 
 Array = NDArray[np.float64]
 
-TOPS = ("neck", "head")
-TOP = 0.5
-"""How much of the swing the chest takes, which is turned as the source's but for that."""
-STRAIGHT, BENT = np.cos(np.radians([10.0, 30.0]))
-"""Cosines of how far the trunk is bent from its rest: up to the first it is left as it is, as
-rest poses are drawn differently; from the second on it leans fully as the source's."""
-SMALL = np.radians(5.0)
-"""Half of a swing of this size is left out, and most of smaller ones: they are noise."""
-ROUNDS = 6
-"""Fixed-point steps; each leaves less than half of the error."""
+CHEST_FRACTION = 0.5
+"""Fraction of the swing that is applied to the chest, which otherwise matches the source's."""
+STRAIGHT_COSINE, BENT_COSINE = np.cos(np.radians([10.0, 30.0]))
+"""Cosines of the flexion of the trunk: below the first angle there is no swing, since rest
+poses differ; above the second the lean is the source's."""
+NOISE_SWING_RAD = np.radians(5.0)
+"""Half of a swing of this size is removed, and most of smaller ones: they are noise."""
+N_ITERATIONS = 6
+"""Fixed-point iterations; each leaves less than half of the error."""
 
 
 def leaning_swings(
     source: Body,
     target: Body,
-    seen: WorldPoses,
+    source_poses: WorldPoses,
     hips: Array,
-    turned: dict[int, Array],
+    rotations: dict[int, Array],
     trunk: list[int],
 ) -> dict[int, Array]:
     """Return world rotations, (n_frames, 4), to add to those of the trunk's joints.
 
-    Vertebrae of another body sit elsewhere: turned as the source's, they lead the neck
-    elsewhere, in deep bows by 10 to 20 degrees. A swing of all of them is added with which the
-    line from hips to neck points as the source's does, apart from how the two differ at rest;
-    trunks that are hardly bent stay as they are. Whatever hangs on the trunk keeps its turn.
+    The spine joints of another body have other positions: with the source's rotations, the
+    line from hips to neck differs by 10 to 20 degrees in deep bows. A swing of all spine joints
+    gives this line the source's direction, relative to that in the rest pose. Nearly straight
+    trunks are unchanged. Descendants of the trunk keep their world rotation.
 
     Parameters
     ----------
     source, target : Body
-    seen : WorldPoses
-        Of the source.
+    source_poses : WorldPoses
     hips : shape (n_frames, 4)
-        How the hips are turned, from the canonical T-pose.
-    turned : dict of the target's joint to shape (n_frames, 4)
-        World rotations from its rest pose.
+        World rotations of the hips, from the canonical T-pose.
+    rotations : dict of the target's joint to shape (n_frames, 4)
+        World rotations from the rest pose.
     trunk : list of int
-        The target's joints of the spine, from below.
+        The target's spine joints, from the lowest.
     """
     top = next((r for r in ("neck", "head") if r in source.joints and r in target.joints), None)
     if (
@@ -62,57 +60,62 @@ def leaning_swings(
         or trunk[-1] not in target.skeleton.ancestors(target.joints[top])
     ):
         return {}
-    wanted = _wanted_way(source, target, seen, hips, top)
-    shares = dict.fromkeys(trunk[:-1], 1.0) | {trunk[-1]: TOP}
-    swing = np.zeros_like(wanted)
-    for _ in range(ROUNDS):
-        swung = turned | {
-            joint: multiply(quaternion_from_rotation_vector(share * swing), turned[joint])
-            for joint, share in shares.items()
+    target_vector = _target_vector(source, target, source_poses, hips, top)
+    fractions = dict.fromkeys(trunk[:-1], 1.0) | {trunk[-1]: CHEST_FRACTION}
+    swing = np.zeros_like(target_vector)
+    for _ in range(N_ITERATIONS):
+        swung = rotations | {
+            joint: multiply(quaternion_from_rotation_vector(fraction * swing), rotations[joint])
+            for joint, fraction in fractions.items()
         }
-        way = _way(target, swung, target.joints[top])
-        swing = swing + rotation_vector_from_quaternion(rotation_between(way, wanted))
-    swing = swing * _bent(hips, wanted, _rest_way(target, top))
+        vector = _trunk_vector(target, swung, target.joints[top])
+        swing = swing + rotation_vector_from_quaternion(rotation_between(vector, target_vector))
+    swing = swing * _bend_weight(hips, target_vector, _rest_vector(target, top))
     square = (swing * swing).sum(axis=1, keepdims=True)
-    swing = swing * square / (square + SMALL**2)
+    swing = swing * square / (square + NOISE_SWING_RAD**2)
     return {
-        joint: quaternion_from_rotation_vector(share * swing) for joint, share in shares.items()
+        joint: quaternion_from_rotation_vector(fraction * swing)
+        for joint, fraction in fractions.items()
     }
 
 
-def _bent(hips: Array, way: Array, rest: Array) -> Array:
-    """Return 0 for straight trunks, 1 for bent ones, smoothly, shape (n_frames, 1).
+def _bend_weight(hips: Array, vector: Array, rest: Array) -> Array:
+    """Return 0 for straight trunks, 1 for bent ones, with a smooth transition, (n_frames, 1).
 
-    It looks at one frame alone, so that a cut of a take leans as within it.
+    It depends on one frame only, so that a clip leans as it does within its take.
     """
-    length = np.linalg.norm(way, axis=1) * np.linalg.norm(rest)
-    straight = (rotate(inverse(hips), way) @ rest) / np.maximum(length, 1e-9)
-    share = np.clip((straight - STRAIGHT) / (BENT - STRAIGHT), 0.0, 1.0)[:, None]
-    return np.asarray(share * share * (3.0 - 2.0 * share))
+    length = np.linalg.norm(vector, axis=1) * np.linalg.norm(rest)
+    straight = (rotate(inverse(hips), vector) @ rest) / np.maximum(length, 1e-9)
+    fraction = np.clip(
+        (straight - STRAIGHT_COSINE) / (BENT_COSINE - STRAIGHT_COSINE), 0.0, 1.0
+    )[:, None]
+    return np.asarray(fraction * fraction * (3.0 - 2.0 * fraction))
 
 
-def _wanted_way(source: Body, target: Body, seen: WorldPoses, hips: Array, top: str) -> Array:
-    """Return where the target's neck should be from its hips, but for the distance."""
-    rests = [_rest_way(body, top) for body in (source, target)]
-    places = seen.positions
-    way = places[:, source.joints[top]] - places[:, source.joints["hips"]]
-    upright = rotate(inverse(hips), way)
-    return np.asarray(rotate(hips, rotate(rotation_between(*rests), upright)))
+def _target_vector(
+    source: Body, target: Body, source_poses: WorldPoses, hips: Array, top: str
+) -> Array:
+    """Return the direction that the target's neck should have from its hips, (n_frames, 3)."""
+    rest_vectors = [_rest_vector(body, top) for body in (source, target)]
+    positions = source_poses.positions
+    vector = positions[:, source.joints[top]] - positions[:, source.joints["hips"]]
+    upright = rotate(inverse(hips), vector)
+    return np.asarray(rotate(hips, rotate(rotation_between(*rest_vectors), upright)))
 
 
-def _rest_way(body: Body, top: str) -> Array:
-    """Return the way from hips to neck in the canonical T-pose, shape (3,), metres."""
+def _rest_vector(body: Body, top: str) -> Array:
+    """Return the vector from hips to neck in the canonical T-pose, shape (3,), metres."""
     low, high = body.joints["hips"], body.joints[top]
     return np.asarray(rotate(inverse(body.alignment[low]), body.rest[high] - body.rest[low]))
 
 
-def _way(target: Body, turned: dict[int, Array], top: int) -> Array:
-    """Return the way from hips to neck, shape (n_frames, 3), metres."""
+def _trunk_vector(target: Body, rotations: dict[int, Array], top: int) -> Array:
+    """Return the vector from hips to neck, shape (n_frames, 3), metres."""
     skeleton, hips = target.skeleton, target.joints["hips"]
     chain = [top, *skeleton.ancestors(top)]
     chain = chain[: chain.index(hips) + 1][::-1]
-    above, way = turned[hips], np.zeros((len(turned[hips]), 3))
+    rotation, vector = rotations[hips], np.zeros((len(rotations[hips]), 3))
     for joint in chain[1:]:
-        way = way + rotate(above, skeleton.offsets[joint])
-        above = turned.get(joint, above)
-    return np.asarray(way)
+        vector = vector + rotate(rotation, skeleton.offsets[joint])
+        rotation = rotations.get(joint, rotation)
+    return np.asarray(vector)

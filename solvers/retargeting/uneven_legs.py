@@ -1,4 +1,4 @@
-"""Keep knees as straight as the source's where its legs were measured unequally long."""
+"""Keep knees as straight as the source's if its legs were measured with unequal lengths."""
 
 from typing import NamedTuple
 
@@ -10,39 +10,40 @@ Flags = NDArray[np.bool_]
 
 
 class Leg(NamedTuple):
-    """One leg of the target, and what the source's looks like."""
+    """One leg of the target, with the extension and contacts of the source's."""
 
     hip: Array
-    """Where the upper leg begins, shape (n_frames, 3), metres."""
+    """Start of the upper leg, shape (n_frames, 3), metres."""
     ankle: Array
-    """Where the ankle is to be, shape (n_frames, 3), metres."""
+    """Target position of the ankle, shape (n_frames, 3), metres."""
     distance: Array
-    """From hip to ankle if the knee were as straight as the source's, shape (n_frames,)."""
+    """Distance from hip to ankle with the knee as straight as the source's, (n_frames,)."""
     stands: Flags
-    """Shape (n_frames,)."""
+    """Whether the foot is in contact, shape (n_frames,)."""
     excess: float
-    """By how much the source's leg is longer than the mean of both, grown, metres."""
+    """Length of the source's leg minus the mean of both, scaled, metres."""
 
 
 def level_ankles(left: Leg, right: Leg) -> list[Array]:
-    """Return other places of the left and right ankle, shape (n_frames, 3), metres.
+    """Return corrected positions of the left and right ankle, shape (n_frames, 3), metres.
 
-    Sensors measure one leg a little shorter than the other, so that its foot never comes as far
-    down; legs of equal length would bend that knee by 20 degrees for two per cent. The ankle of
-    the shorter leg comes down and the other's up until standing knees are as straight as the
-    source's, but by no more than the legs differ. It is the same in all frames: no foot slides.
+    Sensors measure one leg a little shorter than the other, so that its foot stays higher. On
+    legs of equal length, two percent of difference flex that knee by 20 degrees. The ankle of
+    the shorter leg is lowered and the other one raised until standing knees are as straight as
+    the source's, but at most by the difference of the legs. The correction is constant over
+    time, so that no foot slides.
     """
     if not (left.stands.any() and right.stands.any()):
         return [left.ankle, right.ankle]
-    wanted = 0.5 * (_lacking_height(left) - _lacking_height(right))
-    raised = min(max(wanted, min(left.excess, 0.0)), max(left.excess, 0.0))
-    shift = np.array([0.0, 0.0, raised])
+    difference = 0.5 * (_missing_height(left) - _missing_height(right))
+    lift = min(max(difference, min(left.excess, 0.0)), max(left.excess, 0.0))
+    shift = np.array([0.0, 0.0, lift])
     return [left.ankle + shift, right.ankle - shift]
 
 
-def _lacking_height(leg: Leg) -> float:
-    """Return by how much the standing ankle ought to be higher, metres."""
-    way = leg.ankle - leg.hip
-    beside = (way[:, :2] ** 2).sum(axis=1)
-    height = -np.sqrt(np.maximum(leg.distance**2 - beside, 0.0))
-    return float(np.median((height - way[:, 2])[leg.stands]))
+def _missing_height(leg: Leg) -> float:
+    """Return the correction of height that the standing ankle needs, metres."""
+    leg_vector = leg.ankle - leg.hip
+    horizontal_square = (leg_vector[:, :2] ** 2).sum(axis=1)
+    height = -np.sqrt(np.maximum(leg.distance**2 - horizontal_square, 0.0))
+    return float(np.median((height - leg_vector[:, 2])[leg.stands]))

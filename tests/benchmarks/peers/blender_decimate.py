@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.motion import Motion, forward_kinematics
-from solvers.retargeting.judged_points import find_error_points
+from solvers.retargeting.error_points import find_error_points
 from solvers.rotations.representations import IDENTITY, normalize, unroll
 
 from .blender_graph import _graph_editor, _write

@@ -20,7 +20,7 @@ from solvers.recordings import read_recording
 from solvers.retargeting import retarget
 from solvers.retargeting.body import find_body
 from solvers.retargeting.soles import Depths, sole_above_ground
-from solvers.retargeting.toes import toes_up
+from solvers.retargeting.toes import lift_toes
 from solvers.rotations.representations import quaternion_from_rotation_vector, rotate
 
 RIG = mixamo()
@@ -74,7 +74,7 @@ def test_a_small_lift_of_the_tip_is_exact_whatever_the_slope(tilt):
     feet = turned(tilt)
     toes = rotate(turned(tilt - 10.0), REST[2] - REST[1])
 
-    turn = toes_up(REST, feet, toes, np.array([0.004]), 30.0)
+    turn = lift_toes(REST, feet, toes, np.array([0.004]), 30.0)
 
     assert_allclose((rotate(turn, toes) - toes)[0, 2], 0.004, atol=1e-4)
     assert abs((rotate(turn, toes) - toes)[0, 0]) < 0.002
@@ -83,11 +83,11 @@ def test_a_small_lift_of_the_tip_is_exact_whatever_the_slope(tilt):
 def test_toes_bend_no_further_than_toes_do():
     toes = rotate(turned(-70.0), REST[2] - REST[1])
 
-    turn = toes_up(REST, turned(-60.0), toes, np.array([0.1]), 30.0)
+    turn = lift_toes(REST, turned(-60.0), toes, np.array([0.1]), 30.0)
 
     foot = rotate(turned(-60.0), REST[1] - REST[0])
     assert 20.0 < angle(foot, rotate(turn, toes))[0] - BENT_AT_REST < 33.0
-    soles_up = toes_up(REST, turned(-170.0), toes, np.array([0.1]), 30.0)
+    soles_up = lift_toes(REST, turned(-170.0), toes, np.array([0.1]), 30.0)
     assert_allclose(np.abs(soles_up[0]), [1.0, 0.0, 0.0, 0.0], atol=1e-9)
 
 

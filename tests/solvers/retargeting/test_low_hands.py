@@ -8,7 +8,7 @@ from rigs import RIGS, mixamo
 
 from solvers.motion import Motion, Skeleton, find_humanoid_map, forward_kinematics, reach
 from solvers.recordings import read_recording
-from solvers.retargeting.low_hands import within_reach
+from solvers.retargeting.low_hands import ease_into_extension
 from solvers.rotations.representations import quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
@@ -110,7 +110,7 @@ def test_an_arm_eases_into_full_extension():
     distances = np.linspace(0.1, 3.0, 300)
     way = distances[:, None] * np.array([0.0, 0.0, -1.0])
 
-    eased = np.linalg.norm(within_reach(way, np.full((300, 3), 0.1), 1.0), axis=1)
+    eased = np.linalg.norm(ease_into_extension(way, np.full((300, 3), 0.1), 1.0), axis=1)
 
     assert_allclose(eased[distances < 0.9], distances[distances < 0.9])
     assert (np.diff(eased) >= 0.0).all()

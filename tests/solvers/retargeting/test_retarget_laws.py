@@ -9,7 +9,7 @@ from rigs import RIGS, mixamo, unreal
 
 from solvers.motion import HumanoidMap, Motion, Skeleton, find_humanoid_map, forward_kinematics
 from solvers.retargeting import RetargetSettings, RootMotion, ground_path, retarget
-from solvers.retargeting.feet import hips_drop
+from solvers.retargeting.feet import pelvis_drop
 from solvers.rotations.representations import (
     angle_between,
     quaternion_from_rotation_vector,
@@ -121,7 +121,7 @@ def test_hips_sink_no_less_than_needed_and_smoothly():
     hip, foot = np.tile([0, 0, 1.0], (100, 1)), np.zeros((100, 3))
     foot[48:52, 0] = 0.4
 
-    drop = hips_drop([hip], [foot], [np.ones(100)], 60.0)
+    drop = pelvis_drop([hip], [foot], [np.ones(100)], 60.0)
 
     reached = np.linalg.norm(foot - (hip - drop[:, None] * (0, 0, 1.0)), axis=1)
     assert reached.max() <= 1.0 + 1e-9
@@ -135,7 +135,7 @@ def test_hips_sink_for_no_leg_that_lies(degrees, sinks):
     angle = np.radians(degrees)
     foot = np.tile(1.02 * np.array([np.sin(angle), 0.0, -np.cos(angle)]), (10, 1))
 
-    drop = hips_drop([np.zeros((10, 3))], [foot], [np.ones(10)], 30.0)
+    drop = pelvis_drop([np.zeros((10, 3))], [foot], [np.ones(10)], 30.0)
 
     beside, below = 1.02 * np.sin(angle), 1.02 * np.cos(angle)
     needed = below - np.sqrt(max(1.0 - beside**2, 0.0))

@@ -1,4 +1,4 @@
-"""The points by which a pose is judged: all joints, and what shows how hands and feet turn."""
+"""Points at which the error of a pose is measured: joints, and two points on each end."""
 
 from dataclasses import dataclass
 
@@ -11,22 +11,22 @@ from ..rotations import rotate
 
 Array = NDArray[np.float64]
 
-SHORTEST = 0.05
-"""Metres from a joint without children to the points that show how it turns, at least."""
+MIN_POINT_DISTANCE_M = 0.05
+"""Minimum distance from a joint without children to the points that show its rotation."""
 
 
 @dataclass(frozen=True, eq=False)
 class ErrorPoints:
-    """Points fixed to joints, which together show every error of every joint.
+    """Points attached to joints that show every error of every joint.
 
     Attributes
     ----------
     carriers : int array, shape (n_points,)
         The joint that carries each point.
     offsets : shape (n_points, 3), metres
-        In the joint's own frame.
+        In the joint's frame.
     chains : tuple of int arrays
-        Joints that move each point, from the topmost to the carrier.
+        Joints that move each point, from the root to the carrier.
     """
 
     carriers: NDArray[np.intp]
@@ -34,16 +34,16 @@ class ErrorPoints:
     chains: tuple[NDArray[np.intp], ...]
 
     def positions(self, poses: WorldPoses) -> Array:
-        """Return where the points are in the world, shape (n_frames, n_points, 3), metres."""
-        turned = rotate(poses.rotations[:, self.carriers], self.offsets)
-        return np.asarray(poses.positions[:, self.carriers] + turned)
+        """Return the world positions of the points, shape (n_frames, n_points, 3), metres."""
+        rotated = rotate(poses.rotations[:, self.carriers], self.offsets)
+        return np.asarray(poses.positions[:, self.carriers] + rotated)
 
 
 def find_error_points(skeleton: Skeleton) -> ErrorPoints:
-    """Return all joints, and two points more for each that turns but has no children.
+    """Return all joints, and two more points for each that rotates but has no children.
 
-    A hand without fingers turns without moving any joint. Two points, ahead of it and aside by
-    the length of the bone above, show its turns.
+    The rotation of a hand without fingers moves no joint. Two points, along and across the bone
+    at the length of the parent bone, show it.
     """
     rows: list[tuple[int, Array]] = []
     for joint in range(skeleton.n_joints):
@@ -51,10 +51,10 @@ def find_error_points(skeleton: Skeleton) -> ErrorPoints:
         if skeleton.children[joint] or skeleton.is_end_site(joint):
             continue
         bone = skeleton.offsets[joint] if joint else np.zeros(3)
-        length = max(float(np.linalg.norm(bone)), SHORTEST)
-        ahead = bone / np.linalg.norm(bone) if bone.any() else np.array([0.0, 0.0, 1.0])
-        aside = np.cross(ahead, np.eye(3)[np.abs(ahead).argmin()])
-        rows += [(joint, length * ahead), (joint, length * aside / np.linalg.norm(aside))]
+        length = max(float(np.linalg.norm(bone)), MIN_POINT_DISTANCE_M)
+        along = bone / np.linalg.norm(bone) if bone.any() else np.array([0.0, 0.0, 1.0])
+        across = np.cross(along, np.eye(3)[np.abs(along).argmin()])
+        rows += [(joint, length * along), (joint, length * across / np.linalg.norm(across))]
     carriers = np.array([joint for joint, _ in rows])
     chains = tuple(
         np.array([joint, *skeleton.ancestors(joint)][::-1], dtype=np.intp) for joint in carriers
