@@ -1,4 +1,4 @@
-"""Optical markers: labels put right, clusters kept rigid, and a skeleton solved from them.
+"""Optical markers: correct labels, constrain rigid clusters, and solve a skeleton.
 
 >>> from solvers.markers import find_marker_set
 >>> found = find_marker_set(["Anna:LFWT", "Anna:RFWT", "Anna:LBWT", "Anna:RBWT"])

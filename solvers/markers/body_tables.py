@@ -1,37 +1,37 @@
-"""A usual body: its joints, how they turn, and where markers sit on it.
+"""Prior of an adult body: joints, their rotations, and the placement of markers.
 
-Rest pose is the T-pose, facing -Y: arms along +-X with the palms down, legs along -Z. What is
-written for the left side holds for the right one, mirrored.
+The rest pose is the T-pose, facing -Y: arms along +-X with the palms down, legs along -Z. The
+right side mirrors the entries of the left one.
 """
 
 from typing import NamedTuple
 
 from .marker_sets import HEAD, PELVIS, TRUNK
 
-LOOSE, FIRM, TIGHT = 0.03, 0.012, 0.006
-"""Metres by which a joint or a marker may lie elsewhere than where it usually is."""
-ANY = 1.0
-"""Metres: wherever the markers say."""
+LOOSE_M, FIRM_M, TIGHT_M = 0.03, 0.012, 0.006
+"""Standard deviations of a joint's or marker's offset from its mean."""
+FREE_M = 1.0
+"""Standard deviation of an offset that the markers determine alone."""
 Triple = tuple[float, float, float]
-NOTHING: Triple = (0.0, 0.0, 0.0)
+NO_PRIOR: Triple = (0.0, 0.0, 0.0)
 
 
-class JointOf(NamedTuple):
-    """A joint of the usual body."""
+class JointPrior(NamedTuple):
+    """A joint of the mean body."""
 
     name: str
     parent: str
-    play: Triple = NOTHING
+    play: Triple = NO_PRIOR
     """Standard deviation of each coordinate of the offset from the parent, metres; 0: fixed."""
-    ease: Triple = NOTHING
-    """How far it usually turns about each axis (rotation vector), radians; 0 is any turn."""
-    hinge: Triple = NOTHING
-    """How far its own X axis usually leaves that of its parent, radians; 0 is any turn."""
+    ease: Triple = NO_PRIOR
+    """Standard deviation of the rotation vector, radians; 0: no prior."""
+    hinge: Triple = NO_PRIOR
+    """Standard deviation of its X axis from that of its parent, radians; 0: no prior."""
     turns: bool = True
 
 
-class MarkerOf(NamedTuple):
-    """A marker of the usual body. It turns with a bone and is placed from an anchor."""
+class MarkerPrior(NamedTuple):
+    """A marker of the mean body. It moves with a bone and has an offset from an anchor."""
 
     spot: str
     bone: str
@@ -39,56 +39,56 @@ class MarkerOf(NamedTuple):
     play: float
     """Standard deviation of each coordinate of its offset from the anchor, metres."""
     offset: Triple | None = None
-    """Usual offset in the axes of the bone; None: as the first guess of the poses has it."""
+    """Mean offset in bone axes; None: from the initial poses."""
     noise: float = 0.010
-    """By how much it moves on the bone with the skin, metres."""
+    """Standard deviation of its soft-tissue motion on the bone, metres."""
 
 
-BENDS: Triple = (0.4, 0.4, 0.4)
+TRUNK_FLEXION_RAD: Triple = (0.4, 0.4, 0.4)
 CENTRE = (
-    JointOf("hips", ""),
-    JointOf("spine", "hips", (0.0, TIGHT, TIGHT), BENDS),
-    JointOf("chest", "spine", (0.0, TIGHT, TIGHT), BENDS),
-    JointOf("neck", "chest", (0.0, TIGHT, TIGHT), BENDS),
-    JointOf("head", "neck", (0.0, TIGHT, FIRM), BENDS),
-    JointOf("head_end", "head", turns=False),
+    JointPrior("hips", ""),
+    JointPrior("spine", "hips", (0.0, TIGHT_M, TIGHT_M), TRUNK_FLEXION_RAD),
+    JointPrior("chest", "spine", (0.0, TIGHT_M, TIGHT_M), TRUNK_FLEXION_RAD),
+    JointPrior("neck", "chest", (0.0, TIGHT_M, TIGHT_M), TRUNK_FLEXION_RAD),
+    JointPrior("head", "neck", (0.0, TIGHT_M, FIRM_M), TRUNK_FLEXION_RAD),
+    JointPrior("head_end", "head", turns=False),
 )
 SIDE = (
-    JointOf("Shoulder", "chest", (TIGHT, TIGHT, TIGHT), (0.05, 0.5, 0.5)),
-    JointOf("UpperArm", "Shoulder", (FIRM, FIRM, FIRM)),
-    JointOf("LowerArm", "UpperArm", (FIRM, 0.0, 0.0), hinge=(0.0, 0.0, 0.5)),
-    JointOf("Hand", "LowerArm", (FIRM, 0.0, 0.0), (0.15, 1.0, 1.0)),
-    JointOf("Hand_end", "Hand", turns=False),
-    JointOf("UpperLeg", "hips", (LOOSE, LOOSE, LOOSE)),
-    JointOf("LowerLeg", "UpperLeg", (0.0, 0.0, ANY), hinge=(0.0, 0.1, 0.1)),
-    JointOf("Foot", "LowerLeg", (0.0, 0.0, ANY), (1.0, 1.0, 1.0)),
-    JointOf("Toes", "Foot", turns=False),
-    JointOf("Toes_end", "Toes", turns=False),
+    JointPrior("Shoulder", "chest", (TIGHT_M, TIGHT_M, TIGHT_M), (0.05, 0.5, 0.5)),
+    JointPrior("UpperArm", "Shoulder", (FIRM_M, FIRM_M, FIRM_M)),
+    JointPrior("LowerArm", "UpperArm", (FIRM_M, 0.0, 0.0), hinge=(0.0, 0.0, 0.5)),
+    JointPrior("Hand", "LowerArm", (FIRM_M, 0.0, 0.0), (0.15, 1.0, 1.0)),
+    JointPrior("Hand_end", "Hand", turns=False),
+    JointPrior("UpperLeg", "hips", (LOOSE_M, LOOSE_M, LOOSE_M)),
+    JointPrior("LowerLeg", "UpperLeg", (0.0, 0.0, FREE_M), hinge=(0.0, 0.1, 0.1)),
+    JointPrior("Foot", "LowerLeg", (0.0, 0.0, FREE_M), (1.0, 1.0, 1.0)),
+    JointPrior("Toes", "Foot", turns=False),
+    JointPrior("Toes_end", "Toes", turns=False),
 )
 CENTRE_MARKERS = (
-    *(MarkerOf(spot, "hips", "hips", TIGHT) for spot in PELVIS),
-    *(MarkerOf(spot, "chest", "neck", TIGHT) for spot in TRUNK),
-    *(MarkerOf(spot, "head", "head", TIGHT) for spot in HEAD),
+    *(MarkerPrior(spot, "hips", "hips", TIGHT_M) for spot in PELVIS),
+    *(MarkerPrior(spot, "chest", "neck", TIGHT_M) for spot in TRUNK),
+    *(MarkerPrior(spot, "head", "head", TIGHT_M) for spot in HEAD),
 )  # fmt: skip
 SIDE_MARKERS = (
-    MarkerOf("SHO", "Shoulder", "UpperArm", FIRM, (0.0, 0.0, 0.05)),
-    MarkerOf("UPA", "UpperArm", "UpperArm", LOOSE, noise=0.015),
-    MarkerOf("ELB", "UpperArm", "LowerArm", FIRM, (0.0, 0.0, 0.045)),
-    MarkerOf("FRM", "LowerArm", "LowerArm", LOOSE, noise=0.015),
-    MarkerOf("WRA", "LowerArm", "Hand", TIGHT),
-    MarkerOf("WRB", "LowerArm", "Hand", TIGHT),
-    MarkerOf("FIN", "Hand", "Hand", TIGHT),
-    MarkerOf("THI", "UpperLeg", "UpperLeg", LOOSE, noise=0.015),
-    MarkerOf("KNE", "UpperLeg", "LowerLeg", FIRM, (0.06, 0.0, 0.0)),
-    MarkerOf("TIB", "LowerLeg", "LowerLeg", LOOSE, noise=0.015),
-    MarkerOf("ANK", "LowerLeg", "Foot", FIRM, (0.045, 0.0, 0.0)),
-    MarkerOf("HEE", "Foot", "Foot", TIGHT),
-    MarkerOf("TOE", "Foot", "Foot", TIGHT),
-    MarkerOf("MT5", "Foot", "Foot", TIGHT),
+    MarkerPrior("SHO", "Shoulder", "UpperArm", FIRM_M, (0.0, 0.0, 0.05)),
+    MarkerPrior("UPA", "UpperArm", "UpperArm", LOOSE_M, noise=0.015),
+    MarkerPrior("ELB", "UpperArm", "LowerArm", FIRM_M, (0.0, 0.0, 0.045)),
+    MarkerPrior("FRM", "LowerArm", "LowerArm", LOOSE_M, noise=0.015),
+    MarkerPrior("WRA", "LowerArm", "Hand", TIGHT_M),
+    MarkerPrior("WRB", "LowerArm", "Hand", TIGHT_M),
+    MarkerPrior("FIN", "Hand", "Hand", TIGHT_M),
+    MarkerPrior("THI", "UpperLeg", "UpperLeg", LOOSE_M, noise=0.015),
+    MarkerPrior("KNE", "UpperLeg", "LowerLeg", FIRM_M, (0.06, 0.0, 0.0)),
+    MarkerPrior("TIB", "LowerLeg", "LowerLeg", LOOSE_M, noise=0.015),
+    MarkerPrior("ANK", "LowerLeg", "Foot", FIRM_M, (0.045, 0.0, 0.0)),
+    MarkerPrior("HEE", "Foot", "Foot", TIGHT_M),
+    MarkerPrior("TOE", "Foot", "Foot", TIGHT_M),
+    MarkerPrior("MT5", "Foot", "Foot", TIGHT_M),
 )
 SIDES = {"left": ("L", 1.0), "right": ("R", -1.0)}
-"""First letter of a side's markers, and where it lies along X."""
-NEEDED = (
+"""First letter of a side's markers, and the sign of its X coordinate."""
+REQUIRED_MARKERS = (
     ("chest", ("C7", "CLAV", "T10", "STRN")),
     ("head", ("LFHD", "RFHD", "LBHD", "RBHD")),
     ("Shoulder", ("SHO", "ELB")),
@@ -96,4 +96,4 @@ NEEDED = (
     ("Hand", ("FIN",)),
     ("Foot", ("HEE", "TOE")),
 )
-"""Markers without which a part of the body, and what hangs on it, is left out."""
+"""Markers without which a body part and its descendants are left out."""

@@ -1,4 +1,4 @@
-"""Poses from joint centres: the axes of every bone, before anything is fitted."""
+"""Initial poses from joint centers: the axes of every bone."""
 
 from collections.abc import Mapping, Sequence
 
@@ -13,13 +13,13 @@ from ..rotations import (
 )
 from .body_tables import SIDES
 from .centres import Centres
-from .vectors import frame, median, swung, unit
+from .vectors import frame, median, swing_frames, unit
 
 Array = NDArray[np.float64]
-SHORTEST_FOOT = 0.05
-"""Metres between heel and toe markers."""
-STEEPEST = 0.4
-"""Sine of the angle between the way from heel to toe marker and the sole, at most."""
+MIN_FOOT_M = 0.05
+"""Minimum distance between heel and toe markers."""
+MAX_SLOPE_SINE = 0.4
+"""Maximum sine of the angle between the line of heel and toe markers and the sole."""
 
 
 def bone_frames(
@@ -27,13 +27,13 @@ def bone_frames(
 ) -> dict[str, Array]:
     """Return the axes of the bones named, each of shape (n_frames, 3, 3).
 
-    Collar bones swing from where they are on average. The spine shares the turn from pelvis to
-    thorax, the neck that from thorax to head.
+    Collar bones swing about their median direction. The spine gets half of the rotation from
+    pelvis to thorax, the neck half of that from thorax to head.
     """
     frames = dict(centres.frames)
     if "chest" in frames:
-        frames["spine"] = _between(frames["hips"], frames["chest"])
-        frames["neck"] = _between(frames["chest"], frames.get("head", frames["chest"]))
+        frames["spine"] = _halfway(frames["hips"], frames["chest"])
+        frames["neck"] = _halfway(frames["chest"], frames.get("head", frames["chest"]))
     for side, (letter, sign) in SIDES.items():
         _leg(centres, spots, frames, side, letter)
         if f"{side}UpperArm" in names:
@@ -41,10 +41,10 @@ def bone_frames(
     return frames
 
 
-def _between(start: Array, stop: Array) -> Array:
-    """Return the rotations half way."""
-    turn = quaternion_from_matrix(np.swapaxes(start, -1, -2) @ stop)
-    half = quaternion_from_rotation_vector(0.5 * rotation_vector_from_quaternion(turn))
+def _halfway(start: Array, stop: Array) -> Array:
+    """Return the rotations halfway between two."""
+    rotation = quaternion_from_matrix(np.swapaxes(start, -1, -2) @ stop)
+    half = quaternion_from_rotation_vector(0.5 * rotation_vector_from_quaternion(rotation))
     return np.asarray(start @ matrix_from_quaternion(half))
 
 
@@ -56,30 +56,32 @@ def _leg(
     letter: str,
 ) -> None:
     hip, knee, ankle = (
-        centres.places[side + joint] for joint in ("UpperLeg", "LowerLeg", "Foot")
+        centres.positions[side + joint] for joint in ("UpperLeg", "LowerLeg", "Foot")
     )
-    aside = SIDES[side][1] * (spots[f"{letter}KNE"] - knee)
-    frames[f"{side}UpperLeg"] = frame(2, hip - knee, 0, aside)
-    frames[f"{side}LowerLeg"] = frame(2, knee - ankle, 0, aside)
+    lateral = SIDES[side][1] * (spots[f"{letter}KNE"] - knee)
+    frames[f"{side}UpperLeg"] = frame(2, hip - knee, 0, lateral)
+    frames[f"{side}LowerLeg"] = frame(2, knee - ankle, 0, lateral)
     if f"{letter}HEE" in spots:
         heel, toe = spots[f"{letter}HEE"], spots[f"{letter}TOE"]
-        level = _levelled(heel, toe)
+        leveling = _leveling_matrix(heel, toe)
         frames[f"{side}Foot"] = (
-            frame(0, frames[f"{side}LowerLeg"][..., 0], 1, heel - toe) @ level
+            frame(0, frames[f"{side}LowerLeg"][..., 0], 1, heel - toe) @ leveling
         )
 
 
-def _levelled(heel: Array, toe: Array) -> Array:
-    """Return the turn from the way between two markers to the sole, which stands level.
+def _leveling_matrix(heel: Array, toe: Array) -> Array:
+    """Return the rotation from the line between two markers to the level sole.
 
-    How much higher the heel's marker is than that of the toes shows when both are lowest.
+    The difference in height of heel and toe markers is measured where both are lowest.
     """
     low_heel, low_toe = (
         np.nanpercentile(marker[..., 2], 5.0) if np.isfinite(marker).any() else 0.0
         for marker in (heel, toe)
     )
     length = float(median(np.linalg.norm(heel - toe, axis=-1)[:, None])[0])
-    sine = np.clip((low_heel - low_toe) / max(length, SHORTEST_FOOT), -STEEPEST, STEEPEST)
+    sine = np.clip(
+        (low_heel - low_toe) / max(length, MIN_FOOT_M), -MAX_SLOPE_SINE, MAX_SLOPE_SINE
+    )
     cosine = np.sqrt(1.0 - sine**2)
     return np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
 
@@ -92,17 +94,17 @@ def _arm(
     letter: str,
     sign: float,
 ) -> None:
-    places, thorax = centres.places, frames["chest"]
+    positions, thorax = centres.positions, frames["chest"]
     collar, shoulder, elbow = (
-        places[side + joint] for joint in ("Shoulder", "UpperArm", "LowerArm")
+        positions[side + joint] for joint in ("Shoulder", "UpperArm", "LowerArm")
     )
     local = np.einsum("fji,fj->fi", thorax, shoulder - collar)
-    frames[f"{side}Shoulder"] = swung(thorax, unit(median(local)), shoulder - collar)
+    frames[f"{side}Shoulder"] = swing_frames(thorax, unit(median(local)), shoulder - collar)
     upward = spots[f"{letter}ELB"] - elbow
     frames[f"{side}UpperArm"] = frame(0, sign * (elbow - shoulder), 2, upward)
-    if f"{side}Hand" not in places:
+    if f"{side}Hand" not in positions:
         return
-    wrist = places[f"{side}Hand"]
+    wrist = positions[f"{side}Hand"]
     back = spots[f"{letter}WRB"] - spots[f"{letter}WRA"]
     frames[f"{side}LowerArm"] = frame(0, sign * (wrist - elbow), 1, back)
     if f"{letter}FIN" in spots:

@@ -1,4 +1,4 @@
-"""Hold the markers of rigid clusters at their distances, and find lost ones among them."""
+"""Constrain the markers of rigid clusters, and fill in missing ones."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,22 +10,22 @@ from ..errors import InvalidMotionError
 from ..motion import Tracks
 from ..progress import Progress, unwatched
 from .rigid_clusters import Cluster
-from .rigid_fit import fit_rigidly, moved
+from .rigid_fit import fit_rigid_transform, transform_shape
 
 Array = NDArray[np.float64]
-OFF_LINE = 0.004
-"""Metres, rms, that markers lie off the line through them, at least, to place a shape."""
+MIN_THICKNESS_M = 0.004
+"""Minimum rms distance of markers from their common line to determine the pose of a shape."""
 
 
 @dataclass(frozen=True, eq=False)
 class ConstrainedMarkers:
-    """A take whose clusters are rigid."""
+    """A take with rigid clusters."""
 
     tracks: Tracks
     filled: NDArray[np.bool_]
-    """Where a lost marker was found from others, shape (n_frames, n_markers)."""
+    """Where a missing marker was filled in, shape (n_frames, n_markers)."""
     moved: Array
-    """How far each marker was moved, same shape, metres; 0 where it was not."""
+    """Displacement of each marker, same shape, metres; 0 where unchanged."""
 
 
 def constrain_clusters(
@@ -36,9 +36,9 @@ def constrain_clusters(
 ) -> ConstrainedMarkers:
     """Move the markers of each cluster onto the rigid shape that fits them best.
 
-    Where three or more of a cluster are seen, all of them lie on the shape afterwards, the lost
-    ones too. Of a pair, both move along their line. Otherwise nothing is changed. A marker that
-    strays from a cluster of four or more hardly moves the others.
+    With three or more observed markers, all markers of the cluster are moved to the shape,
+    including the missing ones. The two markers of a pair move along their line. Otherwise
+    nothing changes. An outlier in a cluster of four or more hardly affects the others.
 
     Parameters
     ----------
@@ -50,44 +50,45 @@ def constrain_clusters(
     Raises
     ------
     InvalidMotionError
-        A cluster has a marker that the take has not.
+        A cluster has a marker that the take lacks.
     SolveCancelled
         Raised by `progress`.
     """
-    place = {name: index for index, name in enumerate(tracks.names)}
-    lost = sorted({name for each in clusters for name in each.names if name not in place})
-    if lost:
+    index = {name: index for index, name in enumerate(tracks.names)}
+    missing = sorted({name for each in clusters for name in each.names if name not in index})
+    if missing:
         raise InvalidMotionError(
-            f"The take lacks markers of the clusters: {', '.join(lost)}. Find its own clusters."
+            f"The take lacks markers of the clusters: {', '.join(missing)}. Find its own"
+            " clusters."
         )
     positions = tracks.positions.copy()
-    progress(0.0, "Keeping clusters rigid")
+    progress(0.0, "Constraining rigid clusters")
     for number, cluster in enumerate(clusters):
-        members = [place[name] for name in cluster.names]
-        positions[:, members] = _held(cluster.template, positions[:, members])
-        progress((number + 1) / len(clusters), "Keeping clusters rigid")
+        members = [index[name] for name in cluster.names]
+        positions[:, members] = _fit_cluster(cluster.template, positions[:, members])
+        progress((number + 1) / len(clusters), "Constraining rigid clusters")
     if not clusters:
-        progress(1.0, "Keeping clusters rigid")
+        progress(1.0, "Constraining rigid clusters")
     filled = tracks.with_positions(positions).visible & ~tracks.visible
     step = np.nan_to_num(np.linalg.norm(positions - tracks.positions, axis=-1))
     return ConstrainedMarkers(tracks.with_positions(positions), filled, step)
 
 
-def _held(template: Array, places: Array) -> Array:
-    """Return the places of a cluster's markers on its shape, where enough are seen."""
-    seen = np.isfinite(places).all(axis=-1)
-    turns, shifts = fit_rigidly(template, places)
-    shape = moved(template, turns, shifts)
-    enough = _placed(template, seen)
+def _fit_cluster(template: Array, positions: Array) -> Array:
+    """Return the markers of a cluster on its fitted shape, where enough are observed."""
+    observed = np.isfinite(positions).all(axis=-1)
+    rotations, shifts = fit_rigid_transform(template, positions)
+    shape = transform_shape(template, rotations, shifts)
+    determined = _is_determined(template, observed)
     if len(template) == 2:
-        enough = seen.all(axis=1)
-    return np.where(enough[:, None, None], shape, places)
+        determined = observed.all(axis=1)
+    return np.where(determined[:, None, None], shape, positions)
 
 
-def _placed(template: Array, seen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Whether the markers seen place the shape: three at least, and not on a line."""
-    weights = seen[..., None] / np.maximum(seen.sum(axis=1), 1)[:, None, None]
+def _is_determined(template: Array, observed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return whether the observed markers, three or more not on a line, fix the shape."""
+    weights = observed[..., None] / np.maximum(observed.sum(axis=1), 1)[:, None, None]
     arms = template - (weights * template).sum(axis=1, keepdims=True)
     spread = np.einsum("fpk,fpi,fpj->fij", weights, arms, arms)
     thickness = np.sqrt(np.linalg.eigvalsh(spread)[:, 1].clip(min=0.0))
-    return np.asarray(thickness > OFF_LINE)
+    return np.asarray(thickness > MIN_THICKNESS_M)

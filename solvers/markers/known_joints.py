@@ -1,52 +1,54 @@
-"""Tell of which joints a frame's markers say something."""
+"""Find the joints that the markers of a frame determine."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .body import Body, Poses
-from .fit_poses import wrong_by
+from .fit_poses import compute_residuals
 
 Array = NDArray[np.float64]
-FRAMES_AT_ONCE = 256
-UNSURE = 0.8
-"""Radians: the standard deviation from which on a joint's rotation is not known."""
-LOST = 0.05
-"""Metres, likewise of the hips' position."""
-TINY = 1e-9
+FRAMES_PER_BLOCK = 256
+MAX_ROTATION_STD_RAD = 0.8
+"""Standard deviation above which a joint's rotation is undetermined."""
+MAX_POSITION_STD_M = 0.05
+"""Standard deviation above which the position of the hips is undetermined."""
+REGULARIZATION = 1e-9
 
 
-def known_joints(body: Body, seen: Array, poses: Poses) -> NDArray[np.bool_]:
-    """Return whether each joint is known in each frame, shape (n_frames, n_joints).
+def find_determined_joints(body: Body, observed: Array, poses: Poses) -> NDArray[np.bool_]:
+    """Return whether each joint is determined in each frame, shape (n_frames, n_joints).
 
-    A joint is known where a marker on its bone or below is seen, and where the markers, with
-    what joints usually do, leave little room for other rotations. Joints that never turn go
-    with their parents.
+    A joint is determined if a marker on its bone or a descendant is observed, and if markers
+    and joint priors leave a small uncertainty of its rotation. Joints without rotations have
+    the state of their parents.
     """
-    known = np.zeros(poses.turns.shape[:2], dtype=bool)
-    there = np.isfinite(seen).all(axis=-1)
+    determined = np.zeros(poses.turns.shape[:2], dtype=bool)
+    has_marker = np.isfinite(observed).all(axis=-1)
     for joint in range(len(body.joints)):
         below = [
             marker for marker, bone in enumerate(body.bones) if joint in body.path(int(bone))
         ]
-        known[:, joint] = there[:, below].any(axis=1)
-    for start in range(0, len(seen), FRAMES_AT_ONCE):
-        some = slice(start, start + FRAMES_AT_ONCE)
-        spread = _spread(body, seen[some], Poses(poses.turns[some], poses.roots[some]))
-        known[some, body.turning] &= spread[:, 1:] < UNSURE
-        known[some, 0] &= spread[:, 0] < LOST
+        determined[:, joint] = has_marker[:, below].any(axis=1)
+    for start in range(0, len(observed), FRAMES_PER_BLOCK):
+        block = slice(start, start + FRAMES_PER_BLOCK)
+        deviation = _standard_deviations(
+            body, observed[block], Poses(poses.turns[block], poses.roots[block])
+        )
+        determined[block, body.turning] &= deviation[:, 1:] < MAX_ROTATION_STD_RAD
+        determined[block, 0] &= deviation[:, 0] < MAX_POSITION_STD_M
     for joint, parent in enumerate(body.parents):
         if not body.joints[joint].turns:
-            known[:, joint] = known[:, parent]
-    return known
+            determined[:, joint] = determined[:, parent]
+    return determined
 
 
-def _spread(body: Body, seen: Array, poses: Poses) -> Array:
-    """Return standard deviations of the root's place, metres, and of all turns, radians.
+def _standard_deviations(body: Body, observed: Array, poses: Poses) -> Array:
+    """Return standard deviations of the root position, metres, and all rotations, radians.
 
-    Shape (n_frames, 1 + n_turning_joints); of three coordinates the least known counts.
+    Shape (n_frames, 1 + n_rotating_joints); the largest of three coordinates.
     """
-    slopes = wrong_by(body, seen, poses).slopes
+    slopes = compute_residuals(body, observed, poses).slopes
     normal = np.swapaxes(slopes, 1, 2) @ slopes
-    np.einsum("fuu->fu", normal)[:] += TINY
+    np.einsum("fuu->fu", normal)[:] += REGULARIZATION
     variance = np.einsum("fuu->fu", np.linalg.inv(normal)).clip(min=0.0)
-    return np.asarray(np.sqrt(variance.reshape(len(seen), -1, 3).max(axis=-1)))
+    return np.asarray(np.sqrt(variance.reshape(len(observed), -1, 3).max(axis=-1)))

@@ -11,7 +11,7 @@ from ..motion import Tracks
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
 from .distances import nan_median
-from .rigid_fit import fit_rigidly
+from .rigid_fit import fit_rigid_transform
 
 Array = NDArray[np.float64]
 APART = 1.0
@@ -135,7 +135,7 @@ def _cluster(tracks: Tracks, members: list[int], usual: Array, spread: Array) ->
         template = whole[len(whole) // 2]
         for _ in range(N_TEMPLATES):
             template = template - template.mean(axis=0)
-            turns, shifts = fit_rigidly(template, whole)
+            turns, shifts = fit_rigid_transform(template, whole)
             template = nan_median(np.einsum("fji,fpj->fpi", turns, whole - shifts[:, None]))
     else:
         template = _from_distances(usual[np.ix_(members, members)])

@@ -4,63 +4,64 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-N_WEIGHTS = 8
-STRAY, LEAST_STRAY = 3.0, 0.004
-"""Times the usual distance from its place in the shape, and metres at least, from which on a
-point counts less and less."""
+N_REWEIGHTINGS = 8
+CAUCHY_FACTOR, MIN_CAUCHY_SCALE_M = 3.0, 0.004
+"""Scale of the Cauchy weights: a multiple of the median residual, and a lower bound."""
 
 
-def fit_rigidly(template: Array, places: Array) -> tuple[Array, Array]:
-    """Return the turn and shift that bring a shape nearest to points (Kabsch 1976).
+def fit_rigid_transform(template: Array, positions: Array) -> tuple[Array, Array]:
+    """Return the rotation and translation that fit a shape to points (Kabsch 1976).
 
-    Points far from their place count little (Cauchy weights, in turn with the fit), and those
-    not seen count nothing. With fewer than three points the turn is not unique.
+    Cauchy weights, alternating with the fit, limit the influence of outliers; missing points
+    have no weight. With fewer than three points the rotation is not unique.
 
     Parameters
     ----------
     template : shape (n_points, 3), metres
-    places : shape (n_frames, n_points, 3), metres
+    positions : shape (n_frames, n_points, 3), metres
 
     Returns
     -------
-    turns : shape (n_frames, 3, 3)
-    shifts : shape (n_frames, 3), metres
-        The template's origin in the world; NaN where nothing is seen.
+    rotations : shape (n_frames, 3, 3)
+    translations : shape (n_frames, 3), metres
+        The template's origin in the world; NaN without observed points.
 
     References
     ----------
     .. [1] Kabsch (1976). A solution for the best rotation to relate two sets of vectors.
        doi:10.1107/S0567739476001873
     """
-    seen = np.isfinite(places).all(axis=-1)
-    known = np.where(seen[..., None], places, 0.0)
-    weights = seen.astype(float)
-    turns, shifts = _weighted(template, known, weights)
+    observed = np.isfinite(positions).all(axis=-1)
+    filled = np.where(observed[..., None], positions, 0.0)
+    weights = observed.astype(float)
+    rotations, translations = _weighted(template, filled, weights)
     if len(template) > 3:
-        for _ in range(N_WEIGHTS):
-            off = np.linalg.norm(moved(template, turns, shifts) - known, axis=-1)
-            usual = float(np.median(off[seen])) if seen.any() else 0.0
-            stray = max(LEAST_STRAY, STRAY * usual)
-            weights = seen / (1.0 + (np.nan_to_num(off) / stray) ** 2)
-            turns, shifts = _weighted(template, known, weights)
-    return turns, shifts
+        for _ in range(N_REWEIGHTINGS):
+            distances = np.linalg.norm(
+                transform_shape(template, rotations, translations) - filled, axis=-1
+            )
+            typical = float(np.median(distances[observed])) if observed.any() else 0.0
+            scale = max(MIN_CAUCHY_SCALE_M, CAUCHY_FACTOR * typical)
+            weights = observed / (1.0 + (np.nan_to_num(distances) / scale) ** 2)
+            rotations, translations = _weighted(template, filled, weights)
+    return rotations, translations
 
 
-def moved(template: Array, turns: Array, shifts: Array) -> Array:
-    """Return the shape in the world, shape (n_frames, n_points, 3)."""
-    return np.asarray(np.einsum("fij,pj->fpi", turns, template) + shifts[:, None])
+def transform_shape(template: Array, rotations: Array, translations: Array) -> Array:
+    """Return the shape in world space, shape (n_frames, n_points, 3)."""
+    return np.asarray(np.einsum("fij,pj->fpi", rotations, template) + translations[:, None])
 
 
-def _weighted(template: Array, places: Array, weights: Array) -> tuple[Array, Array]:
+def _weighted(template: Array, positions: Array, weights: Array) -> tuple[Array, Array]:
     total = weights.sum(axis=1)
-    share = weights / np.where(total > 0.0, total, np.nan)[:, None]
-    centre = np.nan_to_num(np.einsum("fp,fpi->fi", share, places))
-    origin = np.nan_to_num(np.einsum("fp,pi->fi", share, template))
-    arms = places - centre[:, None]
+    fraction = weights / np.where(total > 0.0, total, np.nan)[:, None]
+    centre = np.nan_to_num(np.einsum("fp,fpi->fi", fraction, positions))
+    origin = np.nan_to_num(np.einsum("fp,pi->fi", fraction, template))
+    arms = positions - centre[:, None]
     shape = template - origin[:, None]
     spread = np.einsum("fp,fpi,fpj->fij", weights, arms, shape)
     left, _, right = np.linalg.svd(spread)
     left[:, :, 2] *= np.linalg.det(left @ right)[:, None]
-    turns = left @ right
-    shifts = centre - np.einsum("fij,fj->fi", turns, origin)
-    return turns, np.where(total[:, None] > 0.0, shifts, np.nan)
+    rotations = left @ right
+    translations = centre - np.einsum("fij,fj->fi", rotations, origin)
+    return rotations, np.where(total[:, None] > 0.0, translations, np.nan)

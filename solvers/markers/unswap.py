@@ -1,4 +1,4 @@
-"""Put right the labels of markers that were swapped or mistaken for others."""
+"""Correct labels of swapped or misidentified markers."""
 
 from dataclasses import dataclass
 
@@ -13,37 +13,37 @@ from .lost_labels import mistaken_runs
 from .pair_swaps import PairSwap, candidates, most_likely_swap
 
 Array = NDArray[np.float64]
-MOST_SWAPS = 500
-N_ROUNDS = 3
+MAX_SWAPS = 500
+N_PASSES = 3
 
 
 @dataclass(frozen=True, kw_only=True)
 class UnswapSettings(Settings):
-    """How sure a swap has to be."""
+    """Evidence that a swap needs."""
 
     evidence: float = setting(
-        8.0, "How strongly jumps and distances must speak for a swap; higher leaves more alone",
+        8.0, "Minimum evidence of jumps and distances for a swap; higher corrects fewer",
         minimum=1.0, maximum=100.0,
     )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Swap:
-    """Labels that were put right."""
+    """Corrected labels of two markers."""
 
     names: tuple[str, str]
-    """The markers that had each other's labels; of one that was mistaken for another while that
-    was lost, the label it had and the one it got."""
+    """The swapped markers; for a marker with the label of a missing one, the wrong and the
+    correct label."""
     frames: range
 
 
 @dataclass(frozen=True, eq=False)
 class Unswapped:
-    """A take with its labels put right."""
+    """A take with corrected labels."""
 
     tracks: Tracks
     swaps: tuple[Swap, ...]
-    """By their first frame."""
+    """In order of their first frames."""
 
 
 def unswap_markers(
@@ -52,14 +52,13 @@ def unswap_markers(
     settings: UnswapSettings = UnswapSettings(),
     progress: Progress = unwatched,
 ) -> Unswapped:
-    """Find markers that exchange labels for a while, or to the end, and change them back.
+    """Find markers with swapped labels, and correct them.
 
-    A swap shows twice. Both markers jump into each other's place, where they would else have
-    gone on smoothly. And as long as it lasts, their distances to the markers that move along
-    with them are those of the other label; so markers that only pass near each other are left
-    alone. What is usual is learned from the take, whose labels must be right most of the time.
-    A marker that comes back with the label of one that is lost meanwhile is found by its
-    distances alone.
+    A swap has two kinds of evidence. Both markers jump to each other's position instead of
+    moving smoothly. During the swap, their distances to neighboring markers are those of the
+    other label, so that markers that only pass each other are not changed. The distances are
+    learned from the take, whose labels must be correct most of the time. A marker that
+    reappears with the label of a missing one is found by its distances alone.
 
     Parameters
     ----------
@@ -76,51 +75,53 @@ def unswap_markers(
     confidence = None if tracks.confidence is None else tracks.confidence.copy()
     swaps: list[Swap] = []
     progress(0.0, "Looking for swapped markers")
-    for number in range(N_ROUNDS):
+    for number in range(N_PASSES):
         distances = learn_distances(positions)
-        found = _round(positions, distances, tracks.frame_rate, settings)
+        found = _find_changes(positions, distances, tracks.frame_rate, settings)
         for change in found:
-            _exchange(positions, change)
+            _swap_labels(positions, change)
             if confidence is not None:
-                _exchange(confidence, change)
+                _swap_labels(confidence, change)
             names = (tracks.names[change.first], tracks.names[change.second])
             swaps.append(Swap(names, range(change.start, change.stop)))
-        progress((number + 1) / N_ROUNDS, "Looking for swapped markers")
+        progress((number + 1) / N_PASSES, "Looking for swapped markers")
         if not found:
             break
     progress(1.0, "Looking for swapped markers")
-    right = Tracks(tracks.names, positions, tracks.frame_rate, confidence)
-    return Unswapped(right, tuple(sorted(swaps, key=lambda swap: swap.frames.start)))
+    corrected = Tracks(tracks.names, positions, tracks.frame_rate, confidence)
+    return Unswapped(corrected, tuple(sorted(swaps, key=lambda swap: swap.frames.start)))
 
 
-def _round(
+def _find_changes(
     positions: Array, distances: Distances, frame_rate: float, settings: UnswapSettings
 ) -> list[PairSwap]:
-    """Return the changes to make, the surest first, each after those before it were made."""
+    """Return the changes in order of evidence, each found after applying those before it."""
     positions = positions.copy()
-    made: list[PairSwap] = []
+    changes: list[PairSwap] = []
     open_swaps = {
         pair: most_likely_swap(positions, pair, distances, frame_rate)
         for pair in candidates(positions, distances, frame_rate)
     }
-    while len(made) < MOST_SWAPS:
-        sure = [one for one in open_swaps.values() if one and one.gain >= settings.evidence]
-        if not sure:
+    while len(changes) < MAX_SWAPS:
+        significant = [
+            swap for swap in open_swaps.values() if swap and swap.gain >= settings.evidence
+        ]
+        if not significant:
             break
-        best = max(sure, key=lambda one: one.gain)
-        _exchange(positions, best)
-        made.append(best)
+        best = max(significant, key=lambda swap: swap.gain)
+        _swap_labels(positions, best)
+        changes.append(best)
         for pair in open_swaps:
             if {best.first, best.second} & set(pair):
                 open_swaps[pair] = most_likely_swap(positions, pair, distances, frame_rate)
     for change in mistaken_runs(positions, distances):
-        _exchange(positions, change)
-        made.append(change)
-    return made
+        _swap_labels(positions, change)
+        changes.append(change)
+    return changes
 
 
-def _exchange(values: Array, change: PairSwap) -> None:
-    """Exchange two markers' values over a stretch, in place."""
+def _swap_labels(values: Array, change: PairSwap) -> None:
+    """Swap the values of two markers in a range of frames, in place."""
     frames = slice(change.start, change.stop)
     values[frames, [change.first, change.second]] = values[
         frames, [change.second, change.first]

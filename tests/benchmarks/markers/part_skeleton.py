@@ -41,7 +41,7 @@ def _solved(tracks: Tracks) -> Mapping[str, Array]:
 def _regressed(tracks: Tracks) -> Mapping[str, Array]:
     found = find_marker_set(tracks.names).markers
     place = {name: index for index, name in enumerate(tracks.names)}
-    return joint_centres({s: tracks.positions[:, place[n]] for s, n in found.items()}).places
+    return joint_centres({s: tracks.positions[:, place[n]] for s, n in found.items()}).positions
 
 
 METHODS: dict[str, Solver] = {

@@ -9,7 +9,13 @@ from solvers.markers.body import Poses
 from solvers.markers.build_body import build_body
 from solvers.markers.centres import chord, joint_centres
 from solvers.markers.fit_body import body_slopes, fit_body, measures_of
-from solvers.markers.fit_poses import _ease, cost_of, fit_poses, marker_slopes, stepped
+from solvers.markers.fit_poses import (
+    _prior_residuals,
+    apply_step,
+    cost_of,
+    fit_poses,
+    marker_slopes,
+)
 from solvers.markers.marker_sets import find_marker_set
 from solvers.samples import GaitSettings, walking_gait
 
@@ -27,47 +33,47 @@ def started():
     centres = joint_centres(spots)
     body, turns = build_body(centres, spots)
     seen = np.stack([spots[marker.spot] for marker in body.markers], axis=1)
-    off = Poses(turns, centres.places["hips"])
+    off = Poses(turns, centres.positions["hips"])
     rng = np.random.default_rng(1)
-    off = stepped(body, off, 0.05 * rng.normal(size=(len(seen), 3 + 3 * len(body.turning))))
+    off = apply_step(body, off, 0.05 * rng.normal(size=(len(seen), 3 + 3 * len(body.turning))))
     return body, seen, off
 
 
 def test_markers_move_with_the_pose_as_their_slopes_say(started):
     body, _, poses = started
-    slopes = marker_slopes(body, body.place_in(poses))
+    slopes = marker_slopes(body, body.body_in_pose(poses))
 
     for unknown in range(slopes.shape[-1]):
         step = np.zeros((len(poses.roots), slopes.shape[-1]))
         step[:, unknown] = STEP
-        ahead = body.place_in(stepped(body, poses, step)).markers
-        behind = body.place_in(stepped(body, poses, -step)).markers
+        ahead = body.body_in_pose(apply_step(body, poses, step)).markers
+        behind = body.body_in_pose(apply_step(body, poses, -step)).markers
         assert_allclose(slopes[..., unknown], (ahead - behind) / (2 * STEP), atol=1e-8)
 
 
 def test_what_joints_usually_do_changes_as_its_slopes_say(started):
     body, _, poses = started
-    _, slopes = _ease(body, poses)
+    _, slopes = _prior_residuals(body, poses)
 
     for unknown in range(slopes.shape[-1]):
         step = np.zeros((len(poses.roots), slopes.shape[-1]))
         step[:, unknown] = STEP
-        ahead, _ = _ease(body, stepped(body, poses, step))
-        behind, _ = _ease(body, stepped(body, poses, -step))
+        ahead, _ = _prior_residuals(body, apply_step(body, poses, step))
+        behind, _ = _prior_residuals(body, apply_step(body, poses, -step))
         assert_allclose(slopes[..., unknown], (ahead - behind) / (2 * STEP), atol=1e-5)
 
 
 def test_markers_move_with_the_measures_as_their_slopes_say(started):
     body, _, poses = started
     measures = measures_of(body)
-    slopes = body_slopes(body, body.place_in(poses), measures)
+    slopes = body_slopes(body, body.body_in_pose(poses), measures)
 
     for number, moved in enumerate(measures.joints):
         offsets = body.offsets.copy()
         for joint, axis, sign in moved:
             offsets[joint, axis] += sign * STEP
-        ahead = body.with_offsets(offsets, body.marker_offsets).place_in(poses).markers
-        change = (ahead - body.place_in(poses).markers) / STEP
+        ahead = body.with_offsets(offsets, body.marker_offsets).body_in_pose(poses).markers
+        change = (ahead - body.body_in_pose(poses).markers) / STEP
         assert_allclose(slopes[..., number], change, atol=1e-6)
 
 
@@ -88,7 +94,7 @@ def test_a_body_fits_better_once_it_is_measured(started):
     better, refitted = fit_body(body, seen, fitted)
 
     assert cost_of(better, seen, refitted).sum() < 0.5 * cost_of(body, seen, fitted).sum()
-    left, right = better.place["leftLowerLeg"], better.place["rightLowerLeg"]
+    left, right = better.index["leftLowerLeg"], better.index["rightLowerLeg"]
     assert_allclose(better.offsets[left], better.offsets[right] * (-1.0, 1.0, 1.0))
 
 

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from solvers.errors import InvalidMotionError
 from solvers.markers import Cluster, ClusterSettings, constrain_clusters, find_rigid_clusters
-from solvers.markers.rigid_fit import fit_rigidly
+from solvers.markers.rigid_fit import fit_rigid_transform
 from solvers.motion import Tracks
 from solvers.recordings import read_c3d
 
@@ -121,7 +121,7 @@ def test_kabsch_gives_the_turn_back(rng):
     shifts = rng.normal(size=(10, 3))
     places = np.einsum("fij,pj->fpi", turns, HEAD) + shifts[:, None]
 
-    found, where = fit_rigidly(HEAD, places)
+    found, where = fit_rigid_transform(HEAD, places)
 
     assert_allclose(found, turns, atol=1e-9)
     assert_allclose(where, shifts, atol=1e-9)

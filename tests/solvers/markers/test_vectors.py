@@ -5,7 +5,12 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from solvers.markers.vectors import frame, skewed, swung, turned_by
+from solvers.markers.vectors import (
+    frame,
+    matrix_from_rotation_vector,
+    skew_matrices,
+    swing_frames,
+)
 
 
 @pytest.mark.parametrize(("first", "second"), [(0, 1), (1, 0), (2, 1), (1, 2), (0, 2), (2, 0)])
@@ -24,19 +29,23 @@ def test_frames_are_rotations_with_the_axes_asked_for(rng, first, second):
 def test_turns_as_scipy_does(rng):
     vectors = np.concatenate([rng.normal(size=(20, 3)), np.zeros((1, 3))])
 
-    assert_allclose(turned_by(vectors), Rotation.from_rotvec(vectors).as_matrix(), atol=1e-12)
+    assert_allclose(
+        matrix_from_rotation_vector(vectors),
+        Rotation.from_rotvec(vectors).as_matrix(),
+        atol=1e-12,
+    )
 
 
 def test_skewed_makes_the_cross_product(rng):
     a, b = rng.normal(size=(2, 20, 3))
 
-    assert_allclose(np.einsum("fij,fj->fi", skewed(a), b), np.cross(a, b))
+    assert_allclose(np.einsum("fij,fj->fi", skew_matrices(a), b), np.cross(a, b))
 
 
 def test_swings_the_axis_and_does_not_twist(rng):
     axis, onto = np.array([0.0, 0.0, -1.0]), rng.normal(size=(20, 3))
 
-    turned = swung(np.eye(3), axis, onto)
+    turned = swing_frames(np.eye(3), axis, onto)
 
     assert_allclose(turned @ axis, onto / np.linalg.norm(onto, axis=1)[:, None], atol=1e-12)
     twist = np.einsum("fi,i->f", Rotation.from_matrix(turned).as_rotvec(), axis)
