@@ -1,4 +1,4 @@
-"""How far markers are from those that move along with them: what tells one from another."""
+"""Distances between neighboring markers, which identify a marker."""
 
 import warnings
 from dataclasses import dataclass
@@ -7,80 +7,82 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-NEIGHBOURS = 6
-LEAST_SPREAD = 0.004
-"""Metres: a distance is never held to be known better."""
-FIRM = 0.02
-"""Metres by which a distance varies at most that alone tells a marker."""
-MOST_FRAMES = 400
-FEWEST_FRAMES = 30
-GREATEST_SURPRISE = 8.0
-NORMAL = 1.4826
+MAX_NEIGHBORS = 6
+MIN_SPREAD_M = 0.004
+"""Lower bound of the spread of a distance."""
+RIGID_SPREAD_M = 0.02
+"""Maximum spread of a distance that identifies a marker alone."""
+MAX_FRAMES = 400
+MIN_FRAMES = 30
+MAX_MISFIT = 8.0
+MAD_TO_SIGMA = 1.4826
 """Standard deviations in a median absolute deviation of a normal distribution."""
 
 
 @dataclass(frozen=True, eq=False)
 class Distances:
-    """What distances between markers usually are."""
+    """Statistics of the distances between markers."""
 
-    usual: Array
-    """Medians, shape (n_markers, n_markers), metres; NaN where two are hardly seen together."""
+    median: Array
+    """Medians, shape (n_markers, n_markers), metres; NaN for rarely observed pairs."""
     spread: Array
     """Robust standard deviations of the same, metres."""
 
-    def neighbours(self, marker: int, without: tuple[int, ...] = ()) -> NDArray[np.intp]:
+    def neighbors(self, marker: int, without: tuple[int, ...] = ()) -> NDArray[np.intp]:
         """Return the markers whose distance to one varies least."""
         spread = self.spread[marker].copy()
         spread[[marker, *without]] = np.nan
         order = np.argsort(spread, kind="stable")
-        return np.asarray(order[np.isfinite(spread[order])][:NEIGHBOURS])
+        return np.asarray(order[np.isfinite(spread[order])][:MAX_NEIGHBORS])
 
-    def firm_neighbours(self, marker: int, without: tuple[int, ...] = ()) -> NDArray[np.intp]:
-        """Return those neighbours whose distance hardly varies."""
-        near = self.neighbours(marker, without)
-        return np.asarray(near[self.spread[marker, near] <= FIRM])
+    def rigid_neighbors(self, marker: int, without: tuple[int, ...] = ()) -> NDArray[np.intp]:
+        """Return the neighbors with nearly constant distance."""
+        neighbors = self.neighbors(marker, without)
+        return np.asarray(neighbors[self.spread[marker, neighbors] <= RIGID_SPREAD_M])
 
-    def surprise(
-        self, marker: int, places: Array, others: Array, near: NDArray[np.intp]
+    def misfit(
+        self, marker: int, positions: Array, others: Array, neighbors: NDArray[np.intp]
     ) -> Array:
-        """Return how odd it is to find a marker at these places, shape (n_frames,).
+        """Return the misfit of a marker at these positions, shape (n_frames,).
 
-        Half the squared deviation of its distances to neighbours, in units of their spread, on
-        average and bounded; NaN where no neighbour is seen.
+        The bounded mean of half the squared deviations of its distances to neighbors, in units
+        of their spread; NaN without observed neighbors.
 
         Parameters
         ----------
         marker : int
-        places : shape (n_frames, 3), metres
+        positions : shape (n_frames, 3), metres
         others : shape (n_frames, n_markers, 3), metres
-        near : the neighbours to ask
+        neighbors : indices of the neighbors
         """
-        apart = np.linalg.norm(places[:, None] - others[:, near], axis=-1)
-        odd = (apart - self.usual[marker, near]) / self.spread[marker, near]
-        return nan_mean(np.minimum(0.5 * odd**2, GREATEST_SURPRISE))
+        separation = np.linalg.norm(positions[:, None] - others[:, neighbors], axis=-1)
+        deviation = (separation - self.median[marker, neighbors]) / self.spread[
+            marker, neighbors
+        ]
+        return nan_mean(np.minimum(0.5 * deviation**2, MAX_MISFIT))
 
 
 def learn_distances(positions: Array) -> Distances:
-    """Learn the usual distances between markers of a take, most of whose labels are right.
+    """Learn the distances between markers of a take with mostly correct labels.
 
     Parameters
     ----------
     positions : shape (n_frames, n_markers, 3), metres
     """
-    step = max(1, len(positions) // MOST_FRAMES)
-    some = positions[::step]
+    step = max(1, len(positions) // MAX_FRAMES)
+    sample = positions[::step]
     n_markers = positions.shape[1]
-    usual, spread = np.full((2, n_markers, n_markers), np.nan)
-    enough = min(FEWEST_FRAMES, max(1, len(some) // 2))
+    median, spread = np.full((2, n_markers, n_markers), np.nan)
+    enough = min(MIN_FRAMES, max(1, len(sample) // 2))
     for marker in range(n_markers):
-        apart = np.linalg.norm(some - some[:, [marker]], axis=-1)
-        middle = nan_median(apart)
-        usual[marker] = middle
-        spread[marker] = NORMAL * nan_median(np.abs(apart - middle))
-        few = np.isfinite(apart).sum(axis=0) < enough
-        usual[marker, few] = spread[marker, few] = np.nan
+        separation = np.linalg.norm(sample - sample[:, [marker]], axis=-1)
+        middle = nan_median(separation)
+        median[marker] = middle
+        spread[marker] = MAD_TO_SIGMA * nan_median(np.abs(separation - middle))
+        few = np.isfinite(separation).sum(axis=0) < enough
+        median[marker, few] = spread[marker, few] = np.nan
     np.fill_diagonal(spread, np.nan)
-    return Distances(usual, np.maximum(spread, LEAST_SPREAD))
+    return Distances(median, np.maximum(spread, MIN_SPREAD_M))
 
 
 def nan_median(values: Array) -> Array:
@@ -92,7 +94,7 @@ def nan_median(values: Array) -> Array:
 
 def nan_mean(values: Array) -> Array:
     """Return means over the last axis without NaN; NaN where there is nothing else."""
-    known = np.isfinite(values)
-    count = known.sum(axis=-1)
-    total = np.where(known, values, 0.0).sum(axis=-1)
+    valid = np.isfinite(values)
+    count = valid.sum(axis=-1)
+    total = np.where(valid, values, 0.0).sum(axis=-1)
     return np.asarray(np.where(count > 0, total / np.maximum(count, 1), np.nan))

@@ -1,4 +1,4 @@
-"""Find markers that carry the label of one that is lost."""
+"""Find markers with the label of a missing marker."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,27 +7,27 @@ from .distances import Distances, nan_median
 from .pair_swaps import PairSwap
 
 Array = NDArray[np.float64]
-ODD, WELL = 4.0, 1.0
-"""Median surprise from which on a label does not fit, and up to which it does."""
-FEWEST_NEIGHBOURS = 3
-JUMP = 0.06
-"""Metres a marker moves against its neighbours in one frame, if it is another from there on."""
+MIN_BAD_MISFIT, MAX_GOOD_MISFIT = 4.0, 1.0
+"""Median misfit above which a label is wrong, and below which it is correct."""
+MIN_NEIGHBORS = 3
+MIN_JUMP_M = 0.06
+"""Step relative to the neighbors in one frame that indicates another marker."""
 
 
-def mistaken_runs(positions: Array, distances: Distances) -> list[PairSwap]:
-    """Return the stretches in which a marker has the label of another that is lost.
+def find_mistaken_labels(positions: Array, distances: Distances) -> list[PairSwap]:
+    """Return the intervals in which a marker has the label of a missing one.
 
-    A stretch lies between gaps or jumps of the label. It must fit the distances of the lost
-    marker well, and its own badly; or fit those better, and begin or end where that was.
+    An interval is between gaps or jumps of the label. It must fit the distances of the missing
+    marker well and its own badly; or fit the former better and start or end at its position.
     """
-    lost = ~np.isfinite(positions).all(axis=-1)
-    found = []
+    missing = ~np.isfinite(positions).all(axis=-1)
+    swaps = []
     for marker in range(positions.shape[1]):
-        near = distances.neighbours(marker)
-        if len(near) < FEWEST_NEIGHBOURS:
+        neighbors = distances.neighbors(marker)
+        if len(neighbors) < MIN_NEIGHBORS:
             continue
-        for start, stop in _stretches(positions, marker, near):
-            free = np.flatnonzero(lost[start:stop].all(axis=0))
+        for start, stop in _intervals(positions, marker, neighbors):
+            free = np.flatnonzero(missing[start:stop].all(axis=0))
             if not len(free) or stop - start == len(positions):
                 continue
             fits = [
@@ -36,55 +36,55 @@ def mistaken_runs(positions: Array, distances: Distances) -> list[PairSwap]:
             ]
             gain, other = max(fits)
             if gain > 0.0:
-                found.append(PairSwap(gain, marker, other, start, stop))
-    return _apart(sorted(found, reverse=True))
+                swaps.append(PairSwap(gain, marker, other, start, stop))
+    return _without_duplicates(sorted(swaps, reverse=True))
 
 
 def _gain(
-    positions: Array, pair: tuple[int, int], stretch: tuple[int, int], distances: Distances
+    positions: Array, pair: tuple[int, int], interval: tuple[int, int], distances: Distances
 ) -> float:
-    """Return how much better the second label fits a stretch of the first; 0 if unsure."""
+    """Return the gain of the second label in an interval of the first; 0 if uncertain."""
     first, second = pair
-    some = slice(*stretch)
-    handed = _handed_over(positions, pair, stretch)
-    near = [
-        distances.neighbours(one, (other,))
+    frames = slice(*interval)
+    handed = _handed_over(positions, pair, interval)
+    neighbors = [
+        distances.neighbors(one, (other,))
         if handed
-        else distances.firm_neighbours(one, (other,))
+        else distances.rigid_neighbors(one, (other,))
         for one, other in ((first, second), (second, first))
     ]
     own, fit = (
-        _oddness(positions[some], label, first, nearest, distances)
-        for label, nearest in zip(pair, near, strict=True)
+        _misfit(positions[frames], label, first, nearest, distances)
+        for label, nearest in zip(pair, neighbors, strict=True)
     )
-    if (handed and fit < own) or (own > ODD and fit < WELL):
+    if (handed and fit < own) or (own > MIN_BAD_MISFIT and fit < MAX_GOOD_MISFIT):
         return own - fit
     return 0.0
 
 
-def _oddness(
+def _misfit(
     positions: Array,
     label: int,
     marker: int,
-    near: NDArray[np.intp],
+    neighbors: NDArray[np.intp],
     distances: Distances,
 ) -> float:
-    """Return how odd a marker is, over a stretch, under a label; NaN if unknown."""
-    there = np.isfinite(positions[:, near]).all(axis=-1).sum(axis=1)
-    if np.median(there) < FEWEST_NEIGHBOURS:
+    """Return the median misfit of a marker with a label in an interval; NaN if unknown."""
+    n_observed = np.isfinite(positions[:, neighbors]).all(axis=-1).sum(axis=1)
+    if np.median(n_observed) < MIN_NEIGHBORS:
         return np.nan
-    return _median(distances.surprise(label, positions[:, marker], positions, near))
+    return _median(distances.misfit(label, positions[:, marker], positions, neighbors))
 
 
-def _handed_over(positions: Array, pair: tuple[int, int], stretch: tuple[int, int]) -> bool:
-    """Whether the first marker is, where the stretch begins or ends, where the second was."""
+def _handed_over(positions: Array, pair: tuple[int, int], interval: tuple[int, int]) -> bool:
+    """Return whether the first marker starts or ends the interval at the second's position."""
     first, second = pair
-    for inside, outside in ((stretch[0], stretch[0] - 1), (stretch[1] - 1, stretch[1])):
+    for inside, outside in ((interval[0], interval[0] - 1), (interval[1] - 1, interval[1])):
         if not 0 <= outside < len(positions):
             continue
         to_other = np.linalg.norm(positions[inside, first] - positions[outside, second])
         to_own = np.linalg.norm(positions[inside, first] - positions[outside, first])
-        if to_other < JUMP / 2 and not to_own < 2.0 * to_other:
+        if to_other < MIN_JUMP_M / 2 and not to_own < 2.0 * to_other:
             return True
     return False
 
@@ -93,26 +93,28 @@ def _median(values: Array) -> float:
     return float(nan_median(values[:, None])[0])
 
 
-def _stretches(positions: Array, marker: int, near: NDArray[np.intp]) -> list[tuple[int, int]]:
-    """Return first and last-but-one frames of what may be one marker all along."""
-    seen = np.isfinite(positions[:, marker]).all(axis=-1)
-    relative = positions[:, [marker]] - positions[:, near]
+def _intervals(
+    positions: Array, marker: int, neighbors: NDArray[np.intp]
+) -> list[tuple[int, int]]:
+    """Return (start, stop) of the intervals without gaps and jumps of a marker."""
+    observed = np.isfinite(positions[:, marker]).all(axis=-1)
+    relative = positions[:, [marker]] - positions[:, neighbors]
     step = nan_median(np.linalg.norm(np.diff(relative, axis=0), axis=-1).T)
-    begins = seen.copy()
-    begins[1:] &= ~seen[:-1] | (np.nan_to_num(step) > JUMP)
-    ends = np.append(~seen[1:] | begins[1:], True) & seen
+    begins = observed.copy()
+    begins[1:] &= ~observed[:-1] | (np.nan_to_num(step) > MIN_JUMP_M)
+    ends = np.append(~observed[1:] | begins[1:], True) & observed
     starts, stops = np.flatnonzero(begins), np.flatnonzero(ends) + 1
     return [(int(a), int(b)) for a, b in zip(starts, stops, strict=True)]
 
 
-def _apart(found: list[PairSwap]) -> list[PairSwap]:
-    """Leave out what would give one label twice in one frame."""
-    kept: list[PairSwap] = []
-    for one in found:
+def _without_duplicates(swaps: list[PairSwap]) -> list[PairSwap]:
+    """Remove changes that would assign one label twice in a frame."""
+    accepted: list[PairSwap] = []
+    for one in swaps:
         clash = any(
             other.second == one.second and other.start < one.stop and one.start < other.stop
-            for other in kept
+            for other in accepted
         )
         if not clash:
-            kept.append(one)
-    return kept
+            accepted.append(one)
+    return accepted

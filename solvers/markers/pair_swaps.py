@@ -8,71 +8,74 @@ from numpy.typing import NDArray
 from .distances import Distances
 
 Array = NDArray[np.float64]
-SURE, NEVER = 10.0, 1e9
-"""The most that one jump counts, and a change of labels where a pair moves smoothly."""
-SWITCH = 3.0
-"""What each beginning and end of a swap costs."""
-FRAME = 0.3
-"""How much a frame's distances count: neighbouring frames tell nearly the same."""
-USUAL_STEP, TIMES, STEP_FLOOR = 90.0, 2.0, 0.004
-"""Percentile of a pair's relative steps, as often as which, and metres added, is usual; so low
-that swaps themselves hardly change it even in short takes."""
-ODD, FEWEST_ODD = 3.0, 5
-"""Surprise from which on a marker does not fit, and frames in which two do not."""
-LONGEST_GAP = 0.25
-"""Seconds: beyond, nothing is known of where a marker comes back."""
+MAX_JUMP_EVIDENCE, FORBIDDEN_COST = 10.0, 1e9
+"""Maximum evidence of one jump, and cost of a swap where a pair moves smoothly."""
+SWITCH_COST = 3.0
+"""Cost of each start and end of a swap."""
+FRAME_WEIGHT = 0.3
+"""Weight of the distances in a frame, since consecutive frames are correlated."""
+STEP_PERCENTILE, STEP_FACTOR, STEP_OFFSET_M = 90.0, 2.0, 0.004
+"""Typical step of a pair: this percentile of its relative steps, times the factor, plus the
+offset. A low percentile limits the influence of swaps in short takes."""
+MIN_BAD_MISFIT, MIN_BAD_FRAMES = 3.0, 5
+"""Misfit above which a label is bad, and minimum number of frames with two bad labels."""
+MAX_GAP_S = 0.25
+"""Gap above which the position of a marker after it is not predictable."""
 
 
 class PairSwap(NamedTuple):
-    """A stretch in which two markers are swapped."""
+    """An interval in which two markers are swapped."""
 
     gain: float
-    """How much likelier it is so than not."""
+    """Log-likelihood gain of the swap."""
     first: int
     second: int
     start: int
     stop: int
 
 
-def candidates(
+def find_candidate_pairs(
     positions: Array, distances: Distances, frame_rate: float
 ) -> list[tuple[int, int]]:
-    """Return the pairs that may be swapped somewhere.
+    """Return the pairs of markers that may be swapped.
 
-    They seem to jump into each other's place; or both do not fit their labels at one time, and
-    one has gaps in which they may have changed places.
+    Either they seem to jump to each other's position; or both labels are bad at one time and
+    one marker has gaps in which a swap may start.
     """
     n_markers = positions.shape[1]
-    odd_together = _odd_runs(positions, distances)
+    is_bad = _bad_frames(positions, distances)
     gaps = ~np.isfinite(positions).all(axis=(0, 2))
     found = [
         (first, second)
         for first in range(n_markers - 1)
         for second in range(first + 1, n_markers)
         if (gaps[first] or gaps[second])
-        and (odd_together[:, first] & odd_together[:, second]).sum() >= FEWEST_ODD
+        and (is_bad[:, first] & is_bad[:, second]).sum() >= MIN_BAD_FRAMES
     ]
     for first in range(n_markers - 1):
         relative = positions[:, first + 1 :] - positions[:, [first]]
-        kept, turned, usual = _steps(relative, frame_rate)
-        odd = (kept > usual) & (turned < 0.5 * kept)
-        found += [(first, first + 1 + int(other)) for other in np.flatnonzero(odd.any(axis=0))]
+        step_unchanged, step_swapped, typical = _steps(relative, frame_rate)
+        is_bad_marker = (step_unchanged > typical) & (step_swapped < 0.5 * step_unchanged)
+        found += [
+            (first, first + 1 + int(other))
+            for other in np.flatnonzero(is_bad_marker.any(axis=0))
+        ]
     return sorted(set(found))
 
 
-def _odd_runs(positions: Array, distances: Distances) -> NDArray[np.bool_]:
-    """Return where each marker does not fit its label, shape (n_frames, n_markers)."""
-    odd = np.zeros(positions.shape[:2], dtype=bool)
+def _bad_frames(positions: Array, distances: Distances) -> NDArray[np.bool_]:
+    """Return where the label of each marker is bad, shape (n_frames, n_markers)."""
+    is_bad_marker = np.zeros(positions.shape[:2], dtype=bool)
     for marker in range(positions.shape[1]):
-        near = distances.neighbours(marker)
-        if len(near):
-            surprise = distances.surprise(marker, positions[:, marker], positions, near)
-            odd[:, marker] = np.nan_to_num(surprise) > ODD
-    return odd
+        neighbors = distances.neighbors(marker)
+        if len(neighbors):
+            misfit = distances.misfit(marker, positions[:, marker], positions, neighbors)
+            is_bad_marker[:, marker] = np.nan_to_num(misfit) > MIN_BAD_MISFIT
+    return is_bad_marker
 
 
 def _steps(relative: Array, frame_rate: float) -> tuple[Array, Array, Array]:
-    """Return how far the second marker moves against the first, if labels stay or change.
+    """Return the relative steps of two markers with unchanged and with swapped labels.
 
     Parameters
     ----------
@@ -81,77 +84,87 @@ def _steps(relative: Array, frame_rate: float) -> tuple[Array, Array, Array]:
 
     Returns
     -------
-    kept, turned, usual : shape (n_frames, n_pairs), metres
-        Steps into each frame from the last one in which both are seen, NaN where there is
-        none; and the step that is usual over so long a time.
+    step_unchanged, step_swapped, typical : shape (n_frames, n_pairs), metres
+        Steps into each frame from the last one with both markers, NaN without one; and the
+        typical step over this time.
     """
-    known = np.isfinite(relative).all(axis=-1)
+    valid = np.isfinite(relative).all(axis=-1)
     frames = np.arange(len(relative))[:, None]
-    last = np.maximum.accumulate(np.where(known, frames, -1), axis=0)
-    before = np.concatenate([np.full((1, known.shape[1]), -1), last[:-1]])
+    last = np.maximum.accumulate(np.where(valid, frames, -1), axis=0)
+    before = np.concatenate([np.full((1, valid.shape[1]), -1), last[:-1]])
     gap = frames - before
-    reached = known & (before >= 0) & (gap <= max(1.0, LONGEST_GAP * frame_rate))
+    reached = valid & (before >= 0) & (gap <= max(1.0, MAX_GAP_S * frame_rate))
     start = np.take_along_axis(relative, np.maximum(before, 0)[..., None], axis=0)
-    kept = np.where(reached, np.linalg.norm(relative - start, axis=-1), np.nan)
-    turned = np.where(reached, np.linalg.norm(relative + start, axis=-1), np.nan)
-    single = np.where(gap == 1, kept, np.nan)
-    some = np.isfinite(single).any(axis=0)
-    usual = np.full(known.shape[1], np.inf)
-    if some.any():
-        usual[some] = TIMES * np.nanpercentile(single[:, some], USUAL_STEP, axis=0)
-        usual[some] += STEP_FLOOR
-    return kept, turned, usual * gap
+    step_unchanged = np.where(reached, np.linalg.norm(relative - start, axis=-1), np.nan)
+    step_swapped = np.where(reached, np.linalg.norm(relative + start, axis=-1), np.nan)
+    single = np.where(gap == 1, step_unchanged, np.nan)
+    has_steps = np.isfinite(single).any(axis=0)
+    typical = np.full(valid.shape[1], np.inf)
+    if has_steps.any():
+        typical[has_steps] = STEP_FACTOR * np.nanpercentile(
+            single[:, has_steps], STEP_PERCENTILE, axis=0
+        )
+        typical[has_steps] += STEP_OFFSET_M
+    return step_unchanged, step_swapped, typical * gap
 
 
 def most_likely_swap(
     positions: Array, pair: tuple[int, int], distances: Distances, frame_rate: float
 ) -> PairSwap | None:
-    """Return the stretch in which two markers are most surely swapped; None if there is none.
+    """Return the most likely swap of two markers; None if there is none.
 
-    The most likely course of labels, kept or changed, by Viterbi's algorithm: a jump speaks for
-    a change where the pair would otherwise not jump, and the distances to markers that move
-    along speak, frame by frame, for one of the two labels.
+    The most likely sequence of labels, by the Viterbi algorithm. A jump is evidence for a
+    change if the pair would not jump with swapped labels; in each frame, the distances to
+    neighbors are evidence for one of the two labels.
     """
     first, second = pair
     relative = (positions[:, second] - positions[:, first])[:, None]
-    kept, turned, usual = (part[:, 0] for part in _steps(relative, frame_rate))
-    stay, change = (np.nan_to_num(0.5 * (step / usual) ** 2) for step in (kept, turned))
-    smooth = (stay <= SURE) & ~(turned <= kept) & np.isfinite(turned)
-    change = np.where(smooth, NEVER, np.minimum(change, SURE))
-    stay = np.minimum(stay, SURE)
-    swapped = FRAME * _evidence(positions, pair, distances)
-    course = _viterbi(stay, change + SWITCH, swapped)
+    step_unchanged, step_swapped, typical = (
+        part[:, 0] for part in _steps(relative, frame_rate)
+    )
+    stay, change = (
+        np.nan_to_num(0.5 * (step / typical) ** 2) for step in (step_unchanged, step_swapped)
+    )
+    smooth = (
+        (stay <= MAX_JUMP_EVIDENCE)
+        & ~(step_swapped <= step_unchanged)
+        & np.isfinite(step_swapped)
+    )
+    change = np.where(smooth, FORBIDDEN_COST, np.minimum(change, MAX_JUMP_EVIDENCE))
+    stay = np.minimum(stay, MAX_JUMP_EVIDENCE)
+    swapped = FRAME_WEIGHT * _evidence(positions, pair, distances)
+    labels = _viterbi(stay, change + SWITCH_COST, swapped)
     best: PairSwap | None = None
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], course, [0]])))
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], labels, [0]])))
     for start, stop in zip(edges[::2], edges[1::2], strict=True):
         if not np.isfinite(positions[start:stop, pair]).all(axis=-1).any():
             continue
         gain = -float(swapped[start:stop].sum())
         for edge in (start, stop):
-            if 0 < edge < len(course):
-                gain += float(stay[edge] - change[edge] - SWITCH)
+            if 0 < edge < len(labels):
+                gain += float(stay[edge] - change[edge] - SWITCH_COST)
         if best is None or gain > best.gain:
             best = PairSwap(gain, first, second, int(start), int(stop))
     return best
 
 
 def _evidence(positions: Array, pair: tuple[int, int], distances: Distances) -> Array:
-    """Return how much odder each frame's distances are with labels changed, shape (n_frames,).
+    """Return the additional misfit of swapped labels, shape (n_frames,).
 
-    Negative where they fit better changed; 0 where nothing is known.
+    Negative where swapped labels fit better; 0 where unknown.
     """
     first, second = pair
     total = np.zeros(len(positions))
     for own, other in ((first, second), (second, first)):
-        near = distances.neighbours(own, (other,))
-        as_is = distances.surprise(own, positions[:, own], positions, near)
-        changed = distances.surprise(own, positions[:, other], positions, near)
+        neighbors = distances.neighbors(own, (other,))
+        as_is = distances.misfit(own, positions[:, own], positions, neighbors)
+        changed = distances.misfit(own, positions[:, other], positions, neighbors)
         total += np.nan_to_num(changed - as_is)
     return total
 
 
 def _viterbi(stay: Array, change: Array, swapped: Array) -> NDArray[np.intp]:
-    """Return the cheapest course, 1 where swapped, shape (n_frames,)."""
+    """Return the label sequence of least cost, 1 where swapped, shape (n_frames,)."""
     n_frames = len(stay)
     came = np.zeros((n_frames, 2), dtype=np.intp)
     plain, other = 0.0, float(swapped[0])
@@ -162,8 +175,8 @@ def _viterbi(stay: Array, change: Array, swapped: Array) -> NDArray[np.intp]:
             min(plain + keep, other + turn),
             min(other + keep, plain + turn) + swapped[frame],
         )
-    course = np.zeros(n_frames, dtype=np.intp)
-    course[-1] = int(other < plain)
+    labels = np.zeros(n_frames, dtype=np.intp)
+    labels[-1] = int(other < plain)
     for frame in range(n_frames - 1, 0, -1):
-        course[frame - 1] = came[frame, course[frame]]
-    return course
+        labels[frame - 1] = came[frame, labels[frame]]
+    return labels

@@ -1,4 +1,4 @@
-"""Find markers that keep their distances: those of the head, the pelvis, a foot."""
+"""Find rigid clusters of markers, such as those of the head, the pelvis or a foot."""
 
 from dataclasses import dataclass
 
@@ -14,42 +14,42 @@ from .distances import nan_median
 from .rigid_fit import fit_rigid_transform
 
 Array = NDArray[np.float64]
-APART = 1.0
-"""Metres or so: what is never seen together is no cluster."""
-N_TEMPLATES = 4
-SEEN = 0.2
-"""Of all frames: markers seen together so often may be a cluster."""
-ODDEST = (2.0, 50.0, 98.0)
-WIDTH = 4.107
+UNLINKED_M = 1.0
+"""Linkage distance of pairs that are never observed together."""
+N_ITERATIONS = 4
+MIN_OBSERVED_FRACTION = 0.2
+"""Minimum fraction of frames with both markers of a pair."""
+SPREAD_PERCENTILES = (2.0, 50.0, 98.0)
+PERCENTILES_TO_SIGMA = 4.107
 """Standard deviations between the outer two of these percentiles of a normal distribution."""
-NORMAL = 1.4826
+MAD_TO_SIGMA = 1.4826
 """Standard deviations in a median absolute deviation."""
-MOVES = 0.01
-"""Metres by which half of all distances between markers must vary, for clusters to be told."""
+MIN_TAKE_SPREAD_M = 0.01
+"""Minimum median spread of all distances in a take for clusters to be detectable."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ClusterSettings(Settings):
-    """What counts as rigid."""
+    """Thresholds of rigidity."""
 
     slack: float = setting(
-        0.003, "Standard deviation of distances up to which markers are one rigid thing; higher"
-        " makes larger clusters, and holds moving skin still",
+        0.003, "Maximum standard deviation of distances in a cluster; higher makes larger"
+        " clusters, and removes skin motion",
         unit="m", minimum=0.0005, maximum=0.05,
     )  # fmt: skip
     widest: float = setting(
-        0.5, "Greatest distance within a cluster", unit="m", minimum=0.01, maximum=10.0,
+        0.5, "Maximum distance within a cluster", unit="m", minimum=0.01, maximum=10.0,
         advanced=True,
     )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
 class Cluster:
-    """Markers that keep their distances."""
+    """Markers with constant distances."""
 
     names: tuple[str, ...]
     template: Array
-    """Their places about their mean, shape (n_markers, 3), metres."""
+    """Positions relative to their mean, shape (n_markers, 3), metres."""
     slack: float
     """Largest robust standard deviation of a distance between two of them, metres."""
 
@@ -60,22 +60,22 @@ def find_rigid_clusters(
     settings: ClusterSettings = ClusterSettings(),
     progress: Progress = unwatched,
 ) -> tuple[Cluster, ...]:
-    """Find clusters from how much the distances between markers vary over a take.
+    """Find clusters by the spread of the distances between markers over a take.
 
     Clusters are joined as long as no distance in them varies more than `slack` (complete
-    linkage). A take in which hardly anything moves tells no clusters apart and has none.
+    linkage). A take with little motion has no detectable clusters.
 
     Parameters
     ----------
     tracks : Tracks
-        Whose labels are right (`unswap_markers`).
+        With correct labels (`unswap_markers`).
     settings : ClusterSettings
     progress : Progress
 
     Returns
     -------
     tuple of Cluster
-        Of two markers or more, in the order of the take.
+        Clusters of two or more markers, in the order of the take.
 
     Raises
     ------
@@ -83,9 +83,10 @@ def find_rigid_clusters(
         Raised by `progress`.
     """
     progress(0.0, "Looking for rigid clusters")
-    usual, spread = _spreads(tracks.positions)
+    median, spread = _spreads(tracks.positions)
     clusters = [
-        _cluster(tracks, members, usual, spread) for members in _groups(usual, spread, settings)
+        _cluster(tracks, members, median, spread)
+        for members in _groups(median, spread, settings)
     ]
     progress(1.0, "Looking for rigid clusters")
     return tuple(clusters)
@@ -94,63 +95,73 @@ def find_rigid_clusters(
 def _spreads(positions: Array) -> tuple[Array, Array]:
     """Return medians and standard deviations of all distances, (n_markers, n_markers), metres.
 
-    The deviation is that of a normal distribution as wide as all but the oddest frames, less
-    what is jitter: distances of jittering markers vary too. NaN where little is seen.
+    The deviation is estimated from percentiles, as for a normal distribution, and jitter is
+    subtracted. NaN for rarely observed pairs.
     """
     n_frames, n_markers, _ = positions.shape
-    usual, spread = np.full((2, n_markers, n_markers), np.nan)
+    median, spread = np.full((2, n_markers, n_markers), np.nan)
     for marker in range(n_markers):
-        apart = np.linalg.norm(positions - positions[:, [marker]], axis=-1)
-        enough = np.isfinite(apart).sum(axis=0) >= max(2.0, SEEN * n_frames)
-        apart = apart[:, enough]
-        if not apart.size:
+        distances = np.linalg.norm(positions - positions[:, [marker]], axis=-1)
+        enough = np.isfinite(distances).sum(axis=0) >= max(
+            2.0, MIN_OBSERVED_FRACTION * n_frames
+        )
+        distances = distances[:, enough]
+        if not distances.size:
             continue
-        low, usual[marker, enough], high = np.nanpercentile(apart, ODDEST, axis=0)
-        wide = (high - low) / WIDTH
-        jitter = NORMAL * nan_median(np.abs(np.diff(apart, n=2, axis=0))) / np.sqrt(6.0)
-        spread[marker, enough] = np.sqrt(np.maximum(wide**2 - np.nan_to_num(jitter) ** 2, 0.0))
-    return usual, spread
+        low, median[marker, enough], high = np.nanpercentile(
+            distances, SPREAD_PERCENTILES, axis=0
+        )
+        total = (high - low) / PERCENTILES_TO_SIGMA
+        jitter = (
+            MAD_TO_SIGMA * nan_median(np.abs(np.diff(distances, n=2, axis=0))) / np.sqrt(6.0)
+        )
+        spread[marker, enough] = np.sqrt(np.maximum(total**2 - np.nan_to_num(jitter) ** 2, 0.0))
+    return median, spread
 
 
-def _groups(usual: Array, spread: Array, settings: ClusterSettings) -> list[list[int]]:
+def _groups(median: Array, spread: Array, settings: ClusterSettings) -> list[list[int]]:
     """Return the members of each cluster."""
-    above = spread[np.triu_indices(len(spread), 1)]
-    above = above[np.isfinite(above)]
-    if not len(above) or np.median(above) < MOVES:
+    pairwise = spread[np.triu_indices(len(spread), 1)]
+    pairwise = pairwise[np.isfinite(pairwise)]
+    if not len(pairwise) or np.median(pairwise) < MIN_TAKE_SPREAD_M:
         return []
-    apart = np.where(usual <= settings.widest, np.nan_to_num(spread, nan=APART), APART)
-    apart = np.round(apart, 6)  # Rounding must not choose between what is equal.
-    np.fill_diagonal(apart, 0.0)
-    tree = linkage(squareform(np.maximum(apart, apart.T), checks=False), "complete")
+    distances = np.where(
+        median <= settings.widest, np.nan_to_num(spread, nan=UNLINKED_M), UNLINKED_M
+    )
+    distances = np.round(distances, 6)  # Rounding errors must not decide between ties.
+    np.fill_diagonal(distances, 0.0)
+    tree = linkage(squareform(np.maximum(distances, distances.T), checks=False), "complete")
     labels = fcluster(tree, settings.slack, "distance")
     groups = [np.flatnonzero(labels == label).tolist() for label in np.unique(labels)]
     return sorted(group for group in groups if len(group) > 1)
 
 
-def _cluster(tracks: Tracks, members: list[int], usual: Array, spread: Array) -> Cluster:
-    """Return the cluster with the median of its shapes, fitted onto each other in turn."""
-    places = tracks.positions[:, members]
-    whole = places[np.isfinite(places).all(axis=(1, 2))]
-    if len(whole) and len(members) > 2:
-        template = whole[len(whole) // 2]
-        for _ in range(N_TEMPLATES):
+def _cluster(tracks: Tracks, members: list[int], median: Array, spread: Array) -> Cluster:
+    """Return the cluster with its median shape, by alternating fits and medians."""
+    positions = tracks.positions[:, members]
+    complete = positions[np.isfinite(positions).all(axis=(1, 2))]
+    if len(complete) and len(members) > 2:
+        template = complete[len(complete) // 2]
+        for _ in range(N_ITERATIONS):
             template = template - template.mean(axis=0)
-            turns, shifts = fit_rigid_transform(template, whole)
-            template = nan_median(np.einsum("fji,fpj->fpi", turns, whole - shifts[:, None]))
+            rotations, translations = fit_rigid_transform(template, complete)
+            template = nan_median(
+                np.einsum("fji,fpj->fpi", rotations, complete - translations[:, None])
+            )
     else:
-        template = _from_distances(usual[np.ix_(members, members)])
+        template = _from_distances(median[np.ix_(members, members)])
     inside = spread[np.ix_(members, members)]
     names = tuple(tracks.names[member] for member in members)
     return Cluster(names, template - template.mean(axis=0), float(np.nanmax(inside)))
 
 
-def _from_distances(usual: Array) -> Array:
-    """Return a shape with given distances (classical scaling), for what no frame shows whole.
+def _from_distances(median: Array) -> Array:
+    """Return a shape with given distances (classical scaling), if no frame shows all markers.
 
-    Of two markers it is exact; its handedness is anyone's guess, so of more it is not asked.
+    It is exact for two markers. For more, its handedness is arbitrary.
     """
-    n_points = len(usual)
-    square = np.nan_to_num(usual) ** 2
+    n_points = len(median)
+    square = np.nan_to_num(median) ** 2
     centre = np.eye(n_points) - 1.0 / n_points
     values, vectors = np.linalg.eigh(-0.5 * centre @ square @ centre)
     order = np.argsort(values)[::-1][:3]

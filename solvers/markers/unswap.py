@@ -9,8 +9,8 @@ from ..motion import Tracks
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
 from .distances import Distances, learn_distances
-from .lost_labels import mistaken_runs
-from .pair_swaps import PairSwap, candidates, most_likely_swap
+from .lost_labels import find_mistaken_labels
+from .pair_swaps import PairSwap, find_candidate_pairs, most_likely_swap
 
 Array = NDArray[np.float64]
 MAX_SWAPS = 500
@@ -100,7 +100,7 @@ def _find_changes(
     changes: list[PairSwap] = []
     open_swaps = {
         pair: most_likely_swap(positions, pair, distances, frame_rate)
-        for pair in candidates(positions, distances, frame_rate)
+        for pair in find_candidate_pairs(positions, distances, frame_rate)
     }
     while len(changes) < MAX_SWAPS:
         significant = [
@@ -114,7 +114,7 @@ def _find_changes(
         for pair in open_swaps:
             if {best.first, best.second} & set(pair):
                 open_swaps[pair] = most_likely_swap(positions, pair, distances, frame_rate)
-    for change in mistaken_runs(positions, distances):
+    for change in find_mistaken_labels(positions, distances):
         _swap_labels(positions, change)
         changes.append(change)
     return changes
