@@ -44,7 +44,7 @@ def constrain_clusters(
     ----------
     tracks : Tracks
     clusters : sequence of Cluster
-        Of this take (`rigid_clusters`) or of another with the same markers on the same actor.
+        Of this take (`find_rigid_clusters`) or of another with the same markers on the same actor.
     progress : Progress
 
     Raises

@@ -1,16 +1,17 @@
 """Clean poses from the joints of a depth camera, where its tracker erred or lost them.
 
 >>> import numpy as np
->>> from solvers.motion import JOINTS, JointRecording, Sensor, Tracks
->>> from solvers.motion.humanoid import POSTURE_JOINTS, joints_of_names, motion_postures
+>>> from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor, Tracks
+>>> from solvers.motion.humanoid import POSTURE_JOINTS, posture_joint_indices
+>>> from solvers.motion.humanoid import postures_from_motion
 >>> from solvers.reconstruction import build_posture_library, reconstruct_postures
 >>> from solvers.samples import GaitSettings, walking_gait
 >>> walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
->>> names = JOINTS[Sensor.KINECT_V1]
->>> roles = {column: role for role, column in joints_of_names(names).items()}
+>>> names = SENSOR_JOINTS[Sensor.KINECT_V1]
+>>> roles = {column: role for role, column in posture_joint_indices(names).items()}
 >>> order = [POSTURE_JOINTS.index(roles[column]) for column in range(len(names))]
->>> true = motion_postures(walk)[:, order]
->>> hand = joints_of_names(names)["leftHand"]
+>>> true = postures_from_motion(walk)[:, order]
+>>> hand = posture_joint_indices(names)["leftHand"]
 >>> tracked = true.copy()
 >>> tracked[10:20, hand] = np.nan
 >>> recording = JointRecording(Tracks(names, tracked, 30.0), None, Sensor.KINECT_V1)

@@ -50,7 +50,7 @@ def read_clip_twists(motion: Motion, postures: Array) -> ClipTwists:
     ----------
     motion : Motion
     postures : shape (n_frames, 20, 3), meters
-        Its `motion_postures`.
+        Its `postures_from_motion`.
     """
     humanoid = find_humanoid_map(motion.skeleton)
     joints = humanoid.indices(motion.skeleton)
