@@ -102,20 +102,20 @@ def _never_seen(recording: Recording, in_armature: bool) -> str:
     if in_armature and isinstance(recording, JointRecording):
         whole = with_hips(recording)
         if whole is not recording:
-            return f", with hips, never seen, between the legs{_never_seen(whole, True)}"
+            return f", with hips added between the legs{_never_seen(whole, True)}"
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording
     lost = [tracks.names[point] for point in np.flatnonzero(~tracks.visible.any(axis=0))]
     if not lost:
         return ""
     more = f" and {len(lost) - NAMED} more" * (len(lost) > NAMED)
-    return f", without {', '.join(lost[:NAMED])}{more}, never seen"
+    return f", without {', '.join(lost[:NAMED])}{more} (never observed)"
 
 
 def _seen(tracks: Tracks) -> Tracks:
     """Leave out points that were never seen: they would stand at the origin, seen for sure."""
     seen = np.flatnonzero(tracks.visible.any(axis=0))
     if not len(seen):
-        raise InvalidMotionError("No point is ever seen.")
+        raise InvalidMotionError("The recording has no observed points.")
     confidence = None if tracks.confidence is None else tracks.confidence[:, seen]
     names = tuple(tracks.names[point] for point in seen)
     return Tracks(names, tracks.positions[:, seen], tracks.frame_rate, confidence)

@@ -21,7 +21,7 @@ def why_not_mark(context: bpy.types.Context) -> str:
     """Return why nothing can become an asset, or nothing."""
     armature = selected_armature(context)
     if armature is None:
-        return "Select an armature that plays the action."
+        return "Select an armature with an action."
     try:
         action, _ = played_source(armature)
     except InvalidMotionError as error:

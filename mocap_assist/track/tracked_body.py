@@ -58,7 +58,7 @@ class TrackedBody:
             return _parsed(armature.data[KEY])
         except (ValueError, TypeError, KeyError, MocapAssistError):
             raise InvalidMotionError(
-                f"{armature.name} keeps no body. Only armatures that Track has made do."
+                f"{armature.name} is not a tracked armature. Select one that Track has created."
             ) from None
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +10,7 @@ from ..errors import InvalidMotionError
 from ..motion import JointLimits, Motion, Tracks
 from ..motion.skeletons import find_cuts, is_short, pieces, tell_of_cuts
 from ..progress import Progress, unwatched, within
-from ..settings import Settings, setting
+from ..settings import Choice, Settings, setting
 from .channels import CENTIMETRES, Channels, decode, encode
 from .limits import impossible_turns, keep_within
 from .marker_gaps import FilledMarkers, fill_markers
@@ -27,11 +26,11 @@ UNSURE = 5.0
 """Standard deviation, degrees or centimetres, at which confidence is one half."""
 
 
-class Method(Enum):
+class Method(Choice):
     """Ways to denoise."""
 
-    DEFAULT = "default"
-    PUBLISHED = "published"
+    DEFAULT = "default", "Estimate the noise of the take and weight all patterns"
+    PUBLISHED = "published", "Filter as printed by Lou and Chai (2010)", "Lou and Chai 2010"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,12 +39,11 @@ class DenoiseSettings(Settings):
 
     method: Method = setting(
         Method.DEFAULT,
-        "Default estimates the noise and weighs every pattern; published is the filter of"
-        " Lou and Chai (2010) as printed",
+        "Denoising method; the default measured best",
         advanced=True,
     )
     strength: float = setting(
-        1.0, "How far to go from recording to estimate; gaps are filled at any strength",
+        1.0, "Blend from recorded to cleaned motion; gaps are filled at any strength",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
 

@@ -27,22 +27,26 @@ class FloorSettings(Settings):
     """How the floor is looked for."""
 
     tilt: float = setting(
-        40.0, "How far the camera may be tilted; more also takes slopes for floors",
+        40.0, "Largest tilt of the camera; higher also accepts slopes as floors",
         unit="degrees", minimum=1.0, maximum=80.0,
     )  # fmt: skip
     extent: float = setting(
-        0.25, "Standard deviation of the floor's seen part in its narrower direction; more"
-        " refuses small patches", unit="m", minimum=0.01, maximum=10.0,
+        0.25,
+        "Minimum spread of the visible floor in its narrow direction; higher rejects small"
+        " patches", unit="m", minimum=0.01, maximum=10.0,
     )  # fmt: skip
     share: float = setting(
-        0.03, "Share of what is seen that the floor must have; more refuses small patches",
+        0.03,
+        "Minimum fraction of the visible points on the floor; higher rejects small patches",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     n_trials: int = setting(
-        600, "Planes that are tried; more finds floors of which little is seen",
+        600, "Number of planes to try; more finds floors that are barely visible",
         minimum=1, maximum=100_000, advanced=True,
     )  # fmt: skip
-    seed: int = setting(0, "Which random points are tried", minimum=0, maximum=2**31 - 1)
+    seed: int = setting(
+        0, "Another seed tries other random points", minimum=0, maximum=2**31 - 1
+    )
 
 
 @dataclass(frozen=True, eq=False)

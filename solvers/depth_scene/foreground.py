@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 from functools import lru_cache
 
 import numpy as np
@@ -10,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..progress import Progress, unwatched
-from ..settings import Settings, setting
+from ..settings import Choice, Settings, setting
 from .bodies import Bodies, find_bodies
 from .camera import Camera
 from .floor import Floor
@@ -31,16 +30,23 @@ ASTRAY = 1.2
 """Metres from where the actor was expected, beyond which a body is someone else."""
 
 
-class ForegroundWay(Enum):
+class ForegroundWay(Choice):
     """How the actor is told from the room."""
 
-    AUTOMATIC = "automatic"
+    AUTOMATIC = (
+        "automatic",
+        "Detect what moves and remove the floor, unless the file has a mask",
+    )
     """As recorded where nothing else is in the picture; else what moves, without the floor."""
-    RECORDED = "recorded"
+    RECORDED = "recorded", "Treat everything in the recording as the actor", "From File"
     """All that the pictures hold is the actor."""
-    CUT = "cut"
+    CUT = "cut", "Keep what lies between two distances and above the floor", "Depth Range"
     """Between two distances and above the floor."""
-    BACKGROUND = "background"
+    BACKGROUND = (
+        "background",
+        "Keep what is nearer than a recording of the empty room",
+        "Empty-Room Frame",
+    )
     """Nearer than the empty room."""
 
 
@@ -48,28 +54,42 @@ class ForegroundWay(Enum):
 class ForegroundSettings(Settings):
     """What may belong to the actor."""
 
-    way: ForegroundWay = setting(ForegroundWay.AUTOMATIC, "How the actor is told from the room")
+    way: ForegroundWay = setting(
+        ForegroundWay.AUTOMATIC,
+        "How the actor is separated from the background",
+        label="Actor Mask",
+    )
     nearest: float = setting(
-        0.3, "What is nearer to the camera is cut away", unit="m", minimum=0.0, maximum=50.0
+        0.3,
+        "Remove points nearer to the camera than this",
+        unit="m",
+        minimum=0.0,
+        maximum=50.0,
+        label="Min Distance",
     )
     farthest: float = setting(
-        6.0, "What is farther from the camera is cut away", unit="m", minimum=0.1, maximum=50.0
+        6.0,
+        "Remove points farther from the camera than this",
+        unit="m",
+        minimum=0.1,
+        maximum=50.0,
+        label="Max Distance",
     )
     above_floor: float = setting(
-        0.03, "What is lower above the floor is cut away; more cuts off feet",
+        0.03, "Remove points lower above the floor; higher cuts off feet",
         unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     before_background: float = setting(
-        0.05, "What is less in front of the empty room is cut away; more cuts off feet",
+        0.05, "Remove points less far in front of the empty room; higher cuts off feet",
         unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     smallest_body: float = setting(
-        0.08, "Seen surface of the smallest body that is taken for a person; more overlooks"
-        " persons of whom little is seen", unit="m²", minimum=0.001, maximum=5.0,
+        0.08, "Minimum visible surface of a person; higher misses partly hidden people",
+        unit="m²", minimum=0.001, maximum=5.0, label="Min Body Area",
     )  # fmt: skip
     largest_body: float = setting(
-        2.0, "Seen surface of the largest body that is taken for a person, and not for a wall",
-        unit="m²", minimum=0.1, maximum=50.0,
+        2.0, "Maximum visible surface of a person; larger bodies count as walls",
+        unit="m²", minimum=0.1, maximum=50.0, label="Max Body Area",
     )  # fmt: skip
 
 

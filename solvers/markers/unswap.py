@@ -22,7 +22,7 @@ class UnswapSettings(Settings):
     """How sure a swap has to be."""
 
     evidence: float = setting(
-        8.0, "How strongly jumps and distances must speak for a swap; higher leaves more alone",
+        8.0, "Evidence needed to change a label; higher changes fewer labels",
         minimum=1.0, maximum=100.0,
     )  # fmt: skip
 

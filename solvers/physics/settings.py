@@ -1,18 +1,21 @@
 """The settings of Physics."""
 
 from dataclasses import dataclass
-from enum import Enum
 
-from ..settings import Settings, setting
+from ..settings import Choice, Settings, setting
 
 
-class Ground(Enum):
+class Ground(Choice):
     """Where the ground is."""
 
-    LIKELY = "likely"
+    LIKELY = (
+        "likely",
+        "Use the given height where the take stands near it, else the feet",
+        "Auto",
+    )
     """At the given height where the take stands near it, or else under the feet."""
-    HEIGHT = "height"
-    FEET = "auto"
+    HEIGHT = "height", "Put the ground at the given height", "Fixed Height"
+    FEET = "auto", "Put the ground under the feet of the take", "Under Feet"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,26 +23,24 @@ class SimulateSettings(Settings):
     """How a motion is simulated."""
 
     strength: float = setting(
-        1.0, "How much of the simulation the result takes over; 0 leaves the take as it is",
+        1.0, "Blend from captured to simulated motion; 0 leaves the take unchanged",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     ground: Ground = setting(
         Ground.LIKELY,
-        "Where the ground is: at a given height, or under the feet of the take;"
-        " or, likely, at the height if the take stands near it, else under the feet",
+        "Where the ground is",
     )
     ground_height: float = setting(
         0.0, "Height of the ground, unless it is under the feet",
         unit="m", minimum=-1e4, maximum=1e4,
     )  # fmt: skip
     response: float = setting(
-        5.0, "How quickly joints are pulled to the captured pose; higher follows it closer,"
-        " lower is softer and lags behind",
+        5.0,
+        "How quickly joints follow the captured pose; higher follows closer, lower is softer",
         unit="Hz", minimum=0.5, maximum=15.0,
     )  # fmt: skip
     smoothing: float = setting(
-        0.02, "Standard deviation of the Gaussian that calms the take first; higher is calmer"
-        " but blurs quick moves",
+        0.02, "Smooth the take before simulation; higher is smoother but blurs fast motion",
         unit="s", minimum=0.0, maximum=0.5,
     )  # fmt: skip
     friction: float = setting(
@@ -47,11 +48,10 @@ class SimulateSettings(Settings):
         minimum=0.0, maximum=5.0,
     )  # fmt: skip
     plant: bool = setting(
-        True, "Also keep feet from creeping and slipping where they stand; off leaves them to"
-        " friction alone",
+        True, "Keep planted feet from slipping; off leaves them to friction alone",
+        label="Pin Feet",
     )  # fmt: skip
     support: float = setting(
-        0.4, "Force from outside that may keep the body from falling, as a share of its weight;"
-        " lower leaves more to its own legs",
+        0.4, "Balancing force, as fraction of the body weight; lower relies more on the legs",
         minimum=0.0, maximum=3.0, advanced=True,
     )  # fmt: skip

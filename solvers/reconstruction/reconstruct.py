@@ -1,7 +1,6 @@
 """Both ways together: postures of clean clips for what was lost, residuals for what is off."""
 
 from dataclasses import dataclass, replace
-from enum import Enum
 from functools import cache
 from pathlib import Path
 
@@ -10,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..motion import JointRecording, Sensor, Tracks
 from ..progress import Progress, unwatched, within
-from ..settings import Settings, setting
+from ..settings import Choice, Settings, setting
 from ..signals import bridged, steadied
 from .joint_rotations import Reconstruction
 from .pose_completion import (
@@ -52,18 +51,30 @@ CALM = 0.1
 """Seconds of the Gaussian that calms what was seen."""
 
 
-class ReconstructMethod(Enum):
+class ReconstructMethod(Choice):
     """What poses are rebuilt with."""
 
-    BOTH = "both"
+    BOTH = "both", "Rebuild missing joints from clean poses, then correct sensor errors"
     """Lost joints by postures of clean clips, then all by the residual prior."""
-    POSTURES = "postures"
+    POSTURES = "postures", "Only rebuild missing joints from clean poses", "Poses Only"
     """Postures of clean clips alone."""
-    RESIDUALS = "residuals"
+    RESIDUALS = (
+        "residuals",
+        "Only correct sensor errors; gaps are interpolated smoothly",
+        "Sensor Errors Only",
+    )
     """The residual prior alone; gaps are bridged smoothly."""
-    PUBLISHED_POSTURES = "shum"
+    PUBLISHED_POSTURES = (
+        "shum",
+        "Rebuild missing joints as published by Shum et al. (2013)",
+        "Shum et al. 2013",
+    )
     """[SHJT13]: its reliability, and its stochastic search frame after frame."""
-    PUBLISHED_RESIDUALS = "zhou"
+    PUBLISHED_RESIDUALS = (
+        "zhou",
+        "Correct sensor errors as published by Zhou et al. (2014)",
+        "Zhou et al. 2014",
+    )
     """[ZH14]: the same reliability, and its three terms frame after frame."""
 
 
@@ -73,28 +84,23 @@ class ReconstructSettings(Settings):
 
     method: ReconstructMethod = setting(
         ReconstructMethod.BOTH,
-        "Both rebuilds lost joints from clean postures and then takes out how the sensor errs;"
-        " the others do one of these alone; Shum and Zhou do so as their papers have it",
+        "What to rebuild, and how",
     )
     smoothing: float = setting(
-        0.05, "Movements shorter than about this are jitter; higher is smoother and blunter",
+        0.05, "Remove jitter shorter than about this; higher is smoother but blurs motion",
         unit="s", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     n_neighbours: int = setting(
-        30, "Clean postures that each lost pose is made of; more vary more",
-        minimum=2, maximum=200,
+        30, "Number of clean poses that each rebuilt pose is made of; more vary more",
+        minimum=2, maximum=200, label="Neighbors",
     )  # fmt: skip
     inferred: float = setting(
-        0.5, "What a joint counts for that the sensor itself only guessed; 0 rebuilds all of"
-        " them, as published; 0.5 those that also look wrong",
-        minimum=0.0, maximum=1.0,
+        0.5, "Weight of joints that the sensor only guessed; 0 rebuilds them all",
+        minimum=0.0, maximum=1.0, label="Weight of Inferred Joints",
     )  # fmt: skip
-    causal: bool = setting(
-        False, "Use only what came before each frame, as a live system must; less smooth"
-    )
+    causal: bool = setting(False, "Use only earlier frames, as in a live system; less smooth")
     shift: bool = setting(
-        False, "Also move each joint by the offset that the prior's sensor always has, as from"
-        " the skin to the joint; for recordings of the very sensor that the prior learned",
+        False, "Also correct the constant joint offsets of this sensor model",
     )  # fmt: skip
 
 

@@ -1,7 +1,6 @@
 """Let another body make the same motion: retargeting."""
 
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,7 @@ from ..motion import (
 )
 from ..progress import Progress, unwatched
 from ..rotations import IDENTITY
-from ..settings import Settings, setting
+from ..settings import Choice, Settings, setting
 from .body import SIDES, Body, find_body, without_gaps
 from .feet import place_feet
 from .hands import place_hands
@@ -32,12 +31,12 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-class RootMotion(Enum):
+class RootMotion(Choice):
     """What becomes of the way that the body covers."""
 
-    KEEP = "keep"
-    IN_PLACE = "in place"
-    ROOT_BONE = "root bone"
+    KEEP = "keep", "Keep the travel on the hips", "On Hips"
+    IN_PLACE = "in place", "Remove the travel, so that the body moves on the spot"
+    ROOT_BONE = "root bone", "Move the travel to the bone above the hips", "On Root Bone"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,38 +44,40 @@ class RetargetSettings(Settings):
     """How a motion is given to another rig."""
 
     root_motion: RootMotion = setting(
-        RootMotion.KEEP, "Keep the travel on the hips, take it out so that the body moves on"
-        " the spot, or put it on the bone above the hips"
+        RootMotion.KEEP, "Where the travel of the body goes"
     )  # fmt: skip
     travel_scale: float = setting(
-        0.0, "The way over the ground is multiplied by this; higher goes farther, 1 hits the"
-        " source's marks, 0 lets it grow with the legs",
+        0.0,
+        "Scale of the travel; 1 keeps the source's distances, 0 scales with the leg length",
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
     keep_feet: bool = setting(
-        True, "Let the ankles follow the source's paths, grown with the legs, so that they"
-        " slide no more than there as far as the legs reach"
+        True, "Scale foot paths to the leg length to avoid sliding", label="Match Foot Contacts"
     )  # fmt: skip
     keep_hands: bool = setting(
-        True, "Let the hands reach as far as the source's, for the arm's length, and meet where"
-        " those do"
+        True,
+        "Let hands reach as far as the source's for the arm length, and meet where those do",
+        label="Match Hand Reach",
     )  # fmt: skip
     to_ground: bool = setting(
-        False, "Put the ground that the source stands on to height 0: for sensors that measure"
-        " heights from themselves"
+        False,
+        "Put the ground of the source at height 0, for sensors that measure from themselves",
+        label="Place on Floor",
     )  # fmt: skip
     softness: float = setting(
-        0.005, "Part of the leg's length that is kept in reserve so that knees do not snap"
-        " straight; higher lowers the hips more",
-        minimum=0.0, maximum=0.2, advanced=True,
+        0.005, "Fraction of the leg length kept in reserve; higher lowers the hips more",
+        minimum=0.0, maximum=0.2, advanced=True, label="Leg Stretch Limit",
     )  # fmt: skip
     travel_smoothing: float = setting(
-        0.5, "Standard deviation of the blur that tells travel from the sway of each step;"
-        " higher leaves more sway on the hips",
+        0.5, "Blur that separates travel from the sway of steps; higher leaves more sway on the"
+        " hips",
         unit="s", minimum=0.0, maximum=10.0, advanced=True,
     )  # fmt: skip
     turn_root: bool = setting(
-        True, "Let the root bone also turn to where the body faces", advanced=True
+        True,
+        "Also turn the root bone to where the body faces",
+        advanced=True,
+        label="Turn Root Bone",
     )
 
 

@@ -28,40 +28,47 @@ class PlantSettings(Settings):
 
     blend: float = setting(
         0.3,
-        "Time over which a planted foot eases into its own motion; higher is softer, but moves"
-        " the foot for longer",
+        "Time to blend a planted foot back to its own motion; higher is softer and lasts"
+        " longer",
         unit="s",
         minimum=0.02,
         maximum=2.0,
     )
     hold: float = setting(
         10.0,
-        "A foot that slides for much longer than this may creep instead of ending up far from"
-        " where it was captured; higher holds stricter",
+        "Longest time a sliding foot stays fixed before it may creep; higher is stricter",
         unit="s",
         minimum=0.5,
         maximum=1000.0,
         advanced=True,
+        label="Max Contact Time",
     )
     hold_rotation: bool = setting(
-        True, "Also keep a foot that stands flat from turning and tilting"
+        True,
+        "Also keep feet that stand flat from turning and tilting",
+        label="Lock Foot Rotation",
     )
     floor: bool = setting(
-        True, "Put planted feet that are near the floor onto it, all to the same height"
+        True,
+        "Put planted feet that are near the floor onto it, all at one height",
+        label="Level Floor",
     )
     softness: float = setting(
         0.01,
-        "Part of the leg's length that is kept in reserve so that knees do not snap straight;"
-        " higher bends knees more and lowers the hips more",
+        "Fraction of the leg length kept in reserve; higher bends knees more and lowers the"
+        " hips",
         minimum=0.0,
         maximum=0.2,
         advanced=True,
+        label="Leg Stretch Limit",
     )
     spare_knees: bool = setting(
-        True, "Let the heel of a rolling foot give way so that the knee bends smoothly"
+        True,
+        "Let the heel of a rolling foot lift so that the knee bends smoothly",
+        label="Protect Knees",
     )
     move_root: bool = setting(
-        True, "Shift the hips a little, and smoothly, where a leg cannot reach"
+        True, "Shift the hips slightly and smoothly where a leg cannot reach", label="Move Hips"
     )
 
 

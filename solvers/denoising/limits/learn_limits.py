@@ -31,23 +31,23 @@ class JointLimitsSettings(Settings):
 
     percentile: float = setting(
         0.5,
-        "Share of the examples' extremes, in percent at each end, that may be faults and is"
-        " left out; higher gives tighter limits",
+        "Percent of the examples' extremes ignored as errors at each end; higher tightens"
+        " limits",
         unit="%",
         minimum=0.0,
         maximum=25.0,
     )
     margin: float = setting(
         np.radians(10.0),
-        "How far beyond the examples a joint may turn; higher gives wider limits",
+        "Rotation allowed beyond the examples; higher widens the limits",
         unit="rad",
         minimum=0.0,
         maximum=np.pi,
     )
     stretch: float = setting(
         0.2,
-        "How far beyond the examples, as a part of their range, a joint may turn; higher gives"
-        " wider limits",
+        "Rotation allowed beyond the examples, as fraction of their range; higher widens"
+        " limits",
         minimum=0.0,
         maximum=10.0,
     )

@@ -54,11 +54,11 @@ class FilterBasesSettings(Settings):
     """How movement patterns are learned."""
 
     window: float = setting(
-        20 / 30, "Length of the patterns; longer ones know more of the course of a movement",
+        20 / 30, "Length of the motion patterns; longer patterns cover more of a movement",
         unit="s", minimum=0.1, maximum=3.0,
     )  # fmt: skip
     frame_rate: float = setting(
-        30.0, "Rate at which patterns are stored; higher keeps faster movements",
+        30.0, "Frame rate of the stored patterns; higher keeps faster movements",
         unit="Hz", minimum=5.0, maximum=240.0, advanced=True,
     )  # fmt: skip
 

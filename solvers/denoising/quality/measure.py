@@ -31,24 +31,25 @@ class QualitySettings(Settings):
 
     spike_threshold: float = setting(
         5.0,
-        "How many times the take's own noise a jump must exceed to be called a spike;"
-        " higher finds fewer",
+        "Jump that counts as a spike, in multiples of the take's noise; higher finds fewer",
         minimum=2.0,
         maximum=50.0,
     )
     smallest_turn: float = setting(
         np.radians(8.0),
-        "Turns that jump by less are never called spikes; higher finds fewer",
+        "Ignore rotation jumps below this angle; higher finds fewer spikes",
         unit="rad",
         minimum=0.0,
         maximum=np.pi,
+        label="Min Rotation Jump",
     )
     smallest_move: float = setting(
         0.02,
-        "Positions that jump by less are never called spikes; higher finds fewer",
+        "Ignore position jumps below this distance; higher finds fewer spikes",
         unit="m",
         minimum=0.0,
         maximum=10.0,
+        label="Min Position Jump",
     )
 
 

@@ -26,44 +26,53 @@ class SpotSettings(Settings):
     """What is worth a look."""
 
     n_spots: int = setting(
-        100, "Longest list of spots; more shows milder ones", minimum=1, maximum=10000
+        100,
+        "Maximum number of issues to list; more shows milder ones",
+        minimum=1,
+        maximum=10000,
+        label="Max Issues",
     )
     smallest_slide: float = setting(
         0.02,
-        "Way that a planted foot may slide unmentioned; higher shows fewer spots",
+        "Ignore planted feet that slide less; higher shows fewer issues",
         unit="m",
         minimum=0.001,
         maximum=1.0,
+        label="Min Foot Slide",
     )
     shake_ratio: float = setting(
         3.0,
-        "How many times the usual noise of the take a joint must shake; higher shows fewer",
+        "Shaking of a joint in multiples of the take's noise; higher shows fewer issues",
         minimum=1.0,
         maximum=100.0,
+        label="Jitter Ratio",
     )
     smallest_shake_turn: float = setting(
         np.radians(1.0),
-        "Shaking rotations below this are not mentioned",
+        "Ignore rotation jitter below this angle; higher shows fewer issues",
         unit="rad",
         minimum=0.0,
         maximum=np.pi,
         advanced=True,
+        label="Min Rotation Jitter",
     )
     smallest_shake_move: float = setting(
         0.002,
-        "Shaking positions below this are not mentioned",
+        "Ignore position jitter below this distance; higher shows fewer issues",
         unit="m",
         minimum=0.0,
         maximum=1.0,
         advanced=True,
+        label="Min Position Jitter",
     )
     pause: float = setting(
         0.2,
-        "Faults of one joint that are closer than this are one spot; higher merges more",
+        "Merge issues of one joint that are closer in time; higher merges more",
         unit="s",
         minimum=0.0,
         maximum=10.0,
         advanced=True,
+        label="Merge Time",
     )
 
 

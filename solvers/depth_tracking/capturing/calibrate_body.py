@@ -42,9 +42,7 @@ TRIED = tuple(1.3 + STEP * step for step in range(6))
 class CalibrationSettings(CylinderSettings):
     """How a body is measured."""
 
-    refine: bool = setting(
-        True, "Take lengths from how well whole bodies fit rather than from single limbs"
-    )
+    refine: bool = setting(True, "Fit bone lengths to whole bodies rather than to single limbs")
 
 
 USUAL = CalibrationSettings()

@@ -42,26 +42,29 @@ class RecoverySettings(Settings):
     """When the tracker is held to have failed, and what is done."""
 
     failure_test: FailureTest = setting(
-        FailureTest.LEARNED, "How a pose is held to be wrong: by a learned chance and by what"
-        " usually fits, or by the thresholds of [WZC12] (2.5 cm, 90 % overlap)",
+        FailureTest.LEARNED, "How the tracker detects a wrong pose",
     )  # fmt: skip
     failing_chance: float = setting(
-        0.5, "Learned chance of a wrong pose from which on the tracker has failed; less asks"
-        " the detector more often", minimum=0.0, maximum=1.0,
+        0.5, "Learned probability that a pose is wrong; lower runs the detector more often",
+        minimum=0.0, maximum=1.0, label="Failure Probability",
     )  # fmt: skip
     failing_drop: float = setting(
-        0.9, "Share of what usually fits below which it has failed", minimum=0.0, maximum=1.0
+        0.9,
+        "Fraction of the typical fit below which a pose is wrong",
+        minimum=0.0,
+        maximum=1.0,
+        label="Failure Drop",
     )
     gain: float = setting(
-        0.03, "How much better a detected pose must fit to be taken; more trusts the tracker",
+        0.03, "Improvement in fit required of a detected pose; higher prefers the tracker",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     patience: int = setting(
-        5, "Frames until the detector is asked again while the tracker fails; more is faster",
+        5, "Frames between detector runs while the tracker fails; higher is faster",
         minimum=1, maximum=1000,
     )  # fmt: skip
     check_every: int = setting(
-        15, "Frames after which the detector is asked in any case; more is faster",
+        15, "Frames between routine detector runs; higher is faster",
         minimum=1, maximum=100_000,
     )  # fmt: skip
 

@@ -29,19 +29,20 @@ class RetrackSettings(Settings):
     """How far a correction reaches."""
 
     reach: float = setting(
-        5.0, "How long before and after the corrected frame anything may be changed; more"
-        " takes longer", unit="s", minimum=0.0, maximum=3600.0,
+        5.0, "Time before and after the corrected frame that may change; higher takes longer",
+        unit="s", minimum=0.0, maximum=3600.0,
     )  # fmt: skip
     agreement: float = setting(
-        0.03, "Distance of a joint, surely seen, at which it is where it was before; more stops"
-        " sooner", unit="m", minimum=1e-3, maximum=1.0,
+        0.03,
+        "Distance at which a visible joint agrees with the old motion; higher stops sooner",
+        unit="m", minimum=1e-3, maximum=1.0,
     )  # fmt: skip
     blend: float = setting(
-        0.25, "How long the new course takes to go over into the old one", unit="s",
+        0.25, "Time to blend from the new to the old motion", unit="s",
         minimum=0.0, maximum=10.0,
     )  # fmt: skip
     smoothing: float = setting(
-        1.0, "How smooth the new course is made; 0 leaves every frame as tracked",
+        1.0, "Amount of smoothing of the new motion; 0 leaves every frame as tracked",
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
 

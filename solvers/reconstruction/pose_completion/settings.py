@@ -1,19 +1,22 @@
 """How postures are reconstructed from a library."""
 
 from dataclasses import dataclass
-from enum import Enum
 
-from ...settings import Settings, setting
+from ...settings import Choice, Settings, setting
 
 
-class PostureMethod(Enum):
+class PostureMethod(Choice):
     """How a posture is chosen among those that its neighbours span."""
 
-    PROBABLE = "probable"
+    PROBABLE = "probable", "Choose the most probable pose of a normal distribution"
     """The most probable one, if the neighbours are a sample of a normal distribution."""
-    ENERGY = "energy"
+    ENERGY = "energy", "Choose the pose of least energy by Gauss-Newton steps"
     """That of least energy [SHJT13, eq. 15], by Gauss-Newton steps."""
-    PUBLISHED = "published"
+    PUBLISHED = (
+        "published",
+        "Search frame by frame as published by Shum et al. (2013)",
+        "Shum et al. 2013",
+    )
     """The same by the stochastic search of [SHJT13], frame after frame; nothing else is done,
     and `smoothing`, `memory`, `pace` and `rounds` are not looked at."""
 
@@ -23,41 +26,39 @@ class PostureSettings(Settings):
     """How postures are reconstructed."""
 
     method: PostureMethod = setting(
-        PostureMethod.PROBABLE, "What is taken for the best posture among those that are alike"
+        PostureMethod.PROBABLE, "How the best pose is chosen among similar ones"
     )
-    causal: bool = setting(
-        False, "Use only what came before each frame, as a live system must; less smooth"
-    )
+    causal: bool = setting(False, "Use only earlier frames, as in a live system; less smooth")
     n_neighbours: int = setting(
-        30, "Postures of the library that each posture is made of; more vary more",
+        30, "Number of library poses that each pose is made of; more vary more",
         minimum=2, maximum=200,
     )  # fmt: skip
     n_dimensions: int = setting(
-        20, "Ways in which a posture may differ from its neighbours' mean",
+        20, "Dimensions in which a pose may differ from the mean of its neighbors",
         minimum=1, maximum=60, advanced=True,
     )  # fmt: skip
     noise: float = setting(
-        0.005, "Error of joints that are trusted; more makes them steadier", unit="m",
+        0.005, "Position error of reliable joints; higher smooths them more", unit="m",
         minimum=1e-4, maximum=0.1,
     )  # fmt: skip
     smoothing: float = setting(
-        0.1, "Over how long synthesised postures are smoothed", unit="s",
+        0.1, "Time over which synthesized poses are smoothed", unit="s",
         minimum=0.0, maximum=2.0,
     )  # fmt: skip
     memory: float = setting(
-        0.5, "How long a lost joint remembers where it was seen", unit="s",
+        0.5, "How long a missing joint remembers where it was observed", unit="s",
         minimum=0.02, maximum=10.0, advanced=True,
     )  # fmt: skip
     pace: float = setting(
-        0.2, "How much movement counts against the posture when looking for like ones; 0 as"
-        " published", unit="s", minimum=0.0, maximum=2.0, advanced=True,
+        0.2, "Weight of velocity against pose when searching similar poses; 0 as published",
+        unit="s", minimum=0.0, maximum=2.0, advanced=True,
     )  # fmt: skip
     rounds: int = setting(
-        2, "How often like postures are looked for, each time with what was found before",
+        2, "Number of searches for similar poses, each with the previous result",
         minimum=1, maximum=10, advanced=True,
     )  # fmt: skip
     seed: int = setting(
-        0, "Start of the random numbers of the published method", minimum=0, maximum=2**31 - 1,
+        0, "Random seed of the published method", minimum=0, maximum=2**31 - 1,
         advanced=True,
     )  # fmt: skip
 

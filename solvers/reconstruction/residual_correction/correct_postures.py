@@ -1,7 +1,6 @@
 """Take a sensor's errors out of a recording with a residual prior [ZH14, chapter 5]."""
 
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +8,7 @@ from numpy.typing import NDArray
 from ...motion import JointRecording
 from ...motion.humanoid import posture_positions
 from ...progress import Progress, unwatched, within
-from ...settings import Settings, setting
+from ...settings import Choice, Settings, setting
 from ...signals import bridged
 from ..joint_rotations import LimbTwists, Reconstruction, all_joints, anchors, follow_joints
 from ..reliability import Reliability, measure_reliability, posture_reliability
@@ -29,12 +28,16 @@ SURE_WITHIN = 0.05
 """Metres. Confidence is the chance that a joint lies within this of where it was."""
 
 
-class CorrectionMethod(Enum):
+class CorrectionMethod(Choice):
     """How offsets, smoothness and trust are brought together."""
 
-    WHOLE_TAKE = "whole take"
-    CAUSAL = "causal"
-    PUBLISHED = "published"
+    WHOLE_TAKE = "whole take", "Smooth over the frames before and after each frame"
+    CAUSAL = "causal", "Smooth over the frames before each frame only"
+    PUBLISHED = (
+        "published",
+        "Weight three terms frame by frame, as Zhou et al. (2014)",
+        "Zhou et al. 2014",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,32 +46,29 @@ class CorrectionSettings(Settings):
 
     method: CorrectionMethod = setting(
         CorrectionMethod.WHOLE_TAKE,
-        "Whole take smooths over what was before and after each frame, causal over what was"
-        " before; published weighs three terms frame by frame as Zhou 2014",
+        "How offsets, smoothness and reliability are combined",
     )
     smoothing: float = setting(
-        0.05, "Movements shorter than about this are jitter; higher is smoother and blunter",
+        0.05, "Remove jitter shorter than about this; higher is smoother but blurs motion",
         unit="s", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     shift: bool = setting(
-        True, "Also move each joint by the offset that the sensor always has, as from the skin"
-        " to the joint; false leaves joints on average where they were seen",
+        True, "Also correct the constant joint offset of the sensor, as from skin to joint",
     )  # fmt: skip
     change: float = setting(
-        0.9, "How much is applied of the offsets' change with posture; 1 takes the prior at"
-        " its word, also in movements that it has never seen (published: all, unless 0)",
+        0.9, "How much of the pose-dependent offset to apply; 1 relies fully on the prior",
         minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
     spatial: float = setting(
-        0.6, "Weight of the foretold offsets; published method only",
+        0.6, "Weight of the predicted offsets; published method only",
         minimum=0.0, maximum=10.0, advanced=True,
     )  # fmt: skip
     temporal: float = setting(
-        0.2, "Weight of steady velocities; published method only",
+        0.2, "Weight of constant velocities; published method only",
         minimum=0.0, maximum=10.0, advanced=True,
     )  # fmt: skip
     trust: float = setting(
-        0.2, "Weight of staying where reliable joints were seen; published method only",
+        0.2, "Weight of staying at reliable observations; published method only",
         minimum=0.0, maximum=10.0, advanced=True,
     )  # fmt: skip
 

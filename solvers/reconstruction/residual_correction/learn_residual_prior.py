@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,7 @@ from ...motion.humanoid import (
     turned,
 )
 from ...progress import Progress, unwatched
-from ...settings import Settings, setting
+from ...settings import Choice, Settings, setting
 from .inputs import calm_postures, filled, neighbourhood
 from .kernel import Kernel, learn_kernel
 from .learn_movement_process import Take, learn_movement_process
@@ -37,11 +36,15 @@ FEWEST = 20
 """Frames in which a joint must be known to be learned."""
 
 
-class ResidualMethod(Enum):
+class ResidualMethod(Choice):
     """How errors are learned."""
 
-    HIERARCHICAL = "hierarchical"
-    PUBLISHED = "published"
+    HIERARCHICAL = "hierarchical", "Learn from neighboring joints and from the whole pose"
+    PUBLISHED = (
+        "published",
+        "Learn from neighboring joints only, as Zhou et al. (2014)",
+        "Zhou et al. 2014",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,40 +53,40 @@ class ResidualPriorSettings(Settings):
 
     method: ResidualMethod = setting(
         ResidualMethod.HIERARCHICAL,
-        "Hierarchical looks at neighbours and at the whole posture, and tells apart what is"
-        " common to all actors; published looks at the joint's neighbours alone, as Zhou 2014",
+        "How sensor errors are learned",
     )
     local_points: int = setting(
-        60, "Inducing points of each joint and its neighbours; more is finer and slower",
+        60, "Inducing points of each joint and its neighbors; more is finer and slower",
         minimum=5, maximum=500, advanced=True,
     )  # fmt: skip
     whole_points: int = setting(
-        100, "Inducing points of whole postures; more is finer and slower",
+        100, "Inducing points of whole poses; more is finer and slower",
         minimum=5, maximum=500, advanced=True,
     )  # fmt: skip
     movement_points: int = setting(
-        1500, "Movements that errors are compared with, where the method is hierarchical; more"
-        " is finer, slower and larger",
+        1500, "Movements to compare errors with; more is finer, slower and larger",
         minimum=20, maximum=5000, advanced=True,
     )  # fmt: skip
     sample: int = setting(
-        500, "Frames that the hyper-parameters are learned from; more is surer and slower",
+        500, "Frames to learn the hyperparameters from; more is more accurate and slower",
         minimum=50, maximum=3000, advanced=True,
     )  # fmt: skip
     frame_rate: float = setting(
-        6.0, "Frames of a second that examples are thinned to",
+        6.0, "Frames per second to thin the examples to",
         unit="Hz", minimum=0.5, maximum=120.0, advanced=True,
     )  # fmt: skip
     mirror: bool = setting(
-        True, "Whether right limbs err as left ones do in a mirror; no, where the sensor stood"
-        " aside and always will",
+        True,
+        "Also learn each error with left and right exchanged; turn off for a sensor at the"
+        " side",
     )  # fmt: skip
     calm: float = setting(
-        1 / 30, "Gaussian that recordings are calmed with first; 0 as published",
+        1 / 30, "Width of the Gaussian that smooths recordings first; 0 as published",
         unit="s", minimum=0.0, maximum=0.5, advanced=True,
     )  # fmt: skip
     seed: int = setting(
-        0, "Chooses frames and first clusters", minimum=0, maximum=2**31 - 1, advanced=True
+        0, "Random seed of frames and first clusters", minimum=0, maximum=2**31 - 1,
+        advanced=True,
     )  # fmt: skip
 
 

@@ -204,7 +204,7 @@ def test_what_is_never_seen_is_said_and_takes_nothing_along(lossy, load, tmp_pat
 
     imported = files.import_files(blank.context, [tmp_path / "lost.csv"], choices)
 
-    assert "without SpineMid, never seen" in imported.sentence
+    assert "without SpineMid (never observed)" in imported.sentence
     bones = set(imported.made[0].data.bones.keys())
     assert {"Head", "WristLeft", "KneeRight"} <= bones
     assert "SpineMid" not in bones

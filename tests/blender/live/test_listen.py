@@ -38,7 +38,7 @@ def test_pressed_it_listens_on_loopback_only_and_pressed_again_it_stops(
     current = load("mocap_assist.live.listening").current()
     assert button.outcome == {"RUNNING_MODAL"} and window.modals == [button]
     assert current.receiver.address == ("127.0.0.1", port)
-    assert "Nobody is seen yet" in window.status[-1] and "Esc" in window.status[-1]
+    assert "No data yet" in window.status[-1] and "Esc" in window.status[-1]
 
     again = listen()
 

@@ -9,7 +9,7 @@ def test_at_first_there_is_the_button_and_the_port(draw):
 
 def test_while_it_listens_it_tells_what_it_hears(draw, listen, act):
     button = listen()
-    assert "Nobody is seen yet." in " ".join(draw("MOCAP_PT_perform"))
+    assert "No data yet." in " ".join(draw("MOCAP_PT_perform"))
 
     act(button, "hand up")
 

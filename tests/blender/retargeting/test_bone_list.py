@@ -87,7 +87,7 @@ def test_the_panel_says_what_is_missing(walker, blank, load, make_rig):
     shown.target = target.name
     assert why(blank.context) == ""
     blank.context.view_layer.objects.active = None
-    assert "Select the armature" in why(blank.context)
+    assert "Select the source armature" in why(blank.context)
 
 
 def test_actions_are_ticked_and_unticked(walker, blank):
