@@ -65,10 +65,7 @@ class _Reading(NamedTuple):
 def why_not_reconstruct(context: bpy.types.Context) -> str:
     """Return why nothing can be reconstructed, or nothing."""
     if selected_armature(context) is None:
-        return (
-            "Select an armature that plays a captured action; import joints of a depth camera"
-            " as an armature."
-        )
+        return "Select an animated armature. Import depth camera joints as an armature."
     return why_not_clean(context)
 
 

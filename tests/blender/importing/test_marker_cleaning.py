@@ -157,7 +157,7 @@ def test_an_empty_without_markers_is_no_take(blank):
     blank.context.scene.collection.objects.link(lone)
     blank.context.view_layer.objects.active = lone
 
-    with pytest.raises(RuntimeError, match="captured markers"):
+    with pytest.raises(RuntimeError, match="marker set"):
         blank.ops.mocap_assist.denoise()
 
 

@@ -192,4 +192,4 @@ def test_turning_goes_round_the_vertical_and_zoom_has_ends(load, view):
 
     assert_allclose(np.abs(view.view_rotation), (1, 0, 0, 0), atol=1e-6)
     assert view.view_distance == pytest.approx(1e-3)
-    assert control.zoom_views(None, 2.0).startswith("There is no 3D View")
+    assert control.zoom_views(None, 2.0).startswith("This window has no 3D View")

@@ -174,7 +174,7 @@ def test_the_status_bar_has_room_for_what_is_said(walk, reconstruct, capfd):
 
     told = capfd.readouterr().out.strip().splitlines()[-1].removeprefix("Info: ")
     assert len(told) < 100
-    assert told.startswith("walk.reconstructed: 6.") and "% of joints rebuilt" in told
+    assert told.startswith("walk.reconstructed: rebuilt 6.") and "% of joint samples" in told
     assert "foot slide" in told and told.endswith(" cm.")
 
 

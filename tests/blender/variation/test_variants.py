@@ -98,7 +98,7 @@ def test_somebody_with_other_bones_is_said_and_nobody_gets_anything(
     stranger = make_armature(bones={"Wheel": (None, (0, 0, 0), (0, 0, 1), False)}, name="Car")
     stranger.select_set(True)
 
-    with pytest.raises(RuntimeError, match="Car has not the bones of walk_1"):
+    with pytest.raises(RuntimeError, match="Car lacks the bones of walk_1"):
         blank.ops.mocap_assist.assign_variants()
 
     assert crowd[1].animation_data is None
