@@ -89,9 +89,9 @@ def make_objects(
     what = made.what
     wanted = choices.target is Target.ARMATURE and isinstance(recording, JointRecording)
     if wanted and not isinstance(moving, Motion):
-        what += ", since nothing tells which joint hangs on which"
+        what += ", since the parents of the joints are unknown"
     elif wanted and (n_loose := recording.n_joints - len(hanging(recording))):
-        what += f", without {n_loose} points that hang on no joint"
+        what += f", without {n_loose} points that have no joint"
     return made._replace(what=what + _never_seen(recording, made.top.type == "ARMATURE"))
 
 

@@ -170,14 +170,11 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
             column.prop_search(
                 row, side, armature.data, "bones", text=side.capitalize(), icon="BONE_DATA"
             )
-    for idname, icon in ((SAVE, "FILE_TICK"), (LOAD, "FILE_FOLDER")):
+    for verb, idname, icon in (("Save", SAVE, "FILE_TICK"), ("Load", LOAD, "FILE_FOLDER")):
         row = layout.row(align=True)
         for side in SIDES:
-            row.operator(
-                idname,
-                text=f"{idname.split('.')[1].split('_')[0].capitalize()} {side.capitalize()}",
-                icon=icon,
-            ).side = side
+            text = f"{verb} {side.capitalize()} Map"
+            row.operator(idname, text=text, icon=icon).side = side
 
 
 CLASSES = (MOCAP_UL_bones, MOCAP_OT_find_bones, MOCAP_OT_save_bone_map, MOCAP_OT_load_bone_map)

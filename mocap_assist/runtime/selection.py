@@ -16,8 +16,8 @@ from ..scene import history
 class Bones(Choice):
     """Bones that a button changes."""
 
-    ALL = "all", "Change all bones of the armature", "All Bones"
-    SELECTED = "selected", "Change the selected bones only", "Selected Bones"
+    ALL = "all", "All bones of the armature, or all markers"
+    SELECTED = "selected", "The selected bones or markers only"
 
 
 def selected_armature(context: bpy.types.Context) -> bpy.types.Object | None:

@@ -75,7 +75,7 @@ def catalog_number(catalog: str) -> str:
     if not catalog.strip():
         return ""
     if not bpy.data.filepath:
-        raise InvalidFileError("Save the file first: its catalogs are kept beside it.")
+        raise InvalidFileError("Save the file first: its catalogs are stored next to it.")
     return ensure_catalog(catalog_file(Path(bpy.data.filepath).parent), catalog)
 
 
