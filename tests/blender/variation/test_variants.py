@@ -155,7 +155,7 @@ def test_the_panel_shows_them_and_what_is_missing(blank, draw, walker, vary):
 
     shown = draw("MOCAP_PT_vary")
     assert {"mocap_assist.keep_variants", "mocap_assist.draw_variants", "icon"} <= set(shown)
-    assert {"variant 01", "variant 02", "With all 2:"} <= set(shown)
+    assert {"variant 01", "variant 02", "Apply to all 2:"} <= set(shown)
     blank.ops.mocap_assist.tick_action(action="walk_2", group="vary")
     assert blank.context.scene.mocap_assist.vary.actions == "walk_2"
     blank.data.objects.remove(walker)
