@@ -15,7 +15,7 @@ def test_while_it_listens_it_tells_what_it_hears(draw, listen, act):
 
     shown = " ".join(draw("MOCAP_PT_perform"))
     assert "Wave to page, clap to perform" in shown
-    assert "Nothing was searched for yet." in shown
+    assert "No search yet." in shown
     assert "frames, 0 dropped" in shown
 
 
