@@ -116,7 +116,7 @@ class MOCAP_PG_bone_map(bpy.types.PropertyGroup):
     source_score: bpy.props.FloatProperty(name="Source matched", subtype="FACTOR")
     target_score: bpy.props.FloatProperty(name="Target matched", subtype="FACTOR")
     rows: bpy.props.CollectionProperty(type=MOCAP_PG_bone_pair)
-    active_row: bpy.props.IntProperty(name="Row", description="Row that is chosen")
+    active_row: bpy.props.IntProperty(name="Row", description="Selected row")
 
 
 class MOCAP_PG_spot(bpy.types.PropertyGroup):
@@ -124,9 +124,9 @@ class MOCAP_PG_spot(bpy.types.PropertyGroup):
 
     start: bpy.props.FloatProperty(name="First frame")
     stop: bpy.props.FloatProperty(name="Last frame")
-    kind: bpy.props.StringProperty(name="What is wrong")
+    kind: bpy.props.StringProperty(name="Issue")
     severity: bpy.props.FloatProperty(name="Severity")
-    sentence: bpy.props.StringProperty(name="In words")
+    sentence: bpy.props.StringProperty(name="Text")
 
 
 class MOCAP_PG_scene(bpy.types.PropertyGroup):
@@ -150,10 +150,10 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     variants: bpy.props.PointerProperty(type=MOCAP_PG_variants)
     bone_map: bpy.props.PointerProperty(type=MOCAP_PG_bone_map)
     checked: bpy.props.StringProperty(
-        name="Checked", description="Action that was checked last, whose spots are listed"
+        name="Checked", description="Action whose issues are listed"
     )
     spots: bpy.props.CollectionProperty(type=MOCAP_PG_spot)
-    active_spot: bpy.props.IntProperty(name="Spot", description="Spot that the list shows")
+    active_spot: bpy.props.IntProperty(name="Spot", description="Selected issue of the list")
     report: bpy.props.StringProperty(name="Report", description="Figures of the last check")
 
 
@@ -163,7 +163,7 @@ class MOCAP_PG_job(bpy.types.PropertyGroup):
     running: bpy.props.BoolProperty(name="Running")
     fraction: bpy.props.FloatProperty(name="Done", subtype="FACTOR", min=0.0, max=1.0)
     message: bpy.props.StringProperty(name="Message")
-    owner: bpy.props.StringProperty(name="Panel", description="Which panel shows it")
+    owner: bpy.props.StringProperty(name="Panel", description="Panel that shows the progress")
 
 
 CLASSES = (

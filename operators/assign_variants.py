@@ -15,8 +15,7 @@ class MOCAP_OT_assign_variants(bpy.types.Operator):
     bl_idname = "mocap_assist.assign_variants"
     bl_label = "Assign to Selected"
     bl_description = (
-        "Let each selected armature play another of the picked variants, or of all, on an NLA"
-        " track, from another moment on and beside where it stands"
+        "Play a different variant on each selected armature, at a random start and position"
     )
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 

@@ -13,11 +13,7 @@ from ..mocap_assist.runtime.solver_operator import SolverOperator
 class MOCAP_OT_denoise(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.denoise"
     bl_label = "Clean"
-    bl_description = (
-        "Take jitter, spikes and gaps out of the action of the armature, and plant its feet, or"
-        " out of that of captured markers. The result is a new action; the recorded one stays"
-        " as it is"
-    )
+    bl_description = "Remove jitter and spikes, fill gaps and pin the feet. Writes a new action"
 
     settings_group = "clean"
     why_not, read_scene, write_scene = why_not_clean, read_cleaning, write_cleaned

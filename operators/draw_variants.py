@@ -15,9 +15,7 @@ PNG = ".png"
 class MOCAP_OT_draw_variants(bpy.types.Operator):
     bl_idname = "mocap_assist.draw_variants"
     bl_label = "Contact Sheet"
-    bl_description = (
-        "Draw the picked variants, or all, as stick figures, one below the other, to a PNG file"
-    )
+    bl_description = "Draw the picked variants, or all, as stick figures to a PNG file"
     bl_options: ClassVar = {"REGISTER"}
 
     filepath: path_property(options={"SKIP_SAVE"}, name="File", description="PNG file to write")

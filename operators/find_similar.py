@@ -15,8 +15,7 @@ class MOCAP_OT_find_similar(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.find_similar"
     bl_label = "Find Similar"
     bl_description = (
-        "List the clips of the library that are most like this motion, and where in them they"
-        " are like it. Nothing is changed"
+        "List the library clips most similar to this motion, and the frames that match"
     )
     bl_options: ClassVar = set[str]()  # the list is no part of the file
 

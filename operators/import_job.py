@@ -13,5 +13,5 @@ from ..mocap_assist.importing.import_operator import WaitingImport
 class MOCAP_OT_import_job(WaitingImport, bpy.types.Operator):
     bl_idname = "mocap_assist.import_job"
     bl_label = "Import Motion Capture"
-    bl_description = "Read files in a process of its own and bring them into the scene"
+    bl_description = "Read files in a separate process and import them into the scene"
     bl_options: ClassVar = {"REGISTER", "UNDO", "INTERNAL"}

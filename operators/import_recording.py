@@ -18,9 +18,7 @@ class MOCAP_OT_import_recording(FilesOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.import_recording"
     bl_label = "Import Motion Capture"
     bl_description = (
-        "Bring recordings of motion into the scene, many files at once: BVH, AMC, C3D, TRC,"
-        " joints and pictures of depth cameras. Joints become an armature, markers become"
-        " empties, pictures become points"
+        "Import motion capture files: BVH, AMC, C3D, TRC, depth camera joints and images"
     )
     # Undo is a step of the operator that waits: the file browser would add an empty one.
     bl_options: ClassVar = {"REGISTER", "PRESET"}

@@ -12,9 +12,9 @@ from ..mocap_assist.library.index_operator import WaitingIndex
 @settings_from(LibraryBundle)
 class MOCAP_OT_index_library(WaitingIndex, bpy.types.Operator):
     bl_idname = "mocap_assist.index_library"
-    bl_label = "Index"
+    bl_label = "Build Library"
     bl_description = (
-        "Read the clips of these folders, files and asset libraries into the library, beside"
-        " your work. What has not changed since is passed over"
+        "Read the clips of these sources into the library in the background; skips unchanged"
+        " ones"
     )
     bl_options: ClassVar = set[str]()  # nothing of the file is changed

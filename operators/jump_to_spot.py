@@ -7,27 +7,27 @@ from ..mocap_assist.check.checking import jump_to
 
 class MOCAP_OT_jump_to_spot(bpy.types.Operator):
     bl_idname = "mocap_assist.jump_to_spot"
-    bl_label = "Jump to Spot"
-    bl_description = "Move the playhead to this place and select what is wrong there"
+    bl_label = "Jump to Issue"
+    bl_description = "Go to this frame and select the affected bone"
     bl_options = {"REGISTER", "UNDO"}
 
     # Without SKIP_SAVE, Blender would fill in the index of the press before.
     index: bpy.props.IntProperty(
-        name="Spot",
-        description="Place in the list, -1 for the one shown there",
+        name="Issue",
+        description="Index in the list; -1 for the selected issue",
         default=-1,
         options={"SKIP_SAVE"},
     )
     step: bpy.props.IntProperty(
         name="Step",
-        description="Go on by so many spots from the one shown in the list",
+        description="Number of issues to go on from the selected one",
         options={"SKIP_SAVE"},
     )
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if not context.scene.mocap_assist.spots:
-            cls.poll_message_set("Press Check first; it found no spots yet")
+            cls.poll_message_set("No issues are listed. Press Check first")
             return False
         return True
 

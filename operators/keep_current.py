@@ -10,10 +10,9 @@ from ..solvers.errors import MocapAssistError
 
 class MOCAP_OT_keep_current(bpy.types.Operator):
     bl_idname = "mocap_assist.keep_current"
-    bl_label = "Keep Current"
+    bl_label = "Auto-Update"
     bl_description = (
-        "Index this library by itself when these sources change, in every file that you open on"
-        " this machine, until you press again"
+        "Update this library in the background when its sources change; press again to stop"
     )
     bl_options: ClassVar = set[str]()  # nothing of the file is changed
 

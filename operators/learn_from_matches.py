@@ -12,18 +12,21 @@ from ..solvers.errors import MocapAssistError
 class MOCAP_OT_learn_from_matches(bpy.types.Operator):
     bl_idname = "mocap_assist.learn_from_matches"
     bl_label = "Learn from Matches"
-    bl_description = "Put the best of these clips on the list of examples, in place of others"
+    bl_description = "Replace the list of examples by the best of these clips"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
     group: bpy.props.EnumProperty(
         name="For",
-        description="Which button learns from them",
-        items=[(CLEAN, "Clean", ""), (RECONSTRUCT, "Reconstruct", "")],
+        description="Button that learns from the examples",
+        items=[
+            (CLEAN, "Clean", "Use the clips as examples of Clean"),
+            (RECONSTRUCT, "Reconstruct", "Use the clips as examples of Reconstruct"),
+        ],
         options={"SKIP_SAVE"},
     )
     n_best: bpy.props.IntProperty(
         name="Clips",
-        description="How many of the best serve; more teach more, and less to the point",
+        description="Number of best matches to use; more clips are less similar",
         default=5,
         min=1,
         max=48,

@@ -15,8 +15,7 @@ class MOCAP_OT_learn_patterns(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.learn_patterns"
     bl_label = "Learn"
     bl_description = (
-        "Learn from the examples how this kind of motion goes, and write it to a file that"
-        " Clean can use for many takes"
+        "Learn a motion model from the examples and write it to a file for many takes"
     )
     bl_options: ClassVar = {"REGISTER"}  # it writes a file, and nothing that could be undone
     settings_group = "clean"

@@ -12,14 +12,13 @@ class MOCAP_OT_link_match(bpy.types.Operator):
     bl_idname = "mocap_assist.link_match"
     bl_label = "Link Action"
     bl_description = (
-        "Link the action itself from its .blend file; the selected armature plays it if it has"
-        " the bones"
+        "Link the action from its .blend file and assign it where the armature has its bones"
     )
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
     link: bpy.props.BoolProperty(
         name="Link",
-        description="Keep it in its own file, rather than copy it into this one",
+        description="Keep the action in its own file instead of copying it into this one",
         default=True,
         options={"SKIP_SAVE"},
     )

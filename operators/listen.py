@@ -7,8 +7,7 @@ from ..mocap_assist.live.listen_button import ListenButton
 
 class MOCAP_OT_listen(ListenButton, bpy.types.Operator):
     bl_idname = "mocap_assist.listen"
-    bl_label = "Listen"
+    bl_label = "Listen for Gestures"
     bl_description = (
-        "Listen to a live stream of joints on this machine: an actor before a depth camera"
-        " searches by performing. Press again, or Esc, to stop"
+        "Search by performing before a depth camera that streams joints; press again to stop"
     )

@@ -12,9 +12,6 @@ from ..mocap_assist.search.loading import read_loading, why_not_load, write_load
 class MOCAP_OT_load_match(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.load_match"
     bl_label = "Append as Action"
-    bl_description = (
-        "Give the motion of this clip to the selected armature, whatever rig it was made for."
-        " The result is a new action; the one before stays in the file"
-    )
+    bl_description = "Transfer the motion of this clip to the selected armature as a new action"
     settings_group = "load"
     why_not, read_scene, write_scene = why_not_load, read_loading, write_loaded

@@ -11,10 +11,7 @@ from ..mocap_assist.search.marking import mark_played, why_not_mark
 class MOCAP_OT_mark_asset(MarkOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.mark_asset"
     bl_label = "Mark as Asset"
-    bl_description = (
-        "Let the action that the armature plays be an asset, with tags, a catalog and a picture"
-        " of what it does"
-    )
+    bl_description = "Mark the current action as an asset with tags, a catalog and a preview"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
     @classmethod

@@ -13,7 +13,7 @@ class MOCAP_OT_mark_variants(MarkOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.mark_variants"
     bl_label = "Mark Variants as Assets"
     bl_description = (
-        "Let the picked variants, or all, be assets, with tags, a catalog and their pictures"
+        "Mark the picked variants, or all, as assets with tags, a catalog and previews"
     )
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 

@@ -15,10 +15,7 @@ from ..mocap_assist.runtime.solver_operator import SolverOperator
 class MOCAP_OT_measure_quality(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.measure_quality"
     bl_label = "Check"
-    bl_description = (
-        "List where the action of the armature, or of markers, jumps, shakes, has gaps, or lets"
-        " feet slide"
-    )
+    bl_description = "List jumps, jitter, gaps and foot slides of the current action"
     # A list to look at: nothing to undo, and so no redo panel, which would solve anew.
     bl_options: ClassVar = {"REGISTER"}
     settings_group = "check"

@@ -17,9 +17,7 @@ class MOCAP_OT_reconstruct(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.reconstruct"
     bl_label = "Reconstruct"
     bl_description = (
-        "Rebuild joints that a depth camera lost or mistook, by how far each can be trusted and"
-        " how natural bodies stand and move, and plant the feet. The result is a new action;"
-        " the recorded one stays as it is"
+        "Rebuild the missing and wrong joints of a depth camera take. Writes a new action"
     )
     settings_group = "reconstruct"
     why_not, read_scene, write_scene = (

@@ -14,8 +14,7 @@ class MOCAP_OT_reduce_keys(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.reduce_keys"
     bl_label = "Unbake"
     bl_description = (
-        "Replace a key on every frame by few keys with handles, so that no hand, foot or head"
-        " is off by more than the tolerance at any frame. The result is a new action"
+        "Replace a key on every frame by few keys with handles. Writes a new action"
     )
     settings_group = "unbake"
     why_not, read_scene, write_scene = why_not_change, read_unbaking, write_unbaked

@@ -14,8 +14,7 @@ class MOCAP_OT_retarget(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.retarget"
     bl_label = "Retarget"
     bl_description = (
-        "Let another armature make the motion of this one, whatever its size, rest pose and"
-        " names of bones. The result is a new action; nothing else is changed"
+        "Transfer this motion to another armature, regardless of size, rest pose and bone names"
     )
     settings_group = "retarget"
     why_not, read_scene, write_scene = why_not_retarget, read_retarget, write_retargeted

@@ -19,9 +19,7 @@ class MOCAP_OT_retrack(WatchedOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.retrack"
     bl_label = "Track from Here"
     bl_description = (
-        "Take the pose of the armature in this frame for right, and follow the points from it"
-        " forwards and backwards until they meet what was tracked before. The result is a new"
-        " action"
+        "Re-track from the corrected pose at the current frame. Writes a new action"
     )
     settings_group = "retrack"
     selected, why_not = selected_armature, why_not_retrack

@@ -9,7 +9,7 @@ from ..mocap_assist.runtime.selection import selected_subject
 class MOCAP_OT_revert_to_raw(bpy.types.Operator):
     bl_idname = "mocap_assist.revert_to_raw"
     bl_label = "Revert to Raw"
-    bl_description = "Play the recorded action again. The cleaned one is kept in the file"
+    bl_description = "Assign the recorded action again; the cleaned one stays in the file"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod

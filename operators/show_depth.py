@@ -12,7 +12,9 @@ from ..solvers.errors import MocapAssistError
 class MOCAP_OT_show_depth(bpy.types.Operator):
     bl_idname = "mocap_assist.show_depth"
     bl_label = "Show Points"
-    bl_description = "Open the depth recording that this object shows, now and from now on"
+    bl_description = (
+        "Open the depth recording of this object, now and whenever the file is loaded"
+    )
     bl_options: ClassVar = set[str]()
 
     @classmethod

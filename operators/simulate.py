@@ -11,11 +11,9 @@ from ..mocap_assist.runtime.solver_operator import SolverOperator
 @settings_from(SimulateBundle)
 class MOCAP_OT_simulate(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.simulate"
-    bl_label = "Physics"
+    bl_label = "Simulate"
     bl_description = (
-        "Let a body with mass and muscles, on solid ground, make the motion of the armature:"
-        " nothing sinks into the ground, standing feet hold, and jitter has too much mass to"
-        " move. The result is a new action"
+        "Simulate a body with mass that follows the motion on solid ground. Writes a new action"
     )
     settings_group = "simulate"
     why_not, read_scene, write_scene = why_not_change, read_simulating, write_simulated

@@ -16,9 +16,6 @@ from ..mocap_assist.runtime.solver_operator import SolverOperator
 class MOCAP_OT_solve_skeleton(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.solve_skeleton"
     bl_label = "Make Skeleton"
-    bl_description = (
-        "Add an armature that moves as the markers do: joints and their turns are solved from"
-        " Plug-in-Gait or CMU markers. The markers stay as they are"
-    )
+    bl_description = "Solve an armature from Plug-in-Gait or CMU markers; the markers are kept"
     settings_group = "solve"
     why_not, read_scene, write_scene = why_not_solve, read_solving, write_solved

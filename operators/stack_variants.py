@@ -11,10 +11,7 @@ from ..solvers.errors import MocapAssistError
 class MOCAP_OT_stack_variants(bpy.types.Operator):
     bl_idname = "mocap_assist.stack_variants"
     bl_label = "Push to NLA"
-    bl_description = (
-        "Put the picked variants, or all, on NLA tracks of their armature, one after the other"
-        " from the current frame on"
-    )
+    bl_description = "Put the picked variants, or all, on NLA tracks, one after the other"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
     @classmethod

@@ -13,8 +13,7 @@ class MOCAP_OT_use_matches(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.use_matches"
     bl_label = "Use as Examples"
     bl_description = (
-        "Take the best of these clips as the examples of Vary, whatever rig they were made for:"
-        " they become actions of the selected armature, and are ticked in the panel Vary"
+        "Use the best of these clips as examples of Vary, as actions of the selected armature"
     )
     settings_group = "use"
     why_not, read_scene, write_scene = why_not_use, read_best, write_best

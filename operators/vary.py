@@ -14,8 +14,7 @@ class MOCAP_OT_vary(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.vary"
     bl_label = "Vary"
     bl_description = (
-        "Make many new actions of one to ten of one behaviour: each different in space and in"
-        " time, natural, and with planted feet. The same seed makes the same ones"
+        "Generate variations of one to ten similar actions; the same seed repeats them"
     )
     settings_group = "vary"
     why_not, read_scene, write_scene = why_not_vary, read_varying, write_variants

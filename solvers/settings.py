@@ -7,7 +7,7 @@ flags and the table in the documentation.
 from dataclasses import dataclass, field, fields
 from enum import Enum
 from math import inf
-from typing import Any
+from typing import Any, Self
 
 from .errors import InvalidSettingError
 
@@ -27,6 +27,28 @@ class Described:
     """Folded away in the user interface."""
     label: str = ""
     """What the user interface calls it; without one, its name in words."""
+
+
+class Choice(Enum):
+    """Base of the enums of settings: each member is its stored value, then its help.
+
+    A member may have a label of its own as third item, as in
+    `TAKE = "this take", "Learn the motion from this take alone", "From This Take"`. Its `value`
+    is the first item; files and the command line know it by that.
+    """
+
+    help: str
+    """What choosing it does, for the tooltip."""
+    label: str
+    """What the user interface calls it."""
+
+    def __new__(cls, value: str, help: str, label: str = "") -> Self:
+        """Give a member its value, and to the value its help and label."""
+        member = object.__new__(cls)
+        member._value_ = value
+        member.help = help
+        member.label = label or in_title_case(value)
+        return member
 
 
 def setting(default: Any, help: str, **limits: Any) -> Any:

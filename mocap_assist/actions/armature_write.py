@@ -2,13 +2,13 @@
 
 import re
 from collections.abc import Collection, Mapping
-from enum import Enum
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
+from ...solvers.settings import Choice
 from ..blender import compat
 from ..blender.compat import Source
 from .bone_channels import (
@@ -30,11 +30,15 @@ NUMBERED = re.compile(r"\.(clean|physics|reconstructed|retracked)(\.\d{3,})?$")
 """As Blender names a second result."""
 
 
-class Output(Enum):
+class Output(Choice):
     """Where the result goes."""
 
-    ACTION = "action"
-    NLA_TRACK = "NLA track"
+    ACTION = (
+        "action",
+        "Assign the result as a new action; the original stays in the file",
+        "New Action",
+    )
+    NLA_TRACK = "NLA track", "Put the result on a new NLA track above the original"
 
 
 def write_take(

@@ -107,7 +107,9 @@ def _give_back(*_: object) -> None:
 def _declare(armature: bpy.types.Object, name: str, value: int) -> None:
     armature[name] = value
     armature.id_properties_ui(name).update(
-        min=0, max=1, description="1 while the foot stands. Clean keeps it from sliding then"
+        min=0,
+        max=1,
+        description="1 while the foot is planted, 0 while it moves",
     )
 
 

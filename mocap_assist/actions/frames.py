@@ -1,7 +1,6 @@
 """Which moments of an action are read: a range, on the grid of the action's keys."""
 
 from collections.abc import Sequence
-from enum import Enum
 from typing import NamedTuple
 
 import bpy
@@ -9,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
+from ...solvers.settings import Choice
 from .curves import ON_FRAME, Channel
 
 Array = NDArray[np.float64]
@@ -23,13 +23,13 @@ MAX_FRAMES_OF_FEW_KEYS = 10_000
 ALIKE = 0.1  # share by which times between keys may differ and still be the same
 
 
-class FrameRange(Enum):
+class FrameRange(Choice):
     """Frames to work on."""
 
-    ACTION = "action"
-    SCENE = "scene"
-    PREVIEW = "preview"
-    SELECTED_KEYS = "selected keys"
+    ACTION = "action", "All frames of the action", "Whole Action"
+    SCENE = "scene", "Frames from the start to the end of the scene"
+    PREVIEW = "preview", "Frames of the preview range of the timeline", "Preview Range"
+    SELECTED_KEYS = "selected keys", "Frames between the first and the last selected key"
 
 
 def range_bounds(

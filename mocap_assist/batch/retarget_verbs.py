@@ -50,9 +50,7 @@ def add_unbake_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `unbake`."""
     parser.add_argument(
         "--tolerance", type=float, default=1.0, metavar="CM",
-        help="greatest distance in centimetres by which a hand, a foot or the head may be off"
-        " at any frame"
-        " [default 1]",
+        help="largest error of hands, feet and head in centimeters [default 1]",
     )  # fmt: skip
     arguments_from(parser, UnbakeSettings)
 

@@ -15,7 +15,7 @@ from ..variants.sheet import write_sheet
 from ..variants.writing import write_variants
 from .solving import solve_apart
 
-HELP = "Make many new actions of a few of one behaviour, each different."
+HELP = "Generate variations of a few similar actions."
 
 
 def add_vary_options(parser: argparse.ArgumentParser) -> None:

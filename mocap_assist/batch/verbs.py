@@ -178,13 +178,15 @@ def _bundle(arguments: argparse.Namespace, bundle: type[Bundle]) -> Bundle:
 
 VERBS = {
     "denoise": Verb(
-        "Take jitter, spikes and gaps out of actions, and plant feet.", _clean_options, _clean
+        "Remove jitter and spikes from actions, fill gaps and plant feet.",
+        _clean_options,
+        _clean,
     ),
     "quality": Verb(
         "Measure jitter, spikes, gaps and sliding feet.", _check_options, _check, writes=False
     ),
     "convert": Verb(
-        "Write what armatures play, raw or clean, as BVH in centimetres, Y up; markers as TRC.",
+        "Write what armatures play, raw or clean, as BVH in centimeters, Y up; markers as TRC.",
         _convert_options,
         _convert,
         writes=False,
@@ -192,19 +194,19 @@ VERBS = {
         solves=False,
     ),
     "reconstruct": Verb(
-        "Rebuild poses that a depth camera lost or mistook, and plant feet.",
+        "Rebuild missing and wrong joints of depth camera takes, and plant feet.",
         add_reconstruct_options,
         perform_reconstruct,
         on_markers=False,
     ),
     "simulate": Verb(
-        "Let a body with mass and muscles, on solid ground, make the motions of armatures.",
+        "Simulate a body with mass that follows the motions of armatures.",
         add_simulate_options,
         perform_simulate,
         on_markers=False,
     ),
     "retarget": Verb(
-        "Let another armature make the motions of an armature.",
+        "Transfer the motions of an armature to another one.",
         add_retarget_options,
         perform_retarget,
         left_alone=retarget_target,

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, TypeVar, get_type_hints
 import bpy
 import numpy as np
 
-from ...solvers.settings import Described, Settings, in_title_case, label_of
+from ...solvers.settings import Choice, Described, Settings, label_of
 from .path_properties import path_property
 
 Class = TypeVar("Class", bound=type)
@@ -60,8 +60,8 @@ def _property(item: "Field[Any]", options: set[str]) -> Any:
         "default": item.default,
         "options": {"ANIMATABLE"} | options,
     }
-    if issubclass(kind, Enum):
-        choices = [(each.name, _words(each), "", index)
+    if issubclass(kind, Choice):
+        choices = [(each.name, each.label, each.help, index)
                    for index, each in enumerate(kind)]  # fmt: skip
         return bpy.props.EnumProperty(
             **shown | {"items": choices, "default": item.default.name}
@@ -107,7 +107,3 @@ def _value(value: Any, item: "Field[Any]") -> Any:
             return default
         value = float(f"{value:.7g}")  # 0.1 comes back as 0.10000000149
     return type(default)(min(max(value, described.minimum), described.maximum))
-
-
-def _words(choice: Enum) -> str:
-    return in_title_case(str(choice.value))

@@ -66,8 +66,10 @@ def show_checked(
         item.start, item.stop = frames[spot.start_frame], frames[spot.stop_frame - 1]
         item.kind, item.severity, item.sentence = spot.kind, spot.severity, spot.sentence
     if not checked.spots:
-        return "Nothing stands out."
-    return f"{len(checked.spots)} spots need an eye. The worst: {checked.spots[0].sentence}"
+        return "No issues found."
+    n_issues = len(checked.spots)
+    found = "1 issue" if n_issues == 1 else f"{n_issues} issues"
+    return f"{found} found. Worst: {checked.spots[0].sentence}"
 
 
 def jump_to(context: bpy.types.Context, spot: bpy.types.PropertyGroup) -> None:

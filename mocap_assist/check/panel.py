@@ -16,7 +16,7 @@ ICONS = {
     "foot slide": "FORWARD",
     "limit": "CON_ROTLIMIT",
 }
-STALE = "These are the spots of {action}. Press Check again."
+STALE = 'Results are for "{action}". Run Check again.'
 FEWEST, MOST = 4, 8  # rows of the list
 
 
@@ -98,7 +98,7 @@ def is_stale(checked: str, subject: bpy.types.Object) -> bool:
 
 def _draw_thresholds(layout: bpy.types.UILayout, check: bpy.types.PropertyGroup) -> None:
     header, body = layout.panel("mocap_assist_check_thresholds", default_closed=True)
-    header.label(text="What counts")
+    header.label(text="Thresholds")
     if body is None:
         return
     body.use_property_split = True

@@ -11,7 +11,7 @@ def why_not_revert(context: bpy.types.Context) -> str:
     """Return why the button is grey, or nothing."""
     subject = selected_subject(context)
     if subject is None:
-        return "Select an armature, or captured markers."
+        return "Select an animated armature or marker set."
     if played_result(subject) is None:
         return (
             f"{subject.name} plays no result of Mocap Assist whose raw action is in this file."

@@ -1,31 +1,46 @@
 """What an animator chooses for Clean, besides the settings of the solvers themselves."""
 
 from dataclasses import dataclass, fields
-from enum import Enum
 from typing import NamedTuple
 
 from ...solvers.denoising import DenoiseSettings, PlantSettings
-from ...solvers.settings import Settings, setting
+from ...solvers.settings import Choice, Settings, setting
 from ..actions.armature_write import Output
 from ..actions.frames import FrameRange
 from ..runtime.selection import Bones
 
 
-class Prior(Enum):
+class Prior(Choice):
     """Where the patterns of clean motion come from."""
 
-    TAKE = "this take"
-    EXAMPLES = "examples"
-    LEARNED = "learned file"
-    LIBRARY = "library"
+    TAKE = (
+        "this take",
+        "Learn natural motion from this take alone; needs no other data",
+        "From This Take",
+    )
+    EXAMPLES = "examples", "Learn from clean takes of the same kind of motion", "From Examples"
+    LEARNED = "learned file", "Use a motion model that Learn has written to a file", "From File"
+    LIBRARY = (
+        "library",
+        "Learn from the most similar clips of the motion library",
+        "From Library",
+    )
 
 
-class Limits(Enum):
+class Limits(Choice):
     """How far joints may turn."""
 
-    NONE = "none"
-    CONSTRAINTS = "constraints"
-    EXAMPLES = "examples"
+    NONE = "none", "Let joints turn as far as they were recorded"
+    CONSTRAINTS = (
+        "constraints",
+        "Keep joints within the Limit Rotation constraints of their bones",
+        "From Constraints",
+    )
+    EXAMPLES = (
+        "examples",
+        "Keep joints within the rotations that the examples show",
+        "From Examples",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,39 +49,36 @@ class CleanChoices(Settings):
 
     bones: Bones = setting(
         Bones.ALL,
-        "Change all bones, or only the selected ones; all of them guide the estimate. Planting"
-        " feet also moves the legs and the hips",
+        "Change all bones or the selected ones; planting feet also moves legs and hips",
     )
-    frame_range: FrameRange = setting(
-        FrameRange.ACTION, "Change all frames of the action, or only some of them"
-    )
+    frame_range: FrameRange = setting(FrameRange.ACTION, "Frames of the action to change")
     prior: Prior = setting(
         Prior.TAKE,
-        "Learn how this body moves from the take itself, from clean examples of the same kind"
-        " of motion, use what was learned before, or let clips be found in the library that are"
-        " like the take",
+        "Source of the motion model that says how this body moves naturally",
+        label="Motion Model",
     )
     examples: str = setting(
         "",
-        "Clean actions of this file, or recordings on disk, separated by semicolons;"
-        " any rig serves",
+        "Clean actions of this file or recordings on disk, separated by semicolons; any rig"
+        " works",
     )
-    learned_file: str = setting("", "File of learned patterns, as written by Learn")
+    learned_file: str = setting("", "Motion model that Learn has written")
     unswap: bool = setting(
         True,
-        "Put swapped and mistaken labels of markers right first, where all markers are cleaned",
+        "Fix swapped marker labels before cleaning, where all markers are cleaned",
+        label="Fix Swapped Labels",
     )
     plant_feet: bool = setting(
-        True, "Keep standing feet from sliding, by moving legs and hips a little"
+        True, "Keep planted feet from sliding by moving legs and hips slightly"
     )
     joint_limits: Limits = setting(
         Limits.NONE,
-        "Keep joints softly within the Limit Rotation constraints of their bones, or within"
-        " what the examples show",
+        "Keep joint rotations within soft limits",
     )
     result_as: Output = setting(
         Output.ACTION,
-        "Put the result in the place of the action, or on an NLA track of its own",
+        "Assign the result as a new action, or put it on a new NLA track",
+        label="Output",
     )
 
 

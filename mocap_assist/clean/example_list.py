@@ -98,7 +98,7 @@ class MOCAP_OT_add_example(bpy.types.Operator):
     bl_idname = ADD
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Add Action"
-    bl_description = "Learn from this action too; it must be clean, and may be of another rig"
+    bl_description = "Also learn from this clean action; it may be of another rig"
 
     example: bpy.props.StringProperty(
         name="Action", description="Name of the action", options={"SKIP_SAVE"}
@@ -115,10 +115,10 @@ class MOCAP_OT_remove_example(bpy.types.Operator):
     bl_idname = REMOVE
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Remove Example"
-    bl_description = "Do not learn from this one"
+    bl_description = "Remove this example from the list"
 
     index: bpy.props.IntProperty(
-        name="Example", description="Place in the list", min=0, options={"SKIP_SAVE"}
+        name="Example", description="Index in the list", min=0, options={"SKIP_SAVE"}
     )
     group: _group()
 
@@ -133,8 +133,7 @@ class MOCAP_OT_add_example_files(bpy.types.Operator):
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Recordings or .blend Files..."
     bl_description = (
-        "Learn from clean recordings on disk too, of any rig, or from all actions of .blend"
-        " files that have their rig with them"
+        "Add clean recordings, or all actions of .blend files that contain their rig"
     )
 
     directory: path_property(FOLDER, HIDDEN)
@@ -155,7 +154,7 @@ class MOCAP_OT_add_example_folder(bpy.types.Operator):
     bl_idname = ADD_FOLDER
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Folder on Disk..."
-    bl_description = "Learn from all clean recordings in a folder, of any rig"
+    bl_description = "Add all clean recordings in a folder, of any rig"
 
     directory: path_property(FOLDER, HIDDEN)
     group: _group()

@@ -32,7 +32,7 @@ def read_prior(
         return Examples()
     if choices.prior is Prior.LEARNED:
         if not choices.learned_file:
-            raise InvalidMotionError("Choose the file of learned patterns, or another prior.")
+            raise InvalidMotionError("Choose the motion model file, or another motion model.")
         return Examples(bases_file=bpy.path.abspath(choices.learned_file))
     return (yield from read_examples.steps(scene, armature, choices.examples))
 
@@ -59,9 +59,7 @@ def read_examples(
     files = [bpy.path.abspath(name) for name in names if name not in actions]
     missing = [path for path in files if not Path(path).exists()]
     if missing:
-        raise InvalidMotionError(
-            f"There is neither an action nor a file called {', '.join(missing)}."
-        )
+        raise InvalidMotionError(f"No action or file is named {', '.join(missing)}.")
     here, motions = Subject.of(scene, armature), list[Motion]()
     for name in actions:
         motion = yield from _read_named(*here.find(), name)
@@ -87,7 +85,7 @@ def _recordings_of(path: Path) -> Steps[list[Path]]:
             yield 0.0
         found += [each] if may_hold_motion(each) else []
     if not found:
-        raise InvalidMotionError(f"There is no recording in the folder {path}.")
+        raise InvalidMotionError(f"The folder {path} has no recordings.")
     return found
 
 
@@ -103,7 +101,7 @@ def _read_named(scene: bpy.types.Scene, asking: bpy.types.Object, name: str) -> 
     found = action and _player(_who_may_fit(scene, asking), action)
     if not found:
         raise InvalidMotionError(
-            f"No armature of this scene has the bones of the action {name}. Add the rig that it"
+            f"No armature of this scene has the bones of the action {name}. Add the rig it"
             " was made for, or pick another example."
         )
     armature, slot = found

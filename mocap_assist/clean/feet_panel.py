@@ -9,8 +9,8 @@ from ..panels.drawing import draw_sentence, exists
 from ..runtime.selection import selected_armature
 
 PLANT = "mocap_assist.plant_feet"
-SIDES = ("Left foot stands", "Right foot stands")
-HINT = "Key 1 where a foot stands and 0 where it does not, then plant the feet again."
+SIDES = ("Left Foot Contact", "Right Foot Contact")
+HINT = "Key 1 while the foot is planted, 0 while it moves, then press Plant Feet."
 
 
 class FeetPanel:

@@ -25,7 +25,7 @@ class LearnChoices(Settings):
     examples: str = setting(
         "", "Clean actions of this file, or recordings on disk, separated by semicolons"
     )
-    learned_file: str = setting("", "File to write; Clean can use it in any .blend")
+    learned_file: str = setting("", "File to write; Clean can use it in any .blend file")
 
 
 class LearnSettings(NamedTuple):
@@ -55,14 +55,18 @@ def write_learned(
     """Save what was learned; return a sentence about it."""
     target = target_of(settings)
     bases.save(target)
-    return f"Learned {len(bases.values)} patterns from {bases.n_clips} clips into {target}."
+    return (
+        f"Learned {len(bases.values)} patterns from {bases.n_clips} clips. Saved as {target}."
+    )
 
 
 def target_of(settings: LearnSettings) -> Path:
     """Return the file to write, after looking whether it can be written."""
     if not settings.choices.learned_file:
-        raise InvalidFileError("Choose the file that what is learned shall be written to.")
+        raise InvalidFileError("Choose a file to write the motion model to.")
     target = file_to_write(settings.choices.learned_file, ENDING)
     if not target.is_absolute() or not target.parent.is_dir():
-        raise InvalidFileError(f"There is no folder {target.parent} to write {target.name} in.")
+        raise InvalidFileError(
+            f"The folder {target.parent} does not exist. Choose another one for {target.name}."
+        )
     return target

@@ -42,7 +42,7 @@ def _draw_main(
 ) -> None:
     """Draw what everybody needs; markers have neither joint limits nor feet."""
     column.row().prop(clean, "bones", text="Bones" if joints else "Markers", expand=True)
-    column.prop(clean, "prior", text="Learn from")
+    column.prop(clean, "prior", text="Motion Model")
     if clean.prior == Prior.EXAMPLES.name:
         draw_examples(column, clean)
     if clean.prior in {Prior.EXAMPLES.name, Prior.LEARNED.name}:
@@ -58,8 +58,8 @@ def _draw_learned(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) ->
     if clean.prior == Prior.LEARNED.name:
         column.prop(clean, "learned_file")
     elif clean.examples and exists(LEARN):
-        column.prop(clean, "learned_file", text="Keep as")
-        column.operator(LEARN, text="Learn and Keep", icon="FILE_TICK")
+        column.prop(clean, "learned_file", text="Save As")
+        column.operator(LEARN, text="Learn and Save", icon="FILE_TICK")
 
 
 def _draw_folded(

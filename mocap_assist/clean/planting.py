@@ -68,6 +68,6 @@ def write_planted(
     history.record(action, played, entry)
     put_to_use(armature, action, slot, Output.ACTION)
     return (
-        f"{action.name}: feet slid {100 * planted.slide_before:.1f} cm while they stood, now"
-        f" {100 * planted.slide_after:.1f} cm. {len(result.moved)} bones moved."
+        f"{action.name}: foot slide {100 * planted.slide_before:.1f} →"
+        f" {100 * planted.slide_after:.1f} cm, moved {len(result.moved)} bones."
     )

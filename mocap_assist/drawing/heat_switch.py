@@ -15,24 +15,21 @@ from .view_drawing import ViewDrawing, redraw, seen_active
 WIDER = 2.0
 """Times as wide as the lines of the overlay, for they lie upon the bones."""
 TERMS = (
-    (Term.COMBINED, "Combined", "How likely each joint is right, all in all"),
-    (Term.BEHAVIOUR, "Movement", "Red joints shake to and fro as no limb does"),
+    (Term.COMBINED, "Combined", "Overall probability that each joint is right"),
+    (Term.BEHAVIOUR, "Movement", "Red joints vibrate in a way that no limb does"),
     (
         Term.KINEMATICS,
         "Lengths",
-        "Red joints are at the ends of bones that are longer or shorter than they should be",
+        "Red joints are at bones whose length differs from the body's",
     ),
-    (Term.TRACKING, "Sensor", "Red joints are those that the sensor itself lost or guessed"),
+    (Term.TRACKING, "Sensor", "Red joints were missing or inferred by the sensor"),
 )
 MISSING = {
-    Term.KINEMATICS: (
-        "Lengths: an armature's never change; the camera's are known while the imported file is"
-        " there and the action unedited."
-    ),
-    Term.TRACKING: "Sensor: the recording does not tell how well the sensor saw each joint.",
+    Term.KINEMATICS: ("Lengths: needs the imported file and an unedited action."),
+    Term.TRACKING: "Sensor: the recording has no tracking state of the joints.",
 }
-OLDER = "Made by an earlier version, which did not tell why. Press Reconstruct again."
-NOTHING_TOLD = "This action tells nothing of trust. Press Reconstruct, or choose its result."
+OLDER = "Made by an earlier version without details. Run Reconstruct again."
+NOTHING_TOLD = "No confidence data in this action. Run Reconstruct first."
 _drawing: list[ViewDrawing] = []
 
 
@@ -100,16 +97,16 @@ def _draw_heat(heat: Heat, matrix: Any, width: float) -> None:
 def register() -> None:
     """Add the switch; nothing is drawn until it is on."""
     bpy.types.WindowManager.mocap_assist_heat = bpy.props.BoolProperty(
-        name="Trust in Colours",
+        name="Show Confidence",
         description=(
-            "Draw the bones of a reconstructed action in the colours of how far their joints"
-            " were trusted at the present frame: blue was trusted, red was not"
+            "Color the bones by the confidence in their joints at the current frame: blue is"
+            " high, red is low"
         ),
         update=_switched,
     )
     bpy.types.WindowManager.mocap_assist_heat_term = bpy.props.EnumProperty(
-        name="Sign",
-        description="Which sign of trust the colours show",
+        name="Confidence Source",
+        description="Measure of confidence to show",
         items=[
             (term.name, label, description, number)
             for number, (term, label, description) in enumerate(TERMS)

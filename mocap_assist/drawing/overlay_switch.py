@@ -19,10 +19,10 @@ def _draw(context: bpy.types.Context) -> None:
 def register() -> None:
     """Add the switch; nothing is drawn until it is on."""
     bpy.types.WindowManager.mocap_assist_overlay = bpy.props.BoolProperty(
-        name="Raw and Clean Overlay",
+        name="Compare Overlay",
         description=(
-            "Draw stick figures, or markers and their trails, of the recorded and of the clean"
-            " action over the 3D View. They show the keys alone, without constraints"
+            "Draw the recorded and the cleaned motion over the 3D View. Constraints are not"
+            " evaluated"
         ),
         update=_switched,
     )

@@ -7,7 +7,7 @@ from mathutils import Quaternion
 
 NEAREST, FARTHEST = 1e-3, 1e6
 """Blender's units from the eye to what it looks at."""
-NO_VIEW = "There is no 3D View in this window that could be moved."
+NO_VIEW = "This window has no 3D View."
 
 
 def zoom_views(window: bpy.types.Window, factor: float) -> str:

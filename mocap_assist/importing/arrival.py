@@ -159,7 +159,7 @@ class Arrival:
 def _figures(recording: Recording, warnings: Sequence[str]) -> dict[str, Any]:
     figures = recording_figures(recording)
     lost = figures.pop("never_seen", [])
-    told = [*warnings, *[f"Never seen: {', '.join(lost)}"] * bool(lost)]
+    told = [*warnings, *[f"Never observed: {', '.join(lost)}"] * bool(lost)]
     if isinstance(recording, JointRecording) and not in_one_tree(recording):
-        told.append("Nothing tells which joint hangs on which")
+        told.append("The parents of the joints are unknown")
     return {**figures, "warnings": ". ".join(told)}

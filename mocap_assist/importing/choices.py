@@ -1,40 +1,43 @@
 """What an animator chooses for Import; the words are those of Blender's BVH importer."""
 
 from dataclasses import dataclass
-from enum import Enum
 from typing import NamedTuple
 
 from ...solvers.recordings import DepthSettings, Held
-from ...solvers.settings import Settings, setting
+from ...solvers.settings import Choice, Settings, setting
 from ..scene.scene_rate import FrameRate
 
 
-class Target(Enum):
+class Target(Choice):
     """What joints become."""
 
-    ARMATURE = "armature"
-    OBJECT = "object"
+    ARMATURE = "armature", "Create an armature; each joint becomes a bone"
+    OBJECT = (
+        "object",
+        "Create an empty for each joint; keeps every measured position",
+        "Empties",
+    )
 
 
-class Rotation(Enum):
+class Rotation(Choice):
     """Rotation mode of the bones."""
 
-    QUATERNION = "quaternion"
-    XYZ = "euler (XYZ)"
-    XZY = "euler (XZY)"
-    YXZ = "euler (YXZ)"
-    YZX = "euler (YZX)"
-    ZXY = "euler (ZXY)"
-    ZYX = "euler (ZYX)"
+    QUATERNION = "quaternion", "Rotate bones by quaternions, without gimbal lock"
+    XYZ = "euler (XYZ)", "Rotate bones by Euler angles in XYZ order", "XYZ Euler"
+    XZY = "euler (XZY)", "Rotate bones by Euler angles in XZY order", "XZY Euler"
+    YXZ = "euler (YXZ)", "Rotate bones by Euler angles in YXZ order", "YXZ Euler"
+    YZX = "euler (YZX)", "Rotate bones by Euler angles in YZX order", "YZX Euler"
+    ZXY = "euler (ZXY)", "Rotate bones by Euler angles in ZXY order", "ZXY Euler"
+    ZYX = "euler (ZYX)", "Rotate bones by Euler angles in ZYX order", "ZYX Euler"
 
 
-class Unit(Enum):
+class Unit(Choice):
     """What the lengths of files are measured in."""
 
-    GUESS = "guess"
-    METRES = "metres"
-    CENTIMETRES = "centimetres"
-    MILLIMETRES = "millimetres"
+    GUESS = "guess", "Read the unit from the file, or estimate it from the body size", "Auto"
+    METRES = "metres", "Lengths in the files are in meters", "Meters"
+    CENTIMETRES = "centimetres", "Lengths in the files are in centimeters", "Centimeters"
+    MILLIMETRES = "millimetres", "Lengths in the files are in millimeters", "Millimeters"
 
     @property
     def metres(self) -> float | None:
@@ -51,17 +54,15 @@ class ImportChoices(Settings):
 
     target: Target = setting(
         Target.ARMATURE,
-        "Joints of a depth camera become the bones of an armature, or one empty each, which"
-        " keeps every measured position. Markers always become empties",
+        "What the joints of a depth camera become; markers always become empties",
     )
     unit: Unit = setting(
         Unit.GUESS,
-        "What the lengths of the files are measured in. Guess takes the file's word or, where"
-        " it says nothing, what makes a human body, and tells which that was",
+        "Length unit of the files; the import message says what Auto found",
     )
     global_scale: float = setting(
         1.0,
-        "Scale the recording by this value; 1 leaves it in true metres",
+        "Scale the recording by this value; 1 leaves it in meters",
         minimum=1e-4,
         maximum=1e6,
         label="Scale",
@@ -71,64 +72,57 @@ class ImportChoices(Settings):
     )
     frame_start: int = setting(
         1,
-        "Starting frame for the animation",
+        "First frame of the animation",
         minimum=-1_000_000,
         maximum=1_000_000,
         label="Start Frame",
     )
     frame_rate: FrameRate = setting(
         FrameRate.SCALE,
-        "Where the recording has another rate than the scene. Scale FPS keeps every sample and"
-        " its second, between frames if need be. Resample to Scene FPS keeps the seconds, with"
-        " one key on each frame. Update Scene FPS gives the scene the rate of the first"
-        " recording. One Sample a Frame lets the recording play faster or slower",
+        "What to do when the frame rates of recording and scene differ",
         label="Frame Rate",
     )
     update_scene_duration: bool = setting(
         False,
-        "Extend the scene's duration to the recording's (never shortens the scene)",
+        "Extend the scene to the end of the recording; never shortens it",
         label="Update Scene Duration",
     )
     focal_length: float = setting(
         0.0,
-        "Of a depth camera, in pixels, where the files do not tell it, as folders of pictures"
-        " often do not; more makes the actor narrower. 0 takes the file's word",
+        "Focal length of the depth camera in pixels; more narrows the actor, 0 reads the file",
         minimum=0.0,
         maximum=100_000.0,
     )
     focal_length_y: float = setting(
         0.0,
-        "Vertical focal length of a depth camera, in pixels, if it differs from the horizontal"
-        " one; more makes the actor shorter. 0 takes the file's word, or the horizontal one",
+        "Vertical focal length in pixels if it differs; more shortens the actor, 0 reads the"
+        " file",
         minimum=0.0,
         maximum=100_000.0,
         label="Focal Length Y",
     )
     center_x: float = setting(
         0.0,
-        "Column of pixels at which the axis of a depth camera meets the picture. 0 takes the"
-        " file's word, or the middle",
+        "Column where the camera axis meets the picture; 0 reads the file or uses the middle",
         minimum=0.0,
         maximum=100_000.0,
         label="Center X",
     )
     center_y: float = setting(
         0.0,
-        "Row of pixels at which the axis of a depth camera meets the picture. 0 takes the"
-        " file's word, or the middle",
+        "Row where the camera axis meets the picture; 0 reads the file or uses the middle",
         minimum=0.0,
         maximum=100_000.0,
         label="Center Y",
     )
     held: Held = setting(
         Held.KNOWN,
-        "How the depth camera was held: turned left has the actor's head at the left of the"
-        " picture. Known takes the file's word",
-        label="Depth Camera",
+        "How the depth camera was held",
+        label="Camera Orientation",
     )
     mirrored: bool = setting(
         False,
-        "The pictures of depth show the actor's right hand on the right, as a mirror does",
+        "The depth pictures are mirrored: the actor's right hand is on the right",
     )
 
     @property

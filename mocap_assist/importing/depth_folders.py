@@ -67,7 +67,7 @@ def readable(context: bpy.types.Context, path: Path, choices: ImportChoices) -> 
     camera = choices.depth.camera(width, height, told)
     if camera is None:
         raise InvalidFileError(
-            f"{path} does not tell through which camera it was rendered: give the focal length"
+            f"{path} has no camera of the rendering: give the focal length"
             " in pixels, or give the scene that camera."
         )
     rate = scene_rate(context.scene)

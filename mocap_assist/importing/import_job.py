@@ -126,7 +126,7 @@ class ImportJob:
             fraction, message = self.job.progress()
             fraction *= len(self._batches[0])
         if self._read:
-            message = f"Bringing in {self._read[0][0].name}"
+            message = f"Importing {self._read[0][0].name}"
         reading = READING * (self._n_read + fraction)
         done = (reading + (1.0 - READING) * self._n_in) / self._n_files
         self._shown = max(self._shown, done)  # less is done where files are read once more
@@ -151,9 +151,7 @@ def batches(paths: Iterable[Path]) -> Iterator[list[Path]]:
 def _refusal(path: Path, error: ProcessDied | OutOfMemoryError) -> MocapAssistError:
     """Say which file it was that could not be read."""
     if isinstance(error, OutOfMemoryError):
-        return InvalidFileError(
-            f"{path} needs more memory than there is. Import a part of the take."
-        )
+        return InvalidFileError(f"{path} does not fit into memory. Import a part of the take.")
     return InvalidFileError(
         f"{path} made its reader end early, {error.cause}. Import a part of the take, or have"
         f" it exported anew.{error.last_words}"

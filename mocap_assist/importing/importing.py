@@ -51,7 +51,7 @@ def preview(context: bpy.types.Context, paths: list[Path]) -> str:
     A large one is not read for it: the dialog would be long in coming.
     """
     path, scene = paths[0], scene_rate(context.scene)
-    plays = f"the scene plays {scene:g} frames per second"
+    plays = f"the scene plays at {scene:g} FPS"
     try:
         size = path.stat().st_size
         if size > QUICKLY_READ:

@@ -89,9 +89,9 @@ def make_objects(
     what = made.what
     wanted = choices.target is Target.ARMATURE and isinstance(recording, JointRecording)
     if wanted and not isinstance(moving, Motion):
-        what += ", since nothing tells which joint hangs on which"
+        what += ", since the parents of the joints are unknown"
     elif wanted and (n_loose := recording.n_joints - len(hanging(recording))):
-        what += f", without {n_loose} points that hang on no joint"
+        what += f", without {n_loose} points that have no joint"
     return made._replace(what=what + _never_seen(recording, made.top.type == "ARMATURE"))
 
 
@@ -102,20 +102,20 @@ def _never_seen(recording: Recording, in_armature: bool) -> str:
     if in_armature and isinstance(recording, JointRecording):
         whole = fill_missing_hips(recording)
         if whole is not recording:
-            return f", with hips, never seen, between the legs{_never_seen(whole, True)}"
+            return f", with hips added between the legs{_never_seen(whole, True)}"
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording
     lost = [tracks.names[point] for point in np.flatnonzero(~tracks.visible.any(axis=0))]
     if not lost:
         return ""
     more = f" and {len(lost) - NAMED} more" * (len(lost) > NAMED)
-    return f", without {', '.join(lost[:NAMED])}{more}, never seen"
+    return f", without {', '.join(lost[:NAMED])}{more} (never observed)"
 
 
 def _seen(tracks: Tracks) -> Tracks:
     """Leave out points that were never seen: they would stand at the origin, seen for sure."""
     seen = np.flatnonzero(tracks.visible.any(axis=0))
     if not len(seen):
-        raise InvalidMotionError("No point is ever seen.")
+        raise InvalidMotionError("The recording has no observed points.")
     confidence = None if tracks.confidence is None else tracks.confidence[:, seen]
     names = tuple(tracks.names[point] for point in seen)
     return Tracks(names, tracks.positions[:, seen], tracks.frame_rate, confidence)

@@ -9,7 +9,7 @@ from ..drawing.view_drawing import redraw
 from ..jobs.job import Job
 from .solve_indexing import Indexed
 
-RUNNING = "The library is being indexed. Let it end, or press Esc."
+RUNNING = "The library is being built. Wait until it is done, or press Esc."
 
 _on: list["Indexing"] = []
 
@@ -61,9 +61,9 @@ def message_of(indexed: Indexed) -> str:
         f"{count} {what}"
         for count, what in (
             (indexed.n_added, "read"),
-            (indexed.n_kept, "as they were"),
-            (indexed.n_removed, "taken out"),
-            (len(indexed.refused), "of no use"),
+            (indexed.n_kept, "unchanged"),
+            (indexed.n_removed, "removed"),
+            (len(indexed.refused), "unusable"),
         )
         if count
     ]

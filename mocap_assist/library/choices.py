@@ -1,11 +1,10 @@
 """What an animator chooses for Index and Find Similar, besides the settings of the search."""
 
 from dataclasses import dataclass
-from enum import Enum
 from typing import NamedTuple
 
 from ...solvers.retrieval import FindSettings
-from ...solvers.settings import Settings, setting
+from ...solvers.settings import Choice, Settings, setting
 from ..actions.armature_write import Output
 from ..actions.frames import FrameRange
 from ..runtime.selection import Bones
@@ -16,20 +15,20 @@ class LibraryChoices(Settings):
     """Which library, and what is in it."""
 
     library_file: str = setting(
-        "", "File of the clip library; empty for the one that all your files share"
+        "", "File of the motion library; empty for the one that all your files share"
     )
     sources: str = setting(
         "", "Recordings, .blend files and folders of them, separated by semicolons"
     )
     asset_libraries: bool = setting(
         False,
-        "Index the actions that are assets in all asset libraries of the preferences, too",
+        "Also index the action assets of all asset libraries in the preferences",
     )
     rig_file: str = setting(
         "",
-        ".blend file with the rig of actions that lie in a file without one",
+        "File (.blend) with the rig for actions from files that have no armature",
     )
-    tags: str = setting("", "Tags that these clips get, separated by commas")
+    tags: str = setting("", "Tags to give these clips, separated by commas")
 
 
 class LibraryBundle(NamedTuple):
@@ -42,12 +41,10 @@ class LibraryBundle(NamedTuple):
 class FindChoices(Settings):
     """What of the action is looked for."""
 
-    frame_range: FrameRange = setting(
-        FrameRange.ACTION, "Look for all frames of the action, or only for some of them"
-    )
+    frame_range: FrameRange = setting(FrameRange.ACTION, "Frames of the action to search for")
     bones: Bones = setting(
         Bones.ALL,
-        "Compare the parts of the body that are chosen below, or those of the selected bones",
+        "Compare the body parts chosen below, or those of the selected bones",
     )
 
 
@@ -58,25 +55,26 @@ class FindBundle(NamedTuple):
     finding: FindSettings
 
 
-class Part(Enum):
+class Part(Choice):
     """What of the clip is taken."""
 
-    MATCH = "what matches"
-    WHOLE = "whole clip"
+    MATCH = "what matches", "Only the frames that match the query", "Matching Frames"
+    WHOLE = "whole clip", "All frames of the clip"
 
 
 @dataclass(frozen=True, kw_only=True)
 class LoadChoices(Settings):
     """How a clip comes to the armature."""
 
-    part: Part = setting(Part.MATCH, "Take the frames that are like the query, or all of them")
+    part: Part = setting(Part.MATCH, "Frames of the clip to append")
     result_as: Output = setting(
         Output.ACTION,
-        "Let the armature play the clip in the place of its action, or put it on an NLA track"
-        " at the current frame, as long as what it is like",
+        "Assign the clip as a new action, or add it to the NLA at the current frame, matched"
+        " in length",
+        label="Output",
     )
     at_query: bool = setting(
-        True, "Let it begin where the query stands, facing the same way", label="Stand There"
+        True, "Start where the query stands, facing the same direction", label="Place at Query"
     )
 
 
@@ -85,7 +83,7 @@ class UseChoices(Settings):
     """Which matches become examples of Vary."""
 
     n_best: int = setting(
-        5, "How many of the best serve; more show more of how the behaviour varies",
+        5, "Number of best matches to use; more shows more of how the motion varies",
         minimum=1, maximum=10, label="Clips",
     )  # fmt: skip
 

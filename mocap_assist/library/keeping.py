@@ -144,7 +144,7 @@ def _message_of(indexing: Indexing) -> str:
         return str(error)
     except Exception:  # A timer that raises is never called again.
         logger.exception("A library could not be kept current")
-        return "The library could not be kept current. Press Index to see why."
+        return "The library could not be updated. Press Build Library to see why."
 
 
 def register() -> None:

@@ -50,9 +50,9 @@ def toggle_kept(choices: LibraryChoices) -> str:
     name = Path(problem.library).name
     if is_kept(problem):
         stop_keeping(problem.library)
-        return f"{name} is indexed only when you press Index."
+        return f"{name} is updated only when you press Build Library."
     keep(problem)
-    return f"{name} is kept current, from {len(problem.places)} sources."
+    return f"{name} is updated automatically from {len(problem.places)} sources."
 
 
 def change_sources(library: Any, sources: list[str]) -> None:

@@ -47,7 +47,7 @@ def index_problem(choices: LibraryChoices) -> IndexProblem:
     places = places_of(choices)
     if not places:
         raise InvalidFileError(
-            "Nothing is listed to index. Add folders or files, or switch asset libraries on."
+            "No sources are listed. Add folders or files, or turn on asset libraries."
         )
     tags = tuple(tag.strip() for tag in choices.tags.split(",") if tag.strip())
     library = library_path(choices)

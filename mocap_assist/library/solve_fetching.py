@@ -112,15 +112,17 @@ def read_origin(origin: Origin, blender: BackgroundBlender) -> Motion:
     """Read the motion of a clip again; see `fetch_clip`."""
     if not Path(origin.path).is_file():
         raise InvalidFileError(
-            f"{origin.path} is gone. The library still knows the clip, but its motion is there"
-            " no more."
+            f"The source file {origin.path} was moved or deleted. Put it back, or build the"
+            " library again."
         )
     if origin.path.endswith(BLEND):
         (found,) = read_blends(blender, [origin.path], items=[origin.item])
         if not found.clips:
             why = " ".join(found.refused)
             raise InvalidFileError(
-                why or f"{origin.path} has no action {origin.item} any more. Index it again."
+                why
+                or f"{origin.path} no longer has the action {origin.item}. Build the library"
+                " again."
             )
         return found.clips[0].motion
     moving = as_wanted(read_file(Path(origin.path)).recording, AS_ARMATURE)
@@ -132,6 +134,6 @@ def read_origin(origin: Origin, blender: BackgroundBlender) -> Motion:
 def _part(motion: Motion, frames: range, origin: Origin) -> Motion:
     if frames.stop > motion.n_frames:
         raise InvalidFileError(
-            f"{origin.path} has changed since it was indexed. Index it, and search again."
+            f"{origin.path} has changed. Build the library again, then search again."
         )
     return motion.slice(frames.start, frames.stop)

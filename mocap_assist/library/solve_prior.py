@@ -63,5 +63,7 @@ def own_clips(library: ClipLibrary, own: Own) -> set[str]:
 
 def _fetch(entry: ClipEntry, blender: BackgroundBlender) -> Motion:
     if entry.origin is None:
-        raise InvalidFileError(f"Nobody knows where {entry.name} came from.")
+        raise InvalidFileError(
+            f"The source file of {entry.name} is unknown. Build the library again."
+        )
     return read_origin(entry.origin, blender)

@@ -18,9 +18,9 @@ logger = logging.getLogger(__name__)
 
 BETWEEN_LOOKS = 1.0 / 30.0
 """Seconds."""
-WAITING = "Nobody is seen yet. Start the tracker, or python -m solvers replay."
+WAITING = "No data yet. Start your tracker."
 MODES = {
-    Mode.IDLE: "Clap to perform, right hand up for the library",
+    Mode.IDLE: "Clap to perform, raise the right hand for the library",
     Mode.BROWSING: "Wave to page, clap to perform",
     Mode.CAPTURING: "Performing; clap to end",
 }

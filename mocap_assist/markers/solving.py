@@ -34,7 +34,7 @@ def why_not_solve(context: bpy.types.Context) -> str:
     """Return why no skeleton can be made, or nothing."""
     subject = selected_subject(context)
     if subject is None or subject.type == "ARMATURE":
-        return "Select the markers of an optical take."
+        return "Select a marker set."
     try:
         played_source(subject)
     except InvalidMotionError as error:
@@ -86,11 +86,11 @@ def _said(result: MarkerMotion) -> str:
     n_joints = sum(not name.endswith("_end") for name in result.motion.skeleton.names)
     n_markers, its_set = len(result.solved.markers), result.solved.marker_set.name
     said = (
-        f"{n_joints} joints from {n_markers} markers ({its_set}), which lie {error:.1f} mm"
-        " from where the skeleton has them."
+        f"{n_joints} joints from {n_markers} markers ({its_set}), mean marker error"
+        f" {error:.1f} mm."
     )
     if result.swaps:
-        said += f" {len(result.swaps)} swaps of labels were put right first."
+        said += f" Fixed {len(result.swaps)} swapped labels."
     return said
 
 

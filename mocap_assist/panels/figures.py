@@ -7,7 +7,7 @@ FIGURES = (
     ("Jitter (m/s³)", "mean_jitter_m_per_s3", 1.0, ".0f"),
     ("Spikes", "spikes", 1.0, ".0f"),
     ("Missing (%)", "missing_share", 100.0, ".1f"),
-    ("Foot slide (cm/s)", "foot_slide_cm_per_s", 1.0, ".1f"),
+    ("Foot Slide (cm/s)", "foot_slide_cm_per_s", 1.0, ".1f"),
 )
 UNKNOWN = "–"
 

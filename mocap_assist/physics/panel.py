@@ -15,7 +15,7 @@ SIMULATE = "mocap_assist.simulate"
 class PhysicsPanel:
     """Settings of Physics, and its button."""
 
-    bl_label = "Physics"
+    bl_label = "Simulate"
     bl_options: ClassVar = {"DEFAULT_CLOSED"}
 
     @classmethod

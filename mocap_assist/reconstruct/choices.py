@@ -1,23 +1,34 @@
 """What an animator chooses for Reconstruct, besides the settings of the solvers themselves."""
 
 from dataclasses import dataclass, fields
-from enum import Enum
 from typing import NamedTuple
 
 from ...solvers.denoising import PlantSettings
 from ...solvers.reconstruction import ReconstructSettings
-from ...solvers.settings import Settings, setting
+from ...solvers.settings import Choice, Settings, setting
 from ..actions.armature_write import Output
 from ..actions.frames import FrameRange
 
 
-class Postures(Enum):
+class Postures(Choice):
     """Where postures of natural bodies come from."""
 
-    SHIPPED = "shipped"
-    EXAMPLES = "examples"
-    LEARNED = "learned file"
-    LIBRARY = "library"
+    SHIPPED = "shipped", "Use the poses that come with Mocap Assist", "Built-In"
+    EXAMPLES = (
+        "examples",
+        "Use the poses of clean takes of the same kind of motion",
+        "From Examples",
+    )
+    LEARNED = (
+        "learned file",
+        "Use the poses of a file that learn-postures has written",
+        "From File",
+    )
+    LIBRARY = (
+        "library",
+        "Use the poses of the most similar clips of the motion library",
+        "From Library",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,33 +37,31 @@ class ReconstructChoices(Settings):
 
     postures: Postures = setting(
         Postures.SHIPPED,
-        "Guess lost joints from the postures that come with Mocap Assist, from clean clips of"
-        " the same kind of motion, from a file of postures, or from clips of the library that"
-        " are like the take",
+        "Source of the clean poses that missing joints are rebuilt from",
+        label="Poses",
     )
     examples: str = setting(
         "",
-        "Clean actions of this file, or recordings and folders of them on disk, separated by"
-        " semicolons; any rig serves",
+        "Clean actions of this file, or recordings and folders on disk, separated by"
+        " semicolons",
     )
     postures_file: str = setting(
-        "", "Postures of your own, as learn-postures wrote them (.npz)"
+        "", "Pose file that learn-postures has written (.npz)", label="Pose File"
     )
     residuals_file: str = setting(
         "",
-        "How your own sensor errs, as learn-residuals wrote it (.npz); without it that of a"
-        " Kinect v2 is taken out of recordings of such a one",
-        label="Sensor's errors",
+        "Error model of your sensor from learn-residuals (.npz); empty for the built-in"
+        " Kinect v2",
+        label="Sensor Error File",
     )
-    frame_range: FrameRange = setting(
-        FrameRange.ACTION, "Change all frames of the action, or only some of them"
-    )
+    frame_range: FrameRange = setting(FrameRange.ACTION, "Frames of the action to change")
     plant_feet: bool = setting(
-        True, "Keep standing feet from sliding, by moving legs and hips a little"
+        True, "Keep planted feet from sliding by moving legs and hips slightly"
     )
     result_as: Output = setting(
         Output.ACTION,
-        "Put the result in the place of the action, or on an NLA track of its own",
+        "Assign the result as a new action, or put it on a new NLA track",
+        label="Output",
     )
 
 

@@ -33,7 +33,7 @@ class ReconstructPanel:
         settings = context.scene.mocap_assist.reconstruct
         column.use_property_split = True
         column.use_property_decorate = False
-        column.prop(settings, "postures", text="Postures")
+        column.prop(settings, "postures", text="Poses")
         if settings.postures == Postures.EXAMPLES.name:
             draw_examples(column, settings, RECONSTRUCT)
         elif settings.postures == Postures.LEARNED.name:

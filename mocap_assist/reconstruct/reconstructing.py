@@ -65,10 +65,7 @@ class _Reading(NamedTuple):
 def why_not_reconstruct(context: bpy.types.Context) -> str:
     """Return why nothing can be reconstructed, or nothing."""
     if selected_armature(context) is None:
-        return (
-            "Select an armature that plays a captured action; import joints of a depth camera"
-            " as an armature."
-        )
+        return "Select an animated armature. Import depth camera joints as an armature."
     return why_not_clean(context)
 
 
@@ -148,7 +145,7 @@ def _problem(
         library = library_prior(scene, armature)
     elif choices.postures is Postures.LEARNED:
         if not choices.postures_file:
-            raise InvalidMotionError("Choose the file of postures, or other postures.")
+            raise InvalidMotionError("Choose a pose file, or another source of poses.")
         postures = _dated(choices.postures_file)
     state = read_states(found.recorded, body.skeleton.names, found.take.frames)
     return RebuildProblem(
@@ -196,11 +193,12 @@ def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
 
 def _said(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
     """Return what a status bar has room for, and what the animator must know."""
-    short = f"{name}: {100 * rebuilt.solution.rebuilt_share:.1f} % of joints rebuilt"
+    rebuilt_percent = 100 * rebuilt.solution.rebuilt_share
+    short = f"{name}: rebuilt {rebuilt_percent:.1f} % of joint samples"
     if planted := rebuilt.planted:
         slides = (100 * planted.slide_before, 100 * planted.slide_after)
-        short += ", feet slid {:.1f} cm and now {:.1f} cm".format(*slides)
+        short += "; foot slide {:.1f} → {:.1f} cm".format(*slides)
     said = [f"{short}.", *rebuilt.remarks]
     if n_modified:
-        said.append(f"The modifiers of {n_modified} curves are part of the new keys now.")
+        said.append(f"Applied the modifiers of {n_modified} curves.")
     return " ".join(said)

@@ -62,7 +62,7 @@ class _BoneButton:
     def poll(cls, context: bpy.types.Context) -> bool:
         reason = why_not_retarget(context)
         if not reason and not context.scene.mocap_assist.retarget.target:
-            reason = "Choose the armature that is to make the motion first."
+            reason = "Choose the target armature first."
         if reason:
             cls.poll_message_set(reason)
         return not reason
@@ -80,10 +80,7 @@ class _BoneButton:
 class MOCAP_OT_find_bones(_BoneButton, bpy.types.Operator):
     bl_idname = FIND
     bl_label = "Find Bones"
-    bl_description = (
-        "Find out, by names and by the shape of the rest pose, which bone plays"
-        " which part in both armatures"
-    )
+    bl_description = "Match the bones of both armatures by their names and rest poses"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         return self.done(partial(self.find, context))
@@ -103,8 +100,8 @@ class _PresetButton(_BoneButton):
     filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN", "SKIP_SAVE"})
     side: bpy.props.EnumProperty(
         name="Armature",
-        description="Whose bones they are",
-        items=[(side, side.capitalize(), "") for side in SIDES],
+        description="Armature of the bone map",
+        items=[(side, side.capitalize(), f"Bone map of the {side} armature") for side in SIDES],
         options={"SKIP_SAVE"},
     )
 
@@ -117,8 +114,8 @@ class _PresetButton(_BoneButton):
 
 class MOCAP_OT_save_bone_map(_PresetButton, bpy.types.Operator):
     bl_idname = SAVE
-    bl_label = "Save Bones"
-    bl_description = "Keep what the list says of one armature as a preset"
+    bl_label = "Save Bone Map"
+    bl_description = "Save the bone map of one armature as a preset"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         return self.done(partial(self.save, context))
@@ -131,8 +128,8 @@ class MOCAP_OT_save_bone_map(_PresetButton, bpy.types.Operator):
 
 class MOCAP_OT_load_bone_map(_PresetButton, bpy.types.Operator):
     bl_idname = LOAD
-    bl_label = "Load Bones"
-    bl_description = "Let a preset say which bones of one armature play which part"
+    bl_label = "Load Bone Map"
+    bl_description = "Load the bone map of one armature from a preset"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         return self.done(partial(self.load, context))
@@ -173,14 +170,11 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
             column.prop_search(
                 row, side, armature.data, "bones", text=side.capitalize(), icon="BONE_DATA"
             )
-    for idname, icon in ((SAVE, "FILE_TICK"), (LOAD, "FILE_FOLDER")):
+    for verb, idname, icon in (("Save", SAVE, "FILE_TICK"), ("Load", LOAD, "FILE_FOLDER")):
         row = layout.row(align=True)
         for side in SIDES:
-            row.operator(
-                idname,
-                text=f"{idname.split('.')[1].split('_')[0].capitalize()} {side.capitalize()}",
-                icon=icon,
-            ).side = side
+            text = f"{verb} {side.capitalize()} Map"
+            row.operator(idname, text=text, icon=icon).side = side
 
 
 CLASSES = (MOCAP_UL_bones, MOCAP_OT_find_bones, MOCAP_OT_save_bone_map, MOCAP_OT_load_bone_map)

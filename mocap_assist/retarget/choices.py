@@ -1,45 +1,46 @@
 """What an animator chooses for Retarget and Unbake, besides the solvers' own settings."""
 
 from dataclasses import dataclass
-from enum import Enum
 from typing import NamedTuple
 
 from ...solvers.retargeting import RetargetSettings, UnbakeSettings
-from ...solvers.settings import Settings, setting
+from ...solvers.settings import Choice, Settings, setting
 from ..rigs.control_plan import Limbs
 
 
-class Takes(Enum):
+class Takes(Choice):
     """Actions of the source that are retargeted."""
 
-    PLAYED = "played"
-    LISTED = "listed"
-    ALL = "all"
+    PLAYED = "played", "Only the current action of the source armature", "Current"
+    LISTED = "listed", "The actions that are selected in the list", "Selected Actions"
+    ALL = "all", "All actions that have keys for bones of the source", "All Matching"
 
 
 @dataclass(frozen=True, kw_only=True)
 class RetargetChoices(Settings):
     """Who gets the motion, which motions, and how limbs are keyed."""
 
-    target: str = setting("", "Name of the armature that is to make the motion")
+    target: str = setting("", "Armature that receives the motion")
     takes: Takes = setting(
         Takes.PLAYED,
-        "Retarget the action that the armature plays, those that are listed, or all that have"
-        " keys for its bones",
+        "Actions of the source to retarget",
+        label="Source Action",
     )
     actions: str = setting("", "Names of the listed actions, separated by semicolons")
     limbs: Limbs = setting(
         Limbs.FK,
-        "Key the FK or the IK controls of arms and legs, where the target has both; with both,"
-        " either can be switched to",
+        "Controls of arms and legs to key, where the target has FK and IK",
+        label="Arms and Legs",
     )
     source_map_file: str = setting(
         "",
-        "Preset that says which bone of the source plays which part; without it the list of"
-        " bones is used, or bones are found by their names and places",
+        "Bone map of the source; empty for the list below, or names and rest pose",
+        label="Source Bone Map",
     )
     target_map_file: str = setting(
-        "", "Preset that says which bone of the target is keyed for which part"
+        "",
+        "Bone map of the target: which bone or control is keyed for which part",
+        label="Target Bone Map",
     )
 
 
@@ -56,7 +57,7 @@ class UnbakeChoices(Settings):
 
     tolerance: float = setting(
         0.01,
-        "Greatest distance by which hands, feet and head may be off; higher leaves fewer keys",
+        "Largest error of hands, feet and head; higher leaves fewer keys",
         unit="m", minimum=0.0001, maximum=1.0,
     )  # fmt: skip
 

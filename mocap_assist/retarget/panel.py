@@ -118,8 +118,8 @@ def _draw_unbake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
 
 class MOCAP_OT_tick_action(bpy.types.Operator):
     bl_idname = TICK
-    bl_label = "Choose This Action"
-    bl_description = "Take this action too, or no longer"
+    bl_label = "Select Action"
+    bl_description = "Add this action to the selection, or remove it"
     bl_options: ClassVar = {"INTERNAL", "UNDO"}
 
     action: bpy.props.StringProperty(
@@ -129,9 +129,7 @@ class MOCAP_OT_tick_action(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         if SEPARATOR in self.action:
-            self.report(
-                {"ERROR"}, f"Rename {self.action}: {SEPARATOR} parts names in the list."
-            )
+            self.report({"ERROR"}, f"Rename {self.action}: a name cannot contain {SEPARATOR}.")
             return {"CANCELLED"}
         shown = getattr(context.scene.mocap_assist, self.group)
         names = listed(shown.actions)

@@ -85,7 +85,7 @@ def write_retargeted(
     made = action.name if len(results) == 1 else f"{len(results)} actions"
     score = min(found.maps.source.score, found.maps.target.score)
     return (
-        f"{made}: {n_frames} frames on {n_bones} bones of {found.target.name}"
+        f"{made}: retargeted {n_frames} frames to {n_bones} bones of {found.target.name}"
         f" (bones matched {score:.0%})."
         + (" It is linked: let its library override play the action." if linked else "")
     )
@@ -96,16 +96,14 @@ def target_called(
 ) -> bpy.types.Object:
     """Return the armature of that name; raise InvalidMotionError where it cannot be used."""
     if not name:
-        raise InvalidMotionError("Choose the armature that is to make the motion.")
+        raise InvalidMotionError("Choose the target armature.")
     named = [each for each in scene.objects if each.name == name and each.type == "ARMATURE"]
     # A linked armature and its override may have one name; only the override can be animated.
     target = min(named, key=lambda each: each.library is not None, default=None)
     if target is None:
         raise InvalidMotionError(f"The scene has no armature {name}.")
     if target == source:
-        raise InvalidMotionError(
-            f"{name} is the source itself. Choose another armature to make the motion."
-        )
+        raise InvalidMotionError(f"{name} is the source itself. Choose another target.")
     if target.library is None:
         check_writable(target)
     return target

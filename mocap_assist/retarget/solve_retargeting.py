@@ -94,7 +94,7 @@ def _retarget(
         settings=replace(settings, root_motion=kept),
         progress=within(progress, 0.0, 0.8),
     )
-    progress(0.8, "Moving the controls")
+    progress(0.8, "Moving controls")
     if clip.start is not None:
         result = _started(result, target.humanoid, clip.start)
     gaps = ~np.isfinite(result.rotations).all(axis=-1)

@@ -56,8 +56,8 @@ def write_unbaked(
     history.record(action, played, entry)
     put_to_use(armature, action, slot, Output.ACTION)
     return (
-        f"{action.name}: {after} keys instead of {before}; hands, feet and head are off by"
-        f" {100 * result.error:.2f} cm at most."
+        f"{action.name}: {before} → {after} keys; error of hands, feet and head"
+        f" at most {100 * result.error:.2f} cm."
     )
 
 

@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from enum import Enum
 from typing import NamedTuple
+
+from ...solvers.settings import Choice
 
 ROOT = "root"
 """Stands where a role is asked for: the travel over the ground."""
@@ -16,12 +17,16 @@ LIMB = {
 FINGER_PARTS = ("Metacarpal", "Proximal", "Intermediate", "Distal")
 
 
-class Limbs(Enum):
+class Limbs(Choice):
     """Controls of arms and legs that are keyed, where a rig has both."""
 
-    FK = "FK"
-    IK = "IK"
-    BOTH = "both, FK plays"
+    FK = "FK", "Key the FK controls and switch arms and legs to FK"
+    IK = "IK", "Key the IK controls and switch arms and legs to IK"
+    BOTH = (
+        "both, FK plays",
+        "Key the FK and IK controls; the rig plays FK and can switch to IK",
+        "FK and IK",
+    )
 
 
 class Plan(NamedTuple):

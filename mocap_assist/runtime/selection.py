@@ -1,10 +1,9 @@
 """The armature and the bones that the animator means, and why a button may be grey."""
 
-from enum import Enum
-
 import bpy
 
 from ...solvers.errors import InvalidMotionError
+from ...solvers.settings import Choice
 from ..actions.armature_read import action_of
 from ..actions.armature_write import check_writable
 from ..actions.marker_take import MarkerTake
@@ -14,11 +13,11 @@ from ..blender.compat import Source
 from ..scene import history
 
 
-class Bones(Enum):
+class Bones(Choice):
     """Bones that a button changes."""
 
-    ALL = "all"
-    SELECTED = "selected"
+    ALL = "all", "All bones of the armature, or all markers"
+    SELECTED = "selected", "The selected bones or markers only"
 
 
 def selected_armature(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -36,7 +35,7 @@ def why_not_read(context: bpy.types.Context) -> str:
     """Return why there is nothing to read, or nothing: the reason why a button is grey."""
     subject = selected_subject(context)
     if subject is None:
-        return "Select an armature that plays a captured action, or captured markers."
+        return "Select an animated armature or marker set."
     try:
         played_source(subject)
     except InvalidMotionError as error:
@@ -58,7 +57,7 @@ def why_not_clean(context: bpy.types.Context) -> str:
 def why_not_change(context: bpy.types.Context) -> str:
     """Return why the motion of no armature can be changed, or nothing."""
     if selected_armature(context) is None:
-        return "Select an armature that plays a captured action."
+        return "Select an animated armature."
     return why_not_clean(context)
 
 
@@ -66,14 +65,14 @@ def why_not_retarget(context: bpy.types.Context) -> str:
     """Return why nothing can be retargeted, or nothing."""
     armature = selected_armature(context)
     if armature is None:
-        return "Select the armature whose motion another one is to make."
+        return "Select the source armature (the one with the motion)."
     return ""
 
 
 def why_not_learn(context: bpy.types.Context) -> str:
     """Return why nothing can be learned, or nothing."""
     if selected_armature(context) is None:
-        return "Select an armature that has the bones of the examples."
+        return "Select an armature with the bones of the examples."
     return ""
 
 

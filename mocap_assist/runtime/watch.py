@@ -8,9 +8,7 @@ from bpy.app import handlers
 from ..drawing.view_drawing import redraw
 
 BETWEEN_LOOKS = 0.05  # seconds
-BUSY = (
-    "Another solve is running. Let it end, or press Esc in the window in which it was started."
-)
+BUSY = "Another solve is running. Wait until it is done, or press Esc in its window."
 
 _on: list["Watch"] = []
 

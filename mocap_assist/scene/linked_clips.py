@@ -51,7 +51,7 @@ def linked_clips(
             into.objects = _chosen(there.objects, objects)
     except OSError:
         raise InvalidFileError(
-            f"{path} cannot be read as a .blend file. Save it anew, or choose another."
+            f"{path} cannot be read as a .blend file. Save it again, or choose another."
         ) from None
     armatures = [each for each in into.objects if each is not None and each.type == "ARMATURE"]
     strangers = [each for each in armatures if each.session_uid not in present]

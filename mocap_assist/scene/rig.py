@@ -141,5 +141,5 @@ def check_finite(matrix: Matrix, name: str) -> None:
     if not (np.abs(np.array(matrix, dtype=np.float64)) <= FARTHEST).all():
         raise InvalidMotionError(
             f"The location, rotation or scale of {name} is not a number or far too large at the"
-            " current frame. Set it anew, or delete the key that sets it."
+            " current frame. Set it again, or delete the key that sets it."
         )

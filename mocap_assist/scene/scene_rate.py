@@ -1,6 +1,5 @@
 """On which scene frames the samples of a recording come to lie."""
 
-from enum import Enum
 from math import ceil
 from typing import NamedTuple
 
@@ -8,17 +7,23 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.settings import Choice
+
 Array = NDArray[np.float64]
 SAME = 1e-6  # relative difference of rates that is only rounding
 
 
-class FrameRate(Enum):
+class FrameRate(Choice):
     """What happens where the recording has another rate than the scene."""
 
-    SCALE = "scale FPS"
-    RESAMPLE = "resample to scene FPS"
-    UPDATE = "update scene FPS"
-    ONE = "one sample a frame"
+    SCALE = "scale FPS", "Keep every sample at its time; keys may lie between frames"
+    RESAMPLE = "resample to scene FPS", "Keep the timing and put one key on each scene frame"
+    UPDATE = "update scene FPS", "Set the scene frame rate to that of the first recording"
+    ONE = (
+        "one sample a frame",
+        "Put each sample on its own frame; changes the playback speed",
+        "One Sample per Frame",
+    )
 
 
 class Timing(NamedTuple):

@@ -37,7 +37,7 @@ def why_not_find(context: bpy.types.Context) -> str:
     choices = context.scene.mocap_assist.library.settings().choices
     # A panel that is drawn does not look at a path that the .blend file names.
     missing = not choices.library_file and not library_path(choices).is_file()
-    return "There is no library yet. Add folders, and press Index." if missing else ""
+    return "There is no library yet. Add folders, then press Build Library." if missing else ""
 
 
 @Sliced
@@ -79,10 +79,10 @@ def list_found(
     fill_list(bpy.context, searches.keep(name, grid, unit_of(scene), finding))
     n_found = len(finding.found)
     if not n_found:
-        return f"Nothing in the library ({finding.n_clips} clips) is like {name}."
+        return f"No clip of the library ({finding.n_clips} clips) is similar to {name}."
     best = finding.found[0]
     return (
-        f"{n_found} of {finding.n_clips} clips; most like {name} is {best.entry.name}"
+        f"Found {n_found} of {finding.n_clips} clips. Most similar to {name}: {best.entry.name}"
         f" ({best.match.score:.0%})."
     )
 

@@ -43,8 +43,8 @@ def register() -> None:
     bpy.types.WindowManager.mocap_assist_ghost = bpy.props.BoolProperty(
         name="Ghost",
         description=(
-            "Draw the clip that is chosen as a stick figure over the 3D View: where the query"
-            " stands, and in its time"
+            "Draw the selected clip as a stick figure at the query; the ghost follows the"
+            " query's timing"
         ),
         update=_switched,
     )

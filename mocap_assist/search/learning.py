@@ -31,7 +31,7 @@ def learn_from_best(context: bpy.types.Context, group: str, n_best: int) -> str:
         settings.postures = Postures.EXAMPLES.name
     said = f"{group.capitalize()} learns from {len(usable)} clips."
     if lost := len(best) - len(usable):
-        said += f" {lost} cannot serve: their files are gone, or no rig here has their bones."
+        said += f" {lost} could not be loaded: the file is gone, or no rig here has its bones."
     return said
 
 

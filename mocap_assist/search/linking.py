@@ -40,9 +40,9 @@ def take_chosen(context: bpy.types.Context, link: bool) -> str:
     how = "linked" if link else "appended"
     slots = fitting_slots(armature, action) if armature is not None else []
     if armature is None or not slots or armature.library is not None:
-        return f"{action.name} is {how}; no selected armature has its bones."
+        return f"{action.name} was {how}; no selected armature has its bones."
     compat.assign(armature, action, slots[0])
-    return f"{action.name} is {how}; {armature.name} plays it."
+    return f"{action.name} was {how} and assigned to {armature.name}."
 
 
 def take_action(found: Found, link: bool) -> bpy.types.Action:
@@ -63,7 +63,7 @@ def take_action(found: Found, link: bool) -> bpy.types.Action:
         here = [each for each in bpy.data.actions if each.library is None]
         return _named(here, origin.item, path)
     if not path.is_file():
-        raise InvalidFileError(f"{path} is gone; its actions cannot be had any more.")
+        raise InvalidFileError(f"{path} was moved or deleted; its actions cannot be loaded.")
     try:
         with bpy.data.libraries.load(str(path), link=link) as (there, taken):
             name = _name_in(there.actions, origin.item, path)
@@ -93,4 +93,4 @@ def _name_in(names: list[str], item: str, path: Path) -> str:
     for name in (item, item.rpartition(":")[0]):
         if name in names:
             return name
-    raise InvalidFileError(f"{path} has no action {item} any more. Index it again.")
+    raise InvalidFileError(f"{path} no longer has the action {item}. Build the library again.")

@@ -35,7 +35,7 @@ def why_not_load(context: bpy.types.Context) -> str:
     """Return why no clip can be given to an armature, or nothing."""
     armature = selected_armature(context)
     if armature is None:
-        return "Select the armature that is to make the motion of the clip."
+        return "Select the armature that receives the motion of the clip."
     if reason := searches.why_none(context):
         return reason
     try:
@@ -115,7 +115,9 @@ def problem_of(
 ) -> tuple[FetchProblem, dict[tuple[str, str], float]]:
     """Return what is to be solved to give a match to an armature, and the rig's switches."""
     if found.entry.origin is None:
-        raise InvalidMotionError(f"Nobody knows where {found.entry.name} came from.")
+        raise InvalidMotionError(
+            f"The source file of {found.entry.name} is unknown. Build the library again."
+        )
     retargeting = scene.mocap_assist.retarget.settings()
     settings = retargeting.retargeting
     on_root = settings.root_motion is RootMotion.ROOT_BONE

@@ -21,7 +21,7 @@ def why_not_mark(context: bpy.types.Context) -> str:
     """Return why nothing can become an asset, or nothing."""
     armature = selected_armature(context)
     if armature is None:
-        return "Select an armature that plays the action."
+        return "Select an armature with an action."
     try:
         action, _ = played_source(armature)
     except InvalidMotionError as error:
@@ -75,7 +75,7 @@ def catalog_number(catalog: str) -> str:
     if not catalog.strip():
         return ""
     if not bpy.data.filepath:
-        raise InvalidFileError("Save the file first: its catalogs are kept beside it.")
+        raise InvalidFileError("Save the file first: its catalogs are stored next to it.")
     return ensure_catalog(catalog_file(Path(bpy.data.filepath).parent), catalog)
 
 

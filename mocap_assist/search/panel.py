@@ -117,9 +117,9 @@ def _draw_matches(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
     listed = context.window_manager.mocap_assist_matches
     search = searches.listed(context)
     if search is None:
-        draw_sentence(column, context, "Press Find Similar again.", icon="INFO")
+        draw_sentence(column, context, "Outdated. Press Find Similar again.", icon="INFO")
         return
-    draw_sentence(column, context, f"Like {listed.query}:")
+    draw_sentence(column, context, f'Similar to "{listed.query}"')
     rows = min(max(len(listed.rows), FEWEST), MOST)
     column.template_list(
         "MOCAP_UL_matches", "", listed, "rows", listed, "active", rows=rows, maxrows=rows
@@ -146,16 +146,16 @@ def _draw_chosen(
     switch.prop(context.window_manager, "mocap_assist_ghost", toggle=True, icon="GHOST_ENABLED")
     load = context.scene.mocap_assist.load
     column.prop(load, "part")
-    column.prop(load, "at_query", text="Stand where it does")
+    column.prop(load, "at_query", text="Place at Query")
     row = column.row(align=True)
     row.operator(LOAD, text="Append", icon="ACTION").result_as = "ACTION"
-    row.operator(LOAD, text="To NLA", icon="NLA").result_as = "NLA_TRACK"
+    row.operator(LOAD, text="Add to NLA", icon="NLA").result_as = "NLA_TRACK"
     row.operator(LINK, text="Link", icon="LINKED")
-    column.label(text="Learn from the best for:")
+    column.label(text="Use Best Matches in:")
     row = column.row(align=True)
     row.operator(LEARN, text="Clean", icon="BRUSH_DATA").group = "clean"
     row.operator(LEARN, text="Reconstruct", icon="ARMATURE_DATA").group = "reconstruct"
-    column.label(text="Vary the best:")
+    column.label(text="Use Best Matches in Vary:")
     row = column.row(align=True)
     row.operator(USE, icon="MOD_ARRAY")
     row.prop(context.scene.mocap_assist.use, "n_best", text="")

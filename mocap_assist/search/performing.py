@@ -47,7 +47,7 @@ def search_with(context: bpy.types.Context, query: JointRecording) -> str:
     scene = bpy.context.scene
     library = library_path(scene.mocap_assist.library.settings().choices)
     if not library.is_file():
-        return "There is no library yet. Add folders, and press Index."
+        return "There is no library yet. Add folders, then press Build Library."
     wanted = scene.mocap_assist.find.settings().finding
     solve = partial(find_clips, FindProblem(query, str(library), wanted))
     start, metres = float(scene.frame_current), unit_of(scene)
@@ -56,14 +56,14 @@ def search_with(context: bpy.types.Context, query: JointRecording) -> str:
         return _listed(run(solve), (start, step), metres)
     job: Job[Finding] = Job(solve)
     timers.register(partial(_look, job, (start, step), metres), first_interval=BETWEEN_LOOKS)
-    return f"Searching with {query.n_frames} frames ..."
+    return f"Searching with {query.n_frames} frames..."
 
 
 def chosen_sentence() -> str:
     """Say which match is chosen."""
     listed = bpy.context.window_manager.mocap_assist_matches
     if not listed.rows:
-        return "Nothing was searched for yet."
+        return "No search yet."
     place = min(listed.active, len(listed.rows) - 1)
     row = listed.rows[place]
     return f"{place + 1} of {len(listed.rows)}: {row.name} ({row.score:.0%})."

@@ -7,8 +7,8 @@ class MOCAP_PG_match(bpy.types.PropertyGroup):
     """A clip that is like the query; `name` is the clip's."""
 
     score: bpy.props.FloatProperty(name="Score", subtype="FACTOR", min=0.0, max=1.0)
-    start: bpy.props.IntProperty(name="First frame", description="Of the clip")
-    stop: bpy.props.IntProperty(name="Last frame", description="Of the clip")
+    start: bpy.props.IntProperty(name="First frame", description="Frame of the clip")
+    stop: bpy.props.IntProperty(name="Last frame", description="Frame of the clip")
     tags: bpy.props.StringProperty(name="Tags")
 
 
@@ -16,9 +16,9 @@ class MOCAP_PG_matches(bpy.types.PropertyGroup):
     """What was found last."""
 
     search: bpy.props.IntProperty(name="Search", description="Number of the search")
-    query: bpy.props.StringProperty(name="Query", description="Action that was looked for")
+    query: bpy.props.StringProperty(name="Query", description="Action that was searched for")
     rows: bpy.props.CollectionProperty(type=MOCAP_PG_match)
-    active: bpy.props.IntProperty(name="Match", description="Clip that is chosen")
+    active: bpy.props.IntProperty(name="Match", description="Selected clip")
 
 
 class MOCAP_PG_indexing(bpy.types.PropertyGroup):
@@ -27,7 +27,7 @@ class MOCAP_PG_indexing(bpy.types.PropertyGroup):
     running: bpy.props.BoolProperty(name="Running")
     fraction: bpy.props.FloatProperty(name="Done", subtype="FACTOR", min=0.0, max=1.0)
     message: bpy.props.StringProperty(name="Message")
-    said: bpy.props.StringProperty(name="Said", description="What the last Index has done")
+    said: bpy.props.StringProperty(name="Said", description="Result of the last Build Library")
 
 
 CLASSES = (MOCAP_PG_match, MOCAP_PG_matches, MOCAP_PG_indexing)

@@ -45,7 +45,7 @@ class MOCAP_OT_add_source_folder(bpy.types.Operator):
     bl_idname = ADD_FOLDER
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Add Folder"
-    bl_description = "Index all recordings and .blend files in a folder, and below it"
+    bl_description = "Add a folder with all recordings and .blend files in it and below"
 
     directory: path_property(FOLDER, HIDDEN)
 
@@ -61,7 +61,7 @@ class MOCAP_OT_add_source_files(bpy.types.Operator):
     bl_idname = ADD_FILES
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Add Files"
-    bl_description = "Index these recordings, or the actions of these .blend files"
+    bl_description = "Add recordings, or .blend files with actions"
 
     directory: path_property(FOLDER, HIDDEN)
     files: bpy.props.CollectionProperty(type=bpy.types.OperatorFileListElement, options=HIDDEN)
@@ -79,10 +79,10 @@ class MOCAP_OT_remove_source(bpy.types.Operator):
     bl_idname = REMOVE
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Remove Source"
-    bl_description = "Do not index this one any more; its clips stay in the library"
+    bl_description = "Remove this source; its clips stay in the library"
 
     index: bpy.props.IntProperty(
-        name="Source", description="Place in the list", min=0, options={"SKIP_SAVE"}
+        name="Source", description="Index in the list", min=0, options={"SKIP_SAVE"}
     )
 
     def execute(self, context: bpy.types.Context) -> set[str]:

@@ -64,7 +64,7 @@ def write_best(
     clips = "1 clip" if len(names) == 1 else f"{len(names)} clips"
     said = f"Vary has {clips} of the library as examples."
     if lost := len(reading.found) - len(names):
-        said += f" {lost} could not be had: {fetched.trouble}"
+        said += f" {lost} could not be loaded: {fetched.trouble}"
     return said
 
 
@@ -73,7 +73,9 @@ def _read(scene: bpy.types.Scene, armature: bpy.types.Object, settings: UseBundl
     usable = [each for each in search.finding.found if each.entry.origin is not None]
     best = tuple(usable[: settings.choices.n_best])
     if not best:
-        raise InvalidMotionError("Nobody knows where these clips came from. Index them again.")
+        raise InvalidMotionError(
+            "The source files of these clips are unknown. Build the library again."
+        )
     taken = LoadChoices(part=scene.mocap_assist.load.settings().choices.part)
     pairs = [problem_of(scene, armature, taken, search, found) for found in best]
     problems = FetchProblems(tuple(problem for problem, _ in pairs), tuple(map(_short, best)))

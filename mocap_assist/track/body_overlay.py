@@ -67,10 +67,10 @@ def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None
 def register() -> None:
     """Add the switch; nothing is drawn until it is on."""
     bpy.types.WindowManager.mocap_assist_body = bpy.props.BoolProperty(
-        name="Body over the Points",
+        name="Body Overlay",
         description=(
-            "Draw the body that was tracked as the armature is posed, so that it follows all"
-            " edits: blue joints were trusted, red ones were not"
+            "Draw the tracked body in the pose of the armature; blue joints have high"
+            " confidence, red ones low"
         ),
         update=_switched,
     )

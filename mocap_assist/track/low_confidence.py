@@ -32,6 +32,6 @@ def list_doubts(
         item.start, item.stop = np.round(frames[[doubt.first, doubt.last]], 2)
         item.severity = float(doubt.last - doubt.first + 1)
         item.sentence = (
-            f"{doubt.joint} is out of sight or badly explained from frame {item.start:g} to"
-            f" {item.stop:g}, and was guessed."
+            f"{doubt.joint} is hidden or fits badly from frame {item.start:g} to"
+            f" {item.stop:g}; its pose is estimated."
         )

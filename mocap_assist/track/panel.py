@@ -11,7 +11,7 @@ from .tracked_body import is_tracked
 from .tracking import why_not_track
 
 TRACK, RETRACK = "mocap_assist.track_depth", "mocap_assist.retrack"
-HOW = "Pose the armature in a frame that is wrong, then track from there."
+HOW = "Correct the pose at a wrong frame, then press Track from Here."
 CUT = ("nearest", "farthest")
 SHOWN = ("backward", "refine", "smoothing", "recorded", "plant_feet", "watch", "keep_on_esc")
 

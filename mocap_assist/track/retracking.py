@@ -49,7 +49,7 @@ def why_not_retrack(context: bpy.types.Context) -> str:
     """Return why nothing can be tracked again, or nothing."""
     armature = selected_armature(context)
     if not is_tracked(armature):
-        return "Select an armature that Track has made, and pose it in a frame that is wrong."
+        return "Select a tracked armature and correct its pose at a wrong frame."
     try:
         check_writable(armature)
         check_in_time(armature, played_source(armature))
@@ -180,13 +180,13 @@ def _doubts(scene: bpy.types.Scene, trusted: dict[str, Array]) -> tuple[Doubt, .
 def _said(take: TrackedTake, result: Retracked) -> str:
     rows = [result.first, result.frame, result.last]
     first, frame, last = np.round(take.frames[rows], DIGITS)
-    said = f"frames {first:g} to {last:g} were tracked again from frame {frame:g}."
+    said = f"re-tracked frames {first:g} to {last:g} from frame {frame:g}."
     open_ends = [side for side, met in zip(SIDES, result.met, strict=True) if not met]
     if not open_ends:
-        return f"{said} On both sides it joins the old motion."
+        return f"{said} It joins the old motion on both sides."
     return (
-        f"{said} {' and '.join(open_ends).capitalize()} it the new motion does not come back to"
-        " the old one: there the take or the reach ends, or the old motion fits better."
+        f"{said} {' and '.join(open_ends).capitalize()} it the new motion does not join the old"
+        " one: the take or the reach ends, or the old motion fits better."
     )
 
 

@@ -80,7 +80,7 @@ def tracked_so_far(
     rate, floor = recording.frame_rate, onlooker.floor
     first, captured = unfinished_capture(found, rate, floor=floor, settings=settings)
     n_frames = captured.motion.n_frames
-    remark = f"Ended early: {n_frames} of {recording.n_frames} frames were tracked."
+    remark = f"Stopped early: {n_frames} of {recording.n_frames} frames tracked."
     return _told(first, captured.motion, captured, floor, (remark,))
 
 

@@ -58,7 +58,7 @@ class TrackedBody:
             return _parsed(armature.data[KEY])
         except (ValueError, TypeError, KeyError, MocapAssistError):
             raise InvalidMotionError(
-                f"{armature.name} keeps no body. Only armatures that Track has made do."
+                f"{armature.name} is not a tracked armature. Select one that Track has created."
             ) from None
 
 
@@ -93,7 +93,7 @@ def bones_of(armature: bpy.types.Object) -> dict[str, str]:
     gone = [name for name in SEGMENTS if name not in bones]
     if gone:
         raise InvalidMotionError(
-            f"{armature.name} has no bones any more for {', '.join(gone)}. Track anew."
+            f"{armature.name} has no bones any more for {', '.join(gone)}. Track again."
         )
     return bones
 
@@ -127,7 +127,7 @@ def armature_from_motion(armature: bpy.types.Object, body: BodyModel) -> Array:
     if off > EVEN * scale:
         raise InvalidMotionError(
             f"The rest pose of {armature.name} is not the one that Track gave it. Undo what was"
-            " changed in Edit Mode, or track anew."
+            " changed in Edit Mode, or track again."
         )
     return matrix
 

@@ -41,7 +41,7 @@ class TrackChoices(Settings):
     """What is done besides tracking."""
 
     plant_feet: bool = setting(
-        True, "Keep standing feet from sliding, where the pictures show feet"
+        True, "Keep planted feet from sliding, where the recording shows feet"
     )
 
 
@@ -51,9 +51,9 @@ class WatchChoices(Settings):
 
     watch: bool = setting(
         True,
-        "Show the body over the points while it is tracked, in the colours of trust, and go"
-        " along in time; unkeyed changes to other animated objects are then lost",
-        label="Watch it Solve",
+        "Draw the body while tracking and follow in time; other objects' unkeyed changes are"
+        " lost",
+        label="Live Preview",
     )
 
 
@@ -63,8 +63,8 @@ class EscChoices(Settings):
 
     keep_on_esc: bool = setting(
         False,
-        "Esc makes an armature of the frames that were tracked until then",
-        label="Keep on Esc",
+        "On Esc, create an armature from the frames tracked so far",
+        label="Keep Partial Result",
     )
 
 
@@ -90,7 +90,7 @@ def why_not_track(context: bpy.types.Context) -> str:
     """Return why nobody can be tracked, or nothing."""
     preview = selected_preview(context)
     if preview is None:
-        return "Select the points of a depth recording. Import makes them."
+        return "Select the points of an imported depth recording."
     return problem_of(preview)
 
 
@@ -159,11 +159,11 @@ def _place(preview: bpy.types.Object, floor: Floor | None) -> Matrix:
 
 def _said(result: Tracked) -> str:
     off = mean_cm(result.residual)
-    beside = "" if off is None else f"; the body is {off:.1f} cm off the points on average"
+    beside = "" if off is None else f"; mean distance from the points {off:.1f} cm"
     n_restarts, n_doubts = len(result.restarts), len(result.doubts)
-    helped = f" It was lost and found again {n_restarts}x." if n_restarts else ""
-    doubtful = {0: "Nothing is doubtful.", 1: "One range of frames is doubtful."}.get(
-        n_doubts, f"{n_doubts} ranges of frames are doubtful."
+    helped = f" Redetected {n_restarts} times." if n_restarts else ""
+    doubtful = {0: "No low-confidence ranges.", 1: "1 low-confidence range."}.get(
+        n_doubts, f"{n_doubts} low-confidence ranges."
     )
     said = f"{result.motion.n_frames} frames{beside}.{helped} {doubtful}"
     return " ".join([said, *result.remarks])

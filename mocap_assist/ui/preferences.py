@@ -31,30 +31,30 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
     bl_idname = EXTENSION
 
     tab: bpy.props.StringProperty(
-        name="Sidebar tab",
-        description="Tab of the sidebar on which the panels are",
+        name="Sidebar Tab",
+        description="Tab of the sidebar that shows the panels",
         default="Mocap",
         update=_move_panels,
     )
     result_as: bpy.props.EnumProperty(
-        name="Results in new scenes",
-        description="Where results go in scenes that do not say otherwise",
+        name="Default Output",
+        description="Output of results in new scenes",
         items=[
-            (Output.ACTION.name, "Action", "Put results in the place of the action"),
-            (Output.NLA_TRACK.name, "NLA track", "Put results on NLA tracks of their own"),
+            (Output.ACTION.name, Output.ACTION.label, Output.ACTION.help),
+            (Output.NLA_TRACK.name, Output.NLA_TRACK.label, Output.NLA_TRACK.help),
         ],
         default=Output.ACTION.name,
     )
     live_port: bpy.props.IntProperty(
-        name="Port",
-        description="UDP port of this machine on which Listen hears a live stream of joints",
+        name="Live Stream Port",
+        description="UDP port for live joint streams",
         default=PORT,
         min=1024,
         max=65535,
     )
     raw_color: bpy.props.FloatVectorProperty(
-        name="Raw figure",
-        description="Color in which the overlay draws the recorded action",
+        name="Raw Color",
+        description="Color of the recorded action in the overlay",
         subtype="COLOR_GAMMA",
         size=4,
         min=0.0,
@@ -63,8 +63,8 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         update=_redraw,
     )
     clean_color: bpy.props.FloatVectorProperty(
-        name="Clean figure",
-        description="Color in which the overlay draws the clean action",
+        name="Clean Color",
+        description="Color of the cleaned action in the overlay",
         subtype="COLOR_GAMMA",
         size=4,
         min=0.0,
@@ -73,8 +73,8 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         update=_redraw,
     )
     line_width: bpy.props.FloatProperty(
-        name="Line width",
-        description="Width of the overlay's lines; higher is thicker",
+        name="Line Width",
+        description="Width of the overlay lines",
         subtype="PIXEL",
         min=1.0,
         max=10.0,
@@ -104,7 +104,7 @@ def _draw_kept(layout: bpy.types.UILayout) -> None:
     """Draw the libraries that are kept current, each with a button that ends it."""
     kept = kept_libraries()
     if kept:
-        layout.label(text="Libraries Kept Current")
+        layout.label(text="Auto-Updated Libraries")
     for problem in kept:
         row = layout.row()
         row.label(text=problem.library, icon="ASSET_MANAGER", translate=False)
@@ -113,8 +113,8 @@ def _draw_kept(layout: bpy.types.UILayout) -> None:
 
 class MOCAP_OT_stop_keeping(bpy.types.Operator):
     bl_idname = STOP
-    bl_label = "Stop Keeping Current"
-    bl_description = "Index this library only when Index is pressed"
+    bl_label = "Stop Auto-Update"
+    bl_description = "Update this library only when Build Library is pressed"
     bl_options: ClassVar = {"INTERNAL"}  # preferences have no undo
 
     library: bpy.props.StringProperty(name="Library", options={"SKIP_SAVE"})
@@ -131,7 +131,7 @@ class MOCAP_OT_stop_keeping(bpy.types.Operator):
 class MOCAP_OT_reset_preferences(bpy.types.Operator):
     bl_idname = "mocap_assist.reset_preferences"
     bl_label = "Reset"
-    bl_description = "Give all preferences of Mocap Assist their first values again"
+    bl_description = "Restore default preferences"
     bl_options: ClassVar = {"INTERNAL"}  # preferences have no undo
 
     @classmethod

@@ -15,11 +15,13 @@ class VaryChoices(Settings):
 
     actions: str = setting(
         "",
-        "Names of the actions that show the behaviour, separated by semicolons; without any,"
-        " what the armature plays",
+        "Example actions of one behavior, separated by semicolons; empty for the current"
+        " action",
     )
-    n_variants: int = setting(20, "How many new actions", minimum=1, maximum=1000)
-    plant_feet: bool = setting(True, "Keep feet from sliding while they stand")
+    n_variants: int = setting(
+        20, "Number of new actions to generate", minimum=1, maximum=1000, label="Variants"
+    )
+    plant_feet: bool = setting(True, "Keep planted feet from sliding")
 
 
 class VaryBundle(NamedTuple):
@@ -35,19 +37,19 @@ class CrowdChoices(Settings):
     """How the members of a crowd differ in time and place."""
 
     delay: float = setting(
-        1.0, "Latest start of a member after the current frame", unit="s",
+        1.0, "Latest start after the current frame", unit="s",
         minimum=0.0, maximum=3600.0,
     )  # fmt: skip
     spread: float = setting(
-        0.0, "Farthest that a member is shifted on the ground from where it stands", unit="m",
+        0.0, "Largest distance that each armature is moved on the ground", unit="m",
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
     turn: float = setting(
-        0.0, "Farthest that a member is turned to either side", unit="rad",
+        0.0, "Largest angle that each armature is turned to either side", unit="rad",
         minimum=0.0, maximum=pi,
     )  # fmt: skip
     crowd_seed: int = setting(
-        0, "Another seed makes another crowd of the same variants", minimum=0,
+        0, "Another seed arranges the same variants differently", minimum=0,
         maximum=2**31 - 1, label="Seed",
     )  # fmt: skip
 

@@ -61,7 +61,7 @@ def why_not_assign(context: bpy.types.Context) -> str:
     if reason := listing.why_none(context):
         return reason
     if not crowd_of(context):
-        return "Select the armatures that are to play the variants."
+        return "Select the armatures that receive the variants."
     return ""
 
 
@@ -99,8 +99,8 @@ def assign(
         strip = add_strip(armature, action, slot, frame, 1.0)
         strip.extrapolation = "HOLD"  # before it begins a member waits in its first pose
         _stand(armature, member, unit_of(scene))
-    shown = "1 armature plays" if len(armatures) == 1 else f"{len(armatures)} armatures play"
-    return f"{shown} {min(len(armatures), len(actions))} variants, on NLA tracks."
+    shown = "1 armature" if len(armatures) == 1 else f"{len(armatures)} armatures"
+    return f"Assigned {min(len(armatures), len(actions))} variants to {shown} on NLA tracks."
 
 
 def _clear(armature: bpy.types.Object, ours: set[bpy.types.Action]) -> None:
@@ -128,7 +128,7 @@ def why_not_stack(context: bpy.types.Context) -> str:
         return reason
     armature = listing.armature_of(context.scene)
     if armature is None:
-        return "The armature that the variants were made for was deleted. Press Vary again."
+        return "The armature of the variants was deleted. Press Vary again."
     try:
         check_writable(armature)
     except InvalidMotionError as error:

@@ -66,7 +66,7 @@ def why_not_keep(context: bpy.types.Context) -> str:
     if reason := why_none(context):
         return reason
     if not any(row.picked for row in context.scene.mocap_assist.variants.rows):
-        return "Pick the variants that you like first."
+        return "Pick variants first."
     return ""
 
 
@@ -83,7 +83,7 @@ def keep_picked(scene: bpy.types.Scene) -> str:
     for action in others:
         if action not in spared:
             bpy.data.actions.remove(action)
-    stay = f" {len(spared)} in use stay in the file." if spared else ""
+    stay = f" {len(spared)} in use remain in the file." if spared else ""
     return f"{len(kept)} kept, {len(others) - len(spared)} deleted.{stay}"
 
 
@@ -103,6 +103,6 @@ def source_for(armature: bpy.types.Object, action: bpy.types.Action) -> Source:
     slots = fitting_slots(armature, action)
     if not slots:
         raise InvalidMotionError(
-            f"{armature.name} has not the bones of {action.name}. Retarget the variants to it."
+            f"{armature.name} lacks the bones of {action.name}. Retarget the variants to it."
         )
     return action, slots[0]

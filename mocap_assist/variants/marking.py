@@ -17,4 +17,4 @@ def mark_variants(scene: bpy.types.Scene, tags: str, catalog: str) -> str:
     actions = listing.chosen(scene)
     for action in actions:
         mark(action, [TAG, *clip_tags(action), *tags.split(",")], number)
-    return f"{len(actions)} variants are assets."
+    return f"Marked {len(actions)} variants as assets."

@@ -141,8 +141,8 @@ def _draw_variants(column: bpy.types.UILayout, context: bpy.types.Context) -> No
             column.template_icon(picture_of(action), scale=LARGE)
     picked = any(row.picked for row in variants.rows)
     n_chosen = len(chosen(context.scene))
-    which = f"the {n_chosen} picked" if picked else f"all {n_chosen}"
-    draw_sentence(column, context, f"With {which}:")
+    which = f"{n_chosen} picked" if picked else f"all {n_chosen}"
+    draw_sentence(column, context, f"Apply to {which}:")
     column.operator(KEEP, icon="SOLO_ON")
     row = column.row(align=True)
     row.operator(STACK, icon="NLA")

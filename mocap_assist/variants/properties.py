@@ -10,7 +10,9 @@ class MOCAP_PG_variant(bpy.types.PropertyGroup):
 
     action: bpy.props.PointerProperty(type=bpy.types.Action)
     picked: bpy.props.BoolProperty(
-        name="Picked", description="One of those that you like", options=set()
+        name="Picked",
+        description="Keep this variant and use it for the buttons below",
+        options=set(),
     )
 
 
@@ -21,7 +23,7 @@ class MOCAP_PG_variants(bpy.types.PropertyGroup):
     rows: bpy.props.CollectionProperty(type=MOCAP_PG_variant)
     active: bpy.props.IntProperty(
         name="Variant",
-        description="Variant that is chosen; the armature plays it",
+        description="Selected variant; the armature plays it",
         update=listing.play_active,
     )
 

@@ -51,7 +51,7 @@ def why_not_vary(context: bpy.types.Context) -> str:
     """Return why nothing can be varied, or nothing."""
     armature = selected_armature(context)
     if armature is None:
-        return "Select the armature whose actions are to be varied."
+        return "Select the armature whose actions to vary."
     try:
         check_writable(armature)
         chosen_sources(armature, context.scene.mocap_assist.vary.settings().choices)

@@ -21,7 +21,7 @@ from ..retarget.solve_retargeting import Clip, Retargeted, RetargetProblem, reta
 from ..scene.controls import TargetRig
 
 Array = NDArray[np.float64]
-ALIKE = "They are all alike: tick more actions, or raise the amount."
+ALIKE = "Variants are nearly identical: add source actions or raise Amount."
 SHEET = StickFigureSettings(n_figures=10, height=140)
 
 

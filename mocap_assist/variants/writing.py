@@ -116,7 +116,7 @@ class _Writer(NamedTuple):
         slot = action and compat.slot_called(action, self.slot)
         if not slot:
             raise InvalidMotionError(
-                f"{self.examples[0]} was deleted meanwhile. Press the button again."
+                f"{self.examples[0]} was deleted during the solve. Press the button again."
             )
         return action, slot
 

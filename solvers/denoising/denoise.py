@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +10,7 @@ from ..errors import InvalidMotionError
 from ..motion import JointLimits, Motion, Tracks
 from ..motion.skeletons import describe_shots, find_shot_boundaries, is_short_shot, shot_ranges
 from ..progress import Progress, unwatched, within
-from ..settings import Settings, setting
+from ..settings import Choice, Settings, setting
 from .channels import CENTIMETERS, Channels, decode, encode
 from .limits import clamp_to_limits, find_impossible_rotations
 from .marker_gaps import FilledMarkers, fill_markers
@@ -28,11 +27,11 @@ HALF_CONFIDENCE_DEVIATION = 5.0
 """Standard deviation, degrees or centimeters, at which confidence is one half."""
 
 
-class Method(Enum):
+class Method(Choice):
     """Methods of denoising."""
 
-    DEFAULT = "default"
-    PUBLISHED = "published"
+    DEFAULT = "default", "Estimate the noise of the take and weight all patterns"
+    PUBLISHED = "published", "Filter as printed by Lou and Chai (2010)", "Lou and Chai 2010"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,12 +40,11 @@ class DenoiseSettings(Settings):
 
     method: Method = setting(
         Method.DEFAULT,
-        "Default estimates the noise and weights every pattern; published is the filter of"
-        " Lou and Chai (2010), unchanged",
+        "Denoising method; the default measured best",
         advanced=True,
     )
     strength: float = setting(
-        1.0, "Blend from recording (0) to estimate (1); gaps are filled at any strength",
+        1.0, "Blend from recorded to cleaned motion; gaps are filled at any strength",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
 

@@ -27,23 +27,26 @@ class FloorSettings(Settings):
     """Settings of the floor detection."""
 
     tilt: float = setting(
-        40.0, "Maximum tilt of the camera; higher values also accept slopes as floors",
+        40.0, "Largest tilt of the camera; higher also accepts slopes as floors",
         unit="degrees", minimum=1.0, maximum=80.0,
     )  # fmt: skip
     extent: float = setting(
-        0.25, "Minimum extent of the visible floor (standard deviation along its narrower"
-        " direction); higher values reject small patches", unit="m", minimum=0.01, maximum=10.0,
+        0.25,
+        "Minimum spread of the visible floor in its narrow direction; higher rejects small"
+        " patches", unit="m", minimum=0.01, maximum=10.0,
     )  # fmt: skip
     share: float = setting(
-        0.03, "Minimum fraction of the visible points on the floor; higher values reject small"
-        " patches",
+        0.03,
+        "Minimum fraction of the visible points on the floor; higher rejects small patches",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     n_trials: int = setting(
-        600, "Number of RANSAC trials; more trials find floors that are mostly hidden",
+        600, "Number of planes to try; more finds floors that are barely visible",
         minimum=1, maximum=100_000, advanced=True,
     )  # fmt: skip
-    seed: int = setting(0, "Seed of the random samples", minimum=0, maximum=2**31 - 1)
+    seed: int = setting(
+        0, "Another seed tries other random points", minimum=0, maximum=2**31 - 1
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 from functools import lru_cache
 
 import numpy as np
@@ -10,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..progress import Progress, unwatched
-from ..settings import Settings, setting
+from ..settings import Choice, Settings, setting
 from .bodies import Bodies, find_bodies
 from .camera import Camera
 from .floor import Floor
@@ -31,16 +30,23 @@ MAX_ACTOR_DISTANCE_M = 1.2
 """A body farther from the expected position of the actor is another person."""
 
 
-class ForegroundMethod(Enum):
+class ForegroundMethod(Choice):
     """Method that separates the actor from the room."""
 
-    AUTOMATIC = "automatic"
+    AUTOMATIC = (
+        "automatic",
+        "Detect what moves and remove the floor, unless the file has a mask",
+    )
     """`RECORDED` if the image holds nothing else; otherwise moving pixels above the floor."""
-    RECORDED = "recorded"
+    RECORDED = "recorded", "Treat everything in the recording as the actor", "From File"
     """The images contain only the actor."""
-    CUT = "cut"
+    CUT = "cut", "Keep what lies between two distances and above the floor", "Depth Range"
     """Between two distances and above the floor."""
-    BACKGROUND = "background"
+    BACKGROUND = (
+        "background",
+        "Keep what is nearer than a recording of the empty room",
+        "Empty-Room Frame",
+    )
     """In front of the empty room."""
 
 
@@ -49,37 +55,41 @@ class ForegroundSettings(Settings):
     """Settings of the segmentation of the actor."""
 
     way: ForegroundMethod = setting(
-        ForegroundMethod.AUTOMATIC, "Method that separates the actor from the room"
+        ForegroundMethod.AUTOMATIC,
+        "How the actor is separated from the background",
+        label="Actor Mask",
     )
     nearest: float = setting(
         0.3,
-        "Minimum distance from the camera; nearer pixels are removed",
+        "Remove points nearer to the camera than this",
         unit="m",
         minimum=0.0,
         maximum=50.0,
+        label="Min Distance",
     )
     farthest: float = setting(
         6.0,
-        "Maximum distance from the camera; farther pixels are removed",
+        "Remove points farther from the camera than this",
         unit="m",
         minimum=0.1,
         maximum=50.0,
+        label="Max Distance",
     )
     above_floor: float = setting(
-        0.03, "Minimum height above the floor; higher values cut off feet",
+        0.03, "Remove points lower above the floor; higher cuts off feet",
         unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     before_background: float = setting(
-        0.05, "Minimum distance in front of the empty room; higher values cut off feet",
+        0.05, "Remove points less far in front of the empty room; higher cuts off feet",
         unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     smallest_body: float = setting(
-        0.08, "Minimum visible surface of a person; higher values miss persons who are mostly"
-        " hidden", unit="m²", minimum=0.001, maximum=5.0,
+        0.08, "Minimum visible surface of a person; higher misses partly hidden people",
+        unit="m²", minimum=0.001, maximum=5.0, label="Min Body Area",
     )  # fmt: skip
     largest_body: float = setting(
         2.0, "Maximum visible surface of a person; larger bodies count as walls",
-        unit="m²", minimum=0.1, maximum=50.0,
+        unit="m²", minimum=0.1, maximum=50.0, label="Max Body Area",
     )  # fmt: skip
 
 

@@ -44,7 +44,7 @@ def constrain_clusters(
     ----------
     tracks : Tracks
     clusters : sequence of Cluster
-        Of this take (`find_rigid_clusters`) or of another with the same markers on the same actor.
+        From this take (`find_rigid_clusters`) or another of the same markers and actor.
     progress : Progress
 
     Raises

@@ -33,13 +33,13 @@ class ClusterSettings(Settings):
     """Thresholds of rigidity."""
 
     slack: float = setting(
-        0.003, "Maximum standard deviation of distances in a cluster; higher makes larger"
-        " clusters, and removes skin motion",
+        0.003,
+        "Distance variation allowed within a rigid cluster; higher makes larger clusters",
         unit="m", minimum=0.0005, maximum=0.05,
     )  # fmt: skip
     widest: float = setting(
-        0.5, "Maximum distance within a cluster", unit="m", minimum=0.01, maximum=10.0,
-        advanced=True,
+        0.5, "Largest distance between markers of one cluster", unit="m", minimum=0.01,
+        maximum=10.0, advanced=True,
     )  # fmt: skip
 
 

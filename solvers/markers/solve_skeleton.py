@@ -32,10 +32,10 @@ class SolveSettings(Settings):
 
     subject: str = setting(
         "",
-        "Whose markers, where a take has several people: Anna, for markers such as Anna:LFHD",
+        "Subject of the markers in a take of several people: Anna for Anna:LFHD",
     )
     measured_frames: int = setting(
-        80, "Frames from which the body is measured; more are slower and cover more poses",
+        80, "Frames used to measure the body; more is slower and covers more poses",
         minimum=10, maximum=1000, advanced=True,
     )  # fmt: skip
 

@@ -22,7 +22,7 @@ class UnswapSettings(Settings):
     """Evidence that a swap needs."""
 
     evidence: float = setting(
-        8.0, "Minimum evidence of jumps and distances for a swap; higher corrects fewer",
+        8.0, "Evidence needed to change a label; higher changes fewer labels",
         minimum=1.0, maximum=100.0,
     )  # fmt: skip
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Skeleton, Tracks, forward_kinematics
 from ..rotations import rotate
-from ..settings import Settings, setting
+from ..settings import Choice, Settings, setting
 from .canvas import FAINT, INK, Canvas, Color, lighten_color, series_colors
 from .picture import Picture
 
@@ -31,12 +30,12 @@ AVERAGING_S = 0.5
 """Seconds over which the heading of the figure is averaged."""
 
 
-class View(Enum):
+class View(Choice):
     """Direction of the view, which rotates with the body."""
 
-    SIDE = "side"
-    FRONT = "front"
-    QUARTER = "quarter"
+    SIDE = "side", "See the body from its side"
+    FRONT = "front", "See the body from the front"
+    QUARTER = "quarter", "See the body from between side and front"
 
 
 AZIMUTH = {View.SIDE: 0.0, View.FRONT: np.pi / 2, View.QUARTER: np.pi / 4}

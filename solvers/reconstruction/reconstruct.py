@@ -1,7 +1,6 @@
 """Reconstruct clean poses: a pose library for missing joints, then residual correction."""
 
 from dataclasses import dataclass, replace
-from enum import Enum
 from functools import cache
 from pathlib import Path
 
@@ -10,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..motion import JointRecording, Sensor, Tracks
 from ..progress import Progress, unwatched, within
-from ..settings import Settings, setting
+from ..settings import Choice, Settings, setting
 from ..signals import fill_gaps, smooth_gaussian
 from .joint_rotations import Reconstruction
 from .pose_completion import (
@@ -53,19 +52,31 @@ SMOOTHING_S = 0.1
 """Standard deviation (s) of the Gaussian that smooths observed positions."""
 
 
-class ReconstructMethod(Enum):
+class ReconstructMethod(Choice):
     """Method that reconstructs poses."""
 
-    BOTH = "both"
+    BOTH = "both", "Rebuild missing joints from clean poses, then correct sensor errors"
     """Library poses for missing joints, then the residual prior for all joints."""
-    POSTURES = "postures"
+    POSTURES = "postures", "Only rebuild missing joints from clean poses", "Poses Only"
     """Library poses only."""
-    RESIDUALS = "residuals"
+    RESIDUALS = (
+        "residuals",
+        "Only correct sensor errors; gaps are interpolated smoothly",
+        "Sensor Errors Only",
+    )
     """The residual prior only; gaps are interpolated smoothly."""
-    PUBLISHED_POSTURES = "shum"
-    """[SHJT13]: its reliability and its stochastic search, frame by frame."""
-    PUBLISHED_RESIDUALS = "zhou"
-    """[ZH14]: the same reliability and its three energy terms, frame by frame."""
+    PUBLISHED_POSTURES = (
+        "shum",
+        "Rebuild missing joints as published by Shum et al. (2013)",
+        "Shum et al. 2013",
+    )
+    """[SHJT13]: its reliability, and its stochastic search, frame by frame."""
+    PUBLISHED_RESIDUALS = (
+        "zhou",
+        "Correct sensor errors as published by Zhou et al. (2014)",
+        "Zhou et al. 2014",
+    )
+    """[ZH14]: the same reliability, and its three energy terms, frame by frame."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,26 +85,23 @@ class ReconstructSettings(Settings):
 
     method: ReconstructMethod = setting(
         ReconstructMethod.BOTH,
-        "Both completes missing joints from library poses, then subtracts the sensor's typical"
-        " errors. The others do one of the two; Shum and Zhou follow the published methods",
+        "What to rebuild, and how",
     )
     smoothing: float = setting(
-        0.05, "Movements shorter than about this count as jitter; higher values smooth more",
+        0.05, "Remove jitter shorter than about this; higher is smoother but blurs motion",
         unit="s", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     n_neighbours: int = setting(
-        30, "Library poses that each pose is computed from; more allow more variation",
-        minimum=2, maximum=200,
+        30, "Number of clean poses that each rebuilt pose is made of; more vary more",
+        minimum=2, maximum=200, label="Neighbors",
     )  # fmt: skip
     inferred: float = setting(
-        0.5, "Reliability of joints that the sensor only inferred; 0 reconstructs all of them,"
-        " as published, 0.5 only those that also look wrong",
-        minimum=0.0, maximum=1.0,
+        0.5, "Weight of joints that the sensor only guessed; 0 rebuilds them all",
+        minimum=0.0, maximum=1.0, label="Weight of Inferred Joints",
     )  # fmt: skip
-    causal: bool = setting(False, "Use only earlier frames, as a live system must; less smooth")
+    causal: bool = setting(False, "Use only earlier frames, as in a live system; less smooth")
     shift: bool = setting(
-        False, "Also subtract the sensor's constant offset of each joint, such as from the skin"
-        " to the joint center; only for the sensor that the prior was learned from",
+        False, "Also correct the constant joint offsets of this sensor model",
     )  # fmt: skip
 
 

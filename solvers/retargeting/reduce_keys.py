@@ -48,7 +48,8 @@ class UnbakeSettings(Settings):
     """How keys are reduced."""
 
     key_poses: bool = setting(
-        False, "Key all joints at the same frames, as an animator blocks poses; takes more keys"
+        False,
+        "Key all joints at the same frames, as in pose-to-pose animation; needs more keys",
     )
 
 

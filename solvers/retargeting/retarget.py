@@ -1,7 +1,6 @@
 """Retarget a motion to another skeleton."""
 
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,7 @@ from ..motion import (
 )
 from ..progress import Progress, unwatched
 from ..rotations import IDENTITY
-from ..settings import Settings, setting
+from ..settings import Choice, Settings, setting
 from .body import SIDES, Body, find_body, without_gaps
 from .feet import place_feet
 from .hands import place_hands
@@ -32,12 +31,12 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-class RootMotion(Enum):
+class RootMotion(Choice):
     """Handling of the travel of the body."""
 
-    KEEP = "keep"
-    IN_PLACE = "in place"
-    ROOT_BONE = "root bone"
+    KEEP = "keep", "Keep the travel on the hips", "On Hips"
+    IN_PLACE = "in place", "Remove the travel, so that the body moves on the spot"
+    ROOT_BONE = "root bone", "Move the travel to the bone above the hips", "On Root Bone"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,38 +44,40 @@ class RetargetSettings(Settings):
     """How a motion is retargeted to another rig."""
 
     root_motion: RootMotion = setting(
-        RootMotion.KEEP, "Keep the travel on the hips, remove it so that the body moves in"
-        " place, or move it to the bone above the hips"
+        RootMotion.KEEP, "Where the travel of the body goes"
     )  # fmt: skip
     travel_scale: float = setting(
-        0.0, "Scale of the travel over the ground; higher goes farther, 1 keeps the source's"
-        " path, 0 scales it with the legs",
+        0.0,
+        "Scale of the travel; 1 keeps the source's distances, 0 scales with the leg length",
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
     keep_feet: bool = setting(
-        True, "Make the ankles follow the source's paths, scaled with the legs, so that feet"
-        " slide no more than the source's as far as the legs reach"
+        True, "Scale foot paths to the leg length to avoid sliding", label="Match Foot Contacts"
     )  # fmt: skip
     keep_hands: bool = setting(
-        True, "Make the hands reach as far as the source's, scaled with the arms, and meet"
-        " where those meet"
+        True,
+        "Let hands reach as far as the source's for the arm length, and meet where those do",
+        label="Match Hand Reach",
     )  # fmt: skip
     to_ground: bool = setting(
-        False, "Move the ground of the source to height 0, for sensors that measure heights"
-        " relative to themselves"
+        False,
+        "Put the ground of the source at height 0, for sensors that measure from themselves",
+        label="Place on Floor",
     )  # fmt: skip
     softness: float = setting(
-        0.005, "Fraction of the leg's length kept in reserve so that knees do not snap"
-        " straight; higher lowers the hips more",
-        minimum=0.0, maximum=0.2, advanced=True,
+        0.005, "Fraction of the leg length kept in reserve; higher lowers the hips more",
+        minimum=0.0, maximum=0.2, advanced=True, label="Leg Stretch Limit",
     )  # fmt: skip
     travel_smoothing: float = setting(
-        0.5, "Standard deviation of the Gaussian that separates travel from the sway of each"
-        " step; higher leaves more sway on the hips",
+        0.5, "Blur that separates travel from the sway of steps; higher leaves more sway on the"
+        " hips",
         unit="s", minimum=0.0, maximum=10.0, advanced=True,
     )  # fmt: skip
     turn_root: bool = setting(
-        True, "Also rotate the root bone to the facing direction of the body", advanced=True
+        True,
+        "Also turn the root bone to where the body faces",
+        advanced=True,
+        label="Turn Root Bone",
     )
 
 

@@ -29,14 +29,18 @@ SOLVE_SETTINGS = SolveSettings()
 class MarkerMotionSettings(Settings):
     """Which steps are taken."""
 
-    unswap: bool = setting(True, "Put swapped and mistaken markers right first")
+    unswap: bool = setting(
+        True, "Fix swapped and wrong marker labels first", label="Fix Swapped Labels"
+    )
     evidence: float = setting(
-        8.0, "How strongly jumps and distances must speak for a swap; higher leaves more alone",
-        minimum=1.0, maximum=100.0,
+        8.0, "Evidence needed to change a label; higher changes fewer labels",
+        minimum=1.0, maximum=100.0, label="Swap Threshold",
     )  # fmt: skip
-    fill: bool = setting(True, "Fill gaps of markers from the markers about them")
+    fill: bool = setting(True, "Fill marker gaps from neighboring markers", label="Fill Gaps")
     smooth: bool = setting(
-        False, "Take jitter out of the solved motion; else only what no marker shows is filled"
+        False,
+        "Remove jitter from the solved motion; otherwise only hidden joints are filled",
+        label="Remove Jitter",
     )
 
 

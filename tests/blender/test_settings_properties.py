@@ -2,20 +2,25 @@
 
 import math
 from dataclasses import dataclass, fields
-from enum import Enum
-from typing import NamedTuple, get_type_hints
+from typing import Any, NamedTuple, get_type_hints
 
 import bpy
 import pytest
 
 
-class Taste(Enum):
-    SWEET = "sweet and sour"
-    BITTER = "bitter"
+@pytest.fixture
+def flavors(load):
+    """An enum of a setting; the shown name of one member is not its value."""
+
+    class Taste(load("solvers.settings").Choice):
+        SWEET = "sweet and sour", "Add sugar and vinegar"
+        BITTER = "bitter", "Add coffee", "Like Coffee"
+
+    return Taste
 
 
 @pytest.fixture
-def dish(load):
+def dish(load, flavors):
     """A property group made from settings of every kind."""
     settings = load("solvers.settings")
 
@@ -29,7 +34,7 @@ def dish(load):
         wait: float = settings.setting(1.0, "Longer", unit="s", minimum=0.0)
         eggs: int = settings.setting(3, "Eggs", minimum=1, maximum=12)
         hot: bool = settings.setting(True, "Heat it")
-        taste: Taste = settings.setting(Taste.BITTER, "Taste")
+        taste: Any = settings.setting(flavors.BITTER, "Taste")
         name: str = settings.setting("soup", "Name")
 
     class Menu(NamedTuple):
@@ -54,13 +59,13 @@ def test_defaults_come_back_exactly(dish):
     assert group.settings().recipe == recipe()
 
 
-def test_values_come_back_as_they_were_set(dish):
+def test_values_come_back_as_they_were_set(dish, flavors):
     group, recipe = dish
     group.salt, group.angle, group.eggs, group.hot = 0.7, math.pi, 12, False
     group.taste, group.name = "SWEET", "stew"
 
     expected = {"salt": 0.7, "angle": math.pi, "eggs": 12, "hot": False}
-    assert group.settings().recipe == recipe(taste=Taste.SWEET, name="stew", **expected)
+    assert group.settings().recipe == recipe(taste=flavors.SWEET, name="stew", **expected)
 
 
 def test_what_is_out_of_range_is_held_at_the_limit(dish):
@@ -82,7 +87,7 @@ def store():
     return store
 
 
-def test_what_a_file_has_out_of_range_is_held_at_the_limit(dish, store):
+def test_what_a_file_has_out_of_range_is_held_at_the_limit(dish, store, flavors):
     group, _ = dish
     store(group, "eggs", -5)
     store(group, "salt", -math.inf)
@@ -92,7 +97,7 @@ def test_what_a_file_has_out_of_range_is_held_at_the_limit(dish, store):
 
     held = group.settings().recipe
     assert (held.salt, held.share, held.eggs) == (0.0, 0.25, 1)
-    assert (held.wait, held.taste) == (math.inf, Taste.BITTER)
+    assert (held.wait, held.taste) == (math.inf, flavors.BITTER)
 
     store(group, "eggs", 10**8)
     assert group.settings().recipe.eggs == 12
@@ -104,7 +109,15 @@ def test_units_are_shown_where_blender_knows_them(dish):
 
     assert subtypes == ["NONE", "ANGLE", "FACTOR", "TIME_ABSOLUTE"]
     assert shown["salt"].description == "More is saltier (g)"
-    assert shown["taste"].enum_items["SWEET"].name == "Sweet and Sour"
+
+
+def test_choices_are_shown_with_label_and_help(dish):
+    shown = dish[0].bl_rna.properties["taste"].enum_items
+
+    assert [(each.identifier, each.name, each.description) for each in shown] == [
+        ("SWEET", "Sweet and Sour", "Add sugar and vinegar"),
+        ("BITTER", "Like Coffee", "Add coffee"),
+    ]
 
 
 def test_every_button_offers_every_setting_with_a_tooltip(load):

@@ -34,38 +34,41 @@ class PlantSettings(Settings):
 
     blend: float = setting(
         0.3,
-        "Time over which a planted foot blends into its own motion; higher is softer, but moves"
-        " the foot for longer",
+        "Time to blend a planted foot back to its own motion; higher is softer and lasts"
+        " longer",
         unit="s",
         minimum=0.02,
         maximum=2.0,
     )
     hold: float = setting(
         10.0,
-        "A foot that slides for much longer than this may drift, so that it stays near its"
-        " captured position; higher holds the foot more strictly",
+        "Longest time a sliding foot stays fixed before it may creep; higher is stricter",
         unit="s",
         minimum=0.5,
         maximum=1000.0,
         advanced=True,
+        label="Max Contact Time",
     )
-    hold_rotation: bool = setting(True, "Also keep a foot that stands flat from rotating")
+    hold_rotation: bool = setting(
+        True,
+        "Also keep feet that stand flat from turning and tilting",
+        label="Lock Foot Rotation",
+    )
     floor: bool = setting(
-        True, "Place planted feet that are near the floor on it, all at the same height"
-    )
+        True, "Put planted feet that are near the floor onto it, all at one height",
+        label="Level Floor",
+    )  # fmt: skip
     softness: float = setting(
         0.01,
-        "Fraction of the leg's length kept in reserve so that knees do not snap straight;"
-        " higher bends knees more and lowers the hips more",
-        minimum=0.0,
-        maximum=0.2,
-        advanced=True,
-    )
+        "Fraction of the leg length kept in reserve; higher bends knees more and lowers the hips",
+        minimum=0.0, maximum=0.2, advanced=True, label="Leg Stretch Limit",
+    )  # fmt: skip
     spare_knees: bool = setting(
-        True, "Let the heel of a rolling foot move so that the knee bends smoothly"
-    )
+        True, "Let the heel of a rolling foot lift so that the knee bends smoothly",
+        label="Protect Knees",
+    )  # fmt: skip
     move_root: bool = setting(
-        True, "Shift the hips smoothly by a small amount where a leg cannot reach"
+        True, "Shift the hips slightly and smoothly where a leg cannot reach", label="Move Hips"
     )
 
 

@@ -31,22 +31,22 @@ class JointLimitsSettings(Settings):
 
     percentile: float = setting(
         0.5,
-        "Fraction of the examples' extremes at each end, in percent, that may be faults and is"
-        " ignored; higher gives tighter limits",
+        "Percent of the examples' extremes ignored as errors at each end; higher tightens"
+        " limits",
         unit="%",
         minimum=0.0,
         maximum=25.0,
     )
     margin: float = setting(
         np.radians(10.0),
-        "Angle by which a joint may exceed the examples; higher gives wider limits",
+        "Rotation allowed beyond the examples; higher widens the limits",
         unit="rad",
         minimum=0.0,
         maximum=np.pi,
     )
     stretch: float = setting(
         0.2,
-        "Fraction of the examples' range by which a joint may exceed it; higher gives wider"
+        "Rotation allowed beyond the examples, as fraction of their range; higher widens"
         " limits",
         minimum=0.0,
         maximum=10.0,

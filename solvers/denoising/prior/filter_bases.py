@@ -54,11 +54,11 @@ class FilterBasesSettings(Settings):
     """Settings of `learn_filter_bases`."""
 
     window: float = setting(
-        20 / 30, "Length of the patterns; longer ones capture more of a movement's progress",
+        20 / 30, "Length of the motion patterns; longer patterns cover more of a movement",
         unit="s", minimum=0.1, maximum=3.0,
     )  # fmt: skip
     frame_rate: float = setting(
-        30.0, "Frame rate of the patterns; higher keeps faster movements",
+        30.0, "Frame rate of the stored patterns; higher keeps faster movements",
         unit="Hz", minimum=5.0, maximum=240.0, advanced=True,
     )  # fmt: skip
 

@@ -31,23 +31,25 @@ class QualitySettings(Settings):
 
     spike_threshold: float = setting(
         5.0,
-        "Minimum height of a spike as a multiple of the take's own noise; higher finds fewer",
+        "Jump that counts as a spike, in multiples of the take's noise; higher finds fewer",
         minimum=2.0,
         maximum=50.0,
     )
     smallest_turn: float = setting(
         np.radians(8.0),
-        "Smallest jump of a rotation that counts as a spike; higher finds fewer",
+        "Ignore rotation jumps below this angle; higher finds fewer spikes",
         unit="rad",
         minimum=0.0,
         maximum=np.pi,
+        label="Min Rotation Jump",
     )
     smallest_move: float = setting(
         0.02,
-        "Smallest jump of a position that counts as a spike; higher finds fewer",
+        "Ignore position jumps below this distance; higher finds fewer spikes",
         unit="m",
         minimum=0.0,
         maximum=10.0,
+        label="Min Position Jump",
     )
 
 

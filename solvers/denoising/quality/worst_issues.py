@@ -26,44 +26,53 @@ class IssueSettings(Settings):
     """Thresholds of the issues to list."""
 
     n_spots: int = setting(
-        100, "Maximum number of issues; more shows milder ones", minimum=1, maximum=10000
+        100,
+        "Maximum number of issues to list; more shows milder ones",
+        minimum=1,
+        maximum=10000,
+        label="Max Issues",
     )
     smallest_slide: float = setting(
         0.02,
-        "Smallest slide of a planted foot to report; higher shows fewer issues",
+        "Ignore planted feet that slide less; higher shows fewer issues",
         unit="m",
         minimum=0.001,
         maximum=1.0,
+        label="Min Foot Slide",
     )
     shake_ratio: float = setting(
         3.0,
-        "Minimum jitter of a joint in multiples of the typical noise; higher shows fewer",
+        "Shaking of a joint in multiples of the take's noise; higher shows fewer issues",
         minimum=1.0,
         maximum=100.0,
+        label="Jitter Ratio",
     )
     smallest_shake_turn: float = setting(
         np.radians(1.0),
-        "Smallest rotation jitter to report",
+        "Ignore rotation jitter below this angle; higher shows fewer issues",
         unit="rad",
         minimum=0.0,
         maximum=np.pi,
         advanced=True,
+        label="Min Rotation Jitter",
     )
     smallest_shake_move: float = setting(
         0.002,
-        "Smallest position jitter to report",
+        "Ignore position jitter below this distance; higher shows fewer issues",
         unit="m",
         minimum=0.0,
         maximum=1.0,
         advanced=True,
+        label="Min Position Jitter",
     )
     pause: float = setting(
         0.2,
-        "Maximum time between faults of one joint that form one issue; higher merges more",
+        "Merge issues of one joint that are closer in time; higher merges more",
         unit="s",
         minimum=0.0,
         maximum=10.0,
         advanced=True,
+        label="Merge Time",
     )
 
 

@@ -36,21 +36,27 @@ class CaptureSettings(RecoverySettings):
     """Settings of the capture of a take."""
 
     backward: bool = setting(
-        True, "Also track from the end to the start and keep the better fit; takes longer"
+        True,
+        "Also track from the end to the start and keep the better fit; takes longer",
+        label="Also Track Backward",
     )
     smoothing: float = setting(
-        1.0, "Strength of the smoothing; 0 keeps every frame as tracked",
+        1.0, "Amount of smoothing over time; 0 leaves every frame as tracked",
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
-    refine: bool = setting(True, "Fit lengths and thickness of the body to the recording")
+    refine: bool = setting(
+        True,
+        "Fit bone lengths and thickness of the body to the recording",
+        label="Fit Body Size",
+    )
     recorded: bool = setting(
-        False, "Pull poses toward recorded walks, exercises and dances, so that occluded limbs"
-        " follow visible ones; switch off for jumps and other fast motions",
-        label="Like Recorded Motions",
+        False,
+        "Pull poses toward recorded walks, exercises and dances; turn off for fast motion",
+        label="Use Motion Prior",
     )  # fmt: skip
     doubtful: float = setting(
-        0.3, "Confidence below which a joint is flagged; higher values flag more joints",
-        minimum=0.0, maximum=1.0,
+        0.3, "Flag joints with a confidence below this; higher flags more",
+        minimum=0.0, maximum=1.0, label="Min Confidence",
     )  # fmt: skip
 
 

@@ -41,28 +41,29 @@ class RecoverySettings(Settings):
     """Settings of the failure test and of the restarts."""
 
     failure_test: FailureTest = setting(
-        FailureTest.LEARNED, "Test for a wrong pose: learned probability and drop of the score,"
-        " or the thresholds of [WZC12] (2.5 cm, 90 % overlap)",
+        FailureTest.LEARNED, "How the tracker detects a wrong pose",
     )  # fmt: skip
     failing_chance: float = setting(
-        0.5, "Failure probability at which the tracker has failed; lower values run the"
-        " detector more often", minimum=0.0, maximum=1.0,
+        0.5, "Learned probability that a pose is wrong; lower runs the detector more often",
+        minimum=0.0, maximum=1.0, label="Failure Probability",
     )  # fmt: skip
     failing_drop: float = setting(
-        0.9, "Fraction of the typical score below which the tracker has failed",
-        minimum=0.0, maximum=1.0,
-    )  # fmt: skip
+        0.9,
+        "Fraction of the typical fit below which a pose is wrong",
+        minimum=0.0,
+        maximum=1.0,
+        label="Failure Drop",
+    )
     gain: float = setting(
-        0.03, "Score gain required to accept a detected pose; higher values keep the tracker's"
-        " pose more often",
+        0.03, "Improvement in fit required of a detected pose; higher prefers the tracker",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     patience: int = setting(
-        5, "Frames between runs of the detector while the tracker fails; higher is faster",
+        5, "Frames between detector runs while the tracker fails; higher is faster",
         minimum=1, maximum=1000,
     )  # fmt: skip
     check_every: int = setting(
-        15, "Frames between runs of the detector without failure; higher is faster",
+        15, "Frames between routine detector runs; higher is faster",
         minimum=1, maximum=100_000,
     )  # fmt: skip
 

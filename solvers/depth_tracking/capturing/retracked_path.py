@@ -29,19 +29,20 @@ class RetrackSettings(Settings):
     """Settings of the extent of a correction."""
 
     reach: float = setting(
-        5.0, "Maximum time changed before and after the corrected frame; higher takes longer",
+        5.0, "Time before and after the corrected frame that may change; higher takes longer",
         unit="s", minimum=0.0, maximum=3600.0,
     )  # fmt: skip
     agreement: float = setting(
-        0.03, "Distance at which a visible joint agrees with the previous motion; higher values"
-        " stop sooner", unit="m", minimum=1e-3, maximum=1.0,
+        0.03,
+        "Distance at which a visible joint agrees with the old motion; higher stops sooner",
+        unit="m", minimum=1e-3, maximum=1.0,
     )  # fmt: skip
     blend: float = setting(
-        0.25, "Duration of the blend from the new path into the previous motion", unit="s",
+        0.25, "Time to blend from the new to the old motion", unit="s",
         minimum=0.0, maximum=10.0,
     )  # fmt: skip
     smoothing: float = setting(
-        1.0, "Strength of the smoothing of the new path; 0 keeps every frame as tracked",
+        1.0, "Amount of smoothing of the new motion; 0 leaves every frame as tracked",
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
 

@@ -1,10 +1,9 @@
 """Failure test of a tracked pose: learned probability, or the thresholds of the paper."""
 
-from enum import Enum
-
 import numpy as np
 from numpy.typing import NDArray
 
+from ...settings import Choice
 from .fit_quality import MAX_DEPTH_ERROR_M, FitQuality
 
 Array = NDArray[np.float64]
@@ -17,11 +16,15 @@ LEARNED_BIAS = 5.77
 """Weights of `FEATURES` in the log-odds that joints are off by more than 10 cm on average."""
 
 
-class FailureTest(Enum):
+class FailureTest(Choice):
     """Method of the failure test."""
 
-    LEARNED = "learned"
-    PUBLISHED = "published"
+    LEARNED = "learned", "Use a learned failure probability and the typical fit"
+    PUBLISHED = (
+        "published",
+        "Use the thresholds of Wei et al. (2012): 2.5 cm, 90 % overlap",
+        "Wei et al. 2012",
+    )
 
 
 def failure_features(quality: FitQuality) -> Array:

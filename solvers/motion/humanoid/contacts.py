@@ -32,25 +32,25 @@ class ContactSettings(Settings):
     """Thresholds of foot contact. Lengths and speeds are for a leg of 0.9 m."""
 
     height: float = setting(
-        0.05, "Maximum height of a foot in contact; higher finds more contacts",
+        0.05, "Height below which a foot may be planted; higher finds more contacts",
         unit="m", minimum=1e-3, maximum=1.0,
     )  # fmt: skip
     speed: float = setting(
-        0.3, "Maximum speed of a foot in contact; higher finds more and longer contacts",
+        0.3, "Speed below which a foot may be planted; higher finds more and longer contacts",
         unit="m/s", minimum=1e-3, maximum=10.0,
     )  # fmt: skip
     release: float = setting(
-        1.5, "A contact ends above height and speed times this; higher makes contacts longer",
+        1.5, "Release a planted foot above height and speed times this; higher holds longer",
         minimum=1.0, maximum=10.0, advanced=True,
     )  # fmt: skip
     minimum_duration: float = setting(
-        0.1, "Shorter contacts are removed, and gaps shorter than half of this are closed",
+        0.1, "Ignore shorter contacts and close gaps of half this length",
         unit="s", minimum=0.0, maximum=10.0, advanced=True,
     )  # fmt: skip
     smoothing: float = setting(
-        0.03, "Standard deviation of the Gaussian that first smooths the feet; higher removes"
-        " more jitter but blurs the start of contacts",
-        unit="s", minimum=0.0, maximum=1.0, advanced=True,
+        0.03,
+        "Smooth foot motion before detection; higher ignores more jitter but blurs contact"
+        " starts", unit="s", minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
 
 

@@ -29,8 +29,8 @@ class ReachSettings(Settings):
     """How a limb extends toward a target."""
 
     softness: float = setting(
-        0.01, "Fraction of the limb's length over which it eases into full extension and into"
-        " full folding; higher avoids knee pops but falls short of far targets",
+        0.01,
+        "Fraction of the limb length to ease into full extension; higher avoids popping knees",
         minimum=0.0, maximum=0.5,
     )  # fmt: skip
 

@@ -30,8 +30,8 @@ def motion_from_positions(
     The root has its observed position, offset where straight legs require it
     (`pelvis_offsets`); knees flex until ankles reach their observed positions (`reach_ankles`).
     Pelvis and chest get the best-fit rotations of hips, shoulders, spine and neck
-    (`fit_rotations`); the spine between them shares the twist. Other joints point at the position
-    of their child, so that errors do not accumulate. The flexion plane of elbow or knee
+    (`fit_rotations`); the spine between them shares the twist. Other joints point at their
+    child, so that errors do not accumulate. The flexion plane of elbow or knee
     determines the axial rotation of an upper arm or a thigh. Where the limb is straight,
     flexion before and after, similar library poses and the trunk determine it
     (`rotations_from_flexion`). A thumb determines the axial rotation of its hand, whose palm

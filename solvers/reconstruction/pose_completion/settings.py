@@ -1,17 +1,20 @@
 """Settings of pose completion from a library."""
 
 from dataclasses import dataclass
-from enum import Enum
 
-from ...settings import Settings, setting
+from ...settings import Choice, Settings, setting
 
 
-class PostureMethod(Enum):
+class PostureMethod(Choice):
     """Method that chooses a pose in the space of its neighbors."""
 
-    PROBABLE = "probable"
+    PROBABLE = "probable", "Choose the most probable pose of a normal distribution"
     """The most probable pose, if the neighbors are samples of a normal distribution."""
-    PUBLISHED = "published"
+    PUBLISHED = (
+        "published",
+        "Search frame by frame as published by Shum et al. (2013)",
+        "Shum et al. 2013",
+    )
     """The pose of least energy by the stochastic search of [SHJT13], frame by frame. Nothing
     else is done: `smoothing`, `memory`, `pace` and `rounds` have no effect."""
 
@@ -21,19 +24,19 @@ class PostureSettings(Settings):
     """Settings of `reconstruct_postures`."""
 
     method: PostureMethod = setting(
-        PostureMethod.PROBABLE, "Criterion for the best pose among the neighbors"
+        PostureMethod.PROBABLE, "How the best pose is chosen among similar ones"
     )
-    causal: bool = setting(False, "Use only earlier frames, as a live system must; less smooth")
+    causal: bool = setting(False, "Use only earlier frames, as in a live system; less smooth")
     n_neighbours: int = setting(
-        30, "Library poses that each pose is computed from; more allow more variation",
+        30, "Number of library poses that each pose is made of; more vary more",
         minimum=2, maximum=200,
     )  # fmt: skip
     n_dimensions: int = setting(
-        20, "Principal components in which a pose may differ from its neighbors' mean",
+        20, "Dimensions in which a pose may differ from the mean of its neighbors",
         minimum=1, maximum=60, advanced=True,
     )  # fmt: skip
     noise: float = setting(
-        0.005, "Standard deviation of reliable joints; higher values smooth more", unit="m",
+        0.005, "Position error of reliable joints; higher smooths them more", unit="m",
         minimum=1e-4, maximum=0.1,
     )  # fmt: skip
     smoothing: float = setting(
@@ -41,19 +44,19 @@ class PostureSettings(Settings):
         minimum=0.0, maximum=2.0,
     )  # fmt: skip
     memory: float = setting(
-        0.5, "Time over which a missing joint moves from its last position to the library's",
-        unit="s", minimum=0.02, maximum=10.0, advanced=True,
+        0.5, "How long a missing joint remembers where it was observed", unit="s",
+        minimum=0.02, maximum=10.0, advanced=True,
     )  # fmt: skip
     pace: float = setting(
-        0.2, "Time that turns velocity into distance in the search for neighbors; higher weighs"
-        " movement more, 0 as published", unit="s", minimum=0.0, maximum=2.0, advanced=True,
+        0.2, "Weight of velocity against pose when searching similar poses; 0 as published",
+        unit="s", minimum=0.0, maximum=2.0, advanced=True,
     )  # fmt: skip
     rounds: int = setting(
-        2, "Searches for neighbors; each uses the result of the one before",
+        2, "Number of searches for similar poses, each with the previous result",
         minimum=1, maximum=10, advanced=True,
     )  # fmt: skip
     seed: int = setting(
-        0, "Seed of the random numbers of the published method", minimum=0, maximum=2**31 - 1,
+        0, "Random seed of the published method", minimum=0, maximum=2**31 - 1,
         advanced=True,
     )  # fmt: skip
 

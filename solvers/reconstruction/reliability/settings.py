@@ -1,20 +1,23 @@
 """Settings of the reliability measure."""
 
 from dataclasses import dataclass
-from enum import Enum
 
 from ...errors import InvalidSettingError
-from ...settings import Settings, setting
+from ...settings import Choice, Settings, setting
 
 SENSOR_RATE_HZ = 30.0
 """Frame rate (Hz) of the cameras for which [SHJT13] gives its thresholds."""
 
 
-class ReliabilityMethod(Enum):
+class ReliabilityMethod(Choice):
     """Ways to combine the terms of reliability."""
 
-    DEFAULT = "default"
-    PUBLISHED = "published"
+    DEFAULT = "default", "Estimate from measured errors the probability that a joint is right"
+    PUBLISHED = (
+        "published",
+        "Take the least of the three terms of Shum et al. (2013)",
+        "Shum et al. 2013",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,36 +26,32 @@ class ReliabilitySettings(Settings):
 
     method: ReliabilityMethod = setting(
         ReliabilityMethod.DEFAULT,
-        "Default is the probability that a joint is right, learned from measured errors."
-        " Published is the minimum of the three terms of Shum and others (2013)",
+        "How the reliability of a joint is computed",
         advanced=True,
     )
-    causal: bool = setting(
-        False,
-        "Use only earlier frames, as a live system must; otherwise use frames on both sides",
-    )
+    causal: bool = setting(False, "Use only earlier frames, as in a live system")
     inferred: float = setting(
-        0.0, "Reliability of joints that the tracker inferred; higher keeps more of them",
+        0.0, "Reliability of joints that the tracker inferred; higher relies on them more",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     tolerance: float = setting(
-        0.05, "Error up to which a joint counts as right; higher rates joints as more reliable",
+        0.05, "Position error that still counts as right; higher rates joints as more reliable",
         unit="m", minimum=0.005, maximum=0.5,
     )  # fmt: skip
     slowest: float = setting(
-        0.9, "Speed below which a joint never counts as vibrating; higher tolerates more",
+        0.9, "Speed below which a joint never counts as vibrating; higher flags fewer joints",
         unit="m/s", minimum=0.0, maximum=100.0, advanced=True,
     )  # fmt: skip
     vibration_window: float = setting(
-        0.1, "Time over which changes of direction are averaged; longer tolerates single jumps",
+        0.1, "Time over which turns of the path are averaged; longer ignores single jumps",
         unit="s", minimum=0.01, maximum=1.0, advanced=True,
     )  # fmt: skip
     vibration_floor: float = setting(
-        90.0, "Mean change of direction up to which the path is normal; higher tolerates more",
+        90.0, "Mean turn of the path that is still normal; higher flags fewer joints",
         unit="degrees", minimum=0.0, maximum=179.0, advanced=True,
     )  # fmt: skip
     vibration_roof: float = setting(
-        135.0, "Mean change of direction from which on reliability is 0; must exceed the floor",
+        135.0, "Mean turn of the path at which reliability is 0; must be above the floor",
         unit="degrees", minimum=1.0, maximum=180.0, advanced=True,
     )  # fmt: skip
     window: float = setting(

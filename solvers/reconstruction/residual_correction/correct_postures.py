@@ -1,7 +1,6 @@
 """Subtract a sensor's errors from a recording with a residual prior [ZH14, chapter 5]."""
 
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +8,7 @@ from numpy.typing import NDArray
 from ...motion import JointRecording
 from ...motion.humanoid import posture_positions
 from ...progress import Progress, unwatched, within
-from ...settings import Settings, setting
+from ...settings import Choice, Settings, setting
 from ...signals import fill_gaps
 from ..joint_rotations import (
     LimbTwists,
@@ -36,12 +35,16 @@ CONFIDENCE_DISTANCE_M = 0.05
 """
 
 
-class CorrectionMethod(Enum):
+class CorrectionMethod(Choice):
     """Method that combines offsets, smoothness and reliability."""
 
-    WHOLE_TAKE = "whole take"
-    CAUSAL = "causal"
-    PUBLISHED = "published"
+    WHOLE_TAKE = "whole take", "Smooth over the frames before and after each frame"
+    CAUSAL = "causal", "Smooth over the frames before each frame only"
+    PUBLISHED = (
+        "published",
+        "Weight three terms frame by frame, as Zhou et al. (2014)",
+        "Zhou et al. 2014",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,20 +53,17 @@ class CorrectionSettings(Settings):
 
     method: CorrectionMethod = setting(
         CorrectionMethod.WHOLE_TAKE,
-        "Whole take smooths over frames before and after each frame, causal over earlier"
-        " frames; published weighs three terms frame by frame as Zhou 2014",
+        "How offsets, smoothness and reliability are combined",
     )
     smoothing: float = setting(
-        0.05, "Movements shorter than about this count as jitter; higher values smooth more",
+        0.05, "Remove jitter shorter than about this; higher is smoother but blurs motion",
         unit="s", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     shift: bool = setting(
-        True, "Also subtract the sensor's constant offset of each joint, such as from the skin"
-        " to the joint center; false keeps the mean observed position",
+        True, "Also correct the constant joint offset of the sensor, as from skin to joint",
     )  # fmt: skip
     change: float = setting(
-        0.9, "Fraction of the offsets' change with pose to apply; 1 applies the prior in full,"
-        " also to movements outside its training data (published: all, unless 0)",
+        0.9, "How much of the pose-dependent offset to apply; 1 relies fully on the prior",
         minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
     spatial: float = setting(
@@ -75,7 +75,7 @@ class CorrectionSettings(Settings):
         minimum=0.0, maximum=10.0, advanced=True,
     )  # fmt: skip
     trust: float = setting(
-        0.2, "Weight of the observed positions of reliable joints; published method only",
+        0.2, "Weight of staying at reliable observations; published method only",
         minimum=0.0, maximum=10.0, advanced=True,
     )  # fmt: skip
 

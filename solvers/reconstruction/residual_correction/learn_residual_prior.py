@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,7 @@ from ...motion.humanoid import (
     rotate_about_vertical,
 )
 from ...progress import Progress, unwatched
-from ...settings import Settings, setting
+from ...settings import Choice, Settings, setting
 from .inputs import fill_missing, neighborhood_features, smooth_postures
 from .kernel import Kernel, learn_kernel
 from .learn_movement_process import Take, learn_movement_process
@@ -37,11 +36,15 @@ MIN_FRAMES = 20
 """Minimum number of frames with a known joint to learn it."""
 
 
-class ResidualMethod(Enum):
+class ResidualMethod(Choice):
     """Method that learns errors."""
 
-    HIERARCHICAL = "hierarchical"
-    PUBLISHED = "published"
+    HIERARCHICAL = "hierarchical", "Learn from neighboring joints and from the whole pose"
+    PUBLISHED = (
+        "published",
+        "Learn from neighboring joints only, as Zhou et al. (2014)",
+        "Zhou et al. 2014",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,39 +53,40 @@ class ResidualPriorSettings(Settings):
 
     method: ResidualMethod = setting(
         ResidualMethod.HIERARCHICAL,
-        "Hierarchical uses neighbors and the complete pose, and separates errors common to"
-        " all actors; published uses only the joint's neighbors, as Zhou 2014",
+        "How sensor errors are learned",
     )
     local_points: int = setting(
         60, "Inducing points of each joint and its neighbors; more is finer and slower",
         minimum=5, maximum=500, advanced=True,
     )  # fmt: skip
     whole_points: int = setting(
-        100, "Inducing points of complete poses; more is finer and slower",
+        100, "Inducing points of whole poses; more is finer and slower",
         minimum=5, maximum=500, advanced=True,
     )  # fmt: skip
     movement_points: int = setting(
-        1500, "Example movements of the hierarchical method; more is finer, slower and larger",
+        1500, "Movements to compare errors with; more is finer, slower and larger",
         minimum=20, maximum=5000, advanced=True,
     )  # fmt: skip
     sample: int = setting(
-        500, "Frames for learning the hyper-parameters; more is more accurate and slower",
+        500, "Frames to learn the hyperparameters from; more is more accurate and slower",
         minimum=50, maximum=3000, advanced=True,
     )  # fmt: skip
     frame_rate: float = setting(
-        6.0, "Examples per second of a take",
+        6.0, "Frames per second to thin the examples to",
         unit="Hz", minimum=0.5, maximum=120.0, advanced=True,
     )  # fmt: skip
     mirror: bool = setting(
-        True, "Assume that right limbs err as mirrored left ones; switch off for a sensor that"
-        " always stands to one side",
+        True,
+        "Also learn each error with left and right exchanged; turn off for a sensor at the"
+        " side",
     )  # fmt: skip
     calm: float = setting(
-        1 / 30, "Gaussian that smooths recordings first; 0 as published",
+        1 / 30, "Width of the Gaussian that smooths recordings first; 0 as published",
         unit="s", minimum=0.0, maximum=0.5, advanced=True,
     )  # fmt: skip
     seed: int = setting(
-        0, "Seed for frames and first clusters", minimum=0, maximum=2**31 - 1, advanced=True
+        0, "Random seed of frames and first clusters", minimum=0, maximum=2**31 - 1,
+        advanced=True,
     )  # fmt: skip
 
 

@@ -1,22 +1,33 @@
 """What recordings of depth leave open, and whoever reads them may know."""
 
 from dataclasses import dataclass
-from enum import Enum
 
 from ...depth_scene import Camera
-from ...settings import Settings, setting
+from ...settings import Choice, Settings, setting
 
 
-class Held(Enum):
+class Held(Choice):
     """How the camera was held when it recorded."""
 
-    KNOWN = "known"
+    KNOWN = (
+        "known",
+        "Read the orientation from the file; upright where it has none",
+        "From File",
+    )
     """As the file says; upright if it does not."""
-    UPRIGHT = "upright"
-    LEFT = "left"
+    UPRIGHT = "upright", "The camera stood upright"
+    LEFT = (
+        "left",
+        "The camera was turned left; heads are at the left of the picture",
+        "Turned Left",
+    )
     """Turned left: the top of the picture is what was at the left."""
-    RIGHT = "right"
-    UPSIDE_DOWN = "upside down"
+    RIGHT = (
+        "right",
+        "The camera was turned right; heads are at the right of the picture",
+        "Turned Right",
+    )
+    UPSIDE_DOWN = "upside down", "The camera hung upside down"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,46 +35,45 @@ class DepthSettings(Settings):
     """How pictures of depth are to be understood; 0 leaves a number to the file."""
 
     scale: float = setting(
-        0.0, "Metres in one unit of a pixel: 0.001 for millimetres; 0 takes the file's word",
+        0.0, "Meters per pixel unit: 0.001 for millimeters; 0 reads the file",
         unit="m", minimum=0.0, maximum=10.0,
     )  # fmt: skip
     fx: float = setting(
-        0.0, "Focal length across the picture; more makes the actor narrower; 0 takes the"
-        " file's word", unit="pixels", minimum=0.0, maximum=1e5,
+        0.0, "Horizontal focal length; more narrows the actor; 0 reads the file", unit="pixels",
+        minimum=0.0, maximum=1e5,
     )  # fmt: skip
     fy: float = setting(
-        0.0, "Focal length up the picture; 0 takes the one across", unit="pixels", minimum=0.0,
+        0.0, "Vertical focal length; 0 uses the horizontal one", unit="pixels", minimum=0.0,
         maximum=1e5,
     )  # fmt: skip
     cx: float = setting(
-        0.0, "Column that the camera's axis meets; 0 takes the file's word, or the middle",
+        0.0,
+        "Column where the camera axis meets the picture; 0 reads the file or uses the middle",
         unit="pixels", minimum=0.0, maximum=1e5,
     )  # fmt: skip
     cy: float = setting(
-        0.0, "Row that the camera's axis meets; 0 takes the file's word, or the middle",
+        0.0, "Row where the camera axis meets the picture; 0 reads the file or uses the middle",
         unit="pixels", minimum=0.0, maximum=1e5,
     )  # fmt: skip
     width: int = setting(
-        0, "Columns of a picture in raw frames; 0 takes a Kinect's", unit="pixels", minimum=0,
+        0, "Picture width of raw frames; 0 uses that of a Kinect", unit="pixels", minimum=0,
         maximum=4096, advanced=True,
     )  # fmt: skip
     height: int = setting(
-        0, "Rows of a picture in raw frames; 0 takes a Kinect's", unit="pixels", minimum=0,
+        0, "Picture height of raw frames; 0 uses that of a Kinect", unit="pixels", minimum=0,
         maximum=4096, advanced=True,
     )  # fmt: skip
     frame_rate: float = setting(
-        0.0, "Pictures per second; 0 takes the file's word, or 30", unit="Hz", minimum=0.0,
+        0.0, "Pictures per second; 0 reads the file or uses 30", unit="Hz", minimum=0.0,
         maximum=10_000.0,
     )  # fmt: skip
-    held: Held = setting(
-        Held.KNOWN, "How the camera was held, as a telephone often is on its side"
-    )
+    held: Held = setting(Held.KNOWN, "How the camera was held")
     mirrored: bool = setting(
-        False, "The pictures show the actor's right hand on the right, as a mirror does"
+        False, "The pictures are mirrored: the actor's right hand is on the right"
     )
     least_confidence: int = setting(
-        1, "Confidence below which a reading is left out, where it was recorded: 0 low, 1"
-        " medium, 2 high", minimum=0, maximum=2, advanced=True,
+        1, "Ignore readings of lower recorded confidence: 0 low, 1 medium, 2 high", minimum=0,
+        maximum=2, advanced=True,
     )  # fmt: skip
 
     def camera(self, width: int, height: int, told: Camera | None = None) -> Camera | None:

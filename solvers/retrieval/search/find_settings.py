@@ -1,13 +1,12 @@
 """What is alike, and how closely it is looked at."""
 
 from dataclasses import dataclass, replace
-from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
-from ...settings import Settings, setting
+from ...settings import Choice, Settings, setting
 from ..index import STANCE
 from ..postures import BodyPart
 
@@ -20,11 +19,11 @@ AT_REST = 0.2
 """Of the busiest part's activity that one counts as having that does not move at all."""
 
 
-class FindMethod(Enum):
+class FindMethod(Choice):
     """How clips are compared."""
 
-    WORDS = "words and warping"
-    PUBLISHED = "published"
+    WORDS = "words and warping", "Compare pose words of each body part, then align in time"
+    PUBLISHED = "published", "Compare pyramids of sparse codes; slower and less accurate"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,46 +38,42 @@ class FindSettings(Settings):
     """
 
     method: FindMethod = setting(
-        FindMethod.WORDS, "Words of each part of the body and warping measured best; published"
-        " is pyramids of sparse codes of the whole body, which is slow and finds less",
+        FindMethod.WORDS, "Search method; the default is faster and measured best",
         advanced=True,
     )  # fmt: skip
 
     n_matches: int = setting(
-        0, "Clips that are told, the best first; 0 ranks all of them",
-        minimum=0, maximum=1_000_000, label="Matches",
+        0, "Number of results, best first; 0 ranks all clips",
+        minimum=0, maximum=1_000_000, label="Results",
     )  # fmt: skip
-    trunk: bool = setting(True, "Compare trunk and head, and how the body travels")
+    trunk: bool = setting(True, "Compare trunk, head and the travel of the body")
     left_arm: bool = setting(True, "Compare the left arm")
     right_arm: bool = setting(True, "Compare the right arm")
     left_leg: bool = setting(True, "Compare the left leg")
     right_leg: bool = setting(True, "Compare the right leg")
     busy: float = setting(
-        0.5, "How much more those parts of the body count that move more in the query; at 0 an"
-        " arm that only hangs counts like any other",
-        minimum=0.0, maximum=4.0, advanced=True, label="Busy Parts",
+        0.5, "Weight body parts by their motion in the query; at 0 all parts count the same",
+        minimum=0.0, maximum=4.0, advanced=True, label="Weight by Motion",
     )  # fmt: skip
     stance: float = setting(
-        STANCE, "How much the mean posture counts beside how a clip departs from it; in what a"
-        " sensor saw 0.4 at most, since sensors put joints elsewhere",
-        minimum=0.0, maximum=1.0, advanced=True,
+        STANCE, "Weight of the mean pose against the motion; at most 0.4 for sensor recordings",
+        minimum=0.0, maximum=1.0, advanced=True, label="Pose Weight",
     )  # fmt: skip
     n_warped: int = setting(
-        128, "Best clips whose course in time is compared as well; more is slower",
-        minimum=0, maximum=2_000, advanced=True, label="Warped",
+        128, "Number of best clips to compare in time as well; more is slower",
+        minimum=0, maximum=2_000, advanced=True, label="Time-Aligned Clips",
     )  # fmt: skip
     warping: float = setting(
-        3.0, "How much the course in time counts beside which postures there are",
-        minimum=0.0, maximum=100.0, advanced=True,
+        3.0, "Weight of timing against poses",
+        minimum=0.0, maximum=100.0, advanced=True, label="Timing Weight",
     )  # fmt: skip
     n_alike: int = setting(
-        8, "Clips most like each one that tell as well how like the query it is; at most one"
-        " of twenty clips",
-        minimum=0, maximum=100, advanced=True, label="Ask the Like",
+        8, "Similar clips that also vote on each result; at most one in twenty clips",
+        minimum=0, maximum=100, advanced=True, label="Neighbors",
     )  # fmt: skip
     n_aligned: int = setting(
-        8, "Best matches whose frames are aligned with the query's",
-        minimum=0, maximum=10_000, advanced=True, label="Aligned",
+        8, "Number of best matches to align frame by frame with the query",
+        minimum=0, maximum=10_000, advanced=True, label="Aligned Matches",
     )  # fmt: skip
 
     def for_sensor(self) -> "FindSettings":

@@ -110,7 +110,7 @@ def test_the_other_previews_follow_when_one_raises(archive, bring, blank, load, 
     blank.context.scene.frame_set(3)
 
     assert shown == meshes
-    assert "fault of Mocap Assist" in meshes[0]["mocap_assist_depth_problem"]
+    assert "bug in Mocap Assist" in meshes[0]["mocap_assist_depth_problem"]
 
 
 def test_points_whose_attribute_was_replaced_are_hidden(archive, bring, blank):

@@ -139,7 +139,7 @@ def test_joints_of_unknown_parents_become_empties_and_it_is_said(
 
     assert holder.type == "EMPTY"
     assert len(holder.children) == 3
-    assert "nothing tells which joint hangs on which" in capfd.readouterr().out
+    assert "the parents of the joints are unknown" in capfd.readouterr().out
 
 
 @pytest.mark.parametrize(("n_points", "n_loose"), [(33, 0), (75, 2), (553, 480)])
@@ -163,7 +163,7 @@ def test_a_body_of_freemocap_becomes_an_armature(
     assert ("left_hand_index_3" in names) == (n_points > 33)
     assert not any(name.startswith("face_") for name in names)
     said = capfd.readouterr().out
-    assert (f"without {n_loose} points that hang on no joint" in said) == (n_loose > 0)
+    assert (f"without {n_loose} points that have no joint" in said) == (n_loose > 0)
 
 
 def test_points_of_freemocap_that_are_no_body_become_empties(bring, rng, tmp_path):
@@ -204,7 +204,7 @@ def test_what_is_never_seen_is_said_and_takes_nothing_along(lossy, load, tmp_pat
 
     imported = files.import_files(blank.context, [tmp_path / "lost.csv"], choices)
 
-    assert "without SpineMid, never seen" in imported.sentence
+    assert "without SpineMid (never observed)" in imported.sentence
     bones = set(imported.made[0].data.bones.keys())
     assert {"Head", "WristLeft", "KneeRight"} <= bones
     assert "SpineMid" not in bones

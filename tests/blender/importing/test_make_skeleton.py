@@ -79,7 +79,7 @@ def test_markers_of_no_known_set_are_refused_in_a_sentence(blank, bring, load, t
 
 
 def test_without_markers_the_button_says_why(blank):
-    with pytest.raises(RuntimeError, match="Select the markers of an optical take"):
+    with pytest.raises(RuntimeError, match="Select a marker set"):
         blank.ops.mocap_assist.solve_skeleton()
 
 

@@ -148,7 +148,7 @@ def test_check_lists_spots_and_jumps_to_the_marker(holder, blank):
 
 
 def test_buttons_for_armatures_say_so(holder, blank):
-    with pytest.raises(RuntimeError, match="Select an armature"):
+    with pytest.raises(RuntimeError, match="Select an animated armature"):
         blank.ops.mocap_assist.plant_feet()
 
 
@@ -157,13 +157,13 @@ def test_an_empty_without_markers_is_no_take(blank):
     blank.context.scene.collection.objects.link(lone)
     blank.context.view_layer.objects.active = lone
 
-    with pytest.raises(RuntimeError, match="captured markers"):
+    with pytest.raises(RuntimeError, match="marker set"):
         blank.ops.mocap_assist.denoise()
 
 
 def test_markers_have_no_keys_of_bones_to_thin_out(holder, blank):
     assert blank.ops.mocap_assist.denoise.poll()
-    with pytest.raises(RuntimeError, match="Select an armature that plays a captured action"):
+    with pytest.raises(RuntimeError, match="Select an animated armature"):
         blank.ops.mocap_assist.reduce_keys()
 
 

@@ -59,7 +59,7 @@ def test_escape_after_the_first_has_come_in_takes_it_back(
 
     wait(operator, window, until=lambda: len(blank.data.objects) > len(before[0]))
     assert everything()[-1] != before[-1]
-    assert window.status[-1].startswith("Bringing in second.bvh")
+    assert window.status[-1].startswith("Importing second.bvh")
     assert operator.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
 
     assert everything() == before
@@ -219,6 +219,6 @@ def test_the_dialog_does_not_wait_for_a_large_file(load, walks, monkeypatch, bla
 
     large = importing.preview(blank.context, [walks / "first.bvh"])
 
-    assert small == "first.bvh: 317 frames at 120 Hz; the scene plays 24 frames per second"
-    assert large == "first.bvh: 0 MB; the scene plays 24 frames per second"
+    assert small == "first.bvh: 317 frames at 120 Hz; the scene plays at 24 FPS"
+    assert large == "first.bvh: 0 MB; the scene plays at 24 FPS"
     assert "cannot be read" in importing.preview(blank.context, [walks / "gone.bvh"])

@@ -34,7 +34,7 @@ def test_sources_tags_and_asset_libraries(blank, clip_files, blend_file, entries
 
 
 def test_nothing_listed_is_said(blank, library):
-    with pytest.raises(RuntimeError, match="Nothing is listed to index"):
+    with pytest.raises(RuntimeError, match="No sources are listed"):
         blank.ops.mocap_assist.index_library()
 
 

@@ -55,7 +55,7 @@ def test_a_library_without_sources_is_no_longer_kept(library, keep, load, blank)
 
 def test_nothing_to_keep_is_refused(library, blank):
     library.sources = ""
-    with pytest.raises(RuntimeError, match="Nothing is listed to index"):
+    with pytest.raises(RuntimeError, match="No sources are listed"):
         blank.ops.mocap_assist.keep_current()
 
 

@@ -38,7 +38,7 @@ def test_index_then_find(command, newcomer, blend_file, clip_files, tmp_path):
     assert said["matches"][0]["tags"][0] == "hall"
 
     status, out, _ = command("find", "--library", library)
-    assert status == 0 and "most like" in out and "shot/wave_0" in out
+    assert status == 0 and "Most similar to" in out and "shot/wave_0" in out
 
 
 def test_what_cannot_be_read_is_told_and_the_rest_is_done(command, clip_files, tmp_path):

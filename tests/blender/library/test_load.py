@@ -169,7 +169,7 @@ def test_a_file_that_has_gone_or_changed(find, newcomer, blank, clip_files):
     with pytest.raises(RuntimeError, match="has changed since"):
         blank.ops.mocap_assist.load_match()
     path.unlink()
-    with pytest.raises(RuntimeError, match="is gone"):
+    with pytest.raises(RuntimeError, match="was moved or deleted"):
         blank.ops.mocap_assist.load_match()
 
     assert armature.animation_data.action == played

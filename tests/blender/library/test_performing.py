@@ -36,9 +36,9 @@ def test_the_library_is_shown(performing, blank):
     blank.context.window_manager.mocap_assist_matches.rows.clear()
     blank.context.window_manager.mocap_assist_ghost = False
 
-    assert performing.show_library(blank.context) == "Nothing was searched for yet."
+    assert performing.show_library(blank.context) == "No search yet."
     assert blank.context.window_manager.mocap_assist_ghost
-    assert performing.page(blank.context, 1) == "Nothing was searched for yet."
+    assert performing.page(blank.context, 1) == "No search yet."
 
 
 def test_without_a_library_it_says_so(performing, performance, blank, tmp_path):

@@ -38,7 +38,7 @@ def test_pressed_it_listens_on_loopback_only_and_pressed_again_it_stops(
     current = load("mocap_assist.live.listening").current()
     assert button.outcome == {"RUNNING_MODAL"} and window.modals == [button]
     assert current.receiver.address == ("127.0.0.1", port)
-    assert "Nobody is seen yet" in window.status[-1] and "Esc" in window.status[-1]
+    assert "No data yet" in window.status[-1] and "Esc" in window.status[-1]
 
     again = listen()
 
@@ -192,4 +192,4 @@ def test_turning_goes_round_the_vertical_and_zoom_has_ends(load, view):
 
     assert_allclose(np.abs(view.view_rotation), (1, 0, 0, 0), atol=1e-6)
     assert view.view_distance == pytest.approx(1e-3)
-    assert control.zoom_views(None, 2.0).startswith("There is no 3D View")
+    assert control.zoom_views(None, 2.0).startswith("This window has no 3D View")

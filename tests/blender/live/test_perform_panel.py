@@ -9,13 +9,13 @@ def test_at_first_there_is_the_button_and_the_port(draw):
 
 def test_while_it_listens_it_tells_what_it_hears(draw, listen, act):
     button = listen()
-    assert "Nobody is seen yet." in " ".join(draw("MOCAP_PT_perform"))
+    assert "No data yet." in " ".join(draw("MOCAP_PT_perform"))
 
     act(button, "hand up")
 
     shown = " ".join(draw("MOCAP_PT_perform"))
     assert "Wave to page, clap to perform" in shown
-    assert "Nothing was searched for yet." in shown
+    assert "No search yet." in shown
     assert "frames, 0 dropped" in shown
 
 

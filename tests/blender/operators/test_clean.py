@@ -218,7 +218,7 @@ def test_noise_in_the_rest_of_the_action_stays(noisy, clean, blank, capfd):
         [head(action).evaluate(frame) for frame in outside],
         atol=1e-5,
     )
-    assert "The modifiers of 1 curves are part of the new keys now." in capfd.readouterr().out
+    assert "Applied the modifiers of 1 curves." in capfd.readouterr().out
 
 
 def test_locations_of_bones_come_nearer_to_the_truth(make_armature, animate, clean, rng):

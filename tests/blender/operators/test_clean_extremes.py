@@ -21,7 +21,7 @@ def test_nothing_selected_is_said(noisy, clean, load):
         (lambda bpy, rig: setattr(rig.animation_data, "action", None), "Actor has no action"),
         (
             lambda bpy, rig: setattr(bpy.context.view_layer.objects, "active", None),
-            "Select an armature that plays a captured action",
+            "Select an animated armature",
         ),
         (
             lambda bpy, rig: (

@@ -164,7 +164,7 @@ def test_what_a_reader_warns_of_is_told(blank, command, tmp_path):
     ]
     assert (figures["joints"], figures["frame_rate_hz"]) == (3, 30.0)
     assert figures["warnings"] == (
-        "Resampled to 30 Hz. Never seen: C. Nothing tells which joint hangs on which"
+        "Resampled to 30 Hz. Never observed: C. The parents of the joints are unknown"
     )
 
 

@@ -71,9 +71,9 @@ def test_plant_feet_uses_the_keyed_contacts_and_moves_only_legs_and_hips(
 
 def test_what_was_learned_serves_clean(dancer, blank, tmp_path):
     learned = tmp_path / "dance.npz"
-    with pytest.raises(RuntimeError, match="Choose the file that what is learned"):
+    with pytest.raises(RuntimeError, match="Choose a file to write the motion model"):
         blank.ops.mocap_assist.learn_patterns(examples="walk")
-    with pytest.raises(RuntimeError, match="There is no folder"):
+    with pytest.raises(RuntimeError, match="does not exist"):
         blank.ops.mocap_assist.learn_patterns(
             examples="walk", learned_file=str(tmp_path / "no" / "x")
         )

@@ -72,7 +72,7 @@ def test_a_take_that_cannot_be_followed_is_said_and_left(walker, blank, keys_of,
 
 def test_a_grey_button_says_why(blank):
     assert not blank.ops.mocap_assist.simulate.poll()
-    with pytest.raises(RuntimeError, match="Select an armature"):
+    with pytest.raises(RuntimeError, match="Select an animated armature"):
         blank.ops.mocap_assist.simulate()
 
 

@@ -174,14 +174,14 @@ def test_the_status_bar_has_room_for_what_is_said(walk, reconstruct, capfd):
 
     told = capfd.readouterr().out.strip().splitlines()[-1].removeprefix("Info: ")
     assert len(told) < 100
-    assert told.startswith("walk.reconstructed: 6.") and "% of joints rebuilt" in told
-    assert "feet slid" in told and told.endswith(" cm.")
+    assert told.startswith("walk.reconstructed: rebuilt 6.") and "% of joint samples" in told
+    assert "foot slide" in told and told.endswith(" cm.")
 
 
 def test_the_button_is_grey_without_an_armature(blank):
     blank.ops.object.empty_add()
 
-    with pytest.raises(RuntimeError, match="Select an armature"):
+    with pytest.raises(RuntimeError, match="Select an animated armature"):
         blank.ops.mocap_assist.reconstruct()
 
 

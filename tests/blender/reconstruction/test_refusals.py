@@ -67,7 +67,7 @@ def test_markers_are_not_for_it(blank, load, tmp_path, rng):
     load("solvers.recordings").write_trc(tracks, tmp_path / "take.trc")
     blank.ops.mocap_assist.import_recording(filepath=str(tmp_path / "take.trc"))
 
-    with pytest.raises(RuntimeError, match="Select an armature"):
+    with pytest.raises(RuntimeError, match="Select an animated armature"):
         blank.ops.mocap_assist.reconstruct()
 
 

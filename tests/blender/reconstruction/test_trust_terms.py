@@ -71,7 +71,7 @@ def test_lengths_are_told_while_the_file_is_there(walk, walk_file, reconstruct, 
 def test_the_panel_offers_the_signs_and_says_what_is_missing(
     walk, walk_file, reconstruct, draw, switch
 ):
-    assert "This action tells nothing of trust." in " ".join(draw("MOCAP_PT_reconstruct"))
+    assert "No confidence data in this action." in " ".join(draw("MOCAP_PT_reconstruct"))
     reconstruct()
     shown = draw("MOCAP_PT_reconstruct")
     assert set(shown) >= TERMS

@@ -60,7 +60,7 @@ def test_presets_that_are_none_are_refused_in_a_sentence(listed, blank, tmp_path
     bad = tmp_path / "bad.json"
     bad.write_text("{}")
 
-    with pytest.raises(RuntimeError, match="no humanoid map"):
+    with pytest.raises(RuntimeError, match="not a humanoid map"):
         blank.ops.mocap_assist.load_bone_map(filepath=str(bad), side="source")
     with pytest.raises(RuntimeError, match="There is no file"):
         blank.ops.mocap_assist.load_bone_map(filepath=str(tmp_path / "no"), side="source")
@@ -77,7 +77,7 @@ def test_the_panel_says_what_is_missing(walker, blank, load, make_rig):
     why = load("mocap_assist.retarget.panel").why_not_pressed
     shown = blank.context.scene.mocap_assist.retarget
 
-    assert "Choose the armature" in why(blank.context)
+    assert "Choose the target armature" in why(blank.context)
     shown.target = walker.name
     assert "is the source itself" in why(blank.context)
     shown.target = "Nobody"
@@ -87,7 +87,7 @@ def test_the_panel_says_what_is_missing(walker, blank, load, make_rig):
     shown.target = target.name
     assert why(blank.context) == ""
     blank.context.view_layer.objects.active = None
-    assert "Select the armature" in why(blank.context)
+    assert "Select the source armature" in why(blank.context)
 
 
 def test_actions_are_ticked_and_unticked(walker, blank):

@@ -51,7 +51,7 @@ def test_mistakes_are_said_in_a_sentence(walker, command, tmp_path):
     output = ("--output", str(tmp_path / "x.blend"))
 
     for words, sentence in (
-        ((), "Choose the armature that is to make the motion."),
+        ((), "Choose the target armature."),
         (("--target", "Nobody"), "The scene has no armature Nobody."),
         (("--takes", "listed", "--target", walker.name), "is the source itself"),
     ):

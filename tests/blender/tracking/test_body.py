@@ -98,7 +98,9 @@ def test_what_was_damaged_is_not_drawn(tracked, body, load):
     kept = load("mocap_assist.track.tracked_body")
     tracked.data[kept.KEY] = "{}"
     assert body(tracked) is None
-    with pytest.raises(load("solvers.errors").InvalidMotionError, match="keeps no body"):
+    with pytest.raises(
+        load("solvers.errors").InvalidMotionError, match="is not a tracked armature"
+    ):
         kept.TrackedBody.read(tracked)
 
 

@@ -137,7 +137,7 @@ def test_why_it_is_grey_or_refuses(tracked, points, blank):
         blank.ops.mocap_assist.retrack()
     blank.context.view_layer.objects.active = points
     assert not blank.ops.mocap_assist.retrack.poll()
-    with pytest.raises(RuntimeError, match="Select an armature that Track has made"):
+    with pytest.raises(RuntimeError, match="Select a tracked armature"):
         blank.ops.mocap_assist.retrack()
 
 
@@ -173,5 +173,5 @@ def test_it_can_be_watched_and_esc_leaves_the_hand_pose_as_it_was(
 
     assert wait(press(), window) == {"FINISHED"}
     ((_, cancelled), (_, said)) = window.reports
-    assert cancelled == "Cancelled." and "tracked again from frame 8" in said
+    assert cancelled == "Cancelled." and "from frame 8" in said
     np.testing.assert_allclose(bone.matrix_basis, posed, atol=1e-4)

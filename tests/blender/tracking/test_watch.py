@@ -79,7 +79,7 @@ def test_esc_keeps_what_is_tracked_if_that_was_asked_for(press, window, blank, t
     assert button.modal(window.context, event("ESC", "PRESS")) == {"FINISHED"}
 
     ((_, said),) = window.reports
-    assert "Ended early: " in said and "of 6 frames were tracked" in said
+    assert "Stopped early: " in said and "of 6 frames tracked" in said
     armature = blank.context.object
     action = armature.animation_data.action
     n_frames = int(said.split("Ended early: ")[1].split()[0])

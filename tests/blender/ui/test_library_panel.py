@@ -33,7 +33,7 @@ def test_without_matches_it_offers_index_and_find(draw, blank):
 
     assert {"mocap_assist.index_library", "mocap_assist.find_similar"} <= set(shown)
     assert "mocap_assist.load_match" not in shown
-    assert "Select an armature" in " ".join(shown)
+    assert "Select an animated armature" in " ".join(shown)
 
 
 def test_every_setting_of_the_search_is_there_once(draw, blank, actor):

@@ -23,7 +23,7 @@ def test_without_an_armature_clean_says_what_to_select(draw):
     shown = draw("MOCAP_PT_clean")
 
     assert "mocap_assist.denoise" in shown
-    assert "Select an armature" in " ".join(shown)
+    assert "Select an animated armature" in " ".join(shown)
 
 
 def test_clean_offers_every_setting_of_its_button_once(blank, draw, actor):
@@ -35,7 +35,7 @@ def test_clean_offers_every_setting_of_its_button_once(blank, draw, actor):
     assert sorted(set(type(clean).setting_names) - hidden) == sorted(
         name for name in shown if name in type(clean).setting_names
     )
-    assert "Select an armature" not in " ".join(shown)
+    assert "Select an animated armature" not in " ".join(shown)
 
 
 def test_where_patterns_come_from_is_asked_for_only_where_it_matters(blank, draw):
@@ -125,7 +125,7 @@ def test_spots_of_another_action_are_said_to_be_so(blank, draw, actor):
         curve.keyframe_points[30].co.y += 1.0
     assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
     assert blank.context.scene.mocap_assist.spots
-    stale = "These are the spots of walk."
+    stale = 'Results are for "walk".'
     assert stale not in " ".join(draw("MOCAP_PT_check"))
 
     assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
@@ -180,7 +180,7 @@ def test_a_figure_that_is_not_known_is_a_dash(load):
         {"before": {"foot_slide_cm_per_s": None}, "after": {"foot_slide_cm_per_s": 1.25}}
     ])
 
-    assert rows == [("Foot slide (cm/s)", "–", "1.2")]
+    assert rows == [("Foot Slide (cm/s)", "–", "1.2")]
 
 
 def test_frames_of_a_spot_are_read_as_one_says_them(load):
@@ -192,7 +192,7 @@ def test_frames_of_a_spot_are_read_as_one_says_them(load):
 
 def test_a_sentence_is_broken_to_fit_the_sidebar(load):
     lines = load("mocap_assist.panels.drawing").column_lines
-    sentence = "Select an armature that plays a captured action."
+    sentence = "Select an animated armature."
 
     assert len(lines(sentence, 200)) > len(lines(sentence, 400)) == 1
     assert " ".join(lines(sentence, 0)) == sentence

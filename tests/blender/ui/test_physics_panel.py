@@ -11,6 +11,4 @@ def test_the_panel_offers_every_setting_and_the_button(draw):
 
 
 def test_it_says_why_the_button_is_grey(draw):
-    assert "Select an armature that plays a captured action." in " ".join(
-        draw("MOCAP_PT_physics")
-    )
+    assert "Select an animated armature." in " ".join(draw("MOCAP_PT_physics"))

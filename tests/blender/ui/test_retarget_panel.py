@@ -15,7 +15,7 @@ def test_every_setting_is_offered_once(blank, draw, actor):
 
 
 def test_it_says_that_a_target_is_missing(draw, actor):
-    assert "Choose the armature that is to make the" in " ".join(draw("MOCAP_PT_retarget"))
+    assert "Choose the target armature." in " ".join(draw("MOCAP_PT_retarget"))
 
 
 def test_bones_and_presets_are_drawn_once_they_are_found(blank, draw, actor, make_armature):

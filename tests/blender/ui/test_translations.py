@@ -54,7 +54,7 @@ def test_every_translated_text_is_one_that_a_panel_shows(
     drawn = said_by(blank, draw, actor)
     shown = drawn | set(names_of(blank, drawn))
     # What the recording layout cannot see: texts given to properties, and filled-in ones.
-    elsewhere = {"Learn from", "Left foot stands", "Right foot stands", "Made from {raw}"}
+    elsewhere = {"Motion Model", "Left Foot Contact", "Right Foot Contact", "Made from {raw}"}
     elsewhere |= {"Previous", "Next"}
     # A figure that is not known, as for feet that never stand, is not shown.
     elsewhere |= {label for label, *_ in load("mocap_assist.panels.figures").FIGURES}

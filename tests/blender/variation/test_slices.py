@@ -53,5 +53,5 @@ def test_an_example_that_is_changed_or_deleted_meanwhile(button, window, blank):
 
     assert wait(button, window) == {"CANCELLED"}
 
-    assert "walk_1 was deleted meanwhile" in window.reports[-1][1]
+    assert "walk_1 was deleted during the solve" in window.reports[-1][1]
     assert n_variants(blank) == 0 and nothing_is_left(window)

@@ -98,7 +98,7 @@ def test_somebody_with_other_bones_is_said_and_nobody_gets_anything(
     stranger = make_armature(bones={"Wheel": (None, (0, 0, 0), (0, 0, 1), False)}, name="Car")
     stranger.select_set(True)
 
-    with pytest.raises(RuntimeError, match="Car has not the bones of walk_1"):
+    with pytest.raises(RuntimeError, match="Car lacks the bones of walk_1"):
         blank.ops.mocap_assist.assign_variants()
 
     assert crowd[1].animation_data is None
@@ -155,13 +155,11 @@ def test_the_panel_shows_them_and_what_is_missing(blank, draw, walker, vary):
 
     shown = draw("MOCAP_PT_vary")
     assert {"mocap_assist.keep_variants", "mocap_assist.draw_variants", "icon"} <= set(shown)
-    assert {"variant 01", "variant 02", "With all 2:"} <= set(shown)
+    assert {"variant 01", "variant 02", "Apply to all 2:"} <= set(shown)
     blank.ops.mocap_assist.tick_action(action="walk_2", group="vary")
     assert blank.context.scene.mocap_assist.vary.actions == "walk_2"
     blank.data.objects.remove(walker)
-    assert "Select the armature whose actions are to be varied." in " ".join(
-        draw("MOCAP_PT_vary")
-    )
+    assert "Select the armature whose actions to vary." in " ".join(draw("MOCAP_PT_vary"))
 
 
 @pytest.mark.parametrize("number", [-5, 10**8])

@@ -85,7 +85,7 @@ def test_variants_begin_where_the_example_does_wherever_that_is(
 def test_variants_that_are_all_alike_are_said_to_be(vary, capfd):
     vary(n_variants=2, amount=0.0, timing=0.0, plant_feet=False)
 
-    assert "They are all alike" in capfd.readouterr().out
+    assert "Variants are nearly identical" in capfd.readouterr().out
 
 
 def test_what_is_not_the_body_is_held(vary, walker, blank):

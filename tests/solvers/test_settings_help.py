@@ -1,0 +1,56 @@
+"""Every setting and every choice has a help text that fits a tooltip."""
+
+from dataclasses import fields
+from enum import Enum
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from solvers.settings import Choice, Settings
+
+SOLVERS = Path(__file__).parents[2] / "solvers"
+MAX_HELP = 110
+"""Characters of a tooltip."""
+CHOICE_HELP = range(10, 91)
+
+
+def settings_classes() -> list[type[Settings]]:
+    """Return the settings classes of all modules of solvers."""
+    for module in sorted(SOLVERS.rglob("*.py")):
+        if module.stem not in {"__init__", "__main__"} and "setting(" in module.read_text():
+            import_module(
+                ".".join(["solvers", *module.relative_to(SOLVERS).with_suffix("").parts])
+            )
+    found, waiting = [], [Settings]
+    while waiting:
+        waiting += (below := waiting.pop().__subclasses__())
+        found += [each for each in below if each.__module__.startswith("solvers.")]
+    return found
+
+
+SETTINGS: dict[str, Any] = {
+    f"{each.__name__}.{item.name}": item for each in settings_classes() for item in fields(each)
+}
+ENUMS = {
+    type(item.default) for item in SETTINGS.values() if issubclass(type(item.default), Enum)
+}
+
+
+@pytest.mark.parametrize("name", SETTINGS)
+def test_help_of_a_setting_fits_a_tooltip(name):
+    help = SETTINGS[name].metadata["described"].help
+
+    assert 0 < len(help) <= MAX_HELP
+    assert not help.endswith(".")
+
+
+@pytest.mark.parametrize("enum", sorted(ENUMS, key=str))
+def test_every_choice_has_a_help_text_and_a_label(enum):
+    assert issubclass(enum, Choice)
+    for choice in enum:
+        assert len(choice.help) in CHOICE_HELP, choice
+        assert not choice.help.endswith("."), choice
+        assert choice.label, choice
+        assert enum(choice.value) is choice
