@@ -14,12 +14,12 @@ from .library import ClipLibrary
 from .postures import ClipPostures, Recording, clip_postures
 from .published import rank_pyramids
 from .search import (
-    USUAL,
+    DEFAULT_FIND_SETTINGS,
     DescribedQuery,
     FindMethod,
     FindSettings,
     Ranking,
-    aligned,
+    align_frames,
     describe_query,
     rank_clips,
 )
@@ -27,10 +27,10 @@ from .search import (
 Array = NDArray[np.float64]
 Frames = NDArray[np.intp]
 
-STEEPNESS = 2.0
+SCORE_DECAY = 2.0
 """Of the score over the distance: what has nothing in common is about 1.5 apart."""
-ROUNDING = 1e-6
-AROUND = 0.5
+ROUNDING_FRAMES = 1e-6
+MARGIN_FRACTION = 0.5
 """Part of a span's length by which what is found may begin before it and end after."""
 
 
@@ -38,7 +38,7 @@ def find_similar(
     query: Recording,
     library: ClipLibrary,
     *,
-    settings: FindSettings = USUAL,
+    settings: FindSettings = DEFAULT_FIND_SETTINGS,
     ignore: Collection[str] = (),
     progress: Progress = unwatched,
 ) -> tuple[Match, ...]:
@@ -96,7 +96,7 @@ def find_similar(
             asked.spans, asked.weights, library.search_index, settings, left_out
         )
     told = settings.n_matches or len(ranking.clips)
-    matches = _matches(ranking, told, entries)
+    matches = _build_matches(ranking, told, entries)
     alignment = _Alignment(asked, vocabulary, tracks.n_frames, tracks.frame_rate)
     aligning = within(progress, 0.3, 1.0)
     for place in range(min(settings.n_aligned, len(matches))):
@@ -106,26 +106,28 @@ def find_similar(
     return tuple(matches)
 
 
-def _matches(ranking: Ranking, most: int, entries: Mapping[int, ClipEntry]) -> list[Match]:
+def _build_matches(
+    ranking: Ranking, most: int, entries: Mapping[int, ClipEntry]
+) -> list[Match]:
     """Return matches whose frames are those of the spans."""
     clips = [entries[number] for number in ranking.clips[:most].tolist()]
     lengths = np.array([clip.n_frames for clip in clips], dtype=np.intp)
     rates = np.array([clip.frame_rate for clip in clips])
     spans = ranking.frames[:most]
-    starts = _own_frames(spans[:, 0], lengths, rates).tolist()
-    stops = (_own_frames(spans[:, 1] - 1, lengths, rates) + 1).tolist()
-    scores = np.exp(-STEEPNESS * np.maximum(ranking.distances[:most].astype(float), 0.0))
+    starts = _clip_frames(spans[:, 0], lengths, rates).tolist()
+    stops = (_clip_frames(spans[:, 1] - 1, lengths, rates) + 1).tolist()
+    scores = np.exp(-SCORE_DECAY * np.maximum(ranking.distances[:most].astype(float), 0.0))
     return [
         Match(clip.name, range(start, stop), score)
         for clip, start, stop, score in zip(clips, starts, stops, scores.tolist(), strict=True)
     ]
 
 
-def _own_frames(
+def _clip_frames(
     frames: NDArray[np.integer[Any]], n_frames: int | Frames, frame_rate: float | Array
 ) -> Frames:
     """Return a recording's own frames at frames of the index; its last is that of the index."""
-    last = np.asarray((n_frames - 1) * RATE / frame_rate + ROUNDING).astype(np.intp)
+    last = np.asarray((n_frames - 1) * RATE / frame_rate + ROUNDING_FRAMES).astype(np.intp)
     own = np.round(frames / RATE * frame_rate).astype(np.intp)
     return np.where(frames >= last, n_frames - 1, np.minimum(own, n_frames - 1))
 
@@ -151,15 +153,15 @@ class _Alignment:
         number = int(ranking.clips[place])
         start, stop = ranking.frames[place].tolist()
         clip, entry = library.postures(number, stop), library.numbered()[number]
-        around = round(AROUND * (stop - start))
+        around = round(MARGIN_FRACTION * (stop - start))
         first = max(start - around, 0)
         near = slice(first, stop + around)
         part = ClipPostures(clip.positions[near], clip.course[near], clip.frame_rate)
         features = self._vocabulary.features(part)
         told = (features * self._weights).reshape(len(features), -1)
-        path = aligned(self._features, told)
-        theirs = _own_frames(path[:, 1] + first, entry.n_frames, entry.frame_rate)
-        ours = _own_frames(path[:, 0], self._n_frames, self._frame_rate)
+        path = align_frames(self._features, told)
+        theirs = _clip_frames(path[:, 1] + first, entry.n_frames, entry.frame_rate)
+        ours = _clip_frames(path[:, 0], self._n_frames, self._frame_rate)
         return replace(
             match,
             frames=range(int(theirs[0]), int(theirs[-1]) + 1),

@@ -15,7 +15,7 @@ NONE = -1
 
 
 @dataclass(frozen=True, eq=False)
-class DepthPictures:
+class DepthImageFiles:
     """Reads the PNG file of a frame; to be `DepthRecording.read_depth`.
 
     Attributes
@@ -57,10 +57,10 @@ class DepthPictures:
 
 
 @dataclass(frozen=True, eq=False)
-class ColorPictures:
+class ColorImageFiles:
     """Reads the colours of a frame; to be `DepthRecording.read_color`.
 
-    `names` and `frames` are as in `DepthPictures`. A picture of another size is brought to the
+    `names` and `frames` are as in `DepthImageFiles`. A picture of another size is brought to the
     size of depth; a missing one is black.
     """
 

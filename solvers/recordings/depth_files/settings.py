@@ -83,4 +83,4 @@ class DepthSettings(Settings):
         return Camera(fx, fy, cx, cy, width, height)
 
 
-USUAL = DepthSettings()
+DEFAULT_DEPTH_SETTINGS = DepthSettings()

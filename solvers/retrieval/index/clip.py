@@ -43,9 +43,9 @@ class Clip:
     origin: Origin | None = None
 
     def __post_init__(self) -> None:
-        if fault := text_fault(self.name):
+        if fault := find_text_fault(self.name):
             raise InvalidMotionError(f"The clip name {self.name!r} {fault}; rename it.")
-        if fault := tags_fault(self.tags):
+        if fault := find_tags_fault(self.tags):
             raise InvalidMotionError(f"{self.name}: {fault}")
         path = "" if self.origin is None else self.origin.path
         if not is_utf_8(path):
@@ -93,7 +93,7 @@ class Match:
     alignment: NDArray[np.intp] | None = None
 
 
-def text_fault(text: str) -> str:
+def find_text_fault(text: str) -> str:
     """Return what keeps a text from being a clip's name or tag, or nothing."""
     if not is_utf_8(text):
         return "is not valid UTF-8"
@@ -102,9 +102,9 @@ def text_fault(text: str) -> str:
     return ""
 
 
-def tags_fault(tags: tuple[str, ...]) -> str:
+def find_tags_fault(tags: tuple[str, ...]) -> str:
     """Return a sentence about tags that have control characters or are not UTF-8."""
-    wrong = [f"The tag {tag!r} {fault}." for tag in tags if (fault := text_fault(tag))]
+    wrong = [f"The tag {tag!r} {fault}." for tag in tags if (fault := find_text_fault(tag))]
     return " ".join([*wrong, "Choose another word."]) if wrong else ""
 
 

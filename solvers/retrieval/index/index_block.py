@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..postures import N_PARTS
-from .posting_lists import PostingLists, posting_lists
-from .segments import N_CUBES, N_STEPS, Spans
+from .posting_lists import PostingLists, build_posting_lists
+from .segments import N_CUBES, N_STEPS, Segments
 from .vocabulary import N_AXES
 
-MOST_POSTINGS = 1_000_000
+MAX_POSTINGS = 1_000_000
 """That are read of a block for one query."""
-IN_DETAIL = 512
+N_EXACT_SPANS = 512
 """Spans of a large block whose histograms are compared exactly."""
 STEP_SHAPE = (N_STEPS, N_PARTS, N_AXES)
 
@@ -29,7 +29,7 @@ class IndexBlock:
     frames : int32, shape (n_spans, 2)
         At 20 Hz.
     histograms : uint8, shape (n_spans, n_bins)
-        Of words, for each part of the body and each stretch of time (`Spans`).
+        Of words, for each part of the body and each stretch of time (`Segments`).
     summaries : float16, shape (n_spans, 16, 5, 8)
     postings : PostingLists
     """
@@ -56,7 +56,7 @@ class IndexBlock:
 
     def steps(self, rows: NDArray[np.int64]) -> NDArray[np.float32]:
         """Return summaries of some spans, (n, 16, 5, 8); those of small blocks are kept."""
-        if self.histograms.size <= MOST_POSTINGS:
+        if self.histograms.size <= MAX_POSTINGS:
             return self._steps[rows]
         return self.summaries[rows].astype(np.float32)
 
@@ -70,15 +70,15 @@ class IndexBlock:
         ----------
         query : shape (n_bins,)
         """
-        if self.histograms.size <= MOST_POSTINGS:
+        if self.histograms.size <= MAX_POSTINGS:
             return np.asarray(self._numbers @ query)
-        common = self.postings.scores(query, MOST_POSTINGS)
-        best = np.argpartition(-common, min(IN_DETAIL, self.n_spans - 1))[:IN_DETAIL]
+        common = self.postings.scores(query, MAX_POSTINGS)
+        best = np.argpartition(-common, min(N_EXACT_SPANS, self.n_spans - 1))[:N_EXACT_SPANS]
         common[best] = self.histograms[best].astype(np.float32) @ query
         return common
 
 
-def block_of(clips: list[int], described: list[Spans]) -> IndexBlock:
+def build_block(clips: list[int], described: list[Segments]) -> IndexBlock:
     """Put the spans of clips into one block."""
     sizes = [len(spans.frames) for spans in described]
     histograms = np.concatenate([spans.histograms for spans in described])
@@ -88,11 +88,11 @@ def block_of(clips: list[int], described: list[Spans]) -> IndexBlock:
         np.concatenate([spans.frames for spans in described]),
         flat,
         np.concatenate([spans.summaries for spans in described]),
-        posting_lists(flat),
+        build_posting_lists(flat),
     )
 
 
-def merged(blocks: list[IndexBlock], alive: NDArray[np.int64]) -> IndexBlock:
+def merge_blocks(blocks: list[IndexBlock], alive: NDArray[np.int64]) -> IndexBlock:
     """Put blocks together, without the spans of clips that are no longer `alive`."""
     kept = [np.isin(block.clips, alive) for block in blocks]
     columns = {
@@ -102,7 +102,7 @@ def merged(blocks: list[IndexBlock], alive: NDArray[np.int64]) -> IndexBlock:
         for item in fields(IndexBlock)
         if item.name != "postings"
     }  # fmt: skip
-    return IndexBlock(**columns, postings=posting_lists(columns["histograms"]))
+    return IndexBlock(**columns, postings=build_posting_lists(columns["histograms"]))
 
 
 def block_arrays(block: IndexBlock) -> dict[str, bytes]:

@@ -47,7 +47,7 @@ class PostingLists:
         return np.asarray(told, dtype=np.float32)
 
 
-def posting_lists(histograms: NDArray[np.uint8]) -> PostingLists:
+def build_posting_lists(histograms: NDArray[np.uint8]) -> PostingLists:
     """Invert histograms, shape (n_spans, n_bins)."""
     bins, spans = np.nonzero(histograms.T)
     starts = np.searchsorted(bins, np.arange(histograms.shape[1] + 1))

@@ -15,21 +15,21 @@ from .time_warping import frame_distances, warping_costs
 
 Single = NDArray[np.float32]
 
-BELIEF_IN_LIKES = 4.0
+NEIGHBOR_WEIGHT = 4.0
 """How much those that are like a clip count, beside it."""
-MOST_BLAME = 1.2
+MAX_DISTANCE_RATIO = 1.2
 """Times its own distance that a clip is moved away at most: the query itself stays near."""
-MUTUAL = 3.0
+RECIPROCAL_WEIGHT = 3.0
 """How much more those count of which both are among the nearest of the other."""
-ROUNDS = 2
+N_ROUNDS = 2
 """Times that clips tell each other."""
-EVERY = 2
+STEP_STRIDE = 2
 """Of the moments of clips, that many-th is compared with those of other clips."""
-CELLS_AT_ONCE = 1_000_000
+MAX_CELLS = 1_000_000
 """Of tables of moments by moments, all clips together."""
 
 
-def between_courses(courses: Single) -> Single:
+def pairwise_warping_costs(courses: Single) -> Single:
     """Return how far clips are from each other, shape (n, n), metres: mean along the path.
 
     Parameters
@@ -37,9 +37,9 @@ def between_courses(courses: Single) -> Single:
     courses : shape (n, n_steps, n_features)
         What they do at moments evenly spread over their time.
     """
-    some = np.ascontiguousarray(courses[:, ::EVERY])
+    some = np.ascontiguousarray(courses[:, ::STEP_STRIDE])
     n_clips, n_steps, _ = some.shape
-    at_once = max(CELLS_AT_ONCE // max(n_clips * n_steps**2, 1), 1)
+    at_once = max(MAX_CELLS // max(n_clips * n_steps**2, 1), 1)
     rows = [
         warping_costs(frame_distances(some[first : first + at_once], some))
         for first in range(0, n_clips, at_once)
@@ -47,7 +47,7 @@ def between_courses(courses: Single) -> Single:
     return np.concatenate(rows) if rows else np.zeros((0, 0), dtype=np.float32)
 
 
-def judged_by_likes(apart: Single, between: Single, n_alike: int) -> Single:
+def rerank_by_neighbors(apart: Single, between: Single, n_alike: int) -> Single:
     """Return distances from a query that go by those of each clip's nearest as well.
 
     Parameters
@@ -63,10 +63,10 @@ def judged_by_likes(apart: Single, between: Single, n_alike: int) -> Single:
     np.fill_diagonal(others, np.inf)
     farthest = np.partition(others, n_alike - 1, axis=1)[:, n_alike - 1, None]
     nearest = (others <= farthest).astype(np.float32)
-    nearest += np.float32(MUTUAL) * nearest * nearest.T
-    believed = np.float32(BELIEF_IN_LIKES)
+    nearest += np.float32(RECIPROCAL_WEIGHT) * nearest * nearest.T
+    believed = np.float32(NEIGHBOR_WEIGHT)
     nearest *= believed / nearest.sum(axis=1, keepdims=True)
     told = apart
-    for _ in range(ROUNDS):
+    for _ in range(N_ROUNDS):
         told = (told + nearest @ told) / (1 + believed)
-    return np.minimum(told, np.float32(MOST_BLAME) * apart)
+    return np.minimum(told, np.float32(MAX_DISTANCE_RATIO) * apart)

@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .index_block import IndexBlock
-from .reranking import between_courses
-from .segments import STANCE, with_stance
+from .reranking import pairwise_warping_costs
+from .segments import MEAN_POSTURE_WEIGHT, weight_mean_posture
 
 Single = NDArray[np.float32]
 Numbers = NDArray[np.int64]
 
-MOST_COMPARED = 1000
+MAX_PAIRWISE_SPANS = 1000
 """Spans of a library in which each is compared with each, once, for all queries to come."""
 
 
@@ -80,11 +80,11 @@ class SearchIndex:
 
         None in a library that is too large to keep that of all.
         """
-        if len(self.clips) > MOST_COMPARED:
+        if len(self.clips) > MAX_PAIRWISE_SPANS:
             return None
         return np.asarray(self._between_all[np.ix_(spans, spans)])
 
     @cached_property
     def _between_all(self) -> Single:
-        steps = with_stance(self.steps(np.arange(len(self.clips))), STANCE)
-        return between_courses(steps.reshape(*steps.shape[:2], -1))
+        steps = weight_mean_posture(self.steps(np.arange(len(self.clips))), MEAN_POSTURE_WEIGHT)
+        return pairwise_warping_costs(steps.reshape(*steps.shape[:2], -1))

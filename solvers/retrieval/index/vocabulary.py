@@ -18,10 +18,10 @@ from ..postures import (
     N_FEATURES,
     N_PARTS,
     ClipPostures,
-    UsualPostures,
+    PostureDistribution,
     is_covariance,
+    learn_posture_distribution,
     part_features,
-    usual_postures,
 )
 
 Array = NDArray[np.float64]
@@ -31,17 +31,17 @@ N_WORDS = 64
 FRAMES_PER_WORD = 4
 N_NEAREST = 3
 """Words that share a frame between them."""
-TINY = 1e-6
+JITTER_M = 1e-6
 """Metres by which frames that are the same are set apart: clusters cannot be."""
-LEAST_SPREAD = 1e-6
+MIN_SPREAD_M2 = 1e-6
 """Squared metres."""
-LARGEST = 1e12
+MAX_VALUE = 1e12
 """Of all numbers that are learned: squares of metres, and frames, stay far below."""
-MOST_FRAMES = 12000
+MAX_TRAINING_FRAMES = 12000
 """Of which words are learned: more make it slower, and no better."""
-OUTGROWN = 4
+RELEARNING_RATIO = 4
 """A library of so many times the frames that its words were learned from learns new ones."""
-WELL_LEARNED = 8 * MOST_FRAMES
+SUFFICIENT_FRAMES = 8 * MAX_TRAINING_FRAMES
 """Frames from which on words are good for whatever comes."""
 SHAPES = {
     "centre": (N_PARTS, N_FEATURES),
@@ -76,12 +76,12 @@ class Vocabulary:
     axes: Array
     words: Array
     spread: Array
-    usual: UsualPostures
+    usual: PostureDistribution
     n_frames: int
 
     def is_outgrown(self, n_frames: float) -> bool:
         """Whether it was learned from too little for a library of so many frames at 20 Hz."""
-        return self.n_frames < WELL_LEARNED and n_frames > OUTGROWN * self.n_frames
+        return self.n_frames < SUFFICIENT_FRAMES and n_frames > RELEARNING_RATIO * self.n_frames
 
     def features(self, postures: ClipPostures) -> Array:
         """Return what each part does, shape (n_frames, 5, 8), metres."""
@@ -93,7 +93,7 @@ class Vocabulary:
         """Return how much each part moves in a clip, shape (5,), as a share of the usual."""
         usual = self.words.var(axis=1).sum(axis=-1)
         moves = features.var(axis=0).sum(axis=-1)
-        return np.asarray(np.sqrt(moves / np.maximum(usual, TINY)))
+        return np.asarray(np.sqrt(moves / np.maximum(usual, JITTER_M)))
 
     def codes(self, features: Array) -> Array:
         """Return how far each word says what each part does, shape (n_frames, 5, n_words).
@@ -119,8 +119,8 @@ def learn_vocabulary(clips: list[ClipPostures], seed: int = 0) -> Vocabulary:
     """
     rng = np.random.default_rng(seed)
     n_frames = sum(clip.n_frames for clip in clips)
-    usual = usual_postures(clips)
-    step = max(n_frames // MOST_FRAMES, 1)
+    usual = learn_posture_distribution(clips)
+    step = max(n_frames // MAX_TRAINING_FRAMES, 1)
     told = np.concatenate([
         part_features(clip.positions, clip.course, clip.frame_rate)[
             rng.integers(min(step, clip.n_frames)) :: step
@@ -133,18 +133,18 @@ def learn_vocabulary(clips: list[ClipPostures], seed: int = 0) -> Vocabulary:
     axes = axes[..., ::-1][..., :N_AXES]
     features = np.einsum("fpd,pdk->fpk", beside, axes)
     n_words = max(min(N_WORDS, len(told) // FRAMES_PER_WORD), 1)
-    words = np.stack([_words(features[:, part], n_words, rng) for part in range(N_PARTS)])
+    words = np.stack([_learn_words(features[:, part], n_words, rng) for part in range(N_PARTS)])
     nearest = np.stack([
         ((features[:, part, None] - words[part]) ** 2).sum(axis=-1).min(axis=-1)
         for part in range(N_PARTS)
     ])  # fmt: skip
-    spread = np.maximum(np.median(nearest, axis=-1), LEAST_SPREAD)
+    spread = np.maximum(np.median(nearest, axis=-1), MIN_SPREAD_M2)
     return Vocabulary(centre, axes, words, spread, usual, n_frames)
 
 
-def _words(features: Array, n_words: int, rng: np.random.Generator) -> Array:
+def _learn_words(features: Array, n_words: int, rng: np.random.Generator) -> Array:
     """Return the middles of clusters; of those that lost all they had, any frame."""
-    apart = features + rng.normal(scale=TINY, size=features.shape)
+    apart = features + rng.normal(scale=JITTER_M, size=features.shape)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "One of the clusters is empty")
         words, of = kmeans2(apart, n_words, minit="++", seed=rng, missing="warn")
@@ -179,7 +179,7 @@ def vocabulary_from_arrays(stored: dict[str, bytes]) -> Vocabulary:
         raise ValueError("The vocabulary was not learned.")
     return Vocabulary(
         **{name: read[name] for name in LEARNED},
-        usual=UsualPostures(read["mean"], read["covariance"]),
+        usual=PostureDistribution(read["mean"], read["covariance"]),
         n_frames=int(read["n_frames"]),
     )
 
@@ -187,9 +187,9 @@ def vocabulary_from_arrays(stored: dict[str, bytes]) -> Vocabulary:
 def _is_learned(read: dict[str, Array]) -> bool:
     """Whether numbers are such as `learn_vocabulary` finds: a search divides by some."""
     in_range = [
-        *((np.abs(values) <= LARGEST).all() for values in read.values()),
-        (np.abs(read["axes"]) < 1.0 + TINY).all(),
-        (read["spread"] >= LEAST_SPREAD).all(),
+        *((np.abs(values) <= MAX_VALUE).all() for values in read.values()),
+        (np.abs(read["axes"]) < 1.0 + JITTER_M).all(),
+        (read["spread"] >= MIN_SPREAD_M2).all(),
         read["n_frames"] >= 1,
     ]
     return all(in_range) and read["words"].size > 0 and is_covariance(read["covariance"])

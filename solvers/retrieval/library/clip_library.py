@@ -23,11 +23,11 @@ from ..index import (
     Origin,
     SearchIndex,
     Vocabulary,
-    block_of,
-    describe_all_spans,
+    build_block,
+    describe_all_segments,
     describe_clip,
     learn_vocabulary,
-    merged,
+    merge_blocks,
 )
 from ..postures import ClipPostures
 from . import clip_rows as rows
@@ -35,7 +35,7 @@ from . import library_file as files
 from .database_errors import readable_errors
 from .refused_files import read_refused, write_refused
 
-LARGEST_BLOCK = 50_000
+MAX_BLOCK_SPANS = 50_000
 """Spans from which on blocks are not put together: SQLite stores no more than about four times
 as many in one row, and a merge would need much memory."""
 
@@ -135,7 +135,7 @@ class ClipLibrary:
         self,
         clips: Sequence[DescribedClip],
         *,
-        free_name: rows.FreeName = rows.numbered_name,
+        free_name: rows.FreeName = rows.number_name,
         progress: Progress = unwatched,
     ) -> tuple[str, ...]:
         """Add clips that `describe_clip` has described, here or in another process.
@@ -235,7 +235,7 @@ class ClipLibrary:
 
     def _refresh(self) -> None:
         """See what others have written, and what was written here."""
-        with readable_errors(self._path), files.one_state(self._database):
+        with readable_errors(self._path), files.read_transaction(self._database):
             version = self._database.execute("PRAGMA data_version").fetchone()[0]
             seen = (version, self._database.total_changes)
             if seen == self._seen:
@@ -271,11 +271,11 @@ class ClipLibrary:
         vocabulary = learn_vocabulary(postures)
         files.write_vocabulary(self._database, vocabulary)
         self._database.execute("DELETE FROM blocks")
-        described = describe_all_spans(postures, vocabulary, progress)
-        ends = np.cumsum([len(spans.frames) for spans in described]) // LARGEST_BLOCK
+        described = describe_all_segments(postures, vocabulary, progress)
+        ends = np.cumsum([len(spans.frames) for spans in described]) // MAX_BLOCK_SPANS
         for one in np.unique(ends):
             first, last = np.searchsorted(ends, one), np.searchsorted(ends, one, side="right")
-            block = block_of(numbers[first:last], described[first:last])
+            block = build_block(numbers[first:last], described[first:last])
             files.write_block(self._database, block)
 
     def _index(
@@ -283,14 +283,16 @@ class ClipLibrary:
     ) -> None:
         """Describe clips, and put them into one block with the smaller ones before."""
         assert self._vocabulary is not None
-        block = block_of(numbers, describe_all_spans(postures, self._vocabulary, progress))
+        block = build_block(
+            numbers, describe_all_segments(postures, self._vocabulary, progress)
+        )
         together = [block]
         for number, before in sorted(self._blocks.items(), reverse=True):
             n_spans = sum(one.n_spans for one in together)
-            if before.n_spans > 2 * n_spans or before.n_spans + n_spans > LARGEST_BLOCK:
+            if before.n_spans > 2 * n_spans or before.n_spans + n_spans > MAX_BLOCK_SPANS:
                 break
             together.insert(0, before)
             self._database.execute("DELETE FROM blocks WHERE number = ?", (number,))
         if len(together) > 1:
-            block = merged(together, np.array(rows.clip_numbers(self._database)))
+            block = merge_blocks(together, np.array(rows.clip_numbers(self._database)))
         files.write_block(self._database, block)

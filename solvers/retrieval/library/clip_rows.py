@@ -15,8 +15,8 @@ from ...json_text import parse_json
 from ...motion.skeletons import check_frame_rate
 from ..index import RATE, ClipEntry, DescribedClip, Origin
 from ..postures import ClipPostures, half_precision
-from .database_errors import decoding
-from .values import MAX_BYTES, number_in, printable_text, row_numbers, text
+from .database_errors import report_damage
+from .values import MAX_BYTES, check_number, check_printable, check_text, read_row_numbers
 
 FreeName = Callable[[ClipEntry, Collection[str]], str]
 """Returns a name for a clip that is none of those that are taken."""
@@ -25,7 +25,7 @@ MAX_FRAMES = 10**9
 ENTRY_COLUMNS = "name, tags, path, item, size, modified, n_frames, frame_rate"
 
 
-def numbered_name(entry: ClipEntry, taken: Collection[str]) -> str:
+def number_name(entry: ClipEntry, taken: Collection[str]) -> str:
     """Return the name of a clip with the first number that makes it free: "walk (2)"."""
     names = (f"{entry.name} ({number})" for number in count(2))
     return next(name for name in names if name not in taken)
@@ -44,7 +44,7 @@ def write_clips(
     written = {}
     for clip in clips:
         entry = clip.entry
-        names = _names_from(database, entry.origin)
+        names = _names_of_origin(database, entry.origin)
         if names:
             entry = replace(entry, name=names[0])
         elif entry.origin is not None and entry.name in taken:
@@ -64,7 +64,7 @@ def remove_clips(database: sqlite3.Connection, numbers: Iterable[int]) -> list[s
     return names
 
 
-def _names_from(database: sqlite3.Connection, origin: Origin | None) -> list[str]:
+def _names_of_origin(database: sqlite3.Connection, origin: Origin | None) -> list[str]:
     if origin is None:
         return []
     rows = database.execute(
@@ -95,8 +95,8 @@ def _write_clip(database: sqlite3.Connection, entry: ClipEntry, postures: ClipPo
 
 def clip_numbers(database: sqlite3.Connection) -> list[int]:
     """Return the numbers of all clips, oldest first."""
-    with decoding():
-        return row_numbers(database, "clips")
+    with report_damage():
+        return read_row_numbers(database, "clips")
 
 
 def read_entries(
@@ -110,7 +110,7 @@ def read_entries(
     rows = database.execute(
         f"SELECT number, {ENTRY_COLUMNS} FROM clips WHERE number > ?", (max(known, default=0),)
     )
-    with decoding():
+    with report_damage():
         new = {number: _entry(row) for number, *row in rows}
     return {number: known.get(number) or new[number] for number in there}
 
@@ -120,17 +120,17 @@ def _tags(stored: str) -> tuple[str, ...]:
     tags = parse_json(stored)
     if not isinstance(tags, list):
         raise ValueError("Tags are a list.")
-    return tuple(printable_text(tag) for tag in tags)
+    return tuple(check_printable(tag) for tag in tags)
 
 
 def _entry(row: Sequence[Any]) -> ClipEntry:
     name, tags, path, item, size, modified, n_frames, frame_rate = row
     check_frame_rate(frame_rate)
     return ClipEntry(
-        printable_text(name),
-        _tags(text(tags)),
+        check_printable(name),
+        _tags(check_text(tags)),
         None if path is None else stored_origin(path, item, size, modified),
-        number_in(n_frames, 1, MAX_FRAMES),
+        check_number(n_frames, 1, MAX_FRAMES),
         float(frame_rate),
     )
 
@@ -138,10 +138,10 @@ def _entry(row: Sequence[Any]) -> ClipEntry:
 def stored_origin(path: Any, item: Any, size: Any, modified: Any) -> Origin:
     """Return an origin as a row has it; raise ValueError where it names no file."""
     return Origin(
-        text(path),
-        text(item),
-        number_in(size, 0, MAX_BYTES),
-        number_in(modified, -MAX_BYTES, MAX_BYTES),
+        check_text(path),
+        check_text(item),
+        check_number(size, 0, MAX_BYTES),
+        check_number(modified, -MAX_BYTES, MAX_BYTES),
     )
 
 
@@ -162,7 +162,7 @@ def read_postures(database: sqlite3.Connection, number: int, n_frames: int = 0) 
         raise InvalidMotionError(
             "A clip has just been removed from the library by another program; try again."
         )
-    with decoding():
+    with report_damage():
         positions, course = (np.frombuffer(stored, "<f2").astype(np.float64) for stored in row)
         positions, course = positions.reshape(-1, 20, 3), course.reshape(-1, 4)
         positions[np.isnan(positions)] = np.nan  # Some stored ones are signals of an error.

@@ -19,16 +19,16 @@ from ..index import (
     vocabulary_arrays,
     vocabulary_from_arrays,
 )
-from .database_errors import decoding, readable_errors
-from .schema import MAX_NUMBER, check_schema, lay_out, refuse_siblings
-from .values import number_in, row_numbers
+from .database_errors import readable_errors, report_damage
+from .schema import MAX_NUMBER, check_schema, create_tables, refuse_side_files
+from .values import check_number, read_row_numbers
 
 SUFFIXES = (".clips", ".library")
 """Of files that may be begun as libraries; older versions called the shared one .library."""
 APPLICATION = 0x4D434C42
 """Marks our files among SQLite's ("MCLB")."""
 VERSION = 1
-PATIENCE = 120.0
+LOCK_TIMEOUT_S = 120.0
 """Seconds to wait for another process that is writing."""
 BLOCK_COLUMNS = ("clips", "frames", "histograms", "summaries", "starts", "spans", "weights")
 
@@ -40,7 +40,7 @@ def create_database() -> sqlite3.Connection:
     return database
 
 
-def begin_file(path: Path) -> None:
+def create_file(path: Path) -> None:
     """Lay out an empty library in a file that is not there, or empty; others stay as they are.
 
     Where another process does so at the same time, one of them does it.
@@ -56,7 +56,7 @@ def begin_file(path: Path) -> None:
         database = _connect(path)
         try:
             if not database.execute("PRAGMA page_count").fetchone()[0]:
-                with _all_or_nothing(database):
+                with _exclusive_transaction(database):
                     if not database.execute("SELECT 1 FROM sqlite_master").fetchone():
                         _lay_out(database)
         finally:
@@ -93,9 +93,9 @@ def open_database(path: Path) -> sqlite3.Connection:
 
 def _connect(path: Path) -> sqlite3.Connection:
     """Open a file of which nothing is known, as SQLite advises for one by a stranger."""
-    refuse_siblings(path)
+    refuse_side_files(path)
     database = sqlite3.connect(
-        path, timeout=PATIENCE, isolation_level=None, check_same_thread=False
+        path, timeout=LOCK_TIMEOUT_S, isolation_level=None, check_same_thread=False
     )
     database.execute("PRAGMA trusted_schema = OFF")
     database.execute("PRAGMA cell_size_check = ON")
@@ -105,13 +105,13 @@ def _connect(path: Path) -> sqlite3.Connection:
 @contextmanager
 def transaction(database: sqlite3.Connection) -> Iterator[None]:
     """Change all that is changed within, or nothing; others wait."""
-    with _all_or_nothing(database):
+    with _exclusive_transaction(database):
         check_schema(database)
         yield
 
 
 @contextmanager
-def _all_or_nothing(database: sqlite3.Connection) -> Iterator[None]:
+def _exclusive_transaction(database: sqlite3.Connection) -> Iterator[None]:
     database.execute("BEGIN IMMEDIATE")
     try:
         yield
@@ -123,7 +123,7 @@ def _all_or_nothing(database: sqlite3.Connection) -> Iterator[None]:
 
 
 @contextmanager
-def one_state(database: sqlite3.Connection) -> Iterator[None]:
+def read_transaction(database: sqlite3.Connection) -> Iterator[None]:
     """Read all that is read within as it was at one moment."""
     if database.in_transaction:
         yield
@@ -138,7 +138,7 @@ def one_state(database: sqlite3.Connection) -> Iterator[None]:
 
 
 def _lay_out(database: sqlite3.Connection) -> None:
-    lay_out(database)
+    create_tables(database)
     database.execute(f"PRAGMA application_id = {APPLICATION}")
     database.execute(f"PRAGMA user_version = {VERSION}")
 
@@ -153,21 +153,21 @@ def _check(database: sqlite3.Connection, path: Path) -> None:
             f"The clip library {path} was written by a newer version of Mocap Assist"
             f" (format {version}; this version reads up to {VERSION}). Update the add-on."
         )
-    with one_state(database):  # It checks the tables.
+    with read_transaction(database):  # It checks the tables.
         pass
 
 
 def vocabulary_number(database: sqlite3.Connection) -> int:
     """Return what grows with each new vocabulary."""
     number = database.execute("SELECT max(number) FROM vocabulary").fetchone()[0] or 0
-    with decoding():
-        return number_in(number, 0, MAX_NUMBER)
+    with report_damage():
+        return check_number(number, 0, MAX_NUMBER)
 
 
 def read_vocabulary(database: sqlite3.Connection) -> Vocabulary | None:
     """Return what the index is told in; None in a library that never had a clip."""
     rows = database.execute("SELECT name, value FROM vocabulary").fetchall()
-    with decoding():
+    with report_damage():
         return vocabulary_from_arrays(dict(rows)) if rows else None
 
 
@@ -181,8 +181,8 @@ def write_vocabulary(database: sqlite3.Connection, vocabulary: Vocabulary) -> No
 
 def block_numbers(database: sqlite3.Connection) -> list[int]:
     """Return the numbers of all blocks of the index, oldest first."""
-    with decoding():
-        return row_numbers(database, "blocks")
+    with report_damage():
+        return read_row_numbers(database, "blocks")
 
 
 def read_block(database: sqlite3.Connection, number: int, n_words: int) -> IndexBlock:
@@ -190,7 +190,7 @@ def read_block(database: sqlite3.Connection, number: int, n_words: int) -> Index
     row = database.execute(
         f"SELECT {', '.join(BLOCK_COLUMNS)} FROM blocks WHERE number = ?", (number,)
     ).fetchone()
-    with decoding():
+    with report_damage():
         return block_from_arrays(dict(zip(BLOCK_COLUMNS, row, strict=True)), n_words)
 
 

@@ -50,5 +50,5 @@ def open_clip_library(path: Path | str) -> ClipLibrary:
     """
     path = Path(path)
     if not path.exists() or (path.is_file() and not path.stat().st_size):
-        files.begin_file(path)
+        files.create_file(path)
     return load_clip_library(path)

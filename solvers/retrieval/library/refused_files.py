@@ -5,9 +5,9 @@ from collections.abc import Iterable
 
 from ..index import Origin
 from .clip_rows import stored_origin
-from .database_errors import decoding
+from .database_errors import report_damage
 from .schema import REFUSED
-from .values import printable_text
+from .values import check_printable
 
 
 def read_refused(database: sqlite3.Connection, reader: str) -> dict[Origin, str]:
@@ -22,9 +22,9 @@ def read_refused(database: sqlite3.Connection, reader: str) -> dict[Origin, str]
     rows = database.execute(
         "SELECT path, size, modified, sentence FROM refused WHERE reader = ?", (reader,)
     )
-    with decoding():
+    with report_damage():
         return {
-            stored_origin(path, "", size, modified): printable_text(sentence)
+            stored_origin(path, "", size, modified): check_printable(sentence)
             for path, size, modified, sentence in rows
         }
 

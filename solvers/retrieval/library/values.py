@@ -3,40 +3,40 @@
 import sqlite3
 from typing import Any
 
-from ..index import text_fault
+from ..index import find_text_fault
 from .schema import MAX_NUMBER
 
 MAX_BYTES = 2**63 - 1
 """Of a file; also the last nanosecond of its date that SQLite can keep."""
 
 
-def number_in(value: Any, lowest: int, highest: int) -> int:
+def check_number(value: Any, lowest: int, highest: int) -> int:
     """Return a whole number within limits; raise ValueError for anything else."""
     if type(value) is not int or not lowest <= value <= highest:
         raise ValueError("It is not a number of its kind.")
     return value
 
 
-def row_number(value: Any) -> int:
+def check_row_number(value: Any) -> int:
     """Return the number of a row; raise ValueError where no library has it."""
-    return number_in(value, 1, MAX_NUMBER)
+    return check_number(value, 1, MAX_NUMBER)
 
 
-def row_numbers(database: sqlite3.Connection, table: str) -> list[int]:
+def read_row_numbers(database: sqlite3.Connection, table: str) -> list[int]:
     """Return the numbers of all rows of a table, oldest first."""
     rows = database.execute(f"SELECT number FROM {table} ORDER BY 1")
-    return [row_number(number) for (number,) in rows]
+    return [check_row_number(number) for (number,) in rows]
 
 
-def text(value: Any) -> str:
+def check_text(value: Any) -> str:
     """Return a text that names a file or a thing in it; raise ValueError for anything else."""
     if not isinstance(value, str) or "\0" in value:
         raise ValueError("It is not a text.")
     return value
 
 
-def printable_text(value: Any) -> str:
+def check_printable(value: Any) -> str:
     """Return a text that may be shown as it is; raise ValueError for anything else."""
-    if text_fault(text(value)):
+    if find_text_fault(check_text(value)):
         raise ValueError("It has control characters.")
     return str(value)

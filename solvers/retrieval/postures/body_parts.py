@@ -39,11 +39,11 @@ JOINTS = np.array([
     [POSTURE_JOINTS.index(name) for name in LIMBS[part][1]] for part in BodyPart
 ])
 
-SPEED = 0.08
+VELOCITY_TIME_S = 0.08
 """Seconds: a speed counts as much as the way made in them."""
-TRAVEL = 0.3
+ROOT_VELOCITY_TIME_S = 0.3
 """Seconds, the same for how the whole body travels; it is told with the trunk."""
-ARM = 0.5
+TURNING_RADIUS_M = 0.5
 """Metres that turn the turning of the body into a speed."""
 N_PER_JOINT = 6
 N_TRAVEL = 4
@@ -71,8 +71,8 @@ def part_features(positions: Array, course: Array, frame_rate: float) -> Array:
     told = np.zeros((len(local), N_PARTS, N_FEATURES))
     half = JOINTS.shape[1] * 3
     told[..., :half] = local.reshape(len(local), N_PARTS, half)
-    told[..., half : 2 * half] = SPEED * speeds.reshape(len(local), N_PARTS, half)
-    told[:, 0, 2 * half :] = TRAVEL * course * (1.0, 1.0, 1.0, ARM)
+    told[..., half : 2 * half] = VELOCITY_TIME_S * speeds.reshape(len(local), N_PARTS, half)
+    told[:, 0, 2 * half :] = ROOT_VELOCITY_TIME_S * course * (1.0, 1.0, 1.0, TURNING_RADIUS_M)
     return told
 
 

@@ -21,7 +21,7 @@ from ...signals import bridged
 Array = NDArray[np.float64]
 Recording = Motion | Tracks | JointRecording
 
-BRIDGED = 0.3
+MAX_BRIDGED_GAP_S = 0.3
 """Seconds of a gap that a straight line bridges."""
 
 
@@ -75,9 +75,9 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
     if isinstance(tracks, Motion):
         motion = tracks if rate == tracks.frame_rate else resample(tracks, rate)
         joints = Tracks(POSTURE_JOINTS, motion_postures(motion), rate)
-        positions = _short_gaps_bridged(joints).positions
+        positions = _bridge_short_gaps(joints).positions
     else:
-        positions = posture_positions(resample(_short_gaps_bridged(tracks), rate))
+        positions = posture_positions(resample(_bridge_short_gaps(tracks), rate))
     if not np.isfinite(positions).any():
         raise InvalidMotionError("No joint was tracked in any frame.")
     body = normalise(positions, rate)
@@ -86,7 +86,7 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
     return ClipPostures(
         resize(body.postures, USUAL_LENGTHS, scale),
         np.column_stack([
-            _level(_per_second(scale * body.places, rate), body.headings),
+            _actor_velocity(_per_second(scale * body.places, rate), body.headings),
             _per_second(turns, rate),
         ]),
         rate,
@@ -99,7 +99,7 @@ def half_precision(values: Array) -> NDArray[np.float16]:
     return np.clip(values, -largest, largest).astype("<f2")
 
 
-def _short_gaps_bridged(tracks: Tracks) -> Tracks:
+def _bridge_short_gaps(tracks: Tracks) -> Tracks:
     """Draw straight lines over short gaps; points before a lower rate makes them longer."""
     seen = tracks.visible
     if seen.all():
@@ -107,7 +107,7 @@ def _short_gaps_bridged(tracks: Tracks) -> Tracks:
     frames = np.arange(len(seen), dtype=np.float64)[:, None]
     before = np.maximum.accumulate(np.where(seen, frames, -np.inf))
     after = np.minimum.accumulate(np.where(seen, frames, np.inf)[::-1])[::-1]
-    known = after - before <= BRIDGED * tracks.frame_rate + 1.0
+    known = after - before <= MAX_BRIDGED_GAP_S * tracks.frame_rate + 1.0
     return tracks.with_positions(np.where(known[..., None], bridged(tracks.positions), np.nan))
 
 
@@ -117,7 +117,7 @@ def _per_second(values: Array, frame_rate: float) -> Array:
     return np.asarray(np.gradient(values, 1.0 / frame_rate, axis=0))
 
 
-def _level(velocity: Array, headings: Array) -> Array:
+def _actor_velocity(velocity: Array, headings: Array) -> Array:
     """Return world velocities as the actor sees them."""
     cos, sin = np.cos(headings), np.sin(headings)
     x, y, z = velocity.T

@@ -5,17 +5,17 @@ from numpy.typing import NDArray
 
 from ...motion.humanoid import N_JOINTS
 from .body_parts import JOINTS, N_PARTS, ROOTS
-from .mean_postures import NOISE, UsualPostures
+from .mean_postures import POSITION_NOISE_M, PostureDistribution
 
 Array = NDArray[np.float64]
 
-MOSTLY = 0.5
+MIN_OBSERVED_FRACTION = 0.5
 """Share of the frames in which a joint is seen that counts as one that is known."""
-LEAST = 0.02
-TINY = 1e-9
+MIN_RELIABILITY = 0.02
+MIN_VARIANCE_M2 = 1e-9
 
 
-def part_reliability(seen: NDArray[np.bool_], usual: UsualPostures) -> Array:
+def part_reliability(seen: NDArray[np.bool_], usual: PostureDistribution) -> Array:
     """Return the share of each part's variance that joints which are seen tell, shape (5,).
 
     1 for all that was tracked. A lost elbow between a shoulder and a hand costs little, a lost
@@ -25,18 +25,18 @@ def part_reliability(seen: NDArray[np.bool_], usual: UsualPostures) -> Array:
     ----------
     seen : shape (n_frames, 20)
     """
-    known = np.repeat(seen.mean(axis=0) > MOSTLY, 3)
+    known = np.repeat(seen.mean(axis=0) > MIN_OBSERVED_FRACTION, 3)
     if known.all():
         return np.ones(N_PARTS)
     lost, all_of = ~known, usual.covariance
-    among = all_of[np.ix_(known, known)] + NOISE**2 * np.eye(known.sum())
+    among = all_of[np.ix_(known, known)] + POSITION_NOISE_M**2 * np.eye(known.sum())
     across = all_of[np.ix_(known, lost)]
     left = np.zeros_like(all_of)
     left[np.ix_(lost, lost)] = all_of[np.ix_(lost, lost)] - across.T @ np.linalg.solve(
         among, across
     )
-    doubt = _variances(left) / np.maximum(_variances(all_of), TINY)
-    return np.asarray(np.clip(1.0 - doubt, LEAST, 1.0))
+    doubt = _variances(left) / np.maximum(_variances(all_of), MIN_VARIANCE_M2)
+    return np.asarray(np.clip(1.0 - doubt, MIN_RELIABILITY, 1.0))
 
 
 def _variances(covariance: Array) -> Array:

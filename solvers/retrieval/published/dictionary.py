@@ -10,12 +10,12 @@ from ...errors import InvalidMotionError
 from ...progress import Progress, unwatched
 from ...settings import Settings, setting
 from ..postures import ClipPostures
-from .observed_signals import seen_signals
+from .observed_signals import observed_signals
 from .sparse_codes import SparseCodes, sparse_codes
 
 Array = NDArray[np.float64]
 
-LEAST_LEFT = 0.1
+MIN_ATOM_FRACTION = 0.1
 """Part of an atom's length that must be seen for it to be used."""
 
 
@@ -70,10 +70,10 @@ class PostureDictionary:
         Gaps are bridged by straight lines. Of joints that were never tracked, atoms are cut
         to what was: codes are those that tell it best.
         """
-        signals, seen = seen_signals(postures.positions)
+        signals, seen = observed_signals(postures.positions)
         atoms = self.atoms[:, seen]
         sizes = np.linalg.norm(atoms, axis=1, keepdims=True)
-        known = sizes > LEAST_LEFT
+        known = sizes > MIN_ATOM_FRACTION
         unit = np.where(known, atoms / np.where(known, sizes, 1.0), 0.0)
         n_nonzeros = max(min(self.n_nonzeros, len(unit), int(seen.sum())), 1)
         return sparse_codes(signals[:, seen] - self.mean[seen], unit, n_nonzeros)
@@ -120,12 +120,12 @@ def learn_dictionary(
     for done in range(settings.n_rounds):
         progress(done / settings.n_rounds, "Learning postures")
         codes = sparse_codes(examples, atoms, min(settings.n_nonzeros, *atoms.shape))
-        atoms = _renewed(examples, atoms, codes)
+        atoms = _update_atoms(examples, atoms, codes)
     return PostureDictionary(atoms, mean, settings.n_nonzeros)
 
 
 def _examples(clips: Sequence[ClipPostures], settings: DictionarySettings) -> Array:
-    found = [seen_signals(clip.positions) for clip in clips]
+    found = [observed_signals(clip.positions) for clip in clips]
     whole = [signals for signals, seen in found if seen.all()]
     n_whole = sum(map(len, whole))
     if n_whole < settings.n_atoms:
@@ -137,7 +137,7 @@ def _examples(clips: Sequence[ClipPostures], settings: DictionarySettings) -> Ar
     return np.asarray(np.concatenate(whole)[:: min(step, n_whole // settings.n_atoms)])
 
 
-def _renewed(examples: Array, atoms: Array, codes: SparseCodes) -> Array:
+def _update_atoms(examples: Array, atoms: Array, codes: SparseCodes) -> Array:
     """Return atoms, each the best rank-one part of what the others leave to it."""
     atoms, weights = atoms.copy(), codes.weights.copy()
     left = examples - codes.signals(atoms)

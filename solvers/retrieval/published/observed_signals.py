@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def seen_signals(positions: Array) -> tuple[Array, NDArray[np.bool_]]:
+def observed_signals(positions: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Return frames as vectors, gaps bridged in time, and which entries were ever seen.
 
     Parameters

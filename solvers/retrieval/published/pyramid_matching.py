@@ -56,7 +56,7 @@ def pyramid_descriptor(
     n_atoms = len(dictionary.atoms)
     places, values, first = [], [], 0
     for level in range(settings.n_levels):
-        found, sizes = _pooled(codes, 2**level, n_atoms)
+        found, sizes = _pool_codes(codes, 2**level, n_atoms)
         if settings.normalise_cubes:
             sizes = sizes / _cube_sums(found, sizes, level, n_atoms)
         places.append(first + found)
@@ -94,7 +94,7 @@ def pyramid_kernel(a: Any, b: Any) -> Array:
     return kernel
 
 
-def _pooled(
+def _pool_codes(
     codes: TemporalCodes, n_segments: int, n_atoms: int
 ) -> tuple[NDArray[np.intp], Array]:
     """Return the places (segment, row, column as one number) of entries, and their maxima."""

@@ -27,7 +27,7 @@ class _Pyramids:
     frames: np.ndarray[Any, np.dtype[np.int32]]
 
 
-_KEPT: WeakKeyDictionary[ClipLibrary, _Pyramids] = WeakKeyDictionary()
+_PYRAMID_CACHE: WeakKeyDictionary[ClipLibrary, _Pyramids] = WeakKeyDictionary()
 
 
 def rank_pyramids(
@@ -51,11 +51,11 @@ def rank_pyramids(
     vocabulary = library.vocabulary
     assert vocabulary is not None
     numbers = tuple(library.numbered())
-    kept = _KEPT.get(library)
+    kept = _PYRAMID_CACHE.get(library)
     if kept is None or kept.numbers != numbers:
-        kept = _pyramids(library, numbers, vocabulary, within(progress, 0.0, 0.9))
-        _KEPT[library] = kept
-    asked = pyramid_descriptor(_whole(query, vocabulary), kept.dictionary)
+        kept = _build_pyramids(library, numbers, vocabulary, within(progress, 0.0, 0.9))
+        _PYRAMID_CACHE[library] = kept
+    asked = pyramid_descriptor(_fill_gaps(query, vocabulary), kept.dictionary)
     alike = pyramid_kernel(asked, kept.rows)[0]
     most = max(float(asked.sum()), np.finfo(float).tiny)
     left = np.flatnonzero(~np.isin(kept.numbers, list(ignore)))
@@ -64,10 +64,10 @@ def rank_pyramids(
     return Ranking(np.array(kept.numbers)[order], kept.frames[order], distances[order])
 
 
-def _pyramids(
+def _build_pyramids(
     library: ClipLibrary, numbers: tuple[int, ...], vocabulary: Vocabulary, progress: Progress
 ) -> _Pyramids:
-    clips = [_whole(library.postures(number), vocabulary) for number in numbers]
+    clips = [_fill_gaps(library.postures(number), vocabulary) for number in numbers]
     dictionary = learn_dictionary(clips, progress=within(progress, 0.0, 0.7))
     rows = []
     for place, clip in enumerate(clips):
@@ -77,5 +77,5 @@ def _pyramids(
     return _Pyramids(numbers, dictionary, csc_array(vstack(rows)), ends)
 
 
-def _whole(clip: ClipPostures, vocabulary: Vocabulary) -> ClipPostures:
+def _fill_gaps(clip: ClipPostures, vocabulary: Vocabulary) -> ClipPostures:
     return vocabulary.usual.completed(clip)

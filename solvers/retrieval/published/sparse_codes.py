@@ -11,9 +11,9 @@ Array = NDArray[np.float64]
 
 BATCH = 512
 """Signals pursued at once: fewer calls, and their inner products with atoms take 1.4 MB."""
-LITTLE = 1e-3
+REORTHOGONALIZE_BELOW = 1e-3
 """Length that is left of an atom below which it is made orthogonal twice."""
-SPENT = 1e-10
+MIN_RESIDUAL_FRACTION = 1e-10
 """Part of a signal's length, or of an atom's, below which what is left of it is rounding."""
 
 
@@ -92,40 +92,42 @@ def _pursue(signals: Array, atoms: Array, n_nonzeros: int) -> tuple[NDArray[np.i
     cholesky = np.zeros((n_signals, n_nonzeros, n_nonzeros))
     along = np.zeros((n_signals, n_nonzeros))
     left = np.array(signals, dtype=np.float64)
-    enough = SPENT * _lengths(left)
+    enough = MIN_RESIDUAL_FRACTION * _lengths(left)
     # To choose, single precision will do: it is relative to what is left.
     columns = np.ascontiguousarray(atoms.T, dtype=np.float32)
     common = np.empty((n_signals, len(atoms)), dtype=np.float32)
     for step in range(n_nonzeros):
         np.matmul(left.astype(np.float32), columns, out=common)
         best = np.abs(common, out=common).argmax(axis=1)
-        new, before = _across(atoms[best], basis[:, :step])
+        new, before = _orthogonalize(atoms[best], basis[:, :step])
         size = _lengths(new)
-        useful = (size > SPENT) & (_lengths(left) > enough)
-        new = np.where(useful[:, None], new / np.maximum(size, SPENT)[:, None], 0.0)
+        useful = (size > MIN_RESIDUAL_FRACTION) & (_lengths(left) > enough)
+        new = np.where(
+            useful[:, None], new / np.maximum(size, MIN_RESIDUAL_FRACTION)[:, None], 0.0
+        )
         chosen[:, step], basis[:, step] = best, new
         cholesky[:, :step, step] = np.where(useful[:, None], before, 0.0)
         cholesky[:, step, step] = np.where(useful, size, 1.0)
         along[:, step] = np.einsum("ij,ij->i", new, left)
         left -= along[:, step, None] * new
-    return chosen, _solved_back(cholesky, along)
+    return chosen, _back_substitute(cholesky, along)
 
 
-def _across(vectors: Array, bases: Array) -> tuple[Array, Array]:
+def _orthogonalize(vectors: Array, bases: Array) -> tuple[Array, Array]:
     """Return what of each vector is across its basis, and how much along each of that.
 
     Where little is left, rounding is much of it: there it is done twice.
     """
     along = (bases @ vectors[:, :, None])[..., 0]
     across = vectors - (along[:, None] @ bases)[:, 0]
-    few = np.flatnonzero(_lengths(across) < LITTLE)
+    few = np.flatnonzero(_lengths(across) < REORTHOGONALIZE_BELOW)
     more = (bases[few] @ across[few, :, None])[..., 0]
     across[few] -= (more[:, None] @ bases[few])[:, 0]
     along[few] += more
     return across, along
 
 
-def _solved_back(upper: Array, right: Array) -> Array:
+def _back_substitute(upper: Array, right: Array) -> Array:
     """Solve many upper triangular systems from their last rows on."""
     found = right.copy()
     for row in range(right.shape[1] - 1, -1, -1):

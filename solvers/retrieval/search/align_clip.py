@@ -6,11 +6,11 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Path = NDArray[np.intp]
 
-STILL = 1.5
+STEP_PENALTY = 1.5
 """What a step costs in which one of both stands still."""
 
 
-def aligned(query: Array, clip: Array) -> Path:
+def align_frames(query: Array, clip: Array) -> Path:
     """Return the best path of the whole query through any part of a clip.
 
     Subsequence dynamic time warping (Müller, Information Retrieval for Music and Motion, 2007,
@@ -32,17 +32,17 @@ def aligned(query: Array, clip: Array) -> Path:
             0.0,
         )
     )
-    costs, still = np.empty_like(apart), STILL * apart
+    costs, still = np.empty_like(apart), STEP_PENALTY * apart
     costs[0] = apart[0]
     along = np.cumsum(still, axis=-1)
     for row in range(1, len(query)):
         entered = costs[row - 1] + still[row]
         entered[1:] = np.minimum(entered[1:], costs[row - 1, :-1] + apart[row, 1:])
         costs[row] = np.minimum.accumulate(entered - along[row]) + along[row]
-    return _path_back(costs, apart, still)
+    return _backtrack_path(costs, apart, still)
 
 
-def _path_back(costs: Array, apart: Array, still: Array) -> Path:
+def _backtrack_path(costs: Array, apart: Array, still: Array) -> Path:
     row, column = len(costs) - 1, int(costs[-1].argmin())
     path = [(row, column)]
     while row:

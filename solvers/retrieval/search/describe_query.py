@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..index import Spans, Vocabulary, describe
+from ..index import Segments, Vocabulary, describe_segments
 from ..postures import ClipPostures, part_coverage, part_reliability
 from .find_settings import FindSettings
 
@@ -28,7 +28,7 @@ class DescribedQuery:
 
     features: Array
     weights: Array
-    spans: Spans
+    spans: Segments
 
 
 def describe_query(
@@ -49,4 +49,4 @@ def describe_query(
         vocabulary.activity(features),
     )
     whole = np.array([[0, len(features)]], dtype=np.int32)
-    return DescribedQuery(features, weights, describe(features, whole, vocabulary))
+    return DescribedQuery(features, weights, describe_segments(features, whole, vocabulary))

@@ -8,15 +8,15 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
 from ...settings import Settings, setting
-from ..index import STANCE
+from ..index import MEAN_POSTURE_WEIGHT
 from ..postures import BodyPart
 
-BELIEF = 4.0
+RELIABILITY_POWER = 4.0
 """Power of the share of a part that is known by which it counts."""
-STANCE_OF_SENSOR = 0.4
-STILL = 0.05
+SENSOR_MEAN_POSTURE_WEIGHT = 0.4
+MIN_ACTIVITY = 0.05
 """Activity of the busiest part below which the query is a pose: all count alike, or nearly."""
-AT_REST = 0.2
+REST_WEIGHT = 0.2
 """Of the busiest part's activity that one counts as having that does not move at all."""
 
 
@@ -34,7 +34,7 @@ class FindSettings(Settings):
     `stance`, `busy` and what was tracked of the query count where it is compared with clips.
     How like clips are to each other (`n_alike`) does not depend on the query, and is told with
     the usual stance and all parts alike, once for all queries, as long as all parts are asked
-    for and the library has no more than `search_index.MOST_COMPARED` spans. Otherwise it is
+    for and the library has no more than `search_index.MAX_PAIRWISE_SPANS` spans. Otherwise it is
     told as the query is.
     """
 
@@ -59,8 +59,8 @@ class FindSettings(Settings):
         minimum=0.0, maximum=4.0, advanced=True, label="Busy Parts",
     )  # fmt: skip
     stance: float = setting(
-        STANCE, "How much the mean posture counts beside how a clip departs from it; in what a"
-        " sensor saw 0.4 at most, since sensors put joints elsewhere",
+        MEAN_POSTURE_WEIGHT, "Weight of the mean posture relative to the movement around it;"
+        " at most 0.4 for sensor data, because sensors place joints differently",
         minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
     n_warped: int = setting(
@@ -83,7 +83,7 @@ class FindSettings(Settings):
 
     def for_sensor(self) -> "FindSettings":
         """Return settings for a query that a sensor saw."""
-        return replace(self, stance=min(self.stance, STANCE_OF_SENSOR))
+        return replace(self, stance=min(self.stance, SENSOR_MEAN_POSTURE_WEIGHT))
 
     @property
     def asks_for_all(self) -> bool:
@@ -116,13 +116,13 @@ class FindSettings(Settings):
         if not chosen:
             raise InvalidMotionError("No part of the body is chosen; choose at least one.")
         wanted = np.array([part in chosen for part in BodyPart])
-        most = np.maximum(activity[wanted].max(), STILL)
-        moved = np.minimum(activity / most, 1.0) + AT_REST
+        most = np.maximum(activity[wanted].max(), MIN_ACTIVITY)
+        moved = np.minimum(activity / most, 1.0) + REST_WEIGHT
         if not coverage[wanted].any():
             names = ", ".join(part.value for part in chosen)
             raise InvalidMotionError(f"The query shows nothing of what is asked for: {names}.")
-        weights = np.where(wanted, reliability**BELIEF * moved**self.busy, 0.0)
+        weights = np.where(wanted, reliability**RELIABILITY_POWER * moved**self.busy, 0.0)
         return np.asarray(weights * len(weights) / weights.sum())
 
 
-USUAL = FindSettings()
+DEFAULT_FIND_SETTINGS = FindSettings()

@@ -7,16 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..index import (
-    FULL,
+    HISTOGRAM_SCALE,
     N_AXES,
     N_CUBES,
     SearchIndex,
-    Spans,
-    between_courses,
+    Segments,
     frame_distances,
-    judged_by_likes,
+    pairwise_warping_costs,
+    rerank_by_neighbors,
     warping_costs,
-    with_stance,
+    weight_mean_posture,
 )
 from ..postures import N_PARTS
 from .find_settings import FindSettings
@@ -24,7 +24,7 @@ from .find_settings import FindSettings
 Single = NDArray[np.float32]
 Numbers = NDArray[np.int64]
 
-CLIPS_PER_LIKE = 20
+CLIPS_PER_NEIGHBOR = 20
 """Clips for each other clip that is asked as well: the eight nearest of nine are not alike."""
 
 
@@ -48,7 +48,7 @@ class Ranking:
 
 
 def rank_clips(
-    query: Spans,
+    query: Segments,
     weights: NDArray[np.float64],
     index: SearchIndex,
     settings: FindSettings,
@@ -58,20 +58,22 @@ def rank_clips(
 
     As many as are asked for, or all.
     """
-    asked = weighted_words(query.histograms[:1], weights)[0]
+    asked = weight_histograms(query.histograms[:1], weights)[0]
     apart, spans = index.best_spans(1.0 - index.common(asked), ignore)
-    near = _least(apart, settings.n_warped)
+    near = _smallest_indices(apart, settings.n_warped)
     asking = query.summaries[:1].astype(np.float32)
-    course = weighted_steps(with_stance(asking, settings.stance), weights)
-    courses = weighted_steps(with_stance(index.steps(spans[near]), settings.stance), weights)
+    course = weight_summaries(weight_mean_posture(asking, settings.stance), weights)
+    courses = weight_summaries(
+        weight_mean_posture(index.steps(spans[near]), settings.stance), weights
+    )
     costs = warping_costs(frame_distances(course, courses))[0]
     share = np.float32(2.0 / (1.0 + settings.warping))
     likely = share * (apart[near] + np.float32(settings.warping) * costs)
-    n_alike = min(settings.n_alike, len(spans) // CLIPS_PER_LIKE)
+    n_alike = min(settings.n_alike, len(spans) // CLIPS_PER_NEIGHBOR)
     if 0 < n_alike < len(near):
         among = index.between(spans[near]) if settings.asks_for_all else None
-        among = between_courses(courses) if among is None else among
-        likely = judged_by_likes(likely, among, n_alike)
+        among = pairwise_warping_costs(courses) if among is None else among
+        likely = rerank_by_neighbors(likely, among, n_alike)
     order = np.argsort(likely, kind="stable")
     found, distances = near[order], likely[order]
     if not 0 < settings.n_matches <= len(found):
@@ -86,23 +88,25 @@ def rank_clips(
     return Ranking(index.clips[spans], index.frames[spans], distances)
 
 
-def weighted_words(histograms: NDArray[np.uint8], weights: NDArray[np.float64]) -> Single:
+def weight_histograms(histograms: NDArray[np.uint8], weights: NDArray[np.float64]) -> Single:
     """Return histograms, (n, ...), as vectors with the parts weighted, (n, n_bins).
 
     Their product with those of a span is 1 for the same words, 0 for none in common.
     """
     parted = histograms.reshape(len(histograms), N_PARTS, -1).astype(np.float32)
-    parted *= weights.astype(np.float32)[:, None] / np.float32(FULL**2 * N_PARTS * N_CUBES)
+    parted *= weights.astype(np.float32)[:, None] / np.float32(
+        HISTOGRAM_SCALE**2 * N_PARTS * N_CUBES
+    )
     return parted.reshape(len(histograms), -1)
 
 
-def weighted_steps(summaries: Single, weights: NDArray[np.float64]) -> Single:
+def weight_summaries(summaries: Single, weights: NDArray[np.float64]) -> Single:
     """Return summaries, (n, 16, 5, 8), as vectors with the parts weighted, (n, 16, 40)."""
     scaled = summaries * np.sqrt(weights).astype(np.float32)[:, None]
     return scaled.reshape(*scaled.shape[:2], N_PARTS * N_AXES)
 
 
-def _least(values: Single, most: int) -> Numbers:
+def _smallest_indices(values: Single, most: int) -> Numbers:
     """Return the places of so many of the least, in their order."""
     if most >= len(values):
         return np.argsort(values, kind="stable")

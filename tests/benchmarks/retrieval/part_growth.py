@@ -44,7 +44,7 @@ from solvers.retrieval import (
     load_clip_library,
     open_clip_library,
 )
-from solvers.retrieval.index.segments import RATE, describe
+from solvers.retrieval.index.segments import RATE, describe_segments
 from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
 from solvers.rotations.representations import (
     IDENTITY,
@@ -215,7 +215,7 @@ def _asked(library: ClipLibrary, number: int) -> tuple[float, float, bool, bool,
     assert vocabulary is not None
     began = process_time()
     features = vocabulary.features(clip_postures(query, RATE))
-    describe(features, np.array([[0, len(features)]], dtype=np.int32), vocabulary)
+    describe_segments(features, np.array([[0, len(features)]], dtype=np.int32), vocabulary)
     asked = process_time()
     matches = find_similar(query, library, settings=FindSettings(n_matches=TOLD))
     found = process_time()

@@ -10,7 +10,7 @@ from solvers.gestures.recognition import recognise
 from solvers.gestures.settings import GestureSettings
 from solvers.motion.humanoid.posture_joints import posture_positions
 from solvers.recordings import read_joints
-from solvers.recordings.live.frames import frames_of
+from solvers.recordings.live.frames import frames_from_recording
 from solvers.workflows.live_session import posture_of
 
 CLAP, WAVE = "a10", "a02"
@@ -19,7 +19,7 @@ USUAL = GestureSettings()
 
 def gestures_in(path, settings=USUAL):
     recording = read_joints(path)
-    frames = [posture_of(frame) for frame in frames_of(recording)]
+    frames = [posture_of(frame) for frame in frames_from_recording(recording)]
     positions, confidence = (np.stack(each) for each in zip(*frames, strict=True))
     times = np.arange(len(frames)) / recording.frame_rate
     return {event.gesture for event in recognise(times, positions, confidence, settings)}
@@ -54,7 +54,7 @@ def test_a_confident_joint_is_what_the_recording_says(recordings):
     path = next((recordings / "kinect" / "msr_action3d").glob("a10_s03_*"))
     recording = read_joints(path)
 
-    frames = list(frames_of(recording))
+    frames = list(frames_from_recording(recording))
 
     positions = np.stack([posture_of(frame)[0] for frame in frames])
     np.testing.assert_array_equal(positions, posture_positions(recording))

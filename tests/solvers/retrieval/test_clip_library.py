@@ -104,7 +104,7 @@ def test_a_clip_of_the_same_name_replaces_the_one_before():
 def test_many_small_blocks_rank_as_one(monkeypatch):
     one = build_clip_library(clips(speeds=(2.0,)))
     one.add(clips())
-    monkeypatch.setattr(clip_library, "LARGEST_BLOCK", 3)
+    monkeypatch.setattr(clip_library, "MAX_BLOCK_SPANS", 3)
     many = build_clip_library(clips(speeds=(2.0,)))
     many.add(clips())
 

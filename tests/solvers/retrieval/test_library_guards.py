@@ -132,7 +132,7 @@ def test_database_of_somebody_else_stays_as_it_is_even_without_tables(tmp_path):
     before = path.read_bytes()
     assert before
 
-    library_file.begin_file(path)
+    library_file.create_file(path)
 
     assert path.read_bytes() == before
     with pytest.raises(InvalidFileError, match="is not a clip library"):

@@ -8,10 +8,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 from solvers.motion.humanoid.posture_joints import PARENTS, POSTURE_JOINTS
 from solvers.retrieval.postures.body_parts import JOINTS, ROOTS, BodyPart
 from solvers.retrieval.postures.clip_postures import clip_postures
-from solvers.retrieval.postures.mean_postures import NOISE, usual_postures
+from solvers.retrieval.postures.mean_postures import (
+    POSITION_NOISE_M,
+    learn_posture_distribution,
+)
 from solvers.retrieval.postures.part_reliability import part_reliability
 
-USUAL = usual_postures([clip_postures(act(name, 2.5), 20.0) for name in ACTS])
+USUAL = learn_posture_distribution([clip_postures(act(name, 2.5), 20.0) for name in ACTS])
 RIGHT_ARM = list(BodyPart).index(BodyPart.RIGHT_ARM)
 
 
@@ -86,7 +89,7 @@ def test_reliability_is_what_is_left_when_the_rest_was_guessed(names):
     seen = np.ones((8, 20), bool)
     seen[:, places(*names)] = False
     told = drawn[:, seen[0]].reshape(len(drawn), -1)
-    told += NOISE * rng.normal(size=told.shape)
+    told += POSITION_NOISE_M * rng.normal(size=told.shape)
     hidden = drawn[:, ~seen[0]].reshape(len(drawn), -1)
     guessed = np.zeros_like(drawn)
     guessed[:, ~seen[0]] = (
