@@ -49,13 +49,13 @@ def constant_rate_from_times(times: NDArray[np.float64], said: float | None) -> 
 
 
 class ConstantRate:
-    """The moments of a constant frame rate, told by the frames of a file around them.
+    """Resample frames with uneven time stamps to a constant frame rate.
 
-    Values between two frames come from the cubic through the four frames around them or, near
-    gaps, from the straight line. Where frames are missing between two (`MIN_HOLE_FRAMES`), or one of them
-    does not see a point, the nearer one counts alone, up to half a frame time away; farther
-    from it nothing is observed: gaps stay gaps. Frames that are not later than all before them
-    are left out.
+    Values between two frames come from the cubic through the four surrounding frames or, near
+    gaps, from linear interpolation. Next to a hole (`MIN_HOLE_FRAMES`), or where one of the two
+    frames does not observe a point, the nearest frame counts alone, up to half a frame time
+    away. Farther away the value stays missing. Frames that are not later than all previous
+    frames are skipped.
 
     Parameters
     ----------

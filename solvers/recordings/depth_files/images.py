@@ -58,10 +58,10 @@ class DepthImageFiles:
 
 @dataclass(frozen=True, eq=False)
 class ColorImageFiles:
-    """Reads the colours of a frame; to be `DepthRecording.read_color`.
+    """Read the color image of a frame; serves as `DepthRecording.read_color`.
 
-    `names` and `frames` are as in `DepthImageFiles`. A picture of another size is brought to the
-    size of depth; a missing one is black.
+    `names` and `frames` are as in `DepthImageFiles`. An image of another size is resized to the
+    size of the depth image; a missing one is black.
     """
 
     folder: Path

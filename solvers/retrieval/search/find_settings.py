@@ -31,11 +31,11 @@ class FindMethod(Enum):
 class FindSettings(Settings):
     """Settings of `find_similar`.
 
-    `stance`, `busy` and what was tracked of the query count where it is compared with clips.
-    How like clips are to each other (`n_alike`) does not depend on the query, and is told with
-    the usual stance and all parts alike, once for all queries, as long as all parts are asked
-    for and the library has no more than `search_index.MAX_PAIRWISE_SPANS` spans. Otherwise it is
-    told as the query is.
+    `stance`, `busy` and the tracked joints of the query weight the comparison of the query with
+    the clips. The distances between clips (`n_alike`) do not depend on the query if all parts
+    are compared and the library has at most `search_index.MAX_PAIRWISE_SPANS` segments: they
+    are then computed once for all queries, with the default stance and equal part weights.
+    Otherwise they use the weights of the query.
     """
 
     method: FindMethod = setting(
