@@ -1,4 +1,4 @@
-"""What a search compares: codewords of segments in an inverted index."""
+"""Index clips by codewords of their segments, and compare them."""
 
 from .clip import Clip, ClipEntry, Match, Origin, find_tags_fault, find_text_fault, is_utf_8
 from .describe_clip import DescribedClip, describe_clip

@@ -1,4 +1,4 @@
-"""What SQLite reports, in sentences."""
+"""Convert SQLite errors to readable messages."""
 
 import sqlite3
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ from ...faults import escaped
 
 BUSY = {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}
 PRIMARY_CODE_MASK = 0xFF
-"""The part of an error's code that says what it is; the rest says where."""
+"""Mask of the primary error code; the other bits are details."""
 
 
 @contextmanager
@@ -37,7 +37,7 @@ def readable_errors(path: Path | None) -> Iterator[None]:
 
 @contextmanager
 def report_damage() -> Iterator[None]:
-    """Report stored values that cannot be understood as SQLite reports damage."""
+    """Report invalid stored values as damage, as SQLite does."""
     try:
         yield
     except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:

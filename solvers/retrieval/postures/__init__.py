@@ -1,4 +1,4 @@
-"""Clips as postures of one standard body, and its five parts."""
+"""Postures of clips on a standard body, and its five parts."""
 
 from .body_parts import N_FEATURES, N_PARTS, BodyPart, part_coverage, part_features
 from .clip_postures import ClipPostures, Recording, clip_postures, half_precision

@@ -1,4 +1,4 @@
-"""The query and the order of a library's clips for it."""
+"""Describe a query and rank the clips of a library."""
 
 from .align_clip import align_frames
 from .describe_query import DescribedQuery, describe_query

@@ -1,4 +1,4 @@
-"""What is alike, and how closely it is looked at."""
+"""Settings of the search for similar clips."""
 
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -12,16 +12,17 @@ from ..index import MEAN_POSTURE_WEIGHT
 from ..postures import BodyPart
 
 RELIABILITY_POWER = 4.0
-"""Power of the share of a part that is known by which it counts."""
+"""Exponent of the reliability of a part in its weight."""
 SENSOR_MEAN_POSTURE_WEIGHT = 0.4
+"""Maximum weight of the mean posture for sensor data."""
 MIN_ACTIVITY = 0.05
-"""Activity of the busiest part below which the query is a pose: all count alike, or nearly."""
+"""Activity of the most active part below which the query counts as a static pose."""
 REST_WEIGHT = 0.2
-"""Of the busiest part's activity that one counts as having that does not move at all."""
+"""Activity of a part at rest, as a fraction of that of the most active part."""
 
 
 class FindMethod(Enum):
-    """How clips are compared."""
+    """Method of comparing clips."""
 
     WORDS = "words and warping"
     PUBLISHED = "published"
@@ -39,23 +40,23 @@ class FindSettings(Settings):
     """
 
     method: FindMethod = setting(
-        FindMethod.WORDS, "Words of each part of the body and warping measured best; published"
-        " is pyramids of sparse codes of the whole body, which is slow and finds less",
+        FindMethod.WORDS, "Codewords of each body part with time warping are most accurate;"
+        " published: pyramids of sparse codes of the complete body, slower and less accurate",
         advanced=True,
     )  # fmt: skip
 
     n_matches: int = setting(
-        0, "Clips that are told, the best first; 0 ranks all of them",
+        0, "Number of clips to return, best first; 0 returns all",
         minimum=0, maximum=1_000_000, label="Matches",
     )  # fmt: skip
-    trunk: bool = setting(True, "Compare trunk and head, and how the body travels")
+    trunk: bool = setting(True, "Compare trunk and head, and the root motion")
     left_arm: bool = setting(True, "Compare the left arm")
     right_arm: bool = setting(True, "Compare the right arm")
     left_leg: bool = setting(True, "Compare the left leg")
     right_leg: bool = setting(True, "Compare the right leg")
     busy: float = setting(
-        0.5, "How much more those parts of the body count that move more in the query; at 0 an"
-        " arm that only hangs counts like any other",
+        0.5, "Additional weight of the body parts that move most in the query; 0 weights"
+        " all parts equally",
         minimum=0.0, maximum=4.0, advanced=True, label="Busy Parts",
     )  # fmt: skip
     stance: float = setting(
@@ -64,30 +65,30 @@ class FindSettings(Settings):
         minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
     n_warped: int = setting(
-        128, "Best clips whose course in time is compared as well; more is slower",
+        128, "Number of best clips to compare by time warping; more is slower",
         minimum=0, maximum=2_000, advanced=True, label="Warped",
     )  # fmt: skip
     warping: float = setting(
-        3.0, "How much the course in time counts beside which postures there are",
+        3.0, "Weight of time warping relative to the codeword histograms",
         minimum=0.0, maximum=100.0, advanced=True,
     )  # fmt: skip
     n_alike: int = setting(
-        8, "Clips most like each one that tell as well how like the query it is; at most one"
-        " of twenty clips",
-        minimum=0, maximum=100, advanced=True, label="Ask the Like",
+        8, "Nearest neighbors of each clip for re-ranking; at most one in twenty clips"
+        " is used",
+        minimum=0, maximum=100, advanced=True, label="Neighbors",
     )  # fmt: skip
     n_aligned: int = setting(
-        8, "Best matches whose frames are aligned with the query's",
+        8, "Number of best matches to align with the query frame by frame",
         minimum=0, maximum=10_000, advanced=True, label="Aligned",
     )  # fmt: skip
 
     def for_sensor(self) -> "FindSettings":
-        """Return settings for a query that a sensor saw."""
+        """Return the settings for sensor data."""
         return replace(self, stance=min(self.stance, SENSOR_MEAN_POSTURE_WEIGHT))
 
     @property
-    def asks_for_all(self) -> bool:
-        """Whether all parts of the body are compared."""
+    def compares_all_parts(self) -> bool:
+        """Whether all body parts are compared."""
         return all(getattr(self, part.name.lower()) for part in BodyPart)
 
     def part_weights(
@@ -96,32 +97,36 @@ class FindSettings(Settings):
         reliability: NDArray[np.float64],
         activity: NDArray[np.float64],
     ) -> NDArray[np.float64]:
-        """Return how much each part counts, shape (5,), on average 1.
+        """Return the weight of each part, shape (5,), with mean 1.
 
         Parameters
         ----------
         coverage : shape (5,)
-            How much of each part was tracked.
+            Tracked fraction of each part.
         reliability : shape (5,)
-            How much of what each part does is known, from itself or from others; not 0.
+            Explained fraction of the variance of each part; not 0.
         activity : shape (5,)
-            How much each part moves, as a share of the usual.
+            Movement of each part relative to the average.
 
         Raises
         ------
         InvalidMotionError
-            No part is chosen, or none of those that are was tracked.
+            No part is selected, or none of the selected parts was tracked.
         """
-        chosen = [part for part in BodyPart if getattr(self, part.name.lower())]
-        if not chosen:
+        selected = [part for part in BodyPart if getattr(self, part.name.lower())]
+        if not selected:
             raise InvalidMotionError("No part of the body is chosen; choose at least one.")
-        wanted = np.array([part in chosen for part in BodyPart])
-        most = np.maximum(activity[wanted].max(), MIN_ACTIVITY)
-        moved = np.minimum(activity / most, 1.0) + REST_WEIGHT
-        if not coverage[wanted].any():
-            names = ", ".join(part.value for part in chosen)
-            raise InvalidMotionError(f"The query shows nothing of what is asked for: {names}.")
-        weights = np.where(wanted, reliability**RELIABILITY_POWER * moved**self.busy, 0.0)
+        is_selected = np.array([part in selected for part in BodyPart])
+        max_activity = np.maximum(activity[is_selected].max(), MIN_ACTIVITY)
+        relative_activity = np.minimum(activity / max_activity, 1.0) + REST_WEIGHT
+        if not coverage[is_selected].any():
+            names = ", ".join(part.value for part in selected)
+            raise InvalidMotionError(
+                f"The query has no tracked joints in: {names}. Select other body parts."
+            )
+        weights = np.where(
+            is_selected, reliability**RELIABILITY_POWER * relative_activity**self.busy, 0.0
+        )
         return np.asarray(weights * len(weights) / weights.sum())
 
 

@@ -83,7 +83,7 @@ class PyramidLibrary:
 
     def described(self, postures: ClipPostures) -> list[Any]:
         if self.method.filled:
-            postures = self.usual.completed(postures)
+            postures = self.usual.fill_gaps(postures)
         return [
             pyramid_descriptor(
                 only(postures, root, joints), part.dictionary, self.method.pyramid

@@ -97,7 +97,7 @@ def test_clips_with_joints_that_were_never_seen_teach_nothing(rng):
     both = learn_dictionary([as_clip(lost), as_clip(whole)], settings)
 
     assert (both.atoms == learn_dictionary([as_clip(whole)], settings).atoms).all()
-    with pytest.raises(InvalidMotionError, match="20 atoms cannot be learned from 0 whole"):
+    with pytest.raises(InvalidMotionError, match="20 atoms cannot be learned from 0 complete"):
         learn_dictionary([as_clip(lost)], settings)
 
 

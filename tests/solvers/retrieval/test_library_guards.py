@@ -188,7 +188,7 @@ def test_stored_value_that_means_nothing_is_damage(tmp_path, change):
         library.postures(*library.numbered())
 
 
-def test_span_beyond_the_end_of_its_clip_is_damage(tmp_path):
+def test_segment_beyond_the_end_of_its_clip_is_damage(tmp_path):
     path, query = tmp_path / "a.clips", clip("walk", "wave", "/a/walk.bvh")
     build_clip_library([query]).save(path)
     with closing(sqlite3.connect(path)) as database, database:
@@ -206,5 +206,5 @@ def test_clip_that_another_program_has_just_removed_is_one_sentence():
     library = build_clip_library([clip("walk", "wave", "/a/walk.bvh")])
     (number,) = library.numbered()
     library.discard([number])
-    with pytest.raises(InvalidMotionError, match="has just been removed"):
+    with pytest.raises(InvalidMotionError, match="has just removed"):
         library.postures(number)

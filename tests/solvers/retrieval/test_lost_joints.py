@@ -47,7 +47,7 @@ def test_an_actor_of_other_proportions_is_the_same_though_a_joint_is_lost(name, 
     whole = clip_postures(actor, 20.0)
     seen = clip_postures(lost(actor, "spine"), 20.0)
 
-    found = USUAL.completed(seen).positions
+    found = USUAL.fill_gaps(seen).positions
 
     above = [spine, chest, head]
     assert np.abs(found - whole.positions)[:, above].max() < 0.05
@@ -59,7 +59,7 @@ def test_an_actor_of_other_proportions_is_the_same_though_a_joint_is_lost(name, 
 def test_a_body_without_hips_and_shoulders_is_turned_whichever_way_it_faces(heading):
     names = ("chest", "head", "leftUpperArm", "leftUpperLeg", "rightUpperLeg")
     query = lost(act("kick", heading=heading), *names)
-    found = USUAL.completed(clip_postures(query, 20.0)).positions
+    found = USUAL.fill_gaps(clip_postures(query, 20.0)).positions
     assert_allclose(found, clip_postures(act("kick"), 20.0).positions, atol=0.15)
 
 

@@ -40,24 +40,24 @@ def block(clips, seed=0):
 
 
 @given(seed=st.integers(0, 999))
-def test_the_best_span_of_each_clip_is_found(seed):
+def test_the_best_segment_of_each_clip_is_found(seed):
     rng = np.random.default_rng(seed)
     clips = [rng.integers(1, 6, size=size) for size in (4, 7)]
     alive = [rng.random(len(one)) < 0.8 for one in clips]
     index = SearchIndex(list(zip(map(block, clips), alive, strict=True)))
     apart = rng.integers(0, 5, 11).astype(np.float32)
 
-    least, spans = index.best_spans(apart, [3])
+    least, segments = index.best_segments(apart, [3])
 
     numbers, living = np.concatenate(clips), np.concatenate(alive)
     wanted = [one for one in np.unique(numbers[living]) if one != 3]
-    assert index.clips[spans].tolist() == wanted
-    for one, found, span in zip(wanted, least, spans, strict=True):
-        assert living[span]
-        assert found == apart[span] == apart[living & (numbers == one)].min()
+    assert index.clips[segments].tolist() == wanted
+    for one, found, segment in zip(wanted, least, segments, strict=True):
+        assert living[segment]
+        assert found == apart[segment] == apart[living & (numbers == one)].min()
 
 
-def test_spans_are_fetched_from_the_blocks_that_hold_them():
+def test_segments_are_fetched_from_the_blocks_that_hold_them():
     first, second = block([1, 2, 3]), block([4, 5], seed=1)
     index = SearchIndex([(first, np.ones(3, bool)), (second, np.ones(2, bool))])
     steps = index.steps(np.array([4, 0, 3, 2]))
@@ -68,22 +68,22 @@ def test_spans_are_fetched_from_the_blocks_that_hold_them():
 @pytest.mark.parametrize("at_once", [1, 300, likes.MAX_CELLS])
 def test_clips_are_from_each_other_as_far_as_the_plain_programme_says(at_once, monkeypatch):
     monkeypatch.setattr(likes, "MAX_CELLS", at_once)
-    courses = RNG.normal(size=(5, 16, 3)).astype(np.float32)
-    between = likes.pairwise_warping_costs(courses)
+    sequences = RNG.normal(size=(5, 16, 3)).astype(np.float32)
+    between = likes.pairwise_warping_costs(sequences)
     for one, other in np.ndindex(5, 5):
-        expected = plain_cost(cdist(courses[one, ::2], courses[other, ::2]))
+        expected = plain_cost(cdist(sequences[one, ::2], sequences[other, ::2]))
         assert_allclose(between[one, other], expected, rtol=1e-4, atol=1e-3)
 
 
 def test_a_small_library_keeps_what_a_large_one_works_out_anew(monkeypatch):
     index = SearchIndex([(block(range(6)), np.ones(6, bool))])
-    spans = np.array([5, 1, 2])
-    kept = index.between(spans)
-    steps = weight_mean_posture(index.steps(spans), MEAN_POSTURE_WEIGHT)
+    segments = np.array([5, 1, 2])
+    kept = index.pairwise_distances(segments)
+    steps = weight_mean_posture(index.steps(segments), MEAN_POSTURE_WEIGHT)
     # Nothing is from itself but what single numbers leave of it.
     assert_allclose(kept, likes.pairwise_warping_costs(steps.reshape(3, 16, 40)), atol=2e-3)
-    monkeypatch.setattr(search_index, "MAX_PAIRWISE_SPANS", 5)
-    assert index.between(spans) is None
+    monkeypatch.setattr(search_index, "MAX_PAIRWISE_SEGMENTS", 5)
+    assert index.pairwise_distances(segments) is None
 
 
 def test_each_clip_is_judged_by_those_nearest_to_it():
@@ -148,14 +148,17 @@ def test_a_body_without_some_joints_is_turned_where_it_usually_faces(angle):
     positions = turned(true.positions, np.full(true.n_frames, angle))
     positions[:, lost] = np.nan
     cos, sin = np.cos(angle), np.sin(angle)
-    course = true.course.copy()
-    course[:, :2] = course[:, :2] @ [[cos, sin], [-sin, cos]]
+    root_velocity = true.root_velocity.copy()
+    root_velocity[:, :2] = root_velocity[:, :2] @ [[cos, sin], [-sin, cos]]
 
-    found = usual.completed(ClipPostures(positions, course, 20.0))
+    found = usual.fill_gaps(ClipPostures(positions, root_velocity, 20.0))
 
     seen = np.setdiff1d(np.arange(20), lost)
     assert np.abs(found.positions[:, seen] - true.positions[:, seen]).max() < 0.1
-    assert np.abs(found.course - true.course).max() < 0.2 * np.abs(true.course).max() + 1e-9
+    assert (
+        np.abs(found.root_velocity - true.root_velocity).max()
+        < 0.2 * np.abs(true.root_velocity).max() + 1e-9
+    )
     assert np.isfinite(found.positions).all()
     assert not np.isfinite(positions[:, lost]).any()
 
