@@ -18,7 +18,7 @@ from ...solvers.depth_scene import Camera
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import written_whole
 from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings.depth_files import check_exr, in_order
+from ...solvers.recordings.depth_files import check_exr, sort_naturally
 
 EXR = ".exr"
 EXTENSION = __package__.rpartition(".mocap_assist")[0]
@@ -40,7 +40,7 @@ def exr_files(folder: Path) -> list[Path]:
         for path in folder.iterdir()
         if path.suffix.lower() == EXR and path.is_file()  # not a pipe, which never ends
     ]
-    return [folder / name for name in in_order(names)]
+    return [folder / name for name in sort_naturally(names)]
 
 
 def as_archive(

@@ -7,7 +7,7 @@ from ...solvers.errors import InvalidFileError
 from ...solvers.motion import JointRecording, Motion
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import DepthSettings
-from ...solvers.recordings.depth_files import USUAL
+from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 from ...solvers.recordings.skeleton_files import find_skeleton
 from .solve_reading import Known, Recording, read_file
 
@@ -22,7 +22,7 @@ def read_again(
     progress: Progress = unwatched,
     *,
     unit: float | None = None,
-    depth: DepthSettings = USUAL,
+    depth: DepthSettings = DEFAULT_DEPTH_SETTINGS,
 ) -> Known:
     """Return what a file holds, as `read_file` does; what has not changed is read once.
 

@@ -20,7 +20,7 @@ from ...solvers.motion import (
 from ...solvers.motion.humanoid import fill_missing_hips
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import DepthSettings, is_depth, read_depth, read_tracked
-from ...solvers.recordings.depth_files import USUAL
+from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 
 Recording = Motion | Tracks | JointRecording | DepthRecording
 Result = TypeVar("Result")
@@ -36,7 +36,7 @@ class Wanted(NamedTuple):
     """Frames per second to resample to; None leaves each recording its own."""
     unit: float | None = None
     """Metres in one unit of the files; None for what they say, or their readers guess."""
-    depth: DepthSettings = USUAL
+    depth: DepthSettings = DEFAULT_DEPTH_SETTINGS
     """How pictures of depth are to be understood."""
 
 
@@ -84,7 +84,7 @@ def read_file(
     progress: Progress = unwatched,
     *,
     unit: float | None = None,
-    depth: DepthSettings = USUAL,
+    depth: DepthSettings = DEFAULT_DEPTH_SETTINGS,
 ) -> Known:
     """Read a file or folder, as `read_recording` does, and keep what its reader says.
 

@@ -7,7 +7,7 @@ import bpy
 from bpy.app import handlers
 
 from ...solvers.gestures import Mode
-from ...solvers.recordings.live import Heard, Receiver
+from ...solvers.recordings.live import Receiver, StreamCounts
 from ...solvers.workflows import LiveSession
 from ..drawing.live_figure import LiveFigure
 from ..drawing.overlay_drawing import Color
@@ -55,7 +55,7 @@ class Listening:
         return self in _on
 
     @property
-    def heard(self) -> Heard:
+    def heard(self) -> StreamCounts:
         """How many frames came in, and how many were dropped."""
         return self.session.heard
 

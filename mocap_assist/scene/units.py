@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...solvers.recordings.conventions import guess_unit, longest_way
+from ...solvers.recordings.conventions import guess_unit, longest_bone_path
 from .rig import Rig
 
 # Metres from foot to hand along the bones: from a cat to a dragon. Beyond it, a recording was
@@ -34,7 +34,9 @@ def metres_per_unit(scene: bpy.types.Scene, rig: Rig, root: int, scale: float) -
     parents = [-1, *(place[rig.parents[bone]] for bone in bones[1:])]
     offsets = scale * (rig.heads[bones] - rig.heads[[rig.parents[bone] for bone in bones]])
     low, high = PLAUSIBLE_REACH
-    if low <= said * longest_way(parents, offsets) <= high:
+    if low <= said * longest_bone_path(parents, offsets) <= high:
         return float(said)
     guessed = guess_unit(parents, offsets)
-    return guessed if low <= guessed * longest_way(parents, offsets) <= high else float(said)
+    return (
+        guessed if low <= guessed * longest_bone_path(parents, offsets) <= high else float(said)
+    )

@@ -12,7 +12,7 @@ from ..motion import SENSOR_JOINTS, JointRecording, Motion, Sensor, Tracks
 from ..motion.humanoid import postures_from_motion
 from ..progress import Progress, within
 from ..recordings import read_tracked
-from ..recordings.live import MOST_JOINTS, PORT, LiveFrame, encode_frame, frames_of
+from ..recordings.live import MAX_JOINTS, PORT, LiveFrame, encode_frame, frames_from_recording
 from .files import add_reading_options
 from .verb import Outcome, Task
 
@@ -50,12 +50,12 @@ def perform_replay(task: Task, prepared: None, progress: Progress) -> Outcome:
         task.source, scale=arguments.scale, progress=within(progress, 0.0, 0.1)
     )
     joints = _joints(recording)
-    if joints.n_joints > MOST_JOINTS:
+    if joints.n_joints > MAX_JOINTS:
         raise InvalidMotionError(
             f"{task.source} has {joints.n_joints} points; a live stream has at most"
-            f" {MOST_JOINTS}. Take a recording of joints, or of a skeleton."
+            f" {MAX_JOINTS}. Take a recording of joints, or of a skeleton."
         )
-    frames = looped(joints) if arguments.loop else frames_of(joints)
+    frames = looped(joints) if arguments.loop else frames_from_recording(joints)
     told = within(progress, 0.1, 1.0)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         sender.connect((LOOPBACK, arguments.port))
@@ -72,7 +72,7 @@ def looped(recording: JointRecording) -> Iterator[LiveFrame]:
     """Yield the frames of a recording again and again; time goes on."""
     duration = recording.n_frames / recording.frame_rate
     for turn in itertools.count():
-        for frame in frames_of(recording):
+        for frame in frames_from_recording(recording):
             yield replace(frame, time=frame.time + turn * duration)
 
 

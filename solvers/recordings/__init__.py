@@ -1,4 +1,4 @@
-"""One reader per file format of recorded motion, and writers for those worth writing.
+"""Read recorded motion of all supported file formats, and write the common ones.
 
 >>> from pathlib import Path
 >>> from tempfile import TemporaryDirectory

@@ -1,4 +1,4 @@
-"""Joints of a depth camera, in whatever format, and out again in one of our own."""
+"""Read joints of a depth camera in any format, and write them in our own formats."""
 
 from pathlib import Path
 
@@ -14,15 +14,15 @@ WRITERS = {".csv": write_joint_csv, ".json": write_joint_json}
 def read_joints(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> JointRecording:
-    """Read a joint recording of any format known here, told by what the file holds.
+    """Read a joint recording of any supported format, detected from the file content.
 
-    Parameters and errors are those of `read_recording`; InvalidFileError also for a file that
-    holds something else.
+    Parameters and errors are those of `read_recording`; a file with other
+    content also raises InvalidFileError.
     """
     recording = read_tracked(path, scale=scale, progress=progress)
     if not isinstance(recording, JointRecording):
         raise InvalidFileError(
-            f"{path} holds no joints of a depth camera. Read it with read_recording."
+            f"{path} has no joints of a depth camera. Read it with read_recording."
         )
     return recording
 
@@ -30,13 +30,13 @@ def read_joints(
 def write_joints(
     recording: JointRecording, path: Path | str, *, progress: Progress = unwatched
 ) -> None:
-    """Write a joint recording as our own CSV or JSON, as the name's ending says.
+    """Write a joint recording as our own CSV or JSON, by the suffix of the name.
 
-    Raises InvalidFileError for another ending, and whatever the writer raises.
+    Raises InvalidFileError for another suffix, and the errors of the writer.
     """
     write = WRITERS.get(Path(path).suffix.lower())
     if write is None:
         raise InvalidFileError(
-            f"{path}: joints are written as {' or '.join(WRITERS)}; end the name so."
+            f"{path} has no supported suffix for joints. Use {' or '.join(WRITERS)}."
         )
     write(recording, path, progress=progress)

@@ -1,4 +1,4 @@
-"""Read a recording without being told its format."""
+"""Read a recording of any supported format."""
 
 import re
 from collections.abc import Callable
@@ -43,7 +43,7 @@ HEAD = 4096
 
 
 class Reader(Protocol):
-    """What every reader of a format takes."""
+    """Signature of the reader of a format."""
 
     def __call__(
         self, path: Path | str, /, *, scale: float | None = None, progress: Progress = unwatched
@@ -52,13 +52,13 @@ class Reader(Protocol):
 
 
 class Format(NamedTuple):
-    """A format that can be read, and how to tell it from the first bytes of a file."""
+    """A supported format, with its reader and its detection from the first bytes."""
 
     name: str
     fits: Callable[[bytes], bool]
     read: Reader
     has_skeleton: bool = False
-    """Whether it holds a skeleton's motion; else points."""
+    """Whether it contains the motion of a skeleton; otherwise points."""
 
 
 def _is_bvh(head: bytes) -> bool:
@@ -76,7 +76,7 @@ def _is_acclaim_skeleton(head: bytes) -> bool:
 
 
 def _is_trc(head: bytes) -> bool:
-    """Some programs leave the first line out, or write it in small letters."""
+    """Detect TRC; some programs omit the first line, or write it in lower case."""
     return re.match(rb"(?i)[\s\"]*(PathFileType|DataRate\W+CameraRate)\b", head) is not None
 
 
@@ -105,21 +105,21 @@ FORMATS = (
     Format("joint CSV", is_joint_csv, read_joint_csv),
     Format("joint JSON", is_joint_json, read_joint_json),
 )
-"""A new format is a new line here."""
+"""Supported formats; add a line here for a new one."""
 
 
 def read_recording(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> Motion | Tracks | JointRecording | DepthRecording:
-    """Read a recording of any format known here, told by what the file or folder holds.
+    """Read a recording of any supported format, detected from the content.
 
     Parameters
     ----------
     path : Path or str
-        BVH; AMC with the actor's ASF beside it; C3D; TRC; joints of depth cameras; pictures of
-        depth (docs/formats).
+        BVH; AMC with the ASF of the actor next to it; C3D; TRC; joints of depth cameras; depth
+        images (docs/formats).
     scale : float, metres per unit of the file, or None
-        None leaves it to the reader of the format.
+        None: the default of the format.
     progress : Progress
 
     Returns
@@ -127,12 +127,12 @@ def read_recording(
     Motion, Tracks or JointRecording
         In metres, Z up; NaN where not observed.
     DepthRecording
-        Of a camera's pictures; see `read_depth`, which takes more options.
+        Depth images of a camera; see `read_depth` for more options.
 
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, or of a format not known here.
+        The file is missing, damaged, or of an unsupported format.
     SolveCancelled
         Raised by `progress`.
     """
@@ -143,9 +143,9 @@ def read_recording(
 
 
 def is_depth(path: Path | str) -> bool:
-    """Tell whether a file or folder holds pictures of depth, of a format that is known.
+    """Whether a file or folder contains depth images of a supported format.
 
-    Raises InvalidFileError where it is missing, or cannot be read.
+    Raises InvalidFileError if it is missing or unreadable.
     """
     return format_of(path) is None and depth_format_of(path) is not None
 
@@ -153,27 +153,25 @@ def is_depth(path: Path | str) -> bool:
 def read_tracked(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> Motion | Tracks | JointRecording:
-    """Read a recording as `read_recording` does, but no pictures of depth.
+    """Read a recording as `read_recording` does, without depth images.
 
     Raises
     ------
     InvalidFileError
-        Also for a recording of depth, in which nobody has found the actor yet.
+        Also for a depth recording, which has no tracked motion yet.
     """
-    known = format_of(path)
-    if known is not None:
+    format_ = format_of(path)
+    if format_ is not None:
         try:
-            return known.read(path, scale=scale, progress=progress)
-        except InvalidMotionError as error:  # Read as it says, but no recording.
+            return format_.read(path, scale=scale, progress=progress)
+        except InvalidMotionError as error:  # valid format, but not a valid recording
             raise InvalidFileError(f"{path}: {error}") from None
     if depth_format_of(path) is not None:
         raise InvalidFileError(
-            f"{path} holds pictures of depth and no motion yet. Track the actor in it first."
+            f"{path} has depth images but no motion yet. Track the actor in it first."
         )
     if Path(path).is_dir():
-        raise InvalidFileError(
-            f"{path} is a folder without pictures of depth. Choose a file in it."
-        )
+        raise InvalidFileError(f"{path} is a folder without depth images. Choose a file in it.")
     names = ", ".join(each.name for each in FORMATS if each.read is not _refuse_skeleton)
     raise InvalidFileError(
         f"{path} is of no known format ({names}). Export it as one of these first."
@@ -181,14 +179,14 @@ def read_tracked(
 
 
 def format_of(path: Path | str) -> Format | None:
-    """Tell by its first bytes which format a file has; None for none that is known.
+    """Detect the format of a file from its first bytes; None if it is not supported.
 
-    Pictures of depth are none of these: see `depth_format_of`.
+    For depth images see `depth_format_of`.
 
     Raises
     ------
     InvalidFileError
-        The file is missing, or cannot be read.
+        The file is missing or unreadable.
     """
     if Path(path).is_dir():
         refuse_closed(Path(path))
@@ -200,44 +198,44 @@ def format_of(path: Path | str) -> Format | None:
         raise InvalidFileError(f"There is no file {path}.") from None
     except OSError as error:
         raise unreadable(path, error) from None
-    return next((known for known in FORMATS if known.fits(head)), None)
+    return next((format_ for format_ in FORMATS if format_.fits(head)), None)
 
 
 def recordings_in(folder: Path) -> list[Path]:
-    """Return the files in a folder and the folders in it that hold recordings, by name.
+    """Return the recordings in a folder and its subfolders, sorted by name.
 
-    Hidden files and folders are passed over, and skeletons without motion. Files and folders
-    that cannot be opened are among them: whoever reads them says why.
+    Skip hidden files and folders, and skeletons without motion. Include files and folders that
+    cannot be opened: the reader reports the reason.
     """
     return [path for path in files_below(folder) if may_hold_motion(path)]
 
 
 def may_hold_motion(path: Path) -> bool:
-    """Whether a file or folder is a recording, by its first bytes, or cannot be opened."""
-    known = attempt(path, format_of, path)
-    return known is not None and getattr(known, "read", None) is not _refuse_skeleton
+    """Whether a file is a recording by its first bytes, or cannot be opened."""
+    format_ = attempt(path, format_of, path)
+    return format_ is not None and getattr(format_, "read", None) is not _refuse_skeleton
 
 
 def depth_in(folder: Path, is_take: Callable[[Path], bool] = is_depth_folder) -> list[Path]:
-    """Return the recordings of depth in a folder and below, by name; or the folder itself.
+    """Return the depth recordings in a folder and below, by name; or the folder itself.
 
-    A folder of pictures is one recording, and is not looked into. Hidden files and folders are
-    passed over, and links to folders. Files and folders that cannot be opened are among them:
-    whoever reads them says why.
+    A folder of images is one recording and is not searched. Skip hidden files and folders, and
+    links to folders. Include files and folders that cannot be opened: the reader reports the
+    reason.
 
     Parameters
     ----------
     folder : Path
     is_take : callable
-        Tells whether a folder is one recording.
+        Returns whether a folder is one recording.
     """
-    inside = files_below(folder, is_take)
-    return [path for path in inside if is_folder(path) or attempt(path, is_depth, path)]
+    paths = files_below(folder, is_take)
+    return [path for path in paths if is_folder(path) or attempt(path, is_depth, path)]
 
 
 def read_motion_or_tracks(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> Motion | Tracks:
-    """Read a recording as `read_tracked` does, and take the joints of a camera as points."""
+    """Read a recording as `read_tracked` does; return the joints of a camera as points."""
     recording = read_tracked(path, scale=scale, progress=progress)
     return recording.tracks if isinstance(recording, JointRecording) else recording

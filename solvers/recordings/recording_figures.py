@@ -1,4 +1,4 @@
-"""What there is to say about a recording before anything is done to it, as plain numbers."""
+"""Summarize a recording in plain numbers, before any processing."""
 
 from typing import Any
 
@@ -14,8 +14,8 @@ def recording_figures(
 ) -> dict[str, Any]:
     """Return size, rate and gaps of a recording, with units in the names, ready for JSON.
 
-    A gap is a stretch of frames in which a joint or marker is not observed. One that never is
-    counts as never seen instead; end sites, which nothing records, do not count at all.
+    A gap is an interval without observations of a joint or marker. A joint without any
+    observation counts as never seen instead. End sites are ignored.
 
     Returns
     -------
@@ -37,29 +37,29 @@ def recording_figures(
         columns = [
             joint for joint in range(skeleton.n_joints) if not skeleton.is_end_site(joint)
         ]
-        names, seen = np.array(skeleton.names)[columns], recording.observed[:, columns]
+        names, observed = np.array(skeleton.names)[columns], recording.observed[:, columns]
     else:
         tracks = recording.tracks if isinstance(recording, JointRecording) else recording
-        names, seen = np.array(tracks.names), tracks.visible
-    ever = seen.any(axis=0)
-    lengths = _gap_lengths(seen[:, ever])
+        names, observed = np.array(tracks.names), tracks.visible
+    is_observed = observed.any(axis=0)
+    lengths = _gap_lengths(observed[:, is_observed])
     figures = {
         "markers" if isinstance(recording, Tracks) else "joints": len(names),
         "n_frames": recording.n_frames,
         "frame_rate_hz": recording.frame_rate,
         "duration_s": recording.n_frames / recording.frame_rate,
         "gaps": len(lengths),
-        "missing_share": float(np.mean(~seen)),
+        "missing_share": float(np.mean(~observed)),
         "longest_gap_s": float(lengths.max(initial=0)) / recording.frame_rate,
-        "never_seen": names[~ever].tolist(),
+        "never_seen": names[~is_observed].tolist(),
     }
     if isinstance(recording, JointRecording):
         figures["sensor"] = recording.sensor.value
     return figures
 
 
-def _gap_lengths(seen: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """Return how many frames each gap of each column, shape (n_frames, n), lasts."""
-    edge = np.ones((1, seen.shape[1]), dtype=bool)
-    turns = np.diff(np.concatenate([edge, seen, edge]).T.astype(np.int8))
-    return np.flatnonzero(turns == 1) - np.flatnonzero(turns == -1)
+def _gap_lengths(observed: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Return the length in frames of each gap of each column, shape (n_frames, n)."""
+    edge = np.ones((1, observed.shape[1]), dtype=bool)
+    changes = np.diff(np.concatenate([edge, observed, edge]).T.astype(np.int8))
+    return np.flatnonzero(changes == 1) - np.flatnonzero(changes == -1)

@@ -1,4 +1,4 @@
-"""Libraries of clips, and what in them is like a given motion.
+"""Index clips in a library, and find clips that are similar to a motion.
 
 >>> from solvers.retrieval import Clip, build_clip_library, find_similar
 >>> from solvers.samples import GaitSettings, walking_gait

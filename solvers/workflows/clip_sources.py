@@ -10,7 +10,7 @@ from ..recordings import recordings_in
 from ..recordings.containers import is_folder
 from ..recordings.skeleton_files import find_skeleton
 from ..retrieval import Origin
-from ..retrieval.index import is_utf_8, text_fault
+from ..retrieval.index import find_text_fault, is_utf_8
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class ClipSource:
         """Return a sentence on why its names cannot be those of a clip, or nothing."""
         if fault := path_fault(self.path):
             return fault
-        if fault := text_fault("/".join(self.place)):
+        if fault := find_text_fault("/".join(self.place)):
             return f"The name of {str(self.path)!r} {fault}; rename the file or its folder."
         return ""
 

@@ -8,7 +8,7 @@ from ..errors import InvalidMotionError
 from ..files import is_missing, real_path, reason_of
 from ..progress import Progress, unwatched
 from ..retrieval import ClipEntry, ClipLibrary, DescribedClip, Origin, open_clip_library
-from ..retrieval.index import tags_fault
+from ..retrieval.index import find_tags_fault
 from ..version import version
 from .clip_sources import ClipSource, clip_sources
 from .describe_files import Described, Wanted, describe_files
@@ -88,7 +88,7 @@ def index_files(
         Raised by `progress`.
     """
     sources = clip_sources(files_or_folders)
-    if fault := tags_fault(tuple(tags)):
+    if fault := find_tags_fault(tuple(tags)):
         raise InvalidMotionError(fault)
     with open_clip_library(library_path) as library:
         indexing = _Indexing(library, tuple(dict.fromkeys(tags)))

@@ -11,7 +11,7 @@ from ..errors import InvalidFileError
 from ..gestures import Gesture, GestureEvent, GestureRecognizer, GestureSettings, Mode
 from ..motion import JointRecording
 from ..motion.humanoid import POSTURE_JOINTS, posture_joint_indices
-from ..recordings.live import Heard, LiveFrame, StreamReader, recording_of
+from ..recordings.live import LiveFrame, StreamCounts, StreamReader, recording_from_frames
 
 Array = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ class LiveSession:
         return self._recogniser.mode
 
     @property
-    def heard(self) -> Heard:
+    def heard(self) -> StreamCounts:
         """How many frames came in, and why others were dropped."""
         return self._stream.heard
 
@@ -109,7 +109,7 @@ def _performance(news: News, frames: list[LiveFrame]) -> News:
     if not frames or frames[-1].time - frames[0].time < SHORTEST:
         return replace(news, message=TOO_SHORT)
     try:
-        return replace(news, query=recording_of(frames), message="")
+        return replace(news, query=recording_from_frames(frames), message="")
     except InvalidFileError as error:
         return replace(news, message=str(error))
 

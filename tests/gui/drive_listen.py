@@ -42,7 +42,7 @@ def perform(*gestures):
     made = samples.perform_gestures(gestures, samples.PerformanceSettings(noise=0.004))
     start = time.monotonic()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-        for frame in frames.frames_of(made.recording()):
+        for frame in frames.frames_from_recording(made.recording()):
             while time.monotonic() - start < frame.time:
                 yield 0.01
             sender.sendto(frames.encode_frame(frame), ("127.0.0.1", frames.PORT))

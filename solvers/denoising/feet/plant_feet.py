@@ -55,12 +55,13 @@ class PlantSettings(Settings):
         label="Lock Foot Rotation",
     )
     floor: bool = setting(
-        True, "Put planted feet that are near the floor onto it, all at one height",
+        True,
+        "Level planted feet that are near the floor, all at one height",
         label="Level Floor",
-    )  # fmt: skip
+    )
     softness: float = setting(
         0.01,
-        "Fraction of the leg length kept in reserve; higher bends knees more and lowers the hips",
+        "Fraction of the leg length held in reserve; higher bends knees and lowers hips more",
         minimum=0.0, maximum=0.2, advanced=True, label="Leg Stretch Limit",
     )  # fmt: skip
     spare_knees: bool = setting(

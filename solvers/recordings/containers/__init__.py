@@ -3,32 +3,32 @@
 from .c3d_file import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS, C3dFile, is_c3d
 from .folder_scan import files_below, is_folder, refuse_closed
 from .growing_table import GrowingTable
-from .json_members import json_members, numbers_of
+from .json_members import array_from_json, json_members
 from .line_reader import Block, LineReader
 from .listed_images import bounded_image, is_listed, largest_color, listed_image
 from .matlab_file import MatlabArray, is_matlab, matlab_arrays
 from .matroska import Matroska, Track, index_matroska, is_matroska
-from .names import LONGEST, DifferentNames, printable, shown
+from .names import MAX_NAME_LENGTH, UniqueNames, printable, shown
 from .png_header import PngHeader, is_png, png_header
 from .row_stream import stream_rows
 from .stored_arrays import NPY_MAGIC, NUMBERS, read_archive, read_array
 from .stored_bytes import (
     CHUNK,
-    DENSEST,
-    MOST_CHECKED,
+    MAX_CHECKED_BYTES,
+    MAX_DEFLATE_RATIO,
+    ByteSlice,
     PackedBytes,
-    PartOfBytes,
     PlainBytes,
     StoredBytes,
 )
 from .text import (
     BYTE_ORDER_MARK,
     ROWS_AT_ONCE,
-    parted_by_blanks,
+    parse_rows,
     read_bytes,
     read_number,
     read_rows,
-    read_some_rows,
+    spaces_from_commas,
 )
 
 __all__ = [
@@ -37,27 +37,28 @@ __all__ = [
     "C3D_ID",
     "CHARACTERS",
     "CHUNK",
-    "DENSEST",
     "FLOATS",
     "INTEGERS",
-    "LONGEST",
-    "MOST_CHECKED",
+    "MAX_CHECKED_BYTES",
+    "MAX_DEFLATE_RATIO",
+    "MAX_NAME_LENGTH",
     "NPY_MAGIC",
     "NUMBERS",
     "ROWS_AT_ONCE",
     "Block",
+    "ByteSlice",
     "C3dFile",
-    "DifferentNames",
     "GrowingTable",
     "LineReader",
     "MatlabArray",
     "Matroska",
     "PackedBytes",
-    "PartOfBytes",
     "PlainBytes",
     "PngHeader",
     "StoredBytes",
     "Track",
+    "UniqueNames",
+    "array_from_json",
     "bounded_image",
     "files_below",
     "index_matroska",
@@ -71,8 +72,7 @@ __all__ = [
     "largest_color",
     "listed_image",
     "matlab_arrays",
-    "numbers_of",
-    "parted_by_blanks",
+    "parse_rows",
     "png_header",
     "printable",
     "read_archive",
@@ -80,8 +80,8 @@ __all__ = [
     "read_bytes",
     "read_number",
     "read_rows",
-    "read_some_rows",
     "refuse_closed",
     "shown",
+    "spaces_from_commas",
     "stream_rows",
 ]

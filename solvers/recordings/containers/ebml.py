@@ -9,8 +9,8 @@ import struct
 from collections.abc import Iterator
 from typing import NamedTuple
 
-LONGEST_ID, LONGEST_SIZE = 4, 8
-LONGEST_HEAD = LONGEST_ID + LONGEST_SIZE
+MAX_ID_BYTES, MAX_SIZE_BYTES = 4, 8
+MAX_HEAD_BYTES = MAX_ID_BYTES + MAX_SIZE_BYTES
 
 
 class Head(NamedTuple):
@@ -31,25 +31,25 @@ class Head(NamedTuple):
     size: int | None
 
 
-def head_of(content: bytes, at: int = 0) -> Head:
+def read_head(content: bytes, at: int = 0) -> Head:
     """Read the head of an element; raises ValueError where there is none."""
-    end = _length(content, at, LONGEST_ID)
+    end = _length(content, at, MAX_ID_BYTES)
     number = int.from_bytes(content[at : at + end], "big")
-    size, taken = number_of(content, at + end)
+    size, taken = read_number(content, at + end)
     unknown = size == (1 << (7 * taken)) - 1
     return Head(number, end + taken, None if unknown else size)
 
 
-def number_of(content: bytes, at: int) -> tuple[int, int]:
+def read_number(content: bytes, at: int) -> tuple[int, int]:
     """Return a number of changing length, and how many bytes it takes."""
-    length = _length(content, at, LONGEST_SIZE)
+    length = _length(content, at, MAX_SIZE_BYTES)
     whole = int.from_bytes(content[at : at + length], "big")
     return whole & ((1 << (7 * length)) - 1), length
 
 
-def signed_number_of(content: bytes, at: int) -> tuple[int, int]:
+def read_signed_number(content: bytes, at: int) -> tuple[int, int]:
     """Return a number of changing length that may be negative, and how many bytes it takes."""
-    number, length = number_of(content, at)
+    number, length = read_number(content, at)
     return number - ((1 << (7 * length - 1)) - 1), length
 
 
@@ -67,7 +67,7 @@ def children(content: bytes) -> Iterator[tuple[int, bytes]]:
     """Yield number and content of the elements in an element; raises ValueError if damaged."""
     at = 0
     while at < len(content):
-        head = head_of(content, at)
+        head = read_head(content, at)
         at += head.length
         if head.size is None or at + head.size > len(content):
             raise ValueError(at)
@@ -87,7 +87,7 @@ def text(content: bytes) -> str:
     return content.split(b"\0")[0].decode("utf-8", errors="replace")
 
 
-def laced(content: bytes, flags: int, size: int) -> list[tuple[int, int]]:
+def split_lacing(content: bytes, flags: int, size: int) -> list[tuple[int, int]]:
     """Divide a block into its frames.
 
     Parameters
@@ -145,7 +145,9 @@ def _equal_sizes(content: bytes, n_frames: int, size: int) -> tuple[list[int], i
 def _ebml_sizes(content: bytes, n_frames: int, size: int) -> tuple[list[int], int]:
     at, sizes = 1, list[int]()
     for place in range(n_frames - 1):
-        number, taken = number_of(content, at) if not place else signed_number_of(content, at)
+        number, taken = (
+            read_number(content, at) if not place else read_signed_number(content, at)
+        )
         sizes.append(number + (sizes[-1] if sizes else 0))
         at += taken
     return [*sizes, size - at - sum(sizes)], at
@@ -153,6 +155,6 @@ def _ebml_sizes(content: bytes, n_frames: int, size: int) -> tuple[list[int], in
 
 def block_head(content: bytes) -> tuple[int, int, int, int]:
     """Return track, time within the cluster, flags, and how long the head of a block is."""
-    track, length = number_of(content, 0)
+    track, length = read_number(content, 0)
     time, flags = struct.unpack_from(">hB", content, length)
     return track, time, flags, length + 3

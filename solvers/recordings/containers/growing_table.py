@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-SPARE = 1.02
+SPARE_RATIO = 1.02
 """Room that is made for rows that are somewhat shorter, in characters, than the first."""
-GROWTH = 1.3
+GROWTH_RATIO = 1.3
 
 
 class GrowingTable:
@@ -24,9 +24,9 @@ class GrowingTable:
         """Append rows, shape (n, width); with them, that share of the file has been read."""
         stop = self._n_rows + len(rows)
         if stop > len(self._table):
-            enough = int(SPARE * stop / share) if share > 0.0 else stop
+            enough = int(SPARE_RATIO * stop / share) if share > 0.0 else stop
             if self._n_rows:  # They got shorter.
-                enough = min(enough, int(GROWTH * stop))
+                enough = min(enough, int(GROWTH_RATIO * stop))
             self._resize(max(stop, enough))
         self._table[self._n_rows : stop] = rows
         self._n_rows = stop

@@ -42,49 +42,49 @@ def json_members(path: Path | str) -> Iterator[Member]:
 
 
 def _members(text: str) -> Iterator[Member]:
-    at = _after(text, 0, "{")
+    at = _skip_mark(text, 0, "{")
     more = text[at] != "}"
     while more:
         key, at = DECODER.raw_decode(text, at)
-        at = _after(text, at, ":")
+        at = _skip_mark(text, at, ":")
         if text[at] == "[":
             at = yield from _elements(text, at, str(key))
         else:
             value, at = DECODER.raw_decode(text, at)
             yield Member(str(key), value, at / len(text))
-        at = _space(text, at)
+        at = _skip_space(text, at)
         more = text[at] != "}"
         if more:
-            at = _after(text, at, ",")
+            at = _skip_mark(text, at, ",")
 
 
 def _elements(text: str, at: int, key: str) -> Generator[Member, None, int]:
-    at = _after(text, at, "[")
+    at = _skip_mark(text, at, "[")
     more = text[at] != "]"
     while more:
         value, at = DECODER.raw_decode(text, at)
         yield Member(key, value, at / len(text))
-        at = _space(text, at)
+        at = _skip_space(text, at)
         more = text[at] != "]"
         if more:
-            at = _after(text, at, ",")
+            at = _skip_mark(text, at, ",")
     return at + 1
 
 
-def _space(text: str, at: int) -> int:
+def _skip_space(text: str, at: int) -> int:
     found = SPACE.match(text, at)
     return found.end() if found else at
 
 
-def _after(text: str, at: int, mark: str) -> int:
+def _skip_mark(text: str, at: int, mark: str) -> int:
     """Return the place after a mark and the space around it; ValueError where it is not."""
-    at = _space(text, at)
+    at = _skip_space(text, at)
     if text[at] != mark:
         raise ValueError(mark)
-    return _space(text, at + 1)
+    return _skip_space(text, at + 1)
 
 
-def numbers_of(value: Any, shape: tuple[int, ...], place: str) -> NDArray[np.float64]:
+def array_from_json(value: Any, shape: tuple[int, ...], place: str) -> NDArray[np.float64]:
     """Return nested lists of numbers as an array; null is NaN, and -1 in a shape any length.
 
     Raises InvalidFileError, which begins with `place`, for whatever else.

@@ -8,9 +8,9 @@ from ...errors import InvalidFileError
 from ...files import open_regular, unreadable
 from .text import BYTE_ORDER_MARK
 
-BLOCK = 1 << 22
+BLOCK_BYTES = 1 << 22
 """Bytes that are read at once."""
-LONGEST_LINE = 1 << 24
+MAX_LINE_BYTES = 1 << 24
 """Bytes; what is longer is no line of numbers."""
 
 
@@ -27,11 +27,11 @@ class Block(NamedTuple):
 
     def parts(self, most: int) -> Iterator["Block"]:
         """Yield the same lines, no more than so many at a time."""
-        per_byte = (self.stop - self.start) / max(1, _length(self.lines))
+        per_byte = (self.stop - self.start) / max(1, _count_bytes(self.lines))
         start = self.start
         for at in range(0, len(self.lines), most):
             lines = self.lines[at : at + most]
-            stop = start + per_byte * _length(lines)
+            stop = start + per_byte * _count_bytes(lines)
             yield Block(self.first + at, lines, start, stop)
             start = stop
 
@@ -112,16 +112,16 @@ def _blocks(path: Path) -> Iterator[tuple[list[bytes], float]]:
             file.seek(0)
             mark = file.read(len(BYTE_ORDER_MARK))
             begun = [] if mark == BYTE_ORDER_MARK else [mark]  # a line that goes on
-            while block := file.read(BLOCK):
+            while block := file.read(BLOCK_BYTES):
                 end = _end_of_lines(block)
                 if end:
                     lines = b"".join([*begun, block[:end]]).splitlines()
                     yield lines, min(1.0, file.tell() / size)
                     begun = []
                 begun.append(block[end:])
-                if sum(map(len, begun)) > LONGEST_LINE:
+                if sum(map(len, begun)) > MAX_LINE_BYTES:
                     raise InvalidFileError(
-                        f"{path} holds a line of more than {LONGEST_LINE >> 20} MB. It is"
+                        f"{path} holds a line of more than {MAX_LINE_BYTES >> 20} MB. It is"
                         " damaged; export it again."
                     )
             if lines := b"".join(begun).splitlines():
@@ -130,7 +130,7 @@ def _blocks(path: Path) -> Iterator[tuple[list[bytes], float]]:
         raise unreadable(path, error) from None
 
 
-def _length(lines: list[bytes]) -> int:
+def _count_bytes(lines: list[bytes]) -> int:
     return sum(map(len, lines)) + len(lines)
 
 

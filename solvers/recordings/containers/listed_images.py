@@ -12,7 +12,7 @@ from ...errors import InvalidFileError
 from ...files import DAMAGE, open_regular
 from .names import shown
 
-COLOR_RATIO, MOST_COLOR_PIXELS = 16, 8192
+MAX_COLOR_RATIO, MAX_COLOR_PIXELS = 16, 8192
 """Columns or rows of a color image, at most: so many times those of depth, and in all."""
 FORMATS = ("PNG", "JPEG", "PPM", "BMP")
 """Those of Pillow that color may have; others start programs, or are large to read."""
@@ -106,7 +106,7 @@ def bounded_image(
 
 def largest_color(shape: tuple[int, int]) -> tuple[int, int]:
     """Return the columns and rows that color beside depth of (rows, columns) may have."""
-    height, width = (min(COLOR_RATIO * size, MOST_COLOR_PIXELS) for size in shape)
+    height, width = (min(MAX_COLOR_RATIO * size, MAX_COLOR_PIXELS) for size in shape)
     return width, height
 
 

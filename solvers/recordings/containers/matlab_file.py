@@ -13,7 +13,14 @@ from typing import NamedTuple
 
 from ...errors import InvalidFileError
 from ...files import DAMAGE, open_regular
-from .stored_bytes import DENSEST, PackedBytes, PartOfBytes, PlainBytes, StoredBytes, cut_short
+from .stored_bytes import (
+    MAX_DEFLATE_RATIO,
+    ByteSlice,
+    PackedBytes,
+    PlainBytes,
+    StoredBytes,
+    truncation_error,
+)
 
 HEADER = 128
 MATRIX, PACKED = 14, 15
@@ -21,8 +28,8 @@ KINDS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8"}
 """NumPy's names of the types of stored numbers."""
 WITH_HEADER = 15
 """What zlib calls the window of packed bytes with its own header."""
-MOST_DIMENSIONS, LONGEST_NAME = 8, 64
-SMALL = 4
+MAX_DIMENSIONS, MAX_NAME_BYTES = 8, 64
+MAX_INLINE_BYTES = 4
 
 
 class MatlabArray(NamedTuple):
@@ -69,7 +76,7 @@ def _elements(path: Path, order: str) -> Iterator[StoredBytes]:
         kind, size = struct.unpack(f"{order}II", PlainBytes(path, at, 8).read(0, 8))
         at += 8
         if at + size > end:
-            raise cut_short(path)
+            raise truncation_error(path)
         if kind == PACKED:
             yield _unpacked(path, at, size, order)
         elif kind == MATRIX:
@@ -82,11 +89,11 @@ def _unpacked(path: Path, at: int, packed: int, order: str) -> StoredBytes:
         file.seek(at)
         head = zlib.decompressobj().decompress(file.read(min(packed, 1024)), 8)
     kind, size = struct.unpack(f"{order}II", head)
-    if kind != MATRIX or size > DENSEST * packed:
+    if kind != MATRIX or size > MAX_DEFLATE_RATIO * packed:
         raise ValueError(kind)
     content = PackedBytes(path, at, packed, size + 8, WITH_HEADER)
     content.check()
-    return PartOfBytes(content, 8, size)
+    return ByteSlice(content, 8, size)
 
 
 def _array(content: StoredBytes, order: str) -> MatlabArray | None:
@@ -95,14 +102,14 @@ def _array(content: StoredBytes, order: str) -> MatlabArray | None:
     (number,) = struct.unpack(f"{order}I", flags[:4])
     if not 6 <= number & 0xFF <= 13:  # double to uint32
         return None
-    _, lengths, at = _element(content, at, order, 4 * MOST_DIMENSIONS)
+    _, lengths, at = _element(content, at, order, 4 * MAX_DIMENSIONS)
     shape = struct.unpack(f"{order}{len(lengths) // 4}i", lengths)
-    _, name, at = _element(content, at, order, LONGEST_NAME)
+    _, name, at = _element(content, at, order, MAX_NAME_BYTES)
     kind, size, start = _tag(content, at, order)
     stored = f"{order}{KINDS[kind]}"
     if min(shape) < 0 or prod(shape) * int(stored[-1]) != size or start + size > content.size:
         raise ValueError(shape)
-    return MatlabArray(name.decode("latin1"), shape, stored, PartOfBytes(content, start, size))
+    return MatlabArray(name.decode("latin1"), shape, stored, ByteSlice(content, start, size))
 
 
 def _element(content: StoredBytes, at: int, order: str, most: int) -> tuple[int, bytes, int]:
@@ -118,5 +125,5 @@ def _tag(content: StoredBytes, at: int, order: str) -> tuple[int, int, int]:
     """Return type, size and beginning of an element; up to 4 bytes stand in the tag itself."""
     first, second = struct.unpack(f"{order}II", content.read(at, 8))
     if first >> 16:
-        return first & 0xFFFF, min(first >> 16, SMALL), at + 4
+        return first & 0xFFFF, min(first >> 16, MAX_INLINE_BYTES), at + 4
     return first, second, at + 8

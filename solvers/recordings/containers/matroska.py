@@ -14,7 +14,16 @@ from typing import IO
 from ...errors import InvalidFileError
 from ...files import open_regular, unreadable
 from ...progress import Progress
-from .ebml import LONGEST_HEAD, Head, block_head, children, head_of, laced, text, unsigned
+from .ebml import (
+    MAX_HEAD_BYTES,
+    Head,
+    block_head,
+    children,
+    read_head,
+    split_lacing,
+    text,
+    unsigned,
+)
 
 HEADER = 0x1A45DFA3
 SEGMENT, CLUSTER, GROUP = 0x18538067, 0x1F43B675, 0xA0
@@ -27,14 +36,14 @@ TRACK, NUMBER, UID, NAME, CODEC, PRIVATE, DURATION = (
 TAG, TAG_PAIR, TAG_NAME, TAG_TEXT = 0x7373, 0x67C8, 0x45A3, 0x4487
 FILE, FILE_NAME, FILE_DATA = 0x61A7, 0x466E, 0x465C
 ENTERED = {SEGMENT, CLUSTER, GROUP}
-USUAL_SCALE = 1_000_000
+DEFAULT_SCALE = 1_000_000
 """Nanoseconds in one unit of time."""
-MOST_DESCRIBED = 16_000_000
+MAX_ELEMENT_BYTES = 16_000_000
 """Bytes of an element that is read whole."""
 BLOCK_START = 4096
 """Bytes at the beginning of a block in which its lacing stands."""
-TOLD_EVERY = 4096
-LATEST = 2**62
+PROGRESS_INTERVAL = 4096
+MAX_TIME_NS = 2**62
 """Nanoseconds from the start of the recording: 146 years, which an array can hold."""
 
 MAX_TRACKS = 127
@@ -83,7 +92,7 @@ class Matroska:
     tags: dict[str, str] = field(default_factory=dict)
     files: dict[str, bytes] = field(default_factory=dict)
     whole: bool = True
-    scale: int = USUAL_SCALE
+    scale: int = DEFAULT_SCALE
 
 
 def is_matroska(head: bytes) -> bool:
@@ -141,19 +150,19 @@ def _walk(
             _describe(file, at, head, found)
         at += head.size
         n_elements += 1
-        if not n_elements % TOLD_EVERY:
+        if not n_elements % PROGRESS_INTERVAL:
             progress(at / end, "Reading")
 
 
 def _describe(file: IO[bytes], at: int, head: Head, found: Matroska) -> None:
-    if head.number in DESCRIBED and head.size is not None and head.size <= MOST_DESCRIBED:
+    if head.number in DESCRIBED and head.size is not None and head.size <= MAX_ELEMENT_BYTES:
         DESCRIBED[head.number](_content(file, at, head.size), found)
 
 
 def _next_head(file: IO[bytes], at: int, found: Matroska) -> Head | None:
     """Return the head of an element; None where frames came before, but here is nonsense."""
     try:
-        return head_of(_content(file, at, LONGEST_HEAD))
+        return read_head(_content(file, at, MAX_HEAD_BYTES))
     except ValueError:
         if not any(track.places for track in found.tracks.values()):
             raise
@@ -179,9 +188,9 @@ def _add_block(
     track = found.tracks.get(number)
     if track is None or not wanted(track):
         return
-    for place, (begin, each) in enumerate(laced(start[length:], flags, size - length)):
+    for place, (begin, each) in enumerate(split_lacing(start[length:], flags, size - length)):
         since = (cluster + time) * found.scale + place * track.duration
-        if abs(since) > LATEST:
+        if abs(since) > MAX_TIME_NS:
             raise ValueError(since)
         track.times.append(since)
         track.places.append(at + length + begin)
@@ -191,7 +200,7 @@ def _add_block(
 def _read_info(content: bytes, found: Matroska) -> None:
     for number, inside in children(content):
         if number == SCALE:
-            found.scale = unsigned(inside) or USUAL_SCALE
+            found.scale = unsigned(inside) or DEFAULT_SCALE
 
 
 def _read_tracks(content: bytes, found: Matroska) -> None:

@@ -1,11 +1,11 @@
 """Names that differ from each other, for formats that let two joints be called the same."""
 
-LONGEST = 1000
+MAX_NAME_LENGTH = 1000
 """Letters in a name; what is longer is something else that was damaged."""
-LONGEST_SHOWN = 40
+MAX_SHOWN_LENGTH = 40
 
 
-class DifferentNames:
+class UniqueNames:
     """Hands out every name once: the second `hand` is called `hand_2`."""
 
     def __init__(self) -> None:
@@ -35,4 +35,4 @@ def printable(name: str) -> str:
 def shown(name: str) -> str:
     """Return a name, or whatever stands where one belongs, as a sentence may quote it."""
     name = printable(name)
-    return name if len(name) <= LONGEST_SHOWN else f"{name[:LONGEST_SHOWN]}..."
+    return name if len(name) <= MAX_SHOWN_LENGTH else f"{name[:MAX_SHOWN_LENGTH]}..."

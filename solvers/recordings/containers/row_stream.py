@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ...progress import Progress, unwatched
 from .growing_table import GrowingTable
 from .line_reader import LineReader
-from .text import ROWS_AT_ONCE, read_some_rows
+from .text import ROWS_AT_ONCE, parse_rows
 
 
 def stream_rows(
@@ -50,7 +50,7 @@ def stream_rows(
         for part in block.parts(ROWS_AT_ONCE):
             lines = part.lines if tidied is None else [tidied(line) for line in part.lines]
             numbers = range(part.first, part.first + len(lines))
-            table.add(read_some_rows(lines, width, path, numbers), part.stop)
+            table.add(parse_rows(lines, width, path, numbers), part.stop)
             progress(part.stop, "Reading")
     progress(1.0, "Reading")
     return table.rows()

@@ -11,11 +11,11 @@ from ...files import open_regular, unreadable
 
 CHUNK = 1 << 17
 """Bytes that are taken from the file, and that are unpacked, at a time."""
-NEAREST_MARKS, MOST_MARKS = 4_000_000, 400
+MIN_MARK_SPACING, MAX_MARKS = 4_000_000, 400
 """Unpacked bytes between two marks, of which each holds some 50 kB; fewer in long files."""
-MOST_CHECKED = 200_000_000
+MAX_CHECKED_BYTES = 200_000_000
 """Bytes that are looked through for damage before the first picture, in a second at most."""
-DENSEST = 1040
+MAX_DEFLATE_RATIO = 1040
 """How many bytes one packed byte can hold, by the rules of deflate."""
 
 
@@ -47,12 +47,12 @@ class PlainBytes:
         except OSError as error:
             raise unreadable(self.path, error) from None
         if len(content) < count:
-            raise cut_short(self.path)
+            raise truncation_error(self.path)
         return content
 
 
 @dataclass(frozen=True)
-class PartOfBytes:
+class ByteSlice:
     """Bytes behind a header."""
 
     whole: StoredBytes
@@ -64,7 +64,7 @@ class PartOfBytes:
         return self.whole.read(self.skipped + start, count)
 
 
-class _Mark(NamedTuple):
+class _Checkpoint(NamedTuple):
     """Where unpacking may go on: how much was unpacked, how much was taken, and the state."""
 
     unpacked: int
@@ -108,11 +108,11 @@ class PackedBytes:
         except OSError as error:
             raise unreadable(self.path, error) from None
         except zlib.error:
-            raise damaged(self.path) from None
+            raise damage_error(self.path) from None
 
     def check(self) -> None:
         """Raise zlib.error if the whole belies its checksum; long ones are believed."""
-        if self.size > MOST_CHECKED:
+        if self.size > MAX_CHECKED_BYTES:
             return
         state, taken = zlib.decompressobj(self.window), 0
         with open_regular(self.path) as file:
@@ -125,7 +125,7 @@ class PackedBytes:
                 if not state.decompress(tail, CHUNK) and not tail:
                     raise zlib.error
 
-    def _unpack(self, file: Any, mark: _Mark, start: int, count: int) -> bytes:
+    def _unpack(self, file: Any, mark: _Checkpoint, start: int, count: int) -> bytes:
         unpacked, taken, tail = mark.unpacked, mark.taken, mark.tail
         state = mark.state.copy()
         file.seek(self.offset + taken)
@@ -137,22 +137,22 @@ class PackedBytes:
             most = min(CHUNK, (start if unpacked < start else start + count) - unpacked)
             part = state.decompress(tail, most)
             if not part and (state.eof or taken >= self.packed or not tail):
-                raise cut_short(self.path)
+                raise truncation_error(self.path)
             tail = state.unconsumed_tail
             if unpacked >= start:
                 wanted.append(part)
             unpacked += len(part)
-            self._leave_mark(_Mark(unpacked, taken, state, tail))
-        self._last = _Mark(unpacked, taken, state, tail)
+            self._leave_mark(_Checkpoint(unpacked, taken, state, tail))
+        self._last = _Checkpoint(unpacked, taken, state, tail)
         return b"".join(wanted)
 
-    def _leave_mark(self, mark: _Mark) -> None:
+    def _leave_mark(self, mark: _Checkpoint) -> None:
         if mark.unpacked >= self._marks[-1].unpacked + self._spacing:
             self._marks.append(mark._replace(state=mark.state.copy()))
 
     def _forget(self) -> None:
-        self._spacing = max(NEAREST_MARKS, self.size // MOST_MARKS)
-        self._last = _Mark(0, 0, zlib.decompressobj(self.window), b"")
+        self._spacing = max(MIN_MARK_SPACING, self.size // MAX_MARKS)
+        self._last = _Checkpoint(0, 0, zlib.decompressobj(self.window), b"")
         self._marks = [self._last]
 
     def __getstate__(self) -> dict[str, Any]:
@@ -165,11 +165,11 @@ class PackedBytes:
         self._forget()
 
 
-def cut_short(path: Path) -> InvalidFileError:
+def truncation_error(path: Path) -> InvalidFileError:
     """Return the error of a file that ends too early."""
     return InvalidFileError(f"{path} is cut short. Copy or export it again.")
 
 
-def damaged(path: Path) -> InvalidFileError:
+def damage_error(path: Path) -> InvalidFileError:
     """Return the error of a file whose bytes make no sense."""
     return InvalidFileError(f"{path} is damaged. Copy or export it again.")

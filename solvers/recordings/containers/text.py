@@ -50,7 +50,7 @@ def read_bytes(path: Path | str) -> bytes:
         raise unreadable(path, error) from None
 
 
-def parted_by_blanks(line: bytes) -> bytes:
+def spaces_from_commas(line: bytes) -> bytes:
     """Return a line parted by commas, parted by blanks; empty places are not a number."""
     if not line.strip():
         return b""
@@ -90,12 +90,12 @@ def read_rows(
     parts = [np.empty((0, width))]
     for start in range(0, len(lines), ROWS_AT_ONCE):
         block = slice(start, start + ROWS_AT_ONCE)
-        parts.append(read_some_rows(lines[block], width, path, line_numbers[block]))
+        parts.append(parse_rows(lines[block], width, path, line_numbers[block]))
         progress(min(1.0, (start + ROWS_AT_ONCE) / len(lines)), "Reading")
     return np.concatenate(parts)
 
 
-def read_some_rows(
+def parse_rows(
     lines: Sequence[bytes], width: int, path: Path | str, line_numbers: Sequence[int]
 ) -> NDArray[np.float64]:
     """Read one row of numbers per line, as `read_rows` does: all lines at once."""

@@ -2,46 +2,52 @@
 
 from .axes import (
     CENTIMETRE,
-    FEWEST_JOINTS_OF_A_BODY,
-    PLAUSIBLE_REACH,
+    MIN_BODY_JOINTS,
+    PLAUSIBLE_REACH_M,
     check_scale,
     guess_unit,
-    longest_way,
-    turns_y_up_from_z_up,
-    turns_z_up_from_y_up,
+    longest_bone_path,
+    rotations_y_up_from_z_up,
+    rotations_z_up_from_y_up,
     y_up_from_z_up,
     z_up_from_y_up,
 )
-from .bodies import frames_of, longest_seen
-from .body_unit import guessed_unit
-from .points import METRES, guess_unit_of_points, point_names, points_z_up, said_unit
+from .bodies import longest_observed_body, stack_body_frames
+from .body_unit import describe_guessed_unit
+from .points import (
+    METRES,
+    guess_unit_of_points,
+    metres_from_unit_name,
+    point_names,
+    points_z_up,
+)
 from .sensor_axes import from_azure_space, from_kinect_space
-from .time_stamps import USUAL_RATE, ConstantRate, even_rate
+from .time_stamps import DEFAULT_FRAME_RATE, ConstantRate, constant_rate_from_times
 from .tracked_joints import joint_recording
 
 __all__ = [
     "CENTIMETRE",
-    "FEWEST_JOINTS_OF_A_BODY",
+    "DEFAULT_FRAME_RATE",
     "METRES",
-    "PLAUSIBLE_REACH",
-    "USUAL_RATE",
+    "MIN_BODY_JOINTS",
+    "PLAUSIBLE_REACH_M",
     "ConstantRate",
     "check_scale",
-    "even_rate",
-    "frames_of",
+    "constant_rate_from_times",
+    "describe_guessed_unit",
     "from_azure_space",
     "from_kinect_space",
     "guess_unit",
     "guess_unit_of_points",
-    "guessed_unit",
     "joint_recording",
-    "longest_seen",
-    "longest_way",
+    "longest_bone_path",
+    "longest_observed_body",
+    "metres_from_unit_name",
     "point_names",
     "points_z_up",
-    "said_unit",
-    "turns_y_up_from_z_up",
-    "turns_z_up_from_y_up",
+    "rotations_y_up_from_z_up",
+    "rotations_z_up_from_y_up",
+    "stack_body_frames",
     "y_up_from_z_up",
     "z_up_from_y_up",
 ]

@@ -14,9 +14,9 @@ UNITS = (CENTIMETRE, 1.0, 0.001, 0.0254, ACCLAIM_UNIT)
 
 # The longest way along the bones of an adult, from a hand or the head to a foot: 2.0 to 2.6 m
 # in skeletons of nine makers. Unlike the height it does not depend on the rest pose.
-ADULT_REACH = 2.3
-PLAUSIBLE_REACH = (1.1, 4.6)
-FEWEST_JOINTS_OF_A_BODY = 8
+ADULT_REACH_M = 2.3
+PLAUSIBLE_REACH_M = (1.1, 4.6)
+MIN_BODY_JOINTS = 8
 
 
 def check_scale(scale: float | None) -> None:
@@ -35,13 +35,13 @@ def y_up_from_z_up(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.stack([vectors[..., 0], vectors[..., 2], -vectors[..., 1]], axis=-1)
 
 
-def turns_z_up_from_y_up(rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+def rotations_z_up_from_y_up(rotations: NDArray[np.float64]) -> NDArray[np.float64]:
     """Express quaternions w x y z, shape (..., 4), in the project's axes."""
     return np.concatenate([rotations[..., :1], z_up_from_y_up(rotations[..., 1:])], axis=-1)
 
 
-def turns_y_up_from_z_up(rotations: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Undo `turns_z_up_from_y_up`."""
+def rotations_y_up_from_z_up(rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Undo `rotations_z_up_from_y_up`."""
     return np.concatenate([rotations[..., :1], y_up_from_z_up(rotations[..., 1:])], axis=-1)
 
 
@@ -51,16 +51,16 @@ def guess_unit(parents: Sequence[int], offsets: NDArray[np.float64]) -> float:
     Centimetres if they give a body of plausible size; else whichever of metres, millimetres,
     inches and Acclaim units comes nearest to an adult. Too few joints: centimetres.
     """
-    reach = longest_way(parents, offsets)
-    low, high = PLAUSIBLE_REACH
-    if len(parents) < FEWEST_JOINTS_OF_A_BODY or not reach > 0.0:
+    reach = longest_bone_path(parents, offsets)
+    low, high = PLAUSIBLE_REACH_M
+    if len(parents) < MIN_BODY_JOINTS or not reach > 0.0:
         return CENTIMETRE
     if low <= reach * CENTIMETRE <= high:
         return CENTIMETRE
-    return min(UNITS, key=lambda unit: abs(np.log(reach * unit / ADULT_REACH)))
+    return min(UNITS, key=lambda unit: abs(np.log(reach * unit / ADULT_REACH_M)))
 
 
-def longest_way(parents: Sequence[int], offsets: NDArray[np.float64]) -> float:
+def longest_bone_path(parents: Sequence[int], offsets: NDArray[np.float64]) -> float:
     """Return the greatest distance between two joints, measured along the bones."""
     below = np.zeros(len(parents))
     longest = 0.0

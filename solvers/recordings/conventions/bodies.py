@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Body = TypeVar("Body", bound=Hashable)
 
 
-def longest_seen(frames: Sequence[Mapping[Body, object]]) -> Body:
+def longest_observed_body(frames: Sequence[Mapping[Body, object]]) -> Body:
     """Return the body that is in most frames; of equals, the one that came first.
 
     Raises ValueError where there is none.
@@ -19,7 +19,7 @@ def longest_seen(frames: Sequence[Mapping[Body, object]]) -> Body:
     return max(counts, key=lambda body: counts[body])
 
 
-def frames_of(
+def stack_body_frames(
     body: Body, frames: Sequence[Mapping[Body, NDArray[np.float64]]]
 ) -> NDArray[np.float64]:
     """Return one body's values, stacked; NaN in the frames without it."""

@@ -17,7 +17,7 @@ from ...progress import Progress
 UNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
 
 
-def in_unit_of_body(
+def convert_to_body_unit(
     recording: JointRecording, unit: float, progress: Progress
 ) -> JointRecording:
     """Return a recording, taken in this unit, in the one of `UNITS` that makes a human body.
@@ -41,12 +41,12 @@ def in_unit_of_body(
     factor = likely / unit
     if not MIN_BODY_SCALE <= size * factor <= MAX_BODY_SCALE:
         return recording
-    progress(1.0, guessed_unit(likely))
+    progress(1.0, describe_guessed_unit(likely))
     tracks = recording.tracks
     return replace(recording, tracks=tracks.with_positions(factor * tracks.positions))
 
 
-def guessed_unit(unit: float) -> str:
+def describe_guessed_unit(unit: float) -> str:
     """Say that lengths are taken for metres, centimetres or millimetres, and why."""
     return (
         f"Lengths are taken for {UNITS[unit]}, by the size of the body; give the unit if that"

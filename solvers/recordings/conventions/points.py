@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..containers import DifferentNames, printable
+from ..containers import UniqueNames, printable
 from .axes import z_up_from_y_up
 
 METRES = {
@@ -14,8 +14,8 @@ METRES = {
     "inch": 0.0254, "inches": 0.0254, "ft": 0.3048, "foot": 0.3048, "feet": 0.3048,
 }  # fmt: skip
 """Metres in a unit, by its name without the s of the plural."""
-BODY_EXTENT = 1.5
-FLOOR_TOLERANCE = 0.15
+BODY_EXTENT_M = 1.5
+FLOOR_TOLERANCE_M = 0.15
 
 
 def point_names(labels: Sequence[str]) -> tuple[str, ...]:
@@ -23,14 +23,14 @@ def point_names(labels: Sequence[str]) -> tuple[str, ...]:
     prefixes = {label.rpartition(":")[0] for label in labels if ":" in label}
     if len(prefixes) == 1:
         labels = [label.rpartition(":")[2] for label in labels]
-    names = DifferentNames()
+    names = UniqueNames()
     return tuple(
         names.give(printable(label) or f"point_{place}")
         for place, label in enumerate(labels, start=1)
     )
 
 
-def said_unit(word: str) -> float | None:
+def metres_from_unit_name(word: str) -> float | None:
     """Return the metres in a unit of this name; None if there is no such name."""
     word = word.strip().lower()
     return METRES.get(word, METRES.get(word.removesuffix("s")))
@@ -41,7 +41,7 @@ def guess_unit_of_points(points: NDArray[np.float64]) -> float:
     extent = float(np.median(_extents(points).max(axis=1)))
     if extent == 0.0:
         return METRES["mm"]
-    return min((0.001, 0.01, 1.0), key=lambda unit: abs(np.log(extent * unit / BODY_EXTENT)))
+    return min((0.001, 0.01, 1.0), key=lambda unit: abs(np.log(extent * unit / BODY_EXTENT_M)))
 
 
 def points_z_up(points: NDArray[np.float64], up: str) -> NDArray[np.float64]:
@@ -61,7 +61,7 @@ def _looks_y_up(points: NDArray[np.float64]) -> bool:
     Nobody is far below the floor: if that rules out one of the two, the other is up. Else the
     greater extent in most frames decides; right for all files at hand that say their axes.
     """
-    above = np.nanpercentile(points.reshape(-1, 3), 2, axis=0) > -FLOOR_TOLERANCE
+    above = np.nanpercentile(points.reshape(-1, 3), 2, axis=0) > -FLOOR_TOLERANCE_M
     if above[1] != above[2]:
         return bool(above[1])
     _, y, z = np.median(_extents(points), axis=0)

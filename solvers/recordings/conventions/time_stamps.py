@@ -7,27 +7,27 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 
-USUAL_RATE = 30.0
+DEFAULT_FRAME_RATE = 30.0
 """Hertz, of every Kinect in good light."""
 COMMON_RATES = (5.0, 10.0, 15.0, 24.0, 25.0, 30.0, 50.0, 60.0, 90.0, 100.0, 120.0)
-DRIFT = 0.5
+MAX_DRIFT_FRAMES = 0.5
 """Frames by which stamps may be off a constant rate and still be rounded ones."""
-NEAR = 0.03
+MAX_RATE_DEVIATION = 0.03
 """Share by which a measured rate may differ from the common one that is meant."""
-SLOWEST, FASTEST = 0.1, 10_000.0
-LATEST = 1e11
+MIN_RATE_HZ, MAX_RATE_HZ = 0.1, 10_000.0
+MAX_TIME_S = 1e11
 """Seconds; thousands of years."""
-HOLE = 1.6
+MIN_HOLE_FRAMES = 1.6
 """Frame times between two frames from which on one is missing, rather than late."""
-LONGEST_COUNTED = 5.0
+MAX_COUNTED_STEPS = 5.0
 """Usual steps in a step between two frames that still tells something of the rate."""
-NEARBY = 0.5
+MAX_DISTANCE_FRAMES = 0.5
 """Frame times around a frame up to which it stands for moments in a gap."""
-COINCIDES = 1e-6
-MOST_TIMES_LONGER, MOST_SPARE_FRAMES = 10, 1000
+TIME_TOLERANCE = 1e-6
+MAX_LENGTH_RATIO, MAX_EXTRA_FRAMES = 10, 1000
 
 
-def even_rate(times: NDArray[np.float64], said: float | None) -> float | None:
+def constant_rate_from_times(times: NDArray[np.float64], said: float | None) -> float | None:
     """Return the rate of stamps that run evenly to within half a frame, as rounded ones do.
 
     Parameters
@@ -43,19 +43,19 @@ def even_rate(times: NDArray[np.float64], said: float | None) -> float | None:
     """
     since, frames = times - times[0], np.arange(len(times))
     for rate in (said, frames[-1] / since[-1]):
-        if rate is not None and np.abs(since * rate - frames).max() < DRIFT:
+        if rate is not None and np.abs(since * rate - frames).max() < MAX_DRIFT_FRAMES:
             return float(rate)
     return None
 
 
 class ConstantRate:
-    """The moments of a constant frame rate, told by the frames of a file around them.
+    """Resample frames with uneven time stamps to a constant frame rate.
 
-    Values between two frames come from the cubic through the four frames around them or, near
-    gaps, from the straight line. Where frames are missing between two (`HOLE`), or one of them
-    does not see a point, the nearer one counts alone, up to half a frame time away; farther
-    from it nothing is observed: gaps stay gaps. Frames that are not later than all before them
-    are left out.
+    Values between two frames come from the cubic through the four surrounding frames or, near
+    gaps, from linear interpolation. Next to a hole (`MIN_HOLE_FRAMES`), or where one of the two
+    frames does not observe a point, the nearest frame counts alone, up to half a frame time
+    away. Farther away the value stays missing. Frames that are not later than all previous
+    frames are skipped.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class ConstantRate:
     def __init__(
         self, path: Path | str, times: NDArray[np.float64], said: float | None = None
     ) -> None:
-        usable = np.isfinite(times) & (np.abs(np.nan_to_num(times)) < LATEST)
+        usable = np.isfinite(times) & (np.abs(np.nan_to_num(times)) < MAX_TIME_S)
         latest = np.maximum.accumulate(np.where(usable, times, -np.inf))
         earlier = np.concatenate([[-np.inf], latest[:-1]])
         self._kept = np.flatnonzero(usable & (np.nan_to_num(times) > earlier))
@@ -89,8 +89,8 @@ class ConstantRate:
         seen = times[self._kept] - times[self._kept[0]]
         steps = np.diff(seen)
         self.frame_rate = _frame_rate(path, steps, said)
-        n_frames = int(np.floor(seen[-1] * self.frame_rate + NEARBY)) + 1
-        if n_frames > MOST_TIMES_LONGER * len(seen) + MOST_SPARE_FRAMES:
+        n_frames = int(np.floor(seen[-1] * self.frame_rate + MAX_DISTANCE_FRAMES)) + 1
+        if n_frames > MAX_LENGTH_RATIO * len(seen) + MAX_EXTRA_FRAMES:
             raise InvalidFileError(
                 f"{path}: its {len(seen)} frames are spread over {seen[-1]:.3g} s, though they"
                 f" come at {self.frame_rate:.3g} Hz. Cut it where it pauses, or mend its time"
@@ -139,19 +139,21 @@ class ConstantRate:
         at = seen[self._nodes]
         span = at[:, 2] - at[:, 1]
         share = (moments - at[:, 1]) / np.where(span > 0.0, span, 1.0)
-        share = np.where(np.minimum(share, 1.0 - share) < COINCIDES, np.round(share), share)
+        share = np.where(
+            np.minimum(share, 1.0 - share) < TIME_TOLERANCE, np.round(share), share
+        )
         nothing = np.zeros_like(share)
         self._straight = np.stack([nothing, 1.0 - share, share, nothing], axis=1)
-        whole = np.concatenate([[False], gaps <= HOLE, [False, False]])
+        whole = np.concatenate([[False], gaps <= MIN_HOLE_FRAMES, [False, False]])
         smooth = whole[before] & whole[before + 1] & whole[before + 2]
         smooth &= (share > 0.0) & (share < 1.0)
         self._curved = self._straight.copy()
-        self._curved[smooth] = _cubic(at[smooth], moments[smooth])
+        self._curved[smooth] = _cubic_weights(at[smooth], moments[smooth])
         distance = np.abs(at - moments[:, None])
         nearest = distance.argmin(axis=1)[:, None]
         self._nearest = self._kept[np.take_along_axis(self._nodes, nearest, axis=1)[:, 0]]
         near = np.take_along_axis(distance, nearest, axis=1)[:, 0] * self.frame_rate
-        self._near = near <= NEARBY + COINCIDES
+        self._near = near <= MAX_DISTANCE_FRAMES + TIME_TOLERANCE
         self._whole = whole[before + 1]
 
     def _weighted(
@@ -167,18 +169,18 @@ class ConstantRate:
 
 def _frame_rate(path: Path | str, steps: NDArray[np.float64], said: float | None) -> float:
     if not len(steps):
-        return said or USUAL_RATE
+        return said or DEFAULT_FRAME_RATE
     with np.errstate(over="ignore"):
         rate = _measured_rate(steps)
-    if not SLOWEST <= rate <= FASTEST:
+    if not MIN_RATE_HZ <= rate <= MAX_RATE_HZ:
         raise InvalidFileError(
             f"{path}: by its time stamps it has {rate:.3g} frames per second, which cannot be."
             " Mend the column of time stamps."
         )
-    if said is not None and abs(rate / said - 1.0) <= NEAR:
+    if said is not None and abs(rate / said - 1.0) <= MAX_RATE_DEVIATION:
         return said
     nearest = min(COMMON_RATES, key=lambda common: abs(common - rate))
-    return nearest if abs(rate / nearest - 1.0) <= NEAR else rate
+    return nearest if abs(rate / nearest - 1.0) <= MAX_RATE_DEVIATION else rate
 
 
 def _measured_rate(steps: NDArray[np.float64]) -> float:
@@ -186,17 +188,19 @@ def _measured_rate(steps: NDArray[np.float64]) -> float:
         steps, [0.25, 0.5], method="lower"
     )  # The half: unless every other is lost.
     usual = min((half, quarter), key=lambda step: _unevenness(steps / step))
-    steps = steps[steps <= LONGEST_COUNTED * usual]
+    steps = steps[steps <= MAX_COUNTED_STEPS * usual]
     return float(np.round(steps / usual).sum() / steps.sum())  # A late one makes a short one.
 
 
 def _unevenness(counts: NDArray[np.float64]) -> float:
     """How far numbers of frame times are from whole ones above 0."""
-    short = counts[counts <= LONGEST_COUNTED]
+    short = counts[counts <= MAX_COUNTED_STEPS]
     return float(np.abs(short - np.maximum(1.0, np.round(short))).mean())
 
 
-def _cubic(at: NDArray[np.float64], moments: NDArray[np.float64]) -> NDArray[np.float64]:
+def _cubic_weights(
+    at: NDArray[np.float64], moments: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Weights of Lagrange's polynomial through four times, shape (n, 4)."""
     weights = np.ones_like(at)
     for node in range(at.shape[1]):

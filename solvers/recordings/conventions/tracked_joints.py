@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Sensor, Tracks
 from ...progress import Progress
-from .body_unit import in_unit_of_body
-from .time_stamps import USUAL_RATE, ConstantRate
+from .body_unit import convert_to_body_unit
+from .time_stamps import DEFAULT_FRAME_RATE, ConstantRate
 
 
 def joint_recording(
@@ -22,7 +22,7 @@ def joint_recording(
     states: NDArray[np.int8] | None = None,
     confidence: NDArray[np.float64] | None = None,
     times: NDArray[np.float64] | None = None,
-    frame_rate: float = USUAL_RATE,
+    frame_rate: float = DEFAULT_FRAME_RATE,
     nan_only: bool = False,
     scale: float | None,
     usual_unit: float = 1.0,
@@ -84,4 +84,4 @@ def joint_recording(
     positions *= unit  # a copy of what was given
     tracks = Tracks(tuple(names), positions, frame_rate, confidence)
     recording = JointRecording(tracks, states, sensor)
-    return recording if scale is not None else in_unit_of_body(recording, unit, progress)
+    return recording if scale is not None else convert_to_body_unit(recording, unit, progress)

@@ -8,7 +8,7 @@ from typing import BinaryIO
 
 from ...errors import InvalidFileError
 from ...files import open_regular
-from .stack import MOST_PIXELS, check_size
+from .stack import MAX_PIXELS, check_size
 
 MAGIC = b"v/1\x01"
 MULTIPART = 0x1000
@@ -17,7 +17,7 @@ MAX_ATTRIBUTES = 10_000
 """Of a file; Blender writes about 20."""
 MAX_NAME_BYTES, MAX_BYTES = 255, 100_000
 """Of an attribute's name, and of one that is read."""
-MAX_VALUES = 4 * MOST_PIXELS**2
+MAX_VALUES = 4 * MAX_PIXELS**2
 """Numbers in a picture: those of red, green, blue and alpha of the largest one."""
 CHANNEL_FACTS = 16
 """Bytes that follow the name of a channel: type, linearity and sampling."""

@@ -10,19 +10,19 @@ from ...errors import InvalidFileError
 from ...faults import attempt
 from ...progress import Progress, unwatched
 from ..containers import PngHeader, is_listed, png_header
-from ..conventions import USUAL_RATE
+from ..conventions import DEFAULT_FRAME_RATE
 from .image_frames import Frames, frames_by_number, frames_by_time
-from .images import NONE, ColorPictures, DepthPictures
+from .images import NONE, ColorImageFiles, DepthImageFiles
 from .layouts import Layout, open3d_layout, plain_layout, tum_layout
-from .sensor_hold import upright
-from .settings import USUAL, DepthSettings, Held
+from .sensor_hold import rotate_upright
+from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings, Held
 from .stack import check_size
 from .stray_scanner import stray_layout
 
 LAYOUTS = (stray_layout, tum_layout, open3d_layout, plain_layout)
 """The more a layout asks for, the earlier it is tried."""
 BITS = 16
-FEWEST_GOOD = 0.5
+MIN_GOOD_FRACTION = 0.5
 """Share of the pictures that must be there and whole."""
 
 
@@ -57,7 +57,7 @@ def is_depth_folder(path: Path) -> bool:
 
 def read_depth_folder(
     path: Path | str,
-    settings: DepthSettings = USUAL,
+    settings: DepthSettings = DEFAULT_DEPTH_SETTINGS,
     *,
     progress: Progress = unwatched,
 ) -> DepthRecording:
@@ -70,13 +70,13 @@ def read_depth_folder(
     layout = layout_of(path)
     if layout is None:
         raise InvalidFileError(f"{path} is a folder without pictures of depth.")
-    good, header = _good_pictures(layout, progress)
-    metres, camera = _asked_for(path, layout, settings, header)
+    good, header = _check_images(layout, progress)
+    metres, camera = _resolve_camera(path, layout, settings, header)
     frames = _frames(path, layout, settings)
     pictures = np.where(frames.pictures != NONE, frames.pictures, 0)
     shown = np.where((frames.pictures != NONE) & good[pictures], frames.pictures, NONE)
     shape = (header.height, header.width)
-    read_depth = DepthPictures(
+    read_depth = DepthImageFiles(
         layout.root,
         layout.depth,
         shown,
@@ -92,17 +92,17 @@ def read_depth_folder(
         progress(1.0, remark)
     progress(1.0, "Reading")
     held = layout.held if settings.held is Held.KNOWN else settings.held
-    return upright(recording, held, mirrored=False)
+    return rotate_upright(recording, held, mirrored=False)
 
 
-def _good_pictures(layout: Layout, progress: Progress) -> tuple[NDArray[np.bool_], PngHeader]:
+def _check_images(layout: Layout, progress: Progress) -> tuple[NDArray[np.bool_], PngHeader]:
     """Tell which pictures are there and whole, and of which size all of them are."""
     headers = []
     for place, name in enumerate(layout.depth):
         headers.append(png_header(layout.root, name))
         progress(place / len(layout.depth), "Reading")
     known = [header for header in headers if header is not None]
-    if not known or len(known) < FEWEST_GOOD * len(headers):
+    if not known or len(known) < MIN_GOOD_FRACTION * len(headers):
         raise InvalidFileError(
             f"{layout.root}: {len(headers) - len(known)} of {len(headers)} pictures of depth"
             " are missing or damaged. Copy them again."
@@ -130,7 +130,7 @@ def _check(path: Path, header: PngHeader | None, usual: PngHeader) -> None:
     check_size(path, header.height, header.width)
 
 
-def _asked_for(
+def _resolve_camera(
     path: Path, layout: Layout, settings: DepthSettings, header: PngHeader
 ) -> tuple[float, Camera]:
     """Return metres in a unit and the camera, or say what has to be given."""
@@ -166,20 +166,20 @@ def _camera(layout: Layout, header: PngHeader) -> Camera | None:
 def _frames(path: Path, layout: Layout, settings: DepthSettings) -> Frames:
     if layout.times is not None and not settings.frame_rate:
         return frames_by_time(path, layout.times)
-    rate = settings.frame_rate or layout.rate or USUAL_RATE
+    rate = settings.frame_rate or layout.rate or DEFAULT_FRAME_RATE
     return frames_by_number(layout.depth, rate)
 
 
 def _color(
     layout: Layout, shown: NDArray[np.intp], shape: tuple[int, int]
-) -> ColorPictures | None:
+) -> ColorImageFiles | None:
     if layout.color is None or layout.color_of is None:
         return None
     of = np.where(shown == NONE, NONE, layout.color_of[shown])
     used = np.unique(of[of != NONE])
     if not any(_may_be_read(layout.root, layout.color[number]) for number in used):
         return None
-    return ColorPictures(layout.root, layout.color, of, shape)
+    return ColorImageFiles(layout.root, layout.color, of, shape)
 
 
 def _may_be_read(root: Path, name: str) -> bool:

@@ -14,8 +14,8 @@ from .mat import is_depth_mat, read_depth_mat
 from .mkv import is_depth_mkv, read_depth_mkv
 from .npz import is_depth_npz, read_depth_npz
 from .raw import is_depth_raw, read_depth_raw
-from .sensor_hold import upright
-from .settings import USUAL, DepthSettings, Held
+from .sensor_hold import rotate_upright
+from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings, Held
 
 HEAD = 4096
 
@@ -26,7 +26,7 @@ class DepthReader(Protocol):
     def __call__(
         self,
         path: Path | str,
-        settings: DepthSettings = USUAL,
+        settings: DepthSettings = DEFAULT_DEPTH_SETTINGS,
         /,
         *,
         progress: Progress = unwatched,
@@ -57,7 +57,7 @@ FOLDER = DepthFormat(
 
 def read_depth(
     path: Path | str,
-    settings: DepthSettings = USUAL,
+    settings: DepthSettings = DEFAULT_DEPTH_SETTINGS,
     *,
     progress: Progress = unwatched,
 ) -> DepthRecording:
@@ -95,7 +95,7 @@ def read_depth(
     except InvalidMotionError as error:  # Such as a camera that sees nothing.
         raise InvalidFileError(f"{path}: {error}") from None
     held = Held.UPRIGHT if known is FOLDER else settings.held
-    return upright(recording, held, settings.mirrored)
+    return rotate_upright(recording, held, settings.mirrored)
 
 
 def depth_format_of(path: Path | str) -> DepthFormat | None:

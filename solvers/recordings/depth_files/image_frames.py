@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from ..conventions import ConstantRate
 from .images import NONE
 
-MOST_TIMES_LONGER = 4
+MAX_LENGTH_RATIO = 4
 """How many times as many frames as pictures are believed of the numbers in names."""
-SAME_MOMENT = 0.02
+MAX_TIME_OFFSET_S = 0.02
 """Seconds that colour may be off depth, as in the scripts of TUM's set."""
 
 
@@ -24,7 +24,7 @@ class Frames(NamedTuple):
     frame_rate: float
 
 
-def in_order(names: Sequence[str]) -> list[str]:
+def sort_naturally(names: Sequence[str]) -> list[str]:
     """Return names so that 9 comes before 10."""
     return sorted(
         names,
@@ -53,7 +53,7 @@ def frames_by_number(names: Sequence[str], frame_rate: float) -> Frames:
     step = int(np.median(steps))
     places = (numbers - numbers[0]) // max(step, 1)
     regular = step > 0 and not (steps % max(step, 1)).any() and (steps > 0).all()
-    if not regular or places[-1] >= MOST_TIMES_LONGER * len(names):
+    if not regular or places[-1] >= MAX_LENGTH_RATIO * len(names):
         return Frames(each, frame_rate)
     pictures = np.full(places[-1] + 1, NONE)
     pictures[places] = each
@@ -69,9 +69,7 @@ def frames_by_time(path: Path, times: NDArray[np.float64]) -> Frames:
     return Frames(clock.nearest(), clock.frame_rate)
 
 
-def at_the_same_time(
-    times: NDArray[np.float64], others: NDArray[np.float64]
-) -> NDArray[np.intp]:
+def match_times(times: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray[np.intp]:
     """Return which of the others comes with each time, -1 for none."""
     if not len(others):
         return np.full(len(times), NONE)
@@ -80,4 +78,4 @@ def at_the_same_time(
     pair = order[np.stack([after - 1, np.minimum(after, len(others) - 1)])]
     apart = np.abs(others[pair] - times)
     nearest = np.take_along_axis(pair, apart.argmin(axis=0)[np.newaxis], axis=0)[0]
-    return np.asarray(np.where(apart.min(axis=0) <= SAME_MOMENT, nearest, NONE))
+    return np.asarray(np.where(apart.min(axis=0) <= MAX_TIME_OFFSET_S, nearest, NONE))

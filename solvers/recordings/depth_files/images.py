@@ -15,7 +15,7 @@ NONE = -1
 
 
 @dataclass(frozen=True, eq=False)
-class DepthPictures:
+class DepthImageFiles:
     """Reads the PNG file of a frame; to be `DepthRecording.read_depth`.
 
     Attributes
@@ -57,11 +57,11 @@ class DepthPictures:
 
 
 @dataclass(frozen=True, eq=False)
-class ColorPictures:
-    """Reads the colours of a frame; to be `DepthRecording.read_color`.
+class ColorImageFiles:
+    """Read the color image of a frame; serves as `DepthRecording.read_color`.
 
-    `names` and `frames` are as in `DepthPictures`. A picture of another size is brought to the
-    size of depth; a missing one is black.
+    `names` and `frames` are as in `DepthImageFiles`. An image of another size is resized to the
+    size of the depth image; a missing one is black.
     """
 
     folder: Path

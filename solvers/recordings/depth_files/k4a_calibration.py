@@ -125,7 +125,7 @@ def _camera(
 ) -> K4aCamera:
     across, down, left, top, width, height = window
     try:
-        told = _told(calibration, place)
+        told = _find_camera(calibration, place)
         lens = told["Intrinsics"]
         numbers = np.array(lens["ModelParameters"], dtype=np.float64)
         turn = np.array(told["Rt"]["Rotation"], dtype=np.float64).reshape(3, 3)
@@ -162,7 +162,7 @@ def _camera(
     )
 
 
-def _told(calibration: bytes, place: str) -> dict[str, Any]:
+def _find_camera(calibration: bytes, place: str) -> dict[str, Any]:
     """Return what the calibration says of the camera at this place."""
     cameras = parse_json(calibration.rstrip(b"\0"))["CalibrationInformation"]["Cameras"]
     found: dict[str, Any] = {camera["Location"]: camera for camera in cameras}[place]

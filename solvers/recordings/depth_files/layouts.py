@@ -11,7 +11,7 @@ from ...errors import InvalidFileError
 from ...files import DAMAGE
 from ...json_text import parse_json
 from ..containers import is_png, read_bytes
-from .image_frames import at_the_same_time, in_order
+from .image_frames import match_times, sort_naturally
 from .images import NONE
 from .settings import Held
 from .stack import MILLIMETRE
@@ -19,7 +19,7 @@ from .stack import MILLIMETRE
 Focal = tuple[float, float, float, float]
 
 TUM_UNIT = 1.0 / 5000.0
-PICTURES = (".png", ".jpg", ".jpeg")
+IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg")
 COLOR_FOLDERS = ("color", "rgb", "image")
 
 
@@ -65,12 +65,12 @@ class Layout:
 def tum_layout(root: Path) -> Layout | None:
     """Lay out a folder as TUM RGB-D: `depth.txt` and `rgb.txt`, or `associations.txt`."""
     if (root / "depth.txt").is_file():
-        times, names = _list_of(root / "depth.txt")
+        times, names = _read_list(root / "depth.txt")
         layout = Layout(root, names, times, metres=TUM_UNIT)
         if not (root / "rgb.txt").is_file():
             return layout
-        color_times, color = _list_of(root / "rgb.txt")
-        return _with_color(layout, color, at_the_same_time(times, color_times))
+        color_times, color = _read_list(root / "rgb.txt")
+        return _with_color(layout, color, match_times(times, color_times))
     for known in ("associations.txt", "associates.txt", "associated.txt"):
         if (root / known).is_file():
             return _associated(root, root / known)
@@ -105,11 +105,11 @@ def _with_color(layout: Layout, names: Sequence[str], of: NDArray[np.intp]) -> L
 
 def open3d_layout(root: Path) -> Layout | None:
     """Lay out a folder as Open3D's recorders do: `depth/`, `color/` and `intrinsic.json`."""
-    depth = pictures_in(root, "depth")
+    depth = list_images(root, "depth")
     if not depth:
         return None
-    color = next((found for name in COLOR_FOLDERS if (found := pictures_in(root, name))), ())
-    of = _same_names(depth, color)
+    color = next((found for name in COLOR_FOLDERS if (found := list_images(root, name))), ())
+    of = _match_names(depth, color)
     focal, size = None, None
     for name in ("intrinsic.json", "camera_intrinsic.json"):
         if (root / name).is_file():
@@ -127,11 +127,11 @@ def open3d_layout(root: Path) -> Layout | None:
 
 def plain_layout(root: Path) -> Layout | None:
     """Lay out a folder that holds PNG files and says nothing of them."""
-    names = pictures_in(root, "")
+    names = list_images(root, "")
     return Layout(root, names) if names and is_png(root, names[0]) else None
 
 
-def pictures_in(root: Path, folder: str) -> tuple[str, ...]:
+def list_images(root: Path, folder: str) -> tuple[str, ...]:
     """Return the pictures in a folder of the root, in their order."""
     below = root / folder
     if not below.is_dir():
@@ -139,12 +139,14 @@ def pictures_in(root: Path, folder: str) -> tuple[str, ...]:
     found = [
         path.relative_to(root).as_posix()
         for path in below.iterdir()
-        if path.suffix.lower() in PICTURES and not path.name.startswith(".") and path.is_file()
+        if path.suffix.lower() in IMAGE_SUFFIXES
+        and not path.name.startswith(".")
+        and path.is_file()
     ]
-    return tuple(in_order(found))
+    return tuple(sort_naturally(found))
 
 
-def _same_names(depth: Sequence[str], color: Sequence[str]) -> NDArray[np.intp]:
+def _match_names(depth: Sequence[str], color: Sequence[str]) -> NDArray[np.intp]:
     """Return which picture of colour is called as each of depth; in order if none is."""
     places = {Path(name).stem: place for place, name in enumerate(color)}
     of = np.array([places.get(Path(name).stem, NONE) for name in depth], dtype=np.intp)
@@ -153,7 +155,7 @@ def _same_names(depth: Sequence[str], color: Sequence[str]) -> NDArray[np.intp]:
     return of
 
 
-def _list_of(path: Path) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+def _read_list(path: Path) -> tuple[NDArray[np.float64], tuple[str, ...]]:
     rows = _words(path, 2)
     return _times(path, [row[0] for row in rows]), tuple(row[1] for row in rows)
 

@@ -6,8 +6,8 @@ from ...depth_scene import Camera, DepthRecording
 from ...errors import InvalidFileError
 from ...progress import Progress, unwatched
 from ..containers import MatlabArray, is_matlab, matlab_arrays
-from ..conventions import USUAL_RATE
-from .settings import USUAL, DepthSettings
+from ..conventions import DEFAULT_FRAME_RATE
+from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
 from .stack import MILLIMETRE, DepthStack, check_size
 
 NAMES = ("d_depth", "depth")
@@ -27,7 +27,7 @@ def is_depth_mat(path: Path, head: bytes) -> bool:
 
 def read_depth_mat(
     path: Path | str,
-    settings: DepthSettings = USUAL,
+    settings: DepthSettings = DEFAULT_DEPTH_SETTINGS,
     *,
     progress: Progress = unwatched,
 ) -> DepthRecording:
@@ -70,7 +70,7 @@ def read_depth_mat(
     )
     progress(1.0, "Reading")
     return DepthRecording(
-        given or KINECT_V1, n_frames, settings.frame_rate or USUAL_RATE, stack
+        given or KINECT_V1, n_frames, settings.frame_rate or DEFAULT_FRAME_RATE, stack
     )
 
 

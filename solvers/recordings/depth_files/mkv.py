@@ -11,12 +11,12 @@ from ...depth_scene import DepthImage, DepthRecording
 from ...errors import InvalidFileError
 from ...progress import Progress, unwatched, within
 from ..containers import Matroska, PlainBytes, Track, index_matroska, is_matroska
-from ..conventions import USUAL_RATE
-from .image_frames import Frames, at_the_same_time, frames_by_time
+from ..conventions import DEFAULT_FRAME_RATE
+from .image_frames import Frames, frames_by_time, match_times
 from .images import NONE
 from .k4a_calibration import K4aCamera, depth_camera
 from .k4a_color import ColorBlocks, color_blocks
-from .settings import USUAL, DepthSettings
+from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
 from .stack import MILLIMETRE, check_size
 
 VIDEO = "V_MS/VFW/FOURCC"
@@ -24,7 +24,7 @@ RAW = b"b16g"
 BITMAP_HEADER = "<IiiHH4s"
 DEPTH, COLOR = "DEPTH", "COLOR"
 CALIBRATION = "calibration.json"
-PIXEL = 2
+PIXEL_BYTES = 2
 NANOSECOND = 1e-9
 
 
@@ -60,7 +60,7 @@ class DepthBlocks:
         place = int(self.places[index])
         if place == NONE:
             return np.zeros(self.shape, np.float32)
-        size = self.shape[0] * self.shape[1] * PIXEL
+        size = self.shape[0] * self.shape[1] * PIXEL_BYTES
         pixels = np.frombuffer(PlainBytes(self.path, place, size).read(0, size), ">u2")
         if self.straight is not None:
             pixels = np.where(self.straight == NONE, 0, pixels[self.straight])
@@ -69,7 +69,7 @@ class DepthBlocks:
 
 def read_depth_mkv(
     path: Path | str,
-    settings: DepthSettings = USUAL,
+    settings: DepthSettings = DEFAULT_DEPTH_SETTINGS,
     *,
     progress: Progress = unwatched,
 ) -> DepthRecording:
@@ -94,7 +94,7 @@ def read_depth_mkv(
             " and fy in pixels."
         )
     frames = _frames(path, track, settings)
-    good = np.frombuffer(track.sizes, np.int64) == width * height * PIXEL
+    good = np.frombuffer(track.sizes, np.int64) == width * height * PIXEL_BYTES
     if not good.any():
         raise InvalidFileError(
             f"{path} has no picture of {width} x {height} pixels, as its depth should have: it"
@@ -103,7 +103,7 @@ def read_depth_mkv(
     shown = np.where((frames.pictures != NONE) & good[frames.pictures], frames.pictures, NONE)
     places = np.where(shown == NONE, NONE, np.frombuffer(track.places, np.int64)[shown])
     metres = settings.scale or MILLIMETRE
-    straight = None if lens is None else _straightened(lens)
+    straight = None if lens is None else _undistort_pixels(lens)
     read_depth = DepthBlocks(path, places, (height, width), metres, straight)
     recording = DepthRecording(
         camera,
@@ -152,7 +152,7 @@ def _lens(
     return None if content is None else depth_camera(path, content, width, height)
 
 
-def _straightened(lens: K4aCamera) -> NDArray[np.int32]:
+def _undistort_pixels(lens: K4aCamera) -> NDArray[np.int32]:
     camera = lens.camera
     seen = lens.project(camera.rays()).reshape(-1, 2)
     column, row = np.nan_to_num(seen, nan=-1.0).round().astype(np.int64).T
@@ -163,7 +163,7 @@ def _straightened(lens: K4aCamera) -> NDArray[np.int32]:
 def _frames(path: Path, track: Track, settings: DepthSettings) -> Frames:
     n_pictures = len(track.times)
     if settings.frame_rate or n_pictures < 2:
-        return Frames(np.arange(n_pictures), settings.frame_rate or USUAL_RATE)
+        return Frames(np.arange(n_pictures), settings.frame_rate or DEFAULT_FRAME_RATE)
     return frames_by_time(path, np.frombuffer(track.times, np.int64) * NANOSECOND)
 
 
@@ -186,7 +186,7 @@ def _color(
     if lens is None or not tracks or content is None:
         return None
     times = [np.frombuffer(each.times, np.int64) * NANOSECOND for each in (depth, tracks[0])]
-    of = at_the_same_time(*times)
+    of = match_times(*times)
     of = np.where(shown == NONE, NONE, of[shown])
     return color_blocks(path, content, tracks[0], _fourcc(tracks[0]), of, lens, read_depth)
 

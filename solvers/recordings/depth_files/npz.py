@@ -14,17 +14,17 @@ from ...npz_members import READABLE, member_header
 from ...progress import Progress, unwatched
 from ..containers import (
     CHUNK,
-    DENSEST,
-    MOST_CHECKED,
+    MAX_CHECKED_BYTES,
+    MAX_DEFLATE_RATIO,
     NUMBERS,
+    ByteSlice,
     PackedBytes,
-    PartOfBytes,
     PlainBytes,
     StoredBytes,
     read_archive,
 )
-from ..conventions import USUAL_RATE
-from .settings import USUAL, DepthSettings
+from ..conventions import DEFAULT_FRAME_RATE
+from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
 from .stack import MILLIMETRE, ColorStack, DepthStack, check_size
 
 INTRINSICS = ("fx", "fy", "cx", "cy")
@@ -54,7 +54,7 @@ def is_depth_npz(path: Path, head: bytes) -> bool:
 
 def read_depth_npz(
     path: Path | str,
-    settings: DepthSettings = USUAL,
+    settings: DepthSettings = DEFAULT_DEPTH_SETTINGS,
     *,
     progress: Progress = unwatched,
 ) -> DepthRecording:
@@ -92,12 +92,12 @@ def _member(path: Path, name: str) -> _Member:
     try:
         with open_regular(path) as file, zipfile.ZipFile(file) as archive:
             member = archive.getinfo(f"{name}.npy")
-            if member.file_size > DENSEST * member.compress_size + DENSEST:
+            if member.file_size > MAX_DEFLATE_RATIO * member.compress_size + MAX_DEFLATE_RATIO:
                 raise ValueError(name)
             header = member_header(archive, name)
             if header.by_column or header.dtype.kind not in NUMBERS.kinds:
                 raise ValueError(header.dtype)
-            if member.file_size <= MOST_CHECKED:
+            if member.file_size <= MAX_CHECKED_BYTES:
                 _compare_checksum(archive, member)
         content = _content(path, member, header.start, header.n_bytes)
         return _Member(content, header.shape, header.dtype)
@@ -126,7 +126,7 @@ def _content(path: Path, member: zipfile.ZipInfo, skipped: int, size: int) -> St
     if member.compress_type == zipfile.ZIP_STORED:
         return PlainBytes(path, start + skipped, size)
     packed = PackedBytes(path, start, member.compress_size, member.file_size, WITHOUT_HEADER)
-    return PartOfBytes(packed, skipped, size)
+    return ByteSlice(packed, skipped, size)
 
 
 def _camera(path: Path, height: int, width: int, settings: DepthSettings) -> Camera:
@@ -144,7 +144,7 @@ def _has(path: Path, names: tuple[str, ...]) -> bool:
 
 
 def _rate(path: Path) -> float:
-    return _number(path, "frame_rate") if _has(path, ("frame_rate",)) else USUAL_RATE
+    return _number(path, "frame_rate") if _has(path, ("frame_rate",)) else DEFAULT_FRAME_RATE
 
 
 def _number(path: Path, name: str) -> float:

@@ -9,15 +9,15 @@ from ...errors import InvalidFileError
 from ...files import unreadable
 from ...progress import Progress, unwatched
 from ..containers import PlainBytes
-from ..conventions import USUAL_RATE
-from .settings import USUAL, DepthSettings
+from ..conventions import DEFAULT_FRAME_RATE
+from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
 from .stack import MILLIMETRE, DepthStack, check_size
 
 KINECT_V1 = Camera(571.26, 571.26, 319.5, 239.5, 640, 480)
 PIXEL = 2
-FARTHEST = 12_000
+MAX_DEPTH_MM = 12_000
 """Millimetres, of what a Kinect sees."""
-FEWEST_SEEN, LARGEST_STEP = 0.02, 40
+MIN_OBSERVED_FRACTION, MAX_STEP_MM = 0.02, 40
 """Share of pixels that see something, and millimetres between neighbours, usually."""
 
 
@@ -30,15 +30,15 @@ def is_depth_raw(path: Path, head: bytes) -> bool:
     picture = np.frombuffer(PlainBytes(path, 0, frame).read(0, frame), "<u2").astype(np.int32)
     picture = picture.reshape(KINECT_V1.height, KINECT_V1.width)
     both = (picture[:, 1:] > 0) & (picture[:, :-1] > 0)
-    if picture.max() > FARTHEST or both.mean() < FEWEST_SEEN:
+    if picture.max() > MAX_DEPTH_MM or both.mean() < MIN_OBSERVED_FRACTION:
         return False
     steps = np.abs(np.diff(picture, axis=1))[both]
-    return bool(np.median(steps) <= LARGEST_STEP and picture.std() > LARGEST_STEP)
+    return bool(np.median(steps) <= MAX_STEP_MM and picture.std() > MAX_STEP_MM)
 
 
 def read_depth_raw(
     path: Path | str,
-    settings: DepthSettings = USUAL,
+    settings: DepthSettings = DEFAULT_DEPTH_SETTINGS,
     *,
     progress: Progress = unwatched,
 ) -> DepthRecording:
@@ -75,4 +75,4 @@ def read_depth_raw(
         settings.scale or MILLIMETRE,
     )
     progress(1.0, "Reading")
-    return DepthRecording(camera, n_frames, settings.frame_rate or USUAL_RATE, stack)
+    return DepthRecording(camera, n_frames, settings.frame_rate or DEFAULT_FRAME_RATE, stack)

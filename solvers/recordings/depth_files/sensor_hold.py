@@ -8,12 +8,18 @@ import numpy as np
 from ...depth_scene import Camera, DepthRecording
 from .settings import Held
 
-QUARTERS = {Held.KNOWN: 0, Held.UPRIGHT: 0, Held.LEFT: 3, Held.UPSIDE_DOWN: 2, Held.RIGHT: 1}
+QUARTER_TURNS = {
+    Held.KNOWN: 0,
+    Held.UPRIGHT: 0,
+    Held.LEFT: 3,
+    Held.UPSIDE_DOWN: 2,
+    Held.RIGHT: 1,
+}
 """Quarter turns, against the clock, that bring pictures upright."""
 
 
 @dataclass(frozen=True)
-class _Turned:
+class _RotatedReader:
     """Reads pictures and turns them by quarters against the clock, or mirrors them."""
 
     read: Any
@@ -27,28 +33,28 @@ class _Turned:
         return np.ascontiguousarray(np.rot90(picture, self.quarters))
 
 
-def upright(recording: DepthRecording, held: Held, mirrored: bool) -> DepthRecording:
+def rotate_upright(recording: DepthRecording, held: Held, mirrored: bool) -> DepthRecording:
     """Return the recording as by a camera that was held upright and saw no mirror."""
-    quarters = QUARTERS[held]
+    quarters = QUARTER_TURNS[held]
     if not (quarters or mirrored):
         return recording
-    camera = _mirrored(recording.camera) if mirrored else recording.camera
+    camera = _mirror_camera(recording.camera) if mirrored else recording.camera
     for _ in range(quarters):
-        camera = _turned(camera)
+        camera = _rotate_camera(camera)
     color = recording.read_color
     return replace(
         recording,
         camera=camera,
-        read_depth=_Turned(recording.read_depth, quarters, mirrored),
-        read_color=None if color is None else _Turned(color, quarters, mirrored),
+        read_depth=_RotatedReader(recording.read_depth, quarters, mirrored),
+        read_color=None if color is None else _RotatedReader(color, quarters, mirrored),
     )
 
 
-def _mirrored(camera: Camera) -> Camera:
+def _mirror_camera(camera: Camera) -> Camera:
     return replace(camera, cx=camera.width - 1 - camera.cx)
 
 
-def _turned(camera: Camera) -> Camera:
+def _rotate_camera(camera: Camera) -> Camera:
     """Return the camera of pictures turned a quarter against the clock: right becomes top."""
     return Camera(
         camera.fy,

@@ -1,4 +1,4 @@
-"""What recordings of depth leave open, and whoever reads them may know."""
+"""Settings for values that depth recordings do not store."""
 
 from dataclasses import dataclass
 
@@ -32,7 +32,7 @@ class Held(Choice):
 
 @dataclass(frozen=True, kw_only=True)
 class DepthSettings(Settings):
-    """How pictures of depth are to be understood; 0 leaves a number to the file."""
+    """Interpretation of depth images; 0 uses the value of the file."""
 
     scale: float = setting(
         0.0, "Meters per pixel unit: 0.001 for millimeters; 0 reads the file",
@@ -76,21 +76,23 @@ class DepthSettings(Settings):
         maximum=2, advanced=True,
     )  # fmt: skip
 
-    def camera(self, width: int, height: int, told: Camera | None = None) -> Camera | None:
-        """Return the camera of pictures of this size; None where nobody tells its focal length.
+    def camera(self, width: int, height: int, stored: Camera | None = None) -> Camera | None:
+        """Return the camera of images of this size; None if the focal length is unknown.
 
-        What is given counts more than what a file has `told`.
+        Settings override the camera that was `stored` in the file.
         """
         middle = (width - 1) / 2.0, (height - 1) / 2.0
-        if told is not None:
-            usual = told.fx, self.fx or told.fy, told.cx, told.cy
+        if stored is not None:
+            default = stored.fx, self.fx or stored.fy, stored.cx, stored.cy
         elif self.fx:
-            usual = self.fx, self.fx, *middle
+            default = self.fx, self.fx, *middle
         else:
             return None
         given = self.fx, self.fy, self.cx, self.cy
-        fx, fy, cx, cy = (one or other for one, other in zip(given, usual, strict=True))
+        fx, fy, cx, cy = (
+            value or fallback for value, fallback in zip(given, default, strict=True)
+        )
         return Camera(fx, fy, cx, cy, width, height)
 
 
-USUAL = DepthSettings()
+DEFAULT_DEPTH_SETTINGS = DepthSettings()

@@ -11,7 +11,7 @@ from ...errors import InvalidFileError
 from ..containers import StoredBytes
 
 MILLIMETRE = 0.001
-MOST_PIXELS = 4096
+MAX_PIXELS = 4096
 """Columns or rows of the largest picture that is believed."""
 
 
@@ -75,8 +75,8 @@ class ColorStack:
 
 def check_size(path: Path | str, height: int, width: int) -> None:
     """Raise InvalidFileError unless a picture can have so many rows and columns."""
-    if not (1 < height <= MOST_PIXELS and 1 < width <= MOST_PIXELS):
+    if not (1 < height <= MAX_PIXELS and 1 < width <= MAX_PIXELS):
         raise InvalidFileError(
             f"{path} has pictures of {width} x {height} pixels, which no depth camera makes."
-            f" They may be 2 to {MOST_PIXELS} wide and high."
+            f" They may be 2 to {MAX_PIXELS} wide and high."
         )

@@ -7,37 +7,37 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ..containers import read_bytes
-from .layouts import Focal, Layout, pictures_in
+from .layouts import Focal, Layout, list_images
 from .settings import Held
 from .stack import MILLIMETRE
 
 Array = NDArray[np.float64]
 
-USUAL_RATE = 60.0
+DEFAULT_FRAME_RATE = 60.0
 WIDTHS = ((1920, 1440), (1280, 960), (640, 480), (256, 192))
 """Of the video, for which the camera's matrix holds: it is not said."""
 WITH_TIMES, POSE = 9, 7
 """Numbers in a line of the course: time, frame, and the pose; or the pose alone."""
-STEADY = 0.1
+MAX_STATIC_MOTION_M = 0.1
 """Metres by which a camera that stands may have moved."""
 
 
 def stray_layout(root: Path) -> Layout | None:
     """Lay out a folder of Stray Scanner's: `camera_matrix.csv`, `depth/`, `confidence/`."""
-    depth = pictures_in(root, "depth")
+    depth = list_images(root, "depth")
     if not depth or not (root / "camera_matrix.csv").is_file():
         return None
     focal, size = _focal(root / "camera_matrix.csv")
-    sure = {Path(name).stem: name for name in pictures_in(root, "confidence")}
+    sure = {Path(name).stem: name for name in list_images(root, "confidence")}
     known = all(Path(name).stem in sure for name in depth)
-    course = _course(root / "odometry.csv")
-    held, remarks = _held(course)
+    course = _read_odometry(root / "odometry.csv")
+    held, remarks = _camera_hold(course)
     times = _times(course, depth)
     return Layout(
         root,
         depth,
         times,
-        rate=USUAL_RATE,
+        rate=DEFAULT_FRAME_RATE,
         metres=MILLIMETRE,
         focal=focal,
         focal_size=size,
@@ -56,7 +56,7 @@ def _focal(path: Path) -> tuple[Focal, tuple[int, int]]:
     return (float(fx), float(fy), float(cx), float(cy)), size
 
 
-def _course(path: Path) -> Array:
+def _read_odometry(path: Path) -> Array:
     """Return time, frame and pose of the camera for each frame, shape (n, 9); n may be 0."""
     rows = _numbers(path) if path.is_file() else np.empty((0, WITH_TIMES))
     if rows.shape[1] == POSE:
@@ -82,7 +82,7 @@ def _numbers(path: Path) -> Array:
     return np.array(rows)
 
 
-def _held(course: Array) -> tuple[Held, tuple[str, ...]]:
+def _camera_hold(course: Array) -> tuple[Held, tuple[str, ...]]:
     """Tell from the poses how the telephone was held, and whether it stood still.
 
     The world of ARKit has Y up. Of the camera, x is to the right of the picture and y down.
@@ -96,7 +96,7 @@ def _held(course: Array) -> tuple[Held, tuple[str, ...]]:
         moved = float(np.linalg.norm(np.ptp(poses[:, :3], axis=0)))
     remarks = (
         (f"The camera moved by {moved:.1f} m; it is taken to stand still.",)
-        if moved > STEADY
+        if moved > MAX_STATIC_MOTION_M
         else ()
     )
     if abs(up[0]) > abs(up[1]):

@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched, within
-from ..containers import GrowingTable, LineReader, parted_by_blanks, read_number, stream_rows
-from ..conventions import USUAL_RATE, check_scale, from_azure_space, joint_recording
+from ..containers import GrowingTable, LineReader, read_number, spaces_from_commas, stream_rows
+from ..conventions import DEFAULT_FRAME_RATE, check_scale, from_azure_space, joint_recording
 
 NAMES = SENSOR_JOINTS[Sensor.AZURE_KINECT]
 MILLIMETRE = 0.001
 PER_JOINT = re.compile(rb"(?i)[^\n]*\n?[ \t]*body id\s*,\s*joint #\s*,\s*x\s*,\s*y\s*,\s*z")
 PER_FRAME = re.compile(rb"(?i)[^\n]*\bpelvis\.x\s*,")
 ONLY_AZURE = re.compile(rb"(?i)[^\n]*(\bspine_?(chest|nav[ae]l)\b|\bclavicle)")
-LEAST_WORDS = 10
-NOT_SEEN = np.tile((np.nan, np.nan, np.nan, 0.0), (len(NAMES), 1))
+MIN_WORDS = 10
+NOT_OBSERVED = np.tile((np.nan, np.nan, np.nan, 0.0), (len(NAMES), 1))
 SPELLINGS = {name.upper(): name for name in NAMES} | {"SPINENAVAL": "SpineNavel"}
 STATES = (  # What the SDK calls its levels of confidence, and what a state is.
     (rb"out of range|\bnone\b|^0$", 0),
@@ -42,7 +42,7 @@ def read_azure_csv(
     path: Path | str,
     *,
     scale: float | None = None,
-    frame_rate: float = USUAL_RATE,
+    frame_rate: float = DEFAULT_FRAME_RATE,
     progress: Progress = unwatched,
 ) -> JointRecording:
     """Read a table of Azure Kinect joints, in metres, Z up; joints not tracked are NaN.
@@ -120,7 +120,7 @@ class _Body:
 
     def __init__(self) -> None:
         self._table = GrowingTable(4 * len(NAMES))
-        self._frame = NOT_SEEN.copy()
+        self._frame = NOT_OBSERVED.copy()
         self._last = len(NAMES)
         self.n_frames = 0
 
@@ -140,12 +140,12 @@ class _Body:
     def _end_frame(self) -> None:
         if self.n_frames:
             self._table.add(self._frame.reshape(1, -1))
-            self._frame[:] = NOT_SEEN
+            self._frame[:] = NOT_OBSERVED
 
 
 def _joint(words: list[bytes], place: str) -> tuple[int, list[float]]:
     """Return the joint's number, and x, y, z and state."""
-    joint = words[1].strip() if len(words) >= LEAST_WORDS else b""
+    joint = words[1].strip() if len(words) >= MIN_WORDS else b""
     if not joint.isdigit() or len(joint) > 2 or int(joint) >= len(NAMES):
         raise InvalidFileError(
             f"{place}: a body, one of {len(NAMES)} joints, its place, turn and confidence"
@@ -171,7 +171,7 @@ def _read_frame_lines(
     names = [name for name in NAMES if all(f"{name}.{axis}" in columns for axis in "xyz")]
     if not names:
         raise InvalidFileError(f"{path} has no columns x, y and z of any joint.")
-    rows = stream_rows(reader, len(header), path, progress, tidied=parted_by_blanks)
+    rows = stream_rows(reader, len(header), path, progress, tidied=spaces_from_commas)
     if not len(rows):
         raise InvalidFileError(f"{path} has headings but no joints.")
     used = [columns[f"{name}.{axis}"] for name in names for axis in "xyz"]

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched
-from ..containers import DifferentNames, json_members, numbers_of, printable
+from ..containers import UniqueNames, array_from_json, json_members, printable
 from ..conventions import (
     check_scale,
-    frames_of,
     from_azure_space,
     joint_recording,
-    longest_seen,
+    longest_observed_body,
+    stack_body_frames,
 )
 from .azure_csv import MILLIMETRE, azure_joint
 
@@ -71,7 +71,7 @@ def read_azure_json(
     check_scale(scale)
     frames: list[Bodies] = []
     times: list[float] = []
-    given = DifferentNames()
+    given = UniqueNames()
     names: list[str] = []
     for member in json_members(path):
         if member.key == "frames":
@@ -90,7 +90,7 @@ def read_azure_json(
             f"{path}: not every body has a place for each of the {len(joints)} joints. The file"
             " is damaged; export it again."
         )
-    positions = frames_of(longest_seen(frames), frames)
+    positions = stack_body_frames(longest_observed_body(frames), frames)
     return joint_recording(
         path,
         joints,
@@ -112,7 +112,9 @@ def _read_frame(frame: Any, place: str) -> tuple[float, Bodies]:
         )
     bodies: Bodies = {}
     for count, body in enumerate(listed):
-        places = numbers_of(body.get("joint_positions"), (-1, 3), f"{place}, joint_positions")
+        places = array_from_json(
+            body.get("joint_positions"), (-1, 3), f"{place}, joint_positions"
+        )
         bodies.setdefault(str(body.get("body_id", count)), places)
-    time = numbers_of(frame.get("timestamp_usec"), (), f"{place}, timestamp_usec")
+    time = array_from_json(frame.get("timestamp_usec"), (), f"{place}, timestamp_usec")
     return float(time), bodies

@@ -10,12 +10,12 @@ from ...motion import JointRecording, Sensor, Tracks
 from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
 from ...progress import Progress, unwatched
 from ..containers import NPY_MAGIC, read_array
-from ..conventions import USUAL_RATE, check_scale, guessed_unit, z_up_from_y_up
+from ..conventions import DEFAULT_FRAME_RATE, check_scale, describe_guessed_unit, z_up_from_y_up
 
 WITH_HANDS = len(BODY_POINTS) + 2 * len(HAND_POINTS)
 FACES = (0, 468, 478)
 MILLIMETRE = 0.001
-LARGEST_IN_METRES = 20.0
+MAX_EXTENT_M = 20.0
 """Extent of a body in its file's units, above which they are no metres."""
 
 
@@ -28,7 +28,7 @@ def read_freemocap(
     path: Path | str,
     *,
     scale: float | None = None,
-    frame_rate: float = USUAL_RATE,
+    frame_rate: float = DEFAULT_FRAME_RATE,
     progress: Progress = unwatched,
 ) -> JointRecording | Tracks:
     """Read a `.npy` file of freemocap, in metres, Z up; what was not observed is NaN.
@@ -78,7 +78,7 @@ def read_freemocap(
         names, points = _with_centres(names, _z_up(points))
     unit = _unit(points) if scale is None else scale
     tracks = Tracks(names, points * unit, frame_rate)
-    progress(1.0, guessed_unit(unit) if scale is None and is_body else "Reading")
+    progress(1.0, describe_guessed_unit(unit) if scale is None and is_body else "Reading")
     return JointRecording(tracks, None, Sensor.MEDIAPIPE) if is_body else tracks
 
 
@@ -103,7 +103,7 @@ def _names(points: NDArray[np.float64]) -> tuple[str, ...]:
     hands = [points[:, len(BODY_POINTS)], points[:, len(BODY_POINTS) + len(HAND_POINTS)]]
     wrists = [points[:, BODY_POINTS.index(f"{side}_wrist")] for side in ("left", "right")]
     (first_left, first_right), (second_left, second_right) = (
-        [_apart(hand, wrist) for wrist in wrists] for hand in hands
+        [_median_distance(hand, wrist) for wrist in wrists] for hand in hands
     )
     nearer_crossed = (
         first_left - first_right, first_left - second_left,
@@ -115,7 +115,7 @@ def _names(points: NDArray[np.float64]) -> tuple[str, ...]:
     return (*BODY_POINTS, *named, *face)
 
 
-def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+def _median_distance(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
     """Return the usual distance of two points; NaN where they are never seen together."""
     with np.errstate(over="ignore"):
         distances = np.linalg.norm(one - other, axis=-1)
@@ -143,4 +143,4 @@ def _unit(points: NDArray[np.float64]) -> float:
     """Return metres per unit, of points in the file's units."""
     spread = np.nanquantile(points, [0.05, 0.95], axis=(0, 1))
     with np.errstate(over="ignore"):
-        return MILLIMETRE if float(np.ptp(spread, axis=0).max()) > LARGEST_IN_METRES else 1.0
+        return MILLIMETRE if float(np.ptp(spread, axis=0).max()) > MAX_EXTENT_M else 1.0

@@ -20,7 +20,7 @@ HEAD = re.compile(
 )
 MILLISECOND = 0.001
 NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
-PLACES = {name.encode(): place for place, name in enumerate(NAMES)}
+JOINT_INDICES = {name.encode(): place for place, name in enumerate(NAMES)}
 
 
 class Frame(NamedTuple):
@@ -114,11 +114,11 @@ def _frame(line: bytes, place: str) -> Frame:
     states = np.zeros(len(NAMES), dtype=np.int8)
     for joint in joints:
         name, *words = (word.strip() for word in joint.split(b")")[0].split(b","))
-        if name not in PLACES or len(words) < 4 or words[0] not in STATES:
+        if name not in JOINT_INDICES or len(words) < 4 or words[0] not in STATES:
             raise InvalidFileError(
                 f"{place}: {shown(joint.decode('ascii', 'backslashreplace'))!r} is no joint of"
                 " a Kinect v2 with state and place. The file is damaged; delete that line."
             )
-        states[PLACES[name]] = STATES[words[0]]
-        positions[PLACES[name]] = [read_number(word, place) for word in words[1:4]]
+        states[JOINT_INDICES[name]] = STATES[words[0]]
+        positions[JOINT_INDICES[name]] = [read_number(word, place) for word in words[1:4]]
     return Frame(fields[1], read_number(fields[2], place), positions, states)

@@ -14,9 +14,9 @@ from ...errors import InvalidFileError
 from ...files import written_whole
 from ...motion import JointRecording
 from ...progress import Progress, unwatched, within
-from ..containers import LineReader, parted_by_blanks, shown, stream_rows
+from ..containers import LineReader, shown, spaces_from_commas, stream_rows
 from ..conventions import check_scale
-from .joint_header import FORMAT, VERSION, check_names, joint_header, told_recording
+from .joint_header import FORMAT, VERSION, build_recording, check_names, parse_header
 
 TIME = "time"
 AXES = ("x", "y", "z")
@@ -75,7 +75,7 @@ def read_joint_csv(
     head = reader.take(2)
     if len(head) < 2:
         raise InvalidFileError(f"{path} is cut short: it has no line that names its columns.")
-    header = joint_header(_said(head[0]), f"{path}, line 1")
+    header = parse_header(_parse_header_line(head[0]), f"{path}, line 1")
     columns = _columns(head[1], f"{path}, line 2")
     values = _values(reader, columns, path, within(progress, 0.0, 0.9))
     if header.frame_rate is None and values.times is None:
@@ -83,7 +83,7 @@ def read_joint_csv(
             f"{path}: neither a frame_rate in its first line nor a column {TIME} tells when"
             " each frame was seen."
         )
-    return told_recording(
+    return build_recording(
         path,
         _joint_names(columns),
         header,
@@ -148,7 +148,7 @@ def _text(value: float) -> str:
     return "" if value != value else repr(value)
 
 
-def _said(line: bytes) -> dict[str, str]:
+def _parse_header_line(line: bytes) -> dict[str, str]:
     """Return the words `key=value` of the first line, and its format and version."""
     words = [word.strip() for word in line.decode("latin-1").split(",")]
     pairs = [word.partition("=") for word in words[2:]]
@@ -180,10 +180,10 @@ def _values(
     reader: LineReader, columns: Sequence[str], path: Path | str, progress: Progress
 ) -> _Values:
     """Return what the lines below the names of the columns hold."""
-    rows = stream_rows(reader, len(columns), path, progress, tidied=parted_by_blanks)
+    rows = stream_rows(reader, len(columns), path, progress, tidied=spaces_from_commas)
     places = {column: at for at, column in enumerate(columns)}
     names = _joint_names(columns)
-    used = {field: _places(places, names, field, path) for field in FIELDS}
+    used = {field: _field_columns(places, names, field, path) for field in FIELDS}
     axes = [used[axis] for axis in AXES if used[axis]]
     if len(axes) < len(AXES) or not len(rows):
         raise InvalidFileError(
@@ -198,7 +198,7 @@ def _values(
     )
 
 
-def _places(
+def _field_columns(
     places: Mapping[str, int], names: Sequence[str], field: str, path: Path | str
 ) -> list[int]:
     """Return the columns of one field, one for each joint, or none at all."""

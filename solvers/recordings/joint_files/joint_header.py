@@ -42,7 +42,7 @@ class JointHeader:
         return points * (1.0, -1.0, -1.0) if self.up[0] == "-" else points
 
 
-def joint_header(said: Mapping[str, Any], place: str) -> JointHeader:
+def parse_header(said: Mapping[str, Any], place: str) -> JointHeader:
     """Read a header; `place` begins the sentence of the InvalidFileError for a wrong one."""
     if said.get("format") != FORMAT or str(said.get("version")) != str(VERSION):
         raise InvalidFileError(
@@ -77,7 +77,7 @@ def _choice(
     return value
 
 
-def told_recording(
+def build_recording(
     path: Path | str,
     names: Sequence[str],
     header: JointHeader,

@@ -13,12 +13,12 @@ from ...errors import InvalidFileError
 from ...files import written_whole
 from ...motion import JointRecording
 from ...progress import Progress, unwatched
-from ..containers import json_members, numbers_of, shown
+from ..containers import array_from_json, json_members, shown
 from ..conventions import check_scale
-from .joint_header import FORMAT, VERSION, check_names, joint_header, told_recording
+from .joint_header import FORMAT, VERSION, build_recording, check_names, parse_header
 
 HEAD = re.compile(rb'\s*\{[^{}\[\]]*"format"\s*:\s*"' + FORMAT.encode() + rb'"')
-UNSEEN = (np.nan, np.nan, np.nan)
+NOT_OBSERVED = (np.nan, np.nan, np.nan)
 
 
 class Frame(NamedTuple):
@@ -78,7 +78,7 @@ def read_joint_json(
             names.append(str(member.value))
         else:
             said[member.key] = member.value
-    header = joint_header(said, str(path))
+    header = parse_header(said, str(path))
     _check(names, frames, path)
     times = np.array([frame.time for frame in frames])
     if header.frame_rate is None and np.isnan(times).all():
@@ -86,7 +86,7 @@ def read_joint_json(
             f"{path}: neither a frame_rate nor a time in each frame tells when it was seen."
         )
     positions = np.stack([frame.positions for frame in frames])
-    return told_recording(
+    return build_recording(
         path,
         names,
         header,
@@ -150,15 +150,17 @@ def _frame(frame: Any, place: str) -> Frame:
     listed = frame.get("positions") if isinstance(frame, dict) else None
     if not isinstance(listed, list):
         raise InvalidFileError(f"{place}: a list of positions belongs there.")
-    places = [UNSEEN if position is None else position for position in listed]
-    positions = numbers_of(places, (len(places), 3) if places else (0,), f"{place}, positions")
+    places = [NOT_OBSERVED if position is None else position for position in listed]
+    positions = array_from_json(
+        places, (len(places), 3) if places else (0,), f"{place}, positions"
+    )
     states, confidence = (
         None
         if frame.get(key) is None
-        else numbers_of(frame[key], (len(places),), f"{place}, {key}")
+        else array_from_json(frame[key], (len(places),), f"{place}, {key}")
         for key in ("states", "confidence")
     )
-    time = float(numbers_of(frame.get("time"), (), f"{place}, time"))
+    time = float(array_from_json(frame.get("time"), (), f"{place}, time"))
     return Frame(positions.reshape(-1, 3), states, confidence, time)
 
 

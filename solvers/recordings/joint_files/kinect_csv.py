@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched, within
-from ..containers import LineReader, parted_by_blanks, stream_rows
-from ..conventions import USUAL_RATE, check_scale, from_kinect_space, joint_recording
+from ..containers import LineReader, spaces_from_commas, stream_rows
+from ..conventions import DEFAULT_FRAME_RATE, check_scale, from_kinect_space, joint_recording
 
 NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
 WITHOUT_TIME = 4 * len(NAMES)
@@ -32,7 +32,7 @@ def read_kinect_csv(
     path: Path | str,
     *,
     scale: float | None = None,
-    frame_rate: float = USUAL_RATE,
+    frame_rate: float = DEFAULT_FRAME_RATE,
     progress: Progress = unwatched,
 ) -> JointRecording:
     """Read a table of Kinect v2 joints, in metres, Z up; joints not tracked are NaN.
@@ -76,13 +76,13 @@ def read_kinect_csv(
     check_scale(scale)
     reader = LineReader(path)
     reader.pass_over_blank()
-    width = len(b"".join(map(_tidied, reader.peek())).split())
+    width = len(b"".join(map(_split_line, reader.peek())).split())
     if width not in {WITHOUT_TIME, WITHOUT_TIME + 1}:
         raise InvalidFileError(
             f"{path} is no table of Kinect v2 joints: {WITHOUT_TIME} numbers belong in each"
             f" line, or {WITHOUT_TIME + 1} with the time, not {width}."
         )
-    rows = stream_rows(reader, width, path, within(progress, 0.0, 0.9), tidied=_tidied)
+    rows = stream_rows(reader, width, path, within(progress, 0.0, 0.9), tidied=_split_line)
     joints = rows[:, width - WITHOUT_TIME :].reshape(len(rows), len(NAMES), 4)
     return joint_recording(
         path,
@@ -97,8 +97,8 @@ def read_kinect_csv(
     )
 
 
-def _tidied(line: bytes) -> bytes:
-    return parted_by_blanks(line.strip().removesuffix(b","))
+def _split_line(line: bytes) -> bytes:
+    return spaces_from_commas(line.strip().removesuffix(b","))
 
 
 def checked_states(values: NDArray[np.float64], path: Path | str) -> NDArray[np.int8]:

@@ -18,7 +18,7 @@ ORDER = (
     "KneeLeft", "KneeRight", "AnkleLeft", "AnkleRight", "FootLeft", "FootRight", "Head",
 )  # fmt: skip
 WIDTH = 4
-SMALLEST, LARGEST = 0.3, 5.0
+MIN_EXTENT_M, MAX_EXTENT_M = 0.3, 5.0
 """Metres from one side of a body to the other, on the axis where that is farthest."""
 
 
@@ -90,7 +90,7 @@ def read_msr_action3d(
     joints = rows.reshape(-1, len(NAMES), WIDTH)[:, places]
     extents = np.ptp(np.nan_to_num(joints[..., :3]), axis=1).max(axis=-1)
     extents = extents[extents > 0.0]  # Before the actor was found, all is 0.
-    if scale is None and len(extents) and not SMALLEST < np.median(extents) < LARGEST:
+    if scale is None and len(extents) and not MIN_EXTENT_M < np.median(extents) < MAX_EXTENT_M:
         raise InvalidFileError(
             f"{path} has four numbers in each line, as MSR Action3D has, but they are no joints"
             " of a body in metres. Export its real-world coordinates, or give the scale."

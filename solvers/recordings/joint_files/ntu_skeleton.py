@@ -11,10 +11,10 @@ from ...progress import Progress, unwatched, within
 from ..containers import read_bytes, read_rows
 from ..conventions import (
     check_scale,
-    frames_of,
     from_kinect_space,
     joint_recording,
-    longest_seen,
+    longest_observed_body,
+    stack_body_frames,
 )
 from .kinect_csv import checked_states
 
@@ -25,7 +25,7 @@ HEAD = re.compile(
     re.IGNORECASE,
 )
 BODY_WORDS, JOINT_WORDS = 10, 12
-MOST_BODIES = 6
+MAX_BODIES = 6
 """The Kinect v2 tracks no more."""
 Frames = list[dict[bytes, range]]
 
@@ -78,7 +78,7 @@ def read_ntu_skeleton(
     frames = _find_bodies(lines, places, path)
     if not any(frames):
         raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
-    body = longest_seen(frames)
+    body = longest_observed_body(frames)
     used = [place for frame in frames for place in frame.get(body, ())]
     rows = read_rows(
         [lines[place] for place in used],
@@ -88,7 +88,9 @@ def read_ntu_skeleton(
         within(progress, 0.0, 0.9),
     ).reshape(-1, len(NAMES), JOINT_WORDS)
     tracked = iter(np.concatenate([rows[..., :3], rows[..., -1:]], axis=-1))
-    joints = frames_of(body, [{body: next(tracked)} if body in f else {} for f in frames])
+    joints = stack_body_frames(
+        body, [{body: next(tracked)} if body in f else {} for f in frames]
+    )
     unseen = np.isnan(joints).all(axis=(1, 2))
     joints[unseen, :, 3] = 0.0
     return joint_recording(
@@ -109,7 +111,7 @@ def _find_bodies(lines: list[bytes], places: list[int], path: Path | str) -> Fra
     frames: Frames = []
     while cursor.left:
         frame: dict[bytes, range] = {}
-        for _ in range(cursor.count("the number of bodies", MOST_BODIES)):
+        for _ in range(cursor.count("the number of bodies", MAX_BODIES)):
             body = cursor.words("a body's id and nine words about it", BODY_WORDS)[0]
             n_joints = cursor.count("the number of joints")
             if n_joints != len(NAMES):

@@ -1,17 +1,17 @@
 """Joints that arrive over the local network while they are recorded."""
 
-from .frames import MOST_JOINTS, PORT, LiveFrame, encode_frame, frames_of
+from .frames import MAX_JOINTS, PORT, LiveFrame, encode_frame, frames_from_recording
 from .receiver import Receiver
-from .stream import Heard, StreamReader, recording_of
+from .stream import StreamCounts, StreamReader, recording_from_frames
 
 __all__ = [
-    "MOST_JOINTS",
+    "MAX_JOINTS",
     "PORT",
-    "Heard",
     "LiveFrame",
     "Receiver",
+    "StreamCounts",
     "StreamReader",
     "encode_frame",
-    "frames_of",
-    "recording_of",
+    "frames_from_recording",
+    "recording_from_frames",
 ]

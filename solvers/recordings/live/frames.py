@@ -16,18 +16,18 @@ FORMAT = "mocap-assist-live"
 VERSION = 1
 PORT = 46464
 """Of UDP on the machine's own address, where nobody names another."""
-LONGEST_LINE = 32_768
+MAX_LINE_BYTES = 32_768
 """Bytes; a frame of 32 joints takes about 2,000."""
-MOST_JOINTS = 64
-MAX_LISTS = 4 * MOST_JOINTS
+MAX_JOINTS = 64
+MAX_LISTS = 4 * MAX_JOINTS
 """Lists and objects in a line; names are text, and each joint has one. More would only cost
 time, of the garbage collector above all."""
-LONGEST_NAME = 64
-FARTHEST = 100.0
+MAX_NAME_LENGTH = 64
+MAX_POSITION_M = 100.0
 """Metres from the sensor, on each axis; it sees no farther."""
-LATEST = 1e11
+MAX_TIME_S = 1e11
 """Seconds; thousands of years."""
-MOST_BODIES = 2**53
+MAX_BODY = 2**53
 NUMBERS = (int, float)
 
 
@@ -86,7 +86,7 @@ def decode_frame(line: bytes) -> LiveFrame:
         The line is too long, no JSON, of another format, or any value in it is not what
         belongs there. One sentence says what.
     """
-    if len(line) > LONGEST_LINE:
+    if len(line) > MAX_LINE_BYTES:
         raise InvalidMotionError(f"A frame of {len(line)} bytes is too long.")
     if line.count(b"[") + line.count(b"{") > MAX_LISTS:
         raise InvalidMotionError(f"A frame has more than {MAX_LISTS} lists.")
@@ -104,7 +104,7 @@ def decode_frame(line: bytes) -> LiveFrame:
     confidence = _confidence(said.get("confidence"), states, len(names))
     seen = np.isfinite(positions).all(axis=-1)
     return LiveFrame(
-        _number(said.get("time"), "time", LATEST),
+        _number(said.get("time"), "time", MAX_TIME_S),
         _body(said.get("body", 0)),
         names,
         positions,
@@ -114,7 +114,7 @@ def decode_frame(line: bytes) -> LiveFrame:
     )
 
 
-def frames_of(recording: JointRecording, body: int = 0) -> Iterator[LiveFrame]:
+def frames_from_recording(recording: JointRecording, body: int = 0) -> Iterator[LiveFrame]:
     """Yield the frames of a recording as a tracker would have sent them, from second 0 on."""
     tracks = recording.tracks
     states, sure = recording.tracking_state, tracks.confidence
@@ -145,7 +145,7 @@ def _number(value: Any, name: str, largest: float) -> float:
 
 
 def _body(value: Any) -> int:
-    if type(value) is not int or not 0 <= value <= MOST_BODIES:
+    if type(value) is not int or not 0 <= value <= MAX_BODY:
         raise InvalidMotionError("A frame's body is not a whole number from 0 on.")
     return int(value)
 
@@ -158,20 +158,20 @@ def _sensor(value: Any) -> Sensor:
 
 
 def _names(value: Any) -> tuple[str, ...]:
-    fit = isinstance(value, list) and 0 < len(value) <= MOST_JOINTS
+    fit = isinstance(value, list) and 0 < len(value) <= MAX_JOINTS
     if not fit or not all(map(_is_name, value)) or len(set(value)) < len(value):
         raise InvalidMotionError(
-            f"A frame's names are not 1 to {MOST_JOINTS} words that differ, of at most"
-            f" {LONGEST_NAME} letters."
+            f"A frame's names are not 1 to {MAX_JOINTS} words that differ, of at most"
+            f" {MAX_NAME_LENGTH} letters."
         )
     return tuple(value)
 
 
 def _is_name(value: Any) -> bool:
-    return isinstance(value, str) and 0 < len(value) <= LONGEST_NAME and value.isprintable()
+    return isinstance(value, str) and 0 < len(value) <= MAX_NAME_LENGTH and value.isprintable()
 
 
-def _listed(value: Any, name: str, length: int) -> list[Any]:
+def _check_list(value: Any, name: str, length: int) -> list[Any]:
     if not isinstance(value, list) or len(value) != length:
         raise InvalidMotionError(f"A frame's {name} are not one for each of {length} names.")
     return value
@@ -179,17 +179,17 @@ def _listed(value: Any, name: str, length: int) -> list[Any]:
 
 def _positions(value: Any, n_joints: int) -> NDArray[np.float64]:
     positions = np.full((n_joints, 3), np.nan)
-    for joint, place in enumerate(_listed(value, "positions", n_joints)):
+    for joint, place in enumerate(_check_list(value, "positions", n_joints)):
         if place is not None:
-            where = _listed(place, "coordinates", 3)
-            positions[joint] = [_number(one, "position", FARTHEST) for one in where]
+            where = _check_list(place, "coordinates", 3)
+            positions[joint] = [_number(one, "position", MAX_POSITION_M) for one in where]
     return positions
 
 
 def _states(value: Any, n_joints: int) -> NDArray[np.int8] | None:
     if value is None:
         return None
-    states = _listed(value, "states", n_joints)
+    states = _check_list(value, "states", n_joints)
     if not all(type(state) is int and 0 <= state <= 2 for state in states):
         raise InvalidMotionError("A frame's states are not 2, 1 or 0.")
     return np.array(states, dtype=np.int8)
@@ -201,7 +201,9 @@ def _confidence(
     """Return what the frame says or, where it does not, half of the tracking state, or 1."""
     if value is None:
         return np.ones(n_joints) if states is None else states / 2.0
-    told = [_number(one, "confidence", 1.0) for one in _listed(value, "confidences", n_joints)]
+    told = [
+        _number(one, "confidence", 1.0) for one in _check_list(value, "confidences", n_joints)
+    ]
     if min(told) < 0.0:
         raise InvalidMotionError("A frame's confidence is below 0.")
     return np.array(told)

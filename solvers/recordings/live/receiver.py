@@ -6,11 +6,11 @@ from typing import Self
 from ...errors import InvalidSettingError
 
 LOOPBACK = "127.0.0.1"
-LONGEST_DATAGRAM = 65_536
-MOST_AT_ONCE, MOST_BYTES = 64, 1 << 18
+MAX_DATAGRAM_BYTES = 65_536
+MAX_DATAGRAMS, MAX_POLL_BYTES = 64, 1 << 18
 """Datagrams, and bytes, after which no more are taken in one go: 1,900 datagrams in a second of
 30 looks. Those behind them wait, and the system drops too many."""
-WAITING = 1 << 20
+BUFFER_BYTES = 1 << 20
 """Bytes that may wait."""
 
 
@@ -32,7 +32,7 @@ class Receiver:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             self._socket.setblocking(False)
-            self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, WAITING)
+            self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
             self._socket.bind((LOOPBACK, port))
         except (OSError, OverflowError):
             self._socket.close()
@@ -50,9 +50,9 @@ class Receiver:
     def poll(self) -> list[bytes]:
         """Return the first datagrams that have come in since; none if none have."""
         came: list[bytes] = []
-        while len(came) < MOST_AT_ONCE and sum(map(len, came)) < MOST_BYTES:
+        while len(came) < MAX_DATAGRAMS and sum(map(len, came)) < MAX_POLL_BYTES:
             try:
-                came.append(self._socket.recv(LONGEST_DATAGRAM))
+                came.append(self._socket.recv(MAX_DATAGRAM_BYTES))
             except BlockingIOError:
                 break
             except OSError:  # Windows tells of datagrams too long, or sent back, like this.

@@ -11,19 +11,19 @@ from ...progress import unwatched
 from ..conventions import joint_recording
 from .frames import LiveFrame, decode_frame
 
-NEW_STREAM = 2.0
+NEW_STREAM_S = 2.0
 """Seconds by which a frame must be too old to be the first of another stream."""
-RESTARTED = 5
+N_RESTART_FRAMES = 5
 """Late frames in a row, each later than the one before, that tell of another stream, too."""
-MOST_LINES = 128
+MAX_LINES = 128
 """Lines that are looked at in one go: two seconds of two bodies, which take some 35 ms."""
-LET_GO = 1.0
+BODY_TIMEOUT_S = 1.0
 """Seconds without the body that is followed, after which another is."""
 PERFORMANCE = "The performance"
 
 
 @dataclass
-class Heard:
+class StreamCounts:
     """How many frames came in, and why others were dropped."""
 
     frames: int = 0
@@ -53,7 +53,7 @@ class StreamReader:
     """
 
     def __init__(self) -> None:
-        self.heard = Heard()
+        self.heard = StreamCounts()
         self._body: int | None = None
         self._time = float("-inf")
         self._late: list[float] = []
@@ -61,10 +61,10 @@ class StreamReader:
     def read(self, *datagrams: bytes) -> Iterator[LiveFrame]:
         """Yield the frames that count of what came in at once, in their order.
 
-        Lines behind the first `MOST_LINES` are counted as skipped: whoever sends junk costs no
+        Lines behind the first `MAX_LINES` are counted as skipped: whoever sends junk costs no
         more time than that.
         """
-        left = MOST_LINES
+        left = MAX_LINES
         for datagram in datagrams:
             if not left:
                 self.heard.skipped += max(datagram.count(b"\n"), 1)
@@ -87,7 +87,7 @@ class StreamReader:
 
     def _counts(self, frame: LiveFrame) -> bool:
         since = frame.time - self._time
-        fresh = since > LET_GO or since <= -NEW_STREAM
+        fresh = since > BODY_TIMEOUT_S or since <= -NEW_STREAM_S
         if frame.body != self._body and not fresh:
             self.heard.others += 1
             return False
@@ -104,10 +104,10 @@ class StreamReader:
         if self._late and time <= self._late[-1]:
             self._late.clear()
         self._late.append(time)
-        return len(self._late) >= RESTARTED
+        return len(self._late) >= N_RESTART_FRAMES
 
 
-def recording_of(frames: Sequence[LiveFrame]) -> JointRecording:
+def recording_from_frames(frames: Sequence[LiveFrame]) -> JointRecording:
     """Return frames of a stream as a recording of a constant rate; gaps stay gaps.
 
     Frames whose joints have other names than most are left out.

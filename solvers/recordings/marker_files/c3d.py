@@ -9,9 +9,15 @@ from ...errors import InvalidFileError
 from ...motion import Tracks
 from ...progress import Progress, unwatched
 from ..containers import C3dFile
-from ..conventions import check_scale, guess_unit_of_points, point_names, points_z_up, said_unit
+from ..conventions import (
+    check_scale,
+    guess_unit_of_points,
+    metres_from_unit_name,
+    point_names,
+    points_z_up,
+)
 
-NOT_PLACES = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS", "REACTIONS")
+NON_POSITION_PARAMETERS = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS", "REACTIONS")
 
 
 def read_c3d(
@@ -55,7 +61,7 @@ def read_c3d(
     progress(0.6, "Reading")
     points[~seen | (points == 0.0).all(axis=-1) | ~np.isfinite(points).all(axis=-1)] = np.nan
     labels = _labels(file, points.shape[1])
-    other = {label for kind in NOT_PLACES for label in file.texts(f"POINT:{kind}")}
+    other = {label for kind in NON_POSITION_PARAMETERS for label in file.texts(f"POINT:{kind}")}
     places = [index for index, label in enumerate(labels) if label not in other or not label]
     points = points[:, places]
     if not points.size or np.isnan(points).all():
@@ -81,5 +87,5 @@ def _labels(file: C3dFile, n_points: int) -> list[str]:
 
 def _unit(file: C3dFile, points: NDArray[np.float64]) -> float:
     """Return metres per unit of the file."""
-    said = said_unit("".join(file.texts("POINT:UNITS")[:1]))
+    said = metres_from_unit_name("".join(file.texts("POINT:UNITS")[:1]))
     return guess_unit_of_points(points) if said is None else said

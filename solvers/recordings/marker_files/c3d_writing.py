@@ -15,9 +15,9 @@ from ..containers import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS
 INTEL = 84
 MILLIMETRES_PER_METRE = 1000.0
 LABELS_AT_ONCE = 255
-LONGEST_TEXT = 255
-MOST_BLOCKS = 255
-LARGEST_COUNT = 65535
+MAX_TEXT_BYTES = 255
+MAX_BLOCKS = 255
+MAX_COUNT = 65535
 
 
 def write_c3d(tracks: Tracks, path: Path | str, *, progress: Progress = unwatched) -> None:
@@ -42,7 +42,7 @@ def write_c3d(tracks: Tracks, path: Path | str, *, progress: Progress = unwatche
         Raised by `progress`, which is called at the end.
     """
     n_blocks = -(-(4 + len(_parameters(tracks, 0))) // BLOCK)
-    if n_blocks > MOST_BLOCKS or tracks.n_points > LARGEST_COUNT:
+    if n_blocks > MAX_BLOCKS or tracks.n_points > MAX_COUNT:
         raise InvalidMotionError(
             f"{tracks.n_points} points with such names are more than a C3D file can list."
             " Shorten the names, or write fewer points."
@@ -63,7 +63,7 @@ def write_c3d(tracks: Tracks, path: Path | str, *, progress: Progress = unwatche
 
 
 def _header(tracks: Tracks, first_data_block: int) -> bytes:
-    last = min(tracks.n_frames, LARGEST_COUNT)
+    last = min(tracks.n_frames, MAX_COUNT)
     return struct.pack(
         "<BBHHHHHfHHf",
         2, C3D_ID, tracks.n_points, 0, 1, last, 0, -1.0, first_data_block, 0, tracks.frame_rate,
@@ -79,7 +79,7 @@ def _parameters(tracks: Tracks, first_data_block: int) -> bytes:
         _floats(1, "SCALE", [-1.0]),
         _floats(1, "RATE", [tracks.frame_rate]),
         _integers(1, "DATA_START", [first_data_block]),
-        _integers(1, "FRAMES", [min(n_frames, LARGEST_COUNT)]),
+        _integers(1, "FRAMES", [min(n_frames, MAX_COUNT)]),
         _floats(1, "LONG_FRAMES", [n_frames]),
         _texts(1, "UNITS", ["mm"]),
         _texts(1, "X_SCREEN", ["+X"]),
@@ -116,7 +116,7 @@ def _floats(group: int, name: str, values: Sequence[float]) -> bytes:
 
 
 def _texts(group: int, name: str, texts: Sequence[str]) -> bytes:
-    coded = [text.encode("latin-1", "replace")[:LONGEST_TEXT] for text in texts]
+    coded = [text.encode("latin-1", "replace")[:MAX_TEXT_BYTES] for text in texts]
     length = max(len(text) for text in coded)
     data = b"".join(text.ljust(length) for text in coded)
     return _parameter(group, name, CHARACTERS, [length, len(coded)], data)

@@ -12,14 +12,14 @@ from ...motion import Tracks
 from ...progress import Progress, unwatched, within
 from ..containers import ROWS_AT_ONCE, LineReader, read_number, shown
 from ..conventions import (
-    FEWEST_JOINTS_OF_A_BODY,
+    MIN_BODY_JOINTS,
     ConstantRate,
     check_scale,
-    even_rate,
+    constant_rate_from_times,
     guess_unit_of_points,
+    metres_from_unit_name,
     point_names,
     points_z_up,
-    said_unit,
 )
 
 FIRST_LINES = 30
@@ -28,10 +28,10 @@ TITLE_OF_TIMES = r'(?i)[\s"]*frame\s*#?"?\s*"?(time\w*)?[ "]*\t?'
 TITLE = rb'[\s"]*[A-Za-z]'
 """How the line begins that says X1, Y1, Z1 and so on."""
 FULL_TURN = 2.0 * np.pi
-LARGEST = 1e12
+MAX_VALUE = 1e12
 """What is larger is no measurement; some programs write so what they did not see."""
-SLOWEST, FASTEST = 1e-3, 1e6
-MOST_BLANKS = 10
+MIN_RATE_HZ, MAX_RATE_HZ = 1e-3, 1e6
+MAX_BLANK_RATIO = 10
 FREE_CELLS = 1_000_000
 MILLISECOND = 0.001
 
@@ -90,14 +90,14 @@ def read_trc(
     header = _read_header(reader.peek(FIRST_LINES), path)
     reader.take(header.n_lines)
     rows = _read_rows(reader, path, within(progress, 0.0, 0.8))
-    frames, times, points = _in_columns(rows, len(header.labels), path)
+    frames, times, points = _columns_from_rows(rows, len(header.labels), path)
     points[(points == 0.0).all(axis=-1) | ~np.isfinite(points).all(axis=-1)] = np.nan
     if np.isnan(points).all():
         raise InvalidFileError(f"{path} has no markers that are seen in any frame.")
     points *= _unit(header, points, path) if scale is None else scale
     points, rate = _at_constant_rate(points, frames, times, header.rate, path)
     labels = header.labels + [""] * (points.shape[1] - len(header.labels))
-    up = header.up or ("+Y" if len(labels) < FEWEST_JOINTS_OF_A_BODY else "")
+    up = header.up or ("+Y" if len(labels) < MIN_BODY_JOINTS else "")
     tracks = Tracks(point_names(labels), points_z_up(points, up), rate)
     progress(1.0, "Reading")
     return tracks
@@ -105,7 +105,7 @@ def read_trc(
 
 def _read_header(lines: list[bytes], path: Path | str) -> _Header:
     """Read all down to the names, which stand in the line that begins with `Frame#`."""
-    texts = [_decoded(line) for line in lines]
+    texts = [_decode(line) for line in lines]
     named = next(
         (place for place, text in enumerate(texts) if re.match(r'(?i)[\s"]*frame', text)), None
     )
@@ -117,13 +117,13 @@ def _read_header(lines: list[bytes], path: Path | str) -> _Header:
     keys = next(
         (place for place, text in enumerate(texts[:named]) if "datarate" in text.lower()), None
     )
-    said = {} if keys is None else _said(texts[keys], texts[keys + 1])
+    said = {} if keys is None else _parse_header_fields(texts[keys], texts[keys + 1])
     up = re.search(r"(?i)\t\s*([+-]?[XYZ]) up\s*(\t|$)", texts[0])
     rate = None
     if word := said.get("datarate"):
         rate = read_number(word.encode(), f"{path}, line {(keys or 0) + 2}, DataRate")
     return _Header(
-        rate=rate if rate is not None and SLOWEST < rate < FASTEST else None,
+        rate=rate if rate is not None and MIN_RATE_HZ < rate < MAX_RATE_HZ else None,
         unit=said.get("units", "").partition(" ")[0],
         up=up[1].upper() if up else "",
         labels=_labels(texts[named]),
@@ -131,7 +131,7 @@ def _read_header(lines: list[bytes], path: Path | str) -> _Header:
     )
 
 
-def _decoded(line: bytes) -> str:
+def _decode(line: bytes) -> str:
     try:
         return line.decode()
     except UnicodeDecodeError:
@@ -144,7 +144,7 @@ def _cells(text: str) -> list[str]:
     return [cell.strip(' "') for cell in cells]
 
 
-def _said(keys: str, values: str) -> dict[str, str]:
+def _parse_header_fields(keys: str, values: str) -> dict[str, str]:
     """Return the second and third line as one; some programs put two tabs between values."""
     named, given = _cells(keys.lower()), _cells(values)
     filled = [[cell for cell in cells if cell] for cells in (named, given)]
@@ -210,7 +210,7 @@ def _read_row(line: bytes, place: str) -> NDArray[np.float64]:
     except ValueError:  # Blanks, or other ways to write a number or that there is none.
         words = [cell.strip(b' "') for cell in cells]
         row = np.array([read_number(word, place) if word else np.nan for word in words])
-    if len(row) < 2 or not (np.abs(row[:2]) < LARGEST).all():
+    if len(row) < 2 or not (np.abs(row[:2]) < MAX_VALUE).all():
         begin = shown(line[:80].decode("ascii", "backslashreplace").replace("\t", " "))
         raise InvalidFileError(
             f"{place} begins with {begin!r} where the number and the time of a frame belong."
@@ -219,7 +219,7 @@ def _read_row(line: bytes, place: str) -> NDArray[np.float64]:
     return row
 
 
-def _in_columns(
+def _columns_from_rows(
     found: list[_Rows], n_labels: int, path: Path | str
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return frame numbers, times, and points of shape (n_frames, n_points, 3).
@@ -229,7 +229,7 @@ def _in_columns(
     n_rows = sum(len(rows.lengths) for rows in found)
     n_points = max(n_labels, (max(int(rows.lengths.max()) for rows in found) - 2) // 3)
     width = 2 + 3 * n_points
-    if n_rows * width > FREE_CELLS + MOST_BLANKS * sum(len(rows.numbers) for rows in found):
+    if n_rows * width > FREE_CELLS + MAX_BLANK_RATIO * sum(len(rows.numbers) for rows in found):
         raise InvalidFileError(
             f"{path} has {n_points} markers by its longest line, but hardly any in the other"
             f" {n_rows} lines. It is damaged; export it again."
@@ -243,7 +243,7 @@ def _in_columns(
         block = table[stop - len(rows.lengths) : stop]
         block[:] = np.nan
         rows.fill(block)
-        block[~(np.abs(block) < LARGEST)] = np.nan
+        block[~(np.abs(block) < MAX_VALUE)] = np.nan
         stop -= len(block)
     points = table[:, 2:].reshape(n_rows, n_points, 3)
     return table[:, 0].copy(), table[:, 1].copy(), points
@@ -251,7 +251,7 @@ def _in_columns(
 
 def _unit(header: _Header, points: NDArray[np.float64], path: Path | str) -> float:
     """Return metres per unit of the file."""
-    said = said_unit(header.unit)
+    said = metres_from_unit_name(header.unit)
     if said is None:
         return guess_unit_of_points(points)
     if said < 1.0 and points.shape[1] > 1 and np.nanmax(np.abs(points)) <= FULL_TURN:
@@ -274,13 +274,13 @@ def _at_constant_rate(
     if said is not None and not _increases(times) and _increases(frames):
         times = frames / said
     if _increases(times):
-        if said is not None and even_rate(MILLISECOND * times, said) == said:
+        if said is not None and constant_rate_from_times(MILLISECOND * times, said) == said:
             times = MILLISECOND * times
-        rate = even_rate(times, said)
+        rate = constant_rate_from_times(times, said)
         if rate is None:
             clock = ConstantRate(path, times, said)
             points, rate = clock.positions(points), clock.frame_rate
-    if rate is None or not SLOWEST < rate < FASTEST:
+    if rate is None or not MIN_RATE_HZ < rate < MAX_RATE_HZ:
         raise InvalidFileError(f"{path} does not say its frame rate.")
     return points, rate
 

@@ -10,7 +10,7 @@ from ...progress import Progress, unwatched
 from ..conventions import y_up_from_z_up
 
 MILLIMETRES_PER_METRE = 1000.0
-NOT_ORIGIN = 1e-6
+NEAR_ORIGIN_MM = 1e-6
 """Millimetres: readers take what is exactly at the origin for not seen."""
 FRAMES_AT_ONCE = 500
 KEYS = (
@@ -46,7 +46,7 @@ def write_trc(tracks: Tracks, path: Path | str, *, progress: Progress = unwatche
     axes = "\t".join(f"X{number}\tY{number}\tZ{number}" for number in range(1, n_points + 1))
     places = MILLIMETRES_PER_METRE * y_up_from_z_up(tracks.positions)
     places = np.round(places, 6) + 0.0  # No "-0.000000".
-    places[(places == 0.0).all(axis=-1), 0] = NOT_ORIGIN
+    places[(places == 0.0).all(axis=-1), 0] = NEAR_ORIGIN_MM
     places[~tracks.visible] = np.nan
     rows = places.reshape(n_frames, -1)
     with written_whole(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:

@@ -13,8 +13,8 @@ from ...errors import InvalidFileError, InvalidSettingError
 from ...motion import Motion, Skeleton
 from ...progress import Progress, unwatched, within
 from ...rotations import inverse, multiply, quaternion_from_euler
-from ..containers import Block, LineReader, read_some_rows, shown
-from ..conventions import check_scale, turns_z_up_from_y_up, z_up_from_y_up
+from ..containers import Block, LineReader, parse_rows, shown
+from ..conventions import check_scale, rotations_z_up_from_y_up, z_up_from_y_up
 from .acclaim_skeleton import AcclaimBone, AcclaimSkeleton, read_acclaim_skeleton
 
 LINES_OF_HEAD = 100
@@ -74,8 +74,8 @@ def read_acclaim(
     reader = LineReader(amc_path)
     in_radians = RADIANS.search(b"\n".join(reader.peek(LINES_OF_HEAD)))
     angle_unit = 1.0 if in_radians else skeleton.angle_unit
-    recorded = _recorded(reader, skeleton, amc_path, within(progress, 0.0, 0.7))
-    return _motion(
+    recorded = _read_channels(reader, skeleton, amc_path, within(progress, 0.0, 0.7))
+    return _build_motion(
         skeleton, recorded, frame_rate, scale, angle_unit, within(progress, 0.7, 1.0)
     )
 
@@ -117,7 +117,7 @@ class _Mentions(NamedTuple):
     """Shape (n, n_channels)."""
 
 
-def _recorded(
+def _read_channels(
     reader: LineReader, skeleton: AcclaimSkeleton, path: Path | str, progress: Progress
 ) -> dict[str, NDArray[np.float64]]:
     """Return what is recorded of each bone, shape (n_frames, n_channels), by its name."""
@@ -137,7 +137,7 @@ def _recorded(
             texts = [
                 block.lines[number - block.first].lstrip()[len(name) :] for number in numbers
             ]
-            rows = read_some_rows(texts, len(known[name].channels), path, numbers)
+            rows = parse_rows(texts, len(known[name].channels), path, numbers)
             frames = np.searchsorted(frame_lines, numbers) - 1 + n_frames
             found.setdefault(name, []).append(_Mentions(frames, rows))
         n_frames += len(frame_lines)
@@ -182,7 +182,7 @@ def _mentions(
     return frame_lines, mentions
 
 
-def _motion(
+def _build_motion(
     skeleton: AcclaimSkeleton,
     recorded: dict[str, NDArray[np.float64]],
     frame_rate: float,
@@ -201,8 +201,8 @@ def _motion(
         if bone.name not in recorded:
             continue
         columns = dict(zip(bone.channels, recorded.pop(bone.name).T, strict=True))
-        turns = _turns(bone, columns, angle_unit)
-        rotations[:, joint] = turns_z_up_from_y_up(turns)
+        turns = _rotations_from_channels(bone, columns, angle_unit)
+        rotations[:, joint] = rotations_z_up_from_y_up(turns)
         if joint == 0:
             for axis, letter in enumerate("xyz"):
                 place[:, axis] = columns.get(f"t{letter}", place[:, axis])
@@ -226,7 +226,7 @@ def _joints(
     return tuple(names), tuple(parents), np.array(offsets)
 
 
-def _turns(
+def _rotations_from_channels(
     bone: AcclaimBone, columns: Mapping[str, NDArray[np.float64]], angle_unit: float
 ) -> NDArray[np.float64]:
     """Return C M C^-1 as quaternions, shape (n_frames, 4), in the file's axes."""

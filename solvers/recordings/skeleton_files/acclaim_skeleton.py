@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ...rotations import quaternion_from_euler
 from ..containers import read_bytes, shown
-from ..conventions import PLAUSIBLE_REACH, guess_unit, longest_way
+from ..conventions import PLAUSIBLE_REACH_M, guess_unit, longest_bone_path
 
 INCH = 0.0254
 ROOT = "root"
@@ -182,8 +182,8 @@ class _SkeletonFile:
         vectors = np.array([bone.vector for bone in bones])
         factor = self._numbers(units.get("length", ["1"]), 1)[0]
         unit = INCH / factor if factor > 0.0 else 0.0
-        low, high = PLAUSIBLE_REACH
-        if low <= longest_way(parents, vectors) * unit <= high:
+        low, high = PLAUSIBLE_REACH_M
+        if low <= longest_bone_path(parents, vectors) * unit <= high:
             return unit
         return guess_unit(parents, vectors)
 

@@ -9,13 +9,13 @@ from ...motion import Motion
 from ...progress import Progress, unwatched, within
 from ..containers import LineReader, stream_rows
 from ..conventions import check_scale
-from .bvh_channels import BvhChannels, motion_of_poses
+from .bvh_channels import BvhChannels, motion_from_poses
 from .bvh_hierarchy import read_hierarchy
 
-USUAL_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240)
+COMMON_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240)
 RATE_WITHOUT_FRAME_TIME = 30.0
-MOST_BLANK_LINES = 4096
-LONGEST_HIERARCHY = 1 << 24
+MAX_BLANK_LINES = 4096
+MAX_HIERARCHY_BYTES = 1 << 24
 """Characters."""
 
 
@@ -74,18 +74,18 @@ def read_bvh(
         raise InvalidFileError(f"{path} has no frames: nothing follows its Frame Time.")
     poses = BvhChannels(joints, rows).poses(within(progress, 0.7, 1.0))
     del rows
-    return motion_of_poses(joints, poses, frame_rate, scale, up)
+    return motion_from_poses(joints, poses, frame_rate, scale, up)
 
 
 def _hierarchy(reader: LineReader, path: Path | str) -> bytes:
     """Take the lines down to the word MOTION; return those before it."""
     lines: list[bytes] = []
-    while (line := reader.peek()) and not line[0].strip() and len(lines) < MOST_BLANK_LINES:
+    while (line := reader.peek()) and not line[0].strip() and len(lines) < MAX_BLANK_LINES:
         lines += reader.take()
     if not b"".join(line).lstrip().upper().startswith(b"HIERARCHY"):
         raise InvalidFileError(f"{path} is no BVH file: it does not begin with HIERARCHY.")
     length = 0
-    while (line := reader.take()) and length < LONGEST_HIERARCHY:
+    while (line := reader.take()) and length < MAX_HIERARCHY_BYTES:
         if line[0].strip(b" \t").upper() == b"MOTION":
             return b"\n".join(lines)
         lines += line
@@ -117,7 +117,7 @@ def _rate_from_time(word: str) -> float:
         return RATE_WITHOUT_FRAME_TIME
     whole = round(1.0 / time)
     half_digit = 0.51 * 10.0 ** int(exact.as_tuple().exponent)
-    usual = [(rate, half_digit) for rate in USUAL_RATES]
+    usual = [(rate, half_digit) for rate in COMMON_RATES]
     for rate, tolerance in [(whole, 1e-12), *usual, (whole, min(half_digit, 1e-8))]:
         if rate and abs(1.0 / rate - time) <= tolerance:
             return float(rate)

@@ -13,16 +13,16 @@ from ...progress import Progress
 from ...rotations import inverse, multiply, quaternion_from_euler, rotate, rotation_between
 from ..conventions import (
     guess_unit,
-    longest_way,
-    turns_y_up_from_z_up,
-    turns_z_up_from_y_up,
+    longest_bone_path,
+    rotations_y_up_from_z_up,
+    rotations_z_up_from_y_up,
     y_up_from_z_up,
     z_up_from_y_up,
 )
 from .bvh_hierarchy import BvhJoint
 
 FRAMES_AT_ONCE = 2000
-FRAMES_TO_JUDGE_BY = 40
+N_SAMPLED_FRAMES = 40
 
 
 class BvhPoses(NamedTuple):
@@ -61,7 +61,7 @@ class BvhChannels:
         rotations = self._rotations(progress)
         offsets = self.file_offsets.copy()
         for joint in range(1, len(offsets)):
-            offsets[joint] = _median_place(self._places(joint, self.added))
+            offsets[joint] = _median_position(self._places(joint, self.added))
         root = z_up_from_y_up(self._places(0, self.added))
         root = np.broadcast_to(root, (len(self.rows), 3))
         turn = rotations[:, 0]
@@ -83,7 +83,7 @@ class BvhChannels:
         for joint, offset in enumerate(self.file_offsets):
             known = np.array([f"{axis}position" in self.columns[joint] for axis in "xyz"])
             weights = known * offset * ((1.0, 1.0, 1.0) if joint else (0.0, 1.0, 0.0))
-            agreement += float(weights @ (_median_place(self._places(joint)) - offset / 2))
+            agreement += float(weights @ (_median_position(self._places(joint)) - offset / 2))
         return agreement < 0.0
 
     def _places(self, joint: int, added: bool = False) -> NDArray[np.float64]:
@@ -120,7 +120,7 @@ class BvhChannels:
             for order, (members, angles) in groups.items():
                 turned = quaternion_from_euler(np.radians(self.rows[block][:, angles]), order)
                 turned[np.isnan(turned).any(axis=-1)] = np.nan
-                rotations[block, members] = turns_z_up_from_y_up(turned)
+                rotations[block, members] = rotations_z_up_from_y_up(turned)
             progress(min(1.0, block.stop / len(self.rows)), "Reading")
         return rotations
 
@@ -140,7 +140,7 @@ class BvhChannels:
             if len(places) == 1:
                 continue
             places[~np.isfinite(places).all(axis=1)] = offsets[children[0]]
-            swing = turns_z_up_from_y_up(rotation_between(offsets[children[0]], places))
+            swing = rotations_z_up_from_y_up(rotation_between(offsets[children[0]], places))
             rotations[:, joint] = multiply(rotations[:, joint], swing)
             rotations[:, children[0]] = multiply(inverse(swing), rotations[:, children[0]])
 
@@ -164,7 +164,7 @@ class BvhChannels:
         return trunk
 
 
-def motion_of_poses(
+def motion_from_poses(
     joints: Sequence[BvhJoint],
     poses: BvhPoses,
     frame_rate: float,
@@ -180,10 +180,10 @@ def motion_of_poses(
     motion = Motion(skeleton, poses.rotations, scale * poses.root, frame_rate)
     if up is None:
         up = "Z" if _lies_on_its_face(motion) else "Y"
-    return _raised(motion) if up == "Z" else motion
+    return _rotate_to_z_up(motion) if up == "Z" else motion
 
 
-def _median_place(places: NDArray[np.float64]) -> NDArray[np.float64]:
+def _median_position(places: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the median, shape (3,), over the frames where a place is known; else zero."""
     known = places[np.isfinite(places).all(axis=1)]
     return np.median(known, axis=0) if len(known) else np.zeros(3)
@@ -197,20 +197,20 @@ def _lies_on_its_face(motion: Motion) -> bool:
     """
     skeleton = motion.skeleton
     _, y, z = np.ptp(skeleton.rest_positions, axis=0)
-    if y < 2.0 * z or y < 0.5 * longest_way(skeleton.parents, skeleton.offsets):
+    if y < 2.0 * z or y < 0.5 * longest_bone_path(skeleton.parents, skeleton.offsets):
         return False
-    step = max(1, motion.n_frames // FRAMES_TO_JUDGE_BY)
+    step = max(1, motion.n_frames // N_SAMPLED_FRAMES)
     some = world_poses(skeleton, motion.rotations[::step], motion.root_positions[::step])
     _, y, z = np.median(np.ptp(some.positions, axis=1), axis=0)
     return bool(y > z)
 
 
-def _raised(motion: Motion) -> Motion:
+def _rotate_to_z_up(motion: Motion) -> Motion:
     """Undo the turn from Y up to Z up."""
     skeleton = replace(motion.skeleton, offsets=y_up_from_z_up(motion.skeleton.offsets))
     return Motion(
         skeleton,
-        turns_y_up_from_z_up(motion.rotations),
+        rotations_y_up_from_z_up(motion.rotations),
         y_up_from_z_up(motion.root_positions),
         motion.frame_rate,
     )

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from ...errors import InvalidFileError
-from ..containers import LONGEST, DifferentNames, printable, shown
+from ..containers import MAX_NAME_LENGTH, UniqueNames, printable, shown
 
 CHANNELS = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation")}
 
@@ -44,7 +44,7 @@ class _Hierarchy:
         self.line = 1
         self.words = self._words(text)
         self.joints: list[BvhJoint] = []
-        self.names = DifferentNames()
+        self.names = UniqueNames()
 
     def read(self) -> list[BvhJoint]:
         if self._keyword() != "HIERARCHY" or self._keyword() != "ROOT":
@@ -104,7 +104,7 @@ class _Hierarchy:
         while (word := next(self.words, "{")) != "{":
             parts.append(word)
         name = printable("_".join(parts))
-        if len(name) > LONGEST:
+        if len(name) > MAX_NAME_LENGTH:
             self._refuse(f"the name {shown(name)!r} does not end")
         return name or "joint"
 

@@ -11,11 +11,11 @@ from ...files import written_whole
 from ...motion import Motion, Skeleton
 from ...progress import Progress, unwatched
 from ...rotations import euler_from_quaternion, unwrap_euler
-from ..conventions import CENTIMETRE, turns_y_up_from_z_up, y_up_from_z_up
+from ..conventions import CENTIMETRE, rotations_y_up_from_z_up, y_up_from_z_up
 
 ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 FRAMES_AT_ONCE = 500
-SAME_TURN = 1e-9
+ROTATION_TOLERANCE = 1e-9
 TAB = "\t"
 
 
@@ -60,7 +60,7 @@ def write_bvh(
         )
     _refuse_gaps(motion)
     turning = [joint for joint in _depth_first(motion.skeleton) if not _is_end(motion, joint)]
-    rotations = turns_y_up_from_z_up(motion.rotations[:, turning])
+    rotations = rotations_y_up_from_z_up(motion.rotations[:, turning])
     angles = np.degrees(unwrap_euler(euler_from_quaternion(rotations, order)))
     places = y_up_from_z_up(motion.root_positions) / scale
     rows = np.concatenate([places, angles.reshape(motion.n_frames, -1)], axis=1)
@@ -95,7 +95,7 @@ def _is_end(motion: Motion, joint: int) -> bool:
         joint > 0
         and skeleton.is_end_site(joint)
         and skeleton.names[joint] == f"{skeleton.names[skeleton.parents[joint]]}_end"
-        and bool((np.abs(motion.rotations[:, joint, 1:]) < SAME_TURN).all())
+        and bool((np.abs(motion.rotations[:, joint, 1:]) < ROTATION_TOLERANCE).all())
         and bool(skeleton.offsets[joint].any())
     )
 

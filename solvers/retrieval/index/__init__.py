@@ -1,19 +1,19 @@
-"""What a search compares: codewords of segments in an inverted index."""
+"""Index clips by codewords of their segments, and compare them."""
 
-from .clip import Clip, ClipEntry, Match, Origin, is_utf_8, tags_fault, text_fault
+from .clip import Clip, ClipEntry, Match, Origin, find_tags_fault, find_text_fault, is_utf_8
 from .describe_clip import DescribedClip, describe_clip
-from .index_block import IndexBlock, block_arrays, block_from_arrays, block_of, merged
-from .reranking import between_courses, judged_by_likes
+from .index_block import IndexBlock, block_arrays, block_from_arrays, build_block, merge_blocks
+from .reranking import pairwise_warping_costs, rerank_by_neighbors
 from .search_index import SearchIndex
 from .segments import (
-    FULL,
+    HISTOGRAM_SCALE,
+    MEAN_POSTURE_WEIGHT,
     N_CUBES,
     RATE,
-    STANCE,
-    Spans,
-    describe,
-    describe_all_spans,
-    with_stance,
+    Segments,
+    describe_all_segments,
+    describe_segments,
+    weight_mean_posture,
 )
 from .time_warping import frame_distances, warping_costs
 from .vocabulary import (
@@ -25,11 +25,11 @@ from .vocabulary import (
 )
 
 __all__ = [
-    "FULL",
+    "HISTOGRAM_SCALE",
+    "MEAN_POSTURE_WEIGHT",
     "N_AXES",
     "N_CUBES",
     "RATE",
-    "STANCE",
     "Clip",
     "ClipEntry",
     "DescribedClip",
@@ -37,24 +37,24 @@ __all__ = [
     "Match",
     "Origin",
     "SearchIndex",
-    "Spans",
+    "Segments",
     "Vocabulary",
-    "between_courses",
     "block_arrays",
     "block_from_arrays",
-    "block_of",
-    "describe",
-    "describe_all_spans",
+    "build_block",
+    "describe_all_segments",
     "describe_clip",
+    "describe_segments",
+    "find_tags_fault",
+    "find_text_fault",
     "frame_distances",
     "is_utf_8",
-    "judged_by_likes",
     "learn_vocabulary",
-    "merged",
-    "tags_fault",
-    "text_fault",
+    "merge_blocks",
+    "pairwise_warping_costs",
+    "rerank_by_neighbors",
     "vocabulary_arrays",
     "vocabulary_from_arrays",
     "warping_costs",
-    "with_stance",
+    "weight_mean_posture",
 ]

@@ -1,4 +1,4 @@
-"""What a library is made of, and what a search finds in it."""
+"""Clips of a library, their origins, and the matches of a search."""
 
 from dataclasses import dataclass
 from unicodedata import category
@@ -10,26 +10,26 @@ from ...errors import InvalidMotionError
 from ..postures import Recording
 
 LINE_BREAKS_AND_CONTROLS = {"Cc", "Zl", "Zp"}
-"""Categories of Unicode that no name needs, and that a terminal or a text file obeys."""
+"""Unicode categories that would break a terminal or a text file."""
 
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a clip came from, to read it again and to notice that it has changed."""
+    """Source file of a clip, used to read it again and to detect changes."""
 
     path: str
-    """File, absolute."""
+    """Absolute path of the file."""
     item: str = ""
     """Name of the action in a .blend file; empty where the file holds one clip."""
     size: int = 0
-    """Of the file in bytes, when it was indexed."""
+    """Size of the file in bytes when it was indexed."""
     modified: int = 0
-    """Time of the file's last change in nanoseconds, when it was indexed."""
+    """Modification time of the file in nanoseconds when it was indexed."""
 
 
 @dataclass(frozen=True, eq=False)
 class Clip:
-    """A recording with a name by which a library knows it.
+    """A recording with its name and tags in a library.
 
     Raises
     ------
@@ -43,9 +43,9 @@ class Clip:
     origin: Origin | None = None
 
     def __post_init__(self) -> None:
-        if fault := text_fault(self.name):
+        if fault := find_text_fault(self.name):
             raise InvalidMotionError(f"The clip name {self.name!r} {fault}; rename it.")
-        if fault := tags_fault(self.tags):
+        if fault := find_tags_fault(self.tags):
             raise InvalidMotionError(f"{self.name}: {fault}")
         path = "" if self.origin is None else self.origin.path
         if not is_utf_8(path):
@@ -56,7 +56,7 @@ class Clip:
 
 @dataclass(frozen=True)
 class ClipEntry:
-    """What a library tells of a clip without its motion."""
+    """Metadata of a clip in a library, without its motion."""
 
     name: str
     tags: tuple[str, ...]
@@ -66,25 +66,25 @@ class ClipEntry:
 
     @property
     def seconds(self) -> float:
-        """How long it lasts."""
+        """Duration in seconds."""
         return self.n_frames / self.frame_rate
 
 
 @dataclass(frozen=True, eq=False)
 class Match:
-    """A clip that is like the query.
+    """A clip that is similar to the query.
 
     Attributes
     ----------
     clip : str
         Its name in the library.
     frames : range
-        Of the clip, in its own frames: what of it is like the query.
+        Matching frames of the clip, at its own frame rate.
     score : float
-        1 for the same motion, towards 0 for what has nothing in common with it.
+        1 for the same motion, close to 0 for an unrelated motion.
     alignment : int, shape (n, 2), or None
-        Pairs (frame of the query, frame of the clip), both in their own frames; None where
-        it was not worked out.
+        Pairs (frame of the query, frame of the clip), each at its own frame rate; None if it
+        was not computed.
     """
 
     clip: str
@@ -93,8 +93,8 @@ class Match:
     alignment: NDArray[np.intp] | None = None
 
 
-def text_fault(text: str) -> str:
-    """Return what keeps a text from being a clip's name or tag, or nothing."""
+def find_text_fault(text: str) -> str:
+    """Return why a text cannot be a clip name or tag, or an empty string."""
     if not is_utf_8(text):
         return "is not valid UTF-8"
     if any(category(letter) in LINE_BREAKS_AND_CONTROLS for letter in text):
@@ -102,12 +102,12 @@ def text_fault(text: str) -> str:
     return ""
 
 
-def tags_fault(tags: tuple[str, ...]) -> str:
-    """Return a sentence about tags that have control characters or are not UTF-8."""
-    wrong = [f"The tag {tag!r} {fault}." for tag in tags if (fault := text_fault(tag))]
-    return " ".join([*wrong, "Choose another word."]) if wrong else ""
+def find_tags_fault(tags: tuple[str, ...]) -> str:
+    """Return a message about tags with control characters or invalid UTF-8, or nothing."""
+    wrong = [f"The tag {tag!r} {fault}." for tag in tags if (fault := find_text_fault(tag))]
+    return " ".join([*wrong, "Choose another tag."]) if wrong else ""
 
 
 def is_utf_8(text: str) -> bool:
-    """Whether a text, such as a path, can be stored; file names of Linux may be any bytes."""
+    """Whether a text can be stored as UTF-8; Linux file names may have any bytes."""
     return all(category(letter) != "Cs" for letter in text)

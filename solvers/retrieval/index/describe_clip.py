@@ -1,4 +1,4 @@
-"""What a library keeps of a clip: little, and fit to be sent from another process."""
+"""Describe a clip for a library, small enough to be sent between processes."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from .segments import RATE
 
 @dataclass(frozen=True, eq=False)
 class DescribedClip:
-    """A clip as a library keeps it."""
+    """A clip as a library stores it."""
 
     entry: ClipEntry
     postures: ClipPostures
@@ -24,7 +24,7 @@ def describe_clip(clip: Clip) -> DescribedClip:
     Raises
     ------
     InvalidMotionError
-        It shows no body; the sentence begins with its name.
+        No body is recognized; the message begins with the name of the clip.
     """
     recording = clip.recording
     frames = recording.tracks if isinstance(recording, JointRecording) else recording

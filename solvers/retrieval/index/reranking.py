@@ -1,6 +1,6 @@
-"""Clips that are like each other: each tells of the others how like a query they are [1]_.
+"""Re-rank clips by the query distances of their nearest neighbors [1]_.
 
-Neighbours that are so of each other are told more [2]_.
+Reciprocal neighbors get a higher weight [2]_.
 
 .. [1] Arandjelovic, Zisserman (2012). Three things everyone should know to improve object
    retrieval. CVPR. doi:10.1109/CVPR.2012.6248018
@@ -15,58 +15,58 @@ from .time_warping import frame_distances, warping_costs
 
 Single = NDArray[np.float32]
 
-BELIEF_IN_LIKES = 4.0
-"""How much those that are like a clip count, beside it."""
-MOST_BLAME = 1.2
-"""Times its own distance that a clip is moved away at most: the query itself stays near."""
-MUTUAL = 3.0
-"""How much more those count of which both are among the nearest of the other."""
-ROUNDS = 2
-"""Times that clips tell each other."""
-EVERY = 2
-"""Of the moments of clips, that many-th is compared with those of other clips."""
-CELLS_AT_ONCE = 1_000_000
-"""Of tables of moments by moments, all clips together."""
+NEIGHBOR_WEIGHT = 4.0
+"""Total weight of the neighbors of a clip, relative to the clip itself."""
+MAX_DISTANCE_RATIO = 1.2
+"""Maximum of the re-ranked distance over the original one: the query itself stays near."""
+RECIPROCAL_WEIGHT = 3.0
+"""Additional weight of reciprocal neighbors."""
+N_ROUNDS = 2
+"""Number of averaging passes."""
+STEP_STRIDE = 2
+"""Every n-th time sample of a clip is compared with those of other clips."""
+MAX_CELLS = 1_000_000
+"""Cells of all distance tables that are in memory at once."""
 
 
-def between_courses(courses: Single) -> Single:
-    """Return how far clips are from each other, shape (n, n), metres: mean along the path.
+def pairwise_warping_costs(sequences: Single) -> Single:
+    """Return the warping cost between all clips, shape (n, n), metres: mean along the path.
 
     Parameters
     ----------
-    courses : shape (n, n_steps, n_features)
-        What they do at moments evenly spread over their time.
+    sequences : shape (n, n_steps, n_features)
+        Features at evenly spaced time samples.
     """
-    some = np.ascontiguousarray(courses[:, ::EVERY])
-    n_clips, n_steps, _ = some.shape
-    at_once = max(CELLS_AT_ONCE // max(n_clips * n_steps**2, 1), 1)
+    samples = np.ascontiguousarray(sequences[:, ::STEP_STRIDE])
+    n_clips, n_steps, _ = samples.shape
+    n_rows = max(MAX_CELLS // max(n_clips * n_steps**2, 1), 1)
     rows = [
-        warping_costs(frame_distances(some[first : first + at_once], some))
-        for first in range(0, n_clips, at_once)
+        warping_costs(frame_distances(samples[first : first + n_rows], samples))
+        for first in range(0, n_clips, n_rows)
     ]
     return np.concatenate(rows) if rows else np.zeros((0, 0), dtype=np.float32)
 
 
-def judged_by_likes(apart: Single, between: Single, n_alike: int) -> Single:
-    """Return distances from a query that go by those of each clip's nearest as well.
+def rerank_by_neighbors(distances: Single, pairwise: Single, n_neighbors: int) -> Single:
+    """Average the query distance of each clip with those of its nearest neighbors.
 
     Parameters
     ----------
-    apart : shape (n,)
-        From the query.
-    between : shape (n, n)
-        What its diagonal holds is of no account.
-    n_alike : int
-        How many of the nearest are asked.
+    distances : shape (n,)
+        Distances from the query.
+    pairwise : shape (n, n)
+        Distances between the clips; the diagonal is ignored.
+    n_neighbors : int
+        Number of nearest neighbors.
     """
-    others = between.copy()
-    np.fill_diagonal(others, np.inf)
-    farthest = np.partition(others, n_alike - 1, axis=1)[:, n_alike - 1, None]
-    nearest = (others <= farthest).astype(np.float32)
-    nearest += np.float32(MUTUAL) * nearest * nearest.T
-    believed = np.float32(BELIEF_IN_LIKES)
-    nearest *= believed / nearest.sum(axis=1, keepdims=True)
-    told = apart
-    for _ in range(ROUNDS):
-        told = (told + nearest @ told) / (1 + believed)
-    return np.minimum(told, np.float32(MOST_BLAME) * apart)
+    masked = pairwise.copy()
+    np.fill_diagonal(masked, np.inf)
+    limits = np.partition(masked, n_neighbors - 1, axis=1)[:, n_neighbors - 1, None]
+    weights = (masked <= limits).astype(np.float32)
+    weights += np.float32(RECIPROCAL_WEIGHT) * weights * weights.T
+    weight = np.float32(NEIGHBOR_WEIGHT)
+    weights *= weight / weights.sum(axis=1, keepdims=True)
+    averaged = distances
+    for _ in range(N_ROUNDS):
+        averaged = (averaged + weights @ averaged) / (1 + weight)
+    return np.minimum(averaged, np.float32(MAX_DISTANCE_RATIO) * distances)

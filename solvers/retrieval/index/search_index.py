@@ -1,4 +1,4 @@
-"""All blocks of a library as one index, and what of it does not depend on the query."""
+"""Search all blocks of a library as one index."""
 
 from collections.abc import Collection, Sequence
 from functools import cached_property
@@ -7,84 +7,89 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .index_block import IndexBlock
-from .reranking import between_courses
-from .segments import STANCE, with_stance
+from .reranking import pairwise_warping_costs
+from .segments import MEAN_POSTURE_WEIGHT, weight_mean_posture
 
 Single = NDArray[np.float32]
 Numbers = NDArray[np.int64]
 
-MOST_COMPARED = 1000
-"""Spans of a library in which each is compared with each, once, for all queries to come."""
+MAX_PAIRWISE_SEGMENTS = 1000
+"""Segments of a library up to which all pairwise distances are computed once."""
 
 
 class SearchIndex:
-    """Spans of clips that are still there; a library keeps it until it changes."""
+    """Segments of clips that exist; a library caches it until it changes."""
 
     def __init__(self, blocks: Sequence[tuple[IndexBlock, NDArray[np.bool_]]]) -> None:
         self._blocks = [block for block, _ in blocks]
         self._alive = [alive for _, alive in blocks]
-        self._starts = np.cumsum([0, *(block.n_spans for block in self._blocks)])
+        self._starts = np.cumsum([0, *(block.n_segments for block in self._blocks)])
 
     @cached_property
     def clips(self) -> Numbers:
-        """Number of the clip that each span is of."""
+        """Clip number of each segment."""
         return np.concatenate([block.clips for block in self._blocks])
 
     @cached_property
     def frames(self) -> NDArray[np.int32]:
-        """First frame of each span and the one after its last, at 20 Hz."""
+        """First frame of each segment and the frame after its last, at 20 Hz."""
         return np.concatenate([block.frames for block in self._blocks])
 
     @cached_property
     def _by_clip(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Spans of clips that are there, where those of each clip begin, and the clips."""
+        """Segments of clips that exist, the start of each clip, and the clips."""
         alive = np.flatnonzero(np.concatenate(self._alive))
         order = alive[np.argsort(self.clips[alive], kind="stable")]
         starts = np.flatnonzero(np.diff(self.clips[order], prepend=-1))
         return order, starts, self.clips[order[starts]]
 
-    def common(self, query: Single) -> Single:
-        """Return how much of its words each span has in common, shape (n_spans,), 0 to 1."""
-        return np.concatenate([block.common(query) for block in self._blocks])
+    def similarities(self, query: Single) -> Single:
+        """Return the histogram similarity of each segment, shape (n_segments,), 0 to 1."""
+        return np.concatenate([block.similarities(query) for block in self._blocks])
 
-    def best_spans(self, apart: Single, ignore: Collection[int]) -> tuple[Single, Numbers]:
-        """Return the least distance of each clip, and the number of the span that has it."""
+    def best_segments(
+        self, distances: Single, ignore: Collection[int]
+    ) -> tuple[Single, Numbers]:
+        """Return the minimum distance of each clip, and the segment with this distance."""
         order, starts, numbers = self._by_clip
         if not len(starts):
             return np.zeros(0, dtype=np.float32), order
         if len(starts) < len(order):
-            least = np.minimum.reduceat(apart[order], starts)
+            minima = np.minimum.reduceat(distances[order], starts)
             sizes = np.diff(starts, append=len(order))
-            is_least = np.flatnonzero(apart[order] == np.repeat(least, sizes))
-            order = order[is_least[np.searchsorted(is_least, starts)]]
+            is_minimum = np.flatnonzero(distances[order] == np.repeat(minima, sizes))
+            order = order[is_minimum[np.searchsorted(is_minimum, starts)]]
         if ignore:
-            left_out = np.fromiter(ignore, dtype=np.int64, count=len(ignore))
-            places = np.minimum(np.searchsorted(numbers, left_out), len(numbers) - 1)
-            told = np.ones(len(order), dtype=np.bool_)
-            told[places[numbers[places] == left_out]] = False
-            order = order[told]
-        return apart[order], order
+            ignored = np.fromiter(ignore, dtype=np.int64, count=len(ignore))
+            indices = np.minimum(np.searchsorted(numbers, ignored), len(numbers) - 1)
+            keep = np.ones(len(order), dtype=np.bool_)
+            keep[indices[numbers[indices] == ignored]] = False
+            order = order[keep]
+        return distances[order], order
 
-    def steps(self, spans: Numbers) -> Single:
-        """Return summaries of these spans, shape (n, 16, 5, 8), copied."""
+    def steps(self, segments: Numbers) -> Single:
+        """Return summaries of these segments, shape (n, 16, 5, 8), copied."""
         if len(self._blocks) == 1:
-            return self._blocks[0].steps(spans)
-        of = np.searchsorted(self._starts, spans, side="right") - 1
-        steps = np.empty((len(spans), *self._blocks[0].summaries.shape[1:]), dtype=np.float32)
-        for one in np.unique(of):
-            steps[of == one] = self._blocks[one].steps(spans[of == one] - self._starts[one])
+            return self._blocks[0].steps(segments)
+        blocks = np.searchsorted(self._starts, segments, side="right") - 1
+        steps = np.empty(
+            (len(segments), *self._blocks[0].summaries.shape[1:]), dtype=np.float32
+        )
+        for block in np.unique(blocks):
+            rows = segments[blocks == block] - self._starts[block]
+            steps[blocks == block] = self._blocks[block].steps(rows)
         return steps
 
-    def between(self, spans: Numbers) -> Single | None:
-        """Return how far these are from each other, all parts of the body alike, shape (n, n).
+    def pairwise_distances(self, segments: Numbers) -> Single | None:
+        """Return the distances between segments with equal part weights, shape (n, n).
 
-        None in a library that is too large to keep that of all.
+        Return None for a library that is too large to cache all distances.
         """
-        if len(self.clips) > MOST_COMPARED:
+        if len(self.clips) > MAX_PAIRWISE_SEGMENTS:
             return None
-        return np.asarray(self._between_all[np.ix_(spans, spans)])
+        return np.asarray(self._all_distances[np.ix_(segments, segments)])
 
     @cached_property
-    def _between_all(self) -> Single:
-        steps = with_stance(self.steps(np.arange(len(self.clips))), STANCE)
-        return between_courses(steps.reshape(*steps.shape[:2], -1))
+    def _all_distances(self) -> Single:
+        steps = weight_mean_posture(self.steps(np.arange(len(self.clips))), MEAN_POSTURE_WEIGHT)
+        return pairwise_warping_costs(steps.reshape(*steps.shape[:2], -1))

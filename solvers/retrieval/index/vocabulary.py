@@ -1,9 +1,9 @@
-"""Words for what a part of the body does in an instant, learned from the clips of a library.
+"""Learn codewords of body-part poses from the clips of a library.
 
-[ZH14, 3.3] codes whole postures sparsely by atoms of a dictionary. Here each part of the body
-has a dictionary of its own, an instant is a posture with its speeds, and the code is that of
-the few nearest words (locality-constrained rather than greedy: the support of a greedy code
-changes with the least noise).
+[ZH14, 3.3] codes complete postures sparsely by atoms of a dictionary. Here each body part has
+its own dictionary, a sample is a posture with its velocities, and the code uses the few
+nearest words (locality-constrained rather than greedy: the support of a greedy code changes
+with small noise).
 """
 
 import warnings
@@ -18,10 +18,10 @@ from ..postures import (
     N_FEATURES,
     N_PARTS,
     ClipPostures,
-    UsualPostures,
+    PostureDistribution,
     is_covariance,
+    learn_posture_distribution,
     part_features,
-    usual_postures,
 )
 
 Array = NDArray[np.float64]
@@ -30,19 +30,19 @@ N_AXES = 8
 N_WORDS = 64
 FRAMES_PER_WORD = 4
 N_NEAREST = 3
-"""Words that share a frame between them."""
-TINY = 1e-6
-"""Metres by which frames that are the same are set apart: clusters cannot be."""
-LEAST_SPREAD = 1e-6
+"""Words with a nonzero weight in one frame."""
+JITTER_M = 1e-6
+"""Metres of random noise that separates equal frames: k-means needs distinct points."""
+MIN_SPREAD_M2 = 1e-6
 """Squared metres."""
-LARGEST = 1e12
-"""Of all numbers that are learned: squares of metres, and frames, stay far below."""
-MOST_FRAMES = 12000
-"""Of which words are learned: more make it slower, and no better."""
-OUTGROWN = 4
-"""A library of so many times the frames that its words were learned from learns new ones."""
-WELL_LEARNED = 8 * MOST_FRAMES
-"""Frames from which on words are good for whatever comes."""
+MAX_VALUE = 1e12
+"""Limit of all learned numbers; squared metres and frame counts stay far below."""
+MAX_TRAINING_FRAMES = 12000
+"""Training frames; more are slower and not better."""
+RELEARNING_RATIO = 4
+"""Ratio of library frames to training frames above which the words are learned again."""
+SUFFICIENT_FRAMES = 8 * MAX_TRAINING_FRAMES
+"""Training frames from which on the words are never learned again."""
 SHAPES = {
     "centre": (N_PARTS, N_FEATURES),
     "axes": (N_PARTS, N_FEATURES, N_AXES),
@@ -57,139 +57,141 @@ LEARNED = ("centre", "axes", "words", "spread")
 
 @dataclass(frozen=True, eq=False)
 class Vocabulary:
-    """What is known of how bodies move.
+    """Codewords of the five body parts, and the features that they code.
 
     Attributes
     ----------
     centre, axes : shapes (5, 22) and (5, 22, 8)
-        Of the principal components of each part's features.
+        Mean and principal components of the features of each part.
     words : shape (5, n_words, 8)
     spread : shape (5,), squared metres
-        Usual squared distance of a frame from its nearest word.
+        Median squared distance of a frame from its nearest word.
     usual : UsualPostures
-        By which joints that are not tracked are filled in.
+        Prior for joints that are not tracked.
     n_frames : int
-        Of how many it was learned.
+        Number of frames in the training clips.
     """
 
     centre: Array
     axes: Array
     words: Array
     spread: Array
-    usual: UsualPostures
+    posture_distribution: PostureDistribution
     n_frames: int
 
     def is_outgrown(self, n_frames: float) -> bool:
-        """Whether it was learned from too little for a library of so many frames at 20 Hz."""
-        return self.n_frames < WELL_LEARNED and n_frames > OUTGROWN * self.n_frames
+        """Whether a library of so many frames at 20 Hz needs a new vocabulary."""
+        return self.n_frames < SUFFICIENT_FRAMES and n_frames > RELEARNING_RATIO * self.n_frames
 
     def features(self, postures: ClipPostures) -> Array:
-        """Return what each part does, shape (n_frames, 5, 8), metres."""
-        whole = self.usual.completed(postures)
-        told = part_features(whole.positions, whole.course, whole.frame_rate)
-        return np.asarray(np.einsum("fpd,pdk->fpk", told - self.centre, self.axes))
+        """Return the features of each part, shape (n_frames, 5, 8), metres."""
+        filled = self.posture_distribution.fill_gaps(postures)
+        features = part_features(filled.positions, filled.root_velocity, filled.frame_rate)
+        return np.asarray(np.einsum("fpd,pdk->fpk", features - self.centre, self.axes))
 
     def activity(self, features: Array) -> Array:
-        """Return how much each part moves in a clip, shape (5,), as a share of the usual."""
-        usual = self.words.var(axis=1).sum(axis=-1)
-        moves = features.var(axis=0).sum(axis=-1)
-        return np.asarray(np.sqrt(moves / np.maximum(usual, TINY)))
+        """Return the movement of each part in a clip relative to the average, shape (5,)."""
+        average = self.words.var(axis=1).sum(axis=-1)
+        movement = features.var(axis=0).sum(axis=-1)
+        return np.asarray(np.sqrt(movement / np.maximum(average, JITTER_M)))
 
     def codes(self, features: Array) -> Array:
-        """Return how far each word says what each part does, shape (n_frames, 5, n_words).
+        """Return the weight of each word in each frame, shape (n_frames, 5, n_words).
 
-        The three nearest words share one frame between them, the nearer the more.
+        The three nearest words have nonzero weights, which sum to 1 and decrease with distance.
         """
         by_part = features.swapaxes(0, 1) @ self.words.swapaxes(1, 2)
         apart: Array = (self.words**2).sum(axis=-1) - 2.0 * by_part.swapaxes(0, 1)
-        few = min(N_NEAREST, self.words.shape[1])
-        nearest = np.argpartition(apart, few - 1, axis=-1)[..., :few]
+        n_nearest = min(N_NEAREST, self.words.shape[1])
+        nearest = np.argpartition(apart, n_nearest - 1, axis=-1)[..., :n_nearest]
         near = np.take_along_axis(apart, nearest, axis=-1)
-        beyond = near - near.min(axis=-1, keepdims=True)
-        shares = np.exp(-0.5 * beyond / self.spread[:, None])
+        excess = near - near.min(axis=-1, keepdims=True)
+        weights = np.exp(-0.5 * excess / self.spread[:, None])
         codes = np.zeros_like(apart)
-        np.put_along_axis(codes, nearest, shares / shares.sum(axis=-1, keepdims=True), axis=-1)
+        np.put_along_axis(
+            codes, nearest, weights / weights.sum(axis=-1, keepdims=True), axis=-1
+        )
         return codes
 
 
 def learn_vocabulary(clips: list[ClipPostures], seed: int = 0) -> Vocabulary:
-    """Learn the words of clips, in which gaps are left out.
+    """Learn the codewords of clips.
 
     Principal components, then k-means with the seeding of Arthur and Vassilvitskii (2007).
     """
     rng = np.random.default_rng(seed)
     n_frames = sum(clip.n_frames for clip in clips)
-    usual = usual_postures(clips)
-    step = max(n_frames // MOST_FRAMES, 1)
-    told = np.concatenate([
-        part_features(clip.positions, clip.course, clip.frame_rate)[
+    posture_distribution = learn_posture_distribution(clips)
+    step = max(n_frames // MAX_TRAINING_FRAMES, 1)
+    samples = np.concatenate([
+        part_features(clip.positions, clip.root_velocity, clip.frame_rate)[
             rng.integers(min(step, clip.n_frames)) :: step
         ]
-        for clip in map(usual.completed, clips)
+        for clip in map(posture_distribution.fill_gaps, clips)
     ])  # fmt: skip
-    centre = told.mean(axis=0)
-    beside = told - centre
-    _, axes = np.linalg.eigh(np.einsum("fpd,fpe->pde", beside, beside) / len(told))
+    centre = samples.mean(axis=0)
+    deviations = samples - centre
+    _, axes = np.linalg.eigh(np.einsum("fpd,fpe->pde", deviations, deviations) / len(samples))
     axes = axes[..., ::-1][..., :N_AXES]
-    features = np.einsum("fpd,pdk->fpk", beside, axes)
-    n_words = max(min(N_WORDS, len(told) // FRAMES_PER_WORD), 1)
-    words = np.stack([_words(features[:, part], n_words, rng) for part in range(N_PARTS)])
+    features = np.einsum("fpd,pdk->fpk", deviations, axes)
+    n_words = max(min(N_WORDS, len(samples) // FRAMES_PER_WORD), 1)
+    words = np.stack([_learn_words(features[:, part], n_words, rng) for part in range(N_PARTS)])
     nearest = np.stack([
         ((features[:, part, None] - words[part]) ** 2).sum(axis=-1).min(axis=-1)
         for part in range(N_PARTS)
     ])  # fmt: skip
-    spread = np.maximum(np.median(nearest, axis=-1), LEAST_SPREAD)
-    return Vocabulary(centre, axes, words, spread, usual, n_frames)
+    spread = np.maximum(np.median(nearest, axis=-1), MIN_SPREAD_M2)
+    return Vocabulary(centre, axes, words, spread, posture_distribution, n_frames)
 
 
-def _words(features: Array, n_words: int, rng: np.random.Generator) -> Array:
-    """Return the middles of clusters; of those that lost all they had, any frame."""
-    apart = features + rng.normal(scale=TINY, size=features.shape)
+def _learn_words(features: Array, n_words: int, rng: np.random.Generator) -> Array:
+    """Return the centers of clusters; empty clusters get a random frame."""
+    apart = features + rng.normal(scale=JITTER_M, size=features.shape)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "One of the clusters is empty")
-        words, of = kmeans2(apart, n_words, minit="++", seed=rng, missing="warn")
-    empty = np.setdiff1d(np.arange(n_words), of)
+        words, labels = kmeans2(apart, n_words, minit="++", seed=rng, missing="warn")
+    empty = np.setdiff1d(np.arange(n_words), labels)
     words[empty] = features[rng.integers(len(features), size=len(empty))]
     return np.asarray(words)
 
 
 def vocabulary_arrays(vocabulary: Vocabulary) -> dict[str, bytes]:
-    """Return what is stored of a vocabulary: little-endian doubles, by name."""
+    """Return the stored bytes of a vocabulary: little-endian doubles, by name."""
     numbers = {
-        "mean": vocabulary.usual.mean,
-        "covariance": vocabulary.usual.covariance,
+        "mean": vocabulary.posture_distribution.mean,
+        "covariance": vocabulary.posture_distribution.covariance,
         "n_frames": np.array(vocabulary.n_frames),
     } | {name: getattr(vocabulary, name) for name in LEARNED}
     return {name: values.astype("<f8").tobytes() for name, values in numbers.items()}
 
 
 def vocabulary_from_arrays(stored: dict[str, bytes]) -> Vocabulary:
-    """Return the vocabulary that `vocabulary_arrays` told.
+    """Return the vocabulary from the bytes of `vocabulary_arrays`.
 
     Raises
     ------
     KeyError, ValueError
-        A part is missing, of another size, or of numbers that were never learned.
+        An array is missing, has another size, or has implausible values.
     """
     read = {
         name: np.frombuffer(stored[name], "<f8").reshape(shape)
         for name, shape in SHAPES.items()
     }
     if not _is_learned(read):
-        raise ValueError("The vocabulary was not learned.")
+        raise ValueError("The vocabulary has implausible values.")
     return Vocabulary(
         **{name: read[name] for name in LEARNED},
-        usual=UsualPostures(read["mean"], read["covariance"]),
+        posture_distribution=PostureDistribution(read["mean"], read["covariance"]),
         n_frames=int(read["n_frames"]),
     )
 
 
 def _is_learned(read: dict[str, Array]) -> bool:
-    """Whether numbers are such as `learn_vocabulary` finds: a search divides by some."""
+    """Whether all values are plausible; a search divides by some of them."""
     in_range = [
-        *((np.abs(values) <= LARGEST).all() for values in read.values()),
-        (np.abs(read["axes"]) < 1.0 + TINY).all(),
-        (read["spread"] >= LEAST_SPREAD).all(),
+        *((np.abs(values) <= MAX_VALUE).all() for values in read.values()),
+        (np.abs(read["axes"]) < 1.0 + JITTER_M).all(),
+        (read["spread"] >= MIN_SPREAD_M2).all(),
         read["n_frames"] >= 1,
     ]
     return all(in_range) and read["words"].size > 0 and is_covariance(read["covariance"])

@@ -1,4 +1,4 @@
-"""A library of clips that can be searched, grows and shrinks, in memory or in a file."""
+"""Search, extend and shrink a library of clips, in memory or in a file."""
 
 import sqlite3
 from collections import Counter
@@ -23,11 +23,11 @@ from ..index import (
     Origin,
     SearchIndex,
     Vocabulary,
-    block_of,
-    describe_all_spans,
+    build_block,
+    describe_all_segments,
     describe_clip,
     learn_vocabulary,
-    merged,
+    merge_blocks,
 )
 from ..postures import ClipPostures
 from . import clip_rows as rows
@@ -35,99 +35,98 @@ from . import library_file as files
 from .database_errors import readable_errors
 from .refused_files import read_refused, write_refused
 
-LARGEST_BLOCK = 50_000
-"""Spans from which on blocks are not put together: SQLite stores no more than about four times
-as many in one row, and a merge would need much memory."""
+MAX_BLOCK_SEGMENTS = 50_000
+"""Segments of a merged block at most: SQLite stores about four times as many in one row, and a
+larger merge needs much memory."""
 
 
 class ClipLibrary:
-    """Clips and the index that finds them. Made by the verbs of `open_library`.
+    """Clips and their index, created by the functions of `open_library`.
 
-    One that was loaded from a file is that file: what is added or removed is written at once,
-    as a whole or not at all, and others who have it open see it with their next search.
+    A library that was loaded from a file is that file. Each change is written at once as one
+    transaction; other processes with the same file see it in their next search.
     """
 
     def __init__(self, database: sqlite3.Connection, path: Path | None = None) -> None:
-        """Wrap an open database; for the two makers only."""
+        """Wrap an open database; use the functions of `open_library` instead."""
         self._database = database
-        finalize(self, database.close)  # one that nobody closed lets go of its file, too
+        finalize(self, database.close)  # also closes the file of a library that was not closed
         self._path = path
-        self._seen = (-1, -1)
+        self._state = (-1, -1)
         self._entries: dict[int, ClipEntry] = {}
         self._blocks: dict[int, IndexBlock] = {}
         self._numbers: dict[str, int] | None = None
-        self._alive: tuple[tuple[IndexBlock, NDArray[np.bool_]], ...] | None = None
-        self._index_of_all: SearchIndex | None = None
-        self._words = -1
+        self._alive_blocks: tuple[tuple[IndexBlock, NDArray[np.bool_]], ...] | None = None
+        self._search_index: SearchIndex | None = None
+        self._vocabulary_number = -1
         self._vocabulary: Vocabulary | None = None
 
     @property
     def path(self) -> Path | None:
-        """The file it lives in; None in memory."""
+        """The file of the library; None in memory."""
         return self._path
 
     @property
     def entries(self) -> tuple[ClipEntry, ...]:
-        """What is told of the clips, in the order in which they came."""
+        """Metadata of the clips in the order of their addition."""
         return tuple(self.numbered().values())
 
     @property
     def vocabulary(self) -> Vocabulary | None:
-        """What the index is told in; None while the library is empty."""
+        """The vocabulary of the index; None while the library is empty."""
         self._refresh()
         return self._vocabulary
 
     @property
     def blocks(self) -> tuple[tuple[IndexBlock, NDArray[np.bool_]], ...]:
-        """The index, and which spans of each block are of clips that are still there."""
+        """The index blocks, and a mask of the segments of existing clips in each block."""
         self._refresh()
-        if self._alive is None:
+        if self._alive_blocks is None:
             numbers = np.array(list(self._entries))
-            self._alive = tuple(
+            self._alive_blocks = tuple(
                 (block, np.isin(block.clips, numbers)) for block in self._blocks.values()
             )
-        return self._alive
+        return self._alive_blocks
 
     @property
     def search_index(self) -> SearchIndex:
-        """The index as a whole; kept until the library changes."""
+        """The complete index; cached until the library changes."""
         blocks = self.blocks
-        if self._index_of_all is None:
-            self._index_of_all = SearchIndex(blocks)
-        return self._index_of_all
+        if self._search_index is None:
+            self._search_index = SearchIndex(blocks)
+        return self._search_index
 
     def numbers_of(self, names: Iterable[str]) -> list[int]:
-        """Return the numbers of clips by their names; other names are passed over."""
+        """Return the numbers of clips by name; unknown names are skipped."""
         entries = self.numbered()
         if self._numbers is None:
             self._numbers = {entry.name: number for number, entry in entries.items()}
         return [self._numbers[name] for name in names if name in self._numbers]
 
     def numbered(self) -> dict[int, ClipEntry]:
-        """Return what is told of the clips, by the numbers that the index calls them by."""
+        """Return the metadata of the clips by their numbers in the index."""
         self._refresh()
         return self._entries
 
     def postures(self, number: int, n_frames: int = 0) -> ClipPostures:
-        """Return the postures of a clip at 20 Hz, as they were indexed; at least so many."""
+        """Return the indexed postures of a clip at 20 Hz, with at least `n_frames` frames."""
         with readable_errors(self._path):
             return rows.read_postures(self._database, number, n_frames)
 
     def add(self, clips: Iterable[Clip], *, progress: Progress = unwatched) -> None:
-        """Add clips, in place of those of the same origin or, without one, the same name.
+        """Add clips; replace those of the same origin or, without an origin, the same name.
 
         Raises
         ------
         InvalidMotionError
-            A clip shows no body, or two without an origin have one name; the library is as it
-            was.
+            A clip shows no body, or two without an origin share a name; nothing is changed.
         SolveCancelled
-            Raised by `progress`; the library is as it was.
+            Raised by `progress`; the library is unchanged.
         """
         clips = list(clips)
         described = []
-        for place, clip in enumerate(clips):
-            progress(0.5 * place / len(clips), clip.name)
+        for index, clip in enumerate(clips):
+            progress(0.5 * index / len(clips), clip.name)
             described.append(describe_clip(clip))
         self.add_described(described, progress=within(progress, 0.5, 1.0))
 
@@ -135,36 +134,36 @@ class ClipLibrary:
         self,
         clips: Sequence[DescribedClip],
         *,
-        free_name: rows.FreeName = rows.numbered_name,
+        free_name: rows.FreeName = rows.number_name,
         progress: Progress = unwatched,
     ) -> tuple[str, ...]:
-        """Add clips that `describe_clip` has described, here or in another process.
+        """Add clips from `describe_clip`, which may run in another process.
 
-        A clip with an origin replaces the one of that origin, and keeps its name; where the
-        name of a new one is taken, `free_name` chooses another while nobody else can write.
+        A clip with an origin replaces the clip of that origin and keeps its name. If the name
+        of a new clip exists, `free_name` returns another one while the file is locked.
 
         Returns
         -------
         tuple of str
-            The names that the clips have in the library.
+            Names of the clips in the library.
 
         Raises
         ------
         InvalidMotionError
-            Two clips without an origin have one name; the library is as it was.
+            Two clips without an origin have the same name; the library is unchanged.
         SolveCancelled
-            Raised by `progress`; the library is as it was.
+            Raised by `progress`; the library is unchanged.
         """
         names = Counter(clip.entry.name for clip in clips if clip.entry.origin is None)
-        if doubled := [name for name, count in names.items() if count > 1]:
-            raise InvalidMotionError(f"Two clips are called {min(doubled)}.")
+        if duplicates := [name for name, count in names.items() if count > 1]:
+            raise InvalidMotionError(f"Two clips have the name {min(duplicates)}.")
         if not clips:
             return ()
         postures = [clip.postures for clip in clips]
         with readable_errors(self._path), files.transaction(self._database):
             self._refresh()
             written = rows.write_clips(self._database, clips, free_name)
-            if self._needs_new_words(sum(clip.n_frames for clip in postures)):
+            if self._needs_new_vocabulary(sum(clip.n_frames for clip in postures)):
                 self._index_all(progress)
             else:
                 self._index(list(written), postures, progress)
@@ -172,12 +171,12 @@ class ClipLibrary:
         return tuple(written.values())
 
     def remove(self, names: Sequence[str]) -> None:
-        """Take clips out.
+        """Remove clips by name.
 
         Raises
         ------
         InvalidMotionError
-            There is no clip of a name; the library is as it was.
+            The library has no clip of that name; it is unchanged.
         """
         with readable_errors(self._path), files.transaction(self._database):
             for name in names:
@@ -187,17 +186,17 @@ class ClipLibrary:
                     raise InvalidMotionError(f"The library has no clip {name}.")
 
     def discard(self, numbers: Iterable[int]) -> tuple[str, ...]:
-        """Take out the clips of these numbers that are still there; return their names."""
+        """Remove the existing clips of these numbers; return their names."""
         with readable_errors(self._path), files.transaction(self._database):
             return tuple(rows.remove_clips(self._database, numbers))
 
     def refused(self, reader: str) -> dict[Origin, str]:
-        """Return files that this version of a reader could not use, and why."""
+        """Return the files that this version of a reader refused, with the messages."""
         with readable_errors(self._path):
             return read_refused(self._database, reader)
 
     def remember_refused(self, reader: str, refused: Sequence[tuple[Origin, str]]) -> None:
-        """Note files that are of no use as they are, and why."""
+        """Store refused files and the messages."""
         with readable_errors(self._path), files.transaction(self._database):
             write_refused(self._database, reader, refused)
 
@@ -207,7 +206,7 @@ class ClipLibrary:
         Raises
         ------
         InvalidFileError
-            The folder is missing or may not be written to.
+            The folder is missing or not writable.
         """
         with written_whole(path) as part, readable_errors(Path(path)):
             copy = sqlite3.connect(part)
@@ -217,7 +216,7 @@ class ClipLibrary:
                 copy.close()
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         self._database.close()
 
     def __enter__(self) -> Self:
@@ -234,63 +233,68 @@ class ClipLibrary:
         self.close()
 
     def _refresh(self) -> None:
-        """See what others have written, and what was written here."""
-        with readable_errors(self._path), files.one_state(self._database):
+        """Reload what this or another process has changed."""
+        with readable_errors(self._path), files.read_transaction(self._database):
             version = self._database.execute("PRAGMA data_version").fetchone()[0]
-            seen = (version, self._database.total_changes)
-            if seen == self._seen:
+            state = (version, self._database.total_changes)
+            if state == self._state:
                 return
             words = files.vocabulary_number(self._database)
-            if words != self._words:
+            if words != self._vocabulary_number:
                 self._blocks = {}
                 self._vocabulary = files.read_vocabulary(self._database)
-                self._words = words
+                self._vocabulary_number = words
             self._entries = rows.read_entries(self._database, self._entries)
             numbers = files.block_numbers(self._database)
             if self._entries and not numbers:
                 raise sqlite3.DatabaseError("the index is missing")
-            known, n_words = self._blocks, 0
+            cached, n_words = self._blocks, 0
             if self._vocabulary is not None:
                 n_words = self._vocabulary.words.shape[1]
             self._blocks = {
-                number: known.get(number) or files.read_block(self._database, number, n_words)
+                number: cached.get(number) or files.read_block(self._database, number, n_words)
                 for number in numbers
             }
-            self._numbers = self._alive = self._index_of_all = None
-            self._seen = seen
+            self._numbers = self._alive_blocks = self._search_index = None
+            self._state = state
 
-    def _needs_new_words(self, n_frames: int) -> bool:
-        """Whether the vocabulary was learned from too little for a library of this size."""
+    def _needs_new_vocabulary(self, n_frames: int) -> bool:
+        """Whether a library of this size needs a new vocabulary."""
         stored = sum(entry.seconds for entry in self._entries.values()) * RATE
         return self._vocabulary is None or self._vocabulary.is_outgrown(stored + n_frames)
 
     def _index_all(self, progress: Progress) -> None:
-        """Learn words anew and describe all clips by them."""
+        """Learn a new vocabulary and index all clips with it."""
         numbers = rows.clip_numbers(self._database)
         postures = [rows.read_postures(self._database, number) for number in numbers]
         vocabulary = learn_vocabulary(postures)
         files.write_vocabulary(self._database, vocabulary)
         self._database.execute("DELETE FROM blocks")
-        described = describe_all_spans(postures, vocabulary, progress)
-        ends = np.cumsum([len(spans.frames) for spans in described]) // LARGEST_BLOCK
+        described = describe_all_segments(postures, vocabulary, progress)
+        ends = np.cumsum([len(segments.frames) for segments in described]) // MAX_BLOCK_SEGMENTS
         for one in np.unique(ends):
             first, last = np.searchsorted(ends, one), np.searchsorted(ends, one, side="right")
-            block = block_of(numbers[first:last], described[first:last])
+            block = build_block(numbers[first:last], described[first:last])
             files.write_block(self._database, block)
 
     def _index(
         self, numbers: list[int], postures: list[ClipPostures], progress: Progress
     ) -> None:
-        """Describe clips, and put them into one block with the smaller ones before."""
+        """Index clips in a new block, merged with smaller previous blocks."""
         assert self._vocabulary is not None
-        block = block_of(numbers, describe_all_spans(postures, self._vocabulary, progress))
-        together = [block]
+        block = build_block(
+            numbers, describe_all_segments(postures, self._vocabulary, progress)
+        )
+        group = [block]
         for number, before in sorted(self._blocks.items(), reverse=True):
-            n_spans = sum(one.n_spans for one in together)
-            if before.n_spans > 2 * n_spans or before.n_spans + n_spans > LARGEST_BLOCK:
+            n_segments = sum(one.n_segments for one in group)
+            if (
+                before.n_segments > 2 * n_segments
+                or before.n_segments + n_segments > MAX_BLOCK_SEGMENTS
+            ):
                 break
-            together.insert(0, before)
+            group.insert(0, before)
             self._database.execute("DELETE FROM blocks WHERE number = ?", (number,))
-        if len(together) > 1:
-            block = merged(together, np.array(rows.clip_numbers(self._database)))
+        if len(group) > 1:
+            block = merge_blocks(group, np.array(rows.clip_numbers(self._database)))
         files.write_block(self._database, block)

@@ -1,4 +1,4 @@
-"""The clips of a library as rows of its database, one for each."""
+"""Read and write the clips of a library as rows of its database."""
 
 import json
 import sqlite3
@@ -15,20 +15,20 @@ from ...json_text import parse_json
 from ...motion.skeletons import check_frame_rate
 from ..index import RATE, ClipEntry, DescribedClip, Origin
 from ..postures import ClipPostures, half_precision
-from .database_errors import decoding
-from .values import MAX_BYTES, number_in, printable_text, row_numbers, text
+from .database_errors import report_damage
+from .values import MAX_BYTES, check_number, check_printable, check_text, read_row_numbers
 
 FreeName = Callable[[ClipEntry, Collection[str]], str]
-"""Returns a name for a clip that is none of those that are taken."""
+"""Function that returns an unused name for a clip."""
 MAX_FRAMES = 10**9
-"""Of a clip: a day at 10 kHz."""
+"""Frames of a clip at most: a day at 10 kHz."""
 ENTRY_COLUMNS = "name, tags, path, item, size, modified, n_frames, frame_rate"
 
 
-def numbered_name(entry: ClipEntry, taken: Collection[str]) -> str:
-    """Return the name of a clip with the first number that makes it free: "walk (2)"."""
+def number_name(entry: ClipEntry, used_names: Collection[str]) -> str:
+    """Return the name of a clip with the first unused number: "walk (2)"."""
     names = (f"{entry.name} ({number})" for number in count(2))
-    return next(name for name in names if name not in taken)
+    return next(name for name in names if name not in used_names)
 
 
 def write_clips(
@@ -36,27 +36,26 @@ def write_clips(
 ) -> dict[int, str]:
     """Add clips within a transaction; return their numbers and names.
 
-    One that came from a file takes the place, and the name, of the one that came from there
-    before: its name is only a label, and a new one gets another where that is taken. One of
-    no file takes the place of the one of its name.
+    A clip from a file replaces the previous clip from that file and keeps its name; a new clip
+    gets another name if its own exists. A clip without a file replaces the one of its name.
     """
-    taken = {name for (name,) in database.execute("SELECT name FROM clips")}
+    used_names = {name for (name,) in database.execute("SELECT name FROM clips")}
     written = {}
     for clip in clips:
         entry = clip.entry
-        names = _names_from(database, entry.origin)
+        names = _names_of_origin(database, entry.origin)
         if names:
             entry = replace(entry, name=names[0])
-        elif entry.origin is not None and entry.name in taken:
-            entry = replace(entry, name=free_name(entry, taken))
+        elif entry.origin is not None and entry.name in used_names:
+            entry = replace(entry, name=free_name(entry, used_names))
         _remove(database, [*names, entry.name])
         written[_write_clip(database, entry, clip.postures)] = entry.name
-        taken.add(entry.name)
+        used_names.add(entry.name)
     return written
 
 
 def remove_clips(database: sqlite3.Connection, numbers: Iterable[int]) -> list[str]:
-    """Remove the clips of these numbers that are still there, and return their names."""
+    """Remove the existing clips of these numbers, and return their names."""
     names = []
     for number in numbers:
         row = database.execute("DELETE FROM clips WHERE number = ? RETURNING name", (number,))
@@ -64,7 +63,7 @@ def remove_clips(database: sqlite3.Connection, numbers: Iterable[int]) -> list[s
     return names
 
 
-def _names_from(database: sqlite3.Connection, origin: Origin | None) -> list[str]:
+def _names_of_origin(database: sqlite3.Connection, origin: Origin | None) -> list[str]:
     if origin is None:
         return []
     rows = database.execute(
@@ -87,7 +86,7 @@ def _write_clip(database: sqlite3.Connection, entry: ClipEntry, postures: ClipPo
             entry.name, json.dumps(entry.tags), origin.path or None, origin.item, origin.size,
             origin.modified, entry.n_frames, entry.frame_rate,
             half_precision(postures.positions).tobytes(),
-            half_precision(postures.course).tobytes(),
+            half_precision(postures.root_velocity).tobytes(),
         ),
     )  # fmt: skip
     return int(done.lastrowid or 0)
@@ -95,24 +94,24 @@ def _write_clip(database: sqlite3.Connection, entry: ClipEntry, postures: ClipPo
 
 def clip_numbers(database: sqlite3.Connection) -> list[int]:
     """Return the numbers of all clips, oldest first."""
-    with decoding():
-        return row_numbers(database, "clips")
+    with report_damage():
+        return read_row_numbers(database, "clips")
 
 
 def read_entries(
     database: sqlite3.Connection, known: Mapping[int, ClipEntry]
 ) -> dict[int, ClipEntry]:
-    """Return what is told of each clip, by its number; what is known is not read again.
+    """Return the metadata of each clip by its number; skip the `known` ones.
 
-    Numbers grow, and what is told of one never changes.
+    Numbers only increase, and the metadata of a number never changes.
     """
-    there = clip_numbers(database)
+    numbers = clip_numbers(database)
     rows = database.execute(
         f"SELECT number, {ENTRY_COLUMNS} FROM clips WHERE number > ?", (max(known, default=0),)
     )
-    with decoding():
+    with report_damage():
         new = {number: _entry(row) for number, *row in rows}
-    return {number: known.get(number) or new[number] for number in there}
+    return {number: known.get(number) or new[number] for number in numbers}
 
 
 @lru_cache(maxsize=1024)
@@ -120,56 +119,58 @@ def _tags(stored: str) -> tuple[str, ...]:
     tags = parse_json(stored)
     if not isinstance(tags, list):
         raise ValueError("Tags are a list.")
-    return tuple(printable_text(tag) for tag in tags)
+    return tuple(check_printable(tag) for tag in tags)
 
 
 def _entry(row: Sequence[Any]) -> ClipEntry:
     name, tags, path, item, size, modified, n_frames, frame_rate = row
     check_frame_rate(frame_rate)
     return ClipEntry(
-        printable_text(name),
-        _tags(text(tags)),
+        check_printable(name),
+        _tags(check_text(tags)),
         None if path is None else stored_origin(path, item, size, modified),
-        number_in(n_frames, 1, MAX_FRAMES),
+        check_number(n_frames, 1, MAX_FRAMES),
         float(frame_rate),
     )
 
 
 def stored_origin(path: Any, item: Any, size: Any, modified: Any) -> Origin:
-    """Return an origin as a row has it; raise ValueError where it names no file."""
+    """Return the origin from a row; raise ValueError for an invalid one."""
     return Origin(
-        text(path),
-        text(item),
-        number_in(size, 0, MAX_BYTES),
-        number_in(modified, -MAX_BYTES, MAX_BYTES),
+        check_text(path),
+        check_text(item),
+        check_number(size, 0, MAX_BYTES),
+        check_number(modified, -MAX_BYTES, MAX_BYTES),
     )
 
 
 def read_postures(database: sqlite3.Connection, number: int, n_frames: int = 0) -> ClipPostures:
     """Return the postures of a clip, at 20 Hz.
 
-    Fewer than `n_frames`, to which the index points, are damage.
+    Fewer frames than `n_frames`, the last indexed frame, mean that the file is damaged.
 
     Raises
     ------
     InvalidMotionError
-        It has just been removed, by another process.
+        Another process has just removed the clip.
     """
     row = database.execute(
         "SELECT positions, course FROM clips WHERE number = ?", (number,)
     ).fetchone()
     if row is None:
         raise InvalidMotionError(
-            "A clip has just been removed from the library by another program; try again."
+            "Another program has just removed a clip from the library. Try again."
         )
-    with decoding():
-        positions, course = (np.frombuffer(stored, "<f2").astype(np.float64) for stored in row)
-        positions, course = positions.reshape(-1, 20, 3), course.reshape(-1, 4)
-        positions[np.isnan(positions)] = np.nan  # Some stored ones are signals of an error.
-        if len(positions) != len(course):
-            raise ValueError("The frames do not fit each other.")
-        if np.isinf(positions).any() or not np.isfinite(course).all():
-            raise ValueError("Something is infinite.")
+    with report_damage():
+        positions, root_velocity = (
+            np.frombuffer(stored, "<f2").astype(np.float64) for stored in row
+        )
+        positions, root_velocity = positions.reshape(-1, 20, 3), root_velocity.reshape(-1, 4)
+        positions[np.isnan(positions)] = np.nan  # replaces signaling NaN
+        if len(positions) != len(root_velocity):
+            raise ValueError("Positions and velocities have different lengths.")
+        if np.isinf(positions).any() or not np.isfinite(root_velocity).all():
+            raise ValueError("A position or velocity is infinite.")
         if len(positions) < n_frames:
             raise ValueError("The index points beyond the end of the clip.")
-        return ClipPostures(positions, course, RATE)
+        return ClipPostures(positions, root_velocity, RATE)

@@ -1,7 +1,7 @@
-"""Clip libraries as SQLite databases: one file, changed in whole transactions.
+"""Store clip libraries as SQLite databases: one file, changed by transactions.
 
-SQLite locks the file while it is written, so that two Blenders can index at once, and leaves it
-whole when a process dies. Views and triggers, which SQLite would execute, are refused.
+SQLite locks the file during a write, so two Blender processes can index at once, and the file
+stays intact if a process dies. Views and triggers, which SQLite would execute, are refused.
 """
 
 import os
@@ -19,17 +19,17 @@ from ..index import (
     vocabulary_arrays,
     vocabulary_from_arrays,
 )
-from .database_errors import decoding, readable_errors
-from .schema import MAX_NUMBER, check_schema, lay_out, refuse_siblings
-from .values import number_in, row_numbers
+from .database_errors import readable_errors, report_damage
+from .schema import MAX_NUMBER, check_schema, create_tables, refuse_side_files
+from .values import check_number, read_row_numbers
 
 SUFFIXES = (".clips", ".library")
-"""Of files that may be begun as libraries; older versions called the shared one .library."""
+"""Suffixes of new libraries; older versions named the shared one .library."""
 APPLICATION = 0x4D434C42
-"""Marks our files among SQLite's ("MCLB")."""
+"""Application id of our SQLite files ("MCLB")."""
 VERSION = 1
-PATIENCE = 120.0
-"""Seconds to wait for another process that is writing."""
+LOCK_TIMEOUT_S = 120.0
+"""Seconds to wait for a write of another process."""
 BLOCK_COLUMNS = ("clips", "frames", "histograms", "summaries", "starts", "spans", "weights")
 
 
@@ -40,23 +40,22 @@ def create_database() -> sqlite3.Connection:
     return database
 
 
-def begin_file(path: Path) -> None:
-    """Lay out an empty library in a file that is not there, or empty; others stay as they are.
+def create_file(path: Path) -> None:
+    """Create an empty library in a missing or empty file; leave other files unchanged.
 
-    Where another process does so at the same time, one of them does it.
+    If two processes do so at the same time, only one creates the tables.
 
     Raises
     ------
     InvalidFileError
-        The name does not end as that of a library; the folder is missing or may not be
-        written to.
+        The name has no suffix of a library; the folder is missing or not writable.
     """
     refuse_other_suffix(path)
     with readable_errors(path):
         database = _connect(path)
         try:
             if not database.execute("PRAGMA page_count").fetchone()[0]:
-                with _all_or_nothing(database):
+                with _exclusive_transaction(database):
                     if not database.execute("SELECT 1 FROM sqlite_master").fetchone():
                         _lay_out(database)
         finally:
@@ -64,10 +63,10 @@ def begin_file(path: Path) -> None:
 
 
 def refuse_other_suffix(path: Path) -> None:
-    """Raise InvalidFileError where no library may be begun: its file ends in another way."""
+    """Raise InvalidFileError if a name does not have the suffix of a library."""
     if Path(os.path.realpath(path)).suffix.lower() not in SUFFIXES:
         raise InvalidFileError(
-            f"No clip library can be made as {path}; end its name in {SUFFIXES[0]}."
+            f"Cannot create a clip library as {path}; end its name in {SUFFIXES[0]}."
         )
 
 
@@ -77,7 +76,7 @@ def open_database(path: Path) -> sqlite3.Connection:
     Raises
     ------
     InvalidFileError
-        There is no such file, it is not a library, or one of a newer version.
+        The file is missing, not a library, or of a newer version.
     """
     if not path.is_file():
         raise InvalidFileError(f"There is no clip library {path}.")
@@ -92,10 +91,10 @@ def open_database(path: Path) -> sqlite3.Connection:
 
 
 def _connect(path: Path) -> sqlite3.Connection:
-    """Open a file of which nothing is known, as SQLite advises for one by a stranger."""
-    refuse_siblings(path)
+    """Open an untrusted file with the settings that SQLite recommends."""
+    refuse_side_files(path)
     database = sqlite3.connect(
-        path, timeout=PATIENCE, isolation_level=None, check_same_thread=False
+        path, timeout=LOCK_TIMEOUT_S, isolation_level=None, check_same_thread=False
     )
     database.execute("PRAGMA trusted_schema = OFF")
     database.execute("PRAGMA cell_size_check = ON")
@@ -104,14 +103,14 @@ def _connect(path: Path) -> sqlite3.Connection:
 
 @contextmanager
 def transaction(database: sqlite3.Connection) -> Iterator[None]:
-    """Change all that is changed within, or nothing; others wait."""
-    with _all_or_nothing(database):
+    """Apply all changes of the block or none; other processes wait."""
+    with _exclusive_transaction(database):
         check_schema(database)
         yield
 
 
 @contextmanager
-def _all_or_nothing(database: sqlite3.Connection) -> Iterator[None]:
+def _exclusive_transaction(database: sqlite3.Connection) -> Iterator[None]:
     database.execute("BEGIN IMMEDIATE")
     try:
         yield
@@ -123,8 +122,8 @@ def _all_or_nothing(database: sqlite3.Connection) -> Iterator[None]:
 
 
 @contextmanager
-def one_state(database: sqlite3.Connection) -> Iterator[None]:
-    """Read all that is read within as it was at one moment."""
+def read_transaction(database: sqlite3.Connection) -> Iterator[None]:
+    """Read a consistent state of the database in the block."""
     if database.in_transaction:
         yield
         return
@@ -138,7 +137,7 @@ def one_state(database: sqlite3.Connection) -> Iterator[None]:
 
 
 def _lay_out(database: sqlite3.Connection) -> None:
-    lay_out(database)
+    create_tables(database)
     database.execute(f"PRAGMA application_id = {APPLICATION}")
     database.execute(f"PRAGMA user_version = {VERSION}")
 
@@ -153,36 +152,36 @@ def _check(database: sqlite3.Connection, path: Path) -> None:
             f"The clip library {path} was written by a newer version of Mocap Assist"
             f" (format {version}; this version reads up to {VERSION}). Update the add-on."
         )
-    with one_state(database):  # It checks the tables.
+    with read_transaction(database):  # It checks the tables.
         pass
 
 
 def vocabulary_number(database: sqlite3.Connection) -> int:
-    """Return what grows with each new vocabulary."""
+    """Return a number that increases with each new vocabulary."""
     number = database.execute("SELECT max(number) FROM vocabulary").fetchone()[0] or 0
-    with decoding():
-        return number_in(number, 0, MAX_NUMBER)
+    with report_damage():
+        return check_number(number, 0, MAX_NUMBER)
 
 
 def read_vocabulary(database: sqlite3.Connection) -> Vocabulary | None:
-    """Return what the index is told in; None in a library that never had a clip."""
+    """Return the vocabulary; None for a library that never had a clip."""
     rows = database.execute("SELECT name, value FROM vocabulary").fetchall()
-    with decoding():
+    with report_damage():
         return vocabulary_from_arrays(dict(rows)) if rows else None
 
 
 def write_vocabulary(database: sqlite3.Connection, vocabulary: Vocabulary) -> None:
-    """Replace what the index is told in."""
+    """Replace the vocabulary."""
     number = vocabulary_number(database)
     database.execute("DELETE FROM vocabulary")
-    for place, (name, value) in enumerate(vocabulary_arrays(vocabulary).items(), number + 1):
-        database.execute("INSERT INTO vocabulary VALUES (?, ?, ?)", (place, name, value))
+    for row, (name, value) in enumerate(vocabulary_arrays(vocabulary).items(), number + 1):
+        database.execute("INSERT INTO vocabulary VALUES (?, ?, ?)", (row, name, value))
 
 
 def block_numbers(database: sqlite3.Connection) -> list[int]:
     """Return the numbers of all blocks of the index, oldest first."""
-    with decoding():
-        return row_numbers(database, "blocks")
+    with report_damage():
+        return read_row_numbers(database, "blocks")
 
 
 def read_block(database: sqlite3.Connection, number: int, n_words: int) -> IndexBlock:
@@ -190,7 +189,7 @@ def read_block(database: sqlite3.Connection, number: int, n_words: int) -> Index
     row = database.execute(
         f"SELECT {', '.join(BLOCK_COLUMNS)} FROM blocks WHERE number = ?", (number,)
     ).fetchone()
-    with decoding():
+    with report_damage():
         return block_from_arrays(dict(zip(BLOCK_COLUMNS, row, strict=True)), n_words)
 
 

@@ -1,4 +1,4 @@
-"""Make a library of clips, or open the one in a file."""
+"""Create a library of clips, or open one from a file."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -15,12 +15,12 @@ def build_clip_library(clips: Iterable[Clip], *, progress: Progress = unwatched)
     Parameters
     ----------
     clips : Clip, any number
-        With recordings of bodies: armatures with humanoid roles, Kinect-style joints.
+        Recordings of bodies: armatures with humanoid roles, or Kinect joints.
 
     Raises
     ------
     InvalidMotionError
-        A clip shows no body, or two have one name.
+        A clip shows no body, or two clips have the same name.
     """
     library = ClipLibrary(files.create_database())
     library.add(clips, progress=progress)
@@ -33,22 +33,22 @@ def load_clip_library(path: Path | str) -> ClipLibrary:
     Raises
     ------
     InvalidFileError
-        There is no such file, it is no library or damaged, or of a newer version.
+        The file is missing, not a library, damaged, or of a newer version.
     """
     path = Path(path)
     return ClipLibrary(files.open_database(path), path)
 
 
 def open_clip_library(path: Path | str) -> ClipLibrary:
-    """Open the library in a file; where there is no file, begin one without clips.
+    """Open the library in a file; create an empty one if the file is missing.
 
     Raises
     ------
     InvalidFileError
-        It is no library or damaged, of a newer version, or cannot be written; or it would be
-        begun in a file whose name does not end in .clips or .library.
+        The file is not a library, damaged, of a newer version, or not writable; or the name of
+        a new library does not end in .clips or .library.
     """
     path = Path(path)
     if not path.exists() or (path.is_file() and not path.stat().st_size):
-        files.begin_file(path)
+        files.create_file(path)
     return load_clip_library(path)

@@ -1,19 +1,19 @@
-"""What a library remembers of files that are of no use to it: they need not be read again."""
+"""Store the files that a library has refused, so that they are not read again."""
 
 import sqlite3
 from collections.abc import Iterable
 
 from ..index import Origin
 from .clip_rows import stored_origin
-from .database_errors import decoding
+from .database_errors import report_damage
 from .schema import REFUSED
-from .values import printable_text
+from .values import check_printable
 
 
 def read_refused(database: sqlite3.Connection, reader: str) -> dict[Origin, str]:
-    """Return the sentences on files that this version of the reader has refused.
+    """Return the messages for the files that this version of the reader has refused.
 
-    A library from before there was such a table knows of none.
+    Libraries of older versions lack the table and return none.
     """
     if not database.execute(
         "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'refused'"
@@ -22,9 +22,9 @@ def read_refused(database: sqlite3.Connection, reader: str) -> dict[Origin, str]
     rows = database.execute(
         "SELECT path, size, modified, sentence FROM refused WHERE reader = ?", (reader,)
     )
-    with decoding():
+    with report_damage():
         return {
-            stored_origin(path, "", size, modified): printable_text(sentence)
+            stored_origin(path, "", size, modified): check_printable(sentence)
             for path, size, modified, sentence in rows
         }
 
@@ -32,7 +32,7 @@ def read_refused(database: sqlite3.Connection, reader: str) -> dict[Origin, str]
 def write_refused(
     database: sqlite3.Connection, reader: str, refused: Iterable[tuple[Origin, str]]
 ) -> None:
-    """Remember files as they are now, in place of what was known of them."""
+    """Store refused files with their current size and time, replacing older entries."""
     database.execute(REFUSED)
     database.executemany(
         "INSERT OR REPLACE INTO refused VALUES (?, ?, ?, ?, ?)",

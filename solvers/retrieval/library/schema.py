@@ -1,4 +1,4 @@
-"""The tables of a library; a file with anything else is not one."""
+"""Create and check the tables of a library."""
 
 import os
 import sqlite3
@@ -26,11 +26,11 @@ CREATE TABLE blocks (
 REFUSED = """CREATE TABLE IF NOT EXISTS refused (
     path TEXT PRIMARY KEY, size INTEGER, modified INTEGER, reader TEXT, sentence TEXT
 )"""
-"""Made when it is first needed; older libraries lack it."""
+"""Created on first use; older libraries lack it."""
 MAX_NUMBER = 2**53
 """Of a clip or a block; a library that adds one each microsecond reaches it after 285 years."""
-SIBLINGS = ("-journal", "-wal", "-shm")
-"""Endings of the files that SQLite keeps beside a database, and obeys."""
+SIDE_FILES = ("-journal", "-wal", "-shm")
+"""Suffixes of the files that SQLite reads next to a database."""
 SUPER_JOURNAL = bytes.fromhex("d9d505f920a163d7")
 """Ends a journal that names another file, which SQLite deletes: part of a transaction over
 several databases, of which a library never is."""
@@ -39,20 +39,20 @@ Part = tuple[str, str, str | None]
 """Kind, name and SQL of a table or an index."""
 
 
-def lay_out(database: sqlite3.Connection) -> None:
-    """Make the tables of an empty library."""
+def create_tables(database: sqlite3.Connection) -> None:
+    """Create the tables of an empty library."""
     for statement in TABLES.split(";"):
         database.execute(statement)
 
 
 def check_schema(database: sqlite3.Connection) -> None:
-    """Raise sqlite3.DatabaseError where a database has other tables than a library.
+    """Raise sqlite3.DatabaseError if the tables are not those of a library.
 
     Views and triggers are programs: SQLite runs them when a table is read or written. Numbers
     near the end of their range leave no room for more clips.
     """
     parts = database.execute("SELECT type, name, sql FROM sqlite_master LIMIT 20").fetchall()
-    if sorted(parts, key=repr) not in _own_schemas():
+    if sorted(parts, key=repr) not in _known_schemas():
         raise sqlite3.DatabaseError("the tables are not those of a library")
     for (number,) in database.execute("SELECT seq FROM sqlite_sequence"):
         if type(number) is not int or not 0 <= number <= MAX_NUMBER:
@@ -60,10 +60,10 @@ def check_schema(database: sqlite3.Connection) -> None:
 
 
 @cache
-def _own_schemas() -> tuple[list[Part], ...]:
-    """Return the schemas that this version and older ones make."""
+def _known_schemas() -> tuple[list[Part], ...]:
+    """Return the schemas of this and older versions."""
     database = sqlite3.connect(":memory:")
-    lay_out(database)
+    create_tables(database)
     schemas = []
     for statement in ("", REFUSED):
         database.execute(statement)
@@ -73,12 +73,12 @@ def _own_schemas() -> tuple[list[Part], ...]:
     return tuple(schemas)
 
 
-def refuse_siblings(path: Path) -> None:
-    """Raise InvalidFileError where SQLite would harm other files as soon as it opens this one.
+def refuse_side_files(path: Path) -> None:
+    """Raise InvalidFileError if SQLite would harm other files when it opens this one.
 
-    It deletes the file that the end of a journal names, and writes where links lead.
+    SQLite deletes the file that is named at the end of a journal, and follows links.
     """
-    for ending in SIBLINGS:
+    for ending in SIDE_FILES:
         sibling = Path(os.path.realpath(path) + ending)
         try:
             harmful = not stat.S_ISREG(sibling.lstat().st_mode) or _names_a_file(sibling)

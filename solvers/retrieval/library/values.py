@@ -1,42 +1,42 @@
-"""Check what a row of a library holds: SQLite keeps any value in any column."""
+"""Check the values of a row: SQLite accepts any type in any column."""
 
 import sqlite3
 from typing import Any
 
-from ..index import text_fault
+from ..index import find_text_fault
 from .schema import MAX_NUMBER
 
 MAX_BYTES = 2**63 - 1
-"""Of a file; also the last nanosecond of its date that SQLite can keep."""
+"""Largest integer of SQLite, for file sizes and times in nanoseconds."""
 
 
-def number_in(value: Any, lowest: int, highest: int) -> int:
-    """Return a whole number within limits; raise ValueError for anything else."""
+def check_number(value: Any, lowest: int, highest: int) -> int:
+    """Return an integer within limits; raise ValueError for anything else."""
     if type(value) is not int or not lowest <= value <= highest:
-        raise ValueError("It is not a number of its kind.")
+        raise ValueError("The value is not an integer within its limits.")
     return value
 
 
-def row_number(value: Any) -> int:
-    """Return the number of a row; raise ValueError where no library has it."""
-    return number_in(value, 1, MAX_NUMBER)
+def check_row_number(value: Any) -> int:
+    """Return the number of a row; raise ValueError for an invalid one."""
+    return check_number(value, 1, MAX_NUMBER)
 
 
-def row_numbers(database: sqlite3.Connection, table: str) -> list[int]:
+def read_row_numbers(database: sqlite3.Connection, table: str) -> list[int]:
     """Return the numbers of all rows of a table, oldest first."""
     rows = database.execute(f"SELECT number FROM {table} ORDER BY 1")
-    return [row_number(number) for (number,) in rows]
+    return [check_row_number(number) for (number,) in rows]
 
 
-def text(value: Any) -> str:
-    """Return a text that names a file or a thing in it; raise ValueError for anything else."""
+def check_text(value: Any) -> str:
+    """Return a text without null characters; raise ValueError for anything else."""
     if not isinstance(value, str) or "\0" in value:
-        raise ValueError("It is not a text.")
+        raise ValueError("The value is not a text.")
     return value
 
 
-def printable_text(value: Any) -> str:
-    """Return a text that may be shown as it is; raise ValueError for anything else."""
-    if text_fault(text(value)):
-        raise ValueError("It has control characters.")
+def check_printable(value: Any) -> str:
+    """Return a text without control characters; raise ValueError for anything else."""
+    if find_text_fault(check_text(value)):
+        raise ValueError("The text has control characters.")
     return str(value)

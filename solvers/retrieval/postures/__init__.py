@@ -1,8 +1,13 @@
-"""Clips as postures of one standard body, and its five parts."""
+"""Postures of clips on a standard body, and its five parts."""
 
 from .body_parts import N_FEATURES, N_PARTS, BodyPart, part_coverage, part_features
 from .clip_postures import ClipPostures, Recording, clip_postures, half_precision
-from .mean_postures import N_COORDINATES, UsualPostures, is_covariance, usual_postures
+from .mean_postures import (
+    N_COORDINATES,
+    PostureDistribution,
+    is_covariance,
+    learn_posture_distribution,
+)
 from .part_reliability import part_reliability
 
 __all__ = [
@@ -11,13 +16,13 @@ __all__ = [
     "N_PARTS",
     "BodyPart",
     "ClipPostures",
+    "PostureDistribution",
     "Recording",
-    "UsualPostures",
     "clip_postures",
     "half_precision",
     "is_covariance",
+    "learn_posture_distribution",
     "part_coverage",
     "part_features",
     "part_reliability",
-    "usual_postures",
 ]

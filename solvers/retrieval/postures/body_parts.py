@@ -1,7 +1,7 @@
-"""The five parts of the body that are compared each for itself, and what of them is told.
+"""Features of the five body parts, which are compared separately.
 
-Apart, they let an animator ask for what one arm does, and let a search go on without a part
-that was not tracked.
+Separate parts allow a query for the movement of one arm, and a search without a part that was
+not tracked.
 """
 
 from enum import Enum
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 class BodyPart(Enum):
-    """What can be compared; the order is that of the columns of what is learned."""
+    """A part of the body; the order is that of the learned columns."""
 
     TRUNK = "trunk"
     LEFT_ARM = "left arm"
@@ -32,55 +32,59 @@ LIMBS = {
     BodyPart.LEFT_LEG: ("hips", ("leftUpperLeg", "leftLowerLeg", "leftFoot")),
     BodyPart.RIGHT_LEG: ("hips", ("rightUpperLeg", "rightLowerLeg", "rightFoot")),
 }
-"""From where each part's joints are measured, and which they are. Fingers and toes tell a
-sensor's habits rather than the movement."""
+"""Reference joint and joints of each part. Fingers and toes are excluded, because they show
+errors of the sensor rather than the movement."""
 ROOTS = np.array([POSTURE_JOINTS.index(LIMBS[part][0]) for part in BodyPart])
 JOINTS = np.array([
     [POSTURE_JOINTS.index(name) for name in LIMBS[part][1]] for part in BodyPart
 ])
 
-SPEED = 0.08
-"""Seconds: a speed counts as much as the way made in them."""
-TRAVEL = 0.3
-"""Seconds, the same for how the whole body travels; it is told with the trunk."""
-ARM = 0.5
-"""Metres that turn the turning of the body into a speed."""
+VELOCITY_TIME_S = 0.08
+"""Seconds: a velocity has the weight of the displacement in this time."""
+ROOT_VELOCITY_TIME_S = 0.3
+"""Seconds, the same for the root velocity, which is a feature of the trunk."""
+TURNING_RADIUS_M = 0.5
+"""Metres: converts the turning rate of the body to a velocity."""
 N_PER_JOINT = 6
 N_TRAVEL = 4
 N_FEATURES = JOINTS.shape[1] * N_PER_JOINT + N_TRAVEL
 
 
-def part_features(positions: Array, course: Array, frame_rate: float) -> Array:
-    """Return what each part does, shape (n_frames, 5, 22), metres.
+def part_features(positions: Array, root_velocity: Array, frame_rate: float) -> Array:
+    """Return the features of each part, shape (n_frames, 5, 22), metres.
 
-    Positions and speeds of its joints relative to where it hangs; after those of the trunk
-    come the speeds of the whole body, which are zero for other parts.
+    Positions and velocities of the joints relative to the reference joint of the part. The
+    trunk also has the root velocity; the other parts have zeros there.
 
     Parameters
     ----------
     positions : shape (n_frames, 20, 3), metres
-        Of the standard body without heading and place.
-    course : shape (n_frames, 4)
-        Speeds of the hips, metres per second, and of turning, radians per second.
+        Joints of the standard body without heading and root position.
+    root_velocity : shape (n_frames, 4)
+        Velocity of the hips, metres per second, and turning rate, radians per second.
     frame_rate : float, hertz
     """
     local = positions[:, JOINTS] - positions[:, ROOTS][:, :, None]
-    speeds = np.zeros_like(local)
+    velocities = np.zeros_like(local)
     if len(local) > 1:
-        speeds = np.gradient(local, 1.0 / frame_rate, axis=0)
-    told = np.zeros((len(local), N_PARTS, N_FEATURES))
+        velocities = np.gradient(local, 1.0 / frame_rate, axis=0)
+    features = np.zeros((len(local), N_PARTS, N_FEATURES))
     half = JOINTS.shape[1] * 3
-    told[..., :half] = local.reshape(len(local), N_PARTS, half)
-    told[..., half : 2 * half] = SPEED * speeds.reshape(len(local), N_PARTS, half)
-    told[:, 0, 2 * half :] = TRAVEL * course * (1.0, 1.0, 1.0, ARM)
-    return told
+    features[..., :half] = local.reshape(len(local), N_PARTS, half)
+    features[..., half : 2 * half] = VELOCITY_TIME_S * velocities.reshape(
+        len(local), N_PARTS, half
+    )
+    features[:, 0, 2 * half :] = (
+        ROOT_VELOCITY_TIME_S * root_velocity * (1.0, 1.0, 1.0, TURNING_RADIUS_M)
+    )
+    return features
 
 
-def part_coverage(seen: NDArray[np.bool_]) -> Array:
-    """Return how much of each part was tracked, shape (5,), 0 to 1.
+def part_coverage(observed: NDArray[np.bool_]) -> Array:
+    """Return the tracked fraction of each part, shape (5,), 0 to 1.
 
     Parameters
     ----------
-    seen : shape (n_frames, 20)
+    observed : shape (n_frames, 20)
     """
-    return np.asarray(seen[:, JOINTS].mean(axis=(0, 2)))
+    return np.asarray(observed[:, JOINTS].mean(axis=(0, 2)))

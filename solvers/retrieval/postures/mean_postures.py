@@ -1,4 +1,4 @@
-"""How joints lie to each other in general, to fill in those that are not tracked."""
+"""Estimate missing joints from a normal distribution of postures."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,29 +19,29 @@ from .clip_postures import ClipPostures
 Array = NDArray[np.float64]
 
 N_COORDINATES = 3 * N_JOINTS
-NOISE = 0.03
-"""Metres by which a joint may be beside what the covariance says of it."""
-STRETCHED = 1.4
-"""Times by which a way past lost joints is made longer or shorter at most."""
-SHORTEST = 0.01
-"""Metres of such a way."""
-OFTEN = 0.9
-"""Share of the frames in which a joint is seen that tells the heading of a clip."""
-FEWEST = 3
-"""Such joints, of those that lack none a heading can be told."""
-LOOKS = 24
-"""Frames that are looked at for it."""
-ANGLES = np.radians(np.arange(-75.0, 76.0, 5.0))
-CIRCLE = np.radians(np.arange(-180.0, 180.0, 5.0))
-"""Angles that are tried for a heading that is roughly known, and for one that is not."""
-TURNED = np.radians(20.0)
-"""Standard deviation of the angle by which a body without some joints is turned wrongly."""
-UNUSUAL = 0.03
-"""Metres by which a joint may be beside what the covariance says, for the heading."""
+POSITION_NOISE_M = 0.03
+"""Standard deviation of a joint position in metres, in addition to the covariance."""
+MAX_LENGTH_RATIO = 1.4
+"""Maximum ratio by which a path past missing joints is scaled up or down."""
+MIN_PATH_M = 0.01
+"""Minimum length of such a path in metres."""
+MIN_OBSERVED_FRACTION = 0.9
+"""Fraction of frames with an observed joint above which it helps to find the heading."""
+MIN_HEADING_JOINTS = 3
+"""Minimum number of such joints for the estimation of a heading."""
+N_HEADING_FRAMES = 24
+"""Frames used for the heading."""
+NEAR_ANGLES = np.radians(np.arange(-75.0, 76.0, 5.0))
+ALL_ANGLES = np.radians(np.arange(-180.0, 180.0, 5.0))
+"""Candidate headings if the heading is roughly known, and if it is unknown."""
+HEADING_ERROR_RAD = np.radians(20.0)
+"""Standard deviation of the heading error of a body with missing joints."""
+HEADING_NOISE_M = 0.03
+"""Standard deviation of a joint position in metres, for the estimation of the heading."""
 
 
 @dataclass(frozen=True, eq=False)
-class UsualPostures:
+class PostureDistribution:
     """A normal distribution of postures.
 
     Attributes
@@ -52,129 +52,150 @@ class UsualPostures:
     mean: Array
     covariance: Array
 
-    def completed(self, postures: ClipPostures) -> ClipPostures:
-        """Return postures without gaps.
+    def fill_gaps(self, postures: ClipPostures) -> ClipPostures:
+        """Fill all gaps with the conditional mean of the missing joints.
 
-        Joints are where those that are seen let expect them. Before, a body that lacks joints
-        is turned to where it is most usual: its hips and shoulders told badly which way it
-        faces.
+        A body with missing joints is first rotated to its most probable heading, because its
+        hips and shoulders give an unreliable heading.
         """
         if np.isfinite(postures.positions).all():
             return postures
-        turned_right = self._turned_right(postures)
-        return replace(turned_right, positions=self.filled(turned_right))
+        rotated = self._rotate_to_heading(postures)
+        return replace(rotated, positions=self.fill_positions(rotated))
 
-    def filled(self, postures: ClipPostures) -> Array:
-        """Return positions without gaps, shape (n_frames, 20, 3); the heading stays.
+    def fill_positions(self, postures: ClipPostures) -> Array:
+        """Return positions without gaps, shape (n_frames, 20, 3); keep the heading.
 
-        What hangs on a joint that is lost lies where it was seen, in an actor of other
-        proportions: once that joint is roughly known, the way past it gets its usual length,
-        and it is told anew.
+        A child of a missing joint has its observed position, with the proportions of the actor.
+        After a first estimate, the path past the missing joint is scaled to its standard
+        length, and the joint is estimated again.
         """
-        seen = np.isfinite(postures.positions)
-        if seen.all():
+        observed = np.isfinite(postures.positions)
+        if observed.all():
             return postures.positions
-        rough = self._expected(postures.positions)
-        return self._expected(_in_proportion(rough, seen.all(axis=-1)))
+        estimate = self._conditional_mean(postures.positions)
+        return self._conditional_mean(_correct_proportions(estimate, observed.all(axis=-1)))
 
-    def _expected(self, positions: Array) -> Array:
-        """Put joints that are not seen where those that are let expect them."""
+    def _conditional_mean(self, positions: Array) -> Array:
+        """Set missing joints to their conditional mean given the observed joints."""
         flat = positions.reshape(len(positions), -1).copy()
-        patterns, of = np.unique(np.isfinite(flat), axis=0, return_inverse=True)
-        for number, seen in enumerate(patterns):
-            rows = np.flatnonzero(of.reshape(-1) == number)
-            lost = ~seen
-            among = self.covariance[np.ix_(seen, seen)] + NOISE**2 * np.eye(seen.sum())
-            gain = np.linalg.solve(among, self.covariance[np.ix_(seen, lost)])
-            beside = flat[np.ix_(rows, seen)] - self.mean[seen]
-            flat[np.ix_(rows, lost)] = self.mean[lost] + beside @ gain
+        patterns, labels = np.unique(np.isfinite(flat), axis=0, return_inverse=True)
+        for number, observed in enumerate(patterns):
+            rows = np.flatnonzero(labels.reshape(-1) == number)
+            missing = ~observed
+            covariance = self.covariance[
+                np.ix_(observed, observed)
+            ] + POSITION_NOISE_M**2 * np.eye(observed.sum())
+            gain = np.linalg.solve(covariance, self.covariance[np.ix_(observed, missing)])
+            deviations = flat[np.ix_(rows, observed)] - self.mean[observed]
+            flat[np.ix_(rows, missing)] = self.mean[missing] + deviations @ gain
         return np.asarray(flat.reshape(positions.shape))
 
-    def _turned_right(self, postures: ClipPostures) -> ClipPostures:
-        """Turn a clip by the one angle that makes what was seen of it most probable."""
-        often = np.isfinite(postures.positions).all(axis=-1).mean(axis=0) > OFTEN
-        if often.all() or often.sum() < FEWEST:
+    def _rotate_to_heading(self, postures: ClipPostures) -> ClipPostures:
+        """Rotate a clip by the angle with the highest likelihood of the observed joints."""
+        frequent = (
+            np.isfinite(postures.positions).all(axis=-1).mean(axis=0) > MIN_OBSERVED_FRACTION
+        )
+        if frequent.all() or frequent.sum() < MIN_HEADING_JOINTS:
             return postures
-        seen = postures.positions[:, often]
-        whole = seen[np.isfinite(seen).all(axis=(1, 2))]
-        some = whole[np.linspace(0, len(whole) - 1, min(LOOKS, len(whole))).astype(int)]
-        columns = np.repeat(often, 3)
-        among = self.covariance[np.ix_(columns, columns)] + UNUSUAL**2 * np.eye(columns.sum())
-        way = np.linalg.inv(np.linalg.cholesky(among)).T
-        angles, unlikely = ANGLES, 0.5 * (ANGLES / TURNED) ** 2
-        if not _tells_heading(postures):
-            angles, unlikely = CIRCLE, np.zeros(len(CIRCLE))
-        tried = [rotate_about_vertical(some, np.full(len(some), angle)) for angle in angles]
-        beside = np.reshape(tried, (len(angles), len(some), -1)) - self.mean[columns]
-        costs = 0.5 * ((beside @ way) ** 2).sum(axis=-1).mean(axis=-1)
-        angle = _lowest(angles, costs + unlikely)
+        observed = postures.positions[:, frequent]
+        complete = observed[np.isfinite(observed).all(axis=(1, 2))]
+        sample = complete[
+            np.linspace(0, len(complete) - 1, min(N_HEADING_FRAMES, len(complete))).astype(int)
+        ]
+        columns = np.repeat(frequent, 3)
+        covariance = self.covariance[np.ix_(columns, columns)] + HEADING_NOISE_M**2 * np.eye(
+            columns.sum()
+        )
+        whitening = np.linalg.inv(np.linalg.cholesky(covariance)).T
+        angles, prior_costs = NEAR_ANGLES, 0.5 * (NEAR_ANGLES / HEADING_ERROR_RAD) ** 2
+        if not _observes_heading(postures):
+            angles, prior_costs = ALL_ANGLES, np.zeros(len(ALL_ANGLES))
+        candidates = [
+            rotate_about_vertical(sample, np.full(len(sample), angle)) for angle in angles
+        ]
+        deviations = np.reshape(candidates, (len(angles), len(sample), -1)) - self.mean[columns]
+        costs = 0.5 * ((deviations @ whitening) ** 2).sum(axis=-1).mean(axis=-1)
+        angle = _parabola_minimum(angles, costs + prior_costs)
         return ClipPostures(
             rotate_about_vertical(postures.positions, np.full(postures.n_frames, angle)),
-            _turned_course(postures.course, angle),
+            _rotate_velocity(postures.root_velocity, angle),
             postures.frame_rate,
         )
 
 
-def _tells_heading(postures: ClipPostures) -> bool:
-    """Tell whether hips or shoulders showed, at any time, which way the body faces."""
-    seen = np.isfinite(postures.positions).all(axis=-1)
-    return any((seen[:, list(joints)].sum(axis=1) >= 2).any() for joints in LATERAL_JOINTS)
+def _observes_heading(postures: ClipPostures) -> bool:
+    """Whether hips or shoulders were observed in any frame, so that the heading is known."""
+    observed = np.isfinite(postures.positions).all(axis=-1)
+    return any((observed[:, list(joints)].sum(axis=1) >= 2).any() for joints in LATERAL_JOINTS)
 
 
-def _in_proportion(positions: Array, seen: NDArray[np.bool_]) -> Array:
-    """Give the ways past lost joints their usual lengths; lost joints become NaN.
+def _correct_proportions(positions: Array, observed: NDArray[np.bool_]) -> Array:
+    """Scale the paths past missing joints to standard lengths; missing joints become NaN.
 
     Parameters
     ----------
     positions : shape (n_frames, 20, 3), metres
-        Those of lost joints are rough.
-    seen : shape (n_frames, 20)
+        First estimates for missing joints.
+    observed : shape (n_frames, 20)
     """
     lengths = segment_lengths(positions)
-    # Of the last seen joint on the way to each: where it was and now is, and the way since.
-    was, now = positions.copy(), positions.copy()
-    way, usual = np.zeros(seen.shape), np.zeros(seen.shape)
+    # Last observed ancestor of each joint: old and new position, and path length from there.
+    old, new = positions.copy(), positions.copy()
+    path, standard = np.zeros(observed.shape), np.zeros(observed.shape)
     for joint in range(1, N_JOINTS):
         above = PARENTS[joint]
-        since = way[:, above] + lengths[:, joint], usual[:, above] + ADULT_BONE_LENGTHS_M[joint]
-        scale = np.clip(since[1] / np.maximum(since[0], SHORTEST), 1.0 / STRETCHED, STRETCHED)
-        place = now[:, above] + scale[:, None] * (positions[:, joint] - was[:, above])
-        here = seen[:, joint]
-        was[:, joint] = np.where(here[:, None], positions[:, joint], was[:, above])
-        now[:, joint] = np.where(here[:, None], place, now[:, above])
-        way[:, joint], usual[:, joint] = np.where(here, 0.0, since)
-    return np.where(seen[..., None], now, np.nan)
+        since = (
+            path[:, above] + lengths[:, joint],
+            standard[:, above] + ADULT_BONE_LENGTHS_M[joint],
+        )
+        scale = np.clip(
+            since[1] / np.maximum(since[0], MIN_PATH_M),
+            1.0 / MAX_LENGTH_RATIO,
+            MAX_LENGTH_RATIO,
+        )
+        position = new[:, above] + scale[:, None] * (positions[:, joint] - old[:, above])
+        is_observed = observed[:, joint]
+        old[:, joint] = np.where(is_observed[:, None], positions[:, joint], old[:, above])
+        new[:, joint] = np.where(is_observed[:, None], position, new[:, above])
+        path[:, joint], standard[:, joint] = np.where(is_observed, 0.0, since)
+    return np.where(observed[..., None], new, np.nan)
 
 
-def _lowest(places: Array, values: Array) -> float:
-    """Return where the parabola through the least of evenly spaced values is lowest."""
+def _parabola_minimum(arguments: Array, values: Array) -> float:
+    """Return the minimum of the parabola through the smallest of evenly spaced values."""
     best = int(values.argmin())
     if not 0 < best < len(values) - 1:
-        return float(places[best])
-    before, here, after = values[best - 1 : best + 2]
-    bend = max(before - 2.0 * here + after, 1e-9)
-    return float(places[best] + 0.5 * (places[1] - places[0]) * (before - after) / bend)
+        return float(arguments[best])
+    before, is_observed, after = values[best - 1 : best + 2]
+    curvature = max(before - 2.0 * is_observed + after, 1e-9)
+    return float(
+        arguments[best] + 0.5 * (arguments[1] - arguments[0]) * (before - after) / curvature
+    )
 
 
-def _turned_course(course: Array, angle: float) -> Array:
+def _rotate_velocity(root_velocity: Array, angle: float) -> Array:
     cos, sin = np.cos(angle), np.sin(angle)
-    left, back, *others = course.T
-    return np.stack([cos * left - sin * back, sin * left + cos * back, *others], axis=-1)
+    left, backward, *others = root_velocity.T
+    return np.stack(
+        [cos * left - sin * backward, sin * left + cos * backward, *others], axis=-1
+    )
 
 
-def usual_postures(clips: Sequence[ClipPostures]) -> UsualPostures:
-    """Learn from clips with gaps; what was never tracked lies at the hips."""
+def learn_posture_distribution(clips: Sequence[ClipPostures]) -> PostureDistribution:
+    """Learn mean and covariance from clips with gaps; untracked joints have the mean 0."""
     flat = np.concatenate([clip.positions.reshape(clip.n_frames, -1) for clip in clips])
-    seen = np.isfinite(flat)
-    mean = np.where(seen, flat, 0.0).sum(axis=0) / np.maximum(seen.sum(axis=0), 1)
-    beside = np.where(seen, flat - mean, 0.0)
-    together = seen.astype(np.float64).T @ seen
-    sizes, axes = np.linalg.eigh(beside.T @ beside / np.maximum(together, 1.0))
-    return UsualPostures(mean, np.asarray((axes * np.maximum(sizes, 0.0)) @ axes.T))
+    observed = np.isfinite(flat)
+    mean = np.where(observed, flat, 0.0).sum(axis=0) / np.maximum(observed.sum(axis=0), 1)
+    deviations = np.where(observed, flat - mean, 0.0)
+    counts = observed.astype(np.float64).T @ observed
+    eigenvalues, axes = np.linalg.eigh(deviations.T @ deviations / np.maximum(counts, 1.0))
+    return PostureDistribution(mean, np.asarray((axes * np.maximum(eigenvalues, 0.0)) @ axes.T))
 
 
 def is_covariance(matrix: Array) -> bool:
-    """Whether a matrix may be that of `usual_postures`; others have no solution."""
+    """Whether a matrix is symmetric and, with the noise, positive definite."""
     return bool(
-        np.allclose(matrix, matrix.T) and np.linalg.eigvalsh(matrix)[0] > -0.5 * NOISE**2
+        np.allclose(matrix, matrix.T)
+        and np.linalg.eigvalsh(matrix)[0] > -0.5 * POSITION_NOISE_M**2
     )

@@ -1,4 +1,4 @@
-"""Learn the atoms of postures: K-SVD."""
+"""Learn a dictionary of posture atoms by K-SVD."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,54 +10,54 @@ from ...errors import InvalidMotionError
 from ...progress import Progress, unwatched
 from ...settings import Settings, setting
 from ..postures import ClipPostures
-from .observed_signals import seen_signals
+from .observed_signals import observed_signals
 from .sparse_codes import SparseCodes, sparse_codes
 
 Array = NDArray[np.float64]
 
-LEAST_LEFT = 0.1
-"""Part of an atom's length that must be seen for it to be used."""
+MIN_ATOM_FRACTION = 0.1
+"""Fraction of the length of an atom that must be observed."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class DictionarySettings(Settings):
-    """How the atoms of postures are learned."""
+    """Settings of `learn_dictionary`."""
 
     n_atoms: int = setting(
-        700, "Atoms; more tell postures apart better", minimum=2, maximum=100_000
+        700, "Atoms; more distinguish postures better", minimum=2, maximum=100_000
     )
     n_nonzeros: int = setting(
-        35, "Atoms that each posture is made of; more tell it closer", minimum=1, maximum=57
+        35, "Atoms per posture; more are more accurate", minimum=1, maximum=57
     )
     centred: bool = setting(
-        False, "Take the mean posture out first, so that atoms only tell what differs from it"
+        False, "Subtract the mean posture first, so that atoms represent deviations from it"
     )
     n_rounds: int = setting(
-        10, "Times that codes and atoms are renewed in turn", minimum=1, maximum=1000
+        10, "Iterations of sparse coding and dictionary update", minimum=1, maximum=1000
     )
     n_examples: int = setting(
         20_000,
-        "Most postures to learn from; of more, evenly spaced ones",
+        "Maximum number of training postures; more are subsampled evenly",
         minimum=2,
         maximum=10_000_000,
         advanced=True,
     )
     seed: int = setting(
-        0, "Which examples the atoms begin as", minimum=0, maximum=2**31 - 1, advanced=True
+        0, "Random seed of the initial atoms", minimum=0, maximum=2**31 - 1, advanced=True
     )
 
 
 @dataclass(frozen=True, eq=False)
 class PostureDictionary:
-    """Atoms that postures are sums of.
+    """Atoms of a sparse representation of postures.
 
     Attributes
     ----------
     atoms : shape (n_atoms, 60), of length 1
     mean : shape (60,), metres
-        What is taken out of a posture before; 0 unless centred.
+        Mean that is subtracted from postures; 0 unless centred.
     n_nonzeros : int
-        Atoms of each posture.
+        Atoms per posture.
     """
 
     atoms: Array
@@ -67,16 +67,15 @@ class PostureDictionary:
     def codes(self, postures: ClipPostures) -> SparseCodes:
         """Return the sparse codes of each frame.
 
-        Gaps are bridged by straight lines. Of joints that were never tracked, atoms are cut
-        to what was: codes are those that tell it best.
+        Gaps are interpolated linearly. Atoms are restricted to the joints that were tracked.
         """
-        signals, seen = seen_signals(postures.positions)
-        atoms = self.atoms[:, seen]
+        signals, observed = observed_signals(postures.positions)
+        atoms = self.atoms[:, observed]
         sizes = np.linalg.norm(atoms, axis=1, keepdims=True)
-        known = sizes > LEAST_LEFT
-        unit = np.where(known, atoms / np.where(known, sizes, 1.0), 0.0)
-        n_nonzeros = max(min(self.n_nonzeros, len(unit), int(seen.sum())), 1)
-        return sparse_codes(signals[:, seen] - self.mean[seen], unit, n_nonzeros)
+        usable = sizes > MIN_ATOM_FRACTION
+        normalized = np.where(usable, atoms / np.where(usable, sizes, 1.0), 0.0)
+        n_nonzeros = max(min(self.n_nonzeros, len(normalized), int(observed.sum())), 1)
+        return sparse_codes(signals[:, observed] - self.mean[observed], normalized, n_nonzeros)
 
 
 def learn_dictionary(
@@ -85,22 +84,22 @@ def learn_dictionary(
     *,
     progress: Progress = unwatched,
 ) -> PostureDictionary:
-    """Learn atoms of which all postures are sums of few, by K-SVD [1]_.
+    """Learn a dictionary for sparse codes of postures by K-SVD [1]_.
 
-    In turn, codes are renewed with fixed atoms (orthogonal matching pursuit), and each atom
-    with its weights by the first singular vectors of what the other atoms leave. Atoms that no
-    posture uses become the postures that are told worst. The first atoms are postures drawn
-    at random.
+    Each round updates the codes with fixed atoms (orthogonal matching pursuit), then each atom
+    and its weights by the first singular vectors of the residual without that atom. Unused
+    atoms are replaced by the postures with the largest residual. The initial atoms are random
+    postures.
 
     Parameters
     ----------
     clips : sequence of ClipPostures
-        Frames in which a joint was never tracked in the clip are left out.
+        Clips with a joint that was never tracked are skipped.
 
     Raises
     ------
     InvalidMotionError
-        There are fewer whole postures than atoms.
+        There are fewer complete postures than atoms.
     SolveCancelled
         Raised by `progress`.
 
@@ -115,47 +114,47 @@ def learn_dictionary(
     examples = examples - mean
     random = np.random.default_rng(settings.seed)
     sizes = np.linalg.norm(examples, axis=1)
-    drawn = random.permutation(np.flatnonzero(sizes > 0.0))[: settings.n_atoms]
-    atoms = examples[drawn] / sizes[drawn, None]
+    initial = random.permutation(np.flatnonzero(sizes > 0.0))[: settings.n_atoms]
+    atoms = examples[initial] / sizes[initial, None]
     for done in range(settings.n_rounds):
         progress(done / settings.n_rounds, "Learning postures")
         codes = sparse_codes(examples, atoms, min(settings.n_nonzeros, *atoms.shape))
-        atoms = _renewed(examples, atoms, codes)
+        atoms = _update_atoms(examples, atoms, codes)
     return PostureDictionary(atoms, mean, settings.n_nonzeros)
 
 
 def _examples(clips: Sequence[ClipPostures], settings: DictionarySettings) -> Array:
-    found = [seen_signals(clip.positions) for clip in clips]
-    whole = [signals for signals, seen in found if seen.all()]
-    n_whole = sum(map(len, whole))
-    if n_whole < settings.n_atoms:
+    pairs = [observed_signals(clip.positions) for clip in clips]
+    complete = [signals for signals, observed in pairs if observed.all()]
+    n_complete = sum(map(len, complete))
+    if n_complete < settings.n_atoms:
         raise InvalidMotionError(
-            f"{settings.n_atoms} atoms cannot be learned from {n_whole} whole postures; give"
-            " more clips, or ask for fewer atoms."
+            f"{settings.n_atoms} atoms cannot be learned from {n_complete} complete postures."
+            " Add clips, or set fewer atoms."
         )
-    step = -(-n_whole // settings.n_examples)
-    return np.asarray(np.concatenate(whole)[:: min(step, n_whole // settings.n_atoms)])
+    step = -(-n_complete // settings.n_examples)
+    return np.asarray(np.concatenate(complete)[:: min(step, n_complete // settings.n_atoms)])
 
 
-def _renewed(examples: Array, atoms: Array, codes: SparseCodes) -> Array:
-    """Return atoms, each the best rank-one part of what the others leave to it."""
+def _update_atoms(examples: Array, atoms: Array, codes: SparseCodes) -> Array:
+    """Return atoms, each the best rank-one approximation of its residual."""
     atoms, weights = atoms.copy(), codes.weights.copy()
-    left = examples - codes.signals(atoms)
+    residual = examples - codes.signals(atoms)
     order = np.argsort(codes.atoms, axis=None, kind="stable")
     starts = np.searchsorted(codes.atoms.ravel()[order], np.arange(len(atoms) + 1))
     for atom in range(len(atoms)):
-        used = order[starts[atom] : starts[atom + 1]]
-        rows, steps = np.divmod(used, weights.shape[1])
-        asked = weights[rows, steps] != 0.0
-        rows, steps = rows[asked], steps[asked]
+        entries = order[starts[atom] : starts[atom + 1]]
+        rows, steps = np.divmod(entries, weights.shape[1])
+        is_used = weights[rows, steps] != 0.0
+        rows, steps = rows[is_used], steps[is_used]
         if not len(rows):
-            worst = int((left**2).sum(axis=1).argmax())
+            worst = int((residual**2).sum(axis=1).argmax())
             size = np.linalg.norm(examples[worst])
             atoms[atom] = examples[worst] / size if size else atoms[atom]
-            left[worst] = 0.0
+            residual[worst] = 0.0
             continue
-        rest = left[rows] + weights[rows, steps, None] * atoms[atom]
-        atoms[atom] = np.linalg.eigh(rest.T @ rest)[1][:, -1]
-        weights[rows, steps] = rest @ atoms[atom]
-        left[rows] = rest - weights[rows, steps, None] * atoms[atom]
+        target = residual[rows] + weights[rows, steps, None] * atoms[atom]
+        atoms[atom] = np.linalg.eigh(target.T @ target)[1][:, -1]
+        weights[rows, steps] = target @ atoms[atom]
+        residual[rows] = target - weights[rows, steps, None] * atoms[atom]
     return atoms

@@ -1,4 +1,4 @@
-"""Postures as plain vectors, and which of their entries were seen."""
+"""Convert postures to vectors with a mask of the observed entries."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def seen_signals(positions: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Return frames as vectors, gaps bridged in time, and which entries were ever seen.
+def observed_signals(positions: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Return frames as vectors with interpolated gaps, and the mask of observed entries.
 
     Parameters
     ----------
@@ -16,15 +16,17 @@ def seen_signals(positions: Array) -> tuple[Array, NDArray[np.bool_]]:
     Returns
     -------
     signals : shape (n_frames, 60)
-        Bridged by straight lines, at the ends by the nearest; 0 where never seen.
-    seen : shape (60,), bool
+        Interpolated linearly in time, constant at the ends; 0 if never observed.
+    observed : shape (60,), bool
     """
     signals = positions.reshape(len(positions), -1).copy()
-    known = np.isfinite(signals)
+    observed = np.isfinite(signals)
     frames = np.arange(len(signals))
-    for column in np.flatnonzero(~known.all(axis=0)):
-        told = known[:, column]
+    for column in np.flatnonzero(~observed.all(axis=0)):
+        column_observed = observed[:, column]
         signals[:, column] = (
-            np.interp(frames, frames[told], signals[told, column]) if told.any() else 0.0
+            np.interp(frames, frames[column_observed], signals[column_observed, column])
+            if column_observed.any()
+            else 0.0
         )
-    return signals, known.any(axis=0)
+    return signals, observed.any(axis=0)

@@ -1,4 +1,4 @@
-"""Compare how postures follow each other: spatial temporal pyramid matching [ZH14, 3.4]."""
+"""Compare posture sequences by spatial temporal pyramid matching [ZH14, 3.4]."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -17,22 +17,22 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class PyramidSettings(Settings):
-    """How temporal codes are pooled."""
+    """Settings of `pyramid_descriptor`."""
 
     gap: float = setting(
         7 / 120,
-        "Time between the two postures of a pair; longer tells slower changes",
+        "Time between the two postures of a pair; longer captures slower changes",
         unit="s",
         minimum=0.001,
         maximum=10.0,
     )
     n_levels: int = setting(
-        3, "Levels; each halves the segments of time once more", minimum=1, maximum=8
+        3, "Pyramid levels; each halves the time segments", minimum=1, maximum=8
     )
     normalise_cubes: bool = setting(
         False,
-        "Give the entries of each cube the sum 1, so that all parts of a clip and blocks of"
-        " atoms count the same",
+        "Normalize the entries of each cube to the sum 1, so that all segments and blocks of"
+        " atoms have equal weight",
     )
 
 
@@ -44,8 +44,8 @@ def pyramid_descriptor(
     """Return the pooled temporal codes of a clip, a sparse row of scipy's.
 
     Level l cuts the slices of the temporal code into 2^l segments, and atoms into l + 1 groups,
-    so that rows and columns make (l + 1)^2 blocks. Of each entry the largest size in a segment
-    is kept (eq. 3.10). Levels are weighted by 1 / 2^l, so that `pyramid_kernel` only adds.
+    so that rows and columns make (l + 1)^2 blocks. Max pooling keeps the largest absolute value
+    in a segment (eq. 3.10). Levels are weighted by 1 / 2^l, so that `pyramid_kernel` only adds.
 
     Returns
     -------
@@ -54,22 +54,22 @@ def pyramid_descriptor(
     gap = max(1, round(settings.gap * postures.frame_rate))
     codes = temporal_codes(dictionary.codes(postures), gap)
     n_atoms = len(dictionary.atoms)
-    places, values, first = [], [], 0
+    indices, values, first = [], [], 0
     for level in range(settings.n_levels):
-        found, sizes = _pooled(codes, 2**level, n_atoms)
+        level_indices, sizes = _pool_codes(codes, 2**level, n_atoms)
         if settings.normalise_cubes:
-            sizes = sizes / _cube_sums(found, sizes, level, n_atoms)
-        places.append(first + found)
+            sizes = sizes / _cube_sums(level_indices, sizes, level, n_atoms)
+        indices.append(first + level_indices)
         values.append(sizes / 2**level)
         first += 2**level * n_atoms**2
-    columns = np.concatenate(places)
+    columns = np.concatenate(indices)
     return csr_array(
         (np.concatenate(values), columns, np.array([0, len(columns)])), shape=(1, first)
     )
 
 
 def pyramid_kernel(a: Any, b: Any) -> Array:
-    """Return how alike pyramids are: the intersection of their histograms (eq. 3.11).
+    """Return the similarity of pyramids: the histogram intersection (eq. 3.11).
 
     Parameters
     ----------
@@ -84,34 +84,34 @@ def pyramid_kernel(a: Any, b: Any) -> Array:
     a, b = a.tocsr(), b.tocsc()
     kernel = np.zeros((a.shape[0], b.shape[0]))
     for row in range(a.shape[0]):
-        mine = slice(a.indptr[row], a.indptr[row + 1])
-        columns = a.indices[mine]
+        own_entries = slice(a.indptr[row], a.indptr[row + 1])
+        columns = a.indices[own_entries]
         counts = b.indptr[columns + 1] - b.indptr[columns]
         skipped = np.cumsum(counts) - counts
-        taken = np.arange(counts.sum()) + np.repeat(b.indptr[columns] - skipped, counts)
-        shared = np.minimum(b.data[taken], np.repeat(a.data[mine], counts))
-        kernel[row] = np.bincount(b.indices[taken], shared, minlength=b.shape[0])
+        gathered = np.arange(counts.sum()) + np.repeat(b.indptr[columns] - skipped, counts)
+        shared = np.minimum(b.data[gathered], np.repeat(a.data[own_entries], counts))
+        kernel[row] = np.bincount(b.indices[gathered], shared, minlength=b.shape[0])
     return kernel
 
 
-def _pooled(
+def _pool_codes(
     codes: TemporalCodes, n_segments: int, n_atoms: int
 ) -> tuple[NDArray[np.intp], Array]:
-    """Return the places (segment, row, column as one number) of entries, and their maxima."""
+    """Return the flat indices (segment, row, column) of entries, and their maxima."""
     rows, columns, values = codes.entries()
     segments = np.arange(codes.n_slices) * n_segments // codes.n_slices
-    places = ((segments[:, None, None] * n_atoms + rows) * n_atoms + columns).ravel()
+    indices = ((segments[:, None, None] * n_atoms + rows) * n_atoms + columns).ravel()
     sizes = np.abs(values).ravel()
     used = np.flatnonzero(sizes)
-    order = used[np.argsort(places[used])]
-    places, sizes = places[order], sizes[order]
-    starts = np.flatnonzero(np.diff(places, prepend=-1))
-    return places[starts], np.maximum.reduceat(sizes, starts)
+    order = used[np.argsort(indices[used])]
+    indices, sizes = indices[order], sizes[order]
+    starts = np.flatnonzero(np.diff(indices, prepend=-1))
+    return indices[starts], np.maximum.reduceat(sizes, starts)
 
 
-def _cube_sums(places: NDArray[np.intp], sizes: Array, level: int, n_atoms: int) -> Array:
+def _cube_sums(indices: NDArray[np.intp], sizes: Array, level: int, n_atoms: int) -> Array:
     """Return for each entry the sum of its cube."""
-    segments, inside = np.divmod(places, n_atoms**2)
-    rows, columns = (each * (level + 1) // n_atoms for each in np.divmod(inside, n_atoms))
+    segments, remainders = np.divmod(indices, n_atoms**2)
+    rows, columns = (each * (level + 1) // n_atoms for each in np.divmod(remainders, n_atoms))
     cubes = (segments * (level + 1) + rows) * (level + 1) + columns
     return np.asarray(np.bincount(cubes, sizes)[cubes])

@@ -1,4 +1,4 @@
-"""The order of a library's clips by spatial temporal pyramid matching, as published."""
+"""Rank the clips of a library by spatial temporal pyramid matching, as published."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from .pyramid_matching import pyramid_descriptor, pyramid_kernel
 
 @dataclass(frozen=True, eq=False)
 class _Pyramids:
-    """The clips of a library as pyramids, as long as it has these clips."""
+    """Pyramids of the clips of a library, valid while the clips are the same."""
 
     numbers: tuple[int, ...]
     dictionary: PostureDictionary
@@ -27,7 +27,7 @@ class _Pyramids:
     frames: np.ndarray[Any, np.dtype[np.int32]]
 
 
-_KEPT: WeakKeyDictionary[ClipLibrary, _Pyramids] = WeakKeyDictionary()
+_PYRAMID_CACHE: WeakKeyDictionary[ClipLibrary, _Pyramids] = WeakKeyDictionary()
 
 
 def rank_pyramids(
@@ -39,9 +39,9 @@ def rank_pyramids(
 ) -> Ranking:
     """Rank clips by the temporal sparse representation [ZH14, sections 3.3 and 3.4].
 
-    One dictionary of whole postures is learned of all clips, which takes minutes for hundreds,
-    and kept as long as the library does not change. Clips are as the library has them, at
-    20 Hz; joints that were not tracked are filled in.
+    One dictionary of complete postures is learned from all clips, which takes minutes for
+    hundreds of clips, and is cached until the library changes. Clips are at 20 Hz, as stored;
+    missing joints are filled.
 
     Raises
     ------
@@ -51,31 +51,31 @@ def rank_pyramids(
     vocabulary = library.vocabulary
     assert vocabulary is not None
     numbers = tuple(library.numbered())
-    kept = _KEPT.get(library)
-    if kept is None or kept.numbers != numbers:
-        kept = _pyramids(library, numbers, vocabulary, within(progress, 0.0, 0.9))
-        _KEPT[library] = kept
-    asked = pyramid_descriptor(_whole(query, vocabulary), kept.dictionary)
-    alike = pyramid_kernel(asked, kept.rows)[0]
-    most = max(float(asked.sum()), np.finfo(float).tiny)
-    left = np.flatnonzero(~np.isin(kept.numbers, list(ignore)))
-    order = left[np.argsort(-alike[left], kind="stable")]
-    distances = np.maximum(1.0 - alike / most, 0.0).astype(np.float32)
-    return Ranking(np.array(kept.numbers)[order], kept.frames[order], distances[order])
+    pyramids = _PYRAMID_CACHE.get(library)
+    if pyramids is None or pyramids.numbers != numbers:
+        pyramids = _build_pyramids(library, numbers, vocabulary, within(progress, 0.0, 0.9))
+        _PYRAMID_CACHE[library] = pyramids
+    descriptor = pyramid_descriptor(_fill_gaps(query, vocabulary), pyramids.dictionary)
+    similarities = pyramid_kernel(descriptor, pyramids.rows)[0]
+    max_similarity = max(float(descriptor.sum()), np.finfo(float).tiny)
+    candidates = np.flatnonzero(~np.isin(pyramids.numbers, list(ignore)))
+    order = candidates[np.argsort(-similarities[candidates], kind="stable")]
+    distances = np.maximum(1.0 - similarities / max_similarity, 0.0).astype(np.float32)
+    return Ranking(np.array(pyramids.numbers)[order], pyramids.frames[order], distances[order])
 
 
-def _pyramids(
+def _build_pyramids(
     library: ClipLibrary, numbers: tuple[int, ...], vocabulary: Vocabulary, progress: Progress
 ) -> _Pyramids:
-    clips = [_whole(library.postures(number), vocabulary) for number in numbers]
+    clips = [_fill_gaps(library.postures(number), vocabulary) for number in numbers]
     dictionary = learn_dictionary(clips, progress=within(progress, 0.0, 0.7))
     rows = []
-    for place, clip in enumerate(clips):
-        progress(0.7 + 0.3 * place / len(clips), "Pooling")
+    for index, clip in enumerate(clips):
+        progress(0.7 + 0.3 * index / len(clips), "Pooling")
         rows.append(pyramid_descriptor(clip, dictionary))
     ends = np.array([[0, clip.n_frames] for clip in clips], dtype=np.int32)
     return _Pyramids(numbers, dictionary, csc_array(vstack(rows)), ends)
 
 
-def _whole(clip: ClipPostures, vocabulary: Vocabulary) -> ClipPostures:
-    return vocabulary.usual.completed(clip)
+def _fill_gaps(clip: ClipPostures, vocabulary: Vocabulary) -> ClipPostures:
+    return vocabulary.posture_distribution.fill_gaps(clip)

@@ -1,4 +1,4 @@
-"""Write signals as sums of few atoms: orthogonal matching pursuit of many signals at once."""
+"""Compute sparse codes of many signals by orthogonal matching pursuit."""
 
 from dataclasses import dataclass
 
@@ -10,23 +10,23 @@ from ...errors import InvalidSettingError
 Array = NDArray[np.float64]
 
 BATCH = 512
-"""Signals pursued at once: fewer calls, and their inner products with atoms take 1.4 MB."""
-LITTLE = 1e-3
-"""Length that is left of an atom below which it is made orthogonal twice."""
-SPENT = 1e-10
-"""Part of a signal's length, or of an atom's, below which what is left of it is rounding."""
+"""Signals per batch; the inner products with the atoms take 1.4 MB."""
+REORTHOGONALIZE_BELOW = 1e-3
+"""Residual length of an atom below which it is orthogonalized twice."""
+MIN_RESIDUAL_FRACTION = 1e-10
+"""Residual length of a signal or atom, as a fraction, below which it is rounding error."""
 
 
 @dataclass(frozen=True, eq=False)
 class SparseCodes:
-    """Which atoms make up each signal, and how much of each.
+    """Atoms and weights of each signal.
 
     Attributes
     ----------
     atoms : shape (n_signals, n_nonzeros), int
-        In the order in which they were chosen.
+        In the order of selection.
     weights : shape (n_signals, n_nonzeros)
-        0 where fewer atoms tell the whole signal.
+        0 if fewer atoms represent the complete signal.
     """
 
     atoms: NDArray[np.intp]
@@ -37,33 +37,32 @@ class SparseCodes:
 
     @property
     def n_signals(self) -> int:
-        """How many signals there are."""
+        """Number of signals."""
         return len(self.atoms)
 
     def signals(self, atoms: Array) -> Array:
-        """Return what these sums of `atoms` are, shape (n_signals, n_dimensions)."""
+        """Reconstruct the signals from `atoms`, shape (n_signals, n_dimensions)."""
         return np.asarray((self.weights[:, None] @ atoms[self.atoms])[:, 0])
 
 
 def sparse_codes(signals: Array, atoms: Array, n_nonzeros: int) -> SparseCodes:
-    """Choose for each signal, one by one, the atoms that tell most of what is left of it.
+    """Select the atoms of each signal greedily by the largest projection of the residual.
 
-    Orthogonal matching pursuit [1]_. The least squares over the atoms chosen so far are kept
-    up to date by the Cholesky factor of their Gram matrix, as in [2]_; it is made by
-    orthogonalising each new atom against the others, twice where little of it is left, which
-    is as quick for signals of few dimensions and keeps all digits.
+    Orthogonal matching pursuit [1]_. The Cholesky factor of the Gram matrix of the selected
+    atoms is updated at each step, as in [2]_. Each new atom is orthogonalized against the
+    others, twice if its residual is small: equally fast for few dimensions, and accurate.
 
     Parameters
     ----------
     signals : shape (n_signals, n_dimensions)
     atoms : shape (n_atoms, n_dimensions), each of length 1, or 0: never chosen
     n_nonzeros : int
-        Atoms for each signal, at most as many as there are dimensions.
+        Atoms per signal, at most the number of dimensions.
 
     Raises
     ------
     InvalidSettingError
-        There are not so many atoms, or dimensions.
+        There are fewer atoms or dimensions than that.
 
     References
     ----------
@@ -74,64 +73,66 @@ def sparse_codes(signals: Array, atoms: Array, n_nonzeros: int) -> SparseCodes:
     """
     if not 1 <= n_nonzeros <= min(atoms.shape):
         raise InvalidSettingError(
-            f"{n_nonzeros} non-zeros were asked for; there are {atoms.shape[0]} atoms of"
-            f" {atoms.shape[1]} dimensions, so it must lie between 1 and {min(atoms.shape)}."
+            f"n_nonzeros is {n_nonzeros}; with {atoms.shape[0]} atoms of {atoms.shape[1]}"
+            f" dimensions it must be between 1 and {min(atoms.shape)}."
         )
-    places = np.zeros((len(signals), n_nonzeros), dtype=np.intp)
+    indices = np.zeros((len(signals), n_nonzeros), dtype=np.intp)
     weights = np.zeros((len(signals), n_nonzeros))
     for start in range(0, len(signals), BATCH):
         batch = slice(start, start + BATCH)
-        places[batch], weights[batch] = _pursue(signals[batch], atoms, n_nonzeros)
-    return SparseCodes(places, weights)
+        indices[batch], weights[batch] = _pursue(signals[batch], atoms, n_nonzeros)
+    return SparseCodes(indices, weights)
 
 
 def _pursue(signals: Array, atoms: Array, n_nonzeros: int) -> tuple[NDArray[np.intp], Array]:
     n_signals, n_dimensions = signals.shape
-    chosen = np.zeros((n_signals, n_nonzeros), dtype=np.intp)
+    selected = np.zeros((n_signals, n_nonzeros), dtype=np.intp)
     basis = np.zeros((n_signals, n_nonzeros, n_dimensions))
     cholesky = np.zeros((n_signals, n_nonzeros, n_nonzeros))
-    along = np.zeros((n_signals, n_nonzeros))
-    left = np.array(signals, dtype=np.float64)
-    enough = SPENT * _lengths(left)
-    # To choose, single precision will do: it is relative to what is left.
+    projections = np.zeros((n_signals, n_nonzeros))
+    residual = np.array(signals, dtype=np.float64)
+    tolerance = MIN_RESIDUAL_FRACTION * _lengths(residual)
+    # Single precision suffices for the selection: it is relative to the residual.
     columns = np.ascontiguousarray(atoms.T, dtype=np.float32)
-    common = np.empty((n_signals, len(atoms)), dtype=np.float32)
+    products = np.empty((n_signals, len(atoms)), dtype=np.float32)
     for step in range(n_nonzeros):
-        np.matmul(left.astype(np.float32), columns, out=common)
-        best = np.abs(common, out=common).argmax(axis=1)
-        new, before = _across(atoms[best], basis[:, :step])
-        size = _lengths(new)
-        useful = (size > SPENT) & (_lengths(left) > enough)
-        new = np.where(useful[:, None], new / np.maximum(size, SPENT)[:, None], 0.0)
-        chosen[:, step], basis[:, step] = best, new
-        cholesky[:, :step, step] = np.where(useful[:, None], before, 0.0)
-        cholesky[:, step, step] = np.where(useful, size, 1.0)
-        along[:, step] = np.einsum("ij,ij->i", new, left)
-        left -= along[:, step, None] * new
-    return chosen, _solved_back(cholesky, along)
+        np.matmul(residual.astype(np.float32), columns, out=products)
+        best = np.abs(products, out=products).argmax(axis=1)
+        component, coefficients = _orthogonalize(atoms[best], basis[:, :step])
+        length = _lengths(component)
+        useful = (length > MIN_RESIDUAL_FRACTION) & (_lengths(residual) > tolerance)
+        component = np.where(
+            useful[:, None], component / np.maximum(length, MIN_RESIDUAL_FRACTION)[:, None], 0.0
+        )
+        selected[:, step], basis[:, step] = best, component
+        cholesky[:, :step, step] = np.where(useful[:, None], coefficients, 0.0)
+        cholesky[:, step, step] = np.where(useful, length, 1.0)
+        projections[:, step] = np.einsum("ij,ij->i", component, residual)
+        residual -= projections[:, step, None] * component
+    return selected, _back_substitute(cholesky, projections)
 
 
-def _across(vectors: Array, bases: Array) -> tuple[Array, Array]:
-    """Return what of each vector is across its basis, and how much along each of that.
+def _orthogonalize(vectors: Array, bases: Array) -> tuple[Array, Array]:
+    """Return the component of each vector orthogonal to its basis, and the projections.
 
-    Where little is left, rounding is much of it: there it is done twice.
+    Small components are orthogonalized twice, because of rounding errors.
     """
-    along = (bases @ vectors[:, :, None])[..., 0]
-    across = vectors - (along[:, None] @ bases)[:, 0]
-    few = np.flatnonzero(_lengths(across) < LITTLE)
-    more = (bases[few] @ across[few, :, None])[..., 0]
-    across[few] -= (more[:, None] @ bases[few])[:, 0]
-    along[few] += more
-    return across, along
+    projections = (bases @ vectors[:, :, None])[..., 0]
+    orthogonal = vectors - (projections[:, None] @ bases)[:, 0]
+    small = np.flatnonzero(_lengths(orthogonal) < REORTHOGONALIZE_BELOW)
+    correction = (bases[small] @ orthogonal[small, :, None])[..., 0]
+    orthogonal[small] -= (correction[:, None] @ bases[small])[:, 0]
+    projections[small] += correction
+    return orthogonal, projections
 
 
-def _solved_back(upper: Array, right: Array) -> Array:
-    """Solve many upper triangular systems from their last rows on."""
-    found = right.copy()
+def _back_substitute(upper: Array, right: Array) -> Array:
+    """Solve many upper triangular systems by back substitution."""
+    solution = right.copy()
     for row in range(right.shape[1] - 1, -1, -1):
-        later = np.einsum("ij,ij->i", upper[:, row, row + 1 :], found[:, row + 1 :])
-        found[:, row] = (right[:, row] - later) / upper[:, row, row]
-    return found
+        later = np.einsum("ij,ij->i", upper[:, row, row + 1 :], solution[:, row + 1 :])
+        solution[:, row] = (right[:, row] - later) / upper[:, row, row]
+    return solution
 
 
 def _lengths(vectors: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Tell how postures follow each other: outer products of their sparse codes [ZH14, 3.3.2]."""
+"""Describe posture transitions by outer products of sparse codes [ZH14, 3.3.2]."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 class TemporalCodes:
     """Pairs of postures; each pair stands for the outer product of its two codes (eq. 3.7).
 
-    The product of two codes of m non-zeros has m^2, so it is never written out as a whole.
+    The product of two codes of m non-zeros has m^2, so it is never stored completely.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class TemporalCodes:
 
     @property
     def n_slices(self) -> int:
-        """How many pairs there are."""
+        """Number of pairs."""
         return self.earlier.n_signals
 
     def entries(self) -> tuple[NDArray[np.intp], NDArray[np.intp], Array]:
@@ -41,7 +41,7 @@ class TemporalCodes:
 def temporal_codes(codes: SparseCodes, gap: int) -> TemporalCodes:
     """Pair each `gap`-th frame with the one `gap` frames later (eq. 3.8 and 3.9).
 
-    What would be paired with a frame after the last is paired with the last.
+    A partner beyond the last frame is replaced by the last frame.
 
     Parameters
     ----------

@@ -1,17 +1,17 @@
-"""The query and the order of a library's clips for it."""
+"""Describe a query and rank the clips of a library."""
 
-from .align_clip import aligned
+from .align_clip import align_frames
 from .describe_query import DescribedQuery, describe_query
-from .find_settings import USUAL, FindMethod, FindSettings
+from .find_settings import DEFAULT_FIND_SETTINGS, FindMethod, FindSettings
 from .rank_clips import Ranking, rank_clips
 
 __all__ = [
-    "USUAL",
+    "DEFAULT_FIND_SETTINGS",
     "DescribedQuery",
     "FindMethod",
     "FindSettings",
     "Ranking",
-    "aligned",
+    "align_frames",
     "describe_query",
     "rank_clips",
 ]

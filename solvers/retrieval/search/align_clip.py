@@ -1,4 +1,4 @@
-"""Which frames of a clip belong to which of a query that is found somewhere in it."""
+"""Align a query with any part of a clip."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,16 +6,16 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Path = NDArray[np.intp]
 
-STILL = 1.5
-"""What a step costs in which one of both stands still."""
+STEP_PENALTY = 1.5
+"""Cost factor of a step that advances only one of the two sequences."""
 
 
-def aligned(query: Array, clip: Array) -> Path:
-    """Return the best path of the whole query through any part of a clip.
+def align_frames(query: Array, clip: Array) -> Path:
+    """Return the best alignment of the complete query with any part of a clip.
 
     Subsequence dynamic time warping (Müller, Information Retrieval for Music and Motion, 2007,
-    section 4.4): beginning and end in the clip are free. Steps (1, 1), (1, 0) and (0, 1);
-    those that stand still in one of them cost half as much again, lest a path creeps.
+    section 4.4): start and end in the clip are free. The steps are (1, 1), (1, 0) and (0, 1);
+    steps of one sequence alone cost 1.5 times as much, which prevents slow drift.
 
     Parameters
     ----------
@@ -26,30 +26,38 @@ def aligned(query: Array, clip: Array) -> Path:
     shape (n_steps, 2)
         Pairs (frame of the query, frame of the clip).
     """
-    apart = np.sqrt(
+    distances = np.sqrt(
         np.maximum(
             (query**2).sum(axis=-1)[:, None] + (clip**2).sum(axis=-1) - 2.0 * query @ clip.T,
             0.0,
         )
     )
-    costs, still = np.empty_like(apart), STILL * apart
-    costs[0] = apart[0]
-    along = np.cumsum(still, axis=-1)
+    costs, penalized = np.empty_like(distances), STEP_PENALTY * distances
+    costs[0] = distances[0]
+    cumulative = np.cumsum(penalized, axis=-1)
     for row in range(1, len(query)):
-        entered = costs[row - 1] + still[row]
-        entered[1:] = np.minimum(entered[1:], costs[row - 1, :-1] + apart[row, 1:])
-        costs[row] = np.minimum.accumulate(entered - along[row]) + along[row]
-    return _path_back(costs, apart, still)
+        entry = costs[row - 1] + penalized[row]
+        entry[1:] = np.minimum(entry[1:], costs[row - 1, :-1] + distances[row, 1:])
+        costs[row] = np.minimum.accumulate(entry - cumulative[row]) + cumulative[row]
+    return _backtrack_path(costs, distances, penalized)
 
 
-def _path_back(costs: Array, apart: Array, still: Array) -> Path:
+def _backtrack_path(costs: Array, distances: Array, penalized: Array) -> Path:
     row, column = len(costs) - 1, int(costs[-1].argmin())
     path = [(row, column)]
     while row:
-        ways = [(costs[row - 1, column] + still[row, column], row - 1, column)]
+        candidates = [(costs[row - 1, column] + penalized[row, column], row - 1, column)]
         if column:
-            ways.append((costs[row - 1, column - 1] + apart[row, column], row - 1, column - 1))
-            ways.append((costs[row, column - 1] + still[row, column], row, column - 1))
-        _, row, column = min(ways)
+            candidates.append((
+                costs[row - 1, column - 1] + distances[row, column],
+                row - 1,
+                column - 1,
+            ))
+            candidates.append((
+                costs[row, column - 1] + penalized[row, column],
+                row,
+                column - 1,
+            ))
+        _, row, column = min(candidates)
         path.append((row, column))
     return np.array(path[::-1], dtype=np.intp)

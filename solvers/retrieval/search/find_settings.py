@@ -1,4 +1,4 @@
-"""What is alike, and how closely it is looked at."""
+"""Settings of the search for similar clips."""
 
 from dataclasses import dataclass, replace
 
@@ -7,16 +7,17 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
 from ...settings import Choice, Settings, setting
-from ..index import STANCE
+from ..index import MEAN_POSTURE_WEIGHT
 from ..postures import BodyPart
 
-BELIEF = 4.0
-"""Power of the share of a part that is known by which it counts."""
-STANCE_OF_SENSOR = 0.4
-STILL = 0.05
-"""Activity of the busiest part below which the query is a pose: all count alike, or nearly."""
-AT_REST = 0.2
-"""Of the busiest part's activity that one counts as having that does not move at all."""
+RELIABILITY_POWER = 4.0
+"""Exponent of the reliability of a part in its weight."""
+SENSOR_MEAN_POSTURE_WEIGHT = 0.4
+"""Maximum weight of the mean posture for sensor data."""
+MIN_ACTIVITY = 0.05
+"""Activity of the most active part below which the query counts as a static pose."""
+REST_WEIGHT = 0.2
+"""Activity of a part at rest, as a fraction of that of the most active part."""
 
 
 class FindMethod(Choice):
@@ -30,11 +31,11 @@ class FindMethod(Choice):
 class FindSettings(Settings):
     """Settings of `find_similar`.
 
-    `stance`, `busy` and what was tracked of the query count where it is compared with clips.
-    How like clips are to each other (`n_alike`) does not depend on the query, and is told with
-    the usual stance and all parts alike, once for all queries, as long as all parts are asked
-    for and the library has no more than `search_index.MOST_COMPARED` spans. Otherwise it is
-    told as the query is.
+    `stance`, `busy` and the tracked joints of the query weight the comparison of the query with
+    the clips. The distances between clips (`n_alike`) do not depend on the query if all parts
+    are compared and the library has at most `search_index.MAX_PAIRWISE_SPANS` segments: they
+    are then computed once for all queries, with the default stance and equal part weights.
+    Otherwise they use the weights of the query.
     """
 
     method: FindMethod = setting(
@@ -56,7 +57,8 @@ class FindSettings(Settings):
         minimum=0.0, maximum=4.0, advanced=True, label="Weight by Motion",
     )  # fmt: skip
     stance: float = setting(
-        STANCE, "Weight of the mean pose against the motion; at most 0.4 for sensor recordings",
+        MEAN_POSTURE_WEIGHT,
+        "Weight of the mean pose against the motion; at most 0.4 for sensor recordings",
         minimum=0.0, maximum=1.0, advanced=True, label="Pose Weight",
     )  # fmt: skip
     n_warped: int = setting(
@@ -77,12 +79,12 @@ class FindSettings(Settings):
     )  # fmt: skip
 
     def for_sensor(self) -> "FindSettings":
-        """Return settings for a query that a sensor saw."""
-        return replace(self, stance=min(self.stance, STANCE_OF_SENSOR))
+        """Return the settings for sensor data."""
+        return replace(self, stance=min(self.stance, SENSOR_MEAN_POSTURE_WEIGHT))
 
     @property
-    def asks_for_all(self) -> bool:
-        """Whether all parts of the body are compared."""
+    def compares_all_parts(self) -> bool:
+        """Whether all body parts are compared."""
         return all(getattr(self, part.name.lower()) for part in BodyPart)
 
     def part_weights(
@@ -91,33 +93,37 @@ class FindSettings(Settings):
         reliability: NDArray[np.float64],
         activity: NDArray[np.float64],
     ) -> NDArray[np.float64]:
-        """Return how much each part counts, shape (5,), on average 1.
+        """Return the weight of each part, shape (5,), with mean 1.
 
         Parameters
         ----------
         coverage : shape (5,)
-            How much of each part was tracked.
+            Tracked fraction of each part.
         reliability : shape (5,)
-            How much of what each part does is known, from itself or from others; not 0.
+            Explained fraction of the variance of each part; not 0.
         activity : shape (5,)
-            How much each part moves, as a share of the usual.
+            Movement of each part relative to the average.
 
         Raises
         ------
         InvalidMotionError
-            No part is chosen, or none of those that are was tracked.
+            No part is selected, or none of the selected parts was tracked.
         """
-        chosen = [part for part in BodyPart if getattr(self, part.name.lower())]
-        if not chosen:
+        selected = [part for part in BodyPart if getattr(self, part.name.lower())]
+        if not selected:
             raise InvalidMotionError("No part of the body is chosen; choose at least one.")
-        wanted = np.array([part in chosen for part in BodyPart])
-        most = np.maximum(activity[wanted].max(), STILL)
-        moved = np.minimum(activity / most, 1.0) + AT_REST
-        if not coverage[wanted].any():
-            names = ", ".join(part.value for part in chosen)
-            raise InvalidMotionError(f"The query shows nothing of what is asked for: {names}.")
-        weights = np.where(wanted, reliability**BELIEF * moved**self.busy, 0.0)
+        is_selected = np.array([part in selected for part in BodyPart])
+        max_activity = np.maximum(activity[is_selected].max(), MIN_ACTIVITY)
+        relative_activity = np.minimum(activity / max_activity, 1.0) + REST_WEIGHT
+        if not coverage[is_selected].any():
+            names = ", ".join(part.value for part in selected)
+            raise InvalidMotionError(
+                f"The query has no tracked joints in: {names}. Select other body parts."
+            )
+        weights = np.where(
+            is_selected, reliability**RELIABILITY_POWER * relative_activity**self.busy, 0.0
+        )
         return np.asarray(weights * len(weights) / weights.sum())
 
 
-USUAL = FindSettings()
+DEFAULT_FIND_SETTINGS = FindSettings()

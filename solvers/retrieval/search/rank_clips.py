@@ -1,4 +1,4 @@
-"""The order of a library's clips for a query: words, then warping, then what is like each."""
+"""Rank clips by codeword histograms, then time warping, then neighbors."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -7,16 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..index import (
-    FULL,
+    HISTOGRAM_SCALE,
     N_AXES,
     N_CUBES,
     SearchIndex,
-    Spans,
-    between_courses,
+    Segments,
     frame_distances,
-    judged_by_likes,
+    pairwise_warping_costs,
+    rerank_by_neighbors,
     warping_costs,
-    with_stance,
+    weight_mean_posture,
 )
 from ..postures import N_PARTS
 from .find_settings import FindSettings
@@ -24,22 +24,22 @@ from .find_settings import FindSettings
 Single = NDArray[np.float32]
 Numbers = NDArray[np.int64]
 
-CLIPS_PER_LIKE = 20
-"""Clips for each other clip that is asked as well: the eight nearest of nine are not alike."""
+CLIPS_PER_NEIGHBOR = 20
+"""Clips per neighbor in re-ranking: in a small library the nearest clips are not similar."""
 
 
 @dataclass(frozen=True, eq=False)
 class Ranking:
-    """Clips in the order of how like a query they are.
+    """Clips ranked by similarity to a query.
 
     Attributes
     ----------
     clips : int64, shape (n,)
-        Their numbers, best first.
+        Clip numbers, best first.
     frames : int32, shape (n, 2)
-        Of each the span that is most like the query, at 20 Hz.
+        Most similar segment of each clip, at 20 Hz.
     distances : shape (n,)
-        0 for the same motion; what has nothing in common is about 1.5 apart.
+        0 for the same motion, about 1.5 for unrelated motions.
     """
 
     clips: Numbers
@@ -48,63 +48,73 @@ class Ranking:
 
 
 def rank_clips(
-    query: Spans,
+    query: Segments,
     weights: NDArray[np.float64],
     index: SearchIndex,
     settings: FindSettings,
     ignore: Collection[int] = (),
 ) -> Ranking:
-    """Rank the clips of the index by the first span of a query.
+    """Rank the clips of the index by similarity to the first segment of a query.
 
-    As many as are asked for, or all.
+    Return `settings.n_matches` clips, or all.
     """
-    asked = weighted_words(query.histograms[:1], weights)[0]
-    apart, spans = index.best_spans(1.0 - index.common(asked), ignore)
-    near = _least(apart, settings.n_warped)
-    asking = query.summaries[:1].astype(np.float32)
-    course = weighted_steps(with_stance(asking, settings.stance), weights)
-    courses = weighted_steps(with_stance(index.steps(spans[near]), settings.stance), weights)
-    costs = warping_costs(frame_distances(course, courses))[0]
-    share = np.float32(2.0 / (1.0 + settings.warping))
-    likely = share * (apart[near] + np.float32(settings.warping) * costs)
-    n_alike = min(settings.n_alike, len(spans) // CLIPS_PER_LIKE)
-    if 0 < n_alike < len(near):
-        among = index.between(spans[near]) if settings.asks_for_all else None
-        among = between_courses(courses) if among is None else among
-        likely = judged_by_likes(likely, among, n_alike)
-    order = np.argsort(likely, kind="stable")
-    found, distances = near[order], likely[order]
-    if not 0 < settings.n_matches <= len(found):
+    query_histogram = weight_histograms(query.histograms[:1], weights)[0]
+    histogram_distances, segments = index.best_segments(
+        1.0 - index.similarities(query_histogram), ignore
+    )
+    candidates = _smallest_indices(histogram_distances, settings.n_warped)
+    summary = query.summaries[:1].astype(np.float32)
+    query_sequence = weight_summaries(weight_mean_posture(summary, settings.stance), weights)
+    sequences = weight_summaries(
+        weight_mean_posture(index.steps(segments[candidates]), settings.stance), weights
+    )
+    costs = warping_costs(frame_distances(query_sequence, sequences))[0]
+    scale = np.float32(2.0 / (1.0 + settings.warping))
+    combined = scale * (histogram_distances[candidates] + np.float32(settings.warping) * costs)
+    n_neighbors = min(settings.n_alike, len(segments) // CLIPS_PER_NEIGHBOR)
+    if 0 < n_neighbors < len(candidates):
+        pairwise = (
+            index.pairwise_distances(segments[candidates])
+            if settings.compares_all_parts
+            else None
+        )
+        pairwise = pairwise_warping_costs(sequences) if pairwise is None else pairwise
+        combined = rerank_by_neighbors(combined, pairwise, n_neighbors)
+    order = np.argsort(combined, kind="stable")
+    ranked, distances = candidates[order], combined[order]
+    if not 0 < settings.n_matches <= len(ranked):
         worst = np.float32(settings.warping) * costs.max(initial=0.0)
-        is_other = np.ones(len(spans), dtype=np.bool_)
-        is_other[near] = False
-        others = np.flatnonzero(is_other)
-        others = others[np.argsort(apart[others], kind="stable")]
-        found = np.concatenate([found, others])
-        distances = np.concatenate([distances, share * (apart[others] + worst)])
-    spans = spans[found]
-    return Ranking(index.clips[spans], index.frames[spans], distances)
+        is_rest = np.ones(len(segments), dtype=np.bool_)
+        is_rest[candidates] = False
+        rest = np.flatnonzero(is_rest)
+        rest = rest[np.argsort(histogram_distances[rest], kind="stable")]
+        ranked = np.concatenate([ranked, rest])
+        distances = np.concatenate([distances, scale * (histogram_distances[rest] + worst)])
+    segments = segments[ranked]
+    return Ranking(index.clips[segments], index.frames[segments], distances)
 
 
-def weighted_words(histograms: NDArray[np.uint8], weights: NDArray[np.float64]) -> Single:
-    """Return histograms, (n, ...), as vectors with the parts weighted, (n, n_bins).
+def weight_histograms(histograms: NDArray[np.uint8], weights: NDArray[np.float64]) -> Single:
+    """Return histograms, (n, ...), as vectors with weighted parts, (n, n_bins).
 
-    Their product with those of a span is 1 for the same words, 0 for none in common.
+    The product with the histogram of a segment is 1 for equal histograms, 0 for disjoint ones.
     """
-    parted = histograms.reshape(len(histograms), N_PARTS, -1).astype(np.float32)
-    parted *= weights.astype(np.float32)[:, None] / np.float32(FULL**2 * N_PARTS * N_CUBES)
-    return parted.reshape(len(histograms), -1)
+    weighted = histograms.reshape(len(histograms), N_PARTS, -1).astype(np.float32)
+    weighted *= weights.astype(np.float32)[:, None] / np.float32(
+        HISTOGRAM_SCALE**2 * N_PARTS * N_CUBES
+    )
+    return weighted.reshape(len(histograms), -1)
 
 
-def weighted_steps(summaries: Single, weights: NDArray[np.float64]) -> Single:
-    """Return summaries, (n, 16, 5, 8), as vectors with the parts weighted, (n, 16, 40)."""
+def weight_summaries(summaries: Single, weights: NDArray[np.float64]) -> Single:
+    """Return summaries, (n, 16, 5, 8), as vectors with weighted parts, (n, 16, 40)."""
     scaled = summaries * np.sqrt(weights).astype(np.float32)[:, None]
     return scaled.reshape(*scaled.shape[:2], N_PARTS * N_AXES)
 
 
-def _least(values: Single, most: int) -> Numbers:
-    """Return the places of so many of the least, in their order."""
-    if most >= len(values):
+def _smallest_indices(values: Single, n: int) -> Numbers:
+    """Return the indices of the smallest values in ascending order."""
+    if n >= len(values):
         return np.argsort(values, kind="stable")
-    places = np.sort(np.argpartition(values, most)[:most])
-    return places[np.argsort(values[places], kind="stable")]
+    indices = np.sort(np.argpartition(values, n)[:n])
+    return indices[np.argsort(values[indices], kind="stable")]

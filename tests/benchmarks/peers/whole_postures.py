@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from solvers.motion import Tracks
 from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
-from solvers.retrieval.published.observed_signals import seen_signals
+from solvers.retrieval.published.observed_signals import observed_signals
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ class WholePostures:
 
     def completed(self, postures: ClipPostures) -> Array:
         """Return frames, shape (n_frames, 60), without NaN."""
-        signals, seen = seen_signals(postures.positions)
+        signals, seen = observed_signals(postures.positions)
         if seen.all():
             return signals
         known = self.covariance[np.ix_(seen, seen)] + RIDGE * np.eye(seen.sum())
@@ -47,7 +47,7 @@ def learn_whole(
     clips: Sequence[Tracks], frame_rate: float
 ) -> tuple[WholePostures, list[Array]]:
     """Return what completes, and the library's clips as frames."""
-    found = [seen_signals(clip_postures(clip, frame_rate).positions)[0] for clip in clips]
+    found = [observed_signals(clip_postures(clip, frame_rate).positions)[0] for clip in clips]
     frames = np.concatenate(found)
     whole = WholePostures(frames.mean(axis=0), np.cov(frames.T), frame_rate)
     return whole, found

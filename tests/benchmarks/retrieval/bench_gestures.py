@@ -18,7 +18,7 @@ from threadpoolctl import threadpool_limits
 
 from solvers.gestures.events import Gesture, GestureEvent
 from solvers.gestures.settings import GestureSettings
-from solvers.recordings.live.frames import decode_frame, encode_frame, frames_of
+from solvers.recordings.live.frames import decode_frame, encode_frame, frames_from_recording
 from solvers.samples import PerformanceSettings, perform_gestures
 from solvers.workflows.live_session import LiveSession
 
@@ -212,8 +212,8 @@ def _note_delay(
 
 def speed() -> str:
     """Return what a frame costs from the socket to the events."""
-    recording = perform_gestures(MADE).recording()
-    lines = [encode_frame(frame) for frame in frames_of(recording)]
+    recording = perform(MADE).recording()
+    lines = [encode_frame(frame) for frame in frames_from_recording(recording)]
     started = perf_counter()
     for line in lines:
         decode_frame(line)

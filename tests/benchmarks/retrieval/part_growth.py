@@ -44,7 +44,7 @@ from solvers.retrieval import (
     load_clip_library,
     open_clip_library,
 )
-from solvers.retrieval.index.segments import RATE, describe
+from solvers.retrieval.index.segments import RATE, describe_segments
 from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
 from solvers.rotations.representations import (
     IDENTITY,
@@ -141,7 +141,7 @@ def varied(number: int) -> ClipPostures:
     moments = np.arange(0.0, last + 1e-9, speed)
     positions, course = (
         interp1d(np.arange(last + 1.0), values, axis=0)(moments)
-        for values in (original.positions, original.course)
+        for values in (original.positions, original.root_velocity)
     )
     turned = turned_bones(positions, TURNED * rng.normal(size=(N_JOINTS, 3)))
     turned += SHAKEN * rng.normal(size=turned.shape)
@@ -166,9 +166,9 @@ def asking(number: int) -> Tracks:
     """Return what is searched with: a clip of the library, shaken and at another speed."""
     rng = np.random.default_rng([number, 1])
     clip = varied(number)
-    headings = np.cumsum(clip.course[:, 3]) / RATE
+    headings = np.cumsum(clip.root_velocity[:, 3]) / RATE
     turns = quaternion_from_rotation_vector(headings[:, None] * (0.0, 0.0, 1.0))
-    places = np.cumsum(rotate(turns, clip.course[:, :3]), axis=0) / RATE
+    places = np.cumsum(rotate(turns, clip.root_velocity[:, :3]), axis=0) / RATE
     positions = rotate(turns[:, None], clip.positions) + places[:, None]
     positions += ASKED * rng.normal(size=positions.shape)
     return Tracks(POSTURE_JOINTS, positions, RATE * rng.uniform(0.95, 1.05))
@@ -215,7 +215,7 @@ def _asked(library: ClipLibrary, number: int) -> tuple[float, float, bool, bool,
     assert vocabulary is not None
     began = process_time()
     features = vocabulary.features(clip_postures(query, RATE))
-    describe(features, np.array([[0, len(features)]], dtype=np.int32), vocabulary)
+    describe_segments(features, np.array([[0, len(features)]], dtype=np.int32), vocabulary)
     asked = process_time()
     matches = find_similar(query, library, settings=FindSettings(n_matches=TOLD))
     found = process_time()

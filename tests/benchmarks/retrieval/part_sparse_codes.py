@@ -10,7 +10,7 @@ from sklearn.decomposition import sparse_encode
 
 from solvers.retrieval.postures.clip_postures import clip_postures
 from solvers.retrieval.published.dictionary import DictionarySettings, learn_dictionary
-from solvers.retrieval.published.observed_signals import seen_signals
+from solvers.retrieval.published.observed_signals import observed_signals
 from solvers.retrieval.published.sparse_codes import sparse_codes
 
 from ..shared.tables import number, table
@@ -26,7 +26,7 @@ REPEATS = 5
 def compare_pursuits() -> str:
     """Return a table of milliseconds for 300 postures, the least of five runs."""
     clips = [clip_postures(clip.tracks, RATE) for clip in training_library()]
-    found = [seen_signals(clip.positions) for clip in clips]
+    found = [observed_signals(clip.positions) for clip in clips]
     postures = np.concatenate([signals for signals, seen in found if seen.all()])
     rng = np.random.default_rng(0)
     drawn = rng.permutation(len(postures))

@@ -11,7 +11,10 @@ from scipy.sparse import vstack
 from solvers.motion import Tracks
 from solvers.retrieval.postures.body_parts import JOINTS, ROOTS
 from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
-from solvers.retrieval.postures.mean_postures import UsualPostures, usual_postures
+from solvers.retrieval.postures.mean_postures import (
+    PostureDistribution,
+    learn_posture_distribution,
+)
 from solvers.retrieval.published.dictionary import (
     DictionarySettings,
     PostureDictionary,
@@ -59,7 +62,7 @@ class Pyramids:
             rows = [pyramid_descriptor(each, dictionary, self.pyramid) for each in of_part]
             sizes = np.array([row.sum() for row in rows])
             kept.append(PartLibrary(dictionary, vstack(rows).tocsc(), sizes))
-        return PyramidLibrary(self, kept, usual_postures(postures))
+        return PyramidLibrary(self, kept, learn_posture_distribution(postures))
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,14 +76,14 @@ class PartLibrary:
 class PyramidLibrary:
     method: Pyramids
     kept: list[PartLibrary]
-    usual: UsualPostures
+    usual: PostureDistribution
 
     def describe(self, tracks: Tracks) -> list[Any]:
         return self.described(clip_postures(tracks, self.method.frame_rate))
 
     def described(self, postures: ClipPostures) -> list[Any]:
         if self.method.filled:
-            postures = self.usual.completed(postures)
+            postures = self.usual.fill_gaps(postures)
         return [
             pyramid_descriptor(
                 only(postures, root, joints), part.dictionary, self.method.pyramid

@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 from solvers.motion import Tracks
 from solvers.motion.humanoid.posture_heading import mirror_postures
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
-from solvers.retrieval.published.observed_signals import seen_signals
+from solvers.retrieval.published.observed_signals import observed_signals
 
 from ..shared import clips
 from .retrieval_clips import LabelledClip, sensor_tracks
@@ -77,7 +77,7 @@ def _of_utd(path: Path) -> Tracks:
 
 def moving(tracks: Tracks) -> Tracks:
     """Cut off what stands still before and after, as one would of a query."""
-    signals, seen = seen_signals(tracks.positions)
+    signals, seen = observed_signals(tracks.positions)
     smooth = gaussian_filter1d(signals[:, seen], SMOOTH * tracks.frame_rate, axis=0)
     speeds = np.linalg.norm(np.gradient(smooth, axis=0), axis=1)
     fast = np.flatnonzero(speeds > STILL * speeds.max())

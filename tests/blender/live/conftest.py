@@ -83,7 +83,7 @@ def act(load, window, port):
         recording = samples.perform_gestures(gestures, samples.PerformanceSettings(noise=0.003))
         outcomes = set()
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-            for number, frame in enumerate(frames.frames_of(recording.recording())):
+            for number, frame in enumerate(frames.frames_from_recording(recording.recording())):
                 sender.sendto(frames.encode_frame(frame), ("127.0.0.1", port))
                 if number % 3 == 2:
                     outcomes |= button.modal(window.context, event("TIMER"))

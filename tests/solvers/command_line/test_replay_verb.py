@@ -11,8 +11,13 @@ from solvers.command_line.replay_verb import looped, paced
 from solvers.motion import Tracks
 from solvers.motion.humanoid.posture_joints import postures_from_motion
 from solvers.recordings import write_bvh, write_joints, write_trc
-from solvers.recordings.live.frames import decode_frame, frames_of
-from solvers.samples import GaitSettings, PerformanceSettings, perform_gestures, walking_gait
+from solvers.recordings.live.frames import decode_frame, frames_from_recording
+from solvers.samples import (
+    GaitSettings,
+    PerformanceSettings,
+    perform_gestures,
+    walking_gait,
+)
 
 
 @pytest.fixture
@@ -60,7 +65,7 @@ def test_frames_come_at_their_times_whatever_sending_takes(wave):
     sent = []
 
     for line in paced(
-        frames_of(recording), 2.0, lambda: clock[0],
+        frames_from_recording(recording), 2.0, lambda: clock[0],
         lambda seconds: clock.__setitem__(0, clock[0] + seconds),
     ):  # fmt: skip
         sent.append((decode_frame(line).time, clock[0] - 100.0))

@@ -10,7 +10,7 @@ from solvers.gestures.recognition import recognize_gestures
 from solvers.gestures.settings import GestureSettings
 from solvers.motion.humanoid.posture_joints import posture_positions
 from solvers.recordings import read_joints
-from solvers.recordings.live.frames import frames_of
+from solvers.recordings.live.frames import frames_from_recording
 from solvers.workflows.live_session import posture_of
 
 CLAP, WAVE = "a10", "a02"
@@ -19,7 +19,7 @@ DEFAULT_SETTINGS = GestureSettings()
 
 def gestures_in(path, settings=DEFAULT_SETTINGS):
     recording = read_joints(path)
-    frames = [posture_of(frame) for frame in frames_of(recording)]
+    frames = [posture_of(frame) for frame in frames_from_recording(recording)]
     positions, confidence = (np.stack(each) for each in zip(*frames, strict=True))
     times = np.arange(len(frames)) / recording.frame_rate
     return {
@@ -61,7 +61,7 @@ def test_confidence_is_that_of_the_recording(recordings):
     path = next((recordings / "kinect" / "msr_action3d").glob("a10_s03_*"))
     recording = read_joints(path)
 
-    frames = list(frames_of(recording))
+    frames = list(frames_from_recording(recording))
 
     positions = np.stack([posture_of(frame)[0] for frame in frames])
     np.testing.assert_array_equal(positions, posture_positions(recording))

@@ -12,7 +12,7 @@ from solvers.errors import MocapAssistError
 from solvers.motion import JointRecording, Sensor, Tracks
 from solvers.motion.humanoid import posture_joints
 from solvers.recordings import read_recording, write_joint_csv
-from solvers.recordings.conventions.body_unit import in_unit_of_body
+from solvers.recordings.conventions.body_unit import convert_to_body_unit
 from solvers.recordings.conventions.tracked_joints import joint_recording
 
 WORDS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
@@ -60,7 +60,7 @@ def test_a_child_or_a_giant_stays_what_it_is(walk, size):
     told = Told()
     other = walk.with_tracks(walk.tracks.with_positions(size * walk.tracks.positions))
 
-    assert in_unit_of_body(other, 1.0, told) is other
+    assert convert_to_body_unit(other, 1.0, told) is other
     assert not told.units
 
 
@@ -80,19 +80,19 @@ def test_what_is_no_body_keeps_its_unit(names):
     points = Tracks(names, 1000.0 * np.random.default_rng(0).random((4, 3, 3)), 30.0)
     recording = JointRecording(points, None, Sensor.OTHER)
 
-    assert in_unit_of_body(recording, 1.0, Told()) is recording
+    assert convert_to_body_unit(recording, 1.0, Told()) is recording
 
 
 def test_joints_all_in_one_place_have_no_size(walk):
     flat = walk.with_tracks(walk.tracks.with_positions(np.ones_like(walk.tracks.positions)))
 
-    assert in_unit_of_body(flat, 1.0, Told()) is flat
+    assert convert_to_body_unit(flat, 1.0, Told()) is flat
 
 
 def test_no_unit_makes_a_man_of_an_ant(walk):
     ant = walk.with_tracks(walk.tracks.with_positions(0.002 * walk.tracks.positions / 100.0))
 
-    assert in_unit_of_body(ant, 0.001, Told()) is ant
+    assert convert_to_body_unit(ant, 0.001, Told()) is ant
 
 
 def test_our_own_table_counts_by_its_word_and_is_guessed_without(walk, tmp_path):

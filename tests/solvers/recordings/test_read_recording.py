@@ -112,7 +112,7 @@ def test_what_cannot_be_read_says_what_could(tmp_path, content, sentence):
 def test_a_missing_file_or_a_folder_is_named(tmp_path):
     with pytest.raises(InvalidFileError, match=r"There is no file .*nowhere\.bvh"):
         read_recording(tmp_path / "nowhere.bvh")
-    with pytest.raises(InvalidFileError, match="is a folder without pictures of depth"):
+    with pytest.raises(InvalidFileError, match="is a folder without depth images"):
         read_recording(tmp_path)
 
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.errors import InvalidFileError
-from solvers.recordings.conventions.time_stamps import ConstantRate, even_rate
+from solvers.recordings.conventions.time_stamps import ConstantRate, constant_rate_from_times
 
 
 def line(times) -> np.ndarray:
@@ -26,7 +26,7 @@ def line(times) -> np.ndarray:
     ],
 )
 def test_even_stamps_change_nothing(times, said, rate):
-    assert even_rate(times, said) == pytest.approx(rate, rel=1e-12)
+    assert constant_rate_from_times(times, said) == pytest.approx(rate, rel=1e-12)
 
 
 @pytest.mark.parametrize("said", [100.0, 70.0, None])
@@ -34,7 +34,7 @@ def test_frames_that_were_left_out_are_gaps(said):
     kept = np.r_[0:40, 43:80, 81:100]
     times = kept / 100.0
 
-    assert even_rate(times, said) is None
+    assert constant_rate_from_times(times, said) is None
     clock = ConstantRate("take", times, said)
     found = clock.positions(line(times))
 

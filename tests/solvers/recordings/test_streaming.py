@@ -42,7 +42,7 @@ def said(tmp_path, monkeypatch):
     monkeypatch.setattr(trc, "FIRST_LINES", 8)
 
     def tell(read, content, size):
-        monkeypatch.setattr(line_reader, "BLOCK", size)
+        monkeypatch.setattr(line_reader, "BLOCK_BYTES", size)
         path.write_bytes(content)
         try:
             return figures(read(path))
@@ -106,7 +106,7 @@ def test_lines_are_those_of_splitlines(tmp_path_factory, words, size):
     path = tmp_path_factory.mktemp("lines") / "file"
     path.write_bytes(content)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(line_reader, "BLOCK", size)
+        patch.setattr(line_reader, "BLOCK_BYTES", size)
         reader = LineReader(path)
         assert reader.peek(2) == content.splitlines()[:2]
         head = reader.take(1)
@@ -132,8 +132,8 @@ def test_parts_of_a_block_count_on():
 
 
 def test_a_line_that_never_ends_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(line_reader, "LONGEST_LINE", 1 << 20)
-    monkeypatch.setattr(line_reader, "BLOCK", 1 << 16)
+    monkeypatch.setattr(line_reader, "MAX_LINE_BYTES", 1 << 20)
+    monkeypatch.setattr(line_reader, "BLOCK_BYTES", 1 << 16)
     path = tmp_path / "take.csv"
     path.write_bytes(b"mocap-assist-joints,1\n" + b"x" * (5 << 20))
 
@@ -160,7 +160,7 @@ def test_an_empty_table_has_its_width():
 def test_the_text_is_never_whole_in_memory(kind, tmp_path, monkeypatch):
     """Beside three times the numbers, which the readers work on, stands only a block."""
     read, whole, _ = FILES[kind]
-    monkeypatch.setattr(line_reader, "BLOCK", 1 << 16)
+    monkeypatch.setattr(line_reader, "BLOCK_BYTES", 1 << 16)
     (tmp_path / "take.asf").write_bytes(SKELETON)
     path = tmp_path / "take.amc"
     lines = whole.splitlines(keepends=True)

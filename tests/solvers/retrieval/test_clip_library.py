@@ -104,12 +104,12 @@ def test_a_clip_of_the_same_name_replaces_the_one_before():
 def test_many_small_blocks_rank_as_one(monkeypatch):
     one = build_clip_library(clips(speeds=(2.0,)))
     one.add(clips())
-    monkeypatch.setattr(clip_library, "LARGEST_BLOCK", 3)
+    monkeypatch.setattr(clip_library, "MAX_BLOCK_SEGMENTS", 3)
     many = build_clip_library(clips(speeds=(2.0,)))
     many.add(clips())
 
     assert len(many.blocks) > len(one.blocks) >= 1
-    assert max(block.n_spans for block, _ in many.blocks) <= 20
+    assert max(block.n_segments for block, _ in many.blocks) <= 20
     assert [match[0] for match in ranking(many)] == [match[0] for match in ranking(one)]
 
 
@@ -165,7 +165,7 @@ def test_a_clip_without_a_body_is_named_and_nothing_is_added():
 
 
 def test_two_clips_of_one_name_and_unknown_names_are_refused():
-    with pytest.raises(InvalidMotionError, match=r"Two clips are called wave 1\.6"):
+    with pytest.raises(InvalidMotionError, match=r"Two clips have the name wave 1\.6"):
         build_clip_library(clips(("wave",)) + clips(("wave",)))
     library = build_clip_library(clips())
     with pytest.raises(InvalidMotionError, match=r"no clip jump\."):

@@ -21,7 +21,7 @@ def test_turned_moved_and_larger_is_the_same(name):
     here = clip_postures(act(name))
     there = clip_postures(act(name, heading=2.5, place=(7.0, -2.0)))
     assert_allclose(there.positions, here.positions, atol=1e-9)
-    assert_allclose(there.course, here.course, atol=1e-9)
+    assert_allclose(there.root_velocity, here.root_velocity, atol=1e-9)
     assert_allclose(clip_postures(act(name, size=1.3)).positions, here.positions, atol=1e-9)
 
 
@@ -32,10 +32,10 @@ def test_bones_have_the_usual_lengths():
 
 def test_the_course_is_told_as_the_actor_sees_it():
     seen = clip_postures(act("step", heading=1.0))
-    forward = -seen.course[5:-5, 1]
-    assert_allclose(seen.course[5:-5, 0], 0.0, atol=1e-9)
+    forward = -seen.root_velocity[5:-5, 1]
+    assert_allclose(seen.root_velocity[5:-5, 0], 0.0, atol=1e-9)
     assert forward.min() > 1.0
-    assert_allclose(seen.course[:, 3], 0.0, atol=1e-9)
+    assert_allclose(seen.root_velocity[:, 3], 0.0, atol=1e-9)
 
 
 def test_turning_is_told_in_radians_per_second():
@@ -44,8 +44,8 @@ def test_turning_is_told_in_radians_per_second():
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
     x, y, z = np.moveaxis(still.positions, -1, 0)
     turned = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
-    course = clip_postures(replace(still, positions=turned)).course
-    assert_allclose(course[20:-20, 3], 1.5, atol=0.01)
+    root_velocity = clip_postures(replace(still, positions=turned)).root_velocity
+    assert_allclose(root_velocity[20:-20, 3], 1.5, atol=0.01)
 
 
 def test_another_rate_shows_the_same_moments():

@@ -11,7 +11,7 @@ from solvers.retrieval.published.dictionary import (
     PostureDictionary,
     learn_dictionary,
 )
-from solvers.retrieval.published.observed_signals import seen_signals
+from solvers.retrieval.published.observed_signals import observed_signals
 from solvers.retrieval.published.sparse_codes import sparse_codes
 
 
@@ -97,7 +97,7 @@ def test_clips_with_joints_that_were_never_seen_teach_nothing(rng):
     both = learn_dictionary([as_clip(lost), as_clip(whole)], settings)
 
     assert (both.atoms == learn_dictionary([as_clip(whole)], settings).atoms).all()
-    with pytest.raises(InvalidMotionError, match="20 atoms cannot be learned from 0 whole"):
+    with pytest.raises(InvalidMotionError, match="20 atoms cannot be learned from 0 complete"):
         learn_dictionary([as_clip(lost)], settings)
 
 
@@ -119,7 +119,7 @@ def test_gaps_are_bridged_and_what_is_never_seen_is_told():
     positions[:, 2, 0] = [0.0, 1.0, np.nan, 3.0, np.nan]
     positions[:, 4] = np.nan
 
-    signals, seen = seen_signals(positions)
+    signals, seen = observed_signals(positions)
 
     assert_allclose(signals[:, 6], [0.0, 1.0, 2.0, 3.0, 3.0])
     assert np.flatnonzero(~seen).tolist() == [12, 13, 14]

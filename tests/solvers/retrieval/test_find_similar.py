@@ -169,7 +169,7 @@ def test_what_cannot_be_asked_is_said(library):
     blind = act("kick")
     arm = [POSTURE_JOINTS.index(f"left{part}") for part in ("UpperArm", "LowerArm", "Hand")]
     blind.positions[:, arm] = np.nan
-    with pytest.raises(InvalidMotionError, match="nothing of what is asked for: left arm"):
+    with pytest.raises(InvalidMotionError, match="no tracked joints in: left arm"):
         find_similar(blind, library, settings=FindSettings(**KEPT | {"left_arm": True}))
     blind.positions[:] = np.nan
     with pytest.raises(InvalidMotionError, match="No joint was tracked"):

@@ -1,4 +1,4 @@
-"""Words, spans and posting lists, each against a plainer way to the same numbers."""
+"""Words, segments and posting lists, each against a plainer way to the same numbers."""
 
 from dataclasses import fields, replace
 
@@ -14,11 +14,16 @@ from solvers.retrieval.index import index_block
 from solvers.retrieval.index.index_block import (
     block_arrays,
     block_from_arrays,
-    block_of,
-    merged,
+    build_block,
+    merge_blocks,
 )
-from solvers.retrieval.index.posting_lists import posting_lists
-from solvers.retrieval.index.segments import FULL, describe_spans, span_frames, with_stance
+from solvers.retrieval.index.posting_lists import build_posting_lists
+from solvers.retrieval.index.segments import (
+    HISTOGRAM_SCALE,
+    describe_clip_segments,
+    segment_frames,
+    weight_mean_posture,
+)
 from solvers.retrieval.index.vocabulary import (
     learn_vocabulary,
     vocabulary_arrays,
@@ -42,7 +47,7 @@ def test_posting_lists_add_up_like_a_product(seed, most):
         np.uint8
     )
     query = (rng.random(12) * (rng.random(12) < 0.6)).astype(np.float32)
-    lists = posting_lists(histograms)
+    lists = build_posting_lists(histograms)
     found = lists.scores(query, most)
     exact = histograms.astype(np.float32) @ query
     if most == 10_000:
@@ -53,7 +58,7 @@ def test_posting_lists_add_up_like_a_product(seed, most):
 def test_a_part_of_the_body_tells_nothing_of_the_others():
     still, waving = act("wave", amount=0.0), act("wave")
     told = [
-        part_features(seen.positions, seen.course, 30.0)
+        part_features(seen.positions, seen.root_velocity, 30.0)
         for seen in (clip_postures(still), clip_postures(waving))
     ]
     moved = np.abs(told[1] - told[0]).max(axis=(0, 2))
@@ -81,99 +86,106 @@ def test_words_are_the_same_for_the_same_seed_and_survive_storage(words):
     again = learn_vocabulary(CLIPS)
     stored = vocabulary_from_arrays(vocabulary_arrays(words))
     for item in fields(words):
-        if item.name != "usual":
+        if item.name != "posture_distribution":
             assert_array_equal(getattr(again, item.name), getattr(words, item.name))
             assert_array_equal(getattr(stored, item.name), getattr(words, item.name))
-    assert_array_equal(stored.usual.covariance, words.usual.covariance)
+    assert_array_equal(
+        stored.posture_distribution.covariance, words.posture_distribution.covariance
+    )
 
 
 def test_lost_joints_are_expected_where_they_are(words):
     hidden = replace(CLIPS[1], positions=CLIPS[1].positions.copy())
     knee = POSTURE_JOINTS.index("leftLowerLeg")
     hidden.positions[10:40, knee] = np.nan
-    filled = words.usual.filled(hidden)
+    filled = words.posture_distribution.fill_positions(hidden)
     assert np.abs(filled - CLIPS[1].positions).max() < 0.06
     assert_allclose(filled[:, :knee], CLIPS[1].positions[:, :knee], atol=1e-12)
 
 
-def test_short_clips_are_one_span_and_long_ones_also_their_parts():
-    assert_array_equal(span_frames(80, 20.0), [[0, 80]])
-    spans = span_frames(240, 20.0)
-    assert_array_equal(spans[0], [0, 240])
-    lengths = set((spans[1:, 1] - spans[1:, 0]).tolist())
+def test_short_clips_are_one_segment_and_long_ones_also_their_parts():
+    assert_array_equal(segment_frames(80, 20.0), [[0, 80]])
+    segments = segment_frames(240, 20.0)
+    assert_array_equal(segments[0], [0, 240])
+    lengths = set((segments[1:, 1] - segments[1:, 0]).tolist())
     assert lengths == {40, 80, 160}
     for length in lengths:
-        starts = np.sort(spans[1:][spans[1:, 1] - spans[1:, 0] == length][:, 0])
+        starts = np.sort(segments[1:][segments[1:, 1] - segments[1:, 0] == length][:, 0])
         assert starts[0] == 0
         assert starts[-1] + length == 240
         assert np.diff(starts).max() <= length / 2 + 1
 
 
 @pytest.mark.parametrize("n_frames", [1, 2, 81, 10_000])
-def test_spans_lie_within_the_clip(n_frames):
-    spans = span_frames(n_frames, 20.0)
-    assert (spans[:, 0] >= 0).all()
-    assert (spans[:, 1] > spans[:, 0]).all()
-    assert (spans[:, 1] <= n_frames).all()
-    assert len(spans) <= 1 + n_frames / 10
+def test_segments_lie_within_the_clip(n_frames):
+    segments = segment_frames(n_frames, 20.0)
+    assert (segments[:, 0] >= 0).all()
+    assert (segments[:, 1] > segments[:, 0]).all()
+    assert (segments[:, 1] <= n_frames).all()
+    assert len(segments) <= 1 + n_frames / 10
 
 
 def test_histograms_are_of_length_one(words):
-    spans = describe_spans(CLIPS[3], words)
-    lengths = np.linalg.norm(spans.histograms / FULL, axis=-1)
+    segments = describe_clip_segments(CLIPS[3], words)
+    lengths = np.linalg.norm(segments.histograms / HISTOGRAM_SCALE, axis=-1)
     assert_allclose(lengths, 1.0, atol=0.02)
-    assert spans.summaries.shape == (1, 16, 5, 8)
+    assert segments.summaries.shape == (1, 16, 5, 8)
     features = words.features(CLIPS[3])
-    assert_allclose(spans.summaries[0, [0, -1]], features[[0, -1]], atol=2e-3)
+    assert_allclose(segments.summaries[0, [0, -1]], features[[0, -1]], atol=2e-3)
 
 
 def test_the_mean_posture_is_told_apart_from_the_movement():
     moves = np.random.default_rng(2).normal(size=(3, 16, 5, 8)).astype(np.float32)
     moves -= moves.mean(axis=1, keepdims=True)
     stands = 5.0 * np.ones((3, 1, 5, 8), dtype=np.float32)
-    assert_allclose(with_stance(moves + stands, 0.0), moves, atol=1e-5)
-    assert_allclose(with_stance(moves + stands, 0.4), moves + 2.0, atol=1e-5)
-    assert_array_equal(with_stance(moves, 1.0), moves)
+    assert_allclose(weight_mean_posture(moves + stands, 0.0), moves, atol=1e-5)
+    assert_allclose(weight_mean_posture(moves + stands, 0.4), moves + 2.0, atol=1e-5)
+    assert_array_equal(weight_mean_posture(moves, 1.0), moves)
 
 
 def test_the_halves_of_a_clip_are_told_apart(words):
     rising = CLIPS[1]
-    rising = replace(rising, positions=rising.positions[:25], course=0.0 * rising.course[:25])
+    rising = replace(
+        rising, positions=rising.positions[:25], root_velocity=0.0 * rising.root_velocity[:25]
+    )
     falling = replace(rising, positions=rising.positions[::-1])
-    up, down = (describe_spans(clip, words).histograms[0] / FULL for clip in (rising, falling))
+    up, down = (
+        describe_clip_segments(clip, words).histograms[0] / HISTOGRAM_SCALE
+        for clip in (rising, falling)
+    )
     legs = [list(BodyPart).index(part) for part in (BodyPart.LEFT_LEG, BodyPart.RIGHT_LEG)]
     alike = np.einsum("pcw,pdw->cd", up[legs], down[legs]) / 2.0
     assert alike[1, 2] > alike[1, 1] + 0.1
     assert alike[2, 1] > alike[2, 2] + 0.04
 
 
-def test_a_large_block_finds_the_same_best_spans(words, monkeypatch):
-    block = block_of(list(range(5)), [describe_spans(clip, words) for clip in CLIPS])
-    query = (block.histograms[2] / FULL).astype(np.float32)
-    exact = block.common(query)
-    monkeypatch.setattr(index_block, "MOST_POSTINGS", 300)
-    monkeypatch.setattr(index_block, "IN_DETAIL", 2)
-    rough = block.common(query)
+def test_a_large_block_finds_the_same_best_segments(words, monkeypatch):
+    block = build_block(list(range(5)), [describe_clip_segments(clip, words) for clip in CLIPS])
+    query = (block.histograms[2] / HISTOGRAM_SCALE).astype(np.float32)
+    exact = block.similarities(query)
+    monkeypatch.setattr(index_block, "MAX_POSTINGS", 300)
+    monkeypatch.setattr(index_block, "N_EXACT_SEGMENTS", 2)
+    rough = block.similarities(query)
     assert rough.argmax() == exact.argmax() == 2
     assert_allclose(np.sort(rough)[-2:], np.sort(exact)[-2:], rtol=1e-5)
     assert (rough <= exact + 1e-3).all()
 
 
 def test_blocks_survive_storage_and_merging(words):
-    described = [describe_spans(clip, words) for clip in CLIPS]
-    whole = block_of([1, 2, 3, 4, 5], described)
+    described = [describe_clip_segments(clip, words) for clip in CLIPS]
+    whole = build_block([1, 2, 3, 4, 5], described)
     n_words = words.words.shape[1]
     read = block_from_arrays(block_arrays(whole), n_words)
-    together = merged(
-        [block_of([1, 2], described[:2]), block_of([3, 4, 5], described[2:])],
+    together = merge_blocks(
+        [build_block([1, 2], described[:2]), build_block([3, 4, 5], described[2:])],
         np.array([1, 2, 4, 5]),
     )
     kept = whole.clips != 3
-    query = (whole.histograms[0] / FULL).astype(np.float32)
-    assert_array_equal(read.common(query), whole.common(query))
+    query = (whole.histograms[0] / HISTOGRAM_SCALE).astype(np.float32)
+    assert_array_equal(read.similarities(query), whole.similarities(query))
     assert_array_equal(together.clips, whole.clips[kept])
     assert_array_equal(together.summaries, whole.summaries[kept])
-    assert_array_equal(together.common(query), whole.common(query)[kept])
+    assert_array_equal(together.similarities(query), whole.similarities(query)[kept])
 
 
 @pytest.mark.parametrize(
@@ -190,7 +202,7 @@ def test_blocks_survive_storage_and_merging(words):
     ],
 )
 def test_an_index_that_does_not_fit_itself_is_refused(words, column, damage):
-    stored = block_arrays(block_of([1], [describe_spans(CLIPS[0], words)]))
+    stored = block_arrays(build_block([1], [describe_clip_segments(CLIPS[0], words)]))
     stored[column] = damage(stored[column])
     with pytest.raises(ValueError):
         block_from_arrays(stored, words.words.shape[1])

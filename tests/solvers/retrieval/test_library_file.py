@@ -201,7 +201,7 @@ def test_nothing_in_it_is_unpickled(path, monkeypatch):
 
 
 def test_while_another_writes_one_waits_and_then_says_so(path, monkeypatch):
-    monkeypatch.setattr(library_file, "PATIENCE", 0.1)
+    monkeypatch.setattr(library_file, "LOCK_TIMEOUT_S", 0.1)
     writer = sqlite3.connect(path, isolation_level=None)
     with load_clip_library(path) as library:
         expected = ranking(library)

@@ -132,7 +132,7 @@ def test_database_of_somebody_else_stays_as_it_is_even_without_tables(tmp_path):
     before = path.read_bytes()
     assert before
 
-    library_file.begin_file(path)
+    library_file.create_file(path)
 
     assert path.read_bytes() == before
     with pytest.raises(InvalidFileError, match="is not a clip library"):
@@ -188,7 +188,7 @@ def test_stored_value_that_means_nothing_is_damage(tmp_path, change):
         library.postures(*library.numbered())
 
 
-def test_span_beyond_the_end_of_its_clip_is_damage(tmp_path):
+def test_segment_beyond_the_end_of_its_clip_is_damage(tmp_path):
     path, query = tmp_path / "a.clips", clip("walk", "wave", "/a/walk.bvh")
     build_clip_library([query]).save(path)
     with closing(sqlite3.connect(path)) as database, database:
@@ -206,5 +206,5 @@ def test_clip_that_another_program_has_just_removed_is_one_sentence():
     library = build_clip_library([clip("walk", "wave", "/a/walk.bvh")])
     (number,) = library.numbered()
     library.discard([number])
-    with pytest.raises(InvalidMotionError, match="has just been removed"):
+    with pytest.raises(InvalidMotionError, match="has just removed"):
         library.postures(number)

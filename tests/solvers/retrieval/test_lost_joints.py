@@ -8,10 +8,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 from solvers.motion.humanoid.posture_joints import PARENTS, POSTURE_JOINTS
 from solvers.retrieval.postures.body_parts import JOINTS, ROOTS, BodyPart
 from solvers.retrieval.postures.clip_postures import clip_postures
-from solvers.retrieval.postures.mean_postures import NOISE, usual_postures
+from solvers.retrieval.postures.mean_postures import (
+    POSITION_NOISE_M,
+    learn_posture_distribution,
+)
 from solvers.retrieval.postures.part_reliability import part_reliability
 
-USUAL = usual_postures([clip_postures(act(name, 2.5), 20.0) for name in ACTS])
+USUAL = learn_posture_distribution([clip_postures(act(name, 2.5), 20.0) for name in ACTS])
 RIGHT_ARM = list(BodyPart).index(BodyPart.RIGHT_ARM)
 
 
@@ -44,7 +47,7 @@ def test_an_actor_of_other_proportions_is_the_same_though_a_joint_is_lost(name, 
     whole = clip_postures(actor, 20.0)
     seen = clip_postures(lost(actor, "spine"), 20.0)
 
-    found = USUAL.completed(seen).positions
+    found = USUAL.fill_gaps(seen).positions
 
     above = [spine, chest, head]
     assert np.abs(found - whole.positions)[:, above].max() < 0.05
@@ -56,7 +59,7 @@ def test_an_actor_of_other_proportions_is_the_same_though_a_joint_is_lost(name, 
 def test_a_body_without_hips_and_shoulders_is_turned_whichever_way_it_faces(heading):
     names = ("chest", "head", "leftUpperArm", "leftUpperLeg", "rightUpperLeg")
     query = lost(act("kick", heading=heading), *names)
-    found = USUAL.completed(clip_postures(query, 20.0)).positions
+    found = USUAL.fill_gaps(clip_postures(query, 20.0)).positions
     assert_allclose(found, clip_postures(act("kick"), 20.0).positions, atol=0.15)
 
 
@@ -86,7 +89,7 @@ def test_reliability_is_what_is_left_when_the_rest_was_guessed(names):
     seen = np.ones((8, 20), bool)
     seen[:, places(*names)] = False
     told = drawn[:, seen[0]].reshape(len(drawn), -1)
-    told += NOISE * rng.normal(size=told.shape)
+    told += POSITION_NOISE_M * rng.normal(size=told.shape)
     hidden = drawn[:, ~seen[0]].reshape(len(drawn), -1)
     guessed = np.zeros_like(drawn)
     guessed[:, ~seen[0]] = (

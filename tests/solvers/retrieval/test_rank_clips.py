@@ -15,16 +15,16 @@ from solvers.retrieval import Clip, FindSettings, build_clip_library, find_simil
 from solvers.retrieval.index import reranking as likes
 from solvers.retrieval.index import search_index
 from solvers.retrieval.index.index_block import IndexBlock
-from solvers.retrieval.index.posting_lists import posting_lists
+from solvers.retrieval.index.posting_lists import build_posting_lists
 from solvers.retrieval.index.search_index import SearchIndex
-from solvers.retrieval.index.segments import STANCE, with_stance
+from solvers.retrieval.index.segments import MEAN_POSTURE_WEIGHT, weight_mean_posture
 from solvers.retrieval.index.vocabulary import learn_vocabulary
 from solvers.retrieval.postures.body_parts import BodyPart
 from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
-from solvers.retrieval.postures.mean_postures import usual_postures
+from solvers.retrieval.postures.mean_postures import learn_posture_distribution
 
 RNG = np.random.default_rng(5)
-BELIEVED, BLAMED = likes.BELIEF_IN_LIKES, likes.MOST_BLAME
+BELIEVED, BLAMED = likes.NEIGHBOR_WEIGHT, likes.MAX_DISTANCE_RATIO
 
 
 def block(clips, seed=0):
@@ -35,29 +35,29 @@ def block(clips, seed=0):
         rng.integers(0, 9, (len(clips), 2)).astype(np.int32),
         histograms,
         rng.normal(size=(len(clips), 16, 5, 8)).astype(np.float16),
-        posting_lists(histograms),
+        build_posting_lists(histograms),
     )
 
 
 @given(seed=st.integers(0, 999))
-def test_the_best_span_of_each_clip_is_found(seed):
+def test_the_best_segment_of_each_clip_is_found(seed):
     rng = np.random.default_rng(seed)
     clips = [rng.integers(1, 6, size=size) for size in (4, 7)]
     alive = [rng.random(len(one)) < 0.8 for one in clips]
     index = SearchIndex(list(zip(map(block, clips), alive, strict=True)))
     apart = rng.integers(0, 5, 11).astype(np.float32)
 
-    least, spans = index.best_spans(apart, [3])
+    least, segments = index.best_segments(apart, [3])
 
     numbers, living = np.concatenate(clips), np.concatenate(alive)
     wanted = [one for one in np.unique(numbers[living]) if one != 3]
-    assert index.clips[spans].tolist() == wanted
-    for one, found, span in zip(wanted, least, spans, strict=True):
-        assert living[span]
-        assert found == apart[span] == apart[living & (numbers == one)].min()
+    assert index.clips[segments].tolist() == wanted
+    for one, found, segment in zip(wanted, least, segments, strict=True):
+        assert living[segment]
+        assert found == apart[segment] == apart[living & (numbers == one)].min()
 
 
-def test_spans_are_fetched_from_the_blocks_that_hold_them():
+def test_segments_are_fetched_from_the_blocks_that_hold_them():
     first, second = block([1, 2, 3]), block([4, 5], seed=1)
     index = SearchIndex([(first, np.ones(3, bool)), (second, np.ones(2, bool))])
     steps = index.steps(np.array([4, 0, 3, 2]))
@@ -65,25 +65,25 @@ def test_spans_are_fetched_from_the_blocks_that_hold_them():
     assert_array_equal(steps[[1, 3]], first.summaries[[0, 2]].astype(np.float32))
 
 
-@pytest.mark.parametrize("at_once", [1, 300, likes.CELLS_AT_ONCE])
+@pytest.mark.parametrize("at_once", [1, 300, likes.MAX_CELLS])
 def test_clips_are_from_each_other_as_far_as_the_plain_programme_says(at_once, monkeypatch):
-    monkeypatch.setattr(likes, "CELLS_AT_ONCE", at_once)
-    courses = RNG.normal(size=(5, 16, 3)).astype(np.float32)
-    between = likes.between_courses(courses)
+    monkeypatch.setattr(likes, "MAX_CELLS", at_once)
+    sequences = RNG.normal(size=(5, 16, 3)).astype(np.float32)
+    between = likes.pairwise_warping_costs(sequences)
     for one, other in np.ndindex(5, 5):
-        expected = plain_cost(cdist(courses[one, ::2], courses[other, ::2]))
+        expected = plain_cost(cdist(sequences[one, ::2], sequences[other, ::2]))
         assert_allclose(between[one, other], expected, rtol=1e-4, atol=1e-3)
 
 
 def test_a_small_library_keeps_what_a_large_one_works_out_anew(monkeypatch):
     index = SearchIndex([(block(range(6)), np.ones(6, bool))])
-    spans = np.array([5, 1, 2])
-    kept = index.between(spans)
-    steps = with_stance(index.steps(spans), STANCE)
+    segments = np.array([5, 1, 2])
+    kept = index.pairwise_distances(segments)
+    steps = weight_mean_posture(index.steps(segments), MEAN_POSTURE_WEIGHT)
     # Nothing is from itself but what single numbers leave of it.
-    assert_allclose(kept, likes.between_courses(steps.reshape(3, 16, 40)), atol=2e-3)
-    monkeypatch.setattr(search_index, "MOST_COMPARED", 5)
-    assert index.between(spans) is None
+    assert_allclose(kept, likes.pairwise_warping_costs(steps.reshape(3, 16, 40)), atol=2e-3)
+    monkeypatch.setattr(search_index, "MAX_PAIRWISE_SEGMENTS", 5)
+    assert index.pairwise_distances(segments) is None
 
 
 def test_each_clip_is_judged_by_those_nearest_to_it():
@@ -98,14 +98,17 @@ def test_each_clip_is_judged_by_those_nearest_to_it():
     ]
     nearest = [some[:3] for some in others]
     told = apart.astype(float)
-    for _ in range(likes.ROUNDS):
+    for _ in range(likes.N_ROUNDS):
         before = told.copy()
         for one in range(9):
-            voices = [1.0 + likes.MUTUAL * (one in nearest[other]) for other in nearest[one]]
+            voices = [
+                1.0 + likes.RECIPROCAL_WEIGHT * (one in nearest[other])
+                for other in nearest[one]
+            ]
             heard = np.average(before[nearest[one]], weights=voices)
             told[one] = (before[one] + BELIEVED * heard) / (1.0 + BELIEVED)
     expected = np.minimum(told, BLAMED * apart)
-    assert_allclose(likes.judged_by_likes(apart, between, 3), expected, rtol=1e-5)
+    assert_allclose(likes.rerank_by_neighbors(apart, between, 3), expected, rtol=1e-5)
 
 
 def test_what_is_nearly_the_query_stays_first_among_strangers():
@@ -114,7 +117,7 @@ def test_what_is_nearly_the_query_stays_first_among_strangers():
         [[0, 2, 2.1, 2.2], [2, 0, 0.1, 0.1], [2.1, 0.1, 0, 0.1], [2.2, 0.1, 0.1, 0]],
         dtype=np.float32,
     )
-    assert likes.judged_by_likes(apart, between, 2).argmin() == 0
+    assert likes.rerank_by_neighbors(apart, between, 2).argmin() == 0
 
 
 @pytest.mark.parametrize(
@@ -140,19 +143,22 @@ def test_all_are_ranked_or_as_many_as_are_asked_for(settings):
 @pytest.mark.parametrize("angle", [-0.6, 0.3, 0.7])
 def test_a_body_without_some_joints_is_turned_where_it_usually_faces(angle):
     clips = [clip_postures(act(name, 2.5), 20.0) for name in ACTS]
-    usual, true = usual_postures(clips), clips[0]
+    usual, true = learn_posture_distribution(clips), clips[0]
     lost = [POSTURE_JOINTS.index(name) for name in ("leftUpperLeg", "rightUpperArm", "head")]
     positions = rotate_about_vertical(true.positions, np.full(true.n_frames, angle))
     positions[:, lost] = np.nan
     cos, sin = np.cos(angle), np.sin(angle)
-    course = true.course.copy()
-    course[:, :2] = course[:, :2] @ [[cos, sin], [-sin, cos]]
+    root_velocity = true.root_velocity.copy()
+    root_velocity[:, :2] = root_velocity[:, :2] @ [[cos, sin], [-sin, cos]]
 
-    found = usual.completed(ClipPostures(positions, course, 20.0))
+    found = usual.fill_gaps(ClipPostures(positions, root_velocity, 20.0))
 
     seen = np.setdiff1d(np.arange(20), lost)
     assert np.abs(found.positions[:, seen] - true.positions[:, seen]).max() < 0.1
-    assert np.abs(found.course - true.course).max() < 0.2 * np.abs(true.course).max() + 1e-9
+    assert (
+        np.abs(found.root_velocity - true.root_velocity).max()
+        < 0.2 * np.abs(true.root_velocity).max() + 1e-9
+    )
     assert np.isfinite(found.positions).all()
     assert not np.isfinite(positions[:, lost]).any()
 

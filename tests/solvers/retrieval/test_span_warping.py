@@ -9,7 +9,7 @@ from plain_warping import plain_cost
 from scipy.spatial.distance import cdist
 
 from solvers.retrieval.index.time_warping import frame_distances, warping_costs
-from solvers.retrieval.search.align_clip import STILL, aligned
+from solvers.retrieval.search.align_clip import STEP_PENALTY, align_frames
 
 
 @given(seed=st.integers(0, 999), n_steps=st.integers(1, 9), n_frames=st.integers(1, 9))
@@ -40,17 +40,17 @@ def plain_path_cost(query, clip):
     cost[0] = apart[0]
     for row in range(1, len(query)):
         for column in range(len(clip)):
-            ways = [cost[row - 1, column] + STILL * apart[row, column]]
+            ways = [cost[row - 1, column] + STEP_PENALTY * apart[row, column]]
             if column:
                 ways.append(cost[row - 1, column - 1] + apart[row, column])
-                ways.append(cost[row, column - 1] + STILL * apart[row, column])
+                ways.append(cost[row, column - 1] + STEP_PENALTY * apart[row, column])
             cost[row, column] = min(ways)
     return cost[-1].min()
 
 
 def cost_of(path, apart):
     steps = np.diff(path, axis=0).sum(axis=1)
-    weights = np.r_[1.0, np.where(steps == 2, 1.0, STILL)]
+    weights = np.r_[1.0, np.where(steps == 2, 1.0, STEP_PENALTY)]
     return float((weights * apart[path[:, 0], path[:, 1]]).sum())
 
 
@@ -58,7 +58,7 @@ def cost_of(path, apart):
 def test_the_path_is_the_best_one_and_never_goes_back(seed, n_query, n_clip):
     rng = np.random.default_rng(seed)
     query, clip = rng.normal(size=(n_query, 3)), rng.normal(size=(n_clip, 3))
-    path = aligned(query, clip)
+    path = align_frames(query, clip)
     steps = np.diff(path, axis=0)
     assert ((steps >= 0) & (steps <= 1)).all()
     assert (steps.sum(axis=1) > 0).all()
@@ -70,5 +70,5 @@ def test_the_path_is_the_best_one_and_never_goes_back(seed, n_query, n_clip):
 @pytest.mark.parametrize("start", [0, 7, 30])
 def test_a_cut_is_found_where_it_was_cut(start):
     clip = np.cumsum(np.random.default_rng(1).normal(size=(50, 4)), axis=0)
-    path = aligned(clip[start : start + 20], clip)
+    path = align_frames(clip[start : start + 20], clip)
     np.testing.assert_array_equal(path, np.column_stack([np.arange(20), start + np.arange(20)]))

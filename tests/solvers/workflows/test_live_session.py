@@ -11,7 +11,7 @@ from solvers.gestures.recognition import Mode
 from solvers.gestures.settings import GestureSettings
 from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
-from solvers.recordings.live.frames import LiveFrame, encode_frame, frames_of
+from solvers.recordings.live.frames import LiveFrame, encode_frame, frames_from_recording
 from solvers.samples import PerformanceSettings, perform_gestures
 from solvers.workflows.live_session import DROPPED, TOO_SHORT, LiveSession, posture_of
 
@@ -20,7 +20,7 @@ def lines_of(made, body=0, since=0.0, **settings):
     recording = perform_gestures(made, PerformanceSettings(**settings)).recording()
     return [
         encode_frame(replace(frame, time=frame.time + since))
-        for frame in frames_of(recording, body)
+        for frame in frames_from_recording(recording, body)
     ]
 
 

@@ -103,5 +103,5 @@ def test_what_is_beside_the_pictures_must_make_sense(tmp_path, depth, name, cont
 def test_a_folder_of_other_things_is_none(tmp_path):
     with pytest.raises(InvalidFileError, match="holds no depth of a known format"):
         read_depth(tmp_path)
-    with pytest.raises(InvalidFileError, match="is a folder without pictures of depth"):
+    with pytest.raises(InvalidFileError, match="is a folder without depth images"):
         read_recording(tmp_path)

@@ -208,7 +208,7 @@ def test_a_matlab_file_is_damaged_when_its_flags_are_too_short(write, order, siz
 
 def test_a_frame_behind_a_cut_is_refused_and_those_before_are_not(write, monkeypatch):
     """As in long files, which are not looked through before the first picture."""
-    monkeypatch.setattr("solvers.recordings.containers.stored_bytes.MOST_CHECKED", 0)
+    monkeypatch.setattr("solvers.recordings.containers.stored_bytes.MAX_CHECKED_BYTES", 0)
     content = matlab("depth", pictures(400).transpose(1, 2, 0))
     middle = len(content) // 2
     cut = content[:132] + struct.pack("<I", middle - 136) + content[136:middle]

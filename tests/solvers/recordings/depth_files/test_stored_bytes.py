@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from solvers.errors import InvalidFileError
 from solvers.recordings.containers import stored_bytes
-from solvers.recordings.containers.stored_bytes import PackedBytes, PartOfBytes, PlainBytes
+from solvers.recordings.containers.stored_bytes import ByteSlice, PackedBytes, PlainBytes
 
 BEFORE = 11
 
@@ -31,7 +31,7 @@ def packed(whole, tmp_path_factory) -> PackedBytes:
 
 
 def test_any_part_in_any_order(whole, packed, monkeypatch):
-    monkeypatch.setattr(stored_bytes, "NEAREST_MARKS", 100_000)
+    monkeypatch.setattr(stored_bytes, "MIN_MARK_SPACING", 100_000)
     fresh = pickle.loads(pickle.dumps(packed))
 
     @given(st.integers(0, len(whole) - 1), st.integers(0, 300_000))
@@ -43,7 +43,7 @@ def test_any_part_in_any_order(whole, packed, monkeypatch):
 
 
 def test_a_part_of_a_part(whole, packed):
-    inner = PartOfBytes(PartOfBytes(packed, 100, 5000), 20, 50)
+    inner = ByteSlice(ByteSlice(packed, 100, 5000), 20, 50)
 
     assert inner.read(3, 7) == whole[123:130]
 

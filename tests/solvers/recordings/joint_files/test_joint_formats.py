@@ -186,5 +186,5 @@ def test_joints_are_read_and_written_only_as_such(tmp_path):
 
     with pytest.raises(InvalidFileError, match="no joints of a depth camera"):
         read_joints(tmp_path / "take.c3d")
-    with pytest.raises(InvalidFileError, match=r"written as \.csv or \.json"):
+    with pytest.raises(InvalidFileError, match=r"Use \.csv or \.json"):
         write_joints(JointRecording(tracks, None, Sensor.OTHER), tmp_path / "take.bvh")

@@ -12,11 +12,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 from solvers.errors import InvalidMotionError
 from solvers.motion import JointRecording, Sensor, Tracks
 from solvers.recordings.live.frames import (
-    LONGEST_LINE,
+    MAX_LINE_BYTES,
     LiveFrame,
     decode_frame,
     encode_frame,
-    frames_of,
+    frames_from_recording,
 )
 
 LINE = {
@@ -121,7 +121,7 @@ def test_refuses_what_does_not_belong_there(changes, words):
         b"[" * 20_000,
         b'{"a":' * 5_000,
         b"9" * 10_000,
-        line() + b" " * LONGEST_LINE,
+        line() + b" " * MAX_LINE_BYTES,
     ],
 )
 def test_refuses_what_is_no_frame(damaged):
@@ -198,7 +198,9 @@ def test_frames_of_a_recording():
     states = np.array([[2, 1], [2, 1]], dtype=np.int8)
     tracks = Tracks(("Head", "HandLeft"), positions, 25.0)
 
-    first, second = frames_of(JointRecording(tracks, states, Sensor.KINECT_V2), body=4)
+    first, second = frames_from_recording(
+        JointRecording(tracks, states, Sensor.KINECT_V2), body=4
+    )
 
     assert (first.time, second.time, second.body) == (0.0, 1 / 25, 4)
     assert_array_equal(first.confidence, [1.0, 0.5])

@@ -11,8 +11,8 @@ from numpy.testing import assert_allclose
 from solvers.errors import InvalidFileError, InvalidSettingError
 from solvers.motion import Sensor
 from solvers.recordings.live.frames import LiveFrame, decode_frame, encode_frame
-from solvers.recordings.live.receiver import MOST_AT_ONCE, Receiver
-from solvers.recordings.live.stream import MOST_LINES, StreamReader, recording_of
+from solvers.recordings.live.receiver import MAX_DATAGRAMS, Receiver
+from solvers.recordings.live.stream import MAX_LINES, StreamReader, recording_from_frames
 from solvers.samples import perform_gestures
 
 
@@ -106,7 +106,7 @@ def test_a_recording_of_uneven_frames_is_even(rng):
         for time, place in zip(late, places, strict=True)
     ]
 
-    recording = recording_of(frames)
+    recording = recording_from_frames(frames)
 
     assert recording.frame_rate == 30.0 and recording.sensor is Sensor.KINECT_V1
     assert recording.n_frames in {60, 61}
@@ -119,7 +119,7 @@ def test_a_recording_of_uneven_frames_is_even(rng):
 def test_frames_that_were_lost_are_gaps():
     frames = [frame(number / 30, place=float(number)) for number in range(60)]
 
-    recording = recording_of(frames[:20] + frames[30:])
+    recording = recording_from_frames(frames[:20] + frames[30:])
 
     assert recording.n_frames == 60
     lost = np.isnan(recording.tracks.positions[:, 0, 0])
@@ -130,7 +130,7 @@ def test_joints_of_other_names_are_left_out():
     frames = [frame(number / 30, place=1.0) for number in range(10)]
     frames[4] = replace(frames[4], names=("Foot",))
 
-    recording = recording_of(frames)
+    recording = recording_from_frames(frames)
 
     assert recording.names == ("Head",)
     assert np.isnan(recording.tracks.positions[4]).all()
@@ -138,9 +138,9 @@ def test_joints_of_other_names_are_left_out():
 
 def test_nothing_cannot_be_a_recording():
     with pytest.raises(InvalidFileError, match="no frames"):
-        recording_of([])
+        recording_from_frames([])
     with pytest.raises(InvalidFileError, match="no joint that is seen"):
-        recording_of([replace(frame(0.0), positions=np.full((1, 3), np.nan))])
+        recording_from_frames([replace(frame(0.0), positions=np.full((1, 3), np.nan))])
 
 
 def test_the_receiver_listens_on_loopback_only_and_never_waits(send_to):
@@ -148,12 +148,12 @@ def test_the_receiver_listens_on_loopback_only_and_never_waits(send_to):
         host, port = receiver.address
         assert host == "127.0.0.1"
         assert receiver.poll() == []
-        send_to(port, *[b"%d" % number for number in range(MOST_AT_ONCE + 10)])
+        send_to(port, *[b"%d" % number for number in range(MAX_DATAGRAMS + 10)])
 
         first, second = receiver.poll(), receiver.poll()
 
-    assert first + second == [b"%d" % number for number in range(MOST_AT_ONCE + 10)]
-    assert len(first) == MOST_AT_ONCE
+    assert first + second == [b"%d" % number for number in range(MAX_DATAGRAMS + 10)]
+    assert len(first) == MAX_DATAGRAMS
 
 
 @pytest.mark.parametrize(
@@ -180,17 +180,17 @@ def test_a_burst_of_junk_is_looked_at_up_to_a_bound_and_counted(junk, monkeypatc
     came = [each.time for each in reader.read(encode_frame(frame(0.0)), *junk)]
 
     assert (came, reader.heard.frames) == ([0.0], 1)
-    assert len(decoded) <= MOST_LINES
+    assert len(decoded) <= MAX_LINES
     n_lines = sum(len(datagram.splitlines()) for datagram in junk)
     blank = sum(not line.strip() for each in junk for line in each.splitlines())
-    looked_at = min(n_lines, MOST_LINES - 1)
+    looked_at = min(n_lines, MAX_LINES - 1)
     assert reader.heard.skipped == n_lines - looked_at
     assert reader.heard.unreadable == (0 if blank else looked_at)
     assert [each.time for each in reader.read(encode_frame(frame(0.1)))] == [0.1]
 
 
 def test_the_receiver_takes_no_more_bytes_at_once_than_it_may(send_to, monkeypatch):
-    monkeypatch.setattr("solvers.recordings.live.receiver.MOST_BYTES", 1000)
+    monkeypatch.setattr("solvers.recordings.live.receiver.MAX_POLL_BYTES", 1000)
     with Receiver(0) as receiver:
         send_to(receiver.address[1], *[b"x" * 100] * 25)
 
