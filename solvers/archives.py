@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InvalidFileError
-from .files import open_regular, written_whole
+from .files import open_regular, write_atomically
 from .npz_members import (
     READABLE,
     DamagedMemberError,
@@ -63,7 +63,7 @@ class ArchiveLayout:
         own = {"kind": np.array(self.kind), "version": np.array(self.version)}
         content = io.BytesIO()  # On a full disk, an archive that lies there fails twice.
         np.savez_compressed(content, **own, **arrays)
-        with written_whole(path) as part:
+        with write_atomically(path) as part:
             part.write_bytes(content.getbuffer())
 
     def read(self, path: Path | str) -> dict[str, NDArray[Any]]:

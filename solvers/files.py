@@ -74,7 +74,7 @@ def open_regular(path: Path | str) -> BinaryIO:
 
 
 @contextmanager
-def written_whole(path: Path | str) -> Iterator[Path]:
+def write_atomically(path: Path | str) -> Iterator[Path]:
     """Yield a temporary path beside `path`; move it onto `path` if all goes well.
 
     On any exception the temporary file is removed and `path` is as it was. The content is on
@@ -100,7 +100,7 @@ def written_whole(path: Path | str) -> Iterator[Path]:
 
 
 def remove_leftovers(paths: Iterable[Path]) -> None:
-    """Remove the temporary files of `written_whole` for these paths.
+    """Remove the temporary files of `write_atomically` for these paths.
 
     Only a process that was killed, or a computer that lost its power, leaves any. Nobody else
     may be writing these paths.

@@ -18,7 +18,7 @@ from ..importing.importing import import_files
 from ..track.tracking import TrackBundle, read_tracking, selected_preview, write_tracked
 from .pictures import draw_played
 from .saving import save, target_file, tell
-from .solving import solve_apart
+from .solving import solve_in_subprocess
 
 HELP = "Track the actors of recordings of depth: armatures with actions in the .blend file."
 
@@ -85,5 +85,7 @@ def _tracked(
     if preview is None:
         raise InvalidFileError("It holds no depth. Bring it in with import.")
     scene = bpy.context.scene
-    result = solve_apart(read_tracking(scene, preview, settings), arguments, screen.progress)
+    result = solve_in_subprocess(
+        read_tracking(scene, preview, settings), arguments, screen.progress
+    )
     return write_tracked(scene, preview, settings, result)

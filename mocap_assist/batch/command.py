@@ -11,7 +11,7 @@ import bpy
 from ...solvers.command_line.options import SentenceParser
 from ...solvers.command_line.screen import Screen, escape_odd_names, printable
 from ...solvers.errors import InvalidFileError, InvalidSettingError, MocapAssistError
-from ...solvers.files import reason_of, written_whole
+from ...solvers.files import reason_of, write_atomically
 from ...solvers.processes import add_threads_option
 from ..actions.markers import markers_of
 from ..scene import history
@@ -157,7 +157,7 @@ def _work(arguments: argparse.Namespace, screen: Screen) -> None:
     if target is not None:
         save(target)
     if figures_file is not None:
-        with written_whole(figures_file) as part:
+        with write_atomically(figures_file) as part:
             part.write_text("".join(lines), encoding="utf-8")
     if arguments.picture is not None:
         made = bpy.data.objects.get(left_alone, subjects[0])

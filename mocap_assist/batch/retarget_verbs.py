@@ -12,7 +12,7 @@ from ..retarget.choices import RetargetBundle, RetargetChoices, UnbakeBundle, Un
 from ..retarget.retargeting import read_retarget, write_retargeted
 from ..retarget.unbaking import read_unbaking, write_unbaked
 from ..scene import history
-from .solving import solve_apart
+from .solving import solve_in_subprocess
 
 CENTIMETRE = 0.01
 Said = tuple[str, dict[str, Any]]
@@ -39,7 +39,7 @@ def perform_retarget(
         settings_from_arguments(arguments, RetargetChoices),
         settings_from_arguments(arguments, RetargetSettings),
     )
-    results = solve_apart(read_retarget(scene, armature, settings), arguments, progress)
+    results = solve_in_subprocess(read_retarget(scene, armature, settings), arguments, progress)
     sentence = write_retargeted(scene, armature, settings, results)
     action = scene.objects[settings.choices.target].animation_data.action
     figures = {"n_actions": len(results), "action": action.name}
@@ -68,7 +68,7 @@ def perform_unbake(
         UnbakeChoices(tolerance=CENTIMETRE * arguments.tolerance),
         settings_from_arguments(arguments, UnbakeSettings),
     )
-    result = solve_apart(read_unbaking(scene, armature, settings), arguments, progress)
+    result = solve_in_subprocess(read_unbaking(scene, armature, settings), arguments, progress)
     sentence = write_unbaked(scene, armature, settings, result)
     action = armature.animation_data.action
     return sentence, {"action": action.name} | history.history(action)[-1]

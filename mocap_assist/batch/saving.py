@@ -10,7 +10,7 @@ import bpy
 
 from ...solvers.command_line.screen import printable
 from ...solvers.errors import InvalidFileError
-from ...solvers.files import real_path, written_whole
+from ...solvers.files import real_path, write_atomically
 
 STDOUT = Path("-")
 
@@ -71,5 +71,5 @@ def tell(
     )
     sys.stdout.flush()
     if arguments.json not in {None, STDOUT}:
-        with written_whole(arguments.json) as part:
+        with write_atomically(arguments.json) as part:
             part.write_text(line + "\n", encoding="utf-8")

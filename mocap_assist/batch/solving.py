@@ -11,7 +11,7 @@ from ..jobs.job import run_apart
 Result = TypeVar("Result")
 
 
-def solve_apart(
+def solve_in_subprocess(
     solve: Callable[..., Result], arguments: argparse.Namespace, progress: Progress
 ) -> Result:
     """Solve in another process, even what a button solves in Blender's own.

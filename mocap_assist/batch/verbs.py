@@ -15,7 +15,7 @@ from ...solvers.errors import InvalidSettingError
 from ...solvers.progress import Progress
 from ..actions.armature_read import read_take
 from ..actions.marker_take import read_markers
-from ..blender.name_lists import joined
+from ..blender.name_lists import join_names
 from ..check.checking import read_checking, show_checked
 from ..check.choices import CheckSettings
 from ..clean.choices import CleanSettings, Prior
@@ -32,7 +32,7 @@ from .retarget_verbs import (
     retarget_target,
 )
 from .simulate_verb import add_simulate_options, perform_simulate
-from .solving import solve_apart
+from .solving import solve_in_subprocess
 from .vary_verb import HELP as VARY_HELP
 from .vary_verb import add_vary_options, perform_vary
 
@@ -92,13 +92,13 @@ def _clean(
     settings = _bundle(arguments, CleanSettings)
     if arguments.train:
         choices = replace(
-            settings.choices, prior=Prior.EXAMPLES, examples=joined(arguments.train)
+            settings.choices, prior=Prior.EXAMPLES, examples=join_names(arguments.train)
         )
         settings = settings._replace(choices=choices)
     elif arguments.library:
         scene.mocap_assist.library.library_file = arguments.library
         settings = settings._replace(choices=replace(settings.choices, prior=Prior.LIBRARY))
-    cleaned = solve_apart(read_cleaning(scene, armature, settings), arguments, progress)
+    cleaned = solve_in_subprocess(read_cleaning(scene, armature, settings), arguments, progress)
     sentence = write_cleaned(scene, armature, settings, cleaned)
     action, _ = played_result(armature)
     return sentence, {"action": action.name} | history.history(action)[-1]
@@ -115,7 +115,7 @@ def _check(
     progress: Progress,
 ) -> Said:
     settings = _bundle(arguments, CheckSettings)
-    checked = solve_apart(read_checking(scene, armature, settings), arguments, progress)
+    checked = solve_in_subprocess(read_checking(scene, armature, settings), arguments, progress)
     sentence = show_checked(scene, armature, settings, checked)
     spots = [spot.sentence for spot in checked.spots]
     text = "\n".join([checked.quality.report(), "", sentence, *spots])

@@ -49,7 +49,7 @@ class ProcessDied(MocapAssistError):
         )
 
 
-class Quick(partial[Result]):
+class ShortSolve(partial[Result]):
     """A solve that is so short that it needs no process of its own."""
 
 
@@ -59,7 +59,7 @@ def run(
     program: Sequence[str] = (),
 ) -> Result:
     """Solve and wait for the result, in a process of its own unless the solve is quick."""
-    if not isinstance(solve, Quick):
+    if not isinstance(solve, ShortSolve):
         return run_apart(solve, progress, program)
     with _memory_in_words():
         return solve(progress=progress)
@@ -119,7 +119,7 @@ class Job(Generic[Result]):
         try:
             with _memory_in_words():
                 (self._path / REQUEST).write_bytes(pickle.dumps(solve))
-            self._process = self._started(program or alone(CHILD), n_threads)
+            self._process = self._started(program or isolated_command(CHILD), n_threads)
         except OSError as error:
             self._scratch.remove()
             raise MocapAssistError(
@@ -235,7 +235,7 @@ def _memory_in_words() -> Iterator[None]:
         raise OutOfMemoryError from None
 
 
-def alone(script: Path) -> tuple[str, ...]:
+def isolated_command(script: Path) -> tuple[str, ...]:
     """Return the command that runs a script in a Python that sees nothing of the user's."""
     return (_python(), *ALONE, str(script))
 

@@ -30,7 +30,7 @@ class Ending(IntEnum):
     DISK_FULL = 4
 
 
-class Showing(partial[Result]):
+class PreviewSolve(partial[Result]):
     """A solve that is also called with `show=`, which takes what can be looked at meanwhile."""
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..faults import Failure, attempt
-from ..files import is_missing, real_path, remove_leftovers, written_whole
+from ..files import is_missing, real_path, remove_leftovers, write_atomically
 from ..json_text import parse_json
 from ..processes import threads_from, worker_pool
 from ..progress import Progress, unwatched
@@ -151,7 +151,7 @@ class Made:
         """Note that the output was made."""
         if task.target is not None:
             self.notes[self._name(task)] = {**note_of(task), "figures": figures}
-            with written_whole(self.path) as part:
+            with write_atomically(self.path) as part:
                 part.write_text(json.dumps(self.notes, indent=1), encoding="utf-8")
 
     def _name(self, task: Task) -> str:

@@ -154,7 +154,7 @@ def _denoised(
     if task.arguments.library is not None:
         finding, progress = within(progress, 0.0, 0.5), within(progress, 0.5, 1.0)
         found = bases_for(recording, task.source, task.arguments, finding)
-        bases, said = found.bases, found.said
+        bases, said = found.bases, found.message
     denoised = denoise(
         recording, bases, limits=learned.limits, settings=settings, progress=progress
     )

@@ -137,7 +137,7 @@ def refuse_target(path: Path, endings: Mapping[str, str] = RECORDED) -> None:
 def refuse_long_name(path: Path, ending: str = "") -> None:
     """Raise InvalidFileError where a file of this name and ending could not be made.
 
-    Temporary names are shorter: `written_whole` keeps 40 letters of the name.
+    Temporary names are shorter: `write_atomically` keeps 40 letters of the name.
     """
     name = path.name + ending
     windows = os.name == "nt"

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..progress import Progress, within
 from ..reconstruction import PostureLibrarySettings
-from ..workflows import postures_of
+from ..workflows import posture_library_from_clips
 from .files import add_reading_options, read_all
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
@@ -25,7 +25,7 @@ def add_postures_options(parser: argparse.ArgumentParser) -> None:
 def perform_postures(task: Task, prepared: None, progress: Progress) -> Outcome:
     """Collect the postures of all clips and write those that are most different."""
     clips = read_all(task.sources, task.arguments, within(progress, 0.0, 0.5))
-    library = postures_of(
+    library = posture_library_from_clips(
         clips,
         settings=settings_from_arguments(task.arguments, PostureLibrarySettings),
         progress=within(progress, 0.5, 1.0),

@@ -18,7 +18,12 @@ from ..reconstruction import (
     load_residual_prior,
 )
 from ..recordings import read_tracked, write_joint_csv
-from ..workflows import postures_of, reconstruct_motion, reconstruct_recording, try_to_plant
+from ..workflows import (
+    plant_feet_if_possible,
+    posture_library_from_clips,
+    reconstruct_motion,
+    reconstruct_recording,
+)
 from .files import JOINTS, add_reading_options, read_all, write
 from .from_library import add_library_option, check_library, postures_for
 from .options import arguments_from, settings_from_arguments
@@ -86,7 +91,9 @@ def read_guides(arguments: argparse.Namespace, progress: Progress) -> Guides:
     if not arguments.train:
         return Guides(library and load_posture_library(library), residuals)
     clips = read_all(arguments.train, arguments, within(progress, 0.0, 0.7))
-    return Guides(postures_of(clips, progress=within(progress, 0.7, 1.0)), residuals)
+    return Guides(
+        posture_library_from_clips(clips, progress=within(progress, 0.7, 1.0)), residuals
+    )
 
 
 def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Outcome:
@@ -117,7 +124,7 @@ def _guides_for(
         return guides, ()
     subject = given if isinstance(given, Motion) else _joints_of(given, task.source)
     found = postures_for(subject, task.source, task.arguments, progress)
-    return guides._replace(postures=found.postures), (found.said,)
+    return guides._replace(postures=found.postures), (found.message,)
 
 
 def _rebuilt(given: Any, task: Task, guides: Guides, progress: Progress) -> Rebuilt:
@@ -126,10 +133,12 @@ def _rebuilt(given: Any, task: Task, guides: Guides, progress: Progress) -> Rebu
     planting = settings_from_arguments(task.arguments, PlantSettings) if feet else None
     if isinstance(given, Motion):
         whole = reconstruct_motion(given, *guides, settings=settings, progress=progress)
-        footing = try_to_plant(whole.motion, planting, reliability=whole.reliability)
+        footing = plant_feet_if_possible(whole.motion, planting, reliability=whole.reliability)
         remarks = (*whole.remarks, *footing.remarks)
         slide = _slide(footing.planted)
-        return Rebuilt(footing.motion, None, whole.rebuilt_share, whole.method, remarks, slide)
+        return Rebuilt(
+            footing.motion, None, whole.rebuilt_fraction, whole.method, remarks, slide
+        )
     recording = _joints_of(given, task.source)
     found = reconstruct_recording(
         recording,

@@ -8,7 +8,7 @@ from string import Template
 from typing import Any, NamedTuple
 
 from ..faults import Failure, attempt
-from ..files import written_whole
+from ..files import write_atomically
 from ..pictures import StickFigureSettings, draw_stick_figures
 from ..recordings import is_depth, read_motion_or_tracks
 from .verb import Task
@@ -114,7 +114,7 @@ def write_report(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str
     done = len(entries) - len(failed) - len(waiting)
     counts = {"done": done, "failed": len(failed), "not come to": len(waiting)}
     listed = [_listed(entry) for entry in entries]
-    with written_whole(folder / FIGURES) as part:
+    with write_atomically(folder / FIGURES) as part:
         said = {"verb": verb, **counts, "files": listed}
         part.write_text(json.dumps(said, indent=1, allow_nan=False), encoding="utf-8")
     ordered = sorted(entries, key=lambda entry: -_badness(entry))
@@ -124,7 +124,7 @@ def write_report(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str
         overview=_overview(ordered),
         sections="".join(_section(entry, at) for at, entry in enumerate(ordered)),
     )
-    with written_whole(folder / PAGE) as part:
+    with write_atomically(folder / PAGE) as part:
         part.write_text(page, encoding="utf-8", errors="backslashreplace")
     return faults
 

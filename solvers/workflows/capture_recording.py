@@ -11,12 +11,12 @@ from ..depth_tracking.tracking import OnPose, unobserved
 from ..motion import Motion
 from ..progress import Progress, unwatched, within
 from .capture_remarks import capture_remarks
-from .try_to_plant import try_to_plant
+from .plant_feet_if_possible import plant_feet_if_possible
 
 CAPTURING = CaptureSettings()
 TELLING = ForegroundSettings()
 PLANTING = PlantSettings()
-FOUND = 0.1
+FOREGROUND_FRACTION = 0.1
 """Share of the work after which the actor is told from the room."""
 
 
@@ -78,11 +78,11 @@ def capture_recording(
         Raised by `progress`.
     """
     actor = find_actor(
-        recording, foreground, empty=empty, progress=within(progress, 0.0, FOUND)
+        recording, foreground, empty=empty, progress=within(progress, 0.0, FOREGROUND_FRACTION)
     )
     return capture_actor(
         actor, body, motion_prior=motion_prior, settings=settings, planting=planting,
-        progress=within(progress, FOUND, 1.0),
+        progress=within(progress, FOREGROUND_FRACTION, 1.0),
     )  # fmt: skip
 
 
@@ -114,7 +114,7 @@ def capture_actor(
         settings=settings, on_pose=on_pose, progress=within(progress, 0.0, 0.95),
     )  # fmt: skip
     stands = planting if actor.feet_seen else None
-    footing = try_to_plant(found.motion, stands, progress=within(progress, 0.95, 1.0))
+    footing = plant_feet_if_possible(found.motion, stands, progress=within(progress, 0.95, 1.0))
     said = capture_remarks(actor, found, fitted=body is None)
     remarks = (*said, *footing.remarks)
     return CapturedMotion(footing.motion, found, actor, footing.planted, remarks)

@@ -40,7 +40,7 @@ class LibraryBases:
     """None where there is nothing to learn from."""
     clips: tuple[str, ...]
     """Names of those that were learned from, the most alike first."""
-    said: str
+    message: str
     """A sentence on them, and on those that could not be read."""
 
 
@@ -92,7 +92,7 @@ def clean_from_library(
         recording, learned.bases, limits=limits, settings=settings,
         progress=within(progress, 0.5, 1.0),
     )  # fmt: skip
-    return replace(cleaned, prior_used=f"{learned.said} {cleaned.prior_used}")
+    return replace(cleaned, prior_used=f"{learned.message} {cleaned.prior_used}")
 
 
 def bases_from_library(

@@ -62,7 +62,7 @@ class LiveSession:
         """How many frames came in, and why others were dropped."""
         return self._stream.heard
 
-    def hear(self, datagrams: Iterable[bytes]) -> News:
+    def receive(self, datagrams: Iterable[bytes]) -> News:
         """Take what came in; return what it says."""
         news = News(None, (), None, "")
         for frame in self._stream.read(*datagrams):
@@ -72,7 +72,7 @@ class LiveSession:
     def _told(self, news: News, frame: LiveFrame) -> News:
         """Add what a frame says."""
         events = self._break_off(frame)
-        places, trust = posture_of(frame)
+        places, trust = pose_from_frame(frame)
         events += self._recogniser.see(frame.time, places, trust)
         news = replace(news, frame=frame, events=news.events + events)
         for event in events:
@@ -114,7 +114,7 @@ def _performance(news: News, frames: list[LiveFrame]) -> News:
         return replace(news, message=str(error))
 
 
-def posture_of(frame: LiveFrame) -> tuple[Array, Array]:
+def pose_from_frame(frame: LiveFrame) -> tuple[Array, Array]:
     """Return the joints of postures, (20, 3) in metres, and how sure they are, (20,)."""
     positions, confidence = (
         np.full((len(POSTURE_JOINTS), 3), np.nan),

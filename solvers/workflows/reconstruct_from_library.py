@@ -34,7 +34,7 @@ class LibraryPostures:
     postures: PostureLibrary
     clips: tuple[str, ...]
     """Names of those that were found, the most alike first."""
-    said: str
+    message: str
     """A sentence on them, and on those that could not be read."""
 
 
@@ -85,7 +85,7 @@ def reconstruct_from_library(
         recording, found.postures, prior, settings=settings,
         progress=within(progress, 0.4, 1.0),
     )  # fmt: skip
-    return replace(rebuilt, method=f"{found.said.rstrip('.')}; {rebuilt.method}")
+    return replace(rebuilt, method=f"{found.message.rstrip('.')}; {rebuilt.method}")
 
 
 def postures_from_library(

@@ -31,9 +31,9 @@ from ..reconstruction import (
     reconstruct,
 )
 from ..reconstruction.joint_rotations import follow_joints, turn_to_postures
-from .known_body import KINECT_V1, check_size, check_tracked, gap_remarks
-from .measured_joints import measured_joints
+from .joints_from_source import joints_from_source
 from .rebuilt_joints import rebuilt_joints
+from .standard_joints import KINECT_V1, check_size, check_tracked, gap_remarks
 
 Array = NDArray[np.float64]
 REBUILDING = ReconstructSettings()
@@ -49,7 +49,7 @@ class RebuiltMotion:
     ----------
     motion : Motion
         Of the skeleton that was given; without gaps.
-    trust : Reliability
+    reliability_terms : Reliability
         How far each joint was trusted, and why; NaN for joints that are not among those by
         which bodies are compared, and all NaN for a term of which the take tells nothing.
     confidence : shape (n_frames, n_joints), 0 to 1
@@ -63,7 +63,7 @@ class RebuiltMotion:
     """
 
     motion: Motion
-    trust: Reliability
+    reliability_terms: Reliability
     confidence: Array
     rebuilt: NDArray[np.bool_]
     method: str
@@ -72,10 +72,10 @@ class RebuiltMotion:
     @property
     def reliability(self) -> Array:
         """How far each joint was trusted, shape (n_frames, n_joints), 0 to 1."""
-        return self.trust.combined
+        return self.reliability_terms.combined
 
     @property
-    def rebuilt_share(self) -> float:
+    def rebuilt_fraction(self) -> float:
         """Share of the joints and frames that were rebuilt, of those that are compared."""
         return float(self.rebuilt[np.isfinite(self.reliability)].mean())
 
@@ -105,7 +105,7 @@ def reconstruct_motion(
     prior : ResidualPrior, optional
     source : JointRecording, optional
         What the motion was made of, if it is at hand; used where it still fits
-        (`measured_joints`).
+        (`joints_from_source`).
     tracking_state : shape (n_frames, n_joints), optional
         What the tracker said of each joint: 2 tracked, 1 inferred, 0 not tracked.
     humanoid_map : HumanoidMap, optional
@@ -198,7 +198,7 @@ def _all_joints(
 ) -> tuple[JointRecording, dict[int, int]]:
     """Return where all joints are, and the column of each joint."""
     columns = {joint: joint for joint in range(motion.n_joints)}
-    measured = None if source is None else measured_joints(motion, source)
+    measured = None if source is None else joints_from_source(motion, source)
     if measured is not None:
         return measured, columns
     positions = forward_kinematics(motion).positions

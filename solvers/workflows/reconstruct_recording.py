@@ -10,9 +10,9 @@ from ..motion import JointRecording, Motion, Skeleton
 from ..progress import Progress, unwatched, within
 from ..reconstruction import PostureLibrary, ReconstructSettings, ResidualPrior, reconstruct
 from ..reconstruction.joint_rotations import Reconstruction, follow_joints
-from .known_body import check_size, gap_remarks, known_body
+from .plant_feet_if_possible import plant_feet_if_possible
 from .rebuilt_joints import rebuilt_joints
-from .try_to_plant import try_to_plant
+from .standard_joints import check_size, gap_remarks, standardize_joint_names
 
 PLANTING = PlantSettings()
 REBUILDING = ReconstructSettings()
@@ -75,7 +75,7 @@ def reconstruct_recording(
     SolveCancelled
         Raised by `progress`.
     """
-    known = known_body(recording)
+    known = standardize_joint_names(recording)
     check_size(known)
     rebuilt = reconstruct(
         known, postures, prior, settings=settings, progress=within(progress, 0.0, 0.8)
@@ -89,7 +89,7 @@ def reconstruct_recording(
             twists=rebuilt.twists,
             skeleton=skeleton,
         )
-    footing = try_to_plant(
+    footing = plant_feet_if_possible(
         motion,
         planting,
         reliability=_of_joints(motion.skeleton, known.names, rebuilt.reliability.combined),

@@ -18,7 +18,7 @@ from ..variation import (
     middle_round,
     repeated,
 )
-from .try_to_plant import Footing, try_to_plant
+from .plant_feet_if_possible import Footing, plant_feet_if_possible
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,14 +97,14 @@ def stand(variant: Variant, planting: PlantSettings | None = PLANTING) -> Footin
     """
     motion, contacts, is_loop = variant
     if planting is None:
-        return try_to_plant(motion, None)
+        return plant_feet_if_possible(motion, None)
     if is_loop:
         motion = repeated(motion, ROUNDS)
         if contacts is not None:
             contacts = np.concatenate([*[contacts[:-1]] * ROUNDS, contacts[-1:]])
     if contacts is not None:
         contacts = contacts | detect_contacts(motion)
-    footing = try_to_plant(motion, planting, contacts)
+    footing = plant_feet_if_possible(motion, planting, contacts)
     if is_loop:
         return footing._replace(motion=middle_round(footing.motion, variant.motion))
     return footing

@@ -220,7 +220,7 @@ def speed() -> str:
     decoded = perf_counter()
     session = LiveSession()
     for line in lines:
-        session.hear([line])
+        session.receive([line])
     heard = perf_counter()
     rows = {
         "decoding a line of 20 joints": [f"{1000 * (decoded - started) / len(lines):.2f}"],

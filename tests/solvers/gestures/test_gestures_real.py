@@ -11,7 +11,7 @@ from solvers.gestures.settings import GestureSettings
 from solvers.motion.humanoid.posture_joints import posture_positions
 from solvers.recordings import read_joints
 from solvers.recordings.live.frames import frames_of
-from solvers.workflows.live_session import posture_of
+from solvers.workflows.live_session import pose_from_frame
 
 CLAP, WAVE = "a10", "a02"
 USUAL = GestureSettings()
@@ -19,7 +19,7 @@ USUAL = GestureSettings()
 
 def gestures_in(path, settings=USUAL):
     recording = read_joints(path)
-    frames = [posture_of(frame) for frame in frames_of(recording)]
+    frames = [pose_from_frame(frame) for frame in frames_of(recording)]
     positions, confidence = (np.stack(each) for each in zip(*frames, strict=True))
     times = np.arange(len(frames)) / recording.frame_rate
     return {event.gesture for event in recognise(times, positions, confidence, settings)}
@@ -56,6 +56,6 @@ def test_a_confident_joint_is_what_the_recording_says(recordings):
 
     frames = list(frames_of(recording))
 
-    positions = np.stack([posture_of(frame)[0] for frame in frames])
+    positions = np.stack([pose_from_frame(frame)[0] for frame in frames])
     np.testing.assert_array_equal(positions, posture_positions(recording))
     assert all(one.time < other.time for one, other in pairwise(frames))

@@ -75,7 +75,7 @@ def test_what_is_learned_is_what_those_clips_teach(library):
 
     assert set(learned.clips) == set(WALKS)
     assert int(learned.bases.n_clips) == 4
-    assert learned.said.startswith("Learned from 4 clips of the library: ")
+    assert learned.message.startswith("Learned from 4 clips of the library: ")
 
 
 def test_the_more_a_clip_is_like_the_take_the_more_it_counts(monkeypatch, library):
@@ -105,7 +105,7 @@ def test_clips_that_are_only_roughly_alike_have_to_prove_it(
     learned = bases_from_library(without_a_leg(walk(115)), library, fetch=fetched)
     assert len(asked) == n_asked
     assert (learned.bases is None) == bool(n_asked)
-    assert ("laid aside" in learned.said) == bool(n_asked)
+    assert ("laid aside" in learned.message) == bool(n_asked)
 
 
 def test_clips_that_are_to_be_ignored_teach_nothing(library):
@@ -159,7 +159,7 @@ def test_clips_are_read_again_from_their_files_and_the_lost_are_told(tmp_path):
     with load_clip_library(tmp_path / "library.clips") as library:
         learned = bases_from_library(walk(115), library)
         assert set(learned.clips) == set(WALKS) - {"walk 110"}
-        assert "walk 110 was left out: There is no file" in learned.said
+        assert "walk 110 was left out: There is no file" in learned.message
         for path in tmp_path.glob("*.bvh"):
             path.unlink()
         cleaned = clean_from_library(walk(115), library)
@@ -171,7 +171,7 @@ def test_clips_are_read_again_from_their_files_and_the_lost_are_told(tmp_path):
 def test_clips_that_came_from_no_file_are_told(library):
     learned = bases_from_library(walk(115), library)
     assert learned.bases is None
-    assert "walk 110 was left out: walk 110 came from no file" in learned.said
+    assert "walk 110 was left out: walk 110 came from no file" in learned.message
 
 
 def test_an_action_is_left_to_whoever_can_read_it():
@@ -194,7 +194,7 @@ def test_clips_too_short_to_learn_from_are_told():
         walk(110).slice(0, 5), library, fetch=lambda entry: short[entry.name]
     )
     assert learned.bases is None
-    assert "That was of no use: No example is as long as the window" in learned.said
+    assert "That was of no use: No example is as long as the window" in learned.message
 
 
 def test_an_empty_library_changes_nothing():

@@ -14,7 +14,7 @@ from ..reconstruction.pose_library import (
 USUAL = PostureLibrarySettings()
 
 
-def postures_of(
+def posture_library_from_clips(
     clips: Sequence[Motion | Tracks],
     *,
     settings: PostureLibrarySettings = USUAL,

@@ -17,7 +17,7 @@ MOST_STARTS = 100
 """Of those that are looked at closely; only who stands still has more."""
 
 
-def measured_joints(motion: Motion, recording: JointRecording) -> JointRecording | None:
+def joints_from_source(motion: Motion, recording: JointRecording) -> JointRecording | None:
     """Return a recording as it lies where a motion is, if the motion was made of it.
 
     Bones of constant length cannot tell how far the tracker stretched them, nor where a joint

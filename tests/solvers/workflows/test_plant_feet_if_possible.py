@@ -10,7 +10,7 @@ from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, j
 from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction.joint_rotations.follow_joints import follow_joints
 from solvers.recordings import read_recording
-from solvers.workflows import reconstruct_recording, try_to_plant
+from solvers.workflows import plant_feet_if_possible, reconstruct_recording
 
 NAMES = JOINTS[Sensor.KINECT_V1]
 PLANTING = PlantSettings()
@@ -51,7 +51,7 @@ def wandering() -> Motion:
 def test_an_ankle_that_stands_still_stays_whatever_its_lost_toe_does():
     motion = wandering()
 
-    planted = try_to_plant(
+    planted = plant_feet_if_possible(
         motion, PLANTING, STANDING, reliability=trust_of(motion, "FootLeft", 0.0)
     )
 
@@ -81,7 +81,7 @@ def test_a_trusted_ankle_is_not_planted_far_from_where_it_was_still(recordings, 
 def test_a_lost_toe_that_points_up_is_laid_down():
     motion = standing(np.array([0.0, -0.1, 0.1]))
 
-    planted = try_to_plant(
+    planted = plant_feet_if_possible(
         motion, PLANTING, STANDING, reliability=trust_of(motion, "FootLeft", 0.0)
     ).motion
 
@@ -98,8 +98,10 @@ def test_a_lost_toe_that_points_up_is_laid_down():
 def test_feet_that_were_seen_well_are_planted_as_ever():
     body = samples.walking_gait(samples.GaitSettings(duration=3.0, frame_rate=30.0))
 
-    plain = try_to_plant(body, PLANTING)
-    trusted = try_to_plant(body, PLANTING, reliability=np.ones((body.n_frames, body.n_joints)))
+    plain = plant_feet_if_possible(body, PLANTING)
+    trusted = plant_feet_if_possible(
+        body, PLANTING, reliability=np.ones((body.n_frames, body.n_joints))
+    )
 
     off = np.abs(
         forward_kinematics(plain.motion).positions

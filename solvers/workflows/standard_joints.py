@@ -27,7 +27,7 @@ KINECT_V1 = dict(zip(POSTURE_JOINTS, JOINTS[Sensor.KINECT_V1], strict=True))
 Word = TypeVar("Word", np.int8, np.float64)
 
 
-def known_body(recording: JointRecording) -> JointRecording:
+def standardize_joint_names(recording: JointRecording) -> JointRecording:
     """Return the recording, or its joints under the names of the first Kinect's.
 
     Names of which it is known how they hang together stay. Others are understood by their

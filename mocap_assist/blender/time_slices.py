@@ -9,7 +9,7 @@ from typing import Any, Generic, ParamSpec, TypeVar
 Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
 Steps = Generator[float, None, Result]
-"""Yields the fraction that is done whenever `due` says so.
+"""Yields the fraction that is done whenever `should_yield` says so.
 
 Blender has a turn then: pointers to what it keeps are stale afterwards, and whatever is needed
 further is found again.
@@ -18,7 +18,7 @@ further is found again.
 _deadline = [inf]
 
 
-def due() -> bool:
+def should_yield() -> bool:
     """Whether the work should yield now; never where a script waits for it."""
     return monotonic() >= _deadline[0]
 

@@ -25,7 +25,7 @@ class Footing(NamedTuple):
     """Why they could not."""
 
 
-def try_to_plant(
+def plant_feet_if_possible(
     motion: Motion,
     settings: PlantSettings | None,
     contacts: NDArray[np.bool_] | None = None,

@@ -10,7 +10,7 @@ from .compat import Source
 COLLECTIONS = {"OBJECT": "objects", "SCENE": "scenes", "ACTION": "actions"}
 
 
-class Lasting(NamedTuple):
+class BlockReference(NamedTuple):
     """A data-block by its number of this session, which undo and renaming keep."""
 
     kind: str
@@ -19,7 +19,7 @@ class Lasting(NamedTuple):
     """When it was seen last."""
 
     @classmethod
-    def of(cls, block: bpy.types.ID) -> "Lasting":
+    def of(cls, block: bpy.types.ID) -> "BlockReference":
         """Remember a data-block."""
         return cls(block.id_type, block.session_uid, block.name)
 
@@ -34,17 +34,17 @@ class Lasting(NamedTuple):
         return found
 
 
-class LastingSource(NamedTuple):
+class SourceReference(NamedTuple):
     """An action and its slot."""
 
-    action: Lasting
+    action: BlockReference
     slot: int
 
     @classmethod
-    def of(cls, source: Source) -> "LastingSource":
+    def of(cls, source: Source) -> "SourceReference":
         """Remember both."""
         action, slot = source
-        return cls(Lasting.of(action), slot.handle)
+        return cls(BlockReference.of(action), slot.handle)
 
     def find(self) -> Source:
         """Return both; raise InvalidMotionError where one was deleted meanwhile."""
