@@ -1,4 +1,4 @@
-"""The verbs `index` and `find`: what the buttons of the library do."""
+"""`index` and `find`: the buttons of the library as verbs."""
 
 import argparse
 import json
@@ -27,7 +27,7 @@ from .solving import solve_in_subprocess
 
 INDEX_HELP = "Put the clips of recordings, .blend files and asset libraries into a library."
 FIND_HELP = "List the clips of a library that are like what armatures or markers play."
-Said = tuple[str, dict[str, Any]]
+VerbResult = tuple[str, dict[str, Any]]
 
 
 def add_index_options(parser: argparse.ArgumentParser) -> None:
@@ -53,7 +53,7 @@ def add_index_options(parser: argparse.ArgumentParser) -> None:
 
 
 def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
-    """Bring a library up to date; tell what is of no use, and do the rest.
+    """Update a library, and report the files that cannot be indexed.
 
     Raises
     ------
@@ -109,8 +109,8 @@ def perform_find(
     subject: bpy.types.Object,
     arguments: argparse.Namespace,
     progress: Progress,
-) -> Said:
-    """Search for what the armature, or the markers, play."""
+) -> VerbResult:
+    """Search for the current motion of the armature or the markers."""
     classes = get_type_hints(FindBundle)
     settings = FindBundle(**{
         name: settings_from_arguments(arguments, each) for name, each in classes.items()

@@ -15,7 +15,7 @@ from ..scene import history
 from .solving import solve_in_subprocess
 
 CENTIMETRE = 0.01
-Said = tuple[str, dict[str, Any]]
+VerbResult = tuple[str, dict[str, Any]]
 
 
 def add_retarget_options(parser: argparse.ArgumentParser) -> None:
@@ -33,7 +33,7 @@ def perform_retarget(
     armature: bpy.types.Object,
     arguments: argparse.Namespace,
     progress: Progress,
-) -> Said:
+) -> VerbResult:
     """Give the armature's motions to the target."""
     settings = RetargetBundle(
         settings_from_arguments(arguments, RetargetChoices),
@@ -62,7 +62,7 @@ def perform_unbake(
     armature: bpy.types.Object,
     arguments: argparse.Namespace,
     progress: Progress,
-) -> Said:
+) -> VerbResult:
     """Thin out the keys of what the armature plays."""
     settings = UnbakeBundle(
         UnbakeChoices(tolerance=CENTIMETRE * arguments.tolerance),

@@ -1,4 +1,4 @@
-"""Data-blocks that are found again after Blender has had a turn: pointers do not last."""
+"""References to data-blocks that stay valid while Blender runs; pointers do not."""
 
 from typing import Any, NamedTuple
 
@@ -11,16 +11,16 @@ COLLECTIONS = {"OBJECT": "objects", "SCENE": "scenes", "ACTION": "actions"}
 
 
 class BlockReference(NamedTuple):
-    """A data-block by its number of this session, which undo and renaming keep."""
+    """A data-block by its session UID, which undo and renaming keep."""
 
     kind: str
     number: int
     name: str
-    """When it was seen last."""
+    """Name at the time of reference."""
 
     @classmethod
     def of(cls, block: bpy.types.ID) -> "BlockReference":
-        """Remember a data-block."""
+        """Return a reference to a data-block."""
         return cls(block.id_type, block.session_uid, block.name)
 
     def find(self) -> Any:
@@ -42,7 +42,7 @@ class SourceReference(NamedTuple):
 
     @classmethod
     def of(cls, source: Source) -> "SourceReference":
-        """Remember both."""
+        """Return a reference to both."""
         action, slot = source
         return cls(BlockReference.of(action), slot.handle)
 

@@ -1,4 +1,4 @@
-"""What Mocap Assist keeps in custom properties: JSON, which anybody may have edited."""
+"""Read and write JSON in custom properties, which users may have edited."""
 
 import json
 from math import isfinite
@@ -28,7 +28,7 @@ def parse_stored(text: object, kind: type[Kind]) -> Kind:
     """Return what a text says, as `load_json` does."""
     try:
         value = parse_json(
-            str(text), parse_constant=_finite, parse_float=_finite, parse_int=_whole
+            str(text), parse_constant=_finite, parse_float=_finite, parse_int=_integer
         )
     except ValueError:
         return kind()
@@ -41,6 +41,6 @@ def _finite(text: str) -> float:
     return number
 
 
-def _whole(text: str) -> int:
-    _finite(text)  # or nobody could reckon with it
+def _integer(text: str) -> int:
+    _finite(text)  # too large for float arithmetic otherwise
     return int(text)

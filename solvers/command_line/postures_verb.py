@@ -1,4 +1,4 @@
-"""`learn-postures`: a library of how bodies stand and move, from clean clips."""
+"""`learn-postures`: build a posture library from clean clips."""
 
 import argparse
 from pathlib import Path
@@ -15,15 +15,14 @@ def add_postures_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `learn-postures`."""
     parser.add_argument(
         "--output", type=Path, required=True, metavar="FILE",
-        help="The .npz file to write; reconstruct --postures and the button Reconstruct read"
-        " it",
+        help="The .npz file to write, for reconstruct --postures and the button Reconstruct",
     )  # fmt: skip
     add_reading_options(parser)
     arguments_from(parser, PostureLibrarySettings)
 
 
 def perform_postures(task: Task, prepared: None, progress: Progress) -> Outcome:
-    """Collect the postures of all clips and write those that are most different."""
+    """Collect the postures of all clips and write the most distinct ones."""
     clips = read_all(task.sources, task.arguments, within(progress, 0.0, 0.5))
     library = posture_library_from_clips(
         clips,

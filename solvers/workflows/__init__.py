@@ -1,4 +1,4 @@
-"""What joins families: whole ways from a recording to a result."""
+"""Combine the solver families into complete workflows, from a recording to a result."""
 
 from .capture_recording import CapturedMotion, capture_actor, capture_recording
 from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
@@ -6,7 +6,7 @@ from .clip_sources import path_fault
 from .index_files import IndexReport, index_files
 from .live_session import LiveSession
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
-from .plant_feet_if_possible import Footing, plant_feet_if_possible
+from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
 from .posture_library import posture_library_from_clips
 from .reconstruct_from_library import (
     LibraryPostures,
@@ -19,13 +19,13 @@ from .vary_motions import Variants, vary_motions
 
 __all__ = [
     "CapturedMotion",
-    "Footing",
     "IndexReport",
     "LibraryBases",
     "LibraryPostures",
     "LiveSession",
     "MarkerMotion",
     "MarkerMotionSettings",
+    "PlantingResult",
     "RebuiltMotion",
     "ReconstructedMotion",
     "Variants",

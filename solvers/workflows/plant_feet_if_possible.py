@@ -1,4 +1,4 @@
-"""Plant feet where there are feet, and say so where there are none."""
+"""Plant the feet of a motion if it has legs, and report why if it has none."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -12,17 +12,17 @@ from ..errors import InvalidMotionError
 from ..motion import Motion, forward_kinematics
 from ..motion.humanoid import detect_contacts
 from ..progress import Progress, unwatched
-from .keep_ankles import keep_ankles
-from .level_toes import level_toes
+from .flatten_toes import flatten_toes
+from .restore_ankles import restore_ankles
 
 
-class Footing(NamedTuple):
-    """A motion, its feet planted if that could be done."""
+class PlantingResult(NamedTuple):
+    """A motion with planted feet, if planting was possible."""
 
     motion: Motion
     planted: Planted | None
     remarks: list[str]
-    """Why they could not."""
+    """Why planting was not possible."""
 
 
 def plant_feet_if_possible(
@@ -32,37 +32,37 @@ def plant_feet_if_possible(
     *,
     reliability: NDArray[np.float64] | None = None,
     progress: Progress = unwatched,
-) -> Footing:
-    """Plant feet; without settings, or without legs, leave them as they are.
+) -> PlantingResult:
+    """Plant feet; without settings or without legs, return the motion unchanged.
 
-    With the reliability of each joint, shape (n_frames, n_joints), toes that were lost are laid
-    down first, and ankles that were trusted and still are left within 3 cm of their place.
+    With the reliability of each joint, shape (n_frames, n_joints), missing toes are flattened
+    first. Reliable resting ankles then stay within 3 cm of their observed position.
     """
     if settings is None:
-        return Footing(motion, None, [])
+        return PlantingResult(motion, None, [])
     try:
-        laid = motion
+        flattened = motion
         if reliability is not None and motion.observed.all():
-            standing = detect_contacts(motion) if contacts is None else contacts
-            laid = level_toes(motion, reliability, standing)
-        planted = plant_feet(laid, contacts, settings=settings, progress=progress)
+            standing_contacts = detect_contacts(motion) if contacts is None else contacts
+            flattened = flatten_toes(motion, reliability, standing_contacts)
+        planted = plant_feet(flattened, contacts, settings=settings, progress=progress)
     except InvalidMotionError as error:
-        return Footing(motion, None, [f"Feet are left as they are. {error}"])
+        return PlantingResult(motion, None, [f"Feet were not planted. {error}"])
     if reliability is not None:
-        kept = keep_ankles(planted.motion, laid, reliability, planted.contacts)
-        slide = planted.slide_after + _more_slide(planted, kept)
-        planted = replace(planted, motion=kept, slide_after=slide)
-    return Footing(planted.motion, planted, [])
+        restored = restore_ankles(planted.motion, flattened, reliability, planted.contacts)
+        slide = planted.slide_after + _added_slide(planted, restored)
+        planted = replace(planted, motion=restored, slide_after=slide)
+    return PlantingResult(planted.motion, planted, [])
 
 
-def _more_slide(planted: Planted, kept: Motion) -> float:
-    """Return by how much more feet slide that were brought back, metres."""
-    feet = foot_joints(kept)
+def _added_slide(planted: Planted, restored: Motion) -> float:
+    """Return the additional slide of feet whose ankles were restored, metres."""
+    feet = foot_joints(restored)
     if feet is None:
         return 0.0
-    ways = []
-    for motion in (planted.motion, kept):
-        level = forward_kinematics(motion).positions[:, feet, :2]
-        steps = np.linalg.norm(np.diff(level, axis=0), axis=-1).min(axis=-1)
-        ways.append(steps[planted.contacts[1:] & planted.contacts[:-1]].sum())
-    return float(max(ways[1] - ways[0], 0.0))
+    distances = []
+    for motion in (planted.motion, restored):
+        ground_path = forward_kinematics(motion).positions[:, feet, :2]
+        steps = np.linalg.norm(np.diff(ground_path, axis=0), axis=-1).min(axis=-1)
+        distances.append(steps[planted.contacts[1:] & planted.contacts[:-1]].sum())
+    return float(max(distances[1] - distances[0], 0.0))

@@ -115,11 +115,11 @@ def test_blender_keeps_others_off_its_file_and_reports_who_holds_it(
     monkeypatch.setattr(module, "PATIENCE", 0.0)
     target = tmp_path / "take.blend"
 
-    with module.working_on(target):
+    with module.lock_target(target):
         assert module._is_worked_on(target)
         with (
             pytest.raises(load("solvers.errors").InvalidFileError, match="Another Blender is"),
-            module.working_on(target),
+            module.lock_target(target),
         ):
             pytest.fail("two work on one file")
 

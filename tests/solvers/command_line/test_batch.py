@@ -130,5 +130,5 @@ def test_a_process_that_dies_takes_only_its_own_file_along(start, tmp_path, monk
 
     assert done.returncode == 2
     assert done.stdout.count("Done.") == 4
-    assert done.stderr.startswith("bad: the process that worked on it has died")
+    assert done.stderr.startswith("bad: its process crashed")
     assert done.stderr.count("\n") == 1

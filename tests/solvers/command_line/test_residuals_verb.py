@@ -59,7 +59,7 @@ def test_a_take_without_partner_is_named(call, stage):
 def test_an_unknown_actor_is_named(call, stage):
     status, _, err = learn(call, stage, "--actors", "anna")
     assert status == 2
-    assert "bob_1 begins with none of the actors' names: anna" in err
+    assert "bob_1 does not start with the name of an actor: anna" in err
 
 
 def test_confidence_asks_who_was_recorded(call, stage):

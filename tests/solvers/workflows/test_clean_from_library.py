@@ -95,20 +95,18 @@ def test_the_more_a_clip_is_like_the_take_the_more_it_counts(monkeypatch, librar
     assert told[0] > 1.5 * told[-1]
 
 
-@pytest.mark.parametrize(("sure", "n_asked"), [(0.0, 0), (1.1, 1)])
-def test_clips_that_are_only_roughly_alike_have_to_prove_it(
-    monkeypatch, library, sure, n_asked
-):
+@pytest.mark.parametrize(("score", "n_validations"), [(0.0, 0), (1.1, 1)])
+def test_clips_with_a_low_score_are_validated(monkeypatch, library, score, n_validations):
     here, asked = sys.modules["solvers.workflows.clean_from_library"], []
-    monkeypatch.setattr(here, "SURE", sure)
-    monkeypatch.setattr(here, "foretell_lost", lambda take, *_: asked.append(take))
+    monkeypatch.setattr(here, "MIN_CONFIDENT_SCORE", score)
+    monkeypatch.setattr(here, "prior_fills_gaps", lambda take, *_: asked.append(take))
     learned = bases_from_library(without_a_leg(walk(115)), library, fetch=fetched)
-    assert len(asked) == n_asked
-    assert (learned.bases is None) == bool(n_asked)
-    assert ("laid aside" in learned.message) == bool(n_asked)
+    assert len(asked) == n_validations
+    assert (learned.bases is None) == bool(n_validations)
+    assert ("not used: they predict" in learned.message) == bool(n_validations)
 
 
-def test_clips_that_are_to_be_ignored_teach_nothing(library):
+def test_ignored_clips_are_not_learned_from(library):
     away = ["walk 110", "walk 120"]
     learned = bases_from_library(walk(115), library, ignore=away, fetch=fetched)
     assert set(learned.clips) == {"walk 100", "walk 130"}
@@ -145,7 +143,7 @@ def test_a_library_of_other_movements_does_no_harm(recordings):
     harmless = clean_from_library(own, of_others, ignore=squats, fetch=fetch)
     helped = bases_from_library(own, of_others, ignore=squats[:1], fetch=fetch)
 
-    assert harmless.prior_used.startswith("Nothing in the library is like this take. ")
+    assert harmless.prior_used.startswith("No clip of the library is similar to this take. ")
     assert_array_equal(harmless.recording.rotations, denoise(own).recording.rotations)
     assert set(helped.clips[:2]) == set(squats[1:])
 
@@ -194,17 +192,17 @@ def test_clips_too_short_to_learn_from_are_told():
         walk(110).slice(0, 5), library, fetch=lambda entry: short[entry.name]
     )
     assert learned.bases is None
-    assert "That was of no use: No example is as long as the window" in learned.message
+    assert "They cannot be used: No example is as long as the window" in learned.message
 
 
 def test_an_empty_library_changes_nothing():
     cleaned = clean_from_library(walk(115), build_clip_library([]))
-    assert cleaned.prior_used.startswith("Nothing in the library is like this take. ")
+    assert cleaned.prior_used.startswith("No clip of the library is similar to this take. ")
 
 
 def test_points_are_refused(library):
     markers = Tracks(("a", "b"), np.zeros((9, 2, 3)), 30.0)
-    with pytest.raises(InvalidMotionError, match="solve a skeleton from them first"):
+    with pytest.raises(InvalidMotionError, match="Solve a skeleton from them first"):
         clean_from_library(markers, library)
 
 

@@ -13,7 +13,7 @@ from solvers.motion import JOINTS, JointRecording, Sensor
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.recordings.live.frames import LiveFrame, encode_frame, frames_of
 from solvers.samples import PerformanceSettings, perform
-from solvers.workflows.live_session import DROPPED, TOO_SHORT, LiveSession, pose_from_frame
+from solvers.workflows.live_session import NO_END, TOO_SHORT, LiveSession, pose_from_frame
 
 
 def lines_of(made, body=0, since=0.0, **settings):
@@ -80,7 +80,7 @@ def test_a_sender_that_is_started_again_drops_the_performance():
 
     events, queries, messages = heard(session, lines_of(["hand up"]))
 
-    assert (events[0], queries, messages) == (Gesture.CAPTURE_DROPPED, [], [DROPPED])
+    assert (events[0], queries, messages) == (Gesture.CAPTURE_DROPPED, [], [NO_END])
     assert events[1:] == [Gesture.HAND_UP]
 
 
