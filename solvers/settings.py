@@ -72,7 +72,7 @@ class Settings:
             return ""
         unit = f" {described.unit}" if described.unit else ""
         return (
-            f"{item.name} is {value:g}{unit}; it must be between"
+            f"{item.name} is {value:g}{unit}; it must lie between"
             f" {described.minimum:g} and {described.maximum:g}."
         )
 

@@ -53,7 +53,7 @@ def test_a_take_without_partner_is_named(call, stage):
     (stage / "truth" / "bob_1.bvh").unlink()
     status, _, err = learn(call, stage)
     assert status == 2
-    assert "no take named bob_1" in err
+    assert "name it bob_1" in err
 
 
 def test_an_unknown_actor_is_named(call, stage):
