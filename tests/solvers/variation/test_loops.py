@@ -20,7 +20,7 @@ from solvers.variation import (
 from solvers.variation.align_examples import body_positions
 from solvers.variation.course import Course, course_of, headings, motion_of
 from solvers.variation.loops import close_loop, loop_at_rate, loops, middle_round, repeated
-from solvers.workflows.vary_motions import stand
+from solvers.workflows.vary_motions import plant_variant
 
 CMU_METRES = 0.0254 / 0.45
 FREE = np.ones(2)
@@ -70,7 +70,7 @@ def test_variants_of_a_looping_walk_loop(alone, planted, cycles):
 
     for variant in draw_variants(model, 4):
         assert variant.loops
-        gap, step = seam_of(stand(variant).motion if planted else variant.motion)
+        gap, step = seam_of(plant_variant(variant).motion if planted else variant.motion)
         assert gap < 2e-3
         assert step < 1.0
 

@@ -136,7 +136,7 @@ def test_missing_frames_are_bridged_and_told_of():
 @pytest.mark.parametrize(
     ("across", "down", "words"),
     [
-        (0.5, 0.5, "check the focal length"), (2.0, 2.0, "check that the focal length"),
+        (0.5, 0.5, "Check the focal length"), (2.0, 2.0, "check that the focal length"),
         (1.3, 1.0, "check fx and fy"), (1.0, 0.75, "check fx and fy"),
     ],
 )  # fmt: skip

@@ -46,7 +46,7 @@ def test_a_file_that_takes_its_process_down_is_refused_and_the_others_are_not(cl
     assert [one.request.name for one in found] == [f"clip {number}" for number in range(4)]
     assert [one.clip is None for one in found] == [False, True, False, False]
     assert found[1].sentence.startswith(
-        f"{clip_request[1].origin.path}: the process that read it has"
+        f"{clip_request[1].origin.path}: the process that read it crashed"
     )
 
 
