@@ -1,1 +1,1 @@
-"""Everything that runs without Blender: arrays and files in, arrays and files out."""
+"""Solvers that run without Blender, on arrays and files."""

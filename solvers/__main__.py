@@ -7,9 +7,9 @@ from .processes import thread_environment, threads_of_words
 
 
 def main() -> int:
-    """Solve with as many threads of linear algebra as the command line says, by default one.
+    """Run the command line with its number of linear algebra threads, by default one.
 
-    NumPy reads their number when it is imported, and so must not have been before.
+    NumPy reads this number on import, so it must not be imported before.
     """
     words = sys.argv[1:]
     os.environ.update(thread_environment(threads_of_words(words)))

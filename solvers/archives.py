@@ -1,4 +1,4 @@
-"""Archives of learned things: one layout for each kind, written and read here alone."""
+"""Write and read archives of learned models, with one layout for each kind."""
 
 import io
 import zipfile
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InvalidFileError
-from .files import open_regular, written_whole
+from .files import open_regular, write_atomically
 from .npz_members import (
     READABLE,
     DamagedMemberError,
@@ -21,25 +21,25 @@ from .npz_members import (
     read_members,
 )
 
-LONGEST_WORD = 100
-"""Letters of the kind of an archive."""
+MAX_KIND_LETTERS = 100
+"""Maximum number of letters in the kind of an archive."""
 
 
 @dataclass(frozen=True)
 class ArchiveLayout:
-    """What an archive of one kind holds: the one place that says so.
+    """The layout of an archive of one kind.
 
     Attributes
     ----------
     kind : str
-        What it holds, as its member `kind` says.
+        The content, stored in the member `kind`.
     version : int
-        Of the layout, as its member `version` says.
+        Version of the layout, stored in the member `version`.
     members : mapping of str to Values
     holds : str
-        What a damaged one holds, in a sentence: "damaged postures".
+        Content of a damaged archive in a message: "damaged postures".
     remedy : str
-        What to do then, as a sentence.
+        Sentence on what to do then.
     """
 
     kind: str
@@ -49,21 +49,21 @@ class ArchiveLayout:
     remedy: str
 
     def write(self, path: Path | str, arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Save arrays as one compressed archive, whole or not at all.
+        """Save arrays as one compressed archive, atomically.
 
         Raises
         ------
         InvalidFileError
-            It cannot be written there, or another program's file would be written over.
+            The path is not writable, or the file of another program would be overwritten.
         """
         if Path(path).exists() and not _is_own(path):
             raise InvalidFileError(
                 f"{path} is not a file of Mocap Assist; choose another name."
             )
         own = {"kind": np.array(self.kind), "version": np.array(self.version)}
-        content = io.BytesIO()  # On a full disk, an archive that lies there fails twice.
+        content = io.BytesIO()  # On a full disk, an archive on disk fails twice.
         np.savez_compressed(content, **own, **arrays)
-        with written_whole(path) as part:
+        with write_atomically(path) as part:
             part.write_bytes(content.getbuffer())
 
     def read(self, path: Path | str) -> dict[str, NDArray[Any]]:
@@ -105,14 +105,14 @@ class ArchiveLayout:
 
 
 def _single(archive: zipfile.ZipFile, name: str) -> str | int | None:
-    """Return the one word or whole number of a member; None where it holds anything else."""
+    """Return the single text or integer of a member; None if it holds anything else."""
     if f"{name}.npy" not in archive.namelist():
         return None
     try:
         header = member_header(archive, name)
-    except ValueError:  # It is of another kind; damage is no ValueError.
+    except ValueError:  # Another kind of member; damage raises no ValueError.
         return None
-    if header.shape != () or header.n_bytes > 4 * LONGEST_WORD:
+    if header.shape != () or header.n_bytes > 4 * MAX_KIND_LETTERS:
         return None
     value = member_content(archive, name).item()
     if isinstance(value, str):
@@ -121,7 +121,7 @@ def _single(archive: zipfile.ZipFile, name: str) -> str | int | None:
 
 
 def _is_own(path: Path | str) -> bool:
-    """Whether a file is an archive that `ArchiveLayout.write` saved."""
+    """Return whether `ArchiveLayout.write` saved this file."""
     try:
         with open_regular(path) as file, zipfile.ZipFile(file) as archive:
             return isinstance(_single(archive, "kind"), str)

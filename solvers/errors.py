@@ -18,7 +18,7 @@ class InvalidFileError(MocapAssistError, ValueError):
 
 
 class FileAccessError(InvalidFileError):
-    """A file or folder cannot be opened now; nothing is known of what it holds."""
+    """A file or folder cannot be opened now; its content is unknown."""
 
 
 class SolveCancelled(MocapAssistError):
@@ -26,7 +26,7 @@ class SolveCancelled(MocapAssistError):
 
 
 class OutOfMemoryError(MocapAssistError):
-    """A solve needs more memory than there is."""
+    """A solve needs more memory than available."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""The last net under the work on one file: whatever fails becomes one sentence."""
+"""Convert any failure in the processing of one file to one sentence."""
 
 import re
 import traceback
@@ -48,7 +48,7 @@ def attempt(
     *args: Arguments.args,
     **kwargs: Arguments.kwargs,
 ) -> Result | Failure:
-    """Return what `work` returns, or why it failed, so that other files are worked on.
+    """Return the result of `work`, or its failure, so that other files are still processed.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def escaped(text: str) -> str:
     r"""Return text with each character that UTF-8 cannot encode written as `\udcff`.
 
     Python keeps bytes of file names that are not valid UTF-8 as such characters. Control
-    characters are written so, too: a name could otherwise pretend to be a line of its own.
+    characters are escaped, too: otherwise a name could imitate a separate line.
     """
     plain = text.encode("utf-8", "backslashreplace").decode("utf-8")
     return re.sub(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]", _code, plain)

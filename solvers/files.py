@@ -1,4 +1,4 @@
-"""Write files whole or not at all, and open nothing but files."""
+"""Write files atomically, and open only regular files."""
 
 import errno
 import os
@@ -16,7 +16,7 @@ from typing import BinaryIO
 
 from .errors import FileAccessError, InvalidFileError
 
-# What numpy and zipfile were seen to raise on files that are cut short or altered.
+# Errors that numpy and zipfile raise on truncated or altered files.
 DAMAGE = (
     OSError, ValueError, EOFError, IndexError, KeyError, AttributeError, TypeError,
     NotImplementedError, OverflowError, RecursionError, SyntaxError, TokenError,
@@ -26,28 +26,28 @@ DAMAGE = (
 
 DISK_FULL = {errno.ENOSPC, errno.EDQUOT}
 PART_BYTES = 6
-"""Random bytes in the name of a temporary file, so that two writers do not meet."""
+"""Random bytes in the name of a temporary file, so that two writers do not collide."""
 
 
 def reason_of(error: OSError) -> str:
-    """Return what the system reports, in words that say what to do about a full disk."""
+    """Return the reason of a system error, with a plain text for a full disk."""
     if error.errno in DISK_FULL:
         return "the disk is full"
     return error.strerror or str(error)
 
 
 def unreadable(path: Path | str, error: OSError) -> FileAccessError:
-    """Return the error of a file or folder that the system does not let us read."""
+    """Return the error for a file or folder that the system does not allow to read."""
     return FileAccessError(f"{path} cannot be read ({reason_of(error)}).")
 
 
 def real_path(path: Path | str) -> Path:
-    """Return a path that is absolute and without links; a link to itself stays."""
+    """Return an absolute path with resolved links; a link to itself stays."""
     return Path(os.path.realpath(path))
 
 
 def is_missing(path: Path | str) -> bool:
-    """Whether there is no such file or folder; where the system does not say, there may be."""
+    """Return whether a file or folder is known not to exist."""
     try:
         Path(path).stat()
     except (FileNotFoundError, NotADirectoryError):
@@ -58,12 +58,12 @@ def is_missing(path: Path | str) -> bool:
 
 
 def open_regular(path: Path | str) -> BinaryIO:
-    """Open a file to be read.
+    """Open a regular file for reading.
 
-    Raises OSError for what is none: a pipe would be waited for, a device may never end.
+    Raises OSError for others: opening a pipe may block, and a device may be endless.
     """
-    ways = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-    descriptor = os.open(path, ways)
+    open_flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    descriptor = os.open(path, open_flags)
     try:
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):
             raise OSError(errno.EINVAL, "it is not a file", str(path))
@@ -74,11 +74,11 @@ def open_regular(path: Path | str) -> BinaryIO:
 
 
 @contextmanager
-def written_whole(path: Path | str) -> Iterator[Path]:
-    """Yield a temporary path beside `path`; move it onto `path` if all goes well.
+def write_atomically(path: Path | str) -> Iterator[Path]:
+    """Yield a temporary path next to `path`; on success, move it to `path`.
 
-    On any exception the temporary file is removed and `path` is as it was. The content is on
-    the disk before the move: after a loss of power `path` holds the old content or the new.
+    On any exception the temporary file is removed and `path` is unchanged. The content is on
+    the disk before the move: after a power failure `path` holds the old or the new content.
 
     Raises
     ------
@@ -88,7 +88,7 @@ def written_whole(path: Path | str) -> Iterator[Path]:
     path = Path(path)
     part = path.with_name(f"{_part_stem(path)}{token_hex(PART_BYTES)}{path.suffix}")
     try:
-        try:  # Not tempfile's: a Ctrl-C that falls into it leaves its file behind, or is lost.
+        try:  # Not tempfile's: Ctrl-C during its creation leaves the file, or is dropped.
             yield part
             with part.open("rb+") as file:
                 os.fsync(file.fileno())
@@ -100,10 +100,10 @@ def written_whole(path: Path | str) -> Iterator[Path]:
 
 
 def remove_leftovers(paths: Iterable[Path]) -> None:
-    """Remove the temporary files of `written_whole` for these paths.
+    """Remove the temporary files of `write_atomically` for these paths.
 
-    Only a process that was killed, or a computer that lost its power, leaves any. Nobody else
-    may be writing these paths.
+    Only a killed process or a power failure leaves any. No other process may be writing these
+    paths.
     """
     in_folders: dict[Path, list[Path]] = {}
     for path in paths:

@@ -1,4 +1,4 @@
-"""Read JSON that anybody may have written."""
+"""Parse untrusted JSON."""
 
 import json
 import re
@@ -7,19 +7,19 @@ from typing import Any
 import numpy as np
 
 MAX_DEPTH = 64
-"""Lists and objects within each other; files of this project and of cameras have up to 8."""
+"""Maximum nesting of lists and objects; files of this project and of cameras have up to 8."""
 STRING = re.compile(r'"(?:[^"\\]++|\\.)*+(?:"|\\?\Z)', re.DOTALL)
-"""One that does not end goes on to the end of the text, so that it is looked at once."""
+"""An unterminated string matches to the end of the text, which bounds the run time."""
 
 
 def parse_json(text: str | bytes, **options: Any) -> Any:
-    """Return what JSON text holds; options are those of `json.loads`.
+    """Parse JSON text; options are those of `json.loads`.
 
     Raises
     ------
     ValueError
         The text is not JSON, or its lists and objects are nested more than `MAX_DEPTH` deep,
-        more than code that writes or walks through them can bear.
+        which would overflow recursive code.
     """
     if isinstance(text, bytes):
         text = text.decode(json.detect_encoding(text), "surrogatepass")
@@ -29,7 +29,7 @@ def parse_json(text: str | bytes, **options: Any) -> Any:
 
 
 def _depth(text: str) -> int:
-    """Return how deeply lists and objects are nested in JSON text, at least."""
+    """Return a lower bound of the nesting of lists and objects in JSON text."""
     letters = np.frombuffer(STRING.sub("", text).encode("utf-8", "replace"), np.uint8)
     opened = (letters == ord("[")) | (letters == ord("{"))
     closed = (letters == ord("]")) | (letters == ord("}"))

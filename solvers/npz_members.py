@@ -1,8 +1,8 @@
 """Members of archives of arrays (npz): read within bounds, checked, and never unpickled.
 
-An archive says of itself how many arrays of which sizes it holds, and a small file may say, and
-unpack to, anything. So every reader names the members that it wants and what they must hold;
-headers are checked before any memory is taken, and other members are not unpacked.
+A small archive may announce, and unpack to, arrays of any size. Every reader therefore names
+the members that it needs and their valid content. Headers are checked before memory is
+allocated, and other members are not unpacked.
 """
 
 import io
@@ -20,62 +20,62 @@ from numpy.typing import NDArray
 from .files import DAMAGE
 
 MAX_BYTES = 1 << 32
-LONGEST_HEADER = 1024
-"""Bytes that describe an array; 118 are usual."""
+MAX_HEADER_BYTES = 1024
+"""Maximum bytes of the header of an array; 118 are typical."""
 READABLE = (*DAMAGE, RuntimeError)
-"""What zipfile and numpy raise on damaged archives; RuntimeError where one is encrypted."""
+"""Errors of zipfile and numpy on damaged archives; RuntimeError on encrypted ones."""
 
 
-class Bound(NamedTuple):
-    """Bytes that wanted members may unpack to: so many, or so many times the file's size.
+class SizeLimit(NamedTuple):
+    """Maximum unpacked size: the larger of a constant and a multiple of the file size.
 
-    But never more than `MAX_BYTES`.
+    `MAX_BYTES` is the upper limit of both.
     """
 
     always: int
     ratio: int
 
 
-LEARNED = Bound(64_000_000, 20)
-"""Of learned numbers, which hardly shrink: the shipped ones by a third."""
-RECORDED = Bound(1_000_000, 200)
-"""Of recordings, which small whole numbers and gaps may let shrink more."""
+LEARNED = SizeLimit(64_000_000, 20)
+"""For learned models, which compress little: the shipped ones by a third."""
+RECORDED = SizeLimit(1_000_000, 200)
+"""For recordings, which compress more due to small integers and gaps."""
 
 
 class ArrayHeader(NamedTuple):
-    """What stands before the numbers of an array."""
+    """The header of an array."""
 
     shape: tuple[int, ...]
     by_column: bool
     dtype: np.dtype[Any]
     start: int
-    """Bytes before the numbers."""
+    """Bytes of the header."""
 
     @property
     def n_bytes(self) -> int:
-        """Bytes of the numbers."""
+        """Bytes of the data."""
         return prod(self.shape) * self.dtype.itemsize
 
 
 @dataclass(frozen=True)
 class Values:
-    """What a member must hold.
+    """The valid content of a member.
 
     Attributes
     ----------
     kinds : str
-        NumPy's letters of the kinds of its elements.
+        Valid kinds of elements, as letters of NumPy.
     shape : tuple of int or str, or None
-        A word is a size that all members share which name it; "3*parts" is three times that.
+        A text names a size that is equal in all members; "3*parts" is three times that size.
         None: any shape.
     minimum, maximum : float
-        Least and greatest number.
+        Valid range.
     finite : bool
-        Whether numbers may be neither NaN nor infinite.
+        Whether NaN and infinity are invalid.
     optional : bool
         Whether the member may be missing.
     or_empty : bool
-        Whether the member may also hold nothing, in the shape (0,).
+        Whether the member may also be empty, with shape (0,).
     """
 
     kinds: str
@@ -93,12 +93,12 @@ def numbers(*shape: int | str, **more: Any) -> Values:
 
 
 def integers(*shape: int | str, **more: Any) -> Values:
-    """Return the description of whole numbers."""
+    """Return the description of integers."""
     return Values("iu", shape, **more)
 
 
 def flags(*shape: int | str, **more: Any) -> Values:
-    """Return the description of truth values; older files may hold 0 and 1."""
+    """Return the description of booleans; older files may hold 0 and 1."""
     return Values("biu", shape, minimum=0, maximum=1, **more)
 
 
@@ -108,30 +108,32 @@ def words(*shape: int | str, **more: Any) -> Values:
 
 
 class DamagedMemberError(ValueError):
-    """A member is missing, or does not hold what it must."""
+    """A member is missing or has invalid content."""
 
 
 def read_members(
-    archive: zipfile.ZipFile, members: Mapping[str, Values], bound: Bound = LEARNED
+    archive: zipfile.ZipFile, members: Mapping[str, Values], bound: SizeLimit = LEARNED
 ) -> dict[str, NDArray[Any]]:
-    """Return these members of an archive, after all their headers were checked.
+    """Return members of an archive after checking all their headers.
 
     Raises
     ------
     DamagedMemberError
-        A member is missing, or does not hold what it must.
+        A member is missing or has invalid content.
     ValueError, OSError and others of `READABLE`
-        The archive is damaged, or announces more than it may hold.
+        The archive is damaged or too large.
     """
-    there = set(archive.namelist())
+    existing = set(archive.namelist())
     missing = [
         name
         for name, values in members.items()
-        if f"{name}.npy" not in there and not values.optional
+        if f"{name}.npy" not in existing and not values.optional
     ]
     if missing:
         raise DamagedMemberError(f"{', '.join(map(repr, missing))} missing")
-    headers = {name: member_header(archive, name) for name in members if f"{name}.npy" in there}
+    headers = {
+        name: member_header(archive, name) for name in members if f"{name}.npy" in existing
+    }
     _check_headers(headers, members)
     _check_total(archive, sum(header.n_bytes for header in headers.values()), bound)
     arrays = {name: member_content(archive, name) for name in headers}
@@ -141,7 +143,7 @@ def read_members(
 
 
 def member_header(archive: zipfile.ZipFile, name: str) -> ArrayHeader:
-    """Return what precedes the numbers of a member; ValueError if they do not fill it."""
+    """Return the header of a member; ValueError if its size does not match."""
     member = archive.getinfo(f"{name}.npy")
     if member.compress_type not in {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
         raise zipfile.BadZipFile(f"compressed by method {member.compress_type}")
@@ -153,13 +155,13 @@ def member_header(archive: zipfile.ZipFile, name: str) -> ArrayHeader:
 
 
 def member_content(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
-    """Return the numbers of a member, whose size must be known to be bearable."""
+    """Return the data of a member; check its size before."""
     with archive.open(f"{name}.npy") as file:
         return array_content(file, array_header(file))
 
 
 def array_header(file: IO[bytes]) -> ArrayHeader:
-    """Read what precedes the numbers of an array, and stop where they begin."""
+    """Read the header of an array, up to its data."""
     formats: Any = np.lib.format  # which has no types
     magic = file.read(len(formats.MAGIC_PREFIX) + 2)
     read, width = {
@@ -167,7 +169,7 @@ def array_header(file: IO[bytes]) -> ArrayHeader:
         b"\2\0": (formats.read_array_header_2_0, 4),
     }[magic[-2:]]
     size = file.read(width)
-    if int.from_bytes(size, "little") > LONGEST_HEADER:
+    if int.from_bytes(size, "little") > MAX_HEADER_BYTES:
         raise ValueError(size)
     head = io.BytesIO(magic + size + file.read(int.from_bytes(size, "little")))
     formats.read_magic(head)
@@ -182,7 +184,7 @@ def array_header(file: IO[bytes]) -> ArrayHeader:
 
 
 def array_content(file: IO[bytes], header: ArrayHeader) -> NDArray[Any]:
-    """Read the numbers behind a header."""
+    """Read the data after a header."""
     content = file.read(header.n_bytes)
     order: Any = "F" if header.by_column else "C"
     native = header.dtype.newbyteorder("=")
@@ -190,8 +192,8 @@ def array_content(file: IO[bytes], header: ArrayHeader) -> NDArray[Any]:
     return array.astype(native, order="K", copy=True)
 
 
-def _check_total(archive: zipfile.ZipFile, n_bytes: int, bound: Bound) -> None:
-    """Raise ValueError where wanted members would take more memory than they may."""
+def _check_total(archive: zipfile.ZipFile, n_bytes: int, bound: SizeLimit) -> None:
+    """Raise ValueError if the members would exceed the size limit."""
     file = archive.fp
     size = 0 if file is None else os.fstat(file.fileno()).st_size
     if n_bytes > min(MAX_BYTES, max(bound.always, bound.ratio * size)):
@@ -207,19 +209,19 @@ def _check_headers(headers: Mapping[str, ArrayHeader], members: Mapping[str, Val
         if values.shape is None or (values.or_empty and header.shape == (0,)):
             continue
         if len(header.shape) != len(values.shape) or not all(
-            _fits(size, wanted, sizes)
-            for size, wanted in zip(header.shape, values.shape, strict=True)
+            _fits(size, expected, sizes)
+            for size, expected in zip(header.shape, values.shape, strict=True)
         ):
             raise DamagedMemberError(f"the shapes do not fit, first that of {name}")
 
 
-def _fits(size: int, wanted: int | str, sizes: dict[str, int]) -> bool:
-    """Compare one size with what it must be; note those of words that are new."""
-    if isinstance(wanted, int):
-        return size == wanted
-    factor, _, word = wanted.rpartition("*")
+def _fits(size: int, expected: int | str, sizes: dict[str, int]) -> bool:
+    """Return whether a size matches; record the sizes of new names."""
+    if isinstance(expected, int):
+        return size == expected
+    factor, _, name = expected.rpartition("*")
     number, rest = divmod(size, int(factor or 1))
-    return not rest and sizes.setdefault(word, number) == number
+    return not rest and sizes.setdefault(name, number) == number
 
 
 def _check_values(name: str, array: NDArray[Any], values: Values) -> None:

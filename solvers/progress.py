@@ -1,23 +1,23 @@
-"""How a solver tells the outside world how far it is."""
+"""Report the progress of solvers."""
 
 from typing import Protocol
 
 READING = "Reading"
-"""What readers say of their work when there is nothing else to say."""
+"""Default message of readers."""
 
 
 class Progress(Protocol):
-    """Called by a solver now and then."""
+    """Callback that a solver calls repeatedly."""
 
     def __call__(self, fraction: float, message: str = "") -> None:
-        """Note that `fraction` (0 to 1) of the work is done.
+        """Report that `fraction` (0 to 1) of the work is done.
 
         Raises SolveCancelled when the caller no longer wants the result.
         """
 
 
 def unwatched(fraction: float, message: str = "") -> None:
-    """The Progress of scripts and tests: nobody looks."""
+    """Ignore progress, for scripts and tests."""
 
 
 def within(progress: Progress, start: float, stop: float) -> Progress:
@@ -29,19 +29,19 @@ def within(progress: Progress, start: float, stop: float) -> Progress:
     return partly
 
 
-def overheard(progress: Progress, told: list[str]) -> Progress:
-    """Return a Progress that also writes down what a reader says of a recording when done.
+def collect_messages(progress: Progress, messages: list[str]) -> Progress:
+    """Return a Progress that also collects the final messages of a reader.
 
     Parameters
     ----------
     progress : Progress
-    told : list of str
-        Gets what goes beyond `READING`, as that lengths are taken for millimetres.
+    messages : list of str
+        Gets messages other than `READING`, such as the assumed unit of length.
     """
 
-    def listening(fraction: float, message: str = "") -> None:
-        if fraction >= 1.0 and message not in ("", READING, *told):
-            told.append(message)
+    def report(fraction: float, message: str = "") -> None:
+        if fraction >= 1.0 and message not in ("", READING, *messages):
+            messages.append(message)
         progress(fraction, message)
 
-    return listening
+    return report

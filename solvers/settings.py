@@ -1,4 +1,4 @@
-"""Solver settings, described once: range, unit and help travel with the default value.
+"""Define solver settings once: default value, range, unit and help text.
 
 From the same description come Blender's properties with their tooltips, the command-line
 flags and the table in the documentation.
@@ -17,7 +17,7 @@ SMALL_WORDS = {"a", "an", "and", "as", "at", "by", "for", "from", "in", "of", "o
 
 @dataclass(frozen=True)
 class Described:
-    """What is known of one setting besides its name and default value."""
+    """Metadata of a setting besides its name and default value."""
 
     help: str
     unit: str = ""
@@ -26,7 +26,7 @@ class Described:
     advanced: bool = False
     """Folded away in the user interface."""
     label: str = ""
-    """What the user interface calls it; without one, its name in words."""
+    """Label in the user interface; by default made from the name."""
 
 
 class Choice(Enum):
@@ -60,13 +60,13 @@ def setting(default: Any, help: str, **limits: Any) -> Any:
 
 
 def label_of(item: Any) -> str:
-    """Return what the user interface calls a field of a `Settings` class."""
+    """Return the label of a field of a `Settings` class."""
     described: Described = item.metadata["described"]
     return described.label or in_title_case(item.name.replace("_", " "))
 
 
 def in_title_case(words: str) -> str:
-    """Return words as Blender writes its labels: "Learn from", "Frame Range"."""
+    """Return a text in Blender's title case: "Learn from", "Frame Range"."""
     first, *others = words.split(" ")
     return " ".join([
         first[:1].upper() + first[1:],
@@ -76,7 +76,7 @@ def in_title_case(words: str) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """Base of every settings class: values are checked once, when they are built."""
+    """Base of every settings class; values are validated on construction."""
 
     def __post_init__(self) -> None:
         wrong = [sentence for item in fields(self) if (sentence := self._fault(item))]

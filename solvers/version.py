@@ -1,4 +1,4 @@
-"""Which version this is."""
+"""Return the version of the extension."""
 
 import tomllib
 from functools import cache
@@ -7,7 +7,7 @@ from pathlib import Path
 
 @cache
 def version() -> str:
-    """Return the extension's version, which stands in its manifest alone; empty without one."""
+    """Return the version in the extension's manifest; empty without a manifest."""
     manifest = Path(__file__).parents[1] / "blender_manifest.toml"
     if not manifest.is_file():
         return ""

@@ -34,7 +34,7 @@ ON_ONE_PYTHON = {
     "workflows/test_capture_recording.py": (3, 11),
     "workflows/test_clean_from_library.py": (3, 13),
     "workflows/test_describe_files.py": (3, 11),
-    "workflows/test_foretell_lost.py": (3, 13),
+    "workflows/test_prior_validation.py": (3, 13),
     "workflows/test_index_files.py": (3, 11),
 }
 """Below tests/solvers: families of pure numpy, and long files, which run on one Python where

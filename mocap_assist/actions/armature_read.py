@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Tracks
 from ...solvers.rotations import multiply, rotate
+from ..blender.block_references import BlockReference, SourceReference
 from ..blender.compat import Source
-from ..blender.lasting import Lasting, LastingSource
-from ..blender.turns import Sliced, Steps, due
+from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene.body import body_root
 from ..scene.history import was_thinned
 from ..scene.origin import origin_of
@@ -73,7 +73,7 @@ def read_take(
         step = grid.step if recorded else None
         pose_bone = keyed.pose_bone(bone)
         channels.append(read_bone(pose_bone, keyed.curves, grid.frames, step, gaps=not thinned))
-        if due():
+        if should_yield():
             yield 0.2 + 0.5 * number / len(rig.bones)
             keyed.find_again()
     if not any(_is_captured(each) for each in channels):
@@ -101,7 +101,11 @@ class _Keyed:
     def __init__(
         self, armature: bpy.types.Object, scene: bpy.types.Scene, source: Source
     ) -> None:
-        self._lasting = Lasting.of(armature), Lasting.of(scene), LastingSource.of(source)
+        self._lasting = (
+            BlockReference.of(armature),
+            BlockReference.of(scene),
+            SourceReference.of(source),
+        )
         self.armature, self.scene = armature, scene
         self.curves = animated_curves(*source)
 
@@ -121,7 +125,7 @@ class _Keyed:
         for number, name in enumerate(names):
             if name in self.curves:
                 self.curves[name].read_keys()
-            if due():
+            if should_yield():
                 yield 0.2 * number / len(names)
                 self.find_again()
 

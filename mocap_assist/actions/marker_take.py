@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Tracks
+from ..blender.block_references import BlockReference
 from ..blender.compat import Source
-from ..blender.lasting import Lasting
-from ..blender.turns import Sliced, Steps, due
+from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene import history
 from ..scene.rig import Placement, check_finite, placement_of
 from ..scene.units import unit_of
@@ -82,7 +82,7 @@ def read_markers(
         There are no markers or keys, a marker's space is scaled unevenly, or something was
         deleted between two turns.
     """
-    lasting = Lasting.of(holder), Lasting.of(scene)
+    lasting = BlockReference.of(holder), BlockReference.of(scene)
     markers = _Markers.of(holder, recorded)
     if grid is None:
         keyed = [
@@ -97,7 +97,7 @@ def read_markers(
         marker, curves = markers.objects[number], markers.curves[number]
         places.append(space.points(_locations(marker, curves, grid)))
         confidence.append(_confidence(curves, grid.frames))
-        if due():
+        if should_yield():
             yield number / len(spaces)
             holder, scene = (each.find() for each in lasting)
             markers = markers.found_again(holder, recorded)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...solvers.motion import Motion, Skeleton, Tracks
 from ...solvers.rotations import inverse, multiply, rotate
-from ..blender.turns import Sliced, Steps, due
+from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene.rig import Placement, Rig
 from .frames import Grid
 
@@ -124,7 +124,7 @@ def part_of(
     for number, bone in enumerate(bones):
         turn = multiply(multiply(world[bone], channels[bone].rotations), inverse(world[bone]))
         rotations.append(turn)
-        if due():
+        if should_yield():
             yield 0.7 + 0.3 * number / len(bones)
     carried = multiply(carrier.rotations, inverse(rest.rotations[0]))
     rotations[0] = multiply(carried, rotations[0])

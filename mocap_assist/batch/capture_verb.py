@@ -1,4 +1,4 @@
-"""`capture`: Import and Track, to recordings of depth."""
+"""`capture`: import depth recordings and track their actors."""
 
 import argparse
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import get_type_hints
 
 import bpy
 
-from ...solvers.command_line.files import found_in
+from ...solvers.command_line.files import find_recordings
 from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError
@@ -16,9 +16,9 @@ from ..importing.choices import ImportChoices
 from ..importing.depth_folders import depth_recordings_in, is_take
 from ..importing.importing import import_files
 from ..track.tracking import TrackBundle, read_tracking, selected_preview, write_tracked
-from .pictures import draw_played
-from .saving import save, target_file, tell
-from .solving import solve_apart
+from .pictures import draw_result
+from .saving import report_figures, save, target_file
+from .solving import solve_in_subprocess
 
 HELP = "Track the actors of recordings of depth: armatures with actions in the .blend file."
 
@@ -29,46 +29,47 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
         "files", nargs="+", type=Path, metavar="FILE",
         help="recordings of depth: files, folders of pictures, or folders of such takes",
     )  # fmt: skip
-    arguments_from(parser, ImportChoices, *offered().values())
+    arguments_from(parser, ImportChoices, *button_settings().values())
 
 
-def offered() -> dict[str, type[Settings]]:
-    """Return the settings of the button, but for those of looking on."""
+def button_settings() -> dict[str, type[Settings]]:
+    """Return the settings of the button, without those of the preview."""
     classes = get_type_hints(TrackBundle)
     return {name: classes[name] for name in classes if name != "watching"}
 
 
 def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
-    """Track all that can be tracked and save the file.
+    """Track all recordings that can be tracked, and save the file.
 
     Raises
     ------
     InvalidFileError
-        Somebody could not be tracked, or the file could not be saved.
+        A recording could not be tracked, or the file could not be saved.
     """
     target = target_file(arguments)
     settings = TrackBundle(**{
-        name: settings_from_arguments(arguments, each) for name, each in offered().items()
+        name: settings_from_arguments(arguments, each)
+        for name, each in button_settings().items()
     })
-    made, said, failed = [], [], []
+    made, messages, failed = [], [], []
     takes = [path for path in arguments.files if is_take(path)]
     others = [path for path in arguments.files if path not in takes]
-    inside = found_in(others, look=depth_recordings_in)
+    inside = find_recordings(others, list_recordings=depth_recordings_in)
     for path in [*takes, *(path for path, _ in inside)]:
         screen.title = path.name
         sentence = attempt(path, _tracked, path, arguments, settings, screen)
         if isinstance(sentence, Failure):
             failed.append(sentence.sentence)
             continue
-        said.append(sentence)
+        messages.append(sentence)
         made.append(bpy.context.object)
     screen.clear()
     if made:
         save(target)
-    figures = {"objects": [each.name for each in made], "said": said, "failed": failed}
-    tell(arguments, figures, said)
+    figures = {"objects": [each.name for each in made], "said": messages, "failed": failed}
+    report_figures(arguments, figures, messages)
     if arguments.picture is not None and made:
-        draw_played(bpy.context.scene, made[0], arguments.picture)
+        draw_result(bpy.context.scene, made[0], arguments.picture)
     if failed:
         raise InvalidFileError(" ".join(failed))
 
@@ -76,7 +77,7 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
 def _tracked(
     path: Path, arguments: argparse.Namespace, settings: TrackBundle, screen: Screen
 ) -> str:
-    """Bring in one recording and track it; the new armature becomes active."""
+    """Import one recording and track it; the new armature becomes active."""
     choices = settings_from_arguments(arguments, ImportChoices)
     imported = import_files(bpy.context, [path], choices, progress=screen.progress)
     if imported.failed:
@@ -85,5 +86,7 @@ def _tracked(
     if preview is None:
         raise InvalidFileError("It holds no depth. Bring it in with import.")
     scene = bpy.context.scene
-    result = solve_apart(read_tracking(scene, preview, settings), arguments, screen.progress)
+    result = solve_in_subprocess(
+        read_tracking(scene, preview, settings), arguments, screen.progress
+    )
     return write_tracked(scene, preview, settings, result)

@@ -1,4 +1,4 @@
-"""Parse a command line within Blender, work on the armatures of the open file, save it."""
+"""Parse a command line within Blender, process the armatures of the open file and save it."""
 
 import argparse
 import json
@@ -9,22 +9,22 @@ from contextlib import AbstractContextManager, nullcontext
 import bpy
 
 from ...solvers.command_line.options import SentenceParser
-from ...solvers.command_line.screen import Screen, escape_odd_names, printable
+from ...solvers.command_line.screen import Screen, escape_undecodable_names, printable
 from ...solvers.errors import InvalidFileError, InvalidSettingError, MocapAssistError
-from ...solvers.files import reason_of, written_whole
+from ...solvers.files import reason_of, write_atomically
 from ...solvers.processes import add_threads_option
 from ..actions.markers import markers_of
 from ..scene import history
 from .capture_verb import HELP as CAPTURE_HELP
 from .capture_verb import add_capture_options, perform_capture
-from .each_child import OPTION, working_on
+from .each_child import OPTION, lock_target
 from .each_verb import HELP as EACH_HELP
 from .each_verb import add_each_options, perform_each
 from .import_verb import HELP as IMPORT_HELP
 from .import_verb import add_import_options, perform_import
 from .library_verbs import INDEX_HELP, add_index_options, perform_index
-from .pictures import draw_played
-from .saving import STDOUT, add_output_options, in_a_folder, save, target_file
+from .pictures import draw_result
+from .saving import STDOUT, add_output_options, check_folder, save, target_file
 from .verbs import VERBS
 
 PROG = "blender FILE --command mocap_assist"
@@ -33,52 +33,52 @@ _commands: list[object] = []
 
 
 def run(words: Sequence[str]) -> int:
-    """Do what the command line says; return the exit status, 0 or 2.
+    """Run a command line; return the exit status, 0 or 2.
 
-    Each failure is one sentence on stderr. Nothing is saved if anything failed, but for
-    `import`, `capture` and `each`, which do what can be done.
+    Each failure is one sentence on stderr. Nothing is saved after a failure, except by
+    `import`, `capture` and `each`, which save what succeeded.
     """
-    escape_odd_names(sys.stdout)
+    escape_undecodable_names(sys.stdout)
     screen = Screen()
     try:
-        own, after = _parted(list(words))
+        own, after = _split_words(list(words))
         arguments = _parser().parse_args(own)
-        arguments.words = _understood(after)
-        with _as_child_of_each(arguments):
+        arguments.words = _check_words(after)
+        with _child_context(arguments):
             arguments.work(arguments, screen)
     except MocapAssistError as error:
-        screen.say(str(error))
+        screen.write_line(str(error))
         return FAILED
     except OSError as error:
-        screen.say(f"{error.filename or 'The output'}: {reason_of(error)}.")
+        screen.write_line(f"{error.filename or 'The output'}: {reason_of(error)}.")
         return FAILED
-    except SystemExit as stop:  # a slip in the command line, or --help
+    except SystemExit as stop:  # a usage error, or --help
         return int(stop.code or 0)
     return 0
 
 
-def _as_child_of_each(arguments: argparse.Namespace) -> AbstractContextManager[None]:
-    """Return what such a Blender does about its work, or nothing."""
-    return working_on(arguments.output) if arguments.child_of_each else nullcontext()
+def _child_context(arguments: argparse.Namespace) -> AbstractContextManager[None]:
+    """Return the context of a child of `each`, or an empty one."""
+    return lock_target(arguments.output) if arguments.child_of_each else nullcontext()
 
 
-def _parted(words: list[str]) -> tuple[list[str], list[str]]:
-    """Part the words of `each` from those of the verb that it does: at the first --."""
+def _split_words(words: list[str]) -> tuple[list[str], list[str]]:
+    """Split the arguments of `each` from those of its verb, at the first --."""
     if words[:1] != ["each"] or "--" not in words:
         return words, []
     at = words.index("--")
     return words[:at], words[at + 1 :]
 
 
-def _understood(words: list[str]) -> list[str]:
-    """Return the words of the verb that `each` does, once it is sure that they mean one.
+def _check_words(words: list[str]) -> list[str]:
+    """Return the arguments of the verb of `each` after checking them.
 
     Raises
     ------
     InvalidSettingError
-        It is a verb that saves no file.
+        The verb saves no file.
     SystemExit
-        There is no such verb or option; the parser has said so.
+        There is no such verb or option; the parser has reported it.
     """
     if not words:
         return words
@@ -98,7 +98,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take the command away again."""
+    """Remove the command."""
     while _commands:
         bpy.utils.unregister_cli_command(_commands.pop())
 
@@ -141,11 +141,11 @@ def _parser() -> SentenceParser:
 
 def _work(arguments: argparse.Namespace, screen: Screen) -> None:
     verb = VERBS[arguments.verb]
-    left_alone = verb.left_alone(arguments)
-    subjects = _subjects(arguments.armature, left_alone, on_markers=verb.on_markers)
+    excluded_armature = verb.excluded_armature(arguments)
+    subjects = _subjects(arguments.armature, excluded_armature, on_markers=verb.on_markers)
     target = target_file(arguments) if verb.writes else None
     verb.check(arguments, subjects)
-    figures_file = None if arguments.json in {None, STDOUT} else in_a_folder(arguments.json)
+    figures_file = None if arguments.json in {None, STDOUT} else check_folder(arguments.json)
     lines = []
     for subject in subjects:
         screen.title = subject.name
@@ -157,22 +157,26 @@ def _work(arguments: argparse.Namespace, screen: Screen) -> None:
     if target is not None:
         save(target)
     if figures_file is not None:
-        with written_whole(figures_file) as part:
+        with write_atomically(figures_file) as part:
             part.write_text("".join(lines), encoding="utf-8")
     if arguments.picture is not None:
-        made = bpy.data.objects.get(left_alone, subjects[0])
-        draw_played(bpy.context.scene, made, arguments.picture)
+        made = bpy.data.objects.get(excluded_armature, subjects[0])
+        draw_result(bpy.context.scene, made, arguments.picture)
 
 
-def _subjects(name: str | None, left_alone: str, *, on_markers: bool) -> list[bpy.types.Object]:
-    """Return the armatures, or holders of markers, to work on."""
+def _subjects(
+    name: str | None, excluded_armature: str, *, on_markers: bool
+) -> list[bpy.types.Object]:
+    """Return the armatures, or parents of markers, to process."""
     things = list(bpy.context.scene.objects)
     armatures = [each for each in things if each.type == "ARMATURE"]
     holders = [
         each for each in things if on_markers and each.type == "EMPTY" and markers_of(each)
     ]
     if name is None:
-        found = [each for each in armatures if _plays(each) and each.name != left_alone]
+        found = [
+            each for each in armatures if _is_animated(each) and each.name != excluded_armature
+        ]
         found = found or holders
         missing = "The scene has no animated armature."
     else:
@@ -184,8 +188,8 @@ def _subjects(name: str | None, left_alone: str, *, on_markers: bool) -> list[bp
     return found
 
 
-def _plays(armature: bpy.types.Object) -> bool:
-    """Whether it plays an action; drivers alone are animation data too."""
+def _is_animated(armature: bpy.types.Object) -> bool:
+    """Return whether it plays an action; drivers alone are animation data too."""
     animation = armature.animation_data
     if animation is None:
         return False

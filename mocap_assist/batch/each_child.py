@@ -1,4 +1,4 @@
-"""The Blender that does the verb of `each` to one file; it ends with its parent."""
+"""Run the verb of `each` on one file, in a child Blender that ends with its parent."""
 
 import subprocess
 from collections.abc import Iterator, Sequence
@@ -12,26 +12,26 @@ from ...solvers.errors import InvalidFileError
 from ...solvers.processes import end_with_stdin, lock_for_work_on, try_lock
 
 OPTION = "--child-of-each"
-"""First word of the command line of such a Blender."""
-BETWEEN_LOOKS = 0.2
+"""First argument of a child Blender."""
+POLL_INTERVAL_S = 0.2
 """Seconds."""
-PATIENCE = 30.0
-"""Seconds to wait for a Blender that is ending; one that works on is reported then."""
+LOCK_TIMEOUT_S = 30.0
+"""Seconds to wait for the lock of a Blender that is ending, before an error."""
 
 
-class Ended(NamedTuple):
-    """How a Blender has ended."""
+class ChildResult(NamedTuple):
+    """The result of a child Blender."""
 
     status: int
     errors: str
-    """What it has printed on stderr."""
+    """Its output on stderr."""
 
 
-def run_child(command: Sequence[str], target: Path, stopped: Event) -> Ended | None:
+def run_child(command: Sequence[str], target: Path, stopped: Event) -> ChildResult | None:
     """Run a Blender that makes `target`, and wait for its end.
 
-    Where another one still works on that file, such as one whose `each` was killed a moment
-    ago, its end is waited for first.
+    If another Blender still processes that file, for example after `each` was killed, wait for
+    it first.
 
     Parameters
     ----------
@@ -39,15 +39,15 @@ def run_child(command: Sequence[str], target: Path, stopped: Event) -> Ended | N
     target : Path
         The .blend file that it saves.
     stopped : Event
-        Set when nobody wants the result any more: no Blender is started then.
+        If it is set, no Blender is started.
 
     Returns
     -------
     Ended or None
-        None where it was not started.
+        None if it was not started.
     """
-    while _is_worked_on(target):
-        if stopped.wait(BETWEEN_LOOKS):
+    while _is_locked(target):
+        if stopped.wait(POLL_INTERVAL_S):
             return None
     with subprocess.Popen(
         command,
@@ -57,33 +57,33 @@ def run_child(command: Sequence[str], target: Path, stopped: Event) -> Ended | N
     ) as child:
         assert child.stderr is not None
         errors = child.stderr.read()  # not communicate(), which closes stdin at once
-        return Ended(child.wait(), errors.decode("utf-8", "replace"))
+        return ChildResult(child.wait(), errors.decode("utf-8", "replace"))
 
 
 @contextmanager
-def working_on(target: Path) -> Iterator[None]:
-    """Be such a Blender: end with the one that started it, and keep others off `target`.
+def lock_target(target: Path) -> Iterator[None]:
+    """Lock `target` in a child Blender, and end this process with its parent.
 
     Raises
     ------
     InvalidFileError
-        Another Blender works on that file.
+        Another Blender processes that file.
     """
     end_with_stdin()
-    path, until = lock_for_work_on(target), monotonic() + PATIENCE
+    path, until = lock_for_work_on(target), monotonic() + LOCK_TIMEOUT_S
     while (lock := try_lock(path)) is None:
         if monotonic() > until:
             raise InvalidFileError(
                 f"Another Blender is making {target}; wait until it is done, or end it."
             )
-        Event().wait(BETWEEN_LOOKS)
+        Event().wait(POLL_INTERVAL_S)
     try:
         yield
     finally:
         lock.release()
 
 
-def _is_worked_on(target: Path) -> bool:
+def _is_locked(target: Path) -> bool:
     lock = try_lock(lock_for_work_on(target))
     if lock is not None:
         lock.release()

@@ -1,4 +1,4 @@
-"""`each`: a verb done to each of many files, by Blenders of their own, and a report of all."""
+"""`each`: run a verb on many files, each in a Blender of its own, with one report."""
 
 import argparse
 import sys
@@ -11,14 +11,14 @@ from typing import Any
 
 import bpy
 
-from ...solvers.command_line.batch import Finished, Made
-from ...solvers.command_line.files import found_in, refuse_long_name, told_apart
+from ...solvers.command_line.batch import FinishedTask, OutputRecord
+from ...solvers.command_line.files import check_name_length, find_recordings, unique_targets
 from ...solvers.command_line.report import (
     PICTURE,
     Entry,
-    forget_picture,
     has_picture,
     picture_file,
+    remove_picture,
     write_report,
 )
 from ...solvers.command_line.screen import Screen
@@ -34,8 +34,8 @@ from .each_child import OPTION, run_child
 
 HELP = "Do another verb to each of many files: each FILE... --output-folder DIR -- VERB ..."
 BLEND = ".blend"
-BRINGS_IN = {"import": all_recordings_in, "capture": depth_recordings_in}
-"""Verbs that make objects of recordings, and how they look for them in a folder."""
+IMPORT_VERBS = {"import": all_recordings_in, "capture": depth_recordings_in}
+"""Verbs that import recordings, and their functions to list those in a folder."""
 PACKAGE = __package__.removesuffix(".mocap_assist.batch")
 MODULE_CHILD = """
 import os, sys
@@ -53,7 +53,7 @@ sys.stdout.flush()
 sys.stderr.flush()
 os._exit(status)
 """
-"""Runs a command where Blender is a Python module; it may hang at its end, hence _exit."""
+"""Script for Blender as a Python module; it may hang at exit, hence _exit."""
 
 
 def add_each_options(parser: argparse.ArgumentParser) -> None:
@@ -82,13 +82,13 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
     """Start a Blender for each file, report, and raise InvalidFileError if any failed."""
     if not arguments.words:
         raise InvalidSettingError("Say what to do to each file after --, as in: -- denoise.")
-    opened = [bpy.data.filepath] if arguments.words[0] in BRINGS_IN else []
+    opened = [bpy.data.filepath] if arguments.words[0] in IMPORT_VERBS else []
     arguments.depends_on = _named_files([*opened, *arguments.words])
     if arguments.jobs < 1:
         raise InvalidSettingError(f"jobs is {arguments.jobs}; it must be at least 1.")
     folder: Path = arguments.output_folder
     tasks = _tasks(arguments)
-    made = Made(folder)
+    made = OutputRecord(folder)
     entries = {task.sources: Entry(task, None) for task in tasks}
     faults: tuple[str, ...] = ()
     try:
@@ -109,23 +109,23 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
 
 
 def _named_files(words: Sequence[str]) -> list[Path]:
-    """Return the files that the result depends on: the open one, examples and the like."""
+    """Return the files that the result depends on, such as examples."""
     parts = [Path(part.strip()) for word in words for part in word.split(";")]
     return [path for path in parts if path.is_file()]
 
 
 def _tasks(arguments: argparse.Namespace) -> list[Task]:
-    """Return which .blend file is made of which file."""
+    """Return one task for each input file."""
     folder: Path = real_path(arguments.output_folder)
-    look = BRINGS_IN.get(arguments.words[0])
-    if look is None:
+    list_recordings = IMPORT_VERBS.get(arguments.words[0])
+    if list_recordings is None:
         pairs = _blends(arguments.files, folder)
     else:
-        pairs = found_in(arguments.files, folder, look)
-    places = told_apart([place for _, place in pairs], [BLEND] * len(pairs))
+        pairs = find_recordings(arguments.files, folder, list_recordings)
+    places = unique_targets([place for _, place in pairs], [BLEND] * len(pairs))
     tasks = []
     for (source, _), place in zip(pairs, places, strict=True):
-        if look is None and not is_folder(source) and source.suffix.lower() != BLEND:
+        if list_recordings is None and not is_folder(source) and source.suffix.lower() != BLEND:
             raise InvalidSettingError(
                 f"{source} is not a .blend file; only import and capture read others."
             )
@@ -137,21 +137,21 @@ def _tasks(arguments: argparse.Namespace) -> list[Task]:
 
 
 def _refusal(source: Path, target: Path) -> str:
-    """Make the folder of a target; return why nothing can be made of a file, or nothing."""
-    made = attempt(source, _make_room, source, target)
+    """Create the folder of a target; return why it cannot be written, or an empty text."""
+    made = attempt(source, _prepare_target, source, target)
     return made.sentence if isinstance(made, Failure) else ""
 
 
-def _make_room(source: Path, target: Path) -> None:
+def _prepare_target(source: Path, target: Path) -> None:
     if is_missing(source):
         raise InvalidFileError(f"There is no file {source}.")
     if is_folder(source):
         refuse_closed(source)
-    refuse_long_name(target, PICTURE)
+    check_name_length(target, PICTURE)
     target.parent.mkdir(parents=True, exist_ok=True)
 
 
-def _blends(paths: Sequence[Path], not_in: Path) -> list[tuple[Path, Path]]:
+def _blends(paths: Sequence[Path], excluded: Path) -> list[tuple[Path, Path]]:
     found = []
     for path in paths:
         if not is_folder(path):
@@ -162,7 +162,7 @@ def _blends(paths: Sequence[Path], not_in: Path) -> list[tuple[Path, Path]]:
             file for file in files_below(whole) if file.suffix == BLEND or is_folder(file)
         ]
         above = whole.parent if len(paths) > 1 or inside == [whole] else whole
-        kept = [file for file in inside if not_in not in file.parents]
+        kept = [file for file in inside if excluded not in file.parents]
         found += [(file, file.relative_to(above)) for file in kept]
     if not found:
         raise InvalidFileError(f"There is no .blend file in {paths[0]}.")
@@ -170,9 +170,9 @@ def _blends(paths: Sequence[Path], not_in: Path) -> list[tuple[Path, Path]]:
 
 
 def _worked(
-    tasks: Sequence[Task], arguments: argparse.Namespace, made: Made
-) -> Iterator[Finished]:
-    """Yield what is there already, then each task as it is finished, and note it."""
+    tasks: Sequence[Task], arguments: argparse.Namespace, made: OutputRecord
+) -> Iterator[FinishedTask]:
+    """Yield existing results, then each task when it finishes, and record it."""
     made.clear_up(tasks)
     there = [
         task
@@ -182,7 +182,7 @@ def _worked(
         and (has_picture(task) or not arguments.report)
     ]
     for task in there:
-        yield Finished(task, Outcome("Already made.", made.figures(task)))
+        yield FinishedTask(task, Outcome("Already made.", made.figures(task)))
     stopped = Event()
     attempt = partial(_attempt, stopped=stopped)
     with ThreadPoolExecutor(arguments.jobs) as pool:
@@ -198,35 +198,35 @@ def _worked(
             pool.shutdown(cancel_futures=True)
 
 
-def _attempt(task: Task, *, stopped: Event) -> Finished:
-    """Let another Blender do the verb to one file."""
+def _attempt(task: Task, *, stopped: Event) -> FinishedTask:
+    """Run the verb on one file in another Blender."""
     finished = attempt(task.source, _perform, task, stopped)
     if isinstance(finished, Failure):
-        return Finished(task, None, finished.sentence)
+        return FinishedTask(task, None, finished.sentence)
     return finished
 
 
-def _perform(task: Task, stopped: Event) -> Finished:
+def _perform(task: Task, stopped: Event) -> FinishedTask:
     if task.refusal:
-        return Finished(task, None, task.refusal)
-    forget_picture(task)
+        return FinishedTask(task, None, task.refusal)
+    remove_picture(task)
     with ScratchFolder() as scratch:
         figures = scratch.path / "figures"
         ended = run_child(_command(task, figures), task.target, stopped)
         if ended is None:
-            return Finished(task, None, f"{task.source}: Interrupted.")
+            return FinishedTask(task, None, f"{task.source}: Interrupted.")
         if ended.status == 0:
-            return Finished(task, Outcome("Done.", _figures(figures)))
+            return FinishedTask(task, Outcome("Done.", _figures(figures)))
     said = [line for line in ended.errors.splitlines() if line.strip()]
     sentence = said[-1] if ended.status == 2 and said else "the Blender for it has died."
     named = task.source.name in sentence
-    return Finished(task, None, sentence if named else f"{task.source}: {sentence}")
+    return FinishedTask(task, None, sentence if named else f"{task.source}: {sentence}")
 
 
 def _command(task: Task, figures: Path) -> list[str]:
     arguments, source = task.arguments, str(real_path(task.source))
     verb, *options = arguments.words
-    imports = verb in BRINGS_IN
+    imports = verb in IMPORT_VERBS
     opened = bpy.data.filepath if imports else source
     words = [OPTION, verb, *([source] if imports else []), *options, "--json", str(figures)]
     words += ["--output", str(real_path(task.target))]

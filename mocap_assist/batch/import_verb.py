@@ -5,15 +5,15 @@ from pathlib import Path
 
 import bpy
 
-from ...solvers.command_line.files import found_in
+from ...solvers.command_line.files import find_recordings
 from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError
 from ..importing.choices import ImportChoices
 from ..importing.depth_folders import all_recordings_in, is_take
 from ..importing.importing import import_files
-from .pictures import draw_played
-from .saving import save, target_file, tell
+from .pictures import draw_result
+from .saving import report_figures, save, target_file
 
 HELP = "Bring recordings of motion into the .blend file: armatures, and empties for markers."
 
@@ -37,7 +37,10 @@ def perform_import(arguments: argparse.Namespace, screen: Screen) -> None:
     target = target_file(arguments)
     takes = [path for path in arguments.files if is_take(path)]
     others = [path for path in arguments.files if path not in takes]
-    paths = [*takes, *(path for path, _ in found_in(others, look=all_recordings_in))]
+    paths = [
+        *takes,
+        *(path for path, _ in find_recordings(others, list_recordings=all_recordings_in)),
+    ]
     screen.title = "Import"
     imported = import_files(
         bpy.context,
@@ -54,8 +57,8 @@ def perform_import(arguments: argparse.Namespace, screen: Screen) -> None:
         "failed": list(imported.failed),
         "figures": list(imported.figures),
     }
-    tell(arguments, figures, imported.said)
+    report_figures(arguments, figures, imported.said)
     if arguments.picture is not None and imported.made:
-        draw_played(bpy.context.scene, imported.made[0], arguments.picture)
+        draw_result(bpy.context.scene, imported.made[0], arguments.picture)
     if imported.failed:
         raise InvalidFileError(" ".join(imported.failed))

@@ -1,4 +1,4 @@
-"""The verbs `index` and `find`: what the buttons of the library do."""
+"""`index` and `find`: the buttons of the library as verbs."""
 
 import argparse
 import json
@@ -13,7 +13,7 @@ import bpy
 from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.command_line.screen import Screen, printable
 from ...solvers.errors import InvalidFileError
-from ...solvers.files import real_path, written_whole
+from ...solvers.files import real_path, write_atomically
 from ...solvers.progress import Progress
 from ..library.background import message_of
 from ..library.choices import FindBundle, LibraryChoices
@@ -23,11 +23,11 @@ from ..search import searches
 from ..search.finding import list_found, read_finding
 from ..search.solve_finding import Found
 from .saving import STDOUT
-from .solving import solve_apart
+from .solving import solve_in_subprocess
 
 INDEX_HELP = "Put the clips of recordings, .blend files and asset libraries into a library."
 FIND_HELP = "List the clips of a library that are like what armatures or markers play."
-Said = tuple[str, dict[str, Any]]
+VerbResult = tuple[str, dict[str, Any]]
 
 
 def add_index_options(parser: argparse.ArgumentParser) -> None:
@@ -53,7 +53,7 @@ def add_index_options(parser: argparse.ArgumentParser) -> None:
 
 
 def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
-    """Bring a library up to date; tell what is of no use, and do the rest.
+    """Update a library, and report the files that cannot be indexed.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
     screen.title = "Index"
     blender = background_blender(arguments.rig)
     problem = IndexProblem(str(path), tuple(places), tuple(arguments.tag), blender)
-    indexed = solve_apart(partial(index_places, problem), arguments, screen.progress)
+    indexed = solve_in_subprocess(partial(index_places, problem), arguments, screen.progress)
     screen.clear()
     figures = {
         "library": str(path),
@@ -85,7 +85,7 @@ def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
     )
     sys.stdout.flush()
     if arguments.json not in {None, STDOUT}:
-        with written_whole(arguments.json) as part:
+        with write_atomically(arguments.json) as part:
             part.write_text(json.dumps(figures) + "\n", encoding="utf-8")
     if indexed.refused:
         raise InvalidFileError(" ".join(indexed.refused))
@@ -109,14 +109,14 @@ def perform_find(
     subject: bpy.types.Object,
     arguments: argparse.Namespace,
     progress: Progress,
-) -> Said:
-    """Search for what the armature, or the markers, play."""
+) -> VerbResult:
+    """Search for the current motion of the armature or the markers."""
     classes = get_type_hints(FindBundle)
     settings = FindBundle(**{
         name: settings_from_arguments(arguments, each) for name, each in classes.items()
     })
     scene.mocap_assist.library.library_file = arguments.library
-    finding = solve_apart(read_finding(scene, subject, settings), arguments, progress)
+    finding = solve_in_subprocess(read_finding(scene, subject, settings), arguments, progress)
     sentence = list_found(scene, subject, settings, finding)
     search = searches.listed(bpy.context)
     found = search.finding.found if search is not None else ()

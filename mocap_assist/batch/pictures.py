@@ -1,4 +1,4 @@
-"""A picture of what was done, for those who were not there."""
+"""Draw the result of a command as stick figures."""
 
 from pathlib import Path
 
@@ -15,10 +15,10 @@ from ..scene import history
 SIZE = StickFigureSettings(n_figures=9, height=150)
 
 
-def draw_played(scene: bpy.types.Scene, subject: bpy.types.Object, path: Path) -> None:
-    """Draw what an armature or markers play, over what it was made from if that is known.
+def draw_result(scene: bpy.types.Scene, subject: bpy.types.Object, path: Path) -> None:
+    """Draw the motion of an armature or markers, over its raw motion if known.
 
-    What cannot be drawn has no picture: the work was done all the same.
+    A failed drawing leaves no picture, and is not an error.
     """
     try:
         figures = {"result": _played(scene, subject)}

@@ -8,12 +8,12 @@ import bpy
 
 from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress
-from ..blender.name_lists import joined
+from ..blender.name_lists import join_names
 from ..reconstruct.choices import Postures, ReconstructBundle
 from ..reconstruct.reconstructing import read_reconstructing, write_reconstructed
 from ..runtime.selection import played_result
 from ..scene import history
-from .solving import solve_apart
+from .solving import solve_in_subprocess
 
 
 def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
@@ -46,14 +46,16 @@ def perform_reconstruct(
         choices = replace(
             settings.choices,
             postures=Postures.EXAMPLES,
-            examples=joined(arguments.train),
+            examples=join_names(arguments.train),
         )
         settings = settings._replace(choices=choices)
     elif arguments.library:
         scene.mocap_assist.library.library_file = arguments.library
         choices = replace(settings.choices, postures=Postures.LIBRARY)
         settings = settings._replace(choices=choices)
-    rebuilt = solve_apart(read_reconstructing(scene, armature, settings), arguments, progress)
+    rebuilt = solve_in_subprocess(
+        read_reconstructing(scene, armature, settings), arguments, progress
+    )
     sentence = write_reconstructed(scene, armature, settings, rebuilt)
     action, _ = played_result(armature)
     return sentence, {"action": action.name} | history.history(action)[-1]

@@ -12,10 +12,10 @@ from ..retarget.choices import RetargetBundle, RetargetChoices, UnbakeBundle, Un
 from ..retarget.retargeting import read_retarget, write_retargeted
 from ..retarget.unbaking import read_unbaking, write_unbaked
 from ..scene import history
-from .solving import solve_apart
+from .solving import solve_in_subprocess
 
 CENTIMETRE = 0.01
-Said = tuple[str, dict[str, Any]]
+VerbResult = tuple[str, dict[str, Any]]
 
 
 def add_retarget_options(parser: argparse.ArgumentParser) -> None:
@@ -33,13 +33,13 @@ def perform_retarget(
     armature: bpy.types.Object,
     arguments: argparse.Namespace,
     progress: Progress,
-) -> Said:
+) -> VerbResult:
     """Give the armature's motions to the target."""
     settings = RetargetBundle(
         settings_from_arguments(arguments, RetargetChoices),
         settings_from_arguments(arguments, RetargetSettings),
     )
-    results = solve_apart(read_retarget(scene, armature, settings), arguments, progress)
+    results = solve_in_subprocess(read_retarget(scene, armature, settings), arguments, progress)
     sentence = write_retargeted(scene, armature, settings, results)
     action = scene.objects[settings.choices.target].animation_data.action
     figures = {"n_actions": len(results), "action": action.name}
@@ -60,13 +60,13 @@ def perform_unbake(
     armature: bpy.types.Object,
     arguments: argparse.Namespace,
     progress: Progress,
-) -> Said:
+) -> VerbResult:
     """Thin out the keys of what the armature plays."""
     settings = UnbakeBundle(
         UnbakeChoices(tolerance=CENTIMETRE * arguments.tolerance),
         settings_from_arguments(arguments, UnbakeSettings),
     )
-    result = solve_apart(read_unbaking(scene, armature, settings), arguments, progress)
+    result = solve_in_subprocess(read_unbaking(scene, armature, settings), arguments, progress)
     sentence = write_unbaked(scene, armature, settings, result)
     action = armature.animation_data.action
     return sentence, {"action": action.name} | history.history(action)[-1]

@@ -1,4 +1,4 @@
-"""Where a command saves the .blend file, and what it writes beside."""
+"""Save the .blend file of a command, and write its figures."""
 
 import argparse
 import json
@@ -10,7 +10,7 @@ import bpy
 
 from ...solvers.command_line.screen import printable
 from ...solvers.errors import InvalidFileError
-from ...solvers.files import real_path, written_whole
+from ...solvers.files import real_path, write_atomically
 
 STDOUT = Path("-")
 
@@ -42,18 +42,18 @@ def target_file(arguments: argparse.Namespace) -> Path:
     target = arguments.output or (Path(bpy.data.filepath) if bpy.data.filepath else None)
     if target is None:
         raise InvalidFileError("No file is open: say which one to save with --output FILE.")
-    return in_a_folder(target)
+    return check_folder(target)
 
 
-def in_a_folder(path: Path) -> Path:
-    """Return the whole path, whose folder must exist."""
+def check_folder(path: Path) -> Path:
+    """Return the absolute path; raise an error if its folder is missing."""
     if not real_path(path).parent.is_dir():
         raise InvalidFileError(f"There is no folder {real_path(path).parent} to save in.")
     return real_path(path)
 
 
 def save(target: Path) -> None:
-    """Save the open file; Blender writes it whole or not at all."""
+    """Save the open file; Blender writes it atomically."""
     try:
         bpy.ops.wm.save_as_mainfile(filepath=str(target), check_existing=False)
     except RuntimeError as error:
@@ -61,15 +61,15 @@ def save(target: Path) -> None:
         raise InvalidFileError(f"{target} was not saved: {reason}") from error
 
 
-def tell(
+def report_figures(
     arguments: argparse.Namespace, figures: Mapping[str, object], said: Iterable[str]
 ) -> None:
-    """Print what was done, in words or as the one line of JSON that was asked for."""
+    """Print the result as text, or as one line of JSON if requested."""
     line = json.dumps(figures)
     sys.stdout.write(
         "\n".join([line] if arguments.json == STDOUT else map(printable, said)) + "\n"
     )
     sys.stdout.flush()
     if arguments.json not in {None, STDOUT}:
-        with written_whole(arguments.json) as part:
+        with write_atomically(arguments.json) as part:
             part.write_text(line + "\n", encoding="utf-8")

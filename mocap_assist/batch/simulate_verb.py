@@ -10,7 +10,7 @@ from ...solvers.physics import SimulateSettings
 from ...solvers.progress import Progress
 from ..physics.simulating import SimulateBundle, read_simulating, write_simulated
 from ..scene import history
-from .solving import solve_apart
+from .solving import solve_in_subprocess
 
 
 def add_simulate_options(parser: argparse.ArgumentParser) -> None:
@@ -26,7 +26,9 @@ def perform_simulate(
 ) -> tuple[str, dict[str, Any]]:
     """Let a body with mass and muscles make what the armature plays."""
     settings = SimulateBundle(settings_from_arguments(arguments, SimulateSettings))
-    result = solve_apart(read_simulating(scene, armature, settings), arguments, progress)
+    result = solve_in_subprocess(
+        read_simulating(scene, armature, settings), arguments, progress
+    )
     sentence = write_simulated(scene, armature, settings, result)
     action = armature.animation_data.action
     return sentence, {"action": action.name} | history.history(action)[-1]

@@ -1,4 +1,4 @@
-"""How commands solve: always in a process of its own, and with how many threads."""
+"""Solve in a subprocess, with the number of threads of the command line."""
 
 import argparse
 from collections.abc import Callable
@@ -6,17 +6,17 @@ from typing import TypeVar
 
 from ...solvers.processes import threads_from
 from ...solvers.progress import Progress
-from ..jobs.job import run_apart
+from ..jobs.job import run_in_subprocess
 
 Result = TypeVar("Result")
 
 
-def solve_apart(
+def solve_in_subprocess(
     solve: Callable[..., Result], arguments: argparse.Namespace, progress: Progress
 ) -> Result:
-    """Solve in another process, even what a button solves in Blender's own.
+    """Solve in a subprocess, even a solve that a button runs in Blender's process.
 
-    There linear algebra has as many threads as the command line says, by default one; here it
-    has those that Blender's environment gave it, and the last digits depend on them.
+    The subprocess uses the number of threads from the command line, by default one. Blender's
+    process uses that of its environment, which changes the last digits.
     """
-    return run_apart(solve, progress, n_threads=threads_from(arguments))
+    return run_in_subprocess(solve, progress, n_threads=threads_from(arguments))

@@ -13,7 +13,7 @@ from ..variants.listing import chosen
 from ..variants.reading import read_varying
 from ..variants.sheet import write_sheet
 from ..variants.writing import write_variants
-from .solving import solve_apart
+from .solving import solve_in_subprocess
 
 HELP = "Generate variations of a few similar actions."
 
@@ -37,7 +37,7 @@ def perform_vary(
     settings = VaryBundle(**{
         name: settings_from_arguments(arguments, each) for name, each in classes.items()
     })
-    varied = solve_apart(
+    varied = solve_in_subprocess(
         read_varying(scene, armature, settings), arguments, within(progress, 0.0, 0.8)
     )
     progress(0.8, "Writing")

@@ -1,4 +1,4 @@
-"""The verbs of `blender FILE --command mocap_assist`: each does what a button does."""
+"""The verbs of `blender FILE --command mocap_assist`, one for each button."""
 
 import argparse
 from collections.abc import Callable, Sequence
@@ -9,13 +9,13 @@ from typing import Any, NamedTuple, TypeVar, get_type_hints
 import bpy
 
 from ...solvers.command_line.convert import convert
-from ...solvers.command_line.files import MOTIONS, POINTS_BY_DEFAULT, refuse_target
+from ...solvers.command_line.files import MOTIONS, POINTS_BY_DEFAULT, check_target
 from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.errors import InvalidSettingError
 from ...solvers.progress import Progress
 from ..actions.armature_read import read_take
 from ..actions.marker_take import read_markers
-from ..blender.name_lists import joined
+from ..blender.name_lists import join_names
 from ..check.checking import read_checking, show_checked
 from ..check.choices import CheckSettings
 from ..clean.choices import CleanSettings, Prior
@@ -32,42 +32,42 @@ from .retarget_verbs import (
     retarget_target,
 )
 from .simulate_verb import add_simulate_options, perform_simulate
-from .solving import solve_apart
+from .solving import solve_in_subprocess
 from .vary_verb import HELP as VARY_HELP
 from .vary_verb import add_vary_options, perform_vary
 
 Bundle = TypeVar("Bundle", bound=NamedTuple)
-Said = tuple[str, dict[str, Any]]
+VerbResult = tuple[str, dict[str, Any]]
 
 
-def nothing_to_check(
-    arguments: argparse.Namespace, armatures: Sequence[bpy.types.Object]
-) -> None:
+def check_nothing(arguments: argparse.Namespace, armatures: Sequence[bpy.types.Object]) -> None:
     """Check nothing."""
 
 
-def nobody(arguments: argparse.Namespace) -> str:
+def no_armature(arguments: argparse.Namespace) -> str:
     """Name no armature."""
     return ""
 
 
 @dataclass(frozen=True)
 class Verb:
-    """A verb: its options, and what it does to an armature."""
+    """A verb: its options, and its work on an armature."""
 
     help: str
     add_options: Callable[[argparse.ArgumentParser], None]
-    perform: Callable[[bpy.types.Scene, bpy.types.Object, argparse.Namespace, Progress], Said]
+    perform: Callable[
+        [bpy.types.Scene, bpy.types.Object, argparse.Namespace, Progress], VerbResult
+    ]
     writes: bool = True
     """Whether it changes the .blend file, which is then saved."""
-    check: Callable[[argparse.Namespace, Sequence[bpy.types.Object]], None] = nothing_to_check
-    """Raise a MocapAssistError where the work would be in vain, before it begins."""
-    left_alone: Callable[[argparse.Namespace], str] = nobody
-    """Name of an armature on which it is never performed."""
+    check: Callable[[argparse.Namespace, Sequence[bpy.types.Object]], None] = check_nothing
+    """Raise a MocapAssistError before the work if its result cannot be written."""
+    excluded_armature: Callable[[argparse.Namespace], str] = no_armature
+    """Name of an armature to skip."""
     on_markers: bool = True
-    """Whether it is also for the markers below an empty."""
+    """Whether it also works on the markers below an empty."""
     solves: bool = True
-    """Whether there is linear algebra in it, which may have more than one thread."""
+    """Whether it solves, and has the option --threads."""
 
 
 def _clean_options(parser: argparse.ArgumentParser) -> None:
@@ -88,17 +88,17 @@ def _clean(
     armature: bpy.types.Object,
     arguments: argparse.Namespace,
     progress: Progress,
-) -> Said:
+) -> VerbResult:
     settings = _bundle(arguments, CleanSettings)
     if arguments.train:
         choices = replace(
-            settings.choices, prior=Prior.EXAMPLES, examples=joined(arguments.train)
+            settings.choices, prior=Prior.EXAMPLES, examples=join_names(arguments.train)
         )
         settings = settings._replace(choices=choices)
     elif arguments.library:
         scene.mocap_assist.library.library_file = arguments.library
         settings = settings._replace(choices=replace(settings.choices, prior=Prior.LIBRARY))
-    cleaned = solve_apart(read_cleaning(scene, armature, settings), arguments, progress)
+    cleaned = solve_in_subprocess(read_cleaning(scene, armature, settings), arguments, progress)
     sentence = write_cleaned(scene, armature, settings, cleaned)
     action, _ = played_result(armature)
     return sentence, {"action": action.name} | history.history(action)[-1]
@@ -113,9 +113,9 @@ def _check(
     armature: bpy.types.Object,
     arguments: argparse.Namespace,
     progress: Progress,
-) -> Said:
+) -> VerbResult:
     settings = _bundle(arguments, CheckSettings)
-    checked = solve_apart(read_checking(scene, armature, settings), arguments, progress)
+    checked = solve_in_subprocess(read_checking(scene, armature, settings), arguments, progress)
     sentence = show_checked(scene, armature, settings, checked)
     spots = [spot.sentence for spot in checked.spots]
     text = "\n".join([checked.quality.report(), "", sentence, *spots])
@@ -141,7 +141,7 @@ def _check_targets(
             " folder to write to."
         )
     for target in targets:
-        refuse_target(target)
+        check_target(target)
 
 
 def _target(arguments: argparse.Namespace, armature: bpy.types.Object) -> Path:
@@ -158,8 +158,8 @@ def _convert(
     armature: bpy.types.Object,
     arguments: argparse.Namespace,
     progress: Progress,
-) -> Said:
-    """Write the body's motion as the armature plays it, be it raw or clean."""
+) -> VerbResult:
+    """Write the current motion of the armature, raw or clean."""
     target = _target(arguments, armature)
     if armature.type == "ARMATURE":
         take = read_take(armature, scene, source=played_source(armature))
@@ -209,7 +209,7 @@ VERBS = {
         "Transfer the motions of an armature to another one.",
         add_retarget_options,
         perform_retarget,
-        left_alone=retarget_target,
+        excluded_armature=retarget_target,
         on_markers=False,
     ),
     "unbake": Verb(

@@ -25,7 +25,7 @@ def select_bone(bone: bpy.types.PoseBone, selected: bool = True) -> None:
         bone.select = selected
 
 
-def slot_called(action: bpy.types.Action, identifier: str) -> bpy.types.ActionSlot | None:
+def find_slot(action: bpy.types.Action, identifier: str) -> bpy.types.ActionSlot | None:
     """Return the slot of that identifier, or the only one that can animate an object."""
     fitting = [slot for slot in action.slots if slot.target_id_type in TARGETS]
     named = [slot for slot in fitting if slot.identifier == identifier]

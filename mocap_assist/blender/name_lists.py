@@ -5,11 +5,11 @@ from collections.abc import Iterable
 SEPARATOR = ";"
 
 
-def listed(text: str) -> list[str]:
+def split_names(text: str) -> list[str]:
     """Return the names in a list."""
     return [name.strip() for name in text.split(SEPARATOR) if name.strip()]
 
 
-def joined(names: Iterable[str]) -> str:
+def join_names(names: Iterable[str]) -> str:
     """Return names as one list, each once."""
     return f"{SEPARATOR} ".join(dict.fromkeys(names))

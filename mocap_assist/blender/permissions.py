@@ -13,7 +13,7 @@ from typing import Any
 
 import bpy
 
-from ...solvers.files import written_whole
+from ...solvers.files import write_atomically
 from ...solvers.json_text import parse_json
 from .path_properties import absolute
 
@@ -57,7 +57,7 @@ def change(kind: str, allowed: list[Any]) -> None:
     stored = {each: entries(each) for each in (RECORDINGS, LIBRARIES)}
     stored[kind] = allowed[-MAX_ENTRIES:]
     bpy.utils.extension_path_user(EXTENSION, create=True)
-    with written_whole(path) as part:
+    with write_atomically(path) as part:
         part.write_text(json.dumps(stored, indent=1), encoding="utf-8")
     _read.cache_clear()  # Two changes may come within one tick of the file system's clock.
 

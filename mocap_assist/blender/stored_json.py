@@ -1,4 +1,4 @@
-"""What Mocap Assist keeps in custom properties: JSON, which anybody may have edited."""
+"""Read and write JSON in custom properties, which users may have edited."""
 
 import json
 from math import isfinite
@@ -11,24 +11,24 @@ from ...solvers.json_text import parse_json
 Kind = TypeVar("Kind", dict[str, Any], list[Any])
 
 
-def store(holder: Any, key: str, value: dict[str, Any] | list[Any]) -> None:
+def store_json(holder: Any, key: str, value: dict[str, Any] | list[Any]) -> None:
     """Keep a value in a custom property of a data-block or bone."""
     holder[key] = json.dumps(value, ensure_ascii=False)
 
 
-def stored(holder: bpy.types.ID, key: str, kind: type[Kind]) -> Kind:
-    """Return what `store` kept; an empty list or dictionary where nothing of the kind is.
+def load_json(holder: bpy.types.ID, key: str, kind: type[Kind]) -> Kind:
+    """Return what `store_json` wrote; an empty list or dictionary where nothing of the kind is.
 
     Infinities and NaN count as damage, and numbers so large that Python takes them for some.
     """
-    return parsed(holder.get(key), kind)
+    return parse_stored(holder.get(key), kind)
 
 
-def parsed(text: object, kind: type[Kind]) -> Kind:
-    """Return what a text says, as `stored` does."""
+def parse_stored(text: object, kind: type[Kind]) -> Kind:
+    """Return what a text says, as `load_json` does."""
     try:
         value = parse_json(
-            str(text), parse_constant=_finite, parse_float=_finite, parse_int=_whole
+            str(text), parse_constant=_finite, parse_float=_finite, parse_int=_integer
         )
     except ValueError:
         return kind()
@@ -41,6 +41,6 @@ def _finite(text: str) -> float:
     return number
 
 
-def _whole(text: str) -> int:
-    _finite(text)  # or nobody could reckon with it
+def _integer(text: str) -> int:
+    _finite(text)  # too large for float arithmetic otherwise
     return int(text)

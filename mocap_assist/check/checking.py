@@ -11,7 +11,7 @@ from ..actions.marker_take import MarkerTake, read_markers
 from ..actions.markers import markers_of, point_names
 from ..actions.take import ArmatureTake
 from ..blender import compat
-from ..blender.turns import Sliced, Steps
+from ..blender.time_slices import Sliced, Steps
 from ..runtime.selection import played_source, selected_subject
 from ..runtime.subject import Subject, check_unchanged
 from ..scene.scene_objects import choose

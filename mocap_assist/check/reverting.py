@@ -3,7 +3,7 @@
 import bpy
 
 from ..blender import compat
-from ..runtime.selection import played_result, players, selected_subject
+from ..runtime.selection import animated_objects, played_result, selected_subject
 from ..scene import history
 
 
@@ -23,7 +23,7 @@ def revert(subject: bpy.types.Object) -> str:
     """Let an armature, or each of the markers below an object, play what was recorded."""
     result, _ = played_result(subject)
     raw, _ = history.raw_of(result)
-    for player in players(subject):
+    for player in animated_objects(subject):
         if played := history.played_result(player):
             _revert(player, *played)
     return f"{subject.name} plays {raw.name} again; {result.name} is kept."

@@ -13,7 +13,7 @@ from ..actions.contacts import animators_contacts, write_contacts
 from ..actions.limits import read_limits
 from ..actions.take import ArmatureTake
 from ..blender.compat import Source
-from ..blender.turns import Steps
+from ..blender.time_slices import Steps
 from ..runtime.selection import chosen_bones, played_source
 from ..runtime.subject import Subject
 from ..scene import history

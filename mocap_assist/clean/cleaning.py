@@ -14,8 +14,8 @@ from ..actions.curves import GENERATED, MEASURED
 from ..actions.frames import Grid
 from ..actions.marker_take import MarkerTake
 from ..actions.take import ArmatureTake
-from ..blender.turns import Sliced, Steps
-from ..jobs.job import Quick
+from ..blender.time_slices import Sliced, Steps
+from ..jobs.job import ShortSolve
 from ..library.prior import library_prior
 from ..runtime import redo
 from ..runtime.selection import Bones
@@ -54,7 +54,7 @@ def read_cleaning(
         contacts=contacts,
     )
     solution = redo.recall(problem)
-    return (partial if solution is None else Quick)(clean, problem, finish, solution)
+    return (partial if solution is None else ShortSolve)(clean, problem, finish, solution)
 
 
 @Sliced

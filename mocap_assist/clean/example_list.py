@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import bpy
 
-from ..blender.name_lists import SEPARATOR, joined, listed
+from ..blender.name_lists import SEPARATOR, join_names, split_names
 from ..blender.path_properties import FOLDER, HIDDEN, absolute, chosen_files, path_property
 from ..runtime.selection import selected_armature
 from ..scene import history
@@ -24,7 +24,7 @@ def draw_examples(
     layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, group: str = CLEAN
 ) -> None:
     """Draw the examples, each with a button that takes it out."""
-    for index, name in enumerate(listed(settings.examples)):
+    for index, name in enumerate(split_names(settings.examples)):
         row = layout.row(align=True)
         action = name in bpy.data.actions
         shown = name if action else Path(name).name
@@ -81,11 +81,11 @@ MENUS = {CLEAN: "MOCAP_MT_examples", RECONSTRUCT: "MOCAP_MT_posture_examples"}
 
 
 def _examples(context: bpy.types.Context, group: str) -> list[str]:
-    return listed(getattr(context.scene.mocap_assist, group).examples)
+    return split_names(getattr(context.scene.mocap_assist, group).examples)
 
 
 def _set_examples(context: bpy.types.Context, group: str, entries: list[str]) -> set[str]:
-    getattr(context.scene.mocap_assist, group).examples = joined(entries)
+    getattr(context.scene.mocap_assist, group).examples = join_names(entries)
     return {"FINISHED"}
 
 

@@ -12,8 +12,8 @@ from ...solvers.recordings.containers import files_below
 from ..actions.armature_read import read_take
 from ..actions.fitting import fits, plays
 from ..blender import compat
-from ..blender.name_lists import listed
-from ..blender.turns import Sliced, Steps, due
+from ..blender.name_lists import split_names
+from ..blender.time_slices import Sliced, Steps, should_yield
 from ..runtime.subject import Subject
 from ..scene.linked_clips import Linked, is_blend, linked_clips
 from .choices import CleanChoices, Prior
@@ -50,7 +50,7 @@ def read_examples(
     InvalidMotionError
         Nothing was picked, or what was picked does not exist or fits no armature.
     """
-    names = listed(examples)
+    names = split_names(examples)
     if not names:
         raise InvalidMotionError(
             "Pick clean actions or recordings to learn from, or let the take guide itself."
@@ -81,7 +81,7 @@ def _recordings_of(path: Path) -> Steps[list[Path]]:
         return [path]
     found = []
     for each in files_below(path):
-        if due():
+        if should_yield():
             yield 0.0
         found += [each] if may_hold_motion(each) else []
     if not found:
@@ -115,7 +115,7 @@ def _read_blend(here: Subject, path: Path) -> Steps[list[Motion]]:
     The file's data-blocks are in this one only while Blender waits: after each turn those that
     are needed are linked again.
     """
-    if due():
+    if should_yield():
         yield 0.0
     with linked_clips(path) as clips:
         waiting = [each.name for each in clips.actions]
@@ -146,7 +146,7 @@ def _read_linked(here: Subject, clips: Linked, waiting: list[str]) -> list[Motio
             armature, slot = found
             take = read_take(armature, scene, source=(action, slot))
             motions.append(take.parts[0].motion)
-        if due():
+        if should_yield():
             break
     return motions
 

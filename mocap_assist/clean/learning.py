@@ -11,7 +11,7 @@ from ...solvers.denoising import FilterBases, FilterBasesSettings
 from ...solvers.errors import InvalidFileError
 from ...solvers.settings import Settings, setting
 from ..blender.path_properties import file_to_write
-from ..blender.turns import Sliced, Steps
+from ..blender.time_slices import Sliced, Steps
 from .examples import read_examples
 from .solve_learning import learn
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..actions.armature_write import check_writable, put_to_use
 from ..actions.marker_take import MarkerTake, read_markers, write_markers
 from ..actions.markers import markers_of
-from ..blender.turns import Steps
+from ..blender.time_slices import Steps
 from ..runtime.selection import chosen_markers
 from ..runtime.subject import Subject
 from ..scene import history

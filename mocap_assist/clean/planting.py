@@ -9,8 +9,8 @@ from ...solvers.denoising import PlantSettings
 from ..actions.armature_read import read_take
 from ..actions.armature_write import Output, check_writable, put_to_use, write_take
 from ..actions.contacts import animators_contacts, write_contacts
-from ..blender.turns import Sliced, Steps
-from ..jobs.job import Quick
+from ..blender.time_slices import Sliced, Steps
+from ..jobs.job import ShortSolve
 from ..runtime.selection import played_source
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
@@ -36,7 +36,7 @@ def read_planting(
     take = yield from read_take.steps(armature, scene, source=played_source(armature))
     _, armature = here.find()
     contacts = animators_contacts(played_source(armature), take.frames)
-    kind = Quick if len(take.frames) <= N_QUICK else partial
+    kind = ShortSolve if len(take.frames) <= N_QUICK else partial
     return kind(plant, take.parts[0].motion, contacts, settings.planting)
 
 

@@ -62,7 +62,7 @@ class Examples:
         """Learn from the examples, or load what was learned."""
         if self.library is not None:
             found = self.library.bases(body, progress)
-            return Learned(found.bases, None, found.said)
+            return Learned(found.bases, None, found.message)
         if self.bases_file:
             return Learned(load_filter_bases(self.bases_file), None)
         clips = [*self.motions, *map(read_motion_or_tracks, self.files)]

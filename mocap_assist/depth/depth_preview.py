@@ -20,7 +20,7 @@ from ...solvers.recordings import DepthSettings, Held, read_depth
 from ..blender.data_names import fitting_name
 from ..blender.path_properties import absolute
 from ..blender.permissions import allow_recording, recording_allowed
-from ..blender.stored_json import store, stored
+from ..blender.stored_json import load_json, store_json
 from ..scene.scene_objects import add_object, in_object_mode
 from .depth_points import point_nodes
 
@@ -55,7 +55,7 @@ class Shown:
 
     def write(self, mesh: bpy.types.Mesh) -> None:
         """Keep this with a mesh."""
-        store(mesh, KEY, self.told())
+        store_json(mesh, KEY, self.told())
 
     def told(self) -> dict[str, Any]:
         """Return this as JSON can keep it."""
@@ -68,7 +68,7 @@ class Shown:
     @classmethod
     def read(cls, mesh: bpy.types.Mesh) -> "Shown":
         """Return what a mesh shows; raises ValueError, TypeError or KeyError if nothing."""
-        return cls.of(stored(mesh, KEY, dict))
+        return cls.of(load_json(mesh, KEY, dict))
 
     @classmethod
     def of(cls, told: dict[str, Any]) -> "Shown":

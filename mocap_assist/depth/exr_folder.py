@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...solvers.depth_scene import Camera
 from ...solvers.errors import InvalidFileError
-from ...solvers.files import written_whole
+from ...solvers.files import write_atomically
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings.depth_files import check_exr, sort_naturally
 
@@ -80,7 +80,7 @@ def as_archive(
     numbers["frame_rate"] = frame_rate
     shape = (len(files), camera.height, camera.width)
     packed = zipfile.ZIP_DEFLATED
-    with written_whole(archive) as part, zipfile.ZipFile(part, "w", packed) as made:
+    with write_atomically(archive) as part, zipfile.ZipFile(part, "w", packed) as made:
         with made.open("depth.npy", "w", force_zip64=True) as file:
             header = {"descr": "<f4", "fortran_order": False, "shape": shape}
             np.lib.format.write_array_header_1_0(file, header)

@@ -100,7 +100,7 @@ def raw_and_clean(armature: bpy.types.Object) -> tuple[Source | None, Source | N
     newest = max(results, key=lambda each: each.session_uid, default=None)
     if newest is None:
         return raw, None
-    slot = compat.slot_called(newest, raw[1].identifier)
+    slot = compat.find_slot(newest, raw[1].identifier)
     return raw, None if slot is None else (newest, slot)
 
 

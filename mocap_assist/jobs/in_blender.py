@@ -11,7 +11,7 @@ from ...solvers.errors import InvalidFileError
 from ...solvers.faults import attempt
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
-from .job import EXTENSION, alone, run
+from .job import EXTENSION, isolated_command, run
 
 BLEND_CHILD = Path(__file__).with_name("blend_child.py")
 READER = "mocap_assist.library.blend_clips"
@@ -98,7 +98,7 @@ def _asked(
 
 def _program(path: str) -> tuple[str, ...]:
     if not path:
-        return (*alone(BLEND_CHILD), "--")
+        return (*isolated_command(BLEND_CHILD), "--")
     # It finds the extension's wheels by PYTHONPATH, which Blender otherwise ignores.
     own = ("--python-use-system-env", "--background", "--factory-startup")
     return (path, *own, "--python-exit-code", "1", "--python", str(BLEND_CHILD), "--")

@@ -1,4 +1,4 @@
-"""A solve running in a process of its own. Knows nothing about Blender."""
+"""Run a solve in a subprocess; independent of Blender."""
 
 import os
 import pickle
@@ -21,12 +21,12 @@ from .protocol import LOG, REQUEST, RESULT, Ending, last_progress, last_words, r
 Result = TypeVar("Result")
 EXTENSION = __name__.rsplit(".", 3)[0]
 CHILD = Path(__file__).with_name("child.py")
-BETWEEN_LOOKS = 0.05  # seconds
-PATIENCE = 0.25
-"""Seconds that a process has to end in once its result is there."""
-OURS = {"PYTHONUTF8": "1", "PYTHONNOUSERSITE": "1"}
-# Neither what the user installed for a Python of his own, nor the script's folder is looked in.
-ALONE = ("-s", "-P")
+POLL_INTERVAL_S = 0.05  # seconds
+EXIT_TIMEOUT_S = 0.25
+"""Seconds that a process may take to exit after it wrote its result."""
+CHILD_ENVIRONMENT = {"PYTHONUTF8": "1", "PYTHONNOUSERSITE": "1"}
+# Ignores user site-packages and the folder of the script.
+ISOLATION_FLAGS = ("-s", "-P")
 NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # no console flashes up on Windows
 
 
@@ -49,8 +49,8 @@ class ProcessDied(MocapAssistError):
         )
 
 
-class Quick(partial[Result]):
-    """A solve that is so short that it needs no process of its own."""
+class ShortSolve(partial[Result]):
+    """A solve that is short enough to run in Blender's process."""
 
 
 def run(
@@ -58,26 +58,26 @@ def run(
     progress: Progress = unwatched,
     program: Sequence[str] = (),
 ) -> Result:
-    """Solve and wait for the result, in a process of its own unless the solve is quick."""
-    if not isinstance(solve, Quick):
-        return run_apart(solve, progress, program)
-    with _memory_in_words():
+    """Solve and wait for the result, in a subprocess unless it is a `ShortSolve`."""
+    if not isinstance(solve, ShortSolve):
+        return run_in_subprocess(solve, progress, program)
+    with _convert_memory_errors():
         return solve(progress=progress)
 
 
-def run_apart(
+def run_in_subprocess(
     solve: Callable[..., Result],
     progress: Progress = unwatched,
     program: Sequence[str] = (),
     *,
     n_threads: int = 1,
 ) -> Result:
-    """Solve in a process of its own, and wait for the result."""
+    """Solve in a subprocess, and wait for the result."""
     job = Job(solve, program, n_threads=n_threads)
     try:
         while not job.done():
             progress(*job.progress())
-            sleep(BETWEEN_LOOKS)
+            sleep(POLL_INTERVAL_S)
     except BaseException:  # such as SolveCancelled, or Ctrl C
         job.cancel()
         job.tidy_up()
@@ -86,7 +86,7 @@ def run_apart(
 
 
 class Job(Generic[Result]):
-    """Start `solve(progress=…)`; ask `done` now and then; fetch `result` once.
+    """Start `solve(progress=…)`; poll `done`; fetch `result` once.
 
     A crash of its process, or a lack of memory, leaves this one unharmed.
 
@@ -117,9 +117,9 @@ class Job(Generic[Result]):
         self._scratch = ScratchFolder()
         self._path = self._scratch.path
         try:
-            with _memory_in_words():
+            with _convert_memory_errors():
                 (self._path / REQUEST).write_bytes(pickle.dumps(solve))
-            self._process = self._started(program or alone(CHILD), n_threads)
+            self._process = self._started(program or isolated_command(CHILD), n_threads)
         except OSError as error:
             self._scratch.remove()
             raise MocapAssistError(
@@ -131,7 +131,9 @@ class Job(Generic[Result]):
             raise
 
     def _started(self, program: Sequence[str], n_threads: int) -> "subprocess.Popen[bytes]":
-        environment = thread_environment(n_threads) | OURS | {"PYTHONPATH": _search_path()}
+        environment = (
+            thread_environment(n_threads) | CHILD_ENVIRONMENT | {"PYTHONPATH": _search_path()}
+        )
         with (self._path / LOG).open("wb") as log:
             return subprocess.Popen(
                 [*program, str(self._path), EXTENSION],
@@ -157,7 +159,7 @@ class Job(Generic[Result]):
         return read_shown(self._path, 0)[0]
 
     def done(self) -> bool:
-        """Whether the result is there, or the process has ended without one."""
+        """Return whether the result exists, or the process ended without one."""
         return (self._path / RESULT).exists() or self._process.poll() is not None
 
     def cancel(self) -> None:
@@ -199,23 +201,23 @@ class Job(Generic[Result]):
     def _end(self) -> int:
         """Wait for the result and then for the end of the process; return its exit status.
 
-        A process that has left its result has nothing more to do: it is not waited for long.
+        A process that wrote its result has finished: the wait for its exit is short.
         """
         while not self.done():
-            sleep(BETWEEN_LOOKS)
+            sleep(POLL_INTERVAL_S)
         try:
-            return self._process.wait(PATIENCE)
+            return self._process.wait(EXIT_TIMEOUT_S)
         except subprocess.TimeoutExpired:
             self._process.kill()
             return self._process.wait()
 
     def _outcome(self, status: int) -> Any:
-        """Return what the process has left: an exception, or the result in a tuple."""
+        """Return the outcome of the process: an exception, or the result in a tuple."""
         answer = self._path / RESULT
         if self.cancelled:
             return SolveCancelled("Cancelled.")
         if answer.exists():
-            with _memory_in_words(), answer.open("rb") as file:
+            with _convert_memory_errors(), answer.open("rb") as file:
                 return pickle.load(file)
         if status == Ending.OUT_OF_MEMORY:
             return OutOfMemoryError()
@@ -227,17 +229,17 @@ class Job(Generic[Result]):
 
 
 @contextmanager
-def _memory_in_words() -> Iterator[None]:
-    """Raise a MemoryError as one sentence."""
+def _convert_memory_errors() -> Iterator[None]:
+    """Convert a MemoryError to an OutOfMemoryError."""
     try:
         yield
     except MemoryError:
         raise OutOfMemoryError from None
 
 
-def alone(script: Path) -> tuple[str, ...]:
-    """Return the command that runs a script in a Python that sees nothing of the user's."""
-    return (_python(), *ALONE, str(script))
+def isolated_command(script: Path) -> tuple[str, ...]:
+    """Return the command that runs a script in an isolated Python."""
+    return (_python(), *ISOLATION_FLAGS, str(script))
 
 
 def _python() -> str:

@@ -1,4 +1,4 @@
-"""What a job and its child process leave for each other in their folder."""
+"""Files that a job and its child process exchange in their folder."""
 
 import errno
 import pickle
@@ -12,7 +12,7 @@ from ...solvers.faults import escaped
 
 REQUEST, RESULT, LOG, SHOWN = "request", "result", "log", "shown"
 TAIL = 4096  # bytes of the log that are read
-SIZE = 8  # bytes that tell how long a pickle is
+SIZE = 8  # bytes of the length of a pickle
 DISK_FULL = {errno.ENOSPC, errno.EDQUOT}
 PROGRESS = re.compile(r"^@([01]\.\d+) (.*)$")
 
@@ -30,40 +30,40 @@ class Ending(IntEnum):
     DISK_FULL = 4
 
 
-class Showing(partial[Result]):
-    """A solve that is also called with `show=`, which takes what can be looked at meanwhile."""
+class PreviewSolve(partial[Result]):
+    """A solve that is also called with `show=`, a callback for previews."""
 
 
 def append_shown(file: BinaryIO, thing: Any) -> None:
-    """Write something picklable where `read_shown` finds it."""
-    told = pickle.dumps(thing, protocol=pickle.HIGHEST_PROTOCOL)
-    file.write(len(told).to_bytes(SIZE, "little") + told)
+    """Append a picklable preview to the file that `read_shown` reads."""
+    content = pickle.dumps(thing, protocol=pickle.HIGHEST_PROTOCOL)
+    file.write(len(content).to_bytes(SIZE, "little") + content)
     file.flush()
 
 
 def read_shown(folder: Path, start: int) -> tuple[list[Any], int]:
-    """Return what was shown since the file was that long, and how long it is now.
+    """Return the previews after an offset in the file, and the next offset.
 
-    What is only half written, or cannot be read now, is left for the next time.
+    A partly written or unreadable preview is left for the next call.
     """
     try:
         with (folder / SHOWN).open("rb") as file:
             file.seek(start)
-            told = file.read()
+            content = file.read()
     except OSError:
         return [], start
-    things, place = [], 0
-    while place + SIZE <= len(told):
-        stop = place + SIZE + int.from_bytes(told[place : place + SIZE], "little")
-        if stop > len(told):
+    things, offset = [], 0
+    while offset + SIZE <= len(content):
+        stop = offset + SIZE + int.from_bytes(content[offset : offset + SIZE], "little")
+        if stop > len(content):
             break
-        things.append(pickle.loads(told[place + SIZE : stop]))
-        place = stop
-    return things, start + place
+        things.append(pickle.loads(content[offset + SIZE : stop]))
+        offset = stop
+    return things, start + offset
 
 
 def progress_line(fraction: float, message: str) -> str:
-    """Return the line of the log that tells how far a solver is."""
+    """Return the line of the log for the progress of a solver."""
     return escaped(f"@{min(max(fraction, 0.0), 1.0):.4f} {message}")
 
 
@@ -77,8 +77,8 @@ def last_progress(folder: Path) -> tuple[float, str]:
 
 def last_words(folder: Path) -> str:
     """Return the last line in the log that is not progress, such as the end of a traceback."""
-    said = [line for line in _tail(folder) if line.strip() and not PROGRESS.match(line)]
-    return said[-1] if said else ""
+    lines = [line for line in _tail(folder) if line.strip() and not PROGRESS.match(line)]
+    return lines[-1] if lines else ""
 
 
 def _tail(folder: Path) -> list[str]:

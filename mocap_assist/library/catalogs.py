@@ -7,7 +7,7 @@ from pathlib import Path
 from uuid import uuid4
 
 from ...solvers.errors import InvalidFileError
-from ...solvers.files import written_whole
+from ...solvers.files import write_atomically
 
 FILE = "blender_assets.cats.txt"
 HEAD = "VERSION 1\n\n"
@@ -61,6 +61,6 @@ def ensure_catalog(file: Path, catalog: str) -> str:
         raise InvalidFileError(f"{file} cannot be read, and was left as it is.") from None
     if not before.endswith("\n"):
         before += "\n"
-    with written_whole(file) as part:
+    with write_atomically(file) as part:
         part.write_text(f"{before}{number}:{catalog}:{simple}\n", encoding="utf-8")
     return number

@@ -10,7 +10,7 @@ from typing import Any
 import bpy
 
 from ..blender import permissions
-from ..blender.name_lists import joined
+from ..blender.name_lists import join_names
 from ..jobs.in_blender import BackgroundBlender
 from .choices import LibraryChoices
 from .places import index_problem, library_path, places_of
@@ -64,7 +64,7 @@ def change_sources(library: Any, sources: list[str]) -> None:
     sources : paths of files and folders
     """
     was_kept = choices_are_kept(library.settings().choices)
-    library.sources = joined(sources)
+    library.sources = join_names(sources)
     choices = library.settings().choices
     if was_kept and places_of(choices):
         keep(index_problem(choices))

@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 
 from ...solvers.errors import InvalidFileError
-from ..blender.name_lists import listed
+from ..blender.name_lists import split_names
 from ..blender.path_properties import absolute
 from ..jobs.in_blender import BackgroundBlender
 from .choices import LibraryChoices
@@ -30,7 +30,7 @@ def asset_folders() -> tuple[str, ...]:
 
 def places_of(choices: LibraryChoices) -> tuple[Place, ...]:
     """Return what is to be indexed."""
-    places = [Place(str(absolute(each))) for each in listed(choices.sources)]
+    places = [Place(str(absolute(each))) for each in split_names(choices.sources)]
     if choices.asset_libraries:
         places += [Place(folder, assets_only=True) for folder in asset_folders()]
     return tuple(places)

@@ -68,7 +68,7 @@ class Listening:
         came = self.receiver.poll()
         if not came:
             return
-        news = self.session.hear(came)
+        news = self.session.receive(came)
         if news.frame is not None:
             self.figure.show(news.frame)
         said = obey_all(context, news.events)

@@ -12,7 +12,7 @@ from ...solvers.workflows import MarkerMotion, MarkerMotionSettings, motion_from
 from ..actions.armature_build import build_armature
 from ..actions.marker_take import read_markers
 from ..actions.new_action import write_motion
-from ..blender.turns import Sliced, Steps
+from ..blender.time_slices import Sliced, Steps
 from ..runtime.selection import played_source, selected_subject
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history

@@ -8,8 +8,8 @@ import bpy
 from ...solvers.physics import SimulateSettings
 from ..actions.armature_read import read_take
 from ..actions.armature_write import Output, check_writable, put_to_use, write_take
-from ..blender.turns import Sliced, Steps
-from ..jobs.job import Quick
+from ..blender.time_slices import Sliced, Steps
+from ..jobs.job import ShortSolve
 from ..runtime import redo
 from ..runtime.selection import played_source
 from ..runtime.subject import Subject, check_unchanged
@@ -34,7 +34,7 @@ def read_simulating(
     read = yield from read_take.steps(armature, scene, source=played_source(armature))
     take = take_of(read.parts[0].motion, settings.simulating)
     known = redo.recall(take)
-    kind = partial if known is None else Quick
+    kind = partial if known is None else ShortSolve
     return kind(simulate_take, take, settings.simulating.strength, known)
 
 

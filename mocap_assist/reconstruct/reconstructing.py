@@ -18,12 +18,12 @@ from ..actions.sensor_notes import read_states
 from ..actions.take import ArmatureTake
 from ..blender.compat import Source
 from ..blender.path_properties import absolute
-from ..blender.turns import Sliced, Steps
+from ..blender.time_slices import Sliced, Steps
 from ..clean.cleaning import ease_of
 from ..clean.examples import read_examples
 from ..clean.report import figures
 from ..clean.solve_cleaning import Examples
-from ..jobs.job import Quick
+from ..jobs.job import ShortSolve
 from ..library.prior import library_prior
 from ..runtime import redo
 from ..runtime.selection import played_source, selected_armature, why_not_clean
@@ -81,7 +81,7 @@ def read_reconstructing(
         contacts=animators_contacts(found.played, found.take.frames),
     )
     solution = redo.recall(problem)
-    return (partial if solution is None else Quick)(rebuild, problem, finish, solution)
+    return (partial if solution is None else ShortSolve)(rebuild, problem, finish, solution)
 
 
 @Sliced
@@ -111,7 +111,7 @@ def write_reconstructed(
         armature, found.recorded, take, bones, _key_types(names, rebuilt), suffix=SUFFIX
     )
     for term in Term:
-        values = getattr(rebuilt.solution.trust, term.name.lower())
+        values = getattr(rebuilt.solution.reliability_terms, term.name.lower())
         trusted = dict(zip(names, values.T, strict=True))
         write_reliability(armature, action, slot, take.frames, trusted, term)
     if rebuilt.planted is not None:
@@ -184,7 +184,7 @@ def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
         "operation": "reconstruct",
         "settings": history.plain(*settings),
         "method": rebuilt.solution.method,
-        "rebuilt_share": rebuilt.solution.rebuilt_share,
+        "rebuilt_share": rebuilt.solution.rebuilt_fraction,
         "remarks": list(rebuilt.remarks),
         "before": figures(rebuilt.before),
         "after": figures(rebuilt.after),
@@ -193,8 +193,7 @@ def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
 
 def _said(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
     """Return what a status bar has room for, and what the animator must know."""
-    rebuilt_percent = 100 * rebuilt.solution.rebuilt_share
-    short = f"{name}: rebuilt {rebuilt_percent:.1f} % of joint samples"
+    short = f"{name}: {100 * rebuilt.solution.rebuilt_fraction:.1f} % of joints rebuilt"
     if planted := rebuilt.planted:
         slides = (100 * planted.slide_before, 100 * planted.slide_after)
         short += "; foot slide {:.1f} → {:.1f} cm".format(*slides)

@@ -19,7 +19,12 @@ from ...solvers.reconstruction import (
     load_residual_prior,
 )
 from ...solvers.recordings import read_motion_or_tracks, read_tracked
-from ...solvers.workflows import RebuiltMotion, postures_of, reconstruct_motion, try_to_plant
+from ...solvers.workflows import (
+    RebuiltMotion,
+    plant_feet_if_possible,
+    posture_library_from_clips,
+    reconstruct_motion,
+)
 from ..clean.solve_cleaning import Examples, toward
 from ..library.solve_prior import LibraryPrior
 
@@ -81,10 +86,10 @@ def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> Rebuilt
         prior = load_residual_prior(problem.residuals_file[0])
     if problem.library is not None:
         found = problem.library.postures(problem.body, sharing)
-        postures, said = found.postures, found.said
+        postures, said = found.postures, found.message
     elif problem.examples is not None:
         clips = [*problem.examples.motions, *map(read_motion_or_tracks, problem.examples.files)]
-        postures = postures_of(clips, progress=sharing)
+        postures = posture_library_from_clips(clips, progress=sharing)
     rebuilt = reconstruct_motion(
         problem.body,
         postures,
@@ -118,7 +123,7 @@ def rebuild(
     """Solve the problem, unless its solution is given, and finish it."""
     if solution is None:
         solution = solve(problem, progress=within(progress, 0.0, 0.8))
-    motion, planted, remarks = try_to_plant(
+    motion, planted, remarks = plant_feet_if_possible(
         solution.motion,
         finish.planting,
         finish.contacts,

@@ -6,7 +6,7 @@ import bpy
 
 from ...solvers.errors import MocapAssistError
 from ...solvers.retargeting import RetargetSettings, RootMotion
-from ..blender.name_lists import SEPARATOR, joined, listed
+from ..blender.name_lists import SEPARATOR, join_names, split_names
 from ..panels.drawing import draw_job, draw_sentence, exists, folded
 from ..rigs.rigify import is_rigify
 from ..runtime.selection import selected_armature, why_not_read, why_not_retarget
@@ -76,7 +76,7 @@ def why_not_pressed(context: bpy.types.Context) -> str:
 
 
 def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    ticked = listed(context.scene.mocap_assist.retarget.actions)
+    ticked = split_names(context.scene.mocap_assist.retarget.actions)
     source = selected_armature(context)
     found = [] if source is None else fitting_actions(source)
     box = column.column(align=True)
@@ -132,9 +132,11 @@ class MOCAP_OT_tick_action(bpy.types.Operator):
             self.report({"ERROR"}, f"Rename {self.action}: a name cannot contain {SEPARATOR}.")
             return {"CANCELLED"}
         shown = getattr(context.scene.mocap_assist, self.group)
-        names = listed(shown.actions)
+        names = split_names(shown.actions)
         others = [name for name in names if name != self.action]
-        shown.actions = joined(others if len(others) < len(names) else [*names, self.action])
+        shown.actions = join_names(
+            others if len(others) < len(names) else [*names, self.action]
+        )
         return {"FINISHED"}
 
 

@@ -16,11 +16,11 @@ from ..actions.armature_write import check_writable
 from ..actions.bone_channels import animated_paths, bone_path
 from ..actions.take import ArmatureTake
 from ..blender import compat
+from ..blender.block_references import SourceReference
 from ..blender.compat import Source
-from ..blender.lasting import LastingSource
-from ..blender.name_lists import listed
-from ..blender.turns import Sliced, Steps
-from ..jobs.job import Quick
+from ..blender.name_lists import split_names
+from ..blender.time_slices import Sliced, Steps
+from ..jobs.job import ShortSolve
 from ..rigs.evaluated_body import body_bones, with_body_shown
 from ..rigs.rigify import is_rigify
 from ..rigs.target_read import read_target, vertical_part
@@ -54,7 +54,7 @@ def read_retarget(
     found = yield from _read(Subject.of(scene, source), settings)
     problem = found.problem
     n_frames = sum(clip.motion.n_frames for clip in problem.clips)
-    return (Quick if n_frames <= N_QUICK else partial)(retarget_clips, problem)
+    return (ShortSolve if n_frames <= N_QUICK else partial)(retarget_clips, problem)
 
 
 @Sliced
@@ -117,7 +117,7 @@ def chosen_sources(source: bpy.types.Object, choices: RetargetChoices) -> tuple[
         if not (fitting := fitting_actions(source)):
             raise InvalidMotionError(f"No action has keys for the bones of {source.name}.")
         return fitting
-    names = listed(choices.actions)
+    names = split_names(choices.actions)
     if not names:
         raise InvalidMotionError("No action is listed. Add one to the list.")
     return tuple(source_called(name, source) for name in names)
@@ -174,7 +174,7 @@ def _read(here: Subject, settings: RetargetBundle) -> Steps[Reading]:
     choices = settings.choices
     scene, source = here.find()
     target_called(scene, choices.target, source)  # or it cannot be used, and all is in vain
-    lasting = [LastingSource.of(each) for each in chosen_sources(source, choices)]
+    lasting = [SourceReference.of(each) for each in chosen_sources(source, choices)]
     takes = []
     for each in lasting:
         take = yield from _read_clip(here, each, choices)
@@ -191,7 +191,7 @@ def _read(here: Subject, settings: RetargetBundle) -> Steps[Reading]:
 
 
 def _read_clip(
-    here: Subject, action: LastingSource, choices: RetargetChoices
+    here: Subject, action: SourceReference, choices: RetargetChoices
 ) -> Steps[ArmatureTake]:
     """Read an action; of a control rig what its body does."""
     scene, source = here.find()

@@ -11,7 +11,7 @@ from ..actions.armature_read import read_take
 from ..actions.armature_write import Output, check_writable, put_to_use
 from ..actions.bone_channels import animated_curves
 from ..actions.take import ArmatureTake, Part
-from ..blender.turns import Sliced, Steps
+from ..blender.time_slices import Sliced, Steps
 from ..runtime.selection import played_source
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history

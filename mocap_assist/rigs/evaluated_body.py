@@ -15,9 +15,9 @@ from ...solvers.rotations import IDENTITY, inverse, multiply, quaternion_from_ma
 from ..actions.animated_values import values_kept
 from ..actions.take import ArmatureTake
 from ..blender import compat
+from ..blender.block_references import BlockReference, SourceReference
 from ..blender.compat import Source
-from ..blender.lasting import Lasting, LastingSource
-from ..blender.turns import Sliced, Steps, due
+from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene.rig import placement_of
 from .rigify import original_of
 
@@ -96,7 +96,7 @@ def _shown(
 
     Before each turn of Blender's the armature plays its own action again.
     """
-    lasting = Lasting.of(scene), Lasting.of(armature), LastingSource.of(source)
+    lasting = BlockReference.of(scene), BlockReference.of(armature), SourceReference.of(source)
     rotations: list[Array] = []
     positions: list[Array] = []
     while len(rotations) < len(take.frames):
@@ -108,7 +108,7 @@ def _shown(
                 turns, position = _pose_at(scene, armature, names, frame)
                 rotations.append(turns)
                 positions.append(take.rest.scale * position)
-                if due():
+                if should_yield():
                     break
     return np.stack(rotations), np.stack(positions)
 

@@ -1,4 +1,4 @@
-"""The last solution, kept so that the redo panel need not solve the same problem again."""
+"""Cache the last solution, so that the redo panel does not solve the same problem again."""
 
 import hashlib
 import pickle

@@ -48,7 +48,7 @@ def why_not_clean(context: bpy.types.Context) -> str:
     if reason := why_not_read(context):
         return reason
     try:
-        check_writable(first_player(selected_subject(context)))
+        check_writable(first_animated_object(selected_subject(context)))
     except InvalidMotionError as error:
         return str(error)
     return ""
@@ -76,25 +76,25 @@ def why_not_learn(context: bpy.types.Context) -> str:
     return ""
 
 
-def players(subject: bpy.types.Object) -> tuple[bpy.types.Object, ...]:
+def animated_objects(subject: bpy.types.Object) -> tuple[bpy.types.Object, ...]:
     """Return what plays the action: the armature itself, or the markers below an object."""
     return (subject,) if subject.type == "ARMATURE" else markers_of(subject)
 
 
-def first_player(subject: bpy.types.Object) -> bpy.types.Object:
+def first_animated_object(subject: bpy.types.Object) -> bpy.types.Object:
     """Return the armature itself, or one of the markers."""
     return subject if subject.type == "ARMATURE" else first_marker_of(subject)
 
 
 def played_source(subject: bpy.types.Object) -> Source:
     """Return what the armature, or the first of the markers, plays: a result, or its action."""
-    player = first_player(subject)
+    player = first_animated_object(subject)
     return history.played_result(player) or action_of(player)
 
 
 def played_result(subject: bpy.types.Object | None) -> Source | None:
     """Return the result of ours that the armature or the first of the markers plays."""
-    return None if subject is None else history.played_result(first_player(subject))
+    return None if subject is None else history.played_result(first_animated_object(subject))
 
 
 def chosen_bones(armature: bpy.types.Object, choice: Bones) -> frozenset[str]:

@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 import bpy
 
 from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
-from ..blender.turns import Work
-from ..jobs.job import Job, Quick, run
+from ..blender.time_slices import Work
+from ..jobs.job import Job, ShortSolve, run
 from .redo import fingerprint
 from .selection import selected_subject
 from .subject import Subject
@@ -136,7 +136,9 @@ class SolverOperator:
         """
         solve = yield from self._in_turns("Reading", type(self).read_scene)
         asked = fingerprint(solve.args[0])
-        result = run(solve) if isinstance(solve, Quick) else (yield from self._solve(solve))
+        result = (
+            run(solve) if isinstance(solve, ShortSolve) else (yield from self._solve(solve))
+        )
         message: str = yield from self._in_turns(
             "Writing", type(self).write_scene, result, asked
         )

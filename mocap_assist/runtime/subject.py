@@ -5,20 +5,20 @@ from typing import NamedTuple
 import bpy
 
 from ...solvers.errors import InvalidMotionError
-from ..blender.lasting import Lasting
+from ..blender.block_references import BlockReference
 from .redo import fingerprint
 
 
 class Subject(NamedTuple):
     """A scene, and in it an armature or what holds the markers of a take."""
 
-    scene: Lasting
-    thing: Lasting
+    scene: BlockReference
+    thing: BlockReference
 
     @classmethod
     def of(cls, scene: bpy.types.Scene, thing: bpy.types.Object) -> "Subject":
         """Remember both."""
-        return cls(Lasting.of(scene), Lasting.of(thing))
+        return cls(BlockReference.of(scene), BlockReference.of(thing))
 
     def find(self) -> tuple[bpy.types.Scene, bpy.types.Object]:
         """Return both; raise InvalidMotionError where one was deleted meanwhile."""

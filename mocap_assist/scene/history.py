@@ -10,7 +10,7 @@ from ...solvers.settings import Settings
 from ...solvers.version import version
 from ..blender import compat
 from ..blender.compat import Source
-from ..blender.stored_json import store, stored
+from ..blender.stored_json import load_json, store_json
 
 HISTORY = "mocap_assist_history"
 SOURCE = "mocap_assist_source"
@@ -33,7 +33,7 @@ def record(
     """
     source, slot = made_from
     entry = {"version": version(), "source": source.name, "slot": slot.identifier} | entry
-    store(action, HISTORY, [*history(source), entry])
+    store_json(action, HISTORY, [*history(source), entry])
     if of_another_rig:
         action[GIVEN_BY] = source
         return
@@ -43,7 +43,7 @@ def record(
 
 def history(action: bpy.types.Action) -> list[dict[str, Any]]:
     """Return what was done, oldest first; nothing for an action of other origin."""
-    return [entry for entry in stored(action, HISTORY, list) if isinstance(entry, dict)]
+    return [entry for entry in load_json(action, HISTORY, list) if isinstance(entry, dict)]
 
 
 def given_to(action: bpy.types.Action) -> str:
@@ -68,7 +68,7 @@ def raw_of(action: bpy.types.Action, slot: bpy.types.ActionSlot | None = None) -
         return None
     handle = None if slot is None else slot.handle  # which copies of an action share
     same = next((each for each in source.slots if each.handle == handle), None)
-    found = same or compat.slot_called(source, str(entries[0].get("slot", "")))
+    found = same or compat.find_slot(source, str(entries[0].get("slot", "")))
     return None if found is None else (source, found)
 
 
@@ -80,7 +80,7 @@ def cleaned_from(played: Source) -> Source:
     action, slot = played
     while (entries := history(action)) and entries[-1].get("operation") not in REMADE:
         before = bpy.data.actions.get(str(entries[-1].get("source", "")))
-        found = before and compat.slot_called(before, str(entries[-1].get("slot", "")))
+        found = before and compat.find_slot(before, str(entries[-1].get("slot", "")))
         if not found or history(before) != entries[:-1]:
             return raw_of(*played) or played
         action, slot = before, found

@@ -7,7 +7,7 @@ import bpy
 
 from ...solvers.depth_scene import DepthRecording
 from ...solvers.motion import JointRecording, Motion, Tracks
-from ..blender.stored_json import store, stored
+from ..blender.stored_json import load_json, store_json
 
 ORIGIN = "mocap_assist_recording"
 NOTED: dict[str, Any] = {
@@ -18,7 +18,7 @@ NOTED: dict[str, Any] = {
 
 def note_origin(made: bpy.types.ID, origin: dict[str, Any]) -> None:
     """Keep the file, the kind of recording, its rate and its sensor, as JSON."""
-    store(made, ORIGIN, origin)
+    store_json(made, ORIGIN, origin)
 
 
 def origin_of_file(
@@ -38,7 +38,7 @@ def origin_of_file(
 
 def origin_of(made: bpy.types.ID) -> dict[str, Any]:
     """Return what was noted; nothing for what was not imported here."""
-    noted = stored(made, ORIGIN, dict)
+    noted = load_json(made, ORIGIN, dict)
     return {
         name: noted[name] for name, kind in NOTED.items() if isinstance(noted.get(name), kind)
     }

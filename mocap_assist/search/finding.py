@@ -11,7 +11,7 @@ from ...solvers.retrieval import FindSettings
 from ..actions.armature_read import read_take
 from ..actions.frames import FrameRange, Grid
 from ..actions.marker_take import read_markers
-from ..blender.turns import Sliced, Steps
+from ..blender.time_slices import Sliced, Steps
 from ..library.choices import FindBundle
 from ..library.places import library_path
 from ..library.prior import own_origins

@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 
 from ...solvers.errors import MocapAssistError
-from ..blender.name_lists import SEPARATOR, joined
+from ..blender.name_lists import SEPARATOR, join_names
 from ..clean.choices import Prior
 from ..reconstruct.choices import Postures
 from . import searches
@@ -24,7 +24,7 @@ def learn_from_best(context: bpy.types.Context, group: str, n_best: int) -> str:
     best = search.finding.found[:n_best]
     usable = dict.fromkeys(entry for found in best if (entry := _example(context, found)))
     settings = getattr(context.scene.mocap_assist, group)
-    settings.examples = joined(usable)
+    settings.examples = join_names(usable)
     if group == CLEAN:
         settings.prior = Prior.EXAMPLES.name
     else:

@@ -12,7 +12,7 @@ from ...solvers.rotations import inverse, rotate
 from ..actions.action_write import write_action
 from ..actions.armature_write import Output, check_writable
 from ..blender import compat
-from ..blender.stored_json import store
+from ..blender.stored_json import store_json
 from ..library.choices import LoadBundle, LoadChoices, Part
 from ..library.places import background_blender
 from ..library.solve_fetching import Fetched, FetchProblem, fetch_clip
@@ -90,7 +90,7 @@ def note_clip(action: bpy.types.Action, found: Found) -> None:
         "score": round(found.match.score, 4),
         "tags": list(found.entry.tags),
     }
-    store(action, CLIP, noted)
+    store_json(action, CLIP, noted)
 
 
 def first_frame(search: Search, found: Found) -> float:

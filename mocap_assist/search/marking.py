@@ -9,7 +9,7 @@ import numpy as np
 from ...solvers.errors import InvalidFileError, InvalidMotionError
 from ...solvers.motion.humanoid import normalize_postures, postures_from_motion
 from ..actions.armature_read import read_take
-from ..blender.stored_json import stored
+from ..blender.stored_json import load_json
 from ..library.catalogs import catalog_file, ensure_catalog
 from ..library.thumbnails import thumbnail
 from ..runtime.selection import played_source, selected_armature
@@ -60,7 +60,7 @@ def mark(action: bpy.types.Action, tags: Iterable[str], number: str) -> None:
 
 def clip_tags(action: bpy.types.Action) -> list[str]:
     """Return the tags of the clip that an action was made of."""
-    tags = stored(action, CLIP, dict).get("tags", [])
+    tags = load_json(action, CLIP, dict).get("tags", [])
     return [str(tag) for tag in tags] if isinstance(tags, list) else []
 
 

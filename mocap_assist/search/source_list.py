@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..blender.name_lists import listed
+from ..blender.name_lists import split_names
 from ..blender.path_properties import FOLDER, HIDDEN, absolute, chosen_files, path_property
 from ..clean.example_list import CHANGES_A_LIST
 from ..library.kept_libraries import change_sources
@@ -19,7 +19,7 @@ FILES = "*.bvh;*.amc;*.c3d;*.trc;*.skeleton;*.csv;*.json;*.txt;*.npy;*.npz;*.ble
 def draw_sources(layout: bpy.types.UILayout, library: bpy.types.PropertyGroup) -> None:
     """Draw the places, each with a button that takes it out."""
     column = layout.column(align=True)
-    for index, name in enumerate(listed(library.sources)):
+    for index, name in enumerate(split_names(library.sources)):
         row = column.row(align=True)
         path = Path(name)
         icon = "FILE_BLEND" if path.suffix == ".blend" else "FILE"
@@ -37,7 +37,7 @@ def draw_sources(layout: bpy.types.UILayout, library: bpy.types.PropertyGroup) -
 
 def _add(context: bpy.types.Context, chosen: list[str]) -> set[str]:
     library = context.scene.mocap_assist.library
-    change_sources(library, [*listed(library.sources), *chosen])
+    change_sources(library, [*split_names(library.sources), *chosen])
     return {"FINISHED"}
 
 
@@ -87,7 +87,7 @@ class MOCAP_OT_remove_source(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         library = context.scene.mocap_assist.library
-        entries = enumerate(listed(library.sources))
+        entries = enumerate(split_names(library.sources))
         change_sources(library, [name for place, name in entries if place != self.index])
         return {"FINISHED"}
 

@@ -9,7 +9,7 @@ import numpy as np
 from ...solvers.errors import InvalidMotionError
 from ..actions.action_write import write_action
 from ..actions.armature_write import check_writable
-from ..blender.name_lists import SEPARATOR, joined
+from ..blender.name_lists import SEPARATOR, join_names
 from ..library.choices import LoadChoices, UseBundle
 from ..library.solve_fetching import FetchedClips, FetchProblems, fetch_clips
 from ..runtime.subject import check_unchanged
@@ -60,7 +60,7 @@ def write_best(
         action, _ = write_action(armature, name, frames, clip.keys, reading.switches)
         note_clip(action, found)
         names.append(action.name)
-    scene.mocap_assist.vary.actions = joined(names)
+    scene.mocap_assist.vary.actions = join_names(names)
     clips = "1 clip" if len(names) == 1 else f"{len(names)} clips"
     said = f"Vary has {clips} of the library as examples."
     if lost := len(reading.found) - len(names):

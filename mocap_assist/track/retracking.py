@@ -11,9 +11,9 @@ from ...solvers.depth_tracking.body import JOINTS, SEGMENTS, scene_from_camera
 from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ..actions.armature_write import Output, check_writable, put_to_use, write_take
 from ..blender.compat import Source
-from ..blender.turns import Sliced, Steps
+from ..blender.time_slices import Sliced, Steps
 from ..depth.depth_preview import open_recording
-from ..jobs.protocol import Showing
+from ..jobs.protocol import PreviewSolve
 from ..runtime.selection import played_source, selected_armature
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
@@ -61,7 +61,7 @@ def why_not_retrack(context: bpy.types.Context) -> str:
 @Sliced
 def read_retracking(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: RetrackBundle
-) -> Steps[Showing[Retracked]]:
+) -> Steps[PreviewSolve[Retracked]]:
     """Read what an armature plays and how it is posed; return what is to be solved."""
     check_writable(armature)
     here = Subject.of(scene, armature)
@@ -77,7 +77,7 @@ def read_retracking(
             f" {take.frames[0]:.2f} to {take.frames[-1]:.2f}, and pose {armature.name} there."
         )
     correction = Correction(frame, take.pose(armature), _fixed(source, take, frame))
-    return Showing(retrack_recording, played, correction, settings.retracking)
+    return PreviewSolve(retrack_recording, played, correction, settings.retracking)
 
 
 def watch_retracking(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...solvers.depth_scene import Floor, ForegroundMethod, ForegroundSettings
 from ...solvers.depth_tracking.body import CAPSULES, LENGTHS, SEGMENTS, BodyModel, rest_frames
 from ...solvers.errors import InvalidMotionError, MocapAssistError
-from ..blender.stored_json import parsed, store
+from ..blender.stored_json import parse_stored, store_json
 from ..depth.depth_preview import Shown
 
 Array = NDArray[np.float64]
@@ -47,7 +47,7 @@ class TrackedBody:
             "floor": None if floor is None else [*floor.up.tolist(), floor.height],
             "actor": {**asdict(self.actor), "way": self.actor.way.name},
         }
-        store(armature.data, KEY, told)
+        store_json(armature.data, KEY, told)
         for joint, bone in bones.items():
             armature.data.bones[bone][ROLE] = joint
 
@@ -64,7 +64,7 @@ class TrackedBody:
 
 @lru_cache(maxsize=N_KEPT)
 def _parsed(text: str) -> TrackedBody:
-    told = parsed(text, dict)
+    told = parse_stored(text, dict)
     floor, actor = told["floor"], told["actor"]
     return TrackedBody(
         BodyModel(

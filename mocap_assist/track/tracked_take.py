@@ -15,9 +15,9 @@ from ..actions.bone_channels import animated_curves, read_bone, rotation_curves
 from ..actions.curves import Channel
 from ..actions.frames import Grid
 from ..actions.take import ArmatureTake, BoneChannels, Part, part_of
+from ..blender.block_references import BlockReference, SourceReference
 from ..blender.compat import Source
-from ..blender.lasting import Lasting, LastingSource
-from ..blender.turns import Sliced, Steps, due
+from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene.rig import Placement, Rig, placement_of, read_rig
 from .tracked_body import TrackedBody, armature_from_motion, bones_of
 from .tracked_checks import check_keyed, check_posed
@@ -133,10 +133,10 @@ def read_tracked_take(
     check_keyed(armature, curves)
     keyed = rotation_curves(armature.pose.bones[bones["hips"]], curves).values()
     frames, first = _moments(keyed, tracked, n_pictures, source[0].name)
-    lasting, channels = (Lasting.of(armature), LastingSource.of(source)), []
+    lasting, channels = (BlockReference.of(armature), SourceReference.of(source)), []
     for number, bone in enumerate(rig.bones):
         channels.append(read_bone(armature.pose.bones[bone], curves, frames, gaps=False))
-        if due():
+        if should_yield():
             yield number / len(rig.bones)
             armature, source = (each.find() for each in lasting)
             curves = animated_curves(*source)

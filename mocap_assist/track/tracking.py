@@ -18,9 +18,9 @@ from ...solvers.version import version
 from ..actions.armature_build import build_armature
 from ..actions.new_action import write_motion
 from ..actions.reliability_curves import write_reliability
-from ..blender.stored_json import store
+from ..blender.stored_json import store_json
 from ..depth.depth_preview import KEY, Shown, problem_of, recording_of
-from ..jobs.protocol import Showing
+from ..jobs.protocol import PreviewSolve
 from ..runtime.subject import check_unchanged
 from ..scene import history
 from ..scene.scene_objects import all_or_nothing
@@ -96,11 +96,11 @@ def why_not_track(context: bpy.types.Context) -> str:
 
 def read_tracking(
     scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
-) -> Showing[Tracked]:
+) -> PreviewSolve[Tracked]:
     """Open the recording that is shown; return what is to be solved, which may be pickled."""
     planting = settings.planting if settings.choices.plant_feet else None
     recording = recording_of(preview.data)
-    return Showing(track_recording, recording, settings.tracking, settings.actor, planting)
+    return PreviewSolve(track_recording, recording, settings.tracking, settings.actor, planting)
 
 
 def watch_tracking(
@@ -146,7 +146,7 @@ def write_tracked(
         kept = TrackedBody(result.body, shown, result.floor, settings.actor)
         kept.write(armature, dict(zip(result.motion.skeleton.names, bones, strict=True)))
     action = source[0]
-    store(action, CAPTURED, _entry(settings, result, shown))
+    store_json(action, CAPTURED, _entry(settings, result, shown))
     list_doubts(scene, action, frames, result.doubts, _said(result))
     return f"{armature.name}: {_said(result)}"
 

@@ -7,7 +7,7 @@ import bpy
 
 from ...solvers.denoising import PlantSettings
 from ...solvers.variation import VarySettings
-from ..blender.name_lists import listed
+from ..blender.name_lists import split_names
 from ..panels.drawing import draw_job, draw_sentence, exists
 from ..retarget.panel import TICK
 from ..runtime.selection import selected_armature
@@ -84,7 +84,7 @@ def picture_of(action: bpy.types.Action) -> int:
 
 
 def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    ticked = listed(context.scene.mocap_assist.vary.actions)
+    ticked = split_names(context.scene.mocap_assist.vary.actions)
     armature = selected_armature(context)
     found = [] if armature is None else candidates(armature)
     box = column.column(align=True)

@@ -12,10 +12,10 @@ from ...solvers.retargeting import RootMotion
 from ..actions.armature_read import read_take
 from ..actions.armature_write import check_writable
 from ..actions.take import ArmatureTake
+from ..blender.block_references import SourceReference
 from ..blender.compat import Source
-from ..blender.lasting import LastingSource
-from ..blender.name_lists import listed
-from ..blender.turns import Sliced, Steps
+from ..blender.name_lists import split_names
+from ..blender.time_slices import Sliced, Steps
 from ..retarget.retargeting import fitting_actions, source_called
 from ..rigs.evaluated_body import body_bones, with_body_shown
 from ..rigs.movers import movers_of
@@ -65,7 +65,7 @@ def chosen_sources(armature: bpy.types.Object, choices: VaryChoices) -> tuple[So
 
     Where that is a variant, what it was made of is meant.
     """
-    names = listed(choices.actions)
+    names = split_names(choices.actions)
     if not names:
         played = played_source(armature)
         known = [name for name in examples_of(played[0]) if name in bpy.data.actions]
@@ -98,7 +98,7 @@ def read(
 ) -> Steps[Reading]:
     """Read the chosen actions; of a control rig what its body does."""
     here = Subject.of(scene, armature)
-    lasting = [LastingSource.of(each) for each in chosen_sources(armature, settings.choices)]
+    lasting = [SourceReference.of(each) for each in chosen_sources(armature, settings.choices)]
     takes = []
     for each in lasting:
         take = yield from _read_once(here, each)
@@ -123,7 +123,7 @@ def read(
     return Reading(sources, tuple(takes), problem, switches, movers_of(armature, shown))
 
 
-def _read_once(here: Subject, source: LastingSource) -> Steps[ArmatureTake]:
+def _read_once(here: Subject, source: SourceReference) -> Steps[ArmatureTake]:
     """Read an action; the body of a control rig only once for each press of the button."""
     scene, armature = here.find()
     take = yield from read_take.steps(armature, scene, source=source.find())
@@ -141,7 +141,7 @@ def read_body(
     scene: bpy.types.Scene, armature: bpy.types.Object, source: Source
 ) -> Steps[ArmatureTake]:
     """Read an action; where constraints move the body, as Blender shows it, named by roles."""
-    here, lasting = Subject.of(scene, armature), LastingSource.of(source)
+    here, lasting = Subject.of(scene, armature), SourceReference.of(source)
     take = yield from read_take.steps(armature, scene, source=source)
     scene, armature = here.find()
     if not is_rigify(armature.data.bones):

@@ -4,7 +4,7 @@ import re
 
 import bpy
 
-from ..blender.stored_json import store, stored
+from ..blender.stored_json import load_json, store_json
 
 VARIANT = "mocap_assist_variant"
 """Custom property of actions that Vary made: of which, its number, and the seed."""
@@ -15,7 +15,7 @@ FEWEST_DIGITS = 2
 
 def tag(action: bpy.types.Action, examples: list[str], number: int, seed: int) -> None:
     """Let an action say what it is a variant of."""
-    store(action, VARIANT, {"examples": examples, "number": number, "seed": seed})
+    store_json(action, VARIANT, {"examples": examples, "number": number, "seed": seed})
 
 
 def is_variant(action: bpy.types.Action) -> bool:
@@ -25,7 +25,7 @@ def is_variant(action: bpy.types.Action) -> bool:
 
 def examples_of(action: bpy.types.Action) -> list[str]:
     """Return the names of the actions that it is a variant of; nothing for others."""
-    names = stored(action, VARIANT, dict).get("examples", [])
+    names = load_json(action, VARIANT, dict).get("examples", [])
     return [str(name) for name in names] if isinstance(names, list) else []
 
 

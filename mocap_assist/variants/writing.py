@@ -9,7 +9,7 @@ from ..actions.action_write import write_action
 from ..actions.armature_write import check_writable
 from ..blender import compat
 from ..blender.compat import Source
-from ..blender.turns import Sliced, Steps, due
+from ..blender.time_slices import Sliced, Steps, should_yield
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
 from ..search.previews import give_picture
@@ -55,7 +55,7 @@ def write_variants(
     try:
         while len(made) < len(writer.names):
             made.append(writer.write(armature, len(made)))
-            if due():
+            if should_yield():
                 yield len(made) / len(writer.names)
                 scene, armature = here.find()
         check_writable(armature)
@@ -113,7 +113,7 @@ class _Writer(NamedTuple):
     def _first_example(self) -> Source:
         """Return the first example, as it is now."""
         action = bpy.data.actions.get(self.examples[0])
-        slot = action and compat.slot_called(action, self.slot)
+        slot = action and compat.find_slot(action, self.slot)
         if not slot:
             raise InvalidMotionError(
                 f"{self.examples[0]} was deleted during the solve. Press the button again."

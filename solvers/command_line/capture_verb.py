@@ -1,4 +1,4 @@
-"""`capture`: the motion of the actor whom a depth recording shows."""
+"""`capture`: track the actor of a depth recording."""
 
 import argparse
 from pathlib import Path
@@ -11,11 +11,11 @@ from ..depth_tracking.body import LENGTHS, BodyModel, load_body_model
 from ..depth_tracking.capturing import CaptureSettings
 from ..errors import InvalidSettingError
 from ..motion import JointRecording, Sensor
-from ..progress import Progress, overheard, within
+from ..progress import Progress, collect_messages, within
 from ..recordings import depth_in, read_depth, write_joint_csv
 from ..recordings.depth_files import DepthSettings
 from ..workflows import CapturedMotion, capture_recording
-from .files import JOINTS, found_in, write
+from .files import JOINTS, find_recordings, write
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
@@ -24,55 +24,57 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `capture`."""
     parser.add_argument(
         "--body", type=Path, metavar="FILE",
-        help="The actor's body, as --keep-body wrote it; without it one is fitted",
+        help="Body of the actor, written by --keep-body [default: fitted to the recording]",
     )  # fmt: skip
     parser.add_argument(
-        "--keep-body", type=Path, metavar="FILE", help="Also write the body that was fitted"
+        "--keep-body", type=Path, metavar="FILE", help="Also write the fitted body"
     )
     parser.add_argument(
         "--empty", nargs=2, type=int, metavar=("FIRST", "LAST"),
-        help="Frames of the room without the actor, which then is subtracted",
+        help="Frames of the empty room, for background subtraction",
     )  # fmt: skip
     parser.add_argument(
         "--joints", action="store_true",
-        help="With --output-folder: write joints as .csv, as the camera saw them, with the"
-        " confidence of each, in the place of a skeleton's motion",
+        help="With --output-folder: write joints with confidence as .csv, in camera space,"
+        " instead of the motion of a skeleton",
     )  # fmt: skip
     parser.add_argument(
         "--feet", action=argparse.BooleanOptionalAction, default=True,
-        help="Whether to keep standing feet from sliding [default: yes, where they are seen]",
+        help="Whether to plant standing feet [default: yes, where they are visible]",
     )  # fmt: skip
     for title, settings in (
-        ("what the files leave open", DepthSettings), ("the actor", ForegroundSettings),
+        ("reading", DepthSettings), ("the actor", ForegroundSettings),
         ("tracking", CaptureSettings), ("planting feet", PlantSettings),
     ):  # fmt: skip
         arguments_from(parser.add_argument_group(title), settings)
 
 
 def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | None:
-    """Read the body that serves all files of a run, if one is given.
+    """Read the body for all files of a run, if one is given.
 
     Raises
     ------
     InvalidSettingError
-        The bodies of several takes would be written to one file.
+        --keep-body is combined with several takes.
     """
-    many = arguments.output_folder is not None and len(found_in(arguments.files, look=depth_in))
+    many = arguments.output_folder is not None and len(
+        find_recordings(arguments.files, list_recordings=depth_in)
+    )
     if arguments.keep_body is not None and many > 1:
         raise InvalidSettingError(
-            f"{arguments.keep_body} has room for one body; capture one take to keep its body,"
+            f"{arguments.keep_body} can hold one body. Capture one take with --keep-body,"
             " and the others with --body."
         )
     return None if arguments.body is None else load_body_model(arguments.body)
 
 
 def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) -> Outcome:
-    """Capture one recording and write it; tell how well it was followed."""
-    arguments, told = task.arguments, list[str]()
+    """Capture one recording, write it and report the quality of the tracking."""
+    arguments, messages = task.arguments, list[str]()
     recording = read_depth(
         task.source,
         settings_from_arguments(arguments, DepthSettings),
-        progress=overheard(within(progress, 0.0, 0.02), told),
+        progress=collect_messages(within(progress, 0.0, 0.02), messages),
     )
     first, last = arguments.empty or (0, -1)
     found = capture_recording(
@@ -92,18 +94,20 @@ def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) 
         write_joint_csv(joints, task.target, progress=within(progress, 0.98, 1.0))
     else:
         write(found.motion, task.target, within(progress, 0.98, 1.0))
-    return _outcome(found, told)
+    return _outcome(found, messages)
 
 
-def _outcome(found: CapturedMotion, told: list[str]) -> Outcome:
-    captured, remarks = found.captured, [*(f"{one}." for one in told), *found.remarks]
+def _outcome(found: CapturedMotion, messages: list[str]) -> Outcome:
+    captured, remarks = (
+        found.captured,
+        [*(f"{message}." for message in messages), *found.remarks],
+    )
     restarts = len(captured.restarts)
     times = "once" if restarts == 1 else f"{restarts} times"
-    off, covered = 100 * np.nanmean(captured.residual), 100 * captured.coverage.mean()
+    distance_cm, overlap = 100 * np.nanmean(captured.residual), 100 * captured.coverage.mean()
     text = (
-        f"{found.motion.n_frames} frames: the body lies {off:.1f} cm beside what was seen of"
-        f" it, and {covered:.0f} % of their pictures agree. The detector had to help {times}"
-        " after the start."
+        f"{found.motion.n_frames} frames, {distance_cm:.1f} cm from the depth pixels"
+        f" on average, with {overlap:.0f} % overlap. The detector ran {times} after the start."
     )
     figures = {
         "n_frames": found.motion.n_frames,

@@ -1,4 +1,4 @@
-"""A recording in another format: the verb `convert`, here and in Blender."""
+"""`convert`: write a recording in another format, here and in Blender."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from .verb import Outcome
 
 
 def convert(recording: Motion | Tracks, target: Path | None, progress: Progress) -> Outcome:
-    """Write a recording as the target's name says; return what there is to say about it."""
+    """Write a recording in the format of the target's extension; return its outcome."""
     write(recording, target, progress)
     names = recording.skeleton.names if isinstance(recording, Motion) else recording.names
     kind = "joints" if isinstance(recording, Motion) else "points"

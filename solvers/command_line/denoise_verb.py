@@ -1,4 +1,4 @@
-"""`denoise`: take jitter, spikes and gaps out, guided by clean clips where there are any."""
+"""`denoise`: remove jitter, spikes and gaps, optionally guided by clean clips."""
 
 import argparse
 from dataclasses import fields, replace
@@ -27,13 +27,13 @@ from ..markers import Swap, unswap_markers
 from ..motion import JointLimits, Motion, Tracks
 from ..progress import Progress, within
 from .files import add_reading_options, read, read_all, write
-from .from_library import add_library_option, bases_for, check_library
+from .from_library import add_library_option, check_library, learn_bases
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
 
-class Learned(NamedTuple):
-    """What the clean clips teach."""
+class LearnedPrior(NamedTuple):
+    """Bases and joint limits learned from clean clips."""
 
     bases: FilterBases | None = None
     limits: JointLimits | None = None
@@ -45,24 +45,24 @@ def add_denoise_options(parser: argparse.ArgumentParser) -> None:
     examples = parser.add_mutually_exclusive_group()
     examples.add_argument(
         "--train", nargs="+", type=Path, default=[], metavar="FILE",
-        help="Clean clips to learn from; without them the take's own patterns guide",
+        help="Clean clips to learn from [default: patterns of the take itself]",
     )  # fmt: skip
     examples.add_argument(
         "--bases", type=Path, metavar="FILE",
-        help="What was learned of clean clips before, by the verb learn or the button Learn",
+        help="Bases learned from clean clips by the verb learn or the button Learn",
     )  # fmt: skip
     add_library_option(examples)
     parser.add_argument(
         "--joint-limits", action="store_true",
-        help="Hold joints softly within the angles to which they turn in the clips of --train",
+        help="Limit joints softly to the range of rotation in the clips of --train",
     )  # fmt: skip
     parser.add_argument(
         "--unswap", action="store_true",
-        help="Put swapped and mistaken labels of optical markers right first",
+        help="Correct swapped and wrong labels of optical markers first",
     )  # fmt: skip
     parser.add_argument(
         "--feet", action=argparse.BooleanOptionalAction,
-        help="Whether to keep standing feet from sliding [default: where there are feet]",
+        help="Whether to plant standing feet [default: where there are feet]",
     )  # fmt: skip
     for title, settings in (
         ("denoising", DenoiseSettings),
@@ -72,8 +72,8 @@ def add_denoise_options(parser: argparse.ArgumentParser) -> None:
         arguments_from(parser.add_argument_group(title), settings)
 
 
-def learn_once(arguments: argparse.Namespace, progress: Progress) -> Learned:
-    """Learn, or load, what guides all files of a run.
+def learn_prior(arguments: argparse.Namespace, progress: Progress) -> LearnedPrior:
+    """Learn or load the prior for all files of a run.
 
     Raises
     ------
@@ -82,43 +82,41 @@ def learn_once(arguments: argparse.Namespace, progress: Progress) -> Learned:
     InvalidMotionError
         Nothing can be learned from the examples.
     InvalidSettingError
-        Something was asked for that only examples can give.
+        An option needs clean clips, and none are given.
     """
     settings = settings_from_arguments(arguments, FilterBasesSettings)
     if not arguments.train:
-        _refuse_what_needs_clips(arguments)
+        _check_clip_options(arguments)
         check_library(arguments.library)
-        return Learned(arguments.bases and load_filter_bases(arguments.bases))
+        return LearnedPrior(arguments.bases and load_filter_bases(arguments.bases))
     clips = read_all(arguments.train, arguments, within(progress, 0.0, 0.5))
     bases = learn_filter_bases(clips, settings=settings, progress=within(progress, 0.5, 0.9))
     if not arguments.joint_limits:
-        return Learned(bases)
+        return LearnedPrior(bases)
     bodies = [clip for clip in clips if isinstance(clip, Motion)]
-    return Learned(bases, learn_joint_limits(bodies, progress=within(progress, 0.9, 1.0)))
+    return LearnedPrior(bases, learn_joint_limits(bodies, progress=within(progress, 0.9, 1.0)))
 
 
-def _refuse_what_needs_clips(arguments: argparse.Namespace) -> None:
+def _check_clip_options(arguments: argparse.Namespace) -> None:
     if arguments.joint_limits:
-        raise InvalidSettingError(
-            "Joint limits are learned from clean clips; name some with --train."
-        )
+        raise InvalidSettingError("Joint limits need clean clips; name some with --train.")
     for item in fields(FilterBasesSettings) if arguments.library is None else ():
         if hasattr(arguments, item.name):
             raise InvalidSettingError(
-                f"--{item.name.replace('_', '-')} is for learning; name clean clips with"
-                " --train or a --library, or give it to the verb learn."
+                f"--{item.name.replace('_', '-')} is an option for learning. Name clean clips"
+                " with --train or --library, or use it with the verb learn."
             )
 
 
-def perform_denoise(task: Task, learned: Learned, progress: Progress) -> Outcome:
-    """Clean one recording and write it; tell its quality before and after."""
+def perform_denoise(task: Task, learned: LearnedPrior, progress: Progress) -> Outcome:
+    """Clean one recording, write it and report its quality before and after."""
     recording = read(task.source, task.arguments, within(progress, 0.0, 0.05))
-    labelled, swaps = _labelled(recording, task.arguments, within(progress, 0.05, 0.1))
-    denoised = _denoised(labelled, task, learned, within(progress, 0.1, 0.7))
-    clean = denoised.recording
-    clean, contacts, feet = _with_feet_planted(
-        clean, task.arguments, within(progress, 0.7, 0.8)
+    unswapped_recording, swaps = _unswap_labels(
+        recording, task.arguments, within(progress, 0.05, 0.1)
     )
+    denoised = _denoise(unswapped_recording, task, learned, within(progress, 0.1, 0.7))
+    clean = denoised.recording
+    clean, contacts, feet = _plant_feet(clean, task.arguments, within(progress, 0.7, 0.8))
     before, after = (
         measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.07))
         for each, start in ((recording, 0.8), (clean, 0.87))
@@ -126,8 +124,8 @@ def perform_denoise(task: Task, learned: Learned, progress: Progress) -> Outcome
     write(clean, task.target, within(progress, 0.94, 1.0))
     text = "\n".join([
         denoised.prior_used,
-        *([] if denoised.converged else ["The estimate had not settled when it was stopped."]),
-        *([f"{len(swaps)} swaps of labels were put right."] if swaps else []),
+        *([] if denoised.converged else ["The estimate did not converge."]),
+        *([f"{len(swaps)} swapped labels were corrected."] if swaps else []),
         *([feet["feet"]] if "feet" in feet else []),
         compare_quality(before, after),
     ])
@@ -145,26 +143,26 @@ def perform_denoise(task: Task, learned: Learned, progress: Progress) -> Outcome
     return Outcome(text, figures)
 
 
-def _denoised(
-    recording: Motion | Tracks, task: Task, learned: Learned, progress: Progress
+def _denoise(
+    recording: Motion | Tracks, task: Task, learned: LearnedPrior, progress: Progress
 ) -> Denoised:
-    """Denoise with what was learned for all files, or is in a library for this one."""
-    bases, said = learned.bases, ""
+    """Denoise with the prior of the run, or with one from similar clips of the library."""
+    bases, message = learned.bases, ""
     settings = settings_from_arguments(task.arguments, DenoiseSettings)
     if task.arguments.library is not None:
         finding, progress = within(progress, 0.0, 0.5), within(progress, 0.5, 1.0)
-        found = bases_for(recording, task.source, task.arguments, finding)
-        bases, said = found.bases, found.said
+        found = learn_bases(recording, task.source, task.arguments, finding)
+        bases, message = found.bases, found.message
     denoised = denoise(
         recording, bases, limits=learned.limits, settings=settings, progress=progress
     )
-    return replace(denoised, prior_used=f"{said} {denoised.prior_used}".lstrip())
+    return replace(denoised, prior_used=f"{message} {denoised.prior_used}".lstrip())
 
 
-def _labelled(
+def _unswap_labels(
     recording: Motion | Tracks, arguments: argparse.Namespace, progress: Progress
 ) -> tuple[Motion | Tracks, tuple[Swap, ...]]:
-    """Return the recording with its labels put right, if that was asked for; and the swaps."""
+    """Return the recording with corrected labels, if requested, and the swaps."""
     if not arguments.unswap:
         return recording, ()
     if isinstance(recording, Motion):
@@ -173,12 +171,12 @@ def _labelled(
     return unswapped.tracks, unswapped.swaps
 
 
-def _with_feet_planted(
+def _plant_feet(
     clean: Motion | Tracks, arguments: argparse.Namespace, progress: Progress
 ) -> tuple[Motion | Tracks, NDArray[np.bool_] | None, dict[str, Any]]:
-    """Return the recording with feet at rest, when they stand, and what to say about them.
+    """Return the recording with planted feet, its contacts, and figures to report.
 
-    Unless it was asked for, a recording without legs is left as it is.
+    A recording without legs is returned unchanged, unless --feet is given.
     """
     settings = settings_from_arguments(arguments, PlantSettings)
     if arguments.feet is False:
@@ -192,10 +190,10 @@ def _with_feet_planted(
     except InvalidMotionError as error:
         if arguments.feet:
             raise
-        return clean, None, {"feet": f"Feet are left as they are. {error}"}
-    said = (
-        f"Feet slid {100 * planted.slide_before:.1f} cm in all before they were planted, and"
+        return clean, None, {"feet": f"Feet were not planted. {error}"}
+    message = (
+        f"Feet slid {100 * planted.slide_before:.1f} cm in total before planting, and"
         f" {100 * planted.slide_after:.1f} cm after."
     )
     figures = {"slide_before_m": planted.slide_before, "slide_after_m": planted.slide_after}
-    return planted.motion, planted.contacts, {"feet": said, **figures}
+    return planted.motion, planted.contacts, {"feet": message, **figures}

@@ -1,4 +1,4 @@
-"""Recordings in and out, as the command line names them."""
+"""Read and write the recordings named on the command line."""
 
 import argparse
 import os
@@ -26,21 +26,21 @@ FOR_MOTIONS = {MOTIONS: "a skeleton's motion"}
 JOINTS = ".csv"
 FOR_JOINTS = {JOINTS: "joints"}
 RECORDED = {**FOR_MOTIONS, **dict.fromkeys(POINTS, "points")}
-"""Endings of recordings that can be written, and what each is for."""
+"""File extensions of recordings that can be written, and their content."""
 POINTS_BY_DEFAULT = ".trc"
-LONGEST_NAME = 255
+MAX_NAME_BYTES = 255
 """Bytes in the name of a file; on Windows, units of two bytes."""
 LEARNED = {".npz": "learned patterns"}
 
 
 def add_reading_options(parser: argparse.ArgumentParser) -> None:
-    """Add what a file may leave open."""
+    """Add the options for properties that a file may not store."""
     parser.add_argument(
         "--scale",
         type=float,
         metavar="X",
-        help="Metres in one unit of the files that are read [default: as the file says, or"
-        " guessed from the size of the body]",
+        help="Metres per unit of the input files [default: as stored in the file, or"
+        " estimated from the size of the body]",
     )
 
 
@@ -49,26 +49,26 @@ def read(path: Path, arguments: argparse.Namespace, progress: Progress) -> Motio
     return read_motion_or_tracks(path, scale=arguments.scale, progress=progress)
 
 
-def found_in(
+def find_recordings(
     paths: Sequence[Path],
-    not_in: Path | None = None,
-    look: Callable[[Path], list[Path]] = recordings_in,
+    excluded: Path | None = None,
+    list_recordings: Callable[[Path], list[Path]] = recordings_in,
 ) -> list[tuple[Path, Path]]:
-    """Return every file, and in place of a folder the recordings in it and below.
+    """Return the given files, and the recordings in and below the given folders.
 
     Parameters
     ----------
     paths : sequence of Path
-    not_in : Path, optional
-        A folder that is passed over: the one to write to.
-    look : callable
-        Returns the recordings in a folder; the folder itself, if it is one.
+    excluded : Path, optional
+        A folder to skip: the output folder.
+    list_recordings : callable
+        Returns the recordings in a folder, or the folder itself if it is a recording.
 
     Returns
     -------
     list of (Path, Path)
-        The file, and its place within the folder that was named; where other places are named
-        too, with the folder's own name.
+        Each file and its path relative to the given folder. With several arguments, the
+        relative path begins with the name of the folder.
 
     Raises
     ------
@@ -80,52 +80,52 @@ def found_in(
         if not is_folder(path):
             found.append((path, Path(path.name)))
             continue
-        whole = real_path(path)
-        inside = [(file, whole / file.relative_to(path)) for file in look(path)]
-        if not_in is not None:
-            inside = [each for each in inside if real_path(not_in) not in each[1].parents]
+        root = real_path(path)
+        inside = [(file, root / file.relative_to(path)) for file in list_recordings(path)]
+        if excluded is not None:
+            inside = [each for each in inside if real_path(excluded) not in each[1].parents]
         if not inside:
             raise InvalidFileError(f"There is no recording in the folder {path}.")
-        alone = len(paths) == 1 and inside != [(path, whole)]
-        above = whole if alone else whole.parent
-        found += [(file, place.relative_to(above)) for file, place in inside]
+        is_single = len(paths) == 1 and inside != [(path, root)]
+        base = root if is_single else root.parent
+        found += [(file, path.relative_to(base)) for file, path in inside]
     return found
 
 
 def read_all(
     paths: Sequence[Path], arguments: argparse.Namespace, progress: Progress
 ) -> list[Motion | Tracks]:
-    """Read recordings, and all in folders, with the options of `add_reading_options`."""
-    paths = [path for path, _ in found_in(paths)]
-    share = 1.0 / len(paths)
+    """Read recordings and folders of them with the options of `add_reading_options`."""
+    paths = [path for path, _ in find_recordings(paths)]
+    fraction = 1.0 / len(paths)
     return [
-        read(path, arguments, within(progress, share * number, share * (number + 1)))
+        read(path, arguments, within(progress, fraction * number, fraction * (number + 1)))
         for number, path in enumerate(paths)
     ]
 
 
 def write(recording: Motion | Tracks, path: Path | None, progress: Progress) -> None:
-    """Write a recording in the format that the name's ending stands for."""
-    ending = path.suffix.lower() if path else ""
-    if isinstance(recording, Motion) and path and ending == MOTIONS:
+    """Write a recording in the format of the file extension."""
+    extension = path.suffix.lower() if path else ""
+    if isinstance(recording, Motion) and path and extension == MOTIONS:
         write_bvh(recording, path, progress=progress)
-    elif isinstance(recording, Tracks) and path and ending in POINTS:
-        POINTS[ending](recording, path, progress=progress)
+    elif isinstance(recording, Tracks) and path and extension in POINTS:
+        POINTS[extension](recording, path, progress=progress)
     else:
-        kind, fit, else_ = ("A skeleton's motion", MOTIONS, "")
+        kind, allowed, hint = ("A skeleton's motion", MOTIONS, "")
         if isinstance(recording, Tracks):
-            kind, fit = ("Points without a skeleton", " or ".join(POINTS))
-            else_ = ", or make a skeleton of labelled markers with the verb solve"
+            kind, allowed = ("Points without a skeleton", " or ".join(POINTS))
+            hint = ", or make a skeleton of labelled markers with the verb solve"
         raise InvalidFileError(
-            f"{kind} cannot be written as {path}; end the name in {fit}{else_}."
+            f"{kind} cannot be written as {path}; end the name in {allowed}{hint}."
         )
 
 
-def refuse_target(path: Path, endings: Mapping[str, str] = RECORDED) -> None:
-    """Raise InvalidFileError where nothing could be written, before any work is done."""
-    refuse_long_name(path)
-    if path.suffix.lower() not in endings:
-        allowed = " or ".join(f"{ending} ({kind})" for ending, kind in endings.items())
+def check_target(path: Path, extensions: Mapping[str, str] = RECORDED) -> None:
+    """Raise InvalidFileError if the target cannot be written, before any work."""
+    check_name_length(path)
+    if path.suffix.lower() not in extensions:
+        allowed = " or ".join(f"{extension} ({kind})" for extension, kind in extensions.items())
         raise InvalidFileError(f"{path} cannot be written; end the name in {allowed}.")
     if path.is_dir() or not path.parent.is_dir():
         raise InvalidFileError(
@@ -134,42 +134,42 @@ def refuse_target(path: Path, endings: Mapping[str, str] = RECORDED) -> None:
         )
 
 
-def refuse_long_name(path: Path, ending: str = "") -> None:
-    """Raise InvalidFileError where a file of this name and ending could not be made.
+def check_name_length(path: Path, extension: str = "") -> None:
+    """Raise InvalidFileError if the name with this extension is too long for a file.
 
-    Temporary names are shorter: `written_whole` keeps 40 letters of the name.
+    Temporary names are shorter: `write_atomically` keeps 40 letters of the name.
     """
-    name = path.name + ending
+    name = path.name + extension
     windows = os.name == "nt"
     length = (
         len(name.encode("utf-16-le", "surrogatepass")) // 2
         if windows
         else len(os.fsencode(name))
     )
-    if length > LONGEST_NAME:
+    if length > MAX_NAME_BYTES:
         raise InvalidFileError(
-            f"The output {shown(path.name)} needs a name of {length} bytes, but {LONGEST_NAME}"
-            " is the maximum. Shorten the name of the recording."
+            f"The output {shown(path.name)} needs a name of {length} bytes, but"
+            f" {MAX_NAME_BYTES} is the maximum. Shorten the name of the recording."
         )
 
 
-def told_apart(places: Sequence[Path], ending_of: Sequence[str]) -> list[Path]:
-    """Return places with other endings; those that would be the same keep theirs before it."""
+def unique_targets(paths: Sequence[Path], extensions: Sequence[str]) -> list[Path]:
+    """Return paths with new extensions; equal results keep the old extension before the new."""
     wanted = [
-        place.with_suffix(ending) for place, ending in zip(places, ending_of, strict=True)
+        path.with_suffix(extension) for path, extension in zip(paths, extensions, strict=True)
     ]
     return [
-        place.with_name(place.name + ending) if wanted.count(target) > 1 else target
-        for place, ending, target in zip(places, ending_of, wanted, strict=True)
+        path.with_name(path.name + extension) if wanted.count(target) > 1 else target
+        for path, extension, target in zip(paths, extensions, wanted, strict=True)
     ]
 
 
-def ending_for(source: Path) -> str:
-    """Return the ending of what is made from a file: its own, or one that fits it."""
-    ending = source.suffix.lower()
-    if ending in RECORDED:
-        return ending
-    known = attempt(source, format_of, source)
-    if known is None or isinstance(known, Failure):  # Whoever reads it will say why.
+def output_extension(source: Path) -> str:
+    """Return the extension of the output for a file: its own, or that of a similar format."""
+    extension = source.suffix.lower()
+    if extension in RECORDED:
+        return extension
+    format_found = attempt(source, format_of, source)
+    if format_found is None or isinstance(format_found, Failure):  # The reader reports why.
         return MOTIONS
-    return MOTIONS if known.has_skeleton else POINTS_BY_DEFAULT
+    return MOTIONS if format_found.has_skeleton else POINTS_BY_DEFAULT

@@ -1,4 +1,4 @@
-"""What a library of clips teaches for one take: the option `--library` of other verbs."""
+"""The option `--library`: priors from similar clips of a library."""
 
 import argparse
 from pathlib import Path
@@ -17,47 +17,47 @@ def add_library_option(parser: argparse._ActionsContainer) -> None:
     """Add the option."""
     parser.add_argument(
         "--library", type=Path, metavar="FILE",
-        help="A library of clips, as the verb index makes it: each take learns from what in it"
-        " is like the take",
+        help="A clip library, made by the verb index; each take uses the clips that are similar"
+        " to it",
     )  # fmt: skip
 
 
 def check_library(path: Path | None) -> None:
-    """Refuse what is no library, before any work is done."""
+    """Raise an error if the library is missing or empty, before any work."""
     if path is not None:
         with load_clip_library(path) as library:
             if not library.entries:
                 raise InvalidSettingError(f"The library {path} has no clips; index some first.")
 
 
-def bases_for(
+def learn_bases(
     recording: Motion | Tracks, source: Path, arguments: argparse.Namespace, progress: Progress
 ) -> LibraryBases:
-    """Learn from the clips that are like a take, though not from the take itself."""
+    """Learn bases from the clips similar to a take, except the take itself."""
     with load_clip_library(arguments.library) as library:
         return bases_from_library(
             recording,
             library,
             learning=settings_from_arguments(arguments, FilterBasesSettings),
-            ignore=_itself(library, source),
+            ignore=_own_clips(library, source),
             progress=progress,
         )
 
 
-def postures_for(
+def collect_postures(
     recording: JointRecording | Motion,
     source: Path,
     arguments: argparse.Namespace,
     progress: Progress,
 ) -> LibraryPostures:
-    """Collect postures of the clips that are like a take, though not of the take itself."""
+    """Collect postures from the clips similar to a take, except the take itself."""
     with load_clip_library(arguments.library) as library:
         return postures_from_library(
-            recording, library, ignore=_itself(library, source), progress=progress
+            recording, library, ignore=_own_clips(library, source), progress=progress
         )
 
 
-def _itself(library: ClipLibrary, source: Path) -> list[str]:
+def _own_clips(library: ClipLibrary, source: Path) -> list[str]:
     path = str(real_path(source))
     return [
         entry.name

@@ -1,4 +1,4 @@
-"""`index` and `find`: libraries of clips, and what in them is like a recording."""
+"""`index` and `find`: build a clip library, and search it for similar motion."""
 
 import argparse
 from pathlib import Path
@@ -15,24 +15,24 @@ from ..workflows import IndexReport, index_files
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
-SHOWN = 10
-"""Matches that are told where nothing is said."""
+DEFAULT_N_MATCHES = 10
+"""Default number of matches."""
 
 
 def add_index_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `index`."""
     parser.add_argument(
         "--tag", action="append", default=[], metavar="WORD",
-        help="A word by which these clips are known; may be given several times",
+        help="Tag for these clips; may be repeated",
     )  # fmt: skip
     parser.add_argument(
         "--remove-missing", action="store_true",
-        help="Take out of the library what was in these folders and is there no more",
+        help="Remove clips from the library whose files were in these folders and are gone",
     )  # fmt: skip
 
 
 def perform_index(task: Task, prepared: None, progress: Progress) -> Outcome:
-    """Bring a library up to date with files and folders."""
+    """Update a library from files and folders."""
     arguments = task.arguments
     assert task.target is not None
     report = index_files(
@@ -54,18 +54,18 @@ def perform_index(task: Task, prepared: None, progress: Progress) -> Outcome:
         "refused": [{"file": path, "why": why} for path, why in report.refused],
     }
     failures = tuple(why for _, why in report.refused)
-    return Outcome(_told(report, task.target), figures, failures)
+    return Outcome(_format_report(report, task.target), figures, failures)
 
 
-def _told(report: IndexReport, library: Path) -> str:
+def _format_report(report: IndexReport, library: Path) -> str:
     parts = [
         f"{len(names)} {what}"
         for names, what in (
             (report.added, "added"),
             (report.changed, "read again"),
-            (report.unchanged, "as they were"),
+            (report.unchanged, "unchanged"),
             (report.removed, "removed"),
-            (report.refused, "of no use"),
+            (report.refused, "refused"),
         )
         if names
     ]
@@ -77,17 +77,17 @@ def add_find_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `find`."""
     parser.add_argument(
         "--frames", type=_frames, metavar="A:B",
-        help="Frames of the recording to search with, from A to before B; the first is 0"
+        help="Frames of the recording to search with, from A to B - 1, counted from 0"
         " [default: all]",
     )  # fmt: skip
     parser.add_argument(
         "--ignore", nargs="+", default=[], metavar="CLIP",
-        help="Names of clips that are not told, as the recording itself",
+        help="Names of clips to leave out, such as the recording itself",
     )  # fmt: skip
     parser.add_argument(
         "--scale", type=float, metavar="X",
-        help="Metres in one unit of the recording [default: as the file says, or guessed from"
-        " the size of the body]",
+        help="Metres per unit of the recording [default: as stored in the file, or estimated"
+        " from the size of the body]",
     )  # fmt: skip
     arguments_from(parser, FindSettings)
 
@@ -105,15 +105,17 @@ def perform_find(task: Task, prepared: None, progress: Progress) -> Outcome:
         last = min(tracks.n_frames, last)
         if first >= last:
             raise InvalidSettingError(
-                f"{task.source} has {tracks.n_frames} frames, none of them from {first} on."
+                f"{task.source} has {tracks.n_frames} frames; the range from {first} is empty."
             )
         query = query.slice(first, last)
     if not hasattr(arguments, "n_matches"):
-        arguments.n_matches = SHOWN
+        arguments.n_matches = DEFAULT_N_MATCHES
     with load_clip_library(library_file) as library:
         entries = {entry.name: entry for entry in library.entries}
         if not entries:
-            raise InvalidMotionError(f"There is no clip in {library_file}; put some in first.")
+            raise InvalidMotionError(
+                f"The library {library_file} has no clips; index some first."
+            )
         matches = find_similar(
             query,
             library,
@@ -121,8 +123,8 @@ def perform_find(task: Task, prepared: None, progress: Progress) -> Outcome:
             ignore=arguments.ignore,
             progress=within(progress, 0.5, 1.0),
         )
-    told = [_figures(match, entries[match.clip]) for match in matches]
-    return Outcome(_table(matches, entries), {"matches": told})
+    figures = [_figures(match, entries[match.clip]) for match in matches]
+    return Outcome(_table(matches, entries), {"matches": figures})
 
 
 def _figures(match: Match, entry: ClipEntry) -> dict[str, Any]:
@@ -141,7 +143,7 @@ def _figures(match: Match, entry: ClipEntry) -> dict[str, Any]:
 
 def _table(matches: tuple[Match, ...], entries: dict[str, ClipEntry]) -> str:
     if not matches:
-        return "Nothing was found."
+        return "No similar clip was found."
     rows = [("clip", "score", "frames", "seconds", "tags")]
     for match in matches:
         entry = entries[match.clip]
@@ -158,8 +160,8 @@ def _table(matches: tuple[Match, ...], entries: dict[str, ClipEntry]) -> str:
     )
 
 
-def _frames(words: str) -> tuple[int, int]:
-    first, _, last = words.partition(":")
+def _frames(text: str) -> tuple[int, int]:
+    first, _, last = text.partition(":")
     return int(first or 0), int(last) if last else 2**62
 
 

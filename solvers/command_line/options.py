@@ -1,4 +1,4 @@
-"""Command-line options made from settings classes, so that each setting is described once."""
+"""Generate command-line options from settings classes, so that each setting is defined once."""
 
 import argparse
 from collections.abc import Callable
@@ -13,7 +13,7 @@ SettingsClass = TypeVar("SettingsClass", bound=Settings)
 
 
 class SentenceParser(argparse.ArgumentParser):
-    """A parser that says in one sentence what is wrong, and exits with status 2."""
+    """A parser that reports an error in one sentence and exits with status 2."""
 
     def error(self, message: str) -> NoReturn:
         """Print the sentence on stderr, without the usage."""
@@ -40,7 +40,7 @@ def arguments_from(parser: argparse._ActionsContainer, *classes: type[Settings])
 def settings_from_arguments(
     arguments: argparse.Namespace, settings_class: type[SettingsClass]
 ) -> SettingsClass:
-    """Return settings with what was given on the command line, and defaults for the rest.
+    """Return settings from the command line, with defaults for missing options.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def settings_from_arguments(
 
 
 def _kind(item: "Field[Any]") -> dict[str, Any]:
-    """Return how argparse is to read a setting."""
+    """Return the argparse arguments for the type of a setting."""
     kind: type = type(item.default)
     if kind is bool:
         return {"action": argparse.BooleanOptionalAction}
@@ -70,7 +70,7 @@ def _choice_of(kind: type[Enum]) -> Callable[[str], Enum]:
 
     def choice(word: str) -> Enum:
         if word not in choices:
-            raise argparse.ArgumentTypeError(f"{word!r} is none of {', '.join(choices)}")
+            raise argparse.ArgumentTypeError(f"{word!r} is not one of {', '.join(choices)}")
         return choices[word]
 
     return choice

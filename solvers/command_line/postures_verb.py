@@ -1,11 +1,11 @@
-"""`learn-postures`: a library of how bodies stand and move, from clean clips."""
+"""`learn-postures`: build a posture library from clean clips."""
 
 import argparse
 from pathlib import Path
 
 from ..progress import Progress, within
 from ..reconstruction import PostureLibrarySettings
-from ..workflows import postures_of
+from ..workflows import posture_library_from_clips
 from .files import add_reading_options, read_all
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
@@ -15,17 +15,16 @@ def add_postures_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `learn-postures`."""
     parser.add_argument(
         "--output", type=Path, required=True, metavar="FILE",
-        help="The .npz file to write; reconstruct --postures and the button Reconstruct read"
-        " it",
+        help="The .npz file to write, for reconstruct --postures and the button Reconstruct",
     )  # fmt: skip
     add_reading_options(parser)
     arguments_from(parser, PostureLibrarySettings)
 
 
 def perform_postures(task: Task, prepared: None, progress: Progress) -> Outcome:
-    """Collect the postures of all clips and write those that are most different."""
+    """Collect the postures of all clips and write the most distinct ones."""
     clips = read_all(task.sources, task.arguments, within(progress, 0.0, 0.5))
-    library = postures_of(
+    library = posture_library_from_clips(
         clips,
         settings=settings_from_arguments(task.arguments, PostureLibrarySettings),
         progress=within(progress, 0.5, 1.0),

@@ -1,4 +1,4 @@
-"""`reconstruct`: clean poses from what a depth camera's tracker saw."""
+"""`reconstruct`: rebuild clean poses from the joints of a depth camera."""
 
 import argparse
 from pathlib import Path
@@ -9,7 +9,7 @@ import numpy as np
 from ..denoising import Planted, PlantSettings, compare_quality, measure_quality
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Sensor, Tracks
-from ..progress import Progress, overheard, within
+from ..progress import Progress, collect_messages, within
 from ..reconstruction import (
     PostureLibrary,
     ReconstructSettings,
@@ -18,24 +18,29 @@ from ..reconstruction import (
     load_residual_prior,
 )
 from ..recordings import read_tracked, write_joint_csv
-from ..workflows import postures_of, reconstruct_motion, reconstruct_recording, try_to_plant
+from ..workflows import (
+    plant_feet_if_possible,
+    posture_library_from_clips,
+    reconstruct_motion,
+    reconstruct_recording,
+)
 from .files import JOINTS, add_reading_options, read_all, write
-from .from_library import add_library_option, check_library, postures_for
+from .from_library import add_library_option, check_library, collect_postures
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
 
-class Rebuilt(NamedTuple):
-    """What came of one recording, whatever it was."""
+class RebuiltTake(NamedTuple):
+    """The result for one recording, of joints or of a skeleton."""
 
     motion: Motion
     joints: JointRecording | None
-    share: float
-    """Of the joints and frames that were rebuilt."""
+    fraction: float
+    """Fraction of the joints and frames that were rebuilt."""
     method: str
     remarks: tuple[str, ...]
     slide: tuple[float, float] | None
-    """Metres that the feet slid before and after they were planted."""
+    """Slide of the feet before and after planting, metres."""
 
 
 def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
@@ -45,25 +50,25 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
     add_library_option(postures)
     postures.add_argument(
         "--train", nargs="+", type=Path, default=[], metavar="FILE",
-        help="Clean clips of skeletons, or folders of them, to learn postures from; without"
-        " them those that come with Mocap Assist guide",
+        help="Clean clips of skeletons, or folders of them, to learn postures from"
+        " [default: the shipped postures]",
     )  # fmt: skip
     postures.add_argument(
         "--postures", type=Path, metavar="FILE",
-        help="Postures of your own, as learn-postures wrote them, in their place",
+        help="A posture library of your own, written by learn-postures",
     )  # fmt: skip
     parser.add_argument(
         "--residuals", type=Path, metavar="FILE",
-        help="How the sensor errs, as learn-residuals wrote it; without it a Kinect v2's",
+        help="Residual prior of the sensor, written by learn-residuals [default: Kinect v2]",
     )  # fmt: skip
     parser.add_argument(
         "--joints", action="store_true",
-        help="With --output-folder: write joints as .csv, with the confidence of each, in the"
-        " place of a skeleton's motion",
+        help="With --output-folder: write joints with their confidence as .csv, instead of the"
+        " motion of a skeleton",
     )  # fmt: skip
     parser.add_argument(
         "--feet", action=argparse.BooleanOptionalAction, default=True,
-        help="Whether to keep standing feet from sliding [default: yes, where there are feet]",
+        help="Whether to plant standing feet [default: yes, where there are feet]",
     )  # fmt: skip
     for title, settings in (
         ("reconstruction", ReconstructSettings), ("planting feet", PlantSettings),
@@ -72,31 +77,35 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
 
 
 class Guides(NamedTuple):
-    """What guides a run; None for what is shipped."""
+    """Priors of a run; None for the shipped ones."""
 
     postures: PostureLibrary | None
     residuals: ResidualPrior | None
 
 
 def read_guides(arguments: argparse.Namespace, progress: Progress) -> Guides:
-    """Learn and read, once for all files of a run, what guides them."""
+    """Learn or read the priors, once for all files of a run."""
     check_library(arguments.library)
     given, library = arguments.residuals, arguments.postures
     residuals = None if given is None else load_residual_prior(given)
     if not arguments.train:
         return Guides(library and load_posture_library(library), residuals)
     clips = read_all(arguments.train, arguments, within(progress, 0.0, 0.7))
-    return Guides(postures_of(clips, progress=within(progress, 0.7, 1.0)), residuals)
+    return Guides(
+        posture_library_from_clips(clips, progress=within(progress, 0.7, 1.0)), residuals
+    )
 
 
 def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Outcome:
-    """Reconstruct one recording and write it; tell what was lost, and the quality."""
-    told: list[str] = []
-    listening = overheard(within(progress, 0.0, 0.1), told)
-    given = read_tracked(task.source, scale=task.arguments.scale, progress=listening)
-    guides, said = _guides_for(given, task, prepared, within(progress, 0.1, 0.3))
-    rebuilt = _rebuilt(given, task, guides, within(progress, 0.3, 0.8))
-    rebuilt = rebuilt._replace(remarks=(*(f"{one}." for one in told), *said, *rebuilt.remarks))
+    """Reconstruct one recording, write it and report rebuilt joints and quality."""
+    notes: list[str] = []
+    reading = collect_messages(within(progress, 0.0, 0.1), notes)
+    given = read_tracked(task.source, scale=task.arguments.scale, progress=reading)
+    guides, messages = _select_guides(given, task, prepared, within(progress, 0.1, 0.3))
+    rebuilt = _rebuild(given, task, guides, within(progress, 0.3, 0.8))
+    rebuilt = rebuilt._replace(
+        remarks=(*(f"{note}." for note in notes), *messages, *rebuilt.remarks)
+    )
     assert task.target is not None
     if task.target.suffix.lower() != JOINTS:
         write(rebuilt.motion, task.target, within(progress, 0.9, 1.0))
@@ -109,28 +118,37 @@ def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Out
     return _outcome(given, rebuilt)
 
 
-def _guides_for(
+def _select_guides(
     given: Any, task: Task, guides: Guides, progress: Progress
 ) -> tuple[Guides, tuple[str, ...]]:
-    """Return what guides one recording; what is like it in a library, where there is one."""
+    """Return the priors for one recording, from similar clips of a library if given."""
     if task.arguments.library is None:
         return guides, ()
-    subject = given if isinstance(given, Motion) else _joints_of(given, task.source)
-    found = postures_for(subject, task.source, task.arguments, progress)
-    return guides._replace(postures=found.postures), (found.said,)
+    subject = given if isinstance(given, Motion) else _as_joints(given, task.source)
+    found = collect_postures(subject, task.source, task.arguments, progress)
+    return guides._replace(postures=found.postures), (found.message,)
 
 
-def _rebuilt(given: Any, task: Task, guides: Guides, progress: Progress) -> Rebuilt:
+def _rebuild(given: Any, task: Task, guides: Guides, progress: Progress) -> RebuiltTake:
     settings = settings_from_arguments(task.arguments, ReconstructSettings)
     feet = task.arguments.feet
     planting = settings_from_arguments(task.arguments, PlantSettings) if feet else None
     if isinstance(given, Motion):
-        whole = reconstruct_motion(given, *guides, settings=settings, progress=progress)
-        footing = try_to_plant(whole.motion, planting, reliability=whole.reliability)
-        remarks = (*whole.remarks, *footing.remarks)
-        slide = _slide(footing.planted)
-        return Rebuilt(footing.motion, None, whole.rebuilt_share, whole.method, remarks, slide)
-    recording = _joints_of(given, task.source)
+        solution = reconstruct_motion(given, *guides, settings=settings, progress=progress)
+        planting_result = plant_feet_if_possible(
+            solution.motion, planting, reliability=solution.reliability
+        )
+        remarks = (*solution.remarks, *planting_result.remarks)
+        slide = _slide(planting_result.planted)
+        return RebuiltTake(
+            planting_result.motion,
+            None,
+            solution.rebuilt_fraction,
+            solution.method,
+            remarks,
+            slide,
+        )
+    recording = _as_joints(given, task.source)
     found = reconstruct_recording(
         recording,
         *guides,
@@ -145,7 +163,7 @@ def _rebuilt(given: Any, task: Task, guides: Guides, progress: Progress) -> Rebu
         rebuilt.tracks.frame_rate,
         np.clip(rebuilt.confidence, 0.0, 1.0),
     )
-    return Rebuilt(
+    return RebuiltTake(
         found.motion,
         JointRecording(tracks, None, Sensor.OTHER),
         float(found.rebuilt.mean()),
@@ -159,28 +177,34 @@ def _slide(planted: Planted | None) -> tuple[float, float] | None:
     return None if planted is None else (planted.slide_before, planted.slide_after)
 
 
-def _joints_of(given: JointRecording | Tracks, source: Path) -> JointRecording:
-    """Return joints; points are taken for them where their names say so."""
+def _as_joints(given: JointRecording | Tracks, source: Path) -> JointRecording:
+    """Return joints; points are interpreted as joints by their names."""
     if isinstance(given, JointRecording):
         return given
     if isinstance(given, Tracks):
         return JointRecording(given, None, Sensor.OTHER)
-    raise InvalidMotionError(f"{source} holds depth pictures; reconstruct is for joints.")
+    raise InvalidMotionError(
+        f"{source} holds depth images. Use capture; reconstruct is for joints."
+    )
 
 
-def _outcome(given: Any, rebuilt: Rebuilt) -> Outcome:
-    before_of = given.tracks if isinstance(given, JointRecording) else given
-    before, after = measure_quality(before_of), measure_quality(rebuilt.motion)
-    lines = [f"{100 * rebuilt.share:.1f} % of the joints were lost or wrong, and are rebuilt."]
+def _outcome(given: Any, rebuilt: RebuiltTake) -> Outcome:
+    original = given.tracks if isinstance(given, JointRecording) else given
+    before, after = measure_quality(original), measure_quality(rebuilt.motion)
+    lines = [
+        f"{100 * rebuilt.fraction:.1f} % of the joints were missing or wrong and were rebuilt."
+    ]
     if method := rebuilt.method.rstrip("."):
         lines.append(f"{method[0].upper()}{method[1:]}.")
     if rebuilt.slide is not None:
         first, last = rebuilt.slide
-        lines.append(f"Feet slid {100 * first:.1f} cm in all, and {100 * last:.1f} cm now.")
+        lines.append(
+            f"Feet slid {100 * first:.1f} cm before planting, {100 * last:.1f} cm after."
+        )
     lines += [*rebuilt.remarks, compare_quality(before, after)]
     figures = {
         "method": rebuilt.method,
-        "rebuilt_share": rebuilt.share,
+        "rebuilt_share": rebuilt.fraction,
         "remarks": list(rebuilt.remarks),
         "slide_before_m": rebuilt.slide and rebuilt.slide[0],
         "slide_after_m": rebuilt.slide and rebuilt.slide[1],

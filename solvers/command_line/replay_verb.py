@@ -1,4 +1,4 @@
-"""`replay`: send a recording as a live stream, as the tracker of a camera would."""
+"""`replay`: send a recording as a live stream, like the tracker of a camera."""
 
 import argparse
 import itertools
@@ -17,8 +17,8 @@ from .files import add_reading_options
 from .verb import Outcome, Task
 
 LOOPBACK = "127.0.0.1"
-FASTEST = 100.0
-LAST_PORT = 65535
+MAX_SPEED = 100.0
+MAX_PORT = 65535
 
 
 def add_replay_options(parser: argparse.ArgumentParser) -> None:
@@ -26,25 +26,25 @@ def add_replay_options(parser: argparse.ArgumentParser) -> None:
     add_reading_options(parser)
     parser.add_argument(
         "--port", type=int, default=PORT, metavar="N",
-        help=f"UDP port of this machine to send to [1 to {LAST_PORT}, default {PORT}]",
+        help=f"UDP port of this machine to send to [1 to {MAX_PORT}, default {PORT}]",
     )  # fmt: skip
     parser.add_argument(
         "--speed", type=float, default=1.0, metavar="X",
-        help=f"How many times faster than it was recorded [up to {FASTEST:g}, default 1]",
+        help=f"Playback speed relative to real time [up to {MAX_SPEED:g}, default 1]",
     )  # fmt: skip
-    parser.add_argument(
-        "--loop", action="store_true", help="Begin again at the end, until Ctrl+C"
-    )
+    parser.add_argument("--loop", action="store_true", help="Repeat until Ctrl+C")
 
 
 def perform_replay(task: Task, prepared: None, progress: Progress) -> Outcome:
-    """Send one recording, each frame at its time."""
+    """Send one recording in real time."""
     arguments = task.arguments
-    if not 1 <= arguments.port <= LAST_PORT:
-        raise InvalidSettingError(f"port is {arguments.port}; take one up to {LAST_PORT}.")
-    if not 0.0 < arguments.speed <= FASTEST:
+    if not 1 <= arguments.port <= MAX_PORT:
         raise InvalidSettingError(
-            f"speed is {arguments.speed:g}; it must be above 0 and at most {FASTEST:g}."
+            f"port is {arguments.port}; it must be between 1 and {MAX_PORT}."
+        )
+    if not 0.0 < arguments.speed <= MAX_SPEED:
+        raise InvalidSettingError(
+            f"speed is {arguments.speed:g}; it must be above 0 and at most {MAX_SPEED:g}."
         )
     recording = read_tracked(
         task.source, scale=arguments.scale, progress=within(progress, 0.0, 0.1)
@@ -53,46 +53,46 @@ def perform_replay(task: Task, prepared: None, progress: Progress) -> Outcome:
     if joints.n_joints > MAX_JOINTS:
         raise InvalidMotionError(
             f"{task.source} has {joints.n_joints} points; a live stream has at most"
-            f" {MAX_JOINTS}. Take a recording of joints, or of a skeleton."
+            f" {MAX_JOINTS}. Choose a recording of joints or of a skeleton."
         )
-    frames = looped(joints) if arguments.loop else frames_from_recording(joints)
-    told = within(progress, 0.1, 1.0)
+    frames = loop_frames(joints) if arguments.loop else frames_from_recording(joints)
+    report = within(progress, 0.1, 1.0)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         sender.connect((LOOPBACK, arguments.port))
         sent = 0
-        for line in paced(frames, arguments.speed):
+        for line in pace_frames(frames, arguments.speed):
             send(sender, line)
             sent += 1
-            told(sent % joints.n_frames / joints.n_frames, "Sending")
-    said = f"Sent {sent} frames at {joints.frame_rate:g} Hz to {LOOPBACK}:{arguments.port}."
-    return Outcome(said, {"n_frames": sent, "port": arguments.port})
+            report(sent % joints.n_frames / joints.n_frames, "Sending")
+    message = f"Sent {sent} frames at {joints.frame_rate:g} Hz to {LOOPBACK}:{arguments.port}."
+    return Outcome(message, {"n_frames": sent, "port": arguments.port})
 
 
-def looped(recording: JointRecording) -> Iterator[LiveFrame]:
-    """Yield the frames of a recording again and again; time goes on."""
+def loop_frames(recording: JointRecording) -> Iterator[LiveFrame]:
+    """Yield the frames of a recording in an endless loop, with increasing time."""
     duration = recording.n_frames / recording.frame_rate
-    for turn in itertools.count():
+    for cycle in itertools.count():
         for frame in frames_from_recording(recording):
-            yield replace(frame, time=frame.time + turn * duration)
+            yield replace(frame, time=frame.time + cycle * duration)
 
 
-def paced(
+def pace_frames(
     frames: Iterator[LiveFrame],
     speed: float,
     now: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], None] = time.sleep,
 ) -> Iterator[bytes]:
-    """Yield the line of each frame when its time has come, on a clock that does not drift."""
+    """Yield the line of each frame when it is due, without drift."""
     start = now()
     for frame in frames:
-        early = start + frame.time / speed - now()
-        if early > 0.0:
-            sleep(early)
+        delay = start + frame.time / speed - now()
+        if delay > 0.0:
+            sleep(delay)
         yield encode_frame(frame)
 
 
 def send(sender: socket.socket, line: bytes) -> None:
-    """Send one line; where nobody listens yet, it is lost, as with a camera."""
+    """Send one line; without a receiver it is dropped, as with a camera."""
     try:
         sender.send(line)
     except ConnectionRefusedError:
@@ -100,7 +100,7 @@ def send(sender: socket.socket, line: bytes) -> None:
 
 
 def _joints(recording: Motion | Tracks | JointRecording) -> JointRecording:
-    """Return the joints of anything: of a skeleton, those that the first Kinect tracks."""
+    """Return the joints of any recording; of a skeleton, those that the Kinect v1 tracks."""
     if isinstance(recording, JointRecording):
         return recording
     if isinstance(recording, Tracks):

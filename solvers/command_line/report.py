@@ -1,4 +1,4 @@
-"""What came of a whole batch: `report.html` for eyes, `report.json` for programs."""
+"""Write the report of a batch: `report.html` for people, `report.json` for programs."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -8,22 +8,22 @@ from string import Template
 from typing import Any, NamedTuple
 
 from ..faults import Failure, attempt
-from ..files import written_whole
+from ..files import write_atomically
 from ..pictures import StickFigureSettings, draw_stick_figures
 from ..recordings import is_depth, read_motion_or_tracks
 from .verb import Task
 
 PAGE, FIGURES, PICTURES = "report.html", "report.json", Path("report")
 PICTURE = ".png"
-"""What follows the name of an output in the name of its picture."""
+"""Suffix of the picture of an output."""
 TEMPLATE = Path(__file__).with_name("report.html")
 UNITS = {
     "_m_per_s3": " (m/s³)", "_cm_per_s": " (cm/s)", "_hz": " (Hz)", "_deg": " (°)",
     "_cm": " (cm)", "_mm": " (mm)", "_m": " (m)", "_s": " (s)",
 }  # fmt: skip
 UNCHANGED = ("n_frames", "frame_rate_hz")
-MANY = 1000.0
-"""From this size on, numbers are shown without decimals."""
+MIN_ROUNDED_VALUE = 1000.0
+"""Numbers of at least this size are shown without decimals."""
 SECTION = Template("""<section class="$kind" id="$anchor"><h2>$title</h2>
 <p class="path">$source → $target</p>
 $message<div class="figures"><table>$cells</table></div>
@@ -32,71 +32,71 @@ $picture</section>
 
 
 class Entry(NamedTuple):
-    """What came of one file."""
+    """The result of one file."""
 
     task: Task
     figures: Mapping[str, Any] | None
-    """None where it failed, or was not come to."""
+    """None if it failed or was not processed."""
     failure: str = ""
 
 
 def picture_file(task: Task) -> Path:
-    """Return where the picture of a task that is written to a folder belongs."""
+    """Return the path of the picture of a task with an output folder."""
     folder: Path = task.arguments.output_folder
     return folder / _picture(task)
 
 
 def has_picture(task: Task) -> bool:
-    """Whether it is there."""
+    """Return whether the picture exists."""
     return picture_file(task).exists()
 
 
-def forget_picture(task: Task) -> None:
-    """Take away the picture of what was there before."""
+def remove_picture(task: Task) -> None:
+    """Remove the picture of an earlier result."""
     picture_file(task).unlink(missing_ok=True)
 
 
 def draw_task(task: Task) -> str:
-    """Draw what was read and what was written over each other, as stick figures.
+    """Draw input and result over each other, as stick figures.
 
-    What cannot be drawn has no picture: a report must not fail where the work was done.
+    If drawing fails there is no picture: a report must not fail after the work is done.
 
     Returns
     -------
     str
-        The sentence of a bug in Mocap Assist; empty if there was none.
+        The message of a bug in Mocap Assist; empty if there was none.
     """
-    drawn = attempt(task.subject, _draw, task)
-    if not isinstance(drawn, Failure):
+    outcome = attempt(task.subject, _draw, task)
+    if not isinstance(outcome, Failure):
         return ""
-    forget_picture(task)
-    return drawn.sentence if drawn.is_fault else ""
+    remove_picture(task)
+    return outcome.sentence if outcome.is_fault else ""
 
 
 def _draw(task: Task) -> None:
     assert task.target is not None
     picture = picture_file(task)
-    made = read_motion_or_tracks(task.target)
-    both = {"result": made}
+    result = read_motion_or_tracks(task.target)
+    motions = {"result": result}
     if not is_depth(task.source):
         given = read_motion_or_tracks(task.source, scale=task.arguments.scale)
-        both = {"given": given, **both} if given.n_frames == made.n_frames else both
+        motions = {"given": given, **motions} if given.n_frames == result.n_frames else motions
     picture.parent.mkdir(parents=True, exist_ok=True)
-    draw_stick_figures(both, StickFigureSettings(n_figures=9, height=150)).save(picture)
+    draw_stick_figures(motions, StickFigureSettings(n_figures=9, height=150)).save(picture)
 
 
 def write_report(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str, ...]:
-    """Write both reports, each whole or not at all.
+    """Write both reports, each atomically.
 
     An entry whose figures cannot be shown is a failure in the report.
 
     Parameters
     ----------
     folder : Path
-        Of the outputs. Pictures that are there are shown.
+        The output folder. Existing pictures are shown.
     verb : str
     entries : sequence of Entry
-        Of all files that were named, in that order.
+        One per input file, in their order.
 
     Returns
     -------
@@ -110,38 +110,38 @@ def write_report(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str
         for entry, found in zip(entries, checked, strict=True)
     ]
     failed = [entry for entry in entries if entry.failure]
-    waiting = [entry for entry in entries if entry.figures is None and not entry.failure]
-    done = len(entries) - len(failed) - len(waiting)
-    counts = {"done": done, "failed": len(failed), "not come to": len(waiting)}
+    pending = [entry for entry in entries if entry.figures is None and not entry.failure]
+    done = len(entries) - len(failed) - len(pending)
+    counts = {"done": done, "failed": len(failed), "not come to": len(pending)}
     listed = [_listed(entry) for entry in entries]
-    with written_whole(folder / FIGURES) as part:
-        said = {"verb": verb, **counts, "files": listed}
-        part.write_text(json.dumps(said, indent=1, allow_nan=False), encoding="utf-8")
-    ordered = sorted(entries, key=lambda entry: -_badness(entry))
+    with write_atomically(folder / FIGURES) as part:
+        content = {"verb": verb, **counts, "files": listed}
+        part.write_text(json.dumps(content, indent=1, allow_nan=False), encoding="utf-8")
+    ordered = sorted(entries, key=lambda entry: -_severity(entry))
     page = Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
         verb=escape(verb),
         summary=", ".join(f"{count} {kind}" for kind, count in counts.items() if count),
         overview=_overview(ordered),
-        sections="".join(_section(entry, at) for at, entry in enumerate(ordered)),
+        sections="".join(_section(entry, number) for number, entry in enumerate(ordered)),
     )
-    with written_whole(folder / PAGE) as part:
+    with write_atomically(folder / PAGE) as part:
         part.write_text(page, encoding="utf-8", errors="backslashreplace")
     return faults
 
 
 def _checked(entry: Entry) -> None:
-    """Do all that the reports do with an entry, so that one that fails is known before."""
+    """Format an entry as both reports do, to detect failures before writing."""
     json.dumps(_listed(entry), allow_nan=False)
-    _badness(entry)
+    _severity(entry)
     _overview([entry])
     _section(entry, 0)
 
 
 def _picture(task: Task) -> Path:
-    """Return where the picture of a task is, within the folder of the outputs."""
+    """Return the path of the picture of a task, relative to the output folder."""
     assert task.target is not None
-    place = task.target.relative_to(task.arguments.output_folder)
-    return PICTURES / place.with_name(place.name + PICTURE)
+    path = task.target.relative_to(task.arguments.output_folder)
+    return PICTURES / path.with_name(path.name + PICTURE)
 
 
 def _listed(entry: Entry) -> dict[str, Any]:
@@ -154,8 +154,8 @@ def _listed(entry: Entry) -> dict[str, Any]:
     return {**listed, **(entry.figures or {})}
 
 
-def _badness(entry: Entry) -> float:
-    """Order sections: failures first, then what is still most jittery."""
+def _severity(entry: Entry) -> float:
+    """Return the sort key of a section: failures first, then by jitter."""
     if entry.figures is None:
         return float("inf")
     after = entry.figures.get("after", entry.figures)
@@ -164,7 +164,7 @@ def _badness(entry: Entry) -> float:
 
 
 def _overview(entries: Sequence[Entry]) -> str:
-    """Return a table with a line for each file: its numbers, where they can be compared."""
+    """Return a table with a row of comparable numbers for each file."""
     compared = [_compared(entry) for entry in entries]
     columns = list(dict.fromkeys(name for numbers in compared for name in numbers))
     heads = "".join(f"<th>{_label(name)}</th>" for name in columns)
@@ -178,7 +178,7 @@ def _overview(entries: Sequence[Entry]) -> str:
 
 
 def _compared(entry: Entry) -> dict[str, str]:
-    """Return a file's numbers, before and after where both are known, as they are shown."""
+    """Return the formatted numbers of a file, before and after where both exist."""
     figures = entry.figures or {}
     before, after = figures.get("before"), figures.get("after")
     if not isinstance(before, Mapping) or not isinstance(after, Mapping):
@@ -198,9 +198,9 @@ def _section(entry: Entry, number: int) -> str:
     task = entry.task
     image = ""
     if entry.figures is not None and has_picture(task):
-        place = escape(_address(_picture(task)))
-        image = f'<img loading="lazy" src="{place}" alt="Given and result, from the side">'
-    message = entry.failure or ("" if entry.figures is not None else "Not come to yet.")
+        path = escape(_relative_url(_picture(task)))
+        image = f'<img loading="lazy" src="{path}" alt="Given and result, from the side">'
+    message = entry.failure or ("" if entry.figures is not None else "Not processed yet.")
     return SECTION.substitute(
         kind="done" if entry.figures is not None else "failed",
         anchor=f"file-{number + 1}",
@@ -213,13 +213,13 @@ def _section(entry: Entry, number: int) -> str:
     )
 
 
-def _address(place: Path) -> str:
-    """Return a place beside the page as a browser understands it."""
-    return PurePosixPath("/", *place.parts).as_uri().removeprefix("file:///")
+def _relative_url(path: Path) -> str:
+    """Return a path relative to the page as a URL."""
+    return PurePosixPath("/", *path.parts).as_uri().removeprefix("file:///")
 
 
 def _rows(figures: Mapping[str, Any]) -> Iterator[str]:
-    """Yield a row for each single figure, before and after side by side."""
+    """Yield a row for each scalar figure, before and after side by side."""
     before, after = figures.get("before"), figures.get("after")
     if isinstance(before, Mapping) and isinstance(after, Mapping):
         yield "<tr><th></th><th>before</th><th>after</th></tr>"
@@ -252,5 +252,5 @@ def _text(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
-        return f"{value:,.0f}" if abs(value) >= MANY else f"{value:.3g}"
+        return f"{value:,.0f}" if abs(value) >= MIN_ROUNDED_VALUE else f"{value:.3g}"
     return escape(str(value))

@@ -1,4 +1,4 @@
-"""`learn-residuals`: how a sensor errs, from takes that another system saw as well."""
+"""`learn-residuals`: learn the errors of a sensor from takes with a reference."""
 
 import argparse
 from collections.abc import Iterator, Sequence
@@ -20,37 +20,36 @@ def add_residuals_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `learn-residuals`."""
     parser.add_argument(
         "--truth", type=Path, required=True, metavar="FOLDER",
-        help="A folder with the same takes as the other system saw them, under the same names:"
-        " skeletons' motions (BVH, AMC) or joints, in the same world and at the same times",
+        help="Folder with the same takes recorded by a reference system, under the same names:"
+        " motions (BVH, AMC) or joints, in the same world space and time",
     )  # fmt: skip
     parser.add_argument(
         "--actors", nargs="+", metavar="NAME",
-        help="Beginnings of the files' names that tell who was recorded, such as anna bob;"
-        " without them every take counts as another actor",
+        help="Prefixes of the file names that identify the actor, such as anna bob"
+        " [default: every take is of another actor]",
     )  # fmt: skip
     parser.add_argument(
         "--confidence", action="store_true",
-        help="Also learn how far the result is to be believed of people whom it never saw, by"
-        " leaving each of at least three --actors out; takes about as many times as long",
+        help="Also calibrate the confidence for unknown actors, by cross-validation over at"
+        " least three --actors; multiplies the run time by about their number",
     )  # fmt: skip
     parser.add_argument(
         "--output", type=Path, required=True, metavar="FILE",
-        help="The .npz file to write; reconstruct --residuals reads it",
+        help="The .npz file to write, for reconstruct --residuals",
     )  # fmt: skip
     parser.add_argument(
         "--scale", type=float, metavar="X",
-        help="Metres in one unit of the sensor's files [default: as the file says]",
+        help="Metres per unit of the sensor's files [default: as stored in the file]",
     )  # fmt: skip
     arguments_from(parser, ResidualPriorSettings)
 
 
 def perform_residuals(task: Task, prepared: None, progress: Progress) -> Outcome:
-    """Learn from all takes that have a partner, and write what was learned."""
+    """Learn a residual prior from pairs of takes, and write it."""
     arguments = task.arguments
     if arguments.confidence and arguments.actors is None:
         raise InvalidSettingError(
-            "--confidence needs --actors: it leaves people out, and must know whose takes are"
-            " whose."
+            "--confidence needs --actors: cross-validation leaves one actor out at a time."
         )
     pairs = list(_pairs(task.sources, arguments, within(progress, 0.0, 0.4)))
     names = [path.stem for path in task.sources]
@@ -75,39 +74,39 @@ def _pairs(
     sources: Sequence[Path], arguments: argparse.Namespace, progress: Progress
 ) -> Iterator[tuple[JointRecording, Tracks]]:
     partners = {path.stem: path for path in recordings_in(arguments.truth)}
-    for place, path in enumerate(sources):
-        progress(place / len(sources), f"Reading {path.name}")
+    for number, path in enumerate(sources):
+        progress(number / len(sources), f"Reading {path.name}")
         if path.stem not in partners:
             raise InvalidFileError(
-                f"{arguments.truth} has no take named {path.stem}, as {path} is."
+                f"{arguments.truth} has no reference take for {path}; name it {path.stem}."
             )
-        seen = read_tracked(path, scale=arguments.scale)
-        if not isinstance(seen, JointRecording):
+        measured = read_tracked(path, scale=arguments.scale)
+        if not isinstance(measured, JointRecording):
             raise InvalidMotionError(f"{path} holds no joints of a depth camera.")
-        true = _joints(read_tracked(partners[path.stem]), partners[path.stem])
-        true = resample(true, seen.frame_rate)
-        n_frames = min(seen.n_frames, true.n_frames)
-        yield seen.slice(0, n_frames), true.slice(0, n_frames)
+        reference = _joints(read_tracked(partners[path.stem]), partners[path.stem])
+        reference = resample(reference, measured.frame_rate)
+        n_frames = min(measured.n_frames, reference.n_frames)
+        yield measured.slice(0, n_frames), reference.slice(0, n_frames)
 
 
-def _joints(true: Any, path: Path) -> Tracks:
-    """Return the joints of a take of the other system."""
-    if isinstance(true, Motion):
-        return Tracks(POSTURE_JOINTS, postures_from_motion(true), true.frame_rate)
-    if isinstance(true, JointRecording):
-        return true.tracks
+def _joints(reference: Any, path: Path) -> Tracks:
+    """Return the joints of a reference take."""
+    if isinstance(reference, Motion):
+        return Tracks(POSTURE_JOINTS, postures_from_motion(reference), reference.frame_rate)
+    if isinstance(reference, JointRecording):
+        return reference.tracks
     raise InvalidMotionError(
         f"{path} holds markers; solve a skeleton from them first (python -m solvers solve)."
     )
 
 
-def _actors(names: Sequence[str], beginnings: Sequence[str]) -> list[str]:
+def _actors(names: Sequence[str], prefixes: Sequence[str]) -> list[str]:
     found = []
     for name in names:
-        known = [one for one in beginnings if name.startswith(one)]
-        if not known:
+        matching = [prefix for prefix in prefixes if name.startswith(prefix)]
+        if not matching:
             raise InvalidMotionError(
-                f"{name} begins with none of the actors' names: {', '.join(beginnings)}."
+                f"{name} does not start with the name of an actor: {', '.join(prefixes)}."
             )
-        found.append(max(known, key=len))
+        found.append(max(matching, key=len))
     return found

@@ -1,4 +1,4 @@
-"""`retarget` and `unbake`: motions for another rig, and fewer keys for the same motion."""
+"""`retarget` and `unbake`: transfer motions to another rig, and reduce keys."""
 
 import argparse
 from pathlib import Path
@@ -23,7 +23,7 @@ CENTIMETRE = 0.01
 
 
 class Target(NamedTuple):
-    """What all motions of a run are given to."""
+    """The target of all motions of a run."""
 
     skeleton: Skeleton
     humanoid: HumanoidMap
@@ -33,31 +33,31 @@ def add_retarget_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `retarget`."""
     parser.add_argument(
         "--to", type=Path, required=True, metavar="FILE",
-        help="A recording of the skeleton to give the motions to; its rest pose counts",
+        help="A recording of the target skeleton, in its rest pose",
     )  # fmt: skip
-    for whose in ("source", "target"):
+    for rig in ("source", "target"):
         parser.add_argument(
-            f"--{whose}-map", type=Path, metavar="FILE",
-            help=f"JSON file that says which joint of the {whose} plays which humanoid role"
-            " [default: found by names and shape]",
+            f"--{rig}-map", type=Path, metavar="FILE",
+            help=f"JSON file with the humanoid role of each joint of the {rig}"
+            " [default: detected by names and shape]",
         )  # fmt: skip
     parser.add_argument(
         "--write-target-map", type=Path, metavar="FILE",
-        help="Write the target's map there as JSON, to be looked at, edited and given again",
+        help="Write the map of the target as JSON, to edit it and pass it with --target-map",
     )  # fmt: skip
     add_reading_options(parser)
     arguments_from(parser, RetargetSettings)
 
 
 def read_target(arguments: argparse.Namespace, progress: Progress) -> Target:
-    """Read the skeleton that all motions of a run are given to.
+    """Read the target skeleton for all motions of a run.
 
     Raises
     ------
     InvalidFileError
         A file is missing or damaged, or the map does not fit.
     InvalidMotionError
-        There is no skeleton in it.
+        The file has no skeleton.
     """
     recording = read(arguments.to, arguments, progress)
     if not isinstance(recording, Motion):
@@ -69,8 +69,8 @@ def read_target(arguments: argparse.Namespace, progress: Progress) -> Target:
 
 
 def perform_retarget(task: Task, target: Target, progress: Progress) -> Outcome:
-    """Give one motion to the target and write it."""
-    motion = _read_motion(task, "given to another", within(progress, 0.0, 0.3))
+    """Retarget one motion and write it."""
+    motion = _read_motion(task, "retargeted", within(progress, 0.0, 0.3))
     source_map = _map(motion.skeleton, task.arguments.source_map)
     settings = settings_from_arguments(task.arguments, RetargetSettings)
     result = retarget(
@@ -84,8 +84,8 @@ def perform_retarget(task: Task, target: Target, progress: Progress) -> Outcome:
     write(result, task.target, within(progress, 0.7, 1.0))
     shared = [role for role in source_map.joints if role in target.humanoid.joints]
     text = (
-        f"{len(shared)} roles that both skeletons have; sure of the source by"
-        f" {source_map.score:.0%}, of the target by {target.humanoid.score:.0%}."
+        f"{len(shared)} shared roles; confidence of the map of the source"
+        f" {source_map.score:.0%}, of the target {target.humanoid.score:.0%}."
     )
     figures = {
         "n_frames": result.n_frames,
@@ -100,19 +100,19 @@ def add_unbake_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `unbake`."""
     parser.add_argument(
         "--tolerance", type=float, default=1.0, metavar="CM",
-        help="Greatest distance in centimetres by which any joint may be off at any frame"
+        help="Maximum error in centimetres of any joint at any frame"
         " [default 1]",
     )  # fmt: skip
     parser.add_argument(
         "--keys", action="store_true",
-        help="Also write the keys and their handles, beside the motion, as .npz",
+        help="Also write the keys and their handles as .npz, next to the motion",
     )  # fmt: skip
     add_reading_options(parser)
     arguments_from(parser, UnbakeSettings)
 
 
 def perform_unbake(task: Task, prepared: None, progress: Progress) -> Outcome:
-    """Thin the keys of one motion out; write what they give."""
+    """Reduce the keys of one motion and write the result."""
     motion = _read_motion(task, "unbaked", within(progress, 0.0, 0.2))
     if not task.arguments.tolerance > 0.0:
         raise InvalidSettingError(
@@ -131,7 +131,7 @@ def perform_unbake(task: Task, prepared: None, progress: Progress) -> Outcome:
     before = motion.n_frames * (4 * moving + 3)
     text = (
         f"{sparse.n_keys} keys instead of {before} ({sparse.n_keys / before:.0%});"
-        f" no joint is off by more than {100 * sparse.error:.2f} cm."
+        f" the maximum joint error is {100 * sparse.error:.2f} cm."
     )
     return Outcome(
         text, {"n_keys": sparse.n_keys, "n_keys_before": before, "error_m": sparse.error}
@@ -142,8 +142,8 @@ def _map(skeleton: Skeleton, path: Path | None) -> HumanoidMap:
     return read_humanoid_map(path, skeleton) if path else find_humanoid_map(skeleton)
 
 
-def _read_motion(task: Task, what: str, progress: Progress) -> Motion:
+def _read_motion(task: Task, action: str, progress: Progress) -> Motion:
     recording = read(task.source, task.arguments, progress)
     if not isinstance(recording, Motion):
-        raise InvalidMotionError(f"Points without a skeleton cannot be {what}.")
+        raise InvalidMotionError(f"Points without a skeleton cannot be {action}.")
     return recording

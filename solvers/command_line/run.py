@@ -1,4 +1,4 @@
-"""Parse the command line, work on every file, say what came of it."""
+"""Parse the command line, process every file and report the results."""
 
 import argparse
 import json
@@ -12,28 +12,28 @@ from ..errors import InvalidSettingError, MocapAssistError
 from ..faults import Failure, attempt, escaped
 from ..files import reason_of
 from ..processes import add_threads_option
-from .batch import RECORD, Finished, Made, work_on
+from .batch import RECORD, FinishedTask, OutputRecord, run_tasks
 from .options import SentenceParser
 from .report import PAGE, Entry, draw_task, has_picture, write_report
-from .screen import Screen, escape_odd_names, printable
+from .screen import Screen, escape_undecodable_names, printable
 from .tasks import tasks_of
-from .verb import Makes, Outcome, Task, Verb
+from .verb import Outcome, OutputKind, Task, Verb
 
 FILES = {
-    Makes.WORDS: "Recordings to read, or folders of them",
-    Makes.FILES: "The recording and the file to write; with --output-folder any recordings, and"
+    OutputKind.WORDS: "Recordings to read, or folders of them",
+    OutputKind.FILES: "The recording and the file to write; with --output-folder recordings, or"
     " folders of them",
-    Makes.ONE_FILE: "Recordings to read, or folders of them",
-    Makes.MANY_FILES: "Recordings to read, or folders of them",
-    Makes.LIBRARY: "The library, and then recordings to put into it, or folders of them",
-    Makes.MATCHES: "The recording to which there may be something like, and then the library",
+    OutputKind.ONE_FILE: "Recordings to read, or folders of them",
+    OutputKind.MANY_FILES: "Recordings to read, or folders of them",
+    OutputKind.LIBRARY: "The library, and then recordings to add, or folders of them",
+    OutputKind.MATCHES: "The recording to search with, and then the library",
 }
 FAILED = 2
 INTERRUPTED = 130
 
 
 def run(verbs: Mapping[str, Verb], words: Sequence[str], prog: str) -> int:
-    """Do what the command line says.
+    """Run a command line.
 
     Parameters
     ----------
@@ -47,24 +47,24 @@ def run(verbs: Mapping[str, Verb], words: Sequence[str], prog: str) -> int:
     -------
     int
         Exit status: 0, or 2 if anything failed, or 130 if interrupted. Each failure is one
-        sentence on stderr; a slip in the command line itself raises SystemExit with status 2.
+        sentence on stderr; a usage error raises SystemExit with status 2.
     """
     arguments = _parser(verbs, prog).parse_args(words)
-    escape_odd_names(sys.stdout)
+    escape_undecodable_names(sys.stdout)
     screen = Screen()
     try:
-        return _work(verbs[arguments.verb], arguments, screen)
+        return _run_verb(verbs[arguments.verb], arguments, screen)
     except MocapAssistError as error:
-        screen.say(str(error))
+        screen.write_line(str(error))
         return FAILED
-    except BrokenPipeError:  # Whoever read our output, such as `head`, has seen enough.
+    except BrokenPipeError:  # The reader of our output, such as `head`, has closed it.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except OSError as error:
-        screen.say(f"{error.filename or 'The output'}: {reason_of(error)}.")
+        screen.write_line(f"{error.filename or 'The output'}: {reason_of(error)}.")
         return FAILED
     except KeyboardInterrupt:
-        screen.say("Interrupted. Files that were finished are kept.")
+        screen.write_line("Interrupted. Finished files are kept.")
         return INTERRUPTED
 
 
@@ -82,26 +82,24 @@ def _parser(verbs: Mapping[str, Verb], prog: str) -> SentenceParser:
     return parser
 
 
-def _add_common_options(parser: argparse.ArgumentParser, makes: Makes) -> None:
+def _add_common_options(parser: argparse.ArgumentParser, makes: OutputKind) -> None:
     parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help=FILES[makes])
-    if makes is Makes.FILES:
+    if makes is OutputKind.FILES:
         parser.add_argument(
             "--output-folder", type=Path, metavar="DIR",
-            help="Write there, under the names of the inputs. A second run goes on where the"
-            " first stopped: it leaves alone what was made from the same file with the same"
-            f" options, as DIR/{RECORD} says",
+            help="Folder for the results, named like the inputs. A second run resumes the"
+            " first: it skips results made from the same file with the same options, as"
+            f" recorded in DIR/{RECORD}",
         )  # fmt: skip
-        parser.add_argument(
-            "--again", action="store_true", help="Redo also what is there already"
-        )
+        parser.add_argument("--again", action="store_true", help="Redo existing results")
         parser.add_argument(
             "--report", action="store_true",
             help=f"Write DIR/{PAGE} and report.json about the whole batch, with pictures",
         )  # fmt: skip
-    if makes not in {Makes.ONE_FILE, Makes.MANY_FILES, Makes.MATCHES}:
+    if makes not in {OutputKind.ONE_FILE, OutputKind.MANY_FILES, OutputKind.MATCHES}:
         parser.add_argument(
             "--jobs", type=int, default=1, metavar="N",
-            help="How many files to work on at a time [default 1]",
+            help="Number of files to process in parallel [default 1]",
         )  # fmt: skip
     add_threads_option(parser)
     parser.add_argument(
@@ -110,71 +108,69 @@ def _add_common_options(parser: argparse.ArgumentParser, makes: Makes) -> None:
     )  # fmt: skip
 
 
-def _work(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
-    """Work on all files and report each; return the exit status."""
+def _run_verb(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
+    """Process all files and report each; return the exit status."""
     n_jobs = getattr(arguments, "jobs", 1)
     if n_jobs < 1:
         raise InvalidSettingError(f"jobs is {n_jobs}; it must be at least 1.")
     folder: Path | None = getattr(arguments, "output_folder", None)
     reporting = getattr(arguments, "report", False)
     if folder is None and reporting:
-        raise InvalidSettingError(
-            "A report needs a folder: say which with --output-folder DIR."
-        )
+        raise InvalidSettingError("A report needs a folder: name it with --output-folder DIR.")
     tasks = tasks_of(verb, arguments)
-    made = None if folder is None else Made(folder)
+    record = None if folder is None else OutputRecord(folder)
     entries = {task.sources: Entry(task, None) for task in tasks}
-    partly = False
+    has_failures = False
     try:
-        for finished in _worked(verb, tasks, made, n_jobs, screen):
+        for finished in _run_tasks(verb, tasks, record, n_jobs, screen):
             figures = finished.outcome.figures if finished.outcome else None
             entry = Entry(finished.task, figures, finished.failure)
             entries[finished.task.sources] = entry
-            partly |= _report(finished, len(tasks) > 1, screen)
+            has_failures |= _report(finished, len(tasks) > 1, screen)
     finally:
         if folder is not None and reporting:
             for fault in write_report(folder, arguments.verb, list(entries.values())):
-                screen.say(fault)
-                partly = True
-    return FAILED if partly or any(entry.failure for entry in entries.values()) else 0
+                screen.write_line(fault)
+                has_failures = True
+    return FAILED if has_failures or any(entry.failure for entry in entries.values()) else 0
 
 
-def _worked(
-    verb: Verb, tasks: Sequence[Task], made: Made | None, n_jobs: int, screen: Screen
-) -> Iterator[Finished]:
-    """Yield what is there already, then each task as it is finished, and note it."""
+def _run_tasks(
+    verb: Verb, tasks: Sequence[Task], record: OutputRecord | None, n_jobs: int, screen: Screen
+) -> Iterator[FinishedTask]:
+    """Yield existing results, then each task when it finishes, and record it."""
     arguments = tasks[0].arguments
-    if made is not None:
-        made.clear_up(tasks)
-    there = [] if made is None or arguments.again else [t for t in tasks if made.has(t)]
-    for task in there:
+    if record is not None:
+        record.clear_up(tasks)
+    existing = [] if record is None or arguments.again else [t for t in tasks if record.has(t)]
+    for task in existing:
         draw = arguments.report and not has_picture(task)
         failures = tuple(filter(None, [draw_task(task)])) if draw else ()
-        figures = {} if made is None else made.figures(task)
+        figures = {} if record is None else record.figures(task)
         figures = {**figures, "already_made": True}
-        yield Finished(task, Outcome("Already made.", figures, failures))
+        yield FinishedTask(task, Outcome("Already made.", figures, failures))
     refused = [task for task in tasks if task.refusal]
     for task in refused:
-        screen.say(task.refusal)
-        yield Finished(task, None, task.refusal)
-    tasks = [task for task in tasks if task not in [*there, *refused]]
+        screen.write_line(task.refusal)
+        yield FinishedTask(task, None, task.refusal)
+    tasks = [task for task in tasks if task not in [*existing, *refused]]
     prepared = verb.prepare(arguments, screen.progress) if tasks else None
-    for finished in work_on(verb, tasks, prepared, n_jobs, screen):
+    for finished in run_tasks(verb, tasks, prepared, n_jobs, screen):
         screen.clear()
         if finished.outcome is None:
-            screen.say(finished.failure)
-        elif made is not None:
-            made.add(finished.task, finished.outcome.figures)
+            screen.write_line(finished.failure)
+        elif record is not None:
+            record.add(finished.task, finished.outcome.figures)
         yield finished
 
 
-def _report(finished: Finished, one_of_many: bool, screen: Screen) -> bool:
-    """Print what came of a task on stdout: a line of JSON, or text.
+def _report(finished: FinishedTask, one_of_many: bool, screen: Screen) -> bool:
+    """Print the result of a task on stdout: a line of JSON, or text.
 
     Returns
     -------
     bool
-        Whether a part of it failed, which is told on stderr.
+        Whether a part of it failed; stderr names it.
     """
     task, outcome = finished.task, finished.outcome
     arguments = task.arguments
@@ -196,5 +192,5 @@ def _report(finished: Finished, one_of_many: bool, screen: Screen) -> bool:
         sys.stdout.write(f"{title}{printable(outcome.text)}\n")
     sys.stdout.flush()
     for sentence in failures:
-        screen.say(sentence)
+        screen.write_line(sentence)
     return bool(failures)

@@ -1,4 +1,4 @@
-"""`simulate`: let a body with mass and muscles make recorded motions."""
+"""`simulate`: track recorded motions with a physical body."""
 
 import argparse
 
@@ -20,17 +20,17 @@ def add_simulate_options(parser: argparse.ArgumentParser) -> None:
 
 
 def perform_simulate(task: Task, prepared: None, progress: Progress) -> Outcome:
-    """Simulate one motion and write it; tell how the feet and the ground fared."""
+    """Simulate one motion, write it and report penetration and foot slide."""
     motion = read(task.source, task.arguments, within(progress, 0.0, 0.1))
     if not isinstance(motion, Motion):
         raise InvalidMotionError(
-            f"{task.source} holds points without a skeleton; only skeletons have a body that"
-            " can be simulated. Make one of labelled markers with the verb solve."
+            f"{task.source} holds points without a skeleton. Solve a skeleton from labelled"
+            " markers with the verb solve first."
         )
     settings = settings_from_arguments(task.arguments, SimulateSettings)
     simulated = simulate(motion, settings=settings, progress=within(progress, 0.1, 0.95))
     write(simulated.motion, task.target, within(progress, 0.95, 1.0))
-    return Outcome(_said(simulated), _figures(simulated))
+    return Outcome(_summary(simulated), _figures(simulated))
 
 
 def _figures(simulated: Simulated) -> dict[str, object]:
@@ -48,11 +48,12 @@ def _figures(simulated: Simulated) -> dict[str, object]:
     }
 
 
-def _said(simulated: Simulated) -> str:
+def _summary(simulated: Simulated) -> str:
     return (
-        f"{simulated.message} The body was {100 * simulated.penetration_before:.1f} cm under"
-        f" the ground at worst, now {100 * simulated.penetration_after:.1f} cm; its feet slid"
-        f" {100 * simulated.slide_before:.0f} cm in all while they touched it, now"
+        f"{simulated.message} Maximum ground penetration was"
+        f" {100 * simulated.penetration_before:.1f} cm, now"
+        f" {100 * simulated.penetration_after:.1f} cm; feet in contact slid"
+        f" {100 * simulated.slide_before:.0f} cm in total, now"
         f" {100 * simulated.slide_after:.0f} cm. Joints moved by"
         f" {100 * simulated.distance:.1f} cm on average."
     )

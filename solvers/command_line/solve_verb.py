@@ -1,4 +1,4 @@
-"""`solve`: the motion of a skeleton from the labelled markers of optical takes."""
+"""`solve`: solve the motion of a skeleton from labelled optical markers."""
 
 import argparse
 
@@ -13,7 +13,7 @@ from .files import add_reading_options, read, write
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
-MOST_SAID = 5
+MAX_LISTED_SWAPS = 5
 
 
 def add_solve_options(parser: argparse.ArgumentParser) -> None:
@@ -24,12 +24,12 @@ def add_solve_options(parser: argparse.ArgumentParser) -> None:
 
 
 def perform_solve(task: Task, prepared: None, progress: Progress) -> Outcome:
-    """Solve one take and write its motion; tell how well the markers fit."""
+    """Solve one take, write its motion and report the marker error."""
     recording = read(task.source, task.arguments, within(progress, 0.0, 0.1))
     if not isinstance(recording, Tracks):
         raise InvalidMotionError(
-            f"{task.source} has a skeleton already; solve is for markers. Use denoise to clean"
-            " it, or convert."
+            f"{task.source} already has a skeleton; solve is for markers. Use denoise or"
+            " convert."
         )
     result = motion_from_markers(
         recording,
@@ -38,7 +38,7 @@ def perform_solve(task: Task, prepared: None, progress: Progress) -> Outcome:
         progress=within(progress, 0.1, 0.95),
     )
     write(result.motion, task.target, within(progress, 0.95, 1.0))
-    return Outcome(_said(result), _figures(result))
+    return Outcome(_summary(result), _figures(result))
 
 
 def _figures(result: MarkerMotion) -> dict[str, object]:
@@ -60,23 +60,23 @@ def _figures(result: MarkerMotion) -> dict[str, object]:
     }
 
 
-def _said(result: MarkerMotion) -> str:
+def _summary(result: MarkerMotion) -> str:
     solved, error = result.solved, result.solved.error
     lines = [
         f"{solved.marker_set.name}: {len(solved.markers)} markers, {result.motion.n_frames}"
         f" frames at {result.motion.frame_rate:g} Hz, {result.motion.n_joints} joints.",
-        f"Markers lie {1000 * np.nanmean(error):.1f} mm from where the skeleton has them.",
+        f"The mean marker error is {1000 * np.nanmean(error):.1f} mm.",
     ]
     lines += [
         f"Labels of {' and '.join(swap.names)} were wrong in frames {swap.frames.start} to"
         f" {swap.frames.stop - 1}."
-        for swap in result.swaps[:MOST_SAID]
+        for swap in result.swaps[:MAX_LISTED_SWAPS]
     ]
-    if len(result.swaps) > MOST_SAID:
-        lines.append(f"So were {len(result.swaps) - MOST_SAID} more.")
+    if len(result.swaps) > MAX_LISTED_SWAPS:
+        lines.append(f"So were {len(result.swaps) - MAX_LISTED_SWAPS} more.")
     if result.filled.any():
-        lines.append(f"{result.filled.sum()} samples of lost markers were filled.")
-    unknown = (~solved.motion.observed).any(axis=1).sum()
-    if unknown:
-        lines.append(f"In {unknown} frames some joints were filled that no marker shows.")
+        lines.append(f"{result.filled.sum()} samples of missing markers were filled.")
+    unobserved = (~solved.motion.observed).any(axis=1).sum()
+    if unobserved:
+        lines.append(f"In {unobserved} frames, joints without markers were filled.")
     return "\n".join(lines)

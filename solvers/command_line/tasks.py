@@ -1,4 +1,4 @@
-"""Which file is read, which is written: decided, and refused, before any work is done."""
+"""Assign an output to each input, and check both before any work."""
 
 import argparse
 from collections.abc import Mapping, Sequence
@@ -14,50 +14,50 @@ from .files import (
     LEARNED,
     MOTIONS,
     RECORDED,
-    ending_for,
-    found_in,
-    refuse_long_name,
-    refuse_target,
-    told_apart,
+    check_name_length,
+    check_target,
+    find_recordings,
+    output_extension,
+    unique_targets,
 )
 from .report import PICTURE
-from .verb import Makes, Task, Verb
+from .verb import OutputKind, Task, Verb
 
 
 def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
-    """Return what is to be done, in the order of the command line.
+    """Return the tasks in the order of the command line.
 
     Raises
     ------
     InvalidSettingError
-        A file would be written over, or two would be written to one place.
+        An input would be overwritten, or two outputs would have the same path.
     InvalidFileError
-        Something could not be written where it was asked for.
+        An output cannot be written.
     """
     files: list[Path] = arguments.files
-    if verb.makes is Makes.WORDS:
-        return [Task((path,), None, arguments) for path, _ in found_in(files)]
-    if verb.makes in {Makes.LIBRARY, Makes.MATCHES}:
+    if verb.makes is OutputKind.WORDS:
+        return [Task((path,), None, arguments) for path, _ in find_recordings(files)]
+    if verb.makes in {OutputKind.LIBRARY, OutputKind.MATCHES}:
         return [_task_with_library(verb.makes, files, arguments)]
-    if verb.makes is Makes.MANY_FILES:
+    if verb.makes is OutputKind.MANY_FILES:
         if arguments.output.exists() and not arguments.output.is_dir():
             raise InvalidSettingError(
                 f"{arguments.output} is a file; name a folder to write to."
             )
-        sources = tuple(path for path, _ in found_in(files, not_in=arguments.output))
+        sources = tuple(path for path, _ in find_recordings(files, excluded=arguments.output))
         return [Task(sources, arguments.output, arguments)]
-    if verb.makes is Makes.ONE_FILE:
-        sources = tuple(path for path, _ in found_in(files))
-        _refuse_reading_and_writing(sources, [arguments.output])
-        refuse_target(arguments.output, LEARNED)
+    if verb.makes is OutputKind.ONE_FILE:
+        sources = tuple(path for path, _ in find_recordings(files))
+        _check_overwriting(sources, [arguments.output])
+        check_target(arguments.output, LEARNED)
         return [Task(sources, arguments.output, arguments)]
     return _file_tasks(verb, arguments)
 
 
 def _task_with_library(
-    makes: Makes, files: Sequence[Path], arguments: argparse.Namespace
+    makes: OutputKind, files: Sequence[Path], arguments: argparse.Namespace
 ) -> Task:
-    if makes is Makes.LIBRARY:
+    if makes is OutputKind.LIBRARY:
         if len(files) < 2:
             raise InvalidSettingError(
                 f"Only {files[0]} is named: name the library and then recordings, or folders"
@@ -72,66 +72,75 @@ def _task_with_library(
 
 
 def _file_tasks(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
-    """Return which file is written from which."""
+    """Return one task for each input file."""
     files: list[Path] = arguments.files
     folder: Path | None = arguments.output_folder
     if folder is None:
         if len(files) != 2:
             raise InvalidSettingError(
-                f"{len(files)} files are named: name one to read and one to write, or say"
-                " where to put many with --output-folder DIR."
+                f"{len(files)} files are named: name one to read and one to write, or name"
+                " a folder for the results with --output-folder DIR."
             )
         source, target = files
-        _refuse_reading_and_writing([source], [target])
-        refuse_target(target, _endings(verb))
+        _check_overwriting([source], [target])
+        check_target(target, _allowed_extensions(verb))
         return [Task((source,), target, arguments)]
     if folder.exists() and not folder.is_dir():
         raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
-    found = found_in(files, folder, verb.look)
-    sources = [path for path, _ in found]
-    endings = [_ending(verb, path, arguments) for path in sources]
-    targets = [folder / place for place in told_apart([place for _, place in found], endings)]
-    _refuse_reading_and_writing(sources, targets)
+    recordings = find_recordings(files, folder, verb.list_recordings)
+    sources = [path for path, _ in recordings]
+    extensions = [_extension(verb, path, arguments) for path in sources]
+    targets = [
+        folder / path for path in unique_targets([path for _, path in recordings], extensions)
+    ]
+    _check_overwriting(sources, targets)
     folder.mkdir(parents=True, exist_ok=True)
     return [
-        Task((source,), target, arguments, _refusal(source, target, _endings(verb)))
+        Task(
+            (source,),
+            target,
+            arguments,
+            _prepare_failure(source, target, _allowed_extensions(verb)),
+        )
         for source, target in zip(sources, targets, strict=True)
     ]
 
 
-def _refusal(source: Path, target: Path, endings: Mapping[str, str]) -> str:
-    """Make the folder of a target; return why it cannot be written, or nothing."""
-    made = attempt(source, _make_room, target, endings)
-    return made.sentence if isinstance(made, Failure) else ""
+def _prepare_failure(source: Path, target: Path, extensions: Mapping[str, str]) -> str:
+    """Create the folder of a target; return why it cannot be written, or an empty text."""
+    result = attempt(source, _prepare_target, target, extensions)
+    return result.sentence if isinstance(result, Failure) else ""
 
 
-def _make_room(target: Path, endings: Mapping[str, str]) -> None:
-    refuse_long_name(target, PICTURE)
+def _prepare_target(target: Path, extensions: Mapping[str, str]) -> None:
+    check_name_length(target, PICTURE)
     target.parent.mkdir(parents=True, exist_ok=True)
-    refuse_target(target, endings)
+    check_target(target, extensions)
 
 
-def _endings(verb: Verb) -> Mapping[str, str]:
+def _allowed_extensions(verb: Verb) -> Mapping[str, str]:
     if not verb.writes_motions:
         return RECORDED
     return FOR_MOTIONS | FOR_JOINTS if verb.writes_joints else FOR_MOTIONS
 
 
-def _ending(verb: Verb, source: Path, arguments: argparse.Namespace) -> str:
+def _extension(verb: Verb, source: Path, arguments: argparse.Namespace) -> str:
     if verb.writes_joints and arguments.joints:
         return JOINTS
-    return MOTIONS if verb.writes_motions else ending_for(source)
+    return MOTIONS if verb.writes_motions else output_extension(source)
 
 
-def _refuse_reading_and_writing(sources: Sequence[Path], targets: Sequence[Path]) -> None:
-    """Refuse to write over what is read, or twice to one place."""
-    places = [real_path(target) for target in targets]
-    same = [source for source in sources if real_path(source) in places]
-    if same:
+def _check_overwriting(sources: Sequence[Path], targets: Sequence[Path]) -> None:
+    """Raise an error if an input would be overwritten, or a path written twice."""
+    real_targets = [real_path(target) for target in targets]
+    overwritten = [source for source in sources if real_path(source) in real_targets]
+    if overwritten:
         raise InvalidSettingError(
-            f"{same[0]} would be written over. Recordings are never changed: choose another"
-            " name or folder."
+            f"{overwritten[0]} would be overwritten. Recordings are never changed: choose"
+            " another name or folder."
         )
-    if len(set(places)) < len(places):
-        twice = next(place for place in places if places.count(place) > 1)
-        raise InvalidSettingError(f"Two inputs would both be written to {twice}. Rename one.")
+    if len(set(real_targets)) < len(real_targets):
+        duplicate = next(path for path in real_targets if real_targets.count(path) > 1)
+        raise InvalidSettingError(
+            f"Two inputs would both be written to {duplicate}. Rename one."
+        )

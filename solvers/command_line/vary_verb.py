@@ -1,4 +1,4 @@
-"""`vary`: new motions like a few clips of one behaviour."""
+"""`vary`: synthesize variants of a few clips of one behavior."""
 
 import argparse
 from pathlib import Path
@@ -16,19 +16,19 @@ from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
 SHEET = "variants.png"
-MOST_DRAWN = 20
-ENOUGH_MEASURED = 10
+MAX_DRAWN_VARIANTS = 20
+MAX_MEASURED_MOTIONS = 10
 
 
 def add_vary_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `vary`."""
     parser.add_argument(
         "--output", type=Path, required=True, metavar="DIR",
-        help=f"Folder for the variants, BVH files named after the first clip, and {SHEET}, on"
-        " which they are seen side by side",
+        help=f"Folder for the variants: BVH files named after the first clip, and {SHEET}, a"
+        " contact sheet",
     )  # fmt: skip
     parser.add_argument(
-        "--number", type=int, default=20, metavar="N", help="Variants to make [default 20]"
+        "--number", type=int, default=20, metavar="N", help="Number of variants [default 20]"
     )
     parser.add_argument(
         "--plant-feet", action=argparse.BooleanOptionalAction, default=True,
@@ -39,13 +39,13 @@ def add_vary_options(parser: argparse.ArgumentParser) -> None:
 
 
 def perform_vary(task: Task, prepared: None, progress: Progress) -> Outcome:
-    """Make variants of all clips, write them and a picture of them."""
+    """Synthesize variants of all clips, write them and a contact sheet."""
     arguments = task.arguments
     clips = read_all(task.sources, arguments, within(progress, 0.0, 0.2))
     motions = [clip for clip in clips if isinstance(clip, Motion)]
     if len(motions) < len(clips):
         raise InvalidMotionError(
-            "Variants are made of the motions of skeletons; some of these files hold points."
+            "Variants need motions of skeletons, but some files hold points."
         )
     variants = vary_motions(
         motions,
@@ -61,8 +61,8 @@ def perform_vary(task: Task, prepared: None, progress: Progress) -> Outcome:
         f"{task.source.stem}.{number:0{digits}}.bvh"
         for number in range(1, arguments.number + 1)
     ]
-    for place, (name, motion) in enumerate(zip(names, variants.motions, strict=True)):
-        progress(0.8 + 0.15 * place / len(names), f"Writing {name}")
+    for index, (name, motion) in enumerate(zip(names, variants.motions, strict=True)):
+        progress(0.8 + 0.15 * index / len(names), f"Writing {name}")
         write_bvh(motion, task.target / name)
     _draw(motions[0], variants.motions, task.target / SHEET)
     figures: dict[str, object] = {
@@ -70,26 +70,27 @@ def perform_vary(task: Task, prepared: None, progress: Progress) -> Outcome:
         "variants": names,
         "remarks": list(variants.remarks),
     }
-    said = [f"{len(names)} variants of {_clips(len(motions))} in {task.target}."]
+    lines = [f"{len(names)} variants of {_count_clips(len(motions))} in {task.target}."]
     if len(motions) > 1 and len(names) > 1:
-        measured = [motions[:ENOUGH_MEASURED], variants.motions[:ENOUGH_MEASURED]]
-        own, made = (measure_variation(some) for some in measured)
-        figures |= {"variation_of_examples_m": own, "variation_m": made}
-        said.append(
-            f"They are {100 * made:.1f} cm from each other on average, the clips"
-            f" {100 * own:.1f} cm."
+        groups = [motions[:MAX_MEASURED_MOTIONS], variants.motions[:MAX_MEASURED_MOTIONS]]
+        example_variation, variation = (measure_variation(group) for group in groups)
+        figures |= {"variation_of_examples_m": example_variation, "variation_m": variation}
+        lines.append(
+            f"Their mean pairwise distance is {100 * variation:.1f} cm, that of the clips"
+            f" {100 * example_variation:.1f} cm."
         )
-    return Outcome("\n".join([*said, *variants.remarks]), figures)
+    return Outcome("\n".join([*lines, *variants.remarks]), figures)
 
 
-def _clips(n: int) -> str:
+def _count_clips(n: int) -> str:
     return "1 clip" if n == 1 else f"{n} clips"
 
 
 def _draw(example: Motion, variants: tuple[Motion, ...], path: Path) -> None:
     settings = StickFigureSettings(n_figures=10, height=140)
     shown = {"example": example} | {
-        f"variant {number}": motion for number, motion in enumerate(variants[:MOST_DRAWN], 1)
+        f"variant {number}": motion
+        for number, motion in enumerate(variants[:MAX_DRAWN_VARIANTS], 1)
     }
     stack_pictures([
         draw_stick_figures({name: motion}, settings=settings) for name, motion in shown.items()

@@ -10,11 +10,11 @@ from ..denoising import (
     learn_filter_bases,
     measure_quality,
 )
-from ..progress import Progress, overheard, within
+from ..progress import Progress, collect_messages, within
 from ..recordings import depth_in
 from .capture_verb import add_capture_options, perform_capture, read_body
 from .convert import convert
-from .denoise_verb import add_denoise_options, learn_once, perform_denoise
+from .denoise_verb import add_denoise_options, learn_prior, perform_denoise
 from .files import add_reading_options, read, read_all
 from .library_verbs import add_find_options, add_index_options, perform_find, perform_index
 from .options import arguments_from, settings_from_arguments
@@ -32,13 +32,13 @@ from .retarget_verbs import (
 from .simulate_verb import add_simulate_options, perform_simulate
 from .solve_verb import add_solve_options, perform_solve
 from .vary_verb import add_vary_options, perform_vary
-from .verb import Makes, Outcome, Task, Verb
+from .verb import Outcome, OutputKind, Task, Verb
 
 
 def _learn_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--output", type=Path, required=True, metavar="FILE",
-        help="The .npz file to write; denoise --bases and the button Clean read it",
+        help="The .npz file to write, for denoise --bases and the button Clean",
     )  # fmt: skip
     add_reading_options(parser)
     arguments_from(parser, FilterBasesSettings)
@@ -57,8 +57,8 @@ def _learn(task: Task, prepared: None, progress: Progress) -> Outcome:
         "frame_rate_hz": float(bases.frame_rate),
         "parts": [str(key) for key in bases.keys],
     }
-    clips_said = "1 clip" if len(clips) == 1 else f"{len(clips)} clips"
-    text = f"Learned {len(bases.values)} patterns from {clips_said} into {task.target}."
+    clips_text = "1 clip" if len(clips) == 1 else f"{len(clips)} clips"
+    text = f"Learned {len(bases.values)} patterns from {clips_text} into {task.target}."
     return Outcome(text, figures)
 
 
@@ -75,31 +75,33 @@ def _quality(task: Task, prepared: None, progress: Progress) -> Outcome:
 
 
 def _convert(task: Task, prepared: None, progress: Progress) -> Outcome:
-    told: list[str] = []
-    listening = overheard(within(progress, 0.0, 0.7), told)
-    recording = read(task.source, task.arguments, listening)
-    done = convert(recording, task.target, within(progress, 0.7, 1.0))
-    return replace(done, text=" ".join([done.text, *(f"{one}." for one in told)]))
+    messages: list[str] = []
+    reading = collect_messages(within(progress, 0.0, 0.7), messages)
+    recording = read(task.source, task.arguments, reading)
+    outcome = convert(recording, task.target, within(progress, 0.7, 1.0))
+    return replace(
+        outcome, text=" ".join([outcome.text, *(f"{message}." for message in messages)])
+    )
 
 
 VERBS = {
     "denoise": Verb(
-        "Take jitter, spikes and gaps out of recordings, and keep standing feet from sliding.",
+        "Remove jitter, spikes and gaps from recordings, and plant standing feet.",
         add_denoise_options,
         perform_denoise,
-        prepare=learn_once,
+        prepare=learn_prior,
     ),
     "learn": Verb(
-        "Learn from clean clips how a kind of motion goes, once, for many takes.",
+        "Learn filter bases from clean clips, once for many takes.",
         _learn_options,
         _learn,
-        Makes.ONE_FILE,
+        OutputKind.ONE_FILE,
     ),
     "quality": Verb(
-        "Measure jitter, spikes, gaps and sliding feet.",
+        "Measure jitter, spikes, gaps and foot slide.",
         _quality_options,
         _quality,
-        Makes.WORDS,
+        OutputKind.WORDS,
     ),
     "solve": Verb(
         "Solve the motion of a skeleton from the labelled markers of optical takes.",
@@ -108,16 +110,16 @@ VERBS = {
         writes_motions=True,
     ),
     "capture": Verb(
-        "Track the actor whom a depth camera recorded: pictures of depth become motion.",
+        "Track the actor of a depth recording: depth images become motion.",
         add_capture_options,
         perform_capture,
         writes_motions=True,
         writes_joints=True,
-        look=depth_in,
+        list_recordings=depth_in,
         prepare=read_body,
     ),
     "reconstruct": Verb(
-        "Rebuild clean poses from the joints that a depth camera's tracker saw.",
+        "Rebuild clean poses from the joints of a depth camera.",
         add_reconstruct_options,
         perform_reconstruct,
         writes_motions=True,
@@ -125,56 +127,56 @@ VERBS = {
         prepare=read_guides,
     ),
     "learn-residuals": Verb(
-        "Learn how a depth camera errs from takes that another system saw as well.",
+        "Learn the errors of a depth camera from takes with a reference.",
         add_residuals_options,
         perform_residuals,
-        Makes.ONE_FILE,
+        OutputKind.ONE_FILE,
     ),
     "learn-postures": Verb(
-        "Keep the postures of clean clips, for reconstruct to guess lost joints from.",
+        "Build a posture library from clean clips, for reconstruct.",
         add_postures_options,
         perform_postures,
-        Makes.ONE_FILE,
+        OutputKind.ONE_FILE,
     ),
     "simulate": Verb(
-        "Let a body with mass and muscles, on solid ground, make motions of a skeleton.",
+        "Track motions of a skeleton with a physical body on solid ground.",
         add_simulate_options,
         perform_simulate,
     ),
     "index": Verb(
-        "Put recordings into a library in which there can be searched, and keep it up to date.",
+        "Add recordings to a searchable library, and keep it up to date.",
         add_index_options,
         perform_index,
-        Makes.LIBRARY,
+        OutputKind.LIBRARY,
     ),
     "find": Verb(
-        "Find what in a library is like a recording, and where in which clip it is.",
+        "Find the segments of clips in a library that are similar to a recording.",
         add_find_options,
         perform_find,
-        Makes.MATCHES,
+        OutputKind.MATCHES,
     ),
     "vary": Verb(
-        "Make new motions like a few clips of one behaviour, each different.",
+        "Synthesize variants of a few clips of one behavior.",
         add_vary_options,
         perform_vary,
-        Makes.MANY_FILES,
+        OutputKind.MANY_FILES,
     ),
     "convert": Verb(
-        "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",
+        "Write recordings of any known format as BVH, or points as C3D or TRC.",
         add_reading_options,
         _convert,
     ),
     "retarget": Verb(
-        "Give motions to another skeleton, whatever its names, lengths and rest pose.",
+        "Retarget motions to another skeleton with other names, lengths and rest pose.",
         add_retarget_options,
         perform_retarget,
         prepare=read_target,
     ),
     "replay": Verb(
-        "Send recordings to this machine as a live stream, as a depth camera's tracker would.",
+        "Send recordings to this machine as a live stream, like a depth camera's tracker.",
         add_replay_options,
         perform_replay,
-        Makes.WORDS,
+        OutputKind.WORDS,
     ),
     "unbake": Verb(
         "Replace a key on every frame by few keys with handles.",

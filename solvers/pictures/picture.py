@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..files import written_whole
+from ..files import write_atomically
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +25,7 @@ class Picture:
         """Write a PNG file atomically."""
         from PIL import Image
 
-        with written_whole(path) as part:
+        with write_atomically(path) as part:
             Image.fromarray(self.pixels).save(part, format="PNG", optimize=True)
 
 

@@ -1,4 +1,4 @@
-"""What joins families: whole ways from a recording to a result."""
+"""Combine the solver families into complete workflows, from a recording to a result."""
 
 from .capture_recording import CapturedMotion, capture_actor, capture_recording
 from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
@@ -6,7 +6,8 @@ from .clip_sources import path_fault
 from .index_files import IndexReport, index_files
 from .live_session import LiveSession
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
-from .postures_of import postures_of
+from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
+from .posture_library import posture_library_from_clips
 from .reconstruct_from_library import (
     LibraryPostures,
     postures_from_library,
@@ -14,18 +15,17 @@ from .reconstruct_from_library import (
 )
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
-from .try_to_plant import Footing, try_to_plant
 from .vary_motions import Variants, vary_motions
 
 __all__ = [
     "CapturedMotion",
-    "Footing",
     "IndexReport",
     "LibraryBases",
     "LibraryPostures",
     "LiveSession",
     "MarkerMotion",
     "MarkerMotionSettings",
+    "PlantingResult",
     "RebuiltMotion",
     "ReconstructedMotion",
     "Variants",
@@ -36,11 +36,11 @@ __all__ = [
     "index_files",
     "motion_from_markers",
     "path_fault",
+    "plant_feet_if_possible",
+    "posture_library_from_clips",
     "postures_from_library",
-    "postures_of",
     "reconstruct_from_library",
     "reconstruct_motion",
     "reconstruct_recording",
-    "try_to_plant",
     "vary_motions",
 ]

@@ -1,4 +1,4 @@
-"""From a depth recording, as it came from the camera, to motion of the actor."""
+"""Capture the motion of an actor from a raw depth recording."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,28 +11,28 @@ from ..depth_tracking.tracking import PoseCallback, ignore_pose
 from ..motion import Motion
 from ..progress import Progress, unwatched, within
 from .capture_remarks import capture_remarks
-from .try_to_plant import try_to_plant
+from .plant_feet_if_possible import plant_feet_if_possible
 
-CAPTURING = CaptureSettings()
-TELLING = ForegroundSettings()
-PLANTING = PlantSettings()
-FOUND = 0.1
-"""Share of the work after which the actor is told from the room."""
+CAPTURE_SETTINGS = CaptureSettings()
+FOREGROUND_SETTINGS = ForegroundSettings()
+PLANT_SETTINGS = PlantSettings()
+FOREGROUND_FRACTION = 0.1
+"""Fraction of the progress spent on separating the actor from the room."""
 
 
 @dataclass(frozen=True, eq=False)
 class CapturedMotion:
-    """The motion of an actor, and what was done for it.
+    """The captured motion of an actor and the steps that led to it.
 
     Attributes
     ----------
     motion : Motion
-        Z up, without gaps; the feet are planted where that was asked for and can be done.
+        Z up, without gaps; feet are planted if requested and possible.
     captured : Capture
     actor : Actor
     planted : Planted or None
     remarks : tuple of str
-        Sentences on what the animator should know.
+        Sentences the animator should read.
     """
 
     motion: Motion
@@ -48,41 +48,41 @@ def capture_recording(
     *,
     motion_prior: MotionPrior | None = None,
     empty: Sequence[int] = (),
-    settings: CaptureSettings = CAPTURING,
-    foreground: ForegroundSettings = TELLING,
-    planting: PlantSettings | None = PLANTING,
+    settings: CaptureSettings = CAPTURE_SETTINGS,
+    foreground: ForegroundSettings = FOREGROUND_SETTINGS,
+    planting: PlantSettings | None = PLANT_SETTINGS,
     progress: Progress = unwatched,
 ) -> CapturedMotion:
-    """Tell the actor from the room, capture the motion, and plant the feet.
+    """Separate the actor from the room, capture the motion and plant the feet.
 
     Parameters
     ----------
     recording : DepthRecording
-        With or without the room.
+        With or without the background.
     body : BodyModel, optional
-        Fitted to the recording by default.
+        By default it is fitted to the recording.
     motion_prior : MotionPrior, optional
     empty : sequence of int
         Frames of the room without the actor.
     settings : CaptureSettings
     foreground : ForegroundSettings
     planting : PlantSettings or None
-        None leaves the feet as they are; so does a picture that ends above them.
+        None skips planting; so does a depth image that ends above the feet.
     progress : Progress
 
     Raises
     ------
     InvalidMotionError
-        Nobody is seen.
+        No person is detected.
     SolveCancelled
         Raised by `progress`.
     """
     actor = find_actor(
-        recording, foreground, empty=empty, progress=within(progress, 0.0, FOUND)
+        recording, foreground, empty=empty, progress=within(progress, 0.0, FOREGROUND_FRACTION)
     )
     return capture_actor(
         actor, body, motion_prior=motion_prior, settings=settings, planting=planting,
-        progress=within(progress, FOUND, 1.0),
+        progress=within(progress, FOREGROUND_FRACTION, 1.0),
     )  # fmt: skip
 
 
@@ -91,12 +91,12 @@ def capture_actor(
     body: BodyModel | None = None,
     *,
     motion_prior: MotionPrior | None = None,
-    settings: CaptureSettings = CAPTURING,
-    planting: PlantSettings | None = PLANTING,
+    settings: CaptureSettings = CAPTURE_SETTINGS,
+    planting: PlantSettings | None = PLANT_SETTINGS,
     on_pose: PoseCallback = ignore_pose,
     progress: Progress = unwatched,
 ) -> CapturedMotion:
-    """Capture the motion of an actor who was told from the room, and plant the feet.
+    """Capture the motion of a segmented actor and plant the feet.
 
     Parameters
     ----------
@@ -106,15 +106,17 @@ def capture_actor(
     settings : CaptureSettings
     planting : PlantSettings or None
     on_pose : OnPose
-        Is shown each pose that is found, as soon as it is.
+        Called with each pose as soon as it is tracked.
     progress : Progress
     """
-    found = capture(
+    captured = capture(
         actor.recording, body, motion_prior=motion_prior, floor=actor.floor,
         settings=settings, on_pose=on_pose, progress=within(progress, 0.0, 0.95),
     )  # fmt: skip
-    stands = planting if actor.feet_seen else None
-    footing = try_to_plant(found.motion, stands, progress=within(progress, 0.95, 1.0))
-    said = capture_remarks(actor, found, fitted=body is None)
-    remarks = (*said, *footing.remarks)
-    return CapturedMotion(footing.motion, found, actor, footing.planted, remarks)
+    plant_settings = planting if actor.feet_seen else None
+    result = plant_feet_if_possible(
+        captured.motion, plant_settings, progress=within(progress, 0.95, 1.0)
+    )
+    capture_notes = capture_remarks(actor, captured, fitted=body is None)
+    remarks = (*capture_notes, *result.remarks)
+    return CapturedMotion(result.motion, captured, actor, result.planted, remarks)

@@ -1,4 +1,4 @@
-"""What an animator should know about a capture."""
+"""Collect remarks on a capture for the animator."""
 
 import numpy as np
 
@@ -6,62 +6,66 @@ from ..depth_scene import Actor
 from ..depth_tracking.body import default_body
 from ..depth_tracking.capturing import Capture
 
-MANY = 0.2
-"""Share of joints out of sight from which the report tells it."""
-AGREEING, BESIDE = 0.55, 0.035
-"""Share of pixels that show both body and actor, and metres between them in depth, from which
-on they are unlike; usual are .8 and .02."""
-THICK = 1.3
-"""How many times as thick as usual for its length a body may be: a wrong focal length changes
-how long and wide it seems, but not how deep."""
+MAX_OCCLUDED_FRACTION = 0.2
+"""Fraction of occluded joints above which the report mentions them."""
+MIN_OVERLAP, MAX_DEPTH_OFFSET_M = 0.55, 0.035
+"""Minimum fraction of pixels covered by both body and actor, and maximum distance between them
+in depth, for a good fit. Typical values are 0.8 and 0.02 m."""
+MAX_THICKNESS_RATIO = 1.3
+"""Maximum thickness of a body for its length, relative to the default body. A wrong focal
+length changes how long and wide a body appears, but not how deep."""
 
 
-def capture_remarks(actor: Actor, found: Capture, *, fitted: bool) -> tuple[str, ...]:
-    """Return sentences on the actor, and how they were found.
+def capture_remarks(actor: Actor, captured: Capture, *, fitted: bool) -> tuple[str, ...]:
+    """Return sentences on the actor and on the quality of the tracking.
 
     Parameters
     ----------
     actor : Actor
-        Whose remarks come first.
-    found : Capture
+        Its remarks come first.
+    captured : Capture
     fitted : bool
-        Whether the body was found in the recording, rather than given.
+        Whether the body was fitted to the recording rather than given.
     """
-    said = [*actor.remarks]
+    remarks = [*actor.remarks]
     if actor.floor is None:
-        said.append("No floor is seen: the camera is taken to have been level.")
-    out_of_sight = float(found.doubtful.mean())
-    if out_of_sight > MANY:
-        said.append(
-            f"{100 * out_of_sight:.0f} % of the joints were out of sight or badly explained,"
-            " and are guessed from the frames before and after."
+        remarks.append("No floor is visible, so the camera is assumed to be level.")
+    occluded = float(captured.doubtful.mean())
+    if occluded > MAX_OCCLUDED_FRACTION:
+        remarks.append(
+            f"{100 * occluded:.0f} % of the joints were occluded or fitted badly;"
+            " they are estimated from the frames before and after."
         )
-    seen = np.isfinite(found.residual)
-    if actor.seen.all() and not seen.all():
-        said.append(f"In {int((~seen).sum())} of {len(seen)} frames nobody is seen.")
-    thick = thickness(found)
-    if fitted and thick > THICK:
-        said.append(
-            f"The actor would be {thick:.1f} times as thick as usual: check the focal length of"
-            " the camera, the scale, and whether the actor carries something."
+    tracked = np.isfinite(captured.residual)
+    if actor.seen.all() and not tracked.all():
+        remarks.append(
+            f"In {int((~tracked).sum())} of {len(tracked)} frames no person is detected."
         )
-    elif actor.feet_seen and seen.any():
-        said += _unlike(float(np.median(found.coverage[seen])), np.median(found.residual[seen]))
-    return tuple(said)
+    ratio = thickness(captured)
+    if fitted and ratio > MAX_THICKNESS_RATIO:
+        remarks.append(
+            f"The actor would be {ratio:.1f} times as thick as the default body. Check the"
+            " focal length of the camera, the scale, and whether the actor carries something."
+        )
+    elif actor.feet_seen and tracked.any():
+        remarks += _fit_remarks(
+            float(np.median(captured.coverage[tracked])), np.median(captured.residual[tracked])
+        )
+    return tuple(remarks)
 
 
-def _unlike(agreeing: float, beside: float) -> list[str]:
-    if agreeing >= AGREEING and beside <= BESIDE:
+def _fit_remarks(overlap: float, offset: float) -> list[str]:
+    if overlap >= MIN_OVERLAP and offset <= MAX_DEPTH_OFFSET_M:
         return []
     return [
-        f"Body and pictures agree badly ({100 * agreeing:.0f} % overlap, {100 * beside:.1f} cm"
-        " apart in depth): check the focal length, the scale, and whether there is anything but"
-        " the actor in the pictures."
+        f"Body and depth images agree badly ({100 * overlap:.0f} % overlap, {100 * offset:.1f}"
+        " cm distance in depth). Check the focal length, the scale, and whether the images show"
+        " anything but the actor."
     ]
 
 
-def thickness(found: Capture) -> float:
-    """Return how thick the body is for its length, compared with the usual one."""
-    usual = default_body()
-    radii = np.median(found.body.radii / usual.radii)
-    return float(radii / np.median(found.body.lengths / usual.lengths))
+def thickness(captured: Capture) -> float:
+    """Return the thickness of the body for its length, relative to the default body."""
+    default = default_body()
+    radii = np.median(captured.body.radii / default.radii)
+    return float(radii / np.median(captured.body.lengths / default.lengths))

@@ -1,4 +1,4 @@
-"""Clean a take with what a library of clips knows of such movements."""
+"""Clean a take with filter bases learned from similar clips of a library."""
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
@@ -17,31 +17,33 @@ from ..errors import InvalidMotionError
 from ..motion import JointLimits, Motion, Tracks
 from ..progress import Progress, unwatched, within
 from ..retrieval import ClipLibrary, FindSettings
-from .foretell_lost import foretell_lost
-from .library_clips import FOUND, Fetch, library_clips, read_origin
+from .library_clips import FIND_SETTINGS, Fetch, library_clips, read_origin
+from .prior_validation import prior_fills_gaps
 
-USUAL, LEARNING = DenoiseSettings(), FilterBasesSettings()
-BELIEVED = 0.5
-"""Confidence of a first estimate from which on it is searched with."""
-STEEPNESS = 2.0
-"""Power of its score by which a clip counts."""
-TINY = 1e-3
-SURE = 0.25
-"""Score of the best from which on clips are believed to be of the same movement; below, they
-have to prove it where joints were lost."""
-LAID_ASIDE = "They foretell the joints that are lost worse than the take itself: laid aside."
+DENOISE_SETTINGS, LEARN_SETTINGS = DenoiseSettings(), FilterBasesSettings()
+MIN_CONFIDENCE = 0.5
+"""Minimum confidence of a joint in the first estimate; others are left out of the query."""
+WEIGHT_EXPONENT = 2.0
+"""Exponent from the score of a clip to its weight."""
+MIN_WEIGHT_SCORE = 1e-3
+MIN_CONFIDENT_SCORE = 0.25
+"""Score of the best match above which the clips count as the same movement. Below it, they
+must fill held-out gaps at least as well as the take itself."""
+PRIOR_REJECTED = (
+    "They are not used: they predict the missing joints worse than the take itself."
+)
 
 
 @dataclass(frozen=True, eq=False)
 class LibraryBases:
-    """What clips of a library that are like a take teach of it."""
+    """Filter bases learned from the clips of a library that are similar to a take."""
 
     bases: FilterBases | None
-    """None where there is nothing to learn from."""
+    """None if no clip is usable."""
     clips: tuple[str, ...]
-    """Names of those that were learned from, the most alike first."""
-    said: str
-    """A sentence on them, and on those that could not be read."""
+    """Names of the clips that were used, most similar first."""
+    message: str
+    """A sentence on these clips and on those that could not be read."""
 
 
 def clean_from_library(
@@ -49,13 +51,13 @@ def clean_from_library(
     library: ClipLibrary,
     *,
     limits: JointLimits | None = None,
-    settings: DenoiseSettings = USUAL,
-    finding: FindSettings = FOUND,
+    settings: DenoiseSettings = DENOISE_SETTINGS,
+    finding: FindSettings = FIND_SETTINGS,
     ignore: Collection[str] = (),
     fetch: Fetch = read_origin,
     progress: Progress = unwatched,
 ) -> Denoised:
-    """Find clips that are like a take, learn from them, and denoise it.
+    """Find clips similar to a take, learn filter bases from them, and denoise it.
 
     Parameters
     ----------
@@ -65,17 +67,17 @@ def clean_from_library(
     limits : JointLimits, optional
     settings : DenoiseSettings
     finding : FindSettings
-        How many clips are learned from, and by which parts of the body they are found.
+        Number of clips to learn from, and the weights of body parts in the search.
     ignore : names of clips, optional
-        That are not learned from, as the take itself.
+        Clips to leave out, such as the take itself.
     fetch : callable, optional
-        Returns a clip's recording; it is read from the file it came from without.
+        Returns the recording of a clip; by default it is read from its source file.
     progress : Progress
 
     Returns
     -------
     Denoised
-        `prior_used` says which clips were learned from, and what became of that.
+        `prior_used` names the clips that were used, and the resulting prior.
 
     Raises
     ------
@@ -92,40 +94,39 @@ def clean_from_library(
         recording, learned.bases, limits=limits, settings=settings,
         progress=within(progress, 0.5, 1.0),
     )  # fmt: skip
-    return replace(cleaned, prior_used=f"{learned.said} {cleaned.prior_used}")
+    return replace(cleaned, prior_used=f"{learned.message} {cleaned.prior_used}")
 
 
 def bases_from_library(
     recording: Motion | Tracks,
     library: ClipLibrary,
     *,
-    finding: FindSettings = FOUND,
-    learning: FilterBasesSettings = LEARNING,
+    finding: FindSettings = FIND_SETTINGS,
+    learning: FilterBasesSettings = LEARN_SETTINGS,
     ignore: Collection[str] = (),
     fetch: Fetch = read_origin,
     progress: Progress = unwatched,
 ) -> LibraryBases:
-    """Learn filter bases of those clips of a library that are like a dirty take.
+    """Learn filter bases from the clips of a library that are similar to an unclean take.
 
-    The more a clip is like it, the more it counts. Where joints were lost for long, clips that
-    are only roughly like it must fill them at least as well as the take itself does, tried
-    where they were seen: else they are laid aside. The library is searched with a first
-    estimate from the take alone, and with nothing of what that is unsure of, such as limbs
-    that were lost for long.
+    The weight of a clip grows with its similarity. Where the take has long gaps, clips that
+    are only roughly similar must fill held-out gaps at least as well as the take itself does;
+    otherwise they are rejected. The query is a first estimate from the take alone, without
+    its low-confidence joints, such as limbs that are missing for long.
 
     Raises
     ------
     InvalidMotionError
-        The take is of points or shows no body, or nothing was observed.
+        The take holds points or no body, or nothing was observed.
     SolveCancelled
         Raised by `progress`.
     """
     if not isinstance(recording, Motion):
         raise InvalidMotionError(
-            "Points are not cleaned from a library of skeletons; solve a skeleton from them"
-            " first, or rebuild poses from them (reconstruct)."
+            "A library of skeletons cannot clean points. Solve a skeleton from them first, or"
+            " rebuild poses from them (reconstruct)."
         )
-    query = _believed(recording, within(progress, 0.0, 0.4))
+    query = _confident_estimate(recording, within(progress, 0.0, 0.4))
     found = library_clips(
         query, library, settings=finding, ignore=ignore, fetch=fetch,
         progress=within(progress, 0.4, 0.7),
@@ -136,23 +137,25 @@ def bases_from_library(
     try:
         bases = learn_filter_bases(
             found.motions,
-            weights=[max(match.score, TINY) ** STEEPNESS for match in found.matches],
+            weights=[
+                max(match.score, MIN_WEIGHT_SCORE) ** WEIGHT_EXPONENT for match in found.matches
+            ],
             settings=learning,
             progress=within(progress, 0.7, 0.85),
         )
     except InvalidMotionError as error:
-        return LibraryBases(None, (), f"{found.sentence()} That was of no use: {error}")
-    sure = found.matches[0].score >= SURE
-    if not sure and not foretell_lost(recording, bases, within(progress, 0.85, 1.0)):
-        return LibraryBases(None, (), f"{found.sentence()} {LAID_ASIDE}")
+        return LibraryBases(None, (), f"{found.sentence()} They cannot be used: {error}")
+    is_confident = found.matches[0].score >= MIN_CONFIDENT_SCORE
+    if not is_confident and not prior_fills_gaps(recording, bases, within(progress, 0.85, 1.0)):
+        return LibraryBases(None, (), f"{found.sentence()} {PRIOR_REJECTED}")
     return LibraryBases(bases, names, found.sentence())
 
 
-def _believed(recording: Motion, progress: Progress) -> Motion:
-    """Return a first estimate, with NaN for what is hardly more than a guess."""
-    rough = denoise(recording, progress=progress)
-    assert isinstance(rough.recording, Motion)
-    unsure = (rough.confidence < BELIEVED)[..., None]
-    return rough.recording.with_poses(
-        rotations=np.where(unsure, np.nan, rough.recording.rotations)
+def _confident_estimate(recording: Motion, progress: Progress) -> Motion:
+    """Return a first estimate, with NaN for low-confidence joints."""
+    estimate = denoise(recording, progress=progress)
+    assert isinstance(estimate.recording, Motion)
+    uncertain = (estimate.confidence < MIN_CONFIDENCE)[..., None]
+    return estimate.recording.with_poses(
+        rotations=np.where(uncertain, np.nan, estimate.recording.rotations)
     )

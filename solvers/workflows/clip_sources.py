@@ -1,4 +1,4 @@
-"""Which files make up a library, and what each clip is called in it."""
+"""Collect the source files of a library and the names of their clips."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -15,46 +15,45 @@ from ..retrieval.index import find_text_fault, is_utf_8
 
 @dataclass(frozen=True)
 class ClipSource:
-    """A file that a clip is read from.
+    """The source file of a clip.
 
     Attributes
     ----------
     path : Path
         Absolute.
-    place : tuple of str
-        Folders within the one that was named, and the file's name; before them the folder
-        that was named.
+    parts : tuple of str
+        The requested folder, the folders below it, and the file's name.
     """
 
     path: Path
-    place: tuple[str, ...]
+    parts: tuple[str, ...]
 
     def origin(self) -> Origin:
-        """Return the origin with the file's size and date as they are now.
+        """Return the origin with the current size and date of the file.
 
-        Those of the skeleton beside it count, where it needs one: a clip has changed when
-        that has.
+        They include those of the skeleton file of an .amc, so that a change of the skeleton
+        counts as a change of the clip.
 
         Raises
         ------
         OSError
-            The file has just gone.
+            The file has just been deleted.
         """
         found = [path.stat() for path in (self.path, *_skeletons(self.path))]
         size = sum(each.st_size for each in found)
         return Origin(str(self.path), "", size, max(each.st_mtime_ns for each in found))
 
     def fault(self) -> str:
-        """Return a sentence on why its names cannot be those of a clip, or nothing."""
+        """Return why its name cannot be the name of a clip; empty if it can."""
         if fault := path_fault(self.path):
             return fault
-        if fault := find_text_fault("/".join(self.place)):
+        if fault := find_text_fault("/".join(self.parts)):
             return f"The name of {str(self.path)!r} {fault}; rename the file or its folder."
         return ""
 
     def names(self) -> Iterable[str]:
-        """Yield names for the clip, the plainest first, until one is free."""
-        *folders, file = self.place
+        """Yield candidate names for the clip, the shortest first."""
+        *folders, file = self.parts
         stem = Path(file).stem
         inside = folders[1:]
         yield "/".join([*inside, stem])
@@ -68,7 +67,7 @@ class ClipSource:
 
 
 def path_fault(path: Path | str) -> str:
-    """Return a sentence on why a library cannot keep a path, or nothing."""
+    """Return why a library cannot store a path; empty if it can."""
     if is_utf_8(str(path)):
         return ""
     return f"{str(path)!r} is not valid UTF-8; rename the file or its folder."
@@ -85,7 +84,7 @@ def _skeletons(path: Path) -> list[Path]:
 
 
 def clip_sources(files_or_folders: Sequence[Path | str]) -> list[ClipSource]:
-    """Return every file, and in place of a folder the recordings in it and below, each once.
+    """Return every file once, with the recordings in and below each folder.
 
     Raises
     ------
@@ -94,13 +93,13 @@ def clip_sources(files_or_folders: Sequence[Path | str]) -> list[ClipSource]:
     """
     found: dict[Path, ClipSource] = {}
     for named in map(Path, files_or_folders):
-        whole = real_path(named)
-        if is_missing(whole):
+        root = real_path(named)
+        if is_missing(root):
             raise InvalidFileError(f"There is no file or folder {named}.")
-        is_one = not is_folder(whole)
-        inside = [whole] if is_one else recordings_in(whole)
+        is_single = not is_folder(root)
+        inside = [root] if is_single else recordings_in(root)
         for path in inside:
-            below = path.relative_to(whole.parent if is_one else whole).parts
-            place = (whole.parent.name if is_one else whole.name, *below)
-            found.setdefault(path, ClipSource(path, place))
+            below = path.relative_to(root.parent if is_single else root).parts
+            parts = (root.parent.name if is_single else root.name, *below)
+            found.setdefault(path, ClipSource(path, parts))
     return list(found.values())

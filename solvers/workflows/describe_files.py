@@ -1,4 +1,4 @@
-"""Read files and describe them for a library, one after the other or several at a time."""
+"""Read files and describe them for a library, sequentially or in parallel."""
 
 from collections import deque
 from collections.abc import Iterable, Iterator
@@ -13,74 +13,77 @@ from ..processes import worker_pool
 from ..recordings import read_tracked
 from ..retrieval import Clip, DescribedClip, Origin, describe_clip
 
-AHEAD = 2
-"""Files that are given to each process before their results are asked for."""
+QUEUED_PER_PROCESS = 2
+"""Files submitted to each process before their results are fetched."""
 
 
-class Wanted(NamedTuple):
-    """A file that is to be a clip."""
+class ClipRequest(NamedTuple):
+    """A file to index as a clip."""
 
     name: str
     origin: Origin
     tags: tuple[str, ...]
 
 
-class Described(NamedTuple):
-    """What came of a file."""
+class FileDescription(NamedTuple):
+    """The description of a file, or why there is none."""
 
-    wanted: Wanted
+    request: ClipRequest
     clip: DescribedClip | None
-    """None where it was refused."""
+    """None if the file was refused."""
     sentence: str = ""
-    for_good: bool = False
-    """Refused for what is in the file: it will be again, until it changes."""
+    is_permanent: bool = False
+    """Whether the content is the reason: the file is refused again until it changes."""
 
 
 def describe_files(
-    files: Iterable[Wanted], jobs: int, n_threads: int = 1
-) -> Iterator[Described]:
-    """Yield what comes of each file, in the order in which they are given.
+    files: Iterable[ClipRequest], jobs: int, n_threads: int = 1
+) -> Iterator[FileDescription]:
+    """Yield the description of each file, in the given order.
 
-    A file that cannot be used is refused with one sentence and stops nobody; neither does one
-    that takes the process down that reads it.
+    A file that cannot be used is refused with one sentence. The other files are still read,
+    even if reading one of them crashes its process.
     """
     if jobs <= 1:
-        yield from map(described, files)
+        yield from map(describe_file, files)
         return
     waiting = deque(files)
     while waiting:
-        yield from _until_one_dies(waiting, jobs, n_threads)
+        yield from _until_crash(waiting, jobs, n_threads)
 
 
-def described(wanted: Wanted) -> Described:
+def describe_file(request: ClipRequest) -> FileDescription:
     """Read and describe one file."""
-    path = wanted.origin.path
-    found = attempt(path, _describe, wanted)
+    path = request.origin.path
+    found = attempt(path, _describe, request)
     if not isinstance(found, Failure):
-        return Described(wanted, found)
-    reason = found.sentence.removeprefix(f"{path}: ").removeprefix(f"{wanted.name}: ")
-    named = Path(path).name in reason
-    sentence = reason if named else f"{path}: {reason}"
-    return Described(wanted, None, sentence, for_good=found.lasting)
+        return FileDescription(request, found)
+    reason = found.sentence.removeprefix(f"{path}: ").removeprefix(f"{request.name}: ")
+    names_file = Path(path).name in reason
+    sentence = reason if names_file else f"{path}: {reason}"
+    return FileDescription(request, None, sentence, is_permanent=found.lasting)
 
 
-def _describe(wanted: Wanted) -> DescribedClip:
-    recording = read_tracked(wanted.origin.path)
-    return describe_clip(Clip(wanted.name, recording, wanted.tags, wanted.origin))
+def _describe(request: ClipRequest) -> DescribedClip:
+    recording = read_tracked(request.origin.path)
+    return describe_clip(Clip(request.name, recording, request.tags, request.origin))
 
 
-def _until_one_dies(waiting: "deque[Wanted]", jobs: int, n_threads: int) -> Iterator[Described]:
-    """Work on files, taking them off as they are done, until all are or a process dies.
+def _until_crash(
+    waiting: "deque[ClipRequest]", jobs: int, n_threads: int
+) -> Iterator[FileDescription]:
+    """Describe files and remove them from the queue until it is empty or a process crashes.
 
-    The one that was asked for when it happened is then tried alone, to know whether it was it.
+    After a crash the first file of the queue runs in a process of its own, which shows
+    whether this file is the cause.
     """
-    running: deque[Future[Described]] = deque()
+    running: deque[Future[FileDescription]] = deque()
     with worker_pool(jobs, n_threads) as pool:
         try:
             with suppress(BrokenProcessPool):
                 while waiting:
-                    while len(running) < min(len(waiting), AHEAD * jobs):
-                        running.append(pool.submit(described, waiting[len(running)]))
+                    while len(running) < min(len(waiting), QUEUED_PER_PROCESS * jobs):
+                        running.append(pool.submit(describe_file, waiting[len(running)]))
                     done = running[0].result()
                     running.popleft()
                     waiting.popleft()
@@ -88,17 +91,17 @@ def _until_one_dies(waiting: "deque[Wanted]", jobs: int, n_threads: int) -> Iter
                 return
         finally:
             pool.shutdown(cancel_futures=True)
-    yield _alone(waiting.popleft(), n_threads)
+    yield _describe_in_new_process(waiting.popleft(), n_threads)
 
 
-def _alone(wanted: Wanted, n_threads: int) -> Described:
+def _describe_in_new_process(request: ClipRequest, n_threads: int) -> FileDescription:
     with worker_pool(1, n_threads) as pool:
         try:
-            return pool.submit(described, wanted).result()
+            return pool.submit(describe_file, request).result()
         except BrokenProcessPool:
-            return Described(
-                wanted,
+            return FileDescription(
+                request,
                 None,
-                f"{wanted.origin.path}: the process that read it has died, perhaps for want of"
-                " memory; cut the take into parts.",
+                f"{request.origin.path}: the process that read it crashed, perhaps for lack of"
+                " memory. Split the take into parts.",
             )

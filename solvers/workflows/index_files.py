@@ -1,4 +1,4 @@
-"""Make a library of recordings in files and folders, and keep it as they are."""
+"""Build a library from files and folders of recordings, and keep it up to date."""
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
@@ -11,28 +11,28 @@ from ..retrieval import ClipEntry, ClipLibrary, DescribedClip, Origin, open_clip
 from ..retrieval.index import find_tags_fault
 from ..version import version
 from .clip_sources import ClipSource, clip_sources
-from .describe_files import Described, Wanted, describe_files
+from .describe_files import ClipRequest, FileDescription, describe_files
 
-BATCH = 100
-"""Clips that are written together; an interrupt loses no more."""
-BATCH_FRAMES = 200_000
-"""Frames at 20 Hz from which on fewer are: 100 megabytes."""
+MAX_BATCH_CLIPS = 100
+"""Clips written in one transaction; an interrupt loses no more."""
+MAX_BATCH_FRAMES = 200_000
+"""Frames at 20 Hz written in one transaction: 100 megabytes."""
 
 
 @dataclass(frozen=True)
 class IndexReport:
-    """What came of indexing.
+    """The result of indexing.
 
     Attributes
     ----------
     added, changed, unchanged, removed : tuple of str
-        Names of the clips that are new, whose files or tags have changed, that were known as
-        they are, and whose files have gone.
+        Names of clips: new ones, those with changed files or tags, those already up to date,
+        and those whose files are gone.
     refused : tuple of (str, str)
-        Files that cannot be in a library, each with one sentence on why. What was known of
-        such a file by another content is forgotten.
+        Files that cannot be indexed, each with one sentence on why. An earlier clip of such a
+        file is removed.
     n_clips : int
-        In the library now, whatever they came from.
+        Number of clips in the library now, from all sources.
     """
 
     added: tuple[str, ...]
@@ -53,35 +53,35 @@ def index_files(
     remove_missing: bool = False,
     progress: Progress = unwatched,
 ) -> IndexReport:
-    """Put recordings into the library in a file, which is made where there is none.
+    """Add recordings to a library file, which is created if it is missing.
 
-    Files that are in it with the same size, date and tags are passed over; those that were
-    refused and have not changed since are refused again without being read. A clip is called
-    as its file lies in the folder that was named, without the ending; where that name is taken,
-    with the ending, the folder's name or a number. It keeps its name when its file changes.
+    Files with unchanged size, date and tags are skipped. Files that were refused and have not
+    changed since are refused again without being read. The name of a clip is the path of its
+    file within the given folder, without the extension. If that name is taken, it gets the
+    extension, the name of the folder or a number. A clip keeps its name when its file changes.
     Several processes may index into one library at once.
 
     Parameters
     ----------
     library_path : Path or str
     files_or_folders : sequence of Path or str
-        Recordings of any known format; of folders those in them and below.
+        Recordings of any known format, or folders that are searched recursively.
     tags : sequence of str
-        That the clips get beside those they have.
+        Tags to add to those that the clips have.
     jobs : int
-        Files to read at a time, each in a process of its own.
+        Number of files to read in parallel, each in a process of its own.
     n_threads : int
-        Of linear algebra in each of these processes.
+        Threads of linear algebra in each of these processes.
     remove_missing : bool
-        Whether clips are taken out whose files were in the folders and have gone.
+        Whether to remove clips whose files were in the folders and are gone.
     progress : Progress
-        What was written before it cancels stays.
+        Clips written before a cancellation stay.
 
     Raises
     ------
     InvalidFileError
-        There is no such file or folder; the library is none, damaged, of a newer version,
-        cannot be written or made, or is being written by another program all the time.
+        There is no such file or folder. The library is not a library, is damaged, comes from a
+        newer version, cannot be written or created, or stays locked by another program.
     InvalidMotionError
         A tag has control characters or is not valid UTF-8.
     SolveCancelled
@@ -93,9 +93,11 @@ def index_files(
     with open_clip_library(library_path) as library:
         indexing = _Indexing(library, tuple(dict.fromkeys(tags)))
         files = indexing.to_read(sources)
-        for place, done in enumerate(describe_files(files, min(jobs, len(files)), n_threads)):
-            progress(place / len(files), Path(done.wanted.origin.path).name)
-            indexing.take(done)
+        for index, description in enumerate(
+            describe_files(files, min(jobs, len(files)), n_threads)
+        ):
+            progress(index / len(files), Path(description.request.origin.path).name)
+            indexing.take(description)
         indexing.write()
         if remove_missing:
             indexing.remove_missing([real_path(each) for each in files_or_folders])
@@ -104,21 +106,21 @@ def index_files(
 
 
 class _Indexing:
-    """A library, and what has been done to it so far."""
+    """An indexing run: the library and the changes so far."""
 
     def __init__(self, library: ClipLibrary, tags: tuple[str, ...]) -> None:
         self._library, self._tags = library, tags
-        self._known = dict(_of_files(library))
+        self._known = dict(_clips_by_path(library))
         self._sources: dict[str, ClipSource] = {}
         self._batch: list[DescribedClip] = []
         self._added, self._changed = list[str](), list[str]()
         self._unchanged, self._removed = list[str](), list[str]()
         self._refused: list[tuple[str, str]] = []
         self._known_refused = library.refused(version())
-        self._of_no_use: list[tuple[Origin, str]] = []
+        self._new_refusals: list[tuple[Origin, str]] = []
 
-    def to_read(self, sources: Sequence[ClipSource]) -> list[Wanted]:
-        """Return what is not in the library as it is, under the names that suit it best."""
+    def to_read(self, sources: Sequence[ClipSource]) -> list[ClipRequest]:
+        """Return the files that are new or changed, with their preferred clip names."""
         files = []
         for source in sources:
             try:
@@ -137,44 +139,44 @@ class _Indexing:
                     self._unchanged.append(name)
                     continue
             self._sources[origin.path] = source
-            files.append(Wanted(name, origin, tags))
+            files.append(ClipRequest(name, origin, tags))
         return files
 
-    def take(self, done: Described) -> None:
-        """Keep a clip until there are enough to be written, or note why there is none."""
-        wanted = done.wanted
-        if done.clip is None:
-            self._refused.append((wanted.origin.path, done.sentence))
-            if done.for_good:
-                self._of_no_use.append((wanted.origin, done.sentence))
-            if wanted.origin.path in self._known:
-                self._removed += self._library.discard([self._known[wanted.origin.path][0]])
+    def take(self, description: FileDescription) -> None:
+        """Add a clip to the batch, or record why there is none."""
+        request = description.request
+        if description.clip is None:
+            self._refused.append((request.origin.path, description.sentence))
+            if description.is_permanent:
+                self._new_refusals.append((request.origin, description.sentence))
+            if request.origin.path in self._known:
+                self._removed += self._library.discard([self._known[request.origin.path][0]])
             return
-        self._batch.append(done.clip)
+        self._batch.append(description.clip)
         n_frames = sum(clip.postures.n_frames for clip in self._batch)
-        if len(self._batch) >= BATCH or n_frames >= BATCH_FRAMES:
+        if len(self._batch) >= MAX_BATCH_CLIPS or n_frames >= MAX_BATCH_FRAMES:
             self.write()
 
     def write(self) -> None:
-        """Write what has been kept; names are chosen while no other process can write."""
+        """Write the batch; names are chosen while no other process can write."""
         names = self._library.add_described(self._batch, free_name=self._free_name)
         for clip, name in zip(self._batch, names, strict=True):
             known = clip.entry.origin is not None and clip.entry.origin.path in self._known
             (self._changed if known else self._added).append(name)
-        if self._of_no_use:
-            self._library.remember_refused(version(), self._of_no_use)
-        self._batch, self._of_no_use = [], []
+        if self._new_refusals:
+            self._library.remember_refused(version(), self._new_refusals)
+        self._batch, self._new_refusals = [], []
 
-    def remove_missing(self, named: Sequence[Path]) -> None:
-        """Take out clips whose files lay in these folders and are there no more."""
+    def remove_missing(self, folders: Sequence[Path]) -> None:
+        """Remove clips whose files were in these folders and are gone."""
         self._removed += self._library.discard([
             number
             for path, (number, _) in self._known.items()
-            if any(Path(path).is_relative_to(one) for one in named) and is_missing(path)
+            if any(Path(path).is_relative_to(one) for one in folders) and is_missing(path)
         ])  # fmt: skip
 
     def report(self) -> IndexReport:
-        """Tell what has been done."""
+        """Return the result so far."""
         return IndexReport(
             tuple(self._added), tuple(self._changed), tuple(self._unchanged),
             tuple(self._removed), tuple(self._refused), len(self._library.entries),
@@ -186,8 +188,8 @@ class _Indexing:
         return next(name for name in names if name not in taken)
 
 
-def _of_files(library: ClipLibrary) -> Iterator[tuple[str, tuple[int, ClipEntry]]]:
-    """Yield the clips that each are all of a file, by its path, and their numbers."""
+def _clips_by_path(library: ClipLibrary) -> Iterator[tuple[str, tuple[int, ClipEntry]]]:
+    """Yield the path, number and entry of each clip that spans its complete file."""
     for number, entry in library.numbered().items():
         if entry.origin is not None and not entry.origin.item:
             yield entry.origin.path, (number, entry)

@@ -1,4 +1,4 @@
-"""Clips of a library to learn from, for one take: those that are like it."""
+"""Find the clips of a library that are similar to a take, and read them."""
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
@@ -14,29 +14,29 @@ Recording = Motion | Tracks | JointRecording
 Fetch = Callable[[ClipEntry], Recording]
 """Returns the recording of a clip."""
 
-AROUND = 0.5
-"""Seconds before and after what matches that are taken along."""
-MOST_NAMED = 5
-FOUND = FindSettings(n_matches=12, n_aligned=12, n_alike=0, warping=1.0, busy=0.0)
-"""By likeness of the whole body with the take alone: the best that a library without the like
-has are like each other all the same."""
-ALIKE = 0.16
-"""Score that the best must have: the same movement by another actor has one of 0.2 to 0.5
-(HDM05, CMU walks), other movements at most 0.15. Where it has, the others help too."""
+CONTEXT_S = 0.5
+"""Seconds before and after a match that are included."""
+MAX_NAMED_CLIPS = 5
+FIND_SETTINGS = FindSettings(n_matches=12, n_aligned=12, n_alike=0, warping=1.0, busy=0.0)
+"""Ranks by similarity of the complete body to the take, without re-ranking: the best clips of a
+library without similar motion are still similar to each other."""
+MIN_BEST_SCORE = 0.16
+"""Minimum score of the best match. The same movement by another actor scores 0.2 to 0.5 (HDM05,
+CMU walks), other movements at most 0.15. If the best match passes, all matches are used."""
 
 
 @dataclass(frozen=True, eq=False)
 class LibraryClips:
-    """What was found to learn from.
+    """Similar clips to learn from.
 
     Attributes
     ----------
     motions : tuple of Motion
-        Those parts of the clips that match, best first.
+        The matching segments of the clips, best first.
     matches : tuple of Match
-        The same as the library tells of them.
+        The corresponding matches.
     remarks : tuple of str
-        A sentence for each clip that matches and could not be had.
+        A sentence for each matching clip that could not be read.
     """
 
     motions: tuple[Motion, ...]
@@ -44,23 +44,26 @@ class LibraryClips:
     remarks: tuple[str, ...]
 
     def sentence(self) -> str:
-        """Say which clips are learned from."""
+        """Return a sentence on the clips that are used."""
         if not self.matches:
-            return " ".join(["Nothing in the library is like this take.", *self.remarks])
-        named = ", ".join(match.clip for match in self.matches[:MOST_NAMED])
-        more = len(self.matches) - MOST_NAMED
-        rest = f" and {more} more" if more > 0 else ""
+            return " ".join(["No clip of the library is similar to this take.", *self.remarks])
+        listed = ", ".join(match.clip for match in self.matches[:MAX_NAMED_CLIPS])
+        more = len(self.matches) - MAX_NAMED_CLIPS
+        others = f" and {more} more" if more > 0 else ""
         clips = "1 clip" if len(self.matches) == 1 else f"{len(self.matches)} clips"
-        return " ".join([f"Learned from {clips} of the library: {named}{rest}.", *self.remarks])
+        return " ".join([
+            f"Learned from {clips} of the library: {listed}{others}.",
+            *self.remarks,
+        ])
 
 
 def read_origin(entry: ClipEntry) -> Recording:
-    """Read a clip again from the file that it came from.
+    """Read a clip from its source file.
 
     Raises
     ------
     InvalidFileError
-        The file has gone, or is not a recording any more.
+        The file is gone, or no longer a recording.
     """
     origin = entry.origin
     if origin is None or origin.item:
@@ -72,25 +75,25 @@ def library_clips(
     query: Recording,
     library: ClipLibrary,
     *,
-    settings: FindSettings = FOUND,
+    settings: FindSettings = FIND_SETTINGS,
     ignore: Collection[str] = (),
     fetch: Fetch = read_origin,
-    at_least: float = ALIKE,
+    min_score: float = MIN_BEST_SCORE,
     progress: Progress = unwatched,
 ) -> LibraryClips:
-    """Find clips that are like a take, and read the parts of them that are.
+    """Find clips similar to a take, and read their matching segments.
 
     Parameters
     ----------
     query : Motion, Tracks or JointRecording
-        NaN where it is not to be believed.
+        NaN where observations are unreliable.
     library : ClipLibrary
     settings : FindSettings
     ignore : names of clips, optional
     fetch : callable, optional
-        Returns a clip's recording; it is read from its file without.
-    at_least : float
-        Score that the best must have; else there is none.
+        Returns the recording of a clip; by default it is read from its source file.
+    min_score : float
+        Minimum score of the best match; below it there are no clips.
     progress : Progress
 
     Raises
@@ -103,12 +106,12 @@ def library_clips(
     matches = find_similar(
         query, library, settings=settings, ignore=ignore, progress=within(progress, 0, 0.3)
     )
-    if matches and matches[0].score < at_least:
+    if matches and matches[0].score < min_score:
         matches = ()
     entries = {entry.name: entry for entry in library.entries}
     motions, used, remarks = [], [], []
-    for place, match in enumerate(matches):
-        progress(0.3 + 0.7 * place / len(matches), f"Reading {match.clip}")
+    for index, match in enumerate(matches):
+        progress(0.3 + 0.7 * index / len(matches), f"Reading {match.clip}")
         try:
             clip = fetch(entries[match.clip])
         except SolveCancelled:
@@ -116,15 +119,15 @@ def library_clips(
         except MocapAssistError as error:
             remarks.append(f"{match.clip} was left out: {error}")
             continue
-        if isinstance(clip, Motion):  # What a sensor saw is no example of what is right.
-            motions.append(_part(clip, match))
+        if isinstance(clip, Motion):  # Sensor recordings are not clean examples.
+            motions.append(_matching_segment(clip, match))
             used.append(match)
     progress(1.0)
     return LibraryClips(tuple(motions), tuple(used), tuple(remarks))
 
 
-def _part(clip: Motion, match: Match) -> Motion:
-    around = round(AROUND * clip.frame_rate)
-    start = max(match.frames.start - around, 0)
-    part = clip.slice(start, min(match.frames.stop + around, clip.n_frames))
-    return part if part.n_frames else clip
+def _matching_segment(clip: Motion, match: Match) -> Motion:
+    context = round(CONTEXT_S * clip.frame_rate)
+    start = max(match.frames.start - context, 0)
+    segment = clip.slice(start, min(match.frames.stop + context, clip.n_frames))
+    return segment if segment.n_frames else clip

@@ -1,4 +1,4 @@
-"""A session before the camera: frames in, commands and performances out."""
+"""Turn a live stream of joints into gestures and recorded performances."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -15,37 +15,37 @@ from ..recordings.live import LiveFrame, StreamCounts, StreamReader, recording_f
 
 Array = NDArray[np.float64]
 
-USUAL = GestureSettings()
-SHORTEST = 0.5
-"""Seconds that a performance must last to be searched for."""
-MOST_FRAMES = 20_000
-"""Frames that are kept of a performance."""
+GESTURE_SETTINGS = GestureSettings()
+MIN_PERFORMANCE_S = 0.5
+"""Minimum duration in seconds of a performance to search with."""
+MAX_FRAMES = 20_000
+"""Maximum number of recorded frames of a performance."""
 TOO_SHORT = "The performance was too short to search for. Clap, perform, and clap again."
-DROPPED = "No second clap ended the performance, so it was dropped."
+NO_END = "No second clap ended the performance, so it was dropped."
 
 
 @dataclass(frozen=True, eq=False)
-class News:
-    """What a session has heard since it was last asked."""
+class SessionUpdate:
+    """What a session received since the last call."""
 
     frame: LiveFrame | None
-    """The newest one."""
+    """The newest frame."""
     events: tuple[GestureEvent, ...]
     query: JointRecording | None
-    """The performance that has just been ended."""
+    """The performance that has just ended."""
     message: str
-    """Why there is no query though one was to be expected, or nothing."""
+    """Why an expected query is missing; empty otherwise."""
 
 
 class LiveSession:
-    """Follows one actor through a stream; what comes in is dropped or counts, and never raises.
+    """Follow one actor through a stream; invalid input is counted and dropped.
 
     Parameters
     ----------
     settings : GestureSettings
     """
 
-    def __init__(self, settings: GestureSettings = USUAL) -> None:
+    def __init__(self, settings: GestureSettings = GESTURE_SETTINGS) -> None:
         self._settings = settings
         self._stream = StreamReader()
         self._recogniser = GestureRecognizer(settings)
@@ -54,80 +54,80 @@ class LiveSession:
 
     @property
     def mode(self) -> Mode:
-        """What the actor is doing."""
+        """The current activity of the actor."""
         return self._recogniser.mode
 
     @property
     def heard(self) -> StreamCounts:
-        """How many frames came in, and why others were dropped."""
+        """Number of received frames, and why others were dropped."""
         return self._stream.heard
 
-    def hear(self, datagrams: Iterable[bytes]) -> News:
-        """Take what came in; return what it says."""
-        news = News(None, (), None, "")
+    def receive(self, datagrams: Iterable[bytes]) -> SessionUpdate:
+        """Process datagrams; return the new frame, events and query."""
+        update = SessionUpdate(None, (), None, "")
         for frame in self._stream.read(*datagrams):
-            news = self._told(news, frame)
-        return news
+            update = self._add_frame(update, frame)
+        return update
 
-    def _told(self, news: News, frame: LiveFrame) -> News:
-        """Add what a frame says."""
-        events = self._break_off(frame)
-        places, trust = posture_of(frame)
-        events += self._recogniser.see(frame.time, places, trust)
-        news = replace(news, frame=frame, events=news.events + events)
+    def _add_frame(self, update: SessionUpdate, frame: LiveFrame) -> SessionUpdate:
+        """Add the events of a frame."""
+        events = self._restart_if_needed(frame)
+        positions, confidence = pose_from_frame(frame)
+        events += self._recogniser.see(frame.time, positions, confidence)
+        update = replace(update, frame=frame, events=update.events + events)
         for event in events:
-            news = self._captured(news, event)
-        if self.mode is Mode.CAPTURING and len(self._performed) < MOST_FRAMES:
+            update = self._apply_event(update, event)
+        if self.mode is Mode.CAPTURING and len(self._performed) < MAX_FRAMES:
             self._performed.append(frame)
-        return news
+        return update
 
-    def _break_off(self, frame: LiveFrame) -> tuple[GestureEvent, ...]:
-        """Begin anew with another actor, or another stream."""
+    def _restart_if_needed(self, frame: LiveFrame) -> tuple[GestureEvent, ...]:
+        """Restart the recognizer when the actor or the stream changes."""
         last, self._last = self._last, frame
         if last is None or (frame.body == last.body and frame.time > last.time):
             return ()
-        was, self._recogniser = self.mode, GestureRecognizer(self._settings)
-        if was is not Mode.CAPTURING:
+        mode, self._recogniser = self.mode, GestureRecognizer(self._settings)
+        if mode is not Mode.CAPTURING:
             return ()
         return (GestureEvent(Gesture.CAPTURE_DROPPED, frame.time, frame.time),)
 
-    def _captured(self, news: News, event: GestureEvent) -> News:
-        """Begin or end the performance, as the event says."""
+    def _apply_event(self, update: SessionUpdate, event: GestureEvent) -> SessionUpdate:
+        """Start, drop or end the recording of a performance."""
         if event.gesture is Gesture.CAPTURE_START:
             self._performed = []
         elif event.gesture is Gesture.CAPTURE_DROPPED:
             self._performed = []
-            return replace(news, message=DROPPED)
+            return replace(update, message=NO_END)
         elif event.gesture is Gesture.CAPTURE_END:
             frames = [frame for frame in self._performed if frame.time <= event.began]
             self._performed = []
-            return _performance(news, frames)
-        return news
+            return _performance(update, frames)
+        return update
 
 
-def _performance(news: News, frames: list[LiveFrame]) -> News:
-    if not frames or frames[-1].time - frames[0].time < SHORTEST:
-        return replace(news, message=TOO_SHORT)
+def _performance(update: SessionUpdate, frames: list[LiveFrame]) -> SessionUpdate:
+    if not frames or frames[-1].time - frames[0].time < MIN_PERFORMANCE_S:
+        return replace(update, message=TOO_SHORT)
     try:
-        return replace(news, query=recording_from_frames(frames), message="")
+        return replace(update, query=recording_from_frames(frames), message="")
     except InvalidFileError as error:
-        return replace(news, message=str(error))
+        return replace(update, message=str(error))
 
 
-def posture_of(frame: LiveFrame) -> tuple[Array, Array]:
-    """Return the joints of postures, (20, 3) in metres, and how sure they are, (20,)."""
+def pose_from_frame(frame: LiveFrame) -> tuple[Array, Array]:
+    """Return positions of the posture joints, (20, 3) metres, and their confidence, (20,)."""
     positions, confidence = (
         np.full((len(POSTURE_JOINTS), 3), np.nan),
         np.zeros(len(POSTURE_JOINTS)),
     )
-    for role, joint in _places(frame.names):
+    for role, joint in _posture_columns(frame.names):
         positions[role] = frame.positions[joint]
         confidence[role] = frame.confidence[joint]
     return positions, confidence
 
 
 @lru_cache(maxsize=64)
-def _places(names: tuple[str, ...]) -> tuple[tuple[int, int], ...]:
-    """Return which joint of postures each named joint is."""
+def _posture_columns(names: tuple[str, ...]) -> tuple[tuple[int, int], ...]:
+    """Return pairs of posture joint and column for these names."""
     found = posture_joint_indices(names)
     return tuple((POSTURE_JOINTS.index(role), joint) for role, joint in found.items())

@@ -1,4 +1,4 @@
-"""From the markers of an optical take to the clean motion of a skeleton."""
+"""Solve the clean motion of a skeleton from the markers of an optical take."""
 
 from dataclasses import dataclass
 
@@ -27,7 +27,7 @@ SOLVE_SETTINGS = SolveSettings()
 
 @dataclass(frozen=True, kw_only=True)
 class MarkerMotionSettings(Settings):
-    """Which steps are taken."""
+    """Steps to run."""
 
     unswap: bool = setting(
         True, "Fix swapped and wrong marker labels first", label="Fix Swapped Labels"
@@ -46,16 +46,16 @@ class MarkerMotionSettings(Settings):
 
 @dataclass(frozen=True, eq=False)
 class MarkerMotion:
-    """A skeleton's motion without gaps, and what was done for it."""
+    """The motion of a skeleton without gaps, and the results of the steps."""
 
     motion: Motion
     solved: SolvedSkeleton
-    """Before what no marker shows was filled."""
+    """The solved skeleton, before unobserved joints were filled."""
     markers: Tracks
-    """The markers of the set, as they were solved from."""
+    """The markers of the set that the skeleton was solved from."""
     swaps: tuple[Swap, ...]
     filled: NDArray[np.bool_]
-    """Where one of `markers` was found from others, shape (n_frames, n_points)."""
+    """Samples of `markers` that were filled, shape (n_frames, n_points)."""
 
 
 def motion_from_markers(
@@ -65,10 +65,11 @@ def motion_from_markers(
     solving: SolveSettings = SOLVE_SETTINGS,
     progress: Progress = unwatched,
 ) -> MarkerMotion:
-    """Put labels right, fill gaps, solve the skeleton and fill what is left.
+    """Correct labels, fill gaps, solve the skeleton and fill its unobserved joints.
 
-    Lost markers are found from their rigid cluster where three others of it are seen, else by
-    `fill_markers`. Markers that are seen stay where they are; the fit of the skeleton averages.
+    Missing markers are filled from their rigid cluster where three others of it are observed,
+    otherwise by `fill_markers`. Observed markers are not changed; the fit of the skeleton
+    averages them.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ def motion_from_markers(
     SolveCancelled
         Raised by `progress`.
     """
-    markers = _of_the_set(tracks, solving.subject)
+    markers = _select_set_markers(tracks, solving.subject)
     swaps: tuple[Swap, ...] = ()
     if settings.unswap:
         unswapped = unswap_markers(
@@ -96,40 +97,40 @@ def motion_from_markers(
         markers, swaps = unswapped.tracks, unswapped.swaps
     labelled = markers.visible
     if settings.fill:
-        markers = _filled(markers, within(progress, 0.2, 0.5))
+        markers = _fill_gaps(markers, within(progress, 0.2, 0.5))
     solved = solve_skeleton(markers, settings=solving, progress=within(progress, 0.5, 0.85))
     motion = solved.motion
     if settings.smooth or not motion.observed.all():
-        done = denoise(motion, progress=within(progress, 0.85, 1.0)).recording
-        assert isinstance(done, Motion)
-        motion = done if settings.smooth else _gaps_only(motion, done)
+        denoised = denoise(motion, progress=within(progress, 0.85, 1.0)).recording
+        assert isinstance(denoised, Motion)
+        motion = denoised if settings.smooth else _restore_observed(motion, denoised)
     progress(1.0, "Done")
     return MarkerMotion(motion, solved, markers, swaps, markers.visible & ~labelled)
 
 
-def _of_the_set(tracks: Tracks, subject: str) -> Tracks:
-    """Leave out points that no marker set knows, such as joints that a program computed."""
+def _select_set_markers(tracks: Tracks, subject: str) -> Tracks:
+    """Remove points that belong to no marker set, such as joints that a program computed."""
     known = set(find_marker_set(tracks.names, subject or None).markers.values())
     kept = [index for index, name in enumerate(tracks.names) if name in known]
     if not kept:
-        return tracks  # Whose lack of markers the solver tells best.
+        return tracks  # The solver reports the missing markers.
     names = tuple(tracks.names[index] for index in kept)
     confidence = None if tracks.confidence is None else tracks.confidence[:, kept]
     return Tracks(names, tracks.positions[:, kept], tracks.frame_rate, confidence)
 
 
-def _filled(tracks: Tracks, progress: Progress) -> Tracks:
-    """Fill gaps from rigid clusters, then from all companions."""
+def _fill_gaps(tracks: Tracks, progress: Progress) -> Tracks:
+    """Fill gaps from rigid clusters, then from all reference markers."""
     clusters = find_rigid_clusters(tracks, progress=within(progress, 0.0, 0.1))
     kept = constrain_clusters(tracks, clusters, progress=within(progress, 0.1, 0.2))
     found = np.where(kept.filled[..., None], kept.tracks.positions, tracks.positions)
     return fill_markers(tracks.with_positions(found), within(progress, 0.2, 1.0)).tracks
 
 
-def _gaps_only(motion: Motion, filled: Motion) -> Motion:
-    """Take from the filled motion only what was not known."""
+def _restore_observed(motion: Motion, filled: Motion) -> Motion:
+    """Replace only the unobserved samples with those of the filled motion."""
     rotations = np.where(np.isnan(motion.rotations), filled.rotations, motion.rotations)
-    places = np.where(
+    root_positions = np.where(
         np.isnan(motion.root_positions), filled.root_positions, motion.root_positions
     )
-    return motion.with_poses(rotations, places)
+    return motion.with_poses(rotations, root_positions)

@@ -1,4 +1,4 @@
-"""Rebuild poses with postures of those clips of a library that are like the take."""
+"""Rebuild poses with postures from the clips of a library that are similar to the take."""
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
@@ -19,23 +19,23 @@ from ..reconstruction import (
 )
 from ..reconstruction.pose_library import build_posture_library, merge_posture_libraries
 from ..retrieval import ClipLibrary, FindSettings
-from .library_clips import FOUND, Fetch, library_clips, read_origin
+from .library_clips import FIND_SETTINGS, Fetch, library_clips, read_origin
 from .reconstruct_motion import postures_recording
 
-USUAL = ReconstructSettings()
-BELIEVED = 0.5
-"""Reliability from which on a joint is searched with."""
+RECONSTRUCT_SETTINGS = ReconstructSettings()
+MIN_RELIABILITY = 0.5
+"""Minimum reliability of a joint in the query."""
 
 
 @dataclass(frozen=True, eq=False)
 class LibraryPostures:
-    """Postures to rebuild a take from: of clips that are like it, and what is shipped."""
+    """Postures for the reconstruction of a take: of similar clips, and the shipped ones."""
 
     postures: PostureLibrary
     clips: tuple[str, ...]
-    """Names of those that were found, the most alike first."""
-    said: str
-    """A sentence on them, and on those that could not be read."""
+    """Names of the clips, most similar first."""
+    message: str
+    """A sentence on these clips and on those that could not be read."""
 
 
 def reconstruct_from_library(
@@ -43,13 +43,13 @@ def reconstruct_from_library(
     library: ClipLibrary,
     prior: ResidualPrior | None = None,
     *,
-    settings: ReconstructSettings = USUAL,
-    finding: FindSettings = FOUND,
+    settings: ReconstructSettings = RECONSTRUCT_SETTINGS,
+    finding: FindSettings = FIND_SETTINGS,
     ignore: Collection[str] = (),
     fetch: Fetch = read_origin,
     progress: Progress = unwatched,
 ) -> Reconstruction:
-    """Find clips that are like what a tracker saw, and rebuild its poses from theirs.
+    """Find clips similar to a recording, and rebuild its poses from their postures.
 
     Parameters
     ----------
@@ -58,22 +58,22 @@ def reconstruct_from_library(
     prior : ResidualPrior, optional
     settings : ReconstructSettings
     finding : FindSettings
-        How many clips are asked, and by which parts of the body they are found.
+        Number of clips to use, and the weights of body parts in the search.
     ignore : names of clips, optional
-        That are not asked, as the recording itself.
+        Clips to leave out, such as the recording itself.
     fetch : callable, optional
-        Returns a clip's recording; it is read from the file it came from without.
+        Returns the recording of a clip; by default it is read from its source file.
     progress : Progress
 
     Returns
     -------
     Reconstruction
-        `method` says which clips were asked.
+        `method` names the clips.
 
     Raises
     ------
     InvalidMotionError
-        No body is recognised in the names, or hardly a joint was ever seen.
+        No body is recognized in the names, or too few joints are observed.
     SolveCancelled
         Raised by `progress`.
     """
@@ -85,48 +85,48 @@ def reconstruct_from_library(
         recording, found.postures, prior, settings=settings,
         progress=within(progress, 0.4, 1.0),
     )  # fmt: skip
-    return replace(rebuilt, method=f"{found.said.rstrip('.')}; {rebuilt.method}")
+    return replace(rebuilt, method=f"{found.message.rstrip('.')}; {rebuilt.method}")
 
 
 def postures_from_library(
     recording: JointRecording | Motion,
     library: ClipLibrary,
     *,
-    finding: FindSettings = FOUND,
+    finding: FindSettings = FIND_SETTINGS,
     ignore: Collection[str] = (),
     fetch: Fetch = read_origin,
     progress: Progress = unwatched,
 ) -> LibraryPostures:
-    """Collect postures of those clips of a library that are like a take.
+    """Collect postures from the clips of a library that are similar to a take.
 
-    It is searched with the joints that are reliable. What is shipped is among them: where a
-    library knows nothing of a movement, all is as without one.
+    The query holds the reliable joints. The shipped postures are included: without similar
+    clips, the result is the same as without a library.
 
     Raises
     ------
     InvalidMotionError
-        No body is recognised.
+        No body is recognized.
     SolveCancelled
         Raised by `progress`.
     """
     if isinstance(recording, Motion):
         recording = postures_recording(recording)
-    trust = measure_reliability(recording, progress=within(progress, 0.0, 0.2)).combined
+    reliability = measure_reliability(recording, progress=within(progress, 0.0, 0.2)).combined
     tracks = recording.tracks
-    believed = np.where((trust >= BELIEVED)[..., None], tracks.positions, np.nan)
+    reliable = np.where((reliability >= MIN_RELIABILITY)[..., None], tracks.positions, np.nan)
     found = library_clips(
-        replace(recording, tracks=tracks.with_positions(believed)), library,
-        settings=finding, ignore=ignore, fetch=fetch, at_least=0.0,
+        replace(recording, tracks=tracks.with_positions(reliable)), library,
+        settings=finding, ignore=ignore, fetch=fetch, min_score=0.0,
         progress=within(progress, 0.2, 0.7),
     )  # fmt: skip
     shipped, names = load_posture_library(), tuple(match.clip for match in found.matches)
     if not names:
         return LibraryPostures(shipped, (), found.sentence())
-    said = f"{len(names)} clips of a library"
+    source = f"{len(names)} clips of a library"
     try:
-        theirs = build_posture_library(
-            found.motions, trained_on=said, progress=within(progress, 0.7, 1.0)
+        own = build_posture_library(
+            found.motions, trained_on=source, progress=within(progress, 0.7, 1.0)
         )
     except InvalidMotionError as error:
-        return LibraryPostures(shipped, (), f"{found.sentence()} That was of no use: {error}")
-    return LibraryPostures(merge_posture_libraries(theirs, shipped), names, found.sentence())
+        return LibraryPostures(shipped, (), f"{found.sentence()} They cannot be used: {error}")
+    return LibraryPostures(merge_posture_libraries(own, shipped), names, found.sentence())

@@ -1,4 +1,4 @@
-"""Rebuild the poses of a skeleton that moves as a depth camera's tracker saw it."""
+"""Rebuild the poses of a motion that a depth camera's tracker recorded."""
 
 from dataclasses import dataclass
 
@@ -31,14 +31,14 @@ from ..reconstruction import (
     reconstruct,
 )
 from ..reconstruction.joint_rotations import fit_motion_to_postures, motion_from_positions
-from .known_body import KINECT_V1, check_size, check_tracked, gap_remarks
-from .measured_joints import measured_joints
-from .rebuilt_joints import rebuilt_joints
+from .changed_joints import find_changed_joints
+from .joints_from_source import joints_from_source
+from .standard_joints import KINECT_V1, check_size, check_tracked, gap_remarks
 
 Array = NDArray[np.float64]
-REBUILDING = ReconstructSettings()
-SAME = 1e-6
-"""Share of a length that is no change."""
+RECONSTRUCT_SETTINGS = ReconstructSettings()
+LENGTH_TOLERANCE = 1e-6
+"""Deviation of a length term from 0 or 1 that counts as rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,22 +48,22 @@ class RebuiltMotion:
     Attributes
     ----------
     motion : Motion
-        Of the skeleton that was given; without gaps.
-    trust : Reliability
-        How far each joint was trusted, and why; NaN for joints that are not among those by
-        which bodies are compared, and all NaN for a term of which the take tells nothing.
+        Of the given skeleton; without gaps.
+    reliability_terms : Reliability
+        Reliability of each joint and its terms. NaN for joints that are not posture joints; a
+        term that the take cannot measure is NaN everywhere.
     confidence : shape (n_frames, n_joints), 0 to 1
-        How sure the result is of each joint; NaN likewise.
+        Confidence of the result; NaN for the same joints.
     rebuilt : bool, shape (n_frames, n_joints)
-        Which of these joints were lost, or are put elsewhere than they were recorded.
+        Joints that were missing or were moved.
     method : str
-        What was done, in words.
+        Description of the method.
     remarks : tuple of str
-        Sentences on what the animator should know.
+        Sentences the animator should read.
     """
 
     motion: Motion
-    trust: Reliability
+    reliability_terms: Reliability
     confidence: Array
     rebuilt: NDArray[np.bool_]
     method: str
@@ -71,12 +71,12 @@ class RebuiltMotion:
 
     @property
     def reliability(self) -> Array:
-        """How far each joint was trusted, shape (n_frames, n_joints), 0 to 1."""
-        return self.trust.combined
+        """Reliability of each joint, shape (n_frames, n_joints), 0 to 1."""
+        return self.reliability_terms.combined
 
     @property
-    def rebuilt_share(self) -> float:
-        """Share of the joints and frames that were rebuilt, of those that are compared."""
+    def rebuilt_fraction(self) -> float:
+        """Fraction of the posture joints and frames that were rebuilt."""
         return float(self.rebuilt[np.isfinite(self.reliability)].mean())
 
 
@@ -88,14 +88,14 @@ def reconstruct_motion(
     source: JointRecording | None = None,
     tracking_state: NDArray[np.int8] | None = None,
     humanoid_map: HumanoidMap | None = None,
-    settings: ReconstructSettings = REBUILDING,
+    settings: ReconstructSettings = RECONSTRUCT_SETTINGS,
     progress: Progress = unwatched,
 ) -> RebuiltMotion:
-    """Rebuild the poses of a motion that a tracker's joints, or any capture, gave a skeleton.
+    """Rebuild the poses of a skeleton that was solved from a tracker or captured otherwise.
 
-    Where its joints are those of a known tracker, all of them are rebuilt and followed
-    (`motion_from_positions`). On any other skeleton those of a body are, and its motion is
-    turned the short way to where they come to be (`fit_motion_to_postures`).
+    If its joints are those of a known tracker, all of them are rebuilt and followed
+    (`motion_from_positions`). On any other skeleton the posture joints are rebuilt, and the
+    shortest rotations move the skeleton to them (`fit_motion_to_postures`).
 
     Parameters
     ----------
@@ -104,19 +104,19 @@ def reconstruct_motion(
     postures : PostureLibrary, optional
     prior : ResidualPrior, optional
     source : JointRecording, optional
-        What the motion was made of, if it is at hand; used where it still fits
-        (`measured_joints`).
+        The recording that the motion was solved from; used if it still matches
+        (`joints_from_source`).
     tracking_state : shape (n_frames, n_joints), optional
-        What the tracker said of each joint: 2 tracked, 1 inferred, 0 not tracked.
+        State of each joint: 2 tracked, 1 inferred, 0 not tracked.
     humanoid_map : HumanoidMap, optional
-        Which joint plays which part of a body; found where it is not given.
+        Humanoid role of each joint; detected by default.
     settings : ReconstructSettings
     progress : Progress
 
     Raises
     ------
     InvalidMotionError
-        Nothing is tracked, no body is recognised, or it is not of human size.
+        Nothing is tracked, no body is recognized, or it is not of human size.
     SolveCancelled
         Raised by `progress`.
     """
@@ -132,7 +132,7 @@ def reconstruct_motion(
         recording, postures, prior, settings=settings, progress=within(progress, 0.0, 0.9)
     )
     if tracked:
-        turned = motion_from_positions(
+        result = motion_from_positions(
             rebuilt.tracks,
             recording.parents,
             rebuilt.reliability.combined,
@@ -140,65 +140,71 @@ def reconstruct_motion(
             skeleton=motion.skeleton,
         )
     else:
-        turned = fit_motion_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
-    trust, confidence, told = _of_skeleton(motion.n_joints, recording, rebuilt, columns)
+        result = fit_motion_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
+    reliability_terms, confidence, changed = _for_skeleton_joints(
+        motion.n_joints, recording, rebuilt, columns
+    )
     progress(1.0, "Done")
     remarks = tuple(gap_remarks(recording))
-    return RebuiltMotion(turned, trust, confidence, told, rebuilt.method, remarks)
+    return RebuiltMotion(
+        result, reliability_terms, confidence, changed, rebuilt.method, remarks
+    )
 
 
-def _of_skeleton(
+def _for_skeleton_joints(
     n_joints: int, recording: JointRecording, rebuilt: Reconstruction, columns: dict[int, int]
 ) -> tuple[Reliability, Array, NDArray[np.bool_]]:
-    """Return trust, confidence and what was rebuilt, of the joints of a skeleton."""
-    joints, places = list(columns), list(columns.values())
+    """Return reliability, confidence and changed joints in the order of a skeleton."""
+    joints, source_columns = list(columns), list(columns.values())
     shape = (recording.n_frames, n_joints)
 
-    def spread(values: Array) -> Array:
+    def to_skeleton(values: Array) -> Array:
         result = np.full(shape, np.nan)
-        result[:, joints] = values[:, places]
+        result[:, joints] = values[:, source_columns]
         return result
 
     found = rebuilt.reliability
-    says_nothing = recording.tracking_state is None and recording.tracks.confidence is None
-    trust = Reliability(
-        spread(found.combined),
-        spread(found.behaviour),
-        np.full(shape, np.nan) if _never_vary(found.kinematics) else spread(found.kinematics),
-        np.full(shape, np.nan) if says_nothing else spread(found.tracking),
+    has_no_tracking = recording.tracking_state is None and recording.tracks.confidence is None
+    reliability_terms = Reliability(
+        to_skeleton(found.combined),
+        to_skeleton(found.behaviour),
+        np.full(shape, np.nan)
+        if _is_constant(found.kinematics)
+        else to_skeleton(found.kinematics),
+        np.full(shape, np.nan) if has_no_tracking else to_skeleton(found.tracking),
     )
-    told = np.zeros(shape, bool)
-    told[:, joints] = rebuilt_joints(recording, rebuilt)[:, places]
-    return trust, spread(rebuilt.confidence), told
+    changed = np.zeros(shape, bool)
+    changed[:, joints] = find_changed_joints(recording, rebuilt)[:, source_columns]
+    return reliability_terms, to_skeleton(rebuilt.confidence), changed
 
 
-def _never_vary(kinematics: Array) -> bool:
-    """Whether lengths are the same in all frames, as those of any skeleton; 0 is not seen."""
-    return bool(((kinematics < SAME) | (kinematics > 1.0 - SAME)).all())
+def _is_constant(kinematics: Array) -> bool:
+    """Return whether bone lengths are constant, as in any skeleton; 0 is missing."""
+    return bool(((kinematics < LENGTH_TOLERANCE) | (kinematics > 1.0 - LENGTH_TOLERANCE)).all())
 
 
 def postures_recording(motion: Motion) -> JointRecording:
-    """Return the joints of postures of a skeleton's motion, as a tracker would name them.
+    """Return the posture joints of a motion with the names of a tracker.
 
     Raises
     ------
     InvalidMotionError
-        No body is recognised.
+        No body is recognized.
     """
     return _postures_of(motion, find_humanoid_map(motion.skeleton))[0]
 
 
 def _is_tracked(names: tuple[str, ...]) -> bool:
-    """Whether all joints are a known tracker's, and so hang together as is known."""
+    """Return whether all joints are those of a known tracker, with a known hierarchy."""
     return joint_parents(names).count(-1) == 1 and "hips" in posture_joint_indices(names)
 
 
 def _all_joints(
     motion: Motion, source: JointRecording | None, state: NDArray[np.int8] | None
 ) -> tuple[JointRecording, dict[int, int]]:
-    """Return where all joints are, and the column of each joint."""
+    """Return the positions of all joints, and the column of each joint."""
     columns = {joint: joint for joint in range(motion.n_joints)}
-    measured = None if source is None else measured_joints(motion, source)
+    measured = None if source is None else joints_from_source(motion, source)
     if measured is not None:
         return measured, columns
     positions = forward_kinematics(motion).positions
@@ -209,16 +215,18 @@ def _all_joints(
 def _postures_of(
     motion: Motion, humanoid_map: HumanoidMap
 ) -> tuple[JointRecording, dict[int, int]]:
-    """Return where the joints of postures are, under the names of a tracker."""
+    """Return the posture joints with the names of a tracker, and the column of each joint."""
     positions = postures_from_motion(motion, humanoid_map)
-    seen = np.isfinite(positions).all(axis=-1).any(axis=0)
-    there = np.flatnonzero(seen | ~seen.any())  # all, to be refused, where none is seen
-    names = tuple(KINECT_V1[POSTURE_JOINTS[joint]] for joint in there)
-    tracks = Tracks(names, positions[:, there], motion.frame_rate)
-    places = humanoid_map.indices(motion.skeleton)
+    observed = np.isfinite(positions).all(axis=-1).any(axis=0)
+    posture_joints = np.flatnonzero(
+        observed | ~observed.any()
+    )  # if none is observed, keep all: the check then reports it
+    names = tuple(KINECT_V1[POSTURE_JOINTS[joint]] for joint in posture_joints)
+    tracks = Tracks(names, positions[:, posture_joints], motion.frame_rate)
+    joint_indices = humanoid_map.indices(motion.skeleton)
     columns = {
-        places[role]: column
-        for column, joint in enumerate(there)
-        if (role := POSTURE_JOINTS[joint]) in places
+        joint_indices[role]: column
+        for column, joint in enumerate(posture_joints)
+        if (role := POSTURE_JOINTS[joint]) in joint_indices
     }
     return JointRecording(tracks, None, Sensor.OTHER), columns

@@ -1,4 +1,4 @@
-"""From a depth camera's joints to clean motion of a skeleton whose feet stand."""
+"""Reconstruct clean motion with planted feet from the joints of a depth camera."""
 
 from dataclasses import dataclass
 
@@ -10,29 +10,29 @@ from ..motion import JointRecording, Motion, Skeleton
 from ..progress import Progress, unwatched, within
 from ..reconstruction import PostureLibrary, ReconstructSettings, ResidualPrior, reconstruct
 from ..reconstruction.joint_rotations import Reconstruction, motion_from_positions
-from .known_body import check_size, gap_remarks, known_body
-from .rebuilt_joints import rebuilt_joints
-from .try_to_plant import try_to_plant
+from .changed_joints import find_changed_joints
+from .plant_feet_if_possible import plant_feet_if_possible
+from .standard_joints import check_size, gap_remarks, standardize_joint_names
 
-PLANTING = PlantSettings()
-REBUILDING = ReconstructSettings()
+PLANT_SETTINGS = PlantSettings()
+RECONSTRUCT_SETTINGS = ReconstructSettings()
 
 
 @dataclass(frozen=True, eq=False)
 class ReconstructedMotion:
-    """Clean motion, and what was done for it.
+    """Clean motion and the steps that led to it.
 
     Attributes
     ----------
     motion : Motion
-        Without gaps; the feet are planted where that was asked for and can be done.
+        Without gaps; feet are planted if requested and possible.
     reconstruction : Reconstruction
-        Joints, confidence and the motion before feet were planted.
+        Joints, confidence and the motion before planting.
     planted : Planted or None
     rebuilt : bool, shape (n_frames, n_joints)
-        Which joints of the reconstruction were lost, or are put elsewhere than recorded.
+        Joints that were missing or were moved.
     remarks : tuple of str
-        Sentences on what the animator should know.
+        Sentences the animator should read.
     """
 
     motion: Motion
@@ -48,63 +48,67 @@ def reconstruct_recording(
     prior: ResidualPrior | None = None,
     *,
     skeleton: Skeleton | None = None,
-    settings: ReconstructSettings = REBUILDING,
-    planting: PlantSettings | None = PLANTING,
+    settings: ReconstructSettings = RECONSTRUCT_SETTINGS,
+    planting: PlantSettings | None = PLANT_SETTINGS,
     progress: Progress = unwatched,
 ) -> ReconstructedMotion:
-    """Rebuild the poses of a recording, let a skeleton follow them, and plant its feet.
+    """Rebuild the poses of a recording, fit a skeleton to them and plant its feet.
 
     Parameters
     ----------
     recording : JointRecording
-        Joints of a body, of any tracker whose names are known.
+        Joints of a body, from any tracker whose names are recognized.
     postures : PostureLibrary, optional
     prior : ResidualPrior, optional
     skeleton : Skeleton, optional
-        To move, in the place of one of the recording's own lengths; its joints are some of the
-        recording's.
+        The skeleton to move; by default one with the bone lengths of the recording. Its joints
+        must be a subset of those of the recording.
     settings : ReconstructSettings
     planting : PlantSettings or None
-        None leaves the feet as they are.
+        None skips planting.
     progress : Progress
 
     Raises
     ------
     InvalidMotionError
-        Nothing is tracked, no body is recognised, or it is not of human size.
+        Nothing is tracked, no body is recognized, or it is not of human size.
     SolveCancelled
         Raised by `progress`.
     """
-    known = known_body(recording)
-    check_size(known)
+    standardized = standardize_joint_names(recording)
+    check_size(standardized)
     rebuilt = reconstruct(
-        known, postures, prior, settings=settings, progress=within(progress, 0.0, 0.8)
+        standardized, postures, prior, settings=settings, progress=within(progress, 0.0, 0.8)
     )
     motion = rebuilt.motion
     if skeleton is not None:
         motion = motion_from_positions(
             rebuilt.tracks,
-            known.parents,
+            standardized.parents,
             rebuilt.reliability.combined,
             twists=rebuilt.twists,
             skeleton=skeleton,
         )
-    footing = try_to_plant(
+    planting_result = plant_feet_if_possible(
         motion,
         planting,
-        reliability=_of_joints(motion.skeleton, known.names, rebuilt.reliability.combined),
+        reliability=_for_skeleton_joints(
+            motion.skeleton, standardized.names, rebuilt.reliability.combined
+        ),
         progress=within(progress, 0.8, 1.0),
     )
     progress(1.0, "Done")
-    remarks = (*gap_remarks(known), *footing.remarks)
-    guessed = rebuilt_joints(known, rebuilt)
-    return ReconstructedMotion(footing.motion, rebuilt, footing.planted, guessed, remarks)
+    remarks = (*gap_remarks(standardized), *planting_result.remarks)
+    changed = find_changed_joints(standardized, rebuilt)
+    return ReconstructedMotion(
+        planting_result.motion, rebuilt, planting_result.planted, changed, remarks
+    )
 
 
-def _of_joints(
+def _for_skeleton_joints(
     skeleton: Skeleton, names: tuple[str, ...], reliability: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return the reliability of a skeleton's joints; NaN of those that were not tracked."""
+    """Return the reliability of the joints of a skeleton; NaN for untracked ones."""
     result = np.full((len(reliability), skeleton.n_joints), np.nan)
     for joint, name in enumerate(skeleton.names):
         if name in names:

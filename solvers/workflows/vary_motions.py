@@ -1,4 +1,4 @@
-"""From a few clips to many: variants with planted feet."""
+"""Synthesize variants of a few clips, with planted feet."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,20 +18,20 @@ from ..variation import (
     learn_variation_model,
     repeat_loop,
 )
-from .try_to_plant import Footing, try_to_plant
+from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
 
 
 @dataclass(frozen=True, eq=False)
 class Variants:
-    """New motions, and what is to be said of them.
+    """New motions and remarks on them.
 
     Attributes
     ----------
     motions : tuple of Motion
     loops : tuple of bool
-        Which end as they begin, because the examples do.
+        Whether each variant is a loop, as the examples are.
     remarks : tuple of str
-        What seems wrong with the examples, or why feet could not be planted.
+        Problems of the examples, or why feet could not be planted.
     """
 
     motions: tuple[Motion, ...]
@@ -39,35 +39,35 @@ class Variants:
     remarks: tuple[str, ...]
 
 
-ROUNDS = 3
-"""Of a loop that are planted together: the middle one goes on at both ends."""
-USUAL, PLANTING = VarySettings(), PlantSettings()
+N_CYCLES = 3
+"""Number of cycles of a loop to plant together; the middle one continues at both ends."""
+VARY_SETTINGS, PLANT_SETTINGS = VarySettings(), PlantSettings()
 
 
 def vary_motions(
     examples: Sequence[Motion],
     n_variants: int,
     *,
-    settings: VarySettings = USUAL,
-    planting: PlantSettings | None = PLANTING,
+    settings: VarySettings = VARY_SETTINGS,
+    planting: PlantSettings | None = PLANT_SETTINGS,
     progress: Progress = unwatched,
 ) -> Variants:
-    """Make variants of examples of one behaviour, and plant their feet.
+    """Synthesize variants of examples of one behavior, and plant their feet.
 
     Parameters
     ----------
     examples : Motion
-        Of one rig and without gaps. How a single one varies is borrowed, and said.
+        Of one rig and without gaps. A single example gets shipped variation, with a remark.
     n_variants : int
     settings : VarySettings
     planting : PlantSettings or None
-        None leaves feet as they are.
+        None skips planting.
     progress : Progress
 
     Raises
     ------
     InvalidMotionError
-        The examples do not go together; see `learn_variation_model`.
+        The examples do not fit together; see `learn_variation_model`.
     """
     if len(examples) == 1:
         model = borrow_variation(examples[0])
@@ -75,36 +75,40 @@ def vary_motions(
         model = learn_variation_model(
             examples, settings=settings, progress=within(progress, 0.0, 0.3)
         )
-    drawn = draw_variants(
+    variants = draw_variants(
         model, n_variants, settings=settings, progress=within(progress, 0.3, 0.4)
     )
     remarks = [model.warning] if model.warning else []
     planted = []
-    for place, variant in enumerate(drawn):
-        part = within(progress, 0.4 + 0.6 * place / n_variants, 1.0)
-        part(0.0, f"Planting feet of variant {place + 1}")
-        footing = stand(variant, planting)
-        remarks += [remark for remark in footing.remarks if remark not in remarks]
-        planted.append(footing.motion)
+    for index, variant in enumerate(variants):
+        variant_progress = within(progress, 0.4 + 0.6 * index / n_variants, 1.0)
+        variant_progress(0.0, f"Planting feet of variant {index + 1}")
+        result = plant_variant(variant, planting)
+        remarks += [remark for remark in result.remarks if remark not in remarks]
+        planted.append(result.motion)
     progress(1.0)
-    return Variants(tuple(planted), tuple(one.loops for one in drawn), tuple(remarks))
+    return Variants(
+        tuple(planted), tuple(variant.loops for variant in variants), tuple(remarks)
+    )
 
 
-def stand(variant: Variant, planting: PlantSettings | None = PLANTING) -> Footing:
-    """Plant the feet of a variant when those of its examples stood, and its own stand.
+def plant_variant(
+    variant: Variant, planting: PlantSettings | None = PLANT_SETTINGS
+) -> PlantingResult:
+    """Plant the feet of a variant where its examples or the variant itself are in contact.
 
-    A loop stays one.
+    A loop stays a loop.
     """
     motion, contacts, is_loop = variant
     if planting is None:
-        return try_to_plant(motion, None)
+        return plant_feet_if_possible(motion, None)
     if is_loop:
-        motion = repeat_loop(motion, ROUNDS)
+        motion = repeat_loop(motion, N_CYCLES)
         if contacts is not None:
-            contacts = np.concatenate([*[contacts[:-1]] * ROUNDS, contacts[-1:]])
+            contacts = np.concatenate([*[contacts[:-1]] * N_CYCLES, contacts[-1:]])
     if contacts is not None:
         contacts = contacts | detect_contacts(motion)
-    footing = try_to_plant(motion, planting, contacts)
+    result = plant_feet_if_possible(motion, planting, contacts)
     if is_loop:
-        return footing._replace(motion=extract_middle_cycle(footing.motion, variant.motion))
-    return footing
+        return result._replace(motion=extract_middle_cycle(result.motion, variant.motion))
+    return result

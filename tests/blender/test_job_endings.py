@@ -60,7 +60,7 @@ def test_process_ends_with_status_0_after_its_answer(module, load, programs, pro
     solve = partial(Expression(f"lambda progress: {begin}progress(0.5) or 'the answer'"))
     if showing:
         text = f"lambda progress, show: {begin}show('a pose') or 'the answer'"
-        solve = load("mocap_assist.jobs.protocol").Showing(Expression(text))
+        solve = load("mocap_assist.jobs.protocol").PreviewSolve(Expression(text))
     job = module.Job(solve, programs[program])
 
     status = job._process.wait()

@@ -28,7 +28,7 @@ from learned_files import LEARNED, npz
 from mkv_files import k4a
 from whole_files import JOINT_FILES, JOINT_TOKENS, RECORDING, SKELETON, TOKENS, WHOLE
 
-from solvers.command_line.batch import Made
+from solvers.command_line.batch import OutputRecord
 from solvers.depth_scene.recording import DepthRecording
 from solvers.errors import MocapAssistError
 from solvers.json_text import parse_json
@@ -146,7 +146,7 @@ def targets() -> dict[str, Target]:
     )
     found["batch_record"] = Target(
         b'{"walk.bvh": {"version": "0.1.0", "options": {}, "figures": {"a": 1}}}',
-        lambda path: Made(path.parent).notes,
+        lambda path: OutputRecord(path.parent).notes,
         JOINT_TOKENS,
         "mocap_assist.json",
     )

@@ -8,12 +8,12 @@ from subprocess import run
 import pytest
 
 from solvers.errors import InvalidFileError
-from solvers.files import remove_leftovers, written_whole
+from solvers.files import remove_leftovers, write_atomically
 
 KILLED = """
 import os, signal, sys
-from solvers.files import written_whole
-with written_whole(sys.argv[1]) as part:
+from solvers.files import write_atomically
+with write_atomically(sys.argv[1]) as part:
     part.write_text("half")
     os.kill(os.getpid(), signal.SIGKILL)
 """
@@ -23,7 +23,7 @@ with written_whole(sys.argv[1]) as part:
 def test_full_disk_is_reported_as_such(tmp_path, number):
     with (
         pytest.raises(InvalidFileError, match="written: the disk is full"),
-        written_whole(tmp_path / "a.bvh"),
+        write_atomically(tmp_path / "a.bvh"),
     ):
         raise OSError(number, os.strerror(number))
 
@@ -49,7 +49,7 @@ def test_what_a_killed_writer_left_goes_and_what_is_there_stays(tmp_path):
 
 def test_a_writer_that_fails_leaves_nothing(tmp_path):
     try:
-        with written_whole(tmp_path / "a.txt") as part:
+        with write_atomically(tmp_path / "a.txt") as part:
             part.write_text("half")
             raise ZeroDivisionError
     except ZeroDivisionError:
@@ -64,7 +64,7 @@ def test_a_file_is_on_the_disk_when_it_takes_its_name(tmp_path, monkeypatch):
         "os.fsync", lambda descriptor: done.append(os.fstat(descriptor).st_size)
     )
 
-    with written_whole(target) as part:
+    with write_atomically(target) as part:
         part.write_text("whole")
 
     assert (done, target.read_text()) == ([5], "whole")

@@ -34,12 +34,9 @@ class PlantSettings(Settings):
 
     blend: float = setting(
         0.3,
-        "Time to blend a planted foot back to its own motion; higher is softer and lasts"
-        " longer",
-        unit="s",
-        minimum=0.02,
-        maximum=2.0,
-    )
+        "Time to blend a planted foot back to its own motion; higher is softer and longer",
+        unit="s", minimum=0.02, maximum=2.0,
+    )  # fmt: skip
     hold: float = setting(
         10.0,
         "Longest time a sliding foot stays fixed before it may creep; higher is stricter",
@@ -102,15 +99,15 @@ def plant_feet(
 ) -> Planted:
     """Return the motion with each foot fixed to the floor while in contact.
 
-    The aim is that of Kovar, Schreiner and Gleicher [1]_: footplants are met exactly, and the
-    motion is otherwise close to the original and smooth. The method differs. A foot in contact
-    may roll; only the loaded part of the sole, heel, ball or both, must not move. Subtracting
-    the motion of that part leaves one free offset per contact. One banded linear system
-    (`smooth_correction`) yields the offsets, and the curve between them, with the least
-    displacement and curvature. Where a leg would be too short the root is shifted smoothly;
-    bones never stretch. Then hip and knee rotate so that the ankle follows (`reach`). No joint
-    above the hips rotates. Segments of a joined take are planted separately; a segment of less
-    than a quarter of a second has no contact.
+    As in Kovar et al. [1]_ footplants are met exactly, and the motion is otherwise close to
+    the original and smooth. The method differs. A foot in contact may roll; only the loaded
+    part of the sole, heel, ball or both, must not move. Subtracting the motion of that part
+    leaves one free offset per contact. One banded linear system (`smooth_correction`) yields
+    the offsets, and the curve between them, with the least displacement and curvature. Where
+    a leg would be too short the root is shifted smoothly; bones never stretch. Then hip and
+    knee rotate so that the ankle follows (`reach`). No joint above the hips rotates. Segments
+    of a joined take are planted separately; a segment of less than a quarter of a second has
+    no contact.
 
     Parameters
     ----------

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InvalidFileError, InvalidMotionError
-from ...files import open_regular, written_whole
+from ...files import open_regular, write_atomically
 from ...json_text import parse_json
 from ..skeletons import Skeleton
 from .roles import HumanoidMap
@@ -25,8 +25,8 @@ def write_humanoid_map(humanoid: HumanoidMap, path: Path | str) -> None:
         The file cannot be written.
     """
     content = {"kind": KIND, "version": VERSION, "joints": dict(humanoid.joints)}
-    with written_whole(path) as temporary:
-        temporary.write_text(
+    with write_atomically(path) as part:
+        part.write_text(
             json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8"
         )
 

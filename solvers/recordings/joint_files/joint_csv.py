@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
-from ...files import written_whole
+from ...files import write_atomically
 from ...motion import JointRecording
 from ...progress import Progress, unwatched, within
 from ..containers import LineReader, shown, spaces_from_commas, stream_rows
@@ -129,7 +129,7 @@ def write_joint_csv(
     given = [
         (field, value) for field, value in zip(FIELDS, values, strict=True) if value is not None
     ]
-    with written_whole(path) as part, part.open("w", encoding="utf-8", newline="") as file:
+    with write_atomically(path) as part, part.open("w", encoding="utf-8", newline="") as file:
         file.write(
             f"{FORMAT},{VERSION},frame_rate={tracks.frame_rate!r},units=m,up=z,"
             f"sensor={recording.sensor.value}\n"

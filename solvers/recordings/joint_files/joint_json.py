@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
-from ...files import written_whole
+from ...files import write_atomically
 from ...motion import JointRecording
 from ...progress import Progress, unwatched
 from ..containers import array_from_json, json_members, shown
@@ -128,7 +128,7 @@ def write_joint_json(
         "format": FORMAT, "version": VERSION, "frame_rate": tracks.frame_rate, "units": "m",
         "up": "z", "sensor": recording.sensor.value, "joints": tracks.names,
     }  # fmt: skip
-    with written_whole(path) as part, part.open("w", encoding="utf-8") as file:
+    with write_atomically(path) as part, part.open("w", encoding="utf-8") as file:
         file.write(json.dumps(said)[:-1] + ', "frames": [')
         for frame, seen in enumerate(tracks.visible):
             places = tracks.positions[frame].tolist()

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import InvalidMotionError
-from ...files import written_whole
+from ...files import write_atomically
 from ...motion import Tracks
 from ...progress import Progress, unwatched
 from ..containers import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS
@@ -54,7 +54,7 @@ def write_c3d(tracks: Tracks, path: Path | str, *, progress: Progress = unwatche
     frames[..., :3] = MILLIMETRES_PER_METRE * np.nan_to_num(tracks.positions)
     frames[..., 3] = np.where(tracks.visible, 0.0, -1.0)
     frames[~tracks.visible, :3] = 0.0
-    with written_whole(path) as part, part.open("wb") as file:
+    with write_atomically(path) as part, part.open("wb") as file:
         file.write(_header(tracks, first_data_block).ljust(BLOCK, b"\0"))
         file.write(parameters.ljust(BLOCK * n_blocks, b"\0"))
         file.write(frames.tobytes())

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...files import written_whole
+from ...files import write_atomically
 from ...motion import Tracks
 from ...progress import Progress, unwatched
 from ..conventions import y_up_from_z_up
@@ -49,7 +49,7 @@ def write_trc(tracks: Tracks, path: Path | str, *, progress: Progress = unwatche
     places[(places == 0.0).all(axis=-1), 0] = NEAR_ORIGIN_MM
     places[~tracks.visible] = np.nan
     rows = places.reshape(n_frames, -1)
-    with written_whole(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
+    with write_atomically(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
         file.write(f"PathFileType\t4\t(X/Y/Z)\t{Path(path).name}\tY up\n")
         file.write("\t".join(KEYS) + "\n" + "\t".join(map(str, values)) + "\n")
         file.write(f"Frame#\tTime\t{names}\t\t\n\t\t{axes}\n\n")

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import InvalidMotionError, InvalidSettingError
-from ...files import written_whole
+from ...files import write_atomically
 from ...motion import Motion, Skeleton
 from ...progress import Progress, unwatched
 from ...rotations import euler_from_quaternion, unwrap_euler
@@ -66,7 +66,7 @@ def write_bvh(
     rows = np.concatenate([places, angles.reshape(motion.n_frames, -1)], axis=1)
     rows = np.round(rows, 6) + 0.0  # No "-0.000000".
     row_format = " ".join(["%.6f"] * rows.shape[1]) + "\n"
-    with written_whole(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
+    with write_atomically(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
         file.write("HIERARCHY\n")
         file.writelines(_hierarchy(motion.skeleton, turning, scale, order))
         file.write(f"MOTION\nFrames: {motion.n_frames}\nFrame Time: {motion.dt:.10f}\n")

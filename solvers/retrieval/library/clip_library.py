@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
-from ...files import written_whole
+from ...files import write_atomically
 from ...progress import Progress, unwatched, within
 from ..index import (
     RATE,
@@ -208,7 +208,7 @@ class ClipLibrary:
         InvalidFileError
             The folder is missing or not writable.
         """
-        with written_whole(path) as part, readable_errors(Path(path)):
+        with write_atomically(path) as part, readable_errors(Path(path)):
             copy = sqlite3.connect(part)
             try:
                 self._database.backup(copy)

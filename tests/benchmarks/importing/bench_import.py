@@ -54,7 +54,7 @@ def main() -> None:
 def write_takes(folder: Path, seconds: float) -> list[Path]:
     """Write a walk as a skeleton's motion, as joints of a camera, and as markers."""
     from mocap_ext.solvers.motion import (
-        JOINTS,
+        SENSOR_JOINTS,
         JointRecording,
         Sensor,
         Tracks,
@@ -67,7 +67,7 @@ def write_takes(folder: Path, seconds: float) -> list[Path]:
     walk = walking_gait(GaitSettings(duration=seconds, frame_rate=120.0))
     write_bvh(walk, folder / "walk.bvh")
     slow = resample(walk, 30.0)
-    names = JOINTS[Sensor.KINECT_V2]
+    names = SENSOR_JOINTS[Sensor.KINECT_V2]
     seen = forward_kinematics(slow).positions
     joints = Tracks(names, seen[:, np.resize(np.arange(seen.shape[1]), len(names))], 30.0)
     write_joints(JointRecording(joints, None, Sensor.KINECT_V2), folder / "joints.csv")

@@ -23,7 +23,7 @@ RIDGE = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class WholePostures:
-    """Makes postures whole; frames are vectors of 60."""
+    """OutputKind postures whole; frames are vectors of 60."""
 
     mean: Array
     covariance: Array

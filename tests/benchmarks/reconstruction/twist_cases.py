@@ -18,8 +18,8 @@ from solvers.motion.humanoid.posture_heading import normalize_postures, rotate_a
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, postures_from_motion
 from solvers.reconstruction.joint_rotations.trunk_twist import TWISTED_LIMBS, TwistedLimb
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector, rotate
-from solvers.workflows.known_body import KINECT_V1
 from solvers.workflows.reconstruct_motion import postures_recording
+from solvers.workflows.standard_joints import KINECT_V1
 
 from .kinect_folds import pairs, seen_of, truth_of
 

@@ -212,7 +212,7 @@ def _note_delay(
 
 def speed() -> str:
     """Return what a frame costs from the socket to the events."""
-    recording = perform(MADE).recording()
+    recording = perform_gestures(MADE).recording()
     lines = [encode_frame(frame) for frame in frames_from_recording(recording)]
     started = perf_counter()
     for line in lines:
@@ -220,7 +220,7 @@ def speed() -> str:
     decoded = perf_counter()
     session = LiveSession()
     for line in lines:
-        session.hear([line])
+        session.receive([line])
     heard = perf_counter()
     rows = {
         "decoding a line of 20 joints": [f"{1000 * (decoded - started) / len(lines):.2f}"],

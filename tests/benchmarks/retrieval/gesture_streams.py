@@ -14,7 +14,7 @@ from solvers.gestures.settings import GestureSettings
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.recordings import read_joints
 from solvers.recordings.live.frames import frames_from_recording
-from solvers.workflows.live_session import posture_of
+from solvers.workflows.live_session import pose_from_frame
 
 from ..shared.clips import DATA
 
@@ -53,7 +53,7 @@ def read_stream(paths: Sequence[Path]) -> Stream:
     start, parts = 0.0, []
     for path in paths:
         recording = read_joints(path)
-        postures = [posture_of(frame) for frame in frames_from_recording(recording)]
+        postures = [pose_from_frame(frame) for frame in frames_from_recording(recording)]
         positions, confidence = (np.stack(each) for each in zip(*postures, strict=True))
         times = start + np.arange(len(positions)) / recording.frame_rate
         start = float(times[-1]) + 1.0 / recording.frame_rate

@@ -58,7 +58,9 @@ class DefaultLibrary:
     def distances(self, query: Asked, allowed: Flags) -> Array:
         ignored = self.library.numbers_of(map(str, np.flatnonzero(~allowed)))
         described, index = query.described, self.library.search_index
-        ranking = rank_clips(described.spans, described.weights, index, query.settings, ignored)
+        ranking = rank_clips(
+            described.segments, described.weights, index, query.settings, ignored
+        )
         result = np.full(len(allowed), np.inf)
         result[self.places[ranking.clips]] = ranking.distances
         return result

@@ -25,7 +25,7 @@ from solvers.variation import (
     draw_variants,
     learn_variation_model,
 )
-from solvers.workflows.vary_motions import stand
+from solvers.workflows.vary_motions import plant_variant
 
 from ..shared.report import DOCS, Report
 from ..shared.tables import Scores, number, table
@@ -98,7 +98,7 @@ def _figures(
 ) -> dict[str, float]:
     variants, seconds, learning = _timed(way, judge.examples)
     drawn = [one.motion for one in variants]
-    planted = [stand(one).motion for one in variants[:N_PLANTED]]
+    planted = [plant_variant(one).motion for one in variants[:N_PLANTED]]
     figures = judge.figures(drawn) | judge.footing_of(drawn[:N_PLANTED], planted)
     return figures | {SECONDS: seconds, LEARNING: learning}
 
@@ -183,7 +183,7 @@ def discriminated(sets: Sets) -> list[str]:
             motions = [one.motion for one in variants]
             rows.setdefault(method, []).append(number(told_apart(held, motions)))
             if method == OURS:
-                planted = [stand(one).motion for one in variants]
+                planted = [plant_variant(one).motion for one in variants]
                 told = number(told_apart(held, planted))
                 rows.setdefault(f"{OURS}, feet planted", []).append(told)
     title = "**Told from held-out captures** (balanced accuracy, %; 50 is chance)\n\n"
@@ -193,7 +193,10 @@ def discriminated(sets: Sets) -> list[str]:
 def drawn(sets: Sets) -> list[str]:
     """Draw principal components and strips."""
     made = {
-        name: [stand(one).motion for one in draw_variants(learn_variation_model(examples), 15)]
+        name: [
+            plant_variant(one).motion
+            for one in draw_variants(learn_variation_model(examples), 15)
+        ]
         for name, examples in sets.items()
     }
     texts = [draw_components({name: (sets[name], made[name]) for name in list(sets)[:8]})]

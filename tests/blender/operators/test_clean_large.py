@@ -51,7 +51,7 @@ def work_of(load, monkeypatch):
 @pytest.fixture
 def read_in_turns(load, monkeypatch, blank, work_of):
     """Read as Clean does; return what is to be solved, and the work of each turn."""
-    turns = load("mocap_assist.blender.turns")
+    turns = load("mocap_assist.blender.time_slices")
     clock = itertools.count()
     monkeypatch.setattr(turns, "monotonic", lambda: next(clock))  # each look is a second
 

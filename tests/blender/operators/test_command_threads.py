@@ -24,10 +24,10 @@ def test_quick_solve_has_its_own_process_and_threads_in_a_command(
     threads = load("solvers.processes.threads")
     for name in threads.VARIABLES:
         monkeypatch.setenv(name, "7")
-    quick = load("mocap_assist.jobs.job").Quick(ProcessAndThreads())
+    quick = load("mocap_assist.jobs.job").ShortSolve(ProcessAndThreads())
     solving = load("mocap_assist.batch.solving")
 
-    process, environment = solving.solve_apart(
+    process, environment = solving.solve_in_subprocess(
         quick, argparse.Namespace(**given), lambda *_: None
     )
 

@@ -26,7 +26,7 @@ def commands():
 def test_it_is_understood(load, line):
     module = load("mocap_assist.batch.command")
     words = shlex.split(line, comments=True)
-    own, after = module._parted(words[words.index("mocap_assist") + 1 :])
+    own, after = module._split_words(words[words.index("mocap_assist") + 1 :])
 
     module._parser().parse_args(own)
-    module._understood(after)
+    module._check_words(after)

@@ -182,14 +182,14 @@ def test_the_other_files_are_done_when_the_work_on_one_raises(
     load, command, takes, tmp_path, monkeypatch
 ):
     each_verb = load("mocap_assist.batch.each_verb")
-    real = each_verb.forget_picture
+    real = each_verb.remove_picture
 
     def forget(task):
         if task.source.name == "one.bvh":
             raise IndexError
         real(task)
 
-    monkeypatch.setattr(each_verb, "forget_picture", forget)
+    monkeypatch.setattr(each_verb, "remove_picture", forget)
 
     status, out, err = command(
         "each", takes, "--output-folder", tmp_path / "out", "--", "import"

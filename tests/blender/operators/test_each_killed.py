@@ -112,18 +112,18 @@ def test_blender_keeps_others_off_its_file_and_reports_who_holds_it(
     module, load, tmp_path, monkeypatch
 ):
     monkeypatch.setattr(module, "end_with_stdin", lambda: None)
-    monkeypatch.setattr(module, "PATIENCE", 0.0)
+    monkeypatch.setattr(module, "LOCK_TIMEOUT_S", 0.0)
     target = tmp_path / "take.blend"
 
-    with module.working_on(target):
-        assert module._is_worked_on(target)
+    with module.lock_target(target):
+        assert module._is_locked(target)
         with (
             pytest.raises(load("solvers.errors").InvalidFileError, match="Another Blender is"),
-            module.working_on(target),
+            module.lock_target(target),
         ):
             pytest.fail("two work on one file")
 
-    assert not module._is_worked_on(target)
+    assert not module._is_locked(target)
 
 
 def test_errors_of_a_blender_are_kept_and_its_input_stays_open_until_it_ends(module, tmp_path):

@@ -75,7 +75,7 @@ def test_a_rig_is_read_where_it_stands_in_its_own_file(library, walk, load, blan
 
 def in_turns(load, *given):
     """Read examples with a turn for Blender whenever one is possible; count them."""
-    work = load("mocap_assist.blender.turns").Work(
+    work = load("mocap_assist.blender.time_slices").Work(
         load("mocap_assist.clean.examples").read_examples, *given
     )
     n_turns = 0

@@ -13,7 +13,7 @@ def found(load, blank):
             armature, blank.context.scene
         )
         recording = load("solvers.recordings").read_recording(path)
-        measured = load("solvers.workflows.measured_joints").measured_joints
+        measured = load("solvers.workflows.joints_from_source").joints_from_source
         return measured(take.parts[0].motion, recording)
 
     return find
@@ -93,7 +93,7 @@ def test_a_part_of_the_take_is_found_in_its_file(
     take = load("mocap_assist.actions.armature_read").read_take(walk, scene, ranges.PREVIEW)
     recording = load("solvers.recordings").read_recording(walk_file)
 
-    found = load("solvers.workflows.measured_joints").measured_joints(
+    found = load("solvers.workflows.joints_from_source").joints_from_source(
         take.parts[0].motion, recording
     )
     reconstruct(frame_range="PREVIEW")

@@ -240,7 +240,7 @@ def test_an_interrupt_leaves_whole_files_only(swinging_leg, tmp_path):
             running.kill()
 
     assert running.returncode == 130
-    assert complaint == "Interrupted. Files that were finished are kept.\n"
+    assert complaint == "Interrupted. Finished files are kept.\n"
     written = list(out.iterdir())
     assert not [path for path in written if path.name.startswith(".")]
     for file in finished:

@@ -104,7 +104,7 @@ def test_several_at_a_time_name_the_one_that_fails_and_do_the_others(
 DEADLY = """
 import os, sys
 from solvers.command_line.run import run
-from solvers.command_line.verb import Makes, Outcome, Verb
+from solvers.command_line.verb import OutputKind, Outcome, Verb
 
 def no_options(parser):
     pass
@@ -115,7 +115,7 @@ def perform(task, prepared, progress):
     return Outcome("Done.")
 
 if __name__ == "__main__":
-    verb = Verb("Die of some files.", no_options, perform, Makes.WORDS)
+    verb = Verb("Die of some files.", no_options, perform, OutputKind.WORDS)
     sys.exit(run({"die": verb}, sys.argv[1:], "deadly"))
 """
 
@@ -130,5 +130,5 @@ def test_a_process_that_dies_takes_only_its_own_file_along(start, tmp_path, monk
 
     assert done.returncode == 2
     assert done.stdout.count("Done.") == 4
-    assert done.stderr.startswith("bad: the process that worked on it has died")
+    assert done.stderr.startswith("bad: its process crashed")
     assert done.stderr.count("\n") == 1

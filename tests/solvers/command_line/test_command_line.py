@@ -209,7 +209,7 @@ def test_denoise_plants_the_feet_if_there_are_any(call, leg_file, tmp_path):
     steps = [figures[when]["feet"]["left"]["contact_share"] for when in ("before", "after")]
     assert steps[0] == steps[1] > 0.0, "else the slide is not that of the same steps"
     _, said, _ = call("denoise", leg_file, tmp_path / "leg-clean.bvh")
-    assert "Feet are left as they are. No leg was found" in said
+    assert "Feet were not planted. No leg was found" in said
     _, said, _ = call("denoise", leg_file, tmp_path / "leg-clean.bvh", "--no-feet")
     assert "Feet" not in said
     status, _, complaint = call("denoise", leg_file, tmp_path / "leg-clean.bvh", "--feet")
@@ -232,7 +232,7 @@ def test_help_fits_the_window(call, verb, monkeypatch):
     ("words", "sentence"),
     [
         (["convert", "IN"], "1 files are named: name one to read and one to write"),
-        (["convert", "IN", "IN"], "would be written over. Recordings are never changed"),
+        (["convert", "IN", "IN"], "would be overwritten. Recordings are never changed"),
         (["convert", "IN", "out.fbx"], "out.fbx cannot be written; end the name in .bvh"),
         (["convert", "IN", "no/out.bvh"], "there is no folder no"),
         (["convert", "IN", "out.c3d"], "A skeleton's motion cannot be written as out.c3d"),
@@ -247,12 +247,15 @@ def test_help_fits_the_window(call, verb, monkeypatch):
             ["denoise", "IN", "out.bvh", "--bases", "b.npz", "--train", "IN"],
             "Argument --train: not allowed with argument --bases",
         ),
-        (["denoise", "IN", "out.bvh", "--window", "1"], "--window is for learning; name clean"),
+        (
+            ["denoise", "IN", "out.bvh", "--window", "1"],
+            "--window is an option for learning. Name clean",
+        ),
         (["denoise", "IN", "out.bvh", "--joint-limits"], "name some with --train"),
         (["learn", "IN"], "The following arguments are required: --output"),
         (["learn", "IN", "--output", "b.bvh"], "end the name in .npz (learned patterns)"),
         (["learn", "IN", "--output", "no/b.npz"], "there is no folder no"),
-        (["learn", "IN", "--output", "IN"], "would be written over"),
+        (["learn", "IN", "--output", "IN"], "would be overwritten"),
         (["learn", "IN", "gone.amc", "--output", "b.npz"], "There is no file gone.amc."),
         (["learn", "IN", "--output", "b.npz", "--window", "3"], "No example is as long as"),
         (["quality", "gone.bvh"], "There is no file gone.bvh."),

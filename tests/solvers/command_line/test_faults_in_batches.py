@@ -6,7 +6,7 @@ import pytest
 
 from solvers.command_line.files import add_reading_options, write
 from solvers.command_line.run import run
-from solvers.command_line.verb import Makes, Outcome, Verb
+from solvers.command_line.verb import Outcome, OutputKind, Verb
 from solvers.progress import unwatched
 from solvers.recordings import read_bvh
 
@@ -17,7 +17,7 @@ FAULT = "this is a bug in Mocap Assist"
 def perform(capsys):
     """Run a verb that does this to each file; returns exit status, stdout and stderr."""
 
-    def call(work, *words, makes=Makes.FILES):
+    def call(work, *words, makes=OutputKind.FILES):
         verb = Verb("Test.", add_reading_options, work, makes)
         status = run({"test": verb}, ["test", *map(str, words)], "solvers")
         return status, *capsys.readouterr()

@@ -29,7 +29,7 @@ def library(call, walks, tmp_path):
 
 
 def test_index_tells_what_it_did_and_does_it_once(call, walks, library):
-    assert call("index", library, walks)[1] == f"3 as they were; {library} has 3 clips.\n"
+    assert call("index", library, walks)[1] == f"3 unchanged; {library} has 3 clips.\n"
     status, said, _ = call("index", library, walks, "--tag", "loud", "--json", "--jobs", 1)
     told = json.loads(said)
     assert status == 0
@@ -46,7 +46,7 @@ def test_index_says_each_file_that_is_of_no_use_and_fails(call, walks, library, 
     status, said, failed = call("index", library, tmp_path / "more")
 
     assert status == 2
-    assert said == f"2 added, 1 of no use; {library} has 5 clips.\n"
+    assert said == f"2 added, 1 refused; {library} has 5 clips.\n"
     assert failed.count("\n") == 1
     assert "broken.bvh" in failed
 
@@ -59,7 +59,7 @@ def test_index_removes_what_has_gone(call, walks, tmp_path):
 
     assert call("index", path, folder)[1].endswith("has 3 clips.\n")
     said = call("index", path, folder, "--remove-missing")[1]
-    assert said == f"2 as they were, 1 removed; {path} has 2 clips.\n"
+    assert said == f"2 unchanged, 1 removed; {path} has 2 clips.\n"
 
 
 def test_find_prints_a_table_best_first(call, walks, library):
@@ -97,7 +97,7 @@ def test_slips_are_said_in_one_sentence(call, walks, library, tmp_path):
         (("find", query, query), "is not a clip library"),
         (("find", query, tmp_path / "empty"), "is not a clip library"),
         (("find", none, library), "There is no file"),
-        (("find", query, library, "--frames", "90:"), "has 90 frames, none of them from 90 on"),
+        (("find", query, library, "--frames", "90:"), "90 frames; the range from 90 is empty"),
         (("find", query, library, *parts), "No part of the body is chosen"),
         (("index", library), "name the library and then recordings"),
         (("index", library, none), "There is no file or folder"),
@@ -135,5 +135,5 @@ def test_a_library_without_clips_is_refused(call, walks, tmp_path):
     words = ("denoise", walks / "walk_100.bvh", tmp_path / "a.bvh", "--library")
     assert "has no clips; index some first" in call(*words, tmp_path / "new.clips")[2]
     words = ("find", walks / "walk_100.bvh", tmp_path / "new.clips")
-    assert "put some in first" in call(*words)[2]
+    assert "index some first" in call(*words)[2]
     assert not load_clip_library(tmp_path / "new.clips").entries

@@ -120,7 +120,7 @@ def test_what_a_closed_folder_holds_is_indexed_when_it_is_opened(call, folder, t
     status, out, err = call("index", tmp_path / "all.clips", folder)
 
     assert (status, err) == (0, "")
-    assert "1 added, 1 as they were" in out
+    assert "1 added, 1 unchanged" in out
 
 
 def test_other_files_cost_nothing_and_a_second_run_passes_over_its_own(call, folder, tmp_path):

@@ -75,7 +75,7 @@ def test_a_value_out_of_range_is_refused_with_the_range(parser):
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["--way", "slow"], "Argument --way: 'slow' is none of fast, exact"),
+        (["--way", "slow"], "Argument --way: 'slow' is not one of fast, exact"),
         (["--n-shots", "many"], "Argument --n-shots: invalid int value: 'many'"),
         (["--tilt", "up"], "Argument --tilt: invalid angle value: 'up'"),
         (["--speed", "1"], "Unrecognized arguments: --speed 1"),

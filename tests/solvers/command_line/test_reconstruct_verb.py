@@ -42,7 +42,7 @@ def test_writes_joints_with_their_confidence(call, walk_file, walk, tmp_path):
     status, out, err = call("reconstruct", walk_file, tmp_path / "clean.csv", "--no-feet")
 
     assert (status, err) == (0, "")
-    assert "are rebuilt" in out and "Feet" not in out
+    assert "were rebuilt" in out and "Feet" not in out
     joints = read_joint_csv(tmp_path / "clean.csv")
     assert joints.names == walk.names
     assert joints.tracks.visible.all()
@@ -99,7 +99,7 @@ def test_metres_of_millimetres_are_asked_for(call, walk, tmp_path):
     )
 
     assert status == 2 and err.count("\n") == 1
-    assert "large.csv" in err and "millimetres were taken for metres" in err
+    assert "large.csv" in err and "millimetres were read as metres" in err
     assert scaled == 0
     height = read_bvh(tmp_path / "out.bvh").skeleton.height
     assert 1.3 < height < 2.2
@@ -126,7 +126,7 @@ def test_markers_are_refused(call, tmp_path):
 
     status, _, err = call("reconstruct", tmp_path / "markers.trc", tmp_path / "out.bvh")
 
-    assert status == 2 and "No body was recognised" in err
+    assert status == 2 and "No body was recognized" in err
     assert not (tmp_path / "out.bvh").exists()
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.command_line.replay_verb import looped, paced
+from solvers.command_line.replay_verb import loop_frames, pace_frames
 from solvers.motion import Tracks
 from solvers.motion.humanoid.posture_joints import postures_from_motion
 from solvers.recordings import write_bvh, write_joints, write_trc
@@ -64,7 +64,7 @@ def test_frames_come_at_their_times_whatever_sending_takes(wave):
     clock = [100.0]
     sent = []
 
-    for line in paced(
+    for line in pace_frames(
         frames_from_recording(recording), 2.0, lambda: clock[0],
         lambda seconds: clock.__setitem__(0, clock[0] + seconds),
     ):  # fmt: skip
@@ -77,7 +77,7 @@ def test_frames_come_at_their_times_whatever_sending_takes(wave):
 
 def test_time_goes_on_when_it_begins_again(wave):
     recording = wave[0].recording()
-    frames = looped(recording)
+    frames = loop_frames(recording)
 
     times = [next(frames).time for _ in range(3 * recording.n_frames)]
 
@@ -109,7 +109,7 @@ def test_nobody_needs_to_listen(call, wave):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (("--port", "0"), "port is 0; take one up to 65535."),
+        (("--port", "0"), "port is 0; it must be between 1 and 65535."),
         (("--port", "70000"), "port is 70000"),
         (("--speed", "0"), "speed is 0"),
         (("--speed", "nan"), "speed is nan"),

@@ -118,7 +118,7 @@ def test_a_report_needs_a_folder(call, leg_file, tmp_path):
     status, _, complaint = call("convert", leg_file, tmp_path / "out.bvh", "--report")
 
     assert status == 2
-    assert complaint == "A report needs a folder: say which with --output-folder DIR.\n"
+    assert complaint == "A report needs a folder: name it with --output-folder DIR.\n"
 
 
 def noted_in(folder: Path, name: str) -> bool:

@@ -53,13 +53,13 @@ def test_a_take_without_partner_is_named(call, stage):
     (stage / "truth" / "bob_1.bvh").unlink()
     status, _, err = learn(call, stage)
     assert status == 2
-    assert "no take named bob_1" in err
+    assert "name it bob_1" in err
 
 
 def test_an_unknown_actor_is_named(call, stage):
     status, _, err = learn(call, stage, "--actors", "anna")
     assert status == 2
-    assert "bob_1 begins with none of the actors' names: anna" in err
+    assert "bob_1 does not start with the name of an actor: anna" in err
 
 
 def test_confidence_asks_who_was_recorded(call, stage):

@@ -51,4 +51,4 @@ def test_refuses_points(call, tmp_path):
     status, _, err = call("simulate", tmp_path / "points.trc", tmp_path / "out.bvh")
 
     assert status == 2
-    assert "points without a skeleton; only skeletons have a body" in err
+    assert "points without a skeleton. Solve a skeleton" in err

@@ -11,7 +11,7 @@ from solvers.gestures.settings import GestureSettings
 from solvers.motion.humanoid.posture_joints import posture_positions
 from solvers.recordings import read_joints
 from solvers.recordings.live.frames import frames_from_recording
-from solvers.workflows.live_session import posture_of
+from solvers.workflows.live_session import pose_from_frame
 
 CLAP, WAVE = "a10", "a02"
 DEFAULT_SETTINGS = GestureSettings()
@@ -19,7 +19,7 @@ DEFAULT_SETTINGS = GestureSettings()
 
 def gestures_in(path, settings=DEFAULT_SETTINGS):
     recording = read_joints(path)
-    frames = [posture_of(frame) for frame in frames_from_recording(recording)]
+    frames = [pose_from_frame(frame) for frame in frames_from_recording(recording)]
     positions, confidence = (np.stack(each) for each in zip(*frames, strict=True))
     times = np.arange(len(frames)) / recording.frame_rate
     return {
@@ -63,6 +63,6 @@ def test_confidence_is_that_of_the_recording(recordings):
 
     frames = list(frames_from_recording(recording))
 
-    positions = np.stack([posture_of(frame)[0] for frame in frames])
+    positions = np.stack([pose_from_frame(frame)[0] for frame in frames])
     np.testing.assert_array_equal(positions, posture_positions(recording))
     assert all(one.time < other.time for one, other in pairwise(frames))

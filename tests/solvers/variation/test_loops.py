@@ -31,7 +31,7 @@ from solvers.variation.motion_curves import (
     headings_from_motion,
     motion_from_curves,
 )
-from solvers.workflows.vary_motions import stand
+from solvers.workflows.vary_motions import plant_variant
 
 CMU_METRES = 0.0254 / 0.45
 FREE = np.ones(2)
@@ -88,7 +88,7 @@ def test_variants_of_a_looping_walk_loop(alone, planted, cycles):
 
     for variant in draw_variants(model, 4):
         assert variant.loops
-        gap, step = measure_seam(stand(variant).motion if planted else variant.motion)
+        gap, step = measure_seam(plant_variant(variant).motion if planted else variant.motion)
         assert gap < 2e-3
         assert step < 1.0
 

@@ -21,7 +21,7 @@ from solvers.workflows.capture_remarks import thickness
 
 BODY = default_body()
 QUICK = CaptureSettings(backward=False, refine=False, check_every=1000)
-LEVEL = "No floor is seen: the camera is taken to have been level."
+LEVEL = "No floor is visible, so the camera is assumed to be level."
 N_FRAMES = 12
 LEGS = [
     JOINTS.index(f"{side}{bone}") for side in ("left", "right") for bone in ("Foot", "Toes")
@@ -128,7 +128,9 @@ def test_missing_frames_are_bridged_and_told_of():
 
     found = caught(changed(recorded(poses), lambda one, seen: seen * (one not in lost)))
 
-    assert any("frames nobody is seen" in said or "Nobody is" in said for said in found.remarks)
+    assert any(
+        "frames no person is detected" in said or "Nobody is" in said for said in found.remarks
+    )
     assert found.captured.doubtful[list(lost)].all()
     assert off(found, poses).mean() < 0.04
 
@@ -136,7 +138,7 @@ def test_missing_frames_are_bridged_and_told_of():
 @pytest.mark.parametrize(
     ("across", "down", "words"),
     [
-        (0.5, 0.5, "check the focal length"), (2.0, 2.0, "check that the focal length"),
+        (0.5, 0.5, "Check the focal length"), (2.0, 2.0, "check that the focal length"),
         (1.3, 1.0, "check fx and fy"), (1.0, 0.75, "check fx and fy"),
     ],
 )  # fmt: skip
@@ -158,7 +160,9 @@ def test_a_body_as_thick_as_a_barrel_may_be_a_wrong_focal_length():
     )
 
     assert thickness(found.captured) > 1.3
-    assert any("times as thick as usual: check the focal" in said for said in found.remarks)
+    assert any(
+        "times as thick as the default body. Check the focal" in said for said in found.remarks
+    )
 
 
 def test_a_scale_that_is_wrong_leaves_nobody_or_a_giant():
@@ -181,7 +185,7 @@ def test_what_is_no_actor_agrees_badly():
 
     found = caught(recording, None)
 
-    assert any("Body and pictures agree badly" in said for said in found.remarks)
+    assert any("Body and depth images agree badly" in said for said in found.remarks)
 
 
 def peak_of(n_frames: int, read) -> int:

@@ -75,7 +75,7 @@ def test_what_is_learned_is_what_those_clips_teach(library):
 
     assert set(learned.clips) == set(WALKS)
     assert int(learned.bases.n_clips) == 4
-    assert learned.said.startswith("Learned from 4 clips of the library: ")
+    assert learned.message.startswith("Learned from 4 clips of the library: ")
 
 
 def test_the_more_a_clip_is_like_the_take_the_more_it_counts(monkeypatch, library):
@@ -95,20 +95,18 @@ def test_the_more_a_clip_is_like_the_take_the_more_it_counts(monkeypatch, librar
     assert told[0] > 1.5 * told[-1]
 
 
-@pytest.mark.parametrize(("sure", "n_asked"), [(0.0, 0), (1.1, 1)])
-def test_clips_that_are_only_roughly_alike_have_to_prove_it(
-    monkeypatch, library, sure, n_asked
-):
+@pytest.mark.parametrize(("score", "n_validations"), [(0.0, 0), (1.1, 1)])
+def test_clips_with_a_low_score_are_validated(monkeypatch, library, score, n_validations):
     here, asked = sys.modules["solvers.workflows.clean_from_library"], []
-    monkeypatch.setattr(here, "SURE", sure)
-    monkeypatch.setattr(here, "foretell_lost", lambda take, *_: asked.append(take))
+    monkeypatch.setattr(here, "MIN_CONFIDENT_SCORE", score)
+    monkeypatch.setattr(here, "prior_fills_gaps", lambda take, *_: asked.append(take))
     learned = bases_from_library(without_a_leg(walk(115)), library, fetch=fetched)
-    assert len(asked) == n_asked
-    assert (learned.bases is None) == bool(n_asked)
-    assert ("laid aside" in learned.said) == bool(n_asked)
+    assert len(asked) == n_validations
+    assert (learned.bases is None) == bool(n_validations)
+    assert ("not used: they predict" in learned.message) == bool(n_validations)
 
 
-def test_clips_that_are_to_be_ignored_teach_nothing(library):
+def test_ignored_clips_are_not_learned_from(library):
     away = ["walk 110", "walk 120"]
     learned = bases_from_library(walk(115), library, ignore=away, fetch=fetched)
     assert set(learned.clips) == {"walk 100", "walk 130"}
@@ -145,7 +143,7 @@ def test_a_library_of_other_movements_does_no_harm(recordings):
     harmless = clean_from_library(own, of_others, ignore=squats, fetch=fetch)
     helped = bases_from_library(own, of_others, ignore=squats[:1], fetch=fetch)
 
-    assert harmless.prior_used.startswith("Nothing in the library is like this take. ")
+    assert harmless.prior_used.startswith("No clip of the library is similar to this take. ")
     assert_array_equal(harmless.recording.rotations, denoise(own).recording.rotations)
     assert set(helped.clips[:2]) == set(squats[1:])
 
@@ -159,7 +157,7 @@ def test_clips_are_read_again_from_their_files_and_the_lost_are_told(tmp_path):
     with load_clip_library(tmp_path / "library.clips") as library:
         learned = bases_from_library(walk(115), library)
         assert set(learned.clips) == set(WALKS) - {"walk 110"}
-        assert "walk 110 was left out: There is no file" in learned.said
+        assert "walk 110 was left out: There is no file" in learned.message
         for path in tmp_path.glob("*.bvh"):
             path.unlink()
         cleaned = clean_from_library(walk(115), library)
@@ -171,7 +169,7 @@ def test_clips_are_read_again_from_their_files_and_the_lost_are_told(tmp_path):
 def test_clips_that_came_from_no_file_are_told(library):
     learned = bases_from_library(walk(115), library)
     assert learned.bases is None
-    assert "walk 110 was left out: walk 110 came from no file" in learned.said
+    assert "walk 110 was left out: walk 110 came from no file" in learned.message
 
 
 def test_an_action_is_left_to_whoever_can_read_it():
@@ -194,17 +192,17 @@ def test_clips_too_short_to_learn_from_are_told():
         walk(110).slice(0, 5), library, fetch=lambda entry: short[entry.name]
     )
     assert learned.bases is None
-    assert "That was of no use: No example is as long as the window" in learned.said
+    assert "They cannot be used: No example is as long as the window" in learned.message
 
 
 def test_an_empty_library_changes_nothing():
     cleaned = clean_from_library(walk(115), build_clip_library([]))
-    assert cleaned.prior_used.startswith("Nothing in the library is like this take. ")
+    assert cleaned.prior_used.startswith("No clip of the library is similar to this take. ")
 
 
 def test_points_are_refused(library):
     markers = Tracks(("a", "b"), np.zeros((9, 2, 3)), 30.0)
-    with pytest.raises(InvalidMotionError, match="solve a skeleton from them first"):
+    with pytest.raises(InvalidMotionError, match="Solve a skeleton from them first"):
         clean_from_library(markers, library)
 
 

@@ -9,7 +9,7 @@ from solvers.recordings import write_bvh
 from solvers.retrieval import Origin
 from solvers.samples import GaitSettings, walking_gait
 from solvers.workflows import describe_files as describing
-from solvers.workflows.describe_files import Wanted, describe_files, described
+from solvers.workflows.describe_files import ClipRequest, describe_file, describe_files
 
 
 class Deadly:
@@ -20,39 +20,39 @@ class Deadly:
 
 
 @pytest.fixture
-def wanted(tmp_path):
+def clip_request(tmp_path):
     """Four walks."""
     found = []
     for number in range(4):
         path = tmp_path / f"{number}.bvh"
         settings = GaitSettings(duration=1.0 + number, frame_rate=30.0)
         write_bvh(walking_gait(settings), path)
-        found.append(Wanted(f"clip {number}", Origin(str(path)), ("walk",)))
+        found.append(ClipRequest(f"clip {number}", Origin(str(path)), ("walk",)))
     return found
 
 
-def test_a_file_becomes_what_a_library_keeps_of_it(wanted):
-    _, clip, sentence, _ = described(wanted[1])
+def test_a_file_becomes_what_a_library_keeps_of_it(clip_request):
+    _, clip, sentence, _ = describe_file(clip_request[1])
     assert (clip.entry.name, clip.entry.tags, clip.entry.n_frames) == ("clip 1", ("walk",), 60)
-    assert clip.entry.origin == wanted[1].origin
+    assert clip.entry.origin == clip_request[1].origin
     assert (clip.postures.n_frames, clip.postures.frame_rate, sentence) == (40, 20.0, "")
 
 
-def test_a_file_that_takes_its_process_down_is_refused_and_the_others_are_not(wanted):
-    deadly = wanted[1]._replace(tags=(Deadly(),))
+def test_a_file_that_takes_its_process_down_is_refused_and_the_others_are_not(clip_request):
+    deadly = clip_request[1]._replace(tags=(Deadly(),))
 
-    found = list(describe_files([wanted[0], deadly, *wanted[2:]], jobs=2))
+    found = list(describe_files([clip_request[0], deadly, *clip_request[2:]], jobs=2))
 
-    assert [one.wanted.name for one in found] == [f"clip {number}" for number in range(4)]
+    assert [one.request.name for one in found] == [f"clip {number}" for number in range(4)]
     assert [one.clip is None for one in found] == [False, True, False, False]
     assert found[1].sentence.startswith(
-        f"{wanted[1].origin.path}: the process that read it has"
+        f"{clip_request[1].origin.path}: the process that read it crashed"
     )
 
 
-def test_what_is_wrong_is_one_sentence_that_names_the_file(wanted, tmp_path, monkeypatch):
-    gone = Wanted("gone", Origin(str(tmp_path / "gone.bvh")), ())
-    assert described(gone).sentence == f"There is no file {tmp_path / 'gone.bvh'}."
+def test_what_is_wrong_is_one_sentence_that_names_the_file(clip_request, tmp_path, monkeypatch):
+    gone = ClipRequest("gone", Origin(str(tmp_path / "gone.bvh")), ())
+    assert describe_file(gone).sentence == f"There is no file {tmp_path / 'gone.bvh'}."
 
     for error, ending in (
         (MemoryError(), "needs more memory than there is; work on a part of the take."),
@@ -63,15 +63,15 @@ def test_what_is_wrong_is_one_sentence_that_names_the_file(wanted, tmp_path, mon
             raise error
 
         monkeypatch.setattr(describing, "read_tracked", fail)
-        sentence = described(wanted[0]).sentence
-        assert sentence.startswith(wanted[0].origin.path)
+        sentence = describe_file(clip_request[0]).sentence
+        assert sentence.startswith(clip_request[0].origin.path)
         assert sentence.endswith(ending)
 
 
-def test_who_cancels_is_not_refused(wanted, monkeypatch):
+def test_who_cancels_is_not_refused(clip_request, monkeypatch):
     def cancel(path):
         raise SolveCancelled
 
     monkeypatch.setattr(describing, "read_tracked", cancel)
     with pytest.raises(SolveCancelled):
-        list(describe_files(wanted, jobs=1))
+        list(describe_files(clip_request, jobs=1))

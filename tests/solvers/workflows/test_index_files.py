@@ -226,7 +226,7 @@ def test_processes_side_by_side_make_the_same_library(folder, tmp_path):
 
 
 def test_an_interrupt_loses_no_more_than_a_batch(folder, library, monkeypatch):
-    monkeypatch.setattr(indexing, "BATCH", 2)
+    monkeypatch.setattr(indexing, "MAX_BATCH_CLIPS", 2)
     for number in range(5):
         write_bvh(walk(100 + number), folder / f"{number}.bvh")
 
@@ -242,7 +242,7 @@ def test_an_interrupt_loses_no_more_than_a_batch(folder, library, monkeypatch):
 
 
 def test_long_takes_are_written_sooner(folder, library, monkeypatch):
-    monkeypatch.setattr(indexing, "BATCH_FRAMES", 30)
+    monkeypatch.setattr(indexing, "MAX_BATCH_FRAMES", 30)
     written = []
     monkeypatch.setattr(
         "solvers.retrieval.ClipLibrary.add_described",

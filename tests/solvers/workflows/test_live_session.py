@@ -13,7 +13,7 @@ from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.recordings.live.frames import LiveFrame, encode_frame, frames_from_recording
 from solvers.samples import PerformanceSettings, perform_gestures
-from solvers.workflows.live_session import DROPPED, TOO_SHORT, LiveSession, posture_of
+from solvers.workflows.live_session import NO_END, TOO_SHORT, LiveSession, pose_from_frame
 
 
 def lines_of(made, body=0, since=0.0, **settings):
@@ -26,7 +26,7 @@ def lines_of(made, body=0, since=0.0, **settings):
 
 def heard(session, lines):
     """All events, queries and messages, as Blender would get them: a few lines at a time."""
-    news = [session.hear(lines[start : start + 3]) for start in range(0, len(lines), 3)]
+    news = [session.receive(lines[start : start + 3]) for start in range(0, len(lines), 3)]
     events = [event.gesture for each in news for event in each.events]
     queries = [each.query for each in news if each.query is not None]
     return events, queries, [each.message for each in news if each.message]
@@ -80,7 +80,7 @@ def test_a_sender_that_is_started_again_drops_the_performance():
 
     events, queries, messages = heard(session, lines_of(["hand up"]))
 
-    assert (events[0], queries, messages) == (Gesture.CAPTURE_DROPPED, [], [DROPPED])
+    assert (events[0], queries, messages) == (Gesture.CAPTURE_DROPPED, [], [NO_END])
     assert events[1:] == [Gesture.HAND_UP]
 
 
@@ -109,7 +109,7 @@ def test_what_is_kept_is_bounded():
 def test_rubbish_says_nothing_and_is_counted():
     session = LiveSession()
 
-    news = session.hear([b"", b"rubbish", b"\x00" * 100, b"{}"])
+    news = session.receive([b"", b"rubbish", b"\x00" * 100, b"{}"])
 
     assert (news.frame, news.events, news.query, news.message) == (None, (), None, "")
     assert session.heard.unreadable == 3
@@ -122,7 +122,7 @@ def test_joints_that_are_no_arms_say_nothing(names):
 
     for number in range(60):
         frame = LiveFrame(number / 30, 0, names, places, np.ones(len(names)))
-        assert session.hear([encode_frame(frame)]).events == ()
+        assert session.receive([encode_frame(frame)]).events == ()
 
 
 def test_the_joints_of_every_sensor_are_found():
@@ -130,7 +130,7 @@ def test_the_joints_of_every_sensor_are_found():
         names = SENSOR_JOINTS[sensor]
         places = np.arange(3.0 * len(names)).reshape(-1, 3)
 
-        positions, confidence = posture_of(
+        positions, confidence = pose_from_frame(
             LiveFrame(0.0, 0, names, places, np.ones(len(names)))
         )
 

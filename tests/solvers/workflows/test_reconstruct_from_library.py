@@ -81,7 +81,7 @@ def test_without_a_clip_all_is_as_without_a_library(squat):
     empty = reconstruct_from_library(recording, build_clip_library([]))
     usual = reconstruct(recording)
     np.testing.assert_array_equal(empty.tracks.positions, usual.tracks.positions)
-    assert empty.method.startswith("Nothing in the library is like this take; ")
+    assert empty.method.startswith("No clip of the library is similar to this take; ")
 
 
 def test_joined_postures_are_those_of_both():

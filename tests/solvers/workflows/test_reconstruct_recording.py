@@ -70,7 +70,7 @@ def test_a_body_without_legs_says_that_its_feet_stay(truth):
 
     result = reconstruct_recording(recording, planting=PlantSettings())
 
-    assert len(result.remarks) == 1 and result.remarks[0].startswith("Feet are left")
+    assert len(result.remarks) == 1 and result.remarks[0].startswith("Feet were not planted")
 
 
 def test_fifteen_joints_of_another_tracker_make_a_body(truth):
@@ -112,10 +112,10 @@ def as_recording(
             lambda p: np.where(np.arange(20)[:, None] == 3, p, np.nan),
             r"Only one joint \(Head\)",
         ),
-        (lambda p: 1000.0 * p, "millimetres were taken for metres.*scale of 0.001"),
-        (lambda p: 100.0 * p, "centimetres were taken for metres.*scale of 0.01"),
+        (lambda p: 1000.0 * p, "millimetres were read as metres.*scale of 0.001"),
+        (lambda p: 100.0 * p, "centimetres were read as metres.*scale of 0.01"),
         (lambda p: 0.001 * p, "scale of 1000"),
-        (np.zeros_like, "The joints are all in one place"),
+        (np.zeros_like, "All joints have the same position"),
     ],
     ids=["nothing", "one joint", "millimetres", "centimetres", "kilometres", "zeros"],
 )
@@ -150,7 +150,7 @@ def test_a_spine_alone_is_no_body(truth):
 def test_names_that_mean_no_body_are_told(truth):
     names = tuple(f"marker{number}" for number in range(20))
 
-    with pytest.raises(InvalidMotionError, match=r"No body was recognised .* \(marker0"):
+    with pytest.raises(InvalidMotionError, match=r"No body was recognized .* \(marker0"):
         reconstruct_recording(as_recording(truth, names))
 
 

@@ -34,7 +34,9 @@ def of(values, motion, name):
 def test_the_sensor_is_told_as_it_spoke(walk, moved):
     order = [walk.names.index(name) for name in moved.skeleton.names]
 
-    trust = reconstruct_motion(moved, tracking_state=walk.tracking_state[:, order]).trust
+    trust = reconstruct_motion(
+        moved, tracking_state=walk.tracking_state[:, order]
+    ).reliability_terms
 
     for name in HIDDEN:
         said = of(trust.tracking, moved, name)
@@ -44,15 +46,15 @@ def test_the_sensor_is_told_as_it_spoke(walk, moved):
 
 
 def test_a_sensor_that_said_nothing_is_not_taken_for_sure(moved):
-    trust = reconstruct_motion(moved).trust
+    trust = reconstruct_motion(moved).reliability_terms
 
     assert np.isnan(trust.tracking).all()
     assert np.isfinite(trust.combined).all() and np.isfinite(trust.behaviour).all()
 
 
 def test_lengths_of_an_armature_tell_nothing_and_those_of_its_recording_do(walk, moved):
-    alone = reconstruct_motion(moved).trust
-    with_file = reconstruct_motion(moved, source=walk).trust
+    alone = reconstruct_motion(moved).reliability_terms
+    with_file = reconstruct_motion(moved, source=walk).reliability_terms
 
     assert np.isnan(alone.kinematics).all()
     elbow = of(with_file.kinematics, moved, "ElbowLeft")
@@ -60,7 +62,7 @@ def test_lengths_of_an_armature_tell_nothing_and_those_of_its_recording_do(walk,
 
 
 def test_a_joint_that_shakes_is_told_by_its_movement(walk, moved):
-    trust = reconstruct_motion(moved, source=walk).trust
+    trust = reconstruct_motion(moved, source=walk).reliability_terms
 
     wrist = of(trust.behaviour, moved, "WristLeft")
     assert wrist[LOST].mean() < 0.7
@@ -76,7 +78,11 @@ def test_joints_that_no_body_has_have_no_trust():
     result = reconstruct_motion(renamed)
 
     umbrella = names.index("Umbrella")
-    for term in (result.trust.combined, result.trust.behaviour, result.confidence):
+    for term in (
+        result.reliability_terms.combined,
+        result.reliability_terms.behaviour,
+        result.confidence,
+    ):
         assert np.isnan(term[:, umbrella]).all()
         assert np.isfinite(np.delete(term, umbrella, axis=1)).any()
 

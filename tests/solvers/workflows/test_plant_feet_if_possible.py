@@ -17,7 +17,7 @@ from solvers.motion import (
 from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction.joint_rotations.motion_from_positions import motion_from_positions
 from solvers.recordings import read_recording
-from solvers.workflows import reconstruct_recording, try_to_plant
+from solvers.workflows import plant_feet_if_possible, reconstruct_recording
 
 NAMES = SENSOR_JOINTS[Sensor.KINECT_V1]
 PLANTING = PlantSettings()
@@ -58,7 +58,7 @@ def wandering() -> Motion:
 def test_an_ankle_that_stands_still_stays_whatever_its_lost_toe_does():
     motion = wandering()
 
-    planted = try_to_plant(
+    planted = plant_feet_if_possible(
         motion, PLANTING, STANDING, reliability=trust_of(motion, "FootLeft", 0.0)
     )
 
@@ -88,7 +88,7 @@ def test_a_trusted_ankle_is_not_planted_far_from_where_it_was_still(recordings, 
 def test_a_lost_toe_that_points_up_is_laid_down():
     motion = standing(np.array([0.0, -0.1, 0.1]))
 
-    planted = try_to_plant(
+    planted = plant_feet_if_possible(
         motion, PLANTING, STANDING, reliability=trust_of(motion, "FootLeft", 0.0)
     ).motion
 
@@ -105,8 +105,10 @@ def test_a_lost_toe_that_points_up_is_laid_down():
 def test_feet_that_were_seen_well_are_planted_as_ever():
     body = samples.walking_gait(samples.GaitSettings(duration=3.0, frame_rate=30.0))
 
-    plain = try_to_plant(body, PLANTING)
-    trusted = try_to_plant(body, PLANTING, reliability=np.ones((body.n_frames, body.n_joints)))
+    plain = plant_feet_if_possible(body, PLANTING)
+    trusted = plant_feet_if_possible(
+        body, PLANTING, reliability=np.ones((body.n_frames, body.n_joints))
+    )
 
     off = np.abs(
         forward_kinematics(plain.motion).positions

@@ -1,4 +1,4 @@
-"""A recording whose joints hang together, whatever its tracker calls them."""
+"""Standardize the joint names of a recording, and check that it can be reconstructed."""
 
 from typing import TypeVar
 
@@ -19,91 +19,93 @@ from ..motion.humanoid import (
     posture_positions,
 )
 
-LONG_GAP = 1.0
-"""Seconds without any joint, from which on the result is a guess that is worth a word."""
+MIN_GAP_S = 1.0
+"""Minimum duration of a gap of all joints that is reported, seconds."""
 UNITS = {0.001: "millimetres", 0.01: "centimetres", 0.0254: "inches", 1000.0: "kilometres"}
 KINECT_V1 = dict(zip(POSTURE_JOINTS, SENSOR_JOINTS[Sensor.KINECT_V1], strict=True))
-"""What the first Kinect calls the joints of postures."""
-Word = TypeVar("Word", np.int8, np.float64)
+"""Joint names of the Kinect v1 by posture joint."""
+Value = TypeVar("Value", np.int8, np.float64)
 
 
-def known_body(recording: JointRecording) -> JointRecording:
-    """Return the recording, or its joints under the names of the first Kinect's.
+def standardize_joint_names(recording: JointRecording) -> JointRecording:
+    """Return the recording with joint names whose hierarchy is known.
 
-    Names of which it is known how they hang together stay. Others are understood by their
-    humanoid roles. Hips that are missing, or never tracked, are put between the legs.
+    Names of a known tracker stay. Other names are mapped by their humanoid roles to those of
+    the Kinect v1. Hips that are missing or never tracked are placed between the legs.
 
     Raises
     ------
     InvalidMotionError
-        Nothing is ever tracked, or no body is recognised.
+        Nothing is tracked, or no body is recognized.
     """
     check_tracked(recording)
     parents = recording.parents
     if parents.count(-1) == 1 and "hips" in posture_joint_indices(recording.names):
         return fill_missing_hips(recording)
-    return fill_missing_hips(_by_roles(recording))
+    return fill_missing_hips(_joints_by_role(recording))
 
 
 def check_tracked(recording: JointRecording) -> None:
-    """Raise InvalidMotionError where nothing, or a single joint, is ever tracked."""
+    """Raise InvalidMotionError if at most one joint is ever tracked."""
     tracks = recording.tracks
-    seen = tracks.visible.any(axis=0)
-    if not seen.any():
+    tracked = tracks.visible.any(axis=0)
+    if not tracked.any():
         raise InvalidMotionError(
             f"No joint is tracked in any of the {tracks.n_frames} frames; there is nothing to"
             " reconstruct."
         )
-    if seen.sum() < 2:
-        name = tracks.names[int(np.argmax(seen))]
+    if tracked.sum() < 2:
+        name = tracks.names[int(np.argmax(tracked))]
         raise InvalidMotionError(
             f"Only one joint ({name}) is ever tracked; poses need hips and limbs."
         )
 
 
-def _by_roles(recording: JointRecording) -> JointRecording:
+def _joints_by_role(recording: JointRecording) -> JointRecording:
     tracks, state = recording.tracks, recording.tracking_state
-    places = posture_joint_indices(tracks.names)
-    joints = {role: [place] for role, place in places.items()}
-    legs = [places[leg] for leg in UPPER_LEG_ROLES if leg in places]
-    if "hips" not in places and len(legs) == len(UPPER_LEG_ROLES):
+    columns = posture_joint_indices(tracks.names)
+    joints = {role: [column] for role, column in columns.items()}
+    legs = [columns[leg] for leg in UPPER_LEG_ROLES if leg in columns]
+    if "hips" not in columns and len(legs) == len(UPPER_LEG_ROLES):
         joints["hips"] = legs
     if "hips" not in joints or len(joints) < 2:
         raise InvalidMotionError(
-            "No body was recognised in the names of the joints"
+            "No body was recognized in the names of the joints"
             f" ({', '.join(tracks.names[:4])}); they must be those of a Kinect, or humanoid"
             " roles such as hips and leftUpperArm."
         )
-    chosen = list(joints.values())
+    groups = list(joints.values())
     body = Tracks(
         tuple(KINECT_V1[role] for role in joints),
-        np.stack([tracks.positions[:, some].mean(axis=1) for some in chosen], axis=1),
+        np.stack([tracks.positions[:, group].mean(axis=1) for group in groups], axis=1),
         tracks.frame_rate,
-        None if tracks.confidence is None else _least(tracks.confidence, chosen),
+        None if tracks.confidence is None else _minimum(tracks.confidence, groups),
     )
-    return JointRecording(body, None if state is None else _least(state, chosen), Sensor.OTHER)
+    return JointRecording(
+        body, None if state is None else _minimum(state, groups), Sensor.OTHER
+    )
 
 
-def _least(told: NDArray[Word], chosen: list[list[int]]) -> NDArray[Word]:
-    """Return the least that is told of the joints that each is made of."""
-    return np.stack([told[:, some].min(axis=1) for some in chosen], axis=1)
+def _minimum(values: NDArray[Value], groups: list[list[int]]) -> NDArray[Value]:
+    """Return the minimum over each group of joints."""
+    return np.stack([values[:, group].min(axis=1) for group in groups], axis=1)
 
 
 def check_size(recording: JointRecording) -> None:
-    """Raise InvalidMotionError, and guess the unit, where the body is not of human size."""
+    """Raise InvalidMotionError with a probable unit if the body is not of human size."""
     size = estimate_body_scale(posture_positions(recording))
     if np.isnan(size):
         return
     if size == 0.0:
         raise InvalidMotionError(
-            "The joints are all in one place, as some exporters write them where no body is"
-            " tracked; choose a recording of an actor who was tracked."
+            "All joints have the same position, as some exporters write them where no body is"
+            " tracked. Choose a recording of a tracked actor."
         )
     if MIN_BODY_SCALE <= size <= MAX_BODY_SCALE:
         return
     unit = min(UNITS, key=lambda factor: abs(np.log(size * factor)))
     human = MIN_BODY_SCALE <= size * unit <= MAX_BODY_SCALE
-    guess = f", as if {UNITS[unit]} were taken for metres" if human else ""
+    guess = f", as if {UNITS[unit]} were read as metres" if human else ""
     scale = f"{unit:g}" if human else f"{1.0 / size:.3g}"
     raise InvalidMotionError(
         f"The body is {ADULT_STATURE_M * size:.3g} m tall{guess}. Read the recording with a"
@@ -112,18 +114,20 @@ def check_size(recording: JointRecording) -> None:
 
 
 def gap_remarks(recording: JointRecording) -> list[str]:
-    """Tell of the longest time at which nothing was tracked, if it is long."""
-    blank = ~recording.tracks.visible.any(axis=1)
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], blank, [False]]).astype(np.int8)))
+    """Report the longest gap of all joints, if it is long."""
+    untracked = ~recording.tracks.visible.any(axis=1)
+    edges = np.flatnonzero(
+        np.diff(np.concatenate([[False], untracked, [False]]).astype(np.int8))
+    )
     starts, stops = edges[::2], edges[1::2]
     if not len(starts):
         return []
     longest = int(np.argmax(stops - starts))
     seconds = (stops - starts)[longest] / recording.frame_rate
-    if seconds < LONG_GAP:
+    if seconds < MIN_GAP_S:
         return []
     start = starts[longest] / recording.frame_rate
     return [
-        f"Nothing was tracked for {seconds:.1f} s from {start:.1f} s on; what moves there is"
-        " a guess."
+        f"Nothing was tracked for {seconds:.1f} s from {start:.1f} s on; the motion there is an"
+        " estimate."
     ]

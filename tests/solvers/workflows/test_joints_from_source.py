@@ -11,7 +11,7 @@ from solvers.motion import Motion, Skeleton, motion_from_points
 from solvers.motion.humanoid import posture_joints
 from solvers.motion.humanoid.missing_hips import fill_missing_hips
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector, rotate
-from solvers.workflows.measured_joints import measured_joints
+from solvers.workflows.joints_from_source import joints_from_source
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def walk():
 def test_it_is_all_there_even_below_a_joint_that_was_not_seen(walk):
     motion = motion_from_points(walk.tracks, walk.parents)
 
-    found = measured_joints(motion, walk)
+    found = joints_from_source(motion, walk)
 
     order = [walk.names.index(name) for name in found.names]
     assert_allclose(found.tracks.positions, walk.tracks.positions[:, order], atol=1e-9)
@@ -40,7 +40,7 @@ def test_the_confidence_of_a_tracker_without_states_comes_along(walk):
     tracks = vocabulary.Tracks(walk.names, walk.tracks.positions, 30.0, told)
     sure = vocabulary.JointRecording(tracks, None, walk.sensor)
 
-    found = measured_joints(motion_from_points(walk.tracks, walk.parents), sure)
+    found = joints_from_source(motion_from_points(walk.tracks, walk.parents), sure)
 
     order = [walk.names.index(name) for name in found.names]
     assert_array_equal(found.tracks.confidence, told[:, order])
@@ -57,7 +57,7 @@ def test_it_goes_along_where_the_armature_was_put(walk):
     rotations[:, 0] = multiply(multiply(turn, motion.rotations[:, 0]), back)
     moved = Motion(larger, rotations, 1.1 * rotate(turn, motion.root_positions) + shift, 30.0)
 
-    found = measured_joints(moved, walk)
+    found = joints_from_source(moved, walk)
 
     head = walk.tracks.positions[:, walk.names.index("Head")]
     expected = 1.1 * rotate(turn, head) + shift
@@ -80,14 +80,14 @@ def test_it_is_not_believed_for_a_motion_that_was_changed(walk, change):
     if change == "other":
         motion = samples.walking_gait(samples.GaitSettings(duration=3.0, frame_rate=30.0))
 
-    assert measured_joints(motion, walk) is None
+    assert joints_from_source(motion, walk) is None
 
 
 @pytest.mark.parametrize(("first", "stop"), [(0, 40), (5, 60), (70, 90), (30, 31)])
 def test_a_part_of_it_is_found_where_it_was(walk, first, stop):
     motion = motion_from_points(walk.tracks, walk.parents).slice(first, stop)
 
-    found = measured_joints(motion, walk)
+    found = joints_from_source(motion, walk)
 
     order = [walk.names.index(name) for name in found.names]
     assert found.n_frames == stop - first
@@ -100,7 +100,7 @@ def test_a_part_that_was_edited_is_not_believed(walk):
     places = motion.root_positions.copy()
     places[30] += 0.05
 
-    assert measured_joints(motion.with_poses(motion.rotations, places), walk) is None
+    assert joints_from_source(motion.with_poses(motion.rotations, places), walk) is None
 
 
 def test_a_longer_motion_is_not_of_it(walk):
@@ -109,7 +109,7 @@ def test_a_longer_motion_is_not_of_it(walk):
         np.concatenate([motion.rotations] * 2), np.concatenate([motion.root_positions] * 2)
     )
 
-    assert measured_joints(twice, walk) is None
+    assert joints_from_source(twice, walk) is None
 
 
 def test_who_stands_still_is_somewhere(walk):
@@ -118,7 +118,7 @@ def test_who_stands_still_is_somewhere(walk):
     )
     motion = motion_from_points(still.tracks, still.parents).slice(50, 80)
 
-    assert measured_joints(motion, still) is not None
+    assert joints_from_source(motion, still) is not None
 
 
 def test_a_motion_whose_hips_were_put_between_the_legs_is_of_it(walk):
@@ -127,7 +127,7 @@ def test_a_motion_whose_hips_were_put_between_the_legs_is_of_it(walk):
     blind = walk.with_tracks(walk.tracks.with_positions(positions))
     whole = fill_missing_hips(blind)
 
-    found = measured_joints(motion_from_points(whole.tracks, whole.parents), blind)
+    found = joints_from_source(motion_from_points(whole.tracks, whole.parents), blind)
 
     legs = [found.names.index(name) for name in ("HipLeft", "HipRight")]
     middle = found.tracks.positions[:, legs].mean(axis=1)

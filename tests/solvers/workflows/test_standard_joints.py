@@ -4,7 +4,7 @@ import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.motion import JointRecording, Sensor, Tracks
-from solvers.workflows.known_body import known_body
+from solvers.workflows.standard_joints import standardize_joint_names
 
 NAMES = ("head", "leftUpperLeg", "rightUpperLeg", "leftLowerLeg", "rightLowerLeg")
 
@@ -15,7 +15,7 @@ def test_hips_between_the_legs_are_as_sure_as_the_less_sure_leg():
     state = rng.integers(0, 3, (4, 5))
     take = JointRecording(Tracks(NAMES, positions, 30.0, told), state, Sensor.OTHER)
 
-    found = known_body(take)
+    found = standardize_joint_names(take)
 
     hips, knee = found.names.index("HipCenter"), found.names.index("KneeLeft")
     middle = (positions[:, 1] + positions[:, 2]) / 2.0
@@ -30,7 +30,7 @@ def test_hips_between_the_legs_are_as_sure_as_the_less_sure_leg():
 def test_what_the_tracker_does_not_tell_is_not_made_up():
     take = JointRecording(Tracks(NAMES, np.ones((4, 5, 3)), 30.0), None, Sensor.OTHER)
 
-    found = known_body(take)
+    found = standardize_joint_names(take)
 
     assert found.tracking_state is None
     assert found.tracks.confidence is None

@@ -1,4 +1,4 @@
-"""Postures to rebuild from, of whatever clips an animator has."""
+"""Build a posture library from the clips of the user."""
 
 from collections.abc import Sequence
 
@@ -11,26 +11,28 @@ from ..reconstruction.pose_library import (
     build_posture_library,
 )
 
-USUAL = PostureLibrarySettings()
+LIBRARY_SETTINGS = PostureLibrarySettings()
 
 
-def postures_of(
+def posture_library_from_clips(
     clips: Sequence[Motion | Tracks],
     *,
-    settings: PostureLibrarySettings = USUAL,
+    settings: PostureLibrarySettings = LIBRARY_SETTINGS,
     progress: Progress = unwatched,
 ) -> PostureLibrary:
-    """Build a library of the postures of clean clips.
+    """Build a posture library from clean clips.
 
     Raises
     ------
     InvalidMotionError
-        There is no clip of a skeleton, or one lacks hips, arms or legs.
+        No clip has a skeleton, or one lacks hips, arms or legs.
     """
     motions = [clip for clip in clips if isinstance(clip, Motion)]
     if not motions:
         raise InvalidMotionError(
             "Postures are learned from the motions of skeletons; these clips are points."
         )
-    said = "1 clip of your own" if len(motions) == 1 else f"{len(motions)} clips of your own"
-    return build_posture_library(motions, settings=settings, trained_on=said, progress=progress)
+    source = "1 clip of your own" if len(motions) == 1 else f"{len(motions)} clips of your own"
+    return build_posture_library(
+        motions, settings=settings, trained_on=source, progress=progress
+    )

@@ -1,4 +1,4 @@
-"""Data-blocks that are found again after Blender has had a turn: pointers do not last."""
+"""References to data-blocks that stay valid while Blender runs; pointers do not."""
 
 from typing import Any, NamedTuple
 
@@ -10,17 +10,17 @@ from .compat import Source
 COLLECTIONS = {"OBJECT": "objects", "SCENE": "scenes", "ACTION": "actions"}
 
 
-class Lasting(NamedTuple):
-    """A data-block by its number of this session, which undo and renaming keep."""
+class BlockReference(NamedTuple):
+    """A data-block by its session UID, which undo and renaming keep."""
 
     kind: str
     number: int
     name: str
-    """When it was seen last."""
+    """Name at the time of reference."""
 
     @classmethod
-    def of(cls, block: bpy.types.ID) -> "Lasting":
-        """Remember a data-block."""
+    def of(cls, block: bpy.types.ID) -> "BlockReference":
+        """Return a reference to a data-block."""
         return cls(block.id_type, block.session_uid, block.name)
 
     def find(self) -> Any:
@@ -34,17 +34,17 @@ class Lasting(NamedTuple):
         return found
 
 
-class LastingSource(NamedTuple):
+class SourceReference(NamedTuple):
     """An action and its slot."""
 
-    action: Lasting
+    action: BlockReference
     slot: int
 
     @classmethod
-    def of(cls, source: Source) -> "LastingSource":
-        """Remember both."""
+    def of(cls, source: Source) -> "SourceReference":
+        """Return a reference to both."""
         action, slot = source
-        return cls(Lasting.of(action), slot.handle)
+        return cls(BlockReference.of(action), slot.handle)
 
     def find(self) -> Source:
         """Return both; raise InvalidMotionError where one was deleted meanwhile."""

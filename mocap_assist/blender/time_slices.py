@@ -1,4 +1,4 @@
-"""Long work in Blender's own thread, done a little at a time so that the window stays alive."""
+"""Run long work in time slices of the main thread, so that the window stays responsive."""
 
 from collections.abc import Callable, Generator
 from functools import update_wrapper
@@ -9,22 +9,22 @@ from typing import Any, Generic, ParamSpec, TypeVar
 Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
 Steps = Generator[float, None, Result]
-"""Yields the fraction that is done whenever `due` says so.
+"""Yields the fraction that is done whenever `should_yield` says so.
 
-Blender has a turn then: pointers to what it keeps are stale afterwards, and whatever is needed
-further is found again.
+Blender runs between two slices: pointers to its data are stale afterwards and must be looked up
+again.
 """
 
 _deadline = [inf]
 
 
-def due() -> bool:
-    """Whether the work should yield now; never where a script waits for it."""
+def should_yield() -> bool:
+    """Return whether the work should yield now; never while a script waits for it."""
     return monotonic() >= _deadline[0]
 
 
 class Sliced(Generic[Parameters, Result]):
-    """Decorate a function that yields. Called, it does all at once and returns its result."""
+    """Decorate a generator function. A call runs it to the end and returns its result."""
 
     def __init__(self, steps: Callable[Parameters, Steps[Result]]) -> None:
         self.steps = steps
@@ -35,7 +35,7 @@ class Sliced(Generic[Parameters, Result]):
 
 
 class Work(Generic[Result]):
-    """A call that is done in turns with Blender.
+    """A call that runs in time slices.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Work(Generic[Result]):
         self.result: Result
 
     def go_on(self, seconds: float) -> bool:
-        """Work for about so many seconds; return whether all is done, and `result` is there."""
+        """Work for about this many seconds; return whether `result` is complete."""
         _deadline[0] = monotonic() + seconds
         try:
             self.fraction = next(self._steps)
@@ -65,7 +65,7 @@ class Work(Generic[Result]):
         return False
 
     def stop(self) -> None:
-        """Give it up; the function cleans up after itself."""
+        """Cancel the work; the function cleans up."""
         self._steps.close()
 
 

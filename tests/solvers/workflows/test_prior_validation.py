@@ -8,8 +8,8 @@ from solvers.errors import SolveCancelled
 from solvers.motion import Motion
 from solvers.progress import unwatched
 from solvers.samples import GaitSettings, walking_gait
-from solvers.workflows import foretell_lost as module
-from solvers.workflows.foretell_lost import foretell_lost
+from solvers.workflows import prior_validation as module
+from solvers.workflows.prior_validation import prior_fills_gaps
 
 
 def walk(cadence: float, duration: float = 4.0) -> Motion:
@@ -40,7 +40,7 @@ def good():
 
 
 def test_walks_foretell_a_walk_better_than_the_take_alone(take, good):
-    assert foretell_lost(take, good, unwatched)
+    assert prior_fills_gaps(take, good, unwatched)
 
 
 @pytest.mark.parametrize(("times", "believed"), [(0.9, True), (1.1, False)])
@@ -50,29 +50,29 @@ def test_what_is_worse_than_the_take_alone_is_not_believed(
     monkeypatch.setattr(
         module, "_error", lambda trial, bases, progress: 1.0 if bases is None else times
     )
-    assert foretell_lost(take, good, unwatched) is believed
+    assert prior_fills_gaps(take, good, unwatched) is believed
 
 
 @pytest.mark.parametrize("frames", [slice(40, 45), slice(0, None), slice(0, 0)])
 def test_without_a_long_gap_or_sight_nothing_is_tried(frames, good, monkeypatch):
     motion = walk(115)
     monkeypatch.setattr(module, "denoise", None)
-    assert foretell_lost(without(motion, leg(motion), frames), good, unwatched)
+    assert prior_fills_gaps(without(motion, leg(motion), frames), good, unwatched)
 
 
-def test_what_is_hidden_was_seen_and_lies_within_the_take(take):
+def test_held_out_samples_are_observed_and_within_the_take(take):
     joints = leg(take)
     trials = list(module._trials(take))
     assert len(trials) == 2
     for trial in trials:
-        frames, parts = np.nonzero(trial.lost)
+        frames, parts = np.nonzero(trial.hidden_mask)
         assert set(parts) == set(joints)
         assert 6 <= len(set(frames)) <= 30
-        assert np.isfinite(trial.truth.rotations[trial.lost]).all()
-        assert not np.isfinite(trial.hidden.rotations[trial.lost]).any()
+        assert np.isfinite(trial.truth.rotations[trial.hidden_mask]).all()
+        assert not np.isfinite(trial.masked.rotations[trial.hidden_mask]).any()
 
 
-def test_a_long_take_is_tried_in_part(monkeypatch):
+def test_a_long_take_is_validated_in_a_window(monkeypatch):
     motion = walk(115, duration=60.0)
     (first, _) = module._trials(without(motion, leg(motion), slice(300, 330)))
     assert first.truth.n_frames <= 30 + 2 * 120
@@ -84,4 +84,4 @@ def test_it_can_be_cancelled(take, good):
             raise SolveCancelled
 
     with pytest.raises(SolveCancelled):
-        foretell_lost(take, good, cancel)
+        prior_fills_gaps(take, good, cancel)
