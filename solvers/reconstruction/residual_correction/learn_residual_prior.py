@@ -75,7 +75,7 @@ class ResidualPriorSettings(Settings):
         unit="Hz", minimum=0.5, maximum=120.0, advanced=True,
     )  # fmt: skip
     mirror: bool = setting(
-        True, "Also learn each error with left and right swapped; turn off for a sensor at the side"
+        True, "Also learn each error with left and right swapped; off for a sensor at the side"
     )  # fmt: skip
     calm: float = setting(
         1 / 30, "Width of the Gaussian that smooths recordings first; 0 as published",
