@@ -64,7 +64,7 @@ class ArchiveLayout:
         content = io.BytesIO()  # On a full disk, an archive on disk fails twice.
         np.savez_compressed(content, **own, **arrays)
         with write_atomically(path) as part:
-            part.write_bytes(content.getbuffer())
+            part.write_bytes(content.getvalue())
 
     def read(self, path: Path | str) -> dict[str, NDArray[Any]]:
         """Load the members of an archive that `write` saved.
