@@ -126,7 +126,7 @@ def test_no_two_folders_import_each_other(layer):
     assert not both
 
 
-@pytest.mark.parametrize("layer", ["solvers", "mocap_assist"])
+@pytest.mark.parametrize("layer", ["solvers", "mocap_assist", "tests"])
 def test_no_folder_holds_too_many_files(layer):
     for home, n_files in Counter(module.parent for module in modules(layer)).items():
         assert n_files <= MOST_FILES, f"{home} has {n_files} modules"

@@ -55,5 +55,5 @@ def test_points_and_a_file_in_the_way_are_refused(call, walks, tmp_path):
     assert "is a file; name a folder" in err
     status, _, err = call("vary", walks, "--output", tmp_path / "out", "--number", "0")
     assert status == 2
-    assert "ask for at least one" in err
+    assert "request at least one" in err
     assert not (tmp_path / "out").exists()

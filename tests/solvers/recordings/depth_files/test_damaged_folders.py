@@ -82,7 +82,7 @@ def test_a_picture_of_depth_for_the_eye_is_none(tmp_path, depth, kind):
         ("intrinsic.json", "{}", "no camera as Open3D writes it"),
         ("intrinsic.json", "[1, 2", "no camera as Open3D writes it"),
         ("intrinsic.json", json.dumps({"width": 8, "height": 6, "intrinsic_matrix": [0.0] * 9}),
-         "focal lengths are positive"),
+         "Give positive focal lengths"),
         ("camera_matrix.csv", "1,2\n3,4", "no 3 x 3 matrix"),
         ("camera_matrix.csv", "", "no table of numbers"),
         ("camera_matrix.csv", "1,2,3\n1,two,3", "line 2: not a number"),

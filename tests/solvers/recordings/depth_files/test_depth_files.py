@@ -173,7 +173,7 @@ RAW = pictures(1, 480, 640).tobytes()
         (depth_npz(pictures()[0]), r"shape \(6, 8\); it must be \(frames, rows, columns\)"),
         (depth_npz(pictures()[:0]), "shape"),
         (depth_npz(pictures(3, 6, 5000)), "5000 x 6 pixels, which no depth camera makes"),
-        (depth_npz(pictures(), fx=-1.0), "focal lengths are positive"),
+        (depth_npz(pictures(), fx=-1.0), "Give positive focal lengths"),
         (depth_npz(pictures(), fx=[1.0, 2.0]), "fx is not a single number"),
         (depth_npz(pictures(), frame_rate=0.0), "frame rate of 0 Hz"),
         (depth_npz(pictures(), color=pictures()), "of uint16; beside this depth it must be"),
