@@ -88,7 +88,7 @@ def reporter(protocol: ModuleType) -> Callable[..., None]:
 
 def onlooker(solve: Any, folder: Path, protocol: ModuleType) -> dict[str, Callable[..., None]]:
     """Return what shows meanwhile, for solves that have something to show."""
-    if not isinstance(solve, protocol.Showing):
+    if not isinstance(solve, protocol.PreviewSolve):
         return {}
     return {"show": partial(protocol.append_shown, (folder / protocol.SHOWN).open("wb"))}
 
