@@ -149,12 +149,12 @@ class Job(Generic[Result]):
         return last_progress(self._path)
 
     def shown(self) -> list[Any]:
-        """Return what a `Showing` solve has shown since this was asked last."""
+        """Return what a `PreviewSolve` solve has shown since this was asked last."""
         things, self._n_shown = read_shown(self._path, self._n_shown)
         return things
 
     def all_shown(self) -> list[Any]:
-        """Wait for the end, and return all that a `Showing` solve has shown."""
+        """Wait for the end, and return all that a `PreviewSolve` solve has shown."""
         self._process.wait()
         return read_shown(self._path, 0)[0]
 

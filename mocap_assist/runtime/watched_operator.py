@@ -27,7 +27,7 @@ class View(Protocol):
 
 
 class WatchedOperator(SolverOperator):
-    """Mix in as SolverOperator, where `read_scene` returns a `Showing` solve."""
+    """Mix in as SolverOperator, where `read_scene` returns a `PreviewSolve` solve."""
 
     open_view: ClassVar[Callable[..., View | None]]
     """From scene, subject and settings; None if nobody wants to look on."""

@@ -89,13 +89,13 @@ def test_result_is_fetched_and_the_process_ended_when_it_hangs_after_its_answer(
     assert not job._path.exists()
 
 
-@pytest.mark.parametrize("call", ["Job", "run", "Quick"])
+@pytest.mark.parametrize("call", ["Job", "run", "ShortSolve"])
 def test_lack_of_memory_is_one_sentence(module, load, call):
     solve = Expression("lambda progress: b'.' * (1 << 62)")
     calls = {
         "Job": lambda: module.Job(solve).result(),
         "run": lambda: module.run(solve),
-        "Quick": lambda: module.run(module.Quick(eval(solve.text))),
+        "ShortSolve": lambda: module.run(module.ShortSolve(eval(solve.text))),
     }
 
     with pytest.raises(load("solvers.errors").OutOfMemoryError, match="more memory than there"):
