@@ -193,7 +193,8 @@ def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
 
 def _said(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
     """Return what a status bar has room for, and what the animator must know."""
-    short = f"{name}: {100 * rebuilt.solution.rebuilt_fraction:.1f} % of joints rebuilt"
+    percent = 100 * rebuilt.solution.rebuilt_fraction
+    short = f"{name}: rebuilt {percent:.1f} % of joint samples"
     if planted := rebuilt.planted:
         slides = (100 * planted.slide_before, 100 * planted.slide_after)
         short += "; foot slide {:.1f} → {:.1f} cm".format(*slides)
