@@ -133,7 +133,7 @@ def test_clean_examples_can_be_actions_of_this_file(noisy, clean, animate, blank
     entry = json.loads(result["mocap_assist_history"])[-1]
     assert entry["settings"]["examples"] == "rehearsal"
     assert entry["prior_used"]
-    with pytest.raises(RuntimeError, match=r"neither an action nor a file .*nowhere.bvh"):
+    with pytest.raises(RuntimeError, match=r"No action or file is named nowhere\.bvh"):
         clean(prior="EXAMPLES", examples="nowhere.bvh")
     with pytest.raises(RuntimeError, match="Pick clean actions or recordings"):
         clean(prior="EXAMPLES")

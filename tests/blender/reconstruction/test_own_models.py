@@ -100,7 +100,7 @@ def test_a_bad_file_is_told_in_one_sentence(
 
 
 def test_postures_that_were_not_picked(walk, refused):
-    assert "Choose the file of postures" in refused(postures="LEARNED")
+    assert "Choose a pose file" in refused(postures="LEARNED")
 
 
 def test_the_panel_offers_both(blank, draw, actor):

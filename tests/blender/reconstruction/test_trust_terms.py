@@ -80,7 +80,7 @@ def test_the_panel_offers_the_signs_and_says_what_is_missing(
     walk_file.unlink()
     reconstruct()
 
-    assert "Lengths: an armature's" in " ".join(draw("MOCAP_PT_reconstruct"))
+    assert "Lengths: needs the imported file" in " ".join(draw("MOCAP_PT_reconstruct"))
 
 
 def test_a_sensor_that_was_silent_is_said_to_be(make_armature, animate, reconstruct, draw,

@@ -70,7 +70,7 @@ def test_residual_trust_and_how_it_was_made_are_kept_and_clean_takes_it(points, 
 def test_without_points_the_button_says_why(blank):
     blank.ops.object.armature_add()
     assert not blank.ops.mocap_assist.track_depth.poll()
-    with pytest.raises(RuntimeError, match="Select the points of a depth recording"):
+    with pytest.raises(RuntimeError, match="Select the points of an imported depth recording"):
         blank.ops.mocap_assist.track_depth()
 
 
@@ -88,6 +88,6 @@ def test_nobody_is_said_in_one_sentence(blank, tmp_path, truth):
     path = tmp_path / "empty.npz"
     np.savez_compressed(path, **{**truth, "depth": 0 * truth["depth"]})
     blank.ops.mocap_assist.import_recording(filepath=str(path))
-    with pytest.raises(RuntimeError, match="Nobody"):
+    with pytest.raises(RuntimeError, match="No person is visible"):
         blank.ops.mocap_assist.track_depth(**QUICK)
     assert len(blank.data.armatures) == 0

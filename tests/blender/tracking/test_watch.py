@@ -82,7 +82,7 @@ def test_esc_keeps_what_is_tracked_if_that_was_asked_for(press, window, blank, t
     assert "Stopped early: " in said and "of 6 frames tracked" in said
     armature = blank.context.object
     action = armature.animation_data.action
-    n_frames = int(said.split("Ended early: ")[1].split()[0])
+    n_frames = int(said.split("Stopped early: ")[1].split()[0])
     assert 3 <= n_frames <= 6 and action.curve_frame_range[0] == 1.0
     assert action.curve_frame_range[1] == pytest.approx(n_frames, abs=1e-3)
     assert json.loads(action["mocap_assist_captured"])["operation"] == "track_depth"
