@@ -10,8 +10,8 @@ from .windows import Windows
 Array = NDArray[np.float64]
 
 MAX_MATRIX_ENTRIES = 40_000_000
-"""Entries of one matrix per gap pattern, over all patterns; three such matrices are stored,
-about 1 GB."""
+"""Entries of one matrix per gap pattern, over all patterns; two such matrices are stored and a
+third is solved for, about 1 GB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +26,8 @@ class GapPattern:
     indices: NDArray[np.intp]
     """Of the slow coefficients of these channels among all, coefficients outermost."""
     missing_projection: Array
-    """Projection on the missing frames, at these indices: a square matrix."""
+    """Projection of each of these channels on its missing frames, shape
+    (n_gap_channels, n_slow, n_slow)."""
 
     def mask_frames(self, frames: Array) -> Array:
         """Return windows with zeros in the gaps."""
@@ -34,32 +35,39 @@ class GapPattern:
         frames[:, :, self.channels] *= self.observed_mask
         return frames
 
+    def project_rows(self, rows: Array) -> Array:
+        """Return rows of coefficients at these indices, projected on the missing frames."""
+        by_channel = rows.reshape(len(rows), -1, len(self.channels)).transpose(2, 0, 1)
+        projected = by_channel @ self.missing_projection
+        return np.asarray(projected.transpose(1, 2, 0).reshape(rows.shape))
+
 
 @dataclass(frozen=True, eq=False)
 class GapSolution:
     """The filter of windows with the same gaps.
 
     Let G be the filter of a window without gaps. Let N be the projection on the missing frames,
-    in DCT coefficients; it is zero except for the channels with gaps. The posterior mean a
+    in DCT coefficients; it is zero except within each channel with gaps. The posterior mean a
     solves a = G (b + N a), with b the coefficients of the observed samples. By Woodbury's
-    identity only the channels with gaps have to be solved for: a small system.
+    identity only the channels with gaps have to be solved for: a small system. With G and N at
+    their indices, X = (1 - G N)^-1 G gives N (1 - G N)^-1 = N + N X N.
     """
 
     gain: Array
     """G, shape (size, size)."""
     lift: Array
-    """N (1 - G N)^-1 at the indices of the gaps, a square matrix."""
+    """N + N X N at the indices of the gaps, a square matrix."""
     added_covariance: Array
-    """Posterior covariance that the gaps add there, in units of the noise."""
+    """X - G: posterior covariance that the gaps add there, in units of the noise."""
 
     @classmethod
     def solve(cls, pattern: GapPattern, gain: Array) -> "GapSolution":
         """Solve once for all windows of a pattern."""
         inner = gain[np.ix_(pattern.indices, pattern.indices)]
-        system = np.eye(len(inner)) - inner @ pattern.missing_projection
-        solved = np.linalg.solve(system, np.hstack([np.eye(len(inner)), inner]))
-        lift = pattern.missing_projection @ solved[:, : len(inner)]
-        return cls(gain, lift, solved[:, len(inner) :] - inner)
+        identity = np.eye(len(inner))
+        solved = np.linalg.solve(identity - pattern.project_rows(inner), inner)
+        lift = pattern.project_rows(pattern.project_rows(solved).T + identity)
+        return cls(gain, lift, solved - inner)
 
     def posterior_mean(self, coefficients: Array, indices: NDArray[np.intp]) -> Array:
         """Return posterior coefficients from the observed ones, shape (n_windows, size)."""
@@ -98,19 +106,15 @@ def find_gap_patterns(
         missing = _missing_samples(observed, gaps, starts[0], windows.length)
         channels = np.flatnonzero(missing.any(axis=0))
         mask = missing[:, channels].astype(float)
-        blocks = np.einsum("tk,tc,tj->ckj", basis, mask, basis)
-        missing_projection = np.zeros((n_slow, len(channels), n_slow, len(channels)))
-        for channel in range(len(channels)):
-            missing_projection[:, channel, :, channel] = blocks[channel]
+        missing_projection = np.einsum("tk,tc,tj->ckj", basis, mask, basis)
         indices = np.arange(n_slow)[:, None] * observed.shape[1] + channels
-        size = n_slow * len(channels)
         patterns.append(
             GapPattern(
                 np.array(starts),
                 channels,
                 mask == 0.0,
                 indices.ravel(),
-                missing_projection.reshape(size, size),
+                missing_projection,
             )
         )
     return patterns
