@@ -1,10 +1,12 @@
 """Assign humanoid roles to joints by their names."""
 
 import re
+import unicodedata
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import accumulate
 from operator import and_, eq
+from typing import NamedTuple
 
 from .tables import CENTRAL_ROLES, COLUMNS, FINGERS, TABLES
 
@@ -12,14 +14,23 @@ SIDES = {"left": "left", "right": "right", "l": "left", "r": "right"}
 OPPOSITE = {"left": "right", "right": "left", "l": "r", "r": "l"}
 
 MIN_PREFIX_FRACTION = 0.75
-"""Fraction of joints that share a first word which is a prefix ("mixamorig", "Bip01")."""
+"""Fraction of joints that share a first or last word that says nothing ("mixamorig", "Bip01",
+"JNT"), or that an exporter has numbered ("Hips_01", "Spine_02")."""
 
-WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_A-Za-z]+")
+MIN_SIDED_JOINTS = 6
+"""Joints with a mirrored name, from which a single letter in that place is a side."""
+
+EXPORT_NUMBER = re.compile(r"(.+)_(\d+)$")
+JAPANESE_SIDES = str.maketrans({"左": " left ", "右": " right "})
 FINGER = re.compile(
-    r"(thumb|index|mid(?:dle)?|ring|pinky|little).*?"
+    r"(thumb|index|mid(?:dle)?|ring|pinky|little|親指|人指|人差指|中指|薬指|小指).*?"
     r"(0?[123]|metacarpal|proximal|intermediate|medial|distal)$"
 )
-SPELLINGS = {"mid": "Middle", "pinky": "Little"}
+SPELLINGS = {
+    "mid": "Middle", "pinky": "Little", "親指": "Thumb", "人指": "Index", "人差指": "Index",
+    "中指": "Middle", "薬指": "Ring", "小指": "Little",
+}  # fmt: skip
 PARTS = {
     "1": 0, "2": 1, "3": 2, "metacarpal": 0, "proximal": 0, "intermediate": 1, "medial": 1,
     "distal": 2,
@@ -41,9 +52,41 @@ def roles_by_name(names: Sequence[str]) -> dict[str, str]:
     -------
     dict of role to joint name; empty if no table has any of the names.
     """
-    keys = _keys(names)
-    found = max((_match_table(row, keys) for row in TABLES.values()), key=len)
-    return found | _fingers(names, found)
+    return with_fingers(names, max(name_matches(names), key=len))
+
+
+def name_matches(names: Sequence[str]) -> list[dict[str, str]]:
+    """Return joint names by role, without fingers, one match for each table of `TABLES`."""
+    plain = _without_export_numbers(names)
+    original = dict(zip(reversed(plain), reversed(names), strict=True))
+    keys = _keys(plain)
+    matches = [_match_table(row, keys) for row in TABLES.values()]
+    return [{role: original[name] for role, name in match.items()} for match in matches]
+
+
+def with_fingers(names: Sequence[str], found: Mapping[str, str]) -> dict[str, str]:
+    """Return the joints by role, with those of the fingers."""
+    plain = _without_export_numbers(names)
+    original = dict(zip(reversed(plain), reversed(names), strict=True))
+    hands = {role: plain[list(names).index(name)] for role, name in found.items()}
+    fingers = {role: original[name] for role, name in _fingers(plain, hands).items()}
+    return {**found, **fingers}
+
+
+def _without_export_numbers(names: Sequence[str]) -> list[str]:
+    """Return names without the numbers that an exporter gave to nearly all of them."""
+    numbered = [match for name in names if (match := EXPORT_NUMBER.match(name))]
+    numbers = {match[2] for match in numbered}
+    n_joints = sum(not name.endswith("_end") for name in names)
+    if len(numbers) < max(3, MIN_PREFIX_FRACTION * n_joints):
+        return list(names)
+    return [EXPORT_NUMBER.sub(r"\1", name) for name in names]
+
+
+def sides_of_names(names: Sequence[str]) -> list[str]:
+    """Return "left", "right" or "" for each joint of a skeleton, as its name says."""
+    spelling = _find_spelling(names)
+    return [_side_and_words(name, spelling)[0] for name in names]
 
 
 def _match_table(row: Sequence[str], keys: dict[Key, str]) -> dict[str, str]:
@@ -61,43 +104,76 @@ def _match_table(row: Sequence[str], keys: dict[Key, str]) -> dict[str, str]:
 
 def _keys(names: Sequence[str]) -> dict[Key, str]:
     """Return joints by side and name, with and without the rig's prefix."""
-    bare = _bare_names(names)
-    split = [_side_and_words(name, bare) for name in names]
+    spelling = _find_spelling(names)
+    split = [_side_and_words(name, spelling) for name in names]
     keys: dict[Key, str] = {}
     for name, (side, words) in zip(names, split, strict=True):
         keys.setdefault((side, "".join(words)), name)
-    while prefix := _shared_first_word([words for _, words in split]):
-        split = [(side, words[words[:1] == [prefix] :]) for side, words in split]
-        for name, (side, words) in zip(names, split, strict=True):
-            keys.setdefault((side, "".join(words)), name)
+    for end in (0, -1):
+        while word := _shared_word([words for _, words in split], end):
+            split = [(side, _without_word(words, word, end)) for side, words in split]
+            for name, (side, words) in zip(names, split, strict=True):
+                keys.setdefault((side, "".join(words)), name)
     return keys
 
 
-def _shared_first_word(split: Sequence[Sequence[str]]) -> str:
-    counts = Counter(words[0] for words in split if len(words) > 1)
+def _without_word(words: list[str], word: str, end: int) -> list[str]:
+    if len(words) < 2 or words[end] != word:
+        return words
+    return words[1:] if end == 0 else words[:-1]
+
+
+def _shared_word(split: Sequence[Sequence[str]], end: int) -> str:
+    """Return the first or last word that nearly all names share, or ""."""
+    counts = Counter(words[end] for words in split if len(words) > 1)
     word, count = counts.most_common(1)[0] if counts else ("", 0)
     return word if count >= max(3, MIN_PREFIX_FRACTION * len(split)) else ""
 
 
-def _side_and_words(name: str, all_names: frozenset[str]) -> tuple[str, list[str]]:
+class _Spelling(NamedTuple):
+    """How a skeleton spells its sides."""
+
+    names: frozenset[str]
+    """All names, in lower case and without separators."""
+    letter_positions: frozenset[int]
+    """Which words of its names are "l" or "r" for a side."""
+
+
+def _find_spelling(names: Sequence[str]) -> _Spelling:
+    split = [_words(re.split(r"[:|]", name)[-1]) for name in names]
+    bare = frozenset("".join(words) for words in split)
+    letters = Counter(
+        index
+        for words in split
+        for index, word in enumerate(words)
+        if word in {"l", "r"} and _mirrored(words, index) in bare
+    )
+    confirmed = {index for index, count in letters.items() if count >= MIN_SIDED_JOINTS}
+    return _Spelling(bare, frozenset(confirmed))
+
+
+def _side_and_words(name: str, spelling: _Spelling) -> tuple[str, list[str]]:
     """Split "mixamorig:LeftUpLeg" into "left" and its other words.
 
     A single letter, or one attached to the name as in "lfemur", is a side only if the other
-    side has the same joint: "L5" is a vertebra and "lowerback" is not a left "owerback".
+    side has the same joint, or most joints have their letter there: "L5" is a vertebra and
+    "lowerback" is not a left "owerback".
     """
     words = _words(re.split(r"[:|]", name)[-1])
     for index, word in enumerate(words):
-        if word in SIDES and (len(word) > 1 or _mirrored(words, index) in all_names):
+        if word in SIDES and (
+            len(word) > 1
+            or _mirrored(words, index) in spelling.names
+            or (index in spelling.letter_positions and max(map(len, words)) > 2)
+        ):
             return SIDES[word], words[:index] + words[index + 1 :]
-    for index in {0, len(words) - 1} if words else ():
-        word = words[index]
+    for index, word in enumerate(words):
         for side in SIDES:
-            remainder = word.removeprefix(side) if index == 0 else word
-            remainder = (
-                word.removesuffix(side) if remainder == word and len(side) > 1 else remainder
-            )
+            remainder = word.removeprefix(side)
+            if remainder == word and len(side) > 1:
+                remainder = word.removesuffix(side)
             other = [*words[:index], _swapped(word, side, remainder), *words[index + 1 :]]
-            if remainder not in {word, ""} and "".join(other) in all_names:
+            if remainder not in {word, ""} and "".join(other) in spelling.names:
                 return SIDES[side], [*words[:index], remainder, *words[index + 1 :]]
     return "", words
 
@@ -112,11 +188,8 @@ def _swapped(word: str, side: str, remainder: str) -> str:
 
 def _words(name: str) -> list[str]:
     """Split at separators, digits and capitals: "J_Bip_L_UpperArm" is j, bip, l, upper, arm."""
-    return [word.lower() for word in WORD.findall(name)]
-
-
-def _bare_names(names: Sequence[str]) -> frozenset[str]:
-    return frozenset("".join(_words(re.split(r"[:|]", name)[-1])) for name in names)
+    plain = unicodedata.normalize("NFKC", name).translate(JAPANESE_SIDES)
+    return [word.lower() for word in WORD.findall(plain)]
 
 
 def _fingers(names: Sequence[str], found: Mapping[str, str]) -> dict[str, str]:
@@ -126,9 +199,9 @@ def _fingers(names: Sequence[str], found: Mapping[str, str]) -> dict[str, str]:
     is used.
     """
     candidates_by_finger: dict[tuple[str, str], dict[int, list[str]]] = {}
-    bare = _bare_names(names)
+    spelling = _find_spelling(names)
     for name in names:
-        side, words = _side_and_words(name, bare)
+        side, words = _side_and_words(name, spelling)
         match = FINGER.search("".join(words))
         if side and match and not name.endswith("_end"):
             finger = SPELLINGS.get(match[1], match[1].capitalize())

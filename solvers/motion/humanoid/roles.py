@@ -7,9 +7,10 @@ from typing import Any
 
 from ...errors import InvalidMotionError
 from ..skeletons import Skeleton
-from .names import roles_by_name
+from .names import name_matches, with_fingers
 from .structure import roles_by_structure
 from .tables import ARM_ROLES, CENTRAL_ROLES, FINGER_ROLES, LEG_ROLES
+from .tree_agreement import tree_agreement
 
 HUMANOID_ROLES = (
     *CENTRAL_ROLES,
@@ -25,8 +26,19 @@ ESSENTIAL_ROLES = (
 )  # fmt: skip
 """What VRM requires of every humanoid."""
 
+BODY_ROLES = (
+    *CENTRAL_ROLES,
+    *(f"{side}{role}" for side in ("left", "right") for role in (*LEG_ROLES, *ARM_ROLES)),
+)
+"""All roles but the fingers."""
+
 MIN_NAME_SCORE = 0.7
-"""Score from which the roles by name are used, without those by structure."""
+"""Score from which the roles by name are used; structure only fills what they leave empty."""
+MIN_MATCH = 0.5
+"""Roles that a table must match, relative to the table that matches most."""
+MAX_STRUCTURE_SCORE = 0.8
+MIN_AGREEMENT = 0.9
+"""Of the roles that names and structure both assign, so that structure may fill others."""
 
 
 @dataclass(frozen=True)
@@ -89,43 +101,79 @@ def find_humanoid_map(skeleton: Skeleton) -> HumanoidMap:
     """Assign humanoid roles to the joints of a skeleton.
 
     Names are compared with the tables of the known rig families, without regard to case,
-    separators, prefixes and spelling of sides. If that assigns too few roles, the structure of
-    the rest pose is used, which must stand upright and face -Y. Helper joints, twist bones,
-    props and faces have no role.
+    separators, prefixes, numbers of exporters and spelling of sides. A table is believed only
+    as far as the tree agrees: joints descend from each other, none is left over between two,
+    and lengths are human. If no table is, the tree and the lengths decide, whatever the axes
+    of the rest pose; they also fill what an agreeing table leaves empty. Helper joints, twist
+    bones, props and faces have no role.
 
     Returns
     -------
     HumanoidMap
         Empty, with score 0, if the skeleton is not humanoid. The score by names is the fraction
-        of VRM's essential roles found, lowered by wrong parents. The score by structure, up to
-        0.8, measures how human the proportions are.
+        of VRM's essential roles found, lowered where the tree disagrees. The score by
+        structure, up to 0.8, measures how human the proportions are.
     """
-    joints = roles_by_name(skeleton.names)
-    by_name = HumanoidMap(joints, _coverage(joints) * _coherence(skeleton, joints))
-    if by_name.score >= MIN_NAME_SCORE:
+    by_name = _best_names(skeleton)
+    if by_name.has(*BODY_ROLES) and by_name.score == 1.0:
         return by_name
     joints, humanness = roles_by_structure(skeleton)
-    by_structure = HumanoidMap(joints, 0.8 * humanness * _coverage(joints))
+    by_structure = HumanoidMap(joints, MAX_STRUCTURE_SCORE * humanness * _coverage(joints))
+    if by_name.score >= MIN_NAME_SCORE:
+        return _fill_from(skeleton, by_name, by_structure)
     return max(by_name, by_structure, key=lambda found: found.score)
+
+
+def _best_names(skeleton: Skeleton) -> HumanoidMap:
+    """Return the match of one table of names that covers most and that the tree confirms."""
+    matches = name_matches(skeleton.names)
+    most = max(map(len, matches))
+    scored = [
+        _score_names(skeleton, joints) for joints in matches if len(joints) > MIN_MATCH * most
+    ]
+    best = max(scored, key=lambda found: (found.score, len(found.joints)), default=None)
+    if best is None:
+        return HumanoidMap({}, 0.0)
+    return replace(best, joints=with_fingers(skeleton.names, best.joints))
+
+
+def _score_names(skeleton: Skeleton, joints: Mapping[str, str]) -> HumanoidMap:
+    return HumanoidMap(joints, _coverage(joints) * tree_agreement(skeleton, joints))
+
+
+def _fill_from(
+    skeleton: Skeleton, by_name: HumanoidMap, by_structure: HumanoidMap
+) -> HumanoidMap:
+    """Return the map by names, its empty roles filled by structure where both agree."""
+    both = [role for role in by_structure.joints if role in by_name.joints]
+    agreed = sum(by_name.joints[role] == by_structure.joints[role] for role in both)
+    if agreed < MIN_AGREEMENT * max(len(both), 1):
+        return by_name
+    taken = set(by_name.joints.values())
+    added = {
+        role: joint
+        for role, joint in by_structure.joints.items()
+        if role not in by_name.joints and joint not in taken
+    }
+    joints = _lower_spine(skeleton, {**by_name.joints, **added})
+    return _score_names(skeleton, joints) if joints != dict(by_name.joints) else by_name
+
+
+def _lower_spine(skeleton: Skeleton, joints: dict[str, str]) -> dict[str, str]:
+    """Return the map with the first joint above the hips as spine, if it has no role.
+
+    A table may call the only joint it knows the spine, where others lie below it.
+    """
+    if not {"hips", "spine"} <= joints.keys() or "chest" in joints:
+        return joints
+    above = skeleton.ancestors(skeleton.index(joints["spine"]))
+    hips = skeleton.index(joints["hips"])
+    between = above[: above.index(hips)] if hips in above else []
+    free = [j for j in between if skeleton.names[j] not in joints.values()]
+    if not free:
+        return joints
+    return joints | {"spine": skeleton.names[free[-1]], "chest": joints["spine"]}
 
 
 def _coverage(joints: Mapping[str, str]) -> float:
     return sum(role in joints for role in ESSENTIAL_ROLES) / len(ESSENTIAL_ROLES)
-
-
-def _coherence(skeleton: Skeleton, joints: Mapping[str, str]) -> float:
-    """Return the fraction of limb joints that descend from the joint before, 0.5 to 1."""
-    pairs = [
-        (joints[f"{side}{upper}"], joints[f"{side}{lower}"])
-        for side in ("left", "right")
-        for upper, lower in (
-            ("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot"),
-            ("UpperArm", "LowerArm"), ("LowerArm", "Hand"),
-        )
-        if f"{side}{upper}" in joints and f"{side}{lower}" in joints
-    ]  # fmt: skip
-    connected = [
-        skeleton.index(upper) in skeleton.ancestors(skeleton.index(lower))
-        for upper, lower in pairs
-    ]
-    return 0.5 + 0.5 * sum(connected) / len(connected) if connected else 0.5

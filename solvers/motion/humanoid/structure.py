@@ -1,209 +1,246 @@
-"""Assign humanoid roles to joints by the structure of the rest pose."""
+"""Assign humanoid roles to joints by the tree and the lengths of the bones."""
 
 from collections.abc import Sequence
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..skeletons import Skeleton
+from .limb_division import (
+    MIN_SPREAD_FRACTION,
+    distances_from_midline,
+    divide_arm,
+    divide_leg,
+    path_length,
+    without_end_sites,
+)
+from .mirrored_limbs import MirroredLimbs, find_mirrored_limbs
+from .names import sides_of_names
 
-# Lengths of the upper and lower limb as fractions of body height (Drillis & Contini 1966, as
-# tabled by Winter 2009, Biomechanics and Motor Control of Human Movement, figure 4.1).
-ARM_FRACTIONS = (0.186, 0.146)
-LEG_FRACTIONS = (0.245, 0.246)
-SHOULDER_FRACTION = 0.129
-"""Distance of the shoulder from the midline; collar bones start nearer to it."""
-MAX_HAND_FRACTION = 0.13
-"""Maximum length from wrist to fingertip (0.108 in the tables, plus a margin)."""
-MAX_FOOT_HEIGHT_FRACTION = 0.15
-"""Maximum height of the ends of the feet."""
+Array = NDArray[np.float64]
+
+TRUNK_FRACTION = 0.288
+"""Of the height, from hips to shoulders (Winter 2009, figure 4.1); arms branch off lower."""
+TRUNK_WEIGHT = 0.25
+ROOT_AT_CHEST = 0.5
+"""Misfit of a body whose legs hang on its chest: more often, legs were taken for arms."""
+LEG_PATH_FRACTION = 0.6
+"""Of the height, from the hip joint along the bones to the tip of the foot."""
+HEIGHT_FACTORS = np.exp(np.linspace(-0.4, 0.4, 17))
+"""Heights that are tried, relative to the one that the legs suggest."""
+MAX_OTHER_LIMB_FRACTION = 0.6
+"""Length, relative to the legs, above which a third pair of limbs is no skirt or hair."""
+MAX_HUMAN_ANGLE_DEG = 60.0
+"""Between trunk and legs in the rest pose of a person, who stands; animals stand at 90."""
+
+
+class _Match(NamedTuple):
+    """Legs, arms and height that fit best, and how badly."""
+
+    legs: MirroredLimbs
+    arms: MirroredLimbs | None
+    height: float
+    misfit: float
 
 
 def roles_by_structure(skeleton: Skeleton) -> tuple[dict[str, str], float]:
     """Return joint names by role, and how human the proportions are, 0 to 1.
 
-    The rest pose must stand upright and face -Y, so that the character's left is +X. The hips
-    are the joint where the paths to the lowest joint of each side branch; the upper chest is
-    where the paths to the outermost joint of each side branch. Knee and ankle, elbow and wrist
-    are the joints that divide each limb most like a human limb. Fingers get no role.
+    Legs and arms are two pairs of branches that mirror each other, with the trunk between
+    them. Knee and ankle, elbow and wrist are the joints that divide each limb most like a
+    human limb. Lengths decide, so that the rest pose may have any axes and even be folded up.
+    Sides follow the names, where they have any; else the toes show where the rest pose faces,
+    or else -Y. Fingers get no role.
 
     Returns
     -------
     dict of role to joint name, and float; empty and 0.0 without two legs.
     """
-    body = _Body(skeleton)
-    feet = body.outermost(
-        -body.positions[:, 2], body.positions[:, 2] <= MAX_FOOT_HEIGHT_FRACTION * body.height
-    )
-    if feet is None:
+    pairs = find_mirrored_limbs(skeleton)
+    matches = [
+        _match(skeleton, legs, arms)
+        for legs, arms in product(pairs, (*pairs, None))
+        if arms is None or _are_apart(skeleton, legs, arms)
+    ]
+    if not matches:
         return {}, 0.0
-    hips, legs = body.branch(feet)
-    roles, misfits = {"hips": hips}, []
-    for side, leg in legs.items():
-        found, misfit = body.limb(leg, LEG_FRACTIONS)
-        names = (f"{side}UpperLeg", f"{side}LowerLeg", f"{side}Foot")
-        roles |= dict(zip(names, found, strict=False))
-        if found and (toes := body.toes(found[-1])) is not None:
-            roles[f"{side}Toes"] = toes
-        misfits.append(misfit)
-    hands = body.outermost(
-        np.abs(body.positions[:, 0] - body.positions[hips, 0]),
-        (body.positions[:, 2] > 0.4 * body.height) & ~body.limb_joints(hips, legs),
-    )
-    if hands is not None:
-        found_above, misfits_above = _upper_body(body, hips, hands)
-        roles |= found_above
-        misfits += misfits_above
-    limb_fraction = len(misfits) / 4
-    first_role: dict[int, str] = {}
-    for (
-        role,
-        joint,
-    ) in roles.items():  # In a skeleton that is not a body, a joint may match two roles.
-        first_role.setdefault(joint, role)
+    match = min(matches, key=lambda match: match.misfit)
+    roles = _Body(skeleton, match).roles()
+    n_others = _count_other_limbs(skeleton, match, pairs)
     return (
-        {role: skeleton.names[joint] for joint, role in first_role.items()},
-        float(limb_fraction * np.exp(-np.mean(misfits))),
+        {role: skeleton.names[joint] for role, joint in roles.items()},
+        float(np.exp(-match.misfit)) / (1 + n_others),
     )
 
 
-def _upper_body(
-    body: "_Body", hips: int, hands: dict[str, int]
-) -> tuple[dict[str, int], list[float]]:
-    """Return spine, neck, head and arms, and the misfits of the arms."""
-    chest, arms = body.branch(hands)
-    roles = _trunk(body, hips, chest, arms)
-    misfits = []
-    for side, arm in arms.items():
-        found, misfit = body.limb(body.without_fingers(arm), ARM_FRACTIONS, SHOULDER_FRACTION)
-        names = (f"{side}UpperArm", f"{side}LowerArm", f"{side}Hand")
-        roles |= dict(zip(names, found, strict=False))
-        if found and arm[0] != found[0]:
-            roles[f"{side}Shoulder"] = arm[0]
-        misfits.append(misfit)
-    return roles, misfits
+def _are_apart(skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs) -> bool:
+    """Whether two pairs of limbs share no joint and start from different joints."""
+    shared = legs.joints(skeleton) & arms.joints(skeleton)
+    return legs.branch != arms.branch and not shared.any()
 
 
-def _trunk(body: "_Body", hips: int, chest: int, arms: dict[str, list[int]]) -> dict[str, int]:
-    spine = body.path(hips, chest)
-    roles = dict(zip(("spine", "chest"), spine, strict=False))
-    if len(spine) > 2:
-        roles["chest"] = spine[(len(spine) - 1) // 2]
-        roles["upperChest"] = spine[-1]
-    arm_joints = body.limb_joints(chest, arms)
-    above = [j for j in body.skeleton.subtree(chest) if j != chest and not arm_joints[j]]
-    if above:
-        top = max(above, key=lambda joint: body.positions[joint, 2])
-        neck = body.without_end_sites(body.path(chest, top))
-        branch = [j for j in neck if len(body.skeleton.children[j]) > 1]
-        neck = neck[: neck.index(branch[0]) + 1] if branch else neck
-        roles |= dict(zip(("neck", "head"), (neck[0], neck[-1]), strict=True)) if neck else {}
-        if len(neck) == 1:
-            del roles["neck"]
-    return roles
+def _match(skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs | None) -> _Match:
+    """Return these legs and arms with the height that fits them best."""
+    guess = np.mean([path_length(skeleton, leg) for leg in legs.limbs]) / LEG_PATH_FRACTION
+    heights = np.maximum(guess, 1e-9) * HEIGHT_FACTORS
+    misfits = [_misfit(skeleton, legs, arms, height) for height in heights]
+    best = int(np.argmin(misfits))
+    return _Match(legs, arms, float(heights[best]), misfits[best])
+
+
+def _misfit(
+    skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs | None, height: float
+) -> float:
+    """Return how far limbs and trunk are from those of a person of this height."""
+    limbs = [divide_leg(skeleton, leg, height)[1] for leg in legs.limbs]
+    if arms is None:
+        return float(np.mean([*limbs, 1.0, 1.0])) + 1.0
+    limbs += [divide_arm(skeleton, arms, side, height)[1] for side in (0, 1)]
+    trunk = skeleton.rest_positions[arms.branch] - skeleton.rest_positions[legs.branch]
+    length = max(float(np.linalg.norm(trunk)) / height, 1e-3)
+    misfit = TRUNK_WEIGHT * abs(np.log(length / TRUNK_FRACTION)) + np.mean(limbs)
+    if arms.branch in skeleton.ancestors(legs.branch):
+        misfit += ROOT_AT_CHEST
+    return float(misfit + (not _may_stand(skeleton, legs, trunk, height)))
+
+
+def _may_stand(skeleton: Skeleton, legs: MirroredLimbs, trunk: Array, height: float) -> bool:
+    """Whether the trunk continues the legs, as far as the rest pose shows it."""
+    positions = skeleton.rest_positions
+    along = positions[legs.branch] - positions[[leg[-1] for leg in legs.limbs]].mean(axis=0)
+    lengths = np.linalg.norm(trunk), np.linalg.norm(along)
+    if min(lengths) < MIN_SPREAD_FRACTION * height or _is_folded(skeleton, legs, height):
+        return True
+    cosine = trunk @ along / np.prod(lengths)
+    return bool(cosine > np.cos(np.radians(MAX_HUMAN_ANGLE_DEG)))
+
+
+def _is_folded(skeleton: Skeleton, limbs: MirroredLimbs, height: float) -> bool:
+    """Whether both limbs lie in the same place, as where all bones have one direction."""
+    spread = distances_from_midline(skeleton, limbs, 0).max()
+    return bool(spread < MIN_SPREAD_FRACTION * height)
+
+
+def _count_other_limbs(
+    skeleton: Skeleton, match: _Match, pairs: Sequence[MirroredLimbs]
+) -> int:
+    """Return how many pairs of long limbs the trunk has beside legs and arms."""
+    used = match.legs.joints(skeleton)
+    trunk = {match.legs.branch}
+    if match.arms:
+        used |= match.arms.joints(skeleton)
+        trunk |= {match.arms.branch, *skeleton.ancestors(match.arms.branch)}
+    shortest = MAX_OTHER_LIMB_FRACTION * path_length(skeleton, match.legs.limbs[0])
+    return sum(
+        pair.branch in trunk
+        and not used[[limb[0] for limb in pair.limbs]].any()
+        and min(path_length(skeleton, limb) for limb in pair.limbs) > shortest
+        for pair in pairs
+    )
 
 
 class _Body:
-    """A skeleton with its rest pose measured from the floor."""
+    """A skeleton whose legs and arms are known."""
 
-    def __init__(self, skeleton: Skeleton) -> None:
+    def __init__(self, skeleton: Skeleton, match: _Match) -> None:
         self.skeleton = skeleton
-        self.height = max(skeleton.height, 1e-9)
-        self.positions: NDArray[np.float64] = skeleton.rest_positions.copy()
-        self.positions[:, 2] -= self.positions[:, 2].min()
+        self.match = match
+        self.positions: Array = skeleton.rest_positions
+        self.sides = sides_of_names(skeleton.names)
+        self.legs = [divide_leg(skeleton, leg, match.height)[0] for leg in match.legs.limbs]
+        self.up, self.forward = self._directions()
 
-    def outermost(
-        self, extent: NDArray[np.float64], allowed: NDArray[np.bool_]
-    ) -> dict[str, int] | None:
-        """Return the farthest allowed joint on each side of the root, or None."""
-        across = self.positions[:, 0] - self.positions[0, 0]
-        found = {}
-        for side, sign in (("left", 1.0), ("right", -1.0)):
-            candidates = np.flatnonzero(allowed & (sign * across > 0.01 * self.height))
-            if not len(candidates):
-                return None
-            found[side] = int(candidates[extent[candidates].argmax()])
-        return found
+    def roles(self) -> dict[str, int]:
+        """Return joints by role; a joint of two roles keeps the first."""
+        roles = {"hips": self._hips()}
+        for name, side in self._assign_sides(self.match.legs).items():
+            leg = self.legs[side]
+            parts = (f"{name}UpperLeg", f"{name}LowerLeg", f"{name}Foot")
+            roles |= dict(zip(parts, leg, strict=False))
+            if leg and (toes := self._toes(leg[-1])) is not None:
+                roles[f"{name}Toes"] = toes
+        if self.match.arms:
+            roles |= self._trunk(roles["hips"], self.match.arms)
+            for name, side in self._assign_sides(self.match.arms).items():
+                arm, _ = divide_arm(self.skeleton, self.match.arms, side, self.match.height)
+                parts = (f"{name}UpperArm", f"{name}LowerArm", f"{name}Hand")
+                roles |= dict(zip(parts, arm, strict=False))
+                if arm and arm[0] != self.match.arms.limbs[side][0]:
+                    roles[f"{name}Shoulder"] = self.match.arms.limbs[side][0]
+        first_role: dict[int, str] = {}
+        for role, joint in roles.items():
+            first_role.setdefault(joint, role)
+        return {role: joint for joint, role in first_role.items()}
 
-    def branch(self, ends: dict[str, int]) -> tuple[int, dict[str, list[int]]]:
-        """Return the joint where the paths to both ends branch, and the rest of both paths."""
-        paths = {s: [end, *self.skeleton.ancestors(end)][::-1] for s, end in ends.items()}
-        common = sum(a == b for a, b in zip(paths["left"], paths["right"], strict=False))
-        return paths["left"][common - 1], {
-            s: self._to_tip(path[common:]) for s, path in paths.items()
-        }
+    def _directions(self) -> tuple[Array, Array]:
+        """Return up and forward in the rest pose; +Z and -Y where it does not show them."""
+        up, forward = np.array([0.0, 0.0, 1.0]), np.array([0.0, -1.0, 0.0])
+        legs, height = self.match.legs, self.match.height
+        if _is_folded(self.skeleton, legs, height) or not all(self.legs):
+            return up, forward
+        ankles = self.positions[[leg[-1] for leg in self.legs]].mean(axis=0)
+        toes = self.positions[[leg[-1] for leg in legs.limbs]].mean(axis=0) - ankles
+        trunk = self.positions[legs.branch] - ankles
+        if np.linalg.norm(trunk) > MIN_SPREAD_FRACTION * height:
+            up = trunk / np.linalg.norm(trunk)
+        toes -= (toes @ up) * up
+        if np.linalg.norm(toes) > MIN_SPREAD_FRACTION * height:
+            forward = toes / np.linalg.norm(toes)
+        return up, forward
 
-    def _to_tip(self, path: list[int]) -> list[int]:
-        """Extend a path to the tip: the lowest joint, such as a heel, may not be the last."""
-        while path and (children := self.skeleton.children[path[-1]]):
-            path = [*path, children[0]]
-        return path
+    def _hips(self) -> int:
+        """Return the lowest joint above legs and arms."""
+        lineage = [self.match.legs.branch, *self.skeleton.ancestors(self.match.legs.branch)]
+        if not self.match.arms:
+            return lineage[0]
+        branch = self.match.arms.branch
+        above = {branch, *self.skeleton.ancestors(branch)}
+        return next(joint for joint in lineage if joint in above)
 
-    def path(self, start: int, stop: int) -> list[int]:
-        """Return the joints from below `start` down to `stop`."""
-        up = [stop, *self.skeleton.ancestors(stop)]
-        return up[: up.index(start)][::-1] if start in up else []
+    def _assign_sides(self, limbs: MirroredLimbs) -> dict[str, int]:
+        """Return which of two limbs is "left" and which is "right"."""
+        first, second = (
+            sum(
+                (self.sides[joint] == "left") - (self.sides[joint] == "right") for joint in limb
+            )
+            for limb in limbs.limbs
+        )
+        if first == second or first * second > 0:
+            left = np.cross(self.up, self.forward)
+            first, second = (self.positions[limb].mean(axis=0) @ left for limb in limbs.limbs)
+        return {"left": 0, "right": 1} if first >= second else {"left": 1, "right": 0}
 
-    def without_end_sites(self, joints: Sequence[int]) -> list[int]:
-        """Return these joints without end sites."""
-        return [joint for joint in joints if not self.skeleton.is_end_site(joint)]
-
-    def without_fingers(self, arm: list[int]) -> list[int]:
-        """Return the arm up to its last branch, with at least three joints.
-
-        If the rest is longer than a hand, the branch is a twist bone and the arm is complete.
-        """
-        forks = [i for i, joint in enumerate(arm) if len(self.skeleton.children[joint]) > 1]
-        if not forks or forks[-1] < 2:
-            return arm
-        beyond = np.diff(self.positions[arm[forks[-1] :]], axis=0)
-        is_hand = np.linalg.norm(beyond, axis=-1).sum() <= MAX_HAND_FRACTION * self.height
-        return arm[: forks[-1] + 1] if is_hand else arm
-
-    def toes(self, foot: int) -> int | None:
+    def _toes(self, foot: int) -> int | None:
         """Return the foremost child of the foot, if it is in front of the ankle."""
-        children = self.without_end_sites(self.skeleton.children[foot])
-        front = min(children, key=lambda joint: self.positions[joint, 1], default=foot)
-        return front if self.positions[front, 1] < self.positions[foot, 1] else None
+        children = without_end_sites(self.skeleton, self.skeleton.children[foot])
+        ahead = (self.positions - self.positions[foot]) @ self.forward
+        front = max(children, key=lambda joint: ahead[joint], default=foot)
+        return front if ahead[front] > 0.0 else None
 
-    def limb_joints(self, start: int, limbs: dict[str, list[int]]) -> NDArray[np.bool_]:
-        """Return which joints belong to the limbs, shape (n_joints,)."""
-        inside = np.zeros(self.skeleton.n_joints, dtype=bool)
-        for first in (joint for limb in limbs.values() for joint in limb[:1]):
-            inside[self.skeleton.subtree(first)] = True
-        return inside
+    def _trunk(self, hips: int, arms: MirroredLimbs) -> dict[str, int]:
+        """Return spine, chest, neck and head by role."""
+        chest = arms.branch
+        spine = self._path(hips, chest)
+        roles = dict(zip(("spine", "chest"), spine, strict=False))
+        if len(spine) > 2:
+            roles["chest"] = spine[(len(spine) - 1) // 2]
+            roles["upperChest"] = spine[-1]
+        limbs = arms.joints(self.skeleton) | self.match.legs.joints(self.skeleton)
+        above = [j for j in self.skeleton.subtree(chest) if j != chest and not limbs[j]]
+        if above:
+            top = max(above, key=lambda joint: self.positions[joint] @ self.up)
+            neck = without_end_sites(self.skeleton, self._path(chest, top))
+            branch = [j for j in neck if len(self.skeleton.children[j]) > 1]
+            neck = neck[: neck.index(branch[0]) + 1] if branch else neck
+            if neck:
+                roles["head"] = neck[-1]
+            if len(neck) > 1:
+                roles["neck"] = neck[0]
+        return roles
 
-    def limb(
-        self, path: Sequence[int], human: tuple[float, float], lateral: float | None = None
-    ) -> tuple[list[int], float]:
-        """Return upper joint, hinge and end of a limb, and the misfit.
-
-        The misfit is the sum of both bones' absolute log ratios to human lengths. Of several
-        upper joints, the one nearest to the human distance `lateral` from the midline, as a
-        fraction of the height, is preferred. A limb needs at least three joints.
-        """
-        joints = self.without_end_sites(path)
-        if len(joints) < 3:
-            return [], 1.0
-        positions = self.positions[joints]
-        bones = np.linalg.norm(positions[:, None] - positions, axis=-1) / self.height
-        later = np.triu(np.ones_like(bones, dtype=bool), k=1)
-        upper, lower = (
-            np.where(later, np.abs(np.log(np.maximum(bones, 1e-9) / length)), np.inf)
-            for length in human
-        )
-        preferred = upper + (
-            0.0 if lateral is None else self._lateral_misfit(lateral, positions)[:, None]
-        )
-        # Both bones meet at the hinge; given the hinge, each is chosen independently.
-        hinge = int((preferred.min(axis=0) + lower.min(axis=1)).argmin())
-        start, end = int(preferred[:, hinge].argmin()), int(lower[hinge].argmin())
-        misfit = float(upper[start, hinge] + lower[hinge, end])
-        return [joints[index] for index in (start, hinge, end)], misfit
-
-    def _lateral_misfit(
-        self, lateral: float, positions: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """Return absolute log ratios of the distances from the midline to `lateral`."""
-        across = np.abs(positions[:, 0] - self.positions[0, 0]) / self.height
-        return np.asarray(np.abs(np.log(np.maximum(across, 1e-9) / lateral)))
+    def _path(self, start: int, stop: int) -> list[int]:
+        """Return the joints from below `start` down to `stop`."""
+        lineage = [stop, *self.skeleton.ancestors(stop)]
+        return lineage[: lineage.index(start)][::-1] if start in lineage else []

@@ -106,7 +106,7 @@ TABLES: dict[str, tuple[str, ...]] = {
         "thigh", "calf", "foot", "ball",
     ),
     "Biped": (
-        "Pelvis", "Spine", "Spine1", "Spine3 Spine2", "Neck", "Head",
+        "Pelvis", "Spine", "Spine1", "Spine3 Spine2", "Neck Neck1", "Head Head1",
         "Clavicle", "UpperArm", "Forearm", "Hand",
         "Thigh", "Calf", "Foot", "Toe0",
     ),
@@ -152,11 +152,86 @@ TABLES: dict[str, tuple[str, ...]] = {
         "c_shoulder", "c_arm_fk", "c_forearm_fk", "c_hand_fk",
         "c_thigh_fk", "c_leg_fk", "c_foot_fk", "c_toes_fk",
     ),
+    "SMPL": (  # also SMPL-H, SMPL-X and what video models write
+        "pelvis", "spine1", "spine2", "spine3", "neck", "head",
+        "collar thorax inshoulder", "shoulder", "elbow", "wrist",
+        "hip", "knee", "ankle", "foot toe",
+    ),
+    "SMPL in robotics": (
+        "pelvis", "torso", "spine", "chest", "neck", "head",
+        "thorax", "shoulder", "elbow", "wrist",
+        "hip", "knee", "ankle", "toe",
+    ),
+    "SOMA": (
+        "Hips", "Spine1", "Spine2", "Chest", "Neck1 Neck", "Head",
+        "Shoulder", "Arm", "ForeArm", "Hand",
+        "Leg", "Shin", "Foot", "ToeBase",
+    ),
+    "MHR": (
+        "root", "c_spine0", "c_spine1", "c_spine3", "c_neck", "c_head",
+        "clavicle", "uparm", "lowarm", "wrist",
+        "upleg", "lowleg", "foot", "ball",
+    ),
+    "mocopi": (
+        "root", "torso_1", "torso_4", "torso_7", "neck_1", "head",
+        "shoulder", "up_arm", "low_arm", "hand",
+        "up_leg", "low_leg", "foot", "toes",
+    ),
+    "ARKit": (
+        "hips", "spine_1", "spine_4", "spine_7", "neck_1", "head",
+        "shoulder_1", "arm", "forearm", "hand",
+        "upLeg", "leg", "foot", "toes",
+    ),
+    "MikuMikuDance": (  # names without side; 下半身 turns the pelvis, センター moves it
+        "下半身 腰 センター", "上半身", "上半身2", "上半身3", "首", "頭",
+        "肩", "腕", "ひじ", "手首",
+        "足", "ひざ", "足首", "つま先 足先EX",
+    ),
+    "MikuMikuDance in English": (
+        "lower_body waist center", "upper_body", "upper_body_2", "upper_body_3", "neck", "head",
+        "shoulder", "arm", "elbow", "wrist",
+        "leg", "knee", "ankle", "toe",
+    ),
+    "DAZ Genesis 9": (
+        "hip", "spine1", "spine2", "spine4", "neck1", "head",
+        "shoulder", "upperarm", "forearm", "hand",
+        "thigh", "shin", "foot", "toes",
+    ),
+    "MakeHuman": (
+        "root", "spine05", "spine03", "spine01", "neck01", "head",
+        "clavicle", "upperarm01", "lowerarm01", "wrist",
+        "upperleg01", "lowerleg01", "foot", "toe1-1",
+    ),
+    "Cascadeur": (
+        "pelvis", "stomach", "chest", "", "neck", "head",
+        "clavicle", "arm", "forearm", "hand",
+        "thigh", "calf", "foot", "toe",
+    ),
+    "iPi": (
+        "Hip", "LowerSpine", "MiddleSpine", "Chest", "Neck", "Head",
+        "Clavicle", "Shoulder", "Forearm", "Hand",
+        "Thigh", "Shin", "Foot", "Toe",
+    ),
+    "Theia": (
+        "pelvis", "abdomen", "thorax torso", "", "neck", "head",
+        "clavicle", "uarm", "larm", "hand",
+        "thigh", "shank", "foot", "toes",
+    ),
+    "Second Life": (
+        "mPelvis", "mTorso", "mChest", "", "mNeck", "mHead",
+        "mCollar", "mShoulder", "mElbow", "mWrist",
+        "mHip", "mKnee", "mAnkle", "mFoot",
+    ),
+    "Life Forms": (  # the first BVH files, of Biovision and Poser
+        "Hips", "Chest Ab", "", "", "Neck", "Head",
+        "Collar", "UpArm", "LowArm", "Hand",
+        "UpLeg", "LowLeg", "Foot", "Toes",
+    ),
     "Blender": (
         "hips hip pelvis", "spine torso abdomen", "chest spine1 spine01 spine001",
         "upperChest spine2 spine02 spine002", "neck", "head",
-        "shoulder clavicle collar", "upperArm upArm", "lowerArm foreArm loArm", "hand wrist",
-        "upperLeg upLeg thigh", "lowerLeg loLeg shin calf", "foot ankle",
+        "shoulder clavicle collar", "upperArm upArm", "lowerArm foreArm lowArm loArm",
+        "hand wrist", "upperLeg upLeg thigh", "lowerLeg lowLeg loLeg shin calf", "foot ankle",
         "toes toe toeBase ball",
     ),
 }  # fmt: skip

@@ -1,0 +1,121 @@
+"""Divide limbs at the joints that make them most like human limbs."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..skeletons import Skeleton
+from .mirrored_limbs import MirroredLimbs
+
+Array = NDArray[np.float64]
+
+# Lengths of the upper and lower limb as fractions of body height (Drillis & Contini 1966, as
+# tabled by Winter 2009, Biomechanics and Motor Control of Human Movement, figure 4.1).
+ARM_FRACTIONS = (0.186, 0.146)
+LEG_FRACTIONS = (0.245, 0.246)
+SHOULDER_FRACTION = 0.129
+"""Distance of the shoulder from the midline; collar bones start nearer to it."""
+MAX_HAND_FRACTION = 0.13
+"""Maximum length from wrist to fingertip (0.108 in the tables, plus a margin)."""
+MAX_FOOT_FRACTION = 0.18
+"""Maximum length along the bones from ankle to toes (a foot is 0.152 long)."""
+MIN_SPREAD_FRACTION = 0.03
+"""Of the height, below which the rest pose is folded up and does not show a direction."""
+
+
+def path_length(skeleton: Skeleton, joints: Sequence[int]) -> float:
+    """Return the length along the bones from the first to the last of these joints."""
+    return float(np.linalg.norm(skeleton.offsets[list(joints[1:])], axis=1).sum())
+
+
+def without_end_sites(skeleton: Skeleton, joints: Sequence[int]) -> list[int]:
+    """Return these joints without end sites."""
+    return [joint for joint in joints if not skeleton.is_end_site(joint)]
+
+
+def distances_from_midline(skeleton: Skeleton, limbs: MirroredLimbs, side: int) -> Array:
+    """Return half the distance of each joint of a limb from its counterpart, (n_joints,)."""
+    limb, other = limbs.limbs[side], limbs.limbs[1 - side]
+    positions = skeleton.rest_positions
+    return np.asarray(np.linalg.norm(positions[limb] - positions[other], axis=1) / 2)
+
+
+def divide_leg(
+    skeleton: Skeleton, leg: Sequence[int], height: float
+) -> tuple[list[int], float]:
+    """Return hip, knee and ankle of a leg, and the misfit of `_divide`."""
+    joints = without_end_sites(skeleton, leg)
+    excess = _log_excess(skeleton, leg, len(joints), MAX_FOOT_FRACTION * height)
+    return _divide(skeleton, joints, LEG_FRACTIONS, height, np.zeros(len(joints)), excess)
+
+
+def divide_arm(
+    skeleton: Skeleton, arms: MirroredLimbs, side: int, height: float
+) -> tuple[list[int], float]:
+    """Return shoulder, elbow and wrist of an arm, and the misfit of `_divide`.
+
+    Of several upper joints, the one nearest to the human distance from the midline is
+    preferred.
+    """
+    arm = _without_fingers(skeleton, arms.limbs[side], height)
+    joints = without_end_sites(skeleton, arm)
+    lateral = dict(
+        zip(arms.limbs[side], distances_from_midline(skeleton, arms, side), strict=True)
+    )
+    across = np.array([lateral[joint] for joint in joints]) / height
+    if max(across, default=0.0) < MIN_SPREAD_FRACTION:  # a folded rest pose
+        preferences = np.zeros(len(joints))
+    else:
+        preferences = np.abs(np.log(np.maximum(across, 1e-9) / SHOULDER_FRACTION))
+    excess = _log_excess(skeleton, arms.limbs[side], len(joints), MAX_HAND_FRACTION * height)
+    return _divide(skeleton, joints, ARM_FRACTIONS, height, preferences, excess)
+
+
+def _log_excess(skeleton: Skeleton, limb: Sequence[int], n_joints: int, length: float) -> Array:
+    """Return by how much what follows each of the first joints exceeds a hand or foot."""
+    bones = np.linalg.norm(skeleton.offsets[list(limb)], axis=1)
+    beyond = bones[::-1].cumsum()[::-1] - bones
+    return np.asarray(np.log(np.maximum(beyond[:n_joints] / length, 1.0)))
+
+
+def _divide(
+    skeleton: Skeleton,
+    joints: list[int],
+    human: tuple[float, float],
+    height: float,
+    preferences: Array,
+    excess: Array,
+) -> tuple[list[int], float]:
+    """Return upper joint, hinge and end of a limb, and the misfit.
+
+    The misfit is the sum of both bones' absolute log ratios to human lengths, and of what is
+    left beyond the end. A limb needs at least three joints.
+    """
+    if len(joints) < 3:
+        return [], 1.0
+    positions = skeleton.rest_positions[joints]
+    bones = np.linalg.norm(positions[:, None] - positions, axis=-1) / height
+    later = np.triu(np.ones_like(bones, dtype=bool), k=1)
+    upper, lower = (
+        np.where(later, np.abs(np.log(np.maximum(bones, 1e-9) / length)), np.inf)
+        for length in human
+    )
+    preferred, lower = upper + preferences[:, None], lower + excess
+    # Both bones meet at the hinge; given the hinge, each is chosen independently.
+    hinge = int((preferred.min(axis=0) + lower.min(axis=1)).argmin())
+    start, end = int(preferred[:, hinge].argmin()), int(lower[hinge].argmin())
+    misfit = float(upper[start, hinge] + lower[hinge, end])
+    return [joints[index] for index in (start, hinge, end)], misfit
+
+
+def _without_fingers(skeleton: Skeleton, arm: list[int], height: float) -> list[int]:
+    """Return the arm up to its last branch, with at least three joints.
+
+    If the rest is longer than a hand, the branch is a twist bone and the arm is complete.
+    """
+    branches = [i for i, joint in enumerate(arm) if len(skeleton.children[joint]) > 1]
+    if not branches or branches[-1] < 2:
+        return arm
+    is_hand = path_length(skeleton, arm[branches[-1] :]) <= MAX_HAND_FRACTION * height
+    return arm[: branches[-1] + 1] if is_hand else arm

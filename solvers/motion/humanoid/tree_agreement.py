@@ -1,0 +1,155 @@
+"""Whether the tree of a skeleton agrees with the roles that names suggest."""
+
+import re
+from collections.abc import Mapping
+from itertools import pairwise
+
+import numpy as np
+
+from ..skeletons import Skeleton
+from .limb_division import MIN_SPREAD_FRACTION
+
+LIMBS = (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand"))
+SIDES = ("left", "right")
+TWIST_WORD = re.compile("twist|roll|bend|stretch|helper|correct|half|sub|捩", re.IGNORECASE)
+NO_LETTERS = re.compile(r"[\W\d_]+")
+
+MAX_BONE_RATIO = 2.2
+"""Between upper and lower limb; people have 1.0 (legs) and 1.3 (arms)."""
+MAX_SIDE_RATIO = 1.6
+"""Between both sides' bones."""
+MIN_BONE_FRACTION = 0.05
+"""Of a limb, below which a joint between two others is a helper."""
+MAX_HUMAN_ANGLE_DEG = 60.0
+"""Between trunk and legs in the rest pose of a person, who stands; animals stand at 90."""
+
+SKIPPED_JOINT = 0.5
+NO_SPINE = 0.7
+ODD_LENGTHS = 0.6
+NOT_STANDING = 0.5
+"""Factors of the score of a map that the tree contradicts in one way."""
+
+
+def tree_agreement(skeleton: Skeleton, joints: Mapping[str, str]) -> float:
+    """Return how well a map fits the tree and the lengths of the bones, 0 to 1.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    joints : mapping of role to joint name
+
+    Returns
+    -------
+    float
+        1 where limb joints descend from each other, no joint of a limb or of the spine is
+        left over between two that have a role, lengths are human, and the rest pose stands.
+    """
+    indices = {name: index for index, name in enumerate(skeleton.names)}
+    roles = {role: indices[name] for role, name in joints.items()}
+    agreement = _descent(skeleton, roles)
+    if _skips_joint(skeleton, roles):
+        agreement *= SKIPPED_JOINT
+    if _skips_spine(skeleton, roles):
+        agreement *= NO_SPINE
+    if _has_odd_lengths(skeleton, roles):
+        agreement *= ODD_LENGTHS
+    if not stands_upright(skeleton, roles):
+        agreement *= NOT_STANDING
+    return agreement
+
+
+def stands_upright(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
+    """Whether the trunk continues the legs in the rest pose, as far as it shows it."""
+    chest = next(
+        (roles[r] for r in ("neck", "upperChest", "chest", "head") if r in roles), None
+    )
+    feet = [roles[f"{side}Foot"] for side in SIDES if f"{side}Foot" in roles]
+    if chest is None or "hips" not in roles or len(feet) < 2:
+        return True
+    positions = skeleton.rest_positions
+    hips = positions[roles["hips"]]
+    legs, trunk = hips - positions[feet].mean(axis=0), positions[chest] - hips
+    height = float(np.linalg.norm(legs) + np.linalg.norm(trunk))
+    apart = np.linalg.norm(positions[feet[0]] - positions[feet[1]]) / 2
+    if apart < MIN_SPREAD_FRACTION * height or np.linalg.norm(trunk) < 0.1 * height:
+        return True  # folded: all bones have one direction
+    cosine = legs @ trunk / max(np.linalg.norm(legs) * np.linalg.norm(trunk), 1e-12)
+    return bool(cosine > np.cos(np.radians(MAX_HUMAN_ANGLE_DEG)))
+
+
+def _descent(skeleton: Skeleton, roles: Mapping[str, int]) -> float:
+    """Return the fraction of limb joints that descend from the joint before, 0.5 to 1."""
+    pairs = _links(roles)
+    connected = [upper in skeleton.ancestors(lower) for upper, lower in pairs]
+    return 0.5 + 0.5 * sum(connected) / len(connected) if connected else 0.5
+
+
+def _links(roles: Mapping[str, int]) -> list[tuple[int, int]]:
+    """Return the joints of each mapped link of a limb."""
+    links = [
+        (f"{side}{upper}", f"{side}{lower}")
+        for side in SIDES
+        for limb in LIMBS
+        for upper, lower in pairwise(limb)
+    ]
+    return [(roles[a], roles[b]) for a, b in links if a in roles and b in roles]
+
+
+def _skips_joint(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
+    """Whether a joint lies between two of a limb that is neither a helper nor a twist bone."""
+    taken = set(roles.values())
+    for upper, lower in _links(roles):
+        above = skeleton.ancestors(lower)
+        if upper not in above:
+            continue
+        chain = above[: above.index(upper)]
+        ends = skeleton.rest_positions[[upper, lower]]
+        length = np.linalg.norm(ends[1] - ends[0])
+        for joint in chain:
+            between = np.linalg.norm(ends - skeleton.rest_positions[joint], axis=1).min()
+            if (
+                joint not in taken
+                and between > MIN_BONE_FRACTION * length
+                and not _is_twist(skeleton.names[joint], skeleton.names[upper])
+            ):
+                return True
+    return False
+
+
+def _is_twist(name: str, upper: str) -> bool:
+    """Whether a joint is called a twist bone, or like the joint above it."""
+    return bool(TWIST_WORD.search(name)) or (
+        NO_LETTERS.sub("", name).lower() == NO_LETTERS.sub("", upper).lower()
+    )
+
+
+def _skips_spine(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
+    """Whether there are joints between hips and arms, none of which has a role."""
+    arm = next((roles[r] for r in ("leftUpperArm", "rightUpperArm") if r in roles), None)
+    if arm is None or "hips" not in roles or {"spine", "chest", "upperChest"} & set(roles):
+        return False
+    above = skeleton.ancestors(arm)
+    if roles["hips"] not in above:
+        return False
+    free = [j for j in above[: above.index(roles["hips"])] if j not in set(roles.values())]
+    return len(free) > 1  # one may be the shoulder
+
+
+def _has_odd_lengths(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
+    """Whether a limb's upper and lower bones, or both sides, differ as in no person."""
+    for limb in LIMBS:
+        lengths = {}
+        for side in SIDES:
+            joints = [roles[f"{side}{part}"] for part in limb if f"{side}{part}" in roles]
+            if len(joints) == len(limb):
+                bones = np.diff(skeleton.rest_positions[joints], axis=0)
+                lengths[side] = np.maximum(np.linalg.norm(bones, axis=1), 1e-9)
+        if any(_ratio(*bones) > MAX_BONE_RATIO for bones in lengths.values()):
+            return True
+        if len(lengths) == 2 and max(map(_ratio, *lengths.values())) > MAX_SIDE_RATIO:
+            return True
+    return False
+
+
+def _ratio(one: float, other: float) -> float:
+    return max(one, other) / min(one, other)

@@ -1,0 +1,120 @@
+"""Every common skeleton gets its roles right; what cannot be told is not believed."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from skeleton_families import FAMILIES, Joint, joints_of, skeleton_from
+
+from solvers.motion import find_humanoid_map
+from solvers.motion.humanoid.roles import MIN_NAME_SCORE
+
+
+def expected(joints: list[Joint]) -> dict[str, str]:
+    return {joint.role: joint.name for joint in joints if joint.role}
+
+
+def shuffled(joints: list[Joint], seed: int) -> list[Joint]:
+    """Return the joints in another order, parents first."""
+    rng, waiting, done = np.random.default_rng(seed), list(joints), []
+    while waiting:
+        ready = [j for j in waiting if j.parent in {"", *(d.name for d in done)}]
+        chosen = ready[rng.integers(len(ready))]
+        waiting.remove(chosen)
+        done.append(chosen)
+    return done
+
+
+def renamed(joints: list[Joint], rename) -> list[Joint]:
+    return [
+        joint._replace(
+            name=rename(joint.name), parent=rename(joint.parent) if joint.parent else ""
+        )
+        for joint in joints
+    ]
+
+
+def without(joints: list[Joint], name: str) -> list[Joint]:
+    parent = next(joint.parent for joint in joints if joint.name == name)
+    return [
+        joint._replace(parent=parent) if joint.parent == name else joint
+        for joint in joints
+        if joint.name != name
+    ]
+
+
+def test_there_are_at_least_forty():
+    assert len(FAMILIES) >= 40
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_all_roles_are_right(family):
+    joints = joints_of(family)
+
+    found = find_humanoid_map(skeleton_from(joints))
+
+    assert dict(found.joints) == expected(joints)
+    assert found.score > MIN_NAME_SCORE or family == "Meta avatar"
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_order_does_not_matter(family):
+    joints = shuffled(joints_of(family), seed=1)
+
+    assert dict(find_humanoid_map(skeleton_from(joints)).joints) == expected(joints)
+
+
+@pytest.mark.parametrize("prefix", ["Actor1:", "Armature|", "char_", "rig:Skeleton1:"])
+@pytest.mark.parametrize("family", FAMILIES)
+def test_prefixes_do_not_matter(family, prefix):
+    joints = renamed(joints_of(family), lambda name: prefix + name)
+
+    assert dict(find_humanoid_map(skeleton_from(joints)).joints) == expected(joints)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_without_one_joint_no_other_role_is_wrong(family):
+    joints = joints_of(family)
+    root = joints[0].name
+    for missing in joints:
+        if missing.name == root or missing.role in {"hips", ""}:
+            continue
+        rest = without(joints, missing.name)
+
+        found = find_humanoid_map(skeleton_from(rest))
+
+        right = expected(rest)
+        wrong = {
+            role: name
+            for role, name in found.joints.items()
+            if right.get(role, name) != name or (role not in right and name in right.values())
+        }
+        wrong = {role: name for role, name in wrong.items() if not _is_spine(role)}
+        assert not wrong or found.score < MIN_NAME_SCORE, missing.name
+
+
+def _is_spine(role: str) -> bool:
+    """Whether a role may fall to the next joint of the spine, where one is missing."""
+    return role in {"spine", "chest", "upperChest", "neck"}
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("turn", [(0, 1, 2), (1, 2, 0), (0, 2, 1)])
+def test_structure_alone_is_right_in_any_axes(family, turn):
+    """Names that say only their side; the axes are turned and one is flipped with them."""
+    joints = joints_of(family)
+    sign = 1.0 if turn != (0, 2, 1) else -1.0
+    counts, numbers = Counter(), {}
+    for joint in joints:
+        side = "R" if joint.position[0] < -0.01 else "L" if joint.position[0] > 0.01 else "C"
+        numbers[joint.name] = f"{side}_{counts[side]}"
+        counts[side] += 1
+    joints = renamed(joints, lambda name: numbers[name])
+    turned = [j._replace(position=j.position[list(turn)] * (1, sign, 1)) for j in joints]
+
+    found = find_humanoid_map(skeleton_from(turned))
+
+    limbs = {
+        role: name for role, name in expected(joints).items() if "eg" in role or "rm" in role
+    }
+    assert {role: found.joints.get(role) for role in limbs} == limbs
