@@ -16,6 +16,10 @@ percent."""
 MAX_DIFFERENCE_FRACTION = 0.02
 """The same for short bones, relative to the longest path along the bones."""
 
+MAX_BRANCHES = 8
+"""Children of a joint that are compared, the longest first; a hand has five fingers."""
+MAX_LIMB_JOINTS = 24
+
 
 class MirroredLimbs(NamedTuple):
     """Two branches of one joint that mirror each other."""
@@ -39,39 +43,56 @@ def find_mirrored_limbs(skeleton: Skeleton) -> list[MirroredLimbs]:
     Only lengths are compared, so that neither the rest pose nor its axes matter. Where one
     branch goes on, such as to a prop in one hand, the pair ends before.
     """
-    lengths = np.linalg.norm(skeleton.offsets, axis=1)
-    lengths[0] = 0.0
-    longest = _longest_path(skeleton, lengths)
+    tree = _Tree.of(skeleton)
+    shortest = max(MIN_LIMB_FRACTION * tree.longest_path, 1e-9)
     pairs = []
-    for branch, children in enumerate(skeleton.children):
-        for one, other in combinations(children, 2):
-            limbs = _follow(skeleton, one, other, lengths, MAX_DIFFERENCE_FRACTION * longest)
-            if lengths[limbs[0]].sum() > max(MIN_LIMB_FRACTION * longest, 1e-9):
+    for branch, children in enumerate(tree.branches):
+        long = [child for child in children if tree.reach[child] > shortest]
+        for one, other in combinations(long, 2):
+            limbs = tree.follow(one, other, MAX_LIMB_JOINTS)
+            if tree.lengths[limbs[0]].sum() > shortest:
                 pairs.append(MirroredLimbs(branch, limbs))
     return pairs
 
 
-def _follow(
-    skeleton: Skeleton, one: int, other: int, lengths: NDArray[np.float64], tolerance: float
-) -> tuple[list[int], list[int]]:
-    """Return the longest paths from two joints down whose bones are equally long."""
-    pair = lengths[[one, other]]
-    if np.ptp(pair) > max(MAX_DIFFERENCE * pair.max(), tolerance):
-        return [], []
-    below = (
-        _follow(skeleton, first, second, lengths, tolerance)
-        for first in skeleton.children[one]
-        for second in skeleton.children[other]
-    )
-    limbs = max(below, key=lambda limbs: lengths[limbs[0]].sum(), default=([], []))
-    return [one, *limbs[0]], [other, *limbs[1]]
+class _Tree(NamedTuple):
+    """Lengths along the bones of a skeleton, in metres."""
 
+    lengths: NDArray[np.float64]
+    """Of the bone to each joint, shape (n_joints,)."""
+    reach: NDArray[np.float64]
+    """Of the longest path through this bone to a tip, shape (n_joints,)."""
+    branches: list[list[int]]
+    """Children of each joint, those with the longest paths first."""
+    longest_path: float
+    """Between two joints."""
 
-def _longest_path(skeleton: Skeleton, lengths: NDArray[np.float64]) -> float:
-    """Return the greatest distance along the bones between two joints."""
-    below, longest = np.zeros(skeleton.n_joints), 0.0
-    for joint in range(skeleton.n_joints - 1, 0, -1):
-        parent, reach = skeleton.parents[joint], below[joint] + lengths[joint]
-        longest = max(longest, below[parent] + reach)
-        below[parent] = max(below[parent], reach)
-    return longest
+    @classmethod
+    def of(cls, skeleton: Skeleton) -> "_Tree":
+        lengths = np.linalg.norm(skeleton.offsets, axis=1)
+        lengths[0] = 0.0
+        reach, longest = lengths.copy(), 0.0
+        for joint in range(skeleton.n_joints - 1, 0, -1):
+            parent = skeleton.parents[joint]
+            below = reach[parent] - lengths[parent]
+            longest = max(longest, below + reach[joint])
+            reach[parent] = lengths[parent] + max(below, reach[joint])
+        branches = [
+            sorted(children, key=lambda child: -reach[child])[:MAX_BRANCHES]
+            for children in skeleton.children
+        ]
+        return cls(lengths, reach, branches, longest)
+
+    def follow(self, one: int, other: int, n_joints: int) -> tuple[list[int], list[int]]:
+        """Return the longest paths from two joints down whose bones are equally long."""
+        pair = self.lengths[[one, other]]
+        tolerance = MAX_DIFFERENCE_FRACTION * self.longest_path
+        if not n_joints or np.ptp(pair) > max(MAX_DIFFERENCE * pair.max(), tolerance):
+            return [], []
+        below = (
+            self.follow(first, second, n_joints - 1)
+            for first in self.branches[one]
+            for second in self.branches[other]
+        )
+        limbs = max(below, key=lambda limbs: self.lengths[limbs[0]].sum(), default=([], []))
+        return [one, *limbs[0]], [other, *limbs[1]]

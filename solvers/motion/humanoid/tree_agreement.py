@@ -14,8 +14,9 @@ SIDES = ("left", "right")
 TWIST_WORD = re.compile("twist|roll|bend|stretch|helper|correct|half|sub|捩", re.IGNORECASE)
 NO_LETTERS = re.compile(r"[\W\d_]+")
 
-MAX_BONE_RATIO = 2.2
-"""Between upper and lower limb; people have 1.0 (legs) and 1.3 (arms)."""
+MAX_BONE_RATIO = 3.0
+"""Between upper and lower limb; people have 1.0 (legs) and 1.3 (arms), and 2.2 was seen in a
+captured skeleton whose wrists were set too high."""
 MAX_SIDE_RATIO = 1.6
 """Between both sides' bones."""
 MIN_BONE_FRACTION = 0.05

@@ -13,6 +13,7 @@ from .axes import (
     z_up_from_y_up,
 )
 from .bodies import longest_observed_body, stack_body_frames
+from .body_axes import UpAxisName, describe_guessed_axis, judge_up_axis, rotate_to_z_up
 from .body_unit import describe_guessed_unit
 from .points import (
     METRES,
@@ -32,19 +33,23 @@ __all__ = [
     "MIN_BODY_JOINTS",
     "PLAUSIBLE_REACH_M",
     "ConstantRate",
+    "UpAxisName",
     "check_scale",
     "constant_rate_from_times",
+    "describe_guessed_axis",
     "describe_guessed_unit",
     "from_azure_space",
     "from_kinect_space",
     "guess_unit",
     "guess_unit_of_points",
     "joint_recording",
+    "judge_up_axis",
     "longest_bone_path",
     "longest_observed_body",
     "metres_from_unit_name",
     "point_names",
     "points_z_up",
+    "rotate_to_z_up",
     "rotations_y_up_from_z_up",
     "rotations_z_up_from_y_up",
     "stack_body_frames",

@@ -69,3 +69,15 @@ def longest_bone_path(parents: Sequence[int], offsets: NDArray[np.float64]) -> f
         longest = max(longest, below[parents[joint]] + way)
         below[parents[joint]] = max(below[parents[joint]], way)
     return longest
+
+
+def rotation_to_z_up(axis: str) -> NDArray[np.float64]:
+    """Return the quaternion that turns what was read with Y up so that `axis` is up."""
+    half = np.sqrt(0.5)
+    return np.array(
+        {
+            "Y": (1.0, 0.0, 0.0, 0.0), "-Y": (0.0, 1.0, 0.0, 0.0),
+            "Z": (half, -half, 0.0, 0.0), "-Z": (half, half, 0.0, 0.0),
+            "X": (half, 0.0, -half, 0.0), "-X": (half, 0.0, half, 0.0),
+        }[axis]
+    )  # fmt: skip

@@ -2,13 +2,12 @@
 
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
-from typing import Literal
 
 from ...errors import InvalidFileError
 from ...motion import Motion
 from ...progress import Progress, unwatched, within
 from ..containers import LineReader, stream_rows
-from ..conventions import check_scale
+from ..conventions import UpAxisName, check_scale
 from .bvh_channels import BvhChannels, motion_from_poses
 from .bvh_hierarchy import read_hierarchy
 
@@ -23,7 +22,7 @@ def read_bvh(
     path: Path | str,
     *,
     scale: float | None = None,
-    up: Literal["Y", "Z"] | None = None,
+    up: UpAxisName | None = None,
     progress: Progress = unwatched,
 ) -> Motion:
     """Read a BVH file, turned from Y up, facing +Z, to Z up, facing -Y.
@@ -43,9 +42,9 @@ def read_bvh(
     scale : float, metres per unit of the file, or None
         None guesses it from the length of the bones (`axes.guess_unit`): centimetres for most
         files, 0.0254 / 0.45 for those made from CMU's library.
-    up : "Y", "Z" or None
-        None means Y, as the format has it, unless the skeleton would lie on its face: Blender
-        writes its own axes, with Z up.
+    up : "X", "Y", "Z", "-X", "-Y", "-Z" or None
+        None judges it by the body (`judge_up_axis`): Y, as the format has it, unless the actor
+        would not stand. The rest pose may have another axis, which is then judged by itself.
     progress : Progress
 
     Returns
@@ -74,7 +73,7 @@ def read_bvh(
         raise InvalidFileError(f"{path} has no frames: nothing follows its Frame Time.")
     poses = BvhChannels(joints, rows).poses(within(progress, 0.7, 1.0))
     del rows
-    return motion_from_poses(joints, poses, frame_rate, scale, up)
+    return motion_from_poses(joints, poses, frame_rate, scale, up, progress)
 
 
 def _hierarchy(reader: LineReader, path: Path | str) -> bytes:

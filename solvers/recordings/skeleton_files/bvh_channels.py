@@ -1,28 +1,27 @@
 """From the numbers of a BVH file to a motion of rigid bones."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion import Motion, Skeleton, world_poses
+from ...motion import Motion, Skeleton
 from ...progress import Progress
 from ...rotations import inverse, multiply, quaternion_from_euler, rotate, rotation_between
 from ..conventions import (
+    UpAxisName,
+    describe_guessed_axis,
     guess_unit,
-    longest_bone_path,
-    rotations_y_up_from_z_up,
+    judge_up_axis,
+    rotate_to_z_up,
     rotations_z_up_from_y_up,
-    y_up_from_z_up,
     z_up_from_y_up,
 )
 from .bvh_hierarchy import BvhJoint
 
 FRAMES_AT_ONCE = 2000
-N_SAMPLED_FRAMES = 40
 
 
 class BvhPoses(NamedTuple):
@@ -76,15 +75,28 @@ class BvhChannels:
     def added(self) -> bool:
         """Whether position channels count from the OFFSET instead of from the parent.
 
-        The first is a rarer reading of the format. It is the right one where the channels are,
-        all in all, nearer to zero than to the offsets. Of the root only the height tells.
+        The first is a rarer reading of the format. Each joint of the body has one vote: its
+        channels are nearer to zero than to its OFFSET, or not. The root and the joints below
+        it that carry the body travel, and are asked only where no other joint has channels;
+        of the root only the height tells.
         """
-        agreement = 0.0
-        for joint, offset in enumerate(self.file_offsets):
-            known = np.array([f"{axis}position" in self.columns[joint] for axis in "xyz"])
-            weights = known * offset * ((1.0, 1.0, 1.0) if joint else (0.0, 1.0, 0.0))
-            agreement += float(weights @ (_median_position(self._places(joint)) - offset / 2))
-        return agreement < 0.0
+        voters = [joint for joint in range(1, len(self.joints)) if joint not in self.trunk]
+        votes = sum(map(self._vote_for_added, voters))
+        if not votes:
+            votes = sum(map(self._vote_for_added, self.trunk)) or self._vote_for_added(0)
+        return votes > 0
+
+    def _vote_for_added(self, joint: int) -> int:
+        """Return 1 where position channels are nearer to zero than to the OFFSET, else -1.
+
+        Return 0 where there are no channels, or nothing to tell the two apart.
+        """
+        known = np.array([f"{axis}position" in self.columns[joint] for axis in "xyz"])
+        known &= (True, True, True) if joint else (False, True, False)
+        offset = known * self.file_offsets[joint]
+        median = known * _median_position(self._places(joint))
+        length = float(offset @ offset)
+        return int(np.sign(length / 2 - median @ offset)) if length > 0.0 else 0
 
     def _places(self, joint: int, added: bool = False) -> NDArray[np.float64]:
         """Return where a joint is, seen from its parent, shape (n_frames, 3).
@@ -169,7 +181,8 @@ def motion_from_poses(
     poses: BvhPoses,
     frame_rate: float,
     scale: float | None,
-    up: str | None,
+    up: UpAxisName | None,
+    progress: Progress,
 ) -> Motion:
     """Return the motion in metres, Z up, as `read_bvh` describes it."""
     parents = tuple(joint.parent for joint in joints)
@@ -178,39 +191,15 @@ def motion_from_poses(
     names = tuple(joint.name for joint in joints)
     skeleton = Skeleton(names, parents, scale * z_up_from_y_up(poses.offsets))
     motion = Motion(skeleton, poses.rotations, scale * poses.root, frame_rate)
-    if up is None:
-        up = "Z" if _lies_on_its_face(motion) else "Y"
-    return _rotate_to_z_up(motion) if up == "Z" else motion
+    if up is not None:
+        return rotate_to_z_up(motion, up, up)
+    judged = judge_up_axis(motion)
+    if not judged.is_clear:
+        progress(1.0, describe_guessed_axis(judged.axis))
+    return rotate_to_z_up(motion, judged.axis, judged.rest_axis)
 
 
 def _median_position(places: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the median, shape (3,), over the frames where a place is known; else zero."""
     known = places[np.isfinite(places).all(axis=1)]
     return np.median(known, axis=0) if len(known) else np.zeros(3)
-
-
-def _lies_on_its_face(motion: Motion) -> bool:
-    """Whether a file with Z up was read as if it had Y up.
-
-    So it is where a body is stretched out flat both in the rest pose and in most frames. Either
-    alone is not enough: actors lie down, and some rest poses are lying or all along one axis.
-    """
-    skeleton = motion.skeleton
-    _, y, z = np.ptp(skeleton.rest_positions, axis=0)
-    if y < 2.0 * z or y < 0.5 * longest_bone_path(skeleton.parents, skeleton.offsets):
-        return False
-    step = max(1, motion.n_frames // N_SAMPLED_FRAMES)
-    some = world_poses(skeleton, motion.rotations[::step], motion.root_positions[::step])
-    _, y, z = np.median(np.ptp(some.positions, axis=1), axis=0)
-    return bool(y > z)
-
-
-def _rotate_to_z_up(motion: Motion) -> Motion:
-    """Undo the turn from Y up to Z up."""
-    skeleton = replace(motion.skeleton, offsets=y_up_from_z_up(motion.skeleton.offsets))
-    return Motion(
-        skeleton,
-        rotations_y_up_from_z_up(motion.rotations),
-        y_up_from_z_up(motion.root_positions),
-        motion.frame_rate,
-    )

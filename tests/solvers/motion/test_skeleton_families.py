@@ -4,7 +4,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from skeleton_families import FAMILIES, Joint, joints_of, skeleton_from
+from rigs import FAMILIES, Joint, joints_of, skeleton_from
 
 from solvers.motion import find_humanoid_map
 from solvers.motion.humanoid.roles import MIN_NAME_SCORE

@@ -1,0 +1,204 @@
+"""Which way is up in a recording, judged from the body in it."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...motion import Motion, Skeleton, find_humanoid_map, world_poses
+from ...rotations import inverse, multiply, rotate
+from .axes import longest_bone_path, rotation_to_z_up
+
+Array = NDArray[np.float64]
+UpAxisName = Literal["X", "Y", "Z", "-X", "-Y", "-Z"]
+
+N_SAMPLED_FRAMES = 60
+AXES: dict[UpAxisName, Array] = {
+    "Y": np.array([0.0, 0.0, 1.0]), "-Y": np.array([0.0, 0.0, -1.0]),
+    "Z": np.array([0.0, -1.0, 0.0]), "-Z": np.array([0.0, 1.0, 0.0]),
+    "X": np.array([1.0, 0.0, 0.0]), "-X": np.array([-1.0, 0.0, 0.0]),
+}  # fmt: skip
+"""Axes of a file as directions of a motion that was read with Y up."""
+
+STANDING_WEIGHT = 1.0
+"""Evidence of the motion: head above hips above feet in most frames, -1 to 1."""
+REST_WEIGHT = 0.8
+"""The same in the rest pose: files are exported with it standing, but not always turned as the
+motion is."""
+FLOOR_WEIGHT = 0.3
+"""Evidence of the floor: the lowest joint is near zero, 0 to 1."""
+TRAVEL_WEIGHT = 0.5
+"""Evidence of the path: people travel along the ground, 0 to 1."""
+EXPECTED: dict[UpAxisName, float] = {"Y": 0.1, "Z": 0.05}
+"""Evidence of the format: BVH has Y up, and some programs write Z up."""
+MIN_TRAVEL_FRACTION = 1.0
+"""Travel, relative to the height of the body, from which it is evidence."""
+MAX_FLOOR_FRACTION = 0.4
+"""Distance of the lowest joint from zero, relative to the height, that is no evidence."""
+CLEAR_LEAD = 0.5
+"""Lead over the next axis below which the report says that the evidence disagrees."""
+MIN_REST_STANDING = 0.7
+"""Evidence from which the rest pose has an axis of its own."""
+MIN_SPREAD_FRACTION = 0.03
+"""Distance between the feet, relative to the height, below which a rest pose is folded."""
+
+
+class UpAxis(NamedTuple):
+    """Which axis of a file is up."""
+
+    axis: UpAxisName
+    rest_axis: UpAxisName
+    """The same of the rest pose, which may differ."""
+    is_clear: bool
+    """Whether the evidence agrees."""
+
+
+def judge_up_axis(motion: Motion) -> UpAxis:
+    """Return the axis along which the actor stands.
+
+    Four kinds of evidence are weighed against each other: whether the head is above the hips
+    and these above the feet in most frames; the same in the rest pose; whether the lowest
+    joint is near zero; and whether the actor travels at right angles to the axis. Only joints
+    with a humanoid role count, so that roots, props and stale offsets have no say. Where no
+    body is recognised, Y is up unless all joints are stretched out flat.
+
+    Parameters
+    ----------
+    motion : Motion
+        Read as if Y were up.
+    """
+    step = max(1, motion.n_frames // N_SAMPLED_FRAMES)
+    positions = world_poses(
+        motion.skeleton, motion.rotations[::step], motion.root_positions[::step]
+    ).positions
+    positions = positions[np.isfinite(positions).all(axis=(1, 2))]
+    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
+    body = _Body.from_roles(roles)
+    if body is None or not len(positions):
+        return _judge_by_extent(motion.skeleton, positions)
+    rest = motion.skeleton.rest_positions[None]
+    in_rest = _standing(rest, body) if _is_unfolded(rest[0], body) else dict.fromkeys(AXES, 0.0)
+    standing = _standing(positions, body)
+    floor, travel = _floor(positions, body), _travel(positions, body)
+    totals = {
+        axis: STANDING_WEIGHT * standing[axis]
+        + REST_WEIGHT * in_rest[axis]
+        + FLOOR_WEIGHT * floor[axis]
+        + TRAVEL_WEIGHT * travel[axis]
+        + EXPECTED.get(axis, 0.0)
+        for axis in AXES
+    }
+    best, second = sorted(AXES, key=lambda axis: totals[axis], reverse=True)[:2]
+    rest_best = max(AXES, key=lambda axis: in_rest[axis])
+    return UpAxis(
+        best,
+        rest_best if in_rest[rest_best] > MIN_REST_STANDING else best,
+        totals[best] - totals[second] >= CLEAR_LEAD,
+    )
+
+
+def describe_guessed_axis(axis: UpAxisName) -> str:
+    """Say which axis is taken for up where the evidence disagrees."""
+    return f"{axis} is taken for up, but the evidence disagrees; set Up if the actor lies"
+
+
+def rotate_to_z_up(motion: Motion, axis: UpAxisName, rest_axis: UpAxisName) -> Motion:
+    """Turn a motion that was read with Y up so that the right axes are up.
+
+    Parameters
+    ----------
+    motion : Motion
+    axis : axis of the file that is up in the motion
+    rest_axis : the same for the rest pose
+    """
+    if axis == rest_axis == "Y":
+        return motion
+    turn, rest_turn = rotation_to_z_up(axis), rotation_to_z_up(rest_axis)
+    skeleton = replace(motion.skeleton, offsets=rotate(rest_turn, motion.skeleton.offsets))
+    rotations = multiply(multiply(rest_turn, motion.rotations), inverse(rest_turn))
+    if axis != rest_axis:
+        root = multiply(multiply(turn, motion.rotations[:, 0]), inverse(rest_turn))
+        rotations[:, 0] = root
+    return Motion(skeleton, rotations, rotate(turn, motion.root_positions), motion.frame_rate)
+
+
+class _Body(NamedTuple):
+    """The joints that show where a body stands."""
+
+    hips: int
+    head: int
+    feet: list[int]
+    joints: list[int]
+    """All with a role."""
+
+    @classmethod
+    def from_roles(cls, roles: Mapping[str, int]) -> "_Body | None":
+        feet = [roles[role] for role in ("leftFoot", "rightFoot") if role in roles]
+        top = next((roles[role] for role in ("head", "neck", "chest") if role in roles), None)
+        if top is None or "hips" not in roles or not feet:
+            return None
+        return cls(roles["hips"], top, feet, sorted(roles.values()))
+
+
+def _judge_by_extent(skeleton: Skeleton, positions: Array) -> UpAxis:
+    """Return Z where something is flat with Y up, in the rest pose and in most frames."""
+    flat = skeleton.rest_positions[None] if not len(positions) else positions
+    extents = [
+        np.median(np.ptp(points, axis=1), axis=0)
+        for points in (skeleton.rest_positions[None], flat)
+    ]
+    reach = longest_bone_path(skeleton.parents, skeleton.offsets)
+    is_flat = all(y > z for _, y, z in extents) and extents[0][1] > max(
+        2.0 * extents[0][2], 0.5 * reach
+    )
+    axis: UpAxisName = "Z" if is_flat else "Y"
+    return UpAxis(axis, axis, is_clear=True)
+
+
+def _is_unfolded(rest: Array, body: _Body) -> bool:
+    """Whether the rest pose shows a body, with its legs beside each other."""
+    spread = np.linalg.norm(rest[body.feet[0]] - rest[body.feet[-1]])
+    return len(body.feet) < 2 or bool(
+        spread > 2 * MIN_SPREAD_FRACTION * np.ptp(rest[body.joints], axis=0).max()
+    )
+
+
+def _standing(positions: Array, body: _Body) -> dict[UpAxisName, float]:
+    """Return how far each axis points from feet to hips to head in most frames, -1 to 1."""
+    trunk = positions[:, body.head] - positions[:, body.hips]
+    legs = positions[:, body.hips] - positions[:, body.feet].mean(axis=1)
+    directions = [
+        part / np.maximum(np.linalg.norm(part, axis=1, keepdims=True), 1e-9)
+        for part in (trunk, legs)
+    ]
+    along = np.median(np.mean(directions, axis=0), axis=0)
+    return {axis: float(along @ direction) for axis, direction in AXES.items()}
+
+
+def _floor(positions: Array, body: _Body) -> dict[UpAxisName, float]:
+    """Return how near the lowest joint is to zero along each axis, 0 to 1."""
+    return {
+        axis: max(
+            0.0,
+            1.0
+            - abs(float(np.percentile((positions[:, body.joints] @ direction).min(axis=1), 5)))
+            / (MAX_FLOOR_FRACTION * _height(positions, body)),
+        )
+        for axis, direction in AXES.items()
+    }
+
+
+def _travel(positions: Array, body: _Body) -> dict[UpAxisName, float]:
+    """Return how far the actor travels at right angles to each axis, 0 to 1."""
+    travel = np.ptp(positions[:, body.hips], axis=0)
+    length = float(np.linalg.norm(travel))
+    if length < MIN_TRAVEL_FRACTION * _height(positions, body):
+        return dict.fromkeys(AXES, 0.0)
+    return {axis: 1.0 - float(travel @ np.abs(AXES[axis])) / length for axis in AXES}
+
+
+def _height(positions: Array, body: _Body) -> float:
+    extents = np.ptp(positions[:, body.joints], axis=1).max(axis=1)
+    return max(float(np.median(extents)), 1e-9)
