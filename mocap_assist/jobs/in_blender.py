@@ -15,11 +15,31 @@ from .job import EXTENSION, isolated_command, run
 
 BLEND_CHILD = Path(__file__).with_name("blend_child.py")
 READER = "mocap_assist.library.blend_clips"
+BLEND = ".blend"
+SCENE_SUFFIXES = frozenset({
+    ".fbx",
+    ".glb",
+    ".gltf",
+    ".vrm",
+    ".vrma",
+    ".usd",
+    ".usda",
+    ".usdc",
+    ".usdz",
+    ".dae",
+})
+"""Files of other programs that Blender's own importers read."""
+
+
+def is_read_in_blender(path: Path | str) -> bool:
+    """Whether a file is one that a background Blender reads, by its name."""
+    suffix = Path(path).suffix.lower()
+    return suffix == BLEND or suffix in SCENE_SUFFIXES
 
 
 @dataclass(frozen=True)
 class BackgroundBlender:
-    """Who reads .blend files."""
+    """Who reads .blend files, FBX, glTF and USD."""
 
     program: str
     """Path; empty where Blender is a module of Python."""
@@ -61,7 +81,7 @@ def read_blends(
     items: Sequence[str] = (),
     progress: Progress = unwatched,
 ) -> list[BlendRead]:
-    """Read the armature actions of .blend files in a Blender of their own.
+    """Read the armature actions of .blend, FBX, glTF and USD files in a Blender of its own.
 
     Parameters
     ----------

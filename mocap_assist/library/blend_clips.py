@@ -1,4 +1,4 @@
-"""Read armature actions out of .blend files, in a background Blender."""
+"""Read armature actions out of .blend, FBX, glTF and USD files, in a background Blender."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +13,8 @@ from ..actions.armature_read import read_take
 from ..actions.fitting import fitting_slots, plays
 from ..blender import compat
 from ..blender.compat import Source
-from ..jobs.in_blender import BlendClip, BlendRead
+from ..blender.scene_files import open_scene_file
+from ..jobs.in_blender import SCENE_SUFFIXES, BlendClip, BlendRead
 from ..rigs.evaluated_body import body_bones, with_body_shown
 from ..rigs.rigify import is_rigify
 from ..rigs.target_read import find_roles
@@ -91,11 +92,9 @@ def read_source(scene: bpy.types.Scene, armature: bpy.types.Object, source: Sour
 
 
 def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> BlendRead:
-    try:
-        bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
-    except RuntimeError as error:  # damaged, or no .blend file at all
-        said = str(error).strip().removeprefix("Error:").strip().splitlines()
-        return BlendRead((), (f"{path} cannot be read: {said[0] if said else 'no reason'}",))
+    open_scene_file(path)
+    if sentence := _without_motion(path):
+        return BlendRead((), (sentence,))
     actions = actions_of(assets_only)
     lack_rig = rig and any(map(_lacks_rig, actions))
     refused = _bring_armatures(rig) if lack_rig else []
@@ -112,6 +111,17 @@ def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> 
         clips += found.clips
         refused += found.refused
     return BlendRead(tuple(clips), tuple(refused))
+
+
+def _without_motion(path: str) -> str:
+    """Say what a file of another program lacks; a .blend file may have neither."""
+    if Path(path).suffix.lower() not in SCENE_SUFFIXES:
+        return ""
+    if not any(each.type == "ARMATURE" for each in bpy.data.objects):
+        return f"{path} has no skeleton, so there is no body to import."
+    if not bpy.data.actions:
+        return f"{path} has a skeleton but no animation; as a target rig, open it in Blender."
+    return ""
 
 
 def _read_action(path: str, action: bpy.types.Action, items: Sequence[str]) -> BlendRead:

@@ -21,10 +21,15 @@ from ...solvers.retrieval import (
 )
 from ...solvers.retrieval.library import refuse_other_suffix
 from ...solvers.workflows import index_files
-from ..jobs.in_blender import BackgroundBlender, BlendClip, BlendRead, read_blends
+from ..jobs.in_blender import (
+    BackgroundBlender,
+    BlendClip,
+    BlendRead,
+    is_read_in_blender,
+    read_blends,
+)
 from ..jobs.job import ProcessDied
 
-BLEND = ".blend"
 BYTES_AT_ONCE = 100_000_000
 """Of .blend files that one Blender reads: what it has read is kept if the next one crashes."""
 
@@ -104,7 +109,7 @@ def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> In
             continue
         for each in found:
             blends.setdefault(each.path, each)
-        files += [] if place.path.endswith(BLEND) else [place.path]
+        files += [] if is_read_in_blender(place.path) else [place.path]
     share = len(files) / max(len(files) + len(blends), 1)
     report = index_files(path, files, tags=problem.tags, progress=within(progress, 0.0, share))
     refused += [why for _, why in report.refused]
@@ -138,7 +143,7 @@ def _blends(place: Place) -> list[_Blend]:
             place.assets_only,
         )
         for path in (files_below(top) if top.is_dir() else [top])
-        if path.suffix == BLEND and path.is_file()
+        if is_read_in_blender(path) and path.is_file()
     ]
 
 

@@ -1,0 +1,133 @@
+"""Open files that Blender itself can read: scenes, and the exports of other programs."""
+
+import struct
+from pathlib import Path
+from typing import Any
+
+import addon_utils
+import bpy
+
+from ...solvers.errors import InvalidFileError
+from ...solvers.files import open_regular
+from ...solvers.json_text import parse_json
+from ..jobs.in_blender import SCENE_SUFFIXES
+
+COMMON_RATES = (15.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 200.0, 240.0)
+MIN_RATE_HZ = 12.0
+"""Below it, keys are sparse: no sampled motion, but one that was set by hand."""
+RATE_OF_SPARSE_KEYS_HZ = 30.0
+RATE_TOLERANCE = 0.01
+MAX_JSON_BYTES = 1 << 28
+GLB_MAGIC = 0x46546C67
+GLB_JSON = 0x4E4F534A
+
+
+def open_scene_file(path: str) -> None:
+    """Replace the open scene by a .blend file, or by what an importer makes of another file.
+
+    Scripts and drivers of the file are off. The scene plays at the rate of the file.
+
+    Raises
+    ------
+    InvalidFileError
+        This Blender cannot read the file.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix not in SCENE_SUFFIXES:
+        return _run(path, bpy.ops.wm.open_mainfile, load_ui=False, use_scripts=False)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    if suffix == ".fbx":
+        return _run(path, bpy.ops.wm.fbx_import)
+    if suffix == ".dae":
+        return _open_collada(path)
+    if suffix in {".usd", ".usda", ".usdc", ".usdz"}:
+        return _run(path, bpy.ops.wm.usd_import, import_meshes=False, import_cameras=False)
+    return _open_gltf(path)
+
+
+def _run(path: str, operator: Any, **options: Any) -> None:
+    try:
+        operator(filepath=path, **options)
+    except RuntimeError as error:
+        lines = str(error).strip().removeprefix("Error:").strip().splitlines()
+        reason = lines[0] if lines else "no reason is given"
+        raise InvalidFileError(f"{path} cannot be read: {reason}") from None
+
+
+def _open_collada(path: str) -> None:
+    if "collada_import" not in dir(bpy.ops.wm):
+        raise InvalidFileError(
+            f"{path} is a Collada file, which Blender {bpy.app.version_string} no longer reads."
+            " Convert it to FBX or glTF, or import it in Blender 4.5."
+        )
+    _run(path, bpy.ops.wm.collada_import)
+
+
+def _open_gltf(path: str) -> None:
+    """Import glTF, GLB, VRM or VRMA; times become frames at the rate of the file's keys."""
+    addon_utils.enable("io_scene_gltf2")
+    content = _gltf_content(path)
+    render = bpy.context.scene.render
+    render.fps, render.fps_base = _as_fps(_gltf_rate(content))
+    _run(path, bpy.ops.import_scene.gltf, disable_bone_shape=True, import_shading="NORMALS")
+
+
+def _as_fps(rate: float) -> tuple[int, float]:
+    fps = max(1, round(rate))
+    return fps, fps / rate
+
+
+def _gltf_content(path: str) -> dict[str, Any]:
+    """Return the JSON of a glTF file, text or binary."""
+    with open_regular(path) as file:
+        head = file.read(20)
+        if len(head) == 20 and struct.unpack("<I", head[:4])[0] == GLB_MAGIC:
+            length, kind = struct.unpack("<II", head[12:20])
+            if kind != GLB_JSON or length > MAX_JSON_BYTES:
+                raise InvalidFileError(f"{path} is a damaged GLB file. Export it again.")
+            text = file.read(length)
+        else:
+            text = head + file.read(MAX_JSON_BYTES)
+    try:
+        content = parse_json(text)
+    except ValueError:
+        content = None
+    if not isinstance(content, dict) or "asset" not in content:
+        raise InvalidFileError(f"{path} is no glTF file, whatever its name says.")
+    return content
+
+
+def _gltf_rate(content: dict[str, Any]) -> float:
+    """Return the rate of most keys in hertz, from the numbers and times of the samplers."""
+    accessors = _list(content.get("accessors"))
+    rates: list[float] = []
+    for animation in _list(content.get("animations")):
+        for sampler in _list(_dict(animation).get("samplers")):
+            index = _dict(sampler).get("input")
+            if isinstance(index, int) and 0 <= index < len(accessors):
+                rates += _key_rate(_dict(accessors[index]))
+    if not rates:
+        return RATE_OF_SPARSE_KEYS_HZ
+    rate = max(set(rates), key=rates.count)
+    nearest = min(COMMON_RATES, key=lambda common: abs(common - rate))
+    if abs(nearest - rate) <= RATE_TOLERANCE * nearest:
+        return nearest
+    return rate if rate >= MIN_RATE_HZ else RATE_OF_SPARSE_KEYS_HZ
+
+
+def _key_rate(accessor: dict[str, Any]) -> list[float]:
+    """Return the rate of evenly spaced keys, or nothing where the file does not say it."""
+    count, first, last = (accessor.get(name) for name in ("count", "min", "max"))
+    try:
+        duration = float(_list(last)[0]) - float(_list(first)[0])
+        return [round((int(count) - 1) / duration, 3)] if duration > 0.0 and count else []
+    except (IndexError, TypeError, ValueError, OverflowError):
+        return []
+
+
+def _list(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else []
+
+
+def _dict(value: Any) -> dict[str, Any]:
+    return value if isinstance(value, dict) else {}
