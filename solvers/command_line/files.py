@@ -11,7 +11,7 @@ from ..files import real_path
 from ..motion import Motion, Tracks
 from ..progress import Progress, within
 from ..recordings import (
-    format_of,
+    detect_format,
     read_motion_or_tracks,
     recordings_in,
     write_bvh,
@@ -169,7 +169,7 @@ def output_extension(source: Path) -> str:
     extension = source.suffix.lower()
     if extension in RECORDED:
         return extension
-    format_found = attempt(source, format_of, source)
+    format_found = attempt(source, detect_format, source)
     if format_found is None or isinstance(format_found, Failure):  # The reader reports why.
         return MOTIONS
     return MOTIONS if format_found.has_skeleton else POINTS_BY_DEFAULT

@@ -34,7 +34,7 @@ from solvers.errors import MocapAssistError
 from solvers.json_text import parse_json
 from solvers.motion import read_humanoid_map
 from solvers.recordings import DepthSettings, read_depth, read_recording
-from solvers.recordings.containers.png_header import png_header
+from solvers.recordings.containers.png_header import read_png_header
 from solvers.recordings.depth_files.folder import is_depth_folder
 from solvers.recordings.live.frames import decode_frame
 from solvers.retrieval import Clip, find_similar, load_clip_library
@@ -130,7 +130,7 @@ def targets() -> dict[str, Target]:
     )
     found["depth_raw"] = Target(raw_depth(), _read_depth, BINARY_TOKENS)
     found["png"] = Target(
-        png(DEPTH[0]), lambda path: png_header(path.parent, path.name), BINARY_TOKENS
+        png(DEPTH[0]), lambda path: read_png_header(path.parent, path.name), BINARY_TOKENS
     )
     for kind, content in depth_folders().items():
         found[f"folder_{kind}"] = Target(

@@ -1,7 +1,7 @@
 """Container formats and tables: C3D, EBML, MAT, NPZ, text rows."""
 
 from .c3d_file import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS, C3dFile, is_c3d
-from .folder_scan import files_below, is_folder, refuse_closed
+from .folder_scan import check_folder_access, files_below, is_folder
 from .growing_table import GrowingTable
 from .json_members import array_from_json, json_members
 from .line_reader import Block, LineReader
@@ -9,7 +9,7 @@ from .listed_images import bounded_image, is_listed, largest_color, listed_image
 from .matlab_file import MatlabArray, is_matlab, matlab_arrays
 from .matroska import Matroska, Track, index_matroska, is_matroska
 from .names import MAX_NAME_LENGTH, UniqueNames, printable, shown
-from .png_header import PngHeader, is_png, png_header
+from .png_header import PngHeader, is_png, read_png_header
 from .row_stream import stream_rows
 from .stored_arrays import NPY_MAGIC, NUMBERS, read_archive, read_array
 from .stored_bytes import (
@@ -60,6 +60,7 @@ __all__ = [
     "UniqueNames",
     "array_from_json",
     "bounded_image",
+    "check_folder_access",
     "files_below",
     "index_matroska",
     "is_c3d",
@@ -73,14 +74,13 @@ __all__ = [
     "listed_image",
     "matlab_arrays",
     "parse_rows",
-    "png_header",
     "printable",
     "read_archive",
     "read_array",
     "read_bytes",
     "read_number",
+    "read_png_header",
     "read_rows",
-    "refuse_closed",
     "shown",
     "spaces_from_commas",
     "stream_rows",

@@ -20,7 +20,7 @@ def files_below(
     """Yield the files in a folder and below, by name, and folders that are one recording.
 
     Hidden files and folders are passed over, and links to folders. A folder that cannot be
-    looked into is yielded itself, so that whoever reads it says why (`refuse_closed`).
+    looked into is yielded itself, so that whoever reads it says why (`check_folder_access`).
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def files_below(
             waiting += reversed(inside)
 
 
-def refuse_closed(folder: Path) -> None:
+def check_folder_access(folder: Path) -> None:
     """Raise FileAccessError where a folder cannot be looked into."""
     try:
         with os.scandir(folder) as entries:

@@ -22,7 +22,7 @@ class PngHeader(NamedTuple):
     grey: bool
 
 
-def png_header(root: Path, name: str) -> PngHeader | None:
+def read_png_header(root: Path, name: str) -> PngHeader | None:
     """Return what a PNG says of itself; None where it is missing, damaged or cut short.
 
     Raises InvalidFileError if it lies outside of the folder `root`.

@@ -9,8 +9,8 @@ from ...errors import InvalidSettingError
 
 ACCLAIM_UNIT = 0.0254 / 0.45
 """Metres in one unit of an Acclaim file, and of the BVH files made from them."""
-CENTIMETRE = 0.01
-UNITS = (CENTIMETRE, 1.0, 0.001, 0.0254, ACCLAIM_UNIT)
+CENTIMETER = 0.01
+UNITS = (CENTIMETER, 1.0, 0.001, 0.0254, ACCLAIM_UNIT)
 
 # The longest way along the bones of an adult, from a hand or the head to a foot: 2.0 to 2.6 m
 # in skeletons of nine makers. Unlike the height it does not depend on the rest pose.
@@ -54,9 +54,9 @@ def guess_unit(parents: Sequence[int], offsets: NDArray[np.float64]) -> float:
     reach = longest_bone_path(parents, offsets)
     low, high = PLAUSIBLE_REACH_M
     if len(parents) < MIN_BODY_JOINTS or not reach > 0.0:
-        return CENTIMETRE
-    if low <= reach * CENTIMETRE <= high:
-        return CENTIMETRE
+        return CENTIMETER
+    if low <= reach * CENTIMETER <= high:
+        return CENTIMETER
     return min(UNITS, key=lambda unit: abs(np.log(reach * unit / ADULT_REACH_M)))
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ..containers import UniqueNames, printable
 from .axes import z_up_from_y_up
 
-METRES = {
+METERS = {
     "mm": 0.001, "millimeter": 0.001, "millimetre": 0.001, "cm": 0.01, "centimeter": 0.01,
     "centimetre": 0.01, "dm": 0.1, "m": 1.0, "meter": 1.0, "metre": 1.0, "in": 0.0254,
     "inch": 0.0254, "inches": 0.0254, "ft": 0.3048, "foot": 0.3048, "feet": 0.3048,
@@ -30,17 +30,17 @@ def point_names(labels: Sequence[str]) -> tuple[str, ...]:
     )
 
 
-def metres_from_unit_name(word: str) -> float | None:
+def meters_from_unit_name(word: str) -> float | None:
     """Return the metres in a unit of this name; None if there is no such name."""
     word = word.strip().lower()
-    return METRES.get(word, METRES.get(word.removesuffix("s")))
+    return METERS.get(word, METERS.get(word.removesuffix("s")))
 
 
 def guess_unit_of_points(points: NDArray[np.float64]) -> float:
     """Return the one of metres, centimetres and millimetres that gives a person's size."""
     extent = float(np.median(_extents(points).max(axis=1)))
     if extent == 0.0:
-        return METRES["mm"]
+        return METERS["mm"]
     return min((0.001, 0.01, 1.0), key=lambda unit: abs(np.log(extent * unit / BODY_EXTENT_M)))
 
 

@@ -9,13 +9,13 @@ from ...depth_scene import Camera, DepthRecording
 from ...errors import InvalidFileError
 from ...faults import attempt
 from ...progress import Progress, unwatched
-from ..containers import PngHeader, is_listed, png_header
+from ..containers import PngHeader, is_listed, read_png_header
 from ..conventions import DEFAULT_FRAME_RATE
+from .camera_orientation import rotate_upright
 from .image_frames import Frames, frames_by_number, frames_by_time
 from .images import NONE, ColorImageFiles, DepthImageFiles
 from .layouts import Layout, open3d_layout, plain_layout, tum_layout
-from .sensor_hold import rotate_upright
-from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings, Held
+from .settings import DEFAULT_DEPTH_SETTINGS, CameraOrientation, DepthSettings
 from .stack import check_size
 from .stray_scanner import stray_layout
 
@@ -48,7 +48,7 @@ def is_depth_folder(path: Path) -> bool:
         return False
     if layout.metres:
         return True
-    headers = (attempt(path, png_header, layout.root, name) for name in layout.depth)
+    headers = (attempt(path, read_png_header, layout.root, name) for name in layout.depth)
     header = next((header for header in headers if isinstance(header, PngHeader)), None)
     if header is None:
         return "/" in layout.depth[0]  # A folder called depth.
@@ -91,7 +91,7 @@ def read_depth_folder(
     for remark in (*layout.remarks, *_remarks(layout, good, shown, frames, settings)):
         progress(1.0, remark)
     progress(1.0, "Reading")
-    held = layout.held if settings.held is Held.KNOWN else settings.held
+    held = layout.held if settings.held is CameraOrientation.KNOWN else settings.held
     return rotate_upright(recording, held, mirrored=False)
 
 
@@ -99,7 +99,7 @@ def _check_images(layout: Layout, progress: Progress) -> tuple[NDArray[np.bool_]
     """Tell which pictures are there and whole, and of which size all of them are."""
     headers = []
     for place, name in enumerate(layout.depth):
-        headers.append(png_header(layout.root, name))
+        headers.append(read_png_header(layout.root, name))
         progress(place / len(layout.depth), "Reading")
     known = [header for header in headers if header is not None]
     if not known or len(known) < MIN_GOOD_FRACTION * len(headers):

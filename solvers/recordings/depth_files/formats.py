@@ -8,14 +8,14 @@ from ...depth_scene import DepthRecording
 from ...errors import InvalidFileError, InvalidMotionError
 from ...files import open_regular, unreadable
 from ...progress import Progress, unwatched
-from ..containers import refuse_closed
+from ..containers import check_folder_access
+from .camera_orientation import rotate_upright
 from .folder import layout_of, read_depth_folder
 from .mat import is_depth_mat, read_depth_mat
 from .mkv import is_depth_mkv, read_depth_mkv
 from .npz import is_depth_npz, read_depth_npz
 from .raw import is_depth_raw, read_depth_raw
-from .sensor_hold import rotate_upright
-from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings, Held
+from .settings import DEFAULT_DEPTH_SETTINGS, CameraOrientation, DepthSettings
 
 HEAD = 4096
 
@@ -86,7 +86,7 @@ def read_depth(
     SolveCancelled
         Raised by `progress`.
     """
-    known = depth_format_of(path)
+    known = detect_depth_format(path)
     if known is None:
         names = ", ".join(each.name for each in (*DEPTH_FILES, FOLDER))
         raise InvalidFileError(f"{path} holds no depth of a known format ({names}).")
@@ -94,11 +94,11 @@ def read_depth(
         recording = known.read(path, settings, progress=progress)
     except InvalidMotionError as error:  # Such as a camera that sees nothing.
         raise InvalidFileError(f"{path}: {error}") from None
-    held = Held.UPRIGHT if known is FOLDER else settings.held
+    held = CameraOrientation.UPRIGHT if known is FOLDER else settings.held
     return rotate_upright(recording, held, settings.mirrored)
 
 
-def depth_format_of(path: Path | str) -> DepthFormat | None:
+def detect_depth_format(path: Path | str) -> DepthFormat | None:
     """Tell which format of depth a file or folder has; None for none that is known.
 
     Raises
@@ -108,7 +108,7 @@ def depth_format_of(path: Path | str) -> DepthFormat | None:
     """
     path = Path(path)
     if path.is_dir():
-        refuse_closed(path)
+        check_folder_access(path)
         return FOLDER if layout_of(path) is not None else None
     try:
         with open_regular(path) as file:

@@ -13,8 +13,8 @@ from ...json_text import parse_json
 from ..containers import is_png, read_bytes
 from .image_frames import match_times, sort_naturally
 from .images import NONE
-from .settings import Held
-from .stack import MILLIMETRE
+from .settings import CameraOrientation
+from .stack import MILLIMETER
 
 Focal = tuple[float, float, float, float]
 
@@ -44,7 +44,7 @@ class Layout:
     color_of : int array, shape (n_files,), or None
         Which file of colour each file of depth has; -1: none.
     confidence : tuple of str, or None
-    held : Held
+    held : CameraOrientation
     remarks : tuple of str
     """
 
@@ -58,7 +58,7 @@ class Layout:
     color: tuple[str, ...] | None = None
     color_of: NDArray[np.intp] | None = None
     confidence: tuple[str, ...] | None = None
-    held: Held = Held.UPRIGHT
+    held: CameraOrientation = CameraOrientation.UPRIGHT
     remarks: tuple[str, ...] = field(default=())
 
 
@@ -117,7 +117,7 @@ def open3d_layout(root: Path) -> Layout | None:
     return Layout(
         root,
         depth,
-        metres=MILLIMETRE if focal else None,
+        metres=MILLIMETER if focal else None,
         focal=focal,
         focal_size=size,
         color=color if (of != NONE).any() else None,

@@ -8,7 +8,7 @@ from ...progress import Progress, unwatched
 from ..containers import MatlabArray, is_matlab, matlab_arrays
 from ..conventions import DEFAULT_FRAME_RATE
 from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
-from .stack import MILLIMETRE, DepthStack, check_size
+from .stack import MILLIMETER, DepthStack, check_size
 
 NAMES = ("d_depth", "depth")
 KINECT_V1 = Camera(285.63, 285.63, 159.0, 120.0, 320, 240)
@@ -64,7 +64,7 @@ def read_depth_mat(
         depth.content,
         depth.kind,
         (height, width),
-        settings.scale or MILLIMETRE,
+        settings.scale or MILLIMETER,
         by_column=True,
         mirrored=given is None,
     )

@@ -17,7 +17,7 @@ from .images import NONE
 from .k4a_calibration import K4aCamera, depth_camera
 from .k4a_color import ColorBlocks, color_blocks
 from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
-from .stack import MILLIMETRE, check_size
+from .stack import MILLIMETER, check_size
 
 VIDEO = "V_MS/VFW/FOURCC"
 RAW = b"b16g"
@@ -102,7 +102,7 @@ def read_depth_mkv(
         )
     shown = np.where((frames.pictures != NONE) & good[frames.pictures], frames.pictures, NONE)
     places = np.where(shown == NONE, NONE, np.frombuffer(track.places, np.int64)[shown])
-    metres = settings.scale or MILLIMETRE
+    metres = settings.scale or MILLIMETER
     straight = None if lens is None else _undistort_pixels(lens)
     read_depth = DepthBlocks(path, places, (height, width), metres, straight)
     recording = DepthRecording(

@@ -25,7 +25,7 @@ from ..containers import (
 )
 from ..conventions import DEFAULT_FRAME_RATE
 from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
-from .stack import MILLIMETRE, ColorStack, DepthStack, check_size
+from .stack import MILLIMETER, ColorStack, DepthStack, check_size
 
 INTRINSICS = ("fx", "fy", "cx", "cy")
 LOCAL_HEADER = 30
@@ -75,7 +75,7 @@ def read_depth_npz(
         )
     n_frames, height, width = depth.shape
     check_size(path, height, width)
-    usual = MILLIMETRE if depth.kind.kind in "iu" else 1.0
+    usual = MILLIMETER if depth.kind.kind in "iu" else 1.0
     stack = DepthStack(depth.content, depth.kind.str, (height, width), settings.scale or usual)
     progress(1.0, "Reading")
     return DepthRecording(

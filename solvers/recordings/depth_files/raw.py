@@ -11,7 +11,7 @@ from ...progress import Progress, unwatched
 from ..containers import PlainBytes
 from ..conventions import DEFAULT_FRAME_RATE
 from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
-from .stack import MILLIMETRE, DepthStack, check_size
+from .stack import MILLIMETER, DepthStack, check_size
 
 KINECT_V1 = Camera(571.26, 571.26, 319.5, 239.5, 640, 480)
 PIXEL = 2
@@ -72,7 +72,7 @@ def read_depth_raw(
         PlainBytes(path, 0, size),
         "<u2",
         (camera.height, camera.width),
-        settings.scale or MILLIMETRE,
+        settings.scale or MILLIMETER,
     )
     progress(1.0, "Reading")
     return DepthRecording(camera, n_frames, settings.frame_rate or DEFAULT_FRAME_RATE, stack)

@@ -6,7 +6,7 @@ from ...depth_scene import Camera
 from ...settings import Choice, Settings, setting
 
 
-class Held(Choice):
+class CameraOrientation(Choice):
     """How the camera was held when it recorded."""
 
     KNOWN = (
@@ -67,7 +67,7 @@ class DepthSettings(Settings):
         0.0, "Pictures per second; 0 reads the file or uses 30", unit="Hz", minimum=0.0,
         maximum=10_000.0,
     )  # fmt: skip
-    held: Held = setting(Held.KNOWN, "How the camera was held")
+    held: CameraOrientation = setting(CameraOrientation.KNOWN, "How the camera was held")
     mirrored: bool = setting(
         False, "The pictures are mirrored: the actor's right hand is on the right"
     )

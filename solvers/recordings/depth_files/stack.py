@@ -10,7 +10,7 @@ from ...depth_scene import ColorImage, DepthImage
 from ...errors import InvalidFileError
 from ..containers import StoredBytes
 
-MILLIMETRE = 0.001
+MILLIMETER = 0.001
 MAX_PIXELS = 4096
 """Columns or rows of the largest picture that is believed."""
 

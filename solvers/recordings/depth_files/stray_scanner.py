@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ..containers import read_bytes
 from .layouts import Focal, Layout, list_images
-from .settings import Held
-from .stack import MILLIMETRE
+from .settings import CameraOrientation
+from .stack import MILLIMETER
 
 Array = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ def stray_layout(root: Path) -> Layout | None:
         depth,
         times,
         rate=DEFAULT_FRAME_RATE,
-        metres=MILLIMETRE,
+        metres=MILLIMETER,
         focal=focal,
         focal_size=size,
         confidence=tuple(sure[Path(name).stem] for name in depth) if known else None,
@@ -82,14 +82,14 @@ def _numbers(path: Path) -> Array:
     return np.array(rows)
 
 
-def _camera_hold(course: Array) -> tuple[Held, tuple[str, ...]]:
+def _camera_hold(course: Array) -> tuple[CameraOrientation, tuple[str, ...]]:
     """Tell from the poses how the telephone was held, and whether it stood still.
 
     The world of ARKit has Y up. Of the camera, x is to the right of the picture and y down.
     """
     poses = course[np.isfinite(course[:, 2:]).all(axis=1), 2:]
     if not len(poses):
-        return Held.UPRIGHT, ()
+        return CameraOrientation.UPRIGHT, ()
     x, y, z, w = poses[:, 3:].T
     with np.errstate(invalid="ignore", over="ignore"):  # of damaged numbers
         up = np.median([2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z)], axis=1)
@@ -100,8 +100,10 @@ def _camera_hold(course: Array) -> tuple[Held, tuple[str, ...]]:
         else ()
     )
     if abs(up[0]) > abs(up[1]):
-        return (Held.RIGHT if up[0] > 0.0 else Held.LEFT), remarks
-    return (Held.UPSIDE_DOWN if up[1] > 0.0 else Held.UPRIGHT), remarks
+        return (CameraOrientation.RIGHT if up[0] > 0.0 else CameraOrientation.LEFT), remarks
+    return (
+        CameraOrientation.UPSIDE_DOWN if up[1] > 0.0 else CameraOrientation.UPRIGHT
+    ), remarks
 
 
 def _times(course: Array, depth: tuple[str, ...]) -> Array | None:

@@ -12,7 +12,7 @@ from ...errors import InvalidFileError, InvalidMotionError
 from ...motion import JointRecording, Sensor
 from ...progress import Progress
 from ..containers import shown
-from ..conventions import METRES, joint_recording, z_up_from_y_up
+from ..conventions import METERS, joint_recording, z_up_from_y_up
 from .kinect_csv import checked_states
 
 FORMAT = "mocap-assist-joints"
@@ -59,7 +59,7 @@ def parse_header(said: Mapping[str, Any], place: str) -> JointHeader:
             f"{place}: a frame_rate of {shown(str(rate))} is not above 0; write hertz, or leave"
             " it out and give each frame its time."
         )
-    unit = METRES[_choice(said, "units", "m", tuple(METRES), place)]
+    unit = METERS[_choice(said, "units", "m", tuple(METERS), place)]
     up = _choice(said, "up", "z", UP, place)
     sensors = tuple(sensor.value for sensor in Sensor)
     sensor = _choice(said, "sensor", Sensor.OTHER.value, sensors, place)

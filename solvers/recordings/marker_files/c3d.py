@@ -12,7 +12,7 @@ from ..containers import C3dFile
 from ..conventions import (
     check_scale,
     guess_unit_of_points,
-    metres_from_unit_name,
+    meters_from_unit_name,
     point_names,
     points_z_up,
 )
@@ -87,5 +87,5 @@ def _labels(file: C3dFile, n_points: int) -> list[str]:
 
 def _unit(file: C3dFile, points: NDArray[np.float64]) -> float:
     """Return metres per unit of the file."""
-    said = metres_from_unit_name("".join(file.texts("POINT:UNITS")[:1]))
+    said = meters_from_unit_name("".join(file.texts("POINT:UNITS")[:1]))
     return guess_unit_of_points(points) if said is None else said

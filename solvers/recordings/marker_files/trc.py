@@ -17,7 +17,7 @@ from ..conventions import (
     check_scale,
     constant_rate_from_times,
     guess_unit_of_points,
-    metres_from_unit_name,
+    meters_from_unit_name,
     point_names,
     points_z_up,
 )
@@ -251,7 +251,7 @@ def _columns_from_rows(
 
 def _unit(header: _Header, points: NDArray[np.float64], path: Path | str) -> float:
     """Return metres per unit of the file."""
-    said = metres_from_unit_name(header.unit)
+    said = meters_from_unit_name(header.unit)
     if said is None:
         return guess_unit_of_points(points)
     if said < 1.0 and points.shape[1] > 1 and np.nanmax(np.abs(points)) <= FULL_TURN:

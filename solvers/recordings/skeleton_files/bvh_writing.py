@@ -11,7 +11,7 @@ from ...files import write_atomically
 from ...motion import Motion, Skeleton
 from ...progress import Progress, unwatched
 from ...rotations import euler_from_quaternion, unwrap_euler
-from ..conventions import CENTIMETRE, rotations_y_up_from_z_up, y_up_from_z_up
+from ..conventions import CENTIMETER, rotations_y_up_from_z_up, y_up_from_z_up
 
 ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 FRAMES_AT_ONCE = 500
@@ -23,7 +23,7 @@ def write_bvh(
     motion: Motion,
     path: Path | str,
     *,
-    scale: float = CENTIMETRE,
+    scale: float = CENTIMETER,
     order: str = "ZXY",
     progress: Progress = unwatched,
 ) -> None:

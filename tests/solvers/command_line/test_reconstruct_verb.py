@@ -115,7 +115,7 @@ def test_what_lengths_are_taken_for_is_told(call, walk, tmp_path):
     for verb in ("reconstruct", "convert"):
         target = tmp_path / f"{verb}.bvh" if verb == "reconstruct" else tmp_path / "out.trc"
         status, out, _ = call(verb, tmp_path / "large.csv", target)
-        assert status == 0 and out.count("Lengths are taken for millimetres") == 1
+        assert status == 0 and out.count("Lengths are interpreted as millimetres") == 1
         status, out, _ = call(verb, tmp_path / "said.csv", target)
         assert status == 0 and "Lengths" not in out
 

@@ -52,7 +52,7 @@ def test_whatever_the_usual_unit_a_man_comes_out(walk, usual, true):
         assert not told.units
     else:
         (said,) = told.units
-        assert f"taken for {WORDS[true]}," in said and "give the unit" in said
+        assert f"interpreted as {WORDS[true]}," in said and "give the unit" in said
 
 
 @pytest.mark.parametrize("size", [0.4, 2.5])

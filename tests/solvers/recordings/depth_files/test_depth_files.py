@@ -12,9 +12,9 @@ from scipy import io
 from solvers.depth_scene.camera import Camera
 from solvers.errors import InvalidFileError, InvalidSettingError
 from solvers.recordings import (
+    CameraOrientation,
     DepthSettings,
-    Held,
-    is_depth,
+    is_depth_recording,
     read_depth,
     read_recording,
     read_tracked,
@@ -201,7 +201,7 @@ def test_a_matlab_file_is_damaged_when_its_flags_are_too_short(write, order, siz
     flags = struct.pack(f"{order}II", 6, 8)
     path = write(whole.replace(flags, struct.pack(f"{order}II", 6, size), 1))
 
-    assert is_depth(path)
+    assert is_depth_recording(path)
     with pytest.raises(InvalidFileError, match=r"take\.depth is a damaged file of MATLAB"):
         read_depth(path)
 
@@ -241,7 +241,9 @@ def test_whoever_wants_joints_hears_what_to_do_with_depth(write):
         read_tracked(write(depth_npz(pictures())))
 
 
-@pytest.mark.parametrize("held", [Held.LEFT, Held.RIGHT, Held.UPSIDE_DOWN])
+@pytest.mark.parametrize(
+    "held", [CameraOrientation.LEFT, CameraOrientation.RIGHT, CameraOrientation.UPSIDE_DOWN]
+)
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_a_camera_that_was_held_otherwise_sees_the_same_points(write, held, mirrored):
     """Turned about the axis of the camera, and their left and right exchanged."""
@@ -255,9 +257,9 @@ def test_a_camera_that_was_held_otherwise_sees_the_same_points(write, held, mirr
 
     x, y, z = (points[0] * (-1.0 if mirrored else 1.0, 1.0, 1.0)).T
     expected = {
-        Held.LEFT: (-y, x, z),  # What was at the left, -x, is now above, -y.
-        Held.RIGHT: (y, -x, z),
-        Held.UPSIDE_DOWN: (-x, -y, z),
+        CameraOrientation.LEFT: (-y, x, z),  # What was at the left, -x, is now above, -y.
+        CameraOrientation.RIGHT: (y, -x, z),
+        CameraOrientation.UPSIDE_DOWN: (-x, -y, z),
     }[held]
     assert_allclose(in_one_order(np.stack(expected, axis=-1)), in_one_order(points[1]))
 

@@ -14,7 +14,7 @@ from mkv_files import BINNED, k4a
 from PIL import Image, ImageFile
 
 from solvers.errors import InvalidFileError
-from solvers.recordings import DepthSettings, depth_in, read_depth
+from solvers.recordings import DepthSettings, depth_takes_in, read_depth
 from solvers.recordings.containers import listed_images as listing
 
 LENS = DepthSettings(fx=9.0, fy=8.0)
@@ -96,7 +96,7 @@ def test_a_pipe_or_a_link_does_not_hide_the_takes_beside_it(tmp_path, depth):
     os.mkfifo(shots / "pipe.png")
     (shots / "thumb.png").symlink_to(tmp_path / "secret.png")
 
-    assert depth_in(shots) == [take]
+    assert depth_takes_in(shots) == [take]
 
 
 @pytest.mark.parametrize("name", ["a\0b.png", "x" * 300 + ".png", "rgb", ""])

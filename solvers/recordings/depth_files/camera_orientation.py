@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 
 from ...depth_scene import Camera, DepthRecording
-from .settings import Held
+from .settings import CameraOrientation
 
 QUARTER_TURNS = {
-    Held.KNOWN: 0,
-    Held.UPRIGHT: 0,
-    Held.LEFT: 3,
-    Held.UPSIDE_DOWN: 2,
-    Held.RIGHT: 1,
+    CameraOrientation.KNOWN: 0,
+    CameraOrientation.UPRIGHT: 0,
+    CameraOrientation.LEFT: 3,
+    CameraOrientation.UPSIDE_DOWN: 2,
+    CameraOrientation.RIGHT: 1,
 }
 """Quarter turns, against the clock, that bring pictures upright."""
 
@@ -33,7 +33,9 @@ class _RotatedReader:
         return np.ascontiguousarray(np.rot90(picture, self.quarters))
 
 
-def rotate_upright(recording: DepthRecording, held: Held, mirrored: bool) -> DepthRecording:
+def rotate_upright(
+    recording: DepthRecording, held: CameraOrientation, mirrored: bool
+) -> DepthRecording:
     """Return the recording as by a camera that was held upright and saw no mirror."""
     quarters = QUARTER_TURNS[held]
     if not (quarters or mirrored):
