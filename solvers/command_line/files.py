@@ -39,7 +39,7 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         "--scale",
         type=float,
         metavar="X",
-        help="Metres per unit of the input files [default: as stored in the file, or"
+        help="Meters per unit of the input files [default: as stored in the file, or"
         " estimated from the size of the body]",
     )
 
@@ -115,7 +115,7 @@ def write(recording: Motion | Tracks, path: Path | None, progress: Progress) -> 
         kind, allowed, hint = ("A skeleton's motion", MOTIONS, "")
         if isinstance(recording, Tracks):
             kind, allowed = ("Points without a skeleton", " or ".join(POINTS))
-            hint = ", or make a skeleton of labelled markers with the verb solve"
+            hint = ", or make a skeleton of labeled markers with the verb solve"
         raise InvalidFileError(
             f"{kind} cannot be written as {path}; end the name in {allowed}{hint}."
         )

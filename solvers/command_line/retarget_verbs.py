@@ -100,7 +100,7 @@ def add_unbake_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `unbake`."""
     parser.add_argument(
         "--tolerance", type=float, default=1.0, metavar="CM",
-        help="Maximum error in centimetres of any joint at any frame"
+        help="Maximum error in centimeters of any joint at any frame"
         " [default 1]",
     )  # fmt: skip
     parser.add_argument(

@@ -104,7 +104,7 @@ VERBS = {
         OutputKind.WORDS,
     ),
     "solve": Verb(
-        "Solve the motion of a skeleton from the labelled markers of optical takes.",
+        "Solve the motion of a skeleton from the labeled markers of optical takes.",
         add_solve_options,
         perform_solve,
         writes_motions=True,

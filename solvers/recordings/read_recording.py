@@ -118,14 +118,14 @@ def read_recording(
     path : Path or str
         BVH; AMC with the ASF of the actor next to it; C3D; TRC; joints of depth cameras; depth
         images (docs/formats).
-    scale : float, metres per unit of the file, or None
+    scale : float, meters per unit of the file, or None
         None: the default of the format.
     progress : Progress
 
     Returns
     -------
     Motion, Tracks or JointRecording
-        In metres, Z up; NaN where not observed.
+        In meters, Z up; NaN where not observed.
     DepthRecording
         Depth images of a camera; see `read_depth` for more options.
 

@@ -1,11 +1,11 @@
-"""Container formats and tables: C3D, EBML, MAT, NPZ, text rows."""
+"""Read container formats and tables: C3D, Matroska, MATLAB, NumPy, JSON and text."""
 
 from .c3d_file import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS, C3dFile, is_c3d
 from .folder_scan import check_folder_access, files_below, is_folder
 from .growing_table import GrowingTable
 from .json_members import array_from_json, json_members
 from .line_reader import Block, LineReader
-from .listed_images import bounded_image, is_listed, largest_color, listed_image
+from .listed_images import is_listed, max_color_size, open_bounded_image, open_listed_image
 from .matlab_file import MatlabArray, is_matlab, matlab_arrays
 from .matroska import Matroska, Track, index_matroska, is_matroska
 from .names import MAX_NAME_LENGTH, UniqueNames, printable, shown
@@ -59,7 +59,6 @@ __all__ = [
     "Track",
     "UniqueNames",
     "array_from_json",
-    "bounded_image",
     "check_folder_access",
     "files_below",
     "index_matroska",
@@ -70,9 +69,10 @@ __all__ = [
     "is_matroska",
     "is_png",
     "json_members",
-    "largest_color",
-    "listed_image",
     "matlab_arrays",
+    "max_color_size",
+    "open_bounded_image",
+    "open_listed_image",
     "parse_rows",
     "printable",
     "read_archive",

@@ -1,4 +1,4 @@
-"""What files leave open: axes, units, time stamps, sensors and their joints."""
+"""Convert axes, units, time stamps and joints of files to the project's conventions."""
 
 from .axes import (
     CENTIMETER,

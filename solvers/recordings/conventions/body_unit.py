@@ -14,7 +14,7 @@ from ...motion.humanoid import (
 )
 from ...progress import Progress
 
-UNIT_NAMES = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
+UNIT_NAMES = {1.0: "meters", 0.01: "centimeters", 0.001: "millimeters"}
 
 
 def convert_to_body_unit(
@@ -27,7 +27,7 @@ def convert_to_body_unit(
     Parameters
     ----------
     recording : JointRecording
-    unit : float, metres
+    unit : float, meters
     progress : Progress
         Receives a message if the unit changes.
     """

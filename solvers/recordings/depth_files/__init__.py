@@ -1,4 +1,4 @@
-"""Depth images: folders, Matroska, MATLAB, NumPy and raw files."""
+"""Read depth images from folders, Matroska, MATLAB, NumPy and raw files."""
 
 from .exr_header import check_exr
 from .folder import is_depth_folder

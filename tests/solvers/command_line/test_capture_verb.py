@@ -18,7 +18,7 @@ QUICK = ("--no-backward", "--no-refine", "--no-feet", "--check-every", "1000")
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory):
-    """Four frames of our own body, standing three metres away."""
+    """Four frames of our own body, standing three meters away."""
     body = default_body()
     depth = cast_rays(body, segment_frames(body, NATURAL), CAMERA).depth_picture()
     path = tmp_path_factory.mktemp("depth") / "standing.npz"
@@ -117,7 +117,7 @@ def test_one_bad_take_does_not_stop_the_others(call, takes, known, tmp_path):
     assert status == 2 and said.count("4 frames, ") == 1
     told = err.strip().split("\n")
     assert len(told) == 2 and all(line.endswith(".") for line in told)
-    assert "cut short.npz" in told[0] and "4 of 4 pictures of depth are missing or" in told[1]
+    assert "cut short.npz" in told[0] and "4 of 4 depth images are missing or" in told[1]
 
 
 def test_a_folder_that_is_a_take_itself(call, takes, known, tmp_path):

@@ -107,7 +107,7 @@ def test_a_closed_folder_is_one_sentence_and_the_rest_is_made(
         status, out, err = call(*words)
 
         assert (status, err.count("\n")) == (2, 1)
-        assert f"The folder {folder / 'more'} cannot be looked into (Permission denied)." in err
+        assert f"The folder {folder / 'more'} cannot be opened (Permission denied)." in err
         assert "30 frames" in out or "1 added" in out
 
 

@@ -99,7 +99,7 @@ def test_metres_of_millimetres_are_asked_for(call, walk, tmp_path):
     )
 
     assert status == 2 and err.count("\n") == 1
-    assert "large.csv" in err and "millimetres were read as metres" in err
+    assert "large.csv" in err and "millimeters were read as meters" in err
     assert scaled == 0
     height = read_bvh(tmp_path / "out.bvh").skeleton.height
     assert 1.3 < height < 2.2
@@ -115,7 +115,7 @@ def test_what_lengths_are_taken_for_is_told(call, walk, tmp_path):
     for verb in ("reconstruct", "convert"):
         target = tmp_path / f"{verb}.bvh" if verb == "reconstruct" else tmp_path / "out.trc"
         status, out, _ = call(verb, tmp_path / "large.csv", target)
-        assert status == 0 and out.count("Lengths are interpreted as millimetres") == 1
+        assert status == 0 and out.count("Lengths are interpreted as millimeters") == 1
         status, out, _ = call(verb, tmp_path / "said.csv", target)
         assert status == 0 and "Lengths" not in out
 

@@ -15,7 +15,7 @@ from solvers.recordings import read_recording, write_joint_csv
 from solvers.recordings.conventions.body_unit import convert_to_body_unit
 from solvers.recordings.conventions.tracked_joints import joint_recording
 
-WORDS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
+WORDS = {1.0: "meters", 0.01: "centimeters", 0.001: "millimeters"}
 
 
 class Told:

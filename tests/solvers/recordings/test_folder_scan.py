@@ -91,7 +91,7 @@ def test_a_closed_folder_is_named_by_whoever_reads_it(takes, monkeypatch):
     assert names(depth_takes_in(takes), takes) == ["more", "room.npz"]
     assert recordings_in(closed) == depth_takes_in(closed) == [closed]
     for read in (read_recording, read_tracked, read_depth, detect_format):
-        with pytest.raises(FileAccessError, match=r"folder .*more cannot be looked into"):
+        with pytest.raises(FileAccessError, match=r"folder .*more cannot be opened"):
             read(closed)
 
 

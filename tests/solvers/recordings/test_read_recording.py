@@ -122,7 +122,9 @@ def test_four_numbers_in_a_line_are_not_a_body_for_that(tmp_path, rng):
     rows = np.column_stack([rng.uniform(0, 640, (60, 3)), np.ones(60)])
     np.savetxt(pixels, rows, fmt="%.2f")
 
-    with pytest.raises(InvalidFileError, match=r"pixels\.txt .* no joints of a body in metres"):
+    with pytest.raises(
+        InvalidFileError, match=r"pixels\.txt .* not joints of a body in meters"
+    ):
         read_recording(pixels)
 
 

@@ -67,7 +67,7 @@ def test_uneven_stamps_are_resampled(rng):
 def test_a_leap_in_time_is_refused():
     times = np.array([0.0, 0.01, 0.02, 1e9])
 
-    with pytest.raises(InvalidFileError, match=r"take: its 4 frames are spread over 1e.09 s"):
+    with pytest.raises(InvalidFileError, match=r"take: its 4 frames span 1e.09 s"):
         ConstantRate("take", times, 100.0)
 
 

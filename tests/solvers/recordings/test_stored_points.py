@@ -93,7 +93,7 @@ def test_what_is_no_ui_prmd_take(write, content, sentence):
 
 @pytest.fixture
 def person() -> np.ndarray:
-    """MediaPipe's body and hands, metres, Z up, facing -Y; the wrists apart by 1 m."""
+    """MediaPipe's body and hands, meters, Z up, facing -Y; the wrists apart by 1 m."""
     points = np.random.default_rng(5).normal(scale=0.02, size=(20, 75, 3))
     points += (0, 0, 1)
     points[:, NOSE] += (0, -0.1, 0.65)
@@ -225,7 +225,7 @@ def test_freemocap_names_by_the_number_of_points(write, rng, n_points, last):
         (npy(np.zeros((3, 5, 3))).replace(b"(3, 5, 3)", b"(-1,-1,3)"), "damaged, cut short"),
         (npy(np.array(["a", "b"])), "damaged, cut short"),
         (npy(np.zeros((3, 5, 2))), r"shape \(3, 5, 2\); points over time"),
-        (npy(np.full((3, 5, 3), np.nan)), "no points that are seen"),
+        (npy(np.full((3, 5, 3), np.nan)), "no points that are observed"),
     ],
 )
 def test_what_are_no_points(write, content, sentence):

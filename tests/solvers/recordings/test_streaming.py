@@ -39,7 +39,7 @@ def said(tmp_path, monkeypatch):
     (tmp_path / "take.asf").write_bytes(SKELETON)
     path = tmp_path / "take.amc"
     monkeypatch.setattr(acclaim, "LINES_OF_HEAD", 3)  # else a small file is all head
-    monkeypatch.setattr(trc, "FIRST_LINES", 8)
+    monkeypatch.setattr(trc, "MAX_HEADER_LINES", 8)
 
     def tell(read, content, size):
         monkeypatch.setattr(line_reader, "BLOCK_BYTES", size)

@@ -102,13 +102,13 @@ def test_a_frame_told_twice_counts_once():
 @pytest.mark.parametrize(
     ("times", "sentence"),
     [
-        (np.arange(20)[::-1] * FRAME, "not later than those before"),
-        (np.full(20, 7.0), "not later than those before"),
-        (np.full(5, np.nan), "not later than those before"),
-        (np.full(5, 1e300), "not later than those before"),
-        (np.concatenate([np.arange(20) * FRAME, [1e9]]), r"21 frames are spread over 1e\+09 s"),
-        (np.arange(20) * 1e-7, "which cannot be"),
-        (np.arange(20) * 1e7, "which cannot be"),
+        (np.arange(20)[::-1] * FRAME, "do not increase"),
+        (np.full(20, 7.0), "do not increase"),
+        (np.full(5, np.nan), "do not increase"),
+        (np.full(5, 1e300), "do not increase"),
+        (np.concatenate([np.arange(20) * FRAME, [1e9]]), r"21 frames span 1e\+09 s"),
+        (np.arange(20) * 1e-7, "which is not possible"),
+        (np.arange(20) * 1e7, "which is not possible"),
     ],
 )
 def test_refuses_stamps_that_make_no_sense(times, sentence):

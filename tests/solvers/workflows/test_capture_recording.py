@@ -172,11 +172,11 @@ def test_a_scale_that_is_wrong_leaves_nobody_or_a_giant():
         said = " ".join(caught(in_millimetres).remarks)
     except InvalidMotionError as error:
         said = str(error)
-    assert "scale" in said or "depth is in metres" in said
+    assert "scale" in said or "depth is in meters" in said
 
 
 def test_what_is_no_actor_agrees_badly():
-    """A board as large as a person, a metre and a half by one."""
+    """A board as large as a person, a meter and a half by one."""
     board = np.zeros((120, 160), np.float32)
     board[20:110, 50:110] = 2.5
     recording = DepthRecording(

@@ -57,7 +57,7 @@ def test_a_folder_becomes_clips_named_by_their_places(folder, library):
     assert report.n_clips == 3
     ((path, sentence),) = report.refused
     assert path == str(folder / "markers.trc")
-    assert "markers.trc: No body was recognised" in sentence
+    assert "markers.trc: No body was recognized" in sentence
     found = entries(library)
     stat = (folder / "a" / "fast.bvh").stat()
     origin = found["a/fast"].origin

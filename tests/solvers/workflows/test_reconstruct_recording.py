@@ -112,12 +112,12 @@ def as_recording(
             lambda p: np.where(np.arange(20)[:, None] == 3, p, np.nan),
             r"Only one joint \(Head\)",
         ),
-        (lambda p: 1000.0 * p, "millimetres were read as metres.*scale of 0.001"),
-        (lambda p: 100.0 * p, "centimetres were read as metres.*scale of 0.01"),
+        (lambda p: 1000.0 * p, "millimeters were read as meters.*scale of 0.001"),
+        (lambda p: 100.0 * p, "centimeters were read as meters.*scale of 0.01"),
         (lambda p: 0.001 * p, "scale of 1000"),
         (np.zeros_like, "All joints have the same position"),
     ],
-    ids=["nothing", "one joint", "millimetres", "centimetres", "kilometres", "zeros"],
+    ids=["nothing", "one joint", "millimeters", "centimeters", "kilometers", "zeros"],
 )
 def test_what_cannot_be_is_told_in_one_sentence(truth, spoil, said):
     with pytest.raises(InvalidMotionError, match=said):

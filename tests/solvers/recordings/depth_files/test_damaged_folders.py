@@ -12,7 +12,7 @@ from solvers.errors import InvalidFileError
 from solvers.recordings import DepthSettings, read_depth, read_recording
 
 LENS = DepthSettings(fx=9.0, fy=8.0)
-MILLIMETRES = DepthSettings(fx=9.0, fy=8.0, scale=0.001)
+MILLIMETERS = DepthSettings(fx=9.0, fy=8.0, scale=0.001)
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ def test_a_picture_that_is_cut_short_is_an_empty_frame(tmp_path, depth, damage):
 
     assert recording.frame(5).max() == 0.0
     assert_allclose(recording.frame(6), depth[6] * 0.001, rtol=1e-6)
-    assert any("1 of 9 pictures are missing or damaged, depth/00005.png" in one for one in said)
+    assert any("1 of 9 images are missing or damaged, depth/00005.png" in one for one in said)
 
 
 def test_a_picture_that_is_damaged_inside_is_named_when_it_is_read(tmp_path, depth):
@@ -65,31 +65,31 @@ def test_one_of_another_size_in_the_middle_is_named(tmp_path, depth):
         read_depth(folder)
 
 
-@pytest.mark.parametrize("kind", ["eight bits", "coloured"])
+@pytest.mark.parametrize("kind", ["eight bits", "colored"])
 def test_a_picture_of_depth_for_the_eye_is_none(tmp_path, depth, kind):
     for number, picture in enumerate(depth):
-        grey = (picture // 16).astype(np.uint8)
-        pixels = grey if kind == "eight bits" else colors_of(picture)
+        gray = (picture // 16).astype(np.uint8)
+        pixels = gray if kind == "eight bits" else colors_of(picture)
         save_png(tmp_path / f"{number}.png", pixels)
 
-    with pytest.raises(InvalidFileError, match=r"picture of 8 bits; depth is grey and of 16"):
-        read_depth(tmp_path, MILLIMETRES)
+    with pytest.raises(InvalidFileError, match=r"image of 8 bits; depth is gray and has 16"):
+        read_depth(tmp_path, MILLIMETERS)
 
 
 @pytest.mark.parametrize(
     ("name", "content", "sentence"),
     [
-        ("intrinsic.json", "{}", "no camera as Open3D writes it"),
-        ("intrinsic.json", "[1, 2", "no camera as Open3D writes it"),
+        ("intrinsic.json", "{}", "not an Open3D camera"),
+        ("intrinsic.json", "[1, 2", "not an Open3D camera"),
         ("intrinsic.json", json.dumps({"width": 8, "height": 6, "intrinsic_matrix": [0.0] * 9}),
          "Give positive focal lengths"),
-        ("camera_matrix.csv", "1,2\n3,4", "no 3 x 3 matrix"),
-        ("camera_matrix.csv", "", "no table of numbers"),
+        ("camera_matrix.csv", "1,2\n3,4", "no 3 x 3 camera matrix"),
+        ("camera_matrix.csv", "", "not a table of numbers"),
         ("camera_matrix.csv", "1,2,3\n1,two,3", "line 2: not a number"),
-        ("depth.txt", "", "names no pictures"),
-        ("depth.txt", "1.0", "a time stamp and a picture in each line, but has '1.0'"),
-        ("depth.txt", "now depth/00001.png", "begin with no time stamp"),
-        ("depth.txt", "1.0 nowhere.png\n1.1 nothing.png", "2 of 2 pictures of depth"),
+        ("depth.txt", "", "lists no images"),
+        ("depth.txt", "1.0", "a time stamp and an image in each line, but has '1.0'"),
+        ("depth.txt", "now depth/00001.png", "do not begin with a time stamp"),
+        ("depth.txt", "1.0 nowhere.png\n1.1 nothing.png", "2 of 2 depth images"),
     ],
 )  # fmt: skip
 def test_what_is_beside_the_pictures_must_make_sense(tmp_path, depth, name, content, sentence):

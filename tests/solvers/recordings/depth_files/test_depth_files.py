@@ -176,11 +176,11 @@ RAW = pictures(1, 480, 640).tobytes()
         (depth_npz(pictures(), fx=-1.0), "Give positive focal lengths"),
         (depth_npz(pictures(), fx=[1.0, 2.0]), "fx is not a single number"),
         (depth_npz(pictures(), frame_rate=0.0), "frame rate of 0 Hz"),
-        (depth_npz(pictures(), color=pictures()), "of uint16; beside this depth it must be"),
+        (depth_npz(pictures(), color=pictures()), "of uint16; for this depth it must be"),
         (depth_npz(pictures().astype("U5")), "no readable array called depth"),
-        (matlab("d_depth", pictures().transpose(1, 2, 0)), "8 x 6 pixels and does not say"),
+        (matlab("d_depth", pictures().transpose(1, 2, 0)), "8 x 6 pixels and does not state"),
         (matlab("d_depth", pictures().transpose(1, 2, 0))[:-9], "cut short"),
-        (overwritten(matlab("depth", pictures(400).transpose(1, 2, 0))), "damaged file of MAT"),
+        (overwritten(matlab("depth", pictures(400).transpose(1, 2, 0))), "damaged MAT"),
         (matlab("d_skel", pictures()), "no depth of a known format"),
         (b"nothing of the kind", "no depth of a known format"),
         (b"", "no depth of a known format"),
@@ -202,7 +202,7 @@ def test_a_matlab_file_is_damaged_when_its_flags_are_too_short(write, order, siz
     path = write(whole.replace(flags, struct.pack(f"{order}II", 6, size), 1))
 
     assert is_depth_recording(path)
-    with pytest.raises(InvalidFileError, match=r"take\.depth is a damaged file of MATLAB"):
+    with pytest.raises(InvalidFileError, match=r"take\.depth is a damaged MATLAB file"):
         read_depth(path)
 
 
@@ -278,7 +278,7 @@ def test_raw_frames_of_another_camera(write):
 
     assert (recording.n_frames, recording.camera) == (3, SMALL)
     assert_allclose(recording.frame(2), depth[2] * 0.001, rtol=1e-6)
-    with pytest.raises(InvalidFileError, match=r"8 x 6 pixels were taken\. Give its focal"):
+    with pytest.raises(InvalidFileError, match=r"8 x 6 pixels from an unknown camera"):
         read_depth_raw(write(depth.tobytes()), DepthSettings(width=8, height=6))
-    with pytest.raises(InvalidFileError, match="are no whole pictures of 640 x 480"):
+    with pytest.raises(InvalidFileError, match="is not a multiple of an image of 640 x 480"):
         read_depth_raw(write(depth.tobytes()))

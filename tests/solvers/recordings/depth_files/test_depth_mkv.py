@@ -132,7 +132,7 @@ def test_frames_that_were_lost_are_empty(write):
         1,
         1,
     ]
-    assert "3 frames have no picture, frame 3 first; they are empty." in said
+    assert "3 frames have no image, frame 3 first; they are empty." in said
 
 
 @pytest.mark.parametrize("lace", [(xiph, 2), (equal, 4), (ebml_laced, 6)])
@@ -161,7 +161,7 @@ def test_a_file_that_was_cut_short_is_read_so_far(write):
 
     assert 5 < recording.n_frames < 12
     assert_allclose(all_frames(recording), depth[: recording.n_frames] * 0.001, rtol=1e-6)
-    assert "The file is cut short; what comes before is read." in said
+    assert "The file is cut short; the frames before the end are read." in said
 
 
 def test_a_picture_of_another_size_is_an_empty_frame(write):
@@ -174,11 +174,11 @@ def test_a_picture_of_another_size_is_an_empty_frame(write):
     recording = read_depth(write(damaged), OWN, progress=progress)
 
     assert [recording.frame(frame).max() > 0 for frame in range(5)] == [1, 1, 0, 1, 1]
-    assert any("1 pictures are damaged" in sentence for sentence in said)
+    assert any("1 images are damaged" in sentence for sentence in said)
 
 
 def test_colours_are_found_where_the_points_fall(write):
-    """A wall one metre away; its left half is red for the camera of colour, its right blue."""
+    """A wall one meter away; its left half is red for the camera of color, its right blue."""
     painted = np.zeros((720, 1280, 3), np.uint8)
     painted[:, :640, 0], painted[:, 640:, 2] = 255, 255
     file = io.BytesIO()
@@ -193,7 +193,7 @@ def test_colours_are_found_where_the_points_fall(write):
     color = recording.color(1)
     assert color[100, 100].tolist() == [0, 0, 0]
     reds = (color[150, :, 0] > 128).sum()
-    # Column 639.5 of colour, seen from 32 mm to the right of the camera of depth.
+    # Column 639.5 of color, seen from 32 mm to the right of the camera of depth.
     x = (639.5 + 0.5 - 0.498 * 1280) / (0.475 * 1280) + 0.032
     assert reds == pytest.approx(x * recording.camera.fx + recording.camera.cx, abs=1.0)
     blue = recording.color(1)[150, 300]
@@ -241,7 +241,7 @@ def test_what_cannot_be_read_says_why(write, content, settings, sentence):
 def test_a_file_without_calibration_asks_for_the_camera(write):
     path = write(at_time(0))
 
-    with pytest.raises(InvalidFileError, match=r"no calibration of the camera in it\. Give"):
+    with pytest.raises(InvalidFileError, match=r"no calibration of the camera\. Set"):
         read_depth(path)
     assert read_depth(path, OWN).n_frames == 1
 

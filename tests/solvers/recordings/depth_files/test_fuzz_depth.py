@@ -79,7 +79,7 @@ def test_damaged_files(kind, tmp_path):
 
 
 def test_a_damaged_recording_of_a_real_size(tmp_path):
-    """With its own calibration, infrared and colour."""
+    """With its own calibration, infrared and color."""
     whole = k4a(pictures(2, *BINNED), color=(b"MJPG", [jpeg()] * 2))
     path = tmp_path / "take"
 

@@ -31,7 +31,7 @@ def packed(whole, tmp_path_factory) -> PackedBytes:
 
 
 def test_any_part_in_any_order(whole, packed, monkeypatch):
-    monkeypatch.setattr(stored_bytes, "MIN_MARK_SPACING", 100_000)
+    monkeypatch.setattr(stored_bytes, "MIN_CHECKPOINT_SPACING", 100_000)
     fresh = pickle.loads(pickle.dumps(packed))
 
     @given(st.integers(0, len(whole) - 1), st.integers(0, 300_000))

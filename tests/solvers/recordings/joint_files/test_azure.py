@@ -15,7 +15,7 @@ NAMES = SENSOR_JOINTS[Sensor.AZURE_KINECT]
 
 
 def upright(values):
-    """Right, down, forward in millimetres to ours, as a matrix."""
+    """Right, down, forward in millimeters to ours, as a matrix."""
     return values[..., :3] @ np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]) / 1000
 
 
@@ -30,7 +30,7 @@ def write(tmp_path):
 
 @pytest.fixture
 def values():
-    """Four frames in millimetres."""
+    """Four frames in millimeters."""
     values = 1000 * moving(4, 32)
     values[..., 3] = 2
     return values
@@ -160,10 +160,10 @@ def test_scale_is_metres_per_unit(write, values):
     ("layout", "spoil", "sentence"),
     [
         (azure_lines, lambda text: text.replace("\n1,3,", "\n1,32,"), "line 6: .* 32 joints"),
-        (azure_lines, lambda text: text.replace("Medium", "Some"), "line 3: no level of"),
-        (azure_lines, lambda text: text[: text.index("\n1,0") + 1], "headings but no joints"),
-        (azure_columns, lambda text: text.split("\n")[0], "headings but no joints"),
-        (azure_columns, lambda text: text[:-30], r"line 5: 9\d numbers stand where 96"),
+        (azure_lines, lambda text: text.replace("Medium", "Some"), "line 3: it does not end"),
+        (azure_lines, lambda text: text[: text.index("\n1,0") + 1], "header but no joints"),
+        (azure_columns, lambda text: text.split("\n")[0], "header but no joints"),
+        (azure_columns, lambda text: text[:-30], r"line 5: 9\d numbers instead of 96"),
         (azure_columns, lambda text: "PELVIS.x,PELVIS.z\n1,2", "no columns x, y and z"),
     ],
 )  # fmt: skip

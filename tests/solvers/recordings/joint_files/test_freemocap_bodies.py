@@ -19,7 +19,7 @@ BESIDE = {"left": (0.08, 0.0, 0.0), "right": (-0.08, 0.0, 0.0)}
 
 @pytest.fixture(scope="module")
 def walk(recordings):
-    """Points of the body by MediaPipe's names, metres, (n_frames, 3) each."""
+    """Points of the body by MediaPipe's names, meters, (n_frames, 3) each."""
     motion = read_bvh(recordings / "mocap" / "cmu_walk" / "07_01.bvh", scale=METRES)
     motion = motion.slice(1, motion.n_frames)
     joints = dict(

@@ -81,18 +81,21 @@ def test_ntu_recognised_when_it_begins_with_empty_frames(write):
             lambda text: text[: text.rindex("\r\n", 0, -2)],
             "cut short: it ends within the joints",
         ),
-        (lambda text: "9" + text[1:], "announces 9 frames and has 3"),
+        (lambda text: "9" + text[1:], "states 9 frames, but it has 3"),
         (
             lambda text: text.replace("\r\n25\r\n", "\r\n20\r\n", 1),
-            "20 joints, where 25 belong",
+            "20 joints instead of 25",
         ),
         (lambda text: text.replace("\r\n1\r\n", "\r\n7\r\n", 1), "line 2: .*number of bodies"),
         (lambda text: text.replace(" 2\r\n", " 5\r\n"), "states other than 0, 1 and 2"),
         (lambda text: text.replace("278.3", "x", 1), "line 5: 'x' is not a number"),
         (lambda text: "3\r\n0\r\n0\r\n0\r\n", "3 frames but no body"),
-        (lambda text: text.replace(" 0.02 -0.3 2", "", 1), "line 3: not a body's id"),
+        (
+            lambda text: text.replace(" 0.02 -0.3 2", "", 1),
+            "line 3: found .* words instead of a body's id",
+        ),
         (lambda text: text.replace("\r\n278", "\r\n\r\n278"), None),
-        (lambda text: "", "ends where the number of frames"),
+        (lambda text: "", "ends before the number of frames"),
     ],
 )
 def test_ntu_damage_is_named(write, spoil, sentence):
@@ -140,10 +143,10 @@ def test_another_frame_rate_and_scale_can_be_given(write):
     ("spoil", "sentence"),
     [
         (lambda text: text.replace(",2,", ",7,", 1), "states other"),
-        (lambda text: text[:-9], r"line 3: 9\d numbers stand where 100"),
-        (lambda text: "1,2,3", "100 numbers belong"),
+        (lambda text: text[:-9], r"line 3: 9\d numbers instead of 100"),
+        (lambda text: "1,2,3", "100 numbers are required"),
         (lambda text: text.replace(",2,", ",two,", 1), "'two' is not a number"),
-        (lambda text: text.replace(",2,", ",0,"), "no joint that is seen"),
+        (lambda text: text.replace(",2,", ",0,"), "no joint that is observed"),
     ],
 )
 def test_kinect_csv_damage_is_named(write, spoil, sentence):
@@ -166,7 +169,7 @@ def test_msr_action3d_in_the_order_of_the_sensor(write):
 
 
 def test_msr_action3d_cut_within_a_frame(write):
-    with pytest.raises(InvalidFileError, match=r"30 lines of joints.* no multiple of 20"):
+    with pytest.raises(InvalidFileError, match=r"30 lines of joints.* not a multiple of 20"):
         read_msr_action3d(write("\n".join(["0.1 0.2 2.5 1"] * 30)))
 
 

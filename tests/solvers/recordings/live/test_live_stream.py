@@ -139,7 +139,7 @@ def test_joints_of_other_names_are_left_out():
 def test_nothing_cannot_be_a_recording():
     with pytest.raises(InvalidFileError, match="no frames"):
         recording_from_frames([])
-    with pytest.raises(InvalidFileError, match="no joint that is seen"):
+    with pytest.raises(InvalidFileError, match="no joint that is observed"):
         recording_from_frames([replace(frame(0.0), positions=np.full((1, 3), np.nan))])
 
 
@@ -203,7 +203,7 @@ def test_a_port_that_is_taken_is_told():
     with Receiver(0) as receiver, pytest.raises(InvalidSettingError, match="another program"):
         Receiver(receiver.address[1])
     for wrong in (-1, 70_000):
-        with pytest.raises(InvalidSettingError, match=f"port {wrong}"):
+        with pytest.raises(InvalidSettingError, match=f"Port {wrong}"):
             Receiver(wrong)
 
 

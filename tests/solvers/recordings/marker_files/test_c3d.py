@@ -121,7 +121,7 @@ def test_every_file_at_hand_is_read_or_refused_with_the_reason(recordings):
             assert 0.3 < extent < 12.0, f"{path}: {extent} m"
 
     assert list(refused) == ["parameterOverflow.c3d"]
-    assert "no points that are seen" in refused["parameterOverflow.c3d"]
+    assert "no points that are observed" in refused["parameterOverflow.c3d"]
 
 
 def test_people_stand_upright(recordings):
@@ -142,8 +142,8 @@ def test_joint_angles_and_forces_are_no_points(recordings):
 @pytest.mark.parametrize(
     ("spoil", "sentence"),
     [
-        (lambda content: b"", "no C3D file, or is cut short"),
-        (lambda content: b"text" * 1000, "no C3D file"),
+        (lambda content: b"", "not a C3D file, or is cut short"),
+        (lambda content: b"text" * 1000, "not a C3D file"),
         (lambda content: content[: len(content) // 2], "cut short"),
         (lambda content: content[:1024], "cut short"),
         (lambda content: content[:2] + b"\0\0" + content[4:], "no points, only other signals"),
@@ -203,7 +203,7 @@ def test_more_names_than_fit_are_refused_and_nothing_is_written(tmp_path):
     names = tuple(f"{'M' * 200}{number}" for number in range(700))
     tracks = Tracks(names, np.ones((1, 700, 3)), 100.0)
 
-    with pytest.raises(InvalidMotionError, match="700 points with such names"):
+    with pytest.raises(InvalidMotionError, match="700 points with these names"):
         write_c3d(tracks, tmp_path / "take.c3d")
     assert not list(tmp_path.iterdir())
 

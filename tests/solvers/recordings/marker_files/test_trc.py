@@ -192,14 +192,14 @@ def test_names_are_told_apart(read, names, expected):
 
 
 @pytest.mark.parametrize(
-    ("unit", "metres"),
+    ("unit", "meters"),
     [("mm", 0.001), ("Millimeters", 0.001), ("m", 1.0), ("METRES", 1.0), ("cm", 0.01),
      ("inches", 0.0254), ("in", 0.0254), ("ft", 0.3048), ("", 0.001), ("parsecs", 0.001)],
 )  # fmt: skip
-def test_the_unit_is_the_header_s_or_gives_a_person_s_size(read, unit, metres):
+def test_the_unit_is_the_header_s_or_gives_a_person_s_size(read, unit, meters):
     tracks = read(FILE.replace("\tmm\t", f"\t{unit}\t"))
 
-    assert_allclose(tracks.positions, 1000 * metres * PLACES)
+    assert_allclose(tracks.positions, 1000 * meters * PLACES)
     assert_allclose(read(FILE, scale=2.0).positions, 2000 * PLACES)
 
 
@@ -233,9 +233,9 @@ def test_a_body_stands_upright(tmp_path, rng, axes):
         (lambda text: text.replace("2\t0.01", "2\t"), "line 8 begins with '2 +11 1501"),
         (lambda text: text.replace("2\t0.01", "Events"), "line 8.*'Events' is not a number"),
         (lambda text: text.replace("\n100\t200", "\nfast\t200"), "line 3, DataRate: 'fast'"),
-        (lambda text: text[: text.index("\t10\t1500")], "no markers that are seen"),
+        (lambda text: text[: text.index("\t10\t1500")], "no markers that are observed"),
         (lambda text: text.replace("4\t0.03", "4\t1e308"), "line 10 begins with '4 1e308"),
-        (lambda text: text.replace("4\t0.03", "4\t9999999"), "spread over 1e.07 s"),
+        (lambda text: text.replace("4\t0.03", "4\t9999999"), "span 1e.07 s"),
         (lambda text: text.replace("\n100\t", "\n0\t").replace("0.0", "0\t"), "frame rate"),
         (
             lambda text: text + "5\t0.04" + "\t" * 200_000 + "7\n" + "6\t0.05\n" * 60,
@@ -257,9 +257,9 @@ def test_a_file_of_times_alone_has_no_markers(read):
 
 
 def naive(path) -> tuple[list[str], np.ndarray]:
-    """Read as one would by hand: names, and metres in the file's axes; zeros are gaps."""
+    """Read as one would by hand: names, and meters in the file's axes; zeros are gaps."""
     lines = path.read_text(encoding="utf-8").split("\n")
-    metres = {"mm": 0.001, "m": 1.0}["mm" if "\tmm\t" in lines[2].replace(" ", "") else "m"]
+    meters = {"mm": 0.001, "m": 1.0}["mm" if "\tmm\t" in lines[2].replace(" ", "") else "m"]
     names = [cell.strip() for cell in lines[3].split("\t")[2:] if cell.strip()]
     for place in range(1, len(names)):
         if names[place] in names[:place]:
@@ -276,4 +276,4 @@ def naive(path) -> tuple[list[str], np.ndarray]:
             x, y, z = row[3 * point : 3 * point + 3]
             if (x, y, z) != (0.0, 0.0, 0.0) and x == x and y == y and z == z:
                 points[frame, point] = (x, y, z)
-    return names, metres * points
+    return names, meters * points

@@ -34,7 +34,7 @@ SECOND_FRAME = [[0.05, -0.07, 1.41], [0.05, -0.07, 1.71], [0.05, 0.18, 1.71]]
 
 
 def test_stands_up_and_faces_us(read):
-    """Up (Y) becomes Z, and forward (Z) becomes -Y; centimetres become metres."""
+    """Up (Y) becomes Z, and forward (Z) becomes -Y; centimeters become meters."""
     arm = read(ARM)
 
     assert arm.skeleton.names == ("shoulder", "elbow", "elbow_end")
@@ -83,7 +83,7 @@ def test_any_order_of_angles_comes_back(swinging_leg, tmp_path, order):
 
     assert back.skeleton.same_joints(swinging_leg.skeleton)
     assert back.frame_rate == swinging_leg.frame_rate
-    # Six decimals of centimetres and degrees are 1e-8 m, and 1e-8 rad times a leg's length.
+    # Six decimals of centimeters and degrees are 1e-8 m, and 1e-8 rad times a leg's length.
     assert_allclose(back.skeleton.offsets, swinging_leg.skeleton.offsets, atol=1e-8)
     theirs = forward_kinematics(back).positions
     assert_allclose(theirs, forward_kinematics(swinging_leg).positions, atol=5e-8)
@@ -207,18 +207,18 @@ def test_every_real_file_is_a_person_on_or_near_the_floor(recordings):
     ("text", "sentence"),
     [
         ("", "does not begin with HIERARCHY"),
-        (ARM.split("MOTION")[0], "no MOTION part: it is cut short"),
+        (ARM.split("MOTION")[0], "no MOTION section: it is cut short"),
         (ARM.split("0 140 0  ")[0], "no frames"),
-        (ARM.rsplit(" ", 1)[0], r"take\.bvh, line 20: 8 numbers stand where 9 belong"),
+        (ARM.rsplit(" ", 1)[0], r"take\.bvh, line 20: 8 numbers instead of 9"),
         (ARM.replace("141", "abc"), "line 20: 'abc' is not a number"),
         (ARM.replace("CHANNELS 3", "CHANNELS 4"), "line 10: elbow has a channel 'end'"),
-        (ARM.replace("30 0 0", "30 0"), "line 9: 'CHANNELS' is no sensible number"),
+        (ARM.replace("30 0 0", "30 0"), "line 9: 'CHANNELS' is not a plausible number"),
         (ARM.replace("OFFSET 25", "25"), "line 12: OFFSET is missing"),
         (ARM.replace("}\n}\nMOTION", "}\nMOTION"), "the hierarchy ends too early"),
         (ARM.replace("MOTION", "ROOT second\n{\n}\nMOTION"), "second ROOT; one file holds one"),
-        (ARM.replace("JOINT elbow", "TWIG elbow"), "'TWIG' stands where JOINT"),
-        (ARM.replace("CHANNELS 6", "CHANNELS inf"), "'inf' is no sensible number"),
-        (ARM.replace("OFFSET 30", "OFFSET nan"), "'nan' is no sensible number"),
+        (ARM.replace("JOINT elbow", "TWIG elbow"), "'TWIG' instead of JOINT"),
+        (ARM.replace("CHANNELS 6", "CHANNELS inf"), "'inf' is not a plausible number"),
+        (ARM.replace("OFFSET 30", "OFFSET nan"), "'nan' is not a plausible number"),
         (
             ARM.replace("elbow", "elbow " * 200),
             r"the name '(elbow_){6}elbo\.\.\.' does not end",
