@@ -96,7 +96,7 @@ def at(frames, value):
         "long time",
     ],
 )
-def test_odd_takes_come_out_whole(call, bvh, tmp_path, spoil, frame_time):
+def test_denoise_fills_unusual_takes_completely(call, bvh, tmp_path, spoil, frame_time):
     source, target = bvh(spoil, frame_time), tmp_path / "out.bvh"
 
     status, said, complaint = call("denoise", source, target, "--json")
@@ -219,7 +219,7 @@ def test_too_little_memory_is_one_sentence(call, bvh, tmp_path, monkeypatch):
     assert "in.bvh needs more memory than there is" in complaint
 
 
-def test_an_interrupt_leaves_whole_files_only(swinging_leg, tmp_path):
+def test_interrupt_leaves_only_complete_files(swinging_leg, tmp_path):
     files = [tmp_path / f"{number}.bvh" for number in range(3)]
     for file in files:
         write_bvh(swinging_leg, file)

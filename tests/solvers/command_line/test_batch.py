@@ -14,7 +14,7 @@ def twin_file(leg_file) -> Path:
     return Path(shutil.copy(leg_file, leg_file.with_name("twin.bvh")))
 
 
-def test_many_files_go_to_a_folder_and_a_second_run_goes_on(call, leg_file, tmp_path):
+def test_output_folder_resumes_in_a_second_run(call, leg_file, tmp_path):
     twin = tmp_path / "twin.bvh"
     twin.write_bytes(leg_file.read_bytes())
     folder = tmp_path / "out"

@@ -48,7 +48,7 @@ def test_a_standing_body_is_written_as_a_skeleton_with_its_figures(call, take, t
     assert load_body_model(kept).lengths.shape == default_body().lengths.shape
 
 
-def test_what_is_no_depth_and_who_is_not_there_are_said_in_a_sentence(call, take, tmp_path):
+def test_capture_reports_missing_depth_and_missing_actor_in_one_sentence(call, take, tmp_path):
     (tmp_path / "no.bvh").write_text("HIERARCHY\n")
     for source, words in (
         (tmp_path / "no.bvh", "holds no depth"),

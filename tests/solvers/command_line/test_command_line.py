@@ -51,7 +51,7 @@ def test_markers_go_from_trc_to_c3d_and_back_and_are_cleaned(call, tmp_path, rng
     assert clean.visible.all()
 
 
-def test_swapped_labels_are_put_right_where_that_is_asked_for(
+def test_unswap_option_corrects_swapped_labels(
     call, recordings, leg_file, tmp_path
 ):
     take = read_c3d(recordings / "mocap" / "05_13.c3d")
@@ -137,7 +137,7 @@ def test_what_was_learned_once_serves_as_well_as_the_clips(call, leg_file, tmp_p
     assert out[0].read_bytes() != out[1].read_bytes()
 
 
-def test_learn_says_what_it_learned(call, leg_file, tmp_path):
+def test_learn_reports_its_result(call, leg_file, tmp_path):
     learned = tmp_path / "legs.npz"
 
     status, said, complaint = call("learn", leg_file, "--output", learned)

@@ -38,7 +38,7 @@ def test_index_tells_what_it_did_and_does_it_once(call, walks, library):
     assert told["output"] == told["library"] == str(library)
 
 
-def test_index_says_each_file_that_is_of_no_use_and_fails(call, walks, library, tmp_path):
+def test_index_reports_each_refused_file_and_fails(call, walks, library, tmp_path):
     shutil.copytree(walks, tmp_path / "more")
     (tmp_path / "more" / "broken.bvh").write_text("HIERARCHY\nROOT")
     (tmp_path / "more" / "walk_100.bvh").unlink()
@@ -86,7 +86,7 @@ def test_find_searches_with_frames_and_parts_of_the_body(call, walks, library):
     assert len(ignored["matches"]) == 1
 
 
-def test_slips_are_said_in_one_sentence(call, walks, library, tmp_path):
+def test_wrong_library_arguments_are_reported_in_one_sentence(call, walks, library, tmp_path):
     query, none = walks / "walk_100.bvh", tmp_path / "none"
     (tmp_path / "empty").touch()
     limbs = ("left-arm", "right-arm", "left-leg", "right-leg")

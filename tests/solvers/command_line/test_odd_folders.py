@@ -95,7 +95,7 @@ def test_a_target_that_cannot_be_written_stops_no_other(call, folder, tmp_path):
     assert "walk.bvh cannot be written: it is a folder." in err
 
 
-def test_a_closed_folder_is_one_sentence_and_the_rest_is_made(
+def test_unreadable_folder_is_one_sentence_and_other_files_are_processed(
     call, folder, tmp_path, monkeypatch
 ):
     close(folder / "more", monkeypatch)
@@ -111,7 +111,7 @@ def test_a_closed_folder_is_one_sentence_and_the_rest_is_made(
         assert "30 frames" in out or "1 added" in out
 
 
-def test_what_a_closed_folder_holds_is_indexed_when_it_is_opened(call, folder, tmp_path):
+def test_unreadable_folder_is_indexed_once_it_is_readable(call, folder, tmp_path):
     with pytest.MonkeyPatch.context() as closing:
         close(folder / "more", closing)
         call("index", tmp_path / "all.clips", folder)
@@ -165,7 +165,7 @@ def test_a_link_to_itself_stops_no_other(call, folder, tmp_path):
     assert read_bvh(out / "walk.bvh").n_frames == 30
 
 
-def test_a_file_in_a_closed_folder_stops_no_other(call, folder, tmp_path, monkeypatch):
+def test_unreadable_file_stops_no_other(call, folder, tmp_path, monkeypatch):
     hidden = (folder / "more" / "walk.bvh").rename(folder / "more" / "hidden.bvh")
     named = (hidden, folder / "walk.bvh")
     for name in ("stat", "open"):  # As for somebody who may not look into it; root may.

@@ -56,7 +56,7 @@ def test_what_is_not_given_is_the_default_of_each_class(parser):
     assert settings_from_arguments(arguments, ArrowSettings).n_shots == 5
 
 
-def test_help_says_unit_range_and_default(parser):
+def test_help_has_unit_range_and_default(parser):
     text = " ".join(parser.format_help().split())
 
     assert "Longer is lower [m, 0.1 to 2, default 0.7]" in text

@@ -158,7 +158,7 @@ def test_killed_in_the_middle_and_taken_up_again(swinging_leg, takes, tmp_path, 
     assert not [path for path in out.rglob("*") if path.name.startswith(".")]
 
 
-def test_files_of_the_same_name_are_told_apart(call, takes, swinging_leg, tmp_path):
+def test_report_distinguishes_files_of_the_same_name(call, takes, swinging_leg, tmp_path):
     (takes / "leg.csv").write_text(kinect_csv(moving(40, 25)))
     (takes / "leg.txt").write_text(kinect_csv(moving(40, 25)))
     other = tmp_path / "more"

@@ -76,7 +76,7 @@ def test_retarget_reads_maps_from_files(call, walk_file, tmp_path):
     assert status == 0 and "22 shared roles" in said
 
 
-def test_the_map_that_was_found_can_be_kept_edited_and_given_again(
+def test_detected_map_can_be_saved_edited_and_reused(
     call, walk_file, rig_file, tmp_path
 ):
     """A first go writes the map; without its arms, a second one leaves the arms at rest."""
@@ -106,7 +106,7 @@ def test_the_map_that_was_found_can_be_kept_edited_and_given_again(
         ((), "--to"),
     ],
 )
-def test_retarget_says_what_is_wrong(call, walk_file, rig_file, tmp_path, words, sentence):
+def test_retarget_reports_what_is_wrong(call, walk_file, rig_file, tmp_path, words, sentence):
     write_trc(Tracks(("a",), np.zeros((3, 1, 3)), 30.0), tmp_path / "points.trc")
     write_humanoid_map(HumanoidMap({"hips": "Nobody"}), tmp_path / "wrong.json")
     words = [word.format(folder=tmp_path) for word in words]
@@ -129,7 +129,7 @@ def test_a_root_bone_carries_the_travel(call, walk_file, tmp_path):
     assert read_bvh(tmp_path / "out.bvh").skeleton.names[0] == "root"
 
 
-def test_unbake_says_how_many_keys_are_left_and_keeps_them(call, walk_file, tmp_path):
+def test_unbake_reports_and_saves_keys(call, walk_file, tmp_path):
     status, said, _ = call(
         "unbake", walk_file, tmp_path / "few.bvh", "--tolerance", 0.5, "--keys"
     )
@@ -143,7 +143,7 @@ def test_unbake_says_how_many_keys_are_left_and_keeps_them(call, walk_file, tmp_
     assert np.linalg.norm(after - before, axis=-1).max() < 0.0053
 
 
-def test_unbake_refuses_points_and_nonsense(call, walk_file, tmp_path):
+def test_unbake_refuses_points_and_invalid_tolerances(call, walk_file, tmp_path):
     write_trc(Tracks(("a",), np.zeros((3, 1, 3)), 30.0), tmp_path / "points.trc")
 
     failures = [

@@ -39,7 +39,7 @@ def walk():
 
 @pytest.mark.parametrize("usual", WORDS)
 @pytest.mark.parametrize("true", WORDS)
-def test_whatever_the_usual_unit_a_man_comes_out(walk, usual, true):
+def test_body_has_human_size_for_any_default_unit(walk, usual, true):
     told = Told()
 
     found = joint_recording(
@@ -83,7 +83,7 @@ def test_what_is_no_body_keeps_its_unit(names):
     assert convert_to_body_unit(recording, 1.0, Told()) is recording
 
 
-def test_joints_all_in_one_place_have_no_size(walk):
+def test_joints_at_one_position_have_no_size(walk):
     flat = walk.with_tracks(walk.tracks.with_positions(np.ones_like(walk.tracks.positions)))
 
     assert convert_to_body_unit(flat, 1.0, Told()) is flat

@@ -83,7 +83,7 @@ def test_the_others_are_found_when_looking_at_one_file_fails(takes, monkeypatch,
     assert names(depth_takes_in(takes), takes) == ["more/twin.bvh", "more/twin.npz", "room.npz"]
 
 
-def test_a_closed_folder_is_named_by_whoever_reads_it(takes, monkeypatch):
+def test_unreadable_folder_is_named_on_reading(takes, monkeypatch):
     closed = takes / "more"
     close(closed, monkeypatch)
 

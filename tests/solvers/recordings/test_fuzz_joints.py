@@ -11,7 +11,7 @@ EXAMPLES = 60
 
 
 @pytest.mark.parametrize("kind", JOINT_FILES)
-def test_whole_files_are_read_and_known_by_their_content(kind, tmp_path):
+def test_undamaged_files_are_read_and_detected_by_content(kind, tmp_path):
     read, whole = JOINT_FILES[kind]
     (tmp_path / "take").write_bytes(whole)
 

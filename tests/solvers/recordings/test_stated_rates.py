@@ -25,12 +25,12 @@ def line(times) -> np.ndarray:
         (np.array([0.0, 0.02]), None, 50.0),
     ],
 )
-def test_even_stamps_change_nothing(times, said, rate):
+def test_even_time_stamps_change_nothing(times, said, rate):
     assert constant_rate_from_times(times, said) == pytest.approx(rate, rel=1e-12)
 
 
 @pytest.mark.parametrize("said", [100.0, 70.0, None])
-def test_frames_that_were_left_out_are_gaps(said):
+def test_skipped_frames_are_gaps(said):
     kept = np.r_[0:40, 43:80, 81:100]
     times = kept / 100.0
 

@@ -133,7 +133,7 @@ def test_freemocap_comes_out_upright_in_metres(write, person, unit, axes):
     assert tracks.visible.sum() == 20 * (75 + 4) - 1
 
 
-def test_freemocap_hands_are_told_by_the_wrists(write, person):
+def test_freemocap_hands_are_assigned_by_the_wrists(write, person):
     swapped = person.copy()
     swapped[:, 33:54], swapped[:, 54:] = person[:, 54:], person[:, 33:54]
 
@@ -195,7 +195,7 @@ def test_freemocap_bodies_hang_together_and_every_limb_has_its_role(write, perso
 
 @pytest.mark.parametrize("right_first", [True, False])
 @pytest.mark.parametrize("unseen", [LEFT_WRIST, RIGHT_WRIST, slice(33, 54), slice(54, 75)])
-def test_freemocap_hands_are_told_by_what_is_seen(write, person, right_first, unseen):
+def test_freemocap_hands_are_assigned_by_observed_points(write, person, right_first, unseen):
     points = person.copy()
     if not right_first:
         points[:, 33:54], points[:, 54:] = person[:, 54:], person[:, 33:54]

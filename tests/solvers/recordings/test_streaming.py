@@ -64,7 +64,7 @@ def figures(recording):
 
 @pytest.mark.parametrize("end", ENDS)
 @pytest.mark.parametrize("kind", FILES)
-def test_a_border_within_any_number_or_line_end_is_not_seen(kind, end, said):
+def test_result_is_independent_of_block_borders(kind, end, said):
     read, whole, _ = FILES[kind]
     if kind.startswith("kinect"):
         whole = whole.replace(b"\r\n", b"\n")
@@ -77,7 +77,7 @@ def test_a_border_within_any_number_or_line_end_is_not_seen(kind, end, said):
 
 
 @pytest.mark.parametrize("kind", FILES)
-def test_damaged_files_are_refused_in_the_same_words_wherever_the_borders_are(kind, said):
+def test_refusal_is_independent_of_block_borders(kind, said):
     read, whole, tokens = FILES[kind]
 
     @searching(40)
@@ -92,7 +92,7 @@ def test_damaged_files_are_refused_in_the_same_words_wherever_the_borders_are(ki
 
 
 @pytest.mark.parametrize("size", [1, 30, 1 << 22])
-def test_of_two_lines_about_a_bone_in_one_frame_the_later_counts(size, said):
+def test_later_line_of_a_bone_in_a_frame_is_used(size, said):
     whole = WHOLE["amc"]
     twice = whole.replace(b"thigh 5 2 3\n", b"thigh 80 8 8\nshank 4\nthigh 5 2 3\n")
     assert twice != whole
@@ -142,7 +142,7 @@ def test_a_line_that_never_ends_is_refused(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 1.0])
-def test_a_table_holds_what_was_added_whatever_was_foretold(share, rng):
+def test_table_holds_all_rows_for_any_fraction_read(share, rng):
     blocks = [rng.normal(size=(n_rows, 3)) for n_rows in (1, 0, 7, 300, 2)]
     table = GrowingTable(3)
 
@@ -157,7 +157,7 @@ def test_an_empty_table_has_its_width():
 
 
 @pytest.mark.parametrize("kind", ["bvh", "trc", "amc", "csv"])
-def test_the_text_is_never_whole_in_memory(kind, tmp_path, monkeypatch):
+def test_text_is_never_completely_in_memory(kind, tmp_path, monkeypatch):
     """Beside three times the numbers, which the readers work on, stands only a block."""
     read, whole, _ = FILES[kind]
     monkeypatch.setattr(line_reader, "BLOCK_BYTES", 1 << 16)

@@ -44,7 +44,7 @@ def caught(recording: DepthRecording, body: BodyModel | None = BODY):
     return capture_recording(recording, body, settings=QUICK, planting=None)
 
 
-def test_nothing_is_said_of_a_recording_as_it_should_be():
+def test_valid_recording_has_no_remarks():
     poses = waving(N_FRAMES)
 
     found = caught(recorded(poses), None)
@@ -53,7 +53,7 @@ def test_nothing_is_said_of_a_recording_as_it_should_be():
     assert off(found, poses).mean() < 0.04
 
 
-def test_of_two_people_the_larger_is_followed_and_the_other_told_of():
+def test_larger_of_two_people_is_tracked_and_the_other_reported():
     poses = waving(N_FRAMES)
     poses[:, 0] -= 0.6
     other = poses[0].copy()
@@ -66,7 +66,7 @@ def test_of_two_people_the_larger_is_followed_and_the_other_told_of():
     assert off(found, poses).mean() < 0.04
 
 
-def test_who_leaves_the_picture_is_guessed_flagged_and_told_of():
+def test_actor_outside_the_image_is_estimated_flagged_and_reported():
     poses = waving(30)
     poses[:, 0] += np.linspace(0.0, 3.2, 30)
 
@@ -82,7 +82,7 @@ def test_who_leaves_the_picture_is_guessed_flagged_and_told_of():
     assert np.isfinite(found.motion.root_positions).all()
 
 
-def test_of_an_upper_body_the_arms_are_told_and_the_legs_are_not_trusted():
+def test_upper_body_has_tracked_arms_and_unreliable_legs():
     poses = waving(N_FRAMES)
     shown = replace(CAMERA, height=72)
     recording = replace(
@@ -123,7 +123,7 @@ def test_holes_are_no_obstacle():
     assert off(found, poses).mean() < 0.04
 
 
-def test_missing_frames_are_bridged_and_told_of():
+def test_missing_frames_are_interpolated_and_reported():
     poses, lost = waving(18), (4, 5, 9, 10, 11, 15)
 
     found = caught(changed(recorded(poses), lambda one, seen: seen * (one not in lost)))
@@ -142,7 +142,7 @@ def test_missing_frames_are_bridged_and_told_of():
         (1.3, 1.0, "check fx and fy"), (1.0, 0.75, "check fx and fy"),
     ],
 )  # fmt: skip
-def test_wrong_focal_lengths_are_told_of(across, down, words):
+def test_wrong_focal_lengths_are_reported(across, down, words):
     wrong = replace(CAMERA, fx=across * CAMERA.fx, fy=down * CAMERA.fy)
 
     found = caught(replace(recorded(waving(3)), camera=wrong), None)
@@ -165,7 +165,7 @@ def test_a_body_as_thick_as_a_barrel_may_be_a_wrong_focal_length():
     )
 
 
-def test_a_scale_that_is_wrong_leaves_nobody_or_a_giant():
+def test_wrong_scale_is_refused_or_reported():
     in_millimetres = changed(recorded(waving(3)), lambda _, seen: 1000.0 * seen)
 
     try:
@@ -197,7 +197,7 @@ def peak_of(n_frames: int, read) -> int:
         tracemalloc.stop()
 
 
-def test_no_picture_is_kept():
+def test_no_image_stays_in_memory():
     """Each further frame takes much less than its picture: a take of any length fits."""
     still = drawn(waving(1)[0]).astype(np.float32)
     peak_of(2, lambda _: still)  # What is loaded once and for all.

@@ -52,7 +52,7 @@ def error(found: Motion, truth: Motion, frames=slice(30, 60)) -> float:
     return float(np.degrees(apart[frames]).mean())
 
 
-def test_a_lost_leg_is_rebuilt_from_clips_like_the_take(library):
+def test_missing_leg_is_filled_from_similar_clips(library):
     truth = walk(115)
     dirty = without_a_leg(truth)
     before, told = dirty.rotations.copy(), []
@@ -148,7 +148,7 @@ def test_a_library_of_other_movements_does_no_harm(recordings):
     assert set(helped.clips[:2]) == set(squats[1:])
 
 
-def test_clips_are_read_again_from_their_files_and_the_lost_are_told(tmp_path):
+def test_clips_are_read_from_their_files_and_missing_files_reported(tmp_path):
     for name, motion in WALKS.items():
         write_bvh(motion, tmp_path / f"{name}.bvh")
     index_files(tmp_path / "library.clips", [tmp_path])
@@ -166,13 +166,13 @@ def test_clips_are_read_again_from_their_files_and_the_lost_are_told(tmp_path):
     assert_array_equal(cleaned.recording.rotations, denoise(walk(115)).recording.rotations)
 
 
-def test_clips_that_came_from_no_file_are_told(library):
+def test_clips_without_a_file_are_reported(library):
     learned = bases_from_library(walk(115), library)
     assert learned.bases is None
     assert "walk 110 was left out: walk 110 came from no file" in learned.message
 
 
-def test_an_action_is_left_to_whoever_can_read_it():
+def test_clip_of_an_action_is_not_read_from_its_file():
     origin = Origin("/somewhere/rig.blend", "Walk")
     library = build_clip_library([Clip("Walk", walk(110), origin=origin)])
     assert bases_from_library(walk(115), library).bases is None
@@ -185,7 +185,7 @@ def test_what_a_sensor_saw_is_no_example(library):
     assert bases_from_library(walk(115), library, fetch=lambda entry: joints).bases is None
 
 
-def test_clips_too_short_to_learn_from_are_told():
+def test_clips_too_short_to_learn_from_are_reported():
     short = {name: motion.slice(0, 5) for name, motion in WALKS.items()}
     library = build_clip_library(Clip(name, motion) for name, motion in short.items())
     learned = bases_from_library(

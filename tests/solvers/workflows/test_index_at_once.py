@@ -47,7 +47,7 @@ def once(work):
     return progress
 
 
-def test_no_clip_is_lost_when_another_indexes_files_of_the_same_names(folders, library):
+def test_parallel_indexing_keeps_clips_of_the_same_names(folders, library):
     first, second = folders
     meanwhile = []
 

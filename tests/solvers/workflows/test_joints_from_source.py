@@ -23,7 +23,7 @@ def walk():
     return recording.with_tracks(recording.tracks.with_positions(positions))
 
 
-def test_it_is_all_there_even_below_a_joint_that_was_not_seen(walk):
+def test_all_joints_are_recovered_below_a_missing_joint(walk):
     motion = motion_from_points(walk.tracks, walk.parents)
 
     found = joints_from_source(motion, walk)
@@ -46,7 +46,7 @@ def test_the_confidence_of_a_tracker_without_states_comes_along(walk):
     assert_array_equal(found.tracks.confidence, told[:, order])
 
 
-def test_it_goes_along_where_the_armature_was_put(walk):
+def test_joints_follow_a_moved_armature(walk):
     """Turned about Z, scaled, and moved: as an armature that stands elsewhere."""
     motion = motion_from_points(walk.tracks, walk.parents)
     turn, shift = quaternion_from_rotation_vector(np.array([0.0, 0.0, 0.8])), (1.0, 2.0, 0.9)
@@ -112,7 +112,7 @@ def test_a_longer_motion_is_not_of_it(walk):
     assert joints_from_source(twice, walk) is None
 
 
-def test_who_stands_still_is_somewhere(walk):
+def test_motionless_take_is_matched(walk):
     still = walk.with_tracks(
         walk.tracks.with_positions(np.repeat(walk.tracks.positions[:1], 90, axis=0))
     )

@@ -30,7 +30,7 @@ def spoilt(walk) -> Tracks:
     return Tracks((*take.names, "*0"), np.concatenate([positions, other], axis=1), 60.0)
 
 
-def test_the_motion_is_whole_and_near_the_truth(walk, spoilt):
+def test_motion_has_no_gaps_and_is_accurate(walk, spoilt):
     result = motion_from_markers(spoilt)
 
     assert result.motion.observed.all()
@@ -48,7 +48,7 @@ def test_the_motion_is_whole_and_near_the_truth(walk, spoilt):
     assert np.linalg.norm(hand, axis=1)[100:130].mean() < 0.08
 
 
-def test_what_is_known_is_not_touched_unless_asked_for(spoilt):
+def test_observed_samples_are_unchanged_unless_smoothed(spoilt):
     result = motion_from_markers(spoilt)
     smooth = motion_from_markers(spoilt, settings=MarkerMotionSettings(smooth=True))
 

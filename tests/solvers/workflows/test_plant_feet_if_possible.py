@@ -55,7 +55,7 @@ def wandering() -> Motion:
     )
 
 
-def test_an_ankle_that_stands_still_stays_whatever_its_lost_toe_does():
+def test_resting_ankle_stays_when_its_toe_is_missing():
     motion = wandering()
 
     planted = plant_feet_if_possible(
@@ -69,7 +69,7 @@ def test_an_ankle_that_stands_still_stays_whatever_its_lost_toe_does():
 
 
 @pytest.mark.parametrize("take", ["216_18_7_5_1_stand", "216_18_1_1_1_stand"])
-def test_a_trusted_ankle_is_not_planted_far_from_where_it_was_still(recordings, take):
+def test_reliable_ankle_is_planted_near_its_rest_position(recordings, take):
     """A contact lasted while the foot shifted; planting moved still ankles by 12 cm."""
     recording = read_recording(recordings / "kinect" / "irds" / f"{take}.txt")
 
@@ -85,7 +85,7 @@ def test_a_trusted_ankle_is_not_planted_far_from_where_it_was_still(recordings, 
         assert moved[sure].max(initial=0.0) < 0.05, name
 
 
-def test_a_lost_toe_that_points_up_is_laid_down():
+def test_missing_toe_that_points_up_is_flattened():
     motion = standing(np.array([0.0, -0.1, 0.1]))
 
     planted = plant_feet_if_possible(
@@ -102,7 +102,7 @@ def test_a_lost_toe_that_points_up_is_laid_down():
     np.testing.assert_allclose(shown, seen, atol=1e-9)
 
 
-def test_feet_that_were_seen_well_are_planted_as_ever():
+def test_reliable_feet_are_planted_as_without_reliability():
     body = samples.walking_gait(samples.GaitSettings(duration=3.0, frame_rate=30.0))
 
     plain = plant_feet_if_possible(body, PLANTING)

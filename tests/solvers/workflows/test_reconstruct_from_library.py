@@ -51,7 +51,7 @@ def of_others(clips):
     return [name for name in clips if name.startswith("dg")]
 
 
-def test_lost_limbs_are_nearer_than_with_what_is_shipped(clips, library, squat):
+def test_missing_limbs_are_closer_than_with_shipped_postures(clips, library, squat):
     recording, truth, hidden, columns = squat
 
     found = reconstruct_from_library(

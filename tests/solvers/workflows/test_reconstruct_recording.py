@@ -49,7 +49,7 @@ def test_every_joint_is_there_in_every_frame_and_bones_have_one_length(walk):
     assert result.remarks == ()
 
 
-def test_feet_stand_still_where_they_stand(walk):
+def test_standing_feet_do_not_slide(walk):
     result = reconstruct_recording(walk)
 
     assert result.planted.slide_after < 0.1 * result.planted.slide_before
@@ -62,7 +62,7 @@ def test_feet_are_left_alone_on_request(walk):
     assert result.motion is result.reconstruction.motion
 
 
-def test_a_body_without_legs_says_that_its_feet_stay(truth):
+def test_body_without_legs_reports_that_feet_are_not_planted(truth):
     upper = [name for name in SENSOR_JOINTS[Sensor.KINECT_V1]
              if not name.startswith(("Knee", "Ankle", "Foot"))]  # fmt: skip
     places = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in upper]
@@ -119,7 +119,7 @@ def as_recording(
     ],
     ids=["nothing", "one joint", "millimeters", "centimeters", "kilometers", "zeros"],
 )
-def test_what_cannot_be_is_told_in_one_sentence(truth, spoil, said):
+def test_invalid_recordings_are_reported_in_one_sentence(truth, spoil, said):
     with pytest.raises(InvalidMotionError, match=said):
         reconstruct_recording(as_recording(spoil(truth)))
 
@@ -131,7 +131,7 @@ def test_what_cannot_be_is_told_in_one_sentence(truth, spoil, said):
         (1, ReconstructSettings(inferred=0.0), "infers the others. Raise the setting"),
     ],
 )
-def test_places_for_which_the_tracker_does_not_answer(truth, state, settings, said):
+def test_recordings_of_untracked_joints_are_refused(truth, state, settings, said):
     tracks = as_recording(truth).tracks
     recording = JointRecording(tracks, np.full(truth.shape[:2], state, np.int8), Sensor.OTHER)
 
@@ -147,7 +147,7 @@ def test_a_spine_alone_is_no_body(truth):
         reconstruct_recording(recording)
 
 
-def test_names_that_mean_no_body_are_told(truth):
+def test_unrecognized_joint_names_are_reported(truth):
     names = tuple(f"marker{number}" for number in range(20))
 
     with pytest.raises(InvalidMotionError, match=r"No body was recognized .* \(marker0"):
@@ -159,7 +159,7 @@ def test_a_child_and_a_giant_are_human(truth):
         assert reconstruct_recording(as_recording(size * truth)).motion.observed.all()
 
 
-def test_time_stamps_that_jump_leave_a_guess_that_is_told(walk, tmp_path):
+def test_gap_in_time_stamps_is_estimated_and_reported(walk, tmp_path):
     """The recording stops for three seconds; the file's own times say so."""
     path = tmp_path / "jump.csv"
     head = "mocap-assist-joints,1,units=m,up=z"
@@ -221,7 +221,7 @@ def test_hips_that_are_never_tracked_are_between_the_legs(recordings):
     assert np.isnan(blind_recording.tracks.positions[:, hips]).all()
 
 
-def test_a_tracker_that_vouches_for_nothing_is_told_so(truth):
+def test_recording_without_tracked_joints_is_refused(truth):
     tracks = Tracks(SENSOR_JOINTS[Sensor.KINECT_V1], truth, 30.0)
     blind = JointRecording(tracks, np.zeros(truth.shape[:2], np.int8), Sensor.KINECT_V1)
 

@@ -66,7 +66,7 @@ def test_one_of_another_size_in_the_middle_is_named(tmp_path, depth):
 
 
 @pytest.mark.parametrize("kind", ["eight bits", "colored"])
-def test_a_picture_of_depth_for_the_eye_is_none(tmp_path, depth, kind):
+def test_rendered_depth_images_are_refused(tmp_path, depth, kind):
     for number, picture in enumerate(depth):
         gray = (picture // 16).astype(np.uint8)
         pixels = gray if kind == "eight bits" else colors_of(picture)
@@ -92,7 +92,7 @@ def test_a_picture_of_depth_for_the_eye_is_none(tmp_path, depth, kind):
         ("depth.txt", "1.0 nowhere.png\n1.1 nothing.png", "2 of 2 depth images"),
     ],
 )  # fmt: skip
-def test_what_is_beside_the_pictures_must_make_sense(tmp_path, depth, name, content, sentence):
+def test_invalid_metadata_of_a_folder_is_refused(tmp_path, depth, name, content, sentence):
     folder = open3d(tmp_path, depth)
     (folder / name).write_text(content)
 
@@ -100,7 +100,7 @@ def test_what_is_beside_the_pictures_must_make_sense(tmp_path, depth, name, cont
         read_depth(folder, DepthSettings() if "json" in name else LENS)
 
 
-def test_a_folder_of_other_things_is_none(tmp_path):
+def test_folder_of_other_files_is_not_depth(tmp_path):
     with pytest.raises(InvalidFileError, match="holds no depth of a known format"):
         read_depth(tmp_path)
     with pytest.raises(InvalidFileError, match="is a folder without depth images"):

@@ -134,7 +134,7 @@ def test_a_recording_can_be_sent_to_another_process(write):
     assert_array_equal(pickle.loads(sent).frame(4), recording.frame(4))
 
 
-def test_what_the_archive_says_of_camera_rate_and_colour_counts(write, rng):
+def test_archive_defines_camera_rate_and_color(write, rng):
     color = rng.integers(0, 255, (5, 6, 8, 3)).astype(np.uint8)
     path = write(depth_npz(pictures(), color=color))
 
@@ -189,7 +189,7 @@ RAW = pictures(1, 480, 640).tobytes()
         (RAW, "no depth of a known format"),  # white noise, though of a Kinect's size
     ],
 )  # fmt: skip
-def test_what_is_no_depth_says_so(write, content, sentence):
+def test_other_content_than_depth_is_refused(write, content, sentence):
     with pytest.raises(InvalidFileError, match=sentence):
         read_depth(write(content))
 
@@ -236,7 +236,7 @@ def test_a_scale_is_above_zero(write, scale):
         read_recording(write(depth_npz(pictures())), scale=scale)
 
 
-def test_whoever_wants_joints_hears_what_to_do_with_depth(write):
+def test_reading_joints_from_depth_reports_what_to_do(write):
     with pytest.raises(InvalidFileError, match="Track the actor in it first"):
         read_tracked(write(depth_npz(pictures())))
 

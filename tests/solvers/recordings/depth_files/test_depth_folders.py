@@ -62,7 +62,7 @@ def test_tum_by_its_associations(tmp_path, depth, depth_first):
     assert_array_equal(recording.color(7), colors_of(depth[7]))
 
 
-def test_times_that_jump_leave_empty_frames_and_say_so(tmp_path, depth):
+def test_gaps_in_times_become_empty_frames_with_a_remark(tmp_path, depth):
     steps = np.array([0, 1, 2.2, 2.9, 4, 8, 9.1, 10, 11])
     said, progress = heard()
 
@@ -135,7 +135,7 @@ def test_a_telephone_that_was_held_upright_on_its_side_or_on_its_head(
     assert_allclose(frame, expected * 0.001, rtol=1e-6)
 
 
-def test_a_telephone_that_was_carried_about_is_told(tmp_path, depth):
+def test_moving_phone_is_reported(tmp_path, depth):
     said, progress = heard()
 
     read_depth(stray(tmp_path, depth, LEVEL, moved=0.9), progress=progress)

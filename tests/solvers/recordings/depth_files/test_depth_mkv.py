@@ -112,7 +112,7 @@ def test_the_lens_is_straightened(write):
     assert moved > 8
 
 
-def test_frames_that_were_lost_are_empty(write):
+def test_dropped_frames_are_empty(write):
     depth = pictures(6)
     times = np.array([0, 33, 67, 200, 233, 267.0])
     said, progress = heard()
@@ -233,7 +233,7 @@ WRONG_NAME = k4a(pictures(4), name="INFRARED").replace(b"222", b"999")
         (at_time(2**64 - 1), OWN, "it is not in the Matroska format"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_read_says_why(write, content, settings, sentence):
+def test_unreadable_recording_is_refused_with_the_reason(write, content, settings, sentence):
     with pytest.raises(InvalidFileError, match=sentence):
         read_depth(write(content), settings)
 

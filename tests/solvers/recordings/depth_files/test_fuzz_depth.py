@@ -56,7 +56,7 @@ WORDS = [
 
 
 @pytest.mark.parametrize("kind", FILES)
-def test_whole_files_are_read(kind, tmp_path):
+def test_undamaged_files_are_read(kind, tmp_path):
     (tmp_path / "take").write_bytes(FILES[kind])
 
     recording = read_depth(tmp_path / "take", OWN)

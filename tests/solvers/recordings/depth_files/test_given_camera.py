@@ -24,7 +24,7 @@ MIDDLE = (39.5, 29.5)
         ({"fx": 80.0}, TOLD, (80.0, 80.0, 38.0, 28.0)),
     ],
 )
-def test_each_number_is_given_told_or_usual(given, told, expected):
+def test_each_camera_parameter_is_set_stored_or_default(given, told, expected):
     camera = DepthSettings(**given).camera(80, 60, told)
     assert (camera and (camera.fx, camera.fy, camera.cx, camera.cy)) == expected
 

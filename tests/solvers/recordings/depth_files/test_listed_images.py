@@ -67,7 +67,7 @@ def test_an_image_outside_of_the_folder_is_refused_and_not_opened(
     assert all(path.resolve().is_relative_to(folder) for path in opened)
 
 
-def test_an_image_of_another_machine_is_refused_before_it_is_asked_for(folder, monkeypatch):
+def test_image_on_another_machine_is_refused_without_access(folder, monkeypatch):
     monkeypatch.setattr(listing, "PurePath", PureWindowsPath)
     monkeypatch.setattr(os.path, "realpath", lambda path: pytest.fail("It was asked for."))
 

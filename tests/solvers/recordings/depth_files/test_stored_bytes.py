@@ -30,7 +30,7 @@ def packed(whole, tmp_path_factory) -> PackedBytes:
     return PackedBytes(path, BEFORE, len(content), len(whole), 15)
 
 
-def test_any_part_in_any_order(whole, packed, monkeypatch):
+def test_any_range_is_read_in_any_order(whole, packed, monkeypatch):
     monkeypatch.setattr(stored_bytes, "MIN_CHECKPOINT_SPACING", 100_000)
     fresh = pickle.loads(pickle.dumps(packed))
 
@@ -42,13 +42,13 @@ def test_any_part_in_any_order(whole, packed, monkeypatch):
     part()
 
 
-def test_a_part_of_a_part(whole, packed):
+def test_slice_of_a_slice_is_read(whole, packed):
     inner = ByteSlice(ByteSlice(packed, 100, 5000), 20, 50)
 
     assert inner.read(3, 7) == whole[123:130]
 
 
-def test_reading_through_keeps_little(whole, packed):
+def test_sequential_reading_needs_little_memory(whole, packed):
     """The marks, and one part: not what was read before."""
     fresh = pickle.loads(pickle.dumps(packed))
     tracemalloc.start()
@@ -60,7 +60,7 @@ def test_reading_through_keeps_little(whole, packed):
     assert peak < 1_500_000
 
 
-def test_beyond_the_end_it_is_cut_short(whole, packed, tmp_path):
+def test_range_beyond_the_end_is_refused_as_truncated(whole, packed, tmp_path):
     with pytest.raises(InvalidFileError, match="is cut short"):
         packed.read(len(whole) - 5, 6)
     (tmp_path / "plain").write_bytes(b"12345")

@@ -49,7 +49,7 @@ def test_json_in_either_order_of_keys(write, values, sorted_keys):
     assert_allclose(recording.tracks.positions, upright(values), atol=1e-4)  # stamps in us
 
 
-def test_json_takes_the_body_seen_longest_and_keeps_holes(write, values):
+def test_json_selects_the_longest_observed_body_and_keeps_gaps(write, values):
     other = {2: 9000 + values[0]}
     frames = [other | {1: values[0]}, {1: values[1]} | other, {}, {1: values[3]}]
 

@@ -43,7 +43,7 @@ def walk(recordings):
     return np.stack([places.get(name, rest) for name in BODY_POINTS], axis=1)
 
 
-def test_the_motion_goes_through_the_tracked_joints(walk, tmp_path):
+def test_motion_follows_the_tracked_joints(walk, tmp_path):
     path = tmp_path / "body.npy"
     path.write_bytes(npy(1000.0 * walk))
     recording = read_freemocap(path)

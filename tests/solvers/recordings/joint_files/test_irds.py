@@ -59,13 +59,13 @@ def test_what_was_not_tracked_is_nan(read):
     assert recording.tracks.visible.sum() == recording.tracks.visible.size - 2
 
 
-def test_a_lost_frame_is_a_gap(read):
+def test_missing_frame_is_a_gap(read):
     recording = read(irds([(1, time, {}) for time in (0, 33, 67, 167, 200)]))
 
     assert recording.tracks.visible[:, 0].tolist() == [True] * 3 + [False] * 2 + [True] * 2
 
 
-def test_the_body_seen_longest_is_taken(read):
+def test_longest_observed_body_is_selected(read):
     other = {"Head": ("Tracked", 9, 9, 9)}
 
     recording = read(irds([(body, 33 * n, other if body == 2 else {}) for n, body in

@@ -74,7 +74,7 @@ def test_what_is_written_is_read_back_to_the_last_bit(recording, tmp_path, endin
 
 
 @pytest.mark.parametrize("kind", TEXTS)
-def test_what_somebody_else_wrote(write, kind):
+def test_files_of_other_recorders_are_read(write, kind):
     recording = read_joints(write(TEXTS[kind]))
 
     assert recording.names == ("Head", "Hand")
@@ -108,7 +108,7 @@ def test_times_instead_of_a_rate(write, kind):
     [("x", (2, 3, 1)), ("y", (1, -3, 2)), ("z", (1, 2, 3)), ("-x", (2, -3, -1)),
      ("-y", (1, 3, -2)), ("-z", (1, -2, -3))],
 )  # fmt: skip
-def test_up_is_as_said(write, up, expected):
+def test_up_axis_is_that_of_the_header(write, up, expected):
     path = write(f"mocap-assist-joints,1,frame_rate=1,up={up}\nA.x,A.y,A.z\n1,2,3\n")
 
     assert_allclose(read_joint_csv(path).tracks.positions[0, 0], expected)
@@ -173,7 +173,7 @@ def test_json_damage_is_named(write, old, new, sentence):
 
 
 @pytest.mark.parametrize("write_it", [write_joint_csv, write_joint_json])
-def test_a_name_that_would_not_come_back_is_refused(tmp_path, write_it):
+def test_name_that_cannot_be_read_back_is_refused(tmp_path, write_it):
     tracks = Tracks(("head\nhand", "foot"), np.ones((2, 2, 3)), 30.0)
     with pytest.raises(InvalidMotionError, match=r"'head\\nhand'\. Rename"):
         write_it(JointRecording(tracks, None, Sensor.OTHER), tmp_path / "take")

@@ -47,7 +47,7 @@ def test_ntu_joints_and_states(write):
     assert (recording.tracking_state == 0).sum() == 2
 
 
-def test_ntu_takes_the_body_seen_longest_whatever_the_order(write):
+def test_ntu_selects_the_longest_observed_body_in_any_order(write):
     """The first one vanishes for a frame, the other comes and goes before and after it."""
     mine, other = moving(5, 25), moving(5, 25, seed=50)
     frames = [

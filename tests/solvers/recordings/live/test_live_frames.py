@@ -101,7 +101,7 @@ def test_what_may_be_left_out(left_out, confidence, states):
         ({"states": [2, True]}, "states"),
     ],
 )
-def test_refuses_what_does_not_belong_there(changes, words):
+def test_decode_frame_refuses_invalid_values(changes, words):
     with pytest.raises(InvalidMotionError, match=words):
         decode_frame(line(**changes))
 
@@ -170,7 +170,7 @@ def test_json_of_any_kind_is_a_frame_or_refused(changes):
     ),
     st.floats(-1e6, 1e6),
 )
-def test_comes_back_as_it_was_sent(joints, time):
+def test_frame_survives_encoding_and_decoding(joints, time):
     places, confidence, states = joints
     positions = np.array([(np.nan,) * 3 if place is None else place for place in places])
     seen = np.isfinite(positions).all(axis=-1)

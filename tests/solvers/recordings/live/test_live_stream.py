@@ -116,7 +116,7 @@ def test_a_recording_of_uneven_frames_is_even(rng):
     assert_allclose(recording.tracks.confidence, 0.8)
 
 
-def test_frames_that_were_lost_are_gaps():
+def test_missing_frames_are_gaps():
     frames = [frame(number / 30, place=float(number)) for number in range(60)]
 
     recording = recording_from_frames(frames[:20] + frames[30:])
@@ -199,7 +199,7 @@ def test_the_receiver_takes_no_more_bytes_at_once_than_it_may(send_to, monkeypat
     assert counts == [10, 10, 5, 0]
 
 
-def test_a_port_that_is_taken_is_told():
+def test_port_in_use_is_reported():
     with Receiver(0) as receiver, pytest.raises(InvalidSettingError, match="another program"):
         Receiver(receiver.address[1])
     for wrong in (-1, 70_000):
@@ -207,7 +207,7 @@ def test_a_port_that_is_taken_is_told():
             Receiver(wrong)
 
 
-def test_a_closed_receiver_has_nothing_to_tell():
+def test_closed_receiver_returns_nothing():
     receiver = Receiver(0)
     port = receiver.address[1]
 

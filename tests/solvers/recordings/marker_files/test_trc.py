@@ -138,7 +138,7 @@ def test_what_differs_between_makers_changes_nothing(read, old, new):
     ["\t\t", "nan\tNaN\tNAN", "   NaN\t NaN  \t  nan", " \t  \t", "0.0\t0\t-0", "11\t\t21",
      "1.#QNAN\t1.#IND\t-1.#IND", "inf\t-inf\t1e999", "3.4e38\t1\t2", "null\tnone\t-"],
 )  # fmt: skip
-def test_what_was_not_seen_is_a_gap_there_and_nowhere_else(read, gap):
+def test_missing_marker_is_a_gap_only_there(read, gap):
     tracks = read(FILE.replace("11\t1501\t21", gap))
 
     expected = PLACES.copy()
@@ -147,7 +147,7 @@ def test_what_was_not_seen_is_a_gap_there_and_nowhere_else(read, gap):
     assert_allclose(tracks.positions, expected)
 
 
-def test_rows_may_end_at_the_last_marker_that_is_seen(read):
+def test_rows_may_end_at_the_last_observed_marker(read):
     tracks = read(FILE.replace("\t301\t901\t41", "").replace("13\t1503\t23\t303\t903\t43", ""))
 
     assert_array_equal(tracks.visible, [[True, True], [True, False], [True, True], [False] * 2])
@@ -161,7 +161,7 @@ def test_columns_beyond_the_names_are_markers_without_one(read):
     assert_allclose(tracks.positions[2, 2], (0.005, -0.007, 0.006))
 
 
-def test_times_in_milliseconds_are_seen_by_the_stated_rate(read):
+def test_times_in_milliseconds_are_detected_by_the_stated_rate(read):
     tracks = read(re.sub(r"\t0\.0(\d)\t", r"\t\g<1>0\t", FILE))
 
     assert tracks.frame_rate == 100.0
@@ -185,7 +185,7 @@ def test_frame_numbers_serve_where_the_times_do_not(read):
         ("Tête\t\t\t*Unnamed 7", ("Tête", "*Unnamed 7")),
     ],
 )
-def test_names_are_told_apart(read, names, expected):
+def test_names_are_unique_and_complete(read, names, expected):
     for encoding in ("utf-8", "latin-1"):
         text = FILE.replace("HEAD\t\t\tHAND", names)
         assert read(text.encode(encoding)).names == expected

@@ -140,7 +140,7 @@ def test_takes_the_skeleton_with_the_longest_fitting_name(read, tmp_path):
     assert read(scale=1.0).skeleton.rest_positions[2, 0] == pytest.approx(20.0)
 
 
-def test_without_a_skeleton_it_says_what_to_do(tmp_path):
+def test_missing_skeleton_is_reported_with_a_remedy(tmp_path):
     (tmp_path / "13_29.amc").write_text(MOTION)
 
     with pytest.raises(InvalidFileError, match=r"13_29\.amc\. Put the actor's \.asf file next"):

@@ -76,7 +76,7 @@ def test_spelling_does_not_matter(read, spelled):
 
 
 @pytest.mark.parametrize("order", ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"])
-def test_any_order_of_angles_comes_back(swinging_leg, tmp_path, order):
+def test_any_rotation_order_survives_writing_and_reading(swinging_leg, tmp_path, order):
     write_bvh(swinging_leg, tmp_path / "leg.bvh", order=order)
 
     back = read_bvh(tmp_path / "leg.bvh")
@@ -89,7 +89,7 @@ def test_any_order_of_angles_comes_back(swinging_leg, tmp_path, order):
     assert_allclose(theirs, forward_kinematics(swinging_leg).positions, atol=5e-8)
 
 
-def test_any_skeleton_and_any_order_of_joints_come_back(rng, tmp_path):
+def test_any_skeleton_survives_writing_and_reading(rng, tmp_path):
     """BVH lists each joint with all that is below it; ours may come in any other order."""
     parents = (-1, 0, 0, 1, 2, 1, 0, 4)
     names = tuple("abcdefgh")
@@ -112,7 +112,7 @@ def test_any_skeleton_and_any_order_of_joints_come_back(rng, tmp_path):
      ("0.0333667", 29.97), ("0.04", 25.0), ("0.008", 125.0), ("0.033", 30.0),
      ("0.0138888889", 72.0), ("1e-2", 100.0)],
 )  # fmt: skip
-def test_a_rounded_frame_time_stands_for_a_whole_rate(read, word, rate):
+def test_rounded_frame_time_gives_a_common_rate(read, word, rate):
     assert read(ARM.replace("0.0333333", word)).frame_rate == pytest.approx(rate, rel=1e-6)
 
 
@@ -140,7 +140,7 @@ def test_a_file_of_blender_stands_upright_too(read):
         ("50 0 2", "0 0 -90", (0.08, 2, 0)),  # All bones along one axis, and lying down.
     ],
 )
-def test_what_lies_is_left_lying(read, offset, frame, size):
+def test_lying_body_is_not_rotated(read, offset, frame, size):
     text = BODY.replace("0 {a} {b}", offset).replace("\n0 0 0 0", f"\n{frame} 0")
 
     body = read(text, scale=0.01)

@@ -31,7 +31,7 @@ def of(values, motion, name):
     return values[:, motion.skeleton.index(name)]
 
 
-def test_the_sensor_is_told_as_it_spoke(walk, moved):
+def test_tracking_term_is_that_of_the_sensor(walk, moved):
     order = [walk.names.index(name) for name in moved.skeleton.names]
 
     trust = reconstruct_motion(
@@ -45,14 +45,14 @@ def test_the_sensor_is_told_as_it_spoke(walk, moved):
     assert np.allclose(of(trust.tracking, moved, "WristRight"), 1.0)
 
 
-def test_a_sensor_that_said_nothing_is_not_taken_for_sure(moved):
+def test_missing_tracking_state_gives_no_term(moved):
     trust = reconstruct_motion(moved).reliability_terms
 
     assert np.isnan(trust.tracking).all()
     assert np.isfinite(trust.combined).all() and np.isfinite(trust.behaviour).all()
 
 
-def test_lengths_of_an_armature_tell_nothing_and_those_of_its_recording_do(walk, moved):
+def test_length_term_needs_the_recording_of_an_armature(walk, moved):
     alone = reconstruct_motion(moved).reliability_terms
     with_file = reconstruct_motion(moved, source=walk).reliability_terms
 
@@ -61,7 +61,7 @@ def test_lengths_of_an_armature_tell_nothing_and_those_of_its_recording_do(walk,
     assert elbow[LOST].mean() < 0.8 < np.median(elbow[: LOST.start])
 
 
-def test_a_joint_that_shakes_is_told_by_its_movement(walk, moved):
+def test_jittering_joint_has_a_low_behavior_term(walk, moved):
     trust = reconstruct_motion(moved, source=walk).reliability_terms
 
     wrist = of(trust.behaviour, moved, "WristLeft")
@@ -69,7 +69,7 @@ def test_a_joint_that_shakes_is_told_by_its_movement(walk, moved):
     assert np.allclose(wrist[: LOST.start - 3], 1.0)
 
 
-def test_joints_that_no_body_has_have_no_trust():
+def test_other_joints_have_no_reliability():
     walk = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=30.0))
     names = list(walk.skeleton.names)
     names[names.index("LeftHand")] = "Umbrella"
@@ -88,7 +88,7 @@ def test_joints_that_no_body_has_have_no_trust():
 
 
 @pytest.mark.parametrize("tracked", [True, False])
-def test_a_skeleton_that_is_nowhere_is_refused(moved, tracked):
+def test_skeleton_without_positions_is_refused(moved, tracked):
     motion = moved
     if not tracked:
         motion = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=30.0))
