@@ -32,7 +32,7 @@ def restore_ankles(
 
     Parameters
     ----------
-    planted, seen : Motion
+    planted, observed : Motion
         After and before feet were planted.
     reliability : shape (n_frames, n_joints), 0 to 1
         NaN: unknown.

@@ -18,7 +18,7 @@ def stream_rows(
     path: Path | str,
     progress: Progress = unwatched,
     *,
-    tidied: Callable[[bytes], bytes] | None = None,
+    normalize: Callable[[bytes], bytes] | None = None,
 ) -> NDArray[np.float64]:
     """Read one row of numbers per remaining line; blank lines are skipped.
 
@@ -32,7 +32,7 @@ def stream_rows(
     path : Path or str
         For error messages.
     progress : Progress
-    tidied : callable, optional
+    normalize : callable, optional
         Returns a line with its numbers separated by spaces.
 
     Returns
@@ -48,7 +48,9 @@ def stream_rows(
     table = GrowingTable(width)
     for block in reader.rest():
         for part in block.parts(ROWS_AT_ONCE):
-            lines = part.lines if tidied is None else [tidied(line) for line in part.lines]
+            lines = (
+                part.lines if normalize is None else [normalize(line) for line in part.lines]
+            )
             numbers = range(part.first, part.first + len(lines))
             table.add(parse_rows(lines, width, path, numbers), part.stop)
             progress(part.stop, "Reading")

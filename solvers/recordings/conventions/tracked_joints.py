@@ -25,7 +25,7 @@ def joint_recording(
     frame_rate: float = DEFAULT_FRAME_RATE,
     nan_only: bool = False,
     scale: float | None,
-    usual_unit: float = 1.0,
+    default_unit: float = 1.0,
     progress: Progress,
 ) -> JointRecording:
     """Build a recording from the contents of a file.
@@ -50,7 +50,7 @@ def joint_recording(
         not tracked keeps its position.
     scale : float, meters per unit of the file, or None
         None: the default unit, or the unit that gives a human body if the default does not.
-    usual_unit : float, meters
+    default_unit : float, meters
         Default unit of the format.
     progress : Progress
         Receives a message on resampling, and on the unit if it was estimated.
@@ -80,7 +80,7 @@ def joint_recording(
         states = None if states is None else resampler.states(states)
         confidence = None if confidence is None else resampler.confidence(confidence)
     progress(1.0, "Reading" if times is None else f"Resampled to {frame_rate:.4g} Hz")
-    unit = usual_unit if scale is None else scale
+    unit = default_unit if scale is None else scale
     positions *= unit  # a copy of the argument
     tracks = Tracks(tuple(names), positions, frame_rate, confidence)
     recording = JointRecording(tracks, states, sensor)

@@ -91,7 +91,7 @@ def read_azure_csv(
         states=states,
         frame_rate=frame_rate,
         scale=scale,
-        usual_unit=MILLIMETER,
+        default_unit=MILLIMETER,
         progress=progress,
     )
 
@@ -143,22 +143,25 @@ class _Body:
             self._frame[:] = NOT_OBSERVED
 
 
-def _joint(words: list[bytes], place: str) -> tuple[int, list[float]]:
+def _joint(words: list[bytes], location: str) -> tuple[int, list[float]]:
     """Return the joint's number, and x, y, z and state."""
     joint = words[1].strip() if len(words) >= MIN_WORDS else b""
     if not joint.isdigit() or len(joint) > 2 or int(joint) >= len(NAMES):
         raise InvalidFileError(
-            f"{place}: a body, one of {len(NAMES)} joints, its position, rotation and"
+            f"{location}: a body, one of {len(NAMES)} joints, its position, rotation and"
             " confidence are required. The file is damaged or cut short; delete that line."
         )
     level = b",".join(words[9:]).strip(b", \t").lower()
     states = [state for pattern, state in STATES if re.search(pattern, level)]
     if not states:
         raise InvalidFileError(
-            f"{place}: it does not end with a confidence level. The file is damaged or cut"
+            f"{location}: it does not end with a confidence level. The file is damaged or cut"
             " short; delete that line."
         )
-    return int(joint), [*(read_number(word.strip(), place) for word in words[2:5]), states[0]]
+    return int(joint), [
+        *(read_number(word.strip(), location) for word in words[2:5]),
+        states[0],
+    ]
 
 
 def _read_frame_lines(
@@ -171,7 +174,7 @@ def _read_frame_lines(
     names = [name for name in NAMES if all(f"{name}.{axis}" in columns for axis in "xyz")]
     if not names:
         raise InvalidFileError(f"{path} has no columns x, y and z of any joint.")
-    rows = stream_rows(reader, len(header), path, progress, tidied=spaces_from_commas)
+    rows = stream_rows(reader, len(header), path, progress, normalize=spaces_from_commas)
     if not len(rows):
         raise InvalidFileError(f"{path} has a header but no joints.")
     used = [columns[f"{name}.{axis}"] for name in names for axis in "xyz"]

@@ -75,8 +75,8 @@ def read_azure_json(
     names: list[str] = []
     for member in json_members(path):
         if member.key == "frames":
-            place = f"{path}, frame {len(frames) + 1}"
-            time, bodies = _read_frame(member.value, place)
+            location = f"{path}, frame {len(frames) + 1}"
+            time, bodies = _read_frame(member.value, location)
             frames.append(bodies)
             times.append(time)
             progress(0.9 * member.done, "Reading")
@@ -85,7 +85,8 @@ def read_azure_json(
     if not any(frames):
         raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
     joints = names or list(SENSOR_JOINTS[Sensor.AZURE_KINECT])
-    if {len(places) for frame in frames for places in frame.values()} != {len(joints)}:
+    n_positions = {len(positions) for frame in frames for positions in frame.values()}
+    if n_positions != {len(joints)}:
         raise InvalidFileError(
             f"{path}: not every body has a position for each of the {len(joints)} joints. The"
             " file is damaged; export it again."
@@ -98,23 +99,23 @@ def read_azure_json(
         Sensor.AZURE_KINECT,
         times=None if np.isnan(times).all() else MICROSECOND * np.array(times),
         scale=scale,
-        usual_unit=MILLIMETER,
+        default_unit=MILLIMETER,
         progress=progress,
     )
 
 
-def _read_frame(frame: Any, place: str) -> tuple[float, Bodies]:
+def _read_frame(frame: Any, location: str) -> tuple[float, Bodies]:
     """Return the time stamp, or NaN, and the joint positions of each body."""
     listed = frame.get("bodies", []) if isinstance(frame, dict) else None
     if not isinstance(listed, list) or not all(isinstance(body, dict) for body in listed):
         raise InvalidFileError(
-            f"{place}: a list of bodies is required. The file is damaged; export it again."
+            f"{location}: a list of bodies is required. The file is damaged; export it again."
         )
     bodies: Bodies = {}
     for count, body in enumerate(listed):
-        places = array_from_json(
-            body.get("joint_positions"), (-1, 3), f"{place}, joint_positions"
+        positions = array_from_json(
+            body.get("joint_positions"), (-1, 3), f"{location}, joint_positions"
         )
-        bodies.setdefault(str(body.get("body_id", count)), places)
-    time = array_from_json(frame.get("timestamp_usec"), (), f"{place}, timestamp_usec")
+        bodies.setdefault(str(body.get("body_id", count)), positions)
+    time = array_from_json(frame.get("timestamp_usec"), (), f"{location}, timestamp_usec")
     return float(time), bodies

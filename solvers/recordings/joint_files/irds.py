@@ -102,12 +102,12 @@ def read_irds(
     )
 
 
-def _frame(line: bytes, place: str) -> Frame:
+def _frame(line: bytes, location: str) -> Frame:
     head, *joints = line.rstrip().split(b"(")
     fields = [word.strip() for word in head.split(b",")]
     if len(fields) != 4 or len(joints) != len(NAMES) or not joints[-1].endswith(b")"):
         raise InvalidFileError(
-            f"{place}: number, body, time and {len(NAMES)} joints are required. The file is"
+            f"{location}: number, body, time and {len(NAMES)} joints are required. The file is"
             " damaged or cut short; delete that line."
         )
     positions = np.full((len(NAMES), 3), np.nan)
@@ -116,10 +116,10 @@ def _frame(line: bytes, place: str) -> Frame:
         name, *words = (word.strip() for word in joint.split(b")")[0].split(b","))
         if name not in JOINT_INDICES or len(words) < 4 or words[0] not in STATES:
             raise InvalidFileError(
-                f"{place}: {shown(joint.decode('ascii', 'backslashreplace'))!r} is not a"
+                f"{location}: {shown(joint.decode('ascii', 'backslashreplace'))!r} is not a"
                 " joint of a Kinect v2 with state and position. The file is damaged; delete"
                 " that line."
             )
         states[JOINT_INDICES[name]] = STATES[words[0]]
-        positions[JOINT_INDICES[name]] = [read_number(word, place) for word in words[1:4]]
-    return Frame(fields[1], read_number(fields[2], place), positions, states)
+        positions[JOINT_INDICES[name]] = [read_number(word, location) for word in words[1:4]]
+    return Frame(fields[1], read_number(fields[2], location), positions, states)

@@ -156,18 +156,19 @@ def _parse_header_line(line: bytes) -> dict[str, str]:
     return fields | {"format": words[0], "version": "".join(words[1:2])}
 
 
-def _columns(line: bytes, place: str) -> list[str]:
+def _columns(line: bytes, location: str) -> list[str]:
     try:
         (columns,) = csv.reader([line.decode("utf-8")])
     except (ValueError, csv.Error):
         raise InvalidFileError(
-            f"{place}: the names of the columns are not readable text. Write them in UTF-8,"
+            f"{location}: the names of the columns are not readable text. Write them in UTF-8,"
             " separated by commas."
         ) from None
     columns = [column.strip() for column in columns]
-    if twice := [name for name, times in Counter(columns).items() if times > 1]:
+    if duplicates := [name for name, times in Counter(columns).items() if times > 1]:
         raise InvalidFileError(
-            f"{place}: more than one column is called {shown(twice[0])!r}; names must differ."
+            f"{location}: more than one column is called {shown(duplicates[0])!r}; names must"
+            " differ."
         )
     return columns
 
@@ -180,7 +181,7 @@ def _values(
     reader: LineReader, columns: Sequence[str], path: Path | str, progress: Progress
 ) -> _Values:
     """Return the contents of the lines below the column names."""
-    rows = stream_rows(reader, len(columns), path, progress, tidied=spaces_from_commas)
+    rows = stream_rows(reader, len(columns), path, progress, normalize=spaces_from_commas)
     column_indices = {column: at for at, column in enumerate(columns)}
     names = _joint_names(columns)
     used = {field: _field_columns(column_indices, names, field, path) for field in FIELDS}

@@ -42,11 +42,11 @@ class JointHeader:
         return points * (1.0, -1.0, -1.0) if self.up[0] == "-" else points
 
 
-def parse_header(fields: Mapping[str, Any], place: str) -> JointHeader:
-    """Parse a header; the message of an InvalidFileError begins with `place`."""
+def parse_header(fields: Mapping[str, Any], location: str) -> JointHeader:
+    """Parse a header; the message of an InvalidFileError begins with `location`."""
     if fields.get("format") != FORMAT or str(fields.get("version")) != str(VERSION):
         raise InvalidFileError(
-            f"{place}: this Mocap Assist reads {FORMAT} {VERSION}, not"
+            f"{location}: this Mocap Assist reads {FORMAT} {VERSION}, not"
             f" {shown(str(fields.get('format')))} {shown(str(fields.get('version')))}."
         )
     rate = fields.get("frame_rate")
@@ -56,23 +56,23 @@ def parse_header(fields: Mapping[str, Any], place: str) -> JointHeader:
         frame_rate = 0.0
     if frame_rate is not None and not 0.0 < frame_rate < float("inf"):
         raise InvalidFileError(
-            f"{place}: a frame_rate of {shown(str(rate))} is not above 0; write hertz, or leave"
-            " it out and give each frame its time."
+            f"{location}: a frame_rate of {shown(str(rate))} is not above 0; write hertz, or"
+            " leave it out and give each frame its time."
         )
-    unit = METERS[_choice(fields, "units", "m", tuple(METERS), place)]
-    up = _choice(fields, "up", "z", UP, place)
+    unit = METERS[_choice(fields, "units", "m", tuple(METERS), location)]
+    up = _choice(fields, "up", "z", UP, location)
     sensors = tuple(sensor.value for sensor in Sensor)
-    sensor = _choice(fields, "sensor", Sensor.OTHER.value, sensors, place)
+    sensor = _choice(fields, "sensor", Sensor.OTHER.value, sensors, location)
     return JointHeader(frame_rate, unit if "units" in fields else None, up, Sensor(sensor))
 
 
 def _choice(
-    fields: Mapping[str, Any], key: str, default: str, choices: tuple[str, ...], place: str
+    fields: Mapping[str, Any], key: str, default: str, choices: tuple[str, ...], location: str
 ) -> str:
     value = str(fields.get(key, default)).strip().lower()
     if value not in choices:
         raise InvalidFileError(
-            f"{place}: {key} is {shown(value)!r}; write one of {', '.join(choices)}."
+            f"{location}: {key} is {shown(value)!r}; write one of {', '.join(choices)}."
         )
     return value
 

@@ -148,23 +148,23 @@ def write_joint_json(
         file.write("\n]}\n")
 
 
-def _frame(frame: Any, place: str) -> Frame:
+def _frame(frame: Any, location: str) -> Frame:
     listed = frame.get("positions") if isinstance(frame, dict) else None
     if not isinstance(listed, list):
         raise InvalidFileError(
-            f"{place}: a list of positions is required. Export the file again."
+            f"{location}: a list of positions is required. Export the file again."
         )
     filled = [NOT_OBSERVED if position is None else position for position in listed]
     positions = array_from_json(
-        filled, (len(filled), 3) if filled else (0,), f"{place}, positions"
+        filled, (len(filled), 3) if filled else (0,), f"{location}, positions"
     )
     states, confidence = (
         None
         if frame.get(key) is None
-        else array_from_json(frame[key], (len(filled),), f"{place}, {key}")
+        else array_from_json(frame[key], (len(filled),), f"{location}, {key}")
         for key in ("states", "confidence")
     )
-    time = float(array_from_json(frame.get("time"), (), f"{place}, time"))
+    time = float(array_from_json(frame.get("time"), (), f"{location}, time"))
     return Frame(positions.reshape(-1, 3), states, confidence, time)
 
 

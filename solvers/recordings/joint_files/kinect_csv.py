@@ -82,7 +82,7 @@ def read_kinect_csv(
             f"{path} is not a table of Kinect v2 joints: {WITHOUT_TIME} numbers are required in"
             f" each line, or {WITHOUT_TIME + 1} with the time, not {width}."
         )
-    rows = stream_rows(reader, width, path, within(progress, 0.0, 0.9), tidied=_split_line)
+    rows = stream_rows(reader, width, path, within(progress, 0.0, 0.9), normalize=_split_line)
     joints = rows[:, width - WITHOUT_TIME :].reshape(len(rows), len(NAMES), 4)
     return joint_recording(
         path,

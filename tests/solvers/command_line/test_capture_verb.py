@@ -92,10 +92,10 @@ def test_a_folder_of_takes_is_captured_take_by_take(call, takes, known):
     out = takes / "captured"
     words = ("capture", takes, "--output-folder", out, *known)
 
-    status, said, err = call(*words, "--jobs", 2, "--report")
+    status, printed, err = call(*words, "--jobs", 2, "--report")
 
     assert (status, err) == (0, "")
-    assert said.count("4 frames, ") == 2
+    assert printed.count("4 frames, ") == 2
     made = {path.relative_to(out).as_posix() for path in out.rglob("*.bvh")}
     assert made == {"monday/standing.bvh", "tuesday/pictures.bvh"}
     assert (
@@ -107,17 +107,19 @@ def test_a_folder_of_takes_is_captured_take_by_take(call, takes, known):
 
 
 def test_one_bad_take_does_not_stop_the_others(call, takes, known, tmp_path):
-    whole = (takes / "monday" / "standing.npz").read_bytes()
-    (takes / "monday" / "cut short.npz").write_bytes(whole[: len(whole) // 2])
+    complete = (takes / "monday" / "standing.npz").read_bytes()
+    (takes / "monday" / "cut short.npz").write_bytes(complete[: len(complete) // 2])
     for picture in (takes / "tuesday" / "pictures" / "depth").iterdir():
         picture.write_bytes(picture.read_bytes()[:40])
 
-    status, said, err = call("capture", takes, "--output-folder", tmp_path / "out", *known)
+    status, printed, err = call("capture", takes, "--output-folder", tmp_path / "out", *known)
 
-    assert status == 2 and said.count("4 frames, ") == 1
-    told = err.strip().split("\n")
-    assert len(told) == 2 and all(line.endswith(".") for line in told)
-    assert "cut short.npz" in told[0] and "4 of 4 depth images are missing or" in told[1]
+    assert status == 2 and printed.count("4 frames, ") == 1
+    messages = err.strip().split("\n")
+    assert len(messages) == 2 and all(line.endswith(".") for line in messages)
+    assert (
+        "cut short.npz" in messages[0] and "4 of 4 depth images are missing or" in messages[1]
+    )
 
 
 def test_a_folder_that_is_a_take_itself(call, takes, known, tmp_path):

@@ -69,9 +69,9 @@ def test_the_longest_names_are_made_or_refused_before_the_take_is_made(
         named(folder, f"{stem}.bvh".encode())
     out = tmp_path / "out"
 
-    status, said, err = call("convert", folder, "--output-folder", out, "--report")
+    status, printed, err = call("convert", folder, "--output-folder", out, "--report")
 
-    assert (status, said.count("30 frames"), err.count("\n")) == (2, 3, 1)
+    assert (status, printed.count("30 frames"), err.count("\n")) == (2, 3, 1)
     assert f"{long}.bvh: The output {letter * 40}... needs a name of " in err
     assert {path.stem for path in out.glob("*.bvh")} == {"walk", fits}
     assert {path.name for path in out.glob("*/*.png")} == {"walk.bvh.png", f"{fits}.bvh.png"}
@@ -158,10 +158,10 @@ def test_a_link_to_itself_stops_no_other(call, folder, tmp_path):
         ("index", tmp_path / "a.clips", loop, folder / "walk.bvh"),
         ("quality", loop, folder / "walk.bvh"),
     ):
-        status, said, failed = call(*words)
+        status, printed, failed = call(*words)
         assert (status, failed.count("\n")) == (2, 1), words
         assert "loop.bvh" in failed
-        assert "walk.bvh" in said or "1 clip" in said
+        assert "walk.bvh" in printed or "1 clip" in printed
     assert read_bvh(out / "walk.bvh").n_frames == 30
 
 
@@ -175,10 +175,10 @@ def test_unreadable_file_stops_no_other(call, folder, tmp_path, monkeypatch):
         ("convert", *named, "--output-folder", tmp_path / "out"),
         ("index", tmp_path / "a.clips", *named),
     ):
-        status, said, failed = call(*words)
+        status, printed, failed = call(*words)
         assert (status, failed.count("\n")) == (2, 1), failed
         assert "ermission denied" in failed
-    assert "1 clip" in said
+    assert "1 clip" in printed
 
 
 def test_line_breaks_in_names_are_printed_escaped(call, folder, tmp_path):
@@ -193,9 +193,9 @@ def test_line_breaks_in_names_are_printed_escaped(call, folder, tmp_path):
         ("quality", odd / "none.bvh"),
         ("quality", tmp_path / "no\nfolder"),
     ):
-        _, said, failed = call(*words)
-        assert "\x1b" not in said + failed, words
-        assert not [line for line in said.splitlines() if line.startswith(("[31m", "name"))]
+        _, printed, failed = call(*words)
+        assert "\x1b" not in printed + failed, words
+        assert not [line for line in printed.splitlines() if line.startswith(("[31m", "name"))]
         assert failed.count("\n") <= 1 or words[0] == "index", failed
 
 

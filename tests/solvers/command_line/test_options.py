@@ -85,7 +85,7 @@ def test_a_slip_is_one_sentence_on_stderr_and_status_2(parser, capsys, words, se
     with pytest.raises(SystemExit) as stopped:
         parser.parse_args(words)
 
-    complaint = capsys.readouterr().err
+    error_output = capsys.readouterr().err
     assert stopped.value.code == 2
-    assert complaint.startswith(sentence)
-    assert complaint.count("\n") == 1
+    assert error_output.startswith(sentence)
+    assert error_output.count("\n") == 1

@@ -55,8 +55,8 @@ def test_every_frame_arrives_in_order(call, wave, listener):
     assert (status, err) == (0, "")
     assert json.loads(out)["n_frames"] == len(frames) == len(performance.times)
     assert_allclose([frame.time for frame in frames], performance.times, atol=1e-5)
-    places = np.stack([frame.positions for frame in frames])
-    assert_allclose(places, performance.positions, atol=1e-4)
+    positions = np.stack([frame.positions for frame in frames])
+    assert_allclose(positions, performance.positions, atol=1e-4)
 
 
 def test_frames_are_sent_on_time_when_sending_is_slow(wave):
@@ -71,8 +71,8 @@ def test_frames_are_sent_on_time_when_sending_is_slow(wave):
         sent.append((decode_frame(line).time, clock[0] - 100.0))
         clock[0] += 0.01
 
-    told, passed = np.array(sent).T
-    assert_allclose(passed, told / 2.0, atol=1e-5)
+    messages, passed = np.array(sent).T
+    assert_allclose(passed, messages / 2.0, atol=1e-5)
 
 
 def test_time_increases_when_the_recording_repeats(wave):
@@ -92,8 +92,8 @@ def test_a_motion_is_sent_as_the_joints_of_a_kinect(call, tmp_path, listener):
 
     frames = came(listener)
     assert len(frames) == walk.n_frames and "WristRight" in frames[0].names
-    places = np.stack([frame.positions for frame in frames])
-    assert_allclose(places, postures_from_motion(walk), atol=1e-3)
+    positions = np.stack([frame.positions for frame in frames])
+    assert_allclose(positions, postures_from_motion(walk), atol=1e-3)
 
 
 def test_replay_works_without_a_receiver(call, wave):

@@ -59,10 +59,10 @@ def test_progress_rises_to_the_end_and_can_stop_the_work(swinging_leg, tmp_path,
     }
 
     for work in calls[format]:
-        told = []
-        work(progress=lambda fraction, message="", told=told: told.append(fraction))
-        assert told == sorted(told)
-        assert told[-1] == pytest.approx(1.0)
+        messages = []
+        work(progress=lambda fraction, message="", messages=messages: messages.append(fraction))
+        assert messages == sorted(messages)
+        assert messages[-1] == pytest.approx(1.0)
         before = sorted(tmp_path.iterdir())
         with pytest.raises(SolveCancelled):
             work(progress=cancel)

@@ -35,8 +35,10 @@ def test_ui_prmd_is_a_pair_in_one_world(recordings):
     assert_allclose(markers.positions, expected["markers"])
     assert (recording.frame_rate, markers.frame_rate) == (30.0, 30.0)
     assert recording.sensor is Sensor.KINECT_V2
-    apart = recording.tracks.positions[:, 4] - markers.positions[:, :4].mean(axis=1)
-    assert np.linalg.norm(apart, axis=-1).mean() < 0.25  # the head, and the markers around it
+    distance = recording.tracks.positions[:, 4] - markers.positions[:, :4].mean(axis=1)
+    assert (
+        np.linalg.norm(distance, axis=-1).mean() < 0.25
+    )  # the head, and the markers around it
     assert_array_equal(read_ui_prmd(path).tracks.positions, recording.tracks.positions)
 
 
@@ -45,12 +47,12 @@ def test_every_ui_prmd_take_stands_upright_with_left_on_the_left(recordings):
     for path in paths[::12]:
         recording = read_recording(path)
         assert isinstance(recording, JointRecording)
-        usual = dict(
+        default = dict(
             zip(recording.names, np.nanmedian(recording.tracks.positions, axis=0), strict=True)
         )
-        forward = usual["LToes"] - usual["LFoot"] + usual["RToes"] - usual["RFoot"]
-        to_left = usual["LUpArm"] - usual["RUpArm"]
-        assert usual["Head"][2] > usual["Waist"][2] > usual["LFoot"][2], path
+        forward = default["LToes"] - default["LFoot"] + default["RToes"] - default["RFoot"]
+        to_left = default["LUpArm"] - default["RUpArm"]
+        assert default["Head"][2] > default["Waist"][2] > default["LFoot"][2], path
         assert np.cross((0, 0, 1), forward) @ to_left > 0, path
 
 
@@ -153,16 +155,16 @@ def test_freemocap_hands_are_assigned_by_the_wrists(write, person):
 
 def test_freemocap_adds_the_joints_on_the_middle_of_the_body(write, person):
     recording = read_freemocap(write(npy(person)))
-    places = dict(
+    positions = dict(
         zip(recording.names, np.moveaxis(recording.tracks.positions, 1, 0), strict=True)
     )
 
-    hips = (places["left_hip"] + places["right_hip"]) / 2.0
-    shoulders = (places["left_shoulder"] + places["right_shoulder"]) / 2.0
-    assert_allclose(places["hips_center"], hips)
-    assert_allclose(places["trunk_center"], (hips + shoulders) / 2.0)
+    hips = (positions["left_hip"] + positions["right_hip"]) / 2.0
+    shoulders = (positions["left_shoulder"] + positions["right_shoulder"]) / 2.0
+    assert_allclose(positions["hips_center"], hips)
+    assert_allclose(positions["trunk_center"], (hips + shoulders) / 2.0)
     assert recording.sensor is Sensor.MEDIAPIPE
-    assert np.isnan(places["head_center"]).any() == np.isnan(places["left_ear"]).any()
+    assert np.isnan(positions["head_center"]).any() == np.isnan(positions["left_ear"]).any()
 
 
 def test_freemocap_bodies_hang_together_and_every_limb_has_its_role(write, person):

@@ -124,14 +124,15 @@ def test_holes_are_no_obstacle():
 
 
 def test_missing_frames_are_interpolated_and_reported():
-    poses, lost = waving(18), (4, 5, 9, 10, 11, 15)
+    poses, missing = waving(18), (4, 5, 9, 10, 11, 15)
 
-    found = caught(changed(recorded(poses), lambda one, seen: seen * (one not in lost)))
+    found = caught(changed(recorded(poses), lambda one, seen: seen * (one not in missing)))
 
     assert any(
-        "frames no person is detected" in said or "Nobody is" in said for said in found.remarks
+        "frames no person is detected" in message or "Nobody is" in message
+        for message in found.remarks
     )
-    assert found.captured.doubtful[list(lost)].all()
+    assert found.captured.doubtful[list(missing)].all()
     assert off(found, poses).mean() < 0.04
 
 
@@ -161,7 +162,8 @@ def test_a_body_as_thick_as_a_barrel_may_be_a_wrong_focal_length():
 
     assert thickness(found.captured) > 1.3
     assert any(
-        "times as thick as the default body. Check the focal" in said for said in found.remarks
+        "times as thick as the default body. Check the focal" in message
+        for message in found.remarks
     )
 
 
@@ -169,10 +171,10 @@ def test_wrong_scale_is_refused_or_reported():
     in_millimetres = changed(recorded(waving(3)), lambda _, seen: 1000.0 * seen)
 
     try:
-        said = " ".join(caught(in_millimetres).remarks)
+        message = " ".join(caught(in_millimetres).remarks)
     except InvalidMotionError as error:
-        said = str(error)
-    assert "scale" in said or "depth is in meters" in said
+        message = str(error)
+    assert "scale" in message or "depth is in meters" in message
 
 
 def test_what_is_no_actor_agrees_badly():
@@ -185,7 +187,7 @@ def test_what_is_no_actor_agrees_badly():
 
     found = caught(recording, None)
 
-    assert any("Body and depth images agree badly" in said for said in found.remarks)
+    assert any("Body and depth images agree badly" in message for message in found.remarks)
 
 
 def peak_of(n_frames: int, read) -> int:

@@ -30,8 +30,8 @@ def walk(cadence: float = 110.0, duration: float = 1.0):
 @pytest.fixture
 def folder(tmp_path):
     """Two folders of walks, and markers that are no body."""
-    for place, cadence in (("a/slow", 80), ("a/fast", 140), ("b/slow", 90)):
-        path = tmp_path / "clips" / f"{place}.bvh"
+    for position, cadence in (("a/slow", 80), ("a/fast", 140), ("b/slow", 90)):
+        path = tmp_path / "clips" / f"{position}.bvh"
         path.parent.mkdir(parents=True, exist_ok=True)
         write_bvh(walk(cadence), path)
     markers = Tracks(("m1", "m2"), np.ones((9, 2, 3)), 30.0)
@@ -253,10 +253,12 @@ def test_long_takes_are_written_sooner(folder, library, monkeypatch):
 
 
 def test_progress_rises_to_one(folder, library):
-    told = []
-    index_files(library, [folder], progress=lambda fraction, message="": told.append(fraction))
-    assert told == sorted(told)
-    assert (told[0], told[-1]) == (0.0, 1.0)
+    messages = []
+    index_files(
+        library, [folder], progress=lambda fraction, message="": messages.append(fraction)
+    )
+    assert messages == sorted(messages)
+    assert (messages[0], messages[-1]) == (0.0, 1.0)
 
 
 def test_what_is_not_there_is_refused_before_anything_is_done(folder, library, tmp_path):

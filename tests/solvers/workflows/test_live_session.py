@@ -118,22 +118,22 @@ def test_invalid_datagrams_are_counted_and_dropped():
 @pytest.mark.parametrize("names", [("a", "b"), ("Head",), ("hips", "head")])
 def test_frames_without_arms_have_no_gestures(names):
     session = LiveSession()
-    places = np.ones((len(names), 3))
+    indices = np.ones((len(names), 3))
 
     for number in range(60):
-        frame = LiveFrame(number / 30, 0, names, places, np.ones(len(names)))
+        frame = LiveFrame(number / 30, 0, names, indices, np.ones(len(names)))
         assert session.receive([encode_frame(frame)]).events == ()
 
 
 def test_the_joints_of_every_sensor_are_found():
     for sensor in (Sensor.KINECT_V1, Sensor.KINECT_V2, Sensor.AZURE_KINECT):
         names = SENSOR_JOINTS[sensor]
-        places = np.arange(3.0 * len(names)).reshape(-1, 3)
+        indices = np.arange(3.0 * len(names)).reshape(-1, 3)
 
         positions, confidence = pose_from_frame(
-            LiveFrame(0.0, 0, names, places, np.ones(len(names)))
+            LiveFrame(0.0, 0, names, indices, np.ones(len(names)))
         )
 
         assert np.isfinite(positions).all() and (confidence == 1.0).all()
         wrist = positions[POSTURE_JOINTS.index("rightHand")]
-        assert wrist.tolist() == places[names.index("WristRight")].tolist()
+        assert wrist.tolist() == indices[names.index("WristRight")].tolist()

@@ -65,8 +65,10 @@ def test_feet_are_left_alone_on_request(walk):
 def test_body_without_legs_reports_that_feet_are_not_planted(truth):
     upper = [name for name in SENSOR_JOINTS[Sensor.KINECT_V1]
              if not name.startswith(("Knee", "Ankle", "Foot"))]  # fmt: skip
-    places = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in upper]
-    recording = JointRecording(Tracks(tuple(upper), truth[:, places], 30.0), None, Sensor.OTHER)
+    indices = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in upper]
+    recording = JointRecording(
+        Tracks(tuple(upper), truth[:, indices], 30.0), None, Sensor.OTHER
+    )
 
     result = reconstruct_recording(recording, planting=PlantSettings())
 
@@ -74,8 +76,8 @@ def test_body_without_legs_reports_that_feet_are_not_planted(truth):
 
 
 def test_fifteen_joints_of_another_tracker_make_a_body(truth):
-    places = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in NITE.values()]
-    recording = JointRecording(Tracks(tuple(NITE), truth[:, places], 30.0), None, Sensor.OTHER)
+    indices = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in NITE.values()]
+    recording = JointRecording(Tracks(tuple(NITE), truth[:, indices], 30.0), None, Sensor.OTHER)
 
     result = reconstruct_recording(recording, planting=None)
 
@@ -105,7 +107,7 @@ def as_recording(
 
 
 @pytest.mark.parametrize(
-    ("spoil", "said"),
+    ("spoil", "message"),
     [
         (lambda p: np.full_like(p, np.nan), "No joint is tracked in any of the 90 frames"),
         (
@@ -119,23 +121,23 @@ def as_recording(
     ],
     ids=["nothing", "one joint", "millimeters", "centimeters", "kilometers", "zeros"],
 )
-def test_invalid_recordings_are_reported_in_one_sentence(truth, spoil, said):
-    with pytest.raises(InvalidMotionError, match=said):
+def test_invalid_recordings_are_reported_in_one_sentence(truth, spoil, message):
+    with pytest.raises(InvalidMotionError, match=message):
         reconstruct_recording(as_recording(spoil(truth)))
 
 
 @pytest.mark.parametrize(
-    ("state", "settings", "said"),
+    ("state", "settings", "message"),
     [
         (0, ReconstructSettings(), "the tracking state `tracked`, although positions"),
         (1, ReconstructSettings(inferred=0.0), "infers the others. Raise the setting"),
     ],
 )
-def test_recordings_of_untracked_joints_are_refused(truth, state, settings, said):
+def test_recordings_of_untracked_joints_are_refused(truth, state, settings, message):
     tracks = as_recording(truth).tracks
     recording = JointRecording(tracks, np.full(truth.shape[:2], state, np.int8), Sensor.OTHER)
 
-    with pytest.raises(InvalidMotionError, match=said):
+    with pytest.raises(InvalidMotionError, match=message):
         reconstruct_recording(recording, settings=settings)
 
 
@@ -165,8 +167,8 @@ def test_gap_in_time_stamps_is_estimated_and_reported(walk, tmp_path):
     head = "mocap-assist-joints,1,units=m,up=z"
     columns = ",".join(f"{name}.{axis}" for name in walk.names for axis in "xyz")
     rows = [
-        ",".join(map(str, [frame / 30.0 + 3.0 * (frame >= 45), *places.ravel()]))
-        for frame, places in enumerate(walk.tracks.positions)
+        ",".join(map(str, [frame / 30.0 + 3.0 * (frame >= 45), *indices.ravel()]))
+        for frame, indices in enumerate(walk.tracks.positions)
     ]
     path.write_text("\n".join([head, f"time,{columns}", *rows]))
 
@@ -207,9 +209,9 @@ def test_the_motion_of_any_other_rig_is_rebuilt_too():
 def test_hips_that_are_never_tracked_are_between_the_legs(recordings):
     recording = read_recording(recordings / "kinect" / "irds" / "215_18_5_3_1_stand.txt")
     hips, *legs = (recording.names.index(each) for each in ("SpineBase", "HipLeft", "HipRight"))
-    blind = recording.tracks.positions.copy()
-    blind[:, hips] = np.nan
-    blind_recording = recording.with_tracks(recording.tracks.with_positions(blind))
+    untracked = recording.tracks.positions.copy()
+    untracked[:, hips] = np.nan
+    blind_recording = recording.with_tracks(recording.tracks.with_positions(untracked))
 
     found = reconstruct_recording(
         blind_recording, planting=None
@@ -223,7 +225,7 @@ def test_hips_that_are_never_tracked_are_between_the_legs(recordings):
 
 def test_recording_without_tracked_joints_is_refused(truth):
     tracks = Tracks(SENSOR_JOINTS[Sensor.KINECT_V1], truth, 30.0)
-    blind = JointRecording(tracks, np.zeros(truth.shape[:2], np.int8), Sensor.KINECT_V1)
+    untracked = JointRecording(tracks, np.zeros(truth.shape[:2], np.int8), Sensor.KINECT_V1)
 
     with pytest.raises(InvalidMotionError, match="the tracking state `tracked`"):
-        reconstruct_recording(blind)
+        reconstruct_recording(untracked)

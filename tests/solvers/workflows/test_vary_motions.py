@@ -67,10 +67,10 @@ def test_an_example_of_another_behaviour_is_named(walks):
 
 
 def test_progress_rises_from_0_to_1(walks):
-    told = []
-    vary_motions(walks, 2, progress=lambda fraction, message="": told.append(fraction))
-    assert told == sorted(told)
-    assert told[-1] == 1.0
+    messages = []
+    vary_motions(walks, 2, progress=lambda fraction, message="": messages.append(fraction))
+    assert messages == sorted(messages)
+    assert messages[-1] == 1.0
 
 
 def test_single_example_gets_shipped_variation_with_a_remark(walks):

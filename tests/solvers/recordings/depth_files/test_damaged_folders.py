@@ -21,33 +21,33 @@ def depth() -> np.ndarray:
 
 
 def heard():
-    said = []
-    return said, lambda fraction, message="": said.append(message)
+    text = []
+    return text, lambda fraction, message="": text.append(message)
 
 
 @pytest.mark.parametrize(
-    "damage", [lambda whole: whole[:-20], lambda whole: b"", lambda _: b"?"]
+    "damage", [lambda complete: complete[:-20], lambda complete: b"", lambda _: b"?"]
 )
 def test_a_picture_that_is_cut_short_is_an_empty_frame(tmp_path, depth, damage):
     folder = open3d(tmp_path, depth)
     path = folder / "depth" / "00005.png"
     path.write_bytes(damage(path.read_bytes()))
-    said, progress = heard()
+    text, progress = heard()
 
     recording = read_depth(folder, progress=progress)
 
     assert recording.frame(5).max() == 0.0
     assert_allclose(recording.frame(6), depth[6] * 0.001, rtol=1e-6)
-    assert any("1 of 9 images are missing or damaged, depth/00005.png" in one for one in said)
+    assert any("1 of 9 images are missing or damaged, depth/00005.png" in one for one in text)
 
 
 def test_a_picture_that_is_damaged_inside_is_named_when_it_is_read(tmp_path, depth):
     folder = open3d(tmp_path, depth)
     path = folder / "depth" / "00005.png"
-    whole = bytearray(path.read_bytes())
-    middle = len(whole) // 2
-    whole[middle : middle + 9] = b"\xff" * 9
-    path.write_bytes(whole)
+    complete = bytearray(path.read_bytes())
+    middle = len(complete) // 2
+    complete[middle : middle + 9] = b"\xff" * 9
+    path.write_bytes(complete)
 
     recording = read_depth(folder)
 

@@ -143,9 +143,9 @@ def test_archive_defines_camera_rate_and_color(write, rng):
     assert recording.camera == SMALL
     assert recording.frame_rate == 25.0
     assert_array_equal(recording.color(3), color[3])
-    told = read_depth(path, DepthSettings(fx=5.0, cx=4.0, frame_rate=12.0, scale=0.01))
-    assert (told.camera, told.frame_rate) == (Camera(5.0, 5.0, 4.0, 2.5, 8, 6), 12.0)
-    assert_allclose(told.frame(1), 10.0 * recording.frame(1), rtol=1e-6)
+    messages = read_depth(path, DepthSettings(fx=5.0, cx=4.0, frame_rate=12.0, scale=0.01))
+    assert (messages.camera, messages.frame_rate) == (Camera(5.0, 5.0, 4.0, 2.5, 8, 6), 12.0)
+    assert_allclose(messages.frame(1), 10.0 * recording.frame(1), rtol=1e-6)
 
 
 def test_numbers_with_a_point_are_metres(write):
@@ -197,9 +197,9 @@ def test_other_content_than_depth_is_refused(write, content, sentence):
 @pytest.mark.parametrize("order", ["<", ">"])
 @pytest.mark.parametrize("size", [0, 1, 3])
 def test_a_matlab_file_is_damaged_when_its_flags_are_too_short(write, order, size):
-    whole = matlab("d_depth", pictures().transpose(1, 2, 0), packed=False, order=order)
+    complete = matlab("d_depth", pictures().transpose(1, 2, 0), packed=False, order=order)
     flags = struct.pack(f"{order}II", 6, 8)
-    path = write(whole.replace(flags, struct.pack(f"{order}II", 6, size), 1))
+    path = write(complete.replace(flags, struct.pack(f"{order}II", 6, size), 1))
 
     assert is_depth_recording(path)
     with pytest.raises(InvalidFileError, match=r"take\.depth is a damaged MATLAB file"):

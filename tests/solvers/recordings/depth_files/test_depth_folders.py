@@ -30,8 +30,8 @@ def all_frames(recording) -> np.ndarray:
 
 
 def heard():
-    said = []
-    return said, lambda fraction, message="": said.append(message)
+    text = []
+    return text, lambda fraction, message="": text.append(message)
 
 
 def test_tum_is_five_thousandths_of_a_metre_and_has_its_colours(tmp_path, depth):
@@ -64,7 +64,7 @@ def test_tum_by_its_associations(tmp_path, depth, depth_first):
 
 def test_gaps_in_times_become_empty_frames_with_a_remark(tmp_path, depth):
     steps = np.array([0, 1, 2.2, 2.9, 4, 8, 9.1, 10, 11])
-    said, progress = heard()
+    text, progress = heard()
 
     recording = read_depth(tum(tmp_path, depth, 50.0 + steps / 30.0), LENS, progress=progress)
 
@@ -74,8 +74,8 @@ def test_gaps_in_times_become_empty_frames_with_a_remark(tmp_path, depth):
         expected = 0 if picture is None else depth[picture] / 5000.0
         assert_allclose(recording.frame(frame), expected * np.ones((6, 8)), rtol=1e-6)
     assert recording.color(6).max() == 0
-    assert "3 frames have no image, frame 5 first; they are empty." in said
-    assert any(sentence.startswith("Resampled to 30 Hz") for sentence in said)
+    assert "3 frames have no image, frame 5 first; they are empty." in text
+    assert any(sentence.startswith("Resampled to 30 Hz") for sentence in text)
 
 
 def test_times_that_run_backwards_are_refused(tmp_path, depth):
@@ -136,11 +136,11 @@ def test_a_telephone_that_was_held_upright_on_its_side_or_on_its_head(
 
 
 def test_moving_phone_is_reported(tmp_path, depth):
-    said, progress = heard()
+    text, progress = heard()
 
     read_depth(stray(tmp_path, depth, LEVEL, moved=0.9), progress=progress)
 
-    assert "The camera moved by 0.8 m; it is assumed to be static." in said
+    assert "The camera moved by 0.8 m; it is assumed to be static." in text
 
 
 def test_stray_without_a_course_is_sixty_a_second(tmp_path, depth):
@@ -195,14 +195,14 @@ def test_a_plain_folder_is_in_the_order_of_its_numbers(tmp_path, name):
 def test_a_number_that_was_left_out_is_an_empty_frame(tmp_path, depth):
     folder = plain(tmp_path, depth)
     (folder / "0004.png").unlink()
-    said, progress = heard()
+    text, progress = heard()
 
     recording = read_depth(folder, MILLIMETERS, progress=progress)
 
     expected = depth * 0.001
     expected[3] = 0.0
     assert_allclose(all_frames(recording), expected, rtol=1e-6)
-    assert "1 frames have no image, frame 3 first; they are empty." in said
+    assert "1 frames have no image, frame 3 first; they are empty." in text
 
 
 def test_every_third_picture_is_no_gap(tmp_path, depth):

@@ -46,8 +46,8 @@ def all_frames(recording) -> np.ndarray:
 
 
 def heard():
-    said = []
-    return said, lambda fraction, message="": said.append(message)
+    text = []
+    return text, lambda fraction, message="": text.append(message)
 
 
 @pytest.mark.parametrize("group", [False, True])
@@ -115,7 +115,7 @@ def test_the_lens_is_straightened(write):
 def test_dropped_frames_are_empty(write):
     depth = pictures(6)
     times = np.array([0, 33, 67, 200, 233, 267.0])
-    said, progress = heard()
+    text, progress = heard()
 
     recording = read_depth(write(k4a(depth, times=times)), OWN, progress=progress)
 
@@ -132,7 +132,7 @@ def test_dropped_frames_are_empty(write):
         1,
         1,
     ]
-    assert "3 frames have no image, frame 3 first; they are empty." in said
+    assert "3 frames have no image, frame 3 first; they are empty." in text
 
 
 @pytest.mark.parametrize("lace", [(xiph, 2), (equal, 4), (ebml_laced, 6)])
@@ -154,14 +154,14 @@ def test_laced_blocks_hold_several_pictures(write, lace):
 
 def test_a_file_that_was_cut_short_is_read_so_far(write):
     depth = pictures(12)
-    whole = k4a(depth, open_sizes=True)
-    said, progress = heard()
+    complete = k4a(depth, open_sizes=True)
+    text, progress = heard()
 
-    recording = read_depth(write(whole[: len(whole) * 3 // 4]), OWN, progress=progress)
+    recording = read_depth(write(complete[: len(complete) * 3 // 4]), OWN, progress=progress)
 
     assert 5 < recording.n_frames < 12
     assert_allclose(all_frames(recording), depth[: recording.n_frames] * 0.001, rtol=1e-6)
-    assert "The file is cut short; the frames before the end are read." in said
+    assert "The file is cut short; the frames before the end are read." in text
 
 
 def test_a_picture_of_another_size_is_an_empty_frame(write):
@@ -169,12 +169,12 @@ def test_a_picture_of_another_size_is_an_empty_frame(write):
     content = k4a(depth)
     raw = depth[2].astype(">u2").tobytes()
     damaged = content.replace(block(2, 1, raw), block(2, 1, raw[:-2]) + b"\xec\x80")
-    said, progress = heard()
+    text, progress = heard()
 
     recording = read_depth(write(damaged), OWN, progress=progress)
 
     assert [recording.frame(frame).max() > 0 for frame in range(5)] == [1, 1, 0, 1, 1]
-    assert any("1 images are damaged" in sentence for sentence in said)
+    assert any("1 images are damaged" in sentence for sentence in text)
 
 
 def test_colours_are_found_where_the_points_fall(write):

@@ -35,9 +35,11 @@ def folder(tmp_path, depth):
 
 
 @pytest.mark.parametrize("kind", ["depth", "rgb"])
-@pytest.mark.parametrize("way", ["up", "absolute", "device", "link", "folder that is a link"])
+@pytest.mark.parametrize(
+    "displacement", ["up", "absolute", "device", "link", "folder that is a link"]
+)
 def test_an_image_outside_of_the_folder_is_refused_and_not_opened(
-    folder, depth, tmp_path, kind, way, monkeypatch
+    folder, depth, tmp_path, kind, displacement, monkeypatch
 ):
     secret = tmp_path / ("secret.png" if kind == "depth" else "secret_rgb.png")
     name = {
@@ -46,7 +48,7 @@ def test_an_image_outside_of_the_folder_is_refused_and_not_opened(
         "device": "/dev/zero",
         "link": "link.png",
         "folder that is a link": f"away/{secret.name}",
-    }[way]
+    }[displacement]
     (folder / "link.png").symlink_to(secret)
     (folder / "away").symlink_to(tmp_path)
     lines = (folder / f"{kind}.txt").read_text().splitlines()

@@ -67,12 +67,14 @@ def test_json_spelt_as_the_manual_spells_it(write, values):
 
 
 def test_json_without_times(write, values):
-    told = json.loads(azure_json([{1: frame} for frame in values]))
-    for frame in told["frames"]:
+    messages = json.loads(azure_json([{1: frame} for frame in values]))
+    for frame in messages["frames"]:
         del frame["timestamp_usec"]
 
     assert_allclose(
-        read_azure_json(write(json.dumps(told))).tracks.positions, upright(values), atol=1e-9
+        read_azure_json(write(json.dumps(messages))).tracks.positions,
+        upright(values),
+        atol=1e-9,
     )
 
 
@@ -176,12 +178,12 @@ def test_damage_of_tables_is_named(write, values, layout, spoil, sentence):
 def test_a_real_take_sits_upright_and_is_not_mirrored(recordings):
     recording = read_recording(recordings / "kinect" / "azure" / "joints_sync_1.csv")
 
-    usual = dict(
+    default = dict(
         zip(recording.names, np.nanmedian(recording.tracks.positions, axis=0), strict=True)
     )
-    forward = usual["Nose"] - usual["Head"]
-    to_left = usual["EarLeft"] - usual["EarRight"]
+    forward = default["Nose"] - default["Head"]
+    to_left = default["EarLeft"] - default["EarRight"]
     assert recording.tracks.positions.shape == (10, 32, 3)
-    assert usual["Head"][2] > usual["Pelvis"][2] > usual["FootLeft"][2]
+    assert default["Head"][2] > default["Pelvis"][2] > default["FootLeft"][2]
     assert np.cross((0, 0, 1), forward) @ to_left > 0
     assert (recording.tracking_state > 0).all()

@@ -29,18 +29,18 @@ def walk(recordings):
             strict=True,
         )
     )
-    places = {
+    positions = {
         f"{side}_{name}": joints[f"{side.title()}{cmu}"]
         for side in BESIDE
         for name, cmu in CMU.items()
     }
     for side, beside in BESIDE.items():
         for name in ("pinky", "index", "thumb"):
-            places[f"{side}_{name}"] = joints[f"{side.title()}HandIndex1"]
-        places[f"{side}_heel"] = joints[f"{side.title()}Foot"] - (0.0, 0.0, 0.05)
-        places[f"{side}_ear"] = joints["Head"] + beside
+            positions[f"{side}_{name}"] = joints[f"{side.title()}HandIndex1"]
+        positions[f"{side}_heel"] = joints[f"{side.title()}Foot"] - (0.0, 0.0, 0.05)
+        positions[f"{side}_ear"] = joints["Head"] + beside
     rest = joints["Head"] - (0.0, 0.1, 0.0)
-    return np.stack([places.get(name, rest) for name in BODY_POINTS], axis=1)
+    return np.stack([positions.get(name, rest) for name in BODY_POINTS], axis=1)
 
 
 def test_motion_follows_the_tracked_joints(walk, tmp_path):

@@ -19,8 +19,10 @@ def irds(frames: list[tuple[int, int, dict[str, tuple[str, float, float, float]]
     for count, (body, time, joints) in enumerate(frames):
         texts = []
         for name in NAMES:
-            state, *place = joints.get(name, ("Tracked", 0.5, 1.0, 2.0))
-            texts.append(f"({name},{state},{place[0]},{place[1]},{place[2]},191.7,205.5)")
+            state, *position = joints.get(name, ("Tracked", 0.5, 1.0, 2.0))
+            texts.append(
+                f"({name},{state},{position[0]},{position[1]},{position[2]},191.7,205.5)"
+            )
         lines.append(f"{count},{body},{time}," + ",".join(texts))
     return "\r\n".join(lines)
 
@@ -49,13 +51,13 @@ def test_joints_come_out_upright_and_on_their_side(read):
 
 
 def test_what_was_not_tracked_is_nan(read):
-    lost = {"Head": ("NotTracked", 1, 1, 1), "Neck": ("Tracked", 0, 0, 0)}
+    missing = {"Head": ("NotTracked", 1, 1, 1), "Neck": ("Tracked", 0, 0, 0)}
 
-    recording = read(irds([(1, 33 * n, lost if n == 2 else {}) for n in range(5)]))
+    recording = read(irds([(1, 33 * n, missing if n == 2 else {}) for n in range(5)]))
 
-    places = [NAMES.index(name) for name in lost]
-    assert np.isnan(recording.tracks.positions[2, places]).all()
-    assert (recording.tracking_state[2, places] == 0).all()
+    positions = [NAMES.index(name) for name in missing]
+    assert np.isnan(recording.tracks.positions[2, positions]).all()
+    assert (recording.tracking_state[2, positions] == 0).all()
     assert recording.tracks.visible.sum() == recording.tracks.visible.size - 2
 
 

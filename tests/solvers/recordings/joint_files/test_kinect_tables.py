@@ -159,8 +159,8 @@ def test_msr_action3d_in_the_order_of_the_sensor(write):
 
     recording = read_recording(write(msr(values)))
 
-    place = {"ShoulderLeft": 0, "HipCenter": 6, "HandRight": 12, "FootLeft": 17, "Head": 19}
-    for name, at in place.items():
+    position = {"ShoulderLeft": 0, "HipCenter": 6, "HandRight": 12, "FootLeft": 17, "Head": 19}
+    for name, at in position.items():
         joint = recording.names.index(name)
         assert_allclose(recording.tracks.positions[:, joint], upright(values)[:, at])
         assert_allclose(recording.tracks.confidence[:, joint], values[:, at, 3])
@@ -192,11 +192,16 @@ def assert_upright_and_not_mirrored(recording):
 
     Left is up x forward; forward is from ankle to foot. None of that knows the camera.
     """
-    usual = dict(
+    default = dict(
         zip(recording.names, np.nanmedian(recording.tracks.positions, axis=0), strict=True)
     )
-    up = usual["Head"] - usual["AnkleLeft"] / 2 - usual["AnkleRight"] / 2
-    forward = usual["FootLeft"] - usual["AnkleLeft"] + usual["FootRight"] - usual["AnkleRight"]
-    to_left = usual["ShoulderLeft"] - usual["ShoulderRight"]
+    up = default["Head"] - default["AnkleLeft"] / 2 - default["AnkleRight"] / 2
+    forward = (
+        default["FootLeft"]
+        - default["AnkleLeft"]
+        + default["FootRight"]
+        - default["AnkleRight"]
+    )
+    to_left = default["ShoulderLeft"] - default["ShoulderRight"]
     assert up[2] > 0.5 * np.linalg.norm(up)
     assert np.cross(up, forward) @ to_left > 0.0

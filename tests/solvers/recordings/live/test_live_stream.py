@@ -99,11 +99,11 @@ def test_a_recording_of_uneven_frames_is_even(rng):
     performed = perform_gestures(["wave right"])
     times = np.linspace(5.0, 7.0, 61)
     late = times + rng.normal(scale=0.003, size=61)
-    places = np.sin(late)[:, None, None] * np.ones((1, 20, 3))
+    positions = np.sin(late)[:, None, None] * np.ones((1, 20, 3))
     names = performed.recording().names
     frames = [
         LiveFrame(float(time), 0, names, place, np.full(20, 0.8), None, Sensor.KINECT_V1)
-        for time, place in zip(late, places, strict=True)
+        for time, place in zip(late, positions, strict=True)
     ]
 
     recording = recording_from_frames(frames)
@@ -122,8 +122,8 @@ def test_missing_frames_are_gaps():
     recording = recording_from_frames(frames[:20] + frames[30:])
 
     assert recording.n_frames == 60
-    lost = np.isnan(recording.tracks.positions[:, 0, 0])
-    assert lost[20:30].all() and lost.sum() == 10
+    missing = np.isnan(recording.tracks.positions[:, 0, 0])
+    assert missing[20:30].all() and missing.sum() == 10
 
 
 def test_joints_of_other_names_are_left_out():

@@ -161,13 +161,16 @@ def test_damage_is_one_sentence(tracks, tmp_path, spoil, sentence):
 @pytest.mark.parametrize(
     ("spoil", "known"),
     [
-        (lambda whole: whole, True),
-        (lambda whole: whole[:600], True),
-        (lambda whole: whole[:512], True),
-        (lambda whole: b"\xc8" + whole[1:], True),
-        (lambda whole: whole[:515] + b"\0" + whole[516:], True),
-        (lambda whole: b"\xc8" + whole[1:515] + b"\0" + whole[516:], False),
-        (lambda whole: b"\x89PNG\r\n\x1a\n" + whole[8:515] + b"\0" + whole[516:], False),
+        (lambda complete: complete, True),
+        (lambda complete: complete[:600], True),
+        (lambda complete: complete[:512], True),
+        (lambda complete: b"\xc8" + complete[1:], True),
+        (lambda complete: complete[:515] + b"\0" + complete[516:], True),
+        (lambda complete: b"\xc8" + complete[1:515] + b"\0" + complete[516:], False),
+        (
+            lambda complete: b"\x89PNG\r\n\x1a\n" + complete[8:515] + b"\0" + complete[516:],
+            False,
+        ),
     ],
     ids=["whole", "cut", "header alone", "first byte", "processor", "both", "PNG"],
 )
@@ -187,11 +190,11 @@ def test_every_file_at_hand_is_known(recordings):
 @pytest.mark.parametrize("kind", [-1, 1, 2, 4])
 def test_a_parameter_that_claims_more_than_any_number_can_tell_is_passed_over(tmp_path, kind):
     """Found by fuzzing: 127 sizes of 255 made a product that wrapped around."""
-    whole = c3d_bytes(np.ones((2, 3, 4)), INTEL, -1.0)
+    complete = c3d_bytes(np.ones((2, 3, 4)), INTEL, -1.0)
     endless = struct.pack("<bb3sHbB", 3, 1, b"BIG", 132, kind, 127) + b"\xff" * 127 + b"\0"
-    entries = whole[512 + 4 : 1024].rstrip(b"\0") + b"\0"
+    entries = complete[512 + 4 : 1024].rstrip(b"\0") + b"\0"
     path = tmp_path / "take.c3d"
-    path.write_bytes(whole[:516] + (entries + endless).ljust(508, b"\0") + whole[1024:])
+    path.write_bytes(complete[:516] + (entries + endless).ljust(508, b"\0") + complete[1024:])
 
     tracks = read_c3d(path)
 

@@ -261,9 +261,9 @@ def naive(path) -> tuple[list[str], np.ndarray]:
     lines = path.read_text(encoding="utf-8").split("\n")
     meters = {"mm": 0.001, "m": 1.0}["mm" if "\tmm\t" in lines[2].replace(" ", "") else "m"]
     names = [cell.strip() for cell in lines[3].split("\t")[2:] if cell.strip()]
-    for place in range(1, len(names)):
-        if names[place] in names[:place]:
-            names[place] += "_2"
+    for position in range(1, len(names)):
+        if names[position] in names[:position]:
+            names[position] += "_2"
     rows = []
     for line in lines[4:]:
         cells = [cell.strip() for cell in line.split("\t")]

@@ -80,10 +80,10 @@ def test_bone_rotates_towards_its_displaced_child(read):
 
     legs = read(LEGS + "".join(map(frame.format, ["0 -40 0", "24 -32 0", "0 -40 0"])))
 
-    places = dict(zip(legs.skeleton.names, forward_kinematics(legs).positions[1], strict=True))
-    assert_allclose(places["foot"] - places["knee"], [0.24, 0, -0.32], atol=1e-9)
+    indices = dict(zip(legs.skeleton.names, forward_kinematics(legs).positions[1], strict=True))
+    assert_allclose(indices["foot"] - indices["knee"], [0.24, 0, -0.32], atol=1e-9)
     # The foot itself does not turn.
-    assert_allclose(places["foot_end"] - places["foot"], [0.15, 0, 0], atol=1e-9)
+    assert_allclose(indices["foot_end"] - indices["foot"], [0.15, 0, 0], atol=1e-9)
 
 
 def test_channels_near_zero_are_relative_to_the_offset(read):

@@ -15,13 +15,13 @@ def test_end_sites_are_written_only_if_they_survive_reading(leg, tmp_path):
     turns = np.tile([1.0, 0, 0, 0], (2, 4, 1))
     turned = turns.copy()
     turned[1, 3] = quaternion_from_rotation_vector([0.1, 0.2, 0.0])
-    place = np.tile([0, 0, 0.9], (2, 1))
+    position = np.tile([0, 0, 0.9], (2, 1))
     renamed = Skeleton(("hip", "knee", "ankle", "toe_end"), leg.parents, leg.offsets)
 
     for motion, n_ends in [
-        (Motion(leg, turns, place, 30.0), 1),
-        (Motion(leg, turned, place, 30.0), 1),  # The end of the end: many programs want one.
-        (Motion(renamed, turns, place, 30.0), 1),
+        (Motion(leg, turns, position, 30.0), 1),
+        (Motion(leg, turned, position, 30.0), 1),  # The end of the end: many programs want one.
+        (Motion(renamed, turns, position, 30.0), 1),
     ]:
         write_bvh(motion, tmp_path / "leg.bvh")
         back = read_bvh(tmp_path / "leg.bvh")
