@@ -28,7 +28,7 @@ from ...solvers.faults import Failure, attempt, escaped
 from ...solvers.files import is_missing, real_path
 from ...solvers.json_text import parse_json
 from ...solvers.processes import ScratchFolder
-from ...solvers.recordings.containers import files_below, is_folder, refuse_closed
+from ...solvers.recordings.containers import check_folder_access, files_below, is_folder
 from ..importing.depth_folders import all_recordings_in, depth_recordings_in
 from .each_child import OPTION, run_child
 
@@ -146,7 +146,7 @@ def _prepare_target(source: Path, target: Path) -> None:
     if is_missing(source):
         raise InvalidFileError(f"There is no file {source}.")
     if is_folder(source):
-        refuse_closed(source)
+        check_folder_access(source)
     check_name_length(target, PICTURE)
     target.parent.mkdir(parents=True, exist_ok=True)
 

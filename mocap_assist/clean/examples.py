@@ -7,7 +7,7 @@ import bpy
 
 from ...solvers.errors import InvalidFileError, InvalidMotionError
 from ...solvers.motion import Motion
-from ...solvers.recordings import may_hold_motion
+from ...solvers.recordings import may_contain_motion
 from ...solvers.recordings.containers import files_below
 from ..actions.armature_read import read_take
 from ..actions.fitting import fits, plays
@@ -83,7 +83,7 @@ def _recordings_of(path: Path) -> Steps[list[Path]]:
     for each in files_below(path):
         if should_yield():
             yield 0.0
-        found += [each] if may_hold_motion(each) else []
+        found += [each] if may_contain_motion(each) else []
     if not found:
         raise InvalidMotionError(f"The folder {path} has no recordings.")
     return found

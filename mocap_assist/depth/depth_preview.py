@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ...solvers.depth_scene import DepthRecording, Floor
 from ...solvers.errors import MocapAssistError
 from ...solvers.faults import Failure, attempt
-from ...solvers.recordings import DepthSettings, Held, read_depth
+from ...solvers.recordings import CameraOrientation, DepthSettings, read_depth
 from ..blender.data_names import fitting_name
 from ..blender.path_properties import absolute
 from ..blender.permissions import allow_recording, recording_allowed
@@ -73,7 +73,7 @@ class Shown:
     @classmethod
     def of(cls, told: dict[str, Any]) -> "Shown":
         """Undo `told`; raises ValueError, TypeError or KeyError where that is no preview."""
-        settings = {**told["settings"], "held": Held[told["settings"]["held"]]}
+        settings = {**told["settings"], "held": CameraOrientation[told["settings"]["held"]]}
         start, step, every = float(told["start"]), float(told["step"]), int(told["every"])
         if not (isfinite(start) and isfinite(step) and step > 0.0 and every > 0):
             raise ValueError(f"start {start}, step {step}, every {every}")

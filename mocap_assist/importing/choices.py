@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ...solvers.recordings import DepthSettings, Held
+from ...solvers.recordings import CameraOrientation, DepthSettings
 from ...solvers.settings import Choice, Settings, setting
 from ..scene.scene_rate import FrameRate
 
@@ -115,8 +115,8 @@ class ImportChoices(Settings):
         maximum=100_000.0,
         label="Center Y",
     )
-    held: Held = setting(
-        Held.KNOWN,
+    held: CameraOrientation = setting(
+        CameraOrientation.KNOWN,
         "How the depth camera was held",
         label="Camera Orientation",
     )

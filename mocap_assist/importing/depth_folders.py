@@ -7,7 +7,12 @@ import bpy
 from ...solvers.depth_scene import Camera
 from ...solvers.errors import InvalidFileError
 from ...solvers.faults import attempt
-from ...solvers.recordings import depth_format_of, depth_in, is_depth_folder, recordings_in
+from ...solvers.recordings import (
+    depth_takes_in,
+    detect_depth_format,
+    is_depth_folder,
+    recordings_in,
+)
 from ...solvers.recordings.containers import is_folder
 from ..depth.exr_folder import as_archive, exr_files, size_of
 from ..scene.scene_rate import scene_rate
@@ -27,12 +32,14 @@ def is_take(folder: Path) -> bool:
     """Whether a folder is a recording of depth; not if it cannot be looked into."""
     if not is_folder(folder):
         return False
-    return attempt(folder, lambda: bool(exr_files(folder) or depth_format_of(folder))) is True
+    return (
+        attempt(folder, lambda: bool(exr_files(folder) or detect_depth_format(folder))) is True
+    )
 
 
 def depth_recordings_in(folder: Path) -> list[Path]:
     """Return the recordings of depth in a folder and below; the folder itself if it is one."""
-    return depth_in(folder, lambda each: bool(exr_files(each)) or is_depth_folder(each))
+    return depth_takes_in(folder, lambda each: bool(exr_files(each)) or is_depth_folder(each))
 
 
 def all_recordings_in(folder: Path) -> list[Path]:

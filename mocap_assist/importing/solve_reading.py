@@ -19,7 +19,7 @@ from ...solvers.motion import (
 )
 from ...solvers.motion.humanoid import fill_missing_hips
 from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings import DepthSettings, is_depth, read_depth, read_tracked
+from ...solvers.recordings import DepthSettings, is_depth_recording, read_depth, read_tracked
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 
 Recording = Motion | Tracks | JointRecording | DepthRecording
@@ -95,7 +95,7 @@ def read_file(
     listener = _Listener(progress)
 
     def read() -> Recording:
-        if is_depth(path):
+        if is_depth_recording(path):
             return read_depth(path, depth, progress=listener)
         return read_tracked(path, scale=unit, progress=listener)
 

@@ -12,7 +12,7 @@ from ..depth_tracking.capturing import CaptureSettings
 from ..errors import InvalidSettingError
 from ..motion import JointRecording, Sensor
 from ..progress import Progress, collect_messages, within
-from ..recordings import depth_in, read_depth, write_joint_csv
+from ..recordings import depth_takes_in, read_depth, write_joint_csv
 from ..recordings.depth_files import DepthSettings
 from ..workflows import CapturedMotion, capture_recording
 from .files import JOINTS, find_recordings, write
@@ -58,7 +58,7 @@ def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | 
         --keep-body is combined with several takes.
     """
     many = arguments.output_folder is not None and len(
-        find_recordings(arguments.files, list_recordings=depth_in)
+        find_recordings(arguments.files, list_recordings=depth_takes_in)
     )
     if arguments.keep_body is not None and many > 1:
         raise InvalidSettingError(

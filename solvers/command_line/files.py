@@ -11,7 +11,7 @@ from ..files import real_path
 from ..motion import Motion, Tracks
 from ..progress import Progress, within
 from ..recordings import (
-    format_of,
+    detect_format,
     read_motion_or_tracks,
     recordings_in,
     write_bvh,
@@ -39,7 +39,7 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         "--scale",
         type=float,
         metavar="X",
-        help="Metres per unit of the input files [default: as stored in the file, or"
+        help="Meters per unit of the input files [default: as stored in the file, or"
         " estimated from the size of the body]",
     )
 
@@ -115,7 +115,7 @@ def write(recording: Motion | Tracks, path: Path | None, progress: Progress) -> 
         kind, allowed, hint = ("A skeleton's motion", MOTIONS, "")
         if isinstance(recording, Tracks):
             kind, allowed = ("Points without a skeleton", " or ".join(POINTS))
-            hint = ", or make a skeleton of labelled markers with the verb solve"
+            hint = ", or make a skeleton of labeled markers with the verb solve"
         raise InvalidFileError(
             f"{kind} cannot be written as {path}; end the name in {allowed}{hint}."
         )
@@ -169,7 +169,7 @@ def output_extension(source: Path) -> str:
     extension = source.suffix.lower()
     if extension in RECORDED:
         return extension
-    format_found = attempt(source, format_of, source)
+    format_found = attempt(source, detect_format, source)
     if format_found is None or isinstance(format_found, Failure):  # The reader reports why.
         return MOTIONS
     return MOTIONS if format_found.has_skeleton else POINTS_BY_DEFAULT

@@ -86,7 +86,7 @@ def add_find_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--scale", type=float, metavar="X",
-        help="Metres per unit of the recording [default: as stored in the file, or estimated"
+        help="Meters per unit of the recording [default: as stored in the file, or estimated"
         " from the size of the body]",
     )  # fmt: skip
     arguments_from(parser, FindSettings)

@@ -40,7 +40,7 @@ class RebuiltTake(NamedTuple):
     method: str
     remarks: tuple[str, ...]
     slide: tuple[float, float] | None
-    """Slide of the feet before and after planting, metres."""
+    """Slide of the feet before and after planting, meters."""
 
 
 def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from ..faults import Failure, attempt
 from ..files import write_atomically
 from ..pictures import StickFigureSettings, draw_stick_figures
-from ..recordings import is_depth, read_motion_or_tracks
+from ..recordings import is_depth_recording, read_motion_or_tracks
 from .verb import Task
 
 PAGE, FIGURES, PICTURES = "report.html", "report.json", Path("report")
@@ -78,7 +78,7 @@ def _draw(task: Task) -> None:
     picture = picture_file(task)
     result = read_motion_or_tracks(task.target)
     motions = {"result": result}
-    if not is_depth(task.source):
+    if not is_depth_recording(task.source):
         given = read_motion_or_tracks(task.source, scale=task.arguments.scale)
         motions = {"given": given, **motions} if given.n_frames == result.n_frames else motions
     picture.parent.mkdir(parents=True, exist_ok=True)

@@ -39,7 +39,7 @@ def add_residuals_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--scale", type=float, metavar="X",
-        help="Metres per unit of the sensor's files [default: as stored in the file]",
+        help="Meters per unit of the sensor's files [default: as stored in the file]",
     )  # fmt: skip
     arguments_from(parser, ResidualPriorSettings)
 

@@ -19,7 +19,7 @@ from .files import add_reading_options, read, write
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
-CENTIMETRE = 0.01
+CENTIMETER = 0.01
 
 
 class Target(NamedTuple):
@@ -100,7 +100,7 @@ def add_unbake_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `unbake`."""
     parser.add_argument(
         "--tolerance", type=float, default=1.0, metavar="CM",
-        help="Maximum error in centimetres of any joint at any frame"
+        help="Maximum error in centimeters of any joint at any frame"
         " [default 1]",
     )  # fmt: skip
     parser.add_argument(
@@ -120,7 +120,7 @@ def perform_unbake(task: Task, prepared: None, progress: Progress) -> Outcome:
         )
     sparse = reduce_keys(
         motion,
-        CENTIMETRE * task.arguments.tolerance,
+        CENTIMETER * task.arguments.tolerance,
         settings=settings_from_arguments(task.arguments, UnbakeSettings),
         progress=within(progress, 0.2, 0.8),
     )

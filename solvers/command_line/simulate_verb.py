@@ -24,7 +24,7 @@ def perform_simulate(task: Task, prepared: None, progress: Progress) -> Outcome:
     motion = read(task.source, task.arguments, within(progress, 0.0, 0.1))
     if not isinstance(motion, Motion):
         raise InvalidMotionError(
-            f"{task.source} holds points without a skeleton. Solve a skeleton from labelled"
+            f"{task.source} holds points without a skeleton. Solve a skeleton from labeled"
             " markers with the verb solve first."
         )
     settings = settings_from_arguments(task.arguments, SimulateSettings)

@@ -1,4 +1,4 @@
-"""`solve`: solve the motion of a skeleton from labelled optical markers."""
+"""`solve`: solve the motion of a skeleton from labeled optical markers."""
 
 import argparse
 

@@ -11,7 +11,7 @@ from ..denoising import (
     measure_quality,
 )
 from ..progress import Progress, collect_messages, within
-from ..recordings import depth_in
+from ..recordings import depth_takes_in
 from .capture_verb import add_capture_options, perform_capture, read_body
 from .convert import convert
 from .denoise_verb import add_denoise_options, learn_prior, perform_denoise
@@ -104,7 +104,7 @@ VERBS = {
         OutputKind.WORDS,
     ),
     "solve": Verb(
-        "Solve the motion of a skeleton from the labelled markers of optical takes.",
+        "Solve the motion of a skeleton from the labeled markers of optical takes.",
         add_solve_options,
         perform_solve,
         writes_motions=True,
@@ -115,7 +115,7 @@ VERBS = {
         perform_capture,
         writes_motions=True,
         writes_joints=True,
-        list_recordings=depth_in,
+        list_recordings=depth_takes_in,
         prepare=read_body,
     ),
     "reconstruct": Verb(

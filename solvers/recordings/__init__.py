@@ -12,7 +12,13 @@
 (30, 30.0)
 """
 
-from .depth_files import DepthSettings, Held, depth_format_of, is_depth_folder, read_depth
+from .depth_files import (
+    CameraOrientation,
+    DepthSettings,
+    detect_depth_format,
+    is_depth_folder,
+    read_depth,
+)
 from .joint_files import (
     read_azure_csv,
     read_azure_json,
@@ -31,10 +37,10 @@ from .joint_files import (
 from .joints import read_joints, write_joints
 from .marker_files import read_c3d, read_trc, write_c3d, write_trc
 from .read_recording import (
-    depth_in,
-    format_of,
-    is_depth,
-    may_hold_motion,
+    depth_takes_in,
+    detect_format,
+    is_depth_recording,
+    may_contain_motion,
     read_motion_or_tracks,
     read_recording,
     read_tracked,
@@ -44,14 +50,14 @@ from .recording_figures import recording_figures
 from .skeleton_files import read_acclaim, read_acclaim_limits, read_bvh, write_bvh
 
 __all__ = [
+    "CameraOrientation",
     "DepthSettings",
-    "Held",
-    "depth_format_of",
-    "depth_in",
-    "format_of",
-    "is_depth",
+    "depth_takes_in",
+    "detect_depth_format",
+    "detect_format",
     "is_depth_folder",
-    "may_hold_motion",
+    "is_depth_recording",
+    "may_contain_motion",
     "read_acclaim",
     "read_acclaim_limits",
     "read_azure_csv",

@@ -11,9 +11,9 @@ from ..faults import attempt
 from ..files import open_regular, unreadable
 from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, unwatched
-from .containers import BYTE_ORDER_MARK, files_below, is_c3d, is_folder, refuse_closed
+from .containers import BYTE_ORDER_MARK, check_folder_access, files_below, is_c3d, is_folder
 from .conventions import check_scale
-from .depth_files import DepthSettings, depth_format_of, is_depth_folder, read_depth
+from .depth_files import DepthSettings, detect_depth_format, is_depth_folder, read_depth
 from .joint_files import (
     is_azure_csv,
     is_azure_json,
@@ -118,14 +118,14 @@ def read_recording(
     path : Path or str
         BVH; AMC with the ASF of the actor next to it; C3D; TRC; joints of depth cameras; depth
         images (docs/formats).
-    scale : float, metres per unit of the file, or None
+    scale : float, meters per unit of the file, or None
         None: the default of the format.
     progress : Progress
 
     Returns
     -------
     Motion, Tracks or JointRecording
-        In metres, Z up; NaN where not observed.
+        In meters, Z up; NaN where not observed.
     DepthRecording
         Depth images of a camera; see `read_depth` for more options.
 
@@ -137,17 +137,17 @@ def read_recording(
         Raised by `progress`.
     """
     check_scale(scale)
-    if is_depth(path):
+    if is_depth_recording(path):
         return read_depth(path, DepthSettings(scale=scale or 0.0), progress=progress)
     return read_tracked(path, scale=scale, progress=progress)
 
 
-def is_depth(path: Path | str) -> bool:
+def is_depth_recording(path: Path | str) -> bool:
     """Whether a file or folder contains depth images of a supported format.
 
     Raises InvalidFileError if it is missing or unreadable.
     """
-    return format_of(path) is None and depth_format_of(path) is not None
+    return detect_format(path) is None and detect_depth_format(path) is not None
 
 
 def read_tracked(
@@ -160,13 +160,13 @@ def read_tracked(
     InvalidFileError
         Also for a depth recording, which has no tracked motion yet.
     """
-    format_ = format_of(path)
+    format_ = detect_format(path)
     if format_ is not None:
         try:
             return format_.read(path, scale=scale, progress=progress)
         except InvalidMotionError as error:  # valid format, but not a valid recording
             raise InvalidFileError(f"{path}: {error}") from None
-    if depth_format_of(path) is not None:
+    if detect_depth_format(path) is not None:
         raise InvalidFileError(
             f"{path} has depth images but no motion yet. Track the actor in it first."
         )
@@ -178,10 +178,10 @@ def read_tracked(
     )
 
 
-def format_of(path: Path | str) -> Format | None:
+def detect_format(path: Path | str) -> Format | None:
     """Detect the format of a file from its first bytes; None if it is not supported.
 
-    For depth images see `depth_format_of`.
+    For depth images see `detect_depth_format`.
 
     Raises
     ------
@@ -189,7 +189,7 @@ def format_of(path: Path | str) -> Format | None:
         The file is missing or unreadable.
     """
     if Path(path).is_dir():
-        refuse_closed(Path(path))
+        check_folder_access(Path(path))
         return None
     try:
         with open_regular(path) as file:
@@ -207,16 +207,18 @@ def recordings_in(folder: Path) -> list[Path]:
     Skip hidden files and folders, and skeletons without motion. Include files and folders that
     cannot be opened: the reader reports the reason.
     """
-    return [path for path in files_below(folder) if may_hold_motion(path)]
+    return [path for path in files_below(folder) if may_contain_motion(path)]
 
 
-def may_hold_motion(path: Path) -> bool:
+def may_contain_motion(path: Path) -> bool:
     """Whether a file is a recording by its first bytes, or cannot be opened."""
-    format_ = attempt(path, format_of, path)
+    format_ = attempt(path, detect_format, path)
     return format_ is not None and getattr(format_, "read", None) is not _refuse_skeleton
 
 
-def depth_in(folder: Path, is_take: Callable[[Path], bool] = is_depth_folder) -> list[Path]:
+def depth_takes_in(
+    folder: Path, is_take: Callable[[Path], bool] = is_depth_folder
+) -> list[Path]:
     """Return the depth recordings in a folder and below, by name; or the folder itself.
 
     A folder of images is one recording and is not searched. Skip hidden files and folders, and
@@ -230,7 +232,9 @@ def depth_in(folder: Path, is_take: Callable[[Path], bool] = is_depth_folder) ->
         Returns whether a folder is one recording.
     """
     paths = files_below(folder, is_take)
-    return [path for path in paths if is_folder(path) or attempt(path, is_depth, path)]
+    return [
+        path for path in paths if is_folder(path) or attempt(path, is_depth_recording, path)
+    ]
 
 
 def read_motion_or_tracks(

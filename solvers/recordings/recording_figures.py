@@ -15,7 +15,7 @@ def recording_figures(
     """Return size, rate and gaps of a recording, with units in the names, ready for JSON.
 
     A gap is an interval without observations of a joint or marker. A joint without any
-    observation counts as never seen instead. End sites are ignored.
+    observation is listed in `never_seen` instead. End sites are ignored.
 
     Returns
     -------

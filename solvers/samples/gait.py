@@ -103,7 +103,7 @@ def walking_gait(settings: GaitSettings = GaitSettings()) -> Motion:
 
 
 # Angles below are degrees. Positive x leans forward, y lowers the left side, z turns left.
-# `_cycle(course, p)` is 1 when the left foot is at phase p of its stride.
+# `_cycle(plan, p)` is 1 when the left foot is at phase p of its stride.
 
 
 def _cycle(plan: WalkPlan, peak: float, per_stride: int = 1) -> Array:

@@ -14,7 +14,7 @@ MAX_CORRECTED_RELIABILITY, MAX_MISSING_RELIABILITY = 0.8, 0.5
 """Reliability below which toes are flattened partly, and below which completely. Joints that a
 tracker inferred have at most the second."""
 MAX_TOE_HEIGHT_M = 0.03
-"""Height in metres of the toes above the ankle at which a standing foot is flattened fully."""
+"""Height in meters of the toes above the ankle at which a standing foot is flattened fully."""
 DEFAULT_DROP = 0.35
 """Height of the ankle above the toes in foot lengths, if no frame measures it."""
 MIN_STANDING_FRAMES = 10

@@ -8,7 +8,7 @@ from ..motion.humanoid import fill_missing_hips
 
 Array = NDArray[np.float64]
 MAX_DISTANCE_M = 0.002
-"""Maximum distance in metres between matching joints, due to the rounding of keys."""
+"""Maximum distance in meters between matching joints, due to the rounding of keys."""
 MIN_SAMPLES = 3
 MAX_COSINE_DIFFERENCE = 1e-3
 """Maximum difference of the cosines of half angles of rotations in the preselection."""

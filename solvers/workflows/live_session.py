@@ -48,14 +48,14 @@ class LiveSession:
     def __init__(self, settings: GestureSettings = GESTURE_SETTINGS) -> None:
         self._settings = settings
         self._stream = StreamReader()
-        self._recogniser = GestureRecognizer(settings)
+        self._recognizer = GestureRecognizer(settings)
         self._performed: list[LiveFrame] = []
         self._last: LiveFrame | None = None
 
     @property
     def mode(self) -> Mode:
         """The current activity of the actor."""
-        return self._recogniser.mode
+        return self._recognizer.mode
 
     @property
     def heard(self) -> StreamCounts:
@@ -73,7 +73,7 @@ class LiveSession:
         """Add the events of a frame."""
         events = self._restart_if_needed(frame)
         positions, confidence = pose_from_frame(frame)
-        events += self._recogniser.see(frame.time, positions, confidence)
+        events += self._recognizer.see(frame.time, positions, confidence)
         update = replace(update, frame=frame, events=update.events + events)
         for event in events:
             update = self._apply_event(update, event)
@@ -86,7 +86,7 @@ class LiveSession:
         last, self._last = self._last, frame
         if last is None or (frame.body == last.body and frame.time > last.time):
             return ()
-        mode, self._recogniser = self.mode, GestureRecognizer(self._settings)
+        mode, self._recognizer = self.mode, GestureRecognizer(self._settings)
         if mode is not Mode.CAPTURING:
             return ()
         return (GestureEvent(Gesture.CAPTURE_DROPPED, frame.time, frame.time),)
@@ -115,7 +115,7 @@ def _performance(update: SessionUpdate, frames: list[LiveFrame]) -> SessionUpdat
 
 
 def pose_from_frame(frame: LiveFrame) -> tuple[Array, Array]:
-    """Return positions of the posture joints, (20, 3) metres, and their confidence, (20,)."""
+    """Return positions of the posture joints, (20, 3) meters, and their confidence, (20,)."""
     positions, confidence = (
         np.full((len(POSTURE_JOINTS), 3), np.nan),
         np.zeros(len(POSTURE_JOINTS)),

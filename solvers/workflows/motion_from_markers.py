@@ -74,7 +74,7 @@ def motion_from_markers(
     Parameters
     ----------
     tracks : Tracks
-        Labelled markers of a set known to `find_marker_set`.
+        Labeled markers of a set known to `find_marker_set`.
     settings : MarkerMotionSettings
     solving : SolveSettings
     progress : Progress
@@ -95,7 +95,7 @@ def motion_from_markers(
             progress=within(progress, 0.0, 0.2),
         )
         markers, swaps = unswapped.tracks, unswapped.swaps
-    labelled = markers.visible
+    labeled = markers.visible
     if settings.fill:
         markers = _fill_gaps(markers, within(progress, 0.2, 0.5))
     solved = solve_skeleton(markers, settings=solving, progress=within(progress, 0.5, 0.85))
@@ -105,7 +105,7 @@ def motion_from_markers(
         assert isinstance(denoised, Motion)
         motion = denoised if settings.smooth else _restore_observed(motion, denoised)
     progress(1.0, "Done")
-    return MarkerMotion(motion, solved, markers, swaps, markers.visible & ~labelled)
+    return MarkerMotion(motion, solved, markers, swaps, markers.visible & ~labeled)
 
 
 def _select_set_markers(tracks: Tracks, subject: str) -> Tracks:

@@ -56,7 +56,7 @@ def plant_feet_if_possible(
 
 
 def _added_slide(planted: Planted, restored: Motion) -> float:
-    """Return the additional slide of feet whose ankles were restored, metres."""
+    """Return the additional slide of feet whose ankles were restored, meters."""
     feet = find_foot_joints(restored)
     if feet is None:
         return 0.0

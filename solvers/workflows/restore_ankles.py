@@ -14,13 +14,13 @@ Flags = NDArray[np.bool_]
 
 MIN_RELIABILITY = 0.6
 MAX_OFFSET_M = 0.03
-"""Maximum distance in metres of a planted ankle from its observed rest position."""
+"""Maximum distance in meters of a planted ankle from its observed rest position."""
 MAX_STILL_SPREAD_M = 0.02
-"""Maximum extent in metres of the path of a resting ankle within half a second."""
+"""Maximum extent in meters of the path of a resting ankle within half a second."""
 STILL_WINDOW_S, SMOOTHING_S = 0.5, 0.1
 """Seconds."""
 MIN_CORRECTION_M = 1e-6
-"""Metres."""
+"""Meters."""
 
 
 def restore_ankles(
@@ -32,7 +32,7 @@ def restore_ankles(
 
     Parameters
     ----------
-    planted, seen : Motion
+    planted, observed : Motion
         After and before feet were planted.
     reliability : shape (n_frames, n_joints), 0 to 1
         NaN: unknown.
@@ -55,7 +55,7 @@ def restore_ankles(
 
 
 def _corrections(displacement: Array, still: Flags, frame_rate: float) -> Array:
-    """Return smooth corrections of planted ankles, shape (n_frames, 3), metres.
+    """Return smooth corrections of planted ankles, shape (n_frames, 3), meters.
 
     The displacement is low-pass filtered; camera noise in it would make the foot slide.
     """
@@ -71,7 +71,7 @@ def _corrections(displacement: Array, still: Flags, frame_rate: float) -> Array:
 
 
 def _spread(ankle: Array, width: float) -> Array:
-    """Return the extent of the path of an ankle within a window, shape (n_frames,), metres."""
+    """Return the extent of the path of an ankle within a window, shape (n_frames,), meters."""
     size = 2 * round(width / 2) + 1
     highest = maximum_filter1d(ankle, size, axis=0, mode="nearest")
     lowest = minimum_filter1d(ankle, size, axis=0, mode="nearest")

@@ -21,7 +21,7 @@ from ..motion.humanoid import (
 
 MIN_GAP_S = 1.0
 """Minimum duration of a gap of all joints that is reported, seconds."""
-UNITS = {0.001: "millimetres", 0.01: "centimetres", 0.0254: "inches", 1000.0: "kilometres"}
+UNITS = {0.001: "millimeters", 0.01: "centimeters", 0.0254: "inches", 1000.0: "kilometers"}
 KINECT_V1 = dict(zip(POSTURE_JOINTS, SENSOR_JOINTS[Sensor.KINECT_V1], strict=True))
 """Joint names of the Kinect v1 by posture joint."""
 Value = TypeVar("Value", np.int8, np.float64)
@@ -105,7 +105,7 @@ def check_size(recording: JointRecording) -> None:
         return
     unit = min(UNITS, key=lambda factor: abs(np.log(size * factor)))
     human = MIN_BODY_SCALE <= size * unit <= MAX_BODY_SCALE
-    guess = f", as if {UNITS[unit]} were read as metres" if human else ""
+    guess = f", as if {UNITS[unit]} were read as meters" if human else ""
     scale = f"{unit:g}" if human else f"{1.0 / size:.3g}"
     raise InvalidMotionError(
         f"The body is {ADULT_STATURE_M * size:.3g} m tall{guess}. Read the recording with a"

@@ -23,13 +23,13 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "fixtures"), str(ROOT / "tests" 
 BUILD = ROOT / "build" / "fuzz"
 MEMORY_MB = 1500
 SECONDS_FOR_ONE = 20
-"""Only an endless loop takes so long for a file of some kilobytes."""
+"""Time limit in seconds that only an endless loop exceeds for a file of some kilobytes."""
 EXECUTED = re.compile(r"stat::number_of_executed_units: +(\d+)")
 PEAK = re.compile(r"stat::peak_rss_mb: +(\d+)")
 
 
 def main(words: Sequence[str]) -> int:
-    """Fuzz the targets that are named, or all; return 1 where anything was found."""
+    """Fuzz the named targets, or all; return 1 if a failure is found."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("targets", nargs="*", metavar="TARGET", help="[default: all]")
     parser.add_argument("--seconds", type=int, default=60, help="for each [default 60]")
@@ -46,7 +46,7 @@ def main(words: Sequence[str]) -> int:
 
 
 def searched(name: str, seconds: int) -> bool:
-    """Search in a process of its own; print a line, and return whether nothing was found."""
+    """Search in a process of its own; print a line, and return whether there is no failure."""
     for folder in ("corpus", "found"):
         (BUILD / folder / name).mkdir(parents=True, exist_ok=True)
     before = set((BUILD / "found" / name).iterdir())

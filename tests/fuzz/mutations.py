@@ -1,4 +1,4 @@
-"""Damage a file where it hurts: bytes, members of an archive, cells and tables of a library."""
+"""Damage files at relevant points: bytes, archive members, cells and tables of a library."""
 
 import random
 import sqlite3
@@ -26,7 +26,7 @@ MAX_STEPS = 1_000_000
 def damaged(
     target: Target, content: bytes, max_size: int, rng: random.Random, mutate: Mutate
 ) -> bytes:
-    """Return the content with a few places damaged, as fits the kind of file."""
+    """Return the content with a few damages that suit the kind of file."""
     if target.is_archive:
         return _archive(target, content, rng, mutate)[:max_size]
     if target.is_database and rng.random() < 0.8:
@@ -52,7 +52,7 @@ def _archive(target: Target, content: bytes, rng: random.Random, mutate: Mutate)
 
 
 def _database(content: bytes, tokens: list[bytes], rng: random.Random, mutate: Mutate) -> bytes:
-    """Change a cell, or seldom a table, of a SQLite file."""
+    """Change a cell, or rarely a table, of a SQLite file."""
     with closing(sqlite3.connect(":memory:", isolation_level=None)) as database:
         database.deserialize(content)
         database.set_progress_handler(lambda: 1, MAX_STEPS)
@@ -63,10 +63,10 @@ def _database(content: bytes, tokens: list[bytes], rng: random.Random, mutate: M
             return database.serialize()
         rows = database.execute(f"SELECT rowid, * FROM {table}")
         columns = [each[0] for each in rows.description][1:]
-        row, place = rng.choice(rows.fetchmany(1000) or [[]]), rng.randrange(len(columns))
+        row, position = rng.choice(rows.fetchmany(1000) or [[]]), rng.randrange(len(columns))
         if row:
-            value = _cell(row[place + 1], tokens, rng, mutate)
-            changed = f"UPDATE {table} SET {columns[place]} = ? WHERE rowid = ?"
+            value = _cell(row[position + 1], tokens, rng, mutate)
+            changed = f"UPDATE {table} SET {columns[position]} = ? WHERE rowid = ?"
             database.execute(changed, (value, row[0]))
         return database.serialize()
 
@@ -84,7 +84,7 @@ def _cell(value: object, tokens: list[bytes], rng: random.Random, mutate: Mutate
 def _bytes(
     content: bytes, tokens: list[bytes], rng: random.Random, mutate: Mutate, max_size: int
 ) -> bytes:
-    """Damage a few places: as libFuzzer does, or with the tokens of the format."""
+    """Damage a few bytes, as libFuzzer does, or with the tokens of the format."""
     for _ in range(rng.randint(1, 3)):
         at = rng.randint(0, len(content))
         token = rng.choice(tokens)

@@ -1,4 +1,4 @@
-"""What is fuzzed: every reader and loader, with a small complete file to begin with.
+"""Fuzzing targets: every reader and loader, with a small complete seed file.
 
 The files are made by tests/fixtures; of ../shared/data/formats smaller ones join them.
 """
@@ -13,6 +13,7 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 import numpy as np
+from complete_files import JOINT_FILES, JOINT_TOKENS, RECORDING, SKELETON, TOKENS, WHOLE
 from depth_files import depth_npz, matlab, pictures
 from fuzz_seeds import (
     QUERY,
@@ -26,7 +27,6 @@ from fuzz_seeds import (
 )
 from learned_files import LEARNED, npz
 from mkv_files import k4a
-from whole_files import JOINT_FILES, JOINT_TOKENS, RECORDING, SKELETON, TOKENS, WHOLE
 
 from solvers.command_line.batch import OutputRecord
 from solvers.depth_scene.recording import DepthRecording
@@ -34,7 +34,7 @@ from solvers.errors import MocapAssistError
 from solvers.json_text import parse_json
 from solvers.motion import read_humanoid_map
 from solvers.recordings import DepthSettings, read_depth, read_recording
-from solvers.recordings.containers.png_header import png_header
+from solvers.recordings.containers.png_header import read_png_header
 from solvers.recordings.depth_files.folder import is_depth_folder
 from solvers.recordings.live.frames import decode_frame
 from solvers.retrieval import Clip, find_similar, load_clip_library
@@ -56,7 +56,7 @@ BINARY_TOKENS = [
 
 
 class Target(NamedTuple):
-    """A reader, a complete file for it, and pieces of which damage is made."""
+    """A reader, a complete file for it, and tokens to damage it with."""
 
     seed: bytes
     read: Callable[[Path], object]
@@ -130,7 +130,7 @@ def targets() -> dict[str, Target]:
     )
     found["depth_raw"] = Target(raw_depth(), _read_depth, BINARY_TOKENS)
     found["png"] = Target(
-        png(DEPTH[0]), lambda path: png_header(path.parent, path.name), BINARY_TOKENS
+        png(DEPTH[0]), lambda path: read_png_header(path.parent, path.name), BINARY_TOKENS
     )
     for kind, content in depth_folders().items():
         found[f"folder_{kind}"] = Target(

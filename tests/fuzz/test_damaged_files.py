@@ -29,6 +29,6 @@ def test_a_file_that_was_found_is_read_or_refused(path, tmp_path):
     read_target(TARGETS[path.parent.name], path.read_bytes(), tmp_path)
 
 
-def test_what_is_found_by_the_fuzzer_belongs_to_a_target():
+def test_each_file_of_the_fuzzer_has_a_target():
     assert FILES
     assert {path.parent.name for path in FILES} <= set(TARGETS)

@@ -1,15 +1,15 @@
-"""Container formats and tables: C3D, EBML, MAT, NPZ, text rows."""
+"""Read container formats and tables: C3D, Matroska, MATLAB, NumPy, JSON and text."""
 
 from .c3d_file import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS, C3dFile, is_c3d
-from .folder_scan import files_below, is_folder, refuse_closed
+from .folder_scan import check_folder_access, files_below, is_folder
 from .growing_table import GrowingTable
 from .json_members import array_from_json, json_members
 from .line_reader import Block, LineReader
-from .listed_images import bounded_image, is_listed, largest_color, listed_image
+from .listed_images import is_listed, max_color_size, open_bounded_image, open_listed_image
 from .matlab_file import MatlabArray, is_matlab, matlab_arrays
 from .matroska import Matroska, Track, index_matroska, is_matroska
 from .names import MAX_NAME_LENGTH, UniqueNames, printable, shown
-from .png_header import PngHeader, is_png, png_header
+from .png_header import PngHeader, is_png, read_png_header
 from .row_stream import stream_rows
 from .stored_arrays import NPY_MAGIC, NUMBERS, read_archive, read_array
 from .stored_bytes import (
@@ -59,7 +59,7 @@ __all__ = [
     "Track",
     "UniqueNames",
     "array_from_json",
-    "bounded_image",
+    "check_folder_access",
     "files_below",
     "index_matroska",
     "is_c3d",
@@ -69,18 +69,18 @@ __all__ = [
     "is_matroska",
     "is_png",
     "json_members",
-    "largest_color",
-    "listed_image",
     "matlab_arrays",
+    "max_color_size",
+    "open_bounded_image",
+    "open_listed_image",
     "parse_rows",
-    "png_header",
     "printable",
     "read_archive",
     "read_array",
     "read_bytes",
     "read_number",
+    "read_png_header",
     "read_rows",
-    "refuse_closed",
     "shown",
     "spaces_from_commas",
     "stream_rows",

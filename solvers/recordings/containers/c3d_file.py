@@ -1,8 +1,8 @@
-"""What a C3D file holds, byte by byte: header, parameters and points.
+"""Read header, parameters and points of C3D files.
 
-Why not a library: of 44 files at hand, from many makers, ezc3d 1.7.2 never returns from one,
-and being native code takes Blender with it; it misplaces the points of four and refuses six.
-c3d 0.6.0 refuses eleven. This reads all of them, and the tests hold it against both.
+Libraries fail on some of 44 test files from many makers. ezc3d 1.7.2 never returns from one,
+which blocks Blender; it misplaces the points of four and refuses six. c3d 0.6.0 refuses
+eleven. This reader reads all of them, and the tests compare it with both.
 
 The format is described at https://www.c3d.org/HTML/default.htm.
 """
@@ -20,38 +20,38 @@ BLOCK = 512
 C3D_ID = 0x50
 DEC, MIPS = 85, 86
 PROCESSORS = range(83, 88)
-"""Kinds of numbers: 84 Intel, 85 DEC, 86 SGI; some programs write one less or more."""
+"""Codes of number formats: 84 Intel, 85 DEC, 86 SGI; some programs write one less or more."""
 PARAMETER_BLOCKS = range(2, 33)
-"""Where parameters begin: right behind the header, or behind some blocks of a maker's own."""
+"""First block of the parameters: directly after the header, or after proprietary blocks."""
 CHARACTERS, BYTES, INTEGERS, FLOATS = -1, 1, 2, 4
 
 
 def is_c3d(head: bytes) -> bool:
-    """Tell from the first bytes of a file, also of one that is damaged or cut short.
+    """Return whether a file is C3D, from its first bytes, even if it is damaged or truncated.
 
-    The second byte alone does not tell: it is a letter P, as in PNG and PDF files.
+    The second byte is not sufficient: it is the letter P, as in PNG and PDF files.
     """
     if head[1:2] != bytes([C3D_ID]):
         return False
-    begins_well = head[0] in PARAMETER_BLOCKS and b"\0" in head[:BLOCK]
-    return begins_well or _has_parameters(head, BLOCK)
+    starts_plausibly = head[0] in PARAMETER_BLOCKS and b"\0" in head[:BLOCK]
+    return starts_plausibly or _has_parameters(head, BLOCK)
 
 
 def _has_parameters(content: bytes, start: int) -> bool:
-    """Whether parameters begin at a byte: with a group that has a name, as all do."""
+    """Return whether parameters begin at a byte, with the name of a group."""
     head = content[start : start + 6]
     if len(head) < 6 or head[3] not in PROCESSORS or head[5] < 128:
         return False
-    length = min(head[4], 256 - head[4])  # A locked group has a negative one.
+    length = min(head[4], 256 - head[4])  # A locked group has a negative length.
     name = content[start + 6 : start + 6 + length]
     return 0 < length == len(name) and name.isascii() and name.decode().isprintable()
 
 
 class C3dFile:
-    """The parts of a C3D file that matter for point tracks.
+    """The contents of a C3D file that describe point tracks.
 
-    The file is mapped, not loaded: analog channels and forces, which may be most of it, are
-    never read.
+    The file is memory-mapped: analog channels and forces, which may be most of it, are never
+    read.
 
     Parameters
     ----------
@@ -60,39 +60,39 @@ class C3dFile:
     Raises
     ------
     InvalidFileError
-        The file is missing, cut short or no C3D file.
+        The file is missing, truncated or not a C3D file.
     """
 
     def __init__(self, path: Path | str) -> None:
         self.path = path
         self.content = map_bytes(path)
         if len(self.content) < 2 * BLOCK or self.content[1] != C3D_ID:
-            raise InvalidFileError(f"{path} is no C3D file, or is cut short.")
+            raise InvalidFileError(f"{path} is not a C3D file, or is cut short.")
         start = self._parameter_start()
         self.processor = self.content[start + 3]
         self.order = ">" if self.processor == MIPS else "<"
         self.parameters = self._read_parameters(start + 4)
 
     def numbers(self, name: str) -> NDArray[np.float64]:
-        """Return all values of a parameter such as `POINT:RATE`, in one row; none if absent."""
+        """Return all values of a parameter such as `POINT:RATE`, flattened; empty if absent."""
         value = self.parameters.get(name)
         return np.empty(0) if value is None or isinstance(value, list) else value
 
     def texts(self, name: str) -> list[str]:
-        """Return all texts of a parameter such as `POINT:LABELS`; none if absent."""
+        """Return all texts of a parameter such as `POINT:LABELS`; empty if absent."""
         value = self.parameters.get(name)
         return value if isinstance(value, list) else []
 
     @property
     def frame_rate(self) -> float:
-        """Frames per second, of the parameters or else of the header."""
+        """Frames per second, from the parameters or otherwise from the header."""
         for rate in [*self.numbers("POINT:RATE")[:1], *self._floats(20, 1)]:
             if 1e-3 < rate < 1e6:
                 return float(rate)
-        raise InvalidFileError(f"{self.path} does not say its frame rate.")
+        raise InvalidFileError(f"{self.path} does not state its frame rate.")
 
     def read_points(self) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """Return coordinates in the file's units, and whether each point was seen.
+        """Return coordinates in the file's units, and whether each point was observed.
 
         Shapes (n_frames, n_points, 3) and (n_frames, n_points).
         """
@@ -109,21 +109,21 @@ class C3dFile:
         frames = words.reshape(n_frames, -1)[:, : 4 * n_points].reshape(n_frames, n_points, 4)
         if kind == "f4" and self.processor == DEC:
             frames = _from_dec(np.ascontiguousarray(frames))
-        with np.errstate(invalid="ignore"):  # Damaged floats may be NaN of a kind that warns.
+        with np.errstate(invalid="ignore"):  # Damaged floats may be signaling NaN.
             points = frames[..., :3].astype(np.float64) * (scale if scale > 0.0 else 1.0)
             return points, np.asarray(frames[..., 3] >= 0)
 
     def _parameter_start(self) -> int:
-        """Return where the parameters begin; also where a broken first byte hides it."""
+        """Return the first byte of the parameters, even if the pointer to it is damaged."""
         for start in [BLOCK * (self.content[0] - 1), BLOCK]:
             if 0 < start <= len(self.content) - 4 and self.content[start + 3] in PROCESSORS:
                 return start
         raise InvalidFileError(f"{self.path} has no C3D parameters: it is damaged.")
 
     def _read_parameters(self, at: int) -> dict[str, NDArray[np.float64] | list[str]]:
-        """Return what can be read, by `GROUP:NAME`; the first of equal names counts."""
+        """Return the readable parameters by `GROUP:NAME`; the first of equal names is used."""
         groups: dict[int, str] = {}
-        found: list[tuple[int, str, NDArray[np.float64] | list[str]]] = []
+        entries: list[tuple[int, str, NDArray[np.float64] | list[str]]] = []
         size = len(self.content)
         while at + 4 < size:
             length, group = np.frombuffer(self.content, np.int8, 2, at).tolist()
@@ -135,22 +135,22 @@ class C3dFile:
             if group < 0:
                 groups.setdefault(-group, name)
             else:
-                found.append((group, name, self._read_parameter(link + 2)))
+                entries.append((group, name, self._read_parameter(link + 2)))
             step = int(np.frombuffer(self.content, self.order + "u2", 1, link)[0])
             if not step:
                 break
             at = link + step
-        named: dict[str, NDArray[np.float64] | list[str]] = {}
-        for group, name, value in found:
-            named.setdefault(f"{groups.get(group, '')}:{name}", value)
-        return named
+        parameters: dict[str, NDArray[np.float64] | list[str]] = {}
+        for group, name, value in entries:
+            parameters.setdefault(f"{groups.get(group, '')}:{name}", value)
+        return parameters
 
     def _read_parameter(self, at: int) -> NDArray[np.float64] | list[str]:
-        """Return the value that begins at a byte; empty if the file ends within it."""
+        """Return the value at a byte offset; empty if the file ends within it."""
         kind, n_dimensions = np.frombuffer(self.content, np.int8, 2, at).tolist()
         sizes = list(self.content[at + 2 : at + 2 + max(0, n_dimensions)])
         start = at + 2 + len(sizes)
-        count = prod(sizes)  # Of Python's integers: NumPy's would wrap around.
+        count = prod(sizes)  # Python integers do not overflow.
         width = {CHARACTERS: 1, BYTES: 1, INTEGERS: 2, FLOATS: 4}.get(kind, 0)
         if not width or start + count * width > len(self.content):
             return np.empty(0)
@@ -166,16 +166,16 @@ class C3dFile:
         return np.frombuffer(self.content, kind_name, count, start).astype(np.float64)
 
     def _scale(self) -> float:
-        """Return units per step; negative where coordinates are floats already."""
+        """Return the units per integer step; negative if coordinates are floats."""
         for scale in [*self._floats(12, 1), *self.numbers("POINT:SCALE")[:1]]:
             if np.isfinite(scale) and scale != 0.0:
                 return float(scale)
         return -1.0
 
     def _extent(self, n_points: int, width: int) -> tuple[int, int, int]:
-        """Return the first byte of the data, the number of frames, and of other values in each.
+        """Return the first byte of the data, the number of frames, and analog values per frame.
 
-        Counts that contradict each other are weighed by how well they fill the file.
+        If stored counts contradict each other, those that best fill the file are used.
         """
         start = BLOCK * (int(self._integers(16, 1)[0]) - 1)
         n_bytes = len(self.content) - start
@@ -189,14 +189,14 @@ class C3dFile:
         fitting = [fit for fit in fits if fit[0] >= 0]
         if not fitting:
             raise InvalidFileError(
-                f"{self.path} is cut short: it has no room for the {min(fits)[1]} frames that"
-                " it announces. Copy or export it again."
+                f"{self.path} is cut short: it is too small for the {min(fits)[1]} frames"
+                " of its header. Copy or export it again."
             )
         _, n_frames, n_others = min(fitting)
         return start, n_frames, n_others
 
     def _frame_counts(self) -> list[int]:
-        """Return all that the file says of its number of frames; in the header it wraps."""
+        """Return all stored numbers of frames; that of the header wraps at 65536."""
         first, last = self._integers(6, 2)
         counts = [float(last) - float(first) + 1.0]
         counts += [
@@ -212,7 +212,7 @@ class C3dFile:
         return [int(count) for count in counts if 0.0 < count < 2**31] or [1]
 
     def _other_counts(self) -> list[int]:
-        """Return all that the file says of how many analog values each frame has."""
+        """Return all stored numbers of analog values per frame."""
         total, per_channel = self._integers(4, 1)[0], self._integers(18, 1)[0]
         counts = [int(total)]
         used = self.numbers("ANALOG:USED")[:1]
@@ -234,7 +234,7 @@ class C3dFile:
 
 
 def _from_dec(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Read VAX F floats: the two halves are swapped, and the exponent is larger by two."""
+    """Convert VAX F floats: the two halves are swapped, and the exponent is larger by two."""
     halves = values.view("<u2").reshape(*values.shape, 2)[..., ::-1]
     with np.errstate(invalid="ignore"):
         return np.ascontiguousarray(halves).view("<f4").reshape(values.shape) / np.float32(4.0)

@@ -1,8 +1,8 @@
-"""The grammar of Matroska files: elements with a number, a size and what is in them.
+"""Parse EBML, the syntax of Matroska files: elements with an ID, a size and content.
 
-`ebmlite` would read it too, but its wheel brings a package called `tests` into the folder that
-all add-ons of a Blender share, it walks elements of unknown size several times, and knows
-nothing of blocks and lacing; reading numbers and sizes is all that would be left to it.
+`ebmlite` is not used: its wheel installs a package called `tests` into the folder that all
+add-ons of Blender share, it scans elements of unknown size several times, and it does not
+parse blocks and lacing.
 """
 
 import struct
@@ -14,16 +14,16 @@ MAX_HEAD_BYTES = MAX_ID_BYTES + MAX_SIZE_BYTES
 
 
 class Head(NamedTuple):
-    """What precedes the content of an element.
+    """The header of an element.
 
     Attributes
     ----------
     number : int
-        Tells what the element is.
+        ID of the element.
     length : int, bytes
-        Of the head itself.
+        Of the header itself.
     size : int or None, bytes
-        Of the content; None where it was not known when it was written.
+        Of the content; None if it was unknown when the file was written.
     """
 
     number: int
@@ -32,7 +32,7 @@ class Head(NamedTuple):
 
 
 def read_head(content: bytes, at: int = 0) -> Head:
-    """Read the head of an element; raises ValueError where there is none."""
+    """Read the header of an element; raise ValueError if there is none."""
     end = _length(content, at, MAX_ID_BYTES)
     number = int.from_bytes(content[at : at + end], "big")
     size, taken = read_number(content, at + end)
@@ -41,30 +41,30 @@ def read_head(content: bytes, at: int = 0) -> Head:
 
 
 def read_number(content: bytes, at: int) -> tuple[int, int]:
-    """Return a number of changing length, and how many bytes it takes."""
+    """Return a variable-length integer and its number of bytes."""
     length = _length(content, at, MAX_SIZE_BYTES)
-    whole = int.from_bytes(content[at : at + length], "big")
-    return whole & ((1 << (7 * length)) - 1), length
+    encoded = int.from_bytes(content[at : at + length], "big")
+    return encoded & ((1 << (7 * length)) - 1), length
 
 
 def read_signed_number(content: bytes, at: int) -> tuple[int, int]:
-    """Return a number of changing length that may be negative, and how many bytes it takes."""
+    """Return a signed variable-length integer and its number of bytes."""
     number, length = read_number(content, at)
     return number - ((1 << (7 * length - 1)) - 1), length
 
 
-def _length(content: bytes, at: int, longest: int) -> int:
-    """How many bytes a number takes: the leading zeros of its first byte tell."""
+def _length(content: bytes, at: int, max_length: int) -> int:
+    """Return the number of bytes of an integer, from the leading zeros of its first byte."""
     if at >= len(content):
         raise ValueError(at)
     length = 9 - content[at].bit_length()
-    if length > longest or at + length > len(content):
+    if length > max_length or at + length > len(content):
         raise ValueError(at)
     return length
 
 
 def children(content: bytes) -> Iterator[tuple[int, bytes]]:
-    """Yield number and content of the elements in an element; raises ValueError if damaged."""
+    """Yield ID and content of the children of an element; raise ValueError if damaged."""
     at = 0
     while at < len(content):
         head = read_head(content, at)
@@ -76,7 +76,7 @@ def children(content: bytes) -> Iterator[tuple[int, bytes]]:
 
 
 def unsigned(content: bytes) -> int:
-    """Return the whole number in an element; raises ValueError for a longer one."""
+    """Return the unsigned integer in an element; raise ValueError above 8 bytes."""
     if len(content) > 8:
         raise ValueError(len(content))
     return int.from_bytes(content, "big")
@@ -88,26 +88,26 @@ def text(content: bytes) -> str:
 
 
 def split_lacing(content: bytes, flags: int, size: int) -> list[tuple[int, int]]:
-    """Divide a block into its frames.
+    """Split a block into its frames.
 
     Parameters
     ----------
     content : bytes
-        The beginning of the block, behind its head.
+        The start of the block, after its header.
     flags : int
-        Bits 1 and 2 tell how frames are laced: not at all, as Xiph does, equal, as EBML does.
+        Bits 1 and 2 are the lacing: none, Xiph, fixed-size or EBML.
     size : int, bytes
-        Of the whole block behind its head.
+        Of the complete block after its header.
 
     Returns
     -------
     list of (int, int)
-        Where each frame begins, and its size in bytes.
+        Offset and size of each frame in bytes.
 
     Raises
     ------
     ValueError, IndexError
-        The sizes make no sense.
+        The sizes are invalid.
     """
     kind = flags >> 1 & 3
     if not kind:
@@ -144,9 +144,9 @@ def _equal_sizes(content: bytes, n_frames: int, size: int) -> tuple[list[int], i
 
 def _ebml_sizes(content: bytes, n_frames: int, size: int) -> tuple[list[int], int]:
     at, sizes = 1, list[int]()
-    for place in range(n_frames - 1):
+    for index in range(n_frames - 1):
         number, taken = (
-            read_number(content, at) if not place else read_signed_number(content, at)
+            read_number(content, at) if not index else read_signed_number(content, at)
         )
         sizes.append(number + (sizes[-1] if sizes else 0))
         at += taken
@@ -154,7 +154,7 @@ def _ebml_sizes(content: bytes, n_frames: int, size: int) -> tuple[list[int], in
 
 
 def block_head(content: bytes) -> tuple[int, int, int, int]:
-    """Return track, time within the cluster, flags, and how long the head of a block is."""
+    """Return track, time within the cluster, flags, and header length of a block."""
     track, length = read_number(content, 0)
     time, flags = struct.unpack_from(">hB", content, length)
     return track, time, flags, length + 3

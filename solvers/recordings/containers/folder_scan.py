@@ -1,4 +1,4 @@
-"""Look through folders for files; nothing that lies in them stops the search."""
+"""Search folders for files; unreadable entries do not stop the search."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -17,17 +17,17 @@ class _Entry(NamedTuple):
 def files_below(
     folder: Path, is_take: Callable[[Path], bool] = lambda folder: False
 ) -> Iterator[Path]:
-    """Yield the files in a folder and below, by name, and folders that are one recording.
+    """Yield the files in and below a folder, by name, and folders that are one recording.
 
-    Hidden files and folders are passed over, and links to folders. A folder that cannot be
-    looked into is yielded itself, so that whoever reads it says why (`refuse_closed`).
+    Hidden files, hidden folders and links to folders are skipped. A folder that cannot be
+    listed is yielded itself, so that its reader reports the reason (`check_folder_access`).
 
     Parameters
     ----------
     folder : Path
     is_take : callable
-        Returns whether a folder is one recording; it is then not looked into. If that fails,
-        whoever reads it says why.
+        Returns whether a folder is one recording; it is then not searched. If that fails, the
+        folder is yielded and its reader reports the reason.
     """
     waiting = [_Entry(folder, is_folder=True)]
     while waiting:
@@ -35,16 +35,16 @@ def files_below(
         if not is_folder:
             yield path
             continue
-        taken = attempt(path, is_take, path)
+        is_recording = attempt(path, is_take, path)
         inside = attempt(path, _entries, path)
-        if taken or isinstance(inside, Failure):
+        if is_recording or isinstance(inside, Failure):
             yield path
         else:
             waiting += reversed(inside)
 
 
-def refuse_closed(folder: Path) -> None:
-    """Raise FileAccessError where a folder cannot be looked into."""
+def check_folder_access(folder: Path) -> None:
+    """Raise FileAccessError if a folder cannot be listed."""
     try:
         with os.scandir(folder) as entries:
             for entry in entries:
@@ -52,13 +52,13 @@ def refuse_closed(folder: Path) -> None:
                 return
     except OSError as error:
         raise FileAccessError(
-            f"The folder {folder} cannot be looked into ({error.strerror}). Change its"
+            f"The folder {folder} cannot be opened ({error.strerror}). Change its"
             " permissions, or leave it out."
         ) from None
 
 
 def is_folder(path: Path) -> bool:
-    """Whether a path is a folder; not where the system does not say."""
+    """Return whether a path is a folder; False if the system refuses to answer."""
     try:
         return path.is_dir()
     except OSError:
@@ -66,13 +66,13 @@ def is_folder(path: Path) -> bool:
 
 
 def _entries(folder: Path) -> list[_Entry]:
-    """Return what a folder holds, by name; raises OSError where that cannot be seen."""
-    found = []
+    """Return the entries of a folder by name; raise OSError if it cannot be listed."""
+    entries = []
     for path in sorted(folder.iterdir()):
         if path.name.startswith("."):
             continue
         if path.is_dir():
-            found += [] if path.is_symlink() else [_Entry(path, is_folder=True)]
+            entries += [] if path.is_symlink() else [_Entry(path, is_folder=True)]
         elif path.is_file():
-            found.append(_Entry(path, is_folder=False))
-    return found
+            entries.append(_Entry(path, is_folder=False))
+    return entries

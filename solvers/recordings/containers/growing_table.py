@@ -1,15 +1,15 @@
-"""A table whose number of rows is not known before all are read."""
+"""Collect rows of numbers whose count is unknown until all are read."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 SPARE_RATIO = 1.02
-"""Room that is made for rows that are somewhat shorter, in characters, than the first."""
+"""Spare memory, as a ratio, for later rows that have fewer characters than the first."""
 GROWTH_RATIO = 1.3
 
 
 class GrowingTable:
-    """Rows of numbers, in memory once: room is made for the end of the file from the first.
+    """A table that allocates memory for the complete file after its first rows.
 
     Parameters
     ----------
@@ -20,14 +20,14 @@ class GrowingTable:
         self._table = np.empty((0, width))
         self._n_rows = 0
 
-    def add(self, rows: NDArray[np.float64], share: float = 1.0) -> None:
-        """Append rows, shape (n, width); with them, that share of the file has been read."""
+    def add(self, rows: NDArray[np.float64], fraction_read: float = 1.0) -> None:
+        """Append rows, shape (n, width), which end at this fraction of the file."""
         stop = self._n_rows + len(rows)
         if stop > len(self._table):
-            enough = int(SPARE_RATIO * stop / share) if share > 0.0 else stop
-            if self._n_rows:  # They got shorter.
-                enough = min(enough, int(GROWTH_RATIO * stop))
-            self._resize(max(stop, enough))
+            expected = int(SPARE_RATIO * stop / fraction_read) if fraction_read > 0.0 else stop
+            if self._n_rows:  # The rows are shorter than the first ones.
+                expected = min(expected, int(GROWTH_RATIO * stop))
+            self._resize(max(stop, expected))
         self._table[self._n_rows : stop] = rows
         self._n_rows = stop
 
@@ -37,5 +37,5 @@ class GrowingTable:
         return self._table
 
     def _resize(self, n_rows: int) -> None:
-        # In place: where the system can, without a copy.
+        # In place, without a copy if the system supports it.
         self._table.resize((n_rows, self._table.shape[1]), refcheck=False)

@@ -1,4 +1,4 @@
-"""Large JSON files piece by piece, so that no more than one frame is held as objects."""
+"""Parse large JSON files incrementally, with one frame in memory as objects."""
 
 import json
 import re
@@ -17,18 +17,18 @@ DECODER = json.JSONDecoder()
 
 
 class Member(NamedTuple):
-    """A member of the outermost object, or one element of a member that is a list."""
+    """A member of the outermost object, or one element of a list member."""
 
     key: str
     value: Any
     done: float
-    """Fraction of the file that ends with it."""
+    """Fraction of the file up to its end."""
 
 
 def json_members(path: Path | str) -> Iterator[Member]:
-    """Yield the members of the file's one object, lists element by element.
+    """Yield the members of the outermost object, lists element by element.
 
-    Raises InvalidFileError where the file is missing or no JSON object.
+    Raises InvalidFileError if the file is missing or not a JSON object.
     """
     content = read_bytes(path)
     try:
@@ -72,33 +72,34 @@ def _elements(text: str, at: int, key: str) -> Generator[Member, None, int]:
 
 
 def _skip_space(text: str, at: int) -> int:
-    found = SPACE.match(text, at)
-    return found.end() if found else at
+    space = SPACE.match(text, at)
+    return space.end() if space else at
 
 
 def _skip_mark(text: str, at: int, mark: str) -> int:
-    """Return the place after a mark and the space around it; ValueError where it is not."""
+    """Return the index after a mark and its surrounding space; ValueError if it is missing."""
     at = _skip_space(text, at)
     if text[at] != mark:
         raise ValueError(mark)
     return _skip_space(text, at + 1)
 
 
-def array_from_json(value: Any, shape: tuple[int, ...], place: str) -> NDArray[np.float64]:
-    """Return nested lists of numbers as an array; null is NaN, and -1 in a shape any length.
+def array_from_json(value: Any, shape: tuple[int, ...], location: str) -> NDArray[np.float64]:
+    """Return nested lists of numbers as an array; null becomes NaN.
 
-    Raises InvalidFileError, which begins with `place`, for whatever else.
+    A length of -1 in the shape matches any length. Other values raise InvalidFileError, with a
+    message that begins with the location.
     """
     try:
         array = np.array(value, dtype=np.float64)
     except (ValueError, TypeError, OverflowError):
         array = np.empty(0)
     fits = array.ndim == len(shape) and all(
-        wanted in {-1, size} for wanted, size in zip(shape, array.shape, strict=True)
+        expected in {-1, size} for expected, size in zip(shape, array.shape, strict=True)
     )
     if not fits:
         sizes = " x ".join("any number" if size < 0 else str(size) for size in shape) or "one"
         raise InvalidFileError(
-            f"{place}: {sizes} numbers belong there. The file is damaged; export it again."
+            f"{location}: {sizes} numbers are required. The file is damaged; export it again."
         )
     return array

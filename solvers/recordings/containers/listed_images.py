@@ -1,4 +1,4 @@
-"""Images that a recording names: opened only below its folder, and only if they are files."""
+"""Open images that a recording lists: only regular files within its folder."""
 
 import errno
 import os
@@ -13,33 +13,33 @@ from ...files import DAMAGE, open_regular
 from .names import shown
 
 MAX_COLOR_RATIO, MAX_COLOR_PIXELS = 16, 8192
-"""Columns or rows of a color image, at most: so many times those of depth, and in all."""
+"""Maximum columns or rows of a color image: relative to the depth image, and absolute."""
 FORMATS = ("PNG", "JPEG", "PPM", "BMP")
-"""Those of Pillow that color may have; others start programs, or are large to read."""
+"""Pillow formats allowed for color; others start programs or need much memory."""
 
 
 def open_listed(root: Path, name: str) -> BinaryIO:
-    """Open a file that a recording in a folder names.
+    """Open a file that a recording in a folder lists.
 
     Raises
     ------
     InvalidFileError
-        It lies outside of the folder, once links are followed.
+        It is outside the folder after links are followed.
     OSError
-        It is missing, or a pipe, a device or a folder, which are not waited for.
+        It is missing, or not a regular file (a pipe, a device or a folder).
     """
     path = PurePath(name)
-    # Names of other machines are refused before Windows asks these for them.
+    # Refuse names of other machines before Windows connects to them.
     if path.anchor or ".." in path.parts or not _is_inside(root, name):
         raise InvalidFileError(
-            f"{root} names the image {shown(name)}, which lies outside of it. Copy the image"
+            f"{root} lists the image {shown(name)}, which is outside of it. Copy the image"
             " into the folder."
         )
     return open_regular(root / name)
 
 
 def is_listed(root: Path, name: str) -> bool:
-    """Whether a recording names a file that is there; raises as `open_listed` if outside."""
+    """Return whether a listed file exists; raise as `open_listed` if it is outside."""
     try:
         open_listed(root, name).close()
     except OSError:
@@ -48,29 +48,29 @@ def is_listed(root: Path, name: str) -> bool:
 
 
 @contextmanager
-def listed_image(
-    root: Path, name: str, largest: tuple[int, int], formats: tuple[str, ...] = FORMATS
+def open_listed_image(
+    root: Path, name: str, max_size: tuple[int, int], formats: tuple[str, ...] = FORMATS
 ) -> Iterator[Any]:
-    """Yield the image that a recording names, as Pillow opens it: nothing is unpacked yet.
+    """Yield a listed image as Pillow opens it, without decompressing it.
 
     Parameters
     ----------
     root : Path
     name : str
-    largest : (int, int)
-        Columns and rows that it may have.
+    max_size : (int, int)
+        Maximum columns and rows.
     formats : tuple of str
-        That it may have, as Pillow calls them.
+        Allowed formats, as Pillow calls them.
 
     Raises
     ------
     InvalidFileError
-        It lies outside of the folder, is missing or damaged, or too large.
+        It is outside the folder, missing, damaged or too large.
     """
     try:
         with (
             open_listed(root, name) as file,
-            bounded_image(root / name, file, largest, formats) as image,
+            open_bounded_image(root / name, file, max_size, formats) as image,
         ):
             yield image
     except InvalidFileError:
@@ -82,14 +82,14 @@ def listed_image(
 
 
 @contextmanager
-def bounded_image(
-    path: Path, content: BinaryIO, largest: tuple[int, int], formats: tuple[str, ...]
+def open_bounded_image(
+    path: Path, content: BinaryIO, max_size: tuple[int, int], formats: tuple[str, ...]
 ) -> Iterator[Any]:
-    """Yield an image of a file; raises InvalidFileError if it announces too many pixels."""
+    """Yield an image of a file; raise InvalidFileError if its header has too many pixels."""
     from PIL import Image
 
     too_large = InvalidFileError(
-        f"{path} has an image of more than {largest[0]} x {largest[1]} pixels. Export it"
+        f"{path} has an image of more than {max_size[0]} x {max_size[1]} pixels. Export it"
         " smaller."
     )
     try:
@@ -99,20 +99,20 @@ def bounded_image(
     except Image.DecompressionBombError:
         raise too_large from None
     with image:
-        if image.width > largest[0] or image.height > largest[1]:
+        if image.width > max_size[0] or image.height > max_size[1]:
             raise too_large
         yield image
 
 
-def largest_color(shape: tuple[int, int]) -> tuple[int, int]:
-    """Return the columns and rows that color beside depth of (rows, columns) may have."""
+def max_color_size(shape: tuple[int, int]) -> tuple[int, int]:
+    """Return the maximum columns and rows of color images for depth of (rows, columns)."""
     height, width = (min(MAX_COLOR_RATIO * size, MAX_COLOR_PIXELS) for size in shape)
     return width, height
 
 
 def _is_inside(root: Path, name: str) -> bool:
     try:
-        whole, folder = os.path.realpath(root / name), os.path.realpath(root)
-        return os.path.commonpath([whole, folder]) == folder
-    except ValueError:  # No name of a file, or on another drive.
-        raise OSError(errno.EINVAL, "it is no name of a file", name) from None
+        file, folder = os.path.realpath(root / name), os.path.realpath(root)
+        return os.path.commonpath([file, folder]) == folder
+    except ValueError:  # Not a valid file name, or on another drive.
+        raise OSError(errno.EINVAL, "it is not a valid file name", name) from None

@@ -1,7 +1,7 @@
-"""Find an array of numbers in a MATLAB 5 file, without reading its numbers.
+"""List the numeric arrays of a MATLAB 5 file without reading their values.
 
-SciPy's reader would do but for two things: it reads whole arrays, and it believes what a
-damaged file says of their size.
+SciPy's reader is not used: it reads complete arrays, and it trusts the sizes in a damaged
+file.
 """
 
 import struct
@@ -25,15 +25,15 @@ from .stored_bytes import (
 HEADER = 128
 MATRIX, PACKED = 14, 15
 KINDS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8"}
-"""NumPy's names of the types of stored numbers."""
+"""NumPy type of each stored type."""
 WITH_HEADER = 15
-"""What zlib calls the window of packed bytes with its own header."""
+"""`wbits` of zlib for compressed bytes with a zlib header."""
 MAX_DIMENSIONS, MAX_NAME_BYTES = 8, 64
 MAX_INLINE_BYTES = 4
 
 
 class MatlabArray(NamedTuple):
-    """An array: its numbers, column by column, their type and its shape."""
+    """An array: name, shape, type, and values in column-major order."""
 
     name: str
     shape: tuple[int, ...]
@@ -42,35 +42,35 @@ class MatlabArray(NamedTuple):
 
 
 def is_matlab(head: bytes) -> bool:
-    """Tell from the first bytes; newer files than version 5 are HDF5 and none."""
+    """Return whether a file is MATLAB 5, from its first bytes; version 7.3 is HDF5."""
     return head[:10] == b"MATLAB 5.0" and head[126:128] in {b"IM", b"MI"}
 
 
 def matlab_arrays(path: Path) -> list[MatlabArray]:
-    """Return the arrays of numbers that a file holds, in its order.
+    """Return the numeric arrays of a file, in their order.
 
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged or cut short.
+        The file is missing, damaged or truncated.
     """
     try:
         with open_regular(path) as file:
             order = "<" if file.read(HEADER)[126:128] == b"IM" else ">"
-        found = [_array(content, order) for content in _elements(path, order)]
+        arrays = [_array(content, order) for content in _elements(path, order)]
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except InvalidFileError:
         raise
     except DAMAGE:
         raise InvalidFileError(
-            f"{path} is a damaged file of MATLAB's. Copy or export it again."
+            f"{path} is a damaged MATLAB file. Copy or export it again."
         ) from None
-    return [array for array in found if array is not None]
+    return [array for array in arrays if array is not None]
 
 
 def _elements(path: Path, order: str) -> Iterator[StoredBytes]:
-    """Yield what stands in the file's matrices."""
+    """Yield the content of each matrix of the file."""
     at, end = HEADER, path.stat().st_size
     while at + 8 <= end:
         kind, size = struct.unpack(f"{order}II", PlainBytes(path, at, 8).read(0, 8))
@@ -84,20 +84,20 @@ def _elements(path: Path, order: str) -> Iterator[StoredBytes]:
         at += size
 
 
-def _unpacked(path: Path, at: int, packed: int, order: str) -> StoredBytes:
+def _unpacked(path: Path, at: int, n_compressed: int, order: str) -> StoredBytes:
     with open_regular(path) as file:
         file.seek(at)
-        head = zlib.decompressobj().decompress(file.read(min(packed, 1024)), 8)
+        head = zlib.decompressobj().decompress(file.read(min(n_compressed, 1024)), 8)
     kind, size = struct.unpack(f"{order}II", head)
-    if kind != MATRIX or size > MAX_DEFLATE_RATIO * packed:
+    if kind != MATRIX or size > MAX_DEFLATE_RATIO * n_compressed:
         raise ValueError(kind)
-    content = PackedBytes(path, at, packed, size + 8, WITH_HEADER)
+    content = PackedBytes(path, at, n_compressed, size + 8, WITH_HEADER)
     content.check()
     return ByteSlice(content, 8, size)
 
 
 def _array(content: StoredBytes, order: str) -> MatlabArray | None:
-    """Read what precedes the numbers of a matrix; None for one that is not of numbers."""
+    """Read the header of a matrix; None if it is not numeric."""
     _, flags, at = _element(content, 0, order, 8)
     (number,) = struct.unpack(f"{order}I", flags[:4])
     if not 6 <= number & 0xFF <= 13:  # double to uint32
@@ -112,17 +112,19 @@ def _array(content: StoredBytes, order: str) -> MatlabArray | None:
     return MatlabArray(name.decode("latin1"), shape, stored, ByteSlice(content, start, size))
 
 
-def _element(content: StoredBytes, at: int, order: str, most: int) -> tuple[int, bytes, int]:
-    """Return type and bytes of a short element, and where the next one begins."""
+def _element(
+    content: StoredBytes, at: int, order: str, max_size: int
+) -> tuple[int, bytes, int]:
+    """Return type and bytes of a short element, and the offset of the next one."""
     kind, size, start = _tag(content, at, order)
-    if size > most:
+    if size > max_size:
         raise ValueError(size)
     end = start + size
     return kind, content.read(start, size), end + -end % 8
 
 
 def _tag(content: StoredBytes, at: int, order: str) -> tuple[int, int, int]:
-    """Return type, size and beginning of an element; up to 4 bytes stand in the tag itself."""
+    """Return type, size and offset of an element; up to 4 bytes are stored in the tag."""
     first, second = struct.unpack(f"{order}II", content.read(at, 8))
     if first >> 16:
         return first & 0xFFFF, min(first >> 16, MAX_INLINE_BYTES), at + 4

@@ -1,7 +1,7 @@
-"""Index a Matroska file: its tracks, tags, attachments, and where each frame of a track is.
+"""Index a Matroska file: its tracks, tags, attachments, and the offset of each frame.
 
-Only heads are read, so that a file of 20 GB takes seconds and little memory; a file that was
-cut short, as by a recorder that crashed, is read as far as it goes.
+Only element headers are read, so that a file of 20 GB takes seconds and little memory. A
+truncated file, for example of a recorder that crashed, is read up to its end.
 """
 
 import struct
@@ -37,27 +37,27 @@ TAG, TAG_PAIR, TAG_NAME, TAG_TEXT = 0x7373, 0x67C8, 0x45A3, 0x4487
 FILE, FILE_NAME, FILE_DATA = 0x61A7, 0x466E, 0x465C
 ENTERED = {SEGMENT, CLUSTER, GROUP}
 DEFAULT_SCALE = 1_000_000
-"""Nanoseconds in one unit of time."""
+"""Nanoseconds per unit of time."""
 MAX_ELEMENT_BYTES = 16_000_000
-"""Bytes of an element that is read whole."""
+"""Maximum size of an element that is loaded, bytes."""
 BLOCK_START = 4096
-"""Bytes at the beginning of a block in which its lacing stands."""
+"""Bytes at the start of a block that contain its lacing."""
 PROGRESS_INTERVAL = 4096
 MAX_TIME_NS = 2**62
-"""Nanoseconds from the start of the recording: 146 years, which an array can hold."""
+"""Maximum time from the start of the recording: 146 years, which fit into an array."""
 
 MAX_TRACKS = 127
-"""As many as a block can name in one byte; cameras record up to five."""
+"""Maximum track number in one byte of a block; cameras record up to five tracks."""
 
 
 @dataclass
 class Track:
-    """A track, and where its frames stand in the file.
+    """A track and the offsets of its frames in the file.
 
     Attributes
     ----------
     times : array of int, nanoseconds
-    places, sizes : arrays of int, bytes
+    offsets, sizes : arrays of int, bytes
     """
 
     number: int
@@ -66,42 +66,42 @@ class Track:
     codec: str = ""
     private: bytes = b""
     duration: int = 0
-    """Nanoseconds of one frame; 0 where it is not said."""
+    """Nanoseconds per frame; 0 if not stored."""
     times: "array[int]" = field(default_factory=lambda: array("q"))
-    places: "array[int]" = field(default_factory=lambda: array("q"))
+    offsets: "array[int]" = field(default_factory=lambda: array("q"))
     sizes: "array[int]" = field(default_factory=lambda: array("q"))
 
 
 @dataclass
 class Matroska:
-    """What was found in a file.
+    """The index of a file.
 
     Attributes
     ----------
     tracks : dict of Track
-        By their numbers, the first of each; at most `MAX_TRACKS`.
+        By number; the first of each; at most `MAX_TRACKS`.
     tags : dict
         Value of each tag.
     files : dict
         Content of each attached file.
-    whole : bool
-        Whether the file ends where its last element does.
+    is_complete : bool
+        Whether the file ends with its last element.
     """
 
     tracks: dict[int, Track] = field(default_factory=dict)
     tags: dict[str, str] = field(default_factory=dict)
     files: dict[str, bytes] = field(default_factory=dict)
-    whole: bool = True
+    is_complete: bool = True
     scale: int = DEFAULT_SCALE
 
 
 def is_matroska(head: bytes) -> bool:
-    """Tell from the first bytes."""
+    """Return whether a file is Matroska, from its first bytes."""
     return head[:4] == HEADER.to_bytes(4, "big")
 
 
 def index_matroska(path: Path, wanted: Callable[[Track], bool], progress: Progress) -> Matroska:
-    """Find what a file holds, and the frames of the tracks that are wanted.
+    """Index a file, and the frames of the wanted tracks.
 
     Raises
     ------
@@ -110,63 +110,63 @@ def index_matroska(path: Path, wanted: Callable[[Track], bool], progress: Progre
     SolveCancelled
         Raised by `progress`.
     """
-    found = Matroska()
+    index = Matroska()
     try:
         with open_regular(path) as file:
-            _walk(file, path.stat().st_size, found, wanted, progress)
+            _scan(file, path.stat().st_size, index, wanted, progress)
     except OSError as error:
         raise unreadable(path, error) from None
     except (ValueError, IndexError, struct.error):
         raise InvalidFileError(
             f"{path} is damaged: it is not in the Matroska format. Copy or record it again."
         ) from None
-    return found
+    return index
 
 
-def _walk(
+def _scan(
     file: IO[bytes],
     end: int,
-    found: Matroska,
+    index: Matroska,
     wanted: Callable[[Track], bool],
     progress: Progress,
 ) -> None:
-    """Go from element to element; whatever holds frames is entered, so no size is needed."""
+    """Scan all elements; those that contain frames are entered, so their size is not needed."""
     at, cluster, n_elements = 0, 0, 0
     while at < end:
-        head = _next_head(file, at, found)
+        head = _next_head(file, at, index)
         if head is None:
             return
         at += head.length
         if head.number in ENTERED:
             continue
         if head.size is None or at + head.size > end:
-            found.whole = False
+            index.is_complete = False
             return
         if head.number == TIMESTAMP:
             cluster = unsigned(_content(file, at, head.size))
         elif head.number in {SIMPLE_BLOCK, BLOCK}:
-            _add_block(file, at, head.size, cluster, found, wanted)
+            _add_block(file, at, head.size, cluster, index, wanted)
         else:
-            _describe(file, at, head, found)
+            _describe(file, at, head, index)
         at += head.size
         n_elements += 1
         if not n_elements % PROGRESS_INTERVAL:
             progress(at / end, "Reading")
 
 
-def _describe(file: IO[bytes], at: int, head: Head, found: Matroska) -> None:
+def _describe(file: IO[bytes], at: int, head: Head, index: Matroska) -> None:
     if head.number in DESCRIBED and head.size is not None and head.size <= MAX_ELEMENT_BYTES:
-        DESCRIBED[head.number](_content(file, at, head.size), found)
+        DESCRIBED[head.number](_content(file, at, head.size), index)
 
 
-def _next_head(file: IO[bytes], at: int, found: Matroska) -> Head | None:
-    """Return the head of an element; None where frames came before, but here is nonsense."""
+def _next_head(file: IO[bytes], at: int, index: Matroska) -> Head | None:
+    """Return the next header; None if it is invalid and frames precede it."""
     try:
         return read_head(_content(file, at, MAX_HEAD_BYTES))
     except ValueError:
-        if not any(track.places for track in found.tracks.values()):
+        if not any(track.offsets for track in index.tracks.values()):
             raise
-        found.whole = False
+        index.is_complete = False
         return None
 
 
@@ -180,57 +180,59 @@ def _add_block(
     at: int,
     size: int,
     cluster: int,
-    found: Matroska,
+    index: Matroska,
     wanted: Callable[[Track], bool],
 ) -> None:
     start = _content(file, at, min(size, BLOCK_START))
     number, time, flags, length = block_head(start)
-    track = found.tracks.get(number)
+    track = index.tracks.get(number)
     if track is None or not wanted(track):
         return
-    for place, (begin, each) in enumerate(split_lacing(start[length:], flags, size - length)):
-        since = (cluster + time) * found.scale + place * track.duration
-        if abs(since) > MAX_TIME_NS:
-            raise ValueError(since)
-        track.times.append(since)
-        track.places.append(at + length + begin)
+    for number_in_block, (begin, each) in enumerate(
+        split_lacing(start[length:], flags, size - length)
+    ):
+        timestamp = (cluster + time) * index.scale + number_in_block * track.duration
+        if abs(timestamp) > MAX_TIME_NS:
+            raise ValueError(timestamp)
+        track.times.append(timestamp)
+        track.offsets.append(at + length + begin)
         track.sizes.append(each)
 
 
-def _read_info(content: bytes, found: Matroska) -> None:
-    for number, inside in children(content):
+def _read_info(content: bytes, index: Matroska) -> None:
+    for number, child in children(content):
         if number == SCALE:
-            found.scale = unsigned(inside) or DEFAULT_SCALE
+            index.scale = unsigned(child) or DEFAULT_SCALE
 
 
-def _read_tracks(content: bytes, found: Matroska) -> None:
-    for number, inside in children(content):
-        if number == TRACK and len(found.tracks) < MAX_TRACKS:
-            told = dict(children(inside))
+def _read_tracks(content: bytes, index: Matroska) -> None:
+    for number, child in children(content):
+        if number == TRACK and len(index.tracks) < MAX_TRACKS:
+            fields = dict(children(child))
             track = Track(
-                unsigned(told.get(NUMBER, b"")),
-                unsigned(told.get(UID, b"")),
-                text(told.get(NAME, b"")),
-                text(told.get(CODEC, b"")),
-                told.get(PRIVATE, b""),
-                unsigned(told.get(DURATION, b"")),
+                unsigned(fields.get(NUMBER, b"")),
+                unsigned(fields.get(UID, b"")),
+                text(fields.get(NAME, b"")),
+                text(fields.get(CODEC, b"")),
+                fields.get(PRIVATE, b""),
+                unsigned(fields.get(DURATION, b"")),
             )
-            found.tracks.setdefault(track.number, track)
+            index.tracks.setdefault(track.number, track)
 
 
-def _read_tags(content: bytes, found: Matroska) -> None:
+def _read_tags(content: bytes, index: Matroska) -> None:
     for number, tag in children(content):
         for kind, pair in children(tag) if number == TAG else ():
             if kind == TAG_PAIR:
-                told = dict(children(pair))
-                found.tags[text(told.get(TAG_NAME, b""))] = text(told.get(TAG_TEXT, b""))
+                fields = dict(children(pair))
+                index.tags[text(fields.get(TAG_NAME, b""))] = text(fields.get(TAG_TEXT, b""))
 
 
-def _read_files(content: bytes, found: Matroska) -> None:
-    for number, inside in children(content):
+def _read_files(content: bytes, index: Matroska) -> None:
+    for number, child in children(content):
         if number == FILE:
-            told = dict(children(inside))
-            found.files[text(told.get(FILE_NAME, b""))] = told.get(FILE_DATA, b"")
+            fields = dict(children(child))
+            index.files[text(fields.get(FILE_NAME, b""))] = fields.get(FILE_DATA, b"")
 
 
 DESCRIBED = {INFO: _read_info, TRACKS: _read_tracks, TAGS: _read_tags, ATTACHMENTS: _read_files}

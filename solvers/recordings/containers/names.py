@@ -1,22 +1,21 @@
-"""Names that differ from each other, for formats that let two joints be called the same."""
+"""Make names unique and printable, for formats that allow equal or damaged names."""
 
 MAX_NAME_LENGTH = 1000
-"""Letters in a name; what is longer is something else that was damaged."""
+"""Maximum letters in a name; a longer one is damaged data."""
 MAX_SHOWN_LENGTH = 40
 
 
 class UniqueNames:
-    """Hands out every name once: the second `hand` is called `hand_2`."""
+    """Make names unique: the second `hand` becomes `hand_2`."""
 
     def __init__(self) -> None:
         self._taken: set[str] = set()
         self._next: dict[str, int] = {}
 
     def give(self, stem: str, ending: str = "") -> str:
-        """Return `stem + ending`, or with a number between them where that is taken.
+        """Return `stem + ending`, with a number between them if that name is taken.
 
-        Numbers go on from the last one given, so that a file of many equal names is read in
-        time proportional to its length.
+        Numbers continue from the last one, so that many equal names take linear time.
         """
         wanted = name = f"{stem}{ending}"
         number = self._next.get(wanted, 2)
@@ -28,11 +27,11 @@ class UniqueNames:
 
 
 def printable(name: str) -> str:
-    """Return a name without the control characters that damaged files have in them."""
+    """Return a name without control characters."""
     return "".join(letter for letter in name if letter.isprintable())
 
 
 def shown(name: str) -> str:
-    """Return a name, or whatever stands where one belongs, as a sentence may quote it."""
+    """Return a name shortened and printable, for a message."""
     name = printable(name)
     return name if len(name) <= MAX_SHOWN_LENGTH else f"{name[:MAX_SHOWN_LENGTH]}..."

@@ -1,4 +1,4 @@
-"""What a PNG file says of its picture, without unpacking it."""
+"""Read the size and format of a PNG image without decompressing it."""
 
 import os
 import struct
@@ -10,38 +10,38 @@ from .listed_images import open_listed
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 END = b"IEND\xaeB`\x82"
-GREY = 0
+GRAY = 0
 
 
 class PngHeader(NamedTuple):
-    """Size of a picture in pixels, bits of one channel, and whether it is grey."""
+    """Size of an image in pixels, bits per channel, and whether it is gray."""
 
     width: int
     height: int
     bits: int
-    grey: bool
+    gray: bool
 
 
-def png_header(root: Path, name: str) -> PngHeader | None:
-    """Return what a PNG says of itself; None where it is missing, damaged or cut short.
+def read_png_header(root: Path, name: str) -> PngHeader | None:
+    """Return the header of a PNG file; None if the file is missing, damaged or truncated.
 
-    Raises InvalidFileError if it lies outside of the folder `root`.
+    Raises InvalidFileError if it is outside the folder `root`.
     """
     try:
         with open_listed(root, name) as file:
             head = file.read(26)
             file.seek(-len(END), os.SEEK_END)
-            whole = file.read(len(END)) == END
+            is_complete = file.read(len(END)) == END
     except OSError:
         return None
-    if not whole or len(head) < 26 or head[:8] != SIGNATURE or head[12:16] != b"IHDR":
+    if not is_complete or len(head) < 26 or head[:8] != SIGNATURE or head[12:16] != b"IHDR":
         return None
     width, height, bits, kind = struct.unpack(">IIBB", head[16:26])
-    return PngHeader(width, height, bits, kind == GREY)
+    return PngHeader(width, height, bits, kind == GRAY)
 
 
 def is_png(root: Path, name: str) -> bool:
-    """Tell by the first bytes; not if it lies outside of the folder `root`."""
+    """Return whether a file is PNG, from its first bytes; False outside the folder `root`."""
     try:
         with open_listed(root, name) as file:
             return file.read(len(SIGNATURE)) == SIGNATURE

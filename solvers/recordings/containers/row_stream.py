@@ -1,4 +1,4 @@
-"""Tables of numbers out of text files that may be larger than the memory."""
+"""Read tables of numbers from text files of any size."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -18,37 +18,39 @@ def stream_rows(
     path: Path | str,
     progress: Progress = unwatched,
     *,
-    tidied: Callable[[bytes], bytes] | None = None,
+    normalize: Callable[[bytes], bytes] | None = None,
 ) -> NDArray[np.float64]:
-    """Read one row of numbers per line that is left; blank lines are passed over.
+    """Read one row of numbers per remaining line; blank lines are skipped.
 
-    Beside the rows there is only a block of the file in memory.
+    In addition to the rows, only one block of the file is in memory.
 
     Parameters
     ----------
     reader : LineReader
     width : int
-        How many numbers each row must have.
+        Required numbers per row.
     path : Path or str
         For error messages.
     progress : Progress
-    tidied : function of a line
-        Returns it with its numbers parted by blanks, if they are not.
+    normalize : callable, optional
+        Returns a line with its numbers separated by spaces.
 
     Returns
     -------
     float array, shape (n_rows, width)
-        What the file calls not a number or infinite is NaN.
+        NaN for not-a-number and infinity.
 
     Raises
     ------
     InvalidFileError
-        A row is too short or too long, or holds something that is no number.
+        A row has too few or too many values, or a value is not a number.
     """
     table = GrowingTable(width)
     for block in reader.rest():
         for part in block.parts(ROWS_AT_ONCE):
-            lines = part.lines if tidied is None else [tidied(line) for line in part.lines]
+            lines = (
+                part.lines if normalize is None else [normalize(line) for line in part.lines]
+            )
             numbers = range(part.first, part.first + len(lines))
             table.add(parse_rows(lines, width, path, numbers), part.stop)
             progress(part.stop, "Reading")

@@ -1,4 +1,4 @@
-"""Arrays of numbers in NumPy's files, read by the guards of `archives`."""
+"""Read numeric arrays from NumPy files, with the checks of `npz_members`."""
 
 import os
 import zipfile
@@ -17,12 +17,12 @@ NUMBERS = Values("fiu", None, finite=False)
 
 
 def read_array(path: Path | str) -> NDArray[np.float64]:
-    """Return the numbers of a `.npy` file; raises InvalidFileError for whatever else."""
+    """Return the numbers of a `.npy` file; raise InvalidFileError for other content."""
     try:
         with open_regular(path) as file:
             header = array_header(file)
-            room = os.fstat(file.fileno()).st_size - header.start
-            if header.dtype.kind not in NUMBERS.kinds or header.n_bytes > room:
+            n_available = os.fstat(file.fileno()).st_size - header.start
+            if header.dtype.kind not in NUMBERS.kinds or header.n_bytes > n_available:
                 raise ValueError(header)
             return _as_float(array_content(file, header))
     except FileNotFoundError:
@@ -32,7 +32,7 @@ def read_array(path: Path | str) -> NDArray[np.float64]:
 
 
 def read_archive(path: Path | str, names: tuple[str, ...]) -> list[NDArray[np.float64]]:
-    """Return arrays of numbers of a `.npz` archive; raises InvalidFileError where one fails."""
+    """Return arrays of numbers of a `.npz` archive; raise InvalidFileError on failure."""
     try:
         with open_regular(path) as file, zipfile.ZipFile(file) as archive:
             arrays = read_members(archive, dict.fromkeys(names, NUMBERS), RECORDED)
@@ -44,12 +44,12 @@ def read_archive(path: Path | str, names: tuple[str, ...]) -> list[NDArray[np.fl
 
 
 def _as_float(array: NDArray[Any]) -> NDArray[np.float64]:
-    with np.errstate(invalid="ignore", over="ignore"):  # of damaged or very large floats
+    with np.errstate(invalid="ignore", over="ignore"):  # damaged or very large floats
         return array.astype(np.float64)
 
 
 def _damaged(path: Path | str) -> InvalidFileError:
     return InvalidFileError(
-        f"{path} is no readable file of NumPy's with arrays of numbers: it is damaged, cut"
-        " short or of another kind. Export it again."
+        f"{path} is not a readable NumPy file of numbers: it is damaged, cut short or of"
+        " another kind. Export it again."
     )

@@ -1,4 +1,4 @@
-"""Any part of a long run of bytes in a file, packed or not, without reading what is before."""
+"""Read any range of stored or compressed bytes in a file, without reading from the start."""
 
 import zlib
 from bisect import bisect_right
@@ -10,36 +10,37 @@ from ...errors import InvalidFileError
 from ...files import open_regular, unreadable
 
 CHUNK = 1 << 17
-"""Bytes that are taken from the file, and that are unpacked, at a time."""
-MIN_MARK_SPACING, MAX_MARKS = 4_000_000, 400
-"""Unpacked bytes between two marks, of which each holds some 50 kB; fewer in long files."""
+"""Bytes read from the file, and decompressed, at a time."""
+MIN_CHECKPOINT_SPACING, MAX_CHECKPOINTS = 4_000_000, 400
+"""Minimum decompressed bytes between two checkpoints, and maximum number of checkpoints. A
+checkpoint takes about 50 kB."""
 MAX_CHECKED_BYTES = 200_000_000
-"""Bytes that are looked through for damage before the first picture, in a second at most."""
+"""Maximum size checked for damage before the first image, which takes up to a second."""
 MAX_DEFLATE_RATIO = 1040
-"""How many bytes one packed byte can hold, by the rules of deflate."""
+"""Maximum decompressed bytes per compressed byte of deflate."""
 
 
 class StoredBytes(Protocol):
-    """A run of bytes of which any part can be read."""
+    """Bytes with random access."""
 
     @property
     def size(self) -> int:
-        """How many bytes they are."""
+        """Number of bytes."""
 
     def read(self, start: int, count: int) -> bytes:
-        """Return these bytes; raises InvalidFileError if they are damaged or cut off."""
+        """Return a range of bytes; raise InvalidFileError if it is damaged or truncated."""
 
 
 @dataclass(frozen=True)
 class PlainBytes:
-    """Bytes that stand in a file as they are."""
+    """Uncompressed bytes in a file."""
 
     path: Path
     offset: int
     size: int
 
     def read(self, start: int, count: int) -> bytes:
-        """Return these bytes; raises InvalidFileError if they are cut off."""
+        """Return a range of bytes; raise InvalidFileError if it is truncated."""
         try:
             with open_regular(self.path) as file:
                 file.seek(self.offset + start)
@@ -53,19 +54,28 @@ class PlainBytes:
 
 @dataclass(frozen=True)
 class ByteSlice:
-    """Bytes behind a header."""
+    """Bytes after a header."""
 
-    whole: StoredBytes
+    source: StoredBytes
     skipped: int
     size: int
 
     def read(self, start: int, count: int) -> bytes:
-        """Return these bytes; raises InvalidFileError if they are damaged or cut off."""
-        return self.whole.read(self.skipped + start, count)
+        """Return a range of bytes; raise InvalidFileError if it is damaged or truncated."""
+        return self.source.read(self.skipped + start, count)
 
 
 class _Checkpoint(NamedTuple):
-    """Where unpacking may go on: how much was unpacked, how much was taken, and the state."""
+    """A state from which decompression can resume.
+
+    Attributes
+    ----------
+    unpacked, taken : int, bytes
+        Decompressed, and read from the file, so far.
+    state : zlib decompression object
+    tail : bytes
+        Read but not yet decompressed.
+    """
 
     unpacked: int
     taken: int
@@ -74,44 +84,46 @@ class _Checkpoint(NamedTuple):
 
 
 class PackedBytes:
-    """Bytes that were packed with deflate, as in zip archives and MATLAB's files.
+    """Bytes compressed with deflate, as in zip archives and MATLAB files.
 
-    Unpacking starts at marks that were left behind when a part was first come by, so that a
-    jump back costs no more than a few pictures. Marks are kept while the object lives; a copy
-    sent to another process begins without.
+    Decompression resumes at checkpoints of earlier reads, so that a jump back costs no more
+    than a few images. Checkpoints are not pickled.
 
     Parameters
     ----------
     path : Path
     offset, packed : int, bytes
-        Where the packed bytes begin in the file, and how many there are.
+        Offset and number of the compressed bytes in the file.
     size : int, bytes
-        How many they are unpacked.
+        Number of decompressed bytes.
     window : int
-        What zlib calls wbits: 15 with zlib's header, -15 without.
+        `wbits` of zlib: 15 with a zlib header, -15 without.
     """
 
     def __init__(self, path: Path, offset: int, packed: int, size: int, window: int) -> None:
         self.path, self.offset, self.packed, self.size = path, offset, packed, size
         self.window = window
-        self._forget()
+        self._reset()
 
     def read(self, start: int, count: int) -> bytes:
-        """Return these bytes; raises InvalidFileError if they are damaged or cut off."""
-        at = bisect_right(self._marks, start, key=lambda mark: mark.unpacked) - 1
-        mark = self._marks[at]
-        if mark.unpacked <= self._last.unpacked <= start:
-            mark = self._last
+        """Return a range of bytes; raise InvalidFileError if it is damaged or truncated."""
+        at = (
+            bisect_right(self._checkpoints, start, key=lambda checkpoint: checkpoint.unpacked)
+            - 1
+        )
+        checkpoint = self._checkpoints[at]
+        if checkpoint.unpacked <= self._last.unpacked <= start:
+            checkpoint = self._last
         try:
             with open_regular(self.path) as file:
-                return self._unpack(file, mark, start, count)
+                return self._unpack(file, checkpoint, start, count)
         except OSError as error:
             raise unreadable(self.path, error) from None
         except zlib.error:
             raise damage_error(self.path) from None
 
     def check(self) -> None:
-        """Raise zlib.error if the whole belies its checksum; long ones are believed."""
+        """Raise zlib.error if the checksum does not match; long content is not checked."""
         if self.size > MAX_CHECKED_BYTES:
             return
         state, taken = zlib.decompressobj(self.window), 0
@@ -125,35 +137,35 @@ class PackedBytes:
                 if not state.decompress(tail, CHUNK) and not tail:
                     raise zlib.error
 
-    def _unpack(self, file: Any, mark: _Checkpoint, start: int, count: int) -> bytes:
-        unpacked, taken, tail = mark.unpacked, mark.taken, mark.tail
-        state = mark.state.copy()
+    def _unpack(self, file: Any, checkpoint: _Checkpoint, start: int, count: int) -> bytes:
+        unpacked, taken, tail = checkpoint.unpacked, checkpoint.taken, checkpoint.tail
+        state = checkpoint.state.copy()
         file.seek(self.offset + taken)
-        wanted = []
+        parts = []
         while unpacked < start + count:
             if not tail:
                 tail = file.read(min(CHUNK, self.packed - taken))
                 taken += len(tail)
-            most = min(CHUNK, (start if unpacked < start else start + count) - unpacked)
-            part = state.decompress(tail, most)
+            max_length = min(CHUNK, (start if unpacked < start else start + count) - unpacked)
+            part = state.decompress(tail, max_length)
             if not part and (state.eof or taken >= self.packed or not tail):
                 raise truncation_error(self.path)
             tail = state.unconsumed_tail
             if unpacked >= start:
-                wanted.append(part)
+                parts.append(part)
             unpacked += len(part)
-            self._leave_mark(_Checkpoint(unpacked, taken, state, tail))
+            self._add_checkpoint(_Checkpoint(unpacked, taken, state, tail))
         self._last = _Checkpoint(unpacked, taken, state, tail)
-        return b"".join(wanted)
+        return b"".join(parts)
 
-    def _leave_mark(self, mark: _Checkpoint) -> None:
-        if mark.unpacked >= self._marks[-1].unpacked + self._spacing:
-            self._marks.append(mark._replace(state=mark.state.copy()))
+    def _add_checkpoint(self, checkpoint: _Checkpoint) -> None:
+        if checkpoint.unpacked >= self._checkpoints[-1].unpacked + self._spacing:
+            self._checkpoints.append(checkpoint._replace(state=checkpoint.state.copy()))
 
-    def _forget(self) -> None:
-        self._spacing = max(MIN_MARK_SPACING, self.size // MAX_MARKS)
+    def _reset(self) -> None:
+        self._spacing = max(MIN_CHECKPOINT_SPACING, self.size // MAX_CHECKPOINTS)
         self._last = _Checkpoint(0, 0, zlib.decompressobj(self.window), b"")
-        self._marks = [self._last]
+        self._checkpoints = [self._last]
 
     def __getstate__(self) -> dict[str, Any]:
         return {
@@ -162,14 +174,14 @@ class PackedBytes:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        self._forget()
+        self._reset()
 
 
 def truncation_error(path: Path) -> InvalidFileError:
-    """Return the error of a file that ends too early."""
+    """Return the error for a truncated file."""
     return InvalidFileError(f"{path} is cut short. Copy or export it again.")
 
 
 def damage_error(path: Path) -> InvalidFileError:
-    """Return the error of a file whose bytes make no sense."""
+    """Return the error for a file with invalid bytes."""
     return InvalidFileError(f"{path} is damaged. Copy or export it again.")

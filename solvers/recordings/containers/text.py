@@ -1,4 +1,4 @@
-"""Text files of numbers: opened, cut into lines and read fast, whatever their line ends."""
+"""Read text files of numbers with any line ends."""
 
 import mmap
 import warnings
@@ -19,12 +19,12 @@ MISSING = {b"nan", b"-nan", b"inf", b"-inf", b"null", b"none", b"-"}
 
 
 def map_bytes(path: Path | str) -> bytes | mmap.mmap:
-    """Return the file as bytes that are read when they are asked for.
+    """Return the file as memory-mapped bytes.
 
     Raises
     ------
     InvalidFileError
-        There is no such file, or it cannot be read.
+        The file is missing or unreadable.
     """
     path = Path(path)
     if not path.is_file():
@@ -39,7 +39,7 @@ def map_bytes(path: Path | str) -> bytes | mmap.mmap:
 
 
 def read_bytes(path: Path | str) -> bytes:
-    """Return the whole file; raises InvalidFileError where there is none."""
+    """Return the complete file; raise InvalidFileError if it is missing or unreadable."""
     path = Path(path)
     if not path.is_file():
         raise InvalidFileError(f"There is no file {path}.")
@@ -51,7 +51,7 @@ def read_bytes(path: Path | str) -> bytes:
 
 
 def spaces_from_commas(line: bytes) -> bytes:
-    """Return a line parted by commas, parted by blanks; empty places are not a number."""
+    """Replace the commas of a line by spaces; empty cells become NaN."""
     if not line.strip():
         return b""
     return b" ".join(word.strip() or b"nan" for word in line.split(b","))
@@ -64,28 +64,28 @@ def read_rows(
     line_numbers: Sequence[int],
     progress: Progress = unwatched,
 ) -> NDArray[np.float64]:
-    """Read one row of numbers per line; blank lines are passed over.
+    """Read one row of numbers per line; blank lines are skipped.
 
     Parameters
     ----------
     lines : sequence of bytes
     width : int
-        How many numbers each row must have.
+        Required numbers per row.
     path : Path or str
         For error messages.
     line_numbers : sequence of int
-        Number of each of these lines in its file, counted from 1; likewise.
+        Number of each line in its file, counted from 1.
     progress : Progress
 
     Returns
     -------
     float array, shape (n_rows, width)
-        What the file calls not a number or infinite is NaN.
+        NaN for not-a-number and infinity.
 
     Raises
     ------
     InvalidFileError
-        A row is too short or too long, or holds something that is no number.
+        A row has too few or too many values, or a value is not a number.
     """
     parts = [np.empty((0, width))]
     for start in range(0, len(lines), ROWS_AT_ONCE):
@@ -98,7 +98,7 @@ def read_rows(
 def parse_rows(
     lines: Sequence[bytes], width: int, path: Path | str, line_numbers: Sequence[int]
 ) -> NDArray[np.float64]:
-    """Read one row of numbers per line, as `read_rows` does: all lines at once."""
+    """Parse one row of numbers per line, as `read_rows` does, all lines at once."""
     rows = _read_block(lines, width, path, line_numbers)
     rows[np.isinf(rows)] = np.nan
     return rows
@@ -107,17 +107,17 @@ def parse_rows(
 def _read_block(
     lines: Sequence[bytes], width: int, path: Path | str, line_numbers: Sequence[int]
 ) -> NDArray[np.float64]:
-    filled = [line for line in lines if line.strip()]
-    if not filled:
+    nonblank = [line for line in lines if line.strip()]
+    if not nonblank:
         return np.empty((0, width))
     try:
-        with warnings.catch_warnings():  # It warns where it sees nothing but control codes.
+        with warnings.catch_warnings():  # loadtxt warns about lines of control codes.
             warnings.simplefilter("ignore", UserWarning)
-            rows = np.loadtxt(filled, comments=None, ndmin=2)
-        if rows.shape == (len(filled), width):
+            rows = np.loadtxt(nonblank, comments=None, ndmin=2)
+        if rows.shape == (len(nonblank), width):
             return rows
     except ValueError:
-        pass  # Line by line it is seen which line is wrong, or merely unusual.
+        pass  # Parse line by line, to report the invalid line or accept unusual numbers.
     read = [
         _read_line(line, width, f"{path}, line {number}")
         for number, line in zip(line_numbers, lines, strict=True)
@@ -126,23 +126,23 @@ def _read_block(
     return np.array(read)
 
 
-def _read_line(line: bytes, width: int, place: str) -> list[float]:
+def _read_line(line: bytes, width: int, location: str) -> list[float]:
     words = [word.encode("latin-1") for word in line.decode("latin-1").split()]  # as numpy
     if len(words) != width:
         raise InvalidFileError(
-            f"{place}: {len(words)} numbers stand where {width} belong. The file is damaged or"
-            " cut short; export it again, or delete that line."
+            f"{location}: {len(words)} numbers instead of {width}. The file is damaged or cut"
+            " short; export it again, or delete that line."
         )
-    return [read_number(word, place) for word in words]
+    return [read_number(word, location) for word in words]
 
 
-def read_number(word: bytes, place: str) -> float:
-    """Return the number that a word means, with a decimal point or comma; NaN for none.
+def read_number(word: bytes, location: str) -> float:
+    """Parse a number with a decimal point or comma; NaN for missing values.
 
     Raises
     ------
     InvalidFileError
-        It is no number; `place` says where it stands.
+        It is not a number; the message begins with the location.
     """
     # The old Windows runtime wrote 1.#QNAN.
     if not word or word.lower() in MISSING or b"#" in word:
@@ -152,5 +152,5 @@ def read_number(word: bytes, place: str) -> float:
     except ValueError:
         what = shown(word.decode("ascii", "backslashreplace"))
         raise InvalidFileError(
-            f"{place}: {what!r} is not a number. The file is damaged; export it again."
+            f"{location}: {what!r} is not a number. The file is damaged; export it again."
         ) from None

@@ -1,7 +1,7 @@
-"""What files leave open: axes, units, time stamps, sensors and their joints."""
+"""Convert axes, units, time stamps and joints of files to the project's conventions."""
 
 from .axes import (
-    CENTIMETRE,
+    CENTIMETER,
     MIN_BODY_JOINTS,
     PLAUSIBLE_REACH_M,
     check_scale,
@@ -16,9 +16,9 @@ from .bodies import longest_observed_body, stack_body_frames
 from .body_axes import UpAxisName, describe_guessed_axis, judge_up_axis, rotate_to_z_up
 from .body_unit import describe_guessed_unit
 from .points import (
-    METRES,
+    METERS,
     guess_unit_of_points,
-    metres_from_unit_name,
+    meters_from_unit_name,
     point_names,
     points_z_up,
 )
@@ -27,9 +27,9 @@ from .time_stamps import DEFAULT_FRAME_RATE, ConstantRate, constant_rate_from_ti
 from .tracked_joints import joint_recording
 
 __all__ = [
-    "CENTIMETRE",
+    "CENTIMETER",
     "DEFAULT_FRAME_RATE",
-    "METRES",
+    "METERS",
     "MIN_BODY_JOINTS",
     "PLAUSIBLE_REACH_M",
     "ConstantRate",
@@ -46,7 +46,7 @@ __all__ = [
     "judge_up_axis",
     "longest_bone_path",
     "longest_observed_body",
-    "metres_from_unit_name",
+    "meters_from_unit_name",
     "point_names",
     "points_z_up",
     "rotate_to_z_up",

@@ -1,4 +1,4 @@
-"""Between the axes and units of files and the project's: metres, Z up, facing -Y."""
+"""Convert axes and units of files to the project's: meters, Z up, facing -Y."""
 
 from collections.abc import Sequence
 
@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 from ...errors import InvalidSettingError
 
 ACCLAIM_UNIT = 0.0254 / 0.45
-"""Metres in one unit of an Acclaim file, and of the BVH files made from them."""
-CENTIMETRE = 0.01
-UNITS = (CENTIMETRE, 1.0, 0.001, 0.0254, ACCLAIM_UNIT)
+"""Meters per unit of an Acclaim file, and of the BVH files made from them."""
+CENTIMETER = 0.01
+UNITS = (CENTIMETER, 1.0, 0.001, 0.0254, ACCLAIM_UNIT)
 
-# The longest way along the bones of an adult, from a hand or the head to a foot: 2.0 to 2.6 m
+# The longest path along the bones of an adult, from a hand or the head to a foot: 2.0 to 2.6 m
 # in skeletons of nine makers. Unlike the height it does not depend on the rest pose.
 ADULT_REACH_M = 2.3
 PLAUSIBLE_REACH_M = (1.1, 4.6)
@@ -20,13 +20,13 @@ MIN_BODY_JOINTS = 8
 
 
 def check_scale(scale: float | None) -> None:
-    """Raise InvalidSettingError unless a scale is left open or can be one."""
+    """Raise InvalidSettingError unless a scale is None or positive and finite."""
     if scale is not None and not 0.0 < scale < float("inf"):
         raise InvalidSettingError(f"scale is {scale:g}; it must be above 0.")
 
 
 def z_up_from_y_up(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Turn vectors, shape (..., 3), by 90 degrees about X: Y up, facing +Z becomes ours."""
+    """Rotate vectors, shape (..., 3), by 90 degrees about X: Y up, facing +Z becomes ours."""
     return np.stack([vectors[..., 0], -vectors[..., 2], vectors[..., 1]], axis=-1)
 
 
@@ -46,28 +46,29 @@ def rotations_y_up_from_z_up(rotations: NDArray[np.float64]) -> NDArray[np.float
 
 
 def guess_unit(parents: Sequence[int], offsets: NDArray[np.float64]) -> float:
-    """Return the metres in one unit of a file that does not say it, from its skeleton.
+    """Estimate the meters per unit of a file from its skeleton.
 
-    Centimetres if they give a body of plausible size; else whichever of metres, millimetres,
-    inches and Acclaim units comes nearest to an adult. Too few joints: centimetres.
+    Centimeters if they give a body of plausible size, otherwise the unit of meters,
+    millimeters, inches and Acclaim units that is closest to an adult. With too few joints:
+    centimeters.
     """
     reach = longest_bone_path(parents, offsets)
     low, high = PLAUSIBLE_REACH_M
     if len(parents) < MIN_BODY_JOINTS or not reach > 0.0:
-        return CENTIMETRE
-    if low <= reach * CENTIMETRE <= high:
-        return CENTIMETRE
+        return CENTIMETER
+    if low <= reach * CENTIMETER <= high:
+        return CENTIMETER
     return min(UNITS, key=lambda unit: abs(np.log(reach * unit / ADULT_REACH_M)))
 
 
 def longest_bone_path(parents: Sequence[int], offsets: NDArray[np.float64]) -> float:
-    """Return the greatest distance between two joints, measured along the bones."""
+    """Return the maximum distance between two joints, measured along the bones."""
     below = np.zeros(len(parents))
     longest = 0.0
     for joint in range(len(parents) - 1, 0, -1):
-        way = below[joint] + float(np.linalg.norm(offsets[joint]))
-        longest = max(longest, below[parents[joint]] + way)
-        below[parents[joint]] = max(below[parents[joint]], way)
+        length = below[joint] + float(np.linalg.norm(offsets[joint]))
+        longest = max(longest, below[parents[joint]] + length)
+        below[parents[joint]] = max(below[parents[joint]], length)
     return longest
 
 

@@ -1,4 +1,4 @@
-"""Several bodies in view of one camera: which one is meant, and where it is missing."""
+"""Select one body of several in view of a camera, and mark its gaps."""
 
 from collections import Counter
 from collections.abc import Hashable, Mapping, Sequence
@@ -11,9 +11,9 @@ Body = TypeVar("Body", bound=Hashable)
 
 
 def longest_observed_body(frames: Sequence[Mapping[Body, object]]) -> Body:
-    """Return the body that is in most frames; of equals, the one that came first.
+    """Return the body that is in most frames; the first one of a tie.
 
-    Raises ValueError where there is none.
+    Raises ValueError if there is none.
     """
     counts = Counter(body for frame in frames for body in frame)
     return max(counts, key=lambda body: counts[body])
@@ -22,7 +22,7 @@ def longest_observed_body(frames: Sequence[Mapping[Body, object]]) -> Body:
 def stack_body_frames(
     body: Body, frames: Sequence[Mapping[Body, NDArray[np.float64]]]
 ) -> NDArray[np.float64]:
-    """Return one body's values, stacked; NaN in the frames without it."""
+    """Stack the values of one body; NaN in the frames without it."""
     shape = next(frame[body].shape for frame in frames if body in frame)
-    nothing = np.full(shape, np.nan)
-    return np.stack([frame.get(body, nothing) for frame in frames])
+    missing = np.full(shape, np.nan)
+    return np.stack([frame.get(body, missing) for frame in frames])

@@ -1,4 +1,4 @@
-"""The unit of joints whose file does not say it, by the size of the body that they make."""
+"""Estimate the unit of joints whose file does not state it, from the size of the body."""
 
 from dataclasses import replace
 
@@ -14,22 +14,22 @@ from ...motion.humanoid import (
 )
 from ...progress import Progress
 
-UNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
+UNIT_NAMES = {1.0: "meters", 0.01: "centimeters", 0.001: "millimeters"}
 
 
 def convert_to_body_unit(
     recording: JointRecording, unit: float, progress: Progress
 ) -> JointRecording:
-    """Return a recording, taken in this unit, in the one of `UNITS` that makes a human body.
+    """Convert a recording to the unit of `UNIT_NAMES` that gives a human body.
 
-    It stays as it is where the unit does, where none does, or where no body is recognised.
+    It is unchanged if its unit already does, if no unit does, or if no body is recognized.
 
     Parameters
     ----------
     recording : JointRecording
-    unit : float, metres
+    unit : float, meters
     progress : Progress
-        Told of another unit.
+        Receives a message if the unit changes.
     """
     try:
         size = estimate_body_scale(posture_positions(recording))
@@ -37,18 +37,18 @@ def convert_to_body_unit(
         return recording
     if MIN_BODY_SCALE <= size <= MAX_BODY_SCALE or not size > 0.0:
         return recording
-    likely = min(UNITS, key=lambda other: abs(np.log(size * other / unit)))
-    factor = likely / unit
+    nearest_unit = min(UNIT_NAMES, key=lambda other: abs(np.log(size * other / unit)))
+    factor = nearest_unit / unit
     if not MIN_BODY_SCALE <= size * factor <= MAX_BODY_SCALE:
         return recording
-    progress(1.0, describe_guessed_unit(likely))
+    progress(1.0, describe_guessed_unit(nearest_unit))
     tracks = recording.tracks
     return replace(recording, tracks=tracks.with_positions(factor * tracks.positions))
 
 
 def describe_guessed_unit(unit: float) -> str:
-    """Say that lengths are taken for metres, centimetres or millimetres, and why."""
+    """Return a message that states the estimated unit of length, and why."""
     return (
-        f"Lengths are taken for {UNITS[unit]}, by the size of the body; give the unit if that"
-        " is wrong"
+        f"Lengths are interpreted as {UNIT_NAMES[unit]}, by the size of the body; give the unit"
+        " if that is wrong"
     )

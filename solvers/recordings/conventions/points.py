@@ -1,4 +1,4 @@
-"""What files of points leave open or say in many ways: names, units, and which way is up."""
+"""Standardize names, units and the up axis of point files."""
 
 from collections.abc import Sequence
 
@@ -8,44 +8,44 @@ from numpy.typing import NDArray
 from ..containers import UniqueNames, printable
 from .axes import z_up_from_y_up
 
-METRES = {
+METERS = {
     "mm": 0.001, "millimeter": 0.001, "millimetre": 0.001, "cm": 0.01, "centimeter": 0.01,
     "centimetre": 0.01, "dm": 0.1, "m": 1.0, "meter": 1.0, "metre": 1.0, "in": 0.0254,
     "inch": 0.0254, "inches": 0.0254, "ft": 0.3048, "foot": 0.3048, "feet": 0.3048,
 }  # fmt: skip
-"""Metres in a unit, by its name without the s of the plural."""
+"""Meters per unit, by its name without the plural s."""
 BODY_EXTENT_M = 1.5
 FLOOR_TOLERANCE_M = 0.15
 
 
 def point_names(labels: Sequence[str]) -> tuple[str, ...]:
-    """Return names without the actor's, if there is only one, and different from each other."""
+    """Return unique names, without the prefix of the actor if there is only one."""
     prefixes = {label.rpartition(":")[0] for label in labels if ":" in label}
     if len(prefixes) == 1:
         labels = [label.rpartition(":")[2] for label in labels]
     names = UniqueNames()
     return tuple(
-        names.give(printable(label) or f"point_{place}")
-        for place, label in enumerate(labels, start=1)
+        names.give(printable(label) or f"point_{number}")
+        for number, label in enumerate(labels, start=1)
     )
 
 
-def metres_from_unit_name(word: str) -> float | None:
-    """Return the metres in a unit of this name; None if there is no such name."""
+def meters_from_unit_name(word: str) -> float | None:
+    """Return the meters per unit of this name; None if the name is unknown."""
     word = word.strip().lower()
-    return METRES.get(word, METRES.get(word.removesuffix("s")))
+    return METERS.get(word, METERS.get(word.removesuffix("s")))
 
 
 def guess_unit_of_points(points: NDArray[np.float64]) -> float:
-    """Return the one of metres, centimetres and millimetres that gives a person's size."""
+    """Return the unit of meters, centimeters and millimeters that gives a person's size."""
     extent = float(np.median(_extents(points).max(axis=1)))
     if extent == 0.0:
-        return METRES["mm"]
+        return METERS["mm"]
     return min((0.001, 0.01, 1.0), key=lambda unit: abs(np.log(extent * unit / BODY_EXTENT_M)))
 
 
 def points_z_up(points: NDArray[np.float64], up: str) -> NDArray[np.float64]:
-    """Turn points, in metres, so that `up`, such as `+Y` or unknown, becomes Z."""
+    """Rotate points so that `up`, such as `+Y`, becomes Z; if it is unknown, estimate it."""
     if up[-1:] not in {"X", "Y", "Z"}:
         up = "+Y" if _looks_y_up(points) else "+Z"
     if up[-1] == "X":
@@ -56,19 +56,20 @@ def points_z_up(points: NDArray[np.float64], up: str) -> NDArray[np.float64]:
 
 
 def _looks_y_up(points: NDArray[np.float64]) -> bool:
-    """Whether Y rather than Z is up, of points in metres.
+    """Return whether Y rather than Z is up, for points in meters.
 
-    Nobody is far below the floor: if that rules out one of the two, the other is up. Else the
-    greater extent in most frames decides; right for all files at hand that say their axes.
+    Points are never far below the floor: if only one of the two axes satisfies that, it is up.
+    Otherwise the axis of the larger median extent is up. This is correct for all test files
+    that state their axes.
     """
-    above = np.nanpercentile(points.reshape(-1, 3), 2, axis=0) > -FLOOR_TOLERANCE_M
-    if above[1] != above[2]:
-        return bool(above[1])
+    is_above_floor = np.nanpercentile(points.reshape(-1, 3), 2, axis=0) > -FLOOR_TOLERANCE_M
+    if is_above_floor[1] != is_above_floor[2]:
+        return bool(is_above_floor[1])
     _, y, z = np.median(_extents(points), axis=0)
     return bool(y > z)
 
 
 def _extents(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the size of the bounding box, shape (n, 3), in frames where anything is seen."""
-    seen = points[np.isfinite(points).any(axis=(1, 2))]
-    return np.asarray(np.nanmax(seen, axis=1) - np.nanmin(seen, axis=1))
+    """Return the size of the bounding box, shape (n, 3), in frames with any observed point."""
+    observed = points[np.isfinite(points).any(axis=(1, 2))]
+    return np.asarray(np.nanmax(observed, axis=1) - np.nanmin(observed, axis=1))

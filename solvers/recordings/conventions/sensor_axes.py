@@ -1,7 +1,7 @@
-"""From the spaces of depth cameras to ours: the camera stands at the origin and looks along +Y.
+"""Convert the spaces of depth cameras to ours: the camera is at the origin and looks along +Y.
 
-So an actor who faces the camera faces -Y, as in every rest pose here, with the left hand at +X.
-How high the camera stood, and whether it looked up or down, no recording of joints tells.
+An actor who faces the camera faces -Y, as in every rest pose, with the left hand at +X.
+Recordings of joints do not store the height and tilt of the camera.
 """
 
 import numpy as np
@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 
 def from_kinect_space(positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Turn Kinect v1 and v2 camera space: x to the camera's left, y up, z forward."""
+    """Convert Kinect v1 and v2 camera space: x to the camera's left, y up, z forward."""
     x, y, z = np.moveaxis(positions, -1, 0)
     return np.stack([-x, z, y], axis=-1)
 
 
 def from_azure_space(positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Turn the Azure Kinect's depth camera space: x to the right, y down, z forward."""
+    """Convert the Azure Kinect's depth camera space: x to the right, y down, z forward."""
     x, y, z = np.moveaxis(positions, -1, 0)
     return np.stack([x, z, -y], axis=-1)

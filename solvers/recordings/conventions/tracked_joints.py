@@ -1,4 +1,4 @@
-"""What all readers of joint recordings do last: gaps marked, a constant rate, checked."""
+"""Build a joint recording: mark gaps, resample to a constant rate, and check the unit."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,10 +25,10 @@ def joint_recording(
     frame_rate: float = DEFAULT_FRAME_RATE,
     nan_only: bool = False,
     scale: float | None,
-    usual_unit: float = 1.0,
+    default_unit: float = 1.0,
     progress: Progress,
 ) -> JointRecording:
-    """Make a recording of what a file holds.
+    """Build a recording from the contents of a file.
 
     Parameters
     ----------
@@ -36,24 +36,24 @@ def joint_recording(
         For error messages.
     names : sequence of str
     positions : float array, shape (n_frames, n_joints, 3), in the file's unit, Z up
-        What is NaN, exactly 0, or in state 0 was not observed: its state becomes 0, and the
-        position NaN.
+        A position that is NaN, exactly 0, or in state 0 was not observed: its state becomes 0,
+        and the position NaN.
     sensor : Sensor
     states : int8 array, shape (n_frames, n_joints), or None
     confidence : float array, shape (n_frames, n_joints), 0 to 1, or None
     times : float array, shape (n_frames,), seconds, or None
-        When each frame was seen; then `frame_rate` does not count, and the recording is
-        brought to a constant rate (`ConstantRate`).
+        Time of each frame. The recording is then resampled to a constant rate
+        (`ConstantRate`), and `frame_rate` is ignored.
     frame_rate : float, hertz
     nan_only : bool
-        True: only NaN was not observed; the origin is a place like others, and a joint that was
-        not tracked keeps the place that it was given.
-    scale : float, metres per unit of the file, or None
-        None: the usual unit, or the one that makes a human body where that does not.
-    usual_unit : float, metres
-        The one that such files have.
+        True: only NaN was not observed. The origin is a valid position, and a joint that was
+        not tracked keeps its position.
+    scale : float, meters per unit of the file, or None
+        None: the default unit, or the unit that gives a human body if the default does not.
+    default_unit : float, meters
+        Default unit of the format.
     progress : Progress
-        Told that this is done, and of the unit where it is guessed.
+        Receives a message on resampling, and on the unit if it was estimated.
 
     Returns
     -------
@@ -62,7 +62,7 @@ def joint_recording(
     Raises
     ------
     InvalidFileError
-        No joint is seen in any frame; or the time stamps make no sense.
+        No joint is observed in any frame, or the time stamps are invalid.
     """
     missing = ~np.isfinite(positions).all(axis=-1)
     if not nan_only:
@@ -72,16 +72,16 @@ def joint_recording(
         states = np.where(missing, 0, states).astype(np.int8)
     positions = np.where(missing[..., None], np.nan, positions)
     if missing.all():
-        raise InvalidFileError(f"{path} has no joint that is seen in any frame.")
+        raise InvalidFileError(f"{path} has no joint that is observed in any frame.")
     if times is not None:
-        clock = ConstantRate(path, times)
-        frame_rate = clock.frame_rate
-        positions = clock.positions(positions)
-        states = None if states is None else clock.states(states)
-        confidence = None if confidence is None else clock.confidence(confidence)
+        resampler = ConstantRate(path, times)
+        frame_rate = resampler.frame_rate
+        positions = resampler.positions(positions)
+        states = None if states is None else resampler.states(states)
+        confidence = None if confidence is None else resampler.confidence(confidence)
     progress(1.0, "Reading" if times is None else f"Resampled to {frame_rate:.4g} Hz")
-    unit = usual_unit if scale is None else scale
-    positions *= unit  # a copy of what was given
+    unit = default_unit if scale is None else scale
+    positions *= unit  # a copy of the argument
     tracks = Tracks(tuple(names), positions, frame_rate, confidence)
     recording = JointRecording(tracks, states, sensor)
     return recording if scale is not None else convert_to_body_unit(recording, unit, progress)

@@ -1,17 +1,17 @@
-"""Depth images: folders, Matroska, MATLAB, NumPy and raw files."""
+"""Read depth images from folders, Matroska, MATLAB, NumPy and raw files."""
 
 from .exr_header import check_exr
 from .folder import is_depth_folder
-from .formats import depth_format_of, read_depth
+from .formats import detect_depth_format, read_depth
 from .image_frames import sort_naturally
-from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings, Held
+from .settings import DEFAULT_DEPTH_SETTINGS, CameraOrientation, DepthSettings
 
 __all__ = [
     "DEFAULT_DEPTH_SETTINGS",
+    "CameraOrientation",
     "DepthSettings",
-    "Held",
     "check_exr",
-    "depth_format_of",
+    "detect_depth_format",
     "is_depth_folder",
     "read_depth",
     "sort_naturally",

@@ -1,4 +1,4 @@
-"""What an OpenEXR file says of its picture, without unpacking it."""
+"""Check the header of an OpenEXR image without decompressing it."""
 
 import struct
 from collections.abc import Iterator
@@ -12,19 +12,19 @@ from .stack import MAX_PIXELS, check_size
 
 MAGIC = b"v/1\x01"
 MULTIPART = 0x1000
-"""Flag of the version: another header may follow."""
+"""Version flag: another header may follow."""
 MAX_ATTRIBUTES = 10_000
-"""Of a file; Blender writes about 20."""
+"""Maximum number of attributes of a file; Blender writes about 20."""
 MAX_NAME_BYTES, MAX_BYTES = 255, 100_000
-"""Of an attribute's name, and of one that is read."""
+"""Maximum size of an attribute's name, and of a value that is read."""
 MAX_VALUES = 4 * MAX_PIXELS**2
-"""Numbers in a picture: those of red, green, blue and alpha of the largest one."""
+"""Maximum number of values in an image: four channels of the largest size."""
 CHANNEL_FACTS = 16
-"""Bytes that follow the name of a channel: type, linearity and sampling."""
+"""Bytes after the name of a channel: type, linearity and sampling."""
 
 
 def check_exr(path: Path) -> None:
-    """Raise InvalidFileError unless the header is that of a picture a depth camera can make.
+    """Raise InvalidFileError unless the header is that of a plausible depth image.
 
     Reference: https://openexr.com/en/latest/OpenEXRFileLayout.html
     """
@@ -38,7 +38,7 @@ def check_exr(path: Path) -> None:
     if sum(map(prod, parts)) > MAX_VALUES:
         raise InvalidFileError(
             f"{path} has {sum(n_channels for *_, n_channels in parts)} channels, too many to"
-            " read at this size. Write depth as a file of its own."
+            " read at this size. Write depth to a file of its own."
         )
 
 
@@ -47,43 +47,43 @@ def _parts(file: BinaryIO) -> Iterator[tuple[int, int, int]]:
     magic, version = struct.unpack("<4sI", file.read(8))
     if magic != MAGIC:
         raise ValueError("it is another format")
-    room = MAX_ATTRIBUTES
-    while attributes := dict(_attributes(file, room)):
+    n_remaining = MAX_ATTRIBUTES
+    while attributes := dict(_attributes(file, n_remaining)):
         left, top, right, bottom = struct.unpack("<4i", attributes["dataWindow"])
         yield right - left + 1, bottom - top + 1, _n_channels(attributes["channels"])
-        room -= len(attributes)
+        n_remaining -= len(attributes)
         if not version & MULTIPART:
             return
 
 
-def _attributes(file: BinaryIO, room: int) -> Iterator[tuple[str, bytes]]:
-    """Yield the attributes of the next header, which are empty where they tell no size."""
-    while name := _word(file):
-        _word(file)  # the type
+def _attributes(file: BinaryIO, n_remaining: int) -> Iterator[tuple[str, bytes]]:
+    """Yield the attributes of the next header; values that are not needed are empty."""
+    while name := _read_text(file):
+        _read_text(file)  # the type
         (size,) = struct.unpack("<I", file.read(4))
-        told = name in ("dataWindow", "channels")
-        room -= 1
-        if room < 0 or (told and size > MAX_BYTES):
+        is_needed = name in ("dataWindow", "channels")
+        n_remaining -= 1
+        if n_remaining < 0 or (is_needed and size > MAX_BYTES):
             raise ValueError("the header does not end")
-        yield name, file.read(size) if told else b""
-        if not told:
+        yield name, file.read(size) if is_needed else b""
+        if not is_needed:
             file.seek(size, 1)
 
 
-def _word(file: BinaryIO) -> str:
-    """Return the text up to the next zero byte."""
-    word = b""
+def _read_text(file: BinaryIO) -> str:
+    """Return the text up to the next null byte."""
+    text = b""
     while (letter := file.read(1)) != b"\0":
-        word += letter
-        if not letter or len(word) > MAX_NAME_BYTES:
+        text += letter
+        if not letter or len(text) > MAX_NAME_BYTES:
             raise ValueError("a name does not end")
-    return word.decode("latin-1")
+    return text.decode("latin-1")
 
 
 def _n_channels(content: bytes) -> int:
-    """Return the number of channels that a list of them has."""
-    n_channels, place = 0, 0
-    while content[place : place + 1] not in (b"", b"\0"):
-        place = content.index(b"\0", place) + 1 + CHANNEL_FACTS
+    """Return the length of a channel list."""
+    n_channels, offset = 0, 0
+    while content[offset : offset + 1] not in (b"", b"\0"):
+        offset = content.index(b"\0", offset) + 1 + CHANNEL_FACTS
         n_channels += 1
     return n_channels

@@ -1,4 +1,4 @@
-"""Read folders of depth pictures, whoever recorded them."""
+"""Read folders of depth images from different recorders."""
 
 from pathlib import Path
 
@@ -9,50 +9,50 @@ from ...depth_scene import Camera, DepthRecording
 from ...errors import InvalidFileError
 from ...faults import attempt
 from ...progress import Progress, unwatched
-from ..containers import PngHeader, is_listed, png_header
+from ..containers import PngHeader, is_listed, read_png_header
 from ..conventions import DEFAULT_FRAME_RATE
+from .camera_orientation import rotate_upright
 from .image_frames import Frames, frames_by_number, frames_by_time
 from .images import NONE, ColorImageFiles, DepthImageFiles
 from .layouts import Layout, open3d_layout, plain_layout, tum_layout
-from .sensor_hold import rotate_upright
-from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings, Held
+from .settings import DEFAULT_DEPTH_SETTINGS, CameraOrientation, DepthSettings
 from .stack import check_size
 from .stray_scanner import stray_layout
 
 LAYOUTS = (stray_layout, tum_layout, open3d_layout, plain_layout)
-"""The more a layout asks for, the earlier it is tried."""
+"""Layouts in the order of detection, the most specific first."""
 BITS = 16
 MIN_GOOD_FRACTION = 0.5
-"""Share of the pictures that must be there and whole."""
+"""Minimum fraction of the images that must be present and undamaged."""
 
 
-def layout_of(path: Path) -> Layout | None:
-    """Return how a folder of depth pictures is laid out; None for one that is none."""
+def detect_layout(path: Path) -> Layout | None:
+    """Return the layout of a folder of depth images; None for another folder."""
     if not path.is_dir():
         return None
-    found = (layout(path) for layout in LAYOUTS)
-    return next((layout for layout in found if layout is not None), None)
+    layouts = (layout(path) for layout in LAYOUTS)
+    return next((layout for layout in layouts if layout is not None), None)
 
 
 def is_depth_folder(path: Path) -> bool:
-    """Tell whether a folder is one recording of depth, and holds no pictures of another kind.
+    """Return whether a folder is a depth recording, and not a folder of other images.
 
-    Of one that says that it is, but is damaged, whoever reads it will tell; pictures without
-    anything that says so are depth if the first whole one is.
+    A damaged depth recording counts as one; its reader reports the damage. Images without
+    metadata are depth if the first undamaged one is gray with 16 bits.
     """
     try:
-        layout = layout_of(path)
+        layout = detect_layout(path)
     except InvalidFileError:
         return True
     if layout is None:
         return False
-    if layout.metres:
+    if layout.meters:
         return True
-    headers = (attempt(path, png_header, layout.root, name) for name in layout.depth)
+    headers = (attempt(path, read_png_header, layout.root, name) for name in layout.depth)
     header = next((header for header in headers if isinstance(header, PngHeader)), None)
     if header is None:
-        return "/" in layout.depth[0]  # A folder called depth.
-    return header.bits == BITS and header.grey
+        return "/" in layout.depth[0]  # a folder called depth
+    return header.bits == BITS and header.gray
 
 
 def read_depth_folder(
@@ -63,69 +63,76 @@ def read_depth_folder(
 ) -> DepthRecording:
     """Read a folder of 16-bit PNG files of depth: TUM RGB-D, Stray Scanner, Open3D or plain.
 
-    Parameters and errors are those of `read_depth`. Pictures that are missing or damaged are
-    frames without a reading, as are holes between time stamps.
+    Parameters and errors are those of `read_depth`. Missing or damaged images become empty
+    frames, and so do gaps between time stamps.
     """
     path = Path(path)
-    layout = layout_of(path)
+    layout = detect_layout(path)
     if layout is None:
-        raise InvalidFileError(f"{path} is a folder without pictures of depth.")
-    good, header = _check_images(layout, progress)
-    metres, camera = _resolve_camera(path, layout, settings, header)
+        raise InvalidFileError(f"{path} is a folder without depth images.")
+    is_good, header = _check_images(layout, progress)
+    meters, camera = _resolve_camera(path, layout, settings, header)
     frames = _frames(path, layout, settings)
-    pictures = np.where(frames.pictures != NONE, frames.pictures, 0)
-    shown = np.where((frames.pictures != NONE) & good[pictures], frames.pictures, NONE)
+    images = np.where(frames.images != NONE, frames.images, 0)
+    image_indices = np.where((frames.images != NONE) & is_good[images], frames.images, NONE)
     shape = (header.height, header.width)
     read_depth = DepthImageFiles(
         layout.root,
         layout.depth,
-        shown,
+        image_indices,
         shape,
-        metres,
+        meters,
         layout.confidence,
         settings.least_confidence,
     )
     recording = DepthRecording(
-        camera, len(shown), frames.frame_rate, read_depth, _color(layout, shown, shape)
+        camera,
+        len(image_indices),
+        frames.frame_rate,
+        read_depth,
+        _color(layout, image_indices, shape),
     )
-    for remark in (*layout.remarks, *_remarks(layout, good, shown, frames, settings)):
+    for remark in (
+        *layout.remarks,
+        *_remarks(layout, is_good, image_indices, frames, settings),
+    ):
         progress(1.0, remark)
     progress(1.0, "Reading")
-    held = layout.held if settings.held is Held.KNOWN else settings.held
+    held = layout.held if settings.held is CameraOrientation.KNOWN else settings.held
     return rotate_upright(recording, held, mirrored=False)
 
 
 def _check_images(layout: Layout, progress: Progress) -> tuple[NDArray[np.bool_], PngHeader]:
-    """Tell which pictures are there and whole, and of which size all of them are."""
+    """Return which images are present and undamaged, and the header that they share."""
     headers = []
-    for place, name in enumerate(layout.depth):
-        headers.append(png_header(layout.root, name))
-        progress(place / len(layout.depth), "Reading")
-    known = [header for header in headers if header is not None]
-    if not known or len(known) < MIN_GOOD_FRACTION * len(headers):
+    for index, name in enumerate(layout.depth):
+        headers.append(read_png_header(layout.root, name))
+        progress(index / len(layout.depth), "Reading")
+    headers_found = [header for header in headers if header is not None]
+    if not headers_found or len(headers_found) < MIN_GOOD_FRACTION * len(headers):
         raise InvalidFileError(
-            f"{layout.root}: {len(headers) - len(known)} of {len(headers)} pictures of depth"
+            f"{layout.root}: {len(headers) - len(headers_found)} of {len(headers)} depth images"
             " are missing or damaged. Copy them again."
         )
-    usual = max(set(known), key=known.count)
+    most_common = max(set(headers_found), key=headers_found.count)
     for name, header in zip(layout.depth, headers, strict=True):
-        _check(layout.root / name, header, usual)
-    return np.array([header is not None for header in headers]), usual
+        _check(layout.root / name, header, most_common)
+    return np.array([header is not None for header in headers]), most_common
 
 
-def _check(path: Path, header: PngHeader | None, usual: PngHeader) -> None:
+def _check(path: Path, header: PngHeader | None, most_common: PngHeader) -> None:
     if header is None:
         return
-    if header.bits != BITS or not header.grey:
-        kind = "grey" if header.grey else "coloured"
+    if header.bits != BITS or not header.gray:
+        kind = "gray" if header.gray else "colored"
         raise InvalidFileError(
-            f"{path} is a {kind} picture of {header.bits} bits; depth is grey and of {BITS}."
-            " Export the distances themselves, not a picture of them."
+            f"{path} is a {kind} image of {header.bits} bits; depth is gray and has {BITS}."
+            " Export the distances themselves, not a rendered image of them."
         )
-    if header != usual:
+    if header != most_common:
         raise InvalidFileError(
             f"{path} has {header.width} x {header.height} pixels, the others"
-            f" {usual.width} x {usual.height}. Take it out of the folder."
+            f" {most_common.width} x {most_common.height}. Remove it from the folder."
         )
     check_size(path, header.height, header.width)
 
@@ -133,18 +140,18 @@ def _check(path: Path, header: PngHeader | None, usual: PngHeader) -> None:
 def _resolve_camera(
     path: Path, layout: Layout, settings: DepthSettings, header: PngHeader
 ) -> tuple[float, Camera]:
-    """Return metres in a unit and the camera, or say what has to be given."""
-    metres = settings.scale or layout.metres
+    """Return meters per unit and the camera; raise InvalidFileError if one is unknown."""
+    meters = settings.scale or layout.meters
     camera = settings.camera(header.width, header.height, _camera(layout, header))
-    if metres and camera:
-        return metres, camera
-    unit = " its scale (metres in one unit: 0.001 for millimetres)"
+    if meters and camera:
+        return meters, camera
+    unit = " its scale (meters per unit: 0.001 for millimeters)"
     focal = (
-        " the camera's focal lengths fx and fy in pixels, and its centre cx and cy unless it is"
+        " the camera's focal lengths fx and fy in pixels, and its center cx and cy unless it is"
         " the middle"
     )
-    wanted = " and".join([*([] if metres else [unit]), *([] if camera else [focal])])
-    raise InvalidFileError(f"{path} does not tell everything about its pictures: give{wanted}.")
+    missing = " and".join([*([] if meters else [unit]), *([] if camera else [focal])])
+    raise InvalidFileError(f"{path} does not describe its images completely: set{missing}.")
 
 
 def _camera(layout: Layout, header: PngHeader) -> Camera | None:
@@ -171,19 +178,19 @@ def _frames(path: Path, layout: Layout, settings: DepthSettings) -> Frames:
 
 
 def _color(
-    layout: Layout, shown: NDArray[np.intp], shape: tuple[int, int]
+    layout: Layout, image_indices: NDArray[np.intp], shape: tuple[int, int]
 ) -> ColorImageFiles | None:
     if layout.color is None or layout.color_of is None:
         return None
-    of = np.where(shown == NONE, NONE, layout.color_of[shown])
-    used = np.unique(of[of != NONE])
+    color_indices = np.where(image_indices == NONE, NONE, layout.color_of[image_indices])
+    used = np.unique(color_indices[color_indices != NONE])
     if not any(_may_be_read(layout.root, layout.color[number]) for number in used):
         return None
-    return ColorImageFiles(layout.root, layout.color, of, shape)
+    return ColorImageFiles(layout.root, layout.color, color_indices, shape)
 
 
 def _may_be_read(root: Path, name: str) -> bool:
-    """Whether a color image is there, or is a fault to report when color is used."""
+    """Return whether a color image exists, or is a fault to report when color is used."""
     try:
         return is_listed(root, name)
     except InvalidFileError:
@@ -192,22 +199,22 @@ def _may_be_read(root: Path, name: str) -> bool:
 
 def _remarks(
     layout: Layout,
-    good: NDArray[np.bool_],
-    shown: NDArray[np.intp],
+    is_good: NDArray[np.bool_],
+    image_indices: NDArray[np.intp],
     frames: Frames,
     settings: DepthSettings,
 ) -> list[str]:
     remarks = []
     if layout.times is not None and not settings.frame_rate:
         remarks.append(f"Resampled to {frames.frame_rate:.4g} Hz")
-    if not good.all():
-        first = layout.depth[int(np.argmin(good))]
+    if not is_good.all():
+        first = layout.depth[int(np.argmin(is_good))]
         remarks.append(
-            f"{(~good).sum()} of {len(good)} pictures are missing or damaged, {first} first;"
-            " their frames are empty."
+            f"{(~is_good).sum()} of {len(is_good)} images are missing or damaged, {first}"
+            " first; their frames are empty."
         )
-    empty = int((frames.pictures == NONE).sum())
+    empty = int((frames.images == NONE).sum())
     if empty:
-        gap = int(np.argmax(frames.pictures == NONE))
-        remarks.append(f"{empty} frames have no picture, frame {gap} first; they are empty.")
+        gap = int(np.argmax(frames.images == NONE))
+        remarks.append(f"{empty} frames have no image, frame {gap} first; they are empty.")
     return remarks

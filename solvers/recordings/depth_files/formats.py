@@ -1,4 +1,4 @@
-"""Read what a depth camera recorded, without being told the format."""
+"""Read depth recordings of any supported format, detected from the content."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -8,20 +8,20 @@ from ...depth_scene import DepthRecording
 from ...errors import InvalidFileError, InvalidMotionError
 from ...files import open_regular, unreadable
 from ...progress import Progress, unwatched
-from ..containers import refuse_closed
-from .folder import layout_of, read_depth_folder
+from ..containers import check_folder_access
+from .camera_orientation import rotate_upright
+from .folder import detect_layout, read_depth_folder
 from .mat import is_depth_mat, read_depth_mat
 from .mkv import is_depth_mkv, read_depth_mkv
 from .npz import is_depth_npz, read_depth_npz
 from .raw import is_depth_raw, read_depth_raw
-from .sensor_hold import rotate_upright
-from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings, Held
+from .settings import DEFAULT_DEPTH_SETTINGS, CameraOrientation, DepthSettings
 
 HEAD = 4096
 
 
 class DepthReader(Protocol):
-    """What every reader of depth takes."""
+    """Signature of a reader of depth recordings."""
 
     def __call__(
         self,
@@ -35,7 +35,7 @@ class DepthReader(Protocol):
 
 
 class DepthFormat(NamedTuple):
-    """A format of depth that can be read, and how to tell it by path and first bytes."""
+    """A supported depth format, with its reader and its detection from path and first bytes."""
 
     name: str
     fits: Callable[[Path, bytes], bool]
@@ -48,7 +48,7 @@ DEPTH_FILES = (
     DepthFormat("MATLAB", is_depth_mat, read_depth_mat),
     DepthFormat("raw frames", is_depth_raw, read_depth_raw),
 )
-"""A new format is a new line here. The last has no mark of its own: it must stay the last."""
+"""Supported formats; add a line here for a new one. Raw frames have no signature: last."""
 
 FOLDER = DepthFormat(
     "folder of 16-bit PNG", lambda path, head: path.is_dir(), read_depth_folder
@@ -61,55 +61,55 @@ def read_depth(
     *,
     progress: Progress = unwatched,
 ) -> DepthRecording:
-    """Read a recording of depth of any format known here, told by what it holds.
+    """Read a depth recording of any supported format, detected from the content.
 
-    Only what describes the pictures is read now; each picture is when it is asked for.
+    Only the description is read now; each image is read on demand.
 
     Parameters
     ----------
     path : Path or str
         A file or a folder: see docs/formats/depth.md.
     settings : DepthSettings
-        What the files leave open. What is given counts more than what they say.
+        Values that the files do not store. Given settings override the file.
     progress : Progress
-        Told how much is read, and what was amiss.
+        Receives the fraction that is read, and messages on problems.
 
     Returns
     -------
     DepthRecording
-        May be pickled: another process then reads the same pictures.
+        It can be pickled, so that another process reads the same images.
 
     Raises
     ------
     InvalidFileError
-        What is there is missing, damaged, holds no depth, or does not tell the camera.
+        The file or folder is missing or damaged, has no depth, or lacks the camera.
     SolveCancelled
         Raised by `progress`.
     """
-    known = depth_format_of(path)
-    if known is None:
+    depth_format = detect_depth_format(path)
+    if depth_format is None:
         names = ", ".join(each.name for each in (*DEPTH_FILES, FOLDER))
         raise InvalidFileError(f"{path} holds no depth of a known format ({names}).")
     try:
-        recording = known.read(path, settings, progress=progress)
-    except InvalidMotionError as error:  # Such as a camera that sees nothing.
+        recording = depth_format.read(path, settings, progress=progress)
+    except InvalidMotionError as error:  # for example a camera without pixels
         raise InvalidFileError(f"{path}: {error}") from None
-    held = Held.UPRIGHT if known is FOLDER else settings.held
+    held = CameraOrientation.UPRIGHT if depth_format is FOLDER else settings.held
     return rotate_upright(recording, held, settings.mirrored)
 
 
-def depth_format_of(path: Path | str) -> DepthFormat | None:
-    """Tell which format of depth a file or folder has; None for none that is known.
+def detect_depth_format(path: Path | str) -> DepthFormat | None:
+    """Detect the depth format of a file or folder; None if it is not supported.
 
     Raises
     ------
     InvalidFileError
-        The file is missing, or cannot be read.
+        The file is missing or unreadable.
     """
     path = Path(path)
     if path.is_dir():
-        refuse_closed(path)
-        return FOLDER if layout_of(path) is not None else None
+        check_folder_access(path)
+        return FOLDER if detect_layout(path) is not None else None
     try:
         with open_regular(path) as file:
             head = file.read(HEAD)
@@ -117,4 +117,6 @@ def depth_format_of(path: Path | str) -> DepthFormat | None:
         raise InvalidFileError(f"There is no file {path}.") from None
     except OSError as error:
         raise unreadable(path, error) from None
-    return next((known for known in DEPTH_FILES if known.fits(path, head)), None)
+    return next(
+        (depth_format for depth_format in DEPTH_FILES if depth_format.fits(path, head)), None
+    )

@@ -1,4 +1,4 @@
-"""Which picture of a folder each frame has: by the numbers in names, or by time stamps."""
+"""Assign the images of a folder to frames, by the numbers in names or by time stamps."""
 
 import re
 from collections.abc import Sequence
@@ -12,20 +12,20 @@ from ..conventions import ConstantRate
 from .images import NONE
 
 MAX_LENGTH_RATIO = 4
-"""How many times as many frames as pictures are believed of the numbers in names."""
+"""Maximum number of frames per image that numbers in names may give."""
 MAX_TIME_OFFSET_S = 0.02
-"""Seconds that colour may be off depth, as in the scripts of TUM's set."""
+"""Maximum offset in seconds of color from depth, as in the scripts of the TUM data set."""
 
 
 class Frames(NamedTuple):
-    """Which picture each frame has, -1 for none, and how many frames come in a second."""
+    """Index of the image of each frame, -1 for none, and the frame rate in hertz."""
 
-    pictures: NDArray[np.intp]
+    images: NDArray[np.intp]
     frame_rate: float
 
 
 def sort_naturally(names: Sequence[str]) -> list[str]:
-    """Return names so that 9 comes before 10."""
+    """Sort names with 9 before 10."""
     return sorted(
         names,
         key=lambda name: [
@@ -37,45 +37,47 @@ def sort_naturally(names: Sequence[str]) -> list[str]:
 
 
 def frames_by_number(names: Sequence[str], frame_rate: float) -> Frames:
-    """Give each picture the frame that its name tells, where names are numbers.
+    """Assign images to frames by the numbers in their names.
 
-    They may begin anywhere and go in equal steps; a number that was left out is a frame without
-    a picture. Other names are frames one after the other.
+    Numbers may start anywhere and have equal steps; a skipped number is a frame without an
+    image. Images with other names are consecutive frames.
     """
     stems = [Path(name).stem for name in names]
-    each = np.arange(len(names))
-    found = [re.search(r"(\d{1,9})$", stem) for stem in stems]
-    parts = {stem[: match.start()] for stem, match in zip(stems, found, strict=True) if match}
-    if len(names) < 3 or None in found or len(parts) > 1 or "." in "".join(stems):
-        return Frames(each, frame_rate)
-    numbers = np.array([int(match[1]) for match in found if match])
+    indices = np.arange(len(names))
+    matches = [re.search(r"(\d{1,9})$", stem) for stem in stems]
+    prefixes = {
+        stem[: match.start()] for stem, match in zip(stems, matches, strict=True) if match
+    }
+    if len(names) < 3 or None in matches or len(prefixes) > 1 or "." in "".join(stems):
+        return Frames(indices, frame_rate)
+    numbers = np.array([int(match[1]) for match in matches if match])
     steps = np.diff(numbers)
     step = int(np.median(steps))
-    places = (numbers - numbers[0]) // max(step, 1)
+    positions = (numbers - numbers[0]) // max(step, 1)
     regular = step > 0 and not (steps % max(step, 1)).any() and (steps > 0).all()
-    if not regular or places[-1] >= MAX_LENGTH_RATIO * len(names):
-        return Frames(each, frame_rate)
-    pictures = np.full(places[-1] + 1, NONE)
-    pictures[places] = each
-    return Frames(pictures, frame_rate)
+    if not regular or positions[-1] >= MAX_LENGTH_RATIO * len(names):
+        return Frames(indices, frame_rate)
+    images = np.full(positions[-1] + 1, NONE)
+    images[positions] = indices
+    return Frames(images, frame_rate)
 
 
 def frames_by_time(path: Path, times: NDArray[np.float64]) -> Frames:
-    """Give each moment of a constant rate the picture nearest to it, up to half a frame away.
+    """Assign to each frame of a constant rate the nearest image, up to half a frame away.
 
-    Raises InvalidFileError where the time stamps make no sense.
+    Raises InvalidFileError if the time stamps are invalid.
     """
-    clock = ConstantRate(path, times)
-    return Frames(clock.nearest(), clock.frame_rate)
+    resampler = ConstantRate(path, times)
+    return Frames(resampler.nearest(), resampler.frame_rate)
 
 
 def match_times(times: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Return which of the others comes with each time, -1 for none."""
+    """Return the index of the nearest other time for each time, -1 for none."""
     if not len(others):
         return np.full(len(times), NONE)
     order = np.argsort(others)
     after = np.clip(np.searchsorted(others[order], times), 1, max(len(others) - 1, 1))
     pair = order[np.stack([after - 1, np.minimum(after, len(others) - 1)])]
-    apart = np.abs(others[pair] - times)
-    nearest = np.take_along_axis(pair, apart.argmin(axis=0)[np.newaxis], axis=0)[0]
-    return np.asarray(np.where(apart.min(axis=0) <= MAX_TIME_OFFSET_S, nearest, NONE))
+    distance = np.abs(others[pair] - times)
+    nearest = np.take_along_axis(pair, distance.argmin(axis=0)[np.newaxis], axis=0)[0]
+    return np.asarray(np.where(distance.min(axis=0) <= MAX_TIME_OFFSET_S, nearest, NONE))

@@ -1,4 +1,4 @@
-"""Colours that the depth pixels of an Azure Kinect see."""
+"""Align the color images of an Azure Kinect with its depth pixels."""
 
 import io
 import struct
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...depth_scene import ColorImage, DepthImage
 from ...errors import InvalidFileError
 from ...files import DAMAGE
-from ..containers import PlainBytes, Track, bounded_image, largest_color
+from ..containers import PlainBytes, Track, max_color_size, open_bounded_image
 from .images import NONE
 from .k4a_calibration import K4aCamera, color_camera
 
@@ -25,59 +25,63 @@ class _ReadDepth(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class ColorBlocks:
-    """Reads colours and brings them to the pixels of depth; `DepthRecording.read_color`.
+    """Read color aligned with the depth pixels; serves as `DepthRecording.read_color`.
 
     Attributes
     ----------
     path : Path
-    places, sizes : int arrays, shape (n_frames,), bytes
-        Where each picture of colour stands; -1: there is none, and the frame is black.
+    offsets, sizes : int arrays, shape (n_frames,), bytes
+        Position of each color image in the file; -1: none, and the frame is black.
     kind : bytes
         MJPG or BGRA.
-    lens, eye : K4aCamera
-        Of depth and of colour.
+    depth_lens, color_lens : K4aCamera
     read_depth : callable
-        Takes a frame and returns its depth.
+        Returns the depth of a frame.
     """
 
     path: Path
-    places: NDArray[np.int64]
+    offsets: NDArray[np.int64]
     sizes: NDArray[np.int64]
     kind: bytes
-    lens: K4aCamera
-    eye: K4aCamera
+    depth_lens: K4aCamera
+    color_lens: K4aCamera
     read_depth: _ReadDepth
 
     def __call__(self, index: int) -> ColorImage:
-        """Return the colours (height, width, 3) of a frame; black where depth is not known."""
+        """Return the colors (height, width, 3) of a frame; black where depth is missing."""
         depth = self.read_depth(index)
         colors = np.zeros((*depth.shape, 3), np.uint8)
-        place, size = int(self.places[index]), int(self.sizes[index])
-        if place == NONE:
+        offset, size = int(self.offsets[index]), int(self.sizes[index])
+        if offset == NONE:
             return colors
-        picture = self._picture(PlainBytes(self.path, place, size).read(0, size))
-        points = self.lens.camera.back_project(depth) @ self.eye.turn.T + self.eye.shift
+        image_pixels = self._decode(PlainBytes(self.path, offset, size).read(0, size))
+        points = (
+            self.depth_lens.camera.back_project(depth) @ self.color_lens.rotation.T
+            + self.color_lens.translation
+        )
         points[depth == 0.0] = np.nan
-        column, row = np.moveaxis(self.eye.project(points), -1, 0)
+        column, row = np.moveaxis(self.color_lens.project(points), -1, 0)
         column, row = (np.nan_to_num(each, nan=-1.0).round() for each in (column, row))
-        inside = (column >= 0) & (column < picture.shape[1])
-        inside &= (row >= 0) & (row < picture.shape[0])
-        colors[inside] = picture[row[inside].astype(int), column[inside].astype(int)]
+        inside = (column >= 0) & (column < image_pixels.shape[1])
+        inside &= (row >= 0) & (row < image_pixels.shape[0])
+        colors[inside] = image_pixels[row[inside].astype(int), column[inside].astype(int)]
         return colors
 
-    def _picture(self, content: bytes) -> ColorImage:
-        camera = self.eye.camera
+    def _decode(self, content: bytes) -> ColorImage:
+        camera = self.color_lens.camera
         if self.kind == BGRA:
             pixels = np.frombuffer(content, np.uint8)
             if pixels.size != 4 * camera.width * camera.height:
-                raise InvalidFileError(f"{self.path} has a damaged picture of colour.")
+                raise InvalidFileError(f"{self.path} has a damaged color image.")
             return pixels.reshape(camera.height, camera.width, 4)[..., 2::-1]
         try:
-            largest = camera.width, camera.height
-            with bounded_image(self.path, io.BytesIO(content), largest, ("JPEG",)) as image:
+            max_size = camera.width, camera.height
+            with open_bounded_image(
+                self.path, io.BytesIO(content), max_size, ("JPEG",)
+            ) as image:
                 return np.asarray(image.convert("RGB"), np.uint8)
         except DAMAGE:
-            raise InvalidFileError(f"{self.path} has a damaged picture of colour.") from None
+            raise InvalidFileError(f"{self.path} has a damaged color image.") from None
 
 
 def color_blocks(
@@ -85,25 +89,31 @@ def color_blocks(
     calibration: bytes,
     track: Track,
     kind: bytes,
-    of: NDArray[np.intp],
-    lens: K4aCamera,
+    color_indices: NDArray[np.intp],
+    depth_lens: K4aCamera,
     read_depth: _ReadDepth,
 ) -> ColorBlocks | None:
-    """Return the reader of a track of colour, or None for kinds that are not read (NV12, YUY2).
+    """Return the reader of a color track; None for unsupported formats (NV12, YUY2).
 
-    Nor is color with more pixels than `largest_color` allows beside the depth.
+    Color with more pixels than `max_color_size` allows for the depth is not supported either.
 
-    `of` is which picture of the track each frame has, -1 for none.
+    `color_indices` is the index of the image of each frame in the track, -1 for none.
     """
     if kind not in {JPEG, BGRA}:
         return None
     width, height = struct.unpack_from("<ii", track.private, 4)
-    most = largest_color((lens.camera.height, lens.camera.width))
-    if not (0 < width <= most[0] and 0 < abs(height) <= most[1]):
+    max_size = max_color_size((depth_lens.camera.height, depth_lens.camera.width))
+    if not (0 < width <= max_size[0] and 0 < abs(height) <= max_size[1]):
         return None
-    eye = color_camera(path, calibration, width, abs(height))
-    places = np.frombuffer(track.places, np.int64)
+    color_lens = color_camera(path, calibration, width, abs(height))
+    offsets = np.frombuffer(track.offsets, np.int64)
     sizes = np.frombuffer(track.sizes, np.int64)
     return ColorBlocks(
-        path, np.where(of == NONE, NONE, places[of]), sizes[of], kind, lens, eye, read_depth
+        path,
+        np.where(color_indices == NONE, NONE, offsets[color_indices]),
+        sizes[color_indices],
+        kind,
+        depth_lens,
+        color_lens,
+        read_depth,
     )

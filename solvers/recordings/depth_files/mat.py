@@ -1,4 +1,4 @@
-"""Read depth that is kept in MATLAB files, as in UTD-MHAD."""
+"""Read depth images from MATLAB files, as in UTD-MHAD."""
 
 from pathlib import Path
 
@@ -8,15 +8,15 @@ from ...progress import Progress, unwatched
 from ..containers import MatlabArray, is_matlab, matlab_arrays
 from ..conventions import DEFAULT_FRAME_RATE
 from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
-from .stack import MILLIMETRE, DepthStack, check_size
+from .stack import MILLIMETER, DepthStack, check_size
 
 NAMES = ("d_depth", "depth")
 KINECT_V1 = Camera(285.63, 285.63, 159.0, 120.0, 320, 240)
-"""UTD-MHAD's, of the picture turned right: u = 160 + 285.63 x / z of the mirrored one."""
+"""Camera of UTD-MHAD after mirroring its images: u = 160 + 285.63 x / z in the file."""
 
 
 def is_depth_mat(path: Path, head: bytes) -> bool:
-    """Tell whether a file is MATLAB's and has an array of depth."""
+    """Return whether a file is MATLAB 5 and has a depth array."""
     if not is_matlab(head):
         return False
     try:
@@ -31,11 +31,11 @@ def read_depth_mat(
     *,
     progress: Progress = unwatched,
 ) -> DepthRecording:
-    """Read a MATLAB file with an array `d_depth` (rows, columns, frames), millimetres [1]_.
+    """Read a MATLAB file with an array `d_depth` (rows, columns, frames), millimeters [1]_.
 
-    The Kinect's own software showed the actor as a mirror does: the right hand on the right.
-    So do the pictures in UTD-MHAD; they are turned here, or left would be right. The camera is
-    that of the set, a Kinect v1 at 320 x 240, unless another one is given.
+    The Kinect software mirrored the actor: the right hand is on the right. The images of
+    UTD-MHAD are mirrored too and are flipped here. The camera is that of the data set, a Kinect
+    v1 at 320 x 240, unless the settings override it.
 
     Parameters and errors are those of `read_depth`.
 
@@ -49,22 +49,22 @@ def read_depth_mat(
     depth = _depth(path)
     if depth is None:
         raise InvalidFileError(
-            f"{path} has no array of depth; it should be called {' or '.join(NAMES)} and have"
-            " rows, columns and frames."
+            f"{path} has no depth array; it must be called {' or '.join(NAMES)} and have rows,"
+            " columns and frames."
         )
     height, width, n_frames = depth.shape
     check_size(path, height, width)
     given = settings.camera(width, height)
     if given is None and (width, height) != (KINECT_V1.width, KINECT_V1.height):
         raise InvalidFileError(
-            f"{path} has pictures of {width} x {height} pixels and does not say through which"
-            " camera. Give its focal lengths fx and fy in pixels."
+            f"{path} has images of {width} x {height} pixels and does not state the camera. Set"
+            " its focal lengths fx and fy in pixels."
         )
     stack = DepthStack(
         depth.content,
         depth.kind,
         (height, width),
-        settings.scale or MILLIMETRE,
+        settings.scale or MILLIMETER,
         by_column=True,
         mirrored=given is None,
     )

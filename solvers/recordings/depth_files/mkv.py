@@ -1,4 +1,4 @@
-"""Read recordings of the Azure Kinect and the Femto: Matroska with raw depth in it."""
+"""Read recordings of the Azure Kinect and the Femto: Matroska files with raw depth."""
 
 import struct
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from .images import NONE
 from .k4a_calibration import K4aCamera, depth_camera
 from .k4a_color import ColorBlocks, color_blocks
 from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
-from .stack import MILLIMETRE, check_size
+from .stack import MILLIMETER, check_size
 
 VIDEO = "V_MS/VFW/FOURCC"
 RAW = b"b16g"
@@ -29,42 +29,42 @@ NANOSECOND = 1e-9
 
 
 def is_depth_mkv(path: Path, head: bytes) -> bool:
-    """Tell from the first bytes; other videos are found out when they are read."""
+    """Return whether a file is Matroska, from its first bytes; other videos fail on reading."""
     return is_matroska(head)
 
 
 @dataclass(frozen=True, eq=False)
 class DepthBlocks:
-    """Reads raw pictures in a Matroska file; to be `DepthRecording.read_depth`.
+    """Read raw images in a Matroska file; serves as `DepthRecording.read_depth`.
 
     Attributes
     ----------
     path : Path
-    places : int array, shape (n_frames,), bytes
-        Where each picture stands; -1: there is none, and the frame is empty.
+    offsets : int array, shape (n_frames,), bytes
+        Position of each image in the file; -1: none, and the frame is empty.
     shape : (int, int)
-    metres : float
-        Metres in one unit of a pixel.
-    straight : int array, shape (height * width,), or None
-        Of which pixel of the distorted picture each pixel sees the depth; -1: none.
+    meters : float
+        Meters per unit of a pixel.
+    source_pixels : int array, shape (height * width,), or None
+        Pixel of the distorted image in the direction of each pixel; -1: none.
     """
 
     path: Path
-    places: NDArray[np.int64]
+    offsets: NDArray[np.int64]
     shape: tuple[int, int]
-    metres: float
-    straight: NDArray[np.int32] | None
+    meters: float
+    source_pixels: NDArray[np.int32] | None
 
     def __call__(self, index: int) -> DepthImage:
-        """Return the depth of a frame, metres; 0: no reading."""
-        place = int(self.places[index])
-        if place == NONE:
+        """Return the depth of a frame, meters; 0: no reading."""
+        offset = int(self.offsets[index])
+        if offset == NONE:
             return np.zeros(self.shape, np.float32)
         size = self.shape[0] * self.shape[1] * PIXEL_BYTES
-        pixels = np.frombuffer(PlainBytes(self.path, place, size).read(0, size), ">u2")
-        if self.straight is not None:
-            pixels = np.where(self.straight == NONE, 0, pixels[self.straight])
-        return (pixels.reshape(self.shape) * self.metres).astype(np.float32)
+        pixels = np.frombuffer(PlainBytes(self.path, offset, size).read(0, size), ">u2")
+        if self.source_pixels is not None:
+            pixels = np.where(self.source_pixels == NONE, 0, pixels[self.source_pixels])
+        return (pixels.reshape(self.shape) * self.meters).astype(np.float32)
 
 
 def read_depth_mkv(
@@ -73,46 +73,49 @@ def read_depth_mkv(
     *,
     progress: Progress = unwatched,
 ) -> DepthRecording:
-    """Read an `.mkv` of k4arecorder or of Orbbec's: 16-bit depth and the cameras' calibration.
+    """Read an `.mkv` of k4arecorder or Orbbec: 16-bit depth and the calibration of the cameras.
 
-    The lens bends the picture; each pixel takes the depth of the one that saw in its direction,
-    so that a camera without distortion remains. Colour is brought to the pixels of depth where
-    it was recorded as MJPG or BGRA.
+    Lens distortion is removed: each pixel gets the depth of the distorted pixel in its
+    direction. Color that was recorded as MJPG or BGRA is aligned with the depth pixels.
 
-    Parameters and errors are those of `read_depth`. A file that was cut short is read up to
-    there. Pictures that were lost are frames without a reading.
+    Parameters and errors are those of `read_depth`. A truncated file is read up to its end.
+    Dropped images become empty frames.
     """
     path = Path(path)
-    found = index_matroska(path, _is_video, within(progress, 0.0, 0.9))
-    track, (width, height) = _depth_track(path, found)
+    index = index_matroska(path, _is_video, within(progress, 0.0, 0.9))
+    track, (width, height) = _depth_track(path, index)
     check_size(path, height, width)
-    lens = _lens(path, found, settings, width, height)
+    lens = _lens(path, index, settings, width, height)
     camera = lens.camera if lens else settings.camera(width, height)
     if camera is None:
         raise InvalidFileError(
-            f"{path} has no calibration of the camera in it. Give the camera's focal lengths fx"
-            " and fy in pixels."
+            f"{path} has no calibration of the camera. Set the camera's focal lengths fx and"
+            " fy in pixels."
         )
     frames = _frames(path, track, settings)
-    good = np.frombuffer(track.sizes, np.int64) == width * height * PIXEL_BYTES
-    if not good.any():
+    is_good = np.frombuffer(track.sizes, np.int64) == width * height * PIXEL_BYTES
+    if not is_good.any():
         raise InvalidFileError(
-            f"{path} has no picture of {width} x {height} pixels, as its depth should have: it"
-            " is damaged. Copy or record it again."
+            f"{path} has no image of {width} x {height} pixels, the size of its depth: it is"
+            " damaged. Copy or record it again."
         )
-    shown = np.where((frames.pictures != NONE) & good[frames.pictures], frames.pictures, NONE)
-    places = np.where(shown == NONE, NONE, np.frombuffer(track.places, np.int64)[shown])
-    metres = settings.scale or MILLIMETRE
-    straight = None if lens is None else _undistort_pixels(lens)
-    read_depth = DepthBlocks(path, places, (height, width), metres, straight)
+    image_indices = np.where(
+        (frames.images != NONE) & is_good[frames.images], frames.images, NONE
+    )
+    offsets = np.where(
+        image_indices == NONE, NONE, np.frombuffer(track.offsets, np.int64)[image_indices]
+    )
+    meters = settings.scale or MILLIMETER
+    source_pixels = None if lens is None else _undistort_pixels(lens)
+    read_depth = DepthBlocks(path, offsets, (height, width), meters, source_pixels)
     recording = DepthRecording(
         camera,
-        len(shown),
+        len(image_indices),
         frames.frame_rate,
         read_depth,
-        _color(path, found, lens, track, shown, read_depth),
+        _color(path, index, lens, track, image_indices, read_depth),
     )
-    for remark in _remarks(found, good, shown):
+    for remark in _remarks(index, is_good, image_indices):
         progress(1.0, remark)
     progress(1.0, "Reading")
     return recording
@@ -122,11 +125,11 @@ def _is_video(track: Track) -> bool:
     return track.codec == VIDEO
 
 
-def _depth_track(path: Path, found: Matroska) -> tuple[Track, tuple[int, int]]:
-    uid = found.tags.get("K4A_DEPTH_TRACK", "")
-    raw = [track for track in found.tracks.values() if _fourcc(track) == RAW]
+def _depth_track(path: Path, index: Matroska) -> tuple[Track, tuple[int, int]]:
+    uid = index.tags.get("K4A_DEPTH_TRACK", "")
+    raw = [track for track in index.tracks.values() if _fourcc(track) == RAW]
     named = [track for track in raw if track.name == DEPTH or str(track.uid) == uid]
-    if not named or not named[0].places:
+    if not named or not named[0].offsets:
         raise InvalidFileError(
             f"{path} is a video without raw depth (a track called DEPTH with frames). Record it"
             " with k4arecorder, in another depth mode than PASSIVE_IR."
@@ -143,64 +146,66 @@ def _fourcc(track: Track) -> bytes:
 
 
 def _lens(
-    path: Path, found: Matroska, settings: DepthSettings, width: int, height: int
+    path: Path, index: Matroska, settings: DepthSettings, width: int, height: int
 ) -> K4aCamera | None:
     if settings.fx:
         return None
-    name = found.tags.get("K4A_CALIBRATION_FILE", CALIBRATION)
-    content = found.files.get(name) or found.files.get(CALIBRATION)
+    name = index.tags.get("K4A_CALIBRATION_FILE", CALIBRATION)
+    content = index.files.get(name) or index.files.get(CALIBRATION)
     return None if content is None else depth_camera(path, content, width, height)
 
 
 def _undistort_pixels(lens: K4aCamera) -> NDArray[np.int32]:
     camera = lens.camera
-    seen = lens.project(camera.rays()).reshape(-1, 2)
-    column, row = np.nan_to_num(seen, nan=-1.0).round().astype(np.int64).T
+    columns_and_rows = lens.project(camera.rays()).reshape(-1, 2)
+    column, row = np.nan_to_num(columns_and_rows, nan=-1.0).round().astype(np.int64).T
     inside = (column >= 0) & (column < camera.width) & (row >= 0) & (row < camera.height)
     return np.where(inside, row * camera.width + column, NONE).astype(np.int32)
 
 
 def _frames(path: Path, track: Track, settings: DepthSettings) -> Frames:
-    n_pictures = len(track.times)
-    if settings.frame_rate or n_pictures < 2:
-        return Frames(np.arange(n_pictures), settings.frame_rate or DEFAULT_FRAME_RATE)
+    n_images = len(track.times)
+    if settings.frame_rate or n_images < 2:
+        return Frames(np.arange(n_images), settings.frame_rate or DEFAULT_FRAME_RATE)
     return frames_by_time(path, np.frombuffer(track.times, np.int64) * NANOSECOND)
 
 
 def _color(
     path: Path,
-    found: Matroska,
+    index: Matroska,
     lens: K4aCamera | None,
     depth: Track,
-    shown: NDArray[np.intp],
+    image_indices: NDArray[np.intp],
     read_depth: DepthBlocks,
 ) -> ColorBlocks | None:
-    uid = found.tags.get("K4A_COLOR_TRACK", "")
+    uid = index.tags.get("K4A_COLOR_TRACK", "")
     tracks = [
         track
-        for track in found.tracks.values()
-        if track.places and (track.name == COLOR or str(track.uid) == uid) and track != depth
+        for track in index.tracks.values()
+        if track.offsets and (track.name == COLOR or str(track.uid) == uid) and track != depth
     ]
-    name = found.tags.get("K4A_CALIBRATION_FILE", CALIBRATION)
-    content = found.files.get(name) or found.files.get(CALIBRATION)
+    name = index.tags.get("K4A_CALIBRATION_FILE", CALIBRATION)
+    content = index.files.get(name) or index.files.get(CALIBRATION)
     if lens is None or not tracks or content is None:
         return None
     times = [np.frombuffer(each.times, np.int64) * NANOSECOND for each in (depth, tracks[0])]
-    of = match_times(*times)
-    of = np.where(shown == NONE, NONE, of[shown])
-    return color_blocks(path, content, tracks[0], _fourcc(tracks[0]), of, lens, read_depth)
+    color_indices = match_times(*times)
+    color_indices = np.where(image_indices == NONE, NONE, color_indices[image_indices])
+    return color_blocks(
+        path, content, tracks[0], _fourcc(tracks[0]), color_indices, lens, read_depth
+    )
 
 
-def _remarks(found: Matroska, good: NDArray[np.bool_], shown: NDArray[np.intp]) -> list[str]:
+def _remarks(
+    index: Matroska, is_good: NDArray[np.bool_], image_indices: NDArray[np.intp]
+) -> list[str]:
     remarks = []
-    if not found.whole:
-        remarks.append("The file is cut short; what comes before is read.")
-    if not good.all():
-        remarks.append(f"{(~good).sum()} pictures are damaged; their frames are empty.")
-    n_empty = int((shown == NONE).sum())
-    if n_empty and good.all():
-        first = int(np.argmax(shown == NONE))
-        remarks.append(
-            f"{n_empty} frames have no picture, frame {first} first; they are empty."
-        )
+    if not index.is_complete:
+        remarks.append("The file is cut short; the frames before the end are read.")
+    if not is_good.all():
+        remarks.append(f"{(~is_good).sum()} images are damaged; their frames are empty.")
+    n_empty = int((image_indices == NONE).sum())
+    if n_empty and is_good.all():
+        first = int(np.argmax(image_indices == NONE))
+        remarks.append(f"{n_empty} frames have no image, frame {first} first; they are empty.")
     return remarks

@@ -1,4 +1,4 @@
-"""Read depth that is kept in an archive of NumPy's: `depth` and the camera's numbers."""
+"""Read depth images from NumPy archives with `depth` and the camera."""
 
 import struct
 import zipfile
@@ -25,16 +25,16 @@ from ..containers import (
 )
 from ..conventions import DEFAULT_FRAME_RATE
 from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
-from .stack import MILLIMETRE, ColorStack, DepthStack, check_size
+from .stack import MILLIMETER, ColorStack, DepthStack, check_size
 
 INTRINSICS = ("fx", "fy", "cx", "cy")
 LOCAL_HEADER = 30
 WITHOUT_HEADER = -15
-"""What zlib calls the window of packed bytes without its own header."""
+"""`wbits` of zlib for compressed bytes without a zlib header."""
 
 
 class _Member(NamedTuple):
-    """An array in an archive: the bytes of its numbers, and how they are laid out."""
+    """An array in an archive: its bytes, shape and type."""
 
     content: StoredBytes
     shape: tuple[int, ...]
@@ -42,7 +42,7 @@ class _Member(NamedTuple):
 
 
 def is_depth_npz(path: Path, head: bytes) -> bool:
-    """Tell whether a file is an archive with an array called depth."""
+    """Return whether a file is an archive with an array called depth."""
     if head[:4] != b"PK\x03\x04":
         return False
     try:
@@ -58,13 +58,13 @@ def read_depth_npz(
     *,
     progress: Progress = unwatched,
 ) -> DepthRecording:
-    """Read an `.npz` archive of depth pictures, each when it is asked for.
+    """Read an `.npz` archive of depth images, each on demand.
 
     Keys: `depth` (frames, height, width), `fx`, `fy`, `cx`, `cy` in pixels, `frame_rate` in
-    hertz (30 without it), and `color` (frames, height, width, 3) uint8 if it was recorded.
+    hertz (default 30), and optionally `color` (frames, height, width, 3) uint8.
 
-    Parameters and errors are those of `read_depth`. Whole numbers are millimetres and others
-    metres, unless a scale is given.
+    Parameters and errors are those of `read_depth`. Integers are millimeters and floats
+    meters, unless a scale is given.
     """
     path = Path(path)
     depth = _member(path, "depth")
@@ -75,8 +75,10 @@ def read_depth_npz(
         )
     n_frames, height, width = depth.shape
     check_size(path, height, width)
-    usual = MILLIMETRE if depth.kind.kind in "iu" else 1.0
-    stack = DepthStack(depth.content, depth.kind.str, (height, width), settings.scale or usual)
+    default_scale = MILLIMETER if depth.kind.kind in "iu" else 1.0
+    stack = DepthStack(
+        depth.content, depth.kind.str, (height, width), settings.scale or default_scale
+    )
     progress(1.0, "Reading")
     return DepthRecording(
         _camera(path, height, width, settings),
@@ -88,7 +90,7 @@ def read_depth_npz(
 
 
 def _member(path: Path, name: str) -> _Member:
-    """Find an array in the archive without reading its numbers."""
+    """Find an array in the archive without reading its values."""
     try:
         with open_regular(path) as file, zipfile.ZipFile(file) as archive:
             member = archive.getinfo(f"{name}.npy")
@@ -111,7 +113,7 @@ def _member(path: Path, name: str) -> _Member:
 
 
 def _compare_checksum(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> None:
-    """Raise BadZipFile if the checksum of a member, which stands at its end, is another."""
+    """Raise BadZipFile if the checksum at the end of a member does not match."""
     with archive.open(member) as file:
         while file.read(CHUNK):
             pass
@@ -125,17 +127,19 @@ def _content(path: Path, member: zipfile.ZipInfo, skipped: int, size: int) -> St
     start = member.header_offset + LOCAL_HEADER + name + extra
     if member.compress_type == zipfile.ZIP_STORED:
         return PlainBytes(path, start + skipped, size)
-    packed = PackedBytes(path, start, member.compress_size, member.file_size, WITHOUT_HEADER)
-    return ByteSlice(packed, skipped, size)
+    compressed = PackedBytes(
+        path, start, member.compress_size, member.file_size, WITHOUT_HEADER
+    )
+    return ByteSlice(compressed, skipped, size)
 
 
 def _camera(path: Path, height: int, width: int, settings: DepthSettings) -> Camera:
-    given = settings.camera(width, height)
-    if given is not None and not _has(path, INTRINSICS):
-        return given
+    override = settings.camera(width, height)
+    if override is not None and not _has(path, INTRINSICS):
+        return override
     fx, fy, cx, cy = (_number(path, name) for name in INTRINSICS)
-    told = Camera(fx, fy, cx, cy, width, height)
-    return settings.camera(width, height, told) or told
+    stored = Camera(fx, fy, cx, cy, width, height)
+    return settings.camera(width, height, stored) or stored
 
 
 def _has(path: Path, names: tuple[str, ...]) -> bool:
@@ -160,7 +164,7 @@ def _color(path: Path, shape: tuple[int, ...]) -> ColorStack | None:
     color = _member(path, "color")
     if color.shape != (*shape, 3) or color.kind != np.uint8:
         raise InvalidFileError(
-            f"{path}: its color has the shape {color.shape} of {color.kind}; beside this depth"
-            f" it must be {(*shape, 3)} of uint8."
+            f"{path}: its color has the shape {color.shape} of {color.kind}; for this depth it"
+            f" must be {(*shape, 3)} of uint8."
         )
     return ColorStack(color.content, (shape[1], shape[2]))

@@ -1,4 +1,4 @@
-"""Read raw depth: pixels of 16 bits, low byte first, and nothing else, as skeltrack has it."""
+"""Read raw depth: 16-bit little-endian pixels without a header, as in skeltrack."""
 
 from pathlib import Path
 
@@ -11,29 +11,29 @@ from ...progress import Progress, unwatched
 from ..containers import PlainBytes
 from ..conventions import DEFAULT_FRAME_RATE
 from .settings import DEFAULT_DEPTH_SETTINGS, DepthSettings
-from .stack import MILLIMETRE, DepthStack, check_size
+from .stack import MILLIMETER, DepthStack, check_size
 
 KINECT_V1 = Camera(571.26, 571.26, 319.5, 239.5, 640, 480)
 PIXEL = 2
 MAX_DEPTH_MM = 12_000
-"""Millimetres, of what a Kinect sees."""
+"""Maximum distance of a Kinect's reading, millimeters."""
 MIN_OBSERVED_FRACTION, MAX_STEP_MM = 0.02, 40
-"""Share of pixels that see something, and millimetres between neighbours, usually."""
+"""Minimum fraction of pixels with a reading, and maximum median step between neighbors, mm."""
 
 
 def is_depth_raw(path: Path, head: bytes) -> bool:
-    """Tell by the size, and by neighbours that are about equally far, as on surfaces."""
+    """Return whether a file is raw depth, by its size and by smooth depth across neighbors."""
     frame = KINECT_V1.width * KINECT_V1.height * PIXEL
     size = path.stat().st_size
     if size == 0 or size % frame:
         return False
-    picture = np.frombuffer(PlainBytes(path, 0, frame).read(0, frame), "<u2").astype(np.int32)
-    picture = picture.reshape(KINECT_V1.height, KINECT_V1.width)
-    both = (picture[:, 1:] > 0) & (picture[:, :-1] > 0)
-    if picture.max() > MAX_DEPTH_MM or both.mean() < MIN_OBSERVED_FRACTION:
+    image = np.frombuffer(PlainBytes(path, 0, frame).read(0, frame), "<u2").astype(np.int32)
+    image = image.reshape(KINECT_V1.height, KINECT_V1.width)
+    is_pair = (image[:, 1:] > 0) & (image[:, :-1] > 0)
+    if image.max() > MAX_DEPTH_MM or is_pair.mean() < MIN_OBSERVED_FRACTION:
         return False
-    steps = np.abs(np.diff(picture, axis=1))[both]
-    return bool(np.median(steps) <= MAX_STEP_MM and picture.std() > MAX_STEP_MM)
+    steps = np.abs(np.diff(image, axis=1))[is_pair]
+    return bool(np.median(steps) <= MAX_STEP_MM and image.std() > MAX_STEP_MM)
 
 
 def read_depth_raw(
@@ -42,20 +42,22 @@ def read_depth_raw(
     *,
     progress: Progress = unwatched,
 ) -> DepthRecording:
-    """Read frames of unsigned 16-bit pixels, low byte first, row by row, without any header.
+    """Read frames of unsigned 16-bit little-endian pixels in row-major order, without a header.
 
-    Millimetres of a Kinect v1, 640 x 480, 30 Hz, unless said otherwise.
+    By default they are millimeters of a Kinect v1, 640 x 480, 30 Hz.
 
     Parameters and errors are those of `read_depth`.
     """
     path = Path(path)
     width, height = settings.width or KINECT_V1.width, settings.height or KINECT_V1.height
-    known = KINECT_V1 if (width, height) == (KINECT_V1.width, KINECT_V1.height) else None
-    camera = settings.camera(width, height, known)
+    default_camera = (
+        KINECT_V1 if (width, height) == (KINECT_V1.width, KINECT_V1.height) else None
+    )
+    camera = settings.camera(width, height, default_camera)
     if camera is None:
         raise InvalidFileError(
-            f"{path}: nobody knows through which camera pictures of {width} x {height} pixels"
-            " were taken. Give its focal lengths fx and fy in pixels."
+            f"{path} has images of {width} x {height} pixels from an unknown camera. Set its"
+            " focal lengths fx and fy in pixels."
         )
     check_size(path, camera.height, camera.width)
     try:
@@ -65,14 +67,14 @@ def read_depth_raw(
     n_frames, rest = divmod(size, camera.width * camera.height * PIXEL)
     if rest or not n_frames:
         raise InvalidFileError(
-            f"{path} has {size} bytes, which are no whole pictures of {camera.width} x"
+            f"{path} has {size} bytes, which is not a multiple of an image of {camera.width} x"
             f" {camera.height} pixels: it is cut short, or the camera is another one."
         )
     stack = DepthStack(
         PlainBytes(path, 0, size),
         "<u2",
         (camera.height, camera.width),
-        settings.scale or MILLIMETRE,
+        settings.scale or MILLIMETER,
     )
     progress(1.0, "Reading")
     return DepthRecording(camera, n_frames, settings.frame_rate or DEFAULT_FRAME_RATE, stack)

@@ -6,7 +6,7 @@ from ...depth_scene import Camera
 from ...settings import Choice, Settings, setting
 
 
-class Held(Choice):
+class CameraOrientation(Choice):
     """How the camera was held when it recorded."""
 
     KNOWN = (
@@ -14,17 +14,17 @@ class Held(Choice):
         "Read the orientation from the file; upright where it has none",
         "From File",
     )
-    """As the file says; upright if it does not."""
+    """Orientation stored in the file; upright if there is none."""
     UPRIGHT = "upright", "The camera stood upright"
     LEFT = (
         "left",
-        "The camera was turned left; heads are at the left of the picture",
+        "The camera was turned left; heads are at the left of the image",
         "Turned Left",
     )
-    """Turned left: the top of the picture is what was at the left."""
+    """Turned left: the left of the scene is at the top of the image."""
     RIGHT = (
         "right",
-        "The camera was turned right; heads are at the right of the picture",
+        "The camera was turned right; heads are at the right of the image",
         "Turned Right",
     )
     UPSIDE_DOWN = "upside down", "The camera hung upside down"
@@ -48,28 +48,28 @@ class DepthSettings(Settings):
     )  # fmt: skip
     cx: float = setting(
         0.0,
-        "Column where the camera axis meets the picture; 0 reads the file or uses the middle",
+        "Column where the camera axis meets the image; 0 reads the file or uses the middle",
         unit="pixels", minimum=0.0, maximum=1e5,
     )  # fmt: skip
     cy: float = setting(
-        0.0, "Row where the camera axis meets the picture; 0 reads the file or uses the middle",
+        0.0, "Row where the camera axis meets the image; 0 reads the file or uses the middle",
         unit="pixels", minimum=0.0, maximum=1e5,
     )  # fmt: skip
     width: int = setting(
-        0, "Picture width of raw frames; 0 uses that of a Kinect", unit="pixels", minimum=0,
+        0, "Image width of raw frames; 0 uses that of a Kinect", unit="pixels", minimum=0,
         maximum=4096, advanced=True,
     )  # fmt: skip
     height: int = setting(
-        0, "Picture height of raw frames; 0 uses that of a Kinect", unit="pixels", minimum=0,
+        0, "Image height of raw frames; 0 uses that of a Kinect", unit="pixels", minimum=0,
         maximum=4096, advanced=True,
     )  # fmt: skip
     frame_rate: float = setting(
-        0.0, "Pictures per second; 0 reads the file or uses 30", unit="Hz", minimum=0.0,
+        0.0, "Images per second; 0 reads the file or uses 30", unit="Hz", minimum=0.0,
         maximum=10_000.0,
     )  # fmt: skip
-    held: Held = setting(Held.KNOWN, "How the camera was held")
+    held: CameraOrientation = setting(CameraOrientation.KNOWN, "How the camera was held")
     mirrored: bool = setting(
-        False, "The pictures are mirrored: the actor's right hand is on the right"
+        False, "The images are mirrored: the actor's right hand is on the right"
     )
     least_confidence: int = setting(
         1, "Ignore readings of lower recorded confidence: 0 low, 1 medium, 2 high", minimum=0,

@@ -1,4 +1,4 @@
-"""Joints of depth cameras and pose estimators."""
+"""Read and write joints of depth cameras and pose estimators."""
 
 from .azure_csv import is_azure_csv, read_azure_csv
 from .azure_json import is_azure_json, read_azure_json

@@ -13,14 +13,14 @@ from ..containers import GrowingTable, LineReader, read_number, spaces_from_comm
 from ..conventions import DEFAULT_FRAME_RATE, check_scale, from_azure_space, joint_recording
 
 NAMES = SENSOR_JOINTS[Sensor.AZURE_KINECT]
-MILLIMETRE = 0.001
+MILLIMETER = 0.001
 PER_JOINT = re.compile(rb"(?i)[^\n]*\n?[ \t]*body id\s*,\s*joint #\s*,\s*x\s*,\s*y\s*,\s*z")
 PER_FRAME = re.compile(rb"(?i)[^\n]*\bpelvis\.x\s*,")
 ONLY_AZURE = re.compile(rb"(?i)[^\n]*(\bspine_?(chest|nav[ae]l)\b|\bclavicle)")
 MIN_WORDS = 10
 NOT_OBSERVED = np.tile((np.nan, np.nan, np.nan, 0.0), (len(NAMES), 1))
 SPELLINGS = {name.upper(): name for name in NAMES} | {"SPINENAVAL": "SpineNavel"}
-STATES = (  # What the SDK calls its levels of confidence, and what a state is.
+STATES = (  # Confidence levels of the SDK, and the corresponding tracking states.
     (rb"out of range|\bnone\b|^0$", 0),
     (rb"not observed|\blow\b|^1$", 1),
     (rb"\bmedium\b|\bhigh\b|^[23]$", 2),
@@ -28,13 +28,13 @@ STATES = (  # What the SDK calls its levels of confidence, and what a state is.
 
 
 def is_azure_csv(head: bytes) -> bool:
-    """Tell from the first bytes."""
+    """Return whether a file has this format, from its first bytes."""
     per_frame = PER_FRAME.match(head) and ONLY_AZURE.match(head)
     return bool(PER_JOINT.match(head) or per_frame)
 
 
 def azure_joint(name: str) -> str:
-    """Return a joint's name in our spelling; names that are not the SDK's stay."""
+    """Return the name of a joint in our spelling; names unknown to the SDK are unchanged."""
     return SPELLINGS.get(name.strip().replace("_", "").upper(), name.strip())
 
 
@@ -45,19 +45,19 @@ def read_azure_csv(
     frame_rate: float = DEFAULT_FRAME_RATE,
     progress: Progress = unwatched,
 ) -> JointRecording:
-    """Read a table of Azure Kinect joints, in metres, Z up; joints not tracked are NaN.
+    """Read a table of Azure Kinect joints, in meters, Z up; joints not tracked are NaN.
 
-    Two layouts are known. A line per joint, under the headings `Body ID, Joint #, x, y, z, x,
-    y, z, w, Confidence Level`: a frame of a body ends where its joint numbers begin again, and
-    the body seen in most frames is taken. A line per frame, under `PELVIS.x, PELVIS.y, ...`.
-    Neither has times: `frame_rate` counts. Orientations are not read. Medium and high
+    Two layouts are supported. A line per joint has the header `Body ID, Joint #, x, y, z, x, y,
+    z, w, Confidence Level`: a new frame of a body begins when its joint numbers restart, and
+    the body in most frames is used. A line per frame has the header `PELVIS.x, PELVIS.y, ...`.
+    Neither has times, so `frame_rate` is used. Orientations are not read. Medium and high
     confidence are state 2, low (predicted) is 1, none is 0.
 
     Parameters
     ----------
     path : Path or str
-    scale : float, metres per unit of the file, or None
-        None: millimetres.
+    scale : float, meters per unit of the file, or None
+        None: millimeters.
     frame_rate : float, hertz
     progress : Progress
 
@@ -91,7 +91,7 @@ def read_azure_csv(
         states=states,
         frame_rate=frame_rate,
         scale=scale,
-        usual_unit=MILLIMETRE,
+        default_unit=MILLIMETER,
         progress=progress,
     )
 
@@ -106,17 +106,17 @@ def _read_joint_lines(
             words = line.split(b",")
             body = words[0].strip()
             if not body[:1].isdigit():
-                continue  # headings, and blank lines
+                continue  # header or blank line
             joint, values = _joint(words, f"{path}, line {count}")
-            bodies.setdefault(body, _Body()).see(joint, values)
+            bodies.setdefault(body, _Body()).add_joint(joint, values)
         progress(block.stop, "Reading")
     if not bodies:
-        raise InvalidFileError(f"{path} has headings but no joints.")
+        raise InvalidFileError(f"{path} has a header but no joints.")
     return NAMES, max(bodies.values(), key=lambda body: body.n_frames).frames()
 
 
 class _Body:
-    """What is seen of one body, frame by frame."""
+    """The observations of one body by frame."""
 
     def __init__(self) -> None:
         self._table = GrowingTable(4 * len(NAMES))
@@ -124,8 +124,8 @@ class _Body:
         self._last = len(NAMES)
         self.n_frames = 0
 
-    def see(self, joint: int, values: list[float]) -> None:
-        """Take x, y, z and state of a joint; a frame ends where its numbers begin again."""
+    def add_joint(self, joint: int, values: list[float]) -> None:
+        """Add x, y, z and state of a joint; a new frame begins when joint numbers restart."""
         if joint <= self._last:
             self._end_frame()
             self.n_frames += 1
@@ -133,7 +133,7 @@ class _Body:
         self._last = joint
 
     def frames(self) -> NDArray[np.float64]:
-        """Return all, shape (n_frames, n_joints, 4)."""
+        """Return all frames, shape (n_frames, n_joints, 4)."""
         self._end_frame()
         return self._table.rows().reshape(-1, len(NAMES), 4)
 
@@ -143,22 +143,25 @@ class _Body:
             self._frame[:] = NOT_OBSERVED
 
 
-def _joint(words: list[bytes], place: str) -> tuple[int, list[float]]:
+def _joint(words: list[bytes], location: str) -> tuple[int, list[float]]:
     """Return the joint's number, and x, y, z and state."""
     joint = words[1].strip() if len(words) >= MIN_WORDS else b""
     if not joint.isdigit() or len(joint) > 2 or int(joint) >= len(NAMES):
         raise InvalidFileError(
-            f"{place}: a body, one of {len(NAMES)} joints, its place, turn and confidence"
-            " belong there. The file is damaged or cut short; delete that line."
+            f"{location}: a body, one of {len(NAMES)} joints, its position, rotation and"
+            " confidence are required. The file is damaged or cut short; delete that line."
         )
-    said = b",".join(words[9:]).strip(b", \t").lower()
-    states = [state for pattern, state in STATES if re.search(pattern, said)]
+    level = b",".join(words[9:]).strip(b", \t").lower()
+    states = [state for pattern, state in STATES if re.search(pattern, level)]
     if not states:
         raise InvalidFileError(
-            f"{place}: no level of confidence ends it. The file is damaged or cut short; delete"
-            " that line."
+            f"{location}: it does not end with a confidence level. The file is damaged or cut"
+            " short; delete that line."
         )
-    return int(joint), [*(read_number(word.strip(), place) for word in words[2:5]), states[0]]
+    return int(joint), [
+        *(read_number(word.strip(), location) for word in words[2:5]),
+        states[0],
+    ]
 
 
 def _read_frame_lines(
@@ -171,8 +174,8 @@ def _read_frame_lines(
     names = [name for name in NAMES if all(f"{name}.{axis}" in columns for axis in "xyz")]
     if not names:
         raise InvalidFileError(f"{path} has no columns x, y and z of any joint.")
-    rows = stream_rows(reader, len(header), path, progress, tidied=spaces_from_commas)
+    rows = stream_rows(reader, len(header), path, progress, normalize=spaces_from_commas)
     if not len(rows):
-        raise InvalidFileError(f"{path} has headings but no joints.")
+        raise InvalidFileError(f"{path} has a header but no joints.")
     used = [columns[f"{name}.{axis}"] for name in names for axis in "xyz"]
     return tuple(names), rows[:, used].reshape(len(rows), len(names), 3)

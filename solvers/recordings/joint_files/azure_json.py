@@ -19,7 +19,7 @@ from ..conventions import (
     longest_observed_body,
     stack_body_frames,
 )
-from .azure_csv import MILLIMETRE, azure_joint
+from .azure_csv import MILLIMETER, azure_joint
 
 MICROSECOND = 1e-6
 HEAD = re.compile(rb'\s*\{\s*"(?:[^"]*"[^{}]*")?(k4abt_sdk_version|bone_list|joint_names)"')
@@ -27,38 +27,38 @@ Bodies = dict[Hashable, NDArray[np.float64]]
 
 
 def is_azure_json(head: bytes) -> bool:
-    """Tell from the first bytes."""
+    """Return whether a file has this format, from its first bytes."""
     return HEAD.match(head) is not None
 
 
 def read_azure_json(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> JointRecording:
-    """Read `offline_processor` JSON [1]_, in metres, Z up.
+    """Read `offline_processor` JSON [1]_, in meters, Z up.
 
-    Of several bodies the one seen in most frames is taken, and of equals the one seen first;
-    bodies are told by their id, in whatever order they come. Frames are brought to a constant
-    rate by their time stamps (30 Hz where there are none); frames that were lost, or are
-    without that body, are gaps. Orientations are not read. The format has no confidence, so
-    there is no tracking state: joints that the tracker merely predicted look like all others.
+    Of several bodies the one in most frames is used, or the first one of a tie; bodies are
+    identified by their id, in any order. Frames are resampled to a constant rate by their time
+    stamps (30 Hz without them); missing frames, and frames without that body, are gaps.
+    Orientations are not read. The format has no confidence, so there is no tracking state:
+    joints that the tracker only predicted look like all others.
 
     Parameters
     ----------
     path : Path or str
-    scale : float, metres per unit of the file, or None
-        None: millimetres.
+    scale : float, meters per unit of the file, or None
+        None: millimeters.
     progress : Progress
 
     Returns
     -------
     JointRecording
-        The joints that the file names, or else all 32 in the SDK's order; the camera looks
+        The joints named in the file, otherwise all 32 in the SDK's order; the camera looks
         along +Y.
 
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, cut short, or has no body.
+        The file is missing, damaged, truncated, or has no body.
     InvalidSettingError
         The scale is not positive.
     SolveCancelled
@@ -75,8 +75,8 @@ def read_azure_json(
     names: list[str] = []
     for member in json_members(path):
         if member.key == "frames":
-            place = f"{path}, frame {len(frames) + 1}"
-            time, bodies = _read_frame(member.value, place)
+            location = f"{path}, frame {len(frames) + 1}"
+            time, bodies = _read_frame(member.value, location)
             frames.append(bodies)
             times.append(time)
             progress(0.9 * member.done, "Reading")
@@ -85,10 +85,11 @@ def read_azure_json(
     if not any(frames):
         raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
     joints = names or list(SENSOR_JOINTS[Sensor.AZURE_KINECT])
-    if {len(places) for frame in frames for places in frame.values()} != {len(joints)}:
+    n_positions = {len(positions) for frame in frames for positions in frame.values()}
+    if n_positions != {len(joints)}:
         raise InvalidFileError(
-            f"{path}: not every body has a place for each of the {len(joints)} joints. The file"
-            " is damaged; export it again."
+            f"{path}: not every body has a position for each of the {len(joints)} joints. The"
+            " file is damaged; export it again."
         )
     positions = stack_body_frames(longest_observed_body(frames), frames)
     return joint_recording(
@@ -98,23 +99,23 @@ def read_azure_json(
         Sensor.AZURE_KINECT,
         times=None if np.isnan(times).all() else MICROSECOND * np.array(times),
         scale=scale,
-        usual_unit=MILLIMETRE,
+        default_unit=MILLIMETER,
         progress=progress,
     )
 
 
-def _read_frame(frame: Any, place: str) -> tuple[float, Bodies]:
-    """Return the time stamp, or NaN, and the joints' places of each body."""
+def _read_frame(frame: Any, location: str) -> tuple[float, Bodies]:
+    """Return the time stamp, or NaN, and the joint positions of each body."""
     listed = frame.get("bodies", []) if isinstance(frame, dict) else None
     if not isinstance(listed, list) or not all(isinstance(body, dict) for body in listed):
         raise InvalidFileError(
-            f"{place}: a list of bodies belongs there. The file is damaged; export it again."
+            f"{location}: a list of bodies is required. The file is damaged; export it again."
         )
     bodies: Bodies = {}
     for count, body in enumerate(listed):
-        places = array_from_json(
-            body.get("joint_positions"), (-1, 3), f"{place}, joint_positions"
+        positions = array_from_json(
+            body.get("joint_positions"), (-1, 3), f"{location}, joint_positions"
         )
-        bodies.setdefault(str(body.get("body_id", count)), places)
-    time = array_from_json(frame.get("timestamp_usec"), (), f"{place}, timestamp_usec")
+        bodies.setdefault(str(body.get("body_id", count)), positions)
+    time = array_from_json(frame.get("timestamp_usec"), (), f"{location}, timestamp_usec")
     return float(time), bodies

@@ -14,13 +14,13 @@ from ..conventions import DEFAULT_FRAME_RATE, check_scale, describe_guessed_unit
 
 WITH_HANDS = len(BODY_POINTS) + 2 * len(HAND_POINTS)
 FACES = (0, 468, 478)
-MILLIMETRE = 0.001
+MILLIMETER = 0.001
 MAX_EXTENT_M = 20.0
-"""Extent of a body in its file's units, above which they are no metres."""
+"""Maximum extent of a body in units of the file, for the units to be meters."""
 
 
 def is_npy(head: bytes) -> bool:
-    """Tell from the first bytes."""
+    """Return whether a file is a NumPy array, from its first bytes."""
     return head.startswith(NPY_MAGIC)
 
 
@@ -31,20 +31,21 @@ def read_freemocap(
     frame_rate: float = DEFAULT_FRAME_RATE,
     progress: Progress = unwatched,
 ) -> JointRecording | Tracks:
-    """Read a `.npy` file of freemocap, in metres, Z up; what was not observed is NaN.
+    """Read a `.npy` file of freemocap, in meters, Z up; missing points are NaN.
 
-    The array tells neither names, unit, axes nor frame rate. Arrays of 33, 75, 543 or 553
-    points are MediaPipe's: body, two hands, face; which hand comes first has changed, so the
-    one nearer to the left wrist is the left. The joints on the middle of the body, which
-    MediaPipe lacks, are added (`CENTRES`). Others are points called `point_<number>`.
-    Millimetres, unless the extent is a body's in metres. Up is where a known body has its nose,
-    seen from its ankles; of other points, Z. Where the actor faces is not changed otherwise.
+    The array has neither names, unit, axes nor frame rate. Arrays of 33, 75, 543 or 553 points
+    are MediaPipe's body, two hands and face. The order of the hands differs between versions,
+    so the hand closer to the left wrist is the left one. The joints in the middle of the body,
+    which MediaPipe lacks, are added (`COMPUTED_JOINTS`). Other arrays are points called
+    `point_<number>`. The unit is millimeters, unless the extent is that of a body in meters. Up
+    of a known body is the direction from its ankles to its nose; of other points it is Z. The
+    heading of the actor is otherwise unchanged.
 
     Parameters
     ----------
     path : Path or str
-    scale : float, metres per unit of the file, or None
-        None: millimetres or metres, as said above.
+    scale : float, meters per unit of the file, or None
+        None: millimeters or meters, as described above.
     frame_rate : float, hertz
     progress : Progress
 
@@ -70,27 +71,27 @@ def read_freemocap(
         )
     points = np.where(np.isfinite(points).all(axis=-1)[..., None], points, np.nan)
     if np.isnan(points).all():
-        raise InvalidFileError(f"{path} has no points that are seen in any frame.")
+        raise InvalidFileError(f"{path} has no points that are observed in any frame.")
     progress(0.5, "Reading")
     names = _names(points)
     is_body = names[0] == BODY_POINTS[0]
     if is_body:
-        names, points = _with_centres(names, _z_up(points))
+        names, points = _with_centers(names, _z_up(points))
     unit = _unit(points) if scale is None else scale
     tracks = Tracks(names, points * unit, frame_rate)
     progress(1.0, describe_guessed_unit(unit) if scale is None and is_body else "Reading")
     return JointRecording(tracks, None, Sensor.MEDIAPIPE) if is_body else tracks
 
 
-def _with_centres(
+def _with_centers(
     names: tuple[str, ...], points: NDArray[np.float64]
 ) -> tuple[tuple[str, ...], NDArray[np.float64]]:
-    """Add the joints on the middle of the body; unseen where any of their points is."""
-    centres = [
+    """Add the joints in the middle of the body; missing where any of their points is."""
+    centers = [
         points[:, [BODY_POINTS.index(side) for side in sides]].mean(axis=1)
         for sides in COMPUTED_JOINTS.values()
     ]
-    together = np.concatenate([points, np.stack(centres, axis=1)], axis=1)
+    together = np.concatenate([points, np.stack(centers, axis=1)], axis=1)
     return (*names, *COMPUTED_JOINTS), together
 
 
@@ -116,7 +117,7 @@ def _names(points: NDArray[np.float64]) -> tuple[str, ...]:
 
 
 def _median_distance(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
-    """Return the usual distance of two points; NaN where they are never seen together."""
+    """Return the median distance of two points; NaN if they are never observed together."""
     with np.errstate(over="ignore"):
         distances = np.linalg.norm(one - other, axis=-1)
     known = distances[np.isfinite(distances)]
@@ -124,10 +125,10 @@ def _median_distance(one: NDArray[np.float64], other: NDArray[np.float64]) -> fl
 
 
 def _z_up(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Turn a known body so that its nose is above its ankles, if they are seen."""
+    """Rotate a known body so that its nose is above its ankles, if they are observed."""
     ankles = [BODY_POINTS.index("left_ankle"), BODY_POINTS.index("right_ankle")]
-    way = points[:, :1] - points[:, ankles]
-    known = way[np.isfinite(way).all(axis=-1)]
+    displacements = points[:, :1] - points[:, ankles]
+    known = displacements[np.isfinite(displacements).all(axis=-1)]
     if not len(known):
         return points
     up = np.median(known, axis=0)
@@ -140,7 +141,7 @@ def _z_up(points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _unit(points: NDArray[np.float64]) -> float:
-    """Return metres per unit, of points in the file's units."""
+    """Return the meters per unit of points in units of the file."""
     spread = np.nanquantile(points, [0.05, 0.95], axis=(0, 1))
     with np.errstate(over="ignore"):
-        return MILLIMETRE if float(np.ptp(spread, axis=0).max()) > MAX_EXTENT_M else 1.0
+        return MILLIMETER if float(np.ptp(spread, axis=0).max()) > MAX_EXTENT_M else 1.0

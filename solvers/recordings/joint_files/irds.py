@@ -1,4 +1,4 @@
-"""Read the joint recordings of the IntelliRehabDS: Kinect v2 joints as text."""
+"""Read joint recordings of the IntelliRehabDS: Kinect v2 joints as text."""
 
 import re
 from collections import Counter
@@ -20,7 +20,7 @@ HEAD = re.compile(
 )
 MILLISECOND = 0.001
 NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
-JOINT_INDICES = {name.encode(): place for place, name in enumerate(NAMES)}
+JOINT_INDICES = {name.encode(): index for index, name in enumerate(NAMES)}
 
 
 class Frame(NamedTuple):
@@ -33,25 +33,25 @@ class Frame(NamedTuple):
 
 
 def is_irds(head: bytes) -> bool:
-    """Tell from the first bytes."""
+    """Return whether a file has this format, from its first bytes."""
     return HEAD.match(head) is not None
 
 
 def read_irds(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> JointRecording:
-    """Read IRDS text [1]_, in metres, Z up; joints that were not tracked are NaN.
+    """Read IRDS text [1]_, in meters, Z up; joints that were not tracked are NaN.
 
     One line per frame: number, body, milliseconds, then `(joint,state,x,y,z,u,v)` for each
-    joint; the places u, v in the depth picture are not kept. Frames are brought to a constant
-    rate by their time stamps; where frames were lost there is a gap. Of several bodies the one
-    seen in most frames is taken.
+    joint; the pixel coordinates u, v are not read. Frames are resampled to a constant rate by
+    their time stamps; missing frames are gaps. Of several bodies the one in most frames is
+    used.
 
     Parameters
     ----------
     path : Path or str
-    scale : float, metres per unit of the file, or None
-        None: metres.
+    scale : float, meters per unit of the file, or None
+        None: meters.
     progress : Progress
 
     Returns
@@ -81,12 +81,12 @@ def read_irds(
             frames.append(_frame(line, f"{path}, line {count}"))
         elif count > 1 and line.strip():
             raise InvalidFileError(
-                f"{path}, line {count}: no joints stand there. The file is damaged or cut"
-                " short; delete that line."
+                f"{path}, line {count}: there are no joints. The file is damaged or cut short;"
+                " delete that line."
             )
         progress(0.9 * count / len(lines), "Reading")
     if not frames:
-        raise InvalidFileError(f"{path} is no IRDS recording: no line holds joints.")
+        raise InvalidFileError(f"{path} is not an IRDS recording: no line has joints.")
     ((longest, _),) = Counter(frame.body for frame in frames).most_common(1)
     frames = [frame for frame in frames if frame.body == longest]
     positions = np.stack([frame.positions for frame in frames])
@@ -102,12 +102,12 @@ def read_irds(
     )
 
 
-def _frame(line: bytes, place: str) -> Frame:
+def _frame(line: bytes, location: str) -> Frame:
     head, *joints = line.rstrip().split(b"(")
     fields = [word.strip() for word in head.split(b",")]
     if len(fields) != 4 or len(joints) != len(NAMES) or not joints[-1].endswith(b")"):
         raise InvalidFileError(
-            f"{place}: number, body, time and {len(NAMES)} joints belong there. The file is"
+            f"{location}: number, body, time and {len(NAMES)} joints are required. The file is"
             " damaged or cut short; delete that line."
         )
     positions = np.full((len(NAMES), 3), np.nan)
@@ -116,9 +116,10 @@ def _frame(line: bytes, place: str) -> Frame:
         name, *words = (word.strip() for word in joint.split(b")")[0].split(b","))
         if name not in JOINT_INDICES or len(words) < 4 or words[0] not in STATES:
             raise InvalidFileError(
-                f"{place}: {shown(joint.decode('ascii', 'backslashreplace'))!r} is no joint of"
-                " a Kinect v2 with state and place. The file is damaged; delete that line."
+                f"{location}: {shown(joint.decode('ascii', 'backslashreplace'))!r} is not a"
+                " joint of a Kinect v2 with state and position. The file is damaged; delete"
+                " that line."
             )
         states[JOINT_INDICES[name]] = STATES[words[0]]
-        positions[JOINT_INDICES[name]] = [read_number(word, place) for word in words[1:4]]
-    return Frame(fields[1], read_number(fields[2], place), positions, states)
+        positions[JOINT_INDICES[name]] = [read_number(word, location) for word in words[1:4]]
+    return Frame(fields[1], read_number(fields[2], location), positions, states)

@@ -1,4 +1,4 @@
-"""A table of joints that any recorder can write: see docs/formats/joint_csv.md."""
+"""Read and write our own CSV of joints: see docs/formats/joint_csv.md."""
 
 import csv
 from collections import Counter
@@ -25,7 +25,7 @@ FRAMES_AT_ONCE = 1000
 
 
 class _Values(NamedTuple):
-    """What stands in the columns."""
+    """Contents of the columns."""
 
     positions: NDArray[np.float64]
     """Shape (n_frames, n_joints, 3), in the file's unit."""
@@ -35,26 +35,26 @@ class _Values(NamedTuple):
 
 
 def is_joint_csv(head: bytes) -> bool:
-    """Tell from the first bytes."""
+    """Return whether a file has this format, from its first bytes."""
     return head.lstrip().startswith(FORMAT.encode())
 
 
 def read_joint_csv(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> JointRecording:
-    """Read our own table of joints, in metres, Z up; what was not observed is NaN.
+    """Read our own table of joints, in meters, Z up; missing values are NaN.
 
-    The first line is `mocap-assist-joints,1,frame_rate=30,units=m,up=z,sensor=other`, where
-    only the first two words are needed; the second names the columns `time`, `<joint>.x`, `.y`,
-    `.z`, and where known `.state` (2, 1, 0) and `.confidence` (0 to 1). Each further line is a
-    frame; what is not observed stays empty. Without a frame rate each frame has its time in
-    seconds, and is brought to a constant rate, where gaps stay gaps.
+    The first line is `mocap-assist-joints,1,frame_rate=30,units=m,up=z,sensor=other`; only the
+    first two words are required. The second line names the columns `time`, `<joint>.x`, `.y`,
+    `.z`, and optionally `.state` (2, 1, 0) and `.confidence` (0 to 1). Each further line is a
+    frame; missing values are empty. Without a frame rate each frame has its time in seconds,
+    and is resampled to a constant rate; gaps stay gaps.
 
     Parameters
     ----------
     path : Path or str
-    scale : float, metres per unit of the file, or None
-        None takes the file's word.
+    scale : float, meters per unit of the file, or None
+        None: the unit of the file.
     progress : Progress
 
     Returns
@@ -64,7 +64,7 @@ def read_joint_csv(
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, cut short, or has no joints.
+        The file is missing, damaged, truncated, or has no joints.
     InvalidSettingError
         The scale is not positive.
     SolveCancelled
@@ -80,8 +80,8 @@ def read_joint_csv(
     values = _values(reader, columns, path, within(progress, 0.0, 0.9))
     if header.frame_rate is None and values.times is None:
         raise InvalidFileError(
-            f"{path}: neither a frame_rate in its first line nor a column {TIME} tells when"
-            " each frame was seen."
+            f"{path} has no times: its first line has no frame_rate, and there is no column"
+            f" {TIME}. Add one of them."
         )
     return build_recording(
         path,
@@ -99,10 +99,10 @@ def read_joint_csv(
 def write_joint_csv(
     recording: JointRecording, path: Path | str, *, progress: Progress = unwatched
 ) -> None:
-    """Write joints as `read_joint_csv` reads them, whole or not at all, in metres, Z up.
+    """Write joints as `read_joint_csv` reads them, atomically, in meters, Z up.
 
-    Every number is written with all its digits. What was not observed is left empty; reading
-    gives it the tracking state 0.
+    Numbers are written with all digits. Missing values are empty; on reading they get the
+    tracking state 0.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def write_joint_csv(
     Raises
     ------
     InvalidMotionError
-        A joint's name has letters that do not fit in one line.
+        The name of a joint has letters that cannot be written in one line.
     InvalidFileError
         The file cannot be written.
     SolveCancelled
@@ -149,25 +149,26 @@ def _text(value: float) -> str:
 
 
 def _parse_header_line(line: bytes) -> dict[str, str]:
-    """Return the words `key=value` of the first line, and its format and version."""
+    """Return the pairs `key=value` of the first line, and its format and version."""
     words = [word.strip() for word in line.decode("latin-1").split(",")]
     pairs = [word.partition("=") for word in words[2:]]
-    said = {key.strip().lower(): value for key, equals, value in pairs if equals}
-    return said | {"format": words[0], "version": "".join(words[1:2])}
+    fields = {key.strip().lower(): value for key, equals, value in pairs if equals}
+    return fields | {"format": words[0], "version": "".join(words[1:2])}
 
 
-def _columns(line: bytes, place: str) -> list[str]:
+def _columns(line: bytes, location: str) -> list[str]:
     try:
         (columns,) = csv.reader([line.decode("utf-8")])
     except (ValueError, csv.Error):
         raise InvalidFileError(
-            f"{place}: the names of the columns are no text that can be read. Write them in"
-            " UTF-8, parted by commas."
+            f"{location}: the names of the columns are not readable text. Write them in UTF-8,"
+            " separated by commas."
         ) from None
     columns = [column.strip() for column in columns]
-    if twice := [name for name, times in Counter(columns).items() if times > 1]:
+    if duplicates := [name for name, times in Counter(columns).items() if times > 1]:
         raise InvalidFileError(
-            f"{place}: more than one column is called {shown(twice[0])!r}; names must differ."
+            f"{location}: more than one column is called {shown(duplicates[0])!r}; names must"
+            " differ."
         )
     return columns
 
@@ -179,11 +180,11 @@ def _joint_names(columns: Sequence[str]) -> list[str]:
 def _values(
     reader: LineReader, columns: Sequence[str], path: Path | str, progress: Progress
 ) -> _Values:
-    """Return what the lines below the names of the columns hold."""
-    rows = stream_rows(reader, len(columns), path, progress, tidied=spaces_from_commas)
-    places = {column: at for at, column in enumerate(columns)}
+    """Return the contents of the lines below the column names."""
+    rows = stream_rows(reader, len(columns), path, progress, normalize=spaces_from_commas)
+    column_indices = {column: at for at, column in enumerate(columns)}
     names = _joint_names(columns)
-    used = {field: _field_columns(places, names, field, path) for field in FIELDS}
+    used = {field: _field_columns(column_indices, names, field, path) for field in FIELDS}
     axes = [used[axis] for axis in AXES if used[axis]]
     if len(axes) < len(AXES) or not len(rows):
         raise InvalidFileError(
@@ -194,18 +195,18 @@ def _values(
         positions=positions.reshape(len(rows), len(names), len(AXES)),
         states=rows[:, used["state"]] if used["state"] else None,
         confidence=rows[:, used["confidence"]] if used["confidence"] else None,
-        times=rows[:, places[TIME]].copy() if TIME in places else None,
+        times=rows[:, column_indices[TIME]].copy() if TIME in column_indices else None,
     )
 
 
 def _field_columns(
-    places: Mapping[str, int], names: Sequence[str], field: str, path: Path | str
+    column_indices: Mapping[str, int], names: Sequence[str], field: str, path: Path | str
 ) -> list[int]:
-    """Return the columns of one field, one for each joint, or none at all."""
-    found = [name for name in names if f"{name}.{field}" in places]
+    """Return the columns of one field, one for each joint, or an empty list."""
+    found = [name for name in names if f"{name}.{field}" in column_indices]
     if found and len(found) < len(names):
         lacking = next(name for name in names if name not in found)
         raise InvalidFileError(
             f"{path}: {shown(lacking)} has no column .{field}, though other joints have one."
         )
-    return [places[f"{name}.{field}"] for name in found]
+    return [column_indices[f"{name}.{field}"] for name in found]

@@ -1,4 +1,4 @@
-"""What the two joint formats of our own have in common: what they say before their numbers."""
+"""Parse the header that our two joint formats share."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from ...errors import InvalidFileError, InvalidMotionError
 from ...motion import JointRecording, Sensor
 from ...progress import Progress
 from ..containers import shown
-from ..conventions import METRES, joint_recording, z_up_from_y_up
+from ..conventions import METERS, joint_recording, z_up_from_y_up
 from .kinect_csv import checked_states
 
 FORMAT = "mocap-assist-joints"
@@ -22,10 +22,10 @@ UP = ("x", "y", "z", "-x", "-y", "-z")
 
 @dataclass(frozen=True)
 class JointHeader:
-    """What the numbers mean.
+    """Interpretation of the numbers.
 
-    Frame rate in hertz, or None where each frame has its time; metres per unit, or None where
-    it does not say; the axis that is up; the sensor.
+    Frame rate in hertz, or None if each frame has its time; meters per unit, or None if not
+    stated; the up axis; the sensor.
     """
 
     frame_rate: float | None
@@ -34,7 +34,7 @@ class JointHeader:
     sensor: Sensor
 
     def z_up(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Turn points so that the axis that is up becomes Z: about X or, for X, cyclically."""
+        """Rotate points so that the up axis becomes Z: about X or, for X, cyclically."""
         if self.up[-1] == "x":
             points = np.roll(points, -1, axis=-1)  # x y z -> y z x
         if self.up[-1] == "y":
@@ -42,37 +42,37 @@ class JointHeader:
         return points * (1.0, -1.0, -1.0) if self.up[0] == "-" else points
 
 
-def parse_header(said: Mapping[str, Any], place: str) -> JointHeader:
-    """Read a header; `place` begins the sentence of the InvalidFileError for a wrong one."""
-    if said.get("format") != FORMAT or str(said.get("version")) != str(VERSION):
+def parse_header(fields: Mapping[str, Any], location: str) -> JointHeader:
+    """Parse a header; the message of an InvalidFileError begins with `location`."""
+    if fields.get("format") != FORMAT or str(fields.get("version")) != str(VERSION):
         raise InvalidFileError(
-            f"{place}: this Mocap Assist reads {FORMAT} {VERSION}, not"
-            f" {shown(str(said.get('format')))} {shown(str(said.get('version')))}."
+            f"{location}: this Mocap Assist reads {FORMAT} {VERSION}, not"
+            f" {shown(str(fields.get('format')))} {shown(str(fields.get('version')))}."
         )
-    rate = said.get("frame_rate")
+    rate = fields.get("frame_rate")
     try:
         frame_rate = None if rate is None or rate == "" else float(str(rate))
     except ValueError:
         frame_rate = 0.0
     if frame_rate is not None and not 0.0 < frame_rate < float("inf"):
         raise InvalidFileError(
-            f"{place}: a frame_rate of {shown(str(rate))} is not above 0; write hertz, or leave"
-            " it out and give each frame its time."
+            f"{location}: a frame_rate of {shown(str(rate))} is not above 0; write hertz, or"
+            " leave it out and give each frame its time."
         )
-    unit = METRES[_choice(said, "units", "m", tuple(METRES), place)]
-    up = _choice(said, "up", "z", UP, place)
+    unit = METERS[_choice(fields, "units", "m", tuple(METERS), location)]
+    up = _choice(fields, "up", "z", UP, location)
     sensors = tuple(sensor.value for sensor in Sensor)
-    sensor = _choice(said, "sensor", Sensor.OTHER.value, sensors, place)
-    return JointHeader(frame_rate, unit if "units" in said else None, up, Sensor(sensor))
+    sensor = _choice(fields, "sensor", Sensor.OTHER.value, sensors, location)
+    return JointHeader(frame_rate, unit if "units" in fields else None, up, Sensor(sensor))
 
 
 def _choice(
-    said: Mapping[str, Any], key: str, default: str, choices: tuple[str, ...], place: str
+    fields: Mapping[str, Any], key: str, default: str, choices: tuple[str, ...], location: str
 ) -> str:
-    value = str(said.get(key, default)).strip().lower()
+    value = str(fields.get(key, default)).strip().lower()
     if value not in choices:
         raise InvalidFileError(
-            f"{place}: {key} is {shown(value)!r}; write one of {', '.join(choices)}."
+            f"{location}: {key} is {shown(value)!r}; write one of {', '.join(choices)}."
         )
     return value
 
@@ -89,9 +89,9 @@ def build_recording(
     scale: float | None,
     progress: Progress,
 ) -> JointRecording:
-    """Make a recording as `joint_recording` does, by a header; what has no state has state 0.
+    """Build a recording as `joint_recording` does, from a header; a missing state becomes 0.
 
-    Positions are in the unit and axes of the file. Times count where there is no frame rate.
+    Positions are in the unit and axes of the file. Times are used if there is no frame rate.
     """
     if confidence is not None:
         confidence = np.nan_to_num(confidence)
@@ -113,10 +113,10 @@ def build_recording(
 
 
 def check_names(names: Sequence[str]) -> None:
-    """Raise InvalidMotionError for joints whose names would not come back from one line."""
+    """Raise InvalidMotionError for joint names that cannot be stored in one line."""
     wrong = [name for name in names if not name.isprintable() or name != name.strip()]
     if wrong:
         raise InvalidMotionError(
-            f"Joint names with line breaks, other control characters or outer blanks cannot be"
+            f"Joint names with line breaks, other control characters or outer spaces cannot be"
             f" written: {', '.join(map(repr, wrong))}. Rename them."
         )

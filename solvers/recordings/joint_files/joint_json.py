@@ -1,4 +1,4 @@
-"""Joints as JSON that any recorder can write: see docs/formats/joint_json.md."""
+"""Read and write our own JSON of joints: see docs/formats/joint_json.md."""
 
 import json
 import re
@@ -31,26 +31,26 @@ class Frame(NamedTuple):
 
 
 def is_joint_json(head: bytes) -> bool:
-    """Tell from the first bytes."""
+    """Return whether a file has this format, from its first bytes."""
     return HEAD.match(head) is not None
 
 
 def read_joint_json(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> JointRecording:
-    """Read our own JSON of joints, in metres, Z up; what was not observed is NaN.
+    """Read our own JSON of joints, in meters, Z up; missing values are NaN.
 
     One object: `format` "mocap-assist-joints", `version` 1, `frame_rate`, `units` ("m"), `up`
     ("z"), `sensor` ("other"), `joints` (names), `frames`; each frame an object with
-    `positions`, one [x, y, z] or null per joint, and where known `states` (2, 1, 0),
-    `confidence` (0 to 1) and `time` (seconds). Without a frame rate frames are brought to a
-    constant rate by their times, where gaps stay gaps.
+    `positions`, one [x, y, z] or null per joint, and optionally `states` (2, 1, 0),
+    `confidence` (0 to 1) and `time` (seconds). Without a frame rate, frames are resampled to a
+    constant rate by their times; gaps stay gaps.
 
     Parameters
     ----------
     path : Path or str
-    scale : float, metres per unit of the file, or None
-        None takes the file's word.
+    scale : float, meters per unit of the file, or None
+        None: the unit of the file.
     progress : Progress
 
     Returns
@@ -60,14 +60,14 @@ def read_joint_json(
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, cut short, or has no joints.
+        The file is missing, damaged, truncated, or has no joints.
     InvalidSettingError
         The scale is not positive.
     SolveCancelled
         Raised by `progress`.
     """
     check_scale(scale)
-    said: dict[str, Any] = {}
+    fields: dict[str, Any] = {}
     names: list[str] = []
     frames: list[Frame] = []
     for member in json_members(path):
@@ -77,13 +77,14 @@ def read_joint_json(
         elif member.key == "joints":
             names.append(str(member.value))
         else:
-            said[member.key] = member.value
-    header = parse_header(said, str(path))
+            fields[member.key] = member.value
+    header = parse_header(fields, str(path))
     _check(names, frames, path)
     times = np.array([frame.time for frame in frames])
     if header.frame_rate is None and np.isnan(times).all():
         raise InvalidFileError(
-            f"{path}: neither a frame_rate nor a time in each frame tells when it was seen."
+            f"{path} has no times: it has no frame_rate, and its frames have no time. Add one"
+            " of them."
         )
     positions = np.stack([frame.positions for frame in frames])
     return build_recording(
@@ -102,10 +103,10 @@ def read_joint_json(
 def write_joint_json(
     recording: JointRecording, path: Path | str, *, progress: Progress = unwatched
 ) -> None:
-    """Write joints as `read_joint_json` reads them, whole or not at all, a line per frame.
+    """Write joints as `read_joint_json` reads them, atomically, a line per frame.
 
-    In metres, Z up, with all digits. What was not observed is null; reading gives it the
-    tracking state 0.
+    Positions are in meters, Z up, with all digits. Missing positions are null; on reading they
+    get the tracking state 0.
 
     Parameters
     ----------
@@ -116,7 +117,7 @@ def write_joint_json(
     Raises
     ------
     InvalidMotionError
-        A joint's name has letters that cannot be written.
+        The name of a joint has letters that cannot be written.
     InvalidFileError
         The file cannot be written.
     SolveCancelled
@@ -124,17 +125,18 @@ def write_joint_json(
     """
     tracks = recording.tracks
     check_names(tracks.names)
-    said = {
+    fields = {
         "format": FORMAT, "version": VERSION, "frame_rate": tracks.frame_rate, "units": "m",
         "up": "z", "sensor": recording.sensor.value, "joints": tracks.names,
     }  # fmt: skip
     with write_atomically(path) as part, part.open("w", encoding="utf-8") as file:
-        file.write(json.dumps(said)[:-1] + ', "frames": [')
-        for frame, seen in enumerate(tracks.visible):
-            places = tracks.positions[frame].tolist()
+        file.write(json.dumps(fields)[:-1] + ', "frames": [')
+        for frame, observed in enumerate(tracks.visible):
+            positions = tracks.positions[frame].tolist()
             line: dict[str, Any] = {
                 "positions": [
-                    place if known else None for place, known in zip(places, seen, strict=True)
+                    position if is_observed else None
+                    for position, is_observed in zip(positions, observed, strict=True)
                 ]
             }
             if recording.tracking_state is not None:
@@ -146,42 +148,45 @@ def write_joint_json(
         file.write("\n]}\n")
 
 
-def _frame(frame: Any, place: str) -> Frame:
+def _frame(frame: Any, location: str) -> Frame:
     listed = frame.get("positions") if isinstance(frame, dict) else None
     if not isinstance(listed, list):
-        raise InvalidFileError(f"{place}: a list of positions belongs there.")
-    places = [NOT_OBSERVED if position is None else position for position in listed]
+        raise InvalidFileError(
+            f"{location}: a list of positions is required. Export the file again."
+        )
+    filled = [NOT_OBSERVED if position is None else position for position in listed]
     positions = array_from_json(
-        places, (len(places), 3) if places else (0,), f"{place}, positions"
+        filled, (len(filled), 3) if filled else (0,), f"{location}, positions"
     )
     states, confidence = (
         None
         if frame.get(key) is None
-        else array_from_json(frame[key], (len(places),), f"{place}, {key}")
+        else array_from_json(frame[key], (len(filled),), f"{location}, {key}")
         for key in ("states", "confidence")
     )
-    time = float(array_from_json(frame.get("time"), (), f"{place}, time"))
+    time = float(array_from_json(frame.get("time"), (), f"{location}, time"))
     return Frame(positions.reshape(-1, 3), states, confidence, time)
 
 
 def _check(names: list[str], frames: list[Frame], path: Path | str) -> None:
-    """Raise InvalidFileError unless each frame has a place for each of the joints."""
+    """Raise InvalidFileError unless each frame has a position for each joint."""
     if not names or not frames:
         raise InvalidFileError(f"{path} has no joints or no frames.")
-    if twice := [name for name, times in Counter(names).items() if times > 1]:
+    if duplicates := [name for name, times in Counter(names).items() if times > 1]:
         raise InvalidFileError(
-            f"{path}: more than one joint is called {shown(twice[0])!r}; names must differ."
+            f"{path}: more than one joint is called {shown(duplicates[0])!r}; names must"
+            " differ."
         )
     for number, frame in enumerate(frames, start=1):
         if len(frame.positions) != len(names):
             raise InvalidFileError(
-                f"{path}, frame {number}: {len(frame.positions)} positions stand there for"
-                f" {len(names)} joints."
+                f"{path}, frame {number}: {len(frame.positions)} positions for"
+                f" {len(names)} joints. Export the file again."
             )
 
 
 def _stacked(values: list[NDArray[np.float64] | None]) -> NDArray[np.float64] | None:
-    """Return values of all frames; NaN in those without any; None if all are."""
+    """Stack the values of all frames; NaN for frames without values; None without any."""
     given = next((value for value in values if value is not None), None)
     if given is None:
         return None

@@ -14,11 +14,11 @@ from ..conventions import DEFAULT_FRAME_RATE, check_scale, from_kinect_space, jo
 NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
 WITHOUT_TIME = 4 * len(NAMES)
 TICK = 1e-7
-"""Seconds in a unit of the sensor's clock."""
+"""Seconds per tick of the sensor's clock."""
 
 
 def is_kinect_csv(head: bytes) -> bool:
-    """Tell from the first bytes."""
+    """Return whether a file has this format, from its first bytes."""
     lines = head.split(b"\n")
     first = next((line for line in lines if line.strip()), b"")
     words = first.strip().removesuffix(b",").split(b",")
@@ -35,20 +35,20 @@ def read_kinect_csv(
     frame_rate: float = DEFAULT_FRAME_RATE,
     progress: Progress = unwatched,
 ) -> JointRecording:
-    """Read a table of Kinect v2 joints, in metres, Z up; joints not tracked are NaN.
+    """Read a table of Kinect v2 joints, in meters, Z up; joints not tracked are NaN.
 
-    Each line holds x, y, z and tracking state of the 25 joints in the sensor's order, parted by
-    commas; before them may stand the time in ticks of 100 ns, as in the LabanotationSuite [1]_;
-    without, as in KIMORE [2]_, `frame_rate` counts. Frames with times are brought to a constant
-    rate; where frames were lost there is a gap. Blank lines do not count.
+    Each line has x, y, z and tracking state of the 25 joints in the sensor's order, separated
+    by commas. The time in ticks of 100 ns may precede them, as in the LabanotationSuite [1]_;
+    without it, as in KIMORE [2]_, `frame_rate` is used. Frames with times are resampled to a
+    constant rate; missing frames are gaps. Blank lines are ignored.
 
     Parameters
     ----------
     path : Path or str
-    scale : float, metres per unit of the file, or None
-        None: metres.
+    scale : float, meters per unit of the file, or None
+        None: meters.
     frame_rate : float, hertz
-        Of a file without times.
+        For a file without times.
     progress : Progress
 
     Returns
@@ -75,14 +75,14 @@ def read_kinect_csv(
     """
     check_scale(scale)
     reader = LineReader(path)
-    reader.pass_over_blank()
+    reader.skip_blank_lines()
     width = len(b"".join(map(_split_line, reader.peek())).split())
     if width not in {WITHOUT_TIME, WITHOUT_TIME + 1}:
         raise InvalidFileError(
-            f"{path} is no table of Kinect v2 joints: {WITHOUT_TIME} numbers belong in each"
-            f" line, or {WITHOUT_TIME + 1} with the time, not {width}."
+            f"{path} is not a table of Kinect v2 joints: {WITHOUT_TIME} numbers are required in"
+            f" each line, or {WITHOUT_TIME + 1} with the time, not {width}."
         )
-    rows = stream_rows(reader, width, path, within(progress, 0.0, 0.9), tidied=_split_line)
+    rows = stream_rows(reader, width, path, within(progress, 0.0, 0.9), normalize=_split_line)
     joints = rows[:, width - WITHOUT_TIME :].reshape(len(rows), len(NAMES), 4)
     return joint_recording(
         path,
@@ -102,7 +102,7 @@ def _split_line(line: bytes) -> bytes:
 
 
 def checked_states(values: NDArray[np.float64], path: Path | str) -> NDArray[np.int8]:
-    """Return tracking states as such; raises InvalidFileError where there are others."""
+    """Convert tracking states to integers; raise InvalidFileError for other values."""
     if not np.isin(values, (0.0, 1.0, 2.0)).all():
         raise InvalidFileError(
             f"{path} has tracking states other than 0, 1 and 2: it is damaged, or its columns"

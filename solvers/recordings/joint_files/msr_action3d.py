@@ -19,11 +19,11 @@ ORDER = (
 )  # fmt: skip
 WIDTH = 4
 MIN_EXTENT_M, MAX_EXTENT_M = 0.3, 5.0
-"""Metres from one side of a body to the other, on the axis where that is farthest."""
+"""Minimum and maximum extent of a body on its longest axis, meters."""
 
 
 def is_msr_action3d(head: bytes) -> bool:
-    """Tell from the first bytes: four numbers in each line, the last from 0 to 1."""
+    """Return whether the first bytes are lines of four numbers, the last from 0 to 1."""
     lines = head.split(b"\n")[: len(ORDER)]
     return len(lines) == len(ORDER) and all(map(_is_joint, lines))
 
@@ -43,18 +43,18 @@ def read_msr_action3d(
     frame_rate: float = RATE,
     progress: Progress = unwatched,
 ) -> JointRecording:
-    """Read MSR Action3D text [1]_ (real-world coordinates), in metres, Z up.
+    """Read MSR Action3D text [1]_ (real-world coordinates), in meters, Z up.
 
-    Each frame is 20 lines, one per joint: x, y, z and a confidence from 0 to 1. What the
-    confidence is based on was not published, and joints of confidence 0 have plausible places:
-    so all places are kept, confidence too, and there is no tracking state. The file does not
-    tell its frame rate; the data set was recorded at about 15 Hz.
+    Each frame is 20 lines, one per joint: x, y, z and a confidence from 0 to 1. The basis of
+    the confidence is not published, and joints of confidence 0 have plausible positions.
+    Therefore all positions and their confidence are kept, and there is no tracking state. The
+    file has no frame rate; the data set was recorded at about 15 Hz.
 
     Parameters
     ----------
     path : Path or str
-    scale : float, metres per unit of the file, or None
-        None: metres.
+    scale : float, meters per unit of the file, or None
+        None: meters.
     frame_rate : float, hertz
     progress : Progress
 
@@ -66,7 +66,7 @@ def read_msr_action3d(
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, cut within a frame, or has no joints.
+        The file is missing, damaged, truncated within a frame, or has no joints.
     InvalidSettingError
         The scale is not positive.
     SolveCancelled
@@ -83,17 +83,17 @@ def read_msr_action3d(
     rows = read_rows(lines, WIDTH, path, counts, within(progress, 0.0, 0.9))
     if len(rows) % len(NAMES) or not len(rows):
         raise InvalidFileError(
-            f"{path} has {len(rows)} lines of joints, which is no multiple of {len(NAMES)}. It"
-            " is cut short; delete the last frame's lines."
+            f"{path} has {len(rows)} lines of joints, which is not a multiple of {len(NAMES)}."
+            " It is cut short; delete the lines of the last frame."
         )
-    places = [ORDER.index(name) for name in NAMES]
-    joints = rows.reshape(-1, len(NAMES), WIDTH)[:, places]
+    joint_order = [ORDER.index(name) for name in NAMES]
+    joints = rows.reshape(-1, len(NAMES), WIDTH)[:, joint_order]
     extents = np.ptp(np.nan_to_num(joints[..., :3]), axis=1).max(axis=-1)
-    extents = extents[extents > 0.0]  # Before the actor was found, all is 0.
+    extents = extents[extents > 0.0]  # All joints are 0 before the actor is detected.
     if scale is None and len(extents) and not MIN_EXTENT_M < np.median(extents) < MAX_EXTENT_M:
         raise InvalidFileError(
-            f"{path} has four numbers in each line, as MSR Action3D has, but they are no joints"
-            " of a body in metres. Export its real-world coordinates, or give the scale."
+            f"{path} has four numbers in each line like MSR Action3D, but they are not joints"
+            " of a body in meters. Export its real-world coordinates, or give the scale."
         )
     return joint_recording(
         path,

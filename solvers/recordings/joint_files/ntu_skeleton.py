@@ -1,4 +1,4 @@
-"""Read the `.skeleton` files of NTU RGB+D: bodies of a Kinect v2 as text."""
+"""Read `.skeleton` files of NTU RGB+D: bodies of a Kinect v2 as text."""
 
 import re
 from pathlib import Path
@@ -26,31 +26,30 @@ HEAD = re.compile(
 )
 BODY_WORDS, JOINT_WORDS = 10, 12
 MAX_BODIES = 6
-"""The Kinect v2 tracks no more."""
+"""Maximum number of bodies that a Kinect v2 tracks."""
 Frames = list[dict[bytes, range]]
 
 
 def is_ntu_skeleton(head: bytes) -> bool:
-    """Tell from the first bytes: frames, bodies, and ten words about the first body."""
+    """Return whether the first bytes are counts of frames and bodies, and data of a body."""
     return HEAD.match(head) is not None
 
 
 def read_ntu_skeleton(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> JointRecording:
-    """Read an NTU RGB+D `.skeleton` file [1]_, in metres, Z up; joints not tracked are NaN.
+    """Read an NTU RGB+D `.skeleton` file [1]_, in meters, Z up; joints not tracked are NaN.
 
-    Of several bodies the one seen in most frames is taken, and of equals the one seen first;
-    bodies are told by their id, in whatever order they come. Frames without it are gaps. A body
-    that the sensor lost and found again under another id counts as two. Places in the pictures,
-    orientations, the states of the hands and the lean are not read. The files have no times;
-    the Kinect v2 gives 30 frames per second.
+    Of several bodies the one in most frames is used, or the first one of a tie; bodies are
+    identified by their id, in any order. Frames without it are gaps. A body that returns under
+    another id counts as two. Image coordinates, orientations, hand states and lean are not
+    read. The files have no times; the Kinect v2 records 30 frames per second.
 
     Parameters
     ----------
     path : Path or str
-    scale : float, metres per unit of the file, or None
-        None: metres.
+    scale : float, meters per unit of the file, or None
+        None: meters.
     progress : Progress
 
     Returns
@@ -61,7 +60,7 @@ def read_ntu_skeleton(
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, cut short, or has no body.
+        The file is missing, damaged, truncated, or has no body.
     InvalidSettingError
         The scale is not positive.
     SolveCancelled
@@ -74,25 +73,25 @@ def read_ntu_skeleton(
     """
     check_scale(scale)
     lines = read_bytes(path).splitlines()
-    places = [place for place, line in enumerate(lines) if line.strip()]
-    frames = _find_bodies(lines, places, path)
+    line_indices = [index for index, line in enumerate(lines) if line.strip()]
+    frames = _find_bodies(lines, line_indices, path)
     if not any(frames):
         raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
     body = longest_observed_body(frames)
-    used = [place for frame in frames for place in frame.get(body, ())]
+    used = [index for frame in frames for index in frame.get(body, ())]
     rows = read_rows(
-        [lines[place] for place in used],
+        [lines[index] for index in used],
         JOINT_WORDS,
         path,
-        [place + 1 for place in used],
+        [index + 1 for index in used],
         within(progress, 0.0, 0.9),
     ).reshape(-1, len(NAMES), JOINT_WORDS)
     tracked = iter(np.concatenate([rows[..., :3], rows[..., -1:]], axis=-1))
     joints = stack_body_frames(
         body, [{body: next(tracked)} if body in f else {} for f in frames]
     )
-    unseen = np.isnan(joints).all(axis=(1, 2))
-    joints[unseen, :, 3] = 0.0
+    missing = np.isnan(joints).all(axis=(1, 2))
+    joints[missing, :, 3] = 0.0
     return joint_recording(
         path,
         NAMES,
@@ -104,76 +103,77 @@ def read_ntu_skeleton(
     )
 
 
-def _find_bodies(lines: list[bytes], places: list[int], path: Path | str) -> Frames:
-    """Return for each frame the lines of each body's joints."""
-    cursor = _Cursor(lines, places, path)
+def _find_bodies(lines: list[bytes], line_indices: list[int], path: Path | str) -> Frames:
+    """Return the line indices of the joints of each body, by frame."""
+    cursor = _Cursor(lines, line_indices, path)
     n_frames = cursor.count("the number of frames")
     frames: Frames = []
-    while cursor.left:
+    while cursor.n_remaining:
         frame: dict[bytes, range] = {}
         for _ in range(cursor.count("the number of bodies", MAX_BODIES)):
             body = cursor.words("a body's id and nine words about it", BODY_WORDS)[0]
             n_joints = cursor.count("the number of joints")
             if n_joints != len(NAMES):
-                raise cursor.error(f"{n_joints} joints, where {len(NAMES)} belong,")
+                raise cursor.error(f"{n_joints} joints instead of {len(NAMES)}")
             frame.setdefault(body, cursor.skip(n_joints))
         frames.append(frame)
     if len(frames) < n_frames:
         raise InvalidFileError(
-            f"{path} is cut short: it announces {n_frames} frames and has {len(frames)}."
-            " Copy it again, or write the true number into its first line."
+            f"{path} is cut short: its first line states {n_frames} frames, but it has"
+            f" {len(frames)}. Copy it again, or correct its first line."
         )
     return frames
 
 
 class _Cursor:
-    """Goes through the lines that are not blank."""
+    """Iterate over the nonblank lines."""
 
-    def __init__(self, lines: list[bytes], places: list[int], path: Path | str) -> None:
-        self._lines, self._places, self._path = lines, places, path
+    def __init__(self, lines: list[bytes], line_indices: list[int], path: Path | str) -> None:
+        self._lines, self._line_indices, self._path = lines, line_indices, path
         self._at = 0
 
     @property
-    def left(self) -> int:
-        """Number of lines still to come."""
-        return len(self._places) - self._at
+    def n_remaining(self) -> int:
+        """Number of remaining lines."""
+        return len(self._line_indices) - self._at
 
     def words(self, what: str, n_words: int) -> list[bytes]:
         """Return the words of the next line."""
-        if not self.left:
+        if not self.n_remaining:
             raise InvalidFileError(
-                f"{self._path} is cut short: it ends where {what} belongs. Copy it again."
+                f"{self._path} is cut short: it ends before {what}. Copy it again."
             )
-        words = self._lines[self._places[self._at]].split()
+        words = self._lines[self._line_indices[self._at]].split()
         if len(words) != n_words:
-            raise self.error(f"not {what} but {len(words)} words")
+            raise self.error(f"{len(words)} words instead of {what}")
         self._at += 1
         return words
 
-    def count(self, what: str, most: int = 10**9) -> int:
-        """Return the number that is the next line."""
+    def count(self, what: str, maximum: int = 10**9) -> int:
+        """Return the number in the next line."""
         (word,) = self.words(what, 1)
-        if not word.isdigit() or len(word) > 9 or int(word) > most:
+        if not word.isdigit() or len(word) > 9 or int(word) > maximum:
             self._at -= 1
             raise self.error(f"something other than {what}")
         return int(word)
 
     def skip(self, n_lines: int) -> range:
-        """Pass over lines that follow each other; return where they are in the file."""
-        if self.left < n_lines:
+        """Skip consecutive lines; return their indices in the file."""
+        if self.n_remaining < n_lines:
             raise InvalidFileError(
                 f"{self._path} is cut short: it ends within the joints of a body. Copy it"
                 " again."
             )
-        taken = self._places[self._at : self._at + n_lines]
+        taken = self._line_indices[self._at : self._at + n_lines]
         if taken[-1] - taken[0] != n_lines - 1:
             raise self.error("a blank line among joints")
         self._at += n_lines
         return range(taken[0], taken[-1] + 1)
 
     def error(self, found: str) -> InvalidFileError:
-        """Return the error that something is found in the next line, or the last one."""
-        place = self._places[min(self._at, len(self._places) - 1)]
+        """Return the error for unexpected content of the next line, or of the last one."""
+        index = self._line_indices[min(self._at, len(self._line_indices) - 1)]
         return InvalidFileError(
-            f"{self._path}, line {place + 1}: {found} stands there. The file is damaged."
+            f"{self._path}, line {index + 1}: found {found}. The file is damaged; copy it"
+            " again."
         )

@@ -1,4 +1,4 @@
-"""Read UI-PRMD takes: a Kinect v2 and an optical system that saw the same exercise."""
+"""Read UI-PRMD takes: a Kinect v2 and an optical system that recorded the same exercise."""
 
 from pathlib import Path
 
@@ -22,32 +22,32 @@ KEYS = ("kinect", "markers", "unit_m", "frame_rate")
 
 
 def is_ui_prmd(head: bytes) -> bool:
-    """Tell from the first bytes: an archive that begins with the array of joints."""
+    """Return whether the first bytes are an archive that begins with the joint array."""
     return head[:4] == b"PK\x03\x04" and head[30:40] == b"kinect.npy"
 
 
 def read_ui_prmd(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> JointRecording:
-    """Read what the Kinect saw in a UI-PRMD take [1]_: `read_ui_prmd_pair` without markers."""
+    """Read the Kinect joints of a UI-PRMD take [1]_: `read_ui_prmd_pair` without markers."""
     return read_ui_prmd_pair(path, scale=scale, progress=progress)[0]
 
 
 def read_ui_prmd_pair(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> tuple[JointRecording, Tracks]:
-    """Read a UI-PRMD take [1]_ kept as `.npz`: Kinect joints and optical markers, in metres.
+    """Read a UI-PRMD take [1]_ stored as `.npz`: Kinect joints and optical markers, in meters.
 
-    Both are in the same world, Z up, and frame by frame at the same time, as they were aligned
-    when the archive was made (keys kinect, markers, unit_m, frame_rate). Which way the actor
-    faces is not changed. What lies exactly at the origin was not observed and is NaN. The set
-    keeps no tracking state.
+    Both are in the same world space, Z up, and have the same times, as they were aligned for
+    the archive (keys kinect, markers, unit_m, frame_rate). The heading of the actor is
+    unchanged. Positions exactly at the origin are missing and become NaN. The data set has no
+    tracking state.
 
     Parameters
     ----------
     path : Path or str
-    scale : float, metres per unit of the file, or None
-        None takes the file's word (unit_m).
+    scale : float, meters per unit of the file, or None
+        None: unit_m of the file.
     progress : Progress
 
     Returns
@@ -58,7 +58,7 @@ def read_ui_prmd_pair(
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, or holds other arrays.
+        The file is missing, damaged, or has other arrays.
     InvalidSettingError
         The scale is not positive.
     SolveCancelled
@@ -73,25 +73,25 @@ def read_ui_prmd_pair(
     kinect, markers, unit, frame_rate = read_archive(path, KEYS)
     n_frames = len(kinect) if kinect.ndim else 0
     shapes = ((n_frames, len(NAMES), 3), (n_frames, len(MARKERS), 3), (), ())
-    found = tuple(array.shape for array in (kinect, markers, unit, frame_rate))
-    if found != shapes or not (0.0 < unit < np.inf and 0.0 < frame_rate < np.inf):
+    stored_shapes = tuple(array.shape for array in (kinect, markers, unit, frame_rate))
+    if stored_shapes != shapes or not (0.0 < unit < np.inf and 0.0 < frame_rate < np.inf):
         raise InvalidFileError(
-            f"{path} holds arrays of shapes {', '.join(map(str, found))}; a UI-PRMD take has"
-            f" {len(NAMES)} joints and {len(MARKERS)} markers in as many frames, a unit and a"
-            " frame rate."
+            f"{path} holds arrays of shapes {', '.join(map(str, stored_shapes))}; a UI-PRMD"
+            f" take has {len(NAMES)} joints and {len(MARKERS)} markers in as many frames, a"
+            " unit and a frame rate."
         )
-    metres = float(unit) if scale is None else scale
+    meters = float(unit) if scale is None else scale
     recording = joint_recording(
         path,
         NAMES,
         kinect,
         Sensor.KINECT_V2,
         frame_rate=float(frame_rate),
-        scale=metres,
+        scale=meters,
         progress=within(progress, 0.0, 0.9),
     )
-    unseen = (markers == 0.0).all(axis=-1) | ~np.isfinite(markers).all(axis=-1)
-    positions = np.where(unseen[..., None], np.nan, markers * metres)
+    missing = (markers == 0.0).all(axis=-1) | ~np.isfinite(markers).all(axis=-1)
+    positions = np.where(missing[..., None], np.nan, markers * meters)
     tracks = Tracks(MARKERS, positions, float(frame_rate))
     progress(1.0, "Reading")
     return recording, tracks

@@ -1,4 +1,4 @@
-"""Joints that arrive over the local network while they are recorded."""
+"""Receive a live stream of joints over the local network."""
 
 from .frames import MAX_JOINTS, PORT, LiveFrame, encode_frame, frames_from_recording
 from .receiver import Receiver

@@ -1,4 +1,4 @@
-"""One frame of a live stream of joints as a line of JSON: see docs/formats/live_joints.md."""
+"""Encode and decode frames of a live stream of joints: see docs/formats/live_joints.md."""
 
 import json
 from collections.abc import Iterator
@@ -15,33 +15,33 @@ from ...motion import JointRecording, Sensor
 FORMAT = "mocap-assist-live"
 VERSION = 1
 PORT = 46464
-"""Of UDP on the machine's own address, where nobody names another."""
+"""Default UDP port on the loopback address."""
 MAX_LINE_BYTES = 32_768
-"""Bytes; a frame of 32 joints takes about 2,000."""
+"""Maximum size of a frame in bytes; a frame of 32 joints takes about 2,000."""
 MAX_JOINTS = 64
 MAX_LISTS = 4 * MAX_JOINTS
-"""Lists and objects in a line; names are text, and each joint has one. More would only cost
-time, of the garbage collector above all."""
+"""Maximum number of lists and objects in a line; each joint needs one. More cost time, mainly
+in the garbage collector."""
 MAX_NAME_LENGTH = 64
 MAX_POSITION_M = 100.0
-"""Metres from the sensor, on each axis; it sees no farther."""
+"""Maximum distance from the sensor on each axis, meters."""
 MAX_TIME_S = 1e11
-"""Seconds; thousands of years."""
+"""Maximum time in seconds, thousands of years."""
 MAX_BODY = 2**53
 NUMBERS = (int, float)
 
 
 @dataclass(frozen=True, eq=False)
 class LiveFrame:
-    """One body at one moment.
+    """One body at one time.
 
     Attributes
     ----------
     time : float, seconds, of the sender's clock
     body : int
-        Which of the bodies that the tracker sees.
+        Identifies the body among those that are tracked.
     names : tuple of str
-    positions : shape (n_joints, 3), metres, Z up; NaN: not tracked
+    positions : shape (n_joints, 3), meters, Z up; NaN: not tracked
     confidence : shape (n_joints,), 0 to 1
     states : shape (n_joints,) of 2 tracked, 1 inferred, 0 not tracked; or None
     sensor : Sensor
@@ -57,9 +57,9 @@ class LiveFrame:
 
 
 def encode_frame(frame: LiveFrame) -> bytes:
-    """Return the frame as a line of JSON, with the tenth of a millimetre and a line's end."""
-    seen = np.isfinite(frame.positions).all(axis=-1)
-    said: dict[str, Any] = {
+    """Return the frame as a line of JSON, rounded to 0.1 mm, with a line end."""
+    observed = np.isfinite(frame.positions).all(axis=-1)
+    fields: dict[str, Any] = {
         "format": FORMAT,
         "version": VERSION,
         "time": round(frame.time, 6),
@@ -67,101 +67,106 @@ def encode_frame(frame: LiveFrame) -> bytes:
         "sensor": frame.sensor.value,
         "names": frame.names,
         "positions": [
-            place if known else None
-            for place, known in zip(frame.positions.round(4).tolist(), seen, strict=True)
+            position if is_observed else None
+            for position, is_observed in zip(
+                frame.positions.round(4).tolist(), observed, strict=True
+            )
         ],
         "confidence": frame.confidence.round(4).tolist(),
     }
     if frame.states is not None:
-        said["states"] = frame.states.tolist()
-    return json.dumps(said, separators=(",", ":"), allow_nan=False).encode() + b"\n"
+        fields["states"] = frame.states.tolist()
+    return json.dumps(fields, separators=(",", ":"), allow_nan=False).encode() + b"\n"
 
 
 def decode_frame(line: bytes) -> LiveFrame:
-    """Return the frame that a line of JSON tells.
+    """Parse a frame from a line of JSON.
 
     Raises
     ------
     InvalidMotionError
-        The line is too long, no JSON, of another format, or any value in it is not what
-        belongs there. One sentence says what.
+        The line is too long, not JSON, of another format, or has an invalid value.
     """
     if len(line) > MAX_LINE_BYTES:
         raise InvalidMotionError(f"A frame of {len(line)} bytes is too long.")
     if line.count(b"[") + line.count(b"{") > MAX_LISTS:
         raise InvalidMotionError(f"A frame has more than {MAX_LISTS} lists.")
     try:
-        said = parse_json(line, parse_constant=_refuse)
+        fields = parse_json(line, parse_constant=_refuse)
     except ValueError:
         raise InvalidMotionError("A frame is not readable as JSON.") from None
-    if not isinstance(said, dict) or said.get("format") != FORMAT:
-        raise InvalidMotionError(f"A frame does not say that its format is {FORMAT}.")
-    if said.get("version") != VERSION:
+    if not isinstance(fields, dict) or fields.get("format") != FORMAT:
+        raise InvalidMotionError(f"A frame does not have the format {FORMAT}.")
+    if fields.get("version") != VERSION:
         raise InvalidMotionError(f"A frame is not of version {VERSION} of the format.")
-    names = _names(said.get("names"))
-    positions = _positions(said.get("positions"), len(names))
-    states = _states(said.get("states"), len(names))
-    confidence = _confidence(said.get("confidence"), states, len(names))
-    seen = np.isfinite(positions).all(axis=-1)
+    names = _names(fields.get("names"))
+    positions = _positions(fields.get("positions"), len(names))
+    states = _states(fields.get("states"), len(names))
+    confidence = _confidence(fields.get("confidence"), states, len(names))
+    observed = np.isfinite(positions).all(axis=-1)
     return LiveFrame(
-        _number(said.get("time"), "time", MAX_TIME_S),
-        _body(said.get("body", 0)),
+        _number(fields.get("time"), "time", MAX_TIME_S),
+        _body(fields.get("body", 0)),
         names,
         positions,
-        np.where(seen, confidence, 0.0),
-        None if states is None else np.where(seen, states, 0).astype(np.int8),
-        _sensor(said.get("sensor", Sensor.OTHER.value)),
+        np.where(observed, confidence, 0.0),
+        None if states is None else np.where(observed, states, 0).astype(np.int8),
+        _sensor(fields.get("sensor", Sensor.OTHER.value)),
     )
 
 
 def frames_from_recording(recording: JointRecording, body: int = 0) -> Iterator[LiveFrame]:
-    """Yield the frames of a recording as a tracker would have sent them, from second 0 on."""
+    """Yield the frames of a recording as a tracker would send them, starting at time 0."""
     tracks = recording.tracks
-    states, sure = recording.tracking_state, tracks.confidence
+    states, confidence = recording.tracking_state, tracks.confidence
     for frame, positions in enumerate(tracks.positions):
-        known = None if states is None else states[frame]
-        told = _confidence(None, known, len(tracks.names)) if sure is None else sure[frame]
-        seen = np.isfinite(positions).all(axis=-1)
+        state = None if states is None else states[frame]
+        values = (
+            _confidence(None, state, len(tracks.names))
+            if confidence is None
+            else confidence[frame]
+        )
+        observed = np.isfinite(positions).all(axis=-1)
         yield LiveFrame(
             frame * tracks.dt,
             body,
             tracks.names,
             positions,
-            np.where(seen, told, 0.0),
-            known,
+            np.where(observed, values, 0.0),
+            state,
             recording.sensor,
         )
 
 
 def _refuse(word: str) -> NoReturn:
-    """Refuse NaN and Infinity, which are no JSON."""
+    """Refuse NaN and Infinity, which are not JSON."""
     raise ValueError(word)
 
 
-def _number(value: Any, name: str, largest: float) -> float:
-    if type(value) not in NUMBERS or not -largest <= value <= largest:
-        raise InvalidMotionError(f"A frame's {name} is not a number up to {largest:g}.")
+def _number(value: Any, name: str, limit: float) -> float:
+    if type(value) not in NUMBERS or not -limit <= value <= limit:
+        raise InvalidMotionError(f"A frame's {name} is not a number up to {limit:g}.")
     return float(value)
 
 
 def _body(value: Any) -> int:
     if type(value) is not int or not 0 <= value <= MAX_BODY:
-        raise InvalidMotionError("A frame's body is not a whole number from 0 on.")
+        raise InvalidMotionError("A frame's body is not an integer of at least 0.")
     return int(value)
 
 
 def _sensor(value: Any) -> Sensor:
-    known = {sensor.value: sensor for sensor in Sensor}
-    if not isinstance(value, str) or value not in known:
-        raise InvalidMotionError(f"A frame's sensor is none of {', '.join(known)}.")
-    return known[value]
+    sensors = {sensor.value: sensor for sensor in Sensor}
+    if not isinstance(value, str) or value not in sensors:
+        raise InvalidMotionError(f"A frame's sensor is none of {', '.join(sensors)}.")
+    return sensors[value]
 
 
 def _names(value: Any) -> tuple[str, ...]:
-    fit = isinstance(value, list) and 0 < len(value) <= MAX_JOINTS
-    if not fit or not all(map(_is_name, value)) or len(set(value)) < len(value):
+    is_valid_list = isinstance(value, list) and 0 < len(value) <= MAX_JOINTS
+    if not is_valid_list or not all(map(_is_name, value)) or len(set(value)) < len(value):
         raise InvalidMotionError(
-            f"A frame's names are not 1 to {MAX_JOINTS} words that differ, of at most"
+            f"A frame's names are not 1 to {MAX_JOINTS} different words of at most"
             f" {MAX_NAME_LENGTH} letters."
         )
     return tuple(value)
@@ -179,10 +184,10 @@ def _check_list(value: Any, name: str, length: int) -> list[Any]:
 
 def _positions(value: Any, n_joints: int) -> NDArray[np.float64]:
     positions = np.full((n_joints, 3), np.nan)
-    for joint, place in enumerate(_check_list(value, "positions", n_joints)):
-        if place is not None:
-            where = _check_list(place, "coordinates", 3)
-            positions[joint] = [_number(one, "position", MAX_POSITION_M) for one in where]
+    for joint, position in enumerate(_check_list(value, "positions", n_joints)):
+        if position is not None:
+            coordinates = _check_list(position, "coordinates", 3)
+            positions[joint] = [_number(one, "position", MAX_POSITION_M) for one in coordinates]
     return positions
 
 
@@ -198,12 +203,12 @@ def _states(value: Any, n_joints: int) -> NDArray[np.int8] | None:
 def _confidence(
     value: Any, states: NDArray[np.int8] | None, n_joints: int
 ) -> NDArray[np.float64]:
-    """Return what the frame says or, where it does not, half of the tracking state, or 1."""
+    """Return the confidence of the frame; without it half of the tracking state, or 1."""
     if value is None:
         return np.ones(n_joints) if states is None else states / 2.0
-    told = [
+    values = [
         _number(one, "confidence", 1.0) for one in _check_list(value, "confidences", n_joints)
     ]
-    if min(told) < 0.0:
+    if min(values) < 0.0:
         raise InvalidMotionError("A frame's confidence is below 0.")
-    return np.array(told)
+    return np.array(values)

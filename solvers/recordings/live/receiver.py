@@ -1,4 +1,4 @@
-"""Listens to a live stream on the machine's own address; nothing else can reach it."""
+"""Receive a live stream on the loopback address, which other machines cannot reach."""
 
 import socket
 from typing import Self
@@ -8,24 +8,24 @@ from ...errors import InvalidSettingError
 LOOPBACK = "127.0.0.1"
 MAX_DATAGRAM_BYTES = 65_536
 MAX_DATAGRAMS, MAX_POLL_BYTES = 64, 1 << 18
-"""Datagrams, and bytes, after which no more are taken in one go: 1,900 datagrams in a second of
-30 looks. Those behind them wait, and the system drops too many."""
+"""Maximum number of datagrams and bytes per poll: 1,900 datagrams per second at 30 polls.
+Later ones wait, and the system drops what exceeds the buffer."""
 BUFFER_BYTES = 1 << 20
-"""Bytes that may wait."""
+"""Size of the system's receive buffer."""
 
 
 class Receiver:
-    """A UDP socket on 127.0.0.1 that never waits.
+    """A non-blocking UDP socket on 127.0.0.1.
 
     Parameters
     ----------
     port : int
-        0 takes any that is free.
+        0 selects any free port.
 
     Raises
     ------
     InvalidSettingError
-        The port is no port, or another program has it.
+        The port is invalid or in use.
     """
 
     def __init__(self, port: int) -> None:
@@ -37,32 +37,32 @@ class Receiver:
         except (OSError, OverflowError):
             self._socket.close()
             raise InvalidSettingError(
-                f"Nobody can listen on port {port}: another program does, or the system keeps"
-                " it. Choose another port, here and where it is sent from."
+                f"Port {port} cannot be opened: another program uses it, or it is reserved."
+                " Choose another port, here and in the sender."
             ) from None
 
     @property
     def address(self) -> tuple[str, int]:
-        """Where it listens."""
+        """Host and port of the socket."""
         host, port = self._socket.getsockname()
         return str(host), int(port)
 
     def poll(self) -> list[bytes]:
-        """Return the first datagrams that have come in since; none if none have."""
-        came: list[bytes] = []
-        while len(came) < MAX_DATAGRAMS and sum(map(len, came)) < MAX_POLL_BYTES:
+        """Return datagrams received since the last poll, up to the maximum."""
+        received: list[bytes] = []
+        while len(received) < MAX_DATAGRAMS and sum(map(len, received)) < MAX_POLL_BYTES:
             try:
-                came.append(self._socket.recv(MAX_DATAGRAM_BYTES))
+                received.append(self._socket.recv(MAX_DATAGRAM_BYTES))
             except BlockingIOError:
                 break
-            except OSError:  # Windows tells of datagrams too long, or sent back, like this.
+            except OSError:  # On Windows: a datagram is too long or was returned.
                 if self._socket.fileno() < 0:
                     break
-                came.append(b"")
-        return came
+                received.append(b"")
+        return received
 
     def close(self) -> None:
-        """Listen no more; again does nothing."""
+        """Close the socket; may be repeated."""
         self._socket.close()
 
     def __enter__(self) -> Self:

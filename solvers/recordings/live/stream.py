@@ -1,4 +1,4 @@
-"""A live stream of joints: what comes in order and from one body, and a recording of it."""
+"""Select the frames of one body from a live stream, and build a recording from them."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -12,44 +12,44 @@ from ..conventions import joint_recording
 from .frames import LiveFrame, decode_frame
 
 NEW_STREAM_S = 2.0
-"""Seconds by which a frame must be too old to be the first of another stream."""
+"""Minimum backward jump in time that starts a new stream, seconds."""
 N_RESTART_FRAMES = 5
-"""Late frames in a row, each later than the one before, that tell of another stream, too."""
+"""Number of consecutive late frames in ascending order that also start a new stream."""
 MAX_LINES = 128
-"""Lines that are looked at in one go: two seconds of two bodies, which take some 35 ms."""
+"""Maximum number of lines to read at a time: two seconds of two bodies, about 35 ms."""
 BODY_TIMEOUT_S = 1.0
-"""Seconds without the body that is followed, after which another is."""
+"""Duration in seconds without the followed body after which another one is followed."""
 PERFORMANCE = "The performance"
 
 
 @dataclass
 class StreamCounts:
-    """How many frames came in, and why others were dropped."""
+    """Number of received frames, and of dropped ones by reason."""
 
     frames: int = 0
     unreadable: int = 0
     """Damaged, too long, or of another format."""
     late: int = 0
-    """Not later than one before."""
+    """Not later than a previous frame."""
     others: int = 0
-    """Of bodies that are not followed."""
+    """From bodies that are not followed."""
     skipped: int = 0
-    """Lines that were not looked at, since too many came at once."""
+    """Lines that were not read because too many arrived at once."""
     why: str = field(default="")
-    """What was wrong with the last unreadable one."""
+    """Why the last unreadable frame was dropped."""
 
     @property
     def dropped(self) -> int:
-        """All that did not count."""
+        """Number of all dropped frames."""
         return self.unreadable + self.late + self.others + self.skipped
 
 
 class StreamReader:
-    """Turns datagrams into the frames of one body, in order; nothing in them raises.
+    """Decode datagrams to the frames of one body, in order; invalid input never raises.
 
-    The body that came first is followed until it has been away for a second. Frames that are
-    two seconds too old, or more, are those of a sender that was started again; so are some in
-    a row that are late, but in order.
+    The first body is followed until it is missing for a second. Frames that are at least two
+    seconds too old come from a restarted sender, and so do consecutive late frames in
+    ascending order.
     """
 
     def __init__(self) -> None:
@@ -59,20 +59,20 @@ class StreamReader:
         self._late: list[float] = []
 
     def read(self, *datagrams: bytes) -> Iterator[LiveFrame]:
-        """Yield the frames that count of what came in at once, in their order.
+        """Yield the valid frames of datagrams that arrived together, in their order.
 
-        Lines behind the first `MAX_LINES` are counted as skipped: whoever sends junk costs no
-        more time than that.
+        Lines after the first `MAX_LINES` are counted as skipped, which limits the time that
+        invalid input takes.
         """
-        left = MAX_LINES
+        n_remaining = MAX_LINES
         for datagram in datagrams:
-            if not left:
+            if not n_remaining:
                 self.heard.skipped += max(datagram.count(b"\n"), 1)
                 continue
             lines = datagram.splitlines()
-            self.heard.skipped += max(len(lines) - left, 0)
-            yield from self._frames(lines[:left])
-            left = max(left - len(lines), 0)
+            self.heard.skipped += max(len(lines) - n_remaining, 0)
+            yield from self._frames(lines[:n_remaining])
+            n_remaining = max(n_remaining - len(lines), 0)
 
     def _frames(self, lines: Iterable[bytes]) -> Iterator[LiveFrame]:
         for line in filter(bytes.strip, lines):
@@ -82,16 +82,16 @@ class StreamReader:
                 self.heard.unreadable += 1
                 self.heard.why = str(error)
                 continue
-            if self._counts(frame):
+            if self._accepts(frame):
                 yield frame
 
-    def _counts(self, frame: LiveFrame) -> bool:
-        since = frame.time - self._time
-        fresh = since > BODY_TIMEOUT_S or since <= -NEW_STREAM_S
-        if frame.body != self._body and not fresh:
+    def _accepts(self, frame: LiveFrame) -> bool:
+        elapsed = frame.time - self._time
+        starts_stream = elapsed > BODY_TIMEOUT_S or elapsed <= -NEW_STREAM_S
+        if frame.body != self._body and not starts_stream:
             self.heard.others += 1
             return False
-        if not (fresh or since > 0.0 or self._restarts(frame.time)):
+        if not (starts_stream or elapsed > 0.0 or self._restarts(frame.time)):
             self.heard.late += 1
             return False
         self._body, self._time = frame.body, frame.time
@@ -100,7 +100,7 @@ class StreamReader:
         return True
 
     def _restarts(self, time: float) -> bool:
-        """Note a late frame; tell whether it is one of another stream."""
+        """Record a late frame; return whether it starts a new stream."""
         if self._late and time <= self._late[-1]:
             self._late.clear()
         self._late.append(time)
@@ -108,14 +108,14 @@ class StreamReader:
 
 
 def recording_from_frames(frames: Sequence[LiveFrame]) -> JointRecording:
-    """Return frames of a stream as a recording of a constant rate; gaps stay gaps.
+    """Build a recording with a constant rate from frames of a stream; gaps stay gaps.
 
-    Frames whose joints have other names than most are left out.
+    Frames whose joint names differ from those of most frames are dropped.
 
     Raises
     ------
     InvalidFileError
-        There are no frames, no joint was tracked in any, or their times make no sense.
+        There are no frames, no joint is tracked in any, or the times are invalid.
     """
     if not frames:
         raise InvalidFileError(f"{PERFORMANCE} has no frames.")

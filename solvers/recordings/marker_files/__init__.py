@@ -1,4 +1,4 @@
-"""Optical markers: C3D and TRC."""
+"""Read and write optical markers as C3D and TRC."""
 
 from .c3d import read_c3d
 from .c3d_writing import write_c3d

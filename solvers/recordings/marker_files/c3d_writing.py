@@ -13,7 +13,7 @@ from ...progress import Progress, unwatched
 from ..containers import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS
 
 INTEL = 84
-MILLIMETRES_PER_METRE = 1000.0
+MILLIMETERS_PER_METER = 1000.0
 LABELS_AT_ONCE = 255
 MAX_TEXT_BYTES = 255
 MAX_BLOCKS = 255
@@ -21,10 +21,9 @@ MAX_COUNT = 65535
 
 
 def write_c3d(tracks: Tracks, path: Path | str, *, progress: Progress = unwatched) -> None:
-    """Write tracks as a C3D file, whole or not at all: millimetres, Z up, single precision.
+    """Write tracks as a C3D file, atomically: millimeters, Z up, single precision.
 
-    Points that were not observed get the residual -1, as the format wants it. Confidence has
-    no place in the format and is not written.
+    Missing points get the residual -1, as the format defines. The format has no confidence.
 
     Parameters
     ----------
@@ -35,7 +34,7 @@ def write_c3d(tracks: Tracks, path: Path | str, *, progress: Progress = unwatche
     Raises
     ------
     InvalidMotionError
-        There are more points, or longer names, than the format has room for.
+        There are too many points, or too long names, for the format.
     InvalidFileError
         The file cannot be written.
     SolveCancelled
@@ -44,14 +43,14 @@ def write_c3d(tracks: Tracks, path: Path | str, *, progress: Progress = unwatche
     n_blocks = -(-(4 + len(_parameters(tracks, 0))) // BLOCK)
     if n_blocks > MAX_BLOCKS or tracks.n_points > MAX_COUNT:
         raise InvalidMotionError(
-            f"{tracks.n_points} points with such names are more than a C3D file can list."
-            " Shorten the names, or write fewer points."
+            f"{tracks.n_points} points with these names do not fit into a C3D file. Shorten the"
+            " names, or write fewer points."
         )
     first_data_block = 2 + n_blocks
     parameters = struct.pack("<BBBB", 1, C3D_ID, n_blocks, INTEL)
     parameters += _parameters(tracks, first_data_block)
     frames = np.empty((tracks.n_frames, tracks.n_points, 4), dtype="<f4")
-    frames[..., :3] = MILLIMETRES_PER_METRE * np.nan_to_num(tracks.positions)
+    frames[..., :3] = MILLIMETERS_PER_METER * np.nan_to_num(tracks.positions)
     frames[..., 3] = np.where(tracks.visible, 0.0, -1.0)
     frames[~tracks.visible, :3] = 0.0
     with write_atomically(path) as part, part.open("wb") as file:
@@ -128,5 +127,5 @@ def _parameter(group: int, name: str, kind: int, sizes: Sequence[int], data: byt
 
 
 def _next(rest: bytes) -> bytes:
-    """Put before the rest of an entry where the next one begins."""
+    """Prefix the rest of an entry with the offset of the next one."""
     return struct.pack("<H", 2 + len(rest)) + rest

@@ -17,27 +17,27 @@ from ..conventions import (
     check_scale,
     constant_rate_from_times,
     guess_unit_of_points,
-    metres_from_unit_name,
+    meters_from_unit_name,
     point_names,
     points_z_up,
 )
 
-FIRST_LINES = 30
-"""Within these the header ends."""
+MAX_HEADER_LINES = 30
+"""Maximum length of the header."""
 TITLE_OF_TIMES = r'(?i)[\s"]*frame\s*#?"?\s*"?(time\w*)?[ "]*\t?'
 TITLE = rb'[\s"]*[A-Za-z]'
-"""How the line begins that says X1, Y1, Z1 and so on."""
+"""Start of the line of axis titles, X1, Y1, Z1 and so on."""
 FULL_TURN = 2.0 * np.pi
 MAX_VALUE = 1e12
-"""What is larger is no measurement; some programs write so what they did not see."""
+"""Maximum plausible measurement; some programs write larger values for missing markers."""
 MIN_RATE_HZ, MAX_RATE_HZ = 1e-3, 1e6
 MAX_BLANK_RATIO = 10
-FREE_CELLS = 1_000_000
+MAX_UNCHECKED_CELLS = 1_000_000
 MILLISECOND = 0.001
 
 
 class _Header(NamedTuple):
-    """What stands above the numbers."""
+    """Contents of the header."""
 
     rate: float | None
     unit: str
@@ -49,37 +49,37 @@ class _Header(NamedTuple):
 def read_trc(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> Tracks:
-    """Read the markers of a TRC file, in metres, Z up; what was not seen is NaN.
+    """Read the markers of a TRC file, in meters, Z up; missing markers are NaN.
 
-    A marker is not seen where a coordinate is blank or no number, or where it lies exactly at
-    the origin, by which some programs mean the same. How many markers and frames there are is
-    counted, whatever the header says; columns beyond the last name are markers without one.
+    A marker is missing if a coordinate is blank or not a number, or if it is exactly at the
+    origin, as some programs write it. Markers and frames are counted, and their numbers in the
+    header are ignored; columns after the last name are unnamed markers.
 
-    The frame rate is the DataRate of the header if the times of the frames bear it out, else
-    that of the times, in seconds or, where only they fit it, milliseconds; frames that were
-    left out are gaps, and uneven times are resampled (`ConstantRate`). Up is what the first
-    line says in a cell such as `Y up`, as our own files do; else it is guessed to be Y or Z
-    from a body's points (`points_z_up`), and is Y, as the format has it, where they are too few
-    for a body. Which way the actor faces is not changed.
+    The frame rate is the DataRate of the header if it agrees with the times of the frames,
+    otherwise the rate of the times. Times are seconds, or milliseconds if only these agree.
+    Skipped frames are gaps, and uneven times are resampled (`ConstantRate`). Up is read from
+    the first line, from a cell such as `Y up`, which our own files have. Without it, up is
+    estimated to be Y or Z from the points of a body (`points_z_up`); with too few points for a
+    body it is Y, as the format defines. The heading of the actor is unchanged.
 
     Parameters
     ----------
     path : Path or str
-    scale : float, metres per unit of the file, or None
-        None takes the file's word (Units) or, where it has none, the one of metres, centimetres
-        and millimetres that gives a person's size.
+    scale : float, meters per unit of the file, or None
+        None: the Units of the header or, without them, the unit of meters, centimeters and
+        millimeters that gives a person's size.
     progress : Progress
 
     Returns
     -------
     Tracks
-        Names without the actor's (`Anna:LFHD`) if there is only one, and different from each
-        other (`LFHD_2`); unnamed markers are called `point_<number>`.
+        Names are unique (`LFHD_2`), and without the prefix of the actor (`Anna:LFHD`) if there
+        is only one; unnamed markers are called `point_<number>`.
 
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, no TRC file, has no markers, or holds angles.
+        The file is missing, damaged, not TRC, has no markers, or holds angles.
     InvalidSettingError
         The scale is not positive.
     SolveCancelled
@@ -87,13 +87,13 @@ def read_trc(
     """
     check_scale(scale)
     reader = LineReader(path)
-    header = _read_header(reader.peek(FIRST_LINES), path)
+    header = _read_header(reader.peek(MAX_HEADER_LINES), path)
     reader.take(header.n_lines)
     rows = _read_rows(reader, path, within(progress, 0.0, 0.8))
     frames, times, points = _columns_from_rows(rows, len(header.labels), path)
     points[(points == 0.0).all(axis=-1) | ~np.isfinite(points).all(axis=-1)] = np.nan
     if np.isnan(points).all():
-        raise InvalidFileError(f"{path} has no markers that are seen in any frame.")
+        raise InvalidFileError(f"{path} has no markers that are observed in any frame.")
     points *= _unit(header, points, path) if scale is None else scale
     points, rate = _at_constant_rate(points, frames, times, header.rate, path)
     labels = header.labels + [""] * (points.shape[1] - len(header.labels))
@@ -104,30 +104,31 @@ def read_trc(
 
 
 def _read_header(lines: list[bytes], path: Path | str) -> _Header:
-    """Read all down to the names, which stand in the line that begins with `Frame#`."""
+    """Read the header up to the names, which are in the line that begins with `Frame#`."""
     texts = [_decode(line) for line in lines]
-    named = next(
-        (place for place, text in enumerate(texts) if re.match(r'(?i)[\s"]*frame', text)), None
+    name_line = next(
+        (index for index, text in enumerate(texts) if re.match(r'(?i)[\s"]*frame', text)), None
     )
-    if named is None:
+    if name_line is None:
         raise InvalidFileError(
-            f"{path} has no line that begins with Frame# and lists the markers. It is no TRC"
-            " file, or is damaged; export it again."
+            f"{path} has no line that begins with Frame# and lists the markers. It is not a"
+            " TRC file, or is damaged; export it again."
         )
     keys = next(
-        (place for place, text in enumerate(texts[:named]) if "datarate" in text.lower()), None
+        (index for index, text in enumerate(texts[:name_line]) if "datarate" in text.lower()),
+        None,
     )
-    said = {} if keys is None else _parse_header_fields(texts[keys], texts[keys + 1])
+    fields = {} if keys is None else _parse_header_fields(texts[keys], texts[keys + 1])
     up = re.search(r"(?i)\t\s*([+-]?[XYZ]) up\s*(\t|$)", texts[0])
     rate = None
-    if word := said.get("datarate"):
+    if word := fields.get("datarate"):
         rate = read_number(word.encode(), f"{path}, line {(keys or 0) + 2}, DataRate")
     return _Header(
         rate=rate if rate is not None and MIN_RATE_HZ < rate < MAX_RATE_HZ else None,
-        unit=said.get("units", "").partition(" ")[0],
+        unit=fields.get("units", "").partition(" ")[0],
         up=up[1].upper() if up else "",
-        labels=_labels(texts[named]),
-        n_lines=named + 1,
+        labels=_labels(texts[name_line]),
+        n_lines=name_line + 1,
     )
 
 
@@ -139,42 +140,42 @@ def _decode(line: bytes) -> str:
 
 
 def _cells(text: str) -> list[str]:
-    """Return what stands between tabs, or between spaces where there are no tabs."""
+    """Split a line at tabs, or at spaces if it has no tabs."""
     cells = text.rstrip().split("\t") if "\t" in text.rstrip() else text.split()
     return [cell.strip(' "') for cell in cells]
 
 
 def _parse_header_fields(keys: str, values: str) -> dict[str, str]:
-    """Return the second and third line as one; some programs put two tabs between values."""
-    named, given = _cells(keys.lower()), _cells(values)
-    filled = [[cell for cell in cells if cell] for cells in (named, given)]
+    """Combine the second and third line; some programs put two tabs between values."""
+    name_line, given = _cells(keys.lower()), _cells(values)
+    filled = [[cell for cell in cells if cell] for cells in (name_line, given)]
     if len(filled[0]) == len(filled[1]):
-        named, given = filled
-    return dict(zip(named, given, strict=False))
+        name_line, given = filled
+    return dict(zip(name_line, given, strict=False))
 
 
 def _labels(text: str) -> list[str]:
-    """Return the names: each above the first of its three columns, or without space between.
+    """Return the names: each above the first of its three columns, or in adjacent columns.
 
-    Some programs put a space instead of a tab between `Time` and the first name.
+    Some programs write a space instead of a tab between `Time` and the first name.
     """
     title = re.match(TITLE_OF_TIMES, text)
     rest = text[title.end() :] if title else ""
     names = _cells(f"-\t{rest}")[1:] if "\t" in text.rstrip() else rest.split()
-    filled = [place for place, name in enumerate(names) if name]
-    if all(place % 3 == 0 for place in filled):
+    filled = [column for column, name in enumerate(names) if name]
+    if all(column % 3 == 0 for column in filled):
         return names[::3]
-    return [names[place] for place in filled]
+    return [names[column] for column in filled]
 
 
 class _Rows(NamedTuple):
-    """Rows of different lengths, one after the other."""
+    """Rows of different lengths, concatenated."""
 
     numbers: NDArray[np.float64]
     lengths: NDArray[np.intp]
 
     def fill(self, table: NDArray[np.float64]) -> None:
-        """Write each row from the left of a table, shape (n_rows, width)."""
+        """Write each row to the first columns of a table, shape (n_rows, width)."""
         length = int(self.lengths[0])
         if length <= table.shape[1] and (self.lengths == length).all():
             table[:, :length] = self.numbers.reshape(-1, length)
@@ -185,61 +186,63 @@ class _Rows(NamedTuple):
 
 
 def _read_rows(reader: LineReader, path: Path | str, progress: Progress) -> list[_Rows]:
-    """Return the numbers of each frame, NaN where blank, up to the last that is not."""
-    found: list[_Rows] = []
+    """Return the numbers of each frame up to its last nonblank cell; blank cells are NaN."""
+    blocks: list[_Rows] = []
     for block in reader.rest():
         for part in block.parts(ROWS_AT_ONCE):
             rows: list[NDArray[np.float64]] = []
             for number, line in enumerate(part.lines, start=part.first):
                 filled = line.rstrip()
-                if filled and (found or rows or not re.match(TITLE, filled)):
+                if filled and (blocks or rows or not re.match(TITLE, filled)):
                     rows.append(_read_row(filled, f"{path}, line {number}"))
             if rows:
                 lengths = np.array([len(row) for row in rows])
-                found.append(_Rows(np.concatenate(rows), lengths))
+                blocks.append(_Rows(np.concatenate(rows), lengths))
             progress(part.stop, "Reading")
-    if not found:
+    if not blocks:
         raise InvalidFileError(f"{path} has a header but no frames. Export it again.")
-    return found
+    return blocks
 
 
-def _read_row(line: bytes, place: str) -> NDArray[np.float64]:
+def _read_row(line: bytes, location: str) -> NDArray[np.float64]:
     cells = line.split(b"\t") if b"\t" in line else line.split()
     try:
         row = np.array([float(cell) if cell else np.nan for cell in cells])
-    except ValueError:  # Blanks, or other ways to write a number or that there is none.
+    except ValueError:  # Spaces, or other notations of numbers or missing values.
         words = [cell.strip(b' "') for cell in cells]
-        row = np.array([read_number(word, place) if word else np.nan for word in words])
+        row = np.array([read_number(word, location) if word else np.nan for word in words])
     if len(row) < 2 or not (np.abs(row[:2]) < MAX_VALUE).all():
         begin = shown(line[:80].decode("ascii", "backslashreplace").replace("\t", " "))
         raise InvalidFileError(
-            f"{place} begins with {begin!r} where the number and the time of a frame belong."
-            " The file is damaged; export it again, or delete that line."
+            f"{location} begins with {begin!r} instead of the number and time of a frame. The"
+            " file is damaged; export it again, or delete that line."
         )
     return row
 
 
 def _columns_from_rows(
-    found: list[_Rows], n_labels: int, path: Path | str
+    blocks: list[_Rows], n_labels: int, path: Path | str
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return frame numbers, times, and points of shape (n_frames, n_points, 3).
 
-    The list is emptied on the way, so that nothing is in memory twice.
+    The list is emptied meanwhile, to save memory.
     """
-    n_rows = sum(len(rows.lengths) for rows in found)
-    n_points = max(n_labels, (max(int(rows.lengths.max()) for rows in found) - 2) // 3)
+    n_rows = sum(len(rows.lengths) for rows in blocks)
+    n_points = max(n_labels, (max(int(rows.lengths.max()) for rows in blocks) - 2) // 3)
     width = 2 + 3 * n_points
-    if n_rows * width > FREE_CELLS + MAX_BLANK_RATIO * sum(len(rows.numbers) for rows in found):
+    if n_rows * width > MAX_UNCHECKED_CELLS + MAX_BLANK_RATIO * sum(
+        len(rows.numbers) for rows in blocks
+    ):
         raise InvalidFileError(
-            f"{path} has {n_points} markers by its longest line, but hardly any in the other"
+            f"{path} has {n_points} markers in its longest line, but hardly any in the other"
             f" {n_rows} lines. It is damaged; export it again."
         )
     if not n_points:
         raise InvalidFileError(f"{path} has no markers, only the times of its frames.")
     table = np.empty((n_rows, width))
     stop = n_rows
-    while found:
-        rows = found.pop()
+    while blocks:
+        rows = blocks.pop()
         block = table[stop - len(rows.lengths) : stop]
         block[:] = np.nan
         rows.fill(block)
@@ -250,38 +253,41 @@ def _columns_from_rows(
 
 
 def _unit(header: _Header, points: NDArray[np.float64], path: Path | str) -> float:
-    """Return metres per unit of the file."""
-    said = metres_from_unit_name(header.unit)
-    if said is None:
+    """Return meters per unit of the file."""
+    unit = meters_from_unit_name(header.unit)
+    if unit is None:
         return guess_unit_of_points(points)
-    if said < 1.0 and points.shape[1] > 1 and np.nanmax(np.abs(points)) <= FULL_TURN:
+    if unit < 1.0 and points.shape[1] > 1 and np.nanmax(np.abs(points)) <= FULL_TURN:
         raise InvalidFileError(
-            f"{path} holds angles, or its unit is not {header.unit} as it says: no number in it"
+            f"{path} holds angles, or its unit is not {header.unit} as stated: no number in it"
             " is above 6.3. Export positions of markers, or give the scale."
         )
-    return said
+    return unit
 
 
 def _at_constant_rate(
     points: NDArray[np.float64],
     frames: NDArray[np.float64],
     times: NDArray[np.float64],
-    said: float | None,
+    stated_rate: float | None,
     path: Path | str,
 ) -> tuple[NDArray[np.float64], float]:
-    """Go by the times; where they do not increase, by the frame numbers; else by neither."""
-    rate = said
-    if said is not None and not _increases(times) and _increases(frames):
-        times = frames / said
+    """Resample by the times, otherwise by the frame numbers, if either of them increase."""
+    rate = stated_rate
+    if stated_rate is not None and not _increases(times) and _increases(frames):
+        times = frames / stated_rate
     if _increases(times):
-        if said is not None and constant_rate_from_times(MILLISECOND * times, said) == said:
+        if (
+            stated_rate is not None
+            and constant_rate_from_times(MILLISECOND * times, stated_rate) == stated_rate
+        ):
             times = MILLISECOND * times
-        rate = constant_rate_from_times(times, said)
+        rate = constant_rate_from_times(times, stated_rate)
         if rate is None:
-            clock = ConstantRate(path, times, said)
-            points, rate = clock.positions(points), clock.frame_rate
+            resampler = ConstantRate(path, times, stated_rate)
+            points, rate = resampler.positions(points), resampler.frame_rate
     if rate is None or not MIN_RATE_HZ < rate < MAX_RATE_HZ:
-        raise InvalidFileError(f"{path} does not say its frame rate.")
+        raise InvalidFileError(f"{path} does not state its frame rate.")
     return points, rate
 
 

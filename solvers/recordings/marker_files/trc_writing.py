@@ -9,9 +9,9 @@ from ...motion import Tracks
 from ...progress import Progress, unwatched
 from ..conventions import y_up_from_z_up
 
-MILLIMETRES_PER_METRE = 1000.0
+MILLIMETERS_PER_METER = 1000.0
 NEAR_ORIGIN_MM = 1e-6
-"""Millimetres: readers take what is exactly at the origin for not seen."""
+"""Millimeters that replace an exact origin, which readers interpret as missing."""
 FRAMES_AT_ONCE = 500
 KEYS = (
     "DataRate", "CameraRate", "NumFrames", "NumMarkers", "Units", "OrigDataRate",
@@ -20,11 +20,10 @@ KEYS = (
 
 
 def write_trc(tracks: Tracks, path: Path | str, *, progress: Progress = unwatched) -> None:
-    """Write tracks as a TRC file, whole or not at all: millimetres, Y up, six decimals.
+    """Write tracks as a TRC file, atomically: millimeters, Y up, six decimals.
 
-    Points that were not observed are blank. Frames are numbered from 1, time starts at 0. Tabs
-    and line ends in names become spaces. Confidence has no place in the format and is not
-    written.
+    Missing points are blank. Frames are numbered from 1, time starts at 0. Tabs and line ends
+    in names become spaces. The format has no confidence.
 
     Parameters
     ----------
@@ -37,18 +36,18 @@ def write_trc(tracks: Tracks, path: Path | str, *, progress: Progress = unwatche
     InvalidFileError
         The file cannot be written.
     SolveCancelled
-        Raised by `progress`; the file is as it was.
+        Raised by `progress`; the file is unchanged.
     """
     n_frames, n_points = tracks.n_frames, tracks.n_points
     rate = repr(tracks.frame_rate)
     values = (rate, rate, n_frames, n_points, "mm", rate, 1, n_frames)
     names = "\t\t\t".join(" ".join(name.split()) for name in tracks.names)
     axes = "\t".join(f"X{number}\tY{number}\tZ{number}" for number in range(1, n_points + 1))
-    places = MILLIMETRES_PER_METRE * y_up_from_z_up(tracks.positions)
-    places = np.round(places, 6) + 0.0  # No "-0.000000".
-    places[(places == 0.0).all(axis=-1), 0] = NEAR_ORIGIN_MM
-    places[~tracks.visible] = np.nan
-    rows = places.reshape(n_frames, -1)
+    positions = MILLIMETERS_PER_METER * y_up_from_z_up(tracks.positions)
+    positions = np.round(positions, 6) + 0.0  # No "-0.000000".
+    positions[(positions == 0.0).all(axis=-1), 0] = NEAR_ORIGIN_MM
+    positions[~tracks.visible] = np.nan
+    rows = positions.reshape(n_frames, -1)
     with write_atomically(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
         file.write(f"PathFileType\t4\t(X/Y/Z)\t{Path(path).name}\tY up\n")
         file.write("\t".join(KEYS) + "\n" + "\t".join(map(str, values)) + "\n")

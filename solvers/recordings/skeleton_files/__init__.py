@@ -1,4 +1,4 @@
-"""Skeletons with rotations: BVH and Acclaim."""
+"""Read and write skeletons with rotations: BVH and Acclaim."""
 
 from .acclaim import find_skeleton, read_acclaim
 from .acclaim_limits import read_acclaim_limits

@@ -29,25 +29,25 @@ def read_acclaim(
     scale: float | None = None,
     progress: Progress = unwatched,
 ) -> Motion:
-    """Read an AMC file and the ASF file of its actor, turned from Y up to Z up.
+    """Read an AMC file and the ASF file of its actor, converted from Y up to Z up.
 
-    In these files a rotation belongs to a bone and is given about the bone's own axes C: with
-    M the turn that is recorded, C M C^-1 turns the bone in rest-pose axes [1]_. Here each bone
-    becomes a joint of the same name that lies where the bone starts, and the last bone of a
-    branch gets an end site. Bones that the recording never mentions stay at rest; a bone that
-    single frames leave out has a gap (NaN) there. CMU's and HDM05's files leave out one of the
-    three angles of the feet, whose toes stray by some centimetres when the ankle bends far.
+    In these files a rotation M belongs to a bone and is relative to the bone's own axes C;
+    C M C^-1 rotates the bone in rest-pose axes [1]_. Each bone becomes a joint of the same name
+    at the start of the bone, and the last bone of a branch gets an end site. Bones that the
+    recording never mentions stay at rest; a bone that is missing in single frames has a gap
+    (NaN) there. Files of CMU and HDM05 omit one of the three angles of the feet, so toes are
+    off by some centimeters when the ankle flexes far.
 
     Parameters
     ----------
     amc_path : Path or str
     asf_path : Path, str or None
-        None looks beside the AMC file: for the same name, or else for the longest name that
-        the recording's own name starts with.
+        None: the file next to the AMC file with the same name, otherwise with the longest name
+        that the name of the recording starts with.
     frame_rate : float, hertz
-        AMC files do not say theirs. CMU and HDM05 were recorded at 120 Hz.
-    scale : float, metres per unit of the files, or None
-        None takes it from the ASF file's `length`: 0.0254 / length.
+        AMC files do not store it. CMU and HDM05 were recorded at 120 Hz.
+    scale : float, meters per unit of the files, or None
+        None: 0.0254 / `length` of the ASF file.
     progress : Progress
 
     Returns
@@ -81,12 +81,12 @@ def read_acclaim(
 
 
 def find_skeleton(amc_path: Path | str) -> Path:
-    """Return the ASF file beside a recording that its name belongs to.
+    """Return the ASF file of a recording, by its name in the same folder.
 
     Raises
     ------
     InvalidFileError
-        There is none, or the folder is missing or may not be read.
+        There is none, or the folder is missing or unreadable.
     """
     amc_path = Path(amc_path)
     try:
@@ -96,13 +96,13 @@ def find_skeleton(amc_path: Path | str) -> Path:
             f"The folder {amc_path.parent} cannot be searched for the skeleton of"
             f" {amc_path.name} ({error.strerror}). Name the .asf file, or move both."
         ) from None
-    beside = [path for path in others if _is_for(path, amc_path)]
-    if not beside:
+    skeletons = [path for path in others if _is_for(path, amc_path)]
+    if not skeletons:
         raise InvalidFileError(
-            f"There is no skeleton for {amc_path}: put the actor's .asf file beside it, under"
+            f"There is no skeleton for {amc_path}. Put the actor's .asf file next to it, under"
             " the same name or the beginning of it."
         )
-    return max(beside, key=lambda path: len(path.stem))
+    return max(skeletons, key=lambda path: len(path.stem))
 
 
 def _is_for(path: Path, amc_path: Path) -> bool:
@@ -110,7 +110,7 @@ def _is_for(path: Path, amc_path: Path) -> bool:
 
 
 class _Mentions(NamedTuple):
-    """What some lines say of one bone."""
+    """The lines of a block that describe one bone."""
 
     frames: NDArray[np.intp]
     rows: NDArray[np.float64]
@@ -120,35 +120,36 @@ class _Mentions(NamedTuple):
 def _read_channels(
     reader: LineReader, skeleton: AcclaimSkeleton, path: Path | str, progress: Progress
 ) -> dict[str, NDArray[np.float64]]:
-    """Return what is recorded of each bone, shape (n_frames, n_channels), by its name."""
-    known = {bone.name.encode(): bone for bone in skeleton.bones}
-    found: dict[bytes, list[_Mentions]] = {}
+    """Return the channels of each bone, shape (n_frames, n_channels), by its name."""
+    bones = {bone.name.encode(): bone for bone in skeleton.bones}
+    parts_by_bone: dict[bytes, list[_Mentions]] = {}
     n_frames = 0
     for block in reader.rest():
         frame_lines, mentions = _mentions(block, n_frames > 0, path)
-        if strange := [
-            shown(name.decode("ascii", "backslashreplace")) for name in mentions.keys() - known
+        if unknown_bones := [
+            shown(name.decode("ascii", "backslashreplace")) for name in mentions.keys() - bones
         ]:
             raise InvalidFileError(
-                f"{path} moves bones that its skeleton does not have: {', '.join(strange[:5])}."
-                " It belongs to another .asf file, or is damaged."
+                f"{path} moves bones that its skeleton does not have:"
+                f" {', '.join(unknown_bones[:5])}. It belongs to another .asf file, or is"
+                " damaged."
             )
         for name, numbers in mentions.items():
             texts = [
                 block.lines[number - block.first].lstrip()[len(name) :] for number in numbers
             ]
-            rows = parse_rows(texts, len(known[name].channels), path, numbers)
+            rows = parse_rows(texts, len(bones[name].channels), path, numbers)
             frames = np.searchsorted(frame_lines, numbers) - 1 + n_frames
-            found.setdefault(name, []).append(_Mentions(frames, rows))
+            parts_by_bone.setdefault(name, []).append(_Mentions(frames, rows))
         n_frames += len(frame_lines)
         progress(block.stop, "Reading")
-    if not found:
-        raise InvalidFileError(f"{path} is no Acclaim recording: nothing moves in it.")
-    return {known[name].name: _table(parts, n_frames) for name, parts in found.items()}
+    if not parts_by_bone:
+        raise InvalidFileError(f"{path} is not an Acclaim recording: nothing moves in it.")
+    return {bones[name].name: _table(parts, n_frames) for name, parts in parts_by_bone.items()}
 
 
 def _table(parts: list[_Mentions], n_frames: int) -> NDArray[np.float64]:
-    """Return a row for each frame, NaN where a bone is left out; empties the list."""
+    """Return a row for each frame, NaN where the bone is missing; empties the list."""
     table = np.full((n_frames, parts[0].rows.shape[1]), np.nan)
     parts.reverse()
     while parts:
@@ -160,9 +161,9 @@ def _table(parts: list[_Mentions], n_frames: int) -> NDArray[np.float64]:
 def _mentions(
     block: Block, begun: bool, path: Path | str
 ) -> tuple[list[int], dict[bytes, list[int]]]:
-    """Return the lines with a frame number, and those that begin with each bone's name.
+    """Return the lines with frame numbers, and the lines of each bone.
 
-    Lines are counted from 1. Nothing may be said of a bone before the first frame has `begun`.
+    Lines are counted from 1. Bones are allowed only after the first frame has `begun`.
     """
     frame_lines: list[int] = []
     mentions: defaultdict[bytes, list[int]] = defaultdict(list)
@@ -176,8 +177,8 @@ def _mentions(
             mentions[words[0]].append(number)
         else:
             raise InvalidFileError(
-                f"{path}, line {number}: a frame number or a bone with its angles belongs here."
-                " The file is damaged, cut short or no Acclaim recording."
+                f"{path}, line {number}: neither a frame number nor a bone with its angles. The"
+                " file is damaged, cut short or not an Acclaim recording."
             )
     return frame_lines, mentions
 
@@ -190,31 +191,31 @@ def _build_motion(
     angle_unit: float,
     progress: Progress,
 ) -> Motion:
-    """Turn what is recorded into a motion; it is emptied, not to be in memory twice."""
+    """Build a motion from the recorded channels, which are emptied to save memory."""
     n_frames = len(next(iter(recorded.values())))
     scale = skeleton.unit if scale is None else scale
     names, parents, offsets = _joints(skeleton)
     rotations = np.zeros((n_frames, len(names), 4))
     rotations[..., 0] = 1.0
-    place = np.tile(skeleton.position, (n_frames, 1))
+    root_positions = np.tile(skeleton.position, (n_frames, 1))
     for joint, bone in enumerate(skeleton.bones):
         if bone.name not in recorded:
             continue
         columns = dict(zip(bone.channels, recorded.pop(bone.name).T, strict=True))
-        turns = _rotations_from_channels(bone, columns, angle_unit)
-        rotations[:, joint] = rotations_z_up_from_y_up(turns)
+        local_rotations = _rotations_from_channels(bone, columns, angle_unit)
+        rotations[:, joint] = rotations_z_up_from_y_up(local_rotations)
         if joint == 0:
             for axis, letter in enumerate("xyz"):
-                place[:, axis] = columns.get(f"t{letter}", place[:, axis])
+                root_positions[:, axis] = columns.get(f"t{letter}", root_positions[:, axis])
         progress((joint + 1) / len(skeleton.bones), "Reading")
     rest = Skeleton(names, parents, scale * z_up_from_y_up(offsets))
-    return Motion(rest, rotations, scale * z_up_from_y_up(place), frame_rate)
+    return Motion(rest, rotations, scale * z_up_from_y_up(root_positions), frame_rate)
 
 
 def _joints(
     skeleton: AcclaimSkeleton,
 ) -> tuple[tuple[str, ...], tuple[int, ...], NDArray[np.float64]]:
-    """Return names, parents and offsets, Y up, of the bones' starts and of the last ends."""
+    """Return names, parents and offsets, Y up, of the starts of bones and of end sites."""
     names = [bone.name for bone in skeleton.bones]
     parents = list(skeleton.parents)
     offsets = [skeleton.position]
@@ -231,9 +232,9 @@ def _rotations_from_channels(
 ) -> NDArray[np.float64]:
     """Return C M C^-1 as quaternions, shape (n_frames, 4), in the file's axes."""
     n_frames = len(next(iter(columns.values())))
-    order = bone.order[::-1]  # The axis that is turned about first stands last in a product.
-    still = np.zeros(n_frames)
-    angles = np.stack([columns.get(f"r{axis.lower()}", still) for axis in order], axis=-1)
-    turned = quaternion_from_euler(angle_unit * angles, order)
-    turned[np.isnan(turned).any(axis=-1)] = np.nan
-    return multiply(multiply(bone.frame, turned), inverse(bone.frame))
+    order = bone.order[::-1]  # The rotation that is applied first is the last factor.
+    zero = np.zeros(n_frames)
+    angles = np.stack([columns.get(f"r{axis.lower()}", zero) for axis in order], axis=-1)
+    rotations = quaternion_from_euler(angle_unit * angles, order)
+    rotations[np.isnan(rotations).any(axis=-1)] = np.nan
+    return multiply(multiply(bone.frame, rotations), inverse(bone.frame))

@@ -1,4 +1,4 @@
-"""How far the joints of an Acclaim skeleton may turn, as its file says."""
+"""Read the joint limits of an Acclaim skeleton."""
 
 from pathlib import Path
 
@@ -13,25 +13,25 @@ Z_UP_FROM_Y_UP = quaternion_from_euler([np.pi / 2], "X")
 
 
 def read_acclaim_limits(path: Path | str) -> JointLimits | None:
-    """Read the limits of the joints that `read_acclaim` makes of a skeleton.
+    """Read the rotation limits of the joints that `read_acclaim` returns.
 
-    An angle without degree of freedom is held at 0; one without limits is free. The root, which
-    carries the body, has none.
+    An angle without degree of freedom is fixed at 0; one without limits is free. The root has
+    no limits.
 
     Parameters
     ----------
     path : Path or str
-        The ASF file, or an AMC file with it beside.
+        The ASF file, or an AMC file next to it.
 
     Returns
     -------
     JointLimits or None
-        None where the file has no limits.
+        None if the file has no limits.
 
     Raises
     ------
     InvalidFileError
-        The file is missing or damaged, or no ASF file is beside it.
+        The file is missing or damaged, or has no ASF file next to it.
     """
     path = Path(path)
     skeleton = read_acclaim_skeleton(
@@ -54,6 +54,6 @@ def read_acclaim_limits(path: Path | str) -> JointLimits | None:
 
 
 def _bounds(bone: AcclaimBone) -> list[tuple[float, float]]:
-    """Return lower and upper limit of each angle, the one that is turned about last first."""
-    free = dict.fromkeys(bone.channels, (-np.inf, np.inf)) | dict(bone.limits)
-    return [free.get(f"r{axis.lower()}", (0.0, 0.0)) for axis in bone.order[::-1]]
+    """Return lower and upper limit of each angle; the rotation applied last comes first."""
+    ranges = dict.fromkeys(bone.channels, (-np.inf, np.inf)) | dict(bone.limits)
+    return [ranges.get(f"r{axis.lower()}", (0.0, 0.0)) for axis in bone.order[::-1]]

@@ -1,4 +1,4 @@
-"""Read Acclaim skeletons (ASF): the bones that the numbers of an AMC file turn."""
+"""Read Acclaim skeletons (ASF): bones, hierarchy, units and joint limits."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -22,33 +22,33 @@ CHANNELS = {f"{kind}{axis}" for kind in "rt" for axis in "xyz"} | {"l"}
 
 @dataclass(frozen=True, eq=False)
 class AcclaimBone:
-    """A bone as the file has it, Y up; a joint of the same name lies where it starts."""
+    """A bone in the axes of the file, Y up."""
 
     name: str
     vector: NDArray[np.float64]
     """From start to end in the rest pose, shape (3,), in units of the file."""
     frame: NDArray[np.float64]
-    """The axes about which it turns, as a quaternion w x y z, shape (4,)."""
+    """Rotation axes of the bone, as a quaternion w x y z, shape (4,)."""
     order: str
-    """Axis that is turned about first, second, third."""
+    """Axes of the first, second and third rotation."""
     channels: tuple[str, ...]
-    """What the AMC file records of it, such as `rx`, `rz`."""
+    """Channels in the AMC file, such as `rx`, `rz`."""
     limits: Mapping[str, tuple[float, float]]
-    """Lowest and highest of these channels, where the file says them, in its own units."""
+    """Minimum and maximum of channels, if stored, in the units of the file."""
 
 
 @dataclass(frozen=True, eq=False)
 class AcclaimSkeleton:
-    """Bones in an order in which parents come first; the root is the first."""
+    """Bones, parents before children; the root is the first."""
 
     bones: tuple[AcclaimBone, ...]
     parents: tuple[int, ...]
     position: NDArray[np.float64]
-    """Where the root rests, shape (3,)."""
+    """Rest position of the root, shape (3,)."""
     angle_unit: float
-    """Radians in one unit of an angle."""
+    """Radians per unit of an angle."""
     unit: float
-    """Metres in one unit of a length."""
+    """Meters per unit of a length."""
 
 
 def read_acclaim_skeleton(path: Path | str) -> AcclaimSkeleton:
@@ -57,13 +57,13 @@ def read_acclaim_skeleton(path: Path | str) -> AcclaimSkeleton:
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, or no Acclaim skeleton.
+        The file is missing, damaged, or not an Acclaim skeleton.
     """
     return _SkeletonFile(path).skeleton()
 
 
 class _SkeletonFile:
-    """The lines of an ASF file under their headings, and what they mean."""
+    """The lines of an ASF file by section, and their interpretation."""
 
     def __init__(self, path: Path | str) -> None:
         self.path = path
@@ -78,7 +78,9 @@ class _SkeletonFile:
                 heading.append((number, words))
         for name in (":root", ":bonedata", ":hierarchy"):
             if name not in self.sections:
-                raise InvalidFileError(f"{path} is no Acclaim skeleton: it has no {name} part.")
+                raise InvalidFileError(
+                    f"{path} is not an Acclaim skeleton: it has no {name} section."
+                )
 
     def skeleton(self) -> AcclaimSkeleton:
         units = {words[0].lower(): words[1:] for words in self._lines(":units")}
@@ -91,14 +93,14 @@ class _SkeletonFile:
         for entries in self._entries():
             name = " ".join(entries.get("name", []))
             if not name or name in bones:
-                self._refuse(f"a bone has no name or a name that is taken ({shown(name)!r})")
+                self._refuse(f"a bone has no name or a duplicate name ({shown(name)!r})")
             bones[name] = self._bone(name, entries, angle_unit)
         ordered, parents = self._hierarchy(bones)
         unit = self._unit(ordered, parents, units)
         return AcclaimSkeleton(tuple(ordered), tuple(parents), position, angle_unit, unit)
 
     def _entries(self) -> Iterator[dict[str, list[str]]]:
-        """Yield what stands between `begin` and `end` of each bone, by its first word."""
+        """Yield the lines between `begin` and `end` of each bone, by their first word."""
         entries: dict[str, list[str]] = {}
         for words in self._lines(":bonedata"):
             keyword = words[0].lower()
@@ -119,7 +121,7 @@ class _SkeletonFile:
         axis = entries.get("axis", ["0", "0", "0"])
         order = axis[3].upper() if len(axis) > 3 else "XYZ"
         if sorted(order) != ["X", "Y", "Z"]:
-            self._refuse(f"{shown(name)} turns about the axes {shown(order)!r}")
+            self._refuse(f"{shown(name)} rotates about the axes {shown(order)!r}")
         angles = dict(zip("XYZ", self._vector(axis[:3]) * angle_unit, strict=True))
         applied_last_first = order[::-1]
         frame = quaternion_from_euler(
@@ -136,11 +138,11 @@ class _SkeletonFile:
     def _limits(
         self, name: str, words: list[str], channels: tuple[str, ...]
     ) -> dict[str, tuple[float, float]]:
-        """Return what stands in the brackets, in the order of the channels."""
+        """Return the limits in brackets, in the order of the channels."""
         pairs = BRACKETS.findall(" ".join(words))
         if len(pairs) > len(channels):
             self._refuse(f"{shown(name)} has more limits than degrees of freedom")
-        found = {}
+        limits = {}
         for channel, pair in zip(channels, pairs, strict=False):
             try:
                 low, high = (float(bound) for bound in pair.replace(",", " ").split())
@@ -148,8 +150,8 @@ class _SkeletonFile:
                 low, high = np.inf, -np.inf
             if not low <= high:
                 self._refuse(f"{shown(name)} has the limits {shown(pair)!r}")
-            found[channel] = low, high
-        return found
+            limits[channel] = low, high
+        return limits
 
     def _hierarchy(
         self, bones: Mapping[str, AcclaimBone]
@@ -159,7 +161,7 @@ class _SkeletonFile:
             if name not in {"begin", "end"}:
                 below.setdefault(name, []).extend(children)
         ordered, parents, waiting = [], [], [(ROOT, -1)]
-        met = {ROOT}
+        visited = {ROOT}
         while waiting:
             name, parent = waiting.pop()
             if name not in bones:
@@ -169,16 +171,16 @@ class _SkeletonFile:
             ordered.append(bones[name])
             parents.append(parent)
             children = below.get(name, [])
-            if met & set(children):
-                self._refuse(f"a bone below {shown(name)} stands in the hierarchy twice")
-            met |= set(children)
+            if visited & set(children):
+                self._refuse(f"a bone below {shown(name)} is in the hierarchy twice")
+            visited |= set(children)
             waiting.extend((child, len(ordered) - 1) for child in reversed(children))
         return ordered, parents
 
     def _unit(
         self, bones: list[AcclaimBone], parents: list[int], units: Mapping[str, list[str]]
     ) -> float:
-        """Return metres per unit: inches divided by the file's own factor, if that can be."""
+        """Return meters per unit: inches divided by the file's factor, if that is plausible."""
         vectors = np.array([bone.vector for bone in bones])
         factor = self._numbers(units.get("length", ["1"]), 1)[0]
         unit = INCH / factor if factor > 0.0 else 0.0
@@ -201,7 +203,7 @@ class _SkeletonFile:
         except ValueError:
             values = []
         if len(values) != count or not all(abs(value) < 1e9 for value in values):
-            self._refuse(f"{count} numbers belong where {shown(' '.join(words))!r} stands")
+            self._refuse(f"{count} numbers are required instead of {shown(' '.join(words))!r}")
         return values
 
     def _refuse(self, what: str) -> NoReturn:
@@ -212,6 +214,6 @@ class _SkeletonFile:
 
 
 def _as_bone(root: Mapping[str, list[str]]) -> dict[str, list[str]]:
-    """Return the root's description with the keywords that bones have."""
+    """Return the root's description with the keywords of bones."""
     orientation = root.get("orientation", ["0", "0", "0"])
     return {"axis": orientation[:3] + root.get("axis", ["XYZ"]), "dof": root.get("order", [])}

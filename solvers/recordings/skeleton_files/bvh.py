@@ -1,4 +1,4 @@
-"""Read BVH files: the format that most capture software and libraries of clips exchange."""
+"""Read BVH files, the common format of capture software and clip libraries."""
 
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
@@ -12,10 +12,10 @@ from .bvh_channels import BvhChannels, motion_from_poses
 from .bvh_hierarchy import read_hierarchy
 
 COMMON_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240)
-RATE_WITHOUT_FRAME_TIME = 30.0
+DEFAULT_RATE_HZ = 30.0
 MAX_BLANK_LINES = 4096
 MAX_HIERARCHY_BYTES = 1 << 24
-"""Characters."""
+"""Maximum length of the hierarchy, bytes."""
 
 
 def read_bvh(
@@ -25,22 +25,21 @@ def read_bvh(
     up: UpAxisName | None = None,
     progress: Progress = unwatched,
 ) -> Motion:
-    """Read a BVH file, turned from Y up, facing +Z, to Z up, facing -Y.
+    """Read a BVH file, converted from Y up, facing +Z, to Z up, facing -Y.
 
-    The rest pose is the file's. The number of frames is that of the rows present, whatever
-    the file claims; a missing frame time means 30 Hz; values that are not numbers are gaps.
+    The rest pose is that of the file. Rows are counted, and the number of frames in the header
+    is ignored. A missing frame time means 30 Hz; values that are not numbers are gaps.
 
-    A `Motion` has bones of fixed length, so position channels beyond the root's are rendered
-    as nearly as it can: below a root with a single child, which then carries the body, they
-    move the root; their median stands in place of the joint's OFFSET; and a joint with a
-    single child turns towards it. Channels that would shrink the skeleton to a point are
-    added to the OFFSET instead.
+    A `Motion` has bones of fixed length, so position channels of joints other than the root
+    are approximated. In an unbranched chain below the root they move the root. Their median
+    replaces the OFFSET of the joint, and a joint with a single child is rotated towards it.
+    Channels that would shrink the skeleton to a point are added to the OFFSET instead.
 
     Parameters
     ----------
     path : Path or str
-    scale : float, metres per unit of the file, or None
-        None guesses it from the length of the bones (`axes.guess_unit`): centimetres for most
+    scale : float, meters per unit of the file, or None
+        None: estimated from the length of the bones (`axes.guess_unit`): centimeters for most
         files, 0.0254 / 0.45 for those made from CMU's library.
     up : "X", "Y", "Z", "-X", "-Y", "-Z" or None
         None judges it by the body (`judge_up_axis`): Y, as the format has it, unless the actor
@@ -55,7 +54,7 @@ def read_bvh(
     Raises
     ------
     InvalidFileError
-        The file is missing, no BVH, damaged, cut short or without a frame.
+        The file is missing, not BVH, damaged, truncated or without a frame.
     InvalidSettingError
         The scale is not positive.
     SolveCancelled
@@ -77,24 +76,24 @@ def read_bvh(
 
 
 def _hierarchy(reader: LineReader, path: Path | str) -> bytes:
-    """Take the lines down to the word MOTION; return those before it."""
+    """Take the lines up to the word MOTION; return those before it."""
     lines: list[bytes] = []
     while (line := reader.peek()) and not line[0].strip() and len(lines) < MAX_BLANK_LINES:
         lines += reader.take()
     if not b"".join(line).lstrip().upper().startswith(b"HIERARCHY"):
-        raise InvalidFileError(f"{path} is no BVH file: it does not begin with HIERARCHY.")
+        raise InvalidFileError(f"{path} is not a BVH file: it does not begin with HIERARCHY.")
     length = 0
     while (line := reader.take()) and length < MAX_HIERARCHY_BYTES:
         if line[0].strip(b" \t").upper() == b"MOTION":
             return b"\n".join(lines)
         lines += line
         length += len(line[0])
-    raise InvalidFileError(f"{path} has no MOTION part: it is cut short. Export it again.")
+    raise InvalidFileError(f"{path} has no MOTION section: it is cut short. Export it again.")
 
 
 def _frame_rate(reader: LineReader) -> float:
-    """Take the lines before the first frame; return the rate in hertz."""
-    rate = RATE_WITHOUT_FRAME_TIME
+    """Take the lines before the first frame; return the frame rate in hertz."""
+    rate = DEFAULT_RATE_HZ
     while line := reader.peek():
         words = line[0].lower().replace(b":", b" ").split()
         if words[:2] == [b"frame", b"time"] and len(words) == 3:
@@ -106,18 +105,21 @@ def _frame_rate(reader: LineReader) -> float:
 
 
 def _rate_from_time(word: str) -> float:
-    """Return the usual rate whose frame time rounds to `word`: 0.00833333 means 120 Hz."""
+    """Return the common rate whose frame time rounds to `word`: 0.00833333 means 120 Hz."""
     try:
         exact = Decimal(word.replace(",", "."))
         time = float(exact)
     except InvalidOperation:
-        return RATE_WITHOUT_FRAME_TIME
+        return DEFAULT_RATE_HZ
     if not 1e-5 < time < 1e3:
-        return RATE_WITHOUT_FRAME_TIME
-    whole = round(1.0 / time)
+        return DEFAULT_RATE_HZ
+    nearest_integer = round(1.0 / time)
     half_digit = 0.51 * 10.0 ** int(exact.as_tuple().exponent)
-    usual = [(rate, half_digit) for rate in COMMON_RATES]
-    for rate, tolerance in [(whole, 1e-12), *usual, (whole, min(half_digit, 1e-8))]:
+    for rate, tolerance in [
+        (nearest_integer, 1e-12),
+        *((rate, half_digit) for rate in COMMON_RATES),
+        (nearest_integer, min(half_digit, 1e-8)),
+    ]:
         if rate and abs(1.0 / rate - time) <= tolerance:
             return float(rate)
     return 1.0 / time

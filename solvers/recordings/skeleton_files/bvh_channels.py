@@ -1,4 +1,4 @@
-"""From the numbers of a BVH file to a motion of rigid bones."""
+"""Convert the channels of a BVH file to the motion of rigid bones."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -25,24 +25,24 @@ FRAMES_AT_ONCE = 2000
 
 
 class BvhPoses(NamedTuple):
-    """Rigid bones and how they move, in units of the file."""
+    """Rigid bones and their motion, in units of the file."""
 
     offsets: NDArray[np.float64]
     """Shape (n_joints, 3), Y up."""
     rotations: NDArray[np.float64]
     """Local quaternions in our axes, shape (n_frames, n_joints, 4)."""
     root: NDArray[np.float64]
-    """Places of the root in our axes, shape (n_frames, 3)."""
+    """Positions of the root in our axes, shape (n_frames, 3)."""
 
 
 class BvhChannels:
-    """What a BVH file records, in its own axes and units.
+    """The recorded channels of a BVH file, in its axes and units.
 
     Parameters
     ----------
     joints : sequence of BvhJoint
     rows : float array, shape (n_frames, n_channels)
-        Degrees and units of the file; NaN where nothing was recorded.
+        Degrees and units of the file; NaN where missing.
     """
 
     def __init__(self, joints: Sequence[BvhJoint], rows: NDArray[np.float64]) -> None:
@@ -51,114 +51,122 @@ class BvhChannels:
         self.file_offsets = np.array([joint.offset for joint in joints])
         first = np.cumsum([0, *(len(joint.channels) for joint in joints)])
         self.columns = [
-            {channel: int(start) + place for place, channel in enumerate(joint.channels)}
+            {channel: int(start) + index for index, channel in enumerate(joint.channels)}
             for joint, start in zip(joints, first, strict=False)
         ]
 
     def poses(self, progress: Progress) -> BvhPoses:
-        """Return rigid bones and how they move, as `read_bvh` describes it."""
+        """Return rigid bones and their motion, as `read_bvh` describes them."""
         rotations = self._rotations(progress)
         offsets = self.file_offsets.copy()
         for joint in range(1, len(offsets)):
-            offsets[joint] = _median_position(self._places(joint, self.added))
-        root = z_up_from_y_up(self._places(0, self.added))
+            offsets[joint] = _median_position(
+                self._relative_positions(joint, self.offset_added)
+            )
+        root = z_up_from_y_up(self._relative_positions(0, self.offset_added))
         root = np.broadcast_to(root, (len(self.rows), 3))
-        turn = rotations[:, 0]
+        rotation = rotations[:, 0]
         for joint in self.trunk:
-            strayed = self._places(joint, self.added) - offsets[joint]
-            root = root + rotate(turn, z_up_from_y_up(strayed))
-            turn = multiply(turn, rotations[:, joint])
-        self._turn_towards_only_children(rotations, offsets)
+            displacement = self._relative_positions(joint, self.offset_added) - offsets[joint]
+            root = root + rotate(rotation, z_up_from_y_up(displacement))
+            rotation = multiply(rotation, rotations[:, joint])
+        self._rotate_towards_only_children(rotations, offsets)
         return BvhPoses(offsets, rotations, root)
 
     @cached_property
-    def added(self) -> bool:
-        """Whether position channels count from the OFFSET instead of from the parent.
+    def offset_added(self) -> bool:
+        """Whether position channels are relative to the OFFSET instead of the parent.
 
-        The first is a rarer reading of the format. Each joint of the body has one vote: its
+        That is rarer. Each joint of the body has one vote: its
         channels are nearer to zero than to its OFFSET, or not. The root and the joints below
         it that carry the body travel, and are asked only where no other joint has channels;
         of the root only the height tells.
         """
         voters = [joint for joint in range(1, len(self.joints)) if joint not in self.trunk]
-        votes = sum(map(self._vote_for_added, voters))
+        votes = sum(map(self._vote_for_offset, voters))
         if not votes:
-            votes = sum(map(self._vote_for_added, self.trunk)) or self._vote_for_added(0)
+            votes = sum(map(self._vote_for_offset, self.trunk)) or self._vote_for_offset(0)
         return votes > 0
 
-    def _vote_for_added(self, joint: int) -> int:
+    def _vote_for_offset(self, joint: int) -> int:
         """Return 1 where position channels are nearer to zero than to the OFFSET, else -1.
 
         Return 0 where there are no channels, or nothing to tell the two apart.
         """
-        known = np.array([f"{axis}position" in self.columns[joint] for axis in "xyz"])
-        known &= (True, True, True) if joint else (False, True, False)
-        offset = known * self.file_offsets[joint]
-        median = known * _median_position(self._places(joint))
+        observed = np.array([f"{axis}position" in self.columns[joint] for axis in "xyz"])
+        observed &= (True, True, True) if joint else (False, True, False)
+        offset = observed * self.file_offsets[joint]
+        median = observed * _median_position(self._relative_positions(joint))
         length = float(offset @ offset)
         return int(np.sign(length / 2 - median @ offset)) if length > 0.0 else 0
 
-    def _places(self, joint: int, added: bool = False) -> NDArray[np.float64]:
-        """Return where a joint is, seen from its parent, shape (n_frames, 3).
+    def _relative_positions(
+        self, joint: int, offset_added: bool = False
+    ) -> NDArray[np.float64]:
+        """Return the position of a joint relative to its parent, shape (n_frames, 3).
 
-        A single row stands for all frames where no position channels are recorded.
+        Without position channels a single row represents all frames.
         """
         columns = self.columns[joint]
         moves = any(channel.endswith("position") for channel in columns)
-        places = np.tile(self.file_offsets[joint], (len(self.rows) if moves else 1, 1))
+        positions = np.tile(self.file_offsets[joint], (len(self.rows) if moves else 1, 1))
         for axis, name in enumerate("xyz"):
             if (column := columns.get(f"{name}position")) is not None:
-                places[:, axis] = self.rows[:, column] + (places[:, axis] if added else 0.0)
-        return places
+                positions[:, axis] = self.rows[:, column] + (
+                    positions[:, axis] if offset_added else 0.0
+                )
+        return positions
 
     def _rotations(self, progress: Progress) -> NDArray[np.float64]:
         """Return local quaternions in our axes, shape (n_frames, n_joints, 4).
 
-        Joints with the same order of angles are turned together, in blocks of frames: fast,
-        and little memory beyond the result.
+        Joints with the same rotation order are converted together, in blocks of frames, which
+        is fast and needs little memory.
         """
         groups: dict[str, tuple[list[int], list[list[int]]]] = {}
         for joint, columns in enumerate(self.columns):
-            turns = [channel for channel in columns if channel.endswith("rotation")]
-            order = "".join(channel[0].upper() for channel in turns)
+            rotation_channels = [channel for channel in columns if channel.endswith("rotation")]
+            order = "".join(channel[0].upper() for channel in rotation_channels)
             members, angles = groups.setdefault(order, ([], []))
             members.append(joint)
-            angles.append([columns[channel] for channel in turns])
+            angles.append([columns[channel] for channel in rotation_channels])
         groups.pop("", None)
         rotations = np.zeros((len(self.rows), len(self.joints), 4))
         rotations[..., 0] = 1.0
         for start in range(0, len(self.rows), FRAMES_AT_ONCE):
             block = slice(start, start + FRAMES_AT_ONCE)
             for order, (members, angles) in groups.items():
-                turned = quaternion_from_euler(np.radians(self.rows[block][:, angles]), order)
-                turned[np.isnan(turned).any(axis=-1)] = np.nan
-                rotations[block, members] = rotations_z_up_from_y_up(turned)
+                block_rotations = quaternion_from_euler(
+                    np.radians(self.rows[block][:, angles]), order
+                )
+                block_rotations[np.isnan(block_rotations).any(axis=-1)] = np.nan
+                rotations[block, members] = rotations_z_up_from_y_up(block_rotations)
             progress(min(1.0, block.stop / len(self.rows)), "Reading")
         return rotations
 
-    def _turn_towards_only_children(
+    def _rotate_towards_only_children(
         self, rotations: NDArray[np.float64], offsets: NDArray[np.float64]
     ) -> None:
-        """Change rotations so that joints whose place is recorded stay in its direction.
+        """Change rotations so that joints with recorded positions keep their direction.
 
-        Perception Neuron's files put a foot up to 10 cm beside the end of its shank, at the
-        right distance. The turn that brings it there is added to the shank and taken from the
-        foot.
+        Files of Perception Neuron place a foot up to 10 cm off the end of its shank, at the
+        right distance. The rotation that moves it there is added to the shank and removed from
+        the foot.
         """
         for joint, children in enumerate(self.children):
             if len(children) != 1 or children[0] in self.trunk:
                 continue
-            places = self._places(children[0], self.added)
-            if len(places) == 1:
+            positions = self._relative_positions(children[0], self.offset_added)
+            if len(positions) == 1:
                 continue
-            places[~np.isfinite(places).all(axis=1)] = offsets[children[0]]
-            swing = rotations_z_up_from_y_up(rotation_between(offsets[children[0]], places))
+            positions[~np.isfinite(positions).all(axis=1)] = offsets[children[0]]
+            swing = rotations_z_up_from_y_up(rotation_between(offsets[children[0]], positions))
             rotations[:, joint] = multiply(rotations[:, joint], swing)
             rotations[:, children[0]] = multiply(inverse(swing), rotations[:, children[0]])
 
     @cached_property
     def children(self) -> list[list[int]]:
-        """Joints below each joint, without end sites."""
+        """Children of each joint, without end sites."""
         children: list[list[int]] = [[] for _ in self.joints]
         for index, joint in enumerate(self.joints):
             if index and joint.channels:
@@ -167,7 +175,7 @@ class BvhChannels:
 
     @cached_property
     def trunk(self) -> dict[int, None]:
-        """Joints below the root down to where the skeleton first branches, in this order."""
+        """Joints from the root down to the first branch of the skeleton, in this order."""
         trunk: dict[int, None] = {}
         joint = 0
         while len(self.children[joint]) == 1:
@@ -184,7 +192,7 @@ def motion_from_poses(
     up: UpAxisName | None,
     progress: Progress,
 ) -> Motion:
-    """Return the motion in metres, Z up, as `read_bvh` describes it."""
+    """Return the motion in meters, Z up, as `read_bvh` describes it."""
     parents = tuple(joint.parent for joint in joints)
     if scale is None:
         scale = guess_unit(parents, poses.offsets)
@@ -199,7 +207,7 @@ def motion_from_poses(
     return rotate_to_z_up(motion, judged.axis, judged.rest_axis)
 
 
-def _median_position(places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the median, shape (3,), over the frames where a place is known; else zero."""
-    known = places[np.isfinite(places).all(axis=1)]
-    return np.median(known, axis=0) if len(known) else np.zeros(3)
+def _median_position(positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the median, shape (3,), over frames with a position; zero if there are none."""
+    observed = positions[np.isfinite(positions).all(axis=1)]
+    return np.median(observed, axis=0) if len(observed) else np.zeros(3)

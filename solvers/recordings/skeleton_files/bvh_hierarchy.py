@@ -1,4 +1,4 @@
-"""The first half of a BVH file: which joints there are, where, and what is recorded of each."""
+"""Parse the hierarchy of a BVH file: joints, offsets and channels."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,25 +13,25 @@ CHANNELS = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation
 
 @dataclass(frozen=True)
 class BvhJoint:
-    """A joint or end site as the file has it: its own axes, its own units."""
+    """A joint or end site in the axes and units of the file."""
 
     name: str
     parent: int
     offset: tuple[float, float, float]
     channels: tuple[str, ...]
-    """Such as `xposition` or `zrotation`, in the order of the numbers."""
+    """For example `xposition` or `zrotation`, in the order of the numbers."""
 
 
 def read_hierarchy(text: bytes, path: Path | str) -> list[BvhJoint]:
-    """Read what stands before the word MOTION; names come out different from each other.
+    """Parse the text before the word MOTION; names become unique.
 
     A second joint of the same name is called `name_2`, an end site `<parent>_end`. End sites
-    at no distance from their joint are left out. Spaces in names become underscores.
+    at the position of their joint are dropped. Spaces in names become underscores.
 
     Raises
     ------
     InvalidFileError
-        The text is no BVH hierarchy, or has more than one root.
+        The text is not a BVH hierarchy, or has more than one root.
     """
     return _Hierarchy(text, path).read()
 
@@ -60,13 +60,15 @@ class _Hierarchy:
             elif word == "}":
                 branch.pop()
             else:
-                self._refuse(f"{shown(word)!r} stands where JOINT, End Site or }} belongs")
+                self._refuse(f"{shown(word)!r} instead of JOINT, End Site or }}")
         rest = next(self.words, None)
         if rest is not None:
-            what = (
-                "there is a second ROOT" if rest == "ROOT" else f"{shown(rest)!r} is left over"
+            problem = (
+                "there is a second ROOT"
+                if rest == "ROOT"
+                else f"{shown(rest)!r} is after the end"
             )
-            self._refuse(f"{what}; one file holds one character")
+            self._refuse(f"{problem}; one file holds one character")
         return self.joints
 
     def _open(self, name: str, parent: int) -> int:
@@ -115,7 +117,7 @@ class _Hierarchy:
         except ValueError:
             value = float("nan")
         if not abs(value) < 1e9:
-            self._refuse(f"{shown(word)!r} is no sensible number")
+            self._refuse(f"{shown(word)!r} is not a plausible number")
         return value
 
     def _keyword(self) -> str:
@@ -132,8 +134,8 @@ class _Hierarchy:
             yield from line.replace("{", " { ").replace("}", " } ").split()
             self.line += 1
 
-    def _refuse(self, what: str) -> NoReturn:
+    def _refuse(self, problem: str) -> NoReturn:
         raise InvalidFileError(
-            f"{self.path}, line {self.line}: {what}. The file is damaged or no BVH; export it"
-            " again."
+            f"{self.path}, line {self.line}: {problem}. The file is damaged or not BVH; export"
+            " it again."
         )

@@ -5,7 +5,7 @@ import pytest
 from kinect_walks import tracked_walk, true_positions
 from modal_events import wait
 
-SAID = "Lengths are taken for millimetres, by the size of the body; give the unit"
+SAID = "Lengths are interpreted as millimeters, by the size of the body; give the unit"
 
 
 @pytest.fixture

@@ -119,7 +119,7 @@ def test_the_other_places_are_indexed_when_one_is_a_circle_of_links(
 
 @pytest.fixture
 def closed(tmp_path, monkeypatch):
-    """A folder that cannot be looked into; whoever tests as root could look into any."""
+    """A folder that cannot be opened; whoever tests as root could look into any."""
     folder, stat = tmp_path / "closed", Path.stat
     folder.mkdir()
 

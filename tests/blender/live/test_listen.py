@@ -87,7 +87,7 @@ def test_a_port_that_is_taken_is_told(listen, load, window, port):
 
     assert button.outcome == {"CANCELLED"}
     ((kind, message),) = window.reports
-    assert kind == {"ERROR"} and f"port {port}: another program" in message
+    assert kind == {"ERROR"} and f"Port {port} cannot be opened: another program" in message
     assert load("mocap_assist.live.listening").current() is None and window.timers == []
 
 

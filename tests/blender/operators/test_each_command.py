@@ -215,5 +215,5 @@ def test_a_closed_folder_and_a_name_too_long_are_named_before_any_blender_starts
     assert (status, err.count("\n"), out.count("\n")) == (2, 1, 2)
     assert "2 of 2 files failed." in err
     assert f"The output {'a' * 40}... needs a name of 259 bytes" in out
-    assert f"The folder {takes / 'second'} cannot be looked into" in out
+    assert f"The folder {takes / 'second'} cannot be opened" in out
     assert not list((tmp_path / "out").glob("*.blend"))

@@ -96,13 +96,13 @@ def at(frames, value):
         "long time",
     ],
 )
-def test_odd_takes_come_out_whole(call, bvh, tmp_path, spoil, frame_time):
+def test_denoise_fills_unusual_takes_completely(call, bvh, tmp_path, spoil, frame_time):
     source, target = bvh(spoil, frame_time), tmp_path / "out.bvh"
 
-    status, said, complaint = call("denoise", source, target, "--json")
+    status, printed, error_output = call("denoise", source, target, "--json")
 
-    assert (status, complaint) == (0, "")
-    json.loads(said, parse_constant=pytest.fail)
+    assert (status, error_output) == (0, "")
+    json.loads(printed, parse_constant=pytest.fail)
     clean = read_bvh(target)
     assert clean.n_frames == read_bvh(source).n_frames
     assert clean.observed.all()
@@ -129,11 +129,11 @@ def test_what_is_no_take_is_one_sentence(call, tmp_path, verb, content):
     source.write_bytes(content)
     target = [] if verb == "quality" else [tmp_path / "out.bvh"]
 
-    status, said, complaint = call(verb, source, *target)
+    status, printed, error_output = call(verb, source, *target)
 
-    assert (status, said) == (2, "")
-    assert complaint.count("\n") == 1
-    assert "in.bvh" in complaint
+    assert (status, printed) == (2, "")
+    assert error_output.count("\n") == 1
+    assert "in.bvh" in error_output
     assert [path.name for path in tmp_path.iterdir()] == ["in.bvh"]
 
 
@@ -142,18 +142,18 @@ def test_a_folder_is_no_file_to_read_nor_to_write(call, bvh, tmp_path):
     folder.mkdir()
 
     for words in (["quality", folder], ["convert", bvh(), folder]):
-        status, _, complaint = call(*words)
+        status, _, error_output = call(*words)
 
         assert status == 2
-        assert "folder.bvh" in complaint
-        assert complaint.count("\n") == 1
+        assert "folder.bvh" in error_output
+        assert error_output.count("\n") == 1
 
 
 def test_a_file_is_no_folder_to_write_to(call, bvh):
-    status, _, complaint = call("convert", bvh(), "--output-folder", bvh(name="b.bvh"))
+    status, _, error_output = call("convert", bvh(), "--output-folder", bvh(name="b.bvh"))
 
     assert status == 2
-    assert "is a file; name a folder to write to." in complaint
+    assert "is a file; name a folder to write to." in error_output
 
 
 @pytest.mark.parametrize("verb", ["convert", "learn"])
@@ -200,10 +200,10 @@ def test_a_full_disk_is_named_and_leaves_what_was_there(bvh, tmp_path, verb):
     ids=" ".join,
 )
 def test_settings_out_of_range_are_one_sentence(call, bvh, tmp_path, words):
-    status, said, complaint = call("denoise", bvh(), tmp_path / "out.bvh", *words)
+    status, printed, error_output = call("denoise", bvh(), tmp_path / "out.bvh", *words)
 
-    assert (status, said) == (2, "")
-    assert complaint.count("\n") == 1
+    assert (status, printed) == (2, "")
+    assert error_output.count("\n") == 1
     assert not (tmp_path / "out.bvh").exists()
 
 
@@ -213,13 +213,13 @@ def test_too_little_memory_is_one_sentence(call, bvh, tmp_path, monkeypatch):
 
     monkeypatch.setattr("solvers.command_line.denoise_verb.denoise", gluttonous)
 
-    status, _, complaint = call("denoise", bvh(), tmp_path / "out.bvh")
+    status, _, error_output = call("denoise", bvh(), tmp_path / "out.bvh")
 
     assert status == 2
-    assert "in.bvh needs more memory than there is" in complaint
+    assert "in.bvh needs more memory than there is" in error_output
 
 
-def test_an_interrupt_leaves_whole_files_only(swinging_leg, tmp_path):
+def test_interrupt_leaves_only_complete_files(swinging_leg, tmp_path):
     files = [tmp_path / f"{number}.bvh" for number in range(3)]
     for file in files:
         write_bvh(swinging_leg, file)
@@ -235,12 +235,12 @@ def test_an_interrupt_leaves_whole_files_only(swinging_leg, tmp_path):
             time.sleep(0.02)
         os.kill(running.pid, signal.SIGINT)
         try:
-            complaint = running.communicate(timeout=60)[1]
+            error_output = running.communicate(timeout=60)[1]
         finally:
             running.kill()
 
     assert running.returncode == 130
-    assert complaint == "Interrupted. Finished files are kept.\n"
+    assert error_output == "Interrupted. Finished files are kept.\n"
     written = list(out.iterdir())
     assert not [path for path in written if path.name.startswith(".")]
     for file in finished:
@@ -250,13 +250,13 @@ def test_an_interrupt_leaves_whole_files_only(swinging_leg, tmp_path):
 def test_damaged_patterns_are_refused_or_read_never_run(swinging_leg, tmp_path, rng):
     path, bad = tmp_path / "walk.npz", tmp_path / "bad.npz"
     learn_filter_bases([swinging_leg]).save(path)
-    whole = path.read_bytes()
+    complete = path.read_bytes()
     np.save(tmp_path / "array.npy", np.zeros(3))
     damaged = [(tmp_path / "array.npy").read_bytes(), b""]
-    damaged += [whole[: int(size)] for size in rng.integers(0, len(whole), 60)]
-    for place in rng.integers(0, len(whole), 200):
-        flipped = bytearray(whole)
-        flipped[place] ^= 1 << rng.integers(8)
+    damaged += [complete[: int(size)] for size in rng.integers(0, len(complete), 60)]
+    for position in rng.integers(0, len(complete), 200):
+        flipped = bytearray(complete)
+        flipped[position] ^= 1 << rng.integers(8)
         damaged.append(bytes(flipped))
 
     refused = 0

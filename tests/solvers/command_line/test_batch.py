@@ -14,7 +14,7 @@ def twin_file(leg_file) -> Path:
     return Path(shutil.copy(leg_file, leg_file.with_name("twin.bvh")))
 
 
-def test_many_files_go_to_a_folder_and_a_second_run_goes_on(call, leg_file, tmp_path):
+def test_output_folder_resumes_in_a_second_run(call, leg_file, tmp_path):
     twin = tmp_path / "twin.bvh"
     twin.write_bytes(leg_file.read_bytes())
     folder = tmp_path / "out"
@@ -23,9 +23,9 @@ def test_many_files_go_to_a_folder_and_a_second_run_goes_on(call, leg_file, tmp_
     first = (folder / "leg.bvh").stat().st_mtime_ns
     (folder / "twin.bvh").unlink()
 
-    _, said, _ = call(*words)
+    _, printed, _ = call(*words)
 
-    assert said.count("Already made.") == 1
+    assert printed.count("Already made.") == 1
     assert (folder / "leg.bvh").stat().st_mtime_ns == first
     assert (folder / "twin.bvh").exists()
 
@@ -45,9 +45,9 @@ def test_what_would_come_out_otherwise_is_made_again(
     if change == "version":
         monkeypatch.setattr("solvers.command_line.batch.version", lambda: "99.0.0")
 
-    _, said, _ = call(*words)
+    _, printed, _ = call(*words)
 
-    assert "Already made." not in said
+    assert "Already made." not in printed
 
 
 def test_one_bad_file_does_not_stop_the_others(call, leg_file, tmp_path):
@@ -55,16 +55,16 @@ def test_one_bad_file_does_not_stop_the_others(call, leg_file, tmp_path):
     bad.write_text("HIERARCHY\nMOTION\n")
     folder = tmp_path / "out"
 
-    status, said, complaint = call(
+    status, printed, error_output = call(
         "convert", bad, leg_file, tmp_path / "gone.bvh", "--output-folder", folder, "--json"
     )
 
     assert status == 2
     assert sorted(path.name for path in folder.iterdir()) == ["leg.bvh", "mocap_assist.json"]
-    lines = [json.loads(line) for line in said.splitlines()]
+    lines = [json.loads(line) for line in printed.splitlines()]
     assert [("error" in line) for line in lines] == [True, False, True]
-    assert complaint.count("\n") == 2
-    assert "There is no file" in complaint
+    assert error_output.count("\n") == 2
+    assert "There is no file" in error_output
 
 
 def test_several_at_a_time_give_the_same_files(start, leg_file, twin_file, tmp_path):

@@ -18,7 +18,7 @@ QUICK = ("--no-backward", "--no-refine", "--no-feet", "--check-every", "1000")
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory):
-    """Four frames of our own body, standing three metres away."""
+    """Four frames of our own body, standing three meters away."""
     body = default_body()
     depth = cast_rays(body, segment_frames(body, NATURAL), CAMERA).depth_picture()
     path = tmp_path_factory.mktemp("depth") / "standing.npz"
@@ -48,7 +48,7 @@ def test_a_standing_body_is_written_as_a_skeleton_with_its_figures(call, take, t
     assert load_body_model(kept).lengths.shape == default_body().lengths.shape
 
 
-def test_what_is_no_depth_and_who_is_not_there_are_said_in_a_sentence(call, take, tmp_path):
+def test_capture_reports_missing_depth_and_missing_actor_in_one_sentence(call, take, tmp_path):
     (tmp_path / "no.bvh").write_text("HIERARCHY\n")
     for source, words in (
         (tmp_path / "no.bvh", "holds no depth"),
@@ -92,10 +92,10 @@ def test_a_folder_of_takes_is_captured_take_by_take(call, takes, known):
     out = takes / "captured"
     words = ("capture", takes, "--output-folder", out, *known)
 
-    status, said, err = call(*words, "--jobs", 2, "--report")
+    status, printed, err = call(*words, "--jobs", 2, "--report")
 
     assert (status, err) == (0, "")
-    assert said.count("4 frames, ") == 2
+    assert printed.count("4 frames, ") == 2
     made = {path.relative_to(out).as_posix() for path in out.rglob("*.bvh")}
     assert made == {"monday/standing.bvh", "tuesday/pictures.bvh"}
     assert (
@@ -107,17 +107,19 @@ def test_a_folder_of_takes_is_captured_take_by_take(call, takes, known):
 
 
 def test_one_bad_take_does_not_stop_the_others(call, takes, known, tmp_path):
-    whole = (takes / "monday" / "standing.npz").read_bytes()
-    (takes / "monday" / "cut short.npz").write_bytes(whole[: len(whole) // 2])
+    complete = (takes / "monday" / "standing.npz").read_bytes()
+    (takes / "monday" / "cut short.npz").write_bytes(complete[: len(complete) // 2])
     for picture in (takes / "tuesday" / "pictures" / "depth").iterdir():
         picture.write_bytes(picture.read_bytes()[:40])
 
-    status, said, err = call("capture", takes, "--output-folder", tmp_path / "out", *known)
+    status, printed, err = call("capture", takes, "--output-folder", tmp_path / "out", *known)
 
-    assert status == 2 and said.count("4 frames, ") == 1
-    told = err.strip().split("\n")
-    assert len(told) == 2 and all(line.endswith(".") for line in told)
-    assert "cut short.npz" in told[0] and "4 of 4 pictures of depth are missing or" in told[1]
+    assert status == 2 and printed.count("4 frames, ") == 1
+    messages = err.strip().split("\n")
+    assert len(messages) == 2 and all(line.endswith(".") for line in messages)
+    assert (
+        "cut short.npz" in messages[0] and "4 of 4 depth images are missing or" in messages[1]
+    )
 
 
 def test_a_folder_that_is_a_take_itself(call, takes, known, tmp_path):

@@ -17,9 +17,9 @@ from solvers.samples import GaitSettings, walking_gait
 
 
 def test_convert_writes_the_same_motion(call, leg_file, tmp_path):
-    status, said, _ = call("convert", leg_file, tmp_path / "copy.bvh")
+    status, printed, _ = call("convert", leg_file, tmp_path / "copy.bvh")
 
-    assert (status, said) == (0, "120 frames at 60 Hz, 4 joints.\n")
+    assert (status, printed) == (0, "120 frames at 60 Hz, 4 joints.\n")
     assert (tmp_path / "copy.bvh").read_bytes() == leg_file.read_bytes()
 
 
@@ -51,9 +51,7 @@ def test_markers_go_from_trc_to_c3d_and_back_and_are_cleaned(call, tmp_path, rng
     assert clean.visible.all()
 
 
-def test_swapped_labels_are_put_right_where_that_is_asked_for(
-    call, recordings, leg_file, tmp_path
-):
+def test_unswap_option_corrects_swapped_labels(call, recordings, leg_file, tmp_path):
     take = read_c3d(recordings / "mocap" / "05_13.c3d")
     names = take.names[:41]
     truth = take.positions[:480:4, :41]
@@ -62,11 +60,11 @@ def test_swapped_labels_are_put_right_where_that_is_asked_for(
     swapped[40:90, pair] = truth[40:90, pair[::-1]]
     write_trc(Tracks(names, swapped, take.frame_rate / 4), tmp_path / "bad.trc")
 
-    status, said, _ = call(
+    status, printed, _ = call(
         "denoise", tmp_path / "bad.trc", tmp_path / "good.trc", "--unswap", "--json"
     )
 
-    assert (status, json.loads(said)["swaps"]) == (0, 1)
+    assert (status, json.loads(printed)["swaps"]) == (0, 1)
     error = np.linalg.norm(read_trc(tmp_path / "good.trc").positions - truth, axis=-1)
     assert np.median(error[45:85][:, pair]) < 0.02
     assert (
@@ -91,10 +89,12 @@ def test_denoise_writes_a_cleaner_take(call, swinging_leg, tmp_path, rng):
     turns /= np.linalg.norm(turns, axis=-1, keepdims=True)
     write_bvh(swinging_leg.with_poses(turns), tmp_path / "noisy.bvh")
 
-    status, said, _ = call("denoise", tmp_path / "noisy.bvh", tmp_path / "clean.bvh", "--json")
+    status, printed, _ = call(
+        "denoise", tmp_path / "noisy.bvh", tmp_path / "clean.bvh", "--json"
+    )
 
     assert status == 0
-    figures = json.loads(said)
+    figures = json.loads(printed)
     assert figures["output"] == str(tmp_path / "clean.bvh")
     assert figures["after"]["n_frames"] == 120
     clean = read_bvh(tmp_path / "clean.bvh")
@@ -105,10 +105,10 @@ def test_denoise_writes_a_cleaner_take(call, swinging_leg, tmp_path, rng):
 
 
 def test_denoise_learns_from_clips(call, leg_file, tmp_path):
-    status, said, _ = call("denoise", leg_file, tmp_path / "clean.bvh", "--train", leg_file)
+    status, printed, _ = call("denoise", leg_file, tmp_path / "clean.bvh", "--train", leg_file)
 
     assert status == 0
-    assert "1 example clip" in said
+    assert "1 example clip" in printed
 
 
 def test_what_was_learned_once_serves_as_well_as_the_clips(call, leg_file, tmp_path):
@@ -117,12 +117,12 @@ def test_what_was_learned_once_serves_as_well_as_the_clips(call, leg_file, tmp_p
     learned, out = tmp_path / "legs.npz", [tmp_path / "a.bvh", tmp_path / "b.bvh"]
     longer = ("--window", 0.8, "--frame-rate", 20)
 
-    status, said, _ = call("learn", leg_file, twin, "--output", learned, *longer, "--json")
+    status, printed, _ = call("learn", leg_file, twin, "--output", learned, *longer, "--json")
     call("denoise", leg_file, out[0], "--train", leg_file, twin, *longer)
     call("denoise", leg_file, out[1], "--bases", learned)
 
     assert status == 0
-    figures = json.loads(said)
+    figures = json.loads(printed)
     assert figures.pop("n_patterns") == len(load_filter_bases(learned).values)
     assert figures == {
         "inputs": [str(leg_file), str(twin)],
@@ -137,13 +137,13 @@ def test_what_was_learned_once_serves_as_well_as_the_clips(call, leg_file, tmp_p
     assert out[0].read_bytes() != out[1].read_bytes()
 
 
-def test_learn_says_what_it_learned(call, leg_file, tmp_path):
+def test_learn_reports_its_result(call, leg_file, tmp_path):
     learned = tmp_path / "legs.npz"
 
-    status, said, complaint = call("learn", leg_file, "--output", learned)
+    status, printed, error_output = call("learn", leg_file, "--output", learned)
 
-    assert (status, complaint) == (0, "")
-    assert re.fullmatch(rf"Learned \d+ patterns from 1 clip into {learned}\.\n", said)
+    assert (status, error_output) == (0, "")
+    assert re.fullmatch(rf"Learned \d+ patterns from 1 clip into {learned}\.\n", printed)
 
 
 def test_patterns_of_points_are_not_for_a_skeleton(call, leg_file, tmp_path, rng):
@@ -151,12 +151,12 @@ def test_patterns_of_points_are_not_for_a_skeleton(call, leg_file, tmp_path, rng
     write_c3d(Tracks(("a", "b", "c", "d"), 1.0 + steps, 30.0), tmp_path / "points.c3d")
     assert call("learn", tmp_path / "points.c3d", "--output", tmp_path / "points.npz")[0] == 0
 
-    status, _, complaint = call(
+    status, _, error_output = call(
         "denoise", leg_file, tmp_path / "out.bvh", "--bases", tmp_path / "points.npz"
     )
 
     assert status == 2
-    assert "The examples are of points, the recording is not." in complaint
+    assert "The examples are of points, the recording is not." in error_output
 
 
 def test_nothing_in_a_file_of_patterns_is_run(call, leg_file, tmp_path):
@@ -172,10 +172,10 @@ def test_nothing_in_a_file_of_patterns_is_run(call, leg_file, tmp_path):
         arrays = dict(learned) | {"keys": np.array([Attack()], dtype=object)}
     np.savez(bad, **arrays)
 
-    status, _, complaint = call("denoise", leg_file, tmp_path / "out.bvh", "--bases", bad)
+    status, _, error_output = call("denoise", leg_file, tmp_path / "out.bvh", "--bases", bad)
 
     assert status == 2
-    assert "bad.npz is not a readable archive" in complaint
+    assert "bad.npz is not a readable archive" in error_output
     assert not flag.exists()
 
 
@@ -203,29 +203,29 @@ def test_denoise_plants_the_feet_if_there_are_any(call, leg_file, tmp_path):
     walk = walking_gait(GaitSettings(duration=1.5, frame_rate=30.0))
     write_bvh(walk, tmp_path / "walk.bvh")
 
-    _, said, _ = call("denoise", tmp_path / "walk.bvh", tmp_path / "clean.bvh", "--json")
-    figures = json.loads(said)
+    _, printed, _ = call("denoise", tmp_path / "walk.bvh", tmp_path / "clean.bvh", "--json")
+    figures = json.loads(printed)
     assert figures["slide_after_m"] < figures["slide_before_m"]
     steps = [figures[when]["feet"]["left"]["contact_share"] for when in ("before", "after")]
     assert steps[0] == steps[1] > 0.0, "else the slide is not that of the same steps"
-    _, said, _ = call("denoise", leg_file, tmp_path / "leg-clean.bvh")
-    assert "Feet were not planted. No leg was found" in said
-    _, said, _ = call("denoise", leg_file, tmp_path / "leg-clean.bvh", "--no-feet")
-    assert "Feet" not in said
-    status, _, complaint = call("denoise", leg_file, tmp_path / "leg-clean.bvh", "--feet")
+    _, printed, _ = call("denoise", leg_file, tmp_path / "leg-clean.bvh")
+    assert "Feet were not planted. No leg was found" in printed
+    _, printed, _ = call("denoise", leg_file, tmp_path / "leg-clean.bvh", "--no-feet")
+    assert "Feet" not in printed
+    status, _, error_output = call("denoise", leg_file, tmp_path / "leg-clean.bvh", "--feet")
     assert status == 2
-    assert "leg.bvh: No leg was found" in complaint
+    assert "leg.bvh: No leg was found" in error_output
 
 
 @pytest.mark.parametrize("verb", [(), *((name,) for name in VERBS)], ids=str)
 def test_help_fits_the_window(call, verb, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
 
-    status, said, complaint = call(*verb, "--help")
+    status, printed, error_output = call(*verb, "--help")
 
-    assert (status, complaint) == (0, "")
-    assert max(map(len, said.splitlines())) <= 80
-    assert said.startswith("usage: solvers")
+    assert (status, error_output) == (0, "")
+    assert max(map(len, printed.splitlines())) <= 80
+    assert printed.startswith("usage: solvers")
 
 
 @pytest.mark.parametrize(
@@ -269,10 +269,12 @@ def test_a_mistake_is_one_sentence_and_status_2(
 ):
     monkeypatch.chdir(tmp_path)
 
-    status, said, complaint = call(*(leg_file if word == "IN" else word for word in words))
+    status, printed, error_output = call(
+        *(leg_file if word == "IN" else word for word in words)
+    )
 
     assert status == 2
-    assert said == ""
-    assert sentence in complaint
-    assert complaint.count("\n") == 1
+    assert printed == ""
+    assert sentence in error_output
+    assert error_output.count("\n") == 1
     assert [path.name for path in tmp_path.iterdir()] == ["leg.bvh"]

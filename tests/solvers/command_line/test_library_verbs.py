@@ -23,30 +23,30 @@ def walks(tmp_path_factory):
 @pytest.fixture
 def library(call, walks, tmp_path):
     path = tmp_path / "library.clips"
-    told = call("index", path, walks, "--tag", "walk")
-    assert told == (0, f"3 added; {path} has 3 clips.\n", "")
+    messages = call("index", path, walks, "--tag", "walk")
+    assert messages == (0, f"3 added; {path} has 3 clips.\n", "")
     return path
 
 
 def test_index_tells_what_it_did_and_does_it_once(call, walks, library):
     assert call("index", library, walks)[1] == f"3 unchanged; {library} has 3 clips.\n"
-    status, said, _ = call("index", library, walks, "--tag", "loud", "--json", "--jobs", 1)
-    told = json.loads(said)
+    status, printed, _ = call("index", library, walks, "--tag", "loud", "--json", "--jobs", 1)
+    messages = json.loads(printed)
     assert status == 0
-    assert told["changed"] == ["walk_100", "walk_120", "walk_140"]
-    assert (told["n_clips"], told["added"], told["refused"]) == (3, [], [])
-    assert told["output"] == told["library"] == str(library)
+    assert messages["changed"] == ["walk_100", "walk_120", "walk_140"]
+    assert (messages["n_clips"], messages["added"], messages["refused"]) == (3, [], [])
+    assert messages["output"] == messages["library"] == str(library)
 
 
-def test_index_says_each_file_that_is_of_no_use_and_fails(call, walks, library, tmp_path):
+def test_index_reports_each_refused_file_and_fails(call, walks, library, tmp_path):
     shutil.copytree(walks, tmp_path / "more")
     (tmp_path / "more" / "broken.bvh").write_text("HIERARCHY\nROOT")
     (tmp_path / "more" / "walk_100.bvh").unlink()
 
-    status, said, failed = call("index", library, tmp_path / "more")
+    status, printed, failed = call("index", library, tmp_path / "more")
 
     assert status == 2
-    assert said == f"2 added, 1 refused; {library} has 5 clips.\n"
+    assert printed == f"2 added, 1 refused; {library} has 5 clips.\n"
     assert failed.count("\n") == 1
     assert "broken.bvh" in failed
 
@@ -58,13 +58,13 @@ def test_index_removes_what_has_gone(call, walks, tmp_path):
     (folder / "walk_140.bvh").unlink()
 
     assert call("index", path, folder)[1].endswith("has 3 clips.\n")
-    said = call("index", path, folder, "--remove-missing")[1]
-    assert said == f"2 unchanged, 1 removed; {path} has 2 clips.\n"
+    printed = call("index", path, folder, "--remove-missing")[1]
+    assert printed == f"2 unchanged, 1 removed; {path} has 2 clips.\n"
 
 
 def test_find_prints_a_table_best_first(call, walks, library):
-    status, said, _ = call("find", walks / "walk_140.bvh", library, "--n-alike", 0)
-    header, *rows = said.splitlines()
+    status, printed, _ = call("find", walks / "walk_140.bvh", library, "--n-alike", 0)
+    header, *rows = printed.splitlines()
     assert status == 0
     assert header.split() == ["clip", "score", "frames", "seconds", "tags"]
     name, score, frames, _, tags = rows[0].split()
@@ -75,8 +75,8 @@ def test_find_prints_a_table_best_first(call, walks, library):
 
 def test_find_searches_with_frames_and_parts_of_the_body(call, walks, library):
     words = ("find", walks / "walk_100.bvh", library, "--json", "--n-alike", 0)
-    told = json.loads(call(*words, "--frames", "30:60", "--no-left-arm")[1])
-    best = told["matches"][0]
+    messages = json.loads(call(*words, "--frames", "30:60", "--no-left-arm")[1])
+    best = messages["matches"][0]
     assert best["clip"] == "walk_100"
     assert abs(best["first_frame"] - 30) < 5
     assert abs(best["last_frame"] - 59) < 5
@@ -86,7 +86,7 @@ def test_find_searches_with_frames_and_parts_of_the_body(call, walks, library):
     assert len(ignored["matches"]) == 1
 
 
-def test_slips_are_said_in_one_sentence(call, walks, library, tmp_path):
+def test_wrong_library_arguments_are_reported_in_one_sentence(call, walks, library, tmp_path):
     query, none = walks / "walk_100.bvh", tmp_path / "none"
     (tmp_path / "empty").touch()
     limbs = ("left-arm", "right-arm", "left-leg", "right-leg")
@@ -121,10 +121,10 @@ def test_a_take_learns_from_what_is_like_it_and_not_from_itself(
     call, walks, library, tmp_path, verb
 ):
     target = tmp_path / "clean.bvh"
-    status, said, failed = call(verb, walks / "walk_120.bvh", target, "--library", library)
+    status, printed, failed = call(verb, walks / "walk_120.bvh", target, "--library", library)
 
     assert (status, failed) == (0, "")
-    first = next(line for line in said.splitlines() if line.startswith("Learned from"))
+    first = next(line for line in printed.splitlines() if line.startswith("Learned from"))
     assert first.startswith("Learned from 2 clips of the library: walk_1")
     assert "walk_120" not in first
     assert read_bvh(target).n_frames == 90

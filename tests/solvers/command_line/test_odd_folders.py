@@ -69,9 +69,9 @@ def test_the_longest_names_are_made_or_refused_before_the_take_is_made(
         named(folder, f"{stem}.bvh".encode())
     out = tmp_path / "out"
 
-    status, said, err = call("convert", folder, "--output-folder", out, "--report")
+    status, printed, err = call("convert", folder, "--output-folder", out, "--report")
 
-    assert (status, said.count("30 frames"), err.count("\n")) == (2, 3, 1)
+    assert (status, printed.count("30 frames"), err.count("\n")) == (2, 3, 1)
     assert f"{long}.bvh: The output {letter * 40}... needs a name of " in err
     assert {path.stem for path in out.glob("*.bvh")} == {"walk", fits}
     assert {path.name for path in out.glob("*/*.png")} == {"walk.bvh.png", f"{fits}.bvh.png"}
@@ -95,7 +95,7 @@ def test_a_target_that_cannot_be_written_stops_no_other(call, folder, tmp_path):
     assert "walk.bvh cannot be written: it is a folder." in err
 
 
-def test_a_closed_folder_is_one_sentence_and_the_rest_is_made(
+def test_unreadable_folder_is_one_sentence_and_other_files_are_processed(
     call, folder, tmp_path, monkeypatch
 ):
     close(folder / "more", monkeypatch)
@@ -107,11 +107,11 @@ def test_a_closed_folder_is_one_sentence_and_the_rest_is_made(
         status, out, err = call(*words)
 
         assert (status, err.count("\n")) == (2, 1)
-        assert f"The folder {folder / 'more'} cannot be looked into (Permission denied)." in err
+        assert f"The folder {folder / 'more'} cannot be opened (Permission denied)." in err
         assert "30 frames" in out or "1 added" in out
 
 
-def test_what_a_closed_folder_holds_is_indexed_when_it_is_opened(call, folder, tmp_path):
+def test_unreadable_folder_is_indexed_once_it_is_readable(call, folder, tmp_path):
     with pytest.MonkeyPatch.context() as closing:
         close(folder / "more", closing)
         call("index", tmp_path / "all.clips", folder)
@@ -158,14 +158,14 @@ def test_a_link_to_itself_stops_no_other(call, folder, tmp_path):
         ("index", tmp_path / "a.clips", loop, folder / "walk.bvh"),
         ("quality", loop, folder / "walk.bvh"),
     ):
-        status, said, failed = call(*words)
+        status, printed, failed = call(*words)
         assert (status, failed.count("\n")) == (2, 1), words
         assert "loop.bvh" in failed
-        assert "walk.bvh" in said or "1 clip" in said
+        assert "walk.bvh" in printed or "1 clip" in printed
     assert read_bvh(out / "walk.bvh").n_frames == 30
 
 
-def test_a_file_in_a_closed_folder_stops_no_other(call, folder, tmp_path, monkeypatch):
+def test_unreadable_file_stops_no_other(call, folder, tmp_path, monkeypatch):
     hidden = (folder / "more" / "walk.bvh").rename(folder / "more" / "hidden.bvh")
     named = (hidden, folder / "walk.bvh")
     for name in ("stat", "open"):  # As for somebody who may not look into it; root may.
@@ -175,10 +175,10 @@ def test_a_file_in_a_closed_folder_stops_no_other(call, folder, tmp_path, monkey
         ("convert", *named, "--output-folder", tmp_path / "out"),
         ("index", tmp_path / "a.clips", *named),
     ):
-        status, said, failed = call(*words)
+        status, printed, failed = call(*words)
         assert (status, failed.count("\n")) == (2, 1), failed
         assert "ermission denied" in failed
-    assert "1 clip" in said
+    assert "1 clip" in printed
 
 
 def test_line_breaks_in_names_are_printed_escaped(call, folder, tmp_path):
@@ -193,9 +193,9 @@ def test_line_breaks_in_names_are_printed_escaped(call, folder, tmp_path):
         ("quality", odd / "none.bvh"),
         ("quality", tmp_path / "no\nfolder"),
     ):
-        _, said, failed = call(*words)
-        assert "\x1b" not in said + failed, words
-        assert not [line for line in said.splitlines() if line.startswith(("[31m", "name"))]
+        _, printed, failed = call(*words)
+        assert "\x1b" not in printed + failed, words
+        assert not [line for line in printed.splitlines() if line.startswith(("[31m", "name"))]
         assert failed.count("\n") <= 1 or words[0] == "index", failed
 
 

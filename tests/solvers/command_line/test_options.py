@@ -56,7 +56,7 @@ def test_what_is_not_given_is_the_default_of_each_class(parser):
     assert settings_from_arguments(arguments, ArrowSettings).n_shots == 5
 
 
-def test_help_says_unit_range_and_default(parser):
+def test_help_has_unit_range_and_default(parser):
     text = " ".join(parser.format_help().split())
 
     assert "Longer is lower [m, 0.1 to 2, default 0.7]" in text
@@ -85,7 +85,7 @@ def test_a_slip_is_one_sentence_on_stderr_and_status_2(parser, capsys, words, se
     with pytest.raises(SystemExit) as stopped:
         parser.parse_args(words)
 
-    complaint = capsys.readouterr().err
+    error_output = capsys.readouterr().err
     assert stopped.value.code == 2
-    assert complaint.startswith(sentence)
-    assert complaint.count("\n") == 1
+    assert error_output.startswith(sentence)
+    assert error_output.count("\n") == 1

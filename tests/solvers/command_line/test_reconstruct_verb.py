@@ -26,7 +26,7 @@ def walk_file(walk, tmp_path):
     return tmp_path / "walk.csv"
 
 
-def test_writes_a_motion_and_tells_what_was_lost(call, walk_file, tmp_path):
+def test_reconstruct_writes_a_motion_and_reports_missing_joints(call, walk_file, tmp_path):
     status, out, err = call("reconstruct", walk_file, tmp_path / "walk.bvh", "--json")
 
     assert (status, err) == (0, "")
@@ -89,7 +89,7 @@ def test_clips_of_your_own_teach_postures(call, walk_file, tmp_path):
     assert "1 clip of your own" in out
 
 
-def test_metres_of_millimetres_are_asked_for(call, walk, tmp_path):
+def test_millimeters_read_as_meters_are_refused_with_a_scale(call, walk, tmp_path):
     large = Tracks(walk.names, 1000.0 * walk.tracks.positions, 30.0)
     write_joint_csv(walk.with_tracks(large), tmp_path / "large.csv")
 
@@ -99,13 +99,13 @@ def test_metres_of_millimetres_are_asked_for(call, walk, tmp_path):
     )
 
     assert status == 2 and err.count("\n") == 1
-    assert "large.csv" in err and "millimetres were read as metres" in err
+    assert "large.csv" in err and "millimeters were read as meters" in err
     assert scaled == 0
     height = read_bvh(tmp_path / "out.bvh").skeleton.height
     assert 1.3 < height < 2.2
 
 
-def test_what_lengths_are_taken_for_is_told(call, walk, tmp_path):
+def test_estimated_unit_is_reported(call, walk, tmp_path):
     write_joint_csv(walk, tmp_path / "said.csv")
     large = walk.with_tracks(walk.tracks.with_positions(1000.0 * walk.tracks.positions))
     write_joint_csv(large, tmp_path / "large.csv")
@@ -115,7 +115,7 @@ def test_what_lengths_are_taken_for_is_told(call, walk, tmp_path):
     for verb in ("reconstruct", "convert"):
         target = tmp_path / f"{verb}.bvh" if verb == "reconstruct" else tmp_path / "out.trc"
         status, out, _ = call(verb, tmp_path / "large.csv", target)
-        assert status == 0 and out.count("Lengths are taken for millimetres") == 1
+        assert status == 0 and out.count("Lengths are interpreted as millimeters") == 1
         status, out, _ = call(verb, tmp_path / "said.csv", target)
         assert status == 0 and "Lengths" not in out
 

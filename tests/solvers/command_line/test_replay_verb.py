@@ -55,11 +55,11 @@ def test_every_frame_arrives_in_order(call, wave, listener):
     assert (status, err) == (0, "")
     assert json.loads(out)["n_frames"] == len(frames) == len(performance.times)
     assert_allclose([frame.time for frame in frames], performance.times, atol=1e-5)
-    places = np.stack([frame.positions for frame in frames])
-    assert_allclose(places, performance.positions, atol=1e-4)
+    positions = np.stack([frame.positions for frame in frames])
+    assert_allclose(positions, performance.positions, atol=1e-4)
 
 
-def test_frames_come_at_their_times_whatever_sending_takes(wave):
+def test_frames_are_sent_on_time_when_sending_is_slow(wave):
     recording = wave[0].recording()
     clock = [100.0]
     sent = []
@@ -71,11 +71,11 @@ def test_frames_come_at_their_times_whatever_sending_takes(wave):
         sent.append((decode_frame(line).time, clock[0] - 100.0))
         clock[0] += 0.01
 
-    told, passed = np.array(sent).T
-    assert_allclose(passed, told / 2.0, atol=1e-5)
+    messages, passed = np.array(sent).T
+    assert_allclose(passed, messages / 2.0, atol=1e-5)
 
 
-def test_time_goes_on_when_it_begins_again(wave):
+def test_time_increases_when_the_recording_repeats(wave):
     recording = wave[0].recording()
     frames = loop_frames(recording)
 
@@ -92,11 +92,11 @@ def test_a_motion_is_sent_as_the_joints_of_a_kinect(call, tmp_path, listener):
 
     frames = came(listener)
     assert len(frames) == walk.n_frames and "WristRight" in frames[0].names
-    places = np.stack([frame.positions for frame in frames])
-    assert_allclose(places, postures_from_motion(walk), atol=1e-3)
+    positions = np.stack([frame.positions for frame in frames])
+    assert_allclose(positions, postures_from_motion(walk), atol=1e-3)
 
 
-def test_nobody_needs_to_listen(call, wave):
+def test_replay_works_without_a_receiver(call, wave):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -115,7 +115,7 @@ def test_nobody_needs_to_listen(call, wave):
         (("--speed", "nan"), "speed is nan"),
     ],
 )
-def test_wrong_options_are_told(call, wave, options, words):
+def test_invalid_options_are_reported(call, wave, options, words):
     status, _, err = call("replay", wave[1], *options)
 
     assert status == 2 and words in err

@@ -46,8 +46,8 @@ def takes(swinging_leg, tmp_path) -> Path:
     folder = tmp_path / "takes"
     (folder / "day <2>").mkdir(parents=True)
     (folder / ".trash").mkdir()
-    for place in ("leg.bvh", "day <2>/leg & foot.bvh", ".trash/old.bvh"):
-        write_bvh(swinging_leg, folder / place)
+    for position in ("leg.bvh", "day <2>/leg & foot.bvh", ".trash/old.bvh"):
+        write_bvh(swinging_leg, folder / position)
     (folder / "notes.txt").write_text("Tuesday: the actor limped.\n")
     (folder / "kinect.csv").write_text(kinect_csv(moving(40, 25)))
     return folder
@@ -57,23 +57,23 @@ def test_a_page_tells_of_every_file(call, takes, tmp_path):
     (takes / "bad.bvh").write_text("HIERARCHY\nMOTION\n")
     out = tmp_path / "out"
 
-    status, _, complaint = call("denoise", takes, "--output-folder", out, "--report")
+    status, _, error_output = call("denoise", takes, "--output-folder", out, "--report")
 
     assert status == 2
-    assert complaint.count("\n") == 1
+    assert error_output.count("\n") == 1
     page = Page(out / "report.html")
     assert page.titles[0] == "bad.bvh"
     assert sorted(page.titles) == ["bad.bvh", "kinect.csv", "leg & foot.bvh", "leg.bvh"]
     assert "Mocap Assist, denoise: 3 done, 1 failed" in page.words
-    assert complaint.strip() in page.words
+    assert error_output.strip() in page.words
     assert sorted(page.pictures) == [
         "report/day <2>/leg & foot.bvh.png", "report/kinect.trc.png", "report/leg.bvh.png",
     ]  # fmt: skip
     assert all((out / picture).read_bytes().startswith(PNG) for picture in page.pictures)
-    told = json.loads((out / "report.json").read_text())
-    assert (told["verb"], told["done"], told["failed"]) == ("denoise", 3, 1)
-    figures = {Path(each["input"]).name: each for each in told["files"]}
-    assert figures["bad.bvh"]["error"] == complaint.strip()
+    messages = json.loads((out / "report.json").read_text())
+    assert (messages["verb"], messages["done"], messages["failed"]) == ("denoise", 3, 1)
+    figures = {Path(each["input"]).name: each for each in messages["files"]}
+    assert figures["bad.bvh"]["error"] == error_output.strip()
     leg = figures["leg.bvh"]
     assert leg["before"]["n_frames"] == 120
     assert f"{leg['before']['mean_jitter_m_per_s3']:.3g} → " in "".join(page.words)
@@ -98,8 +98,8 @@ def test_a_folder_keeps_its_form_and_points_stay_points(call, takes):
 def test_quality_and_examples_take_folders_too(call, takes, leg_file, tmp_path):
     assert call("quality", takes)[1].count(" frames at ") == 3
     (takes / "kinect.csv").unlink()
-    status, said, _ = call("learn", takes, "--output", tmp_path / "legs.npz")
-    assert (status, "from 2 clips" in said) == (0, True)
+    status, printed, _ = call("learn", takes, "--output", tmp_path / "legs.npz")
+    assert (status, "from 2 clips" in printed) == (0, True)
     assert call("denoise", leg_file, tmp_path / "a.bvh", "--train", takes)[0] == 0
 
 
@@ -107,18 +107,18 @@ def test_a_folder_without_recordings_is_refused(call, tmp_path):
     (tmp_path / "empty").mkdir()
     (tmp_path / "empty" / "notes.txt").write_text("nothing")
 
-    status, _, complaint = call("quality", tmp_path / "empty")
+    status, _, error_output = call("quality", tmp_path / "empty")
 
-    assert (status, complaint) == (
+    assert (status, error_output) == (
         2, f"There is no recording in the folder {tmp_path / 'empty'}.\n",
     )  # fmt: skip
 
 
 def test_a_report_needs_a_folder(call, leg_file, tmp_path):
-    status, _, complaint = call("convert", leg_file, tmp_path / "out.bvh", "--report")
+    status, _, error_output = call("convert", leg_file, tmp_path / "out.bvh", "--report")
 
     assert status == 2
-    assert complaint == "A report needs a folder: name it with --output-folder DIR.\n"
+    assert error_output == "A report needs a folder: name it with --output-folder DIR.\n"
 
 
 def noted_in(folder: Path, name: str) -> bool:
@@ -146,19 +146,19 @@ def test_killed_in_the_middle_and_taken_up_again(swinging_leg, takes, tmp_path, 
     ):
         (out / half).write_text("cut off by the ki")
 
-    status, said, _ = call(*words, "--report")
+    status, printed, _ = call(*words, "--report")
 
     assert status == 0
     assert n_made >= 1
-    assert said.count("Already made.") == n_made
-    told = json.loads((out / "report.json").read_text())
-    assert told["done"] == 4
-    assert all("after" in each and "picture" in each for each in told["files"])
+    assert printed.count("Already made.") == n_made
+    messages = json.loads((out / "report.json").read_text())
+    assert messages["done"] == 4
+    assert all("after" in each and "picture" in each for each in messages["files"])
     assert read_bvh(out / "late.bvh").n_frames == swinging_leg.n_frames
     assert not [path for path in out.rglob("*") if path.name.startswith(".")]
 
 
-def test_files_of_the_same_name_are_told_apart(call, takes, swinging_leg, tmp_path):
+def test_report_distinguishes_files_of_the_same_name(call, takes, swinging_leg, tmp_path):
     (takes / "leg.csv").write_text(kinect_csv(moving(40, 25)))
     (takes / "leg.txt").write_text(kinect_csv(moving(40, 25)))
     other = tmp_path / "more"

@@ -43,8 +43,8 @@ def test_what_a_sensor_does_wrong_is_learned_and_taken_out(call, stage):
     assert "3 takes of 2 actors" in out
     assert "leftLowerLeg" in load_residual_prior(stage / "sensor.npz").joints
     source, target = stage / "kinect" / "anna_2.csv", stage / "clean.csv"
-    told = ["--residuals", stage / "sensor.npz", "--shift"]
-    assert call("reconstruct", source, target, *told)[0] == 0
+    messages = ["--residuals", stage / "sensor.npz", "--shift"]
+    assert call("reconstruct", source, target, *messages)[0] == 0
     seen, clean = (read_recording(path).tracks.positions[:, KNEE] for path in (source, target))
     assert np.mean((clean - seen)[:, 0]) == pytest.approx(-0.08, abs=0.03)
 

@@ -35,23 +35,23 @@ def rig_file(tmp_path):
 
 
 def test_retarget_writes_the_motion_of_the_target(call, walk_file, rig_file, tmp_path):
-    status, said, _ = call("retarget", walk_file, tmp_path / "out.bvh", "--to", rig_file)
+    status, printed, _ = call("retarget", walk_file, tmp_path / "out.bvh", "--to", rig_file)
 
-    assert status == 0 and "22 shared roles" in said and "100%" in said
+    assert status == 0 and "22 shared roles" in printed and "100%" in printed
     given = read_bvh(tmp_path / "out.bvh")
     assert set(given.skeleton.names) == set(mixamo().names) and given.n_frames == 60
-    place = forward_kinematics(given).positions
-    assert np.ptp(place[:, given.skeleton.index("mixamorig:LeftFoot"), 1]) > 0.5
+    position = forward_kinematics(given).positions
+    assert np.ptp(position[:, given.skeleton.index("mixamorig:LeftFoot"), 1]) > 0.5
 
 
 def test_retarget_takes_many_files_settings_and_json(call, walk_file, rig_file, tmp_path):
-    status, said, _ = call(
+    status, printed, _ = call(
         "retarget", walk_file, "--to", rig_file, "--output-folder", tmp_path / "out",
         "--root-motion", "in place", "--no-keep-hands", "--json",
     )  # fmt: skip
 
     assert status == 0
-    assert json.loads(said)["n_frames"] == 60
+    assert json.loads(printed)["n_frames"] == 60
     still = read_bvh(tmp_path / "out" / "walk.bvh")
     assert np.ptp(still.root_positions[15:-15, :2], axis=0).max() < 0.5
 
@@ -68,17 +68,15 @@ def test_retarget_reads_maps_from_files(call, walk_file, tmp_path):
         tmp_path / "rig.json",
     )
 
-    status, said, _ = call(
+    status, printed, _ = call(
         "retarget", walk_file, tmp_path / "out.bvh", "--to", tmp_path / "rig.bvh",
         "--target-map", tmp_path / "rig.json",
     )  # fmt: skip
 
-    assert status == 0 and "22 shared roles" in said
+    assert status == 0 and "22 shared roles" in printed
 
 
-def test_the_map_that_was_found_can_be_kept_edited_and_given_again(
-    call, walk_file, rig_file, tmp_path
-):
+def test_detected_map_can_be_saved_edited_and_reused(call, walk_file, rig_file, tmp_path):
     """A first go writes the map; without its arms, a second one leaves the arms at rest."""
     kept = tmp_path / "rig.json"
     out = tmp_path / "out.bvh"
@@ -88,9 +86,11 @@ def test_the_map_that_was_found_can_be_kept_edited_and_given_again(
         found = found.with_joint(role, None)
     write_humanoid_map(found, kept)
 
-    status, said, _ = call("retarget", walk_file, out, "--to", rig_file, "--target-map", kept)
+    status, printed, _ = call(
+        "retarget", walk_file, out, "--to", rig_file, "--target-map", kept
+    )
 
-    assert status == 0 and "16 shared roles" in said
+    assert status == 0 and "16 shared roles" in printed
     armless = read_bvh(out)
     arm = armless.rotations[:, armless.skeleton.index("mixamorig:LeftArm")]
     assert np.abs(np.abs(arm[:, 0]) - 1.0).max() < 1e-6
@@ -106,14 +106,14 @@ def test_the_map_that_was_found_can_be_kept_edited_and_given_again(
         ((), "--to"),
     ],
 )
-def test_retarget_says_what_is_wrong(call, walk_file, rig_file, tmp_path, words, sentence):
+def test_retarget_reports_what_is_wrong(call, walk_file, rig_file, tmp_path, words, sentence):
     write_trc(Tracks(("a",), np.zeros((3, 1, 3)), 30.0), tmp_path / "points.trc")
     write_humanoid_map(HumanoidMap({"hips": "Nobody"}), tmp_path / "wrong.json")
     words = [word.format(folder=tmp_path) for word in words]
 
-    status, _, complaint = call("retarget", walk_file, tmp_path / "out.bvh", *words)
+    status, _, error_output = call("retarget", walk_file, tmp_path / "out.bvh", *words)
 
-    assert status == 2 and sentence in complaint
+    assert status == 2 and sentence in error_output
     assert not (tmp_path / "out.bvh").exists()
 
 
@@ -129,13 +129,13 @@ def test_a_root_bone_carries_the_travel(call, walk_file, tmp_path):
     assert read_bvh(tmp_path / "out.bvh").skeleton.names[0] == "root"
 
 
-def test_unbake_says_how_many_keys_are_left_and_keeps_them(call, walk_file, tmp_path):
-    status, said, _ = call(
+def test_unbake_reports_and_saves_keys(call, walk_file, tmp_path):
+    status, printed, _ = call(
         "unbake", walk_file, tmp_path / "few.bvh", "--tolerance", 0.5, "--keys"
     )
 
     sparse = load_sparse_motion(tmp_path / "few.npz")
-    assert status == 0 and said.startswith(f"{sparse.n_keys} keys instead of")
+    assert status == 0 and printed.startswith(f"{sparse.n_keys} keys instead of")
     before, after = (
         forward_kinematics(read_bvh(path)).positions
         for path in (walk_file, tmp_path / "few.bvh")
@@ -143,7 +143,7 @@ def test_unbake_says_how_many_keys_are_left_and_keeps_them(call, walk_file, tmp_
     assert np.linalg.norm(after - before, axis=-1).max() < 0.0053
 
 
-def test_unbake_refuses_points_and_nonsense(call, walk_file, tmp_path):
+def test_unbake_refuses_points_and_invalid_tolerances(call, walk_file, tmp_path):
     write_trc(Tracks(("a",), np.zeros((3, 1, 3)), 30.0), tmp_path / "points.trc")
 
     failures = [

@@ -34,7 +34,7 @@ def test_writes_a_motion_on_the_ground_and_tells_the_figures(call, sunk, tmp_pat
     assert after > before + 0.05
 
 
-def test_takes_the_settings_and_says_it_in_words(call, sunk, tmp_path):
+def test_simulate_uses_settings_and_reports_the_result(call, sunk, tmp_path):
     status, out, _ = call(
         "simulate", sunk, tmp_path / "stands.bvh", "--ground", "auto", "--strength", "0.5"
     )

@@ -60,7 +60,7 @@ def test_refuses_what_has_a_skeleton(call, walk, tmp_path):
     assert status == 2 and "already has a skeleton" in err
 
 
-def test_convert_says_that_markers_have_to_be_solved(call, marker_file, tmp_path):
+def test_convert_reports_that_markers_must_be_solved(call, marker_file, tmp_path):
     status, _, err = call("convert", marker_file, tmp_path / "walk.bvh")
 
     assert status == 2 and "the verb solve" in err

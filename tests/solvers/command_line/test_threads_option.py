@@ -20,8 +20,8 @@ def takes(tmp_path):
         noise = samples.CorruptionSettings(jitter=3.0, seed=seed)
         walk = samples.corrupt(samples.walking_gait(gait), noise)
         kinect = tracked_walk(motion, true_positions(samples, posture_joints), seed=seed)
-        for place in ("denoise", "reconstruct"):
-            (folder / place).mkdir(parents=True, exist_ok=True)
+        for position in ("denoise", "reconstruct"):
+            (folder / position).mkdir(parents=True, exist_ok=True)
         write_bvh(walk, folder / "denoise" / f"take{seed}.bvh")
         write_joints(kinect, folder / "reconstruct" / f"take{seed}.csv")
     return folder
@@ -37,10 +37,10 @@ def solved(start, takes, tmp_path, monkeypatch):
         (source, *_) = sorted((takes / verb).iterdir())
         target = tmp_path / f"made {n_threads} {len(options)}" / "take0.bvh"
         target.parent.mkdir()
-        places = (source, target)
+        positions = (source, target)
         if "--jobs" in options:
-            places = (takes / verb, "--output-folder", target.parent)
-        done = start(verb, *places, "--json", *options)
+            positions = (takes / verb, "--output-folder", target.parent)
+        done = start(verb, *positions, "--json", *options)
         assert (done.returncode, done.stderr) == (0, "")
         lines = [json.loads(line) for line in done.stdout.splitlines()]
         (figures,) = [line for line in lines if line["input"] == str(source)]
@@ -50,7 +50,7 @@ def solved(start, takes, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("verb", ["denoise", "reconstruct"])
-def test_bytes_are_the_same_whatever_the_environment_says(verb, solved):
+def test_bytes_are_independent_of_thread_variables(verb, solved):
     """Figures too: they show differences that are too small for the digits of a file."""
     alone = solved(verb, 1)
 

@@ -24,12 +24,12 @@ def walks(tmp_path):
 
 def test_variants_and_their_picture_are_written(call, walks, tmp_path):
     out = tmp_path / "crowd"
-    status, said, err = call("vary", walks, "--output", out, "--number", "3", "--json")
+    status, printed, err = call("vary", walks, "--output", out, "--number", "3", "--json")
     assert (status, err) == (0, "")
-    told = json.loads(said)
-    assert told["variants"] == [f"walk_1.{number}.bvh" for number in (1, 2, 3)]
-    assert told["variation_m"] > 0.003
-    read = [read_bvh(out / name) for name in told["variants"]]
+    messages = json.loads(printed)
+    assert messages["variants"] == [f"walk_1.{number}.bvh" for number in (1, 2, 3)]
+    assert messages["variation_m"] > 0.003
+    read = [read_bvh(out / name) for name in messages["variants"]]
     assert all(motion.n_joints == read_bvh(walks / "walk_1.bvh").n_joints for motion in read)
     assert (out / "variants.png").read_bytes().startswith(b"\x89PNG")
 

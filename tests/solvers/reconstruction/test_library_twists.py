@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from upright_places import PLACES
+from upright_positions import PLACES
 
 from solvers.motion import (
     SENSOR_JOINTS,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from kinect_walks import true_positions
 from numpy.testing import assert_allclose
-from upright_places import PLACES
+from upright_positions import PLACES
 
 from solvers import samples
 from solvers.errors import InvalidMotionError

@@ -15,7 +15,7 @@ from solvers.recordings import read_recording, write_joint_csv
 from solvers.recordings.conventions.body_unit import convert_to_body_unit
 from solvers.recordings.conventions.tracked_joints import joint_recording
 
-WORDS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
+WORDS = {1.0: "meters", 0.01: "centimeters", 0.001: "millimeters"}
 
 
 class Told:
@@ -37,42 +37,42 @@ def walk():
     return tracked_walk(motion_module, true_positions(samples, posture_joints))
 
 
-@pytest.mark.parametrize("usual", WORDS)
+@pytest.mark.parametrize("default", WORDS)
 @pytest.mark.parametrize("true", WORDS)
-def test_whatever_the_usual_unit_a_man_comes_out(walk, usual, true):
-    told = Told()
+def test_body_has_human_size_for_any_default_unit(walk, default, true):
+    messages = Told()
 
     found = joint_recording(
         "take", walk.names, walk.tracks.positions / true, Sensor.KINECT_V1,
-        scale=None, usual_unit=usual, progress=told,
+        scale=None, default_unit=default, progress=messages,
     )  # fmt: skip
 
     assert np.allclose(found.tracks.positions, walk.tracks.positions)
-    if true == usual:
-        assert not told.units
+    if true == default:
+        assert not messages.units
     else:
-        (said,) = told.units
-        assert f"taken for {WORDS[true]}," in said and "give the unit" in said
+        (output,) = messages.units
+        assert f"interpreted as {WORDS[true]}," in output and "give the unit" in output
 
 
 @pytest.mark.parametrize("size", [0.4, 2.5])
 def test_a_child_or_a_giant_stays_what_it_is(walk, size):
-    told = Told()
+    messages = Told()
     other = walk.with_tracks(walk.tracks.with_positions(size * walk.tracks.positions))
 
-    assert convert_to_body_unit(other, 1.0, told) is other
-    assert not told.units
+    assert convert_to_body_unit(other, 1.0, messages) is other
+    assert not messages.units
 
 
 def test_who_gives_the_unit_is_obeyed(walk):
-    told, positions = Told(), 1000.0 * walk.tracks.positions
+    messages, positions = Told(), 1000.0 * walk.tracks.positions
 
     found = joint_recording(
-        "take", walk.names, positions, Sensor.KINECT_V1, scale=1.0, progress=told
+        "take", walk.names, positions, Sensor.KINECT_V1, scale=1.0, progress=messages
     )
 
     assert np.allclose(found.tracks.positions, positions)
-    assert not told.units
+    assert not messages.units
 
 
 @pytest.mark.parametrize("names", [("A", "B", "C"), ("Head", "ElbowLeft", "WristLeft")])
@@ -83,7 +83,7 @@ def test_what_is_no_body_keeps_its_unit(names):
     assert convert_to_body_unit(recording, 1.0, Told()) is recording
 
 
-def test_joints_all_in_one_place_have_no_size(walk):
+def test_joints_at_one_position_have_no_size(walk):
     flat = walk.with_tracks(walk.tracks.with_positions(np.ones_like(walk.tracks.positions)))
 
     assert convert_to_body_unit(flat, 1.0, Told()) is flat
@@ -97,28 +97,30 @@ def test_no_unit_makes_a_man_of_an_ant(walk):
 
 def test_our_own_table_counts_by_its_word_and_is_guessed_without(walk, tmp_path):
     larger = walk.with_tracks(walk.tracks.with_positions(1000.0 * walk.tracks.positions))
-    said, silent = tmp_path / "said.csv", tmp_path / "silent.csv"
-    write_joint_csv(larger, said)
-    text = said.read_text()
+    output, silent = tmp_path / "said.csv", tmp_path / "silent.csv"
+    write_joint_csv(larger, output)
+    text = output.read_text()
     assert "units=m," in text
     silent.write_text(text.replace("units=m,", "", 1))
-    told = Told()
+    messages = Told()
 
-    by_word, guessed = read_recording(said), read_recording(silent, progress=told)
+    by_word, guessed = read_recording(output), read_recording(silent, progress=messages)
     given = read_recording(silent, scale=0.01)
 
     assert np.allclose(by_word.tracks.positions, larger.tracks.positions, atol=1e-3)
     assert np.allclose(guessed.tracks.positions, walk.tracks.positions, atol=1e-3)
     assert np.allclose(given.tracks.positions, 0.01 * larger.tracks.positions, atol=1e-3)
-    assert len(told.units) == 1
+    assert len(messages.units) == 1
 
 
 def test_a_kinect_file_in_millimetres_is_the_same_take(recordings, tmp_path):
     path = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
-    true, told = read_recording(path), Told()
+    true, messages = read_recording(path), Told()
 
-    def thousandfold(place):
-        return place[1] + ",".join(f"{1000.0 * float(word):.5f}" for word in place.groups()[1:])
+    def thousandfold(position):
+        return position[1] + ",".join(
+            f"{1000.0 * float(word):.5f}" for word in position.groups()[1:]
+        )
 
     number = "(-?[0-9.e-]+)"
     text = path.read_text()
@@ -126,19 +128,19 @@ def test_a_kinect_file_in_millimetres_is_the_same_take(recordings, tmp_path):
     assert larger != text
     (tmp_path / "mm.txt").write_text(larger)
 
-    found = read_recording(tmp_path / "mm.txt", progress=told)
+    found = read_recording(tmp_path / "mm.txt", progress=messages)
 
     assert np.allclose(found.tracks.positions, true.tracks.positions, atol=1e-5, equal_nan=True)
-    assert len(told.units) == 1
+    assert len(messages.units) == 1
 
 
 def test_no_recording_of_ours_is_guessed_anew(recordings):
     """A guess is for files in a unit that is not their format's; these all are in it."""
     paths = sorted((recordings / "kinect").glob("*/*"))
     for path in [each for each in paths if each.is_file()][::9]:
-        told = Told()
+        messages = Told()
         try:
-            read_recording(path, progress=told)
+            read_recording(path, progress=messages)
         except MocapAssistError:  # no recording
             continue
-        assert not told.units, path
+        assert not messages.units, path

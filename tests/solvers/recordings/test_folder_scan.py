@@ -12,8 +12,8 @@ from odd_files import pictures as odd_pictures
 
 from solvers.errors import FileAccessError, InvalidFileError
 from solvers.recordings import (
-    depth_in,
-    format_of,
+    depth_takes_in,
+    detect_format,
     read_depth,
     read_recording,
     read_tracked,
@@ -44,7 +44,7 @@ def test_files_of_other_kinds_are_left_out_in_silence(takes):
         (takes / "more" / name).write_bytes(content)
 
     assert names(recordings_in(takes), takes) == ["leg.bvh", "more/twin.bvh"]
-    assert names(depth_in(takes), takes) == ["more/twin.npz", "room.npz"]
+    assert names(depth_takes_in(takes), takes) == ["more/twin.npz", "room.npz"]
 
 
 @pytest.mark.parametrize("content", [*OTHERS.values(), *odd_pictures().values()])
@@ -58,7 +58,7 @@ def test_a_file_of_another_kind_is_no_damaged_recording_when_it_is_named(tmp_pat
 def test_a_folder_with_damaged_pictures_is_looked_through_when_nothing_marks_it(takes):
     (takes / "thumb.png").write_bytes(odd_pictures()["thumb_1.png"][:-20])
 
-    assert names(depth_in(takes), takes) == ["more/twin.npz", "room.npz"]
+    assert names(depth_takes_in(takes), takes) == ["more/twin.npz", "room.npz"]
 
 
 @pytest.mark.parametrize("make", [open3d, plain])
@@ -67,7 +67,7 @@ def test_a_take_of_pictures_stays_one_when_its_first_picture_is_damaged(tmp_path
     first = min(folder.rglob("*.png"))
     first.write_bytes(first.read_bytes()[:-20])
 
-    assert depth_in(tmp_path) == [folder]
+    assert depth_takes_in(tmp_path) == [folder]
 
 
 @pytest.mark.parametrize("error", [IndexError, OverflowError, PermissionError])
@@ -75,23 +75,23 @@ def test_the_others_are_found_when_looking_at_one_file_fails(takes, monkeypatch,
     def fail(path):
         if "twin" in path.name:
             raise error
-        return format_of(path)
+        return detect_format(path)
 
-    monkeypatch.setattr(sys.modules["solvers.recordings.read_recording"], "format_of", fail)
+    monkeypatch.setattr(sys.modules["solvers.recordings.read_recording"], "detect_format", fail)
 
     assert names(recordings_in(takes), takes) == ["leg.bvh", "more/twin.bvh", "more/twin.npz"]
-    assert names(depth_in(takes), takes) == ["more/twin.bvh", "more/twin.npz", "room.npz"]
+    assert names(depth_takes_in(takes), takes) == ["more/twin.bvh", "more/twin.npz", "room.npz"]
 
 
-def test_a_closed_folder_is_named_by_whoever_reads_it(takes, monkeypatch):
+def test_unreadable_folder_is_named_on_reading(takes, monkeypatch):
     closed = takes / "more"
     close(closed, monkeypatch)
 
     assert names(recordings_in(takes), takes) == ["leg.bvh", "more"]
-    assert names(depth_in(takes), takes) == ["more", "room.npz"]
-    assert recordings_in(closed) == depth_in(closed) == [closed]
-    for read in (read_recording, read_tracked, read_depth, format_of):
-        with pytest.raises(FileAccessError, match=r"folder .*more cannot be looked into"):
+    assert names(depth_takes_in(takes), takes) == ["more", "room.npz"]
+    assert recordings_in(closed) == depth_takes_in(closed) == [closed]
+    for read in (read_recording, read_tracked, read_depth, detect_format):
+        with pytest.raises(FileAccessError, match=r"folder .*more cannot be opened"):
             read(closed)
 
 

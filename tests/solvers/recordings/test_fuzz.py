@@ -5,9 +5,9 @@ The bytes that are damaged are made here. To search long:
 """
 
 import pytest
+from complete_files import RECORDING, SKELETON, TOKENS, WHOLE
 from damage import damaged, read_or_refuse, searching
 from hypothesis import given
-from whole_files import RECORDING, SKELETON, TOKENS, WHOLE
 
 from solvers.recordings import read_acclaim, read_recording
 

@@ -1,9 +1,9 @@
 """Damaged joint recordings are read or refused: see test_fuzz.py, whose bounds hold here."""
 
 import pytest
+from complete_files import JOINT_FILES, JOINT_TOKENS
 from damage import damaged, read_or_refuse, searching
 from hypothesis import given
-from whole_files import JOINT_FILES, JOINT_TOKENS
 
 from solvers.recordings import read_recording
 
@@ -11,9 +11,9 @@ EXAMPLES = 60
 
 
 @pytest.mark.parametrize("kind", JOINT_FILES)
-def test_whole_files_are_read_and_known_by_their_content(kind, tmp_path):
-    read, whole = JOINT_FILES[kind]
-    (tmp_path / "take").write_bytes(whole)
+def test_undamaged_files_are_read_and_detected_by_content(kind, tmp_path):
+    read, complete = JOINT_FILES[kind]
+    (tmp_path / "take").write_bytes(complete)
 
     one, other = read(tmp_path / "take"), read_recording(tmp_path / "take")
 
@@ -23,11 +23,11 @@ def test_whole_files_are_read_and_known_by_their_content(kind, tmp_path):
 
 @pytest.mark.parametrize("kind", JOINT_FILES)
 def test_damaged_files(kind, tmp_path):
-    read, whole = JOINT_FILES[kind]
+    read, complete = JOINT_FILES[kind]
     path = tmp_path / "take"
 
     @searching(EXAMPLES)
-    @given(damaged(whole, JOINT_TOKENS))
+    @given(damaged(complete, JOINT_TOKENS))
     def search(content: bytes) -> None:
         path.write_bytes(content)
         read_or_refuse(lambda: read(path))
@@ -38,11 +38,11 @@ def test_damaged_files(kind, tmp_path):
 
 @pytest.mark.parametrize("kind", JOINT_FILES)
 def test_progress_rises_to_the_end(kind, tmp_path):
-    read, whole = JOINT_FILES[kind]
-    (tmp_path / "take").write_bytes(whole)
-    told = []
+    read, complete = JOINT_FILES[kind]
+    (tmp_path / "take").write_bytes(complete)
+    messages = []
 
-    read(tmp_path / "take", progress=lambda fraction, message="": told.append(fraction))
+    read(tmp_path / "take", progress=lambda fraction, message="": messages.append(fraction))
 
-    assert told == sorted(told)
-    assert told[-1] == pytest.approx(1.0)
+    assert messages == sorted(messages)
+    assert messages[-1] == pytest.approx(1.0)

@@ -38,7 +38,7 @@ def test_scale_reaches_the_reader(swinging_leg, tmp_path):
 
 @pytest.mark.parametrize("ending", ["bvh", "c3d", "trc"])
 @pytest.mark.parametrize("scale", [0.0, -1.0, float("nan"), float("inf")])
-def test_refuses_a_scale_that_is_none(swinging_leg, tmp_path, ending, scale):
+def test_invalid_scale_is_refused(swinging_leg, tmp_path, ending, scale):
     write_bvh(swinging_leg, tmp_path / "leg.bvh")
     tracks = Tracks(("a",), swinging_leg.root_positions[:, None], 60.0)
     write_c3d(tracks, tmp_path / "leg.c3d")
@@ -59,10 +59,10 @@ def test_progress_rises_to_the_end_and_can_stop_the_work(swinging_leg, tmp_path,
     }
 
     for work in calls[format]:
-        told = []
-        work(progress=lambda fraction, message="", told=told: told.append(fraction))
-        assert told == sorted(told)
-        assert told[-1] == pytest.approx(1.0)
+        messages = []
+        work(progress=lambda fraction, message="", messages=messages: messages.append(fraction))
+        assert messages == sorted(messages)
+        assert messages[-1] == pytest.approx(1.0)
         before = sorted(tmp_path.iterdir())
         with pytest.raises(SolveCancelled):
             work(progress=cancel)
@@ -101,7 +101,7 @@ def test_joints_of_a_camera_serve_as_points(recordings):
         (b"HIERARCHY", "no MOTION"),
     ],
 )
-def test_what_cannot_be_read_says_what_could(tmp_path, content, sentence):
+def test_unknown_format_is_refused_with_the_known_ones(tmp_path, content, sentence):
     path = tmp_path / "take"
     path.write_bytes(content)
 
@@ -122,7 +122,9 @@ def test_four_numbers_in_a_line_are_not_a_body_for_that(tmp_path, rng):
     rows = np.column_stack([rng.uniform(0, 640, (60, 3)), np.ones(60)])
     np.savetxt(pixels, rows, fmt="%.2f")
 
-    with pytest.raises(InvalidFileError, match=r"pixels\.txt .* no joints of a body in metres"):
+    with pytest.raises(
+        InvalidFileError, match=r"pixels\.txt .* not joints of a body in meters"
+    ):
         read_recording(pixels)
 
 
@@ -136,7 +138,7 @@ def test_a_pelvis_alone_does_not_make_a_table_azures(tmp_path):
         read_recording(table)
 
 
-def test_what_no_recording_can_be_is_told_with_the_name_of_the_file(tmp_path):
+def test_invalid_recording_is_reported_with_its_file_name(tmp_path):
     far = tmp_path / "far.npy"
     np.save(far, np.full((4, 33, 3), 1e30))
 

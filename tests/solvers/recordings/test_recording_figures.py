@@ -48,10 +48,10 @@ def test_the_end_sites_of_a_skeleton_do_not_count():
     skeleton = Skeleton(("hips", "leg", "leg_end"), (-1, 0, 1), np.ones((3, 3)))
     turns = np.tile([1.0, 0.0, 0.0, 0.0], (N_FRAMES, 3, 1))
     turns[3:5, 1] = np.nan
-    places = np.zeros((N_FRAMES, 3))
-    places[0] = np.nan
+    indices = np.zeros((N_FRAMES, 3))
+    indices[0] = np.nan
 
-    figures = recording_figures(Motion(skeleton, turns, places, RATE))
+    figures = recording_figures(Motion(skeleton, turns, indices, RATE))
 
     assert (figures["joints"], figures["gaps"], figures["longest_gap_s"]) == (2, 2, 2 / RATE)
     assert figures["missing_share"] == pytest.approx(3 / 20)
@@ -59,8 +59,8 @@ def test_the_end_sites_of_a_skeleton_do_not_count():
 
 
 def test_without_gaps_there_is_no_longest(rng):
-    whole = Tracks(("a",), rng.normal(size=(3, 1, 3)), RATE)
+    complete = Tracks(("a",), rng.normal(size=(3, 1, 3)), RATE)
 
-    figures = recording_figures(whole)
+    figures = recording_figures(complete)
 
     assert (figures["gaps"], figures["longest_gap_s"], figures["missing_share"]) == (0, 0, 0)

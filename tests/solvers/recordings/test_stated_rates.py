@@ -14,7 +14,7 @@ def line(times) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("times", "said", "rate"),
+    ("times", "stated_rate", "rate"),
     [
         (np.arange(300) / 120.0, 120.0, 120.0),
         (5.0 + np.arange(300) / 120.0, None, 120.0),
@@ -25,17 +25,17 @@ def line(times) -> np.ndarray:
         (np.array([0.0, 0.02]), None, 50.0),
     ],
 )
-def test_even_stamps_change_nothing(times, said, rate):
-    assert constant_rate_from_times(times, said) == pytest.approx(rate, rel=1e-12)
+def test_even_time_stamps_change_nothing(times, stated_rate, rate):
+    assert constant_rate_from_times(times, stated_rate) == pytest.approx(rate, rel=1e-12)
 
 
-@pytest.mark.parametrize("said", [100.0, 70.0, None])
-def test_frames_that_were_left_out_are_gaps(said):
+@pytest.mark.parametrize("stated_rate", [100.0, 70.0, None])
+def test_skipped_frames_are_gaps(stated_rate):
     kept = np.r_[0:40, 43:80, 81:100]
     times = kept / 100.0
 
-    assert constant_rate_from_times(times, said) is None
-    clock = ConstantRate("take", times, said)
+    assert constant_rate_from_times(times, stated_rate) is None
+    clock = ConstantRate("take", times, stated_rate)
     found = clock.positions(line(times))
 
     assert clock.frame_rate == pytest.approx(100.0)
@@ -67,7 +67,7 @@ def test_uneven_stamps_are_resampled(rng):
 def test_a_leap_in_time_is_refused():
     times = np.array([0.0, 0.01, 0.02, 1e9])
 
-    with pytest.raises(InvalidFileError, match=r"take: its 4 frames are spread over 1e.09 s"):
+    with pytest.raises(InvalidFileError, match=r"take: its 4 frames span 1e.09 s"):
         ConstantRate("take", times, 100.0)
 
 

@@ -35,8 +35,10 @@ def test_ui_prmd_is_a_pair_in_one_world(recordings):
     assert_allclose(markers.positions, expected["markers"])
     assert (recording.frame_rate, markers.frame_rate) == (30.0, 30.0)
     assert recording.sensor is Sensor.KINECT_V2
-    apart = recording.tracks.positions[:, 4] - markers.positions[:, :4].mean(axis=1)
-    assert np.linalg.norm(apart, axis=-1).mean() < 0.25  # the head, and the markers around it
+    distance = recording.tracks.positions[:, 4] - markers.positions[:, :4].mean(axis=1)
+    assert (
+        np.linalg.norm(distance, axis=-1).mean() < 0.25
+    )  # the head, and the markers around it
     assert_array_equal(read_ui_prmd(path).tracks.positions, recording.tracks.positions)
 
 
@@ -45,12 +47,12 @@ def test_every_ui_prmd_take_stands_upright_with_left_on_the_left(recordings):
     for path in paths[::12]:
         recording = read_recording(path)
         assert isinstance(recording, JointRecording)
-        usual = dict(
+        default = dict(
             zip(recording.names, np.nanmedian(recording.tracks.positions, axis=0), strict=True)
         )
-        forward = usual["LToes"] - usual["LFoot"] + usual["RToes"] - usual["RFoot"]
-        to_left = usual["LUpArm"] - usual["RUpArm"]
-        assert usual["Head"][2] > usual["Waist"][2] > usual["LFoot"][2], path
+        forward = default["LToes"] - default["LFoot"] + default["RToes"] - default["RFoot"]
+        to_left = default["LUpArm"] - default["RUpArm"]
+        assert default["Head"][2] > default["Waist"][2] > default["LFoot"][2], path
         assert np.cross((0, 0, 1), forward) @ to_left > 0, path
 
 
@@ -93,7 +95,7 @@ def test_what_is_no_ui_prmd_take(write, content, sentence):
 
 @pytest.fixture
 def person() -> np.ndarray:
-    """MediaPipe's body and hands, metres, Z up, facing -Y; the wrists apart by 1 m."""
+    """MediaPipe's body and hands, meters, Z up, facing -Y; the wrists apart by 1 m."""
     points = np.random.default_rng(5).normal(scale=0.02, size=(20, 75, 3))
     points += (0, 0, 1)
     points[:, NOSE] += (0, -0.1, 0.65)
@@ -133,7 +135,7 @@ def test_freemocap_comes_out_upright_in_metres(write, person, unit, axes):
     assert tracks.visible.sum() == 20 * (75 + 4) - 1
 
 
-def test_freemocap_hands_are_told_by_the_wrists(write, person):
+def test_freemocap_hands_are_assigned_by_the_wrists(write, person):
     swapped = person.copy()
     swapped[:, 33:54], swapped[:, 54:] = person[:, 54:], person[:, 33:54]
 
@@ -153,16 +155,16 @@ def test_freemocap_hands_are_told_by_the_wrists(write, person):
 
 def test_freemocap_adds_the_joints_on_the_middle_of_the_body(write, person):
     recording = read_freemocap(write(npy(person)))
-    places = dict(
+    positions = dict(
         zip(recording.names, np.moveaxis(recording.tracks.positions, 1, 0), strict=True)
     )
 
-    hips = (places["left_hip"] + places["right_hip"]) / 2.0
-    shoulders = (places["left_shoulder"] + places["right_shoulder"]) / 2.0
-    assert_allclose(places["hips_center"], hips)
-    assert_allclose(places["trunk_center"], (hips + shoulders) / 2.0)
+    hips = (positions["left_hip"] + positions["right_hip"]) / 2.0
+    shoulders = (positions["left_shoulder"] + positions["right_shoulder"]) / 2.0
+    assert_allclose(positions["hips_center"], hips)
+    assert_allclose(positions["trunk_center"], (hips + shoulders) / 2.0)
     assert recording.sensor is Sensor.MEDIAPIPE
-    assert np.isnan(places["head_center"]).any() == np.isnan(places["left_ear"]).any()
+    assert np.isnan(positions["head_center"]).any() == np.isnan(positions["left_ear"]).any()
 
 
 def test_freemocap_bodies_hang_together_and_every_limb_has_its_role(write, person):
@@ -195,7 +197,7 @@ def test_freemocap_bodies_hang_together_and_every_limb_has_its_role(write, perso
 
 @pytest.mark.parametrize("right_first", [True, False])
 @pytest.mark.parametrize("unseen", [LEFT_WRIST, RIGHT_WRIST, slice(33, 54), slice(54, 75)])
-def test_freemocap_hands_are_told_by_what_is_seen(write, person, right_first, unseen):
+def test_freemocap_hands_are_assigned_by_observed_points(write, person, right_first, unseen):
     points = person.copy()
     if not right_first:
         points[:, 33:54], points[:, 54:] = person[:, 54:], person[:, 33:54]
@@ -225,7 +227,7 @@ def test_freemocap_names_by_the_number_of_points(write, rng, n_points, last):
         (npy(np.zeros((3, 5, 3))).replace(b"(3, 5, 3)", b"(-1,-1,3)"), "damaged, cut short"),
         (npy(np.array(["a", "b"])), "damaged, cut short"),
         (npy(np.zeros((3, 5, 2))), r"shape \(3, 5, 2\); points over time"),
-        (npy(np.full((3, 5, 3), np.nan)), "no points that are seen"),
+        (npy(np.full((3, 5, 3), np.nan)), "no points that are observed"),
     ],
 )
 def test_what_are_no_points(write, content, sentence):

@@ -5,10 +5,10 @@ from itertools import chain, pairwise
 
 import numpy as np
 import pytest
+from complete_files import JOINT_FILES, JOINT_TOKENS, SKELETON, TOKENS, WHOLE
 from damage import damaged, searching
 from hypothesis import given
 from hypothesis import strategies as st
-from whole_files import JOINT_FILES, JOINT_TOKENS, SKELETON, TOKENS, WHOLE
 
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion import JointRecording, Motion
@@ -34,12 +34,12 @@ ENDS = {"unix": b"\n", "windows": b"\r\n", "old mac": b"\r"}
 
 
 @pytest.fixture
-def said(tmp_path, monkeypatch):
+def message(tmp_path, monkeypatch):
     """What a reader makes of some bytes, in blocks of a size: figures, or its sentence."""
     (tmp_path / "take.asf").write_bytes(SKELETON)
     path = tmp_path / "take.amc"
     monkeypatch.setattr(acclaim, "LINES_OF_HEAD", 3)  # else a small file is all head
-    monkeypatch.setattr(trc, "FIRST_LINES", 8)
+    monkeypatch.setattr(trc, "MAX_HEADER_LINES", 8)
 
     def tell(read, content, size):
         monkeypatch.setattr(line_reader, "BLOCK_BYTES", size)
@@ -64,26 +64,26 @@ def figures(recording):
 
 @pytest.mark.parametrize("end", ENDS)
 @pytest.mark.parametrize("kind", FILES)
-def test_a_border_within_any_number_or_line_end_is_not_seen(kind, end, said):
-    read, whole, _ = FILES[kind]
+def test_result_is_independent_of_block_borders(kind, end, message):
+    read, complete, _ = FILES[kind]
     if kind.startswith("kinect"):
-        whole = whole.replace(b"\r\n", b"\n")
-    whole = b"\n".join(whole.splitlines()[:60]).replace(b"\n", ENDS[end])
-    expected = said(read, whole, len(whole) + 1)
+        complete = complete.replace(b"\r\n", b"\n")
+    complete = b"\n".join(complete.splitlines()[:60]).replace(b"\n", ENDS[end])
+    expected = message(read, complete, len(complete) + 1)
     assert not isinstance(expected, str)
 
     for size in range(1, 40):
-        assert said(read, whole, size) == expected
+        assert message(read, complete, size) == expected
 
 
 @pytest.mark.parametrize("kind", FILES)
-def test_damaged_files_are_refused_in_the_same_words_wherever_the_borders_are(kind, said):
-    read, whole, tokens = FILES[kind]
+def test_refusal_is_independent_of_block_borders(kind, message):
+    read, complete, tokens = FILES[kind]
 
     @searching(40)
-    @given(damaged(whole, tokens), st.integers(1, 200))
+    @given(damaged(complete, tokens), st.integers(1, 200))
     def search(content, size):
-        one, other = said(read, content, size), said(read, content, 1 << 22)
+        one, other = message(read, content, size), message(read, content, 1 << 22)
         if kind == "amc" and isinstance(one, str):  # of two faults it may tell the second
             one = other if isinstance(other, str) else one
         assert one == other
@@ -92,12 +92,12 @@ def test_damaged_files_are_refused_in_the_same_words_wherever_the_borders_are(ki
 
 
 @pytest.mark.parametrize("size", [1, 30, 1 << 22])
-def test_of_two_lines_about_a_bone_in_one_frame_the_later_counts(size, said):
-    whole = WHOLE["amc"]
-    twice = whole.replace(b"thigh 5 2 3\n", b"thigh 80 8 8\nshank 4\nthigh 5 2 3\n")
-    assert twice != whole
+def test_later_line_of_a_bone_in_a_frame_is_used(size, message):
+    complete = WHOLE["amc"]
+    twice = complete.replace(b"thigh 5 2 3\n", b"thigh 80 8 8\nshank 4\nthigh 5 2 3\n")
+    assert twice != complete
 
-    assert said(read_acclaim, twice, size) == said(read_acclaim, whole, size)
+    assert message(read_acclaim, twice, size) == message(read_acclaim, complete, size)
 
 
 @given(st.lists(st.sampled_from([b"a", b"\n", b"\r", b"\r\n", b"12 "])), st.integers(1, 5))
@@ -142,7 +142,7 @@ def test_a_line_that_never_ends_is_refused(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 1.0])
-def test_a_table_holds_what_was_added_whatever_was_foretold(share, rng):
+def test_table_holds_all_rows_for_any_fraction_read(share, rng):
     blocks = [rng.normal(size=(n_rows, 3)) for n_rows in (1, 0, 7, 300, 2)]
     table = GrowingTable(3)
 
@@ -157,13 +157,13 @@ def test_an_empty_table_has_its_width():
 
 
 @pytest.mark.parametrize("kind", ["bvh", "trc", "amc", "csv"])
-def test_the_text_is_never_whole_in_memory(kind, tmp_path, monkeypatch):
+def test_text_is_never_completely_in_memory(kind, tmp_path, monkeypatch):
     """Beside three times the numbers, which the readers work on, stands only a block."""
-    read, whole, _ = FILES[kind]
+    read, complete, _ = FILES[kind]
     monkeypatch.setattr(line_reader, "BLOCK_BYTES", 1 << 16)
     (tmp_path / "take.asf").write_bytes(SKELETON)
     path = tmp_path / "take.amc"
-    lines = whole.splitlines(keepends=True)
+    lines = complete.splitlines(keepends=True)
     n_frame, blanks = (4 if kind == "amc" else 1), b" " * 1000
     frames = [line.rstrip() + blanks + b"\n" for line in lines[-6 * n_frame :]]
     path.write_bytes(b"".join(lines[: -6 * n_frame]) + b"".join(frames) * 1500)

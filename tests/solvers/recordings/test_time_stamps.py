@@ -10,7 +10,7 @@ from solvers.recordings.conventions.time_stamps import ConstantRate
 FRAME = 1.0 / 30.0
 
 
-def test_even_stamps_change_nothing(rng):
+def test_even_time_stamps_change_nothing(rng):
     values = rng.normal(size=(50, 4, 3))
 
     clock = ConstantRate("take", 8000.0 + np.arange(50) * FRAME)
@@ -37,7 +37,7 @@ def cubic(times):
     return (1.0 - 2.0 * times + 0.7 * times**2 + 3.0 * times**3)[:, None, None]
 
 
-def test_late_frames_are_bridged_and_lost_frames_are_gaps():
+def test_late_frames_are_interpolated_and_missing_frames_are_gaps():
     times = np.array([0, 1, 2.4, 3, 4, 14, 15, 16]) * FRAME
     values = times[:, None, None] + np.zeros((1, 2, 3))
 
@@ -49,7 +49,7 @@ def test_late_frames_are_bridged_and_lost_frames_are_gaps():
     assert_allclose(found[expected, 0, 0], np.flatnonzero(expected) * FRAME, atol=1e-12)
 
 
-def test_no_seen_frame_is_lost_beside_a_hole(rng):
+def test_no_observed_frame_is_dropped_next_to_a_gap(rng):
     """However the clock drifts: each frame has a moment within half a frame time of it."""
     steps = np.where(rng.uniform(size=300) < 0.2, 2.0, 1.0) + rng.normal(scale=0.05, size=300)
     times = np.cumsum(steps) * FRAME
@@ -90,7 +90,7 @@ def test_the_rate_is_the_common_one_if_there_is_one_nearby(step, rate):
     assert ConstantRate("take", np.arange(100) * step).frame_rate == pytest.approx(rate)
 
 
-def test_a_frame_told_twice_counts_once():
+def test_duplicate_frame_is_used_once():
     times = np.array([0, 1, 1, 2, 1.5, 3, 4]) * FRAME
     values = np.array([0, 1, 9, 2, 9, 3, 4.0])[:, None, None]
 
@@ -102,16 +102,16 @@ def test_a_frame_told_twice_counts_once():
 @pytest.mark.parametrize(
     ("times", "sentence"),
     [
-        (np.arange(20)[::-1] * FRAME, "not later than those before"),
-        (np.full(20, 7.0), "not later than those before"),
-        (np.full(5, np.nan), "not later than those before"),
-        (np.full(5, 1e300), "not later than those before"),
-        (np.concatenate([np.arange(20) * FRAME, [1e9]]), r"21 frames are spread over 1e\+09 s"),
-        (np.arange(20) * 1e-7, "which cannot be"),
-        (np.arange(20) * 1e7, "which cannot be"),
+        (np.arange(20)[::-1] * FRAME, "do not increase"),
+        (np.full(20, 7.0), "do not increase"),
+        (np.full(5, np.nan), "do not increase"),
+        (np.full(5, 1e300), "do not increase"),
+        (np.concatenate([np.arange(20) * FRAME, [1e9]]), r"21 frames span 1e\+09 s"),
+        (np.arange(20) * 1e-7, "which is not possible"),
+        (np.arange(20) * 1e7, "which is not possible"),
     ],
 )
-def test_refuses_stamps_that_make_no_sense(times, sentence):
+def test_invalid_time_stamps_are_refused(times, sentence):
     with pytest.raises(InvalidFileError, match=sentence):
         ConstantRate("take", times)
 

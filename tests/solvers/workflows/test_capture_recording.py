@@ -44,7 +44,7 @@ def caught(recording: DepthRecording, body: BodyModel | None = BODY):
     return capture_recording(recording, body, settings=QUICK, planting=None)
 
 
-def test_nothing_is_said_of_a_recording_as_it_should_be():
+def test_valid_recording_has_no_remarks():
     poses = waving(N_FRAMES)
 
     found = caught(recorded(poses), None)
@@ -53,7 +53,7 @@ def test_nothing_is_said_of_a_recording_as_it_should_be():
     assert off(found, poses).mean() < 0.04
 
 
-def test_of_two_people_the_larger_is_followed_and_the_other_told_of():
+def test_larger_of_two_people_is_tracked_and_the_other_reported():
     poses = waving(N_FRAMES)
     poses[:, 0] -= 0.6
     other = poses[0].copy()
@@ -66,7 +66,7 @@ def test_of_two_people_the_larger_is_followed_and_the_other_told_of():
     assert off(found, poses).mean() < 0.04
 
 
-def test_who_leaves_the_picture_is_guessed_flagged_and_told_of():
+def test_actor_outside_the_image_is_estimated_flagged_and_reported():
     poses = waving(30)
     poses[:, 0] += np.linspace(0.0, 3.2, 30)
 
@@ -82,7 +82,7 @@ def test_who_leaves_the_picture_is_guessed_flagged_and_told_of():
     assert np.isfinite(found.motion.root_positions).all()
 
 
-def test_of_an_upper_body_the_arms_are_told_and_the_legs_are_not_trusted():
+def test_upper_body_has_tracked_arms_and_unreliable_legs():
     poses = waving(N_FRAMES)
     shown = replace(CAMERA, height=72)
     recording = replace(
@@ -123,15 +123,16 @@ def test_holes_are_no_obstacle():
     assert off(found, poses).mean() < 0.04
 
 
-def test_missing_frames_are_bridged_and_told_of():
-    poses, lost = waving(18), (4, 5, 9, 10, 11, 15)
+def test_missing_frames_are_interpolated_and_reported():
+    poses, missing = waving(18), (4, 5, 9, 10, 11, 15)
 
-    found = caught(changed(recorded(poses), lambda one, seen: seen * (one not in lost)))
+    found = caught(changed(recorded(poses), lambda one, seen: seen * (one not in missing)))
 
     assert any(
-        "frames no person is detected" in said or "Nobody is" in said for said in found.remarks
+        "frames no person is detected" in message or "Nobody is" in message
+        for message in found.remarks
     )
-    assert found.captured.doubtful[list(lost)].all()
+    assert found.captured.doubtful[list(missing)].all()
     assert off(found, poses).mean() < 0.04
 
 
@@ -142,7 +143,7 @@ def test_missing_frames_are_bridged_and_told_of():
         (1.3, 1.0, "check fx and fy"), (1.0, 0.75, "check fx and fy"),
     ],
 )  # fmt: skip
-def test_wrong_focal_lengths_are_told_of(across, down, words):
+def test_wrong_focal_lengths_are_reported(across, down, words):
     wrong = replace(CAMERA, fx=across * CAMERA.fx, fy=down * CAMERA.fy)
 
     found = caught(replace(recorded(waving(3)), camera=wrong), None)
@@ -161,22 +162,23 @@ def test_a_body_as_thick_as_a_barrel_may_be_a_wrong_focal_length():
 
     assert thickness(found.captured) > 1.3
     assert any(
-        "times as thick as the default body. Check the focal" in said for said in found.remarks
+        "times as thick as the default body. Check the focal" in message
+        for message in found.remarks
     )
 
 
-def test_a_scale_that_is_wrong_leaves_nobody_or_a_giant():
+def test_wrong_scale_is_refused_or_reported():
     in_millimetres = changed(recorded(waving(3)), lambda _, seen: 1000.0 * seen)
 
     try:
-        said = " ".join(caught(in_millimetres).remarks)
+        message = " ".join(caught(in_millimetres).remarks)
     except InvalidMotionError as error:
-        said = str(error)
-    assert "scale" in said or "depth is in metres" in said
+        message = str(error)
+    assert "scale" in message or "depth is in meters" in message
 
 
 def test_what_is_no_actor_agrees_badly():
-    """A board as large as a person, a metre and a half by one."""
+    """A board as large as a person, a meter and a half by one."""
     board = np.zeros((120, 160), np.float32)
     board[20:110, 50:110] = 2.5
     recording = DepthRecording(
@@ -185,7 +187,7 @@ def test_what_is_no_actor_agrees_badly():
 
     found = caught(recording, None)
 
-    assert any("Body and depth images agree badly" in said for said in found.remarks)
+    assert any("Body and depth images agree badly" in message for message in found.remarks)
 
 
 def peak_of(n_frames: int, read) -> int:
@@ -197,7 +199,7 @@ def peak_of(n_frames: int, read) -> int:
         tracemalloc.stop()
 
 
-def test_no_picture_is_kept():
+def test_no_image_stays_in_memory():
     """Each further frame takes much less than its picture: a take of any length fits."""
     still = drawn(waving(1)[0]).astype(np.float32)
     peak_of(2, lambda _: still)  # What is loaded once and for all.

@@ -48,26 +48,26 @@ def without_a_leg(motion: Motion, frames=slice(30, 60)) -> Motion:
 
 
 def error(found: Motion, truth: Motion, frames=slice(30, 60)) -> float:
-    apart = angle_between(found.rotations, truth.rotations)
-    return float(np.degrees(apart[frames]).mean())
+    distance = angle_between(found.rotations, truth.rotations)
+    return float(np.degrees(distance[frames]).mean())
 
 
-def test_a_lost_leg_is_rebuilt_from_clips_like_the_take(library):
+def test_missing_leg_is_filled_from_similar_clips(library):
     truth = walk(115)
     dirty = without_a_leg(truth)
-    before, told = dirty.rotations.copy(), []
+    before, messages = dirty.rotations.copy(), []
 
     cleaned = clean_from_library(
         dirty, library, fetch=fetched,
-        progress=lambda fraction, message="": told.append(fraction),
+        progress=lambda fraction, message="": messages.append(fraction),
     )  # fmt: skip
 
     assert "Learned from 4 clips of the library: walk 1" in cleaned.prior_used
     assert error(cleaned.recording, truth) < 0.5 * error(denoise(dirty).recording, truth)
     assert np.isfinite(cleaned.recording.rotations).all()
     assert_array_equal(dirty.rotations, before)
-    assert told == sorted(told)
-    assert told[-1] == 1.0
+    assert messages == sorted(messages)
+    assert messages[-1] == 1.0
 
 
 def test_what_is_learned_is_what_those_clips_teach(library):
@@ -79,20 +79,20 @@ def test_what_is_learned_is_what_those_clips_teach(library):
 
 
 def test_the_more_a_clip_is_like_the_take_the_more_it_counts(monkeypatch, library):
-    told = []
+    messages = []
     here = sys.modules["solvers.workflows.clean_from_library"]
     learn = here.learn_filter_bases
 
     def learned(clips, *, weights, **options):
-        told.extend(weights)
+        messages.extend(weights)
         return learn(clips, weights=weights, **options)
 
     monkeypatch.setattr(here, "learn_filter_bases", learned)
     found = bases_from_library(walk(111), library, fetch=fetched)
 
     assert found.clips[0] == "walk 110"
-    assert told == sorted(told, reverse=True)
-    assert told[0] > 1.5 * told[-1]
+    assert messages == sorted(messages, reverse=True)
+    assert messages[0] > 1.5 * messages[-1]
 
 
 @pytest.mark.parametrize(("score", "n_validations"), [(0.0, 0), (1.1, 1)])
@@ -148,7 +148,7 @@ def test_a_library_of_other_movements_does_no_harm(recordings):
     assert set(helped.clips[:2]) == set(squats[1:])
 
 
-def test_clips_are_read_again_from_their_files_and_the_lost_are_told(tmp_path):
+def test_clips_are_read_from_their_files_and_missing_files_reported(tmp_path):
     for name, motion in WALKS.items():
         write_bvh(motion, tmp_path / f"{name}.bvh")
     index_files(tmp_path / "library.clips", [tmp_path])
@@ -166,18 +166,18 @@ def test_clips_are_read_again_from_their_files_and_the_lost_are_told(tmp_path):
     assert_array_equal(cleaned.recording.rotations, denoise(walk(115)).recording.rotations)
 
 
-def test_clips_that_came_from_no_file_are_told(library):
+def test_clips_without_a_file_are_reported(library):
     learned = bases_from_library(walk(115), library)
     assert learned.bases is None
     assert "walk 110 was left out: walk 110 came from no file" in learned.message
 
 
-def test_an_action_is_left_to_whoever_can_read_it():
+def test_clip_of_an_action_is_not_read_from_its_file():
     origin = Origin("/somewhere/rig.blend", "Walk")
     library = build_clip_library([Clip("Walk", walk(110), origin=origin)])
     assert bases_from_library(walk(115), library).bases is None
-    told = bases_from_library(walk(115), library, fetch=lambda entry: walk(110))
-    assert told.clips == ("Walk",)
+    messages = bases_from_library(walk(115), library, fetch=lambda entry: walk(110))
+    assert messages.clips == ("Walk",)
 
 
 def test_what_a_sensor_saw_is_no_example(library):
@@ -185,7 +185,7 @@ def test_what_a_sensor_saw_is_no_example(library):
     assert bases_from_library(walk(115), library, fetch=lambda entry: joints).bases is None
 
 
-def test_clips_too_short_to_learn_from_are_told():
+def test_clips_too_short_to_learn_from_are_reported():
     short = {name: motion.slice(0, 5) for name, motion in WALKS.items()}
     library = build_clip_library(Clip(name, motion) for name, motion in short.items())
     learned = bases_from_library(

@@ -15,11 +15,11 @@ from solvers.workflows import index_files
 def folders(tmp_path):
     """Two folders of walks with the same names, all different."""
     found = []
-    for place in ("first", "second"):
-        folder = tmp_path / place / "takes"
+    for position in ("first", "second"):
+        folder = tmp_path / position / "takes"
         folder.mkdir(parents=True)
         for number in range(3):
-            cadence = 90 + 10 * number + len(place)
+            cadence = 90 + 10 * number + len(position)
             walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0, cadence=cadence))
             write_bvh(walk, folder / f"t{number}.bvh")
         found.append(folder)
@@ -47,7 +47,7 @@ def once(work):
     return progress
 
 
-def test_no_clip_is_lost_when_another_indexes_files_of_the_same_names(folders, library):
+def test_parallel_indexing_keeps_clips_of_the_same_names(folders, library):
     first, second = folders
     meanwhile = []
 

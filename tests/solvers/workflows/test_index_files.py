@@ -30,8 +30,8 @@ def walk(cadence: float = 110.0, duration: float = 1.0):
 @pytest.fixture
 def folder(tmp_path):
     """Two folders of walks, and markers that are no body."""
-    for place, cadence in (("a/slow", 80), ("a/fast", 140), ("b/slow", 90)):
-        path = tmp_path / "clips" / f"{place}.bvh"
+    for position, cadence in (("a/slow", 80), ("a/fast", 140), ("b/slow", 90)):
+        path = tmp_path / "clips" / f"{position}.bvh"
         path.parent.mkdir(parents=True, exist_ok=True)
         write_bvh(walk(cadence), path)
     markers = Tracks(("m1", "m2"), np.ones((9, 2, 3)), 30.0)
@@ -50,14 +50,14 @@ def entries(path):
         return {entry.name: entry for entry in library.entries}
 
 
-def test_a_folder_becomes_clips_named_by_their_places(folder, library):
+def test_folder_becomes_clips_named_by_their_paths(folder, library):
     report = index_files(library, [folder], tags=["walk", "walk"])
 
     assert report.added == ("a/fast", "a/slow", "b/slow")
     assert report.n_clips == 3
     ((path, sentence),) = report.refused
     assert path == str(folder / "markers.trc")
-    assert "markers.trc: No body was recognised" in sentence
+    assert "markers.trc: No body was recognized" in sentence
     found = entries(library)
     stat = (folder / "a" / "fast.bvh").stat()
     origin = found["a/fast"].origin
@@ -113,7 +113,7 @@ def test_what_memory_could_not_hold_is_tried_again(folder, library, monkeypatch)
     assert index_files(library, [folder / "a"]).added == ("fast", "slow")
 
 
-def test_a_library_from_before_refusals_were_kept_is_used(folder, library):
+def test_library_without_stored_refusals_is_used(folder, library):
     index_files(library, [folder / "a"])
     with closing(sqlite3.connect(library)) as database, database:
         database.execute("DROP TABLE IF EXISTS refused")
@@ -152,7 +152,7 @@ def test_what_has_changed_is_read_again_under_its_name(folder, library):
     assert entries(library)["a/fast"].n_frames == 60
 
 
-def test_tags_are_added_and_kept(folder, library):
+def test_tags_are_added_and_persist(folder, library):
     index_files(library, [folder], tags=["walk"])
     assert index_files(library, [folder / "a"], tags=["loud"]).changed == ("a/fast", "a/slow")
     assert len(index_files(library, [folder]).unchanged) == 3
@@ -174,7 +174,7 @@ def test_clip_stays_when_its_file_is_hidden_but_not_gone(folder, library):
     assert (report.removed, report.n_clips) == ((), 3)
 
 
-def test_what_has_gone_is_removed_if_that_is_asked_for(folder, library):
+def test_clips_of_deleted_files_are_removed_on_request(folder, library):
     index_files(library, [folder])
     (folder / "a" / "fast.bvh").unlink()
     shutil.rmtree(folder / "b")
@@ -198,7 +198,7 @@ def test_a_file_that_is_damaged_later_is_forgotten(folder, library):
     assert "a/fast" not in entries(library)
 
 
-def test_clips_of_one_name_are_told_apart(folder, library):
+def test_clips_of_the_same_name_become_unique(folder, library):
     shutil.copytree(folder / "a", folder.parent / "other")
     shutil.copy(folder / "a" / "slow.bvh", folder.parent / "slow.bvh")
     (folder / "a" / "slow.BVH").write_bytes((folder / "a" / "slow.bvh").read_bytes())
@@ -253,10 +253,12 @@ def test_long_takes_are_written_sooner(folder, library, monkeypatch):
 
 
 def test_progress_rises_to_one(folder, library):
-    told = []
-    index_files(library, [folder], progress=lambda fraction, message="": told.append(fraction))
-    assert told == sorted(told)
-    assert (told[0], told[-1]) == (0.0, 1.0)
+    messages = []
+    index_files(
+        library, [folder], progress=lambda fraction, message="": messages.append(fraction)
+    )
+    assert messages == sorted(messages)
+    assert (messages[0], messages[-1]) == (0.0, 1.0)
 
 
 def test_what_is_not_there_is_refused_before_anything_is_done(folder, library, tmp_path):

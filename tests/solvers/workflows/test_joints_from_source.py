@@ -23,7 +23,7 @@ def walk():
     return recording.with_tracks(recording.tracks.with_positions(positions))
 
 
-def test_it_is_all_there_even_below_a_joint_that_was_not_seen(walk):
+def test_all_joints_are_recovered_below_a_missing_joint(walk):
     motion = motion_from_points(walk.tracks, walk.parents)
 
     found = joints_from_source(motion, walk)
@@ -36,17 +36,17 @@ def test_it_is_all_there_even_below_a_joint_that_was_not_seen(walk):
 
 
 def test_the_confidence_of_a_tracker_without_states_comes_along(walk):
-    told = np.random.default_rng(2).random(walk.tracks.positions.shape[:2])
-    tracks = vocabulary.Tracks(walk.names, walk.tracks.positions, 30.0, told)
+    messages = np.random.default_rng(2).random(walk.tracks.positions.shape[:2])
+    tracks = vocabulary.Tracks(walk.names, walk.tracks.positions, 30.0, messages)
     sure = vocabulary.JointRecording(tracks, None, walk.sensor)
 
     found = joints_from_source(motion_from_points(walk.tracks, walk.parents), sure)
 
     order = [walk.names.index(name) for name in found.names]
-    assert_array_equal(found.tracks.confidence, told[:, order])
+    assert_array_equal(found.tracks.confidence, messages[:, order])
 
 
-def test_it_goes_along_where_the_armature_was_put(walk):
+def test_joints_follow_a_moved_armature(walk):
     """Turned about Z, scaled, and moved: as an armature that stands elsewhere."""
     motion = motion_from_points(walk.tracks, walk.parents)
     turn, shift = quaternion_from_rotation_vector(np.array([0.0, 0.0, 0.8])), (1.0, 2.0, 0.9)
@@ -97,10 +97,10 @@ def test_a_part_of_it_is_found_where_it_was(walk, first, stop):
 
 def test_a_part_that_was_edited_is_not_believed(walk):
     motion = motion_from_points(walk.tracks, walk.parents).slice(20, 70)
-    places = motion.root_positions.copy()
-    places[30] += 0.05
+    indices = motion.root_positions.copy()
+    indices[30] += 0.05
 
-    assert joints_from_source(motion.with_poses(motion.rotations, places), walk) is None
+    assert joints_from_source(motion.with_poses(motion.rotations, indices), walk) is None
 
 
 def test_a_longer_motion_is_not_of_it(walk):
@@ -112,7 +112,7 @@ def test_a_longer_motion_is_not_of_it(walk):
     assert joints_from_source(twice, walk) is None
 
 
-def test_who_stands_still_is_somewhere(walk):
+def test_motionless_take_is_matched(walk):
     still = walk.with_tracks(
         walk.tracks.with_positions(np.repeat(walk.tracks.positions[:1], 90, axis=0))
     )
@@ -124,12 +124,12 @@ def test_who_stands_still_is_somewhere(walk):
 def test_a_motion_whose_hips_were_put_between_the_legs_is_of_it(walk):
     positions = walk.tracks.positions.copy()
     positions[:, walk.names.index("HipCenter")] = np.nan
-    blind = walk.with_tracks(walk.tracks.with_positions(positions))
-    whole = fill_missing_hips(blind)
+    untracked = walk.with_tracks(walk.tracks.with_positions(positions))
+    complete = fill_missing_hips(untracked)
 
-    found = joints_from_source(motion_from_points(whole.tracks, whole.parents), blind)
+    found = joints_from_source(motion_from_points(complete.tracks, complete.parents), untracked)
 
     legs = [found.names.index(name) for name in ("HipLeft", "HipRight")]
     middle = found.tracks.positions[:, legs].mean(axis=1)
     assert_allclose(found.tracks.positions[:, found.names.index("HipCenter")], middle)
-    assert np.isnan(blind.tracks.positions[:, blind.names.index("HipCenter")]).all()
+    assert np.isnan(untracked.tracks.positions[:, untracked.names.index("HipCenter")]).all()

@@ -63,7 +63,7 @@ def test_a_session_of_all_commands():
     assert set(events[4:]) == {Gesture.ZOOM} and len(queries) == 1
 
 
-def test_a_performance_of_no_time_is_none():
+def test_performance_without_duration_is_dropped():
     session = LiveSession()
 
     events, queries, messages = heard(session, lines_of(["clap", "clap", "rest"]))
@@ -93,7 +93,7 @@ def test_another_actor_does_not_end_the_first_ones_performance():
     assert events == [Gesture.CAPTURE_DROPPED, Gesture.CAPTURE_START]
 
 
-def test_what_is_kept_is_bounded():
+def test_recorded_frames_are_limited():
     session = LiveSession(GestureSettings(longest_capture=600.0))
     heard(session, lines_of(["clap"]))
     (last,) = lines_of(["rest"])[:1]
@@ -106,7 +106,7 @@ def test_what_is_kept_is_bounded():
     assert len(session._performed) <= 20_000
 
 
-def test_rubbish_says_nothing_and_is_counted():
+def test_invalid_datagrams_are_counted_and_dropped():
     session = LiveSession()
 
     news = session.receive([b"", b"rubbish", b"\x00" * 100, b"{}"])
@@ -116,24 +116,24 @@ def test_rubbish_says_nothing_and_is_counted():
 
 
 @pytest.mark.parametrize("names", [("a", "b"), ("Head",), ("hips", "head")])
-def test_joints_that_are_no_arms_say_nothing(names):
+def test_frames_without_arms_have_no_gestures(names):
     session = LiveSession()
-    places = np.ones((len(names), 3))
+    indices = np.ones((len(names), 3))
 
     for number in range(60):
-        frame = LiveFrame(number / 30, 0, names, places, np.ones(len(names)))
+        frame = LiveFrame(number / 30, 0, names, indices, np.ones(len(names)))
         assert session.receive([encode_frame(frame)]).events == ()
 
 
 def test_the_joints_of_every_sensor_are_found():
     for sensor in (Sensor.KINECT_V1, Sensor.KINECT_V2, Sensor.AZURE_KINECT):
         names = SENSOR_JOINTS[sensor]
-        places = np.arange(3.0 * len(names)).reshape(-1, 3)
+        indices = np.arange(3.0 * len(names)).reshape(-1, 3)
 
         positions, confidence = pose_from_frame(
-            LiveFrame(0.0, 0, names, places, np.ones(len(names)))
+            LiveFrame(0.0, 0, names, indices, np.ones(len(names)))
         )
 
         assert np.isfinite(positions).all() and (confidence == 1.0).all()
         wrist = positions[POSTURE_JOINTS.index("rightHand")]
-        assert wrist.tolist() == places[names.index("WristRight")].tolist()
+        assert wrist.tolist() == indices[names.index("WristRight")].tolist()

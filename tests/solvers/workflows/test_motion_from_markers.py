@@ -16,22 +16,22 @@ def walk():
 
 
 @pytest.fixture(scope="module")
-def spoilt(walk) -> Tracks:
+def corrupted(walk) -> Tracks:
     """Swapped wrists, a lost head marker, a lost arm, and points of other names."""
     take = markers_on(walk, noise=0.0005, skin=0.002)
     positions = take.positions.copy()
-    place = {name: index for index, name in enumerate(take.names)}
-    wrists = [place["LWRA"], place["LWRB"]]
+    position = {name: index for index, name in enumerate(take.names)}
+    wrists = [position["LWRA"], position["LWRB"]]
     positions[50:90, wrists] = positions[50:90, wrists[::-1]]
-    positions[20:80, place["LFHD"]] = np.nan
+    positions[20:80, position["LFHD"]] = np.nan
     for name in ("RELB", "RUPA", "RFRM", "RWRA", "RWRB", "RFIN"):
-        positions[100:130, place[name]] = np.nan
+        positions[100:130, position[name]] = np.nan
     other = np.zeros((take.n_frames, 1, 3)) + 5.0
     return Tracks((*take.names, "*0"), np.concatenate([positions, other], axis=1), 60.0)
 
 
-def test_the_motion_is_whole_and_near_the_truth(walk, spoilt):
-    result = motion_from_markers(spoilt)
+def test_motion_has_no_gaps_and_is_accurate(walk, corrupted):
+    result = motion_from_markers(corrupted)
 
     assert result.motion.observed.all()
     (swap,) = result.swaps
@@ -48,19 +48,19 @@ def test_the_motion_is_whole_and_near_the_truth(walk, spoilt):
     assert np.linalg.norm(hand, axis=1)[100:130].mean() < 0.08
 
 
-def test_what_is_known_is_not_touched_unless_asked_for(spoilt):
-    result = motion_from_markers(spoilt)
-    smooth = motion_from_markers(spoilt, settings=MarkerMotionSettings(smooth=True))
+def test_observed_samples_are_unchanged_unless_smoothed(corrupted):
+    result = motion_from_markers(corrupted)
+    smooth = motion_from_markers(corrupted, settings=MarkerMotionSettings(smooth=True))
 
     known = result.solved.motion.observed
     assert np.array_equal(result.motion.rotations[known], result.solved.motion.rotations[known])
     assert not np.array_equal(result.motion.rotations, smooth.motion.rotations)
 
 
-def test_steps_can_be_left_out(spoilt):
+def test_steps_can_be_left_out(corrupted):
     plain = MarkerMotionSettings(unswap=False, fill=False)
 
-    result = motion_from_markers(spoilt, settings=plain)
+    result = motion_from_markers(corrupted, settings=plain)
 
     assert result.swaps == () and not result.filled.any()
     assert result.motion.observed.all()

@@ -28,10 +28,10 @@ def places_of(motion: Motion, name: str) -> np.ndarray:
     return forward_kinematics(motion).positions[:, motion.skeleton.index(name)]
 
 
-def trust_of(motion: Motion, name: str, trust: float) -> np.ndarray:
+def trust_of(motion: Motion, name: str, terms: float) -> np.ndarray:
     """All joints are trusted but one."""
     reliability = np.ones((motion.n_frames, motion.n_joints))
-    reliability[:, motion.skeleton.index(name)] = trust
+    reliability[:, motion.skeleton.index(name)] = terms
     return reliability
 
 
@@ -55,7 +55,7 @@ def wandering() -> Motion:
     )
 
 
-def test_an_ankle_that_stands_still_stays_whatever_its_lost_toe_does():
+def test_resting_ankle_stays_when_its_toe_is_missing():
     motion = wandering()
 
     planted = plant_feet_if_possible(
@@ -69,23 +69,23 @@ def test_an_ankle_that_stands_still_stays_whatever_its_lost_toe_does():
 
 
 @pytest.mark.parametrize("take", ["216_18_7_5_1_stand", "216_18_1_1_1_stand"])
-def test_a_trusted_ankle_is_not_planted_far_from_where_it_was_still(recordings, take):
+def test_reliable_ankle_is_planted_near_its_rest_position(recordings, take):
     """A contact lasted while the foot shifted; planting moved still ankles by 12 cm."""
     recording = read_recording(recordings / "kinect" / "irds" / f"{take}.txt")
 
     found = reconstruct_recording(recording)
 
-    before, trust = found.reconstruction.motion, found.reconstruction.reliability.combined
+    before, terms = found.reconstruction.motion, found.reconstruction.reliability.combined
     for name in ("AnkleLeft", "AnkleRight"):
         seen = places_of(before, name)
         around = np.lib.stride_tricks.sliding_window_view(seen, 15, axis=0)
         still = np.linalg.norm(np.ptp(around, axis=-1), axis=-1) < 0.02
-        sure = still & (trust[7:-7, recording.names.index(name)] > 0.6)
+        sure = still & (terms[7:-7, recording.names.index(name)] > 0.6)
         moved = np.linalg.norm(places_of(found.motion, name) - seen, axis=-1)[7:-7]
         assert moved[sure].max(initial=0.0) < 0.05, name
 
 
-def test_a_lost_toe_that_points_up_is_laid_down():
+def test_missing_toe_that_points_up_is_flattened():
     motion = standing(np.array([0.0, -0.1, 0.1]))
 
     planted = plant_feet_if_possible(
@@ -102,20 +102,20 @@ def test_a_lost_toe_that_points_up_is_laid_down():
     np.testing.assert_allclose(shown, seen, atol=1e-9)
 
 
-def test_feet_that_were_seen_well_are_planted_as_ever():
+def test_reliable_feet_are_planted_as_without_reliability():
     body = samples.walking_gait(samples.GaitSettings(duration=3.0, frame_rate=30.0))
 
     plain = plant_feet_if_possible(body, PLANTING)
-    trusted = plant_feet_if_possible(
+    reliable = plant_feet_if_possible(
         body, PLANTING, reliability=np.ones((body.n_frames, body.n_joints))
     )
 
     off = np.abs(
         forward_kinematics(plain.motion).positions
-        - forward_kinematics(trusted.motion).positions
+        - forward_kinematics(reliable.motion).positions
     )
     assert off.max() < 0.02
-    assert trusted.planted.slide_after < 0.2 * trusted.planted.slide_before
+    assert reliable.planted.slide_after < 0.2 * reliable.planted.slide_before
 
 
 @pytest.mark.parametrize("number", [1, 2, 3])

@@ -51,17 +51,17 @@ def of_others(clips):
     return [name for name in clips if name.startswith("dg")]
 
 
-def test_lost_limbs_are_nearer_than_with_what_is_shipped(clips, library, squat):
+def test_missing_limbs_are_closer_than_with_shipped_postures(clips, library, squat):
     recording, truth, hidden, columns = squat
 
     found = reconstruct_from_library(
         recording, library, ignore=of_others(clips), fetch=lambda entry: clips[entry.name]
     )
-    usual = reconstruct(recording)
+    default = reconstruct(recording)
 
     errors = [
         np.linalg.norm(one.tracks.positions[hidden][:, columns] - truth, axis=-1).mean()
-        for one in (found, usual)
+        for one in (found, default)
     ]
     assert errors[0] < 0.9 * errors[1]
     assert found.method.startswith("Learned from 9 clips of the library: bk_squat1Reps")
@@ -79,8 +79,8 @@ def test_a_skeletons_motion_is_searched_with_as_well(clips, library):
 def test_without_a_clip_all_is_as_without_a_library(squat):
     recording = squat[0]
     empty = reconstruct_from_library(recording, build_clip_library([]))
-    usual = reconstruct(recording)
-    np.testing.assert_array_equal(empty.tracks.positions, usual.tracks.positions)
+    default = reconstruct(recording)
+    np.testing.assert_array_equal(empty.tracks.positions, default.tracks.positions)
     assert empty.method.startswith("No clip of the library is similar to this take; ")
 
 

@@ -49,7 +49,7 @@ def test_every_joint_is_there_in_every_frame_and_bones_have_one_length(walk):
     assert result.remarks == ()
 
 
-def test_feet_stand_still_where_they_stand(walk):
+def test_standing_feet_do_not_slide(walk):
     result = reconstruct_recording(walk)
 
     assert result.planted.slide_after < 0.1 * result.planted.slide_before
@@ -62,11 +62,13 @@ def test_feet_are_left_alone_on_request(walk):
     assert result.motion is result.reconstruction.motion
 
 
-def test_a_body_without_legs_says_that_its_feet_stay(truth):
+def test_body_without_legs_reports_that_feet_are_not_planted(truth):
     upper = [name for name in SENSOR_JOINTS[Sensor.KINECT_V1]
              if not name.startswith(("Knee", "Ankle", "Foot"))]  # fmt: skip
-    places = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in upper]
-    recording = JointRecording(Tracks(tuple(upper), truth[:, places], 30.0), None, Sensor.OTHER)
+    indices = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in upper]
+    recording = JointRecording(
+        Tracks(tuple(upper), truth[:, indices], 30.0), None, Sensor.OTHER
+    )
 
     result = reconstruct_recording(recording, planting=PlantSettings())
 
@@ -74,8 +76,8 @@ def test_a_body_without_legs_says_that_its_feet_stay(truth):
 
 
 def test_fifteen_joints_of_another_tracker_make_a_body(truth):
-    places = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in NITE.values()]
-    recording = JointRecording(Tracks(tuple(NITE), truth[:, places], 30.0), None, Sensor.OTHER)
+    indices = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in NITE.values()]
+    recording = JointRecording(Tracks(tuple(NITE), truth[:, indices], 30.0), None, Sensor.OTHER)
 
     result = reconstruct_recording(recording, planting=None)
 
@@ -105,37 +107,37 @@ def as_recording(
 
 
 @pytest.mark.parametrize(
-    ("spoil", "said"),
+    ("spoil", "message"),
     [
         (lambda p: np.full_like(p, np.nan), "No joint is tracked in any of the 90 frames"),
         (
             lambda p: np.where(np.arange(20)[:, None] == 3, p, np.nan),
             r"Only one joint \(Head\)",
         ),
-        (lambda p: 1000.0 * p, "millimetres were read as metres.*scale of 0.001"),
-        (lambda p: 100.0 * p, "centimetres were read as metres.*scale of 0.01"),
+        (lambda p: 1000.0 * p, "millimeters were read as meters.*scale of 0.001"),
+        (lambda p: 100.0 * p, "centimeters were read as meters.*scale of 0.01"),
         (lambda p: 0.001 * p, "scale of 1000"),
         (np.zeros_like, "All joints have the same position"),
     ],
-    ids=["nothing", "one joint", "millimetres", "centimetres", "kilometres", "zeros"],
+    ids=["nothing", "one joint", "millimeters", "centimeters", "kilometers", "zeros"],
 )
-def test_what_cannot_be_is_told_in_one_sentence(truth, spoil, said):
-    with pytest.raises(InvalidMotionError, match=said):
+def test_invalid_recordings_are_reported_in_one_sentence(truth, spoil, message):
+    with pytest.raises(InvalidMotionError, match=message):
         reconstruct_recording(as_recording(spoil(truth)))
 
 
 @pytest.mark.parametrize(
-    ("state", "settings", "said"),
+    ("state", "settings", "message"),
     [
         (0, ReconstructSettings(), "the tracking state `tracked`, although positions"),
         (1, ReconstructSettings(inferred=0.0), "infers the others. Raise the setting"),
     ],
 )
-def test_places_for_which_the_tracker_does_not_answer(truth, state, settings, said):
+def test_recordings_of_untracked_joints_are_refused(truth, state, settings, message):
     tracks = as_recording(truth).tracks
     recording = JointRecording(tracks, np.full(truth.shape[:2], state, np.int8), Sensor.OTHER)
 
-    with pytest.raises(InvalidMotionError, match=said):
+    with pytest.raises(InvalidMotionError, match=message):
         reconstruct_recording(recording, settings=settings)
 
 
@@ -147,7 +149,7 @@ def test_a_spine_alone_is_no_body(truth):
         reconstruct_recording(recording)
 
 
-def test_names_that_mean_no_body_are_told(truth):
+def test_unrecognized_joint_names_are_reported(truth):
     names = tuple(f"marker{number}" for number in range(20))
 
     with pytest.raises(InvalidMotionError, match=r"No body was recognized .* \(marker0"):
@@ -159,14 +161,14 @@ def test_a_child_and_a_giant_are_human(truth):
         assert reconstruct_recording(as_recording(size * truth)).motion.observed.all()
 
 
-def test_time_stamps_that_jump_leave_a_guess_that_is_told(walk, tmp_path):
+def test_gap_in_time_stamps_is_estimated_and_reported(walk, tmp_path):
     """The recording stops for three seconds; the file's own times say so."""
     path = tmp_path / "jump.csv"
     head = "mocap-assist-joints,1,units=m,up=z"
     columns = ",".join(f"{name}.{axis}" for name in walk.names for axis in "xyz")
     rows = [
-        ",".join(map(str, [frame / 30.0 + 3.0 * (frame >= 45), *places.ravel()]))
-        for frame, places in enumerate(walk.tracks.positions)
+        ",".join(map(str, [frame / 30.0 + 3.0 * (frame >= 45), *indices.ravel()]))
+        for frame, indices in enumerate(walk.tracks.positions)
     ]
     path.write_text("\n".join([head, f"time,{columns}", *rows]))
 
@@ -207,9 +209,9 @@ def test_the_motion_of_any_other_rig_is_rebuilt_too():
 def test_hips_that_are_never_tracked_are_between_the_legs(recordings):
     recording = read_recording(recordings / "kinect" / "irds" / "215_18_5_3_1_stand.txt")
     hips, *legs = (recording.names.index(each) for each in ("SpineBase", "HipLeft", "HipRight"))
-    blind = recording.tracks.positions.copy()
-    blind[:, hips] = np.nan
-    blind_recording = recording.with_tracks(recording.tracks.with_positions(blind))
+    untracked = recording.tracks.positions.copy()
+    untracked[:, hips] = np.nan
+    blind_recording = recording.with_tracks(recording.tracks.with_positions(untracked))
 
     found = reconstruct_recording(
         blind_recording, planting=None
@@ -221,9 +223,9 @@ def test_hips_that_are_never_tracked_are_between_the_legs(recordings):
     assert np.isnan(blind_recording.tracks.positions[:, hips]).all()
 
 
-def test_a_tracker_that_vouches_for_nothing_is_told_so(truth):
+def test_recording_without_tracked_joints_is_refused(truth):
     tracks = Tracks(SENSOR_JOINTS[Sensor.KINECT_V1], truth, 30.0)
-    blind = JointRecording(tracks, np.zeros(truth.shape[:2], np.int8), Sensor.KINECT_V1)
+    untracked = JointRecording(tracks, np.zeros(truth.shape[:2], np.int8), Sensor.KINECT_V1)
 
     with pytest.raises(InvalidMotionError, match="the tracking state `tracked`"):
-        reconstruct_recording(blind)
+        reconstruct_recording(untracked)

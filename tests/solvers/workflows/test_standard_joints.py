@@ -11,19 +11,21 @@ NAMES = ("head", "leftUpperLeg", "rightUpperLeg", "leftLowerLeg", "rightLowerLeg
 
 def test_hips_between_the_legs_are_as_sure_as_the_less_sure_leg():
     rng = np.random.default_rng(1)
-    positions, told = rng.normal(size=(4, 5, 3)), rng.random((4, 5))
+    positions, messages = rng.normal(size=(4, 5, 3)), rng.random((4, 5))
     state = rng.integers(0, 3, (4, 5))
-    take = JointRecording(Tracks(NAMES, positions, 30.0, told), state, Sensor.OTHER)
+    take = JointRecording(Tracks(NAMES, positions, 30.0, messages), state, Sensor.OTHER)
 
     found = standardize_joint_names(take)
 
     hips, knee = found.names.index("HipCenter"), found.names.index("KneeLeft")
     middle = (positions[:, 1] + positions[:, 2]) / 2.0
     assert_allclose(found.tracks.positions[:, hips], middle, atol=1e-12)
-    assert_array_equal(found.tracks.confidence[:, hips], np.minimum(told[:, 1], told[:, 2]))
+    assert_array_equal(
+        found.tracks.confidence[:, hips], np.minimum(messages[:, 1], messages[:, 2])
+    )
     assert_array_equal(found.tracking_state[:, hips], np.minimum(state[:, 1], state[:, 2]))
     assert_array_equal(found.tracks.positions[:, knee], positions[:, 3])
-    assert_array_equal(found.tracks.confidence[:, knee], told[:, 3])
+    assert_array_equal(found.tracks.confidence[:, knee], messages[:, 3])
     assert_array_equal(found.tracking_state[:, knee], state[:, 3])
 
 

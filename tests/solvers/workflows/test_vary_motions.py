@@ -21,7 +21,7 @@ def walks():
 
 
 @pytest.mark.parametrize("behaviour", ["bd_squat1Reps", "bk_kickLFront1Reps"])
-def test_feet_stand_as_long_as_in_the_examples_and_slide_no_more(behaviour, recordings):
+def test_variants_have_the_contacts_of_the_examples_without_slide(behaviour, recordings):
     folder = recordings / "mocap" / "hdm05"
     files = sorted(folder.glob(f"HDM_{behaviour}_*.amc"))[:6]
     examples = [read_recording(file) for file in files]
@@ -39,7 +39,7 @@ def test_feet_stand_as_long_as_in_the_examples_and_slide_no_more(behaviour, reco
     assert stands[1] > 0.9 * stands[0]
 
 
-def test_feet_are_left_as_they_are_where_asked(walks):
+def test_feet_are_unchanged_without_planting(walks):
     planted = vary_motions(walks, 1)
     free = vary_motions(walks, 1, planting=None)
     assert planted.motions[0].n_frames == free.motions[0].n_frames
@@ -66,14 +66,14 @@ def test_an_example_of_another_behaviour_is_named(walks):
     assert "another behavior" in remarks[0]
 
 
-def test_progress_goes_from_nothing_to_all(walks):
-    told = []
-    vary_motions(walks, 2, progress=lambda fraction, message="": told.append(fraction))
-    assert told == sorted(told)
-    assert told[-1] == 1.0
+def test_progress_rises_from_0_to_1(walks):
+    messages = []
+    vary_motions(walks, 2, progress=lambda fraction, message="": messages.append(fraction))
+    assert messages == sorted(messages)
+    assert messages[-1] == 1.0
 
 
-def test_one_example_varies_by_what_is_borrowed_and_that_is_said(walks):
+def test_single_example_gets_shipped_variation_with_a_remark(walks):
     variants = vary_motions(walks[:1], 3, planting=None)
     assert measure_variation(variants.motions) > 0.003
     assert variants.remarks == ("There is one example; how it varies is borrowed.",)

@@ -12,7 +12,7 @@ from solvers.errors import InvalidFileError
 from solvers.recordings import DepthSettings, read_depth, read_recording
 
 LENS = DepthSettings(fx=9.0, fy=8.0)
-MILLIMETRES = DepthSettings(fx=9.0, fy=8.0, scale=0.001)
+MILLIMETERS = DepthSettings(fx=9.0, fy=8.0, scale=0.001)
 
 
 @pytest.fixture
@@ -21,33 +21,33 @@ def depth() -> np.ndarray:
 
 
 def heard():
-    said = []
-    return said, lambda fraction, message="": said.append(message)
+    text = []
+    return text, lambda fraction, message="": text.append(message)
 
 
 @pytest.mark.parametrize(
-    "damage", [lambda whole: whole[:-20], lambda whole: b"", lambda _: b"?"]
+    "damage", [lambda complete: complete[:-20], lambda complete: b"", lambda _: b"?"]
 )
 def test_a_picture_that_is_cut_short_is_an_empty_frame(tmp_path, depth, damage):
     folder = open3d(tmp_path, depth)
     path = folder / "depth" / "00005.png"
     path.write_bytes(damage(path.read_bytes()))
-    said, progress = heard()
+    text, progress = heard()
 
     recording = read_depth(folder, progress=progress)
 
     assert recording.frame(5).max() == 0.0
     assert_allclose(recording.frame(6), depth[6] * 0.001, rtol=1e-6)
-    assert any("1 of 9 pictures are missing or damaged, depth/00005.png" in one for one in said)
+    assert any("1 of 9 images are missing or damaged, depth/00005.png" in one for one in text)
 
 
 def test_a_picture_that_is_damaged_inside_is_named_when_it_is_read(tmp_path, depth):
     folder = open3d(tmp_path, depth)
     path = folder / "depth" / "00005.png"
-    whole = bytearray(path.read_bytes())
-    middle = len(whole) // 2
-    whole[middle : middle + 9] = b"\xff" * 9
-    path.write_bytes(whole)
+    complete = bytearray(path.read_bytes())
+    middle = len(complete) // 2
+    complete[middle : middle + 9] = b"\xff" * 9
+    path.write_bytes(complete)
 
     recording = read_depth(folder)
 
@@ -65,34 +65,34 @@ def test_one_of_another_size_in_the_middle_is_named(tmp_path, depth):
         read_depth(folder)
 
 
-@pytest.mark.parametrize("kind", ["eight bits", "coloured"])
-def test_a_picture_of_depth_for_the_eye_is_none(tmp_path, depth, kind):
+@pytest.mark.parametrize("kind", ["eight bits", "colored"])
+def test_rendered_depth_images_are_refused(tmp_path, depth, kind):
     for number, picture in enumerate(depth):
-        grey = (picture // 16).astype(np.uint8)
-        pixels = grey if kind == "eight bits" else colors_of(picture)
+        gray = (picture // 16).astype(np.uint8)
+        pixels = gray if kind == "eight bits" else colors_of(picture)
         save_png(tmp_path / f"{number}.png", pixels)
 
-    with pytest.raises(InvalidFileError, match=r"picture of 8 bits; depth is grey and of 16"):
-        read_depth(tmp_path, MILLIMETRES)
+    with pytest.raises(InvalidFileError, match=r"image of 8 bits; depth is gray and has 16"):
+        read_depth(tmp_path, MILLIMETERS)
 
 
 @pytest.mark.parametrize(
     ("name", "content", "sentence"),
     [
-        ("intrinsic.json", "{}", "no camera as Open3D writes it"),
-        ("intrinsic.json", "[1, 2", "no camera as Open3D writes it"),
+        ("intrinsic.json", "{}", "not an Open3D camera"),
+        ("intrinsic.json", "[1, 2", "not an Open3D camera"),
         ("intrinsic.json", json.dumps({"width": 8, "height": 6, "intrinsic_matrix": [0.0] * 9}),
          "Give positive focal lengths"),
-        ("camera_matrix.csv", "1,2\n3,4", "no 3 x 3 matrix"),
-        ("camera_matrix.csv", "", "no table of numbers"),
+        ("camera_matrix.csv", "1,2\n3,4", "no 3 x 3 camera matrix"),
+        ("camera_matrix.csv", "", "not a table of numbers"),
         ("camera_matrix.csv", "1,2,3\n1,two,3", "line 2: not a number"),
-        ("depth.txt", "", "names no pictures"),
-        ("depth.txt", "1.0", "a time stamp and a picture in each line, but has '1.0'"),
-        ("depth.txt", "now depth/00001.png", "begin with no time stamp"),
-        ("depth.txt", "1.0 nowhere.png\n1.1 nothing.png", "2 of 2 pictures of depth"),
+        ("depth.txt", "", "lists no images"),
+        ("depth.txt", "1.0", "a time stamp and an image in each line, but has '1.0'"),
+        ("depth.txt", "now depth/00001.png", "do not begin with a time stamp"),
+        ("depth.txt", "1.0 nowhere.png\n1.1 nothing.png", "2 of 2 depth images"),
     ],
 )  # fmt: skip
-def test_what_is_beside_the_pictures_must_make_sense(tmp_path, depth, name, content, sentence):
+def test_invalid_metadata_of_a_folder_is_refused(tmp_path, depth, name, content, sentence):
     folder = open3d(tmp_path, depth)
     (folder / name).write_text(content)
 
@@ -100,7 +100,7 @@ def test_what_is_beside_the_pictures_must_make_sense(tmp_path, depth, name, cont
         read_depth(folder, DepthSettings() if "json" in name else LENS)
 
 
-def test_a_folder_of_other_things_is_none(tmp_path):
+def test_folder_of_other_files_is_not_depth(tmp_path):
     with pytest.raises(InvalidFileError, match="holds no depth of a known format"):
         read_depth(tmp_path)
     with pytest.raises(InvalidFileError, match="is a folder without depth images"):

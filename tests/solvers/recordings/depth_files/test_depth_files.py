@@ -12,9 +12,9 @@ from scipy import io
 from solvers.depth_scene.camera import Camera
 from solvers.errors import InvalidFileError, InvalidSettingError
 from solvers.recordings import (
+    CameraOrientation,
     DepthSettings,
-    Held,
-    is_depth,
+    is_depth_recording,
     read_depth,
     read_recording,
     read_tracked,
@@ -134,7 +134,7 @@ def test_a_recording_can_be_sent_to_another_process(write):
     assert_array_equal(pickle.loads(sent).frame(4), recording.frame(4))
 
 
-def test_what_the_archive_says_of_camera_rate_and_colour_counts(write, rng):
+def test_archive_defines_camera_rate_and_color(write, rng):
     color = rng.integers(0, 255, (5, 6, 8, 3)).astype(np.uint8)
     path = write(depth_npz(pictures(), color=color))
 
@@ -143,9 +143,9 @@ def test_what_the_archive_says_of_camera_rate_and_colour_counts(write, rng):
     assert recording.camera == SMALL
     assert recording.frame_rate == 25.0
     assert_array_equal(recording.color(3), color[3])
-    told = read_depth(path, DepthSettings(fx=5.0, cx=4.0, frame_rate=12.0, scale=0.01))
-    assert (told.camera, told.frame_rate) == (Camera(5.0, 5.0, 4.0, 2.5, 8, 6), 12.0)
-    assert_allclose(told.frame(1), 10.0 * recording.frame(1), rtol=1e-6)
+    messages = read_depth(path, DepthSettings(fx=5.0, cx=4.0, frame_rate=12.0, scale=0.01))
+    assert (messages.camera, messages.frame_rate) == (Camera(5.0, 5.0, 4.0, 2.5, 8, 6), 12.0)
+    assert_allclose(messages.frame(1), 10.0 * recording.frame(1), rtol=1e-6)
 
 
 def test_numbers_with_a_point_are_metres(write):
@@ -176,11 +176,11 @@ RAW = pictures(1, 480, 640).tobytes()
         (depth_npz(pictures(), fx=-1.0), "Give positive focal lengths"),
         (depth_npz(pictures(), fx=[1.0, 2.0]), "fx is not a single number"),
         (depth_npz(pictures(), frame_rate=0.0), "frame rate of 0 Hz"),
-        (depth_npz(pictures(), color=pictures()), "of uint16; beside this depth it must be"),
+        (depth_npz(pictures(), color=pictures()), "of uint16; for this depth it must be"),
         (depth_npz(pictures().astype("U5")), "no readable array called depth"),
-        (matlab("d_depth", pictures().transpose(1, 2, 0)), "8 x 6 pixels and does not say"),
+        (matlab("d_depth", pictures().transpose(1, 2, 0)), "8 x 6 pixels and does not state"),
         (matlab("d_depth", pictures().transpose(1, 2, 0))[:-9], "cut short"),
-        (overwritten(matlab("depth", pictures(400).transpose(1, 2, 0))), "damaged file of MAT"),
+        (overwritten(matlab("depth", pictures(400).transpose(1, 2, 0))), "damaged MAT"),
         (matlab("d_skel", pictures()), "no depth of a known format"),
         (b"nothing of the kind", "no depth of a known format"),
         (b"", "no depth of a known format"),
@@ -189,7 +189,7 @@ RAW = pictures(1, 480, 640).tobytes()
         (RAW, "no depth of a known format"),  # white noise, though of a Kinect's size
     ],
 )  # fmt: skip
-def test_what_is_no_depth_says_so(write, content, sentence):
+def test_other_content_than_depth_is_refused(write, content, sentence):
     with pytest.raises(InvalidFileError, match=sentence):
         read_depth(write(content))
 
@@ -197,12 +197,12 @@ def test_what_is_no_depth_says_so(write, content, sentence):
 @pytest.mark.parametrize("order", ["<", ">"])
 @pytest.mark.parametrize("size", [0, 1, 3])
 def test_a_matlab_file_is_damaged_when_its_flags_are_too_short(write, order, size):
-    whole = matlab("d_depth", pictures().transpose(1, 2, 0), packed=False, order=order)
+    complete = matlab("d_depth", pictures().transpose(1, 2, 0), packed=False, order=order)
     flags = struct.pack(f"{order}II", 6, 8)
-    path = write(whole.replace(flags, struct.pack(f"{order}II", 6, size), 1))
+    path = write(complete.replace(flags, struct.pack(f"{order}II", 6, size), 1))
 
-    assert is_depth(path)
-    with pytest.raises(InvalidFileError, match=r"take\.depth is a damaged file of MATLAB"):
+    assert is_depth_recording(path)
+    with pytest.raises(InvalidFileError, match=r"take\.depth is a damaged MATLAB file"):
         read_depth(path)
 
 
@@ -236,12 +236,14 @@ def test_a_scale_is_above_zero(write, scale):
         read_recording(write(depth_npz(pictures())), scale=scale)
 
 
-def test_whoever_wants_joints_hears_what_to_do_with_depth(write):
+def test_reading_joints_from_depth_reports_what_to_do(write):
     with pytest.raises(InvalidFileError, match="Track the actor in it first"):
         read_tracked(write(depth_npz(pictures())))
 
 
-@pytest.mark.parametrize("held", [Held.LEFT, Held.RIGHT, Held.UPSIDE_DOWN])
+@pytest.mark.parametrize(
+    "held", [CameraOrientation.LEFT, CameraOrientation.RIGHT, CameraOrientation.UPSIDE_DOWN]
+)
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_a_camera_that_was_held_otherwise_sees_the_same_points(write, held, mirrored):
     """Turned about the axis of the camera, and their left and right exchanged."""
@@ -255,9 +257,9 @@ def test_a_camera_that_was_held_otherwise_sees_the_same_points(write, held, mirr
 
     x, y, z = (points[0] * (-1.0 if mirrored else 1.0, 1.0, 1.0)).T
     expected = {
-        Held.LEFT: (-y, x, z),  # What was at the left, -x, is now above, -y.
-        Held.RIGHT: (y, -x, z),
-        Held.UPSIDE_DOWN: (-x, -y, z),
+        CameraOrientation.LEFT: (-y, x, z),  # What was at the left, -x, is now above, -y.
+        CameraOrientation.RIGHT: (y, -x, z),
+        CameraOrientation.UPSIDE_DOWN: (-x, -y, z),
     }[held]
     assert_allclose(in_one_order(np.stack(expected, axis=-1)), in_one_order(points[1]))
 
@@ -276,7 +278,7 @@ def test_raw_frames_of_another_camera(write):
 
     assert (recording.n_frames, recording.camera) == (3, SMALL)
     assert_allclose(recording.frame(2), depth[2] * 0.001, rtol=1e-6)
-    with pytest.raises(InvalidFileError, match=r"8 x 6 pixels were taken\. Give its focal"):
+    with pytest.raises(InvalidFileError, match=r"8 x 6 pixels from an unknown camera"):
         read_depth_raw(write(depth.tobytes()), DepthSettings(width=8, height=6))
-    with pytest.raises(InvalidFileError, match="are no whole pictures of 640 x 480"):
+    with pytest.raises(InvalidFileError, match="is not a multiple of an image of 640 x 480"):
         read_depth_raw(write(depth.tobytes()))

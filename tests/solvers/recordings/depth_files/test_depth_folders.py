@@ -14,10 +14,10 @@ from solvers.errors import InvalidFileError
 from solvers.recordings import DepthSettings, read_depth, read_recording
 
 LENS = DepthSettings(fx=9.0, fy=8.0)
-MILLIMETRES = DepthSettings(fx=9.0, fy=8.0, scale=0.001)
+MILLIMETERS = DepthSettings(fx=9.0, fy=8.0, scale=0.001)
 SMALL = Camera(9.0, 8.0, 3.5, 2.5, 8, 6)
 LEVEL = (0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0)
-"""A camera one metre up: its y points down, and the world of ARKit has Y up."""
+"""A camera one meter up: its y points down, and the world of ARKit has Y up."""
 
 
 @pytest.fixture
@@ -30,8 +30,8 @@ def all_frames(recording) -> np.ndarray:
 
 
 def heard():
-    said = []
-    return said, lambda fraction, message="": said.append(message)
+    text = []
+    return text, lambda fraction, message="": text.append(message)
 
 
 def test_tum_is_five_thousandths_of_a_metre_and_has_its_colours(tmp_path, depth):
@@ -62,9 +62,9 @@ def test_tum_by_its_associations(tmp_path, depth, depth_first):
     assert_array_equal(recording.color(7), colors_of(depth[7]))
 
 
-def test_times_that_jump_leave_empty_frames_and_say_so(tmp_path, depth):
+def test_gaps_in_times_become_empty_frames_with_a_remark(tmp_path, depth):
     steps = np.array([0, 1, 2.2, 2.9, 4, 8, 9.1, 10, 11])
-    said, progress = heard()
+    text, progress = heard()
 
     recording = read_depth(tum(tmp_path, depth, 50.0 + steps / 30.0), LENS, progress=progress)
 
@@ -74,8 +74,8 @@ def test_times_that_jump_leave_empty_frames_and_say_so(tmp_path, depth):
         expected = 0 if picture is None else depth[picture] / 5000.0
         assert_allclose(recording.frame(frame), expected * np.ones((6, 8)), rtol=1e-6)
     assert recording.color(6).max() == 0
-    assert "3 frames have no picture, frame 5 first; they are empty." in said
-    assert any(sentence.startswith("Resampled to 30 Hz") for sentence in said)
+    assert "3 frames have no image, frame 5 first; they are empty." in text
+    assert any(sentence.startswith("Resampled to 30 Hz") for sentence in text)
 
 
 def test_times_that_run_backwards_are_refused(tmp_path, depth):
@@ -135,12 +135,12 @@ def test_a_telephone_that_was_held_upright_on_its_side_or_on_its_head(
     assert_allclose(frame, expected * 0.001, rtol=1e-6)
 
 
-def test_a_telephone_that_was_carried_about_is_told(tmp_path, depth):
-    said, progress = heard()
+def test_moving_phone_is_reported(tmp_path, depth):
+    text, progress = heard()
 
     read_depth(stray(tmp_path, depth, LEVEL, moved=0.9), progress=progress)
 
-    assert "The camera moved by 0.8 m; it is taken to stand still." in said
+    assert "The camera moved by 0.8 m; it is assumed to be static." in text
 
 
 def test_stray_without_a_course_is_sixty_a_second(tmp_path, depth):
@@ -166,14 +166,14 @@ def test_open3d_tells_its_camera_by_columns(tmp_path, depth):
 @pytest.mark.parametrize(
     ("settings", "missing"),
     [
-        (DepthSettings(), r"give its scale \(.*\) and the camera's focal lengths fx and fy"),
+        (DepthSettings(), r"set its scale \(.*\) and the camera's focal lengths fx and fy"),
         (
             DepthSettings(fx=9.0),
-            r"give its scale \(metres in one unit: 0.001 for millimetres\)\.",
+            r"set its scale \(meters per unit: 0.001 for millimeters\)\.",
         ),
         (
             DepthSettings(scale=0.001),
-            r"give the camera's focal lengths fx and fy in pixels, and",
+            r"set the camera's focal lengths fx and fy in pixels, and",
         ),
     ],
 )
@@ -186,7 +186,7 @@ def test_a_plain_folder_asks_for_scale_and_camera(tmp_path, depth, settings, mis
 def test_a_plain_folder_is_in_the_order_of_its_numbers(tmp_path, name):
     depth = pictures(12)
 
-    recording = read_depth(plain(tmp_path, depth, name, first=2), MILLIMETRES)
+    recording = read_depth(plain(tmp_path, depth, name, first=2), MILLIMETERS)
 
     assert recording.camera == SMALL
     assert_allclose(all_frames(recording), depth * 0.001, rtol=1e-6)
@@ -195,14 +195,14 @@ def test_a_plain_folder_is_in_the_order_of_its_numbers(tmp_path, name):
 def test_a_number_that_was_left_out_is_an_empty_frame(tmp_path, depth):
     folder = plain(tmp_path, depth)
     (folder / "0004.png").unlink()
-    said, progress = heard()
+    text, progress = heard()
 
-    recording = read_depth(folder, MILLIMETRES, progress=progress)
+    recording = read_depth(folder, MILLIMETERS, progress=progress)
 
     expected = depth * 0.001
     expected[3] = 0.0
     assert_allclose(all_frames(recording), expected, rtol=1e-6)
-    assert "1 frames have no picture, frame 3 first; they are empty." in said
+    assert "1 frames have no image, frame 3 first; they are empty." in text
 
 
 def test_every_third_picture_is_no_gap(tmp_path, depth):
@@ -211,7 +211,7 @@ def test_every_third_picture_is_no_gap(tmp_path, depth):
         if number % 3:
             (folder / f"{number:04}.png").unlink()
 
-    assert read_depth(folder, MILLIMETRES).n_frames == 9
+    assert read_depth(folder, MILLIMETERS).n_frames == 9
 
 
 def test_a_folder_can_be_sent_to_another_process(tmp_path, depth):

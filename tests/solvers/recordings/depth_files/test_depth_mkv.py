@@ -46,8 +46,8 @@ def all_frames(recording) -> np.ndarray:
 
 
 def heard():
-    said = []
-    return said, lambda fraction, message="": said.append(message)
+    text = []
+    return text, lambda fraction, message="": text.append(message)
 
 
 @pytest.mark.parametrize("group", [False, True])
@@ -112,10 +112,10 @@ def test_the_lens_is_straightened(write):
     assert moved > 8
 
 
-def test_frames_that_were_lost_are_empty(write):
+def test_dropped_frames_are_empty(write):
     depth = pictures(6)
     times = np.array([0, 33, 67, 200, 233, 267.0])
-    said, progress = heard()
+    text, progress = heard()
 
     recording = read_depth(write(k4a(depth, times=times)), OWN, progress=progress)
 
@@ -132,7 +132,7 @@ def test_frames_that_were_lost_are_empty(write):
         1,
         1,
     ]
-    assert "3 frames have no picture, frame 3 first; they are empty." in said
+    assert "3 frames have no image, frame 3 first; they are empty." in text
 
 
 @pytest.mark.parametrize("lace", [(xiph, 2), (equal, 4), (ebml_laced, 6)])
@@ -154,14 +154,14 @@ def test_laced_blocks_hold_several_pictures(write, lace):
 
 def test_a_file_that_was_cut_short_is_read_so_far(write):
     depth = pictures(12)
-    whole = k4a(depth, open_sizes=True)
-    said, progress = heard()
+    complete = k4a(depth, open_sizes=True)
+    text, progress = heard()
 
-    recording = read_depth(write(whole[: len(whole) * 3 // 4]), OWN, progress=progress)
+    recording = read_depth(write(complete[: len(complete) * 3 // 4]), OWN, progress=progress)
 
     assert 5 < recording.n_frames < 12
     assert_allclose(all_frames(recording), depth[: recording.n_frames] * 0.001, rtol=1e-6)
-    assert "The file is cut short; what comes before is read." in said
+    assert "The file is cut short; the frames before the end are read." in text
 
 
 def test_a_picture_of_another_size_is_an_empty_frame(write):
@@ -169,16 +169,16 @@ def test_a_picture_of_another_size_is_an_empty_frame(write):
     content = k4a(depth)
     raw = depth[2].astype(">u2").tobytes()
     damaged = content.replace(block(2, 1, raw), block(2, 1, raw[:-2]) + b"\xec\x80")
-    said, progress = heard()
+    text, progress = heard()
 
     recording = read_depth(write(damaged), OWN, progress=progress)
 
     assert [recording.frame(frame).max() > 0 for frame in range(5)] == [1, 1, 0, 1, 1]
-    assert any("1 pictures are damaged" in sentence for sentence in said)
+    assert any("1 images are damaged" in sentence for sentence in text)
 
 
 def test_colours_are_found_where_the_points_fall(write):
-    """A wall one metre away; its left half is red for the camera of colour, its right blue."""
+    """A wall one meter away; its left half is red for the camera of color, its right blue."""
     painted = np.zeros((720, 1280, 3), np.uint8)
     painted[:, :640, 0], painted[:, 640:, 2] = 255, 255
     file = io.BytesIO()
@@ -193,7 +193,7 @@ def test_colours_are_found_where_the_points_fall(write):
     color = recording.color(1)
     assert color[100, 100].tolist() == [0, 0, 0]
     reds = (color[150, :, 0] > 128).sum()
-    # Column 639.5 of colour, seen from 32 mm to the right of the camera of depth.
+    # Column 639.5 of color, seen from 32 mm to the right of the camera of depth.
     x = (639.5 + 0.5 - 0.498 * 1280) / (0.475 * 1280) + 0.032
     assert reds == pytest.approx(x * recording.camera.fx + recording.camera.cx, abs=1.0)
     blue = recording.color(1)[150, 300]
@@ -233,7 +233,7 @@ WRONG_NAME = k4a(pictures(4), name="INFRARED").replace(b"222", b"999")
         (at_time(2**64 - 1), OWN, "it is not in the Matroska format"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_read_says_why(write, content, settings, sentence):
+def test_unreadable_recording_is_refused_with_the_reason(write, content, settings, sentence):
     with pytest.raises(InvalidFileError, match=sentence):
         read_depth(write(content), settings)
 
@@ -241,7 +241,7 @@ def test_what_cannot_be_read_says_why(write, content, settings, sentence):
 def test_a_file_without_calibration_asks_for_the_camera(write):
     path = write(at_time(0))
 
-    with pytest.raises(InvalidFileError, match=r"no calibration of the camera in it\. Give"):
+    with pytest.raises(InvalidFileError, match=r"no calibration of the camera\. Set"):
         read_depth(path)
     assert read_depth(path, OWN).n_frames == 1
 

@@ -56,7 +56,7 @@ WORDS = [
 
 
 @pytest.mark.parametrize("kind", FILES)
-def test_whole_files_are_read(kind, tmp_path):
+def test_undamaged_files_are_read(kind, tmp_path):
     (tmp_path / "take").write_bytes(FILES[kind])
 
     recording = read_depth(tmp_path / "take", OWN)
@@ -79,12 +79,12 @@ def test_damaged_files(kind, tmp_path):
 
 
 def test_a_damaged_recording_of_a_real_size(tmp_path):
-    """With its own calibration, infrared and colour."""
-    whole = k4a(pictures(2, *BINNED), color=(b"MJPG", [jpeg()] * 2))
+    """With its own calibration, infrared and color."""
+    complete = k4a(pictures(2, *BINNED), color=(b"MJPG", [jpeg()] * 2))
     path = tmp_path / "take"
 
     @searching(EXAMPLES // 3)
-    @given(damaged(whole, NUMBERS + WORDS))
+    @given(damaged(complete, NUMBERS + WORDS))
     def search(content: bytes) -> None:
         path.write_bytes(content)
         read_or_refuse(lambda: read_recording(path))
@@ -111,11 +111,11 @@ def test_damaged_files_in_folders(layout, name, tmp_path):
         "stray": lambda: stray(tmp_path, DEPTH, (0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0)),
         "tum": lambda: tum(tmp_path, DEPTH, np.arange(5) / 30.0),
     }[layout]()
-    whole = (folder / name).read_bytes()
+    complete = (folder / name).read_bytes()
     settings = OWN if layout == "tum" else DepthSettings()
 
     @searching(EXAMPLES)
-    @given(damaged(whole, WORDS if name.endswith(("txt", "csv", "json")) else NUMBERS))
+    @given(damaged(complete, WORDS if name.endswith(("txt", "csv", "json")) else NUMBERS))
     def search(content: bytes) -> None:
         (folder / name).write_bytes(content)
         read_or_refuse(lambda: read_depth(folder, settings))

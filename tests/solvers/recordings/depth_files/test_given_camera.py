@@ -7,33 +7,33 @@ from depth_files import depth_npz
 from solvers.depth_scene.camera import Camera
 from solvers.recordings import DepthSettings, read_depth
 
-TOLD = Camera(90.0, 91.0, 38.0, 28.0, 80, 60)
+STORED = Camera(90.0, 91.0, 38.0, 28.0, 80, 60)
 MIDDLE = (39.5, 29.5)
 
 
 @pytest.mark.parametrize(
-    ("given", "told", "expected"),
+    ("given", "stored", "expected"),
     [
         ({}, None, None),
         ({"cx": 30.0}, None, None),
         ({"fx": 80.0}, None, (80.0, 80.0, *MIDDLE)),
         ({"fx": 80.0, "fy": 70.0, "cx": 30.0}, None, (80.0, 70.0, 30.0, MIDDLE[1])),
-        ({}, TOLD, (90.0, 91.0, 38.0, 28.0)),
-        ({"cx": 30.0}, TOLD, (90.0, 91.0, 30.0, 28.0)),
-        ({"fy": 70.0}, TOLD, (90.0, 70.0, 38.0, 28.0)),
-        ({"fx": 80.0}, TOLD, (80.0, 80.0, 38.0, 28.0)),
+        ({}, STORED, (90.0, 91.0, 38.0, 28.0)),
+        ({"cx": 30.0}, STORED, (90.0, 91.0, 30.0, 28.0)),
+        ({"fy": 70.0}, STORED, (90.0, 70.0, 38.0, 28.0)),
+        ({"fx": 80.0}, STORED, (80.0, 80.0, 38.0, 28.0)),
     ],
 )
-def test_each_number_is_given_told_or_usual(given, told, expected):
-    camera = DepthSettings(**given).camera(80, 60, told)
+def test_each_camera_parameter_is_set_stored_or_default(given, stored, expected):
+    camera = DepthSettings(**given).camera(80, 60, stored)
     assert (camera and (camera.fx, camera.fy, camera.cx, camera.cy)) == expected
 
 
-def test_the_centre_alone_may_be_given_for_an_archive(tmp_path):
+def test_center_alone_may_be_set_for_an_archive(tmp_path):
     path = tmp_path / "wall.npz"
     depth = np.full((2, 60, 80), 2000, np.uint16)
     path.write_bytes(depth_npz(depth, fx=90.0, fy=91.0, cx=38.0, cy=28.0, frame_rate=30.0))
 
-    assert read_depth(path).camera == TOLD
+    assert read_depth(path).camera == STORED
     given = read_depth(path, DepthSettings(cx=30.0, cy=20.0)).camera
     assert given == Camera(90.0, 91.0, 30.0, 20.0, 80, 60)

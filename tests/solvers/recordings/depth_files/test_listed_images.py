@@ -14,11 +14,11 @@ from mkv_files import BINNED, k4a
 from PIL import Image, ImageFile
 
 from solvers.errors import InvalidFileError
-from solvers.recordings import DepthSettings, depth_in, read_depth
+from solvers.recordings import DepthSettings, depth_takes_in, read_depth
 from solvers.recordings.containers import listed_images as listing
 
 LENS = DepthSettings(fx=9.0, fy=8.0)
-OUTSIDE = r"names the image .*, which lies outside of it\. Copy the image into the folder\."
+OUTSIDE = r"lists the image .*, which is outside of it\. Copy the image into the folder\."
 
 
 @pytest.fixture
@@ -35,9 +35,11 @@ def folder(tmp_path, depth):
 
 
 @pytest.mark.parametrize("kind", ["depth", "rgb"])
-@pytest.mark.parametrize("way", ["up", "absolute", "device", "link", "folder that is a link"])
+@pytest.mark.parametrize(
+    "displacement", ["up", "absolute", "device", "link", "folder that is a link"]
+)
 def test_an_image_outside_of_the_folder_is_refused_and_not_opened(
-    folder, depth, tmp_path, kind, way, monkeypatch
+    folder, depth, tmp_path, kind, displacement, monkeypatch
 ):
     secret = tmp_path / ("secret.png" if kind == "depth" else "secret_rgb.png")
     name = {
@@ -46,7 +48,7 @@ def test_an_image_outside_of_the_folder_is_refused_and_not_opened(
         "device": "/dev/zero",
         "link": "link.png",
         "folder that is a link": f"away/{secret.name}",
-    }[way]
+    }[displacement]
     (folder / "link.png").symlink_to(secret)
     (folder / "away").symlink_to(tmp_path)
     lines = (folder / f"{kind}.txt").read_text().splitlines()
@@ -67,7 +69,7 @@ def test_an_image_outside_of_the_folder_is_refused_and_not_opened(
     assert all(path.resolve().is_relative_to(folder) for path in opened)
 
 
-def test_an_image_of_another_machine_is_refused_before_it_is_asked_for(folder, monkeypatch):
+def test_image_on_another_machine_is_refused_without_access(folder, monkeypatch):
     monkeypatch.setattr(listing, "PurePath", PureWindowsPath)
     monkeypatch.setattr(os.path, "realpath", lambda path: pytest.fail("It was asked for."))
 
@@ -96,7 +98,7 @@ def test_a_pipe_or_a_link_does_not_hide_the_takes_beside_it(tmp_path, depth):
     os.mkfifo(shots / "pipe.png")
     (shots / "thumb.png").symlink_to(tmp_path / "secret.png")
 
-    assert depth_in(shots) == [take]
+    assert depth_takes_in(shots) == [take]
 
 
 @pytest.mark.parametrize("name", ["a\0b.png", "x" * 300 + ".png", "rgb", ""])
@@ -148,7 +150,7 @@ def test_confidence_of_another_size_than_depth_is_refused(tmp_path, depth):
     folder = stray(tmp_path, depth, (0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0))
     save_png(folder / "confidence" / "000004.png", np.zeros((5, 8), np.uint8))
 
-    with pytest.raises(InvalidFileError, match=r"000004\.png is not a gray image of 8 x 6"):
+    with pytest.raises(InvalidFileError, match=r"000004\.png is no longer a gray image of"):
         read_depth(folder).frame(4)
 
 
@@ -159,7 +161,7 @@ def test_color_in_a_video_is_bounded_by_what_its_track_says(tmp_path, monkeypatc
     (tmp_path / "take.mkv").write_bytes(content)
     monkeypatch.setattr(Image.Image, "convert", lambda *_: pytest.fail("It was unpacked."))
 
-    with pytest.raises(InvalidFileError, match="damaged picture of colour"):
+    with pytest.raises(InvalidFileError, match="damaged color image"):
         read_depth(tmp_path / "take.mkv").color(0)
 
 

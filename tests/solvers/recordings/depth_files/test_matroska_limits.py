@@ -21,4 +21,4 @@ def test_many_tracks_are_bounded_and_cost_no_time(tmp_path):
 
     assert process_time() - started < 5.0
     assert len(found.tracks) <= MAX_TRACKS
-    assert len(found.tracks[2].places) == 3000
+    assert len(found.tracks[2].offsets) == 3000

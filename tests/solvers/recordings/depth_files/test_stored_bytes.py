@@ -17,52 +17,52 @@ BEFORE = 11
 
 
 @pytest.fixture(scope="module")
-def whole() -> bytes:
+def complete() -> bytes:
     """Six megabytes that can be packed to less than half."""
     return np.random.default_rng(2).integers(0, 12, 6_000_000).astype(np.uint8).tobytes()
 
 
 @pytest.fixture(scope="module")
-def packed(whole, tmp_path_factory) -> PackedBytes:
-    content = zlib.compress(whole, 1)
+def packed(complete, tmp_path_factory) -> PackedBytes:
+    content = zlib.compress(complete, 1)
     path = tmp_path_factory.mktemp("packed") / "bytes"
     path.write_bytes(b"?" * BEFORE + content + b"behind it")
-    return PackedBytes(path, BEFORE, len(content), len(whole), 15)
+    return PackedBytes(path, BEFORE, len(content), len(complete), 15)
 
 
-def test_any_part_in_any_order(whole, packed, monkeypatch):
-    monkeypatch.setattr(stored_bytes, "MIN_MARK_SPACING", 100_000)
+def test_any_range_is_read_in_any_order(complete, packed, monkeypatch):
+    monkeypatch.setattr(stored_bytes, "MIN_CHECKPOINT_SPACING", 100_000)
     fresh = pickle.loads(pickle.dumps(packed))
 
-    @given(st.integers(0, len(whole) - 1), st.integers(0, 300_000))
+    @given(st.integers(0, len(complete) - 1), st.integers(0, 300_000))
     def part(start: int, count: int) -> None:
-        count = min(count, len(whole) - start)
-        assert fresh.read(start, count) == whole[start : start + count]
+        count = min(count, len(complete) - start)
+        assert fresh.read(start, count) == complete[start : start + count]
 
     part()
 
 
-def test_a_part_of_a_part(whole, packed):
+def test_slice_of_a_slice_is_read(complete, packed):
     inner = ByteSlice(ByteSlice(packed, 100, 5000), 20, 50)
 
-    assert inner.read(3, 7) == whole[123:130]
+    assert inner.read(3, 7) == complete[123:130]
 
 
-def test_reading_through_keeps_little(whole, packed):
+def test_sequential_reading_needs_little_memory(complete, packed):
     """The marks, and one part: not what was read before."""
     fresh = pickle.loads(pickle.dumps(packed))
     tracemalloc.start()
-    for start in range(0, len(whole), 100_000):
-        assert fresh.read(start, 100_000) == whole[start : start + 100_000]
+    for start in range(0, len(complete), 100_000):
+        assert fresh.read(start, 100_000) == complete[start : start + 100_000]
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
 
     assert peak < 1_500_000
 
 
-def test_beyond_the_end_it_is_cut_short(whole, packed, tmp_path):
+def test_range_beyond_the_end_is_refused_as_truncated(complete, packed, tmp_path):
     with pytest.raises(InvalidFileError, match="is cut short"):
-        packed.read(len(whole) - 5, 6)
+        packed.read(len(complete) - 5, 6)
     (tmp_path / "plain").write_bytes(b"12345")
     with pytest.raises(InvalidFileError, match="is cut short"):
         PlainBytes(tmp_path / "plain", 2, 9).read(0, 4)

@@ -15,7 +15,7 @@ NAMES = SENSOR_JOINTS[Sensor.AZURE_KINECT]
 
 
 def upright(values):
-    """Right, down, forward in millimetres to ours, as a matrix."""
+    """Right, down, forward in millimeters to ours, as a matrix."""
     return values[..., :3] @ np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]) / 1000
 
 
@@ -30,7 +30,7 @@ def write(tmp_path):
 
 @pytest.fixture
 def values():
-    """Four frames in millimetres."""
+    """Four frames in millimeters."""
     values = 1000 * moving(4, 32)
     values[..., 3] = 2
     return values
@@ -49,7 +49,7 @@ def test_json_in_either_order_of_keys(write, values, sorted_keys):
     assert_allclose(recording.tracks.positions, upright(values), atol=1e-4)  # stamps in us
 
 
-def test_json_takes_the_body_seen_longest_and_keeps_holes(write, values):
+def test_json_selects_the_longest_observed_body_and_keeps_gaps(write, values):
     other = {2: 9000 + values[0]}
     frames = [other | {1: values[0]}, {1: values[1]} | other, {}, {1: values[3]}]
 
@@ -67,12 +67,14 @@ def test_json_spelt_as_the_manual_spells_it(write, values):
 
 
 def test_json_without_times(write, values):
-    told = json.loads(azure_json([{1: frame} for frame in values]))
-    for frame in told["frames"]:
+    messages = json.loads(azure_json([{1: frame} for frame in values]))
+    for frame in messages["frames"]:
         del frame["timestamp_usec"]
 
     assert_allclose(
-        read_azure_json(write(json.dumps(told))).tracks.positions, upright(values), atol=1e-9
+        read_azure_json(write(json.dumps(messages))).tracks.positions,
+        upright(values),
+        atol=1e-9,
     )
 
 
@@ -160,10 +162,10 @@ def test_scale_is_metres_per_unit(write, values):
     ("layout", "spoil", "sentence"),
     [
         (azure_lines, lambda text: text.replace("\n1,3,", "\n1,32,"), "line 6: .* 32 joints"),
-        (azure_lines, lambda text: text.replace("Medium", "Some"), "line 3: no level of"),
-        (azure_lines, lambda text: text[: text.index("\n1,0") + 1], "headings but no joints"),
-        (azure_columns, lambda text: text.split("\n")[0], "headings but no joints"),
-        (azure_columns, lambda text: text[:-30], r"line 5: 9\d numbers stand where 96"),
+        (azure_lines, lambda text: text.replace("Medium", "Some"), "line 3: it does not end"),
+        (azure_lines, lambda text: text[: text.index("\n1,0") + 1], "header but no joints"),
+        (azure_columns, lambda text: text.split("\n")[0], "header but no joints"),
+        (azure_columns, lambda text: text[:-30], r"line 5: 9\d numbers instead of 96"),
         (azure_columns, lambda text: "PELVIS.x,PELVIS.z\n1,2", "no columns x, y and z"),
     ],
 )  # fmt: skip
@@ -176,12 +178,12 @@ def test_damage_of_tables_is_named(write, values, layout, spoil, sentence):
 def test_a_real_take_sits_upright_and_is_not_mirrored(recordings):
     recording = read_recording(recordings / "kinect" / "azure" / "joints_sync_1.csv")
 
-    usual = dict(
+    default = dict(
         zip(recording.names, np.nanmedian(recording.tracks.positions, axis=0), strict=True)
     )
-    forward = usual["Nose"] - usual["Head"]
-    to_left = usual["EarLeft"] - usual["EarRight"]
+    forward = default["Nose"] - default["Head"]
+    to_left = default["EarLeft"] - default["EarRight"]
     assert recording.tracks.positions.shape == (10, 32, 3)
-    assert usual["Head"][2] > usual["Pelvis"][2] > usual["FootLeft"][2]
+    assert default["Head"][2] > default["Pelvis"][2] > default["FootLeft"][2]
     assert np.cross((0, 0, 1), forward) @ to_left > 0
     assert (recording.tracking_state > 0).all()

@@ -19,7 +19,7 @@ BESIDE = {"left": (0.08, 0.0, 0.0), "right": (-0.08, 0.0, 0.0)}
 
 @pytest.fixture(scope="module")
 def walk(recordings):
-    """Points of the body by MediaPipe's names, metres, (n_frames, 3) each."""
+    """Points of the body by MediaPipe's names, meters, (n_frames, 3) each."""
     motion = read_bvh(recordings / "mocap" / "cmu_walk" / "07_01.bvh", scale=METRES)
     motion = motion.slice(1, motion.n_frames)
     joints = dict(
@@ -29,21 +29,21 @@ def walk(recordings):
             strict=True,
         )
     )
-    places = {
+    positions = {
         f"{side}_{name}": joints[f"{side.title()}{cmu}"]
         for side in BESIDE
         for name, cmu in CMU.items()
     }
     for side, beside in BESIDE.items():
         for name in ("pinky", "index", "thumb"):
-            places[f"{side}_{name}"] = joints[f"{side.title()}HandIndex1"]
-        places[f"{side}_heel"] = joints[f"{side.title()}Foot"] - (0.0, 0.0, 0.05)
-        places[f"{side}_ear"] = joints["Head"] + beside
+            positions[f"{side}_{name}"] = joints[f"{side.title()}HandIndex1"]
+        positions[f"{side}_heel"] = joints[f"{side.title()}Foot"] - (0.0, 0.0, 0.05)
+        positions[f"{side}_ear"] = joints["Head"] + beside
     rest = joints["Head"] - (0.0, 0.1, 0.0)
-    return np.stack([places.get(name, rest) for name in BODY_POINTS], axis=1)
+    return np.stack([positions.get(name, rest) for name in BODY_POINTS], axis=1)
 
 
-def test_the_motion_goes_through_the_tracked_joints(walk, tmp_path):
+def test_motion_follows_the_tracked_joints(walk, tmp_path):
     path = tmp_path / "body.npy"
     path.write_bytes(npy(1000.0 * walk))
     recording = read_freemocap(path)

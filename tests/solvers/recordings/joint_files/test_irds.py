@@ -19,8 +19,10 @@ def irds(frames: list[tuple[int, int, dict[str, tuple[str, float, float, float]]
     for count, (body, time, joints) in enumerate(frames):
         texts = []
         for name in NAMES:
-            state, *place = joints.get(name, ("Tracked", 0.5, 1.0, 2.0))
-            texts.append(f"({name},{state},{place[0]},{place[1]},{place[2]},191.7,205.5)")
+            state, *position = joints.get(name, ("Tracked", 0.5, 1.0, 2.0))
+            texts.append(
+                f"({name},{state},{position[0]},{position[1]},{position[2]},191.7,205.5)"
+            )
         lines.append(f"{count},{body},{time}," + ",".join(texts))
     return "\r\n".join(lines)
 
@@ -49,23 +51,23 @@ def test_joints_come_out_upright_and_on_their_side(read):
 
 
 def test_what_was_not_tracked_is_nan(read):
-    lost = {"Head": ("NotTracked", 1, 1, 1), "Neck": ("Tracked", 0, 0, 0)}
+    missing = {"Head": ("NotTracked", 1, 1, 1), "Neck": ("Tracked", 0, 0, 0)}
 
-    recording = read(irds([(1, 33 * n, lost if n == 2 else {}) for n in range(5)]))
+    recording = read(irds([(1, 33 * n, missing if n == 2 else {}) for n in range(5)]))
 
-    places = [NAMES.index(name) for name in lost]
-    assert np.isnan(recording.tracks.positions[2, places]).all()
-    assert (recording.tracking_state[2, places] == 0).all()
+    positions = [NAMES.index(name) for name in missing]
+    assert np.isnan(recording.tracks.positions[2, positions]).all()
+    assert (recording.tracking_state[2, positions] == 0).all()
     assert recording.tracks.visible.sum() == recording.tracks.visible.size - 2
 
 
-def test_a_lost_frame_is_a_gap(read):
+def test_missing_frame_is_a_gap(read):
     recording = read(irds([(1, time, {}) for time in (0, 33, 67, 167, 200)]))
 
     assert recording.tracks.visible[:, 0].tolist() == [True] * 3 + [False] * 2 + [True] * 2
 
 
-def test_the_body_seen_longest_is_taken(read):
+def test_longest_observed_body_is_selected(read):
     other = {"Head": ("Tracked", 9, 9, 9)}
 
     recording = read(irds([(body, 33 * n, other if body == 2 else {}) for n, body in
@@ -84,12 +86,15 @@ def test_scale(read):
 @pytest.mark.parametrize(
     ("spoil", "sentence"),
     [
-        (lambda text: text[:-500], r"take\.txt, line 5: .* 25 joints belong there"),
+        (lambda text: text[:-500], r"take\.txt, line 5: .* 25 joints are required"),
         (lambda text: text.replace("0.5", "O.5"), r"line 2: 'O\.5' is not a number"),
-        (lambda text: text.replace("Head", "Heed", 1), "line 2: 'Heed,Tracked.* is no joint"),
-        (lambda text: text.replace("Tracked", "NotTracked"), "no joint that is seen"),
-        (lambda text: text + "\r\nand so on", "line 6: no joints stand there"),
-        (lambda text: "Version0.1", "no IRDS recording"),
+        (
+            lambda text: text.replace("Head", "Heed", 1),
+            "line 2: 'Heed,Tracked.* not a joint",
+        ),
+        (lambda text: text.replace("Tracked", "NotTracked"), "no joint that is observed"),
+        (lambda text: text + "\r\nand so on", "line 6: there are no joints"),
+        (lambda text: "Version0.1", "not an IRDS recording"),
         (lambda text: re.sub("^1,1,33,", "1,1,", text, flags=re.M), "line 3: number, body"),
     ],
 )

@@ -74,7 +74,7 @@ def test_what_is_written_is_read_back_to_the_last_bit(recording, tmp_path, endin
 
 
 @pytest.mark.parametrize("kind", TEXTS)
-def test_what_somebody_else_wrote(write, kind):
+def test_files_of_other_recorders_are_read(write, kind):
     recording = read_joints(write(TEXTS[kind]))
 
     assert recording.names == ("Head", "Hand")
@@ -108,7 +108,7 @@ def test_times_instead_of_a_rate(write, kind):
     [("x", (2, 3, 1)), ("y", (1, -3, 2)), ("z", (1, 2, 3)), ("-x", (2, -3, -1)),
      ("-y", (1, 3, -2)), ("-z", (1, -2, -3))],
 )  # fmt: skip
-def test_up_is_as_said(write, up, expected):
+def test_up_axis_is_that_of_the_header(write, up, expected):
     path = write(f"mocap-assist-joints,1,frame_rate=1,up={up}\nA.x,A.y,A.z\n1,2,3\n")
 
     assert_allclose(read_joint_csv(path).tracks.positions[0, 0], expected)
@@ -137,13 +137,13 @@ def test_the_least_that_a_recorder_must_write(write):
         ("kinect_v1", "kinect", "sensor is 'kinect'; write one of kinect_v1"),
         ("rate=50", "rate=fast", "a frame_rate of fast is not above 0"),
         ("rate=50", "rate=0", "a frame_rate of 0 is not above 0"),
-        (",frame_rate=50", "", "neither a frame_rate"),
+        (",frame_rate=50", "", "has no times: its first line has no frame_rate"),
         ("Hand.x", "Head.x", "more than one column is called 'Head.x'"),
         ("Hand.y", "Hend.y", "Hand has no column .y"),
         ("Hand.state", "Hand.stale", "Hand has no column .state"),
         ("1700", "high", "line 3: 'high' is not a number"),
         ("20,2,", "20,4,", "tracking states other"),
-        (",0\n", "\n", r"line 4: 7 numbers stand where 8"),
+        (",0\n", "\n", r"line 4: 7 numbers instead of 8"),
     ],
 )
 def test_csv_damage_is_named(write, old, new, sentence):
@@ -156,10 +156,10 @@ def test_csv_damage_is_named(write, old, new, sentence):
     [
         ('"version": 1', '"version": "x"', "not mocap-assist-joints x"),
         ('"Head", "Hand"', '"Head", "Head"', "more than one joint is called 'Head'"),
-        ('"Head", "Hand"', '"Head"', "frame 1: 2 positions stand there for 1 joints"),
-        ('"frame_rate": 50, ', "", "neither a frame_rate nor a time"),
-        ("[100, 1700, 20]", "[100, 1700]", "frame 1, positions: 2 x 3 numbers belong"),
-        ('"states": [2, 1]', '"states": [2]', "frame 1, states: 2 numbers belong"),
+        ('"Head", "Hand"', '"Head"', "frame 1: 2 positions for 1 joints"),
+        ('"frame_rate": 50, ', "", "has no times: it has no frame_rate"),
+        ("[100, 1700, 20]", "[100, 1700]", "frame 1, positions: 2 x 3 numbers are required"),
+        ('"states": [2, 1]', '"states": [2]', "frame 1, states: 2 numbers are required"),
         ('"states": [2, 1]', '"confidence": [2, 1]', "not between 0 and 1"),
         ('"states": [2, 1]', '"states": [2, 9]', "tracking states other"),
         ("null", "nil", "damaged or cut short"),
@@ -173,7 +173,7 @@ def test_json_damage_is_named(write, old, new, sentence):
 
 
 @pytest.mark.parametrize("write_it", [write_joint_csv, write_joint_json])
-def test_a_name_that_would_not_come_back_is_refused(tmp_path, write_it):
+def test_name_that_cannot_be_read_back_is_refused(tmp_path, write_it):
     tracks = Tracks(("head\nhand", "foot"), np.ones((2, 2, 3)), 30.0)
     with pytest.raises(InvalidMotionError, match=r"'head\\nhand'\. Rename"):
         write_it(JointRecording(tracks, None, Sensor.OTHER), tmp_path / "take")

@@ -47,7 +47,7 @@ def test_ntu_joints_and_states(write):
     assert (recording.tracking_state == 0).sum() == 2
 
 
-def test_ntu_takes_the_body_seen_longest_whatever_the_order(write):
+def test_ntu_selects_the_longest_observed_body_in_any_order(write):
     """The first one vanishes for a frame, the other comes and goes before and after it."""
     mine, other = moving(5, 25), moving(5, 25, seed=50)
     frames = [
@@ -81,18 +81,21 @@ def test_ntu_recognised_when_it_begins_with_empty_frames(write):
             lambda text: text[: text.rindex("\r\n", 0, -2)],
             "cut short: it ends within the joints",
         ),
-        (lambda text: "9" + text[1:], "announces 9 frames and has 3"),
+        (lambda text: "9" + text[1:], "states 9 frames, but it has 3"),
         (
             lambda text: text.replace("\r\n25\r\n", "\r\n20\r\n", 1),
-            "20 joints, where 25 belong",
+            "20 joints instead of 25",
         ),
         (lambda text: text.replace("\r\n1\r\n", "\r\n7\r\n", 1), "line 2: .*number of bodies"),
         (lambda text: text.replace(" 2\r\n", " 5\r\n"), "states other than 0, 1 and 2"),
         (lambda text: text.replace("278.3", "x", 1), "line 5: 'x' is not a number"),
         (lambda text: "3\r\n0\r\n0\r\n0\r\n", "3 frames but no body"),
-        (lambda text: text.replace(" 0.02 -0.3 2", "", 1), "line 3: not a body's id"),
+        (
+            lambda text: text.replace(" 0.02 -0.3 2", "", 1),
+            "line 3: found .* words instead of a body's id",
+        ),
         (lambda text: text.replace("\r\n278", "\r\n\r\n278"), None),
-        (lambda text: "", "ends where the number of frames"),
+        (lambda text: "", "ends before the number of frames"),
     ],
 )
 def test_ntu_damage_is_named(write, spoil, sentence):
@@ -140,10 +143,10 @@ def test_another_frame_rate_and_scale_can_be_given(write):
     ("spoil", "sentence"),
     [
         (lambda text: text.replace(",2,", ",7,", 1), "states other"),
-        (lambda text: text[:-9], r"line 3: 9\d numbers stand where 100"),
-        (lambda text: "1,2,3", "100 numbers belong"),
+        (lambda text: text[:-9], r"line 3: 9\d numbers instead of 100"),
+        (lambda text: "1,2,3", "100 numbers are required"),
         (lambda text: text.replace(",2,", ",two,", 1), "'two' is not a number"),
-        (lambda text: text.replace(",2,", ",0,"), "no joint that is seen"),
+        (lambda text: text.replace(",2,", ",0,"), "no joint that is observed"),
     ],
 )
 def test_kinect_csv_damage_is_named(write, spoil, sentence):
@@ -156,8 +159,8 @@ def test_msr_action3d_in_the_order_of_the_sensor(write):
 
     recording = read_recording(write(msr(values)))
 
-    place = {"ShoulderLeft": 0, "HipCenter": 6, "HandRight": 12, "FootLeft": 17, "Head": 19}
-    for name, at in place.items():
+    position = {"ShoulderLeft": 0, "HipCenter": 6, "HandRight": 12, "FootLeft": 17, "Head": 19}
+    for name, at in position.items():
         joint = recording.names.index(name)
         assert_allclose(recording.tracks.positions[:, joint], upright(values)[:, at])
         assert_allclose(recording.tracks.confidence[:, joint], values[:, at, 3])
@@ -166,7 +169,7 @@ def test_msr_action3d_in_the_order_of_the_sensor(write):
 
 
 def test_msr_action3d_cut_within_a_frame(write):
-    with pytest.raises(InvalidFileError, match=r"30 lines of joints.* no multiple of 20"):
+    with pytest.raises(InvalidFileError, match=r"30 lines of joints.* not a multiple of 20"):
         read_msr_action3d(write("\n".join(["0.1 0.2 2.5 1"] * 30)))
 
 
@@ -189,11 +192,16 @@ def assert_upright_and_not_mirrored(recording):
 
     Left is up x forward; forward is from ankle to foot. None of that knows the camera.
     """
-    usual = dict(
+    default = dict(
         zip(recording.names, np.nanmedian(recording.tracks.positions, axis=0), strict=True)
     )
-    up = usual["Head"] - usual["AnkleLeft"] / 2 - usual["AnkleRight"] / 2
-    forward = usual["FootLeft"] - usual["AnkleLeft"] + usual["FootRight"] - usual["AnkleRight"]
-    to_left = usual["ShoulderLeft"] - usual["ShoulderRight"]
+    up = default["Head"] - default["AnkleLeft"] / 2 - default["AnkleRight"] / 2
+    forward = (
+        default["FootLeft"]
+        - default["AnkleLeft"]
+        + default["FootRight"]
+        - default["AnkleRight"]
+    )
+    to_left = default["ShoulderLeft"] - default["ShoulderRight"]
     assert up[2] > 0.5 * np.linalg.norm(up)
     assert np.cross(up, forward) @ to_left > 0.0

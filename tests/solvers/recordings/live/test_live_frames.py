@@ -34,8 +34,8 @@ LINE = {
 
 
 def line(**changes) -> bytes:
-    said = {**LINE, **changes}
-    return json.dumps({key: value for key, value in said.items() if value != "-"}).encode()
+    message = {**LINE, **changes}
+    return json.dumps({key: value for key, value in message.items() if value != "-"}).encode()
 
 
 def test_reads_what_the_document_shows():
@@ -101,7 +101,7 @@ def test_what_may_be_left_out(left_out, confidence, states):
         ({"states": [2, True]}, "states"),
     ],
 )
-def test_refuses_what_does_not_belong_there(changes, words):
+def test_decode_frame_refuses_invalid_values(changes, words):
     with pytest.raises(InvalidMotionError, match=words):
         decode_frame(line(**changes))
 
@@ -146,10 +146,10 @@ def test_bytes_of_any_kind_are_a_frame_or_refused(noise):
     )
 )
 def test_json_of_any_kind_is_a_frame_or_refused(changes):
-    said = json.dumps({**LINE, **changes}).encode()
+    message = json.dumps({**LINE, **changes}).encode()
 
     try:
-        frame = decode_frame(said)
+        frame = decode_frame(message)
     except InvalidMotionError:
         return
 
@@ -170,14 +170,14 @@ def test_json_of_any_kind_is_a_frame_or_refused(changes):
     ),
     st.floats(-1e6, 1e6),
 )
-def test_comes_back_as_it_was_sent(joints, time):
-    places, confidence, states = joints
-    positions = np.array([(np.nan,) * 3 if place is None else place for place in places])
+def test_frame_survives_encoding_and_decoding(joints, time):
+    indices, confidence, states = joints
+    positions = np.array([(np.nan,) * 3 if index is None else index for index in indices])
     seen = np.isfinite(positions).all(axis=-1)
     sent = LiveFrame(
         time,
         7,
-        tuple(f"joint {number}" for number in range(len(places))),
+        tuple(f"joint {number}" for number in range(len(indices))),
         positions,
         np.where(seen, confidence, 0.0),
         None if states is None else np.where(seen, states, 0).astype(np.int8),

@@ -99,11 +99,11 @@ def test_a_recording_of_uneven_frames_is_even(rng):
     performed = perform_gestures(["wave right"])
     times = np.linspace(5.0, 7.0, 61)
     late = times + rng.normal(scale=0.003, size=61)
-    places = np.sin(late)[:, None, None] * np.ones((1, 20, 3))
+    positions = np.sin(late)[:, None, None] * np.ones((1, 20, 3))
     names = performed.recording().names
     frames = [
         LiveFrame(float(time), 0, names, place, np.full(20, 0.8), None, Sensor.KINECT_V1)
-        for time, place in zip(late, places, strict=True)
+        for time, place in zip(late, positions, strict=True)
     ]
 
     recording = recording_from_frames(frames)
@@ -116,14 +116,14 @@ def test_a_recording_of_uneven_frames_is_even(rng):
     assert_allclose(recording.tracks.confidence, 0.8)
 
 
-def test_frames_that_were_lost_are_gaps():
+def test_missing_frames_are_gaps():
     frames = [frame(number / 30, place=float(number)) for number in range(60)]
 
     recording = recording_from_frames(frames[:20] + frames[30:])
 
     assert recording.n_frames == 60
-    lost = np.isnan(recording.tracks.positions[:, 0, 0])
-    assert lost[20:30].all() and lost.sum() == 10
+    missing = np.isnan(recording.tracks.positions[:, 0, 0])
+    assert missing[20:30].all() and missing.sum() == 10
 
 
 def test_joints_of_other_names_are_left_out():
@@ -139,7 +139,7 @@ def test_joints_of_other_names_are_left_out():
 def test_nothing_cannot_be_a_recording():
     with pytest.raises(InvalidFileError, match="no frames"):
         recording_from_frames([])
-    with pytest.raises(InvalidFileError, match="no joint that is seen"):
+    with pytest.raises(InvalidFileError, match="no joint that is observed"):
         recording_from_frames([replace(frame(0.0), positions=np.full((1, 3), np.nan))])
 
 
@@ -199,15 +199,15 @@ def test_the_receiver_takes_no_more_bytes_at_once_than_it_may(send_to, monkeypat
     assert counts == [10, 10, 5, 0]
 
 
-def test_a_port_that_is_taken_is_told():
+def test_port_in_use_is_reported():
     with Receiver(0) as receiver, pytest.raises(InvalidSettingError, match="another program"):
         Receiver(receiver.address[1])
     for wrong in (-1, 70_000):
-        with pytest.raises(InvalidSettingError, match=f"port {wrong}"):
+        with pytest.raises(InvalidSettingError, match=f"Port {wrong}"):
             Receiver(wrong)
 
 
-def test_a_closed_receiver_has_nothing_to_tell():
+def test_closed_receiver_returns_nothing():
     receiver = Receiver(0)
     port = receiver.address[1]
 

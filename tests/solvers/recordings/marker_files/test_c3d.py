@@ -121,7 +121,7 @@ def test_every_file_at_hand_is_read_or_refused_with_the_reason(recordings):
             assert 0.3 < extent < 12.0, f"{path}: {extent} m"
 
     assert list(refused) == ["parameterOverflow.c3d"]
-    assert "no points that are seen" in refused["parameterOverflow.c3d"]
+    assert "no points that are observed" in refused["parameterOverflow.c3d"]
 
 
 def test_people_stand_upright(recordings):
@@ -142,8 +142,8 @@ def test_joint_angles_and_forces_are_no_points(recordings):
 @pytest.mark.parametrize(
     ("spoil", "sentence"),
     [
-        (lambda content: b"", "no C3D file, or is cut short"),
-        (lambda content: b"text" * 1000, "no C3D file"),
+        (lambda content: b"", "not a C3D file, or is cut short"),
+        (lambda content: b"text" * 1000, "not a C3D file"),
         (lambda content: content[: len(content) // 2], "cut short"),
         (lambda content: content[:1024], "cut short"),
         (lambda content: content[:2] + b"\0\0" + content[4:], "no points, only other signals"),
@@ -161,13 +161,16 @@ def test_damage_is_one_sentence(tracks, tmp_path, spoil, sentence):
 @pytest.mark.parametrize(
     ("spoil", "known"),
     [
-        (lambda whole: whole, True),
-        (lambda whole: whole[:600], True),
-        (lambda whole: whole[:512], True),
-        (lambda whole: b"\xc8" + whole[1:], True),
-        (lambda whole: whole[:515] + b"\0" + whole[516:], True),
-        (lambda whole: b"\xc8" + whole[1:515] + b"\0" + whole[516:], False),
-        (lambda whole: b"\x89PNG\r\n\x1a\n" + whole[8:515] + b"\0" + whole[516:], False),
+        (lambda complete: complete, True),
+        (lambda complete: complete[:600], True),
+        (lambda complete: complete[:512], True),
+        (lambda complete: b"\xc8" + complete[1:], True),
+        (lambda complete: complete[:515] + b"\0" + complete[516:], True),
+        (lambda complete: b"\xc8" + complete[1:515] + b"\0" + complete[516:], False),
+        (
+            lambda complete: b"\x89PNG\r\n\x1a\n" + complete[8:515] + b"\0" + complete[516:],
+            False,
+        ),
     ],
     ids=["whole", "cut", "header alone", "first byte", "processor", "both", "PNG"],
 )
@@ -187,11 +190,11 @@ def test_every_file_at_hand_is_known(recordings):
 @pytest.mark.parametrize("kind", [-1, 1, 2, 4])
 def test_a_parameter_that_claims_more_than_any_number_can_tell_is_passed_over(tmp_path, kind):
     """Found by fuzzing: 127 sizes of 255 made a product that wrapped around."""
-    whole = c3d_bytes(np.ones((2, 3, 4)), INTEL, -1.0)
+    complete = c3d_bytes(np.ones((2, 3, 4)), INTEL, -1.0)
     endless = struct.pack("<bb3sHbB", 3, 1, b"BIG", 132, kind, 127) + b"\xff" * 127 + b"\0"
-    entries = whole[512 + 4 : 1024].rstrip(b"\0") + b"\0"
+    entries = complete[512 + 4 : 1024].rstrip(b"\0") + b"\0"
     path = tmp_path / "take.c3d"
-    path.write_bytes(whole[:516] + (entries + endless).ljust(508, b"\0") + whole[1024:])
+    path.write_bytes(complete[:516] + (entries + endless).ljust(508, b"\0") + complete[1024:])
 
     tracks = read_c3d(path)
 
@@ -203,7 +206,7 @@ def test_more_names_than_fit_are_refused_and_nothing_is_written(tmp_path):
     names = tuple(f"{'M' * 200}{number}" for number in range(700))
     tracks = Tracks(names, np.ones((1, 700, 3)), 100.0)
 
-    with pytest.raises(InvalidMotionError, match="700 points with such names"):
+    with pytest.raises(InvalidMotionError, match="700 points with these names"):
         write_c3d(tracks, tmp_path / "take.c3d")
     assert not list(tmp_path.iterdir())
 

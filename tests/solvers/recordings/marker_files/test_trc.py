@@ -138,7 +138,7 @@ def test_what_differs_between_makers_changes_nothing(read, old, new):
     ["\t\t", "nan\tNaN\tNAN", "   NaN\t NaN  \t  nan", " \t  \t", "0.0\t0\t-0", "11\t\t21",
      "1.#QNAN\t1.#IND\t-1.#IND", "inf\t-inf\t1e999", "3.4e38\t1\t2", "null\tnone\t-"],
 )  # fmt: skip
-def test_what_was_not_seen_is_a_gap_there_and_nowhere_else(read, gap):
+def test_missing_marker_is_a_gap_only_there(read, gap):
     tracks = read(FILE.replace("11\t1501\t21", gap))
 
     expected = PLACES.copy()
@@ -147,7 +147,7 @@ def test_what_was_not_seen_is_a_gap_there_and_nowhere_else(read, gap):
     assert_allclose(tracks.positions, expected)
 
 
-def test_rows_may_end_at_the_last_marker_that_is_seen(read):
+def test_rows_may_end_at_the_last_observed_marker(read):
     tracks = read(FILE.replace("\t301\t901\t41", "").replace("13\t1503\t23\t303\t903\t43", ""))
 
     assert_array_equal(tracks.visible, [[True, True], [True, False], [True, True], [False] * 2])
@@ -161,7 +161,7 @@ def test_columns_beyond_the_names_are_markers_without_one(read):
     assert_allclose(tracks.positions[2, 2], (0.005, -0.007, 0.006))
 
 
-def test_times_in_milliseconds_are_seen_by_the_stated_rate(read):
+def test_times_in_milliseconds_are_detected_by_the_stated_rate(read):
     tracks = read(re.sub(r"\t0\.0(\d)\t", r"\t\g<1>0\t", FILE))
 
     assert tracks.frame_rate == 100.0
@@ -185,21 +185,21 @@ def test_frame_numbers_serve_where_the_times_do_not(read):
         ("Tête\t\t\t*Unnamed 7", ("Tête", "*Unnamed 7")),
     ],
 )
-def test_names_are_told_apart(read, names, expected):
+def test_names_are_unique_and_complete(read, names, expected):
     for encoding in ("utf-8", "latin-1"):
         text = FILE.replace("HEAD\t\t\tHAND", names)
         assert read(text.encode(encoding)).names == expected
 
 
 @pytest.mark.parametrize(
-    ("unit", "metres"),
+    ("unit", "meters"),
     [("mm", 0.001), ("Millimeters", 0.001), ("m", 1.0), ("METRES", 1.0), ("cm", 0.01),
      ("inches", 0.0254), ("in", 0.0254), ("ft", 0.3048), ("", 0.001), ("parsecs", 0.001)],
 )  # fmt: skip
-def test_the_unit_is_the_header_s_or_gives_a_person_s_size(read, unit, metres):
+def test_the_unit_is_the_header_s_or_gives_a_person_s_size(read, unit, meters):
     tracks = read(FILE.replace("\tmm\t", f"\t{unit}\t"))
 
-    assert_allclose(tracks.positions, 1000 * metres * PLACES)
+    assert_allclose(tracks.positions, 1000 * meters * PLACES)
     assert_allclose(read(FILE, scale=2.0).positions, 2000 * PLACES)
 
 
@@ -233,9 +233,9 @@ def test_a_body_stands_upright(tmp_path, rng, axes):
         (lambda text: text.replace("2\t0.01", "2\t"), "line 8 begins with '2 +11 1501"),
         (lambda text: text.replace("2\t0.01", "Events"), "line 8.*'Events' is not a number"),
         (lambda text: text.replace("\n100\t200", "\nfast\t200"), "line 3, DataRate: 'fast'"),
-        (lambda text: text[: text.index("\t10\t1500")], "no markers that are seen"),
+        (lambda text: text[: text.index("\t10\t1500")], "no markers that are observed"),
         (lambda text: text.replace("4\t0.03", "4\t1e308"), "line 10 begins with '4 1e308"),
-        (lambda text: text.replace("4\t0.03", "4\t9999999"), "spread over 1e.07 s"),
+        (lambda text: text.replace("4\t0.03", "4\t9999999"), "span 1e.07 s"),
         (lambda text: text.replace("\n100\t", "\n0\t").replace("0.0", "0\t"), "frame rate"),
         (
             lambda text: text + "5\t0.04" + "\t" * 200_000 + "7\n" + "6\t0.05\n" * 60,
@@ -257,13 +257,13 @@ def test_a_file_of_times_alone_has_no_markers(read):
 
 
 def naive(path) -> tuple[list[str], np.ndarray]:
-    """Read as one would by hand: names, and metres in the file's axes; zeros are gaps."""
+    """Read as one would by hand: names, and meters in the file's axes; zeros are gaps."""
     lines = path.read_text(encoding="utf-8").split("\n")
-    metres = {"mm": 0.001, "m": 1.0}["mm" if "\tmm\t" in lines[2].replace(" ", "") else "m"]
+    meters = {"mm": 0.001, "m": 1.0}["mm" if "\tmm\t" in lines[2].replace(" ", "") else "m"]
     names = [cell.strip() for cell in lines[3].split("\t")[2:] if cell.strip()]
-    for place in range(1, len(names)):
-        if names[place] in names[:place]:
-            names[place] += "_2"
+    for position in range(1, len(names)):
+        if names[position] in names[:position]:
+            names[position] += "_2"
     rows = []
     for line in lines[4:]:
         cells = [cell.strip() for cell in line.split("\t")]
@@ -276,4 +276,4 @@ def naive(path) -> tuple[list[str], np.ndarray]:
             x, y, z = row[3 * point : 3 * point + 3]
             if (x, y, z) != (0.0, 0.0, 0.0) and x == x and y == y and z == z:
                 points[frame, point] = (x, y, z)
-    return names, metres * points
+    return names, meters * points

@@ -54,7 +54,7 @@ def test_gaps_are_written_blank_and_no_nan_in_words(tmp_path):
     ]
 
 
-def test_a_point_at_the_origin_stays_seen(tmp_path):
+def test_point_at_the_origin_stays_observed(tmp_path):
     """Though others mean by the origin that a point was not seen."""
     tracks = Tracks(
         ("root", "head"), np.tile([[[0.0, 0.0, 0.0], [0.0, 0.0, 1.5]]], (5, 1, 1)), 50.0

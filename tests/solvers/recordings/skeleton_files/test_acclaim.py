@@ -98,21 +98,21 @@ def test_turns_are_about_the_axes_of_each_bone(read):
 
 
 def test_joints_agree_with_the_model_recorded_beside_the_markers(recordings):
-    """CMU's 05_13.c3d holds the joint centres that the same software computed.
+    """CMU's 05_13.c3d holds the joint centers that the same software computed.
 
     Its axes are turned by a quarter. The toes are left out: see `read_acclaim`.
     """
     file = ezc3d.c3d(str(recordings / "mocap" / "05_13.c3d"))
     labels = file["parameters"]["POINT"]["LABELS"]["value"]
     x, y, z = file["data"]["points"][:3, : len(labels)] / 1000
-    centres = dict(zip(labels, np.stack([y, -x, z], axis=-1), strict=True))
+    centers = dict(zip(labels, np.stack([y, -x, z], axis=-1), strict=True))
 
     motion = read_acclaim(recordings / "mocap" / "05_13.amc")
 
     positions = forward_kinematics(motion).positions
     for label, joint in CENTRES.items():
         seen = positions[:, motion.skeleton.index(joint)]
-        assert_allclose(seen, centres[f"Dance:{label}0"], atol=0.0005, err_msg=joint)
+        assert_allclose(seen, centers[f"Dance:{label}0"], atol=0.0005, err_msg=joint)
 
 
 CENTRES = {
@@ -140,12 +140,10 @@ def test_takes_the_skeleton_with_the_longest_fitting_name(read, tmp_path):
     assert read(scale=1.0).skeleton.rest_positions[2, 0] == pytest.approx(20.0)
 
 
-def test_without_a_skeleton_it_says_what_to_do(tmp_path):
+def test_missing_skeleton_is_reported_with_a_remedy(tmp_path):
     (tmp_path / "13_29.amc").write_text(MOTION)
 
-    with pytest.raises(
-        InvalidFileError, match=r"13_29\.amc: put the actor's \.asf file beside"
-    ):
+    with pytest.raises(InvalidFileError, match=r"13_29\.amc\. Put the actor's \.asf file next"):
         read_acclaim(tmp_path / "13_29.amc")
 
 
@@ -165,11 +163,11 @@ def test_what_a_frame_leaves_out_is_a_gap(read):
 @pytest.mark.parametrize(
     ("motion", "sentence"),
     [
-        (MOTION.replace("upper 90 0", "upper 90"), r"line 9: 1 numbers stand where 2 belong"),
+        (MOTION.replace("upper 90 0", "upper 90"), r"line 9: 1 numbers instead of 2"),
         (MOTION.replace("upper 90 0", "upper 90 x"), r"line 9: 'x' is not a number"),
         (MOTION.replace("upper", "wing"), "does not have: wing"),
         ("1\n2\n3\n", "nothing moves"),
-        ("upper 1 2\n", "line 1: a frame number"),
+        ("upper 1 2\n", "line 1: neither a frame number"),
     ],
 )
 def test_damaged_recordings_are_refused(read, motion, sentence):
@@ -180,10 +178,10 @@ def test_damaged_recordings_are_refused(read, motion, sentence):
 @pytest.mark.parametrize(
     ("skeleton", "sentence"),
     [
-        ("", "no :root part"),
-        (SKELETON.replace("upper lower", "upper root"), "below upper stands .* twice"),
+        ("", "no :root section"),
+        (SKELETON.replace("upper lower", "upper root"), "below upper is .* twice"),
         (SKELETON.replace("upper lower", "upper tail"), "'tail' that is not described"),
-        (SKELETON.replace("direction 1 0 0", "direction 1 0"), "3 numbers belong"),
+        (SKELETON.replace("direction 1 0 0", "direction 1 0"), "3 numbers are required"),
         (SKELETON.replace("dof rx rz", "dof rx rw"), "'rx rw'"),
         (SKELETON.replace("90 XYZ", "90 XYY"), "'XYY'"),
     ],

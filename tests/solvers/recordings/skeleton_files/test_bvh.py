@@ -34,7 +34,7 @@ SECOND_FRAME = [[0.05, -0.07, 1.41], [0.05, -0.07, 1.71], [0.05, 0.18, 1.71]]
 
 
 def test_stands_up_and_faces_us(read):
-    """Up (Y) becomes Z, and forward (Z) becomes -Y; centimetres become metres."""
+    """Up (Y) becomes Z, and forward (Z) becomes -Y; centimeters become meters."""
     arm = read(ARM)
 
     assert arm.skeleton.names == ("shoulder", "elbow", "elbow_end")
@@ -76,20 +76,20 @@ def test_spelling_does_not_matter(read, spelled):
 
 
 @pytest.mark.parametrize("order", ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"])
-def test_any_order_of_angles_comes_back(swinging_leg, tmp_path, order):
+def test_any_rotation_order_survives_writing_and_reading(swinging_leg, tmp_path, order):
     write_bvh(swinging_leg, tmp_path / "leg.bvh", order=order)
 
     back = read_bvh(tmp_path / "leg.bvh")
 
     assert back.skeleton.same_joints(swinging_leg.skeleton)
     assert back.frame_rate == swinging_leg.frame_rate
-    # Six decimals of centimetres and degrees are 1e-8 m, and 1e-8 rad times a leg's length.
+    # Six decimals of centimeters and degrees are 1e-8 m, and 1e-8 rad times a leg's length.
     assert_allclose(back.skeleton.offsets, swinging_leg.skeleton.offsets, atol=1e-8)
     theirs = forward_kinematics(back).positions
     assert_allclose(theirs, forward_kinematics(swinging_leg).positions, atol=5e-8)
 
 
-def test_any_skeleton_and_any_order_of_joints_come_back(rng, tmp_path):
+def test_any_skeleton_survives_writing_and_reading(rng, tmp_path):
     """BVH lists each joint with all that is below it; ours may come in any other order."""
     parents = (-1, 0, 0, 1, 2, 1, 0, 4)
     names = tuple("abcdefgh")
@@ -100,10 +100,10 @@ def test_any_skeleton_and_any_order_of_joints_come_back(rng, tmp_path):
 
     back = read_bvh(tmp_path / "take.bvh", scale=0.05, up="Y")
 
-    places = [back.skeleton.index(name) for name in names]
-    theirs = forward_kinematics(back).positions[:, places]
+    positions = [back.skeleton.index(name) for name in names]
+    theirs = forward_kinematics(back).positions[:, positions]
     assert_allclose(theirs, forward_kinematics(motion).positions, atol=1e-6)
-    assert_allclose(back.skeleton.offsets[places], skeleton.offsets, atol=1e-7)
+    assert_allclose(back.skeleton.offsets[positions], skeleton.offsets, atol=1e-7)
 
 
 @pytest.mark.parametrize(
@@ -112,7 +112,7 @@ def test_any_skeleton_and_any_order_of_joints_come_back(rng, tmp_path):
      ("0.0333667", 29.97), ("0.04", 25.0), ("0.008", 125.0), ("0.033", 30.0),
      ("0.0138888889", 72.0), ("1e-2", 100.0)],
 )  # fmt: skip
-def test_a_rounded_frame_time_stands_for_a_whole_rate(read, word, rate):
+def test_rounded_frame_time_gives_a_common_rate(read, word, rate):
     assert read(ARM.replace("0.0333333", word)).frame_rate == pytest.approx(rate, rel=1e-6)
 
 
@@ -140,7 +140,7 @@ def test_a_file_of_blender_stands_upright_too(read):
         ("50 0 2", "0 0 -90", (0.08, 2, 0)),  # All bones along one axis, and lying down.
     ],
 )
-def test_what_lies_is_left_lying(read, offset, frame, size):
+def test_lying_body_is_not_rotated(read, offset, frame, size):
     text = BODY.replace("0 {a} {b}", offset).replace("\n0 0 0 0", f"\n{frame} 0")
 
     body = read(text, scale=0.01)
@@ -207,18 +207,18 @@ def test_every_real_file_is_a_person_on_or_near_the_floor(recordings):
     ("text", "sentence"),
     [
         ("", "does not begin with HIERARCHY"),
-        (ARM.split("MOTION")[0], "no MOTION part: it is cut short"),
+        (ARM.split("MOTION")[0], "no MOTION section: it is cut short"),
         (ARM.split("0 140 0  ")[0], "no frames"),
-        (ARM.rsplit(" ", 1)[0], r"take\.bvh, line 20: 8 numbers stand where 9 belong"),
+        (ARM.rsplit(" ", 1)[0], r"take\.bvh, line 20: 8 numbers instead of 9"),
         (ARM.replace("141", "abc"), "line 20: 'abc' is not a number"),
         (ARM.replace("CHANNELS 3", "CHANNELS 4"), "line 10: elbow has a channel 'end'"),
-        (ARM.replace("30 0 0", "30 0"), "line 9: 'CHANNELS' is no sensible number"),
+        (ARM.replace("30 0 0", "30 0"), "line 9: 'CHANNELS' is not a plausible number"),
         (ARM.replace("OFFSET 25", "25"), "line 12: OFFSET is missing"),
         (ARM.replace("}\n}\nMOTION", "}\nMOTION"), "the hierarchy ends too early"),
         (ARM.replace("MOTION", "ROOT second\n{\n}\nMOTION"), "second ROOT; one file holds one"),
-        (ARM.replace("JOINT elbow", "TWIG elbow"), "'TWIG' stands where JOINT"),
-        (ARM.replace("CHANNELS 6", "CHANNELS inf"), "'inf' is no sensible number"),
-        (ARM.replace("OFFSET 30", "OFFSET nan"), "'nan' is no sensible number"),
+        (ARM.replace("JOINT elbow", "TWIG elbow"), "'TWIG' instead of JOINT"),
+        (ARM.replace("CHANNELS 6", "CHANNELS inf"), "'inf' is not a plausible number"),
+        (ARM.replace("OFFSET 30", "OFFSET nan"), "'nan' is not a plausible number"),
         (
             ARM.replace("elbow", "elbow " * 200),
             r"the name '(elbow_){6}elbo\.\.\.' does not end",

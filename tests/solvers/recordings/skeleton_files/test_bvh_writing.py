@@ -10,18 +10,18 @@ from solvers.recordings import read_bvh, write_bvh
 from solvers.rotations.representations import quaternion_from_rotation_vector
 
 
-def test_end_sites_are_written_as_such_only_where_they_come_back(leg, tmp_path):
+def test_end_sites_are_written_only_if_they_survive_reading(leg, tmp_path):
     """An end that turns, or has a name of its own, is a joint."""
     turns = np.tile([1.0, 0, 0, 0], (2, 4, 1))
     turned = turns.copy()
     turned[1, 3] = quaternion_from_rotation_vector([0.1, 0.2, 0.0])
-    place = np.tile([0, 0, 0.9], (2, 1))
+    position = np.tile([0, 0, 0.9], (2, 1))
     renamed = Skeleton(("hip", "knee", "ankle", "toe_end"), leg.parents, leg.offsets)
 
     for motion, n_ends in [
-        (Motion(leg, turns, place, 30.0), 1),
-        (Motion(leg, turned, place, 30.0), 1),  # The end of the end: many programs want one.
-        (Motion(renamed, turns, place, 30.0), 1),
+        (Motion(leg, turns, position, 30.0), 1),
+        (Motion(leg, turned, position, 30.0), 1),  # The end of the end: many programs want one.
+        (Motion(renamed, turns, position, 30.0), 1),
     ]:
         write_bvh(motion, tmp_path / "leg.bvh")
         back = read_bvh(tmp_path / "leg.bvh")
@@ -62,7 +62,7 @@ def test_gaps_are_refused_and_the_old_file_stays(swinging_leg, tmp_path):
 
 
 @pytest.mark.parametrize("options", [{"order": "XYX"}, {"scale": 0.0}, {"scale": np.nan}])
-def test_nonsense_is_refused(swinging_leg, tmp_path, options):
+def test_invalid_options_are_refused(swinging_leg, tmp_path, options):
     with pytest.raises(InvalidSettingError, match="positive scale"):
         write_bvh(swinging_leg, tmp_path / "leg.bvh", **options)
 

@@ -31,28 +31,28 @@ def of(values, motion, name):
     return values[:, motion.skeleton.index(name)]
 
 
-def test_the_sensor_is_told_as_it_spoke(walk, moved):
+def test_tracking_term_is_that_of_the_sensor(walk, moved):
     order = [walk.names.index(name) for name in moved.skeleton.names]
 
-    trust = reconstruct_motion(
+    reliability = reconstruct_motion(
         moved, tracking_state=walk.tracking_state[:, order]
     ).reliability_terms
 
     for name in HIDDEN:
-        said = of(trust.tracking, moved, name)
-        assert np.allclose(said[LOST], GUESSED)
-        assert np.allclose(np.delete(said, np.arange(LOST.start, LOST.stop)), 1.0)
-    assert np.allclose(of(trust.tracking, moved, "WristRight"), 1.0)
+        message = of(reliability.tracking, moved, name)
+        assert np.allclose(message[LOST], GUESSED)
+        assert np.allclose(np.delete(message, np.arange(LOST.start, LOST.stop)), 1.0)
+    assert np.allclose(of(reliability.tracking, moved, "WristRight"), 1.0)
 
 
-def test_a_sensor_that_said_nothing_is_not_taken_for_sure(moved):
-    trust = reconstruct_motion(moved).reliability_terms
+def test_missing_tracking_state_gives_no_term(moved):
+    reliability = reconstruct_motion(moved).reliability_terms
 
-    assert np.isnan(trust.tracking).all()
-    assert np.isfinite(trust.combined).all() and np.isfinite(trust.behaviour).all()
+    assert np.isnan(reliability.tracking).all()
+    assert np.isfinite(reliability.combined).all() and np.isfinite(reliability.behaviour).all()
 
 
-def test_lengths_of_an_armature_tell_nothing_and_those_of_its_recording_do(walk, moved):
+def test_length_term_needs_the_recording_of_an_armature(walk, moved):
     alone = reconstruct_motion(moved).reliability_terms
     with_file = reconstruct_motion(moved, source=walk).reliability_terms
 
@@ -61,15 +61,15 @@ def test_lengths_of_an_armature_tell_nothing_and_those_of_its_recording_do(walk,
     assert elbow[LOST].mean() < 0.8 < np.median(elbow[: LOST.start])
 
 
-def test_a_joint_that_shakes_is_told_by_its_movement(walk, moved):
-    trust = reconstruct_motion(moved, source=walk).reliability_terms
+def test_jittering_joint_has_a_low_behavior_term(walk, moved):
+    reliability = reconstruct_motion(moved, source=walk).reliability_terms
 
-    wrist = of(trust.behaviour, moved, "WristLeft")
+    wrist = of(reliability.behaviour, moved, "WristLeft")
     assert wrist[LOST].mean() < 0.7
     assert np.allclose(wrist[: LOST.start - 3], 1.0)
 
 
-def test_joints_that_no_body_has_have_no_trust():
+def test_other_joints_have_no_reliability():
     walk = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=30.0))
     names = list(walk.skeleton.names)
     names[names.index("LeftHand")] = "Umbrella"
@@ -88,11 +88,11 @@ def test_joints_that_no_body_has_have_no_trust():
 
 
 @pytest.mark.parametrize("tracked", [True, False])
-def test_a_skeleton_that_is_nowhere_is_refused(moved, tracked):
+def test_skeleton_without_positions_is_refused(moved, tracked):
     motion = moved
     if not tracked:
         motion = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=30.0))
-    lost = motion.with_poses(motion.rotations, np.full_like(motion.root_positions, np.nan))
+    missing = motion.with_poses(motion.rotations, np.full_like(motion.root_positions, np.nan))
 
     with pytest.raises(InvalidMotionError, match="No joint is tracked in any of the"):
-        reconstruct_motion(lost)
+        reconstruct_motion(missing)

@@ -1,4 +1,4 @@
-"""Turn recordings of depth upright, or from a mirror's view to the camera's."""
+"""Rotate depth recordings upright, and undo mirroring."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -6,35 +6,37 @@ from typing import Any
 import numpy as np
 
 from ...depth_scene import Camera, DepthRecording
-from .settings import Held
+from .settings import CameraOrientation
 
 QUARTER_TURNS = {
-    Held.KNOWN: 0,
-    Held.UPRIGHT: 0,
-    Held.LEFT: 3,
-    Held.UPSIDE_DOWN: 2,
-    Held.RIGHT: 1,
+    CameraOrientation.KNOWN: 0,
+    CameraOrientation.UPRIGHT: 0,
+    CameraOrientation.LEFT: 3,
+    CameraOrientation.UPSIDE_DOWN: 2,
+    CameraOrientation.RIGHT: 1,
 }
-"""Quarter turns, against the clock, that bring pictures upright."""
+"""Counterclockwise quarter turns that rotate images upright."""
 
 
 @dataclass(frozen=True)
 class _RotatedReader:
-    """Reads pictures and turns them by quarters against the clock, or mirrors them."""
+    """Read images, mirror them and rotate them counterclockwise by quarter turns."""
 
     read: Any
     quarters: int
     mirrored: bool
 
     def __call__(self, index: int) -> Any:
-        picture = self.read(index)
+        image = self.read(index)
         if self.mirrored:
-            picture = picture[:, ::-1]
-        return np.ascontiguousarray(np.rot90(picture, self.quarters))
+            image = image[:, ::-1]
+        return np.ascontiguousarray(np.rot90(image, self.quarters))
 
 
-def rotate_upright(recording: DepthRecording, held: Held, mirrored: bool) -> DepthRecording:
-    """Return the recording as by a camera that was held upright and saw no mirror."""
+def rotate_upright(
+    recording: DepthRecording, held: CameraOrientation, mirrored: bool
+) -> DepthRecording:
+    """Return the recording of an upright camera without mirroring."""
     quarters = QUARTER_TURNS[held]
     if not (quarters or mirrored):
         return recording
@@ -55,7 +57,7 @@ def _mirror_camera(camera: Camera) -> Camera:
 
 
 def _rotate_camera(camera: Camera) -> Camera:
-    """Return the camera of pictures turned a quarter against the clock: right becomes top."""
+    """Return the camera of images after a counterclockwise quarter turn: right becomes top."""
     return Camera(
         camera.fy,
         camera.fx,

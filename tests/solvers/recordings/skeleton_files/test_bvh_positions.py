@@ -53,7 +53,7 @@ Frame Time: 0.01
 """
 
 
-def test_position_channels_stand_in_place_of_the_offset(read):
+def test_position_channels_replace_the_offset(read):
     """So it is in Blender. Of a bone whose length changes, the median counts."""
     frame = "0 140 0  0 0 0   {} 0 0  0 0 0\n"
 
@@ -63,7 +63,7 @@ def test_position_channels_stand_in_place_of_the_offset(read):
     assert_allclose(elbow, [0.33, 0, 1.4], atol=1e-9)
 
 
-def test_a_root_that_stays_behind_carries_its_only_child(read):
+def test_positions_of_an_only_child_move_the_root(read):
     """Some exporters put a fixed `reference` above the hips, and move those."""
     frame = "0 140 0  90 0 0   {}  0 0 0\n"
 
@@ -74,19 +74,19 @@ def test_a_root_that_stays_behind_carries_its_only_child(read):
     assert_allclose(elbow, [[0, 0, 1.7], [-5, -0.07, 1.7], [-10, -0.09, 1.7]], atol=1e-9)
 
 
-def test_a_bone_turns_after_a_child_that_strays(read):
+def test_bone_rotates_towards_its_displaced_child(read):
     """Perception Neuron moves feet about the end of the shank; our shank follows."""
     frame = "0 90 0  0 0 0   0 0 0   {}  0 0 0   0\n"
 
     legs = read(LEGS + "".join(map(frame.format, ["0 -40 0", "24 -32 0", "0 -40 0"])))
 
-    places = dict(zip(legs.skeleton.names, forward_kinematics(legs).positions[1], strict=True))
-    assert_allclose(places["foot"] - places["knee"], [0.24, 0, -0.32], atol=1e-9)
+    indices = dict(zip(legs.skeleton.names, forward_kinematics(legs).positions[1], strict=True))
+    assert_allclose(indices["foot"] - indices["knee"], [0.24, 0, -0.32], atol=1e-9)
     # The foot itself does not turn.
-    assert_allclose(places["foot_end"] - places["foot"], [0.15, 0, 0], atol=1e-9)
+    assert_allclose(indices["foot_end"] - indices["foot"], [0.15, 0, 0], atol=1e-9)
 
 
-def test_channels_near_zero_count_from_the_offset(read):
+def test_channels_near_zero_are_relative_to_the_offset(read):
     """If they stood for places, the skeleton would shrink to a point."""
     arm = read(ARM + "0 1 0  0 0 0   1 0 0  0 0 0\n")
 
