@@ -17,6 +17,9 @@ WIDEST_STEP = (
 )
 ON_GRID = 0.9  # share of keys that must lie on the grid, each
 OFF_GRID = 0.05  # of a step from it at most
+MIN_FILLED = 0.5
+"""Fraction of the grid that has keys. Exporters add keys between frames at fast moments; those
+alone make no finer grid."""
 MAX_FRAMES_PER_KEY = 20
 MAX_FRAMES_OF_FEW_KEYS = 10_000
 """A span with so many more frames than keys is no take, but one stray key far out."""
@@ -118,7 +121,8 @@ def _grid_of(times: Array, widest: float) -> tuple[float, float]:
     step = float(span / max(np.round(span / spacing), 1.0))
     places = (times - times[0]) / step
     regular = (np.abs(places - np.round(places)) < OFF_GRID).mean() >= ON_GRID
-    if step <= widest and regular:
+    filled = len(times) >= MIN_FILLED * (span / step + 1)
+    if step <= widest and regular and filled:
         return step, float(times[0])
     return 1.0, float(np.ceil(times[0] - ON_FRAME))
 

@@ -19,6 +19,7 @@ from ..rigs.evaluated_body import body_bones, with_body_shown
 from ..rigs.rigify import is_rigify
 from ..rigs.target_read import find_roles
 from ..scene import history
+from ..scene.rig import END
 from .catalogs import NONE, catalog_file, read_catalogs
 
 NAME_ONE = "name a file with its rig, or index the file that has both."
@@ -93,8 +94,10 @@ def read_source(scene: bpy.types.Scene, armature: bpy.types.Object, source: Sour
 
 def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> BlendRead:
     open_scene_file(path)
-    if sentence := _without_motion(path):
-        return BlendRead((), (sentence,))
+    if Path(path).suffix.lower() in SCENE_SUFFIXES:
+        if sentence := _without_motion(path):
+            return BlendRead((), (sentence,))
+        _mark_invented_tails()
     actions = actions_of(assets_only)
     lack_rig = rig and any(map(_lacks_rig, actions))
     refused = _bring_armatures(rig) if lack_rig else []
@@ -114,14 +117,20 @@ def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> 
 
 
 def _without_motion(path: str) -> str:
-    """Say what a file of another program lacks; a .blend file may have neither."""
-    if Path(path).suffix.lower() not in SCENE_SUFFIXES:
-        return ""
+    """Say what a file of another program lacks."""
     if not any(each.type == "ARMATURE" for each in bpy.data.objects):
         return f"{path} has no skeleton, so there is no body to import."
     if not bpy.data.actions:
         return f"{path} has a skeleton but no animation; as a target rig, open it in Blender."
     return ""
+
+
+def _mark_invented_tails() -> None:
+    """Mark the last bone of each chain: these formats have joints, and importers add tails."""
+    for armature in bpy.data.armatures:
+        for bone in armature.bones:
+            if not bone.children:
+                bone[END] = True
 
 
 def _read_action(path: str, action: bpy.types.Action, items: Sequence[str]) -> BlendRead:
