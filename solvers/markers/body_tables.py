@@ -27,13 +27,13 @@ class JointPrior(NamedTuple):
     """Standard deviation of the rotation vector, radians; 0: no prior."""
     hinge: Triple = NO_PRIOR
     """Standard deviation of its X axis from that of its parent, radians; 0: no prior."""
-    turns: bool = True
+    rotates: bool = True
 
 
 class MarkerPrior(NamedTuple):
     """A marker of the mean body. It moves with a bone and has an offset from an anchor."""
 
-    spot: str
+    landmark: str
     bone: str
     anchor: str
     play: float
@@ -51,24 +51,24 @@ CENTRE = (
     JointPrior("chest", "spine", (0.0, TIGHT_M, TIGHT_M), TRUNK_FLEXION_RAD),
     JointPrior("neck", "chest", (0.0, TIGHT_M, TIGHT_M), TRUNK_FLEXION_RAD),
     JointPrior("head", "neck", (0.0, TIGHT_M, FIRM_M), TRUNK_FLEXION_RAD),
-    JointPrior("head_end", "head", turns=False),
+    JointPrior("head_end", "head", rotates=False),
 )
 SIDE = (
     JointPrior("Shoulder", "chest", (TIGHT_M, TIGHT_M, TIGHT_M), (0.05, 0.5, 0.5)),
     JointPrior("UpperArm", "Shoulder", (FIRM_M, FIRM_M, FIRM_M)),
     JointPrior("LowerArm", "UpperArm", (FIRM_M, 0.0, 0.0), hinge=(0.0, 0.0, 0.5)),
     JointPrior("Hand", "LowerArm", (FIRM_M, 0.0, 0.0), (0.15, 1.0, 1.0)),
-    JointPrior("Hand_end", "Hand", turns=False),
+    JointPrior("Hand_end", "Hand", rotates=False),
     JointPrior("UpperLeg", "hips", (LOOSE_M, LOOSE_M, LOOSE_M)),
     JointPrior("LowerLeg", "UpperLeg", (0.0, 0.0, FREE_M), hinge=(0.0, 0.1, 0.1)),
     JointPrior("Foot", "LowerLeg", (0.0, 0.0, FREE_M), (1.0, 1.0, 1.0)),
-    JointPrior("Toes", "Foot", turns=False),
-    JointPrior("Toes_end", "Toes", turns=False),
+    JointPrior("Toes", "Foot", rotates=False),
+    JointPrior("Toes_end", "Toes", rotates=False),
 )
 CENTRE_MARKERS = (
-    *(MarkerPrior(spot, "hips", "hips", TIGHT_M) for spot in PELVIS),
-    *(MarkerPrior(spot, "chest", "neck", TIGHT_M) for spot in TRUNK),
-    *(MarkerPrior(spot, "head", "head", TIGHT_M) for spot in HEAD),
+    *(MarkerPrior(landmark, "hips", "hips", TIGHT_M) for landmark in PELVIS),
+    *(MarkerPrior(landmark, "chest", "neck", TIGHT_M) for landmark in TRUNK),
+    *(MarkerPrior(landmark, "head", "head", TIGHT_M) for landmark in HEAD),
 )  # fmt: skip
 SIDE_MARKERS = (
     MarkerPrior("SHO", "Shoulder", "UpperArm", FIRM_M, (0.0, 0.0, 0.05)),

@@ -12,36 +12,36 @@ SIDED = (
 TRUNK = ("C7", "T10", "CLAV", "STRN", "RBAK")
 HEAD = ("LFHD", "RFHD", "LBHD", "RBHD")
 PELVIS = ("LASI", "RASI", "LPSI", "RPSI", "SACR")
-SPOTS = (*PELVIS, *TRUNK, *HEAD, *(side + spot for side in "LR" for spot in SIDED))
+LANDMARKS = (*PELVIS, *TRUNK, *HEAD, *(side + landmark for side in "LR" for landmark in SIDED))
 """Places on the body that a marker can sit on, by their Plug-in-Gait names."""
 
 _BOTH = ("THI", "KNE", "TIB", "ANK", "HEE", "TOE")
 _ARMS = ("SHO", "UPA", "ELB", "FRM", "WRA", "WRB", "FIN")
 
 
-def _own_names(spots: Sequence[str]) -> dict[str, str]:
-    return {spot: spot for spot in spots}
+def _same_names(landmarks: Sequence[str]) -> dict[str, str]:
+    return {landmark: landmark for landmark in landmarks}
 
 
-def _two_sided(spots: Sequence[str]) -> list[str]:
-    return [side + spot for side in "LR" for spot in spots]
+def _two_sided(landmarks: Sequence[str]) -> list[str]:
+    return [side + landmark for side in "LR" for landmark in landmarks]
 
 
 SETS: dict[str, Mapping[str, str]] = {
-    "Plug-in-Gait": _own_names((*HEAD, *TRUNK, *_two_sided(_ARMS), *PELVIS[:4]))
-    | _own_names(_two_sided(_BOTH)),
-    "Plug-in-Gait with a sacral marker": _own_names((*HEAD, *TRUNK, *_two_sided(_ARMS)))
-    | _own_names(("LASI", "RASI", "SACR", *_two_sided(_BOTH))),
-    "CMU 41": _own_names((*HEAD, *TRUNK[:4], *_two_sided(_ARMS)))
+    "Plug-in-Gait": _same_names((*HEAD, *TRUNK, *_two_sided(_ARMS), *PELVIS[:4]))
+    | _same_names(_two_sided(_BOTH)),
+    "Plug-in-Gait with a sacral marker": _same_names((*HEAD, *TRUNK, *_two_sided(_ARMS)))
+    | _same_names(("LASI", "RASI", "SACR", *_two_sided(_BOTH))),
+    "CMU 41": _same_names((*HEAD, *TRUNK[:4], *_two_sided(_ARMS)))
     | {"RBAC": "RBAK", "LFWT": "LASI", "RFWT": "RASI", "LBWT": "LPSI", "RBWT": "RPSI"}
-    | _own_names(_two_sided(("THI", "KNE", "ANK", "HEE", "TOE", "MT5")))
+    | _same_names(_two_sided(("THI", "KNE", "ANK", "HEE", "TOE", "MT5")))
     | {"LSHN": "LTIB", "RSHN": "RTIB"},
 }
-"""Spot of each marker's name, by set."""
+"""Landmark of each marker's name, by set."""
 
 ESSENTIAL = (
     "LASI", "RASI",
-    *(side + spot for side in "LR" for spot in ("KNE", "ANK", "TOE")),
+    *(side + landmark for side in "LR" for landmark in ("KNE", "ANK", "TOE")),
 )  # fmt: skip
 """What no body can be solved without, besides one marker at the back of the pelvis."""
 PREFIX = re.compile(r"^(.*[:.|_ ])?([^:.|_ ]+)$")
@@ -55,8 +55,8 @@ class MarkerSet:
     ----------
     name : str
         Of the set that fits best; empty where none does.
-    markers : mapping of spot to the marker's name in the take
-        Spots carry their Plug-in-Gait names, whatever the set calls them.
+    markers : mapping of landmark to the marker's name in the take
+        Landmarks carry their Plug-in-Gait names, whatever the set calls them.
     score : float
         0 to 1: the share of the set's markers that the take has.
     subject : str
@@ -68,12 +68,12 @@ class MarkerSet:
     score: float
     subject: str = ""
 
-    def lacks(self) -> tuple[str, ...]:
-        """Return the essential spots without a marker."""
-        lost = [spot for spot in ESSENTIAL if spot not in self.markers]
+    def missing_landmarks(self) -> tuple[str, ...]:
+        """Return the essential landmarks without a marker."""
+        missing = [landmark for landmark in ESSENTIAL if landmark not in self.markers]
         if not {"LPSI", "RPSI"} <= set(self.markers) and "SACR" not in self.markers:
-            lost.append("LPSI and RPSI, or SACR")
-        return tuple(lost)
+            missing.append("LPSI and RPSI, or SACR")
+        return tuple(missing)
 
 
 def find_marker_set(names: Sequence[str], subject: str | None = None) -> MarkerSet:
@@ -107,7 +107,7 @@ def find_marker_set(names: Sequence[str], subject: str | None = None) -> MarkerS
     fits = [
         MarkerSet(
             title,
-            {spot: found[label] for label, spot in table.items() if label in found},
+            {landmark: found[label] for label, landmark in table.items() if label in found},
             sum(label in found for label in table) / len(table),
             who,
         )

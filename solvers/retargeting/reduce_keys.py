@@ -16,8 +16,8 @@ from ..progress import Progress, unwatched, within
 from ..rotations import IDENTITY
 from ..settings import Settings, setting
 from .key_curves import KeyCurve
+from .key_thinning import ROOT, Thinning
 from .rotation_channels import RotationChannels
-from .thinning import ROOT, Thinning
 
 MAX_FRAMES = 10_000_000
 """Limit of a file: more than a day at 100 Hz."""

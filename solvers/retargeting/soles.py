@@ -39,9 +39,9 @@ class Sole(NamedTuple):
 
     lift: Array
     """Lift of the ankle, shape (n_frames,), metres."""
-    turn: Array
+    rotation: Array
     """World rotation to add to that of the foot, shape (n_frames, 4)."""
-    toe_turn: Array
+    toe_rotation: Array
     """World rotation to add to that of the toes, shape (n_frames, 4)."""
 
 
@@ -106,18 +106,18 @@ def sole_above_ground(
     length = max(float(np.linalg.norm(rest[ball] - rest[foot])), tolerance)
     steep_weight = _smoothstep(-foot_vector[:, 2] / length, MIN_SLOPE_SINE, MAX_SLOPE_SINE)
     lift = smooth_envelope(lift + steep_weight * required, frame_rate)
-    turn = _lifting_rotations(
+    rotation = _lifting_rotations(
         foot_vector, _lift_from_depth(height + lift - rest[ball, 2] + allowed.ball, tolerance)
     )
     tip = tip_of(target, ball)
     if ball == foot or tip is None:
-        return Sole(lift, turn, turn)
+        return Sole(lift, rotation, rotation)
     toes = rotate(world.rotations[:, ball], rest[tip] - rest[ball])
-    height = ankle[:, 2] + lift + rotate(turn, foot_vector)[:, 2] + toes[:, 2] - ground
+    height = ankle[:, 2] + lift + rotate(rotation, foot_vector)[:, 2] + toes[:, 2] - ground
     required = _lift_from_depth(height - rest[tip, 2] + allowed.tip, tolerance)
-    feet = multiply(turn, world.rotations[:, foot])
+    feet = multiply(rotation, world.rotations[:, foot])
     return Sole(
-        lift, turn, lift_toes(rest[[foot, ball, tip]], feet, toes, required, frame_rate)
+        lift, rotation, lift_toes(rest[[foot, ball, tip]], feet, toes, required, frame_rate)
     )
 
 
@@ -127,11 +127,11 @@ def with_sole(
     """Return local rotations, shape (n_frames, n_joints, 4), with new feet and toes."""
     foot, ball = foot_bone(target, side)
     result = rotations.copy()
-    rotated = multiply(sole.turn, world.rotations[:, foot])
+    rotated = multiply(sole.rotation, world.rotations[:, foot])
     parent = world.rotations[:, target.skeleton.parents[foot]]
     result[:, foot] = multiply(inverse(parent), rotated)
     if tip_of(target, ball) is not None and target.skeleton.parents[ball] == foot:
-        toes = multiply(sole.toe_turn, world.rotations[:, ball])
+        toes = multiply(sole.toe_rotation, world.rotations[:, ball])
         result[:, ball] = multiply(inverse(rotated), toes)
     return result
 

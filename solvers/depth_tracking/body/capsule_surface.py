@@ -28,7 +28,7 @@ class BodySurface(NamedTuple):
     normals: Array
     triangles: NDArray[np.intp]
 
-    def placed(self, frames: Array) -> tuple[Array, Array]:
+    def at_pose(self, frames: Array) -> tuple[Array, Array]:
         """Return vertices and normals (19, n_vertices, 3) for segment transforms (17, 4, 4)."""
         rotations = frames[CAPSULE_SEGMENTS, :3, :3].swapaxes(1, 2)
         origins = frames[CAPSULE_SEGMENTS, np.newaxis, :3, 3]

@@ -73,7 +73,7 @@ class DetectedPose:
     step: int
 
     @property
-    def unseen(self) -> tuple[str, ...]:
+    def missing_parts(self) -> tuple[str, ...]:
         """The `PARTS` without pixels; their pose is a guess."""
         return tuple(
             part for part, weight in zip(PARTS, self.parts.weights, strict=True) if weight == 0
@@ -128,7 +128,7 @@ def detect_pose(
         )
     step_between = -(-len(observation.points) // settings.n_pixels)
     trials = trial_poses(
-        body, parts, observation.points[::step_between], pixels.shares[::step_between]
+        body, parts, observation.points[::step_between], pixels.probabilities[::step_between]
     )
     candidates = [
         _score_candidate(

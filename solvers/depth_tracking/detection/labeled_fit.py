@@ -101,7 +101,7 @@ def fit_parts(
 def fit_pixels(
     body: BodyModel,
     points: Array,
-    shares: NDArray[np.float32],
+    probabilities: NDArray[np.float32],
     start: Array,
     *,
     rounds: int = 2,
@@ -116,7 +116,7 @@ def fit_pixels(
     ----------
     body : BodyModel
     points : shape (n, 3), metres
-    shares : shape (n, N_PARTS)
+    probabilities : shape (n, N_PARTS)
         Probability of each part for each point.
     start : shape (36,)
     rounds : int
@@ -124,7 +124,7 @@ def fit_pixels(
     iterations : int
         Steps of each round.
     """
-    label_costs = -np.log(shares @ CAPSULE_OF_PART + MIN_PROBABILITY)
+    label_costs = -np.log(probabilities @ CAPSULE_OF_PART + MIN_PROBABILITY)
     pose = start
     for _ in range(rounds):
         distances = capsule_distances(body, segment_frames(body, pose), points)

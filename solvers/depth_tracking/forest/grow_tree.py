@@ -99,7 +99,7 @@ def grow_tree(
     """
     node = np.zeros(len(parts), dtype=np.int32)
     n_nodes, splits, offsets, thresholds = 1, [], [], []
-    shares = [np.empty((0, N_PARTS), dtype=np.uint8)]
+    histograms = [np.empty((0, N_PARTS), dtype=np.uint8)]
     for level in range(settings.levels + 1):
         counts = _counts(node, parts, n_nodes)
         open_nodes = (counts.sum(axis=1) >= settings.least_pixels) & (
@@ -113,7 +113,7 @@ def grow_tree(
         splits.append(split)
         offsets.append(features[best.feature[split]])
         thresholds.append(THRESHOLDS_MM[best.edge[split]])
-        shares.append(_leaf_shares(counts[~split]))
+        histograms.append(_leaf_histograms(counts[~split]))
         node = _next_nodes(views, node, split, features, best)
         n_nodes = 2 * int(split.sum())
         progress((level + 1) / (settings.levels + 1), "Growing a tree")
@@ -123,7 +123,7 @@ def grow_tree(
         np.concatenate(splits),
         np.concatenate(offsets),
         np.concatenate(thresholds),
-        np.concatenate(shares),
+        np.concatenate(histograms),
     )
 
 
@@ -227,10 +227,10 @@ def _counts(node: Nodes, parts: NDArray[np.uint8], n_nodes: int) -> NDArray[np.i
     return np.bincount(key, minlength=n_nodes * N_PARTS).reshape(n_nodes, N_PARTS)
 
 
-def _leaf_shares(counts: NDArray[np.int64]) -> NDArray[np.uint8]:
+def _leaf_histograms(counts: NDArray[np.int64]) -> NDArray[np.uint8]:
     total = np.maximum(counts.sum(axis=1, keepdims=True), 1)
-    shares: NDArray[np.uint8] = np.rint(255.0 * counts / total).astype(np.uint8)
-    return shares
+    histograms: NDArray[np.uint8] = np.rint(255.0 * counts / total).astype(np.uint8)
+    return histograms
 
 
 def _next_nodes(

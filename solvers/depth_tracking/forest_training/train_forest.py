@@ -47,10 +47,10 @@ class PixelForestSettings(TrainingImagesSettings, TreeSettings):
 class LabeledImages(NamedTuple):
     """Training images with part labels."""
 
-    pictures: NDArray[np.uint16]
-    """Of `pad_depth_image`, (n_pictures, height + 2, width + 2)."""
+    images: NDArray[np.uint16]
+    """Of `pad_depth_image`, (n_images, height + 2, width + 2)."""
     labels: NDArray[np.uint8]
-    """(n_pictures, height, width)."""
+    """(n_images, height, width)."""
 
 
 def train_pixel_forest(
@@ -104,7 +104,7 @@ def train_pixel_forest(
 
 def draw_images(source: ImageSource, blocks: Sequence[int]) -> LabeledImages:
     """Render some blocks of training images."""
-    drawn: list[RenderedMesh] = [one for block in blocks for one in source.pictures(block)]
+    drawn: list[RenderedMesh] = [one for block in blocks for one in source.render(block)]
     return LabeledImages(
         np.stack([pad_depth_image(picture.depth) for picture in drawn]),
         np.stack([picture.labels for picture in drawn]),
@@ -134,5 +134,5 @@ def draw_pixels(
     spots = np.concatenate(places)
     number, rest = np.divmod(spots, area)
     rows, columns = np.divmod(rest, seen.labels.shape[2])
-    views = pixel_features(seen.pictures, number, rows, columns, CAMERA)
+    views = pixel_features(seen.images, number, rows, columns, CAMERA)
     return views, seen.labels.reshape(-1)[spots]

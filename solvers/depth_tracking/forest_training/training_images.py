@@ -83,15 +83,15 @@ class ImageSource:
     settings: TrainingImagesSettings
     seed: int
 
-    def pictures(self, block: int) -> list[RenderedMesh]:
-        """Return pictures by `CAMERA`, (120, 160), of one shape of body in random poses."""
+    def render(self, block: int) -> list[RenderedMesh]:
+        """Return images by `CAMERA`, (120, 160), of one shape of body in random poses."""
         rng = np.random.default_rng((self.seed, block))
         body = vary_body(self.bodies, rng, self.settings)
         drawn = [self.mixer.draw(rng, self.settings.loose) for _ in range(IMAGES_PER_BODY)]
         poses = from_canonical(np.stack(drawn), body.skeleton, body.humanoid)
-        return [self._picture(body, pose, rng) for pose in poses]
+        return [self._render_pose(body, pose, rng) for pose in poses]
 
-    def _picture(
+    def _render_pose(
         self, body: SkinnedBody, pose: Array, rng: np.random.Generator
     ) -> RenderedMesh:
         vertices, _ = body.pose(pose, np.zeros(3))
@@ -100,17 +100,17 @@ class ImageSource:
             above = vertices[:, 2] > vertices[:, 2].min() + rng.uniform(0.0, FLOOR)
             triangles = triangles[above[triangles].all(axis=1)]
         vertices = _before_camera(vertices, rng, self.settings)
-        picture = render_mesh(vertices, triangles, body.vertex_parts, CAMERA)
+        image = render_mesh(vertices, triangles, body.vertex_parts, CAMERA)
         if rng.random() >= self.settings.noise:
-            return picture
-        usual, strength = SensorNoiseSettings(), rng.uniform(0.5, 1.5)
+            return image
+        default, strength = SensorNoiseSettings(), rng.uniform(0.5, 1.5)
         noise = replace(
-            usual,
-            jitter=0.5 * usual.jitter * strength,
-            disparity=usual.disparity * strength,
-            edge_holes=usual.edge_holes * strength,
+            default,
+            jitter=0.5 * default.jitter * strength,
+            disparity=default.disparity * strength,
+            edge_holes=default.edge_holes * strength,
         )
-        return add_sensor_noise(picture, CAMERA, rng, noise)
+        return add_sensor_noise(image, CAMERA, rng, noise)
 
 
 def image_source(

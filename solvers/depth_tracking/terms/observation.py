@@ -63,7 +63,7 @@ class Observation:
         return self.points_at(self.pixels)
 
     @cached_property
-    def index_picture(self) -> Integers:
+    def index_image(self) -> Integers:
         """Index in `points` of each pixel, -1 for none, shape (height * width,)."""
         indices = np.full(self.flat.shape, -1)
         indices[self.pixels] = np.arange(len(self.pixels))

@@ -61,7 +61,7 @@ def fit_quality(
     observation : Observation
     limit : float, metres
     """
-    image = registered.hypothesis.picture
+    image = registered.hypothesis.image
     observed = observation.flat[image.pixels]
     both = observed > 0.0
     overlap = int(both.sum())

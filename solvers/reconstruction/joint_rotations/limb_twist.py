@@ -44,7 +44,7 @@ class Limb(NamedTuple):
     upper: int
     lower: int
     end: int
-    bends_towards: tuple[float, float, float]
+    flexion_direction: tuple[float, float, float]
     role: str = ""
     """Role of the upper joint."""
 
@@ -71,13 +71,13 @@ class HingeAxes(NamedTuple):
     ----------
     vectors : shape (n_frames, 3), optional
         In the world; the length is their certainty. None without a library.
-    alone : bool
+    ignore_flexion : bool
         Whether to use only these, frame by frame; unknown hinges then mean zero axial
         rotation.
     """
 
     vectors: Array | None = None
-    alone: bool = False
+    ignore_flexion: bool = False
 
 
 UNKNOWN_HINGES = HingeAxes()
@@ -118,7 +118,7 @@ def rotations_from_flexion(
     """
     along = unit_vectors(skeleton.offsets[limb.lower])
     axis = rotate(rotations, along)
-    hinge = rotate(rotations, unit_vectors(np.cross(along, limb.bends_towards)))
+    hinge = rotate(rotations, unit_vectors(np.cross(along, limb.flexion_direction)))
     normal, bend = measure_flexion(
         axis, unit_vectors(positions[:, limb.end] - positions[:, limb.lower])
     )
@@ -128,7 +128,7 @@ def rotations_from_flexion(
         library_twists = _angles_or_zero(axis, hinge, hinges.vectors) * np.linalg.norm(
             hinges.vectors, axis=-1
         )
-    if hinges.alone:
+    if hinges.ignore_flexion:
         return _rotate_about_axis(rotations, axis, np.angle(library_twists))
     expected = ExpectedTwists(
         library_twists, LIBRARY_WEIGHT * (1.0 - (1.0 - OBSERVED_FRACTION) * limb_reliability)

@@ -47,7 +47,7 @@ class _ChildDirections(NamedTuple):
     """Shape (n_frames, n, 3)."""
     is_exclusive: Array
     """Whether only this joint points there, shape (n,)."""
-    known: NDArray[np.bool_]
+    observed: NDArray[np.bool_]
     """Whether both ends were observed, shape (n_frames, n)."""
 
 
@@ -211,7 +211,7 @@ class RotationSolver:
             rotations = _fill_undefined(
                 fit_rotations(directions.rest, directions.tracked),
                 above,
-                directions.known,
+                directions.observed,
             )
         aims = (
             np.flatnonzero(directions.is_exclusive)
@@ -231,7 +231,7 @@ class RotationSolver:
         return _fill_undefined(
             np.where(is_known, multiply(swing, rotations), np.nan),
             rotations,
-            directions.known[:, aims],
+            directions.observed[:, aims],
         )
 
 

@@ -29,11 +29,13 @@ class _Process(NamedTuple):
     start: Array
 
 
-def measurement_deviation(trust: Array, noise: float) -> Array:
+def measurement_deviation(reliability: Array, noise: float) -> Array:
     """Return the standard deviation of observations; infinite for unreliable joints."""
     with np.errstate(divide="ignore"):
         return np.where(
-            trust > MIN_RELIABILITY, noise / np.maximum(trust, MIN_RELIABILITY) ** 2, np.inf
+            reliability > MIN_RELIABILITY,
+            noise / np.maximum(reliability, MIN_RELIABILITY) ** 2,
+            np.inf,
         )
 
 

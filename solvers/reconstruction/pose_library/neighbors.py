@@ -28,7 +28,7 @@ class PostureQuery(NamedTuple):
     postures : shape (n_frames, 20, 3), meters
         NaN: missing.
     speeds : shape (n_frames, 20, 3), meters per second
-    trust : shape (n_frames, 20)
+    reliability : shape (n_frames, 20)
     pace : float, seconds
         Time that converts velocities to distances; 0: only the pose counts, as in
         [SHJT13].
@@ -36,13 +36,15 @@ class PostureQuery(NamedTuple):
 
     postures: Array
     speeds: Array
-    trust: Array
+    reliability: Array
     pace: float
 
     def slice(self, start: int, stop: int) -> "PostureQuery":
         """Return the frames from `start` up to, not including, `stop`."""
         part = slice(start, stop)
-        return PostureQuery(self.postures[part], self.speeds[part], self.trust[part], self.pace)
+        return PostureQuery(
+            self.postures[part], self.speeds[part], self.reliability[part], self.pace
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +146,7 @@ def nearest_postures(
 def _as_points(query: PostureQuery) -> tuple[Single, Single]:
     """Return positions and velocities without NaN, and their weights."""
     points = np.concatenate([query.postures, query.speeds], axis=1)
-    weights = np.concatenate([query.trust, query.pace**2 * query.trust], axis=1)
+    weights = np.concatenate([query.reliability, query.pace**2 * query.reliability], axis=1)
     is_observed = np.isfinite(points).all(axis=-1)
     points = np.where(is_observed[..., None], points, 0.0)
     return points.astype(np.float32), np.where(is_observed, weights, 0.0).astype(np.float32)

@@ -29,7 +29,7 @@ class EnergyTargets:
     ----------
     observed : shape (n_frames, 20, 3), meters
         NaN: not tracked.
-    trust : shape (n_frames, 20)
+    reliability : shape (n_frames, 20)
     neighbours : shape (n_frames, n_neighbours, 60), meters
     lengths : shape (20,), meters
     expected : shape (n_frames, 20, 3), meters, or None
@@ -38,7 +38,7 @@ class EnergyTargets:
     """
 
     observed: Array
-    trust: Array
+    reliability: Array
     neighbours: Array
     lengths: Array
     expected: Array | None = None
@@ -49,7 +49,7 @@ class EnergyTargets:
         return replace(
             self,
             observed=self.observed[frames],
-            trust=self.trust[frames],
+            reliability=self.reliability[frames],
             neighbours=self.neighbours[frames],
             expected=None if self.expected is None else self.expected[frames],
         )
@@ -81,7 +81,7 @@ def control_term(x: Array, targets: EnergyTargets) -> Array:
     """Squared distances from observed joints, weighted by reliability (eq. 10)."""
     differences = x - targets.observed[:, None]
     squares = np.nan_to_num(np.einsum("fsik,fsik->fsi", differences, differences))
-    return np.asarray(np.einsum("fsi,fi->fs", squares, targets.trust))
+    return np.asarray(np.einsum("fsi,fi->fs", squares, targets.reliability))
 
 
 def style_distances(x: Array, targets: EnergyTargets) -> Array:

@@ -87,7 +87,7 @@ def measure_reliability(
             positions, lengths - reference, parents, rate, settings.causal
         )
         model = CAUSAL_MODEL if settings.causal else CENTERED_MODEL
-        within = model.chance_within(signs, settings.tolerance)
+        within = model.probability_within(signs, settings.tolerance)
         combined = np.minimum(within, gaussian_mean(tracking, rate, settings))
     combined = np.where(visible, combined, 0.0)
     progress(1.0, "Measuring reliability")

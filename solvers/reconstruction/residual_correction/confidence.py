@@ -38,7 +38,7 @@ class Calibration(NamedTuple):
 IDENTITY_CALIBRATION = Calibration()
 
 
-def chance_within(
+def probability_within(
     variances: Array, distance: float, calibration: Calibration = IDENTITY_CALIBRATION
 ) -> Array:
     """Return the probability of a point within a distance of its mean (Maxwell distribution).

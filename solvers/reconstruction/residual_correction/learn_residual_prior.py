@@ -203,7 +203,7 @@ def _read_takes(
     for (observed, true), actor in zip(pairs, actor_names, strict=True):
         smoothed = smooth_postures(observed, calm)
         off = posture_positions(true) - smoothed.positions
-        errors = rotate_about_vertical(off, -smoothed.normalised.headings)
+        errors = rotate_about_vertical(off, -smoothed.normalized.headings)
         takes.append(Take(smoothed.features, errors, observed.frame_rate, actor))
     return takes
 

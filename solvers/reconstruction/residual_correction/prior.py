@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...archives import ArchiveLayout
 from ...motion.humanoid import MIRROR_JOINTS, N_JOINTS, POSTURE_JOINTS, mirror_postures
 from ...npz_members import flags, numbers, words
-from .confidence import IDENTITY_CALIBRATION, Calibration, chance_within
+from .confidence import IDENTITY_CALIBRATION, Calibration, probability_within
 from .inputs import (
     N_NEIGHBORHOOD_FEATURES,
     SmoothedPostures,
@@ -239,7 +239,7 @@ class ResidualPrior:
         `constant` states whether the variances include the constant offset.
         """
         calibration = Calibration(*map(float, self.calibration[0 if constant else 1]))
-        return chance_within(variances, distance, calibration)
+        return probability_within(variances, distance, calibration)
 
 
 def posture_components(features: Array, usual: Array, components: Array) -> Array:

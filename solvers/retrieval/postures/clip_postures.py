@@ -86,7 +86,7 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
     return ClipPostures(
         resize_postures(body.postures, ADULT_BONE_LENGTHS_M, scale),
         np.column_stack([
-            _actor_velocity(_per_second(scale * body.places, rate), body.headings),
+            _actor_velocity(_per_second(scale * body.hip_positions, rate), body.headings),
             _per_second(angles, rate),
         ]),
         rate,

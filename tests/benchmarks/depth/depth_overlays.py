@@ -26,7 +26,7 @@ def overlay(
 ) -> Image.Image:
     """Draw one frame, and joints (n, 3) of somebody else, 240 pixels about the actor."""
     seen, camera = depth.frame(frame), depth.camera
-    drawn = render_hypothesis(found.body, found.poses[frame], camera).picture.depth_picture()
+    drawn = render_hypothesis(found.body, found.poses[frame], camera).image.depth_image()
     image = Image.fromarray(_tinted(seen, drawn))
     image = image.resize((int(ENLARGED * camera.width), int(ENLARGED * camera.height)))
     pen = ImageDraw.Draw(image)

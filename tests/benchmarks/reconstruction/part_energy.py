@@ -105,10 +105,10 @@ def _all_asked() -> Iterator[Asked]:
 def _measured(asked: Asked, weights: EnergyWeights) -> tuple[Array, Array, Array, Array]:
     """Return errors of lost joints, of ways from the joint above, of lengths, and jerks."""
     demands = EnergyTargets(
-        asked.demands.observed, asked.demands.trust, asked.demands.neighbours,
+        asked.demands.observed, asked.demands.reliability, asked.demands.neighbours,
         asked.demands.lengths, weights=weights,
     )  # fmt: skip
-    made = asked.plain.put_back(solve_sequentially(asked.spaces, demands)[0])
+    made = asked.plain.to_world(solve_sequentially(asked.spaces, demands)[0])
     pair = asked.damaged.pair
     _, apart, _ = compared(made, truth_of(pair))
     return (

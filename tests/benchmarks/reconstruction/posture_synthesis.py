@@ -75,7 +75,7 @@ class _Quadratic:
         w, axes = demands.weights, spaces.axes
         told = np.isfinite(demands.observed).all(axis=-1)
         self.style = w.style / N_JOINTS
-        control = np.repeat(w.control * np.where(told, demands.trust, 0.0), 3, axis=1)
+        control = np.repeat(w.control * np.where(told, demands.reliability, 0.0), 3, axis=1)
         asked = np.nan_to_num(demands.observed).reshape(control.shape) - spaces.means
         weights, pull = control + self.style, control * asked
         if demands.expected is not None:

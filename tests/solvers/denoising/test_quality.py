@@ -75,7 +75,7 @@ def test_noise_is_measured_at_any_frame_rate(rng, leg, rate):
         leg, quaternion_from_rotation_vector(vectors), np.zeros((len(time), 3)), rate
     )
 
-    noise = [signal.noise for signal in measure_quality(motion).signals if signal.turns]
+    noise = [signal.noise for signal in measure_quality(motion).signals if signal.is_rotation]
 
     assert_allclose(noise, 0.05, rtol=0.3)
 

@@ -38,7 +38,7 @@ def arms_away(body, arms=0.7):
         ("leftFemurZ", 0.15), ("rightFemurZ", 0.15),
     ):  # fmt: skip
         pose[COORDINATES.index(name)] = angle
-    depth = render_hypothesis(body, pose, CAMERA).picture.depth_picture().astype(np.float32)
+    depth = render_hypothesis(body, pose, CAMERA).image.depth_image().astype(np.float32)
     return DepthRecording(CAMERA, 1, 30.0, lambda frame: depth)
 
 

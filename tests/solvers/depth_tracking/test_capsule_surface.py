@@ -17,7 +17,7 @@ def placed():
     pose = posed(leftHumerusZ=0.8, rightFemurX=0.4)
     frames = segment_frames(BODY, pose)
     surface = capsule_surface(BODY)
-    return surface, frames, *surface.placed(frames)
+    return surface, frames, *surface.at_pose(frames)
 
 
 def test_each_vertex_is_on_its_capsule_and_its_normal_is_the_trackers():

@@ -32,9 +32,7 @@ def capsule_person(**angles):
     pose[:3] = 0.05, -0.1, 2.6
     for name, angle in angles.items():
         pose[COORDINATES.index(name)] = angle
-    return pose, render_hypothesis(BODY, pose, CAMERA).picture.depth_picture().astype(
-        np.float32
-    )
+    return pose, render_hypothesis(BODY, pose, CAMERA).image.depth_image().astype(np.float32)
 
 
 @pytest.mark.parametrize(
@@ -78,8 +76,8 @@ def test_detect_pose_reports_parts_outside_of_the_image(forest):
     _, depth = capsule_person(leftHumerusZ=1.2, rightHumerusZ=1.2)
     depth[62:] = 0.0
     found = detect_pose(depth, CAMERA, BODY, forest)
-    assert {"leftFoot", "rightFoot"} <= set(found.unseen)
-    assert "head" not in found.unseen
+    assert {"leftFoot", "rightFoot"} <= set(found.missing_parts)
+    assert "head" not in found.missing_parts
     assert np.isfinite(found.pose).all()
 
 
@@ -133,8 +131,8 @@ def test_detect_pose_reports_missing_legs_of_an_upper_body(recordings, forest):
     near = np.where((depth > 0.5) & (depth < 1.6), depth, 0.0).astype(np.float32)
     camera = Camera(571.3, 571.3, 319.5, 239.5, 640, 480)
     found = detect_pose(near, camera, BODY, forest)
-    assert {"head", "chest"}.isdisjoint(found.unseen)
-    assert {"leftFoot", "rightFoot"} <= set(found.unseen)
+    assert {"head", "chest"}.isdisjoint(found.missing_parts)
+    assert {"leftFoot", "rightFoot"} <= set(found.missing_parts)
 
 
 def test_real_people_who_stand_have_their_heads_on_top(recordings, forest):

@@ -99,8 +99,8 @@ def striped(pose):
     frame = hypothesis.frames[hypothesis.segments]
     local = np.einsum("nji,nj->ni", frame[:, :3, :3], hypothesis.points - frame[:, :3, 3])
     color = np.zeros((120 * 160, 3))
-    color[hypothesis.picture.pixels] = 127.0 + 120.0 * np.sin(40.0 * local[:, 1:2])
-    depth = hypothesis.picture.depth_picture()
+    color[hypothesis.image.pixels] = 127.0 + 120.0 * np.sin(40.0 * local[:, 1:2])
+    depth = hypothesis.image.depth_image()
     return hypothesis, Observation(CAMERA, depth, lambda: color.reshape(120, 160, 3))
 
 
@@ -113,7 +113,7 @@ def test_previous_intensities_move_with_the_surface():
 
     remembered = previous_intensities(now, chosen, PreviousFrame(then.frames, before))
 
-    actual = after.intensities[now.picture.pixels]
+    actual = after.intensities[now.image.pixels]
     known = np.isfinite(remembered)
     assert known.mean() > 0.8
     off = np.abs(remembered - actual)[known]

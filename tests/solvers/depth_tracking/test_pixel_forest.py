@@ -73,7 +73,7 @@ def unseen(gait, bodies):
     """Pictures of another seed."""
     source = image_source([gait], bodies, SMALL, 99)
     seen = draw_images(source, range(1))
-    depth = np.where(seen.pictures == BACKGROUND_MM, 0, seen.pictures)[:, 1:-1, 1:-1] / 1000.0
+    depth = np.where(seen.images == BACKGROUND_MM, 0, seen.images)[:, 1:-1, 1:-1] / 1000.0
     return depth.astype(np.float32), seen.labels
 
 
@@ -148,7 +148,7 @@ def test_classify_pixels_matches_a_scalar_traversal(forest, unseen):
     for pixel in range(0, len(found.rows), 41):
         spot = int(found.rows[pixel]), int(found.columns[pixel])
         shares = np.mean([leaf(tree, depth, *spot) for tree in forest.trees], axis=0)
-        np.testing.assert_allclose(found.shares[pixel], shares, atol=1e-6)
+        np.testing.assert_allclose(found.probabilities[pixel], shares, atol=1e-6)
 
 
 def leaf(tree, depth, row, column):
@@ -201,7 +201,7 @@ def test_pixels_to_learn_from_are_of_bodies_and_none_twice(gait, bodies, rng):
 
 def test_an_empty_picture_has_no_parts(forest):
     found = classify_pixels(np.zeros((120, 160), np.float32), CAMERA, forest)
-    assert found.shares.shape == (0, N_PARTS)
+    assert found.probabilities.shape == (0, N_PARTS)
     assert found.labels.shape == (0,)
 
 
@@ -213,7 +213,7 @@ def test_a_forest_comes_back_from_its_file(forest, unseen, tmp_path):
         for name in ("splits", "offsets", "thresholds", "shares"):
             np.testing.assert_array_equal(getattr(mine, name), getattr(theirs, name))
     one, other = (classify_pixels(unseen[0][0], CAMERA, each) for each in (forest, loaded))
-    np.testing.assert_array_equal(one.shares, other.shares)
+    np.testing.assert_array_equal(one.probabilities, other.probabilities)
 
 
 @pytest.mark.parametrize(

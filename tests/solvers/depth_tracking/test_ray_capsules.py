@@ -67,12 +67,12 @@ def test_equals_marching_along_every_ray(rng):
     seen = depth > 0.0
     assert seen.sum() > 70
     # A ray that only grazes a capsule may slip between two steps of the naive way.
-    assert (seen != (picture.depth_picture() > 0.0)).sum() <= 3
-    both = seen & (picture.depth_picture() > 0.0)
-    off = np.abs(depth - picture.depth_picture())[both]
+    assert (seen != (picture.depth_image() > 0.0)).sum() <= 3
+    both = seen & (picture.depth_image() > 0.0)
+    off = np.abs(depth - picture.depth_image())[both]
     assert (off < 1e-6).mean() > 0.99
     segments = np.where(capsule >= 0, CAPSULE_SEGMENTS[capsule], -1)
-    assert (segments == picture.segment_picture())[both].mean() > 0.99
+    assert (segments == picture.segment_image())[both].mean() > 0.99
 
 
 def test_a_ball_on_the_axis_is_its_radius_nearer_than_its_centre():
@@ -88,10 +88,10 @@ def test_a_ball_on_the_axis_is_its_radius_nearer_than_its_centre():
 
     picture = cast_rays(body, segment_frames(body, pose), camera)
 
-    assert_allclose(picture.depth_picture()[20, 20], head[2] - 0.1, atol=1e-5)
+    assert_allclose(picture.depth_image()[20, 20], head[2] - 0.1, atol=1e-5)
     # The outline of a ball is where rays touch it: sine of the half angle = radius / distance.
     tangent = np.tan(np.arcsin(0.1 / head[2]))
-    seen_up = (picture.depth_picture()[:20, 20] > 0.0).sum()
+    seen_up = (picture.depth_image()[:20, 20] > 0.0).sum()
     assert seen_up == np.floor(400.0 * tangent)
 
 
@@ -107,16 +107,13 @@ def test_a_straight_limb_is_its_radius_nearer_than_its_axis():
     picture = cast_rays(body, segment_frames(body, pose), camera)
 
     radius = body.radii[CAPSULES.index("leftUpperLeg"), 1]
-    assert_allclose(picture.depth_picture()[:, 5], hip[2] - radius, atol=1e-9)
+    assert_allclose(picture.depth_image()[:, 5], hip[2] - radius, atol=1e-9)
 
 
 def test_an_elliptic_chest_is_wider_than_deep():
     body = default_body()
     front, side = (
-        (
-            cast_rays(body, segment_frames(body, standing(yaw=yaw)), CAMERA).segment_picture()
-            == 2
-        )
+        (cast_rays(body, segment_frames(body, standing(yaw=yaw)), CAMERA).segment_image() == 2)
         for yaw in (0.0, np.pi / 2)
     )
     # From the side the arm covers the chest; it is the hips, spine and head that tell.
@@ -129,7 +126,7 @@ def test_pixels_come_once_and_fewer_pixels_see_the_same():
 
     assert len(np.unique(fine.pixels)) == len(fine.pixels)
     assert (np.diff(fine.capsules) >= 0).all()
-    assert_allclose(coarse.depth_picture(), fine.depth_picture()[::2, ::2], atol=1e-12)
+    assert_allclose(coarse.depth_image(), fine.depth_image()[::2, ::2], atol=1e-12)
 
 
 def test_cast_rays_is_empty_outside_of_the_image():

@@ -26,7 +26,7 @@ BODY = default_body()
 
 def depth_rows(body, pose):
     hypothesis = render_hypothesis(body, pose, CAMERA)
-    observation = Observation(CAMERA, hypothesis.picture.depth_picture())
+    observation = Observation(CAMERA, hypothesis.image.depth_image())
     groups = group_pixels(hypothesis, observation, 0.08)
     return hypothesis, depth_image_term(hypothesis, observation, groups, 1.0)
 
@@ -42,9 +42,9 @@ def test_pixels_change_with_each_measure_as_the_jacobian_says(measure):
         )
         for sign in (1.0, -1.0)
     ]
-    pixels = hypothesis.picture.pixels
-    high, low = (one.picture.depth_picture().ravel()[pixels] for one in pictures)
-    same = pictures[0].picture.segment_picture() == pictures[1].picture.segment_picture()
+    pixels = hypothesis.image.pixels
+    high, low = (one.image.depth_image().ravel()[pixels] for one in pictures)
+    same = pictures[0].image.segment_image() == pictures[1].image.segment_image()
     facing = -np.einsum("ni,ni->n", hypothesis.normals, hypothesis.rays) > 0.4
     inner = same.ravel()[pixels] & facing & (high > 0.0) & (low > 0.0)
 

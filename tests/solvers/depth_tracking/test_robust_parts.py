@@ -44,7 +44,7 @@ def standing(**angles: float):
 
 def seen_parts(pose):
     """What the camera sees of the body: points, parts, rows and columns."""
-    picture = render_hypothesis(BODY, pose, CAMERA).picture
+    picture = render_hypothesis(BODY, pose, CAMERA).image
     rows, columns = np.divmod(picture.pixels, CAMERA.width)
     points = CAMERA.rays()[rows, columns] * picture.depths[:, None]
     frames = segment_frames(BODY, pose)
@@ -141,7 +141,7 @@ def test_distances_to_round_capsules_are_exact(rng):
 def test_the_true_pose_scores_best(rng):
     true = standing()
     hypothesis = render_hypothesis(BODY, true, CAMERA)
-    observation = Observation(CAMERA, hypothesis.picture.depth_picture())
+    observation = Observation(CAMERA, hypothesis.image.depth_image())
     _, parts, rows, columns = seen_parts(true)
     order = np.argsort(rows * CAMERA.width + columns)
     shares = np.eye(N_PARTS, dtype=np.float32)[parts[order]]

@@ -41,7 +41,7 @@ def test_equations_of_segments_equal_the_dense_ones(rng):
     weights = rng.uniform(0.5, 2.0, size=n)
 
     rows = SurfaceRows(
-        hypothesis.points, directions, residuals, weights, hypothesis.picture.capsules
+        hypothesis.points, directions, residuals, weights, hypothesis.image.capsules
     )
 
     found = equations_in_coordinates([segment_equations(rows)], hypothesis.twists)
@@ -71,17 +71,17 @@ def test_depth_of_a_pixel_changes_as_its_gradient_says():
     """Central differences of drawn pictures, where neither outline nor other part is near."""
     hypothesis, size = render_hypothesis(BODY, NATURAL, CAMERA), 1e-5
     exact = moved(hypothesis, depth_gradients(hypothesis))
-    pixels = hypothesis.picture.pixels
+    pixels = hypothesis.image.pixels
     facing = -np.einsum("ni,ni->n", hypothesis.normals, hypothesis.rays) > 0.4
     for coordinate in (0, 2, 3, 5, 8, 11, 14, 16, 18, 20, 21, 23, 29, 33):
         pictures = [
             render_hypothesis(
                 BODY, NATURAL + sign * size * np.eye(36)[coordinate], CAMERA
-            ).picture
+            ).image
             for sign in (1.0, -1.0)
         ]
-        high, low = (picture.depth_picture().ravel()[pixels] for picture in pictures)
-        same = (pictures[0].segment_picture() == pictures[1].segment_picture()).ravel()[pixels]
+        high, low = (picture.depth_image().ravel()[pixels] for picture in pictures)
+        same = (pictures[0].segment_image() == pictures[1].segment_image()).ravel()[pixels]
         inner = facing & same & (high > 0.0) & (low > 0.0)
         differences = (high - low)[inner] / (2 * size)
         assert inner.sum() > 900
@@ -133,7 +133,7 @@ def test_pixels_fall_into_the_groups_of_the_paper():
     arm = hypothesis.segments == SEGMENTS.index("rightLowerArm")
     assert arm[groups.off_actor].sum() > 0.7 * arm.sum()
     assert len(groups.uncovered) > 30
-    assert set(observation.pixels) <= set(hypothesis.picture.pixels) | set(groups.uncovered)
+    assert set(observation.pixels) <= set(hypothesis.image.pixels) | set(groups.uncovered)
     back = group_pixels(render_hypothesis(BODY, acted, CAMERA), observed(posed()), 0.08)
     assert len(back.too_near) > 10
 

@@ -101,16 +101,16 @@ def test_images_are_determined_by_their_block(person, gait):
     settings = TrainingImagesSettings()
     one, again = (image_source([gait], [person], settings, 3) for _ in range(2))
     other = image_source([gait], [person], settings, 4)
-    first, second, third = (source.pictures(2) for source in (one, again, other))
+    first, second, third = (source.render(2) for source in (one, again, other))
     assert len(first) == IMAGES_PER_BODY
     np.testing.assert_array_equal(first[4].depth, second[4].depth)
     assert not np.array_equal(first[4].depth, third[4].depth)
-    assert not np.array_equal(first[4].depth, one.pictures(3)[4].depth)
+    assert not np.array_equal(first[4].depth, one.render(3)[4].depth)
 
 
 def test_bodies_are_where_the_settings_say(person, gait):
     source = image_source([gait], [person], PLAIN, 0)
-    for picture in source.pictures(0) + source.pictures(1):
+    for picture in source.render(0) + source.render(1):
         seen = picture.depth > 0
         assert seen.sum() > 300
         np.testing.assert_array_equal(seen, picture.labels != NO_PART)
@@ -123,7 +123,7 @@ def test_feet_are_removed_with_the_requested_frequency(person, gait):
 
     def feet(lost):
         source = image_source([gait], [person], replace(PLAIN, lost_feet=lost), 0)
-        pictures = source.pictures(0) + source.pictures(1)
+        pictures = source.render(0) + source.render(1)
         return sum(np.isin(picture.labels, foot).sum() for picture in pictures)
 
     assert feet(1.0) < 0.7 * feet(0.0)

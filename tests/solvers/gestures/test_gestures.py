@@ -271,9 +271,9 @@ def test_break_in_the_stream_resets_gestures_but_not_the_mode():
     performance = perform_gestures(["clap", "rest"])
     recognizer = GestureRecognizer()
     for time, positions in zip(performance.times, performance.positions, strict=True):
-        recognizer.see(time, positions, np.ones(20))
+        recognizer.update(time, positions, np.ones(20))
 
-    recognizer.see(performance.times[-1] + 10.0, performance.positions[0], np.ones(20))
+    recognizer.update(performance.times[-1] + 10.0, performance.positions[0], np.ones(20))
 
     assert recognizer.mode is Mode.CAPTURING
 
@@ -292,4 +292,4 @@ def test_no_frame_raises(frames):
     recognizer = GestureRecognizer()
     for time, size, confidence in frames:
         positions = size * np.sin(np.arange(60.0)).reshape(20, 3)
-        recognizer.see(time, positions, np.full(20, confidence))
+        recognizer.update(time, positions, np.full(20, confidence))

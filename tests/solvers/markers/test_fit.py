@@ -27,15 +27,18 @@ def started():
     """A body, the markers seen, and poses that are a little off."""
     tracks = markers_on(walking_gait(GaitSettings(duration=0.5, frame_rate=20.0)))
     found = find_marker_set(tracks.names).markers
-    spots = {
-        spot: tracks.positions[:, tracks.names.index(name)] for spot, name in found.items()
+    landmarks = {
+        landmark: tracks.positions[:, tracks.names.index(name)]
+        for landmark, name in found.items()
     }
-    centres = joint_centres(spots)
-    body, turns = build_body(centres, spots)
-    seen = np.stack([spots[marker.spot] for marker in body.markers], axis=1)
-    off = Poses(turns, centres.positions["hips"])
+    centres = joint_centres(landmarks)
+    body, rotations = build_body(centres, landmarks)
+    seen = np.stack([landmarks[marker.landmark] for marker in body.markers], axis=1)
+    off = Poses(rotations, centres.positions["hips"])
     rng = np.random.default_rng(1)
-    off = apply_step(body, off, 0.05 * rng.normal(size=(len(seen), 3 + 3 * len(body.turning))))
+    off = apply_step(
+        body, off, 0.05 * rng.normal(size=(len(seen), 3 + 3 * len(body.rotating_joints)))
+    )
     return body, seen, off
 
 

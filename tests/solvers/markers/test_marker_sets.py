@@ -3,7 +3,7 @@
 import pytest
 
 from solvers.markers import find_marker_set
-from solvers.markers.marker_sets import SETS, SPOTS
+from solvers.markers.marker_sets import LANDMARKS, SETS
 from solvers.recordings.joint_files.ui_prmd import MARKERS
 
 
@@ -11,8 +11,8 @@ from solvers.recordings.joint_files.ui_prmd import MARKERS
 def test_finds_each_set_whole(title):
     found = find_marker_set(list(SETS[title]))
 
-    assert (found.name, found.score, found.lacks()) == (title, 1.0, ())
-    assert set(found.markers) <= set(SPOTS)
+    assert (found.name, found.score, found.missing_landmarks()) == (title, 1.0, ())
+    assert set(found.markers) <= set(LANDMARKS)
 
 
 def test_the_sets_are_as_large_as_they_are_said_to_be():
@@ -39,11 +39,11 @@ def test_of_two_people_the_one_with_more_markers_wins_unless_the_other_is_named(
 def test_says_what_a_body_cannot_do_without():
     names = [name for name in MARKERS if name not in {"RKNE", "LPSI"}]
 
-    assert find_marker_set(names).lacks() == ("RKNE", "LPSI and RPSI, or SACR")
+    assert find_marker_set(names).missing_landmarks() == ("RKNE", "LPSI and RPSI, or SACR")
 
 
 @pytest.mark.parametrize("names", [[], ["point_1"], ["Hips", ""], ["  "]])
 def test_unknown_names_are_no_set(names):
     found = find_marker_set(names)
 
-    assert found.score == 0.0 and not found.markers and len(found.lacks()) > 5
+    assert found.score == 0.0 and not found.markers and len(found.missing_landmarks()) > 5

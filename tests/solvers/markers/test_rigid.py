@@ -117,13 +117,13 @@ def test_a_marker_that_strays_is_brought_back_and_moves_the_others_little(take):
 
 
 def test_kabsch_gives_the_turn_back(rng):
-    turns = Rotation.random(10, random_state=1).as_matrix()
+    rotations = Rotation.random(10, random_state=1).as_matrix()
     shifts = rng.normal(size=(10, 3))
-    places = np.einsum("fij,pj->fpi", turns, HEAD) + shifts[:, None]
+    places = np.einsum("fij,pj->fpi", rotations, HEAD) + shifts[:, None]
 
     found, where = fit_rigid_transform(HEAD, places)
 
-    assert_allclose(found, turns, atol=1e-9)
+    assert_allclose(found, rotations, atol=1e-9)
     assert_allclose(where, shifts, atol=1e-9)
 
 

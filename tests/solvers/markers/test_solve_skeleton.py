@@ -138,8 +138,8 @@ def test_one_wrong_marker_pulls_little(walk):
 
 
 def test_legs_alone_make_a_skeleton_of_legs(walk):
-    spots = ("FWT", "BWT", "THI", "KNE", "SHN", "ANK", "HEE", "TOE", "MT5")
-    keep = frozenset(side + spot for side in "LR" for spot in spots)
+    landmarks = ("FWT", "BWT", "THI", "KNE", "SHN", "ANK", "HEE", "TOE", "MT5")
+    keep = frozenset(side + landmark for side in "LR" for landmark in landmarks)
 
     solved = solve_skeleton(markers_on(walk, keep=keep))
 

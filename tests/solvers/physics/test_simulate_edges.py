@@ -116,7 +116,7 @@ def test_unstable_engine_returns_the_take(monkeypatch, plant):
 
     result = simulate(WALK, settings=SimulateSettings(plant=plant))
 
-    assert np.isfinite(result.carried).all() and np.isfinite(result.support).all()
+    assert np.isfinite(result.foot_loads).all() and np.isfinite(result.support).all()
     failed = ~result.followed
     assert failed.any()
     assert np.array_equal(result.motion.rotations[failed], WALK.rotations[failed])

@@ -56,8 +56,8 @@ def kept(shaking):
 
 
 def test_loaded_foot_rests_on_a_fixed_point(body, by_friction, kept):
-    assert np.array_equal(kept.carried, by_friction.carried)
-    loaded = kept.carried[:-1] > LOADED
+    assert np.array_equal(kept.foot_loads, by_friction.foot_loads)
+    loaded = kept.foot_loads[:-1] > LOADED
     assert loaded.mean() > 0.3
     slow = steps(body, by_friction.motion)[loaded] < 0.3 / 60.0
 
@@ -99,7 +99,7 @@ def test_ground_carries_the_weight_in_stance(walk):
     """Newton's third law, on average over the steps of a walk that comes back to its height."""
     result = simulate(walk)
 
-    carried = result.carried.sum(axis=1)[30:-30].mean()
+    carried = result.foot_loads.sum(axis=1)[30:-30].mean()
     helped = result.support.mean()
     assert abs(carried - 1.0) < 0.05 + helped
 
@@ -123,7 +123,7 @@ def test_hop_has_a_flight_phase(walk):
     in_air = ~result.contacts.any(axis=1)
     assert in_air[33:39].all()
     assert result.contacts[:20].any(axis=1).mean() > 0.9
-    assert result.carried[33:39].max() == 0.0
+    assert result.foot_loads[33:39].max() == 0.0
     rise = np.ptp(result.motion.root_positions[:, 2])
     assert 0.4 * flight.max() < rise < 1.3 * flight.max()
 

@@ -12,7 +12,7 @@ from solvers.reconstruction import correct_postures, learn_residual_prior, load_
 from solvers.reconstruction.residual_correction.confidence import (
     IDENTITY_CALIBRATION,
     Calibration,
-    chance_within,
+    probability_within,
 )
 from solvers.reconstruction.residual_correction.learn_confidence import (
     calibrate_confidence,
@@ -42,7 +42,7 @@ def test_an_unknown_variance_is_averaged_over(rng):
     deviation = 0.03 * np.exp(0.5 * spread * rng.normal(size=400_000))
     drawn = np.linalg.norm(rng.normal(size=(400_000, 3)), axis=-1) * deviation
 
-    told = chance_within(np.array(0.03**2), 0.05, Calibration(spread=spread))
+    told = probability_within(np.array(0.03**2), 0.05, Calibration(spread=spread))
 
     assert told == pytest.approx((drawn < 0.05).mean(), abs=0.005)
 
@@ -51,14 +51,14 @@ def test_differences_between_joints_shrink_toward_their_level():
     level = np.log(0.03**2)
     variances = np.exp(level + np.array([-1.0, 0.0, 1.0]))
 
-    told = chance_within(variances, 0.05, Calibration(0.0, 0.5, 0.0))
+    told = probability_within(variances, 0.05, Calibration(0.0, 0.5, 0.0))
 
-    assert_allclose(told, chance_within(np.exp(level + np.array([-0.5, 0.0, 0.5])), 0.05))
+    assert_allclose(told, probability_within(np.exp(level + np.array([-0.5, 0.0, 0.5])), 0.05))
 
 
 @pytest.mark.parametrize("slope", [0.0, 0.5, 1.0])
 def test_calibration_of_unknown_variances_has_no_confidence(slope):
-    assert chance_within(np.array(np.inf), 0.05, Calibration(0.0, slope, 1.0)) == 0.0
+    assert probability_within(np.array(np.inf), 0.05, Calibration(0.0, slope, 1.0)) == 0.0
 
 
 def test_slope_and_spread_are_those_of_actors_who_were_left_out(rng):
@@ -104,7 +104,7 @@ def test_confidence_is_right_of_new_actors_whose_sensors_err_by_any_amount(rng):
     right = (np.linalg.norm(off, axis=-1) < 0.05).mean(axis=(0, 2))
 
     plain, told = (
-        chance_within(variances, 0.05, each)
+        probability_within(variances, 0.05, each)
         for each in (
             IDENTITY_CALIBRATION,
             fit_calibration(np.concatenate(points), keep_level=True),

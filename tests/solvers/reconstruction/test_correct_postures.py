@@ -18,7 +18,7 @@ from solvers.reconstruction import (
     correct_postures,
     learn_residual_prior,
 )
-from solvers.reconstruction.residual_correction.confidence import chance_within
+from solvers.reconstruction.residual_correction.confidence import probability_within
 from solvers.reconstruction.residual_correction.correct_postures import _frame_by_frame
 from solvers.reconstruction.residual_correction.smooth_trajectories import (
     filter_trajectories,
@@ -196,10 +196,10 @@ def test_the_published_frame_minimises_the_published_energy(rng):
 
 def test_chance_within_is_that_of_drawing(rng):
     drawn = np.linalg.norm(rng.normal(scale=0.03, size=(200_000, 3)), axis=-1)
-    assert chance_within(np.array(0.03**2), 0.05) == pytest.approx(
+    assert probability_within(np.array(0.03**2), 0.05) == pytest.approx(
         (drawn < 0.05).mean(), abs=0.005
     )
-    assert chance_within(np.array(np.inf), 0.05) == 0.0
+    assert probability_within(np.array(np.inf), 0.05) == 0.0
 
 
 def test_actor_labels_separate_actor_specific_errors():

@@ -162,7 +162,7 @@ def test_reconstruction_returns_the_twist_of_its_library(gait):
     assert residuals.twists is None
     for one, alone in ((both, False), (published, True)):
         assert one.twists is not None
-        assert one.twists.alone is alone
+        assert one.twists.ignore_flexion is alone
         assert one.twists.vectors.shape == (gait.n_frames, 4)
         assert np.abs(one.twists.vectors).min() > 0.5
     assert both.motion.observed.all()

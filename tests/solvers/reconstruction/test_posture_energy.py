@@ -125,7 +125,7 @@ def test_energy_is_that_of_equations_10_to_15(problem):
     spaces, asked = problem
     expected = asked.neighbours[:, 0].reshape(-1, 20, 3) + 0.01
     asked = EnergyTargets(
-        asked.observed, asked.trust, asked.neighbours, asked.lengths, expected,
+        asked.observed, asked.reliability, asked.neighbours, asked.lengths, expected,
         EnergyWeights(1.0, 0.5, 1.5, 0.25),
     )  # fmt: skip
     x = spaces.postures(np.zeros_like(spaces.spreads))
@@ -134,7 +134,7 @@ def test_energy_is_that_of_equations_10_to_15(problem):
         for joint in range(20):
             off = posture[joint] - asked.observed[frame, joint]
             if np.isfinite(off).all():
-                control += asked.trust[frame, joint] * off @ off
+                control += asked.reliability[frame, joint] * off @ off
             off = posture[joint] - expected[frame, joint]
             continuity += off @ off / 20
             if joint:
@@ -176,7 +176,9 @@ def test_the_probable_posture_is_the_conditional_mean(problem):
     for frame in range(N_FRAMES):
         axes, real = spaces.axes[frame], spaces.spreads[frame] > 1e-8
         C = (axes[:, real] * spaces.spreads[frame][real]) @ axes[:, real].T
-        trust = np.where(np.isfinite(asked.observed[frame]).all(-1), asked.trust[frame], 0.0)
+        trust = np.where(
+            np.isfinite(asked.observed[frame]).all(-1), asked.reliability[frame], 0.0
+        )
         rows = np.flatnonzero(np.repeat(trust > 0.0, 3))
         noise = np.diag(MODEL_ERROR_M**2 / np.repeat(trust, 3)[rows])
         gain = C[:, rows] @ np.linalg.inv(C[np.ix_(rows, rows)] + noise)

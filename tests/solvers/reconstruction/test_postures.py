@@ -56,7 +56,7 @@ def test_normal_postures_do_not_depend_on_position_and_heading(walk):
     moved = rotate_about_vertical(walk, np.full(len(walk), 2.5)) + np.array([3.0, -1.0, 0.2])
     one, other = normalize_postures(walk, 30.0), normalize_postures(moved, 30.0)
     np.testing.assert_allclose(one.postures, other.postures, atol=1e-9)
-    np.testing.assert_allclose(other.put_back(other.postures), moved, atol=1e-12)
+    np.testing.assert_allclose(other.to_world(other.postures), moved, atol=1e-12)
 
 
 def test_a_normal_posture_faces_forward_with_its_left_at_plus_x(walk):

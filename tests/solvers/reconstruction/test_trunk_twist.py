@@ -249,19 +249,19 @@ def test_a_library_keeps_twists_and_their_mirror_images(gait, tmp_path):
     library = build_posture_library([twisting(gait, angles)])
     plain = build_posture_library([gait])
     assert (
-        np.angle(library.known_twists[:, 0]).mean()
-        > 0.1 + np.angle(plain.known_twists[:, 0]).mean()
+        np.angle(library.twists_or_zero[:, 0]).mean()
+        > 0.1 + np.angle(plain.twists_or_zero[:, 0]).mean()
     )
-    sides = np.sort(np.angle(library.known_twists[:, :2]), axis=0)
+    sides = np.sort(np.angle(library.twists_or_zero[:, :2]), axis=0)
     assert_allclose(sides[:, 0], -sides[::-1, 1], atol=0.05)
 
     library.save(tmp_path / "kept.npz")
     read = load_posture_library(tmp_path / "kept.npz")
 
-    assert_allclose(read.known_twists, library.known_twists, atol=0.006)
+    assert_allclose(read.twists_or_zero, library.twists_or_zero, atol=0.006)
     both = merge_posture_libraries(library, replace(library, twists=None))
-    assert_allclose(both.known_twists[: library.n_postures], library.known_twists)
-    assert not both.known_twists[library.n_postures :].any()
+    assert_allclose(both.twists_or_zero[: library.n_postures], library.twists_or_zero)
+    assert not both.twists_or_zero[library.n_postures :].any()
 
 
 def test_libraries_without_twists_merge_to_one_without(gait):
@@ -284,5 +284,5 @@ def test_older_files_are_read_and_damaged_ones_refused(gait, tmp_path):
     old = load_posture_library(path)
 
     assert old.twists is None
-    assert not old.known_twists.any()
+    assert not old.twists_or_zero.any()
     assert_allclose(old.directions, library.directions, atol=2e-3)

@@ -111,7 +111,7 @@ def test_the_same_point_goes_as_far_and_no_shift_is_needed_where_it_does(rng):
 def test_a_sunken_foot_is_lifted(sunk):
     rig = mixamo()
     body = find_body(rig, find_humanoid_map(rig), "target's")
-    pose = Motion(body.skeleton, np.tile([1.0, 0, 0, 0], (1, len(body.kept), 1)),
+    pose = Motion(body.skeleton, np.tile([1.0, 0, 0, 0], (1, len(body.joint_indices), 1)),
                   body.rest[:1], 30.0)  # fmt: skip
     world = forward_kinematics(pose)
     foot, ball = body.joints["leftFoot"], body.joints["leftToes"]
@@ -119,7 +119,7 @@ def test_a_sunken_foot_is_lifted(sunk):
 
     sole = sole_above_ground(body, world, "left", ankle, 0.0, Depths(*np.zeros((3, 1))), 30.0)
 
-    way = rotate(sole.turn, body.rest[ball] - body.rest[foot])
+    way = rotate(sole.rotation, body.rest[ball] - body.rest[foot])
     height = (ankle + way)[0, 2] + sole.lift[0] - body.rest[ball, 2]
     assert -0.004 <= height <= 1e-9
     assert -0.004 <= sole.lift[0] - sunk <= 1e-9

@@ -95,7 +95,7 @@ def test_toes_bend_no_further_than_toes_do():
 def test_an_ankle_on_the_floor_is_lifted_to_where_its_heel_is_on_it(tilt, least):
     """Toes up by 90 degrees, as who lies on the back, the heel is behind the ankle."""
     body = find_body(RIG, find_humanoid_map(RIG), "target's")
-    pose = np.tile([1.0, 0.0, 0.0, 0.0], (1, len(body.kept), 1))
+    pose = np.tile([1.0, 0.0, 0.0, 0.0], (1, len(body.joint_indices), 1))
     pose[:, body.joints["leftFoot"]] = turned(tilt)
     world = forward_kinematics(Motion(body.skeleton, pose, body.rest[:1], 30.0))
     ankle = body.rest[[body.joints["leftFoot"]]]

@@ -9,7 +9,7 @@ from solvers.motion import Motion, Skeleton, find_humanoid_map, forward_kinemati
 from solvers.motion import motion_from_points as from_points
 from solvers.recordings import read_recording
 from solvers.retargeting import RetargetSettings, retarget
-from solvers.retargeting.uneven_legs import Leg, level_ankles
+from solvers.retargeting.leg_lengths import Leg, level_ankles
 from solvers.samples import GaitSettings, walking_gait
 
 STANDS = np.ones(1, dtype=np.bool_)

@@ -8,7 +8,7 @@ from rigs import RIGS, mixamo
 
 from solvers.motion import Motion, Skeleton, find_humanoid_map, forward_kinematics, reach
 from solvers.recordings import read_recording
-from solvers.retargeting.low_hands import ease_into_extension
+from solvers.retargeting.hand_heights import ease_into_extension
 from solvers.rotations.representations import quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 

@@ -18,7 +18,7 @@ class Leg(NamedTuple):
     """Target position of the ankle, shape (n_frames, 3), metres."""
     distance: Array
     """Distance from hip to ankle with the knee as straight as the source's, (n_frames,)."""
-    stands: Flags
+    in_contact: Flags
     """Whether the foot is in contact, shape (n_frames,)."""
     excess: float
     """Length of the source's leg minus the mean of both, scaled, metres."""
@@ -33,7 +33,7 @@ def level_ankles(left: Leg, right: Leg) -> list[Array]:
     the source's, but at most by the difference of the legs. The correction is constant over
     time, so that no foot slides.
     """
-    if not (left.stands.any() and right.stands.any()):
+    if not (left.in_contact.any() and right.in_contact.any()):
         return [left.ankle, right.ankle]
     difference = 0.5 * (_missing_height(left) - _missing_height(right))
     lift = min(max(difference, min(left.excess, 0.0)), max(left.excess, 0.0))
@@ -46,4 +46,4 @@ def _missing_height(leg: Leg) -> float:
     leg_vector = leg.ankle - leg.hip
     horizontal_square = (leg_vector[:, :2] ** 2).sum(axis=1)
     height = -np.sqrt(np.maximum(leg.distance**2 - horizontal_square, 0.0))
-    return float(np.median((height - leg_vector[:, 2])[leg.stands]))
+    return float(np.median((height - leg_vector[:, 2])[leg.in_contact]))
