@@ -15,7 +15,7 @@ Depth = NDArray[np.floating[Any]]
 Points = NDArray[np.float64]
 
 MAX_STEP_M, MAX_STEP_PER_M2 = 0.05, 0.005
-"""Maximum depth step between pixels of one surface: metres, and growth with squared depth."""
+"""Maximum depth step between pixels of one surface: meters, and growth with squared depth."""
 MAX_PIECE_DISTANCE_M = 0.5
 """A small piece, such as a hand held forward, belongs to a body within this distance."""
 MAX_LIMB_FRACTION, MAX_LIMB_GAP_M = 0.4, 0.3
@@ -35,15 +35,15 @@ class Bodies:
 
     Attributes
     ----------
-    depth : float array, shape (height, width), metres
+    depth : float array, shape (height, width), meters
         The depth image.
     step : int
         Step of the sampled columns and rows.
     labels : int array, shape (-(-height // step), -(-width // step))
         0: none; 1: the body with the largest surface; 2: the next, and so on.
-    areas : float array, shape (n,), square metres
+    areas : float array, shape (n,), square meters
         Visible surface of each body, as if it faced the camera.
-    centers : float array, shape (n, 3), metres
+    centers : float array, shape (n, 3), meters
         Median point of each body, camera frame.
     """
 
@@ -71,7 +71,7 @@ class Bodies:
 
 
 def find_bodies(depth: Depth, camera: Camera, min_area: float) -> Bodies:
-    """Segment a depth image into bodies of at least `min_area` square metres of surface.
+    """Segment a depth image into bodies of at least `min_area` square meters of surface.
 
     Neighboring pixels are connected if their depths differ by no more than the sensor noise.
     Smaller pieces join the nearest body within reach, or none. Large images are subsampled,
@@ -168,7 +168,7 @@ def _links(numbers: NDArray[Any], depth: Depth, axis: int) -> NDArray[Any]:
 
 
 def _surface(depth: Depth, camera: Camera) -> NDArray[np.float64]:
-    """Return the surface of each pixel, square metres, as if it faced the camera."""
+    """Return the surface of each pixel, square meters, as if it faced the camera."""
     return np.asarray(depth, dtype=np.float64) ** 2 / (camera.fx * camera.fy)
 
 
@@ -203,7 +203,7 @@ def _join_small_pieces(
 
 
 def _excess_distance(own: Points, body: Points) -> float:
-    """Return the distance beyond reach, metres; at or below 0 the piece belongs to the body."""
+    """Return the distance beyond reach, meters; at or below 0 the piece belongs to the body."""
     box = np.maximum(body.min(axis=0) - own.max(axis=0), own.min(axis=0) - body.max(axis=0))
     if box.max() > MAX_PIECE_DISTANCE_M:
         return float(box.max())
@@ -212,6 +212,6 @@ def _excess_distance(own: Points, body: Points) -> float:
 
 
 def _excess_gap(own: Points, body: Points) -> float:
-    """Return the gap between two point sets minus `MAX_LIMB_GAP_M`, metres."""
+    """Return the gap between two point sets minus `MAX_LIMB_GAP_M`, meters."""
     subset = own[:: max(1, len(own) // POINT_STEP)]
     return float(np.linalg.norm(subset[:, np.newaxis] - body, axis=-1).min()) - MAX_LIMB_GAP_M

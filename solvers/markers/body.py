@@ -19,7 +19,7 @@ class Poses(NamedTuple):
     rotations: Array
     """Local rotations, shape (n_frames, n_joints, 3, 3)."""
     roots: Array
-    """Positions of the root, shape (n_frames, 3), metres."""
+    """Positions of the root, shape (n_frames, 3), meters."""
 
 
 class WorldBody(NamedTuple):
@@ -28,9 +28,9 @@ class WorldBody(NamedTuple):
     frames: Array
     """Axes of all bones, shape (n_frames, n_joints, 3, 3)."""
     joints: Array
-    """Shape (n_frames, n_joints, 3), metres."""
+    """Shape (n_frames, n_joints, 3), meters."""
     markers: Array
-    """Shape (n_frames, n_markers, 3), metres."""
+    """Shape (n_frames, n_markers, 3), meters."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,9 +41,9 @@ class Body:
     """Parents precede children."""
     markers: tuple[MarkerPrior, ...]
     offsets: Array
-    """Offset of each joint from its parent in the T-pose, shape (n_joints, 3), metres."""
+    """Offset of each joint from its parent in the T-pose, shape (n_joints, 3), meters."""
     marker_offsets: Array
-    """Offset of each marker from its anchor in bone axes, shape (n_markers, 3), metres."""
+    """Offset of each marker from its anchor in bone axes, shape (n_markers, 3), meters."""
 
     @cached_property
     def index(self) -> dict[str, int]:
@@ -72,7 +72,7 @@ class Body:
 
     @cached_property
     def noise(self) -> Array:
-        """Standard deviation of each marker on its bone, metres."""
+        """Standard deviation of each marker on its bone, meters."""
         return np.array([marker.noise for marker in self.markers])
 
     def path(self, joint: int) -> list[int]:

@@ -22,7 +22,7 @@ class JointPrior(NamedTuple):
     name: str
     parent: str
     play: Triple = NO_PRIOR
-    """Standard deviation of each coordinate of the offset from the parent, metres; 0: fixed."""
+    """Standard deviation of each coordinate of the offset from the parent, meters; 0: fixed."""
     ease: Triple = NO_PRIOR
     """Standard deviation of the rotation vector, radians; 0: no prior."""
     hinge: Triple = NO_PRIOR
@@ -37,11 +37,11 @@ class MarkerPrior(NamedTuple):
     bone: str
     anchor: str
     play: float
-    """Standard deviation of each coordinate of its offset from the anchor, metres."""
+    """Standard deviation of each coordinate of its offset from the anchor, meters."""
     offset: Triple | None = None
     """Mean offset in bone axes; None: from the initial poses."""
     noise: float = 0.010
-    """Standard deviation of its soft-tissue motion on the bone, metres."""
+    """Standard deviation of its soft-tissue motion on the bone, meters."""
 
 
 TRUNK_FLEXION_RAD: Triple = (0.4, 0.4, 0.4)

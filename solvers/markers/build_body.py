@@ -17,8 +17,8 @@ from .body_tables import (
     MarkerPrior,
     Triple,
 )
-from .centres import Centres
 from .initial_poses import bone_frames
+from .joint_centers import JointCenters
 from .vectors import median
 
 Array = NDArray[np.float64]
@@ -84,7 +84,7 @@ def _to_side(offset: Triple, sign: float) -> Triple:
     return (sign * offset[0], offset[1], offset[2])
 
 
-def build_body(centres: Centres, landmarks: Mapping[str, Array]) -> tuple[Body, Array]:
+def build_body(centers: JointCenters, landmarks: Mapping[str, Array]) -> tuple[Body, Array]:
     """Return the initial body, and the local rotations of its bones in all frames.
 
     Lengths are medians over frames and sides. The rotations have shape (n_frames, n_joints,
@@ -93,20 +93,20 @@ def build_body(centres: Centres, landmarks: Mapping[str, Array]) -> tuple[Body, 
     joints = joints_with(landmarks)
     names = [joint.name for joint in joints]
     markers = markers_with(landmarks, names)
-    frames = bone_frames(centres, landmarks, names)
-    offsets = np.array([_offset(joint, centres, frames) for joint in joints])
+    frames = bone_frames(centers, landmarks, names)
+    offsets = np.array([_offset(joint, centers, frames) for joint in joints])
     offsets = _symmetric(offsets, names)
     offsets[0] = [0.0, 0.0, _hips_height(offsets, names)]
-    marker_offsets = [_marker_offset(marker, centres, frames, landmarks) for marker in markers]
+    marker_offsets = [_marker_offset(marker, centers, frames, landmarks) for marker in markers]
     body = Body(joints, markers, offsets, np.array(marker_offsets))
     return body, local_rotations(frames, joints, len(landmarks["LASI"]))
 
 
-def _offset(joint: JointPrior, centres: Centres, frames: Mapping[str, Array]) -> Array:
+def _offset(joint: JointPrior, centers: JointCenters, frames: Mapping[str, Array]) -> Array:
     """Return the initial offset of a joint from its parent, in the T-pose."""
     side = next((side for side in SIDES if joint.name.startswith(side)), "")
     sign = SIDES[side][1] if side else 1.0
-    part, scale = joint.name.removeprefix(side), centres.scale
+    part, scale = joint.name.removeprefix(side), centers.scale
     fixed = {
         "hips": np.zeros(3),
         "head_end": np.array([0.0, 0.0, HEAD_END_M]),
@@ -115,7 +115,7 @@ def _offset(joint: JointPrior, centres: Centres, frames: Mapping[str, Array]) ->
     }
     if part in fixed:
         return scale * fixed[part]
-    start, stop = centres.positions[joint.parent], centres.positions[joint.name]
+    start, stop = centers.positions[joint.parent], centers.positions[joint.name]
     axis = {"chest": 2, "neck": 2, "LowerArm": 0, "Hand": 0}.get(part)
     axis = 2 if part in {"LowerLeg", "Foot"} else axis
     if axis is None:
@@ -156,12 +156,12 @@ def _hips_height(offsets: Array, names: list[str]) -> float:
 
 def _marker_offset(
     marker: MarkerPrior,
-    centres: Centres,
+    centers: JointCenters,
     frames: Mapping[str, Array],
     landmarks: Mapping[str, Array],
 ) -> Array:
     """Return the offset of a marker: the mean one, or that in the initial poses."""
     if marker.offset is not None:
-        return centres.scale * np.array(marker.offset)
-    displacement = landmarks[marker.landmark] - centres.positions[marker.anchor]
+        return centers.scale * np.array(marker.offset)
+    displacement = landmarks[marker.landmark] - centers.positions[marker.anchor]
     return median(np.einsum("fji,fj->fi", frames[marker.bone], displacement))

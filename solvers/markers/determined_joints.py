@@ -43,7 +43,7 @@ def find_determined_joints(body: Body, observed: Array, poses: Poses) -> NDArray
 
 
 def _standard_deviations(body: Body, observed: Array, poses: Poses) -> Array:
-    """Return standard deviations of the root position, metres, and all rotations, radians.
+    """Return standard deviations of the root position, meters, and all rotations, radians.
 
     Shape (n_frames, 1 + n_rotating_joints); the largest of three coordinates.
     """

@@ -30,7 +30,7 @@ class Residuals(NamedTuple):
     slopes: Array
     """Derivatives by the pose, shape (n_frames, n_residuals, n_unknowns)."""
     weights: Array
-    """Weights of the markers, per metre, shape (n_frames, n_markers, 1)."""
+    """Weights of the markers, per meter, shape (n_frames, n_markers, 1)."""
     world: WorldBody
 
 
@@ -50,7 +50,7 @@ def fit_poses(
     Parameters
     ----------
     body : Body
-    observed : shape (n_frames, n_markers, 3), metres
+    observed : shape (n_frames, n_markers, 3), meters
         In the order of the body's markers; NaN: missing.
     poses : Poses
         Initial poses.
@@ -60,7 +60,7 @@ def fit_poses(
     References
     ----------
     .. [1] Lu, O'Connor (1999). Bone position estimation from skin marker co-ordinates using
-       global optimisation with joint constraints. J Biomech 32(2).
+       global optimization with joint constraints. J Biomech 32(2).
        doi:10.1016/S0021-9290(98)00158-4
     """
     parts = []

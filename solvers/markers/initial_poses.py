@@ -12,7 +12,7 @@ from ..rotations import (
     rotation_vector_from_quaternion,
 )
 from .body_tables import SIDES
-from .centres import Centres
+from .joint_centers import JointCenters
 from .vectors import frame, median, swing_frames, unit
 
 Array = NDArray[np.float64]
@@ -23,21 +23,21 @@ MAX_SLOPE_SINE = 0.4
 
 
 def bone_frames(
-    centres: Centres, landmarks: Mapping[str, Array], names: Sequence[str]
+    centers: JointCenters, landmarks: Mapping[str, Array], names: Sequence[str]
 ) -> dict[str, Array]:
     """Return the axes of the bones named, each of shape (n_frames, 3, 3).
 
     Collar bones swing about their median direction. The spine gets half of the rotation from
     pelvis to thorax, the neck half of that from thorax to head.
     """
-    frames = dict(centres.frames)
+    frames = dict(centers.frames)
     if "chest" in frames:
         frames["spine"] = _halfway(frames["hips"], frames["chest"])
         frames["neck"] = _halfway(frames["chest"], frames.get("head", frames["chest"]))
     for side, (letter, sign) in SIDES.items():
-        _leg(centres, landmarks, frames, side, letter)
+        _leg(centers, landmarks, frames, side, letter)
         if f"{side}UpperArm" in names:
-            _arm(centres, landmarks, frames, side, letter, sign)
+            _arm(centers, landmarks, frames, side, letter, sign)
     return frames
 
 
@@ -49,14 +49,14 @@ def _halfway(start: Array, stop: Array) -> Array:
 
 
 def _leg(
-    centres: Centres,
+    centers: JointCenters,
     landmarks: Mapping[str, Array],
     frames: dict[str, Array],
     side: str,
     letter: str,
 ) -> None:
     hip, knee, ankle = (
-        centres.positions[side + joint] for joint in ("UpperLeg", "LowerLeg", "Foot")
+        centers.positions[side + joint] for joint in ("UpperLeg", "LowerLeg", "Foot")
     )
     lateral = SIDES[side][1] * (landmarks[f"{letter}KNE"] - knee)
     frames[f"{side}UpperLeg"] = frame(2, hip - knee, 0, lateral)
@@ -87,14 +87,14 @@ def _leveling_matrix(heel: Array, toe: Array) -> Array:
 
 
 def _arm(
-    centres: Centres,
+    centers: JointCenters,
     landmarks: Mapping[str, Array],
     frames: dict[str, Array],
     side: str,
     letter: str,
     sign: float,
 ) -> None:
-    positions, thorax = centres.positions, frames["chest"]
+    positions, thorax = centers.positions, frames["chest"]
     collar, shoulder, elbow = (
         positions[side + joint] for joint in ("Shoulder", "UpperArm", "LowerArm")
     )

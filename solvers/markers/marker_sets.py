@@ -13,7 +13,7 @@ TRUNK = ("C7", "T10", "CLAV", "STRN", "RBAK")
 HEAD = ("LFHD", "RFHD", "LBHD", "RBHD")
 PELVIS = ("LASI", "RASI", "LPSI", "RPSI", "SACR")
 LANDMARKS = (*PELVIS, *TRUNK, *HEAD, *(side + landmark for side in "LR" for landmark in SIDED))
-"""Places on the body that a marker can sit on, by their Plug-in-Gait names."""
+"""Anatomical landmarks of markers, by their Plug-in-Gait names."""
 
 _BOTH = ("THI", "KNE", "TIB", "ANK", "HEE", "TOE")
 _ARMS = ("SHO", "UPA", "ELB", "FRM", "WRA", "WRB", "FIN")
@@ -43,24 +43,24 @@ ESSENTIAL = (
     "LASI", "RASI",
     *(side + landmark for side in "LR" for landmark in ("KNE", "ANK", "TOE")),
 )  # fmt: skip
-"""What no body can be solved without, besides one marker at the back of the pelvis."""
+"""Landmarks that every body needs, besides a marker at the back of the pelvis."""
 PREFIX = re.compile(r"^(.*[:.|_ ])?([^:.|_ ]+)$")
 
 
 @dataclass(frozen=True)
 class MarkerSet:
-    """Which marker sits where on the body.
+    """Assignment of the markers of a take to anatomical landmarks.
 
     Attributes
     ----------
     name : str
-        Of the set that fits best; empty where none does.
+        Name of the set that fits best; empty if none fits.
     markers : mapping of landmark to the marker's name in the take
-        Landmarks carry their Plug-in-Gait names, whatever the set calls them.
+        Landmarks have their Plug-in-Gait names in every set.
     score : float
-        0 to 1: the share of the set's markers that the take has.
+        Fraction of the set's markers that the take has, 0 to 1.
     subject : str
-        What stands before the markers' names (`Anna:`), or empty.
+        Prefix of the markers' names (`Anna:`), or empty.
     """
 
     name: str
@@ -77,22 +77,22 @@ class MarkerSet:
 
 
 def find_marker_set(names: Sequence[str], subject: str | None = None) -> MarkerSet:
-    """Find out which set a take was captured with, and which marker is which.
+    """Identify the marker set of a take, and assign its markers to landmarks.
 
-    Capital and small letters are the same, and so is whatever stands before the last colon,
-    dot, bar, underscore or blank; of two people in one take, the one with more markers wins.
+    Letter case is ignored, and so is a prefix up to the last colon, dot, bar, underscore or
+    blank. If a take has several subjects, the one with the most markers is used.
 
     Parameters
     ----------
     names : sequence of str
-        The points of a take. Points of other names are left out.
+        Points of a take. Other names are ignored.
     subject : str, optional
-        Only markers with this before their names, with or without the colon.
+        Prefix of the markers to use, with or without the colon.
 
     Returns
     -------
     MarkerSet
-        The set of which most markers are there, then the one with the greater share of them.
+        The set with the most markers in the take; if two tie, the more complete one.
     """
     people: dict[str, dict[str, str]] = defaultdict(dict)
     for name in names:

@@ -1,4 +1,4 @@
-"""Solve a skeleton's motion from the labelled markers of an optical take."""
+"""Solve a skeleton's motion from the labeled markers of an optical take."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,10 +13,10 @@ from ..rotations import quaternion_from_matrix, unroll
 from ..settings import Settings, setting
 from .body import Body, Poses
 from .build_body import build_body
-from .centres import joint_centres
 from .determined_joints import find_determined_joints
 from .fit_body import fit_body
 from .fit_poses import fit_poses
+from .joint_centers import joint_centers
 from .marker_sets import PELVIS, MarkerSet, find_marker_set
 
 Array = NDArray[np.float64]
@@ -46,10 +46,10 @@ class SolvedSkeleton:
 
     motion: Motion
     """Joints have VRM's humanoid role names; the rest pose is the T-pose, facing -Y."""
-    joint_centres: Tracks
+    joint_centers: Tracks
     """World positions of all joints, with the same names; NaN where undetermined."""
     error: Array
-    """Distance of each marker from that of the body, shape (n_frames, n_markers), metres; NaN
+    """Distance of each marker from that of the body, shape (n_frames, n_markers), meters; NaN
     where the marker is missing."""
     markers: tuple[str, ...]
     """Names of the markers of `error` in the take."""
@@ -94,10 +94,10 @@ def solve_skeleton(
     found = find_marker_set(tracks.names, settings.subject or None)
     landmarks = _landmark_positions(tracks, found)
     progress(0.02, "Estimating joint centers")
-    centres = joint_centres(landmarks)
-    body, rotations = build_body(centres, landmarks)
+    centers = joint_centers(landmarks)
+    body, rotations = build_body(centers, landmarks)
     observed = np.stack([landmarks[marker.landmark] for marker in body.markers], axis=1)
-    initial_poses = _extend_to_all_frames(rotations, centres.positions["hips"], observed)
+    initial_poses = _extend_to_all_frames(rotations, centers.positions["hips"], observed)
     progress(0.1, "Measuring the body")
     body = _fit_dimensions(body, observed, initial_poses, settings, within(progress, 0.1, 0.4))
     poses = fit_poses(body, observed, initial_poses, progress=within(progress, 0.4, 0.9))
@@ -129,7 +129,7 @@ def _landmark_positions(tracks: Tracks, found: MarkerSet) -> dict[str, Array]:
     if missing:
         hint = f" It looks like {found.name}." if found.name else ""
         raise InvalidMotionError(
-            "A skeleton needs the labelled markers of pelvis and legs of the Plug-in-Gait or"
+            "A skeleton needs the labeled markers of pelvis and legs of the Plug-in-Gait or"
             f" CMU set; missing or never seen with the pelvis: {', '.join(missing)}.{hint}"
             " Label them first."
         )

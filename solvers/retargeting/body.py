@@ -36,7 +36,7 @@ class Body:
 
     @property
     def rest(self) -> Array:
-        """Joint centers in the rest pose, shape (n_joints, 3), metres."""
+        """Joint centers in the rest pose, shape (n_joints, 3), meters."""
         return self.skeleton.rest_positions
 
     def limb(self, side: str, part: str) -> tuple[int, int, int] | None:
@@ -53,7 +53,7 @@ class Body:
         return limb if usable else None
 
     def limb_length(self, limb: tuple[int, int, int]) -> float:
-        """Return the length of a limb from upper joint over hinge to end, metres."""
+        """Return the length of a limb from upper joint over hinge to end, meters."""
         return float(np.linalg.norm(np.diff(self.rest[list(limb)], axis=0), axis=-1).sum())
 
     def hip_joints(self) -> list[int]:

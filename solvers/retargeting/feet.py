@@ -40,7 +40,7 @@ def place_feet(
     transfer : Transfer
     rotations : shape (n_frames, n_joints, 4)
         Local rotations of the target.
-    root_positions : shape (n_frames, 3), metres
+    root_positions : shape (n_frames, 3), meters
         Positions of its topmost joint.
     softness : float
         Fraction of a leg kept in reserve, unless the source's leg is straighter.
@@ -151,14 +151,14 @@ def pelvis_drop(
 
     Parameters
     ----------
-    hips, feet : of each leg, shape (n_frames, 3), metres
-    reaches : of each leg, shape (n_frames,), metres
+    hips, feet : of each leg, shape (n_frames, 3), meters
+    reaches : of each leg, shape (n_frames,), meters
         Maximum length of the leg.
     frame_rate : float
 
     Returns
     -------
-    NDArray, shape (n_frames,), metres
+    NDArray, shape (n_frames,), meters
         Sufficient in every frame, except above the limit or where the leg is lying: a drop
         would not bring its foot nearer.
     """

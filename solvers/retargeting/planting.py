@@ -8,7 +8,7 @@ from ..signals import smooth_correction
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Foot = tuple[Array, Array]
-"""Ankle and ball, each of shape (n_frames, 3), metres."""
+"""Ankle and ball, each of shape (n_frames, 3), meters."""
 
 BLEND_S = 0.3
 """Seconds in which the correction of a planted foot fades."""
@@ -36,7 +36,7 @@ def planting_shift(
 
     Returns
     -------
-    NDArray, shape (n_frames, 3), metres
+    NDArray, shape (n_frames, 3), meters
         Horizontal; fades before and after each contact.
     """
     shift = np.zeros_like(target_foot[0])

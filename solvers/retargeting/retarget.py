@@ -205,7 +205,7 @@ def _compare_bodies(
 
 
 def _root_positions(transfer: Transfer, rotations: Array) -> Array:
-    """Return the positions of the target's root, shape (n_frames, 3), metres.
+    """Return the positions of the target's root, shape (n_frames, 3), meters.
 
     The placement maps the midpoint of the source's hip joints to that of the target's.
     """

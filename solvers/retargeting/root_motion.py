@@ -25,7 +25,7 @@ class GroundPath:
 
     Attributes
     ----------
-    positions : shape (n_frames, 3), metres
+    positions : shape (n_frames, 3), meters
         Below the hips, smoothed; height 0.
     rotations : shape (n_frames, 4)
         About the vertical; identity for the facing direction of the rest pose.

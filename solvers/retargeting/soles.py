@@ -27,7 +27,7 @@ UP = np.array([0.0, 0.0, 1.0])
 
 
 class Depths(NamedTuple):
-    """Allowed depths of points of a foot below the ground, each (n_frames,), metres."""
+    """Allowed depths of points of a foot below the ground, each (n_frames,), meters."""
 
     heel: Array
     ball: Array
@@ -38,7 +38,7 @@ class Sole(NamedTuple):
     """Corrections that keep a foot above the ground."""
 
     lift: Array
-    """Lift of the ankle, shape (n_frames,), metres."""
+    """Lift of the ankle, shape (n_frames,), meters."""
     rotation: Array
     """World rotation to add to that of the foot, shape (n_frames, 4)."""
     toe_rotation: Array
@@ -88,9 +88,9 @@ def sole_above_ground(
     world : WorldPoses
         World poses of the target, for the rotations of the feet.
     side : "left" or "right"
-    ankle : shape (n_frames, 3), metres
+    ankle : shape (n_frames, 3), meters
         Target position of the ankle.
-    ground : float, metres
+    ground : float, meters
         Height that corresponds to 0 in the rest pose.
     allowed : Depths
     frame_rate : float, hertz

@@ -43,7 +43,7 @@ class Stance(NamedTuple):
     pitch: float
     """Downward pitch relative to the rest pose, radians."""
     ankle: float
-    """Height of its ankle, metres."""
+    """Height of its ankle, meters."""
 
 
 def find_stances(
@@ -61,11 +61,11 @@ def find_stances(
     """
     if contacts is None or rests_on_ground(source) or not rests_on_ground(target):
         return None
-    found = [
+    stances = [
         _stance(source, source_poses, side, in_contact, frame_rate)
         for side, in_contact in zip(SIDES, contacts.T, strict=True)
     ]
-    measured = [stance for stance in found if stance]
+    measured = [stance for stance in stances if stance]
     if not measured:
         return None
     pitch, ankle = np.mean(measured, axis=0)
@@ -85,7 +85,7 @@ def find_stances(
             ),
             float(np.clip(one.ankle, ankle - max_difference, ankle + max_difference)),
         )
-        for one in (stance or Stance(pitch, ankle) for stance in found)
+        for one in (stance or Stance(pitch, ankle) for stance in stances)
     )
     return left, right
 

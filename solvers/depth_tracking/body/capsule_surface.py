@@ -16,7 +16,7 @@ class BodySurface(NamedTuple):
 
     Attributes
     ----------
-    vertices : shape (19, n_vertices, 3), metres
+    vertices : shape (19, n_vertices, 3), meters
         Vertices of each capsule.
     normals : shape (19, n_vertices, 3)
         Outward unit normals.
@@ -82,7 +82,7 @@ def _bases(axes: Array) -> Array:
 
 
 def _triangles(n_around: int, n_rings: int) -> NDArray[np.intp]:
-    """Return the triangles between neighbouring rings; those at the poles are flat."""
+    """Return the triangles between neighboring rings; those at the poles are flat."""
     row, column = np.meshgrid(np.arange(n_rings - 1), np.arange(n_around), indexing="ij")
     current = row * n_around + column
     next_column = row * n_around + (column + 1) % n_around

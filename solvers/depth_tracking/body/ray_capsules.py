@@ -27,7 +27,7 @@ class BodyImage:
     camera : Camera
     pixels : int, shape (n,)
         row * width + column; each once.
-    depths : shape (n,), metres
+    depths : shape (n,), meters
         Along the optical axis.
     capsules : int, shape (n,)
         Index of the visible capsule.
@@ -44,7 +44,7 @@ class BodyImage:
         return CAPSULE_SEGMENTS[self.capsules]
 
     def depth_image(self) -> Array:
-        """Return the depth image (height, width), metres; 0 off the body."""
+        """Return the depth image (height, width), meters; 0 off the body."""
         return self._image(self.depths, 0.0)
 
     def segment_image(self) -> Array:

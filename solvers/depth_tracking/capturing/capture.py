@@ -75,7 +75,7 @@ class Capture:
         Z up, on the skeleton of `body`; joints have humanoid roles as their names.
     joints : Tracks
         The same joints in the camera frame, with the confidence of each joint and frame.
-    residual : shape (n_frames,), metres
+    residual : shape (n_frames,), meters
         Mean distance in depth where body and actor overlap; NaN without a visible actor.
     coverage : shape (n_frames,)
         Intersection over union of the pixels of body and actor.
@@ -179,7 +179,7 @@ def _passes(
     if not np.isfinite(forward.scores).any():
         raise InvalidMotionError(
             "No person was detected in any frame. Check the background settings, and that the"
-            " depth is in metres."
+            " depth is in meters."
         )
     if not settings.backward:
         return [forward]

@@ -50,7 +50,7 @@ class DetectedPose:
     ----------
     pose : shape (36,)
         Coordinates of the body model, camera frame.
-    joints : shape (21, 3), metres
+    joints : shape (21, 3), meters
         The `JOINTS` of the body model.
     score : float
         Fit of the body in this pose to the image, 0 to 1.
@@ -96,7 +96,7 @@ def detect_pose(
 
     Parameters
     ----------
-    depth_frame : float32, shape (height, width), metres
+    depth_frame : float32, shape (height, width), meters
         Contains only one body; 0: no reading.
     camera : Camera
     body : BodyModel

@@ -34,7 +34,7 @@ EquationList = list[SegmentEquations]
 
 LIMIT_WEIGHT = 1.0
 REST_WEIGHT = 2e-3
-"""Weight per square radian; a fully observed part weighs 1 per square metre."""
+"""Weight per square radian; a fully observed part weighs 1 per square meter."""
 MAX_RESIDUAL_M = 0.08
 """Pixels farther from the surface of their part have a limited pull."""
 SURFACE_STD_M = 0.06
@@ -115,7 +115,7 @@ def fit_pixels(
     Parameters
     ----------
     body : BodyModel
-    points : shape (n, 3), metres
+    points : shape (n, 3), meters
     probabilities : shape (n, N_PARTS)
         Probability of each part for each point.
     start : shape (36,)
@@ -141,7 +141,7 @@ def fit_pixels(
 
 
 def capsule_distances(body: BodyModel, frames: Array, points: Array) -> Array:
-    """Return the signed distances (n, 19), metres, of points (n, 3) to the capsules.
+    """Return the signed distances (n, 19), meters, of points (n, 3) to the capsules.
 
     First order for elliptic capsules.
     """

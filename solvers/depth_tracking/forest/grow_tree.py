@@ -63,8 +63,8 @@ class Tree:
     Attributes
     ----------
     splits : bool, shape (n_nodes,)
-    offsets : int8, shape (n_splits, 4), centimetres
-    thresholds : int16, shape (n_splits,), millimetres
+    offsets : int8, shape (n_splits, 4), centimeters
+    thresholds : int16, shape (n_splits,), millimeters
         Pixels at or below the threshold go to the first child.
     shares : uint8, shape (n_leaves, N_PARTS)
         Part histogram of each leaf, with a sum of about 255.
@@ -128,7 +128,7 @@ def grow_tree(
 
 
 def random_offsets(n: int, reach: float, rng: np.random.Generator) -> NDArray[np.int8]:
-    """Return n features (n, 4), centimetres: log-uniform offsets, or one at the pixel."""
+    """Return n features (n, 4), centimeters: log-uniform offsets, or one at the pixel."""
     angle = rng.uniform(0.0, 2.0 * np.pi, (n, 2))
     radius = np.exp(rng.uniform(np.log(0.02), np.log(reach), (n, 2)))
     radius[rng.random(n) < 0.25, 1] = 0.0
@@ -243,12 +243,12 @@ def _next_nodes(
     """Return the node of each pixel on the next level, or AT_LEAF in a leaf."""
     next_nodes = np.full(len(node), AT_LEAF, dtype=np.int32)
     first_child = (2 * (np.cumsum(split) - 1)).astype(np.int32)
-    metres = features.astype(np.float32).T / np.float32(CM_PER_M)
+    meters = features.astype(np.float32).T / np.float32(CM_PER_M)
     for start in range(0, len(node), PIXELS_PER_BLOCK):
         block = np.arange(start, min(start + PIXELS_PER_BLOCK, len(node)))
         block = block[node[block] >= 0]
         block = block[split[node[block]]]
         current = node[block]
-        values = depth_differences(views.select(block), metres[:, best.feature[current]])
+        values = depth_differences(views.select(block), meters[:, best.feature[current]])
         next_nodes[block] = first_child[current] + (values > THRESHOLDS_MM[best.edge[current]])
     return next_nodes

@@ -114,7 +114,7 @@ def classify_pixels(depth: DepthImage, camera: Camera, forest: PixelForest) -> P
 
     Parameters
     ----------
-    depth : float32, shape (height, width), metres
+    depth : float32, shape (height, width), meters
         Contains only the body; 0: no reading.
     camera : Camera
     forest : PixelForest

@@ -31,7 +31,7 @@ def depth_image_term(
     hypothesis : Hypothesis
     observation : Observation
     groups : PixelGroups
-    weight : float, per square metre
+    weight : float, per square meter
         1 / sigma^2 of one pixel.
 
     References

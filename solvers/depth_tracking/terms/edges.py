@@ -24,7 +24,7 @@ def edge_term(hypothesis: Hypothesis, observation: Observation, weight: float) -
     ----------
     hypothesis : Hypothesis
     observation : Observation
-    weight : float, per square metre
+    weight : float, per square meter
 
     References
     ----------

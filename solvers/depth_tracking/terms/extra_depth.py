@@ -33,9 +33,9 @@ def extra_depth_term(
     hypothesis : Hypothesis
     observation : Observation
     groups : PixelGroups
-    weight : float, per square metre
+    weight : float, per square meter
         1 / sigma^2 of one pair.
-    limit : float, metres
+    limit : float, meters
     """
     if not (len(hypothesis.points) and len(observation.points)):
         return NO_ROWS

@@ -31,8 +31,8 @@ def off_actor_term(
     hypothesis : Hypothesis
     observation : Observation
     groups : PixelGroups
-    weight : float, per square metre
-    scale : float, metres
+    weight : float, per square meter
+    scale : float, meters
     """
     chosen = groups.off_actor
     points = hypothesis.points[chosen]
@@ -61,8 +61,8 @@ def too_near_term(
     hypothesis : Hypothesis
     observation : Observation
     groups : PixelGroups
-    weight : float, per square metre
-    scale : float, metres
+    weight : float, per square meter
+    scale : float, meters
         As in `off_actor_term`.
     """
     chosen = groups.too_near

@@ -46,12 +46,12 @@ class Hypothesis:
 
     @cached_property
     def rays(self) -> Array:
-        """Rays of the visible points at a depth of one metre, shape (n, 3)."""
+        """Rays of the visible points at a depth of one meter, shape (n, 3)."""
         return rays_through_pixels(self.image.camera, self.image.pixels)
 
     @cached_property
     def points(self) -> Array:
-        """Visible points of the surface, shape (n, 3), metres."""
+        """Visible points of the surface, shape (n, 3), meters."""
         return self.rays * self.image.depths[:, np.newaxis]
 
     @cached_property
@@ -108,7 +108,7 @@ def capsule_offsets(
     (n,) array
         Distance from the axis in units of the radius there: 1 on the surface.
     (n, 3) array
-        Gradient of it in the camera's frame, per metre.
+        Gradient of it in the camera's frame, per meter.
     """
     frame = frames[CAPSULE_SEGMENTS[capsules]]
     scales = 1.0 / body.radii[capsules][:, [0, 1, 1]]

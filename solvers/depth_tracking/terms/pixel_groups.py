@@ -39,7 +39,7 @@ class PixelGroups:
 
 
 def group_pixels(hypothesis: Hypothesis, observation: Observation, limit: float) -> PixelGroups:
-    """Group pixels; depths that differ by more than `limit`, metres, show different parts."""
+    """Group pixels; depths that differ by more than `limit`, meters, show different parts."""
     rendered = hypothesis.image.pixels
     observed = observation.flat[rendered]
     on_actor = observed > 0.0

@@ -43,7 +43,7 @@ def silhouette_term(
 
 
 def point_gradients(across: Array, down: Array, points: Array, hypothesis: Hypothesis) -> Array:
-    """Return grad . dx/dp (n, 3): image gradients per metre of point movement."""
+    """Return grad . dx/dp (n, 3): image gradients per meter of point movement."""
     camera = hypothesis.image.camera
     x, y, z = points.T
     right, lower = across * camera.fx / z, down * camera.fy / z

@@ -53,7 +53,7 @@ def surface_term(
     hypothesis : Hypothesis
     observation : Observation
     previous : PreviousFrame or None
-    weight : float, per square metre
+    weight : float, per square meter
 
     References
     ----------

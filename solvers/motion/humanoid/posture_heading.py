@@ -36,9 +36,9 @@ class NormalizedPostures:
 
     Attributes
     ----------
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
         Relative to the hips; the actor faces -Y, the actor's left is +X. NaN: missing.
-    hip_positions : shape (n_frames, 3), metres
+    hip_positions : shape (n_frames, 3), meters
         Positions of the hips.
     headings : shape (n_frames,), radians
         Rotation about Z that restores the heading.
@@ -63,7 +63,7 @@ def normalize_postures(
 
     Parameters
     ----------
-    positions : shape (n_frames, 20, 3), metres
+    positions : shape (n_frames, 20, 3), meters
     frame_rate : float, hertz
     weights : shape (n_frames, 20), 0 to 1, optional
         Reliability of each joint.

@@ -119,7 +119,7 @@ def rotations_from_flexion(
     along = unit_vectors(skeleton.offsets[limb.lower])
     axis = rotate(rotations, along)
     hinge = rotate(rotations, unit_vectors(np.cross(along, limb.flexion_direction)))
-    normal, bend = measure_flexion(
+    normal, flexion = measure_flexion(
         axis, unit_vectors(positions[:, limb.end] - positions[:, limb.lower])
     )
     limb_reliability = np.min(reliability[:, [limb.upper, limb.lower, limb.end]], axis=1)
@@ -138,15 +138,15 @@ def rotations_from_flexion(
         axis,
         hinge,
         normal,
-        flexion_weights(bend) * limb_reliability,
+        flexion_weights(flexion) * limb_reliability,
         frame_rate,
         expected,
     )
 
 
-def flexion_weights(bends: Array) -> Array:
+def flexion_weights(flexion: Array) -> Array:
     """Return the weight of the plane of a flexion angle in radians: 0 to 1."""
-    return np.asarray(np.clip((bends - MIN_FLEXION) / (FULL_FLEXION - MIN_FLEXION), 0, 1))
+    return np.asarray(np.clip((flexion - MIN_FLEXION) / (FULL_FLEXION - MIN_FLEXION), 0, 1))
 
 
 def rotations_from_thumb(
@@ -218,11 +218,13 @@ def smooth_direction(
 def _palm_weights(observed: Array, local: Array, forward: Array) -> Array:
     """Return 0 for offsets too short or too strongly flexed for a palm, up to 1 for others."""
     length = np.linalg.norm(observed, axis=-1)
-    bend = np.arccos(np.clip(local @ unit_vectors(forward), -1.0, 1.0))
+    flexion = np.arccos(np.clip(local @ unit_vectors(forward), -1.0, 1.0))
     length_weights = np.clip((length - MIN_PALM_M) / (FULL_PALM_M - MIN_PALM_M), 0.0, 1.0)
     return np.asarray(
         length_weights
-        * np.clip((MAX_PALM_FLEXION - bend) / (MAX_PALM_FLEXION - FULL_PALM_FLEXION), 0.0, 1.0)
+        * np.clip(
+            (MAX_PALM_FLEXION - flexion) / (MAX_PALM_FLEXION - FULL_PALM_FLEXION), 0.0, 1.0
+        )
     )
 
 

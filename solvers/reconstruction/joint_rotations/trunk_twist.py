@@ -145,7 +145,7 @@ def mirror_twists(twists: Complex) -> Complex:
 
 
 def mean_twists(
-    twists: Complex, postures: Array, neighbours: Array, reliability: Array
+    twists: Complex, postures: Array, neighbors: Array, reliability: Array
 ) -> Complex:
     """Return the mean twist of the neighbors, weighted by similarity [SHJT13, VII-B].
 
@@ -157,14 +157,14 @@ def mean_twists(
     twists : shape (n_frames, n_neighbours, 4)
     postures : shape (n_frames, 20, 3), meters
         Synthesized poses.
-    neighbours : shape (n_frames, n_neighbours, 60), meters
+    neighbors : shape (n_frames, n_neighbours, 60), meters
     reliability : shape (n_frames, 20)
 
     Returns
     -------
     shape (n_frames, 4)
     """
-    differences = neighbours - postures.reshape(len(postures), 1, -1)
+    differences = neighbors - postures.reshape(len(postures), 1, -1)
     joint_weights = np.repeat(np.maximum(reliability, MIN_RELIABILITY), 3, axis=1)
     squares = np.einsum(
         "fni,fni,fi->fn", differences, differences, joint_weights, optimize=False

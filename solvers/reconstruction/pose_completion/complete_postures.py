@@ -190,7 +190,7 @@ def _measure_errors(
         indices, _ = nearest_postures(index, query, settings.n_neighbours)
         spaces = local_pca(body.positions[indices].astype(np.float64), settings.n_dimensions)
         targets = EnergyTargets(
-            take.postures[frames], reliability, spaces.neighbours, take.lengths
+            take.postures[frames], reliability, spaces.neighbors, take.lengths
         )
         return probable_postures(spaces, targets)[0]
 
@@ -237,7 +237,7 @@ def _synthesize(
         part = slice(start, min(start + BLOCK_FRAMES, len(values)))
         spaces = local_pca(body.positions[indices[part]], settings.n_dimensions)
         targets = EnergyTargets(
-            take.postures[part], take.reliability[part], spaces.neighbours, take.lengths
+            take.postures[part], take.reliability[part], spaces.neighbors, take.lengths
         )
         probable, spread[part] = probable_postures(spaces, targets)
         values[part] = _choose_postures(spaces, targets, probable, settings, last)
@@ -245,7 +245,7 @@ def _synthesize(
             twists[part] = mean_twists(
                 body.twists[indices[part]],
                 values[part],
-                spaces.neighbours,
+                spaces.neighbors,
                 take.reliability[part],
             )
         last = values[max(part.stop - 2, 0) : part.stop]

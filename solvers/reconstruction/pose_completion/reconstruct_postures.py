@@ -176,6 +176,6 @@ def _describe_method(settings: PostureSettings, library: PostureLibrary) -> str:
     causality = ", causal" if settings.causal else ""
     source = f" ({library.trained_on})" if library.trained_on else ""
     return (
-        f"{methods[settings.method]} among {settings.n_neighbours} neighbours of"
+        f"{methods[settings.method]} among {settings.n_neighbours} neighbors of"
         f" {library.n_postures}{source}{causality}"
     )

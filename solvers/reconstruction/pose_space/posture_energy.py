@@ -30,7 +30,7 @@ class EnergyTargets:
     observed : shape (n_frames, 20, 3), meters
         NaN: not tracked.
     reliability : shape (n_frames, 20)
-    neighbours : shape (n_frames, n_neighbours, 60), meters
+    neighbors : shape (n_frames, n_neighbours, 60), meters
     lengths : shape (20,), meters
     expected : shape (n_frames, 20, 3), meters, or None
         Positions by linear extrapolation; NaN where unknown.
@@ -39,7 +39,7 @@ class EnergyTargets:
 
     observed: Array
     reliability: Array
-    neighbours: Array
+    neighbors: Array
     lengths: Array
     expected: Array | None = None
     weights: EnergyWeights = EnergyWeights()
@@ -50,7 +50,7 @@ class EnergyTargets:
             self,
             observed=self.observed[frames],
             reliability=self.reliability[frames],
-            neighbours=self.neighbours[frames],
+            neighbors=self.neighbors[frames],
             expected=None if self.expected is None else self.expected[frames],
         )
 
@@ -87,7 +87,7 @@ def control_term(x: Array, targets: EnergyTargets) -> Array:
 def style_distances(x: Array, targets: EnergyTargets) -> Array:
     """Mean squared distance to each neighbor; eq. 11 is their minimum."""
     flat = x.reshape(*x.shape[:2], -1)
-    neighbors = targets.neighbours
+    neighbors = targets.neighbors
     squares = np.einsum("fsi,fsi->fs", flat, flat)[..., None]
     cross = flat @ neighbors.swapaxes(-1, -2)
     distances = squares - 2.0 * cross + np.einsum("fni,fni->fn", neighbors, neighbors)[:, None]

@@ -126,8 +126,8 @@ def _smoothing_residuals(positions: Array, frame_rate: float) -> Array:
     """
     from scipy.signal import savgol_filter  # takes a second to import: only when needed
 
-    longest = len(positions) - 1 + len(positions) % 2
-    n_frames = min(2 * round(0.5 * SMOOTHING_WINDOW_S * frame_rate) + 1, longest)
+    max_length = len(positions) - 1 + len(positions) % 2
+    n_frames = min(2 * round(0.5 * SMOOTHING_WINDOW_S * frame_rate) + 1, max_length)
     degree = min(DEGREE, n_frames // 2)
     smooth = savgol_filter(np.nan_to_num(fill_gaps(positions)), n_frames, degree, axis=0)
     return vector_lengths(positions - smooth)

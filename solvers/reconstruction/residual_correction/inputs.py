@@ -85,9 +85,9 @@ def smooth_postures(
     return SmoothedPostures(positions, normalized, features, rate)
 
 
-def fill_missing(features: Array, usual: Array) -> Array:
+def fill_missing(features: Array, default: Array) -> Array:
     """Replace joints that are never observed by the mean posture, shape (20, 3)."""
-    return np.where(np.isfinite(features), features, usual)
+    return np.where(np.isfinite(features), features, default)
 
 
 def neighborhood_features(features: Array, joint: int) -> Array:

@@ -196,12 +196,12 @@ def _check_pairs(
 
 
 def _read_takes(
-    pairs: Sequence[tuple[JointRecording, Tracks]], actor_names: Sequence[str], calm: float
+    pairs: Sequence[tuple[JointRecording, Tracks]], actor_names: Sequence[str], smoothing: float
 ) -> list[Take]:
     """Smooth all recordings; errors are relative to the heading."""
     takes = []
     for (observed, true), actor in zip(pairs, actor_names, strict=True):
-        smoothed = smooth_postures(observed, calm)
+        smoothed = smooth_postures(observed, smoothing)
         off = posture_positions(true) - smoothed.positions
         errors = rotate_about_vertical(off, -smoothed.normalized.headings)
         takes.append(Take(smoothed.features, errors, observed.frame_rate, actor))

@@ -31,11 +31,11 @@ class ClipPostures:
 
     Attributes
     ----------
-    positions : shape (n_frames, 20, 3), metres
+    positions : shape (n_frames, 20, 3), meters
         Joints of the standard body relative to its hips, facing -Y; in the order of
         `POSTURE_JOINTS`. NaN: not tracked.
     root_velocity : shape (n_frames, 4)
-        Velocity of the hips to the left, backward and up relative to the heading, in metres per
+        Velocity of the hips to the left, backward and up relative to the heading, in meters per
         second, and turning rate, in radians per second.
     frame_rate : float, hertz
     """

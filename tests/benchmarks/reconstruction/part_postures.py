@@ -281,7 +281,7 @@ def energies(found: tuple[Clip, ...]) -> Scores:
         )
         places, _ = nearest_postures(index_postures(body, library.groups), query)
         spaces = local_pca(body.positions[places].astype(np.float64))
-        asked = EnergyTargets(plain.postures, 1.0 - lost, spaces.neighbours, lengths)
+        asked = EnergyTargets(plain.postures, 1.0 - lost, spaces.neighbors, lengths)
         for name, solve in solvers.items():
             started = perf_counter()
             _, found_energies = solve(spaces, asked)

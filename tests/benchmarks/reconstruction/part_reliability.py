@@ -86,7 +86,7 @@ def doubts(pairs: list[Pair], causal: bool) -> Iterator[tuple[str, list[Array]]]
         settings = ReliabilitySettings(method=method, causal=causal)
         ways[method].append(measure_reliability(pair.recording, settings=settings))
     published = ways[ReliabilityMethod.PUBLISHED]
-    yield "behaviour term", [1.0 - found.behaviour for found in published]
+    yield "behaviour term", [1.0 - found.behavior for found in published]
     yield "kinematics term", [1.0 - found.kinematics for found in published]
     yield "published: least of the terms, window", [1.0 - found.combined for found in published]
     yield (

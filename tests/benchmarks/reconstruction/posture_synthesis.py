@@ -86,7 +86,7 @@ class _Quadratic:
         turned = axes.swapaxes(-1, -2)
         self.H = turned @ (axes * weights[..., None]) + RIDGE * np.eye(axes.shape[-1])
         self.b = np.einsum("fji,fj->fi", axes, pull)
-        self.off = spaces.neighbours - spaces.means[:, None]
+        self.off = spaces.neighbors - spaces.means[:, None]
         self.places = self.off @ axes
         """Coordinates of the neighbours."""
 

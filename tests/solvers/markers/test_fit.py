@@ -7,7 +7,6 @@ from numpy.testing import assert_allclose
 
 from solvers.markers.body import Poses
 from solvers.markers.build_body import build_body
-from solvers.markers.centres import chord, joint_centres
 from solvers.markers.fit_body import body_slopes, fit_body, measures_of
 from solvers.markers.fit_poses import (
     _prior_residuals,
@@ -16,6 +15,7 @@ from solvers.markers.fit_poses import (
     fit_poses,
     marker_slopes,
 )
+from solvers.markers.joint_centers import chord, joint_centers
 from solvers.markers.marker_sets import find_marker_set
 from solvers.samples import GaitSettings, walking_gait
 
@@ -31,10 +31,10 @@ def started():
         landmark: tracks.positions[:, tracks.names.index(name)]
         for landmark, name in found.items()
     }
-    centres = joint_centres(landmarks)
-    body, rotations = build_body(centres, landmarks)
+    centers = joint_centers(landmarks)
+    body, rotations = build_body(centers, landmarks)
     seen = np.stack([landmarks[marker.landmark] for marker in body.markers], axis=1)
-    off = Poses(rotations, centres.positions["hips"])
+    off = Poses(rotations, centers.positions["hips"])
     rng = np.random.default_rng(1)
     off = apply_step(
         body, off, 0.05 * rng.normal(size=(len(seen), 3 + 3 * len(body.rotating_joints)))

@@ -1,4 +1,4 @@
-"""Joint centres and angles from markers, against bodies whose joints are known."""
+"""Joint centers and angles from markers, against bodies whose joints are known."""
 
 import numpy as np
 import pytest
@@ -30,8 +30,8 @@ def apart(solved, truth: Motion, parts=LIMBS) -> np.ndarray:
     """Distance of each joint from the truth, (n_frames, n_parts), metres."""
     joints = find_humanoid_map(truth.skeleton).indices(truth.skeleton)
     true = forward_kinematics(truth).positions[:, [joints[part] for part in parts]]
-    places = [solved.joint_centres.names.index(part) for part in parts]
-    return np.linalg.norm(solved.joint_centres.positions[:, places] - true, axis=-1)
+    places = [solved.joint_centers.names.index(part) for part in parts]
+    return np.linalg.norm(solved.joint_centers.positions[:, places] - true, axis=-1)
 
 
 @pytest.mark.parametrize(("noise", "skin"), [(0.0, 0.0), (0.001, 0.0), (0.001, 0.006)])
@@ -49,7 +49,7 @@ def test_limbs_turn_as_they_do(walk):
     solved = solve_skeleton(markers_on(walk))
     theirs = forward_kinematics(walk).positions
     joints = find_humanoid_map(walk.skeleton).indices(walk.skeleton)
-    found = solved.joint_centres
+    found = solved.joint_centers
     ours = {name: found.positions[:, place] for place, name in enumerate(found.names)}
 
     for start, middle, end in (
@@ -83,7 +83,7 @@ def test_the_skeleton_is_a_humanoid_in_the_t_pose(walk):
     assert rest["leftToes"][1] < rest["leftFoot"][1] - 0.08
     assert abs(rest["leftToes"][2]) < 0.06
     assert_allclose(
-        forward_kinematics(solved.motion).positions, solved.joint_centres.positions, atol=1e-9
+        forward_kinematics(solved.motion).positions, solved.joint_centers.positions, atol=1e-9
     )
 
 
@@ -109,7 +109,7 @@ def test_a_lost_marker_hardly_matters_and_a_lost_limb_is_not_known(walk):
     known = solved.motion.observed
     assert not known[100:140, lost].any()
     assert known[:100].all() and known[140:].all()
-    assert np.isnan(solved.joint_centres.positions[100:140, lost[1]]).all()
+    assert np.isnan(solved.joint_centers.positions[100:140, lost[1]]).all()
 
 
 def test_nothing_is_known_of_frames_without_markers(walk):
@@ -129,8 +129,8 @@ def test_one_wrong_marker_pulls_little(walk):
     positions = whole.positions.copy()
     positions[50:60, whole.names.index("LTHI")] += 0.5
 
-    moved = solve_skeleton(whole.with_positions(positions)).joint_centres
-    still = solve_skeleton(whole).joint_centres
+    moved = solve_skeleton(whole.with_positions(positions)).joint_centers
+    still = solve_skeleton(whole).joint_centers
 
     place = still.names.index("leftLowerLeg")
     off = np.linalg.norm(moved.positions - still.positions, axis=-1)[50:60, place]
@@ -212,9 +212,9 @@ def test_solves_a_dance_of_cmu_near_their_own_joints(recordings):
              "UpperArm": "humerus", "LowerArm": "radius", "Hand": "hand"}  # fmt: skip
     for part, bone in roles.items():
         for side in ("left", "right"):
-            place = solved.joint_centres.names.index(side + part)
+            place = solved.joint_centers.names.index(side + part)
             joint = theirs[:, dance.skeleton.index(side[0] + bone)]
-            off = np.linalg.norm(solved.joint_centres.positions[:, place] - joint, axis=1)
+            off = np.linalg.norm(solved.joint_centers.positions[:, place] - joint, axis=1)
             assert off.mean() < 0.07, side + part
     assert solved.motion.observed.all()
     assert np.nanmean(solved.error) < 0.006
@@ -227,6 +227,6 @@ def test_solves_a_plug_in_gait_take_near_where_the_kinect_sees_the_joints(record
 
     theirs = dict(zip(kinect.tracks.names, kinect.tracks.positions.swapaxes(0, 1), strict=True))
     for ours, name in (("leftLowerLeg", "LLowLeg"), ("rightLowerArm", "RForeArm")):
-        place = solved.joint_centres.names.index(ours)
-        off = solved.joint_centres.positions[:, place] - theirs[name]
+        place = solved.joint_centers.names.index(ours)
+        off = solved.joint_centers.positions[:, place] - theirs[name]
         assert np.linalg.norm(np.nanmedian(off, axis=0)) < 0.15

@@ -61,7 +61,7 @@ def problem(bodies, random):
     index = index_postures(_body(bodies[N_FRAMES:]), np.zeros(894, np.int32))
     places, _ = nearest_postures(index, PostureQuery(observed, 0 * observed, trust, 0.0), 30)
     spaces = local_pca(bodies[N_FRAMES:][places])
-    return spaces, EnergyTargets(observed, trust, spaces.neighbours, ADULT_BONE_LENGTHS_M)
+    return spaces, EnergyTargets(observed, trust, spaces.neighbors, ADULT_BONE_LENGTHS_M)
 
 
 def _body(positions):
@@ -113,7 +113,7 @@ def test_grouped_search_finds_nearly_all_true_neighbours(random):
 def test_spaces_are_principal_components(problem):
     spaces, _ = problem
     for frame in range(N_FRAMES):
-        off = spaces.neighbours[frame] - spaces.neighbours[frame].mean(axis=0)
+        off = spaces.neighbors[frame] - spaces.neighbors[frame].mean(axis=0)
         values = np.linalg.svd(off, compute_uv=False)[:20] ** 2 / 30
         real = values > 1e-8
         np.testing.assert_allclose(spaces.spreads[frame][real], values[real], rtol=1e-6)
@@ -123,9 +123,9 @@ def test_spaces_are_principal_components(problem):
 
 def test_energy_is_that_of_equations_10_to_15(problem):
     spaces, asked = problem
-    expected = asked.neighbours[:, 0].reshape(-1, 20, 3) + 0.01
+    expected = asked.neighbors[:, 0].reshape(-1, 20, 3) + 0.01
     asked = EnergyTargets(
-        asked.observed, asked.reliability, asked.neighbours, asked.lengths, expected,
+        asked.observed, asked.reliability, asked.neighbors, asked.lengths, expected,
         EnergyWeights(1.0, 0.5, 1.5, 0.25),
     )  # fmt: skip
     x = spaces.postures(np.zeros_like(spaces.spreads))
@@ -140,7 +140,7 @@ def test_energy_is_that_of_equations_10_to_15(problem):
             if joint:
                 length = np.linalg.norm(posture[joint] - posture[PARENTS[joint]])
                 kinematics += (length - ADULT_BONE_LENGTHS_M[joint]) ** 2 / 19
-        others = asked.neighbours[frame].reshape(-1, 20, 3)
+        others = asked.neighbors[frame].reshape(-1, 20, 3)
         style = min(np.sum((posture - one) ** 2) / 20 for one in others)
         total = control + 0.5 * style + 1.5 * kinematics + 0.25 * continuity
         assert posture_energy(x, asked)[frame] == pytest.approx(total, rel=1e-9)

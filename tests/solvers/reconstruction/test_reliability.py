@@ -167,7 +167,7 @@ def test_missing_joints_have_no_reliability_and_others_keep_theirs(walk, setting
 
     found = measure_reliability(recorded(gone), settings=settings)
 
-    for term in (found.combined, found.behaviour, found.kinematics, found.tracking):
+    for term in (found.combined, found.behavior, found.kinematics, found.tracking):
         assert np.isfinite(term).all()
         assert ((term >= 0.0) & (term <= 1.0)).all()
         assert (term[20:30, place("HandRight")] == 0.0).all()

@@ -73,7 +73,7 @@ def test_every_sensor_is_reliable_until_joints_vibrate(recordings, folder, least
     spoilt = measure_reliability(take.with_tracks(tracks.with_positions(shaken)))
 
     seen = tracks.visible
-    for term in (sound.combined, sound.behaviour, sound.kinematics, sound.tracking):
+    for term in (sound.combined, sound.behavior, sound.kinematics, sound.tracking):
         assert term.shape == (take.n_frames, take.n_joints)
         assert ((term >= 0.0) & (term <= 1.0)).all()
     assert sound.combined[seen].mean() > least

@@ -11,7 +11,7 @@ from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measu
 from solvers.reconstruction.reliability.error_model import CAUSAL_MODEL as AS_IT_COMES
 from solvers.reconstruction.reliability.error_model import CENTERED_MODEL
 from solvers.reconstruction.reliability.terms import (
-    behaviour_term,
+    behavior_term,
     gaussian_mean,
     kinematics_term,
     tracking_term,
@@ -40,7 +40,7 @@ def path_that_turns(*turns: float, length: float = 0.1) -> np.ndarray:
     ],
 )
 def test_the_behaviour_term_is_that_of_the_mean_turn(turns, expected):
-    term = behaviour_term(path_that_turns(*turns), 30.0, CAUSAL)
+    term = behavior_term(path_that_turns(*turns), 30.0, CAUSAL)
 
     assert term[-1, 0] == pytest.approx(expected, abs=1e-6)
 
@@ -49,7 +49,7 @@ def test_the_behaviour_term_is_that_of_the_mean_turn(turns, expected):
 def test_steps_below_three_centimeters_are_no_vibration(length, expected):
     path = path_that_turns(180.0, 180.0, 180.0, length=length)
 
-    assert behaviour_term(path, 30.0, CAUSAL)[-1, 0] == pytest.approx(expected, abs=1e-6)
+    assert behavior_term(path, 30.0, CAUSAL)[-1, 0] == pytest.approx(expected, abs=1e-6)
 
 
 def test_a_roof_below_the_floor_is_refused():
@@ -62,8 +62,8 @@ def test_the_floor_is_a_speed_at_any_frame_rate():
     path = np.zeros((41, 1, 3))
     path[:, 0, 0] = np.interp(np.arange(41) / 4.0, np.arange(11), corners)
 
-    assert_allclose(behaviour_term(path, 120.0, PUBLISHED), 1.0)
-    assert behaviour_term(3.0 * path, 120.0, PUBLISHED).min() < 0.5
+    assert_allclose(behavior_term(path, 120.0, PUBLISHED), 1.0)
+    assert behavior_term(3.0 * path, 120.0, PUBLISHED).min() < 0.5
 
 
 def test_causal_vibration_uses_past_frames_only():
@@ -71,12 +71,12 @@ def test_causal_vibration_uses_past_frames_only():
     changed = path.copy()
     changed[12:] = 5.0
 
-    before = behaviour_term(path, 30.0, CAUSAL)
-    after = behaviour_term(changed, 30.0, CAUSAL)
+    before = behavior_term(path, 30.0, CAUSAL)
+    after = behavior_term(changed, 30.0, CAUSAL)
 
     assert_allclose(after[:12], before[:12])
     assert before[13, 0] == pytest.approx(0.0)  # frames 10 to 12 turned back
-    assert behaviour_term(path, 30.0, PUBLISHED)[11, 0] == pytest.approx(0.0)
+    assert behavior_term(path, 30.0, PUBLISHED)[11, 0] == pytest.approx(0.0)
 
 
 def test_same_vibration_is_detected_at_any_frame_rate():
@@ -86,7 +86,7 @@ def test_same_vibration_is_detected_at_any_frame_rate():
     rates = {30.0: 4, 60.0: 2, 120.0: 1}
 
     means = [
-        behaviour_term(path[::step], rate, PUBLISHED)[step:-step].mean()
+        behavior_term(path[::step], rate, PUBLISHED)[step:-step].mean()
         for rate, step in rates.items()
     ]
 
@@ -189,7 +189,7 @@ def test_published_is_the_windowed_minimum_of_the_terms():
 
     found = measure_reliability(noisy, settings=settings)
 
-    least = np.minimum(np.minimum(found.behaviour, found.kinematics), found.tracking)
+    least = np.minimum(np.minimum(found.behavior, found.kinematics), found.tracking)
     weights = np.exp(-0.5 * (np.arange(6) / 2.0) ** 2)
     for frame in (0, 3, 17, 39):
         past = least[max(frame - 5, 0) : frame + 1][::-1]

@@ -220,26 +220,26 @@ def test_rotations_that_contradict_flexion_get_a_low_weight(gait):
 
 def test_mean_twist_is_weighted_by_similarity():
     """Neighbours at 1 and 2 cm of one joint: weights 4 to 1."""
-    neighbours = np.zeros((1, 2, 60))
-    neighbours[0, :, 9] = (0.01, 0.02)
+    neighbors = np.zeros((1, 2, 60))
+    neighbors[0, :, 9] = (0.01, 0.02)
     twists = np.tile(np.array([1.0, 1j])[None, :, None], (1, 1, 4))
 
-    mean = mean_twists(twists, np.zeros((1, 20, 3)), neighbours, np.ones((1, 20)))
+    mean = mean_twists(twists, np.zeros((1, 20, 3)), neighbors, np.ones((1, 20)))
 
     assert_allclose(mean / np.abs(mean), np.full((1, 4), (0.8 + 0.2j) / np.hypot(0.8, 0.2)))
-    far = mean_twists(twists, np.full((1, 20, 3), 0.5), neighbours, np.ones((1, 20)))
+    far = mean_twists(twists, np.full((1, 20, 3), 0.5), neighbors, np.ones((1, 20)))
     assert np.abs(far).max() < 0.02 < 0.8 < np.abs(mean).min()
 
 
 def test_unreliable_joints_select_no_neighbor():
-    neighbours = np.zeros((1, 2, 60))
-    neighbours[0, 0, 9] = 0.3
-    neighbours[0, 1, 12] = 0.1
+    neighbors = np.zeros((1, 2, 60))
+    neighbors[0, 0, 9] = 0.3
+    neighbors[0, 1, 12] = 0.1
     trust = np.ones((1, 20))
     trust[0, 3] = 0.0
     twists = np.tile(np.array([1.0, 1j])[None, :, None], (1, 1, 4))
 
-    mean = mean_twists(twists, np.zeros((1, 20, 3)), neighbours, trust)
+    mean = mean_twists(twists, np.zeros((1, 20, 3)), neighbors, trust)
 
     assert np.abs(np.angle(mean)).max() < 0.05
 

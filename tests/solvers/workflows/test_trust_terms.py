@@ -49,7 +49,7 @@ def test_a_sensor_that_said_nothing_is_not_taken_for_sure(moved):
     trust = reconstruct_motion(moved).reliability_terms
 
     assert np.isnan(trust.tracking).all()
-    assert np.isfinite(trust.combined).all() and np.isfinite(trust.behaviour).all()
+    assert np.isfinite(trust.combined).all() and np.isfinite(trust.behavior).all()
 
 
 def test_lengths_of_an_armature_tell_nothing_and_those_of_its_recording_do(walk, moved):
@@ -64,7 +64,7 @@ def test_lengths_of_an_armature_tell_nothing_and_those_of_its_recording_do(walk,
 def test_a_joint_that_shakes_is_told_by_its_movement(walk, moved):
     trust = reconstruct_motion(moved, source=walk).reliability_terms
 
-    wrist = of(trust.behaviour, moved, "WristLeft")
+    wrist = of(trust.behavior, moved, "WristLeft")
     assert wrist[LOST].mean() < 0.7
     assert np.allclose(wrist[: LOST.start - 3], 1.0)
 
@@ -80,7 +80,7 @@ def test_joints_that_no_body_has_have_no_trust():
     umbrella = names.index("Umbrella")
     for term in (
         result.reliability_terms.combined,
-        result.reliability_terms.behaviour,
+        result.reliability_terms.behavior,
         result.confidence,
     ):
         assert np.isnan(term[:, umbrella]).all()

@@ -31,18 +31,18 @@ CHEST_FRACTION = 0.4
 
 
 @dataclass(frozen=True, eq=False)
-class Centres:
+class JointCenters:
     """Joint centers, and the axes of bones with three or more markers."""
 
     positions: PositionsByJoint
-    """By joint, each of shape (n_frames, 3), metres; NaN where a marker is missing."""
+    """By joint, each of shape (n_frames, 3), meters; NaN where a marker is missing."""
     frames: PositionsByJoint
     """Axes of pelvis ("hips"), "chest" and "head", each of shape (n_frames, 3, 3)."""
     scale: float
     """Size of the body relative to an adult."""
 
 
-def joint_centres(landmarks: Mapping[str, Array]) -> Centres:
+def joint_centers(landmarks: Mapping[str, Array]) -> JointCenters:
     """Estimate the joint centers of every frame.
 
     Hips: Harrington et al. 2007 [1]_. Knees and elbows: chord function [2]_ in the
@@ -50,7 +50,7 @@ def joint_centres(landmarks: Mapping[str, Array]) -> Centres:
 
     Parameters
     ----------
-    landmarks : mapping of landmark to positions of shape (n_frames, 3), metres
+    landmarks : mapping of landmark to positions of shape (n_frames, 3), meters
 
     Raises
     ------
@@ -84,7 +84,7 @@ def joint_centres(landmarks: Mapping[str, Array]) -> Centres:
             _arm(landmarks, positions, frames["chest"], side, scale)
     if {"LFHD", "RFHD", "LBHD", "RBHD"} <= set(landmarks):
         frames["head"] = _head(landmarks, positions, scale)
-    return Centres(positions, frames, scale)
+    return JointCenters(positions, frames, scale)
 
 
 def _pelvis(landmarks: Mapping[str, Array], positions: PositionsByJoint) -> Array:
@@ -170,7 +170,7 @@ def chord(start: Array, marker: Array, outward: Array, half_width: float) -> Arr
     """Return the joint center for which the marker is perpendicular to the bone.
 
     The marker is `half_width` from it, on the side of `outward`, and the bone starts at `start`
-    (the chord function of [2]_ in `joint_centres`).
+    (the chord function of [2]_ in `joint_centers`).
     """
     arm = marker - start
     length = np.linalg.norm(arm, axis=-1, keepdims=True)
