@@ -222,9 +222,7 @@ def _palm_weights(observed: Array, local: Array, forward: Array) -> Array:
     length_weights = np.clip((length - MIN_PALM_M) / (FULL_PALM_M - MIN_PALM_M), 0.0, 1.0)
     return np.asarray(
         length_weights
-        * np.clip(
-            (MAX_PALM_FLEXION - flexion) / (MAX_PALM_FLEXION - FULL_PALM_FLEXION), 0.0, 1.0
-        )
+        * np.clip((MAX_PALM_FLEXION - flexion) / (MAX_PALM_FLEXION - FULL_PALM_FLEXION), 0, 1)
     )
 
 

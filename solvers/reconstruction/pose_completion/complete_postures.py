@@ -119,13 +119,11 @@ def complete_postures(
             reused = REUSED_RELIABILITY / (1.0 + (corrected.spread / HALF_CONFIDENCE_M) ** 2)
             given = np.maximum(given, reused)
     spread_ratio = corrected.spread / errors.size
-    uncertainty = np.hypot(
-        settings.noise, spread_ratio * np.hypot(chosen.spread, MODEL_ERROR_M)
-    )
+    spread = spread_ratio * np.hypot(chosen.spread, MODEL_ERROR_M)
+    uncertainty = np.hypot(settings.noise, spread)
     confidence = 1.0 / (1.0 + (uncertainty / HALF_CONFIDENCE_M) ** 2)
-    postures = constrain_lengths(
-        corrected.values + errors.offset, lengths, reliability, confidence
-    )
+    postures = corrected.values + errors.offset
+    postures = constrain_lengths(postures, lengths, reliability, confidence)
     return CompletedPostures(postures + offset, confidence, twists)
 
 
@@ -142,9 +140,8 @@ def _search_as_published(
     chosen, twists = _synthesize(take, body, index, causal_settings, progress)
     uncertainty = np.hypot(chosen.spread, MODEL_ERROR_M)
     confidence = 1.0 / (1.0 + (uncertainty / HALF_CONFIDENCE_M) ** 2)
-    return CompletedPostures(
-        chosen.values, confidence, twists and replace(twists, ignore_flexion=True)
-    )
+    twists = twists and replace(twists, ignore_flexion=True)
+    return CompletedPostures(chosen.values, confidence, twists)
 
 
 def _fit_library_to_actor(
@@ -186,12 +183,11 @@ def _measure_errors(
     speeds = _speeds(take, settings)
 
     def synthesize(frames: NDArray[np.intp], reliability: Array) -> Array:
-        query = PostureQuery(take.postures[frames], speeds[frames], reliability, settings.pace)
+        observed = take.postures[frames]
+        query = PostureQuery(observed, speeds[frames], reliability, settings.pace)
         indices, _ = nearest_postures(index, query, settings.n_neighbours)
         spaces = local_pca(body.positions[indices].astype(np.float64), settings.n_dimensions)
-        targets = EnergyTargets(
-            take.postures[frames], reliability, spaces.neighbors, take.lengths
-        )
+        targets = EnergyTargets(observed, reliability, spaces.neighbors, take.lengths)
         return probable_postures(spaces, targets)[0]
 
     return cross_validate_limbs(take.postures, take.reliability, synthesize)
@@ -236,18 +232,13 @@ def _synthesize(
     for start in range(0, len(values), BLOCK_FRAMES):
         part = slice(start, min(start + BLOCK_FRAMES, len(values)))
         spaces = local_pca(body.positions[indices[part]], settings.n_dimensions)
-        targets = EnergyTargets(
-            take.postures[part], take.reliability[part], spaces.neighbors, take.lengths
-        )
+        reliability, near = take.reliability[part], spaces.neighbors
+        targets = EnergyTargets(take.postures[part], reliability, near, take.lengths)
         probable, spread[part] = probable_postures(spaces, targets)
         values[part] = _choose_postures(spaces, targets, probable, settings, last)
         if body.twists is not None:
-            twists[part] = mean_twists(
-                body.twists[indices[part]],
-                values[part],
-                spaces.neighbors,
-                take.reliability[part],
-            )
+            similar = body.twists[indices[part]]
+            twists[part] = mean_twists(similar, values[part], near, reliability)
         last = values[max(part.stop - 2, 0) : part.stop]
         progress(0.4 + 0.6 * part.stop / len(values), "Synthesizing poses")
     if settings.smoothing and not settings.causal:
@@ -279,9 +270,8 @@ def _hips_offset(
     weight[:, HIPS] = 0.0
     total = weight.sum(axis=1)[:, None]
     displacement = np.einsum("fi,fik->fk", weight, np.nan_to_num(residuals)) / (1.0 + total)
-    displacement *= 1.0 - np.where(
-        np.isfinite(residuals[:, HIPS, :1]), reliability[:, [HIPS]], 0.0
-    )
+    is_observed = np.isfinite(residuals[:, HIPS, :1])
+    displacement *= 1.0 - np.where(is_observed, reliability[:, [HIPS]], 0.0)
     if settings.smoothing and not settings.causal:
         displacement = gaussian_filter1d(
             displacement, settings.smoothing * frame_rate, axis=0, mode="nearest"
@@ -297,10 +287,8 @@ def _add_residuals(
     settings: PostureSettings,
 ) -> Estimates:
     """Add smoothed residuals of the observations to synthesized poses."""
-    dt, deviation = (
-        1.0 / take.frame_rate,
-        measurement_deviation(take.reliability, settings.noise),
-    )
+    dt = 1.0 / take.frame_rate
+    deviation = measurement_deviation(take.reliability, settings.noise)
     if settings.causal:
         corrected = filter_residuals(
             chosen.values, observed, deviation, dt, size, settings.memory

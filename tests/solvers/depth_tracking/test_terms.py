@@ -1,4 +1,4 @@
-"""Each term's equations are the derivatives of what it says it measures."""
+"""Equations of each term equal the derivatives of its definition."""
 
 import numpy as np
 import pytest
@@ -26,15 +26,15 @@ from solvers.depth_tracking.terms.silhouette import silhouette_term
 BODY = default_body()
 
 
-def moved(hypothesis, directions):
-    """How fast visible points move along directions (n, 3) with each coordinate, (n, 36)."""
+def point_velocities(hypothesis, directions):
+    """Speed of visible points along directions (n, 3) by each coordinate, (n, 36)."""
     twists = hypothesis.twists[hypothesis.segments]
     speeds = np.cross(twists[:, :3], hypothesis.points[:, :, None], axis=1) + twists[:, 3:]
     return np.einsum("ni,nik->nk", directions, speeds)
 
 
-def test_equations_of_segments_equal_the_dense_ones(rng):
-    """One 6 x 6 matrix per segment holds what a Jacobian with a row per pixel holds."""
+def test_segment_equations_equal_the_dense_ones(rng):
+    """One 6 x 6 matrix per segment replaces a Jacobian with a row per pixel."""
     hypothesis = render_hypothesis(BODY, NATURAL, CAMERA)
     n = len(hypothesis.points)
     directions, residuals = rng.normal(size=(n, 3)), rng.normal(size=n)
@@ -46,13 +46,13 @@ def test_equations_of_segments_equal_the_dense_ones(rng):
 
     found = equations_in_coordinates([segment_equations(rows)], hypothesis.twists)
 
-    jacobian = moved(hypothesis, directions)
+    jacobian = point_velocities(hypothesis, directions)
     assert_allclose(found.matrix, jacobian.T @ (weights[:, None] * jacobian), atol=1e-8)
     assert_allclose(found.vector, jacobian.T @ (weights * residuals), atol=1e-8)
     assert_allclose(found.cost, 0.5 * (weights * residuals**2).sum())
 
 
-def test_moving_toward_is_moving_along_three_axes(rng):
+def test_point_equations_equal_those_along_three_axes(rng):
     points, targets = rng.normal(size=(2, 7, 3))
     weights, capsules = rng.uniform(size=7), rng.integers(0, 19, size=7)
 
@@ -67,21 +67,21 @@ def test_moving_toward_is_moving_along_three_axes(rng):
     assert_allclose(found.vectors, sum(part.vectors for part in parts), atol=1e-12)
 
 
-def test_depth_of_a_pixel_changes_as_its_gradient_says():
-    """Central differences of drawn pictures, where neither outline nor other part is near."""
+def test_depth_gradient_equals_differences_of_rendered_depth():
+    """Central differences of rendered images, away from silhouettes and part boundaries."""
     hypothesis, size = render_hypothesis(BODY, NATURAL, CAMERA), 1e-5
-    exact = moved(hypothesis, depth_gradients(hypothesis))
+    exact = point_velocities(hypothesis, depth_gradients(hypothesis))
     pixels = hypothesis.image.pixels
     facing = -np.einsum("ni,ni->n", hypothesis.normals, hypothesis.rays) > 0.4
     for coordinate in (0, 2, 3, 5, 8, 11, 14, 16, 18, 20, 21, 23, 29, 33):
-        pictures = [
+        images = [
             render_hypothesis(
                 BODY, NATURAL + sign * size * np.eye(36)[coordinate], CAMERA
             ).image
             for sign in (1.0, -1.0)
         ]
-        high, low = (picture.depth_image().ravel()[pixels] for picture in pictures)
-        same = (pictures[0].segment_image() == pictures[1].segment_image()).ravel()[pixels]
+        high, low = (image.depth_image().ravel()[pixels] for image in images)
+        same = (images[0].segment_image() == images[1].segment_image()).ravel()[pixels]
         inner = facing & same & (high > 0.0) & (low > 0.0)
         differences = (high - low)[inner] / (2 * size)
         assert inner.sum() > 900
@@ -90,19 +90,21 @@ def test_depth_of_a_pixel_changes_as_its_gradient_says():
         assert (off < 1e-4).mean() > 0.99
 
 
-@pytest.mark.parametrize("aside", [(0.03, 0.0), (0.0, -0.03)])
-def test_silhouette_term_pulls_back_to_the_outline(aside):
+@pytest.mark.parametrize("offset", [(0.03, 0.0), (0.0, -0.03)])
+def test_silhouette_term_pulls_back_to_the_outline(offset):
     there = NATURAL.copy()
-    there[:2] += aside
+    there[:2] += offset
     hypothesis = render_hypothesis(BODY, there, CAMERA)
 
-    asked = equations_in_coordinates(
+    requested = equations_in_coordinates(
         [segment_equations(silhouette_term(hypothesis, observed(NATURAL), 1.0))],
         hypothesis.twists,
     ).vector[:2]
 
-    assert asked @ np.array(aside) < 0.0
-    assert abs(asked @ np.array(aside)) > 0.9 * np.linalg.norm(asked) * np.linalg.norm(aside)
+    assert requested @ np.array(offset) < 0.0
+    assert abs(requested @ np.array(offset)) > 0.9 * np.linalg.norm(requested) * np.linalg.norm(
+        offset
+    )
 
 
 def test_terms_have_zero_residuals_at_the_true_pose():
@@ -120,8 +122,8 @@ def test_terms_have_zero_residuals_at_the_true_pose():
         assert_allclose(term.residuals, 0.0, atol=1e-9)
 
 
-def test_pixels_fall_into_the_groups_of_the_paper():
-    """An arm before the chest hides it; a raised arm is not where it was expected."""
+def test_pixel_groups_equal_those_of_the_paper():
+    """An arm occludes the chest, and a raised arm differs from the hypothesis."""
     acted = posed(leftHumerusX=1.0, leftHumerusY=1.0, leftRadius=1.6, rightHumerusZ=1.4)
     hypothesis, observation = render_hypothesis(BODY, posed(), CAMERA), observed(acted)
 
@@ -139,7 +141,7 @@ def test_pixels_fall_into_the_groups_of_the_paper():
 
 
 @pytest.mark.parametrize("away", [-0.02, 0.03])
-def test_the_closest_surface_of_a_round_limb_is_its_radius_from_the_axis(away):
+def test_closest_surface_of_a_round_limb_is_a_radius_from_its_axis(away):
     hypothesis = render_hypothesis(BODY, posed(leftHumerusZ=1.2), CAMERA)
     limb = CAPSULES.index("leftLowerArm")
     frame = hypothesis.frames[SEGMENTS.index("leftLowerArm")]
@@ -156,8 +158,8 @@ def test_the_closest_surface_of_a_round_limb_is_its_radius_from_the_axis(away):
     assert_allclose(normals[0], toward, atol=1e-12)
 
 
-def test_every_depth_term_moves_the_body_nearer():
-    """A step of each term alone from 4 cm too near shortens the way to the truth."""
+def test_step_of_every_depth_term_reduces_the_distance():
+    """One step of each term, from 4 cm too near."""
     there = NATURAL.copy()
     there[2] -= 0.04
     hypothesis, observation = render_hypothesis(BODY, there, CAMERA), observed(NATURAL)

@@ -212,9 +212,9 @@ def test_root_bone_on_the_floor_moves_with_the_body(walk, simulated):
         (-1, *(parent + 1 for parent in skeleton.parents)),
         np.concatenate([[floor], [[0.0, 0.0, 1.0]], offsets[1:]]),
     )
-    turn = quaternion_from_rotation_vector([0.0, 0.0, 0.4])
-    still = np.tile(turn, (walk.n_frames, 1, 1))
-    back = multiply(turn * (1, -1, -1, -1), hips)
+    rotation = quaternion_from_rotation_vector([0.0, 0.0, 0.4])
+    still = np.tile(rotation, (walk.n_frames, 1, 1))
+    back = multiply(rotation * (1, -1, -1, -1), hips)
     motion = Motion(
         rigged,
         np.concatenate([still, back, walk.rotations[:, 1:]], axis=1),

@@ -56,8 +56,8 @@ def test_segments_between_jumps_are_simulated_separately():
 
     assert result.followed.all()
     assert np.abs(result.motion.root_positions - roots).max() < 0.05
-    alone = simulate(WALK.slice(0, 12)).motion
-    assert_allclose(result.motion.root_positions[:12], alone.root_positions, atol=0.01)
+    separate = simulate(WALK.slice(0, 12)).motion
+    assert_allclose(result.motion.root_positions[:12], separate.root_positions, atol=0.01)
 
 
 def test_gaps_are_filled_in_simulated_joints():

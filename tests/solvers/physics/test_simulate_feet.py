@@ -154,14 +154,14 @@ def test_fast_sliding_foot_is_not_held(walk):
 def test_held_feet_do_not_move(walk, body, rng):
     """Planting alone: the part of the sole that bears the foot rests to a tenth of a mm."""
     sway = np.cumsum(rng.normal(scale=0.0008, size=(walk.n_frames, 2)), axis=0)
-    turn = np.cumsum(rng.normal(scale=0.001, size=walk.n_frames))
+    angles = np.cumsum(rng.normal(scale=0.001, size=walk.n_frames))
     rotations = walk.rotations.copy()
-    turn = quaternion_from_rotation_vector(turn[:, None] * (0.0, 0.0, 1.0))
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    angles = quaternion_from_rotation_vector(angles[:, None] * (0.0, 0.0, 1.0))
+    rotations[:, 0] = multiply(angles, rotations[:, 0])
     roots = walk.root_positions + np.pad(sway, ((0, 0), (0, 1)))
     swaying = walk.with_poses(rotations, roots)
-    stands = detect_target_contacts(body, walk)
-    held = stands[1:] & stands[:-1]
+    in_contact = detect_target_contacts(body, walk)
+    held = in_contact[1:] & in_contact[:-1]
 
     result = plant_target_feet(body, swaying, held.astype(np.float64), 0.0)
 
@@ -194,16 +194,16 @@ def test_lowest_part_of_the_sole_bears_the_load():
 
 def test_target_feet_are_placed_on_the_ground(walk, body):
     low = walk.with_poses(root_positions=walk.root_positions - (0.0, 0.0, 0.02))
-    stands = detect_target_contacts(body, walk).astype(np.float64)
+    in_contact = detect_target_contacts(body, walk).astype(np.float64)
 
-    result = place_feet_on_ground(body, low, stands, stands, 0.0)
+    result = place_feet_on_ground(body, low, in_contact, in_contact, 0.0)
 
     points = lowest_points(body, result)
     inner = slice(15, -15)
     for column, side in enumerate(SIDES):
         lowest = points[:, select_foot_ends(body, side), 2].min(axis=1)[inner] / body.size
-        always = moving_minimum(stands[inner, column]) == 1.0
-        never = moving_minimum(1.0 - stands[inner, column]) == 1.0
+        always = moving_minimum(in_contact[inner, column]) == 1.0
+        never = moving_minimum(1.0 - in_contact[inner, column]) == 1.0
         assert always.any() and never.any()
         assert_allclose(lowest[always], -STANCE_DEPTH_M, atol=MILLIMETRE)
         assert lowest[never].min() > 0.5 * MIN_SWING_CLEARANCE_M
@@ -234,9 +234,9 @@ def test_pelvis_stays_where_no_leg_changes(walk, body):
 
 
 def test_planting_is_equivariant_to_heading(shaking, kept):
-    turn = quaternion_from_rotation_vector([0.0, 0.0, 1.0])
+    rotation = quaternion_from_rotation_vector([0.0, 0.0, 1.0])
     rotations = shaking.rotations.copy()
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    rotations[:, 0] = multiply(rotation, rotations[:, 0])
     c, s = np.cos(1.0), np.sin(1.0)
     about = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
 
@@ -271,8 +271,8 @@ def loaded_steps(body, motion):
 def measure_turning(body, motion):
     """Angle about the vertical by which feet turn to the next frame, (n_frames - 1, 2)."""
     ankles = [find_leg_chain(body, side)[-1] for side in SIDES]
-    turns = forward_kinematics(motion).rotations[:, ankles]
-    steps = multiply(turns[1:], turns[:-1] * (1, -1, -1, -1))
+    rotations = forward_kinematics(motion).rotations[:, ankles]
+    steps = multiply(rotations[1:], rotations[:-1] * (1, -1, -1, -1))
     return np.abs(rotation_vector_from_quaternion(steps)[..., 2])
 
 

@@ -1,4 +1,4 @@
-"""Reliability of whole bodies: low where a joint is wrong, and only there."""
+"""Reliability of complete bodies is low for wrong joints only."""
 
 import numpy as np
 import pytest
@@ -38,7 +38,7 @@ def named(settings: ReliabilitySettings) -> str:
     return f"{settings.method.value}{' causal' if settings.causal else ''}"
 
 
-every_way = pytest.mark.parametrize("settings", METHODS, ids=named)
+every_method = pytest.mark.parametrize("settings", METHODS, ids=named)
 
 
 def recorded(positions: np.ndarray, frame_rate: float = 30.0) -> JointRecording:
@@ -63,15 +63,15 @@ def place(name: str) -> int:
     return NAMES.index(name)
 
 
-def shaken(walk: np.ndarray, name: str, size: float = 0.06) -> np.ndarray:
-    """One joint jumps to and fro in the middle of the take."""
+def vibrating(walk: np.ndarray, name: str, size: float = 0.06) -> np.ndarray:
+    """One joint vibrates in the middle of the take."""
     wrong = walk.copy()
     jumps = size * (-1.0) ** np.arange(30)
     wrong[30:60, place(name), 0] += jumps
     return wrong
 
 
-@every_way
+@every_method
 def test_still_body_is_reliable(walk, settings):
     still = np.tile(walk[:1], (60, 1, 1))
 
@@ -85,10 +85,12 @@ def test_clean_walk_is_reliable(walk):
     assert combined.min() > 0.85  # knees and feet at footfall
 
 
-@every_way
+@every_method
 def test_vibrating_joint_is_unreliable_and_others_hardly(walk, settings):
     before = measure_reliability(recorded(walk), settings=settings).combined
-    after = measure_reliability(recorded(shaken(walk, "HandLeft")), settings=settings).combined
+    after = measure_reliability(
+        recorded(vibrating(walk, "HandLeft")), settings=settings
+    ).combined
 
     fall = (before - after)[38:58].mean(axis=0)
     hand = place("HandLeft")
@@ -99,8 +101,8 @@ def test_vibrating_joint_is_unreliable_and_others_hardly(walk, settings):
     assert (before - after)[:15].max() < 0.05
 
 
-@every_way
-def test_leg_too_long_for_a_while_is_unreliable(walk, settings):
+@every_method
+def test_leg_with_a_temporary_length_error_is_unreliable(walk, settings):
     wrong = walk.copy()
     knee, ankle, foot = (place(f"{part}Left") for part in ("Knee", "Ankle", "Foot"))
     longer = 0.3 * (walk[20:40, ankle] - walk[20:40, knee])
@@ -119,9 +121,9 @@ def test_leg_too_long_for_a_while_is_unreliable(walk, settings):
     assert fall[place("KneeRight")] < 1e-9
 
 
-@every_way
+@every_method
 def test_posture_ignores_position_and_heading(walk, settings):
-    wrong = shaken(walk, "AnkleRight")
+    wrong = vibrating(walk, "AnkleRight")
     moved = rotate_about_vertical(wrong, np.full(len(walk), 2.1)) + np.array([3.0, -4.0, 0.5])
 
     one = measure_reliability(recorded(wrong), settings=settings)
@@ -131,7 +133,7 @@ def test_posture_ignores_position_and_heading(walk, settings):
 
 
 def test_constant_velocity_walk_has_no_deviation(walk):
-    """The ends of a path go on as they came: nothing falls there because of speed."""
+    """The ends of a path are extrapolated, so speed does not lower reliability there."""
     gone = walk + np.arange(len(walk))[:, None, None] * np.array([0.06, 0.0, 0.0])
 
     one, other = (measure_reliability(recorded(each)).combined for each in (walk, gone))
@@ -140,7 +142,7 @@ def test_constant_velocity_walk_has_no_deviation(walk):
 
 
 @pytest.mark.parametrize("frame_rate", [60.0, 120.0])
-def test_frame_rates_agree(frame_rate):
+def test_reliability_agrees_at_all_frame_rates(frame_rate):
     step = int(frame_rate / 30.0)
     rng = np.random.default_rng(5)
     sway = np.cumsum(rng.normal(size=(91, 20, 3)), axis=0)
@@ -159,7 +161,7 @@ def test_frame_rates_agree(frame_rate):
     assert np.abs(slow - quick).mean() < 0.06
 
 
-@every_way
+@every_method
 def test_missing_joints_have_no_reliability_and_others_keep_theirs(walk, settings):
     gone = walk.copy()
     gone[20:30, place("HandRight")] = np.nan
@@ -177,20 +179,22 @@ def test_missing_joints_have_no_reliability_and_others_keep_theirs(walk, setting
 
 
 def test_input_stays_unchanged_and_progress_is_reported(walk):
-    recording = recorded(shaken(walk, "HandLeft"))
+    recording = recorded(vibrating(walk, "HandLeft"))
     before = recording.tracks.positions.copy()
-    told = []
+    fractions = []
 
-    measure_reliability(recording, progress=lambda fraction, message="": told.append(fraction))
+    measure_reliability(
+        recording, progress=lambda fraction, message="": fractions.append(fraction)
+    )
 
     assert_array_equal(recording.tracks.positions, before)
-    assert told == sorted(told)
-    assert told[-1] == 1.0
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
 
 
-@every_way
+@every_method
 @pytest.mark.parametrize("shape", [(1, 1), (1, 20), (2, 20), (5, 1)])
-def test_the_shortest_takes_have_a_reliability(walk, settings, shape):
+def test_shortest_takes_have_a_reliability(walk, settings, shape):
     positions = walk[: shape[0], : shape[1]]
     tracks = Tracks(NAMES[: shape[1]], positions, 30.0)
 
@@ -202,19 +206,19 @@ def test_the_shortest_takes_have_a_reliability(walk, settings, shape):
     assert (found.combined > 0.9).all()
 
 
-def test_reference_postures_are_standing_and_t_pose_and_no_other():
+def test_reference_postures_are_standing_and_t_pose_only():
     limbs = {"down": (0.0, 0.0, -1.0), "out": (1.0, 0.0, 0.0), "ahead": (0.0, -1.0, 0.0)}
     frames = np.stack([body(limbs["down"]), body(limbs["out"]), body(limbs["ahead"])])
     tracked = np.ones(frames.shape[:2], bool)
 
     assert find_reference_postures(NAMES, frames, tracked).tolist() == [True, True, False]
     tilt = np.radians(35.0)
-    turn = np.array([
+    rotation = np.array([
         [1, 0, 0],
         [0, np.cos(tilt), -np.sin(tilt)],
         [0, np.sin(tilt), np.cos(tilt)],
     ])
-    assert find_reference_postures(NAMES, frames @ turn.T, tracked).tolist() == [
+    assert find_reference_postures(NAMES, frames @ rotation.T, tracked).tolist() == [
         True,
         True,
         False,
@@ -224,32 +228,32 @@ def test_reference_postures_are_standing_and_t_pose_and_no_other():
 
 
 def body(arm: tuple[float, float, float]) -> np.ndarray:
-    """All joints of a body that stands, its arms held so; the left is at +X."""
+    """All joints of a standing body with its arms in this direction; left is at +X."""
     at = {"HipCenter": (0.0, 0.0, 0.9), "Spine": (0, 0, 1.1), "ShoulderCenter": (0, 0, 1.4),
           "Head": (0, 0, 1.6)}  # fmt: skip
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         shoulder = np.array([0.2 * sign, 0.0, 1.4])
-        way = np.array(arm) * (sign, 1.0, 1.0)
+        direction = np.array(arm) * (sign, 1.0, 1.0)
         parts = ("Shoulder", "Elbow", "Wrist", "Hand")
-        at |= {f"{p}{side}": shoulder + 0.28 * n * way for n, p in enumerate(parts)}
+        at |= {f"{p}{side}": shoulder + 0.28 * n * direction for n, p in enumerate(parts)}
         for rise, part in ((0.9, "Hip"), (0.5, "Knee"), (0.1, "Ankle"), (0.02, "Foot")):
             at[f"{part}{side}"] = np.array([0.1 * sign, -0.15 * (part == "Foot"), rise])
     return np.array([at[name] for name in NAMES])
 
 
-def test_lengths_are_those_of_reference_postures_where_there_are_any():
+def test_lengths_are_measured_in_reference_postures_if_any():
     lengths = np.full((40, 2), 0.5)
     lengths[10:20] = 0.4
     postures = np.zeros(40, bool)
-    trust = np.ones((40, 2))
-    trust[:, 1] = 0.0
-    trust[10:17, 1] = 1.0
+    reliability = np.ones((40, 2))
+    reliability[:, 1] = 0.0
+    reliability[10:17, 1] = 1.0
 
-    assert_allclose(reference_lengths(lengths, postures, trust), [0.5, 0.4])
+    assert_allclose(reference_lengths(lengths, postures, reliability), [0.5, 0.4])
     postures[10:20] = True
-    assert_allclose(reference_lengths(lengths, postures, trust), [0.4, 0.4])
+    assert_allclose(reference_lengths(lengths, postures, reliability), [0.4, 0.4])
     postures[14:20] = False  # four are too few
-    assert_allclose(reference_lengths(lengths, postures, trust), [0.5, 0.4])
+    assert_allclose(reference_lengths(lengths, postures, reliability), [0.5, 0.4])
 
 
 def test_reference_postures_with_an_inferred_joint_are_ignored():

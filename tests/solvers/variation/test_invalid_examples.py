@@ -66,8 +66,8 @@ def test_variants_keep_arms_that_rotate_twice(method, walks):
     for motion in variants:
         body = positions_in_body_frame(motion)
         arm = body[:, index] - body[:, shoulder]
-        turned = np.unwrap(np.arctan2(arm[:, 1], arm[:, 2]))
-        assert abs(abs(turned[-1] - turned[0]) - 4 * np.pi) < 1.0
+        rotated = np.unwrap(np.arctan2(arm[:, 1], arm[:, 2]))
+        assert abs(abs(rotated[-1] - rotated[0]) - 4 * np.pi) < 1.0
 
 
 @pytest.mark.parametrize("method", EVERY)
@@ -93,18 +93,18 @@ def test_variants_do_not_flip_arms_that_point_up(method, walks):
 def test_variants_keep_several_rotations_on_the_spot(method, walks):
     spun = []
     for walk, power in zip(walks, (1.0, 1.1, 0.95, 1.05), strict=True):
-        turn = about((0, 0, 1), 6 * np.pi * passing(walk, power))
+        angle = about((0, 0, 1), 6 * np.pi * passing(walk, power))
         rotations = walk.rotations.copy()
-        rotations[:, 0] = multiply(turn, rotations[:, 0])
+        rotations[:, 0] = multiply(angle, rotations[:, 0])
         there = walk.root_positions * (0.0, 0.0, 1.0)
         spun.append(walk.with_poses(rotations, there))
     settings = VarySettings(method=method)
 
     drawn = draw_variants(learn_variation_model(spun, settings=settings), 6, settings=settings)
 
-    wanted = np.mean([np.ptp(headings_from_motion(one)) for one in spun])
+    expected = np.mean([np.ptp(headings_from_motion(one)) for one in spun])
     for variant in drawn:
-        assert np.ptp(headings_from_motion(variant.motion)) == pytest.approx(wanted, rel=0.1)
+        assert np.ptp(headings_from_motion(variant.motion)) == pytest.approx(expected, rel=0.1)
 
 
 def test_two_flips_in_one_direction_do_not_wind_up_a_joint(walks):
@@ -149,8 +149,8 @@ def test_twenty_thousand_frames(method, walks):
     """Of a walk that comes again and again: many frames, and their kernels, are the same."""
     walk = walks[0]
     rotations = np.tile(walk.rotations, (400, 1, 1))[:20_000]
-    places = np.tile(walk.root_positions, (400, 1))[:20_000]
-    long = replace(walk, rotations=rotations, root_positions=places, frame_rate=400.0)
+    positions = np.tile(walk.root_positions, (400, 1))[:20_000]
+    long = replace(walk, rotations=rotations, root_positions=positions, frame_rate=400.0)
     settings = VarySettings(method=method)
 
     model = learn_variation_model([long, long.slice(0, 19_900)], settings=settings)

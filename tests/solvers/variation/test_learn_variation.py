@@ -22,9 +22,9 @@ from solvers.variation.learn_variation import MAX_VALUES
 
 
 def turned_about_z(motion, angle):
-    turn = np.array([np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)])
+    rotation = np.array([np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)])
     rotations = motion.rotations.copy()
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    rotations[:, 0] = multiply(rotation, rotations[:, 0])
     cos, sin = np.cos(angle), np.sin(angle)
     x, y, z = motion.root_positions.T
     return replace(
@@ -37,11 +37,11 @@ def turned_about_z(motion, angle):
 def test_model_ignores_position_and_heading_of_examples(walks):
     there = [turned_about_z(walk, 0.7 * index) for index, walk in enumerate(walks)]
 
-    reference_rotations, turned = (
+    reference_rotations, rotated = (
         synthesize(learn_variation_model(one), 2) for one in (walks, there)
     )
 
-    for one, other in zip(reference_rotations, turned, strict=True):
+    for one, other in zip(reference_rotations, rotated, strict=True):
         assert one.n_frames == other.n_frames
         assert_allclose(one.root_positions, other.root_positions, atol=1e-5)
         assert_allclose(np.abs(np.sum(one.rotations * other.rotations, axis=-1)), 1, atol=1e-7)
@@ -132,16 +132,16 @@ def test_clips_of_a_few_frames(walks, n_frames, method):
 
 
 def test_single_clip_varies_only_by_borrowed_variation(walks):
-    alone, generic = learn_variation_model(walks[:1]), borrow_variation(walks[0])
+    separate, generic = learn_variation_model(walks[:1]), borrow_variation(walks[0])
     others = borrow_variation(walks[0], [learn_variation_model(walks[1:])])
 
-    found = [measure_variation(synthesize(one, 6)) for one in (alone, generic, others)]
+    found = [measure_variation(synthesize(one, 6)) for one in (separate, generic, others)]
 
     assert found[0] < 1e-6
     assert 0.2 < found[1] / measure_variation(walks) < 2.0
     assert 0.2 < found[2] / measure_variation(walks) < 2.0
     assert generic.warning == "There is one example; how it varies is borrowed."
-    assert_allclose(generic.joints.mean(axis=0), alone.joints[0], atol=1e-12)
+    assert_allclose(generic.joints.mean(axis=0), separate.joints[0], atol=1e-12)
 
 
 def test_generic_model_does_not_move_joints_at_rest(walks):

@@ -34,10 +34,10 @@ def test_variants_are_near_the_examples_but_not_copies(clips):
     theirs, ours = (
         [positions_in_body_frame(one)[::6] for one in group] for group in (clips, variants)
     )
-    apart = np.median([warp(a, b).cost for a, b in combinations(theirs, 2)])
+    distances = np.median([warp(a, b).cost for a, b in combinations(theirs, 2)])
     nearest = [min(warp(one, other).cost for other in theirs) for one in ours]
-    assert min(nearest) > 0.05 * apart
-    assert max(nearest) < apart
+    assert min(nearest) > 0.05 * distances
+    assert max(nearest) < distances
 
 
 def test_the_latent_factor_model_neither_drifts_nor_jerks(recordings):

@@ -128,19 +128,19 @@ def test_prediction_is_exact_when_all_examples_are_inducing(
     features, outputs = data
     stack, _ = one_stack(features, outputs, hyperparameters, published)
     new = rng.normal(size=(5, 4))
-    seen, there = ((x - features.mean(0)) / features.std(0) for x in (features, new))
+    observed, there = ((x - features.mean(0)) / features.std(0) for x in (features, new))
     scale, middle = outputs.std(axis=0).max(), outputs.mean(axis=0)
     weights = hyperparameters.mixing**2 if published else np.eye(3)
     mixing = np.eye(3) if published else np.linalg.inv(hyperparameters.mixing)
     channels = np.linalg.solve(mixing, ((outputs - middle) / scale).T)
     predict = []
-    for row, told in zip(weights, channels, strict=True):
+    for row, result in zip(weights, channels, strict=True):
         own, other = (
-            np.tensordot(row, np.stack(processes(x, seen, hyperparameters)), axes=1)
-            for x in (seen, there)
+            np.tensordot(row, np.stack(processes(x, observed, hyperparameters)), axes=1)
+            for x in (observed, there)
         )
         noise = row @ hyperparameters.noises
-        predict.append(other @ np.linalg.solve(own + noise * np.eye(9), told))
+        predict.append(other @ np.linalg.solve(own + noise * np.eye(9), result))
 
     got = stack.predict(new)[:, 0]
 
@@ -150,8 +150,8 @@ def test_prediction_is_exact_when_all_examples_are_inducing(
 def test_drawn_functions_have_the_exact_covariance(data, hyperparameters, rng):
     features, outputs = data
     stack, _ = one_stack(features, outputs, hyperparameters, published=False)
-    seen = (features - features.mean(0)) / features.std(0)
-    kernel, noise = processes(seen, seen, hyperparameters)[0], hyperparameters.noises[0]
+    observed = (features - features.mean(0)) / features.std(0)
+    kernel, noise = processes(observed, observed, hyperparameters)[0], hyperparameters.noises[0]
     exact = kernel - kernel @ np.linalg.solve(kernel + noise * np.eye(9), kernel)
 
     functions = stack.draw_functions(20_000, rng)[0, 0]
