@@ -200,20 +200,23 @@ def test_choose_poses_rejects_a_brief_swap_with_a_higher_score():
 
 
 @given(
-    known=st.lists(st.integers(0, 30), min_size=1, unique=True).map(sorted),
+    tracked_frames=st.lists(st.integers(0, 30), min_size=1, unique=True).map(sorted),
     n_frames=st.integers(1, 40),
 )
-def test_nearest_tracked_matches_a_brute_force_search(known, n_frames):
-    found = nearest_tracked(np.array(known), n_frames)
+def test_nearest_tracked_matches_a_brute_force_search(tracked_frames, n_frames):
+    found = nearest_tracked(np.array(tracked_frames), n_frames)
 
-    slowly = [min(known, key=lambda one: (abs(one - frame), one)) for frame in range(n_frames)]
+    slowly = [
+        min(tracked_frames, key=lambda one: (abs(one - frame), one))
+        for frame in range(n_frames)
+    ]
     assert_array_equal(found, slowly)
 
 
 def test_nearest_tracked_handles_an_hour_of_frames():
-    known = np.arange(0, 108_000, 2)
+    tracked_frames = np.arange(0, 108_000, 2)
     tracemalloc.start()
-    found = nearest_tracked(known, 108_000)
+    found = nearest_tracked(tracked_frames, 108_000)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
 

@@ -105,7 +105,7 @@ def test_features_are_differences_at_metric_offsets(seed):
         - depth_difference(depth, camera, row, column, *offsets[2:])
         for row, column in zip(rows, columns, strict=True)
     ]
-    # A place just between two pixels may fall to either by rounding.
+    # Rounding may assign a position between two pixels to either.
     assert (np.abs(differences - exact) <= 1).mean() > 0.98
 
 

@@ -66,7 +66,7 @@ def test_cast_rays_equals_marching_along_every_ray(rng):
     depth, capsule = marched(body, frames, camera)
     observed = depth > 0.0
     assert observed.sum() > 70
-    # A ray that only grazes a capsule may slip between two steps of the naive way.
+    # A ray that only grazes a capsule may pass between two steps of ray marching.
     assert (observed != (image.depth_image() > 0.0)).sum() <= 3
     both = observed & (image.depth_image() > 0.0)
     off = np.abs(depth - image.depth_image())[both]
@@ -116,7 +116,7 @@ def test_elliptic_chest_is_wider_than_deep():
         (cast_rays(body, segment_frames(body, standing(yaw=yaw)), CAMERA).segment_image() == 2)
         for yaw in (0.0, np.pi / 2)
     )
-    # From the side the arm covers the chest; it is the hips, spine and head that tell.
+    # From the side the arm covers the chest, so compare hips, spine and head.
     assert front.any(axis=0).sum() > side.any(axis=0).sum()
 
 

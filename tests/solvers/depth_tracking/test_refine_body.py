@@ -50,7 +50,7 @@ def test_measure_jacobian_equals_differences_of_rendered_depth(measure):
 
     off = np.abs((high - low)[inner] / (2 * size) - exact[inner])
 
-    # A neck or a foot turns a little where its length grows; few pixels see those.
+    # A neck or a foot rotates slightly as its length grows; few pixels show them.
     assert (off < 2e-3 + 0.02 * np.abs(exact[inner])).mean() > 0.96
 
 
@@ -86,7 +86,7 @@ def test_refine_body_recovers_the_rendered_body():
     after = np.abs(np.log(found.lengths / actor.lengths))[columns].mean()
     assert after < 0.6 * before
     radii = [np.abs(np.log(one.radii / actor.radii)).mean() for one in (wrong, found)]
-    # The mean includes feet, hands and shoulders, of which few pixels tell.
+    # The mean includes feet, hands and shoulders, which have few pixels.
     assert radii[1] < 0.75 * radii[0]
 
 

@@ -140,8 +140,8 @@ def test_pixel_groups_equal_those_of_the_paper():
     assert len(back.too_near) > 10
 
 
-@pytest.mark.parametrize("away", [-0.02, 0.03])
-def test_closest_surface_of_a_round_limb_is_a_radius_from_its_axis(away):
+@pytest.mark.parametrize("distance", [-0.02, 0.03])
+def test_closest_surface_of_a_round_limb_is_a_radius_from_its_axis(distance):
     hypothesis = render_hypothesis(BODY, posed(leftHumerusZ=1.2), CAMERA)
     limb = CAPSULES.index("leftLowerArm")
     frame = hypothesis.frames[SEGMENTS.index("leftLowerArm")]
@@ -149,12 +149,12 @@ def test_closest_surface_of_a_round_limb_is_a_radius_from_its_axis(away):
     toward = -middle / np.linalg.norm(middle)
     toward -= frame[:3, 1] * (frame[:3, 1] @ toward)
     toward /= np.linalg.norm(toward)
-    point = middle + (BODY.radii[limb, 0] + away) * toward
+    point = middle + (BODY.radii[limb, 0] + distance) * toward
 
     distances, normals, capsules = closest_surface(hypothesis, point[np.newaxis])
 
     assert capsules == limb
-    assert_allclose(distances, away, atol=1e-12)
+    assert_allclose(distances, distance, atol=1e-12)
     assert_allclose(normals[0], toward, atol=1e-12)
 
 

@@ -64,8 +64,8 @@ def test_selected_poses_differ_and_cover_the_rest(person, gait):
     kept = select_diverse_poses(person, poses, 0.15, 1000)
     assert 3 < len(kept) < len(poses)
 
-    def joints(turns):
-        return world_poses(person.skeleton, turns, np.zeros((len(turns), 3))).positions
+    def joints(rotations):
+        return world_poses(person.skeleton, rotations, np.zeros((len(rotations), 3))).positions
 
     distances = np.linalg.norm(joints(kept)[:, None] - joints(kept), axis=-1).max(axis=-1)
     assert distances[~np.eye(len(kept), dtype=bool)].min() > 0.15

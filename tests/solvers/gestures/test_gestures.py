@@ -74,15 +74,15 @@ def test_standing_with_noise_gives_no_gesture(seed):
 @given(
     heading=st.floats(-pi, pi),
     size=st.floats(0.5, 1.5),
-    place=st.tuples(*[st.floats(-3.0, 3.0)] * 3),
+    position=st.tuples(*[st.floats(-3.0, 3.0)] * 3),
 )
-def test_recognition_ignores_heading_size_and_position(heading, size, place):
+def test_recognition_ignores_heading_size_and_position(heading, size, position):
     result = ["hand up", "wave right", "turn", "clap"]
     plain = perform_gestures(result)
     moved = perform_gestures(result, PerformanceSettings(heading=heading, size=size))
 
     expected = recognize_gestures(plain.times, plain.positions)
-    events = recognize_gestures(moved.times, moved.positions + place)
+    events = recognize_gestures(moved.times, moved.positions + position)
 
     assert [event.gesture for event in events] == [event.gesture for event in expected]
     assert [event.amount for event in events] == pytest.approx([e.amount for e in expected])

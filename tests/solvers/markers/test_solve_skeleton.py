@@ -27,7 +27,7 @@ def walk() -> Motion:
 
 
 def joint_errors(solved, truth: Motion, parts=LIMBS) -> np.ndarray:
-    """Distance of each joint from the truth, (n_frames, n_parts), metres."""
+    """Distance of each joint from the truth, (n_frames, n_parts), meters."""
     joints = find_humanoid_map(truth.skeleton).indices(truth.skeleton)
     true = forward_kinematics(truth).positions[:, [joints[part] for part in parts]]
     indices = [solved.joint_centers.names.index(part) for part in parts]

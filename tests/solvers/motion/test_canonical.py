@@ -158,18 +158,18 @@ def rest_rotations(body: Skeleton, lowered: float) -> np.ndarray:
     return quaternion_from_rotation_vector(vectors)
 
 
-def rotated_offsets(body: Skeleton, turns: np.ndarray) -> np.ndarray:
+def rotated_offsets(body: Skeleton, rotations: np.ndarray) -> np.ndarray:
     """Rotate every bone of the rest pose; a bone belongs to the joint above it."""
     offsets = body.offsets.copy()
-    offsets[1:] = rotate(turns[list(body.parents[1:])], body.offsets[1:])
+    offsets[1:] = rotate(rotations[list(body.parents[1:])], body.offsets[1:])
     return offsets
 
 
-def with_rest_pose(motion: Motion, turns: np.ndarray) -> Motion:
+def with_rest_pose(motion: Motion, rotations: np.ndarray) -> Motion:
     """Express the same moving bones relative to another rest pose: W' = W A^-1."""
     skeleton = motion.skeleton
-    rested = Skeleton(skeleton.names, skeleton.parents, rotated_offsets(skeleton, turns))
-    world = multiply(forward_kinematics(motion).rotations, inverse(turns))
+    rested = Skeleton(skeleton.names, skeleton.parents, rotated_offsets(skeleton, rotations))
+    world = multiply(forward_kinematics(motion).rotations, inverse(rotations))
     local = world.copy()
     for joint, parent in enumerate(skeleton.parents[1:], start=1):
         local[:, joint] = multiply(inverse(world[:, parent]), world[:, joint])

@@ -35,10 +35,10 @@ def joined(*motions):
     )
 
 
-def with_pose_outlier(motion, n_frames=1, turn=0.5):
+def with_pose_outlier(motion, n_frames=1, angle=0.5):
     """Rotate every joint by up to 0.5 rad about a random axis."""
     directions = np.random.default_rng(7).normal(size=(motion.n_joints, 3))
-    directions *= turn / np.linalg.norm(directions, axis=1, keepdims=True)
+    directions *= angle / np.linalg.norm(directions, axis=1, keepdims=True)
     rotations = multiply(motion.rotations[0], quaternion_from_rotation_vector(directions))
     ends = [motion.skeleton.is_end_site(joint) for joint in range(motion.n_joints)]
     rotations[ends] = IDENTITY

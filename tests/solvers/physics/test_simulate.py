@@ -25,7 +25,7 @@ def simulated(walk):
 
 @pytest.fixture(scope="module")
 def standing(walk):
-    """Three seconds in the pose in which both feet are on the ground."""
+    """Three seconds in a pose with both feet on the ground."""
     frame = detect_contacts(walk).all(axis=1).argmax()
     return Motion(
         walk.skeleton,
@@ -67,7 +67,7 @@ def test_standing_body_keeps_standing(standing):
 
 
 def test_unsupported_body_falls_freely(standing):
-    """In the air a body without help from outside has the acceleration of gravity."""
+    """In the air, a body without external forces has the acceleration of gravity."""
     high = raised(standing, 1.5).slice(0, 9)
 
     result = simulate(high, settings=SimulateSettings(support=0.0))
@@ -203,7 +203,7 @@ def test_half_strength_is_halfway(walk, simulated):
 
 
 def test_root_bone_on_the_floor_moves_with_the_body(walk, simulated):
-    """Hips that hang on another joint are simulated as hips; the joint above only moves."""
+    """Hips with a parent are simulated as hips; the parent only moves."""
     floor = np.array([0.0, 0.0, 0.0])
     skeleton, hips = walk.skeleton, walk.rotations[:, :1]
     offsets = skeleton.offsets.copy()
@@ -243,7 +243,7 @@ def distance(one, other):
 
 
 def jerk(motion):
-    """Mean third derivative of the joints' places, m/s^3."""
+    """Mean third derivative of the joint positions, m/s^3."""
     positions = forward_kinematics(motion).positions
     thirds = np.diff(positions, 3, axis=0) * motion.frame_rate**3
     return float(np.linalg.norm(thirds, axis=-1).mean())

@@ -155,7 +155,7 @@ def test_fingers_and_rigid_joints_are_no_segments():
 
 
 def test_target_velocities_equal_finite_differences(rng):
-    """Velocities and accelerations, against differences of the places."""
+    """Compare velocities and accelerations with differences of positions."""
     coordinates = rng.normal(size=(8, 3))
     rotations = quaternion_from_rotation_vector(rng.normal(scale=0.3, size=(8, 2, 3)))
     target = smooth_target(coordinates, rotations, 30.0, 0.05)
@@ -179,7 +179,7 @@ def test_target_velocities_equal_finite_differences(rng):
 
 
 def angular_velocities(coordinates, dt):
-    """Angular velocity in the joint's own frame, from how two of its axes move."""
+    """Angular velocity in the joint's frame, from the motion of two of its axes."""
     rotations = coordinates[:, 3:].reshape(len(coordinates), -1, 4)
     x, y = (rotate(rotations, axis) for axis in np.eye(3)[:2])
     z = np.cross(x, y)
@@ -200,7 +200,7 @@ def test_target_smoothing_equals_a_gaussian_at_any_frame_rate(frame_rate):
     inner = slice(len(time) // 4, -len(time) // 4)
     kept = np.exp(-0.5 * (2 * np.pi * 4.0 * 0.03) ** 2)
     assert_allclose(target[inner, 0], kept * wave[inner], atol=0.02)
-    assert_allclose(target[:, 2], 3.0 * time, atol=1e-9)  # a straight way is not changed
+    assert_allclose(target[:, 2], 3.0 * time, atol=1e-9)  # a straight path stays unchanged
 
 
 def test_fill_gaps_interpolates_and_holds_the_ends():
@@ -229,7 +229,7 @@ def test_ground_forces_stay_in_the_friction_cone():
 
 
 def test_lowest_points_are_a_radius_below_the_ends():
-    """A rod of 1 m with a skin of 10 cm, turned about X from level to upright and back."""
+    """A rod of 1 m with a skin of 10 cm, rotated about X from level to upright and back."""
     rod = Capsule(0, np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), 0.1, 1.0)
     body = body_of(rod, replace(rod, touches=False))
     vectors = np.zeros((3, 1, 3))

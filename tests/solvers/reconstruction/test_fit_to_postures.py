@@ -26,7 +26,7 @@ def walk() -> Motion:
     return walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
 
 
-def place(role: str) -> int:
+def posture_index(role: str) -> int:
     return POSTURE_JOINTS.index(role)
 
 
@@ -57,11 +57,13 @@ def test_rotation_and_displacement_of_the_target_are_followed(angle, shift):
 
 def test_fit_raises_an_arm_to_a_raised_target(walk):
     expected = postures_from_motion(walk)
-    shoulder = expected[:, place("leftUpperArm")]
+    shoulder = expected[:, posture_index("leftUpperArm")]
     for role in ("leftLowerArm", "leftHand"):
-        reach = np.linalg.norm(expected[:, place(role)] - shoulder, axis=-1, keepdims=True)
-        expected[:, place(role)] = shoulder + reach * (0.6, 0.0, 0.8)
-    arm = [place(role) for role in ("leftUpperArm", "leftLowerArm", "leftHand")]
+        reach = np.linalg.norm(
+            expected[:, posture_index(role)] - shoulder, axis=-1, keepdims=True
+        )
+        expected[:, posture_index(role)] = shoulder + reach * (0.6, 0.0, 0.8)
+    arm = [posture_index(role) for role in ("leftUpperArm", "leftLowerArm", "leftHand")]
 
     result = fit_motion_to_postures(walk, expected)
 
@@ -97,7 +99,7 @@ def test_real_motion_with_constant_lengths_is_followed_closely(recordings):
     result = fit_motion_to_postures(first, expected)
 
     miss = np.linalg.norm(postures_from_motion(result) - expected, axis=-1)
-    ends = [place(f"{side}{part}") for side in ("left", "right")
+    ends = [posture_index(f"{side}{part}") for side in ("left", "right")
             for part in ("LowerArm", "Hand", "LowerLeg", "Foot")]  # fmt: skip
     assert miss[:, ends].mean() < 0.01
     assert np.nanmean(miss) < 0.02

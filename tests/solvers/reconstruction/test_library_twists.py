@@ -31,29 +31,31 @@ AT = np.radians(50.0)
 """By so much the left upper arm is twisted in like postures."""
 
 
-def hanging_arm(bends: np.ndarray) -> Tracks:
+def hanging_arm(flexion: np.ndarray) -> Tracks:
     """A body whose left elbow flexes forward by these angles, radians."""
-    still = np.zeros((len(bends), 20, 3))
+    still = np.zeros((len(flexion), 20, 3))
     for name, position in PLACES.items():
         still[:, NAMES.index(name)] = position
-    direction = np.stack([0.0 * bends, -np.sin(bends), -np.cos(bends)], axis=-1)
+    direction = np.stack([0.0 * flexion, -np.sin(flexion), -np.cos(flexion)], axis=-1)
     elbow = still[:, NAMES.index("ElbowLeft")]
     still[:, NAMES.index("WristLeft")] = elbow + 0.25 * direction
     still[:, NAMES.index("HandLeft")] = elbow + 0.35 * direction
     return Tracks(NAMES, still, 30.0)
 
 
-def similar_twists(n_frames: int, length: float = 1.0, alone: bool = False) -> LimbTwists:
+def similar_twists(
+    n_frames: int, length: float = 1.0, library_only: bool = False
+) -> LimbTwists:
     vectors = np.zeros((n_frames, 4), complex)
     vectors[:, 0] = length * np.exp(1j * AT)
-    return LimbTwists(vectors, alone)
+    return LimbTwists(vectors, library_only)
 
 
 def elbow_twist_deg(motion: Motion) -> np.ndarray:
     """Angle of the elbow axis about the hanging arm from facing front, degrees."""
     world = forward_kinematics(motion).rotations[:, motion.skeleton.index("ShoulderLeft")]
     hinge = rotate(world, np.array([0.0, 0.0, -1.0]))
-    # The axis of an arm that hangs without twist points to the right; down is the limb's way.
+    # The elbow axis of an untwisted hanging arm points to the right; the limb points down.
     return np.degrees(np.arctan2(hinge[:, 1], -hinge[:, 0]))
 
 
@@ -86,9 +88,9 @@ def test_flexion_plane_determines_the_twist_where_the_elbow_flexes():
 
 
 def test_actor_bias_of_flexed_frames_applies_to_straight_ones():
-    bends = np.where(np.arange(300) < 100, np.radians(80.0), 0.0)
+    flexion = np.where(np.arange(300) < 100, np.radians(80.0), 0.0)
 
-    motion = motion_from_positions(hanging_arm(bends), PARENTS, twists=similar_twists(300))
+    motion = motion_from_positions(hanging_arm(flexion), PARENTS, twists=similar_twists(300))
 
     assert_allclose(elbow_twist_deg(motion), 0.0, atol=10.0)
 
@@ -97,14 +99,14 @@ def test_published_method_uses_library_twists_only():
     tracks = hanging_arm(np.full(30, np.radians(80.0)))
 
     motion = motion_from_positions(
-        tracks, PARENTS, twists=similar_twists(30, length=0.3, alone=True)
+        tracks, PARENTS, twists=similar_twists(30, length=0.3, library_only=True)
     )
 
     assert_allclose(elbow_twist_deg(motion), np.degrees(AT), atol=0.5)
 
 
 def test_published_method_has_no_twist_where_it_is_unknown():
-    known, unknown = similar_twists(30, alone=True), np.arange(30) >= 20
+    known, unknown = similar_twists(30, library_only=True), np.arange(30) >= 20
     known.vectors[unknown] = 0.0
 
     motion = motion_from_positions(

@@ -180,7 +180,7 @@ def test_the_spine_distributes_the_twist_of_the_trunk():
         name for name in NAMES if not name.startswith(("Hip", "Knee", "Ankle", "Foot", "Sp"))
     ]
     positions = tracks.positions
-    for name in above:  # turned by 60 degrees to the left
+    for name in above:  # rotated by 60 degrees to the left
         x, y = positions[:, NAMES.index(name), :2].T.copy()
         positions[:, NAMES.index(name), 0] = 0.5 * x - np.sqrt(0.75) * y
         positions[:, NAMES.index(name), 1] = np.sqrt(0.75) * x + 0.5 * y

@@ -23,7 +23,7 @@ def take(recordings):
 
 
 def raised_forearm(postures: np.ndarray, offset: tuple[float, float]) -> np.ndarray:
-    """The forearm points straight up, apart from `aside` meters."""
+    """The forearm points straight up, except for `offset` meters."""
     up = postures.copy()
     up[:, WRIST] = up[:, ELBOW] + (*offset, 0.25)
     return up

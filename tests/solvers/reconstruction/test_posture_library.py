@@ -116,7 +116,7 @@ def test_shipped_library_has_twists_of_clips_with_rotations():
     twists = np.abs(load_posture_library().twists_or_zero)
 
     knowing = (twists > 0.0).all(axis=1)
-    assert knowing.sum() == 2500  # CMU's; UI-PRMD tells places of markers
+    assert knowing.sum() == 2500  # of CMU; UI-PRMD has positions of markers
     assert twists[knowing].min() > 0.5
 
 

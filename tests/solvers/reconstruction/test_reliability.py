@@ -59,7 +59,7 @@ def walk() -> np.ndarray:
     return walk_at(30.0)
 
 
-def place(name: str) -> int:
+def joint_index(name: str) -> int:
     return NAMES.index(name)
 
 
@@ -67,7 +67,7 @@ def vibrating(walk: np.ndarray, name: str, size: float = 0.06) -> np.ndarray:
     """One joint vibrates in the middle of the take."""
     wrong = walk.copy()
     jumps = size * (-1.0) ** np.arange(30)
-    wrong[30:60, place(name), 0] += jumps
+    wrong[30:60, joint_index(name), 0] += jumps
     return wrong
 
 
@@ -93,18 +93,18 @@ def test_vibrating_joint_is_unreliable_and_others_hardly(walk, settings):
     ).combined
 
     fall = (before - after)[38:58].mean(axis=0)
-    hand = place("HandLeft")
-    near = [hand, place("WristLeft")]  # they share a segment
+    hand = joint_index("HandLeft")
+    near = [hand, joint_index("WristLeft")]  # they share a segment
     assert fall[hand] > 0.4
     assert np.delete(fall, near).max() < 0.01
-    assert fall[place("WristLeft")] < 0.75 * fall[hand]
+    assert fall[joint_index("WristLeft")] < 0.75 * fall[hand]
     assert (before - after)[:15].max() < 0.05
 
 
 @every_method
 def test_leg_with_a_temporary_length_error_is_unreliable(walk, settings):
     wrong = walk.copy()
-    knee, ankle, foot = (place(f"{part}Left") for part in ("Knee", "Ankle", "Foot"))
+    knee, ankle, foot = (joint_index(f"{part}Left") for part in ("Knee", "Ankle", "Foot"))
     longer = 0.3 * (walk[20:40, ankle] - walk[20:40, knee])
     wrong[20:40, [ankle, foot]] += longer[:, None]
 
@@ -118,7 +118,7 @@ def test_leg_with_a_temporary_length_error_is_unreliable(walk, settings):
     fall = (before.combined - after.combined)[28:38].mean(axis=0)
     assert fall[ankle] > 0.1
     assert fall[knee] > 0.05
-    assert fall[place("KneeRight")] < 1e-9
+    assert fall[joint_index("KneeRight")] < 1e-9
 
 
 @every_method
@@ -164,18 +164,18 @@ def test_reliability_agrees_at_all_frame_rates(frame_rate):
 @every_method
 def test_missing_joints_have_no_reliability_and_others_keep_theirs(walk, settings):
     gone = walk.copy()
-    gone[20:30, place("HandRight")] = np.nan
-    gone[:, place("FootLeft")] = np.nan
+    gone[20:30, joint_index("HandRight")] = np.nan
+    gone[:, joint_index("FootLeft")] = np.nan
 
     found = measure_reliability(recorded(gone), settings=settings)
 
     for term in (found.combined, found.behavior, found.kinematics, found.tracking):
         assert np.isfinite(term).all()
         assert ((term >= 0.0) & (term <= 1.0)).all()
-        assert (term[20:30, place("HandRight")] == 0.0).all()
-        assert (term[:, place("FootLeft")] == 0.0).all()
-    assert found.combined[:, place("Head")].min() > 0.9
-    assert found.combined[45:, place("HandRight")].min() > 0.7
+        assert (term[20:30, joint_index("HandRight")] == 0.0).all()
+        assert (term[:, joint_index("FootLeft")] == 0.0).all()
+    assert found.combined[:, joint_index("Head")].min() > 0.9
+    assert found.combined[45:, joint_index("HandRight")].min() > 0.7
 
 
 def test_input_stays_unchanged_and_progress_is_reported(walk):
@@ -258,15 +258,15 @@ def test_lengths_are_measured_in_reference_postures_if_any():
 
 def test_reference_postures_with_an_inferred_joint_are_ignored():
     frames = np.tile(body((0.0, 0.0, -1.0)), (30, 1, 1))
-    frames[:20, place("HandLeft"), 2] -= 0.1
+    frames[:20, joint_index("HandLeft"), 2] -= 0.1
     state = np.full(frames.shape[:2], 2)
-    state[:20, place("Head")] = 1
+    state[:20, joint_index("Head")] = 1
     recording = JointRecording(Tracks(NAMES, frames, 30.0), state, Sensor.KINECT_V1)
 
     kinematics = measure_reliability(recording).kinematics
 
     assert_allclose(kinematics[20:], 1.0)
-    assert_allclose(kinematics[:20, place("HandLeft")], 1.0 - 0.1 / 0.28)
+    assert_allclose(kinematics[:20, joint_index("HandLeft")], 1.0 - 0.1 / 0.28)
 
 
 def test_low_reliability_lasts_equally_long_at_any_frame_rate():
@@ -275,9 +275,9 @@ def test_low_reliability_lasts_equally_long_at_any_frame_rate():
         still = np.tile(walk_at(30.0)[:1], (round(4.0 * frame_rate), 1, 1))
         burst = slice(round(2.0 * frame_rate), round(2.3 * frame_rate))
         sign = (-1.0) ** (np.arange(still[burst].shape[0]) * 30.0 // frame_rate)
-        still[burst, place("HandLeft"), 1] += 0.05 * sign
+        still[burst, joint_index("HandLeft"), 1] += 0.05 * sign
         found = measure_reliability(recorded(still, frame_rate)).combined
-        lasting.append((found[:, place("HandLeft")] < 0.9).sum() / frame_rate)
+        lasting.append((found[:, joint_index("HandLeft")] < 0.9).sum() / frame_rate)
 
     assert 0.5 < lasting[0] < 1.5
     assert lasting[1] == pytest.approx(lasting[0], abs=0.2)

@@ -21,9 +21,9 @@ CAUSAL = ReliabilitySettings(causal=True)
 PUBLISHED = ReliabilitySettings(method=ReliabilityMethod.PUBLISHED)
 
 
-def path_with_turns(*turns: float, length: float = 0.1) -> np.ndarray:
+def path_with_turns(*angles: float, length: float = 0.1) -> np.ndarray:
     """One joint that moves in a plane by steps of equal length and rotates by these degrees."""
-    directions = np.radians(np.cumsum([0.0, *turns]))
+    directions = np.radians(np.cumsum([0.0, *angles]))
     moves = length * np.stack(
         [np.cos(directions), np.sin(directions), 0.0 * directions], axis=-1
     )
@@ -31,7 +31,7 @@ def path_with_turns(*turns: float, length: float = 0.1) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("turns", "expected"),
+    ("angles", "expected"),
     [
         ((90.0, 90.0, 90.0), 1.0),
         ((120.0, 120.0, 120.0), 1.0 / 3.0),  # 1 - (120 - 90) / (135 - 90)
@@ -41,8 +41,8 @@ def path_with_turns(*turns: float, length: float = 0.1) -> np.ndarray:
         ((180.0, 0.0, 0.0), 1.0),  # one spike alone is not held against a joint
     ],
 )
-def test_behavior_term_depends_on_the_mean_turn(turns, expected):
-    term = behavior_term(path_with_turns(*turns), 30.0, CAUSAL)
+def test_behavior_term_depends_on_the_mean_turn(angles, expected):
+    term = behavior_term(path_with_turns(*angles), 30.0, CAUSAL)
 
     assert term[-1, 0] == pytest.approx(expected, abs=1e-6)
 
@@ -77,7 +77,7 @@ def test_causal_vibration_uses_past_frames_only():
     after = behavior_term(changed, 30.0, CAUSAL)
 
     assert_allclose(after[:12], before[:12])
-    assert before[13, 0] == pytest.approx(0.0)  # frames 10 to 12 turned back
+    assert before[13, 0] == pytest.approx(0.0)  # frames 10 to 12 reverse
     assert behavior_term(path, 30.0, PUBLISHED)[11, 0] == pytest.approx(0.0)
 
 

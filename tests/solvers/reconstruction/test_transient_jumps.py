@@ -15,25 +15,25 @@ from solvers.recordings import read_recording
 CAUSAL = ReliabilitySettings(causal=True)
 
 
-def path_along(*places):
+def path_along(*positions):
     """One joint along a line, shape (n_frames, 1, 3)."""
-    path = np.zeros((len(places), 1, 3))
-    path[:, 0, 0] = places
+    path = np.zeros((len(positions), 1, 3))
+    path[:, 0, 0] = positions
     return path
 
 
-@pytest.mark.parametrize("n_away", [1, 2, 6])
-def test_transient_jump_is_detected_in_its_frames_only(n_away):
+@pytest.mark.parametrize("n_displaced", [1, 2, 6])
+def test_transient_jump_is_detected_in_its_frames_only(n_displaced):
     path = path_along(*np.linspace(0.0, 0.3, 40))
-    path[20 : 20 + n_away, 0, 2] += 0.2
+    path[20 : 20 + n_displaced, 0, 2] += 0.2
 
     found = find_transient_jumps(path, 30.0)
 
-    assert np.flatnonzero(found[:, 0]).tolist() == list(range(20, 20 + n_away))
+    assert np.flatnonzero(found[:, 0]).tolist() == list(range(20, 20 + n_displaced))
 
 
 @pytest.mark.parametrize(
-    "places",
+    "positions",
     [
         [0.0] * 10 + [0.3] * 7 + [0.0] * 10,  # seven frames are longer than a fifth of a second
         [0.0] * 10 + [0.3] * 15,  # it does not come back
@@ -43,8 +43,8 @@ def test_transient_jump_is_detected_in_its_frames_only(n_away):
         [0.0] * 10 + [0.1] * 2 + [0.0] * 10,  # 0.1 m in 1/30 s: 90 m/s^2
     ],
 )
-def test_short_jumps_exclude_other_movements(places):
-    assert not find_transient_jumps(path_along(*places), 30.0).any()
+def test_short_jumps_exclude_other_movements(positions):
+    assert not find_transient_jumps(path_along(*positions), 30.0).any()
 
 
 def test_jumps_are_detected_equally_at_twice_the_frame_rate():

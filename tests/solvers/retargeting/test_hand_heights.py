@@ -44,8 +44,8 @@ def test_wrists_do_not_penetrate_the_floor(recordings, clip, body):
     result = given_to(motion, BODIES[body])
 
     for role in WRISTS:
-        lowest = place(motion, role)[:, 2].min()
-        assert place(result, role)[:, 2].min() > min(lowest, 0.0) - 0.001
+        lowest = role_position(motion, role)[:, 2].min()
+        assert role_position(result, role)[:, 2].min() > min(lowest, 0.0) - 0.001
 
 
 @pytest.mark.parametrize("body", BODIES)
@@ -57,10 +57,10 @@ def test_hand_height_scales_with_the_legs(recordings, body):
 
     result = given_to(motion, rig)
 
-    theirs = place(motion, "rightHand")[:, 2]
+    theirs = role_position(motion, "rightHand")[:, 2]
     frame = int(theirs.argmin())
     expected = growth(motion, rig) * theirs[frame]
-    assert place(result, "rightHand")[frame, 2] == pytest.approx(expected, abs=0.04)
+    assert role_position(result, "rightHand")[frame, 2] == pytest.approx(expected, abs=0.04)
 
 
 def test_elbows_stay_slow_when_a_straight_arm_reaches_the_ground(recordings):
@@ -71,7 +71,7 @@ def test_elbows_stay_slow_when_a_straight_arm_reaches_the_ground(recordings):
     result = given_to(motion, rig)
 
     theirs, ours = (
-        np.linalg.norm(np.diff(place(one, "rightLowerArm"), 2, axis=0), axis=1).max()
+        np.linalg.norm(np.diff(role_position(one, "rightLowerArm"), 2, axis=0), axis=1).max()
         for one in (motion, result)
     )
     assert ours < 1.3 * growth(motion, rig) * theirs
@@ -86,7 +86,7 @@ def test_hands_that_support_the_body_do_not_slide(family):
     result = given_to(source, rig)
 
     for role in WRISTS:
-        theirs, ours = place(source, role), place(result, role)
+        theirs, ours = role_position(source, role), role_position(result, role)
         slide = np.ptp(ours, axis=0) - growth(source, rig) * np.ptp(theirs, axis=0)
         assert np.abs(slide).max() < 0.005
 
@@ -99,7 +99,7 @@ def test_hands_of_a_walk_stay_unchanged():
 
     for side in ("left", "right"):
         theirs, ours = (
-            place(motion, f"{side}Hand") - place(motion, f"{side}UpperArm")
+            role_position(motion, f"{side}Hand") - role_position(motion, f"{side}UpperArm")
             for motion in (walk, result)
         )
         ratio = np.linalg.norm(ours, axis=1) / np.linalg.norm(theirs, axis=1)
@@ -145,6 +145,6 @@ def about_x(angle: float) -> np.ndarray:
     return quaternion_from_rotation_vector([angle, 0.0, 0.0])
 
 
-def place(motion: Motion, role: str) -> np.ndarray:
+def role_position(motion: Motion, role: str) -> np.ndarray:
     joint = find_humanoid_map(motion.skeleton).indices(motion.skeleton)[role]
     return forward_kinematics(motion).positions[:, joint]

@@ -70,7 +70,7 @@ def test_random_trees_give_finite_numbers_or_a_message(source, target, root_moti
 
 @settings(max_examples=20)
 @given(st.sets(st.sampled_from([role for role in MAP.joints if role != "hips"]), max_size=21))
-def test_any_part_of_the_roles_may_be_missing(lost):
+def test_any_roles_may_be_missing(lost):
     rig = unreal()
     partial = find_humanoid_map(rig)
     for role in lost:

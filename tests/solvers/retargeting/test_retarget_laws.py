@@ -187,7 +187,7 @@ def with_rest_pose(rig: Skeleton, angles: dict[str, float], facing: float) -> Sk
     return Skeleton(rig.names, rig.parents, offsets)
 
 
-def role_places(motion: Motion) -> dict[str, np.ndarray]:
+def role_positions(motion: Motion) -> dict[str, np.ndarray]:
     positions = forward_kinematics(motion).positions
     joints = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
     return {role: positions[:, joint] for role, joint in joints.items()}
@@ -205,7 +205,7 @@ def rotation_angles(rotations: np.ndarray) -> np.ndarray:
 
 def flexion_axis(motion: Motion, side: str, roles: tuple[str, str, str]) -> np.ndarray:
     """Flexion axis of a limb; its length is the sine of the angle."""
-    positions = role_places(motion)
+    positions = role_positions(motion)
     upper, hinge, end = (positions[side + role] for role in roles)
     first, second = (
         direction / np.linalg.norm(direction, axis=1, keepdims=True)
@@ -215,7 +215,7 @@ def flexion_axis(motion: Motion, side: str, roles: tuple[str, str, str]) -> np.n
 
 
 def hand_distance(motion: Motion) -> np.ndarray:
-    positions = role_places(motion)
+    positions = role_positions(motion)
     return np.linalg.norm(positions["leftHand"] - positions["rightHand"], axis=1)
 
 

@@ -40,17 +40,17 @@ def vocabulary():
     return learn_vocabulary(CLIPS)
 
 
-@given(seed=st.integers(0, 500), most=st.sampled_from([10_000, 40, 1]))
-def test_posting_lists_equal_a_matrix_product(seed, most):
+@given(seed=st.integers(0, 500), maximum=st.sampled_from([10_000, 40, 1]))
+def test_posting_lists_equal_a_matrix_product(seed, maximum):
     rng = np.random.default_rng(seed)
     histograms = (rng.integers(0, 255, (20, 12)) * (rng.random((20, 12)) < 0.3)).astype(
         np.uint8
     )
     query = (rng.random(12) * (rng.random(12) < 0.6)).astype(np.float32)
     lists = build_posting_lists(histograms)
-    found = lists.scores(query, most)
+    found = lists.scores(query, maximum)
     exact = histograms.astype(np.float32) @ query
-    if most == 10_000:
+    if maximum == 10_000:
         assert_allclose(found, exact, rtol=1e-5)
     assert (found <= exact + 1e-3).all()
 

@@ -97,14 +97,14 @@ def test_blocks_have_no_effect_unless_cubes_are_normalized(rng, dictionary):
     """Maxima and intersections are elementwise, so the default differs from [ZH14]."""
     a, b = (dense_slices(dense_codes(clip_of(rng, 40), dictionary), 2) for _ in range(2))
 
-    def whole(slices, level):
+    def cubes_of_level(slices, level):
         segment = np.arange(len(slices)) * 2**level // len(slices)
         return [np.abs(slices[segment == s]).max(axis=0) for s in range(2**level)]
 
     unsplit = sum(
         np.minimum(one, other).sum() / 2**level
         for level in range(3)
-        for one, other in zip(whole(a, level), whole(b, level), strict=True)
+        for one, other in zip(cubes_of_level(a, level), cubes_of_level(b, level), strict=True)
     )
     assert_allclose(dense_kernel(a, b, 3, False), unsplit)
     assert not np.isclose(dense_kernel(a, b, 3, True), unsplit)

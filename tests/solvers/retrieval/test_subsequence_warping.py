@@ -52,10 +52,10 @@ def plain_path_cost(query, clip):
     return cost[-1].min()
 
 
-def cost_of(path, apart):
+def cost_of(path, distances):
     steps = np.diff(path, axis=0).sum(axis=1)
     weights = np.r_[1.0, np.where(steps == 2, 1.0, STEP_PENALTY)]
-    return float((weights * apart[path[:, 0], path[:, 1]]).sum())
+    return float((weights * distances[path[:, 0], path[:, 1]]).sum())
 
 
 @given(seed=st.integers(0, 999), n_query=st.integers(1, 8), n_clip=st.integers(1, 12))

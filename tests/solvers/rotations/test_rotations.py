@@ -94,10 +94,12 @@ def test_rotations_form_a_group(a, b, c):
 
 
 @given(TURNS, VECTORS, VECTORS)
-def test_rotation_keeps_lengths_and_angles(turn, u, v):
-    assert_allclose(rotate(turn, u) @ rotate(turn, v), u @ v, atol=1e-11)
+def test_rotation_keeps_lengths_and_angles(rotation, u, v):
+    assert_allclose(rotate(rotation, u) @ rotate(rotation, v), u @ v, atol=1e-11)
     assert_allclose(
-        rotate(turn, np.cross(u, v)), np.cross(rotate(turn, u), rotate(turn, v)), atol=1e-11
+        rotate(rotation, np.cross(u, v)),
+        np.cross(rotate(rotation, u), rotate(rotation, v)),
+        atol=1e-11,
     )
 
 
@@ -256,13 +258,13 @@ def test_opposite_directions_give_180_degrees_and_zero_identity():
 
 
 @given(TURNS, VECTORS)
-def test_swing_times_twist_is_the_rotation(turn, axis):
+def test_swing_times_twist_is_the_rotation(rotation, axis):
     if np.linalg.norm(axis) < 1e-3:
         return
     axis = axis / np.linalg.norm(axis)
 
-    twist = twist_about(turn, axis)
-    swing = multiply(turn, inverse(twist))
+    twist = twist_about(rotation, axis)
+    swing = multiply(rotation, inverse(twist))
 
     assert_allclose(np.linalg.norm(twist), 1.0)
     assert_allclose(rotate(twist, axis), axis, atol=1e-9)

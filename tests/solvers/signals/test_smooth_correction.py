@@ -45,7 +45,7 @@ def test_free_correction_decays_as_documented(rate):
     time = np.arange(n_frames - int(2 * rate) + 1) / rate
     x = time * FADE_TIME_CONSTANTS / 0.5 / np.sqrt(2.0)
     expected = np.exp(-x) * (np.cos(x) + np.sin(x))
-    # The last frame that is pulled ends half a frame late, and gives way by a hundredth.
+    # The last constrained frame ends half a frame late and deviates by a hundredth.
     assert_allclose(found[int(2 * rate) - 1 :], expected, atol=0.015 + 1.5 / rate)
 
 

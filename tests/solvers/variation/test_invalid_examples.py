@@ -25,7 +25,7 @@ def about(axis, angles):
 
 
 def with_rotation(motion, joint, axis, angles):
-    """Turn a joint further, by an angle in each frame, about an axis of its parent."""
+    """Rotate a joint by an angle in each frame about an axis of its parent."""
     rotations = motion.rotations.copy()
     index = motion.skeleton.names.index(joint)
     rotations[:, index] = multiply(about(axis, angles), rotations[:, index])
@@ -33,12 +33,12 @@ def with_rotation(motion, joint, axis, angles):
 
 
 def passing(motion, exponent):
-    """The part of the time that has passed, a little hastened or delayed."""
+    """The elapsed fraction of the time, slightly accelerated or delayed."""
     return np.linspace(0.0, 1.0, motion.n_frames) ** exponent
 
 
 def fastest(motions, joint):
-    """Meters per second that a joint moves at most, as the actor faces."""
+    """Maximum speed of a joint in the actor's frame, meters per second."""
     index = motions[0].skeleton.names.index(joint)
     return max(
         np.linalg.norm(np.diff(positions_in_body_frame(one)[:, index], axis=0), axis=-1).max()
@@ -49,7 +49,7 @@ def fastest(motions, joint):
 
 @pytest.mark.parametrize("method", EVERY)
 def test_variants_keep_arms_that_rotate_twice(method, walks):
-    """Their rotation vectors pass pi again and again."""
+    """Their rotation vectors pass pi repeatedly."""
     mills = [
         with_rotation(walk, "LeftArm", (1, 0, 0), 4 * np.pi * passing(walk, power))
         for walk, power in zip(walks, (1.0, 1.1, 0.95, 1.05), strict=True)
@@ -72,7 +72,7 @@ def test_variants_keep_arms_that_rotate_twice(method, walks):
 
 @pytest.mark.parametrize("method", EVERY)
 def test_variants_do_not_flip_arms_that_point_up(method, walks):
-    """Beyond straight up in some examples, short of it in others: half a turn from rest."""
+    """Beyond straight up in some examples, short of it in others: 180 degrees from rest."""
     raised = [
         with_rotation(walk, "LeftArm", (0, 1, 0), -np.pi / 2 - lift * passing(walk, 1.0))
         for walk, lift in zip(walks, (1.4, 1.75, 1.5, 1.65), strict=True)
@@ -84,7 +84,7 @@ def test_variants_do_not_flip_arms_that_point_up(method, walks):
     )
 
     variants = [one.motion for one in drawn]
-    # The latent factor model is quicker where a clip begins; a flip would be ten times so.
+    # The latent factor model is faster at the start of a clip; a flip is ten times as fast.
     times = 1.3 if method is Method.MIXTURE else 3.0
     assert fastest(variants, "LeftHand") < times * fastest(raised, "LeftHand")
 
@@ -108,7 +108,7 @@ def test_variants_keep_several_rotations_on_the_spot(method, walks):
 
 
 def test_two_flips_in_one_direction_do_not_wind_up_a_joint(walks):
-    """A thigh that is half a turn off for five frames: before and after all is as without."""
+    """A thigh rotated by 180 degrees for five frames: other frames are as without it."""
     angles = np.zeros(walks[1].n_frames)
     angles[25:30], angles[30:] = np.pi, 2.0 * np.pi
     broken = with_rotation(walks[1], "LeftUpLeg", (0.0, 0.0, 1.0), angles)
@@ -127,7 +127,7 @@ def test_two_flips_in_one_direction_do_not_wind_up_a_joint(walks):
 
 
 def test_model_is_the_same_at_twice_the_frame_rate(walks):
-    """Of another rate and length: variants go as fast and as far."""
+    """Rate and length differ: variants have the same speed and distance."""
     resampled = [walks[0], *(resample(walk, 150.0) for walk in walks[1:])]
     reference_rotations, mixed = (
         [one.motion for one in draw_variants(learn_variation_model(some), 8)]
@@ -146,7 +146,7 @@ def test_model_is_the_same_at_twice_the_frame_rate(walks):
 
 @pytest.mark.parametrize("method", Method)
 def test_twenty_thousand_frames(method, walks):
-    """Of a walk that comes again and again: many frames, and their kernels, are the same."""
+    """A repeated walk: many frames and their kernels are equal."""
     walk = walks[0]
     rotations = np.tile(walk.rotations, (400, 1, 1))[:20_000]
     positions = np.tile(walk.root_positions, (400, 1))[:20_000]

@@ -21,7 +21,7 @@ from solvers.variation import (
 from solvers.variation.learn_variation import MAX_VALUES
 
 
-def turned_about_z(motion, angle):
+def rotated_about_z(motion, angle):
     rotation = np.array([np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)])
     rotations = motion.rotations.copy()
     rotations[:, 0] = multiply(rotation, rotations[:, 0])
@@ -35,7 +35,7 @@ def turned_about_z(motion, angle):
 
 
 def test_model_ignores_position_and_heading_of_examples(walks):
-    there = [turned_about_z(walk, 0.7 * index) for index, walk in enumerate(walks)]
+    there = [rotated_about_z(walk, 0.7 * index) for index, walk in enumerate(walks)]
 
     reference_rotations, rotated = (
         synthesize(learn_variation_model(one), 2) for one in (walks, there)

@@ -1,4 +1,4 @@
-"""Variants of real captures: as varied, as smooth, near the examples and none a copy."""
+"""Variants of real captures are varied, smooth, near the examples and no copies."""
 
 from itertools import combinations
 
@@ -52,6 +52,6 @@ def test_the_latent_factor_model_neither_drifts_nor_jerks(recordings):
 
 
 def jerk(motions):
-    """Mean absolute third difference of where joints are, at 30 Hz, meters."""
+    """Mean absolute third difference of joint positions at 30 Hz, meters."""
     bodies = (positions_in_body_frame(one)[::4] for one in motions)
     return np.mean([np.abs(np.diff(body, 3, axis=0)).mean() for body in bodies])

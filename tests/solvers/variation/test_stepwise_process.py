@@ -161,7 +161,7 @@ def test_drawn_functions_have_the_exact_covariance(data, hyperparameters, rng):
 
 
 def test_outputs_covary_only_in_the_latent_factor_model(rng):
-    """Two outputs that are one and the same up to a factor: what is drawn must be so too."""
+    """Two outputs that are proportional: so must be the samples."""
     features = rng.normal(size=(60, 3))
     curves = np.sin(2.0 * features[:, 0]) + 0.3 * rng.normal(size=60)
     outputs = np.column_stack([curves, 2.0 * curves, 0.1 * rng.normal(size=60)])
