@@ -11,7 +11,7 @@ from .marker_sets import HEAD, PELVIS, TRUNK
 LOOSE_M, FIRM_M, TIGHT_M = 0.03, 0.012, 0.006
 """Standard deviations of a joint's or marker's offset from its mean."""
 FREE_M = 1.0
-"""Standard deviation of an offset that the markers determine alone."""
+"""Standard deviation of an offset that only the markers determine."""
 Triple = tuple[float, float, float]
 NO_PRIOR: Triple = (0.0, 0.0, 0.0)
 

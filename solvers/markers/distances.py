@@ -11,7 +11,7 @@ MAX_NEIGHBORS = 6
 MIN_SPREAD_M = 0.004
 """Lower bound of the spread of a distance."""
 RIGID_SPREAD_M = 0.02
-"""Maximum spread of a distance that identifies a marker alone."""
+"""Maximum spread of a distance that identifies a marker by itself."""
 MAX_FRAMES = 400
 MIN_FRAMES = 30
 MAX_MISFIT = 8.0

@@ -109,7 +109,7 @@ def solve_skeleton(
 
 
 def _landmark_positions(tracks: Tracks, found: MarkerSet) -> dict[str, Array]:
-    """Return the positions of the markers of a set, by landmark, without those never seen."""
+    """Return the marker positions by landmark, without markers that were never observed."""
     index = {name: index for index, name in enumerate(tracks.names)}
     positions = {
         landmark: tracks.positions[:, index[name]] for landmark, name in found.markers.items()

@@ -35,7 +35,7 @@ class RootMotion(Choice):
     """Handling of the travel of the body."""
 
     KEEP = "keep", "Keep the travel on the hips", "On Hips"
-    IN_PLACE = "in place", "Remove the travel, so that the body moves on the spot"
+    IN_PLACE = "in place", "Remove the travel, so that the body moves in place"
     ROOT_BONE = "root bone", "Move the travel to the bone above the hips", "On Root Bone"
 
 
@@ -75,7 +75,7 @@ class RetargetSettings(Settings):
     )  # fmt: skip
     turn_root: bool = setting(
         True,
-        "Also turn the root bone to where the body faces",
+        "Also rotate the root bone to the heading of the body",
         advanced=True,
         label="Turn Root Bone",
     )

@@ -42,7 +42,9 @@ TESTED_STATURES_M = tuple(1.3 + STATURE_STEP_M * step for step in range(6))
 class CalibrationSettings(CylinderSettings):
     """Settings of the body calibration."""
 
-    refine: bool = setting(True, "Fit bone lengths to whole bodies rather than to single limbs")
+    refine: bool = setting(
+        True, "Fit bone lengths to complete bodies rather than to single limbs"
+    )
 
 
 DEFAULT_CALIBRATION = CalibrationSettings()

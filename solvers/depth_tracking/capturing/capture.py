@@ -83,7 +83,7 @@ class Capture:
         Frames where the detector restarted the tracker, after the first.
     body : BodyModel
     poses : shape (n_frames, 36)
-    doubtful : bool, shape (n_frames, n_joints)
+    low_confidence : bool, shape (n_frames, n_joints)
         Joints with low confidence: occluded or poorly fitted. Their positions are interpolated
         from the frames before and after.
     """
@@ -95,7 +95,7 @@ class Capture:
     restarts: tuple[int, ...]
     body: BodyModel
     poses: Array
-    doubtful: NDArray[np.bool_]
+    low_confidence: NDArray[np.bool_]
 
 
 def capture(
@@ -215,11 +215,11 @@ def assemble_capture(
 ) -> Capture:
     """Assemble the result from tracked poses."""
     confidence = tracked.joints.confidence
-    doubtful = np.zeros(tracked.joints.positions.shape[:2], dtype=bool)
+    low_confidence = np.zeros(tracked.joints.positions.shape[:2], dtype=bool)
     if confidence is not None:
-        doubtful = confidence < settings.doubtful
+        low_confidence = confidence < settings.doubtful
     return Capture(
         body_motion(body, tracked.poses, tracked.joints.frame_rate, floor),
         tracked.joints, tracked.residual, tracked.coverage, restarts, body, tracked.poses,
-        doubtful,
+        low_confidence,
     )  # fmt: skip

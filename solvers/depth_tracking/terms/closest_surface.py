@@ -58,7 +58,7 @@ def closest_surface(hypothesis: Hypothesis, points: Array) -> tuple[Array, Array
     scales = 1.0 / body.radii[:, [0, 1, 1]]
     starts, stops = body.capsule_ends.swapaxes(0, 1) * scales
     axes = stops - starts
-    # One array (n_points, n_capsules) per component: all steps run over whole arrays.
+    # One array (n_points, n_capsules) per component: all steps use complete arrays.
     rays, outward_components = [], []
     along = 0.0
     lengths = (axes**2).sum(axis=1)

@@ -84,7 +84,7 @@ def filter_residuals(
     Parameters
     ----------
     synthesised : shape (n_frames, n_joints, 3), meters
-    seen, deviation, dt, size, memory
+    observed, deviation, dt, size, memory
         As in `smooth_residuals`; `observed` holds positions, not differences.
     """
     is_observed = np.isfinite(observed).all(axis=-1) & (deviation < np.inf)

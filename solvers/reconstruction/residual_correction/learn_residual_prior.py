@@ -39,7 +39,7 @@ MIN_FRAMES = 20
 class ResidualMethod(Choice):
     """Method that learns errors."""
 
-    HIERARCHICAL = "hierarchical", "Learn from neighboring joints and from the whole pose"
+    HIERARCHICAL = "hierarchical", "Learn from neighboring joints and from the complete pose"
     PUBLISHED = (
         "published",
         "Learn from neighboring joints only, as Zhou et al. (2014)",
@@ -59,7 +59,7 @@ class ResidualPriorSettings(Settings):
         minimum=5, maximum=500, advanced=True,
     )  # fmt: skip
     whole_points: int = setting(
-        100, "Inducing points of whole poses; more is finer and slower",
+        100, "Inducing points of complete poses; more is finer and slower",
         minimum=5, maximum=500, advanced=True,
     )  # fmt: skip
     movement_points: int = setting(

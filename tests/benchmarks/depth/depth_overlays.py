@@ -33,7 +33,7 @@ def overlay(
     places = ENLARGED * camera.project(found.joints.positions[frame])
     for joint, parent in enumerate(JOINT_PARENTS):
         if parent >= 0:
-            color = DOUBTFUL if found.doubtful[frame, joint] else SURE
+            color = DOUBTFUL if found.low_confidence[frame, joint] else SURE
             pen.line([*places[parent], *places[joint]], fill=color, width=3)
     for x, y in [] if others is None else ENLARGED * camera.project(others):
         if np.isfinite(x + y):

@@ -39,7 +39,7 @@ def test_capture_finds_the_first_pose_and_follows_the_actor(captured):
     truth = joints_of(waving(24))
     assert np.linalg.norm(captured.joints.positions - truth, axis=-1).mean() < 0.03
     assert captured.joints.names == JOINTS
-    assert captured.doubtful.shape == (24, 21)
+    assert captured.low_confidence.shape == (24, 21)
     assert captured.residual.max() < 0.03 and captured.coverage.min() > 0.75
 
 
@@ -79,8 +79,8 @@ def test_capture_bridges_and_flags_empty_frames():
 
     found = capture(DepthRecording(CAMERA, 20, 30.0, read), BODY)
 
-    assert found.doubtful[[0, 1, 9, 10, 11]].all()
-    assert not found.doubtful[[5, 15]].all()
+    assert found.low_confidence[[0, 1, 9, 10, 11]].all()
+    assert not found.low_confidence[[5, 15]].all()
     assert np.isnan(found.residual[10])
     assert np.isfinite(found.poses).all()
     off = np.linalg.norm(found.joints.positions - joints_of(truth), axis=-1)
@@ -232,4 +232,4 @@ def test_choose_poses_never_chooses_a_missing_candidate():
 
 def test_capture_has_high_confidence_for_a_visible_static_pose():
     found = capture(recorded(np.tile(NATURAL, (4, 1))), BODY)
-    assert not found.doubtful[:, JOINTS.index("leftLowerArm")].any()
+    assert not found.low_confidence[:, JOINTS.index("leftLowerArm")].any()

@@ -74,7 +74,10 @@ def test_who_leaves_the_picture_is_guessed_flagged_and_told_of():
 
     gone = np.array([not seen.any() for seen in map(drawn, poses)])
     assert 3 < gone.sum() < 20
-    assert found.captured.doubtful[gone].all() and found.captured.doubtful[:8].mean() < 0.1
+    assert (
+        found.captured.low_confidence[gone].all()
+        and found.captured.low_confidence[:8].mean() < 0.1
+    )
     assert re.match(
         r"No person is visible in 1\d of 30 frames, from 0\.\d s on\.", found.remarks[0]
     )
@@ -92,9 +95,9 @@ def test_of_an_upper_body_the_arms_are_told_and_the_legs_are_not_trusted():
     found = caught(recording)
 
     assert "The image ends above the feet: legs are estimated or omitted." in found.remarks
-    assert found.captured.doubtful[:, LEGS].all()
+    assert found.captured.low_confidence[:, LEGS].all()
     assert off(found, poses)[:, ARMS].mean() < 0.05
-    assert not found.captured.doubtful[:, ARMS].any()
+    assert not found.captured.low_confidence[:, ARMS].any()
 
 
 def test_real_upper_bodies_close_by(recordings):
@@ -102,7 +105,7 @@ def test_real_upper_bodies_close_by(recordings):
         found = caught(read_depth(path), None)
 
         assert any("ends above the feet" in remark for remark in found.remarks)
-        assert found.captured.doubtful[0, LEGS].all()
+        assert found.captured.low_confidence[0, LEGS].all()
         assert found.captured.residual[0] < 0.05
 
 
@@ -131,7 +134,7 @@ def test_missing_frames_are_bridged_and_told_of():
     assert any(
         "frames no person is detected" in said or "Nobody is" in said for said in found.remarks
     )
-    assert found.captured.doubtful[list(lost)].all()
+    assert found.captured.low_confidence[list(lost)].all()
     assert off(found, poses).mean() < 0.04
 
 
