@@ -64,9 +64,9 @@ def test_left_right_swap_in_a_recording_is_corrected():
 
     found = capture(DepthRecording(CAMERA, 30, 30.0, read), BODY)
 
-    off = np.linalg.norm(found.joints.positions - joints_of(truth), axis=-1)
-    assert off[20:].mean() < 0.04
-    assert off[:8].mean() < 0.04
+    errors = np.linalg.norm(found.joints.positions - joints_of(truth), axis=-1)
+    assert errors[20:].mean() < 0.04
+    assert errors[:8].mean() < 0.04
 
 
 def test_capture_bridges_and_flags_empty_frames():
@@ -83,8 +83,8 @@ def test_capture_bridges_and_flags_empty_frames():
     assert not found.low_confidence[[5, 15]].all()
     assert np.isnan(found.residual[10])
     assert np.isfinite(found.poses).all()
-    off = np.linalg.norm(found.joints.positions - joints_of(truth), axis=-1)
-    assert off[9:12].mean() < 0.06
+    errors = np.linalg.norm(found.joints.positions - joints_of(truth), axis=-1)
+    assert errors[9:12].mean() < 0.06
 
 
 def test_capture_uses_the_motion_prior_when_requested():

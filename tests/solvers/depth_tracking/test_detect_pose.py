@@ -119,8 +119,8 @@ def test_detect_pose_is_accurate_on_frames_with_known_joints(recordings, forest,
     camera = Camera(*focal, 320, 240)
     for frame in (5, 35, 65):
         found = detect_pose((depth[frame] / 1000.0).astype(np.float32), camera, BODY, forest)
-        ours = found.joints[[JOINTS.index(joint) for joint in CMU]]
-        distances = ours - joints[frame][[names.index(joint) for joint in CMU.values()]]
+        result = found.joints[[JOINTS.index(joint) for joint in CMU]]
+        distances = result - joints[frame][[names.index(joint) for joint in CMU.values()]]
         assert np.linalg.norm(distances, axis=1).mean() < maximum
 
 

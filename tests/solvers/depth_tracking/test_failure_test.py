@@ -60,15 +60,15 @@ def test_features_equal_counts_of_pixels():
     image = drawn(NATURAL)
     image[:, :80] = 0.0
     pose = moved_pose(rootX=0.05, rootZ=-0.15)
-    ours = drawn(pose)
+    result = drawn(pose)
 
     features = dict(zip(FEATURES, failure_features(quality_of(pose, image)), strict=True))
 
-    both = (ours > 0.0) & (image > 0.0)
-    assert np.isclose(features["off actor"], 1.0 - both.sum() / (ours > 0.0).sum())
+    both = (result > 0.0) & (image > 0.0)
+    assert np.isclose(features["off actor"], 1.0 - both.sum() / (result > 0.0).sum())
     assert np.isclose(features["unexplained"], 1.0 - both.sum() / (image > 0.0).sum())
-    near = both & (image - ours > LIMIT)
-    assert np.isclose(features["too near"], near.sum() / (ours > 0.0).sum())
+    near = both & (image - result > LIMIT)
+    assert np.isclose(features["too near"], near.sum() / (result > 0.0).sum())
     assert features["too near"] > 0.3
 
 

@@ -29,8 +29,8 @@ def test_body_follows_the_joints_of_a_walk():
 
     found = joint_positions(body, segment_frames(body, poses))
     indices = [JOINTS.index(name) for name in ENDS]
-    off = np.linalg.norm(found - joints, axis=-1)[:, indices]
-    assert off.mean() < 0.03
+    errors = np.linalg.norm(found - joints, axis=-1)[:, indices]
+    assert errors.mean() < 0.03
     assert np.abs(np.diff(poses[:, 6:], axis=0)).max() < 0.5
 
 
@@ -68,8 +68,8 @@ def test_poses_from_a_motion_of_the_body_are_exact(rng):
 
     joints = [joint_positions(body, segment_frames(body, one)) for one in (poses, again)]
     indices = [JOINTS.index(name) for name in ENDS]
-    off = np.linalg.norm(joints[0] - joints[1], axis=-1)[:, indices]
-    assert off.mean() < 0.02
+    errors = np.linalg.norm(joints[0] - joints[1], axis=-1)[:, indices]
+    assert errors.mean() < 0.02
 
 
 def test_learn_motion_prior_stores_clip_indices():

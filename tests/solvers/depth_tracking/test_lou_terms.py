@@ -70,9 +70,9 @@ def test_edges_of_an_actor_are_its_pixels_near_the_silhouette():
 
 @pytest.mark.parametrize("term", [surface_term, edge_term])
 def test_step_of_each_term_reduces_the_pose_error(term):
-    there = NATURAL.copy()
-    there[:2] += (0.03, -0.02)
-    hypothesis = render_hypothesis(BODY, there, CAMERA)
+    start = NATURAL.copy()
+    start[:2] += (0.03, -0.02)
+    hypothesis = render_hypothesis(BODY, start, CAMERA)
     extra = (None,) if term is surface_term else ()
 
     equations = term(hypothesis, observed(NATURAL), *extra, 1.0)
@@ -116,8 +116,8 @@ def test_previous_intensities_move_with_the_surface():
     actual = after.intensities[now.image.pixels]
     known = np.isfinite(remembered)
     assert known.mean() > 0.8
-    off = np.abs(remembered - actual)[known]
-    assert np.median(off) < 25.0 < np.abs(127.0 - actual).mean()
+    errors = np.abs(remembered - actual)[known]
+    assert np.median(errors) < 25.0 < np.abs(127.0 - actual).mean()
 
 
 def test_color_constrains_motion_along_a_limb():
@@ -172,13 +172,13 @@ def test_prior_equations_equal_the_dense_ones(rng):
     plane, pose = LocalPca(rng.normal(size=30), basis), rng.normal(size=36)
     jacobian = np.zeros((30, 36))
     jacobian[:, N_ROOT:] = basis @ basis.T - np.eye(30)
-    off = jacobian @ pose - jacobian[:, N_ROOT:] @ plane.mean
+    residual = jacobian @ pose - jacobian[:, N_ROOT:] @ plane.mean
 
     found = plane.equations(pose, 3.0)
 
     assert_allclose(found.matrix, 3.0 * jacobian.T @ jacobian, atol=1e-12)
-    assert_allclose(found.vector, -3.0 * jacobian.T @ off, atol=1e-12)
-    assert_allclose(found.cost, 1.5 * off @ off)
+    assert_allclose(found.vector, -3.0 * jacobian.T @ residual, atol=1e-12)
+    assert_allclose(found.cost, 1.5 * residual @ residual)
 
 
 def test_load_restores_a_saved_prior(tmp_path):

@@ -173,7 +173,7 @@ def test_classify_pixels_beats_chance_on_held_out_images(forest, held_out):
         found = classify_pixels(depth, CAMERA, forest)
         right += (found.labels == labels[found.rows, found.columns]).sum()
         total += len(found.rows)
-    assert right / total > 0.35  # The commonest part is a sixth of all pixels.
+    assert right / total > 0.35  # The most frequent part has a sixth of all pixels.
 
 
 def test_classify_pixels_is_independent_of_resolution(forest, held_out):
@@ -213,9 +213,9 @@ def test_load_restores_a_saved_forest(forest, held_out, tmp_path):
     forest.save(tmp_path / "forest.npz")
     loaded = load_pixel_forest(tmp_path / "forest.npz")
     assert loaded.trained_on == "a made walk"
-    for mine, theirs in zip(forest.trees, loaded.trees, strict=True):
+    for original, restored in zip(forest.trees, loaded.trees, strict=True):
         for name in ("splits", "offsets", "thresholds", "shares"):
-            np.testing.assert_array_equal(getattr(mine, name), getattr(theirs, name))
+            np.testing.assert_array_equal(getattr(original, name), getattr(restored, name))
     one, other = (classify_pixels(held_out[0][0], CAMERA, each) for each in (forest, loaded))
     np.testing.assert_array_equal(one.probabilities, other.probabilities)
 

@@ -69,8 +69,8 @@ def test_cast_rays_equals_marching_along_every_ray(rng):
     # A ray that only grazes a capsule may pass between two steps of ray marching.
     assert (observed != (image.depth_image() > 0.0)).sum() <= 3
     both = observed & (image.depth_image() > 0.0)
-    off = np.abs(depth - image.depth_image())[both]
-    assert (off < 1e-6).mean() > 0.99
+    errors = np.abs(depth - image.depth_image())[both]
+    assert (errors < 1e-6).mean() > 0.99
     segments = np.where(capsule >= 0, CAPSULE_SEGMENTS[capsule], -1)
     assert (segments == image.segment_image())[both].mean() > 0.99
 

@@ -31,9 +31,9 @@ def with_known_joints(recordings, take, first):
         depth = truth["depth"][first : first + N_FRAMES]
         names = truth["joint_names"].tolist()
         joints = np.full((N_FRAMES, len(JOINTS), 3), np.nan)
-        for ours, theirs in CMU.items():
-            index = names.index(theirs)
-            joints[:, JOINTS.index(ours)] = truth["joints"][first : first + N_FRAMES, index]
+        for name, recorded_name in CMU.items():
+            index = names.index(recorded_name)
+            joints[:, JOINTS.index(name)] = truth["joints"][first : first + N_FRAMES, index]
         focal = [float(truth[name]) for name in ("fx", "fy", "cx", "cy")]
     recording = DepthRecording(
         Camera(*focal, 320, 240), N_FRAMES, 30.0, lambda frame: depth[frame] / np.float32(1e3)

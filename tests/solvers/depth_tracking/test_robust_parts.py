@@ -36,8 +36,13 @@ def standing(**angles: float):
     """A pose at 2.8 m whose left elbow is flexed, so that left and right differ."""
     pose = np.zeros(N_COORDINATES)
     pose[:3] = 0.05, 0.0, 2.8
-    told = {"leftHumerusX": 0.7, "leftRadius": 1.2, "rightHumerusZ": 0.6, "rightFemurX": 0.4}
-    for name, angle in (told | angles).items():
+    default_angles = {
+        "leftHumerusX": 0.7,
+        "leftRadius": 1.2,
+        "rightHumerusZ": 0.6,
+        "rightFemurX": 0.4,
+    }
+    for name, angle in (default_angles | angles).items():
         pose[COORDINATES.index(name)] = angle
     return pose
 
@@ -93,8 +98,8 @@ def test_find_parts_is_robust_to_wrong_labels(rng, wrong):
         index = PARTS.index(part)
         assert found.weights[index] >= 0.4
         capsule = PART_CAPSULES[index]
-        far = capsule_distances(BODY, frames, found.centers[index][None])[0, capsule]
-        assert far < 0.03
+        distance = capsule_distances(BODY, frames, found.centers[index][None])[0, capsule]
+        assert distance < 0.03
     true_part = {point.tobytes(): part for point, part in zip(points, parts, strict=True)}
     right = [
         true_part[point.tobytes()] == label
@@ -129,13 +134,13 @@ def test_distances_to_round_capsules_are_exact(rng):
     pose = standing()
     frames = segment_frames(BODY, pose)
     points = rng.normal([0.05, 0.0, 2.8], 0.4, (50, 3))
-    far = capsule_distances(BODY, frames, points)
+    distances = capsule_distances(BODY, frames, points)
     index = CAPSULES.index("leftLowerLeg")
     frame = frames[CAPSULE_SEGMENTS[index]]
     start, stop = BODY.capsule_ends[index] @ frame[:3, :3].T + frame[:3, 3]
     along = np.clip((points - start) @ (stop - start) / ((stop - start) ** 2).sum(), 0, 1)
     exact = np.linalg.norm(points - start - along[:, None] * (stop - start), axis=1)
-    np.testing.assert_allclose(far[:, index], exact - BODY.radii[index, 0], atol=1e-9)
+    np.testing.assert_allclose(distances[:, index], exact - BODY.radii[index, 0], atol=1e-9)
 
 
 def test_true_pose_has_the_best_score(rng):
@@ -154,9 +159,12 @@ def test_true_pose_has_the_best_score(rng):
         other[COORDINATES.index(name)] += change
         worse, _ = pose_score(render_hypothesis(BODY, other, CAMERA), observation, pixels, 0.3)
         assert worse < score - 0.01
-    away = true.copy()
-    away[0] += 3.0
-    assert pose_score(render_hypothesis(BODY, away, CAMERA), observation, pixels, 0.3)[1] == 0.0
+    offset_pose = true.copy()
+    offset_pose[0] += 3.0
+    assert (
+        pose_score(render_hypothesis(BODY, offset_pose, CAMERA), observation, pixels, 0.3)[1]
+        == 0.0
+    )
 
 
 def test_swap_orders_cover_all_combinations():

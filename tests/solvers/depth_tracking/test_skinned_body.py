@@ -96,17 +96,17 @@ def test_poses_of_another_skeleton_are_matched_by_role(person):
     gait = walking_gait(GaitSettings(duration=1.0, frame_rate=10.0))
     poses = person.rotations_of(gait)
     assert poses.shape == (gait.n_frames, person.skeleton.n_joints, 4)
-    theirs = forward_kinematics(gait).positions
+    reference = forward_kinematics(gait).positions
     names = gait.skeleton.names
     motion = Motion(person.skeleton, poses, gait.root_positions, 10.0)
-    ours = forward_kinematics(motion).positions
+    result = forward_kinematics(motion).positions
     humanoid = person.humanoid.joints
     for upper, lower in (("leftUpperLeg", "leftLowerLeg"), ("rightUpperArm", "rightLowerArm")):
         mine = [person.skeleton.index(humanoid[role]) for role in (upper, lower)]
         found = find_humanoid_map(gait.skeleton).joints
         other = [names.index(found[role]) for role in (upper, lower)]
-        a = ours[:, mine[1]] - ours[:, mine[0]]
-        b = theirs[:, other[1]] - theirs[:, other[0]]
+        a = result[:, mine[1]] - result[:, mine[0]]
+        b = reference[:, other[1]] - reference[:, other[0]]
         cosines = (a * b).sum(-1) / np.linalg.norm(a, axis=-1) / np.linalg.norm(b, axis=-1)
         assert cosines.min() > 0.99
 
@@ -126,8 +126,8 @@ def test_joints_equal_those_of_another_implementation(recordings, take, clip, fi
     with np.load(recordings / "depth" / "truth" / f"{take}.npz") as truth:
         joints = truth["joints"].astype(float)
     for frame in (0, 40, 70):
-        _, ours = skinned.pose(poses[first + 4 * frame], np.zeros(3))
-        distances = np.linalg.norm(_aligned_to(ours, joints[frame]) - joints[frame], axis=1)
+        _, result = skinned.pose(poses[first + 4 * frame], np.zeros(3))
+        distances = np.linalg.norm(_aligned_to(result, joints[frame]) - joints[frame], axis=1)
         assert distances.mean() < 0.015
 
 

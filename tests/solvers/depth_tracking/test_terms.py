@@ -86,15 +86,15 @@ def test_depth_gradient_equals_differences_of_rendered_depth():
         differences = (high - low)[inner] / (2 * size)
         assert inner.sum() > 900
         # Kinks where one capsule of a segment meets another are a few pixels only.
-        off = np.abs(differences - exact[inner, coordinate])
-        assert (off < 1e-4).mean() > 0.99
+        errors = np.abs(differences - exact[inner, coordinate])
+        assert (errors < 1e-4).mean() > 0.99
 
 
 @pytest.mark.parametrize("offset", [(0.03, 0.0), (0.0, -0.03)])
 def test_silhouette_term_pulls_back_to_the_outline(offset):
-    there = NATURAL.copy()
-    there[:2] += offset
-    hypothesis = render_hypothesis(BODY, there, CAMERA)
+    start = NATURAL.copy()
+    start[:2] += offset
+    hypothesis = render_hypothesis(BODY, start, CAMERA)
 
     requested = equations_in_coordinates(
         [segment_equations(silhouette_term(hypothesis, observed(NATURAL), 1.0))],
@@ -160,9 +160,9 @@ def test_closest_surface_of_a_round_limb_is_a_radius_from_its_axis(distance):
 
 def test_step_of_every_depth_term_reduces_the_distance():
     """One step of each term, from 4 cm too near."""
-    there = NATURAL.copy()
-    there[2] -= 0.04
-    hypothesis, observation = render_hypothesis(BODY, there, CAMERA), observed(NATURAL)
+    start = NATURAL.copy()
+    start[2] -= 0.04
+    hypothesis, observation = render_hypothesis(BODY, start, CAMERA), observed(NATURAL)
     groups = group_pixels(hypothesis, observation, 0.08)
     for term in (
         depth_image_term(hypothesis, observation, groups, 1.0),
@@ -172,7 +172,7 @@ def test_step_of_every_depth_term_reduces_the_distance():
             equations_in_coordinates([segment_equations(term)], hypothesis.twists),
             np.full(36, 0.1),
         )
-        nearer = render_hypothesis(BODY, there + change, CAMERA).points[:, 2].mean()
+        nearer = render_hypothesis(BODY, start + change, CAMERA).points[:, 2].mean()
         assert abs(nearer - observation.points[:, 2].mean()) < 0.03
 
 

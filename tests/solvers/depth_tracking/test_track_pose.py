@@ -91,11 +91,11 @@ def test_track_pose_repeats_exactly():
 def test_result_scales_with_the_actor_and_the_distance():
     """Twice the distance and twice the size give the same rays."""
     truth = waving(6)
-    far = truth.copy()
-    far[:, :3] *= 2.0
+    doubled = truth.copy()
+    doubled[:, :3] *= 2.0
 
     near_result = track_pose(recorded(truth), BODY, truth[0])
-    far_result = track_pose(recorded(far, BODY.scaled(2.0)), BODY.scaled(2.0), far[0])
+    far_result = track_pose(recorded(doubled, BODY.scaled(2.0)), BODY.scaled(2.0), doubled[0])
 
     assert_allclose(far_result.poses[:, 3:], near_result.poses[:, 3:], atol=0.12)
 

@@ -225,7 +225,7 @@ def test_single_moving_hand_does_not_clap(monkeypatch, fraction, expected):
     seconds = [key[0] for key in GESTURES["clap"] if key]
     distances = (0.3, 0.6, -0.4), (0.0, 0.6, -0.4)
     direction = 0.9 * fraction, 0.9 * (1.0 - fraction)
-    near = tuple((x - far, y, z) for (x, y, z), far in zip(distances, direction, strict=True))
+    near = tuple((x - step, y, z) for (x, y, z), step in zip(distances, direction, strict=True))
     keys = (distances, near, near, distances, ((0.05, 0.05, -0.96),) * 2)
     result = tuple((time, *key) for time, key in zip(seconds, keys, strict=False))
     monkeypatch.setitem(GESTURES, "clap", result)

@@ -34,12 +34,12 @@ def initial_fit():
     centers = joint_centers(landmarks)
     body, rotations = build_body(centers, landmarks)
     observed = np.stack([landmarks[marker.landmark] for marker in body.markers], axis=1)
-    off = Poses(rotations, centers.positions["hips"])
+    poses = Poses(rotations, centers.positions["hips"])
     rng = np.random.default_rng(1)
-    off = apply_step(
-        body, off, 0.05 * rng.normal(size=(len(observed), 3 + 3 * len(body.rotating_joints)))
+    poses = apply_step(
+        body, poses, 0.05 * rng.normal(size=(len(observed), 3 + 3 * len(body.rotating_joints)))
     )
-    return body, observed, off
+    return body, observed, poses
 
 
 def test_pose_derivatives_equal_finite_differences(initial_fit):

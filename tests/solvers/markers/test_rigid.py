@@ -74,7 +74,7 @@ def test_constrained_distances_are_constant_and_noise_is_lower(take, rng, noise)
         np.sqrt(((each - take.positions)[:, :4] ** 2).mean())
         for each in (noisy.positions, kept)
     )
-    # Twelve coordinates with six freedoms keep half the variance of noise.
+    # Twelve coordinates with six degrees of freedom keep half of the noise variance.
     assert after == pytest.approx(np.sqrt(0.5) * before, rel=0.05)
     assert np.array_equal(kept[:, 4], noisy.positions[:, 4])
 
@@ -114,8 +114,8 @@ def test_outlier_marker_is_corrected_and_hardly_moves_others(take):
         take.with_positions(positions), find_rigid_clusters(take)
     ).tracks.positions
 
-    off = np.linalg.norm(kept - take.positions, axis=-1)[:, :4]
-    assert off.max() < 0.004
+    errors = np.linalg.norm(kept - take.positions, axis=-1)[:, :4]
+    assert errors.max() < 0.004
 
 
 def test_kabsch_recovers_the_rotation(rng):

@@ -49,10 +49,10 @@ def test_joint_centers_of_a_walk_are_accurate(walk, noise, skin):
 def test_flexion_of_knees_and_elbows_is_accurate(walk):
     """Flexion does not depend on the definition of the bone axes."""
     solved = solve_skeleton(markers_on(walk))
-    theirs = forward_kinematics(walk).positions
+    reference = forward_kinematics(walk).positions
     joints = find_humanoid_map(walk.skeleton).indices(walk.skeleton)
     found = solved.joint_centers
-    ours = {name: found.positions[:, index] for index, name in enumerate(found.names)}
+    result = {name: found.positions[:, index] for index, name in enumerate(found.names)}
 
     for start, middle, end in (
         ("UpperLeg", "LowerLeg", "Foot"),
@@ -60,10 +60,10 @@ def test_flexion_of_knees_and_elbows_is_accurate(walk):
     ):
         for side in ("left", "right"):
             names = [side + part for part in (start, middle, end)]
-            true = flexion(*(theirs[:, joints[name]] for name in names))
-            found = flexion(*(ours[name] for name in names))
-            off = found - true
-            assert np.degrees(np.abs(off - np.median(off))).mean() < 2.5
+            true = flexion(*(reference[:, joints[name]] for name in names))
+            found = flexion(*(result[name] for name in names))
+            differences = found - true
+            assert np.degrees(np.abs(differences - np.median(differences))).mean() < 2.5
 
 
 def flexion(start, middle, end) -> np.ndarray:
@@ -135,8 +135,8 @@ def test_one_outlier_marker_has_little_effect(walk):
     still = solve_skeleton(complete).joint_centers
 
     index = still.names.index("leftLowerLeg")
-    off = np.linalg.norm(moved.positions - still.positions, axis=-1)[50:60, index]
-    assert off.max() < 0.02
+    errors = np.linalg.norm(moved.positions - still.positions, axis=-1)[50:60, index]
+    assert errors.max() < 0.02
 
 
 def test_markers_of_legs_give_a_skeleton_of_legs(walk):
@@ -211,15 +211,15 @@ def test_cmu_dance_agrees_with_the_published_joints(recordings):
     solved = solve_skeleton(read_c3d(folder / "05_13.c3d"))
 
     rotated = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    theirs = forward_kinematics(dance).positions @ rotated
+    reference = forward_kinematics(dance).positions @ rotated
     roles = {"UpperLeg": "femur", "LowerLeg": "tibia", "Foot": "foot",
              "UpperArm": "humerus", "LowerArm": "radius", "Hand": "hand"}  # fmt: skip
     for part, bone in roles.items():
         for side in ("left", "right"):
             index = solved.joint_centers.names.index(side + part)
-            joint = theirs[:, dance.skeleton.index(side[0] + bone)]
-            off = np.linalg.norm(solved.joint_centers.positions[:, index] - joint, axis=1)
-            assert off.mean() < 0.07, side + part
+            joint = reference[:, dance.skeleton.index(side[0] + bone)]
+            errors = np.linalg.norm(solved.joint_centers.positions[:, index] - joint, axis=1)
+            assert errors.mean() < 0.07, side + part
     assert solved.motion.observed.all()
     assert np.nanmean(solved.error) < 0.006
 
@@ -229,8 +229,10 @@ def test_plug_in_gait_take_agrees_with_kinect_joints(recordings):
 
     solved = solve_skeleton(markers)
 
-    theirs = dict(zip(kinect.tracks.names, kinect.tracks.positions.swapaxes(0, 1), strict=True))
-    for ours, name in (("leftLowerLeg", "LLowLeg"), ("rightLowerArm", "RForeArm")):
-        index = solved.joint_centers.names.index(ours)
-        off = solved.joint_centers.positions[:, index] - theirs[name]
-        assert np.linalg.norm(np.nanmedian(off, axis=0)) < 0.15
+    reference = dict(
+        zip(kinect.tracks.names, kinect.tracks.positions.swapaxes(0, 1), strict=True)
+    )
+    for role, name in (("leftLowerLeg", "LLowLeg"), ("rightLowerArm", "RForeArm")):
+        index = solved.joint_centers.names.index(role)
+        differences = solved.joint_centers.positions[:, index] - reference[name]
+        assert np.linalg.norm(np.nanmedian(differences, axis=0)) < 0.15

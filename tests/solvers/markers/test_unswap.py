@@ -97,11 +97,11 @@ def test_confidence_follows_the_marker(take):
     confidence = np.linspace(0, 1, take.n_frames * take.n_points).reshape(take.n_frames, -1)
     certain = Tracks(take.names, take.positions, take.frame_rate, confidence)
     indices = [take.names.index(name) for name in ("LWRA", "LWRB")]
-    wrong, theirs = take.positions.copy(), confidence.copy()
+    wrong, swapped_confidence = take.positions.copy(), confidence.copy()
     wrong[50:90, indices] = wrong[50:90, indices[::-1]]
-    theirs[50:90, indices] = theirs[50:90, indices[::-1]]
+    swapped_confidence[50:90, indices] = reference[50:90, indices[::-1]]
 
-    result = unswap_markers(Tracks(take.names, wrong, take.frame_rate, theirs))
+    result = unswap_markers(Tracks(take.names, wrong, take.frame_rate, swapped_confidence))
 
     assert np.array_equal(result.tracks.confidence, certain.confidence)
 

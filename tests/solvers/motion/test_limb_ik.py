@@ -168,9 +168,9 @@ def test_limb_does_not_snap_when_it_folds():
     jerks = []
     for softness in (0.0, 0.05):
         moved = reach(rest, LEG, targets, ReachSettings(softness=softness))
-        away = np.linalg.norm(ankle(moved) - [0.0, 0.0, 1.0], axis=1)
-        assert away.min() > 0.2 - 1e-9
-        assert_allclose(away[:50], np.linspace(0.3, 0.15, 200)[:50], atol=1e-9)
+        distances = np.linalg.norm(ankle(moved) - [0.0, 0.0, 1.0], axis=1)
+        assert distances.min() > 0.2 - 1e-9
+        assert_allclose(distances[:50], np.linspace(0.3, 0.15, 200)[:50], atol=1e-9)
         knee = angle_between(moved.rotations[1:, 1], moved.rotations[:-1, 1])
         jerks.append(np.abs(np.diff(knee)).max())
     assert jerks[1] < 0.25 * jerks[0]

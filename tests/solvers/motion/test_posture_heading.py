@@ -31,13 +31,13 @@ def test_left_right_swaps_do_not_change_the_heading(walk, n_frames):
 @pytest.mark.parametrize("turns_per_second", [0.5, 1.0, 2.0])
 def test_heading_of_a_spinning_actor_is_followed(walk, turns_per_second):
     angles = 2.0 * np.pi * turns_per_second * np.arange(len(walk)) / 30.0
-    middle = slice(10, -10)  # the ends are steadied towards themselves
+    middle = slice(10, -10)  # smoothing shortens the ends
 
     found = headings(rotate_about_vertical(walk, angles)) - headings(walk)
 
-    off = found - angles
-    assert_allclose(off[middle], off[middle].mean(), atol=np.radians(4.0))
-    assert np.cos(off[middle]).min() > 0.99
+    differences = found - angles
+    assert_allclose(differences[middle], differences[middle].mean(), atol=np.radians(4.0))
+    assert np.cos(differences[middle]).min() > 0.99
 
 
 def test_rotation_by_180_degrees_in_a_third_second_is_followed(walk):
@@ -45,5 +45,5 @@ def test_rotation_by_180_degrees_in_a_third_second_is_followed(walk):
 
     found = headings(rotate_about_vertical(walk, angles)) - headings(walk)
 
-    assert np.abs(found - angles).max() < np.radians(25.0)  # steadied over a tenth of a second
+    assert np.abs(found - angles).max() < np.radians(25.0)  # smoothed over a tenth of a second
     assert np.abs(found - angles)[[30, 60]].max() < np.radians(2.0)

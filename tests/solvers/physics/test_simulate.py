@@ -238,8 +238,8 @@ def raised(motion, height):
 
 def distance(one, other):
     """Mean distance of the joints, meters."""
-    here, there = (forward_kinematics(each).positions for each in (one, other))
-    return float(np.linalg.norm(here - there, axis=-1).mean())
+    positions, other_positions = (forward_kinematics(each).positions for each in (one, other))
+    return float(np.linalg.norm(positions - other_positions, axis=-1).mean())
 
 
 def jerk(motion):

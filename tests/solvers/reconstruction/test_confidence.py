@@ -106,10 +106,10 @@ def test_confidence_is_calibrated_for_new_actors_at_any_error_size(rng):
         np.stack([np.log(variances), np.log(variances) + 2.0 * np.log(each)], axis=-1)
         for each in known
     ]
-    off = (
+    errors = (
         rng.normal(size=(400, 20, 50, 3)) * (new[:, None] * np.sqrt(variances))[..., None, None]
     )
-    right = (np.linalg.norm(off, axis=-1) < 0.05).mean(axis=(0, 2))
+    right = (np.linalg.norm(errors, axis=-1) < 0.05).mean(axis=(0, 2))
 
     plain, calibrated = (
         probability_within(variances, 0.05, each)

@@ -62,9 +62,9 @@ def test_prior_ignores_heading_and_position(prior):
         rotate_about_vertical(given_.tracks.positions, angles) + np.array([4.0, 1.0, 0.0])
     )
     here = correct_postures(given_, prior).tracks.positions
-    there = correct_postures(turned_, prior).tracks.positions
+    moved = correct_postures(turned_, prior).tracks.positions
     np.testing.assert_allclose(
-        rotate_about_vertical(here, angles) + np.array([4.0, 1.0, 0.0]), there, atol=1e-4
+        rotate_about_vertical(here, angles) + np.array([4.0, 1.0, 0.0]), moved, atol=1e-4
     )
 
 
@@ -252,9 +252,9 @@ def test_mirror_setting_shares_errors_of_left_and_right_limbs():
     given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
     image = recording(mirror_postures(given_.tracks.positions))
     here = correct_postures(given_, both_sides).tracks.positions
-    there = correct_postures(image, both_sides).tracks.positions
-    np.testing.assert_allclose(mirror_postures(here), there, atol=1e-6)
-    moved = (there - image.tracks.positions)[:, MIRROR_JOINTS[KNEE]]
+    mirrored = correct_postures(image, both_sides).tracks.positions
+    np.testing.assert_allclose(mirror_postures(here), mirrored, atol=1e-6)
+    moved = (mirrored - image.tracks.positions)[:, MIRROR_JOINTS[KNEE]]
     assert np.linalg.norm(moved, axis=-1).mean() > 0.03
 
 

@@ -39,8 +39,8 @@ def test_constant_twist_rate_is_followed():
     rotations = twist_to_normal(STILL, UP, ACROSS, directions_at(degrees), np.ones(60), RATE)
 
     shown = rotate(rotations, ACROSS)
-    off = np.einsum("fi,fi->f", shown, directions_at(degrees))
-    assert np.degrees(np.arccos(np.clip(off, -1.0, 1.0))).max() < 8.0
+    cosine = np.einsum("fi,fi->f", shown, directions_at(degrees))
+    assert np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))).max() < 8.0
 
 
 @pytest.mark.parametrize(

@@ -75,7 +75,7 @@ def test_library_twist_weighs_less_where_neighbors_disagree():
 
     motion = motion_from_positions(tracks, PARENTS, twists=similar_twists(30, length=0.1))
 
-    mean = 0.1 * np.exp(1j * AT) + 0.9  # what they leave open is no twist
+    mean = 0.1 * np.exp(1j * AT) + 0.9  # the rest has no twist
     assert_allclose(elbow_twist_deg(motion), np.degrees(np.angle(mean)), atol=0.5)
 
 

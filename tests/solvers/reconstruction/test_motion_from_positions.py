@@ -52,9 +52,9 @@ def visible_positions(motion: Motion, tracks: Tracks) -> list[str]:
 def position_errors(motion: Motion, tracks: Tracks) -> np.ndarray:
     """Distance of each joint from its tracked position, shape (n_frames, n_joints), meters."""
     own = [motion.skeleton.index(name) for name in visible_positions(motion, tracks)]
-    theirs = [tracks.names.index(name) for name in visible_positions(motion, tracks)]
+    reference = [tracks.names.index(name) for name in visible_positions(motion, tracks)]
     positions = forward_kinematics(motion).positions[:, own]
-    return np.linalg.norm(positions - tracks.positions[:, theirs], axis=-1)
+    return np.linalg.norm(positions - tracks.positions[:, reference], axis=-1)
 
 
 def test_joints_of_constant_lengths_keep_their_positions(walk):

@@ -82,16 +82,16 @@ def test_movement_process_equals_the_naive_full_process(process):
 
 def naive_covariance(one: np.ndarray, other: np.ndarray, strengths: tuple) -> np.ndarray:
     """Compute the covariance from its definition, for (5, n, 20, 3) parts."""
-    far = ((one[:, :, None] - other[:, None]) ** 2).sum(axis=(-2, -1))
+    distances = ((one[:, :, None] - other[:, None]) ** 2).sum(axis=(-2, -1))
     centre = np.concatenate([movement_parts(t.features, RATE)[0, 5::10] for t in TAKES])
     centre = 0.5 * (centre + mirror_postures(centre)).mean(axis=0)
     slope = np.einsum("ijk,mjk->im", one[0] - centre, other[0] - centre)
     a, b, c, d = strengths
     return (
-        a * np.exp(-0.5 * far[0] / POSTURE_SCALE_M**2)
+        a * np.exp(-0.5 * distances[0] / POSTURE_SCALE_M**2)
         + b * slope
-        + c * np.exp(-0.5 * far[:3].sum(axis=0) / CONTEXT_SCALE_M**2)
-        + d * np.exp(-0.5 * far[3:].sum(axis=0) / MOVEMENT_SCALE_M**2)
+        + c * np.exp(-0.5 * distances[:3].sum(axis=0) / CONTEXT_SCALE_M**2)
+        + d * np.exp(-0.5 * distances[3:].sum(axis=0) / MOVEMENT_SCALE_M**2)
     )
 
 
@@ -108,9 +108,9 @@ def test_movement_process_predicts_errors_at_a_new_speed(process):
 def test_errors_of_a_mirrored_pose_are_mirrored(process):
     new = take(1.4, "c").features
     here, near = process.predict(new, RATE, np.arange(90))
-    there, also_near = process.predict(mirror_postures(new), RATE, np.arange(90))
+    mirrored, also_near = process.predict(mirror_postures(new), RATE, np.arange(90))
 
-    assert_allclose(mirror_postures(here), there, atol=1e-5)
+    assert_allclose(mirror_postures(here), mirrored, atol=1e-5)
     assert_allclose(near, also_near, atol=1e-5)
 
 

@@ -115,8 +115,8 @@ def test_grouped_search_finds_nearly_all_true_neighbors(random):
 def test_spaces_are_principal_components(problem):
     spaces, _ = problem
     for frame in range(N_FRAMES):
-        off = spaces.neighbors[frame] - spaces.neighbors[frame].mean(axis=0)
-        values = np.linalg.svd(off, compute_uv=False)[:20] ** 2 / 30
+        deviations = spaces.neighbors[frame] - spaces.neighbors[frame].mean(axis=0)
+        values = np.linalg.svd(deviations, compute_uv=False)[:20] ** 2 / 30
         real = values > 1e-8
         np.testing.assert_allclose(spaces.spreads[frame][real], values[real], rtol=1e-6)
     z = np.random.default_rng(0).normal(size=spaces.spreads.shape) * (spaces.spreads > 0)
@@ -134,11 +134,11 @@ def test_energy_is_that_of_equations_10_to_15(problem):
     for frame, posture in enumerate(x):
         control = kinematics = continuity = 0.0
         for joint in range(20):
-            off = posture[joint] - targets.observed[frame, joint]
-            if np.isfinite(off).all():
-                control += targets.reliability[frame, joint] * off @ off
-            off = posture[joint] - expected[frame, joint]
-            continuity += off @ off / 20
+            difference = posture[joint] - targets.observed[frame, joint]
+            if np.isfinite(difference).all():
+                control += targets.reliability[frame, joint] * difference @ difference
+            difference = posture[joint] - expected[frame, joint]
+            continuity += difference @ difference / 20
             if joint:
                 length = np.linalg.norm(posture[joint] - posture[PARENTS[joint]])
                 kinematics += (length - ADULT_BONE_LENGTHS_M[joint]) ** 2 / 19
@@ -184,9 +184,9 @@ def test_the_probable_posture_is_the_conditional_mean(problem):
         rows = np.flatnonzero(np.repeat(reliability > 0.0, 3))
         noise = np.diag(MODEL_ERROR_M**2 / np.repeat(reliability, 3)[rows])
         gain = C[:, rows] @ np.linalg.inv(C[np.ix_(rows, rows)] + noise)
-        off = targets.observed[frame].reshape(-1)[rows] - spaces.means[frame][rows]
+        deviation = targets.observed[frame].reshape(-1)[rows] - spaces.means[frame][rows]
         np.testing.assert_allclose(
-            found[frame].reshape(-1), spaces.means[frame] + gain @ off, atol=1e-6
+            found[frame].reshape(-1), spaces.means[frame] + gain @ deviation, atol=1e-6
         )
         after = np.diag(C - gain @ C[rows]).reshape(20, 3).mean(axis=-1)
         np.testing.assert_allclose(spread[frame], np.sqrt(np.maximum(after, 0)), atol=1e-4)

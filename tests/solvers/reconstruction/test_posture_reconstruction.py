@@ -69,9 +69,9 @@ def walk_without_leg(walk):
 
 def test_missing_leg_walks_on_and_observed_joints_stay(walk, walk_without_leg, library):
     result = reconstructed(walk_without_leg, library)
-    away = np.linalg.norm(result.tracks.positions - walk, axis=-1)
+    errors = np.linalg.norm(result.tracks.positions - walk, axis=-1)
     kept = np.isfinite(walk_without_leg).all(axis=-1)
-    assert np.quantile(away[kept], 0.99) < 0.02
+    assert np.quantile(errors[kept], 0.99) < 0.02
     straight = walk.copy()
     frames = np.arange(len(walk))
     observed = np.setdiff1d(frames, frames[GONE])
@@ -80,7 +80,7 @@ def test_missing_leg_walks_on_and_observed_joints_stay(walk, walk_without_leg, l
             straight[:, joint, axis] = np.interp(frames, observed, walk[observed, joint, axis])
     default = np.linalg.norm(straight - walk, axis=-1)[~kept].mean()
     assert default > 0.1
-    assert away[~kept].mean() < 0.3 * default
+    assert errors[~kept].mean() < 0.3 * default
 
 
 @pytest.mark.parametrize(
@@ -88,9 +88,9 @@ def test_missing_leg_walks_on_and_observed_joints_stay(walk, walk_without_leg, l
 )
 def test_every_method_fills_every_frame_plausibly(walk, walk_without_leg, library, settings):
     result = reconstructed(walk_without_leg, library, **settings)
-    away = np.linalg.norm(result.tracks.positions - walk, axis=-1)
-    assert np.isfinite(away).all()
-    assert away[GONE][:, LEG].mean() < 0.15
+    errors = np.linalg.norm(result.tracks.positions - walk, axis=-1)
+    assert np.isfinite(errors).all()
+    assert errors[GONE][:, LEG].mean() < 0.15
     assert ((result.confidence >= 0.0) & (result.confidence <= 1.0)).all()
     assert np.isfinite(result.motion.rotations).all()
 
@@ -123,14 +123,14 @@ def test_position_and_heading_do_not_matter(walk_without_leg, library):
 
 
 def test_larger_bodies_are_reconstructed_equally_well(walk, walk_without_leg, library):
-    away = [
+    errors = [
         np.linalg.norm(
             reconstructed(size * walk_without_leg, library).tracks.positions / size - walk,
             axis=-1,
         ).mean()
         for size in (1.0, 1.3)
     ]
-    assert away[1] < 1.3 * away[0]
+    assert errors[1] < 1.3 * errors[0]
 
 
 def test_reconstruction_repeats_and_does_not_modify_the_take(walk_without_leg, library):
@@ -149,8 +149,8 @@ def test_missing_hips_follow_the_joints_around_them(walk, library):
     truth = walk + bob[:, None, None] * (0.0, 0.0, 1.0)
     observed = truth.copy()
     observed[GONE, 0] = np.nan
-    away = np.linalg.norm(reconstructed(observed, library).tracks.positions - truth, axis=-1)
-    assert away[GONE, 0].max() < 0.06
+    errors = np.linalg.norm(reconstructed(observed, library).tracks.positions - truth, axis=-1)
+    assert errors[GONE, 0].max() < 0.06
 
 
 def test_constant_offset_of_a_limb_is_learned_where_observed(walk, library):
@@ -159,8 +159,8 @@ def test_constant_offset_of_a_limb_is_learned_where_observed(walk, library):
     truth[:, LEG] += (0.1, 0.0, 0.0)
     observed = truth.copy()
     observed[15:75, LEG] = np.nan
-    off = (reconstructed(observed, library).tracks.positions - truth)[35:55, LEG]
-    assert np.abs(off.mean(axis=(0, 1))[0]) < 0.05
+    differences = (reconstructed(observed, library).tracks.positions - truth)[35:55, LEG]
+    assert np.abs(differences.mean(axis=(0, 1))[0]) < 0.05
 
 
 def test_motion_has_constant_bone_lengths_and_follows(walk_without_leg, library):
@@ -231,8 +231,8 @@ def test_real_walks_of_another_actor_are_reconstructed(recordings, library):
     walk = postures_from_motion(clip.slice(1, clip.n_frames))[::4]
     observed = walk.copy()
     observed[20:50, LEG] = np.nan
-    away = np.linalg.norm(reconstructed(observed, learned).tracks.positions - walk, axis=-1)
-    assert away[20:50][:, LEG].mean() < 0.12
+    errors = np.linalg.norm(reconstructed(observed, learned).tracks.positions - walk, axis=-1)
+    assert errors[20:50][:, LEG].mean() < 0.12
 
 
 def test_shipped_library_reconstructs_a_real_kinect_take(recordings):

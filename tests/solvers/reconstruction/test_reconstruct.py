@@ -119,15 +119,20 @@ def test_heading_and_position_do_not_matter(walk):
     moved = walk.with_tracks(
         walk.tracks.with_positions(rotate_about_vertical(walk.tracks.positions, angles) + shift)
     )
-    here, there = reconstruct(walk).tracks.positions, reconstruct(moved).tracks.positions
-    np.testing.assert_allclose(rotate_about_vertical(here, angles) + shift, there, atol=1e-3)
+    result, moved_result = (
+        reconstruct(walk).tracks.positions,
+        reconstruct(moved).tracks.positions,
+    )
+    np.testing.assert_allclose(
+        rotate_about_vertical(result, angles) + shift, moved_result, atol=1e-3
+    )
 
 
 def test_reconstruction_repeats_and_leaves_the_input_unchanged(walk):
-    given = walk.tracks.positions.copy()
+    original = walk.tracks.positions.copy()
     one, other = reconstruct(walk), reconstruct(walk)
     np.testing.assert_array_equal(one.tracks.positions, other.tracks.positions)
-    np.testing.assert_array_equal(walk.tracks.positions, given)
+    np.testing.assert_array_equal(walk.tracks.positions, original)
 
 
 def test_inferred_joints_are_reconstructed_more_at_lower_weight(walk, true):

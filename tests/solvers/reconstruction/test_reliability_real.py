@@ -23,20 +23,20 @@ def area_under_curve(reliability: np.ndarray, wrong: np.ndarray) -> float:
 
 
 def test_wrong_kinect_joints_are_less_reliable_than_as_published(recordings):
-    ours, published, wrong = [], [], []
+    result, published, wrong = [], [], []
     for path in sorted((recordings / "kinect" / "ui_prmd").glob("m0[268]_s02_e0[1-4].npz")):
         recording, markers = read_ui_prmd_pair(path)
         joints = [recording.names.index(name) for name in AT_JOINTS]
         true = markers.positions[:, [markers.names.index(name) for name in AT_JOINTS.values()]]
-        off = recording.tracks.positions[:, joints] - true
-        error = np.linalg.norm(off - np.median(off, axis=0), axis=-1)
+        differences = recording.tracks.positions[:, joints] - true
+        error = np.linalg.norm(differences - np.median(differences, axis=0), axis=-1)
         wrong.append(error > 0.05)
-        ours.append(measure_reliability(recording).combined[:, joints])
+        result.append(measure_reliability(recording).combined[:, joints])
         published.append(measure_reliability(recording, settings=PUBLISHED).combined[:, joints])
     is_wrong = np.concatenate(wrong)
 
     assert 0.02 < is_wrong.mean() < 0.5
-    area = area_under_curve(np.concatenate(ours).ravel(), is_wrong.ravel())
+    area = area_under_curve(np.concatenate(result).ravel(), is_wrong.ravel())
     assert area > 0.8
     assert area > 0.03 + area_under_curve(np.concatenate(published).ravel(), is_wrong.ravel())
 
@@ -62,9 +62,9 @@ def test_inferred_joints_are_less_reliable_without_states(recordings, folder):
 def test_every_sensor_is_reliable_until_joints_vibrate(recordings, folder, minimum):
     """By error indicators only, without the tracker's states."""
     files = [path for path in (recordings / "kinect" / folder).iterdir() if path.is_file()]
-    given = read_recording(min(files))
-    tracks = Tracks(given.names, given.tracks.positions, given.frame_rate)
-    take = JointRecording(tracks, None, given.sensor)
+    recording = read_recording(min(files))
+    tracks = Tracks(recording.names, recording.tracks.positions, recording.frame_rate)
+    take = JointRecording(tracks, None, recording.sensor)
     shaken = tracks.positions + np.random.default_rng(1).normal(
         scale=0.1, size=tracks.positions.shape
     )

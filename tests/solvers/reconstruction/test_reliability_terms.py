@@ -37,8 +37,8 @@ def path_with_turns(*angles: float, length: float = 0.1) -> np.ndarray:
         ((120.0, 120.0, 120.0), 1.0 / 3.0),  # 1 - (120 - 90) / (135 - 90)
         ((180.0, 90.0, 90.0), 1.0 / 3.0),  # the same mean
         ((135.0, 135.0, 135.0), 0.0),
-        ((180.0, 180.0, 180.0), 0.0),  # to and fro
-        ((180.0, 0.0, 0.0), 1.0),  # one spike alone is not held against a joint
+        ((180.0, 180.0, 180.0), 0.0),  # back and forth
+        ((180.0, 0.0, 0.0), 1.0),  # a single spike is ignored
     ],
 )
 def test_behavior_term_depends_on_the_mean_turn(angles, expected):

@@ -158,6 +158,8 @@ def logs_of(kernel):
 
 def negative_log_likelihood(logs, examples, centred=False):
     local, complete, errors, takes, actors = examples
-    far = tuple(squared_distances(one, one) for one in (local, complete))
+    distances = tuple(squared_distances(one, one) for one in (local, complete))
     same = tuple((one[:, None] == one).astype(float) for one in (takes, actors))
-    return _negative_log_likelihood(logs, far, same, errors - errors.mean(axis=0) * centred)
+    return _negative_log_likelihood(
+        logs, distances, same, errors - errors.mean(axis=0) * centred
+    )

@@ -36,8 +36,8 @@ def test_transient_jump_is_detected_in_its_frames_only(n_displaced):
     "positions",
     [
         [0.0] * 10 + [0.3] * 7 + [0.0] * 10,  # seven frames are longer than a fifth of a second
-        [0.0] * 10 + [0.3] * 15,  # it does not come back
-        [0.0] * 10 + [0.3] * 2 + [0.6] * 10,  # nor here
+        [0.0] * 10 + [0.3] * 15,  # it does not return
+        [0.0] * 10 + [0.3] * 2 + [0.6] * 10,  # it does not return either
         [0.0] * 10 + [0.3, 0.0] * 6 + [0.0] * 10,  # shakes
         [0, 0, 0.05, 0.2, 0.4, 0.45, 0.3, 0.12, 0.02, 0, 0],  # a punch
         [0.0] * 10 + [0.1] * 2 + [0.0] * 10,  # 0.1 m in 1/30 s: 90 m/s^2
@@ -104,9 +104,9 @@ def test_frames_next_to_a_wrong_one_stay_unchanged(walk):
     before = reconstruct(walk).tracks.positions[:, wrist]
     after = reconstruct(with_jump(walk, "WristLeft", 45)).tracks.positions[:, wrist]
 
-    off = np.linalg.norm(after - before, axis=-1)
-    assert off[45] < 0.02
-    assert np.delete(off, 45).max() < 0.01
+    errors = np.linalg.norm(after - before, axis=-1)
+    assert errors[45] < 0.02
+    assert np.delete(errors, 45).max() < 0.01
 
 
 @pytest.mark.parametrize("frame_rate", [30.0, 20.0, 15.0, 12.0, 10.0])

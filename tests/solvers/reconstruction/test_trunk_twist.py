@@ -95,9 +95,9 @@ def test_twists_ignore_heading_and_position():
         0.5,
     ])
 
-    there = axial_angles(*untwisted_hinges(moved), flexion_normals(moved)[0])
+    moved_angles = axial_angles(*untwisted_hinges(moved), flexion_normals(moved)[0])
 
-    assert_allclose(there, axial_angles(*untwisted_hinges(postures), normals), atol=1e-9)
+    assert_allclose(moved_angles, axial_angles(*untwisted_hinges(postures), normals), atol=1e-9)
 
 
 def test_mirror_swaps_sides_and_negates_twists():
@@ -165,10 +165,12 @@ def test_rigs_with_other_bone_axes_agree(gait, maker):
     """Arm axes differ by 30 degrees in CMU and HDM05: elbows rotate about another bone axis."""
     angles = np.linspace(-0.5, 0.5, gait.n_frames)
 
-    plain, theirs = (twists_of(with_twisted_arm(gait, angles, each)) for each in (0.0, maker))
+    plain, reference = (
+        twists_of(with_twisted_arm(gait, angles, each)) for each in (0.0, maker)
+    )
 
-    assert np.abs(np.angle(theirs * np.conj(plain))).max() < 0.15
-    assert np.abs(theirs).min() > 0.5
+    assert np.abs(np.angle(reference * np.conj(plain))).max() < 0.15
+    assert np.abs(reference).min() > 0.5
 
 
 def test_rig_is_recognized_with_rounded_offsets(gait):
@@ -231,8 +233,8 @@ def test_mean_twist_is_weighted_by_similarity():
     mean = mean_twists(twists, np.zeros((1, 20, 3)), neighbors, np.ones((1, 20)))
 
     assert_allclose(mean / np.abs(mean), np.full((1, 4), (0.8 + 0.2j) / np.hypot(0.8, 0.2)))
-    far = mean_twists(twists, np.full((1, 20, 3), 0.5), neighbors, np.ones((1, 20)))
-    assert np.abs(far).max() < 0.02 < 0.8 < np.abs(mean).min()
+    distant = mean_twists(twists, np.full((1, 20, 3), 0.5), neighbors, np.ones((1, 20)))
+    assert np.abs(distant).max() < 0.02 < 0.8 < np.abs(mean).min()
 
 
 def test_unreliable_joints_select_no_neighbor():

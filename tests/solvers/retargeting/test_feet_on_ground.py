@@ -51,8 +51,8 @@ def test_feet_do_not_sink_or_slide_more_than_the_source(recordings, clip, family
     assert (lowest - rig.rest_positions[balls, 2]).min() > -0.005
     contacts = detect_contacts(motion)
     held = contacts[1:] & contacts[:-1]
-    theirs, ours = (min_foot_steps(one)[held].mean() for one in (motion, result))
-    assert ours < 1.02 * growth(motion, rig) * theirs
+    reference, actual = (min_foot_steps(one)[held].mean() for one in (motion, result))
+    assert actual < 1.02 * growth(motion, rig) * reference
 
 
 def test_soles_are_level_for_any_feet_of_the_rest_pose():
@@ -88,18 +88,20 @@ def test_body_with_hips_at_the_origin_repeats_its_own_steps(recordings):
 
 
 def test_planted_point_moves_as_far_as_the_source_point(rng):
-    theirs = path(rng), path(rng)
+    reference = path(rng), path(rng)
     in_contact = np.zeros(90, dtype=np.bool_)
     in_contact[30:60] = True
 
     assert_allclose(
-        planting_shift(theirs, (1.3 * theirs[0], 1.3 * theirs[1]), in_contact, 1.3, 30.0),
+        planting_shift(
+            reference, (1.3 * reference[0], 1.3 * reference[1]), in_contact, 1.3, 30.0
+        ),
         np.zeros((90, 3)),
         atol=1e-9,
     )
-    dragged = theirs[0] + np.linspace(0.0, 0.2, 90)[:, None] * np.array([1.0, 0.0, 0.0])
-    resting = np.tile(theirs[0][:1], (90, 1)), theirs[1]
-    shift = planting_shift(resting, (dragged, theirs[1]), in_contact, 1.0, 30.0)
+    dragged = reference[0] + np.linspace(0.0, 0.2, 90)[:, None] * np.array([1.0, 0.0, 0.0])
+    resting = np.tile(reference[0][:1], (90, 1)), reference[1]
+    shift = planting_shift(resting, (dragged, reference[1]), in_contact, 1.0, 30.0)
     after = np.diff((dragged + shift)[30:60, :2], axis=0)
     assert np.abs(after).max() < 2e-4
     assert np.abs(np.diff(dragged[30:60, :2], axis=0)).max() > 2e-3

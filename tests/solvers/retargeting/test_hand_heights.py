@@ -57,9 +57,9 @@ def test_hand_height_scales_with_the_legs(recordings, body):
 
     result = given_to(motion, rig)
 
-    theirs = role_position(motion, "rightHand")[:, 2]
-    frame = int(theirs.argmin())
-    expected = growth(motion, rig) * theirs[frame]
+    reference = role_position(motion, "rightHand")[:, 2]
+    frame = int(reference.argmin())
+    expected = growth(motion, rig) * reference[frame]
     assert role_position(result, "rightHand")[frame, 2] == pytest.approx(expected, abs=0.04)
 
 
@@ -70,11 +70,11 @@ def test_elbows_stay_slow_when_a_straight_arm_reaches_the_ground(recordings):
 
     result = given_to(motion, rig)
 
-    theirs, ours = (
+    reference, actual = (
         np.linalg.norm(np.diff(role_position(one, "rightLowerArm"), 2, axis=0), axis=1).max()
         for one in (motion, result)
     )
-    assert ours < 1.3 * growth(motion, rig) * theirs
+    assert actual < 1.3 * growth(motion, rig) * reference
 
 
 @pytest.mark.parametrize("family", RIGS)
@@ -86,8 +86,8 @@ def test_hands_that_support_the_body_do_not_slide(family):
     result = given_to(source, rig)
 
     for role in WRISTS:
-        theirs, ours = role_position(source, role), role_position(result, role)
-        slide = np.ptp(ours, axis=0) - growth(source, rig) * np.ptp(theirs, axis=0)
+        reference, actual = role_position(source, role), role_position(result, role)
+        slide = np.ptp(actual, axis=0) - growth(source, rig) * np.ptp(reference, axis=0)
         assert np.abs(slide).max() < 0.005
 
 
@@ -98,11 +98,11 @@ def test_hands_of_a_walk_stay_unchanged():
     result = given_to(walk, rig)
 
     for side in ("left", "right"):
-        theirs, ours = (
+        reference, actual = (
             role_position(motion, f"{side}Hand") - role_position(motion, f"{side}UpperArm")
             for motion in (walk, result)
         )
-        ratio = np.linalg.norm(ours, axis=1) / np.linalg.norm(theirs, axis=1)
+        ratio = np.linalg.norm(actual, axis=1) / np.linalg.norm(reference, axis=1)
         assert_allclose(ratio, ratio[0], rtol=1e-6)
 
 

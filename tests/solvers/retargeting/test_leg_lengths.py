@@ -49,13 +49,13 @@ def test_knee_flexion_ignores_a_shorter_left_leg_of_the_source(shorter):
         assert np.abs(more).max() < 4.5
     for name in ("LeftFoot", "RightFoot"):
         joint = rig.index(f"mixamorig:{name}")
-        theirs, ours = (
+        reference, actual = (
             np.diff(forward_kinematics(motion).positions[:, joint], axis=0)
             for motion in (uneven, result)
         )
         growth = 2.0 / (1.0 + 1.0 / shorter)
-        # The source's feet are not shortened with its leg: its ball goes a little farther.
-        assert_allclose(ours, growth * theirs, atol=3e-4)
+        # The source's feet are not shortened with its leg, so its ball moves slightly farther.
+        assert_allclose(actual, growth * reference, atol=3e-4)
 
 
 @pytest.mark.parametrize(

@@ -55,8 +55,10 @@ def test_rotated_palms_of_the_source_rest_pose_have_no_effect(degrees):
     default, other = retargeted(plain, unreal()), retargeted(rotated, unreal())
 
     hands = [unreal().index(name) for name in ("hand_l", "hand_r")]
-    ours, theirs = (forward_kinematics(one).rotations[:, hands] for one in (other, default))
-    assert angle_between(ours, theirs).max() < 1e-6
+    result, reference = (
+        forward_kinematics(one).rotations[:, hands] for one in (other, default)
+    )
+    assert angle_between(result, reference).max() < 1e-6
 
 
 def test_slightly_oblique_knuckles_are_not_corrected():

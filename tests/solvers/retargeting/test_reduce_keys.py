@@ -35,9 +35,9 @@ def test_joint_errors_stay_within_the_tolerance(walk, tolerance):
     sparse = reduce_keys(walk, tolerance)
 
     before, after = (forward_kinematics(motion).positions for motion in (walk, sparse.dense()))
-    off = np.linalg.norm(after - before, axis=-1).max()
-    assert off <= tolerance
-    assert off <= sparse.error + 1e-12 <= tolerance + 1e-12
+    errors = np.linalg.norm(after - before, axis=-1).max()
+    assert errors <= tolerance
+    assert errors <= sparse.error + 1e-12 <= tolerance + 1e-12
     assert sparse.n_keys < walk.n_frames * (4 * walk.n_joints + 3)
 
 

@@ -48,9 +48,9 @@ def test_bones_are_parallel_to_the_source(walk, family):
         ("UpperLeg", "LowerLeg"),
     ):
         for side in ("left", "right"):
-            theirs = bone(walk, side + start, side + stop)
-            ours = bone(result, side + start, side + stop)
-            assert_allclose(ours, theirs, atol=1e-9)
+            reference = bone(walk, side + start, side + stop)
+            actual = bone(result, side + start, side + stop)
+            assert_allclose(actual, reference, atol=1e-9)
 
 
 def test_same_body_performs_the_same_motion(walk):
@@ -72,9 +72,12 @@ def test_feet_and_hands_follow_paths_scaled_by_the_limb(walk, family, size):
         walk.skeleton, find_humanoid_map(walk.skeleton)
     )
     for side in ("left", "right"):
-        theirs, ours = role_position(walk, f"{side}Foot"), role_position(result, f"{side}Foot")
-        error = (ours - ours[0]) - growth * (theirs - theirs[0])
-        # Feet of other lengths that roll over their balls take their ankles along.
+        reference, actual = (
+            role_position(walk, f"{side}Foot"),
+            role_position(result, f"{side}Foot"),
+        )
+        error = (actual - actual[0]) - growth * (reference - reference[0])
+        # Feet of other lengths that roll over their balls move their ankles.
         assert np.linalg.norm(error, axis=1).max() < 0.025 * size
         arms = [
             role_position(motion, f"{side}Hand") - role_position(motion, f"{side}UpperArm")
@@ -109,9 +112,9 @@ def test_feet_slide_no_more_than_in_a_real_walk(recordings, family):
     )
     contacts = detect_contacts(walk)
     held = contacts[1:] & contacts[:-1]
-    theirs, ours = (min_foot_steps(motion)[held] for motion in (walk, result))
-    assert (ours - growth * theirs).max() < 1e-3
-    assert ours.mean() < growth * theirs.mean()
+    reference, actual = (min_foot_steps(motion)[held] for motion in (walk, result))
+    assert (actual - growth * reference).max() < 1e-3
+    assert actual.mean() < growth * reference.mean()
 
 
 def test_gaps_remain_and_do_not_spread(walk):

@@ -106,13 +106,13 @@ def test_gaps_affect_only_dependent_joints(data):
     assert missing.sum() <= 2 * gaps.sum()
     assert_allclose(np.isnan(result.root_positions), np.isnan(positions))
     for role in ("leftLowerArm", "rightFoot", "head"):
-        theirs, ours = (
+        reference, actual = (
             roles.indices(skeleton)[role]
             for roles, skeleton in (
                 (MAP, WALK.skeleton), (find_humanoid_map(mixamo()), mixamo()),
             )
         )  # fmt: skip
-        assert (missing[:, ours] >= gaps[:, theirs]).all()
+        assert (missing[:, actual] >= gaps[:, reference]).all()
 
 
 def test_single_frame_is_retargeted():

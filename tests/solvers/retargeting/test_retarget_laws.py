@@ -57,37 +57,37 @@ def test_rest_pose_of_the_source_has_no_effect(angles):
 @pytest.mark.parametrize("family", RIGS)
 def test_retargeting_back_restores_feet_and_hands(family):
     """Feet and hands are exact; joints between them depend on what the rig represents."""
-    there = retargeted(WALK, RIGS[family](1.3))
+    retargeted_walk = retargeted(WALK, RIGS[family](1.3))
 
-    back = retargeted(there, WALK.skeleton)
+    back = retargeted(retargeted_walk, WALK.skeleton)
 
-    here, again = (forward_kinematics(motion).positions for motion in (WALK, back))
+    before, again = (forward_kinematics(motion).positions for motion in (WALK, back))
     joints = find_humanoid_map(WALK.skeleton).indices(WALK.skeleton)
     for role in ("leftFoot", "rightFoot", "leftLowerLeg", "rightLowerLeg"):
-        shift = again[:, joints[role]] - here[:, joints[role]]
+        shift = again[:, joints[role]] - before[:, joints[role]]
         assert np.ptp(shift, axis=0).max() < 0.01, role
 
 
 @pytest.mark.parametrize("family", RIGS)
 def test_knees_and_elbows_flex_in_the_source_directions(family):
-    given = retargeted(WALK, RIGS[family](0.8))
+    result = retargeted(WALK, RIGS[family](0.8))
 
     for side in ("left", "right"):
         for roles in (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand")):
-            theirs, ours = (flexion_axis(motion, side, roles) for motion in (WALK, given))
-            lengths = [np.linalg.norm(axis, axis=1) for axis in (theirs, ours)]
+            reference, actual = (flexion_axis(motion, side, roles) for motion in (WALK, result))
+            lengths = [np.linalg.norm(axis, axis=1) for axis in (reference, actual)]
             clear = np.minimum(*lengths) > 0.1
-            cosine = np.einsum("fi,fi->f", theirs, ours) / (lengths[0] * lengths[1])
+            cosine = np.einsum("fi,fi->f", reference, actual) / (lengths[0] * lengths[1])
             assert cosine[clear].min() > 0.8
 
 
 @pytest.mark.parametrize("family", RIGS)
 def test_joints_rotate_hardly_more_than_the_source(family):
-    given = retargeted(WALK, RIGS[family](1.2))
+    result = retargeted(WALK, RIGS[family](1.2))
 
-    theirs, ours = (roles_in_world(motion) for motion in (WALK, given))
-    for role in set(theirs) & set(ours):
-        more = rotation_angles(ours[role]) - rotation_angles(theirs[role])
+    reference, actual = (roles_in_world(motion) for motion in (WALK, result))
+    for role in set(reference) & set(actual):
+        more = rotation_angles(actual[role]) - rotation_angles(reference[role])
         assert np.degrees(more.max()) < 5.0, role
 
 
@@ -97,23 +97,25 @@ def test_hands_that_meet_in_the_source_meet(family):
     body, rig = mixamo(), with_broad_shoulders(RIGS[family](1.1))
     clapping = claps(body)
 
-    given = retargeted(clapping, rig)
+    result = retargeted(clapping, rig)
     separate = retargeted(clapping, rig, RetargetSettings(keep_hands=False))
 
-    distances, ours, without = (hand_distance(motion) for motion in (clapping, given, separate))
+    distances, actual, without = (
+        hand_distance(motion) for motion in (clapping, result, separate)
+    )
     closed, open_ = distances < 0.08, distances > 0.6
     growth = arm_length(rig) / arm_length(body)
     assert closed.sum() >= 5 and open_.sum() >= 5
-    assert np.abs(ours - growth * distances)[closed].max() < 0.005
+    assert np.abs(actual - growth * distances)[closed].max() < 0.005
     assert np.abs(without - growth * distances)[closed].min() > 0.03
-    assert ours[open_].min() > 0.6
+    assert actual[open_].min() > 0.6
 
 
 def test_travel_scale_is_a_setting():
     marks = retargeted(WALK, mixamo(1.5), RetargetSettings(travel_scale=1.0))
-    ours = marks.root_positions[-1, :2] - marks.root_positions[0, :2]
+    result = marks.root_positions[-1, :2] - marks.root_positions[0, :2]
 
-    assert_allclose(ours, (WALK.root_positions[-1] - WALK.root_positions[0])[:2], atol=0.03)
+    assert_allclose(result, (WALK.root_positions[-1] - WALK.root_positions[0])[:2], atol=0.03)
 
 
 def test_hips_are_lowered_enough_and_smoothly():

@@ -25,11 +25,11 @@ def test_deep_bow_leans_as_the_source(family):
 
     result = retargeted(bow, RIGS[family]())
 
-    theirs, ours = (lean_deg(motion) for motion in (bow, result))
-    assert theirs[-1] - theirs[0] > 50.0
-    off = np.abs((ours - ours[0]) - (theirs - theirs[0]))
-    assert off.max() < 4.0
-    assert off[-1] < 3.0
+    reference, actual = (lean_deg(motion) for motion in (bow, result))
+    assert reference[-1] - reference[0] > 50.0
+    errors = np.abs((actual - actual[0]) - (reference - reference[0]))
+    assert errors.max() < 4.0
+    assert errors[-1] < 3.0
 
 
 def test_deep_bow_leans_differently_without_the_correction(monkeypatch):
@@ -37,9 +37,9 @@ def test_deep_bow_leans_differently_without_the_correction(monkeypatch):
     monkeypatch.setattr("solvers.retargeting.pose_transfer.leaning_swings", lambda *nothing: {})
     bow = bowing(mixamo(), 70.0)
 
-    theirs, ours = (lean_deg(motion) for motion in (bow, retargeted(bow, rigify_deform())))
+    reference, result = (lean_deg(motion) for motion in (bow, retargeted(bow, rigify_deform())))
 
-    assert np.abs((ours - ours[0]) - (theirs - theirs[0])).max() > 3.0
+    assert np.abs((result - result[0]) - (reference - reference[0])).max() > 3.0
 
 
 @pytest.mark.parametrize("family", RIGS)
@@ -59,10 +59,10 @@ def test_heads_and_arms_keep_their_rotations():
 
     result = retargeted(bow, rig)
 
-    theirs, ours = (world_rotations(motion) for motion in (bow, result))
+    reference, actual = (world_rotations(motion) for motion in (bow, result))
     for role in ("head", "leftHand", "rightHand"):
         assert angle_between(
-            rotations_since(ours[role]), rotations_since(theirs[role])
+            rotations_since(actual[role]), rotations_since(reference[role])
         ).max() == pytest.approx(0.0, abs=1e-6)
 
 

@@ -192,8 +192,8 @@ def test_segment_beyond_the_end_of_its_clip_is_damage(tmp_path):
     path, query = tmp_path / "a.clips", clip("walk", "wave", "/a/walk.bvh")
     build_clip_library([query]).save(path)
     with closing(sqlite3.connect(path)) as database, database:
-        far = struct.pack("<2i", 10_000, 10_001)
-        database.execute("UPDATE blocks SET frames = ?", [far])
+        segment = struct.pack("<2i", 10_000, 10_001)
+        database.execute("UPDATE blocks SET frames = ?", [segment])
 
     with (
         load_clip_library(path) as library,

@@ -168,8 +168,8 @@ def test_other_actors_hops_are_nearer_than_squats(recordings):
     kernel = pyramid_kernel(vstack(rows), vstack(rows))
 
     same = np.arange(6)[:, None] // 3 == np.arange(6) // 3
-    off = ~np.eye(6, dtype=bool)
-    assert kernel[same & off].mean() > 1.5 * kernel[~same].mean()
-    for row, alike in zip(kernel, same & off, strict=True):
+    is_off_diagonal = ~np.eye(6, dtype=bool)
+    assert kernel[same & is_off_diagonal].mean() > 1.5 * kernel[~same].mean()
+    for row, alike in zip(kernel, same & is_off_diagonal, strict=True):
         others = ~alike & (np.arange(6) != row.argmax())
         assert row[alike].max() > row[others].max()

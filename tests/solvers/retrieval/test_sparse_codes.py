@@ -30,10 +30,10 @@ def test_codes_equal_those_of_scikit_learn(rng, n_atoms, n_nonzeros):
 
     codes = sparse_codes(signals, atoms, n_nonzeros)
 
-    theirs = orthogonal_mp(atoms.T, signals.T, n_nonzero_coefs=n_nonzeros).T
+    reference = orthogonal_mp(atoms.T, signals.T, n_nonzero_coefs=n_nonzeros).T
     mine = dense(codes, n_atoms)
-    assert_allclose((mine != 0).astype(int), (theirs != 0).astype(int))
-    assert_allclose(mine, theirs, atol=1e-9)
+    assert_allclose((mine != 0).astype(int), (reference != 0).astype(int))
+    assert_allclose(mine, reference, atol=1e-9)
 
 
 def test_weights_are_least_squares_on_the_chosen_atoms(rng):

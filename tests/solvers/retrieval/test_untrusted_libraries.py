@@ -222,7 +222,7 @@ def test_motion_beyond_half_precision_is_stored_and_found(tmp_path):
     motion = act("wave")
     positions = motion.positions.copy()
     positions[20:] += 1e7
-    far = motion.with_positions(positions)
-    build_clip_library([Clip("far", far)]).save(tmp_path / "a.clips")
+    distant = motion.with_positions(positions)
+    build_clip_library([Clip("far", distant)]).save(tmp_path / "a.clips")
     with load_clip_library(tmp_path / "a.clips") as library:
-        assert find_similar(far, library)
+        assert find_similar(distant, library)

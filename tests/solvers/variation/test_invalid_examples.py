@@ -96,8 +96,8 @@ def test_variants_keep_several_rotations_on_the_spot(method, walks):
         angle = about((0, 0, 1), 6 * np.pi * passing(walk, power))
         rotations = walk.rotations.copy()
         rotations[:, 0] = multiply(angle, rotations[:, 0])
-        there = walk.root_positions * (0.0, 0.0, 1.0)
-        spun.append(walk.with_poses(rotations, there))
+        in_place = walk.root_positions * (0.0, 0.0, 1.0)
+        spun.append(walk.with_poses(rotations, in_place))
     settings = VarySettings(method=method)
 
     drawn = draw_variants(learn_variation_model(spun, settings=settings), 6, settings=settings)
@@ -129,17 +129,17 @@ def test_two_flips_in_one_direction_do_not_wind_up_a_joint(walks):
 def test_model_is_the_same_at_twice_the_frame_rate(walks):
     """Rate and length differ: variants have the same speed and distance."""
     resampled = [walks[0], *(resample(walk, 150.0) for walk in walks[1:])]
-    reference_rotations, mixed = (
+    reference, mixed = (
         [one.motion for one in draw_variants(learn_variation_model(some), 8)]
         for some in (walks, resampled)
     )
 
     assert {one.frame_rate for one in mixed} == {60.0}
-    lengths = [np.mean([one.n_frames for one in some]) for some in (reference_rotations, mixed)]
+    lengths = [np.mean([one.n_frames for one in some]) for some in (reference, mixed)]
     assert lengths[1] == pytest.approx(lengths[0], rel=0.05)
     path_lengths = [
         np.mean([np.ptp(one.root_positions[:, 1]) for one in some])
-        for some in (reference_rotations, mixed)
+        for some in (reference, mixed)
     ]
     assert path_lengths[1] == pytest.approx(path_lengths[0], rel=0.05)
 

@@ -35,13 +35,11 @@ def rotated_about_z(motion, angle):
 
 
 def test_model_ignores_position_and_heading_of_examples(walks):
-    there = [rotated_about_z(walk, 0.7 * index) for index, walk in enumerate(walks)]
+    moved = [rotated_about_z(walk, 0.7 * index) for index, walk in enumerate(walks)]
 
-    reference_rotations, rotated = (
-        synthesize(learn_variation_model(one), 2) for one in (walks, there)
-    )
+    reference, rotated = (synthesize(learn_variation_model(one), 2) for one in (walks, moved))
 
-    for one, other in zip(reference_rotations, rotated, strict=True):
+    for one, other in zip(reference, rotated, strict=True):
         assert one.n_frames == other.n_frames
         assert_allclose(one.root_positions, other.root_positions, atol=1e-5)
         assert_allclose(np.abs(np.sum(one.rotations * other.rotations, axis=-1)), 1, atol=1e-7)
@@ -76,11 +74,9 @@ def test_examples_are_scaled_to_the_size_of_the_first(walks):
         root_positions=0.6 * walks[1].root_positions,
     )
 
-    grown, reference_rotations = (
-        learn_variation_model([walks[0], one]) for one in (child, walks[1])
-    )
+    grown, reference = (learn_variation_model([walks[0], one]) for one in (child, walks[1]))
 
-    assert_allclose(grown.root, reference_rotations.root, atol=0.01)
+    assert_allclose(grown.root, reference.root, atol=0.01)
 
 
 def test_errors_name_the_example_and_the_remedy(walks, leg):
@@ -168,8 +164,8 @@ def test_saved_model_gives_the_same_variants(learned, tmp_path):
 
     again = load_variation_model(tmp_path / "walks.npz")
 
-    ours, theirs = (synthesize(one, 2, settings=settings) for one in (model, again))
-    for one, other in zip(ours, theirs, strict=True):
+    result, reference = (synthesize(one, 2, settings=settings) for one in (model, again))
+    for one, other in zip(result, reference, strict=True):
         assert_allclose(one.rotations, other.rotations, atol=1e-9)
 
 

@@ -31,11 +31,11 @@ def test_variants_are_near_the_examples_but_not_copies(clips):
     assert 0.65 < measure_variation(variants) / measure_variation(clips) < 1.4
     # Body positions jerk more than joint angles: .9 to 1.1 in docs/benchmarks_variation.md.
     assert 0.6 < jerk(variants) / jerk(clips) < 1.45
-    theirs, ours = (
+    reference, result = (
         [positions_in_body_frame(one)[::6] for one in group] for group in (clips, variants)
     )
-    distances = np.median([warp(a, b).cost for a, b in combinations(theirs, 2)])
-    nearest = [min(warp(one, other).cost for other in theirs) for one in ours]
+    distances = np.median([warp(a, b).cost for a, b in combinations(reference, 2)])
+    nearest = [min(warp(one, other).cost for other in reference) for one in result]
     assert min(nearest) > 0.05 * distances
     assert max(nearest) < distances
 

@@ -30,9 +30,9 @@ def data(rng):
 
 
 def processes(one, other, hyperparameters):
-    far = cdist(one, other, "sqeuclidean")
+    distances = cdist(one, other, "sqeuclidean")
     return [
-        np.exp(-0.5 * far / length**2) + bias
+        np.exp(-0.5 * distances / length**2) + bias
         for length, bias in zip(hyperparameters.lengths, hyperparameters.biases, strict=True)
     ]
 
@@ -94,12 +94,12 @@ def test_published_likelihood_equals_that_of_three_outputs(data, hyperparameters
 
 @pytest.mark.parametrize("cost", [_latent_cost, _published_cost])
 def test_gradients_equal_finite_differences(cost, data, hyperparameters):
-    far = cdist(data[0], data[0], "sqeuclidean")
+    distances = cdist(data[0], data[0], "sqeuclidean")
 
-    slope = cost(point(hyperparameters), far, data[1])[1]
+    slope = cost(point(hyperparameters), distances, data[1])[1]
 
     differences = approx_fprime(
-        point(hyperparameters), lambda x: cost(x, far, data[1])[0], 1e-6
+        point(hyperparameters), lambda x: cost(x, distances, data[1])[0], 1e-6
     )
     assert_allclose(slope, differences, atol=2e-4)
 
@@ -108,13 +108,15 @@ def test_gradients_equal_finite_differences(cost, data, hyperparameters):
 def test_learning_increases_the_likelihood(published, rng):
     features = rng.normal(size=(40, 2))
     outputs = np.sin(features @ rng.normal(size=(2, 3))) + 0.05 * rng.normal(size=(40, 3))
-    far = cdist(features, features, "sqeuclidean")
+    distances = cdist(features, features, "sqeuclidean")
     cost = _published_cost if published else _latent_cost
 
     costs = [
-        cost(point(learn_hyperparameters(features, outputs, published, rounds)), far, outputs)[
-            0
-        ]
+        cost(
+            point(learn_hyperparameters(features, outputs, published, rounds)),
+            distances,
+            outputs,
+        )[0]
         for rounds in (1, 5, 40)
     ]
 
@@ -128,7 +130,7 @@ def test_prediction_is_exact_when_all_examples_are_inducing(
     features, outputs = data
     stack, _ = one_stack(features, outputs, hyperparameters, published)
     new = rng.normal(size=(5, 4))
-    observed, there = ((x - features.mean(0)) / features.std(0) for x in (features, new))
+    observed, new_features = ((x - features.mean(0)) / features.std(0) for x in (features, new))
     scale, middle = outputs.std(axis=0).max(), outputs.mean(axis=0)
     weights = hyperparameters.mixing**2 if published else np.eye(3)
     mixing = np.eye(3) if published else np.linalg.inv(hyperparameters.mixing)
@@ -137,7 +139,7 @@ def test_prediction_is_exact_when_all_examples_are_inducing(
     for row, result in zip(weights, channels, strict=True):
         own, other = (
             np.tensordot(row, np.stack(processes(x, observed, hyperparameters)), axes=1)
-            for x in (observed, there)
+            for x in (observed, new_features)
         )
         noise = row @ hyperparameters.noises
         predict.append(other @ np.linalg.solve(own + noise * np.eye(9), result))
