@@ -99,7 +99,7 @@ def test_confidence_follows_the_marker(take):
     indices = [take.names.index(name) for name in ("LWRA", "LWRB")]
     wrong, swapped_confidence = take.positions.copy(), confidence.copy()
     wrong[50:90, indices] = wrong[50:90, indices[::-1]]
-    swapped_confidence[50:90, indices] = reference[50:90, indices[::-1]]
+    swapped_confidence[50:90, indices] = swapped_confidence[50:90, indices[::-1]]
 
     result = unswap_markers(Tracks(take.names, wrong, take.frame_rate, swapped_confidence))
 
