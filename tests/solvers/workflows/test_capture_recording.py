@@ -175,7 +175,7 @@ def test_a_scale_that_is_wrong_leaves_nobody_or_a_giant():
         said = " ".join(caught(in_millimetres).remarks)
     except InvalidMotionError as error:
         said = str(error)
-    assert "scale" in said or "depth is in metres" in said
+    assert "scale" in said or "depth is in meters" in said
 
 
 def test_what_is_no_actor_agrees_badly():
