@@ -115,7 +115,7 @@ def _started(motion: Motion, roles: HumanoidMap, start: Start) -> Motion:
     body = normalize_postures(postures_from_motion(motion, roles), motion.frame_rate)
     half = 0.5 * (start.heading - body.headings[0])
     turn = np.array([np.cos(half), 0.0, 0.0, np.sin(half)])
-    first = body.places[0] * (1.0, 1.0, 0.0)
+    first = body.hip_positions[0] * (1.0, 1.0, 0.0)
     rotations = np.array(motion.rotations)
     rotations[:, 0] = multiply(turn, rotations[:, 0])
     places = rotate(turn, motion.root_positions - first) + np.append(start.place, 0.0)
@@ -125,7 +125,7 @@ def _started(motion: Motion, roles: HumanoidMap, start: Start) -> Motion:
 def _travel(motion: Motion, target: TargetRig, settings: RetargetSettings) -> Carried:
     """Return how a bone on the ground moves that carries the body along."""
     path = ground_path(
-        motion, target.humanoid, settings.travel_smoothing, turn=settings.turn_root
+        motion, target.humanoid, settings.travel_smoothing, follow_heading=settings.turn_root
     )
     hips = target.humanoid.indices(target.skeleton)["hips"]
     rest = target.skeleton.rest_positions[hips] * (1.0, 1.0, 0.0)

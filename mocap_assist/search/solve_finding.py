@@ -139,4 +139,4 @@ def stage_of(query: Recording) -> Stage:
         positions = posture_positions(tracks)
     body = normalize_postures(positions, tracks.frame_rate)
     lengths = estimate_bone_lengths(body.postures)
-    return Stage(body.places, np.unwrap(body.headings), lengths, tracks.frame_rate)
+    return Stage(body.hip_positions, np.unwrap(body.headings), lengths, tracks.frame_rate)

@@ -42,7 +42,7 @@ def body_now(armature: bpy.types.Object | None, frame: float) -> Solid | None:
     colors[:, 3] = OPAQUE
     surface = _surface(body)
     matrix = np.array(armature.matrix_world)
-    return solid(surface, *surface.placed(frames), matrix, colors[CAPSULE_SEGMENTS])
+    return solid(surface, *surface.at_pose(frames), matrix, colors[CAPSULE_SEGMENTS])
 
 
 def wanted(context: bpy.types.Context) -> Solid | None:

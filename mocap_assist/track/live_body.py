@@ -80,7 +80,7 @@ class LiveBody:
         frames = segment_frames(found.body, found.pose)
         colors = np.array([shade(sure) for sure in found.quality.confidence])
         colors[:, 3] = OPAQUE
-        placed = self._surface.placed(frames)
+        placed = self._surface.at_pose(frames)
         return solid(self._surface, *placed, scene_from_camera, colors[CAPSULE_SEGMENTS])
 
     def close(self) -> None:

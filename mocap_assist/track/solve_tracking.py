@@ -103,7 +103,7 @@ def _told(
         captured.residual,
         float(captured.coverage.mean()),
         captured.restarts,
-        doubts_of(joints.names, captured.doubtful),
+        doubts_of(joints.names, captured.low_confidence),
         remarks,
     )
 

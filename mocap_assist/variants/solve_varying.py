@@ -79,7 +79,7 @@ def vary(problem: VaryProblem, *, progress: Progress = unwatched) -> Varied:
         progress(0.8 + 0.1 * place / len(made.motions), "Drawing")
         seen = normalize_postures(postures_from_motion(motion), motion.frame_rate)
         turn = float(first.headings[0] - seen.headings[0])
-        there = moved(motion, seen.places[0], turn, first.places[0])
+        there = moved(motion, seen.hip_positions[0], turn, first.hip_positions[0])
         seen_as = resample_loop if is_loop else resample
         finer = motion.frame_rate > problem.frame_rate
         motions.append(seen_as(there, problem.frame_rate) if finer else there)

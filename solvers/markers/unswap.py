@@ -9,7 +9,7 @@ from ..motion import Tracks
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
 from .distances import Distances, learn_distances
-from .lost_labels import find_mistaken_labels
+from .mistaken_labels import find_mistaken_labels
 from .pair_swaps import PairSwap, find_candidate_pairs, most_likely_swap
 
 Array = NDArray[np.float64]

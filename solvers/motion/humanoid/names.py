@@ -42,21 +42,21 @@ def roles_by_name(names: Sequence[str]) -> dict[str, str]:
     dict of role to joint name; empty if no table has any of the names.
     """
     keys = _keys(names)
-    found = max((_match_table(row, keys) for row in TABLES.values()), key=len)
-    return found | _fingers(names, found)
+    roles = max((_match_table(row, keys) for row in TABLES.values()), key=len)
+    return roles | _fingers(names, roles)
 
 
 def _match_table(row: Sequence[str], keys: dict[Key, str]) -> dict[str, str]:
     """Return the joints that one table matches, by role."""
-    found: dict[str, str] = {}
+    roles: dict[str, str] = {}
     for column, spellings in zip(COLUMNS, row, strict=True):
         for side in ("",) if column in CENTRAL_ROLES else ("left", "right"):
             for spelling in spellings.split():
                 joint = keys.get((side, "".join(_words(spelling))))
-                if joint is not None and joint not in found.values():
-                    found[side + column] = joint
+                if joint is not None and joint not in roles.values():
+                    roles[side + column] = joint
                     break
-    return found
+    return roles
 
 
 def _keys(names: Sequence[str]) -> dict[Key, str]:
@@ -119,7 +119,7 @@ def _bare_names(names: Sequence[str]) -> frozenset[str]:
     return frozenset("".join(_words(re.split(r"[:|]", name)[-1])) for name in names)
 
 
-def _fingers(names: Sequence[str], found: Mapping[str, str]) -> dict[str, str]:
+def _fingers(names: Sequence[str], roles: Mapping[str, str]) -> dict[str, str]:
     """Return the finger joints by role; a finger of one joint only (CMU) has no role.
 
     If several joints match one role (DEF- and ORG- bones), the name most similar to the hand's
@@ -138,7 +138,7 @@ def _fingers(names: Sequence[str], found: Mapping[str, str]) -> dict[str, str]:
             )
     return {
         side + finger + _part(finger, part): _best_match(
-            found.get(f"{side}Hand", ""), candidates
+            roles.get(f"{side}Hand", ""), candidates
         )
         for (side, finger), joints in candidates_by_finger.items()
         if len(joints) > 1

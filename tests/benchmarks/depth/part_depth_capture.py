@@ -112,7 +112,7 @@ def _captured(
     off = errors(found.joints.positions, one.joints)
     return off.figures() | {
         "restarts": float(len(found.restarts)),
-        "flagged %": 100.0 * found.doubtful.mean(),
+        "flagged %": 100.0 * found.low_confidence.mean(),
         "cm where not flagged": _where_sure(found, off.offset_taken),
         "% off in length": length_error(found.body, one.body),
         FPS: speed,
@@ -120,7 +120,7 @@ def _captured(
 
 
 def _where_sure(found: Capture, off: np.ndarray) -> float:
-    sure = off[~found.doubtful]
+    sure = off[~found.low_confidence]
     return 100.0 * float(sure.mean()) if len(sure) else float("nan")
 
 

@@ -75,7 +75,7 @@ def figures(take: KinectTake, found: Capture) -> dict[str, float]:
         "cm in depth": 100.0 * float(np.nanmean(found.residual)),
         "coverage": float(found.coverage.mean()),
         "restarts": float(len(found.restarts)),
-        "flagged %": 100.0 * float(found.doubtful.mean()),
+        "flagged %": 100.0 * float(found.low_confidence.mean()),
     }
 
 

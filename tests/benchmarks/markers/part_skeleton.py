@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.markers import find_marker_set, solve_skeleton
-from solvers.markers.centres import joint_centres
+from solvers.markers.joint_centers import joint_centers
 from solvers.motion import Motion, Tracks, find_humanoid_map, forward_kinematics
 from solvers.recordings import read_acclaim, read_c3d
 from tests.fixtures.marked_bodies import markers_on
@@ -34,14 +34,14 @@ AMC_TURN = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
 def _solved(tracks: Tracks) -> Mapping[str, Array]:
-    centres = solve_skeleton(tracks).joint_centres
+    centres = solve_skeleton(tracks).joint_centers
     return {name: centres.positions[:, place] for place, name in enumerate(centres.names)}
 
 
 def _regressed(tracks: Tracks) -> Mapping[str, Array]:
     found = find_marker_set(tracks.names).markers
     place = {name: index for index, name in enumerate(tracks.names)}
-    return joint_centres({s: tracks.positions[:, place[n]] for s, n in found.items()}).positions
+    return joint_centers({s: tracks.positions[:, place[n]] for s, n in found.items()}).positions
 
 
 METHODS: dict[str, Solver] = {

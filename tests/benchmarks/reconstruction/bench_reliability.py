@@ -85,7 +85,7 @@ def areas(pairs: list[Pair]) -> str:
         signs = [signs_of(pair.recording, causal) for pair in pairs]
         measures = dict(doubts(pairs, causal))
         measures["path: off its smoothed self"] = [each.deviation for each in signs]
-        measures["lengths: greatest error"] = [each.stretch for each in signs]
+        measures["lengths: greatest error"] = [each.length_error for each in signs]
         for name, doubt in measures.items():
             _put_areas(rows, name, [areas_by_subject(pairs, doubt, limit) for limit in LIMITS])
         left_out = [
@@ -155,7 +155,7 @@ def flags() -> str:
 
 
 MEASURES: dict[str, Callable[..., np.ndarray]] = {
-    "behaviour term": lambda found: found.behaviour,
+    "behaviour term": lambda found: found.behavior,
     "kinematics term": lambda found: found.kinematics,
     "default": lambda found: found.combined,
 }

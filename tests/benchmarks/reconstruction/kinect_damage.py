@@ -106,7 +106,7 @@ def occluded(positions: Array, frame_rate: float, angle: float) -> Flags:
     """Tell which joints lie behind a part of the body that they do not belong to."""
     plain = normalize_postures(positions, frame_rate)
     ahead = rotate_about_vertical(np.array([[[0.0, -DISTANCE, 0.0]]]), np.array([angle]))[0, 0]
-    middle = np.median(plain.places, axis=0)
+    middle = np.median(plain.hip_positions, axis=0)
     facing = np.angle(np.exp(1j * plain.headings).mean())
     sensor = middle + rotate_about_vertical(ahead[None, None], np.array([facing]))[0, 0]
     sensor[2] = np.nanmin(positions[..., 2]) + HEIGHT

@@ -80,7 +80,7 @@ def regressed(learn: Callable[[Array, Array], Predict], pair: Pair, subject: str
     predict = _regression(learn, subject)
     foretold = predict(calm.features[:, columns[1:]].reshape(len(offsets), -1))
     offsets[:, columns] = foretold.reshape(len(offsets), -1, 3)
-    return _calmed(calm.positions + calm.turn_back(offsets), pair)
+    return _calmed(calm.positions + calm.rotate_to_world(offsets), pair)
 
 
 def from_examples(learn: Callable[[Array], Predict], pair: Pair, subject: str) -> Array:
@@ -90,10 +90,10 @@ def from_examples(learn: Callable[[Array], Predict], pair: Pair, subject: str) -
     predict = _memory(learn, subject)
     made = np.full_like(calm.features, np.nan)
     found = predict(calm.features[:, columns].reshape(len(made), -1))
-    seen = calm.normalised.postures[:, columns]
+    seen = calm.normalized.postures[:, columns]
     size = np.linalg.norm(seen) / np.linalg.norm(calm.features[:, columns])
     made[:, columns] = size * found.reshape(len(made), -1, 3)
-    return _calmed(calm.normalised.put_back(made), pair)
+    return _calmed(calm.normalized.to_world(made), pair)
 
 
 @cache
@@ -102,7 +102,7 @@ def _regression(learn: Callable[[Array, Array], Predict], subject: str) -> Predi
     for pair in others(subject):
         calm = smooth_postures(pair.kinect, CALM)
         columns = _tracked(calm.features)
-        off = rotate_about_vertical(truth_of(pair) - calm.positions, -calm.normalised.headings)
+        off = rotate_about_vertical(truth_of(pair) - calm.positions, -calm.normalized.headings)
         features.append(calm.features[::THINNED, columns[1:]])
         offsets.append(off[::THINNED, columns])
     X, Y = (_flat(parts) for parts in (features, offsets))
@@ -116,7 +116,7 @@ def _memory(learn: Callable[[Array], Predict], subject: str) -> Predict:
     for pair in others(subject):
         plain = normalize_postures(truth_of(pair), pair.truth.frame_rate)
         seen = smooth_postures(pair.kinect, CALM)
-        size = np.nanmax(np.abs(seen.features)) / np.nanmax(np.abs(seen.normalised.postures))
+        size = np.nanmax(np.abs(seen.features)) / np.nanmax(np.abs(seen.normalized.postures))
         columns = _tracked(seen.features)
         examples.append(size * plain.postures[::THINNED, columns])
     X = _flat(examples)

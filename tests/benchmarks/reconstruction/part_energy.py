@@ -98,17 +98,17 @@ def _all_asked() -> Iterator[Asked]:
                     query = PostureQuery(plain.postures, speeds, trust, 0.0)
                     places, _ = nearest_postures(index, query)
                     spaces = local_pca(body.positions[places].astype(np.float64))
-                    demands = EnergyTargets(plain.postures, trust, spaces.neighbours, lengths)
+                    demands = EnergyTargets(plain.postures, trust, spaces.neighbors, lengths)
                     yield Asked(damaged, plain, spaces, demands)
 
 
 def _measured(asked: Asked, weights: EnergyWeights) -> tuple[Array, Array, Array, Array]:
     """Return errors of lost joints, of ways from the joint above, of lengths, and jerks."""
     demands = EnergyTargets(
-        asked.demands.observed, asked.demands.trust, asked.demands.neighbours,
+        asked.demands.observed, asked.demands.reliability, asked.demands.neighbors,
         asked.demands.lengths, weights=weights,
     )  # fmt: skip
-    made = asked.plain.put_back(solve_sequentially(asked.spaces, demands)[0])
+    made = asked.plain.to_world(solve_sequentially(asked.spaces, demands)[0])
     pair = asked.damaged.pair
     _, apart, _ = compared(made, truth_of(pair))
     return (

@@ -59,7 +59,7 @@ def bridged_by(
         return fill(seen.reshape(len(seen), -1), rate).reshape(seen.shape)
     plain = normalize_postures(seen, rate, np.isfinite(seen).all(axis=-1).astype(float))
     flat = plain.postures.reshape(len(seen), -1)
-    return plain.put_back(fill(flat, rate).reshape(seen.shape))
+    return plain.to_world(fill(flat, rate).reshape(seen.shape))
 
 
 def by_example(complete: Callable[..., Array], pair: Pair, subject: str) -> Array:
@@ -80,7 +80,7 @@ def by_example(complete: Callable[..., Array], pair: Pair, subject: str) -> Arra
         result[np.ix_(rows, ~pattern & known)] = complete(
             examples, flat[rows][:, pattern], pattern, ~pattern & known
         )
-    made = plain.put_back(result.reshape(seen.shape) / size)
+    made = plain.to_world(result.reshape(seen.shape) / size)
     return np.where(np.isfinite(seen), seen, made)
 
 
@@ -119,7 +119,7 @@ def seen_examples(subject: str) -> Array:
 
 
 def _size(calm: SmoothedPostures) -> float:
-    sizes = [np.nanmax(np.abs(one)) for one in (calm.features, calm.normalised.postures)]
+    sizes = [np.nanmax(np.abs(one)) for one in (calm.features, calm.normalized.postures)]
     return float(sizes[0] / sizes[1])
 
 

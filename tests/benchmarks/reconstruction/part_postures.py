@@ -147,7 +147,7 @@ def interpolated(
     if in_body:
         seen = np.where(lost[..., None], np.nan, postures)
         plain = normalize_postures(seen, RATE, 1.0 - lost)
-        return plain.put_back(interpolated(kind, False, plain.postures, lost, library))
+        return plain.to_world(interpolated(kind, False, plain.postures, lost, library))
     result, frames = postures.copy(), np.arange(len(postures))
     for joint in np.flatnonzero(lost.any(axis=0)):
         gone = lost[:, joint]
@@ -178,7 +178,7 @@ def from_neighbours(
         query = PostureQuery(plain.postures, 0.0 * plain.postures, 1.0 - lost, 0.0)
         places, _ = nearest_postures(index_postures(body, 0 * library.groups), query)
         made = body.positions[places].mean(axis=1).astype(np.float64)
-    return np.where(lost[..., None], plain.put_back(made), postures)
+    return np.where(lost[..., None], plain.to_world(made), postures)
 
 
 def _projected(mean: Array, axes: Array, postures: Array) -> Array:
@@ -281,7 +281,7 @@ def energies(found: tuple[Clip, ...]) -> Scores:
         )
         places, _ = nearest_postures(index_postures(body, library.groups), query)
         spaces = local_pca(body.positions[places].astype(np.float64))
-        asked = EnergyTargets(plain.postures, 1.0 - lost, spaces.neighbours, lengths)
+        asked = EnergyTargets(plain.postures, 1.0 - lost, spaces.neighbors, lengths)
         for name, solve in solvers.items():
             started = perf_counter()
             _, found_energies = solve(spaces, asked)

@@ -56,9 +56,9 @@ TERMS = {
 }
 SIGNS = {
     "no reliability": (),
-    "behaviour": ("behaviour",),
+    "behaviour": ("behavior",),
     "kinematics": ("kinematics",),
-    "both, published": ("behaviour", "kinematics"),
+    "both, published": ("behavior", "kinematics"),
 }
 BINS = (0.0, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 WITHIN = 0.05

@@ -50,14 +50,14 @@ COLUMNS = (
 def untwisted(result: Reconstruction) -> LimbTwists:
     """No twist against the trunk at all."""
     return LimbTwists(
-        np.zeros((result.tracks.n_frames, len(TWISTED_LIMBS)), complex), alone=True
+        np.zeros((result.tracks.n_frames, len(TWISTED_LIMBS)), complex), ignore_flexion=True
     )
 
 
 def neighbours(result: Reconstruction) -> LimbTwists:
     """As [SHJT13]: the neighbours' mean alone."""
     assert result.twists is not None
-    return LimbTwists(result.twists.vectors, alone=True)
+    return LimbTwists(result.twists.vectors, ignore_flexion=True)
 
 
 METHODS: dict[str, Callable[[Reconstruction], LimbTwists | None]] = {
