@@ -91,7 +91,7 @@ def _tips(skeleton: Skeleton) -> set[int]:
 
 
 def _tails(skeleton: Skeleton, tips: set[int]) -> Array:
-    """Where the bone of each joint ends, shape (n_joints, 3), metres."""
+    """Where the bone of each joint ends, shape (n_joints, 3), meters."""
     heads = skeleton.rest_positions
     extent = _extent(skeleton)
     tails = heads.copy()

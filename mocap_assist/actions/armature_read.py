@@ -195,7 +195,7 @@ def _read_offsets(
     rate: float,
     roots: set[int],
 ) -> Tracks | None:
-    """Locations of the bones that shift within a tree, in their parents' rest axes, metres."""
+    """Locations of the bones that shift within a tree, in their parents' rest axes, meters."""
     shifting = [
         bone for bone, each in enumerate(channels) if each.travels and bone not in roots
     ]

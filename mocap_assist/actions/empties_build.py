@@ -14,8 +14,8 @@ from .new_action import write_channels
 Array = NDArray[np.float64]
 POINT = "mocap_assist_point"
 """Custom property of an empty: the name of its point, which Blender may have to change."""
-SIZE = 0.015  # metres: radius of the sphere that shows a marker
-CROSS = 0.2  # metres: half the length of the cross that shows what holds them
+SIZE = 0.015  # meters: radius of the sphere that shows a marker
+CROSS = 0.2  # meters: half the length of the cross that shows what holds them
 
 
 def build_empties(

@@ -35,7 +35,7 @@ class MarkerTake:
     """Action and slot of each marker."""
     grid: Grid
     tracks: Tracks
-    """In the world, metres; NaN where a marker has no keys though it has them all around."""
+    """In the world, meters; NaN where a marker has no keys though it has them all around."""
     spaces: tuple[Placement, ...]
     """Where each marker's own space lies in the world."""
 

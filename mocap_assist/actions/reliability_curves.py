@@ -69,7 +69,7 @@ def reliability_at(
     return {bone: curve.evaluate(frame) for bone, curve in curves if curve is not None}
 
 
-def kept_terms(source: Source) -> frozenset[Term]:
+def stored_terms(source: Source) -> frozenset[Term]:
     """Return of which terms something is kept on any bone."""
     bag = compat.channelbag(*source)
     if bag is None:

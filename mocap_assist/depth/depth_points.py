@@ -5,7 +5,7 @@ import bpy
 NAME = "Depth Points"
 MADE = "mocap_assist_depth_points"
 """Custom property of the node group, whatever it is called meanwhile."""
-RADIUS = 0.006  # metres
+RADIUS = 0.006  # meters
 
 
 def point_nodes(seen: str) -> bpy.types.NodeTree:

@@ -15,7 +15,7 @@ from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import recording_figures
 from ..scene.origin import note_origin, origin_of_file
-from ..scene.scene_objects import Numbers, all_or_nothing, choose, in_object_mode, remove
+from ..scene.scene_objects import Numbers, choose, in_object_mode, remove, undo_on_error
 from ..scene.scene_rate import FrameRate, extend_duration, set_scene_rate
 from ..scene.scene_state import SceneState
 from .choices import ImportChoices
@@ -126,7 +126,7 @@ class Arrival:
         moving: Motion | Tracks | None,
         progress: Progress,
     ) -> tuple[Numbers, bpy.types.Object, str]:
-        with all_or_nothing(context) as made:
+        with undo_on_error(context) as made:
             return made, *self._make(context, path, recording, moving, progress)
 
     def _make(

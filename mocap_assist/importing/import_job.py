@@ -154,5 +154,5 @@ def _refusal(path: Path, error: ProcessDied | OutOfMemoryError) -> MocapAssistEr
         return InvalidFileError(f"{path} does not fit into memory. Import a part of the take.")
     return InvalidFileError(
         f"{path} made its reader end early, {error.cause}. Import a part of the take, or have"
-        f" it exported anew.{error.last_words}"
+        f" it exported anew.{error.last_output}"
     )

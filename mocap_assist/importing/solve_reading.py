@@ -35,7 +35,7 @@ class Wanted(NamedTuple):
     frame_rate: float | None
     """Frames per second to resample to; None leaves each recording its own."""
     unit: float | None = None
-    """Metres in one unit of the files; None for what they say, or their readers guess."""
+    """Meters in one unit of the files; None for what they say, or their readers guess."""
     depth: DepthSettings = DEFAULT_DEPTH_SETTINGS
     """How pictures of depth are to be understood."""
 

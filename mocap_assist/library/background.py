@@ -51,7 +51,7 @@ class Indexing:
 
 
 def why_indexing() -> str:
-    """Return why no other Index can start, or nothing."""
+    """Return why no other Index can start, or an empty text."""
     return RUNNING if _on else ""
 
 

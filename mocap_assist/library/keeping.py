@@ -12,7 +12,7 @@ import bpy
 from ...solvers.errors import MocapAssistError
 from ..runtime.watch import why_busy
 from .background import Indexing, message_of, why_indexing
-from .kept_libraries import kept_libraries
+from .kept_libraries import auto_updated_libraries
 from .solve_indexing import IndexProblem, index_places
 
 logger = logging.getLogger(__name__)
@@ -102,7 +102,7 @@ def look() -> float:
 
     Which libraries those are says this user alone, never the file that is open.
     """
-    kept = kept_libraries()
+    kept = auto_updated_libraries()
     for problem in [each for each in _keepers if each not in kept]:
         _keepers.pop(problem).stop()
     if _running:

@@ -17,7 +17,7 @@ from .places import index_problem, library_path, places_of
 from .solve_indexing import IndexProblem, Place
 
 
-def kept_libraries() -> list[IndexProblem]:
+def auto_updated_libraries() -> list[IndexProblem]:
     """Return what is to be kept current."""
     stored = permissions.entries(permissions.LIBRARIES)
     return [kept for each in stored if (kept := _problem(each)) is not None]
@@ -25,7 +25,7 @@ def kept_libraries() -> list[IndexProblem]:
 
 def is_kept(problem: IndexProblem) -> bool:
     """Whether a library is kept current from exactly these sources."""
-    return problem in kept_libraries()
+    return problem in auto_updated_libraries()
 
 
 def keep(problem: IndexProblem) -> None:
@@ -78,7 +78,7 @@ def choices_are_kept(choices: LibraryChoices) -> bool:
 
 
 def _without(library: str) -> list[Any]:
-    return [_stored(each) for each in kept_libraries() if each.library != library]
+    return [_stored(each) for each in auto_updated_libraries() if each.library != library]
 
 
 def _stored(problem: IndexProblem) -> dict[str, Any]:

@@ -86,7 +86,7 @@ def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> In
     InvalidFileError
         The library cannot be read or written, or the file of the rig is missing.
     """
-    problem.blender.look_for_rig()
+    problem.blender.check_rig()
     path = Path(problem.library)
     try:
         if not path.exists():

@@ -14,9 +14,9 @@ SIZE = 128
 N_FIGURES = 3
 MARGIN = 6.0
 TALL = 2.3
-"""Metres that a card is high: a standing body with a raised hand."""
+"""Meters that a card is high: a standing body with a raised hand."""
 FOOT = 1.05
-"""Metres from the middle of the card's body, the hips, down to the floor."""
+"""Meters from the middle of the card's body, the hips, down to the floor."""
 LEFT = np.array([name.startswith("left") for name in POSTURE_JOINTS])
 
 
@@ -25,7 +25,7 @@ def thumbnail(postures: Array) -> Pixels:
 
     Parameters
     ----------
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
         Relative to the hips, facing -Y; NaN where not tracked.
     """
     canvas = Canvas(SIZE, SIZE)

@@ -62,7 +62,7 @@ class RetargetPanel:
 
 
 def why_not_pressed(context: bpy.types.Context) -> str:
-    """Return why Retarget would do nothing with what the panel shows, or nothing."""
+    """Return why Retarget would do nothing with what the panel shows, or an empty text."""
     if reason := why_not_retarget(context):
         return reason
     shown = context.scene.mocap_assist.retarget

@@ -22,7 +22,7 @@ class Start(NamedTuple):
     """Where the body is to stand on the target's stage at first, and which way it faces."""
 
     place: Array
-    """On the ground, shape (2,), metres."""
+    """On the ground, shape (2,), meters."""
     heading: float
     """Radians about the vertical; 0 is -Y."""
 
@@ -33,7 +33,7 @@ class Clip:
 
     motion: Motion
     origin: Array
-    """Where the source's armature stands on the ground, shape (3,), metres."""
+    """Where the source's armature stands on the ground, shape (3,), meters."""
     turn: Array
     """How it is turned about the vertical, shape (4,)."""
     start: Start | None = None

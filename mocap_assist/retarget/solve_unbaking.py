@@ -57,7 +57,7 @@ class Tree:
     root_moves: bool
     """Whether the location of the topmost bone is keyed."""
     head: Array
-    """Where that bone rests, metres."""
+    """Where that bone rests, meters."""
     metres: float
 
 
@@ -80,7 +80,7 @@ class SparseKeys:
 
 @dataclass(frozen=True, eq=False)
 class Unbaked:
-    """Keys of all bones, and how far the ends of limbs are off, metres."""
+    """Keys of all bones, and how far the ends of limbs are off, meters."""
 
     keys: Mapping[str, SparseKeys]
     error: float
@@ -197,7 +197,7 @@ def _location_curve(tree: Tree, curve: KeyCurve) -> KeyCurve:
 
 
 def _error(tree: Tree, curves: Sequence[KeyCurve | None], root: KeyCurve) -> float:
-    """Return by how much any end is off when Blender plays the curves, metres."""
+    """Return by how much any end is off when Blender plays the curves, meters."""
     motion, frames = tree.motion, np.arange(tree.motion.n_frames)
     rotations = np.tile(IDENTITY, (*motion.rotations.shape[:2], 1))
     for joint, (shape, curve) in enumerate(zip(tree.shapes, curves, strict=True)):

@@ -39,7 +39,7 @@ class Control:
         Its rest pose in the stage.
     location_axes : shape (4,)
         Those of its location.
-    head : shape (3,), metres
+    head : shape (3,), meters
         Where it rests.
     turns, moves : bool
         Which channels are keyed.

@@ -68,11 +68,11 @@ class Placement:
     rotations: Array
     """Shape (n_frames, 4)."""
     origins: Array
-    """Shape (n_frames, 3), metres."""
+    """Shape (n_frames, 3), meters."""
     scale: float
 
     def in_unit(self, metres: float) -> "Placement":
-        """Return the placement with its metres taken for units of so many metres."""
+        """Return the placement with its metres taken for units of so many meters."""
         return Placement(self.rotations, metres * self.origins, metres * self.scale)
 
     def points(self, points: Array) -> Array:

@@ -22,7 +22,7 @@ def ghost_lines(stage: Stage, found: Found, query_frame: float) -> Array:
 
     Returns
     -------
-    shape (n_lines, 2, 3), metres
+    shape (n_lines, 2, 3), meters
         Without what was not tracked.
     """
     posture = _posture_at(found, clip_frame(found, query_frame))

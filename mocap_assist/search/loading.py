@@ -32,7 +32,7 @@ CLIP = "mocap_assist_clip"
 
 
 def why_not_load(context: bpy.types.Context) -> str:
-    """Return why no clip can be given to an armature, or nothing."""
+    """Return why no clip can be given to an armature, or an empty text."""
     armature = selected_armature(context)
     if armature is None:
         return "Select the armature that receives the motion of the clip."
@@ -48,7 +48,7 @@ def why_not_load(context: bpy.types.Context) -> str:
 def read_loading(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: LoadBundle
 ) -> "partial[Fetched]":
-    """Read the armature's rig; return what is to be solved, which may be pickled."""
+    """Read the armature's rig; return the picklable solve."""
     search, found = searches.chosen(bpy.context)
     problem, _ = problem_of(scene, armature, settings.choices, search, found)
     return partial(fetch_clip, problem)
@@ -59,12 +59,12 @@ def write_loaded(
     armature: bpy.types.Object,
     settings: LoadBundle,
     fetched: Fetched,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> str:
-    """Write the clip as a new action and put it to use; return a sentence about it."""
+    """Write the clip as a new action and assign it; return a message."""
     search, found = searches.chosen(bpy.context)
     problem, switches = problem_of(scene, armature, settings.choices, search, found)
-    check_unchanged(armature, asked, problem)
+    check_unchanged(armature, solved_digest, problem)
     check_writable(armature)
     frames = first_frame(search, found) + np.arange(fetched.n_frames, dtype=np.float64)
     name = f"{found.entry.name.rpartition('/')[2]}.{armature.name}"

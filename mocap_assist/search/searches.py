@@ -61,7 +61,7 @@ def chosen(context: bpy.types.Context) -> tuple[Search, Found]:
 
 
 def why_none(context: bpy.types.Context) -> str:
-    """Return why no match is chosen, or nothing."""
+    """Return why no match is chosen, or an empty text."""
     try:
         chosen(context)
     except InvalidMotionError as error:

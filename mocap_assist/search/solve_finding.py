@@ -48,11 +48,11 @@ class Stage:
     """Where the query stands, frame by frame, and how the actor is built."""
 
     places: Array
-    """Of the hips, shape (n_frames, 3), metres."""
+    """Of the hips, shape (n_frames, 3), meters."""
     headings: Array
     """Shape (n_frames,), radians."""
     lengths: Array
-    """Of the actor's bones, shape (20,), metres."""
+    """Of the actor's bones, shape (20,), meters."""
     frame_rate: float
 
 
@@ -63,7 +63,7 @@ class Found:
     entry: ClipEntry
     match: Match
     postures: NDArray[np.float32]
-    """Of the frames that match, at `rate`: shape (n, 20, 3), metres; see `ClipPostures`."""
+    """Of the frames that match, at `rate`: shape (n, 20, 3), meters; see `ClipPostures`."""
     rate: float
     picture: Pixels
 

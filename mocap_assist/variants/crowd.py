@@ -23,7 +23,7 @@ class Member(NamedTuple):
     delay: float
     """Seconds."""
     place: tuple[float, float]
-    """Metres from where it stands."""
+    """Meters from where it stands."""
     turn: float
     """Radians."""
 
@@ -57,7 +57,7 @@ def draw_members(n_members: int, n_variants: int, choices: CrowdChoices) -> list
 
 
 def why_not_assign(context: bpy.types.Context) -> str:
-    """Return why the variants cannot be given to anybody, or nothing."""
+    """Return why the variants cannot be given to anybody, or an empty text."""
     if reason := listing.why_none(context):
         return reason
     if not crowd_of(context):
@@ -123,7 +123,7 @@ def _stand(armature: bpy.types.Object, member: Member, metres: float) -> None:
 
 
 def why_not_stack(context: bpy.types.Context) -> str:
-    """Return why the variants cannot become strips, or nothing."""
+    """Return why the variants cannot become strips, or an empty text."""
     if reason := listing.why_none(context):
         return reason
     armature = listing.armature_of(context.scene)

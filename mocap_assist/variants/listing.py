@@ -55,14 +55,14 @@ def chosen(scene: bpy.types.Scene) -> list[bpy.types.Action]:
 
 
 def why_none(context: bpy.types.Context) -> str:
-    """Return why there are no variants, or nothing."""
+    """Return why there are no variants, or an empty text."""
     if not chosen(context.scene):
         return "There are no variants yet. Press Vary."
     return ""
 
 
 def why_not_keep(context: bpy.types.Context) -> str:
-    """Return why no variants can be deleted, or nothing."""
+    """Return why no variants can be deleted, or an empty text."""
     if reason := why_none(context):
         return reason
     if not any(row.picked for row in context.scene.mocap_assist.variants.rows):

@@ -1,4 +1,4 @@
-"""What the button Vary has solved for it."""
+"""Solve of the button Vary."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ class Controls:
     rig: TargetRig
     settings: RetargetSettings
     origin: Array
-    """Where the armature stands on the ground, shape (3,), metres."""
+    """Where the armature stands on the ground, shape (3,), meters."""
     turn: Array
     """How it is turned about the vertical, shape (4,)."""
 
@@ -117,7 +117,7 @@ def moved(motion: Motion, pivot: Array, turn: float, place: Array) -> Motion:
     Parameters
     ----------
     motion : Motion
-    pivot, place : shape (3,), metres
+    pivot, place : shape (3,), meters
         Heights stay.
     turn : float, radians
     """

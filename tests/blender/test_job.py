@@ -96,7 +96,7 @@ def test_messages_in_the_log_are_told_from_progress(load, tmp_path):
     (tmp_path / protocol.LOG).write_text("\n".join(lines))
 
     assert protocol.last_progress(tmp_path) == (0.25, "Filtering 1 of 2")
-    assert protocol.last_words(tmp_path) == "ImportError: no such module"
+    assert protocol.last_output(tmp_path) == "ImportError: no such module"
 
 
 class Expression:

@@ -192,7 +192,7 @@ def test_what_was_edited_by_hand_shows_nothing_and_says_so(archive, bring, blank
     blank.context.scene.frame_set(3)
 
     assert not len(points_of(made))
-    assert "shows no recording of depth" in made.data["mocap_assist_depth_problem"]
+    assert "shows no depth recording" in made.data["mocap_assist_depth_problem"]
 
 
 def test_all_four_numbers_of_the_camera_can_be_given(archive, depth, bring):

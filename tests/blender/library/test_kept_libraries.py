@@ -50,7 +50,7 @@ def test_a_library_without_sources_is_no_longer_kept(library, keep, load, blank)
     keep()
     blank.ops.mocap_assist.remove_source(index=0)
 
-    assert not load("mocap_assist.library.kept_libraries").kept_libraries()
+    assert not load("mocap_assist.library.kept_libraries").auto_updated_libraries()
 
 
 def test_nothing_to_keep_is_refused(library, blank):
@@ -85,7 +85,7 @@ def test_it_waits_for_another_solve(load, library, keep, monkeypatch):
 def test_damaged_permissions_allow_nothing(permissions, load, stored):
     permissions._file().write_text(stored)
 
-    assert load("mocap_assist.library.kept_libraries").kept_libraries() == []
+    assert load("mocap_assist.library.kept_libraries").auto_updated_libraries() == []
     assert not permissions.recording_allowed("/x")
 
 

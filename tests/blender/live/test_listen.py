@@ -186,7 +186,7 @@ def test_turning_goes_round_the_vertical_and_zoom_has_ends(load, view):
     window = SimpleNamespace(screen=SimpleNamespace(areas=[area]))
 
     for _ in range(4):
-        control.turn_views(window, np.pi / 2)
+        control.rotate_views(window, np.pi / 2)
     for _ in range(100):
         control.zoom_views(window, 100.0)
 

@@ -165,7 +165,7 @@ def test_an_armature_that_was_deleted_meanwhile_is_said(noisy, press_clean, wind
 
     assert wait(button, window) == {"CANCELLED"}
 
-    assert "Actor was deleted while it was worked on" in window.reports[-1][1]
+    assert "Actor was deleted during the solve" in window.reports[-1][1]
 
 
 def test_one_solve_at_a_time(noisy, press_clean, window, blank):

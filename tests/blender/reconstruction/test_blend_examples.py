@@ -79,7 +79,7 @@ def in_turns(load, *given):
         load("mocap_assist.clean.examples").read_examples, *given
     )
     n_turns = 0
-    while not work.go_on(0.0):
+    while not work.run_slice(0.0):
         n_turns += 1
         yield n_turns, None
     yield n_turns, work.result
