@@ -50,7 +50,7 @@ def write_tracks(
     *,
     progress: Progress = unwatched,
 ) -> bpy.types.Action:
-    """Let empties move as points do, by one new action; where nothing was seen are no keys.
+    """Animate empties by points, in one new action; gaps have no keys.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def write_tracks(
         progress(point / len(empties), "Writing keys")
         slot = action.slots.new("OBJECT", fitting_name(tracks.names[point]))
         bag = compat.channelbag(action, slot, ensure=True)
-        places = tracks.positions[:, point] / metres
-        write_channels(bag, "location", "Location", frames, places)
+        positions = tracks.positions[:, point] / metres
+        write_channels(bag, "location", "Location", frames, positions)
         compat.assign(empty, action, slot)
     return action

@@ -11,12 +11,12 @@ from ...solvers.errors import InvalidFileError, MocapAssistError, OutOfMemoryErr
 from ...solvers.faults import Failure, attempt
 from ..jobs.job import Job, ProcessDied
 from ..runtime.watch import Watch
-from .arrival import READING, Arrival
 from .choices import ImportChoices
 from .depth_folders import readable
+from .import_transaction import READING_FRACTION, ImportTransaction
 from .recent_files import State, remember, state_of
-from .recording_objects import wanted_of
-from .solve_reading import Known, Read, read_files
+from .recording_objects import conversion_from_choices
+from .solve_reading import Read, ReadRecording, read_files
 
 BYTES_AT_ONCE = 64_000_000
 """Of the files that are read before what they hold comes into the scene."""
@@ -36,9 +36,9 @@ class ImportJob:
     def __init__(
         self, context: bpy.types.Context, paths: list[Path], choices: ImportChoices
     ) -> None:
-        self.arrival = Arrival(context, choices)
+        self.arrival = ImportTransaction(context, choices)
         paths = self._readable(context, paths, choices)
-        self._wanted = wanted_of(context, choices)
+        self._wanted = conversion_from_choices(context, choices)
         self._batches = deque(batches(paths))
         self._n_files, self._n_read, self._n_in = len(paths), 0, 0
         self._shown = 0.0
@@ -117,7 +117,7 @@ class ImportJob:
             self.arrival.refuse(path, found)
         else:
             recording, moving, warnings = found
-            remember(path, state, Known(recording, warnings), self._wanted.unit)
+            remember(path, state, ReadRecording(recording, warnings), self._wanted.unit)
             self.arrival.add(context, path, recording, moving=moving, warnings=warnings)
 
     def _show(self, context: bpy.types.Context) -> None:
@@ -127,8 +127,8 @@ class ImportJob:
             fraction *= len(self._batches[0])
         if self._read:
             message = f"Importing {self._read[0][0].name}"
-        reading = READING * (self._n_read + fraction)
-        done = (reading + (1.0 - READING) * self._n_in) / self._n_files
+        reading = READING_FRACTION * (self._n_read + fraction)
+        done = (reading + (1.0 - READING_FRACTION) * self._n_in) / self._n_files
         self._shown = max(self._shown, done)  # less is done where files are read once more
         self.watch.show(context, self._shown, message)
 

@@ -69,13 +69,13 @@ def _problem(take: ArmatureTake, settings: UnbakeBundle) -> UnbakeProblem:
 def _tree(take: ArmatureTake, part: Part) -> Tree:
     """Return a part as it moves within what carries it, which keeps its own keys."""
     rig, rest, root = take.rig, take.rest, part.bones[0]
-    turn = rest.rotations[0]
+    rotation = rest.rotations[0]
     motion = part.motion
     rotations = motion.rotations.copy()
-    carried = multiply(part.carrier.rotations, inverse(turn))
+    carried = multiply(part.carrier.rotations, inverse(rotation))
     rotations[:, 0] = multiply(inverse(carried), rotations[:, 0])
-    places = rest.points(part.carrier.points_back(motion.root_positions))
-    axes = multiply(turn, rig.rest_rotations)
+    positions = rest.points(part.carrier.points_back(motion.root_positions))
+    axes = multiply(rotation, rig.rest_rotations)
     shapes = tuple(
         None
         if bone < 0
@@ -85,7 +85,7 @@ def _tree(take: ArmatureTake, part: Part) -> Tree:
         for bone in part.bones
     )
     return Tree(
-        Motion(motion.skeleton, rotations, places, motion.frame_rate),
+        Motion(motion.skeleton, rotations, positions, motion.frame_rate),
         shapes,
         take.channels[root].location_keyed,
         np.asarray(rest.points(rig.heads[root])),

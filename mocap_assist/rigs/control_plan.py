@@ -37,7 +37,7 @@ class Plan(NamedTuple):
     """The part of the body that it turns with, or ROOT."""
     anchor: str
     """The role beside whose joint it keeps its place."""
-    turns: bool = True
+    rotates: bool = True
     moves: bool = False
     limb: str = ""
     """For a pole target the limb before whose hinge it lies, such as "leftLeg"."""

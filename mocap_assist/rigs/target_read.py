@@ -209,7 +209,7 @@ def _control(
         axes=multiply(upright, rig.rest_rotations[bone]),
         location_axes=multiply(upright, quaternion_from_matrix(axes)),
         head=stage.scale * rotate(upright, rig.heads[bone]),
-        turns=plan.turns,
+        rotates=plan.rotates,
         moves=plan.moves,
         limb=limb,
     )

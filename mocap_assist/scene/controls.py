@@ -41,7 +41,7 @@ class Control:
         Those of its location.
     head : shape (3,), meters
         Where it rests.
-    turns, moves : bool
+    rotates, moves : bool
         Which channels are keyed.
     limb : upper joint, hinge and end for a pole target, which lies before the hinge
     """
@@ -53,7 +53,7 @@ class Control:
     axes: Array
     location_axes: Array
     head: Array
-    turns: bool
+    rotates: bool
     moves: bool
     limb: tuple[int, int, int] | None = None
 
@@ -95,17 +95,17 @@ class BoneKeys:
 class Carried:
     """How something has moved from its rest pose: x goes to turn(x - rest) + place."""
 
-    turns: Array
+    rotations: Array
     rest: Array
-    places: Array
+    positions: Array
 
     def points(self, points: Array) -> Array:
         """Take points of the rest pose, shape (3,), to where they are."""
-        return np.asarray(rotate(self.turns, points - self.rest) + self.places)
+        return np.asarray(rotate(self.rotations, points - self.rest) + self.positions)
 
     def points_back(self, points: Array) -> Array:
         """Take points, shape (n_frames, 3), to where they are in the rest pose."""
-        return np.asarray(rotate(inverse(self.turns), points - self.places) + self.rest)
+        return np.asarray(rotate(inverse(self.rotations), points - self.positions) + self.rest)
 
 
 def keys_of(target: TargetRig, poses: WorldPoses, travel: Carried) -> Mapping[str, BoneKeys]:
@@ -126,14 +126,14 @@ def keys_of(target: TargetRig, poses: WorldPoses, travel: Carried) -> Mapping[st
     for control, delta in zip(target.controls, moved, strict=True):
         carrier = still if control.carrier == AT_REST else moved[control.carrier]
         found[control.bone] = BoneKeys(
-            _basis_turns(control, carrier, delta) if control.turns else None,
+            _basis_rotations(control, carrier, delta) if control.rotates else None,
             _basis_shifts(control, carrier, delta) / target.metres if control.moves else None,
         )
     return found
 
 
-def _basis_turns(control: Control, carrier: Carried, moved: Carried) -> Array:
-    local = multiply(inverse(carrier.turns), moved.turns)
+def _basis_rotations(control: Control, carrier: Carried, moved: Carried) -> Array:
+    local = multiply(inverse(carrier.rotations), moved.rotations)
     return np.asarray(multiply(multiply(inverse(control.axes), local), control.axes))
 
 
@@ -150,10 +150,10 @@ def _moved(control: Control, skeleton: Skeleton, poses: WorldPoses, travel: Carr
     moved = Carried(poses.rotations[:, control.joint], rest[anchor], poses.positions[:, anchor])
     if control.limb is None:
         return moved
-    return Carried(moved.turns, control.head, _pole_places(control, rest, poses, moved))
+    return Carried(moved.rotations, control.head, _pole_positions(control, rest, poses, moved))
 
 
-def _pole_places(control: Control, rest: Array, poses: WorldPoses, upper: Carried) -> Array:
+def _pole_positions(control: Control, rest: Array, poses: WorldPoses, upper: Carried) -> Array:
     """Return points before a limb's hinge, as far away as in the rest pose, (n_frames, 3)."""
     assert control.limb is not None
     start, hinge, end = (poses.positions[:, joint] for joint in control.limb)
@@ -166,8 +166,8 @@ def _pole_places(control: Control, rest: Array, poses: WorldPoses, upper: Carrie
     straight = upper.points(control.head) - hinge
     axis = line / np.maximum(np.linalg.norm(line, axis=1, keepdims=True), 1e-9)
     straight -= axis * (straight * axis).sum(axis=1, keepdims=True)
-    share = np.clip((depth / length - STRAIGHT) / (BENT - STRAIGHT), 0.0, 1.0)
-    ahead = share * _unit(bend) + (1.0 - share) * _unit(straight)
+    weight = np.clip((depth / length - STRAIGHT) / (BENT - STRAIGHT), 0.0, 1.0)
+    ahead = weight * _unit(bend) + (1.0 - weight) * _unit(straight)
     distance = np.linalg.norm(control.head - rest[control.limb[1]])
     return np.asarray(hinge + distance * _unit(ahead))
 

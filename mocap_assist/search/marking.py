@@ -1,4 +1,4 @@
-"""An action as an asset: with tags, a catalog and a picture of what it does."""
+"""An action as an asset, with tags, a catalog and a thumbnail."""
 
 from collections.abc import Iterable
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Matches as what Vary makes variants of: from a take to a crowd by way of its library."""
+"""Use matches as examples of Vary: from a take to a crowd through its library."""
 
 from functools import partial
 from typing import NamedTuple
@@ -62,10 +62,10 @@ def write_best(
         names.append(action.name)
     scene.mocap_assist.vary.actions = join_names(names)
     clips = "1 clip" if len(names) == 1 else f"{len(names)} clips"
-    said = f"Vary has {clips} of the library as examples."
-    if lost := len(reading.found) - len(names):
-        said += f" {lost} could not be loaded: {fetched.trouble}"
-    return said
+    message = f"Vary has {clips} of the library as examples."
+    if n_missing := len(reading.found) - len(names):
+        message += f" {n_missing} could not be loaded: {fetched.trouble}"
+    return message
 
 
 def _read(scene: bpy.types.Scene, armature: bpy.types.Object, settings: UseBundle) -> _Reading:

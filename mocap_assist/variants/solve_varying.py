@@ -33,7 +33,7 @@ class Controls:
     settings: RetargetSettings
     origin: Array
     """Where the armature stands on the ground, shape (3,), meters."""
-    turn: Array
+    rotation: Array
     """How it is turned about the vertical, shape (4,)."""
 
 
@@ -95,7 +95,7 @@ def _keyed(
     """Return the channels of a control rig's bones for each motion of its body."""
     if controls is None:
         return ()
-    clips = tuple(Clip(motion, controls.origin, controls.turn) for motion in motions)
+    clips = tuple(Clip(motion, controls.origin, controls.rotation) for motion in motions)
     names = motions[0].skeleton.names
     roles = HumanoidMap({name: name for name in names if name in HUMANOID_ROLES})
     problem = RetargetProblem(clips, roles, controls.rig, controls.settings)

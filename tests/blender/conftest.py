@@ -48,7 +48,7 @@ IN_ONE_BLENDER = {
     "library/test_index_at_once.py": (4, 5),
     "library/test_index_blends.py": (4, 5),
     "library/test_index_button.py": (5, 2),
-    "library/test_keeping.py": (4, 5),
+    "library/test_auto_update.py": (4, 5),
     "library/test_learn_from_library.py": (4, 5),
     "library/test_library_commands.py": (4, 5),
     "library/test_load.py": (4, 5),

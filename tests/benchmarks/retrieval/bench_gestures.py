@@ -199,9 +199,9 @@ def made_streams() -> str:
         rows[name] = [*rates, str(extra), *shown]
     columns = [*NAMES, "false detections", "wave, ms", "clap, ms", "hand up, ms"]
     return (
-        f"**Synthetic gestures**, {N_SEEDS} streams each: detection rate, and median delay after"
-        " the end of the gesture (a raised hand must be held for a second; a wave is detected"
-        " before it ends)\n\n" + table(["camera", *columns], rows) + "\n"
+        f"**Synthetic gestures**, {N_SEEDS} streams each: detection rate, and median delay"
+        " after the end of the gesture (a raised hand must be held for a second; a wave is"
+        " detected before it ends)\n\n" + table(["camera", *columns], rows) + "\n"
     )
 
 

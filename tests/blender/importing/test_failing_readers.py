@@ -98,7 +98,7 @@ def test_a_fault_of_a_reader_keeps_no_other_file_out(load, walks, monkeypatch, f
     monkeypatch.setattr(reading, "read_tracked", fail)
     paths = [walks / name for name in ("first.bvh", "cut.bvh", "second.bvh")]
 
-    first, refusal, second = reading.read_files(paths, reading.Wanted(True, 1.0, None))
+    first, refusal, second = reading.read_files(paths, reading.Conversion(True, 1.0, None))
 
     assert first.recording.n_frames == second.recording.n_frames == 317
     assert isinstance(refusal, load("solvers.errors").InvalidFileError)
@@ -109,7 +109,7 @@ def test_a_fault_of_a_reader_keeps_no_other_file_out(load, walks, monkeypatch, f
 
 
 def test_a_fault_over_one_file_leaves_the_others_in_the_scene(load, walks, blank, monkeypatch):
-    arrival = load("mocap_assist.importing.arrival")
+    arrival = load("mocap_assist.importing.import_transaction")
     real = arrival.make_objects
 
     def fail(context, name, *words, **more):

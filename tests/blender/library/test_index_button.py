@@ -39,7 +39,7 @@ def test_nothing_listed_is_said(blank, library):
 
 
 def test_the_library_that_all_files_share(load, blank):
-    places = load("mocap_assist.library.places")
+    places = load("mocap_assist.library.sources")
     choices = load("mocap_assist.library.choices").LibraryChoices()
 
     path = places.library_path(choices)
