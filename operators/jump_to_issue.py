@@ -1,4 +1,4 @@
-"""Button: show one of the places that Check found."""
+"""Button: jump to an issue that Check found."""
 
 import bpy
 

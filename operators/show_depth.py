@@ -1,4 +1,4 @@
-"""Button: show the depth recording of a file that comes from somebody else."""
+"""Button: show the depth recording of another user's file."""
 
 from typing import ClassVar
 

@@ -166,7 +166,7 @@ def skeleton_of(
     """Joints at the bones' heads, and an end site at the tail of each last bone."""
     index = {bone: joint for joint, bone in enumerate(bones)}
     names = [rig.bones[bone] for bone in bones]
-    parents = [-1, *(index[rig.parents[bone]] for bone in bones[1:])]
+    parents = [-1, *(joint_of[rig.parents[bone]] for bone in bones[1:])]
     points = [rig.heads[bone] for bone in bones]
     for joint, bone in enumerate(bones):
         end = f"{rig.bones[bone]}_end"

@@ -36,7 +36,7 @@ class ImportJob:
     def __init__(
         self, context: bpy.types.Context, paths: list[Path], choices: ImportChoices
     ) -> None:
-        self.arrival = ImportTransaction(context, choices)
+        self.transaction = ImportTransaction(context, choices)
         paths = self._readable(context, paths, choices)
         self._wanted = conversion_from_choices(context, choices)
         self._batches = deque(batches(paths))
@@ -64,7 +64,7 @@ class ImportJob:
     def cancel(self, context: bpy.types.Context) -> None:
         """Stop at once and leave the scene as it was."""
         self.watch.abandon(context)
-        self.arrival.take_back(context)
+        self.transaction.take_back(context)
 
     def _stop(self) -> None:
         self.job.cancel()
@@ -80,7 +80,7 @@ class ImportJob:
             raise failed[0].as_error()
         for path, each in zip(paths, found, strict=True):
             if isinstance(each, Failure):
-                self.arrival.refuse(path, each.as_error())
+                self.transaction.refuse(path, each.as_error())
         return [each for each in found if isinstance(each, Path)]
 
     def _next_batch(self) -> "partial[list[Read | MocapAssistError]]":
@@ -114,11 +114,11 @@ class ImportJob:
         found: Read | MocapAssistError,
     ) -> None:
         if isinstance(found, MocapAssistError):
-            self.arrival.refuse(path, found)
+            self.transaction.refuse(path, found)
         else:
             recording, moving, warnings = found
             remember(path, state, ReadRecording(recording, warnings), self._wanted.unit)
-            self.arrival.add(context, path, recording, moving=moving, warnings=warnings)
+            self.transaction.add(context, path, recording, moving=moving, warnings=warnings)
 
     def _show(self, context: bpy.types.Context) -> None:
         fraction, message = 0.0, ""

@@ -94,7 +94,7 @@ class WaitingImport(FilesOperator):
         except BaseException:
             job.cancel(context)
             raise
-        return self.end(job.arrival.end(context)) if ended else {"RUNNING_MODAL"}
+        return self.end(job.transaction.end(context)) if ended else {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the operator: another file is loaded, or the window closes."""

@@ -77,13 +77,13 @@ def import_files(
     A file that fails leaves nothing behind. Raises SolveCancelled by `progress`; the scene is
     then as it was.
     """
-    arrival = ImportTransaction(context, choices)
+    transaction = ImportTransaction(context, choices)
     try:
         for index, path in enumerate(paths):
             file_progress = within(progress, index / len(paths), (index + 1) / len(paths))
             source = attempt(path, readable, context, path, choices)
             if isinstance(source, Failure):
-                arrival.refuse(path, source.as_error())
+                transaction.refuse(path, source.as_error())
                 continue
             try:
                 known = read_again(
@@ -95,9 +95,9 @@ def import_files(
             except SolveCancelled:
                 raise
             except MocapAssistError as error:
-                arrival.refuse(path, error)
+                transaction.refuse(path, error)
             else:
-                arrival.add(
+                transaction.add(
                     context,
                     source,
                     known.recording,
@@ -105,6 +105,6 @@ def import_files(
                     warnings=known.warnings,
                 )
     except BaseException:
-        arrival.take_back(context)
+        transaction.take_back(context)
         raise
-    return arrival.end(context)
+    return transaction.end(context)

@@ -1,4 +1,4 @@
-"""Objects that come into the scene, and that go again where something failed."""
+"""Add objects to the scene, and remove them again after a failure."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -28,15 +28,17 @@ def metres_per_unit(scene: bpy.types.Scene, rig: Rig, root: int, scale: float) -
     scale : float
         Of the armature in the scene.
     """
-    said = unit_of(scene)
+    stated = unit_of(scene)
     bones = rig.subtree(root)
-    place = {bone: index for index, bone in enumerate(bones)}
-    parents = [-1, *(place[rig.parents[bone]] for bone in bones[1:])]
+    joint_of = {bone: joint for joint, bone in enumerate(bones)}
+    parents = [-1, *(joint_of[rig.parents[bone]] for bone in bones[1:])]
     offsets = scale * (rig.heads[bones] - rig.heads[[rig.parents[bone] for bone in bones]])
     low, high = PLAUSIBLE_REACH
-    if low <= said * longest_bone_path(parents, offsets) <= high:
-        return float(said)
+    if low <= stated * longest_bone_path(parents, offsets) <= high:
+        return float(stated)
     guessed = guess_unit(parents, offsets)
     return (
-        guessed if low <= guessed * longest_bone_path(parents, offsets) <= high else float(said)
+        guessed
+        if low <= guessed * longest_bone_path(parents, offsets) <= high
+        else float(stated)
     )

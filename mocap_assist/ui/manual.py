@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 
 MANUAL = Path(__file__).with_name("manual.html")
-"""The one place that says where the manual is: no network is needed to read it."""
+"""Location of the manual, which needs no network."""
 CHAPTERS = {
     "bpy.ops.mocap_assist.import_*": "import",
     "bpy.ops.mocap_assist.show_depth*": "import",

@@ -1,4 +1,4 @@
-"""The sidebar's tab, in the three editors in which an animator looks at motion."""
+"""Sidebar tab in the three editors for motion."""
 
 import bpy
 

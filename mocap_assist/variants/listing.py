@@ -73,7 +73,7 @@ def why_not_keep(context: bpy.types.Context) -> str:
 def keep_picked(scene: bpy.types.Scene) -> str:
     """Delete the variants that are not picked; return a sentence.
 
-    Those that somebody else plays, or that are assets, stay; they only leave the list.
+    Variants with other users, and assets, are kept; they only leave the list.
     """
     variants = scene.mocap_assist.variants
     kept = chosen(scene)

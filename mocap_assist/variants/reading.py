@@ -172,5 +172,5 @@ def read_controls(
         scene, armature, find_roles(armature), chosen.choices.limbs, on_root
     )
     origin = take.rest.origins[0] * (1.0, 1.0, 0.0)
-    turn = vertical_part(take.rest.rotations[0])
-    return Controls(rig, chosen.retargeting, origin, turn), switches
+    rotation = vertical_part(take.rest.rotations[0])
+    return Controls(rig, chosen.retargeting, origin, rotation), switches
