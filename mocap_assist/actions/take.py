@@ -164,7 +164,7 @@ def skeleton_of(
     rig: Rig, bones: list[int], rest: Placement
 ) -> tuple[Skeleton, tuple[int, ...]]:
     """Joints at the bones' heads, and an end site at the tail of each last bone."""
-    index = {bone: joint for joint, bone in enumerate(bones)}
+    joint_of = {bone: joint for joint, bone in enumerate(bones)}
     names = [rig.bones[bone] for bone in bones]
     parents = [-1, *(joint_of[rig.parents[bone]] for bone in bones[1:])]
     points = [rig.heads[bone] for bone in bones]
