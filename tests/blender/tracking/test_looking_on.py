@@ -15,7 +15,7 @@ class ShortJob:
     def __init__(self, solve):
         self.left = 3
 
-    def shown(self):
+    def new_previews(self):
         return []
 
     def done(self):
