@@ -131,7 +131,9 @@ def test_a_fault_over_one_file_leaves_the_others_in_the_scene(load, walks, blank
     assert "first.bvh: this is a bug in Mocap Assist (IndexError at" in sentence
 
 
-def test_what_readers_say_is_told_in_a_window_and_by_a_script(press, window, walks, blank):
+def test_warnings_of_readers_are_reported_in_a_window_and_by_a_script(
+    press, window, walks, blank
+):
     (walks / "late.csv").write_text(LATE)
     operator = press("late.csv", "first.bvh")
 

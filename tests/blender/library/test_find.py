@@ -27,7 +27,7 @@ def test_the_very_motion_has_the_full_score(find, bring, clip_files, tmp_path):
     assert best.name == "walk_0" and best.score > 0.9
 
 
-def test_what_it_was_imported_from_is_not_told(find, bring, clip_files):
+def test_find_leaves_out_the_source_of_the_query(find, bring, clip_files):
     bring(clip_files / "wave_0.bvh")
 
     assert "wave_0" not in {row.name for row in find()}

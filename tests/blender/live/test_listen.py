@@ -79,7 +79,7 @@ def test_another_file_stops_it(listen, load, blank, window, event):
     assert button.modal(window.context, event("TIMER")) == {"CANCELLED"}
 
 
-def test_a_port_that_is_taken_is_told(listen, load, window, port):
+def test_a_port_in_use_is_reported(listen, load, window, port):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("127.0.0.1", port))
 

@@ -30,7 +30,7 @@ def test_a_hidden_arm_is_red_and_the_other_blue(walk, reconstruct, colors):
     assert of_bone(walk, before, "WristLeft")[0][2] > of_bone(walk, shown, "WristLeft")[0][2]
 
 
-def test_a_bone_goes_over_into_the_colour_of_the_next(walk, reconstruct, colors):
+def test_a_bone_blends_into_the_color_of_the_next(walk, reconstruct, colors):
     reconstruct()
 
     shown = [colors.colored_bones_at(walk, frame) for frame in range(LOST.start - 10, INSIDE)]

@@ -40,7 +40,7 @@ def distances(seen, drawn):
     return np.sqrt(((seen[:, None] - drawn.points[None]) ** 2).sum(axis=-1).min(axis=1))
 
 
-def test_capsules_lie_on_the_points_and_tell_trust_in_colours(
+def test_capsules_match_the_points_and_have_confidence_colors(
     tracked, points, body, load, blank
 ):
     drawn = body(tracked)
@@ -104,7 +104,7 @@ def test_what_was_damaged_is_not_drawn(tracked, body, load):
         kept.TrackedBody.read(tracked)
 
 
-def test_trust_is_shown_of_what_track_has_made(tracked, load):
+def test_confidence_is_shown_for_tracked_armatures(tracked, load):
     colors = load("mocap_assist.drawing.confidence_colors")
     shown = colors.colored_bones_at(tracked, 3)
     assert shown is not None and len(shown.ends) == len(tracked.pose.bones)

@@ -113,7 +113,7 @@ def test_a_view_that_cannot_even_be_closed_leaves_the_button_free(looks, press, 
     assert view.is_closed and nothing_is_left(window)
 
 
-def test_files_that_cannot_be_read_now_are_as_if_nothing_was_said(load, tmp_path, monkeypatch):
+def test_unreadable_files_count_as_no_progress(load, tmp_path, monkeypatch):
     """As where a virus scanner holds them."""
     protocol = load("mocap_assist.jobs.protocol")
     with (tmp_path / protocol.PREVIEWS).open("wb") as file:

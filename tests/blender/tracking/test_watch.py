@@ -118,7 +118,7 @@ def test_points_that_are_deleted_meanwhile_are_named_at_the_end(press, window, b
     assert nothing_is_left(window)
 
 
-def test_nothing_is_drawn_where_nobody_wants_to_look(press, window, blank):
+def test_nothing_is_drawn_without_live_preview(press, window, blank):
     blank.context.scene.frame_set(9)
     button = press(watch=False)
     assert button._view is None
