@@ -199,7 +199,7 @@ def test_the_receiver_takes_no_more_bytes_at_once_than_it_may(send_to, monkeypat
     assert counts == [10, 10, 5, 0]
 
 
-def test_a_port_in_use_is_reported():
+def test_a_port_that_is_taken_is_told():
     with Receiver(0) as receiver, pytest.raises(InvalidSettingError, match="another program"):
         Receiver(receiver.address[1])
     for wrong in (-1, 70_000):
