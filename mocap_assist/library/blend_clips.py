@@ -37,8 +37,8 @@ def read_files(
     `rig`.
     """
     found = []
-    for place, path in enumerate(paths):
-        progress(place / len(paths), f"Reading {Path(path).name}")
+    for index, path in enumerate(paths):
+        progress(index / len(paths), f"Reading {Path(path).name}")
         if sentence := path_fault(path):
             found.append(BlendRead((), (sentence,)))
             continue
@@ -94,8 +94,8 @@ def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> 
     try:
         bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
     except RuntimeError as error:  # damaged, or no .blend file at all
-        said = str(error).strip().removeprefix("Error:").strip().splitlines()
-        return BlendRead((), (f"{path} cannot be read: {said[0] if said else 'no reason'}",))
+        lines = str(error).strip().removeprefix("Error:").strip().splitlines()
+        return BlendRead((), (f"{path} cannot be read: {lines[0] if lines else 'no reason'}",))
     actions = actions_of(assets_only)
     lack_rig = rig and any(map(_lacks_rig, actions))
     refused = _bring_armatures(rig) if lack_rig else []

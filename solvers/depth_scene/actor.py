@@ -239,7 +239,7 @@ def _track_people(
     def observe(frame: int) -> Bodies:
         nonlocal n_observed
         n_observed += 1
-        progress(n_observed / len(frames), "Looking for the actor")
+        progress(n_observed / len(frames), "Finding the actor")
         return finder(frame)
 
     return follow_people(observe, frames, recording.n_frames, recording.frame_rate)

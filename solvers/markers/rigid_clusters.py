@@ -82,13 +82,13 @@ def find_rigid_clusters(
     SolveCancelled
         Raised by `progress`.
     """
-    progress(0.0, "Looking for rigid clusters")
+    progress(0.0, "Finding rigid clusters")
     median, spread = _spreads(tracks.positions)
     clusters = [
         _cluster(tracks, members, median, spread)
         for members in _groups(median, spread, settings)
     ]
-    progress(1.0, "Looking for rigid clusters")
+    progress(1.0, "Finding rigid clusters")
     return tuple(clusters)
 
 

@@ -74,7 +74,7 @@ def unswap_markers(
     positions = tracks.positions.copy()
     confidence = None if tracks.confidence is None else tracks.confidence.copy()
     swaps: list[Swap] = []
-    progress(0.0, "Looking for swapped markers")
+    progress(0.0, "Finding swapped markers")
     for number in range(N_PASSES):
         distances = learn_distances(positions)
         found = _find_changes(positions, distances, tracks.frame_rate, settings)
@@ -84,10 +84,10 @@ def unswap_markers(
                 _swap_labels(confidence, change)
             names = (tracks.names[change.first], tracks.names[change.second])
             swaps.append(Swap(names, range(change.start, change.stop)))
-        progress((number + 1) / N_PASSES, "Looking for swapped markers")
+        progress((number + 1) / N_PASSES, "Finding swapped markers")
         if not found:
             break
-    progress(1.0, "Looking for swapped markers")
+    progress(1.0, "Finding swapped markers")
     corrected = Tracks(tracks.names, positions, tracks.frame_rate, confidence)
     return Unswapped(corrected, tuple(sorted(swaps, key=lambda swap: swap.frames.start)))
 

@@ -74,7 +74,7 @@ class Thinning:
         for number, joint in enumerate(self.samples):
             while new_keys := self._too_far(joint):
                 self._add({(joint, frame) for frame in new_keys})
-            progress((number + 1) / len(self.samples), "Thinning out the keys of each joint")
+            progress((number + 1) / len(self.samples), "Reducing keys")
 
     def finish(self, progress: Progress) -> float:
         """Add keys until all errors are within the tolerance; return the largest error."""

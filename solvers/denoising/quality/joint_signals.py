@@ -100,7 +100,7 @@ def extract_signals(
                 spikes[padded_frames], local_noise[padded_frames],
             )
         )  # fmt: skip
-        progress((index + 1) / len(trajectories), "Looking for spikes")
+        progress((index + 1) / len(trajectories), "Finding spikes")
     return tuple(signals)
 
 

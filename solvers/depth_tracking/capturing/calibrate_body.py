@@ -121,7 +121,7 @@ def _detect_stature(
     for count, stature in enumerate(TESTED_STATURES_M):
         body = default_body(stature)
         detections[stature] = detect_pose(image, depth.camera, body, forest)
-        progress((count + 1) / len(TESTED_STATURES_M), "Estimating the stature")
+        progress((count + 1) / len(TESTED_STATURES_M), "Estimating the body size")
     best = max(detections, key=lambda stature: detections[stature].score)
     neighbors = [
         stature for stature in TESTED_STATURES_M if abs(stature - best) < 1.5 * STATURE_STEP_M

@@ -114,7 +114,7 @@ def _best_stature(
         if len(scores) == len(STATURES_M) and any(scores.values()):
             best = sorted(scores, key=lambda stature: scores[stature])[len(STATURES_M) // 2 :]
             scores = {stature: scores[stature] for stature in best}
-        progress((index + 1) / len(frames), "Trying statures")
+        progress((index + 1) / len(frames), "Trying body sizes")
     if not any(scores.values()):
         raise InvalidMotionError(message)
     return default_body(max(scores, key=lambda stature: scores[stature]))

@@ -117,7 +117,7 @@ def learn_dictionary(
     initial = random.permutation(np.flatnonzero(sizes > 0.0))[: settings.n_atoms]
     atoms = examples[initial] / sizes[initial, None]
     for done in range(settings.n_rounds):
-        progress(done / settings.n_rounds, "Learning postures")
+        progress(done / settings.n_rounds, "Learning poses")
         codes = sparse_codes(examples, atoms, min(settings.n_nonzeros, *atoms.shape))
         atoms = _update_atoms(examples, atoms, codes)
     return PostureDictionary(atoms, mean, settings.n_nonzeros)

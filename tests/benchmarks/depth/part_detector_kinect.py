@@ -119,7 +119,7 @@ def distance_rows(takes: list[KinectTake]) -> list[str]:
 
 
 def draw(take: KinectTake, body: BodyModel, number: int) -> NDArray[np.uint8]:
-    """Draw depth, told parts, and the body found, beside each other."""
+    """Draw depth, classified parts and the detected body next to each other."""
     pose, frame = take.found[number], take.camera_frames[number]
     depth = take.depth.frame(frame)[:: pose.step, :: pose.step]
     grey = np.where(

@@ -72,9 +72,9 @@ def against_amc() -> list[str]:
     spread["from ours"] = _wander(markers, _solved(markers))
     title = "**CMU 05_13, 1095 frames, 41 markers: distance to the joints of its AMC** (cm)\n\n"
     wander = (
-        "**How much the distance from a joint to the marker beside it varies** (standard"
-        " deviation, cm; on a body hardly. It tells how far the AMC itself can be trusted; ours"
-        " is made to hold it still)\n\n"
+        "**Variation of the distance from a joint to its nearest marker** (standard deviation,"
+        " cm; nearly constant on a body. It shows how reliable the AMC itself is; ours"
+        " minimizes it)\n\n"
     )
     return [
         title + table(["method", *PARTS, "all", "seconds"], rows) + "\n",

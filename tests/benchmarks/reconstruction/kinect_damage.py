@@ -53,12 +53,12 @@ class Damaged:
 
 def lost(pair: Pair, random: np.random.Generator) -> Iterator[Damaged]:
     """Lose some joints at random, or whole limbs, once in the take."""
-    told = np.flatnonzero(np.isfinite(seen_of(pair)).all(axis=(0, 2)))
+    observed = np.flatnonzero(np.isfinite(seen_of(pair)).all(axis=(0, 2)))
     for seconds in SECONDS:
         n = round(seconds * pair.kinect.frame_rate)
         if n + 2 * LEAST_SEEN >= pair.kinect.n_frames:
             continue
-        choices = {str(n): random.choice(told, n, replace=False) for n in COUNTS}
+        choices = {str(n): random.choice(observed, n, replace=False) for n in COUNTS}
         for what, joints in {**choices, **LIMBS}.items():
             where = _stretch(pair, n, joints, random)
             yield Damaged(what, f"{seconds:g} s", without(pair, where), where)

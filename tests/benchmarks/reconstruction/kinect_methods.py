@@ -49,7 +49,7 @@ Method = Callable[[Pair, str], Array]
 CALM = 1 / 30
 """Seconds of the Gaussian that regressions see through, as our prior does."""
 SMOOTHING = 0.05
-"""Seconds; what regressions foretell is smoothed as ours is."""
+"""Seconds; predictions of regressions are smoothed like ours."""
 THINNED = 5
 """Every so manieth frame is an example, 6 a second as for our prior."""
 SIGNS_PUBLISHED = ReliabilitySettings(method=ReliabilityMethod.PUBLISHED)
@@ -73,13 +73,13 @@ def filtered(
 
 
 def regressed(learn: Callable[[Array, Array], Predict], pair: Pair, subject: str) -> Array:
-    """Add the offsets that a regression foretells in the frame of the heading."""
+    """Add the offsets that a regression predicts in the frame of the heading."""
     calm = smooth_postures(pair.kinect, CALM)
     columns = _tracked(calm.features)
     offsets = np.zeros_like(calm.features)
     predict = _regression(learn, subject)
-    foretold = predict(calm.features[:, columns[1:]].reshape(len(offsets), -1))
-    offsets[:, columns] = foretold.reshape(len(offsets), -1, 3)
+    predicted = predict(calm.features[:, columns[1:]].reshape(len(offsets), -1))
+    offsets[:, columns] = predicted.reshape(len(offsets), -1, 3)
     return _calmed(calm.positions + calm.rotate_to_world(offsets), pair)
 
 
@@ -204,7 +204,7 @@ METHODS: dict[str, Method] = {
     "Kalman, constant velocity, smoothed": partial(filtered, constant_velocity, agility=0.5),
     "GCV smoothing spline": partial(filtered, gcv_spline),
     "constant offset": partial(regressed, posture_regression.constant),
-    "ridge, whole posture": partial(regressed, posture_regression.ridge),
+    "ridge, complete pose": partial(regressed, posture_regression.ridge),
     "random-forest offsets (as Shen 2012)": partial(
         regressed, posture_regression.random_forest
     ),

@@ -74,10 +74,16 @@ def energy_weights() -> str:
         )
         cells = [f"{100.0 * np.nanmean(one):.2f}" for one in (gone, apart, lengths)]
         rows[name] = [*cells, number(float(np.nanmean(jerks)))]
-    columns = ["lost joints, cm", "to the joint above, cm", "lengths vary by, cm", "jerk, m/s³"]
+    columns = [
+        "missing joints, cm",
+        "vector from the parent, cm",
+        "length deviation, cm",
+        "jerk, m/s³",
+    ]
     head = (
         "**Weights of the energy of [SHJT13]** (eq. 10 to 15; published 1, .5, 1.5, .25;"
-        f" Gauss-Newton), joints lost for {SECONDS}, {len(asked)} cases, subject left out\n\n"
+        f" Gauss-Newton), joints missing for {SECONDS}, {len(asked)} cases, subject left"
+        " out\n\n"
     )
     return head + table(["terms", *columns], rows) + "\n"
 
@@ -125,10 +131,10 @@ def classes() -> str:
     for subject in SUBJECTS:
         for pair in takes_of(subject, *REPETITIONS)[::EVERY]:
             nothing = np.zeros(seen_of(pair).shape[:2], bool)
-            cases = [("(a) as it is", Damaged("", "", pair, nothing))]
+            cases = [("(a) unchanged", Damaged("", "", pair, nothing))]
             cases += [(f"(b) hidden, {one.what}", one) for one in hidden(pair)]
             cases += [
-                (f"(c) 8 joints lost, {one.seconds}", one)
+                (f"(c) 8 joints missing, {one.seconds}", one)
                 for one in lost(pair, np.random.default_rng(0))
                 if one.what == "8"
             ]

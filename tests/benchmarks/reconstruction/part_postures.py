@@ -61,7 +61,7 @@ PARTS = {
     "hands, feet, elbows, knees": (6, 10, 14, 18, 5, 9, 13, 17),
     "all": tuple(range(N_JOINTS)),
 }
-"""Of [SHJT13], table III; the hips are always used: postures are told relative to them."""
+"""Of [SHJT13], table III; the hips are always used: poses are relative to them."""
 
 
 class Clip(NamedTuple):
@@ -185,8 +185,8 @@ def _projected(mean: Array, axes: Array, postures: Array) -> Array:
     """Least squares on what was seen."""
     result = np.empty_like(postures)
     for frame, flat in enumerate(postures.reshape(len(postures), -1)):
-        told = np.isfinite(flat)
-        z = np.linalg.lstsq(axes[told], (flat - mean)[told], rcond=1e-3)[0]
+        observed = np.isfinite(flat)
+        z = np.linalg.lstsq(axes[observed], (flat - mean)[observed], rcond=1e-3)[0]
         result[frame] = (mean + axes @ z).reshape(N_JOINTS, 3)
     return result
 
@@ -206,9 +206,9 @@ METHODS: dict[str, Method] = {
 
 
 def lost_joints(title: str, found: tuple[Clip, ...]) -> tuple[Scores, Scores]:
-    """Error of lost joints, by how many were lost and by how long."""
+    """Error of missing joints by number and duration."""
     by_joints, by_seconds = (
-        Scores(f"Lost joints, {title}, by {by}", "mm on the lost joints")
+        Scores(f"Missing joints, {title}, by {by}", "mm on the missing joints")
         for by in ("joints", "seconds")
     )
     for number, clip in enumerate(found):

@@ -88,7 +88,10 @@ def doubts(pairs: list[Pair], causal: bool) -> Iterator[tuple[str, list[Array]]]
     published = ways[ReliabilityMethod.PUBLISHED]
     yield "behaviour term", [1.0 - found.behavior for found in published]
     yield "kinematics term", [1.0 - found.kinematics for found in published]
-    yield "published: least of the terms, window", [1.0 - found.combined for found in published]
+    yield (
+        "published: minimum of the terms, window",
+        [1.0 - found.combined for found in published],
+    )
     yield (
         "default as it ships",
         [1.0 - found.combined for found in ways[ReliabilityMethod.DEFAULT]],
