@@ -77,7 +77,7 @@ docs: .venv-4.5/ready  ## the tables of settings and the pictures in README.md a
 # Each writes what is shipped from recordings of ../shared/data; ARGUMENTS="--out FILE" writes
 # elsewhere, and each script says which clips, bodies and licences. The forest takes half an hour.
 .PHONY: forest postures residuals motion-prior failures
-forest: .venv-4.5/ready  ## train the shipped forest that tells the parts of bodies in depth
+forest: .venv-4.5/ready  ## train the shipped forest that classifies body parts in depth images
 	PYTHONPATH=. $(PYTHON_4.5) .ci/train_forest.py $(ARGUMENTS)
 
 postures: .venv-4.5/ready  ## thin out the shipped library of postures
@@ -93,11 +93,11 @@ failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the 
 	PYTHONPATH=. $(PYTHON_4.5) .ci/learn_failures.py
 
 # Each prints tables; with ARGUMENTS=--docs it rewrites its own part of docs/benchmarks.md, and
-# ARGUMENTS=--help tells what else there is.
+# ARGUMENTS=--help lists the other options.
 bench-denoise: .venv-4.5/ready  ## measure denoising and gap filling against peers
 	$(PYTHON_4.5) -m tests.benchmarks.denoise.bench_denoise $(ARGUMENTS)
 
-bench-feet: .venv-4.5/ready  ## measure planting of feet against pinning them
+bench-feet: .venv-4.5/ready  ## measure foot planting against pinning
 	$(PYTHON_4.5) -m tests.benchmarks.denoise.bench_feet $(ARGUMENTS)
 
 bench-bvh: .venv-4.5/ready  ## measure reading of BVH against Blender's importer
@@ -106,16 +106,16 @@ bench-bvh: .venv-4.5/ready  ## measure reading of BVH against Blender's importer
 bench-scene: .venv-4.5/ready  ## measure reading and writing of actions of 120 bones
 	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_scene_io $(ARGUMENTS)
 
-bench-import: .venv-4.5/ready  ## measure how long recordings of five minutes take to come in
+bench-import: .venv-4.5/ready  ## measure the import time of recordings of five minutes
 	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_import $(ARGUMENTS)
 
-bench-reliability: .venv-4.5/ready  ## measure how well wrong joints of a Kinect are told
+bench-reliability: .venv-4.5/ready  ## measure the detection of joint errors of a Kinect
 	$(PYTHON_4.5) -m tests.benchmarks.reconstruction.bench_reliability $(ARGUMENTS)
 
-bench-reconstruct: .venv-4.5/ready  ## measure rebuilding of Kinect joints against peers
+bench-reconstruct: .venv-4.5/ready  ## measure reconstruction of Kinect joints against peers
 	$(PYTHON_4.5) -m tests.benchmarks.reconstruction.bench_reconstruct $(ARGUMENTS)
 
-bench-retrieval: .venv-4.5/ready  ## measure finding of similar clips against peers
+bench-retrieval: .venv-4.5/ready  ## measure retrieval of similar clips against peers
 	$(PYTHON_4.5) -m tests.benchmarks.retrieval.bench_retrieval $(ARGUMENTS)
 
 bench-retarget: .venv-4.5/ready  ## measure retargeting and unbaking against Blender's Decimate
@@ -127,10 +127,10 @@ bench-variation: .venv-4.5/ready  ## measure variants of a few clips against pee
 bench-depth: .venv-4.5/ready  ## measure the depth tracker against known joints and peers
 	$(PYTHON_4.5) -m tests.benchmarks.depth.bench_depth $(ARGUMENTS)
 
-bench-physics: .venv-4.5/ready  ## measure Physics, before and after and at part of its strength
+bench-physics: .venv-4.5/ready  ## measure Physics, before and after, and at partial strength
 	$(PYTHON_4.5) -m tests.benchmarks.physics.bench_physics $(ARGUMENTS)
 
-bench-gestures: .venv-4.5/ready  ## measure gestures told, missed and told for nothing
+bench-gestures: .venv-4.5/ready  ## measure detected, missed and false gestures
 	$(PYTHON_4.5) -m tests.benchmarks.retrieval.bench_gestures $(ARGUMENTS)
 
 bench-retarget-rig: .venv-4.5/ready  ## measure Retarget in Blender against baking controls

@@ -30,7 +30,7 @@ PAGES = {
     "importing": "import_recording show_depth",
     "tracking": "track_depth retrack",
     "reconstruction": "reconstruct",
-    "cleaning": "denoise learn_patterns plant_feet measure_quality jump_to_spot revert_to_raw",
+    "cleaning": "denoise learn_patterns plant_feet measure_quality jump_to_issue revert_to_raw",
     "physics": "simulate",
     "markers": "solve_skeleton",
     "retargeting": "retarget reduce_keys",

@@ -9,7 +9,7 @@ def register() -> None:
     from . import batch, scene_properties, ui
     from .actions import contacts
     from .depth import depth_preview
-    from .library import background, keeping
+    from .library import auto_update, background
     from .live import listening
     from .runtime import watch
     from .search import ghost_drawing, previews, properties
@@ -19,7 +19,7 @@ def register() -> None:
     properties.register()
     ghost_drawing.register()
     background.register()
-    keeping.register()
+    auto_update.register()
     previews.register()
     contacts.register()
     depth_preview.register()
@@ -35,7 +35,7 @@ def unregister() -> None:
     from . import batch, scene_properties, ui
     from .actions import contacts
     from .depth import depth_preview
-    from .library import background, keeping
+    from .library import auto_update, background
     from .live import listening
     from .runtime import watch
     from .search import ghost_drawing, previews, properties
@@ -49,7 +49,7 @@ def unregister() -> None:
     depth_preview.unregister()
     contacts.unregister()
     previews.unregister()
-    keeping.unregister()
+    auto_update.unregister()
     background.unregister()
     ghost_drawing.unregister()
     properties.unregister()

@@ -1,8 +1,8 @@
-"""What the sidebar shows and a .blend keeps: settings, and what was found on the last check.
+"""Properties of the sidebar that a .blend file stores: settings, and results of Check.
 
-`scene.mocap_assist.clean` and `.check` hold the settings of the buttons Clean and Check,
-`scene.mocap_assist.spots` the worst spots; `window_manager.mocap_assist_job` tells how far the
-running solve is.
+`scene.mocap_assist.clean` and `.check` hold the settings of the buttons Clean and Check, and
+`scene.mocap_assist.issues` the worst issues. `window_manager.mocap_assist_job` holds the
+progress of the running solve.
 """
 
 import bpy
@@ -119,7 +119,7 @@ class MOCAP_PG_bone_map(bpy.types.PropertyGroup):
     active_row: bpy.props.IntProperty(name="Row", description="Selected row")
 
 
-class MOCAP_PG_spot(bpy.types.PropertyGroup):
+class MOCAP_PG_issue(bpy.types.PropertyGroup):
     """A place of the take that needs an eye; `name` is the bone's."""
 
     start: bpy.props.FloatProperty(name="First frame")
@@ -152,8 +152,8 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     checked: bpy.props.StringProperty(
         name="Checked", description="Action whose issues are listed"
     )
-    spots: bpy.props.CollectionProperty(type=MOCAP_PG_spot)
-    active_spot: bpy.props.IntProperty(name="Spot", description="Selected issue of the list")
+    issues: bpy.props.CollectionProperty(type=MOCAP_PG_issue)
+    active_issue: bpy.props.IntProperty(name="Spot", description="Selected issue of the list")
     report: bpy.props.StringProperty(name="Report", description="Figures of the last check")
 
 
@@ -185,7 +185,7 @@ CLASSES = (
     *VARIANTS,
     MOCAP_PG_bone_pair,
     MOCAP_PG_bone_map,
-    MOCAP_PG_spot,
+    MOCAP_PG_issue,
     MOCAP_PG_scene,
     MOCAP_PG_job,
 )

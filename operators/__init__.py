@@ -9,7 +9,7 @@ from .find_similar import MOCAP_OT_find_similar
 from .import_job import MOCAP_OT_import_job
 from .import_recording import MOCAP_OT_import_recording
 from .index_library import MOCAP_OT_index_library
-from .jump_to_spot import MOCAP_OT_jump_to_spot
+from .jump_to_issue import MOCAP_OT_jump_to_issue
 from .keep_current import MOCAP_OT_keep_current
 from .keep_variants import MOCAP_OT_keep_variants
 from .learn_from_matches import MOCAP_OT_learn_from_matches
@@ -43,7 +43,7 @@ OPERATORS = (
     MOCAP_OT_denoise,
     MOCAP_OT_reconstruct,
     MOCAP_OT_measure_quality,
-    MOCAP_OT_jump_to_spot,
+    MOCAP_OT_jump_to_issue,
     MOCAP_OT_plant_feet,
     MOCAP_OT_learn_patterns,
     MOCAP_OT_simulate,

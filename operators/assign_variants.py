@@ -33,9 +33,9 @@ class MOCAP_OT_assign_variants(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:
-            said = assign(context, crowd_of(context), self.settings())
+            message = assign(context, crowd_of(context), self.settings())
         except MocapAssistError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        self.report({"INFO"}, said)
+        self.report({"INFO"}, message)
         return {"FINISHED"}

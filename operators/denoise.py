@@ -19,7 +19,7 @@ class MOCAP_OT_denoise(SolverOperator, bpy.types.Operator):
     why_not, read_scene, write_scene = why_not_clean, read_cleaning, write_cleaned
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Offer in the redo panel what needs no new solve: Blender would stand still for it."""
+        """Offer only settings without a new solve in the redo panel; a solve would block."""
         self.layout.use_property_split = True
         for name in QUICK:
             self.layout.prop(self, name)

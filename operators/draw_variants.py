@@ -1,4 +1,4 @@
-"""Button: a picture of all variants."""
+"""Button: draw a contact sheet of all variants."""
 
 from typing import ClassVar
 

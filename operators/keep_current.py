@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..mocap_assist.library.kept_libraries import toggle_kept
+from ..mocap_assist.library.auto_update_list import toggle_kept
 from ..solvers.errors import MocapAssistError
 
 

@@ -1,10 +1,10 @@
-"""Button: show the depth recording of a file that comes from somebody else."""
+"""Button: show the depth recording of another user's file."""
 
 from typing import ClassVar
 
 import bpy
 
-from ..mocap_assist.depth.depth_preview import show_asked
+from ..mocap_assist.depth.depth_preview import show_on_request
 from ..mocap_assist.track.tracking import selected_preview
 from ..solvers.errors import MocapAssistError
 
@@ -27,7 +27,7 @@ class MOCAP_OT_show_depth(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         mesh = selected_preview(context).data
         try:
-            message = show_asked(mesh, context.scene.frame_current_final)
+            message = show_on_request(mesh, context.scene.frame_current_final)
         except MocapAssistError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

@@ -6,8 +6,8 @@ from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.runtime.watched_operator import WatchedOperator
 from ..mocap_assist.track.tracking import (
     TrackBundle,
-    keep_tracked,
     read_tracking,
+    rescue_partial,
     selected_preview,
     watch_tracking,
     why_not_track,
@@ -25,7 +25,7 @@ class MOCAP_OT_track_depth(WatchedOperator, bpy.types.Operator):
     settings_group = "track"
     selected, why_not = selected_preview, why_not_track
     read_scene, write_scene = read_tracking, write_tracked
-    open_view, rescue = watch_tracking, keep_tracked
+    open_view, rescue = watch_tracking, rescue_partial
 
     def draw(self, context: bpy.types.Context) -> None:
         """Nothing can be changed without tracking anew."""

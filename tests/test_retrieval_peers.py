@@ -86,14 +86,16 @@ def test_who_may_answer(rng):
     assert others[0].allowed.tolist() == [False, False, True, True]
 
 
-@pytest.mark.parametrize(("kind", "lost"), [("joints lost", 0.3), ("lost at random", 0.3)])
-def test_so_much_is_lost(rng, kind, lost):
+@pytest.mark.parametrize(
+    ("kind", "lost"), [("joints missing", 0.3), ("missing at random", 0.3)]
+)
+def test_damage_removes_the_stated_fraction(rng, kind, lost):
     tracks = moving(rng)
     damaged = DAMAGES[kind](tracks, rng)
 
     assert abs(1.0 - damaged.visible.mean() - lost) < 0.03
     assert tracks.visible.all()
-    if kind == "joints lost":
+    if kind == "joints missing":
         assert damaged.visible[:, HIPS].all()
         assert set(damaged.visible.mean(axis=0)) == {0.0, 1.0}
 

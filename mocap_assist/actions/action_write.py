@@ -49,9 +49,9 @@ def write_action(
             prop, width = rotation_property(bone.rotation_mode)
             near = np.zeros((1, width))
             near[:, 0] = float(width == len("WXYZ") and bone.rotation_mode == "QUATERNION")
-            turns = channels.rotations[known]
-            if len(turns):
-                values = channels_from_quaternions(turns, bone.rotation_mode, near)
+            rotations = channels.rotations[known]
+            if len(rotations):
+                values = channels_from_quaternions(rotations, bone.rotation_mode, near)
                 _write(bag, bone_name, prop, frames[known], values)
         if channels.locations is not None:
             known = np.isfinite(channels.locations).all(axis=1)

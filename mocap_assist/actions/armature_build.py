@@ -11,9 +11,9 @@ from ..scene.scene_objects import add_object, in_object_mode
 
 Array = NDArray[np.float64]
 SHORT = 1e-3  # of the body's extent: a bone that short has no direction to speak of
-STUB = 0.05  # of the body's extent: length of a bone that has no way to go
+STUB = 0.05  # fraction of the body's extent: length of a bone without a direction
 LAST = 0.4  # of its parent's length: length of a bone whose tail was never captured
-STRAIGHT = 0.5  # cosine of the angle up to which a bone goes on in a child
+STRAIGHT = 0.5  # cosine of the angle up to which a child continues its parent bone
 
 
 def build_armature(
@@ -47,14 +47,14 @@ def build_armature(
     heads = skeleton.rest_positions / metres
     tips = _tips(skeleton)
     tails = _tails(skeleton, tips) / metres
-    made = _add_bones(armature, skeleton, tips, heads, tails)
-    for joint, bone in enumerate(made):
+    bone_names = _add_bones(armature, skeleton, tips, heads, tails)
+    for joint, bone in enumerate(bone_names):
         if not bone:
             continue
         armature.pose.bones[bone].rotation_mode = mode
         if not skeleton.children[joint] and not skeleton.names[joint].endswith("_end"):
             armature.data.bones[bone][END] = True
-    return armature, made
+    return armature, bone_names
 
 
 def _add_bones(
@@ -62,23 +62,23 @@ def _add_bones(
 ) -> tuple[str, ...]:
     bpy.ops.object.mode_set(mode="EDIT")
     bones = armature.data.edit_bones
-    made: dict[int, str] = {}
+    bone_names: dict[int, str] = {}
     for joint, parent in enumerate(skeleton.parents):
         if joint in tips:
             continue
         bone = bones.new(fitting_name(skeleton.names[joint]))
         bone.head, bone.tail = heads[joint], tails[joint]
         if parent >= 0:
-            bone.parent = bones[made[parent]]
+            bone.parent = bones[bone_names[parent]]
             bone.use_connect = bool((heads[joint] == tails[parent]).all())
-        made[joint] = bone.name
+        bone_names[joint] = bone.name
     bpy.ops.object.mode_set(mode="OBJECT")
-    return tuple(made.get(joint, "") for joint in range(skeleton.n_joints))
+    return tuple(bone_names.get(joint, "") for joint in range(skeleton.n_joints))
 
 
 def _tips(skeleton: Skeleton) -> set[int]:
-    """End sites that can be the tail of their parent's bone: its only child, some way off."""
-    ways = np.linalg.norm(skeleton.offsets, axis=-1)
+    """Return the end sites that can be tails: only children at a distance from their parent."""
+    vectors = np.linalg.norm(skeleton.offsets, axis=-1)
     return {
         joint
         for joint, parent in enumerate(skeleton.parents)
@@ -86,42 +86,44 @@ def _tips(skeleton: Skeleton) -> set[int]:
         and skeleton.is_end_site(joint)
         and skeleton.names[joint] == f"{skeleton.names[parent]}_end"
         and len(skeleton.children[parent]) == 1
-        and ways[joint] > SHORT * _extent(skeleton)
+        and vectors[joint] > SHORT * _extent(skeleton)
     }
 
 
 def _tails(skeleton: Skeleton, tips: set[int]) -> Array:
-    """Where the bone of each joint ends, shape (n_joints, 3), metres."""
+    """Where the bone of each joint ends, shape (n_joints, 3), meters."""
     heads = skeleton.rest_positions
     extent = _extent(skeleton)
     tails = heads.copy()
     for joint, parent in enumerate(skeleton.parents):
-        way = _way(skeleton, joint)
-        if np.linalg.norm(way) <= SHORT * extent:
+        vector = _bone_vector(skeleton, joint)
+        if np.linalg.norm(vector) <= SHORT * extent:
             above = tails[parent] - heads[parent] if parent >= 0 else np.array([0.0, 0.0, 1.0])
             length = np.linalg.norm(above)
             size = LAST * length if parent >= 0 else STUB * extent
-            way = above / length * max(size, SHORT * extent)
-        tails[joint] = heads[joint] + way
+            vector = above / length * max(size, SHORT * extent)
+        tails[joint] = heads[joint] + vector
     return tails
 
 
-def _way(skeleton: Skeleton, joint: int) -> Array:
-    """From a joint to its child, to the one that goes straight on, or to the middle of all."""
-    far = SHORT * _extent(skeleton)
+def _bone_vector(skeleton: Skeleton, joint: int) -> Array:
+    """Return the vector from a joint to its child, straightest child, or mean of all."""
+    distant = SHORT * _extent(skeleton)
     lengths = np.linalg.norm(skeleton.offsets, axis=-1)
-    children = [child for child in skeleton.children[joint] if lengths[child] > far]
+    children = [child for child in skeleton.children[joint] if lengths[child] > distant]
     if not children:
         return np.zeros(3)
-    ways = skeleton.offsets[children]
+    vectors = skeleton.offsets[children]
     if skeleton.parents[joint] < 0:  # the spine, since arms and head are above it
         return np.asarray(
-            ways[int(np.argmax([len(skeleton.subtree(one)) for one in children]))]
+            vectors[int(np.argmax([len(skeleton.subtree(one)) for one in children]))]
         )
-    cosines = ways @ skeleton.offsets[joint] / lengths[children] / max(lengths[joint], far)
+    cosines = (
+        vectors @ skeleton.offsets[joint] / lengths[children] / max(lengths[joint], distant)
+    )
     if len(children) == 1 or cosines.max() > STRAIGHT:
-        return np.asarray(ways[int(np.argmax(cosines))])
-    return np.asarray(ways.mean(axis=0))
+        return np.asarray(vectors[int(np.argmax(cosines))])
+    return np.asarray(vectors.mean(axis=0))
 
 
 def _extent(skeleton: Skeleton) -> float:

@@ -43,7 +43,7 @@ def read_take(
     source : action and slot
         Others that fit the armature.
     grid : Grid
-        Moments to read at, in the place of those of the keys within `choice`.
+        Frames to read instead of those of the keys within `choice`.
 
     Returns
     -------
@@ -57,7 +57,7 @@ def read_take(
     ------
     InvalidMotionError
         There is no action, slot, bone, key or uniform scale, the keys are too far apart, or
-        something was deleted between two turns, as the sentence says.
+        a data-block was deleted between two time slices.
     """
     action, slot = source or action_of(armature)
     thinned = was_thinned(action)
@@ -110,7 +110,7 @@ class _Keyed:
         self.curves = animated_curves(*source)
 
     def find_again(self) -> None:
-        """Replace pointers that may be stale; keys that were read stay."""
+        """Replace pointers that may be stale; keep keys that were read."""
         armature, scene, source = self._lasting
         self.armature, self.scene = armature.find(), scene.find()
         before = self.curves
@@ -135,7 +135,7 @@ class _Keyed:
         return [curve for (path, _), curve in self.curves.items() if _owner(path) in known]
 
     def pose_bone(self, name: str) -> bpy.types.PoseBone:
-        """Return a bone; raise InvalidMotionError where it was deleted between two turns."""
+        """Return a bone; raise InvalidMotionError if it was deleted between two time slices."""
         bone = self.armature.pose.bones.get(name)
         if bone is None:
             raise InvalidMotionError(
@@ -145,7 +145,7 @@ class _Keyed:
 
 
 def action_of(armature: bpy.types.Object) -> Source:
-    """Return the action and slot that animate an armature, or say which of them is missing."""
+    """Return the action and slot of an armature; raise InvalidMotionError without them."""
     animation = armature.animation_data
     if animation is None or animation.action is None:
         raise InvalidMotionError(f"{armature.name} has no action. Assign or import one.")
@@ -169,9 +169,9 @@ def _assembled(
     carrier, above = space, rig.chain_to(root)
     for bone in above:
         axes = rig.rest_rotations[bone]
-        turn = multiply(multiply(axes, channels[bone].rotations), axes * (1, -1, -1, -1))
+        rotation = multiply(multiply(axes, channels[bone].rotations), axes * (1, -1, -1, -1))
         shift = rotate(axes, channels[bone].locations)
-        carrier = carrier.moved(_filled(turn), np.nan_to_num(shift), rig.heads[bone])
+        carrier = carrier.moved(_filled(rotation), np.nan_to_num(shift), rig.heads[bone])
     body = yield from part_of.steps(rig, rig.subtree(root), channels, carrier, rest, rate)
     parts = [body]
     inside = {*above, *parts[0].bones}
@@ -195,7 +195,7 @@ def _read_offsets(
     rate: float,
     roots: set[int],
 ) -> Tracks | None:
-    """Locations of the bones that shift within a tree, in their parents' rest axes, metres."""
+    """Locations of the bones that shift within a tree, in their parents' rest axes, meters."""
     shifting = [
         bone for bone, each in enumerate(channels) if each.travels and bone not in roots
     ]
@@ -213,7 +213,7 @@ def _read_offsets(
 
 
 def _filled(rotations: Array) -> Array:
-    """Take the last known turn through the gaps of a bone that is not cleaned itself."""
+    """Hold the last observed rotation through the gaps of a bone that is not cleaned."""
     known = np.isfinite(rotations).all(axis=-1)
     last = np.maximum.accumulate(np.where(known, np.arange(len(known)), 0))
     return np.where(known[last, None], rotations[last], (1.0, 0.0, 0.0, 0.0))

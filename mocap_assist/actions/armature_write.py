@@ -31,7 +31,7 @@ NUMBERED = re.compile(r"\.(clean|physics|reconstructed|retracked)(\.\d{3,})?$")
 
 
 class Output(Choice):
-    """Where the result goes."""
+    """Output of a button."""
 
     ACTION = (
         "action",
@@ -57,7 +57,7 @@ def write_take(
     armature : the armature that the take was read from
     source : action and slot that the take was read from; may be linked
     take : ArmatureTake
-        The result, over the frames to replace. Keys outside of them stay.
+        The result, over the frames to replace. Keys outside of them are kept.
     bones : names of the bones to change
         All else is copied bit for bit; so are muted channels, channels of other rotation modes
         than the bone's own, and Euler or location channels that have no keys.
@@ -79,17 +79,17 @@ def write_take(
             continue
         bone, types = armature.pose.bones[name], key_types.get(name)
         if take.channels[index].rotation_keyed and index in rotations:
-            turning = rotation_curves(bone, curves)
-            near = sampled_rotation(bone, turning, take.frames[:1])
+            rotation_channels = rotation_curves(bone, curves)
+            near = sampled_rotation(bone, rotation_channels, take.frames[:1])
             values = channels_from_quaternions(rotations[index], bone.rotation_mode, near)
-            _write(turning, take.frames, values, types)
+            _write(rotation_channels, take.frames, values, types)
         if take.channels[index].location_keyed and index in locations:
             _write(location_curves(bone, curves), take.frames, locations[index], types)
     return action, slot
 
 
 def count_modified(source: Source, bones: Collection[str]) -> int:
-    """Count the F-Curves of these bones whose modifiers change what their keys say."""
+    """Count the F-Curves of these bones with modifiers that change the keyed values."""
     owned = tuple(bone_path(bone, "") for bone in bones)
     curves = animated_curves(*source).items()
     return sum(act_on_keys(each.curve) for (path, _), each in curves if path.startswith(owned))

@@ -56,17 +56,22 @@ def read_bone(
     Channels without keys have the pose's present value. `step` is that of `unobserved`; without
     `gaps` nothing is.
     """
-    turning, shifting = rotation_curves(bone, curves), location_curves(bone, curves)
-    angles = sampled_rotation(bone, turning, frames)
+    rotation_channels, location_channels = (
+        rotation_curves(bone, curves),
+        location_curves(bone, curves),
+    )
+    angles = sampled_rotation(bone, rotation_channels, frames)
     rotations = quaternions_from_channels(angles, bone.rotation_mode)
     if gaps:
-        rotations[gaps_of(turning, frames, step)] = np.nan
+        rotations[gaps_of(rotation_channels, frames, step)] = np.nan
     if bone.bone.use_connect and bone.parent:
-        return BoneChannels(rotations, np.zeros((len(frames), 3)), bool(turning), False)
-    locations = sampled(shifting, bone.location, frames)
+        return BoneChannels(
+            rotations, np.zeros((len(frames), 3)), bool(rotation_channels), False
+        )
+    locations = sampled(location_channels, bone.location, frames)
     if gaps:
-        locations[gaps_of(shifting, frames, step)] = np.nan
-    return BoneChannels(rotations, locations, bool(turning), bool(shifting))
+        locations[gaps_of(location_channels, frames, step)] = np.nan
+    return BoneChannels(rotations, locations, bool(rotation_channels), bool(location_channels))
 
 
 def rotation_curves(bone: bpy.types.PoseBone, curves: Curves) -> dict[int, Channel]:
@@ -81,15 +86,15 @@ def location_curves(bone: bpy.types.PoseBone, curves: Curves) -> dict[int, Chann
 
 
 def sampled_rotation(
-    bone: bpy.types.PoseBone, turning: Mapping[int, Channel], frames: Array
+    bone: bpy.types.PoseBone, rotation_channels: Mapping[int, Channel], frames: Array
 ) -> Array:
     """Return the rotation channels at each frame, shape (n_frames, 3 or 4)."""
     name, _ = rotation_property(bone.rotation_mode)
-    return sampled(turning, getattr(bone, name), frames)
+    return sampled(rotation_channels, getattr(bone, name), frames)
 
 
 def read_space(armature: bpy.types.Object, curves: Curves, frames: Array) -> Placement:
-    """Read where the armature object stands at each frame, by its own keys or as it is now.
+    """Read the transform of the armature object at each frame, from its keys or as it is now.
 
     Raises
     ------
@@ -97,18 +102,25 @@ def read_space(armature: bpy.types.Object, curves: Curves, frames: Array) -> Pla
         Its scale is not the same on all axes.
     """
     bpy.context.view_layer.update()
-    turn, origin, scale = placement_of(armature.matrix_world, armature.name)
+    rotation, origin, scale = placement_of(armature.matrix_world, armature.name)
     name, n_channels = rotation_property(armature.rotation_mode)
-    turning, shifting = curves_of(curves, name, n_channels), curves_of(curves, "location", 3)
-    if not (turning or shifting):
+    rotation_channels, location_channels = (
+        curves_of(curves, name, n_channels),
+        curves_of(curves, "location", 3),
+    )
+    if not (rotation_channels or location_channels):
         n_frames = len(frames)
-        return Placement(np.tile(turn, (n_frames, 1)), np.tile(origin, (n_frames, 1)), scale)
+        return Placement(
+            np.tile(rotation, (n_frames, 1)), np.tile(origin, (n_frames, 1)), scale
+        )
     around = armature.matrix_world @ armature.matrix_basis.inverted()
-    turn, origin, size = placement_of(around, armature.name)
-    angles = sampled(turning, getattr(armature, name), frames)
-    turns = quaternions_from_channels(angles, armature.rotation_mode)
-    places = sampled(shifting, armature.location, frames)
-    return Placement(multiply(turn, turns), size * rotate(turn, places) + origin, scale)
+    rotation, origin, size = placement_of(around, armature.name)
+    angles = sampled(rotation_channels, getattr(armature, name), frames)
+    rotations = quaternions_from_channels(angles, armature.rotation_mode)
+    locations = sampled(location_channels, armature.location, frames)
+    return Placement(
+        multiply(rotation, rotations), size * rotate(rotation, locations) + origin, scale
+    )
 
 
 def curves_of(curves: Curves, path: str, n_channels: int) -> dict[int, Channel]:

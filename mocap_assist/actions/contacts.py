@@ -1,4 +1,4 @@
-"""When each foot stands, as keys on custom properties that the animator can edit."""
+"""Contacts of the feet, keyed on custom properties that the animator can edit."""
 
 import hashlib
 
@@ -23,7 +23,7 @@ Flags = NDArray[np.bool_]
 def read_contacts(
     action: bpy.types.Action, slot: bpy.types.ActionSlot, frames: NDArray[np.float64]
 ) -> Flags | None:
-    """Return when the left and the right foot stand, shape (n_frames, 2).
+    """Return the contacts of the left and the right foot, shape (n_frames, 2).
 
     None where the action has no such keys for all of these frames: they were not cleaned yet.
     """
@@ -123,7 +123,7 @@ def _digest(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> str:
 
 
 def _contact_keys(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> list[list[float]]:
-    """Frames and values of the keys of each foot; what moves no key but mutes it is an edit."""
+    """Return frames and values of the keys of each foot; muting counts as an edit."""
     curves = animated_curves(action, slot)
     channels = [curves.get((_path(name), 0)) for name in PROPERTIES]
     return [[] if each is None else each.keys.ravel().tolist() for each in channels]

@@ -21,7 +21,7 @@ class Written(NamedTuple):
 
 
 def act_on_keys(curve: bpy.types.FCurve) -> bool:
-    """Whether modifiers change what the keys say."""
+    """Whether modifiers change the keyed values."""
     return any(_acts(modifier) for modifier in curve.modifiers)
 
 

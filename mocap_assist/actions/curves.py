@@ -32,7 +32,7 @@ SELECTED = tuple(name for name in KEY if name.startswith("select"))
 
 
 class Channel:
-    """An F-Curve and its keys, which are read once, when they are asked for."""
+    """An F-Curve and its keys, which are read once, at first use."""
 
     def __init__(self, curve: bpy.types.FCurve) -> None:
         self.curve = curve
@@ -79,9 +79,9 @@ class Channel:
         if self.keyed_at(frames):
             return self.keys[:, 1]
         times, values = self.keys.T
-        place = np.searchsorted(times, frames - ON_FRAME).clip(max=len(times) - 1)
-        between = np.abs(times[place] - frames) > ON_FRAME
-        found = values[place]
+        indices = np.searchsorted(times, frames - ON_FRAME).clip(max=len(times) - 1)
+        between = np.abs(times[indices] - frames) > ON_FRAME
+        found = values[indices]
         found[between] = self._evaluated(frames[between])
         return found
 
@@ -171,15 +171,15 @@ def write_values(
 def _rebuild(
     points: bpy.types.FCurveKeyframePoints, first: int, last: int, new: dict[str, Any]
 ) -> None:
-    """Put new keys in the place of those from `first` to `last`, of which there are others."""
+    """Replace the keys from `first` to `last` by a different number of new keys."""
     kept = {name: _column(points, name) for name in KEY}
     n_new = len(new["co"])
     n_keys = len(points) - (last - first) + n_new
     points.clear()
     points.add(n_keys)
-    for name, (width, usual) in KEY.items():
+    for name, (width, default) in KEY.items():
         rows = np.empty((n_new, width), _kind(name))
-        rows[:] = new.get(name, usual)
+        rows[:] = new.get(name, default)
         whole = np.concatenate([kept[name][:first], rows, kept[name][last:]])
         points.foreach_set(name, whole.ravel())
 
@@ -192,14 +192,14 @@ def _chosen(
     if not selected.any():
         return np.zeros(len(frames), bool)
     marked = times[selected]
-    place = np.searchsorted(marked, frames - ON_FRAME).clip(max=len(marked) - 1)
-    return np.asarray(np.abs(marked[place] - frames) <= ON_FRAME)
+    indices = np.searchsorted(marked, frames - ON_FRAME).clip(max=len(marked) - 1)
+    return np.asarray(np.abs(marked[indices] - frames) <= ON_FRAME)
 
 
 def _neighbours(
     times: NDArray[np.generic], first: int, last: int
 ) -> tuple[float | None, float | None]:
-    """Return when the keys next to those from `first` to `last` are, where there are any."""
+    """Return the frames of the keys before `first` and after `last`, if they exist."""
     before = float(times[first - 1]) if first else None
     after = float(times[last]) if last < len(times) else None
     return before, after
@@ -218,5 +218,5 @@ def _column(
 
 def _kind(name: str) -> type[np.generic]:
     """Blender's own kinds of number; any other takes five times as long."""
-    usual = KEY[name][1]
-    return {float: np.float32, bool: np.bool_, int: np.uint8}[type(usual)]
+    default = KEY[name][1]
+    return {float: np.float32, bool: np.bool_, int: np.uint8}[type(default)]

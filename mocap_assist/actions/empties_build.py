@@ -14,8 +14,8 @@ from .new_action import write_channels
 Array = NDArray[np.float64]
 POINT = "mocap_assist_point"
 """Custom property of an empty: the name of its point, which Blender may have to change."""
-SIZE = 0.015  # metres: radius of the sphere that shows a marker
-CROSS = 0.2  # metres: half the length of the cross that shows what holds them
+SIZE = 0.015  # meters: radius of the sphere that shows a marker
+CROSS = 0.2  # meters: half the length of the cross that shows what holds them
 
 
 def build_empties(
@@ -50,7 +50,7 @@ def write_tracks(
     *,
     progress: Progress = unwatched,
 ) -> bpy.types.Action:
-    """Let empties move as points do, by one new action; where nothing was seen are no keys.
+    """Animate empties by points, in one new action; gaps have no keys.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def write_tracks(
         progress(point / len(empties), "Writing keys")
         slot = action.slots.new("OBJECT", fitting_name(tracks.names[point]))
         bag = compat.channelbag(action, slot, ensure=True)
-        places = tracks.positions[:, point] / metres
-        write_channels(bag, "location", "Location", frames, places)
+        positions = tracks.positions[:, point] / metres
+        write_channels(bag, "location", "Location", frames, positions)
         compat.assign(empty, action, slot)
     return action

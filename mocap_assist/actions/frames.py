@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 WIDEST_STEP = (
     2.5  # frames between keys up to which a take counts as recorded, not keyed by hand
 )
-ON_GRID = 0.9  # share of keys that must lie on the grid, each
+MIN_ON_GRID = 0.9  # fraction of keys of each curve that must be on the grid
 OFF_GRID = 0.05  # of a step from it at most
 MIN_FILLED = 0.5
 """Fraction of the grid that has keys. Exporters add keys between frames at fast moments; those
@@ -23,7 +23,7 @@ alone make no finer grid."""
 MAX_FRAMES_PER_KEY = 20
 MAX_FRAMES_OF_FEW_KEYS = 10_000
 """A span with so many more frames than keys is no take, but one stray key far out."""
-ALIKE = 0.1  # share by which times between keys may differ and still be the same
+SPACING_TOLERANCE = 0.1  # fraction by which times between keys may differ
 
 
 class FrameRange(Choice):
@@ -114,21 +114,21 @@ def key_grid(
 
 
 def _grid_of(times: Array, widest: float) -> tuple[float, float]:
-    """Step and phase of the grid that the keys lie on, or that of the whole frames."""
+    """Return step and phase of the grid of the keys, or of integer frames."""
     if len(times) == 1:
         return 1.0, float(times[0])
     span, spacing = times[-1] - times[0], _spacing(times)
     step = float(span / max(np.round(span / spacing), 1.0))
-    places = (times - times[0]) / step
-    regular = (np.abs(places - np.round(places)) < OFF_GRID).mean() >= ON_GRID
+    grid_positions = (times - times[0]) / step
+    on_grid = np.abs(grid_positions - np.round(grid_positions)) < OFF_GRID
     filled = len(times) >= MIN_FILLED * (span / step + 1)
-    if step <= widest and regular and filled:
+    if step <= widest and on_grid.mean() >= MIN_ON_GRID and filled:
         return step, float(times[0])
     return 1.0, float(np.ceil(times[0] - ON_FRAME))
 
 
 def _stray_key(channels: Sequence[Channel], n_frames: float) -> str:
-    """Return a sentence about the key that lies farthest from its neighbors."""
+    """Return a message about the key with the largest distance from its neighbors."""
     times = np.unique(np.concatenate([channel.keys[:, 0] for channel in channels]))
     widest = int(np.argmax(np.diff(times)))
     after = len(times) - 1 - widest <= widest + 1
@@ -142,14 +142,14 @@ def _stray_key(channels: Sequence[Channel], n_frames: float) -> str:
 
 
 def _spacing(times: Array) -> float:
-    """Return the usual time between keys; the mean of those about the median.
+    """Return the typical time between keys: the mean of those near the median.
 
     Blender keeps times in single precision: late in a long take the median alone is off by a
     thousandth, which over its many keys makes whole frames.
     """
     spacings = np.diff(times)
-    usual = np.median(spacings)
-    return float(spacings[np.abs(spacings - usual) <= ALIKE * usual].mean())
+    median = np.median(spacings)
+    return float(spacings[np.abs(spacings - median) <= SPACING_TOLERANCE * median].mean())
 
 
 def _selected_keys(channel: Channel) -> Array:

@@ -11,8 +11,8 @@ from .curves import ON_FRAME
 
 Array = NDArray[np.float64]
 Keys = Mapping[tuple[str, int], NDArray[np.float32]]
-N_BESIDE = 16
-"""Keys to either side of a hole that tell how densely a bone was recorded."""
+N_ADJACENT = 16
+"""Keys on both sides of a gap that show how densely a bone was recorded."""
 
 
 def read_keys(source: Source) -> Keys:
@@ -31,10 +31,10 @@ def curves_near(source: Source, keys: Keys, frames: Array) -> Curves:
 
 
 def _near(keys: NDArray[np.float32], frames: Array) -> Array:
-    """Return the keys on the frames; if some frame has none, the keys beside them too."""
+    """Return the keys on the frames; if a frame has none, its neighboring keys too."""
     times = keys[:, 0]
     edges = np.array([frames[0] - ON_FRAME, frames[-1] + ON_FRAME], np.float32)
     first, last = np.searchsorted(times, edges)
     if last - first != len(frames) or (np.abs(times[first:last] - frames) > ON_FRAME).any():
-        first, last = max(first - N_BESIDE, 0), last + N_BESIDE
+        first, last = max(first - N_ADJACENT, 0), last + N_ADJACENT
     return keys[first:last].astype(np.float64)

@@ -1,4 +1,4 @@
-"""The markers of a take as tracks, and the way back."""
+"""Convert the markers of a take to tracks, and back."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
@@ -28,14 +28,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class MarkerTake:
-    """What was read, in the form in which it is solved."""
+    """Data of a take in the form that solvers use."""
 
     markers: tuple[bpy.types.Object, ...]
     sources: tuple[Source, ...]
     """Action and slot of each marker."""
     grid: Grid
     tracks: Tracks
-    """In the world, metres; NaN where a marker has no keys though it has them all around."""
+    """In the world, meters; NaN where a marker has no keys though it has them all around."""
     spaces: tuple[Placement, ...]
     """Where each marker's own space lies in the world."""
 
@@ -50,7 +50,7 @@ class MarkerTake:
         return (self.tracks,)
 
     def with_recordings(self, recordings: tuple[Tracks, ...]) -> "MarkerTake":
-        """Return the take with other tracks in the place of its own."""
+        """Return the take with its tracks replaced."""
         return replace(self, tracks=recordings[0])
 
 
@@ -74,13 +74,13 @@ def read_markers(
     recorded : bool
         What was recorded, rather than the result that is played.
     grid : Grid
-        Moments to read at, in the place of those of the keys within `choice`.
+        Frames to read instead of those of the keys within `choice`.
 
     Raises
     ------
     InvalidMotionError
         There are no markers or keys, a marker's space is scaled unevenly, or something was
-        deleted between two turns.
+        deleted between two time slices.
     """
     lasting = BlockReference.of(holder), BlockReference.of(scene)
     markers = _Markers.of(holder, recorded)
@@ -92,10 +92,10 @@ def read_markers(
     _check_captured(markers)
     bpy.context.view_layer.update()
     spaces = tuple(_space(marker, unit_of(scene)) for marker in markers.objects)
-    places, confidence = [], []
+    positions, confidence = [], []
     for number, space in enumerate(spaces):
         marker, curves = markers.objects[number], markers.curves[number]
-        places.append(space.points(_locations(marker, curves, grid)))
+        positions.append(space.points(_locations(marker, curves, grid)))
         confidence.append(_confidence(curves, grid.frames))
         if should_yield():
             yield number / len(spaces)
@@ -103,7 +103,7 @@ def read_markers(
             markers = markers.found_again(holder, recorded)
     rate = scene.render.fps / scene.render.fps_base / grid.step
     names = point_names(markers.objects)
-    tracks = Tracks(names, np.stack(places, axis=1), rate, _together(confidence))
+    tracks = Tracks(names, np.stack(positions, axis=1), rate, _together(confidence))
     return MarkerTake(markers.objects, markers.sources, grid, tracks, spaces)
 
 
@@ -123,7 +123,7 @@ class _Markers(NamedTuple):
         return cls(markers, sources, tuple(animated_curves(*source) for source in sources))
 
     def found_again(self, holder: bpy.types.Object, recorded: bool) -> "_Markers":
-        """Return the same markers after Blender had a turn, with the keys that were read."""
+        """Return the same markers, with their keys, after a time slice of Blender."""
         found = _Markers.of(holder, recorded)
         if len(found.objects) != len(self.objects):
             raise InvalidMotionError(
@@ -163,9 +163,11 @@ def write_markers(
         made = copies[action], same_slot(copies[action], slot)
         name = take.tracks.names[point]
         if name in chosen:
-            places = take.spaces[point].points_back(take.tracks.positions[:, point])
+            positions = take.spaces[point].points_back(take.tracks.positions[:, point])
             for index, channel in curves_of(animated_curves(*made), PATH, 3).items():
-                write_values(channel.curve, take.frames, places[:, index], key_types.get(name))
+                write_values(
+                    channel.curve, take.frames, positions[:, index], key_types.get(name)
+                )
         written.append((marker, source, made))
     return tuple(written)
 
@@ -196,8 +198,8 @@ def _space(marker: bpy.types.Object, metres: float) -> Placement:
     if not marker.matrix_basis.determinant():
         raise InvalidMotionError(f"{marker.name} has scale 0. Give it a scale above 0.")
     around = marker.matrix_world @ marker.matrix_basis.inverted()
-    turn, origin, scale = placement_of(around, marker.name)
-    return Placement(turn[None], origin[None], scale).in_unit(metres)
+    rotation, origin, scale = placement_of(around, marker.name)
+    return Placement(rotation[None], origin[None], scale).in_unit(metres)
 
 
 def _locations(marker: bpy.types.Object, curves: Curves, grid: Grid) -> Array:
@@ -208,15 +210,15 @@ def _locations(marker: bpy.types.Object, curves: Curves, grid: Grid) -> Array:
 
 
 def _confidence(curves: Curves, frames: Array) -> Array | None:
-    """Return what the sensor said of a point, (n_frames,), if it said anything."""
+    """Return the sensor's confidence in a point, (n_frames,), or None."""
     curve = curves.get((f'["{CONFIDENCE}"]', 0))
     return None if curve is None else np.clip(curve.values(frames), 0.0, 1.0)
 
 
 def _together(confidence: list[Array | None]) -> Array | None:
-    """Return what the sensor said of all points, (n_frames, n_points), if it said anything."""
+    """Return the sensor's confidence in all points, (n_frames, n_points), or None."""
     known = [each for each in confidence if each is not None]
     if not known:
         return None
-    sure = np.ones(len(known[0]))
-    return np.stack([sure if each is None else each for each in confidence], axis=1)
+    full_confidence = np.ones(len(known[0]))
+    return np.stack([full_confidence if each is None else each for each in confidence], axis=1)

@@ -11,7 +11,7 @@ PATH = "location"
 
 
 def holder_of(active: bpy.types.Object | None) -> bpy.types.Object | None:
-    """Return what holds the markers of a take: the active empty, or its parent; or None."""
+    """Return the parent of a take's markers: the active empty, or its parent; or None."""
     if active is None or active.type != "EMPTY":
         return None
     for each in (active, active.parent):
@@ -26,7 +26,7 @@ def markers_of(holder: bpy.types.Object) -> tuple[bpy.types.Object, ...]:
 
 
 def first_marker_of(holder: bpy.types.Object) -> bpy.types.Object:
-    """Return one of the markers: what it plays they all play. Panels ask at every redraw."""
+    """Return one of the markers, fast enough for redraws; all play the same action."""
     return next(filter(is_marker, holder.children))
 
 
@@ -40,12 +40,12 @@ def is_marker(each: bpy.types.Object) -> bool:
 
 
 def played_by(marker: bpy.types.Object) -> Source | None:
-    """Return what a marker plays: a result of ours, or its action."""
+    """Return the result or action that a marker plays."""
     return history.played_result(marker) or assigned_to(marker)
 
 
 def assigned_to(marker: bpy.types.Object) -> Source | None:
-    """Return the action and slot of a marker, without a look at NLA tracks."""
+    """Return the action and slot of a marker, ignoring NLA tracks."""
     animation = marker.animation_data
     if animation is None or animation.action is None or animation.action_slot is None:
         return None
@@ -53,6 +53,6 @@ def assigned_to(marker: bpy.types.Object) -> Source | None:
 
 
 def point_names(markers: tuple[bpy.types.Object, ...]) -> tuple[str, ...]:
-    """Return what the recording called the markers; their objects' names if that is unclear."""
+    """Return the markers' names in the recording; their objects' names if ambiguous."""
     names = tuple(str(each.get(POINT, each.name)) for each in markers)
     return names if len(set(names)) == len(names) else tuple(each.name for each in markers)

@@ -27,7 +27,7 @@ def write_motion(
     *,
     progress: Progress = unwatched,
 ) -> Source:
-    """Give an armature a new action that moves it as the motion says.
+    """Assign a new action with the motion to an armature.
 
     Parameters
     ----------
@@ -58,12 +58,12 @@ def write_motion(
         progress(done / len(basis), "Writing keys")
         joint = owners.index(bone)
         if joint == 0 or (motion.rotations[:, joint] != STILL).any():
-            _write_turns(bag, armature.pose.bones[rig.bones[bone]], frames, rotations)
+            _write_rotations(bag, armature.pose.bones[rig.bones[bone]], frames, rotations)
     compat.assign(armature, action, slot)
     return action, slot
 
 
-def _write_turns(
+def _write_rotations(
     bag: bpy.types.ActionChannelbag, bone: bpy.types.PoseBone, frames: Array, rotations: Array
 ) -> None:
     seen = np.isfinite(rotations).all(axis=-1)

@@ -1,4 +1,4 @@
-"""How far each joint was trusted, and why: keyed custom properties of bones, in a result."""
+"""Reliability of each joint and its terms: keyed custom properties of bones, in a result."""
 
 from collections.abc import Mapping
 from enum import Enum
@@ -25,7 +25,7 @@ class Term(Enum):
 
 
 DIGITS = 2
-"""Decimals that are kept: nobody sees finer shades, and steady stretches need few keys."""
+"""Stored decimals: finer colors are not visible, and constant intervals need few keys."""
 
 
 def reliability_path(bone: str, term: Term = Term.COMBINED) -> str:
@@ -61,7 +61,7 @@ def write_reliability(
 def reliability_at(
     source: Source, bones: list[str], frame: float, term: Term = Term.COMBINED
 ) -> dict[str, float]:
-    """Return how far the joint of each bone was trusted at a frame, where this is kept."""
+    """Return the reliability of the joint of each bone at a frame, where it is stored."""
     bag = compat.channelbag(*source)
     if bag is None:
         return {}
@@ -69,7 +69,7 @@ def reliability_at(
     return {bone: curve.evaluate(frame) for bone, curve in curves if curve is not None}
 
 
-def kept_terms(source: Source) -> frozenset[Term]:
+def stored_terms(source: Source) -> frozenset[Term]:
     """Return of which terms something is kept on any bone."""
     bag = compat.channelbag(*source)
     if bag is None:

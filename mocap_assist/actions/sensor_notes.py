@@ -1,4 +1,4 @@
-"""How well a sensor saw each joint or marker: custom properties, keyed where they change."""
+"""Sensor confidence of joints and markers: custom properties, keyed where they change."""
 
 from collections.abc import Mapping, Sequence
 
@@ -13,26 +13,26 @@ from .curves import CONSTANT, write_first
 
 Array = NDArray[np.float64]
 CONFIDENCE = "mocap_confidence"
-"""Custom property of a bone or an empty: 0 to 1, how sure the sensor is of it."""
+"""Custom property of a bone or an empty: the sensor's confidence, 0 to 1."""
 STATE = "mocap_tracking_state"
 """Likewise: 2 tracked, 1 inferred from other joints, 0 not tracked."""
 TRACKED = 2.0
 
 
-def words_of(recording: Motion | Tracks | JointRecording) -> dict[str, dict[str, Array]]:
-    """Return what the sensor said, shape (n_frames,), by point and then by property."""
+def sensor_values(recording: Motion | Tracks | JointRecording) -> dict[str, dict[str, Array]]:
+    """Return the sensor's values, shape (n_frames,), by point and then by property."""
     if isinstance(recording, Motion):
         return {}
     state = recording.tracking_state if isinstance(recording, JointRecording) else None
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording
-    said = {CONFIDENCE: tracks.confidence, STATE: state}
+    states = {CONFIDENCE: tracks.confidence, STATE: state}
     return {
-        name: {kind: values[:, point] for kind, values in said.items() if values is not None}
+        name: {kind: values[:, point] for kind, values in states.items() if values is not None}
         for point, name in enumerate(tracks.names)
     }
 
 
-def write_words(
+def write_sensor_values(
     bag: bpy.types.ActionChannelbag,
     owner: bpy.types.Object | bpy.types.PoseBone,
     frames: Array,
@@ -52,7 +52,7 @@ def write_words(
 def read_states(
     source: compat.Source, bones: Sequence[str], frames: Array
 ) -> NDArray[np.int8] | None:
-    """Return what the sensor said of each bone's joint, shape (n_frames, n_bones): 2, 1, 0.
+    """Return the tracking state of each bone's joint, shape (n_frames, n_bones): 2, 1, 0.
 
     A bone of which nothing was said counts as tracked; None where nothing was said of any.
     """
@@ -63,8 +63,8 @@ def read_states(
     curves = [bag.fcurves.find(path) for path in paths]
     if not any(curves):
         return None
-    said = np.full((len(frames), len(curves)), TRACKED)
-    for place, curve in enumerate(curves):
+    states = np.full((len(frames), len(curves)), TRACKED)
+    for column, curve in enumerate(curves):
         if curve is not None:
-            said[:, place] = [curve.evaluate(frame) for frame in frames]
-    return said.astype(np.int8)
+            states[:, column] = [curve.evaluate(frame) for frame in frames]
+    return states.astype(np.int8)

@@ -1,4 +1,4 @@
-"""A take: an armature's action as the motions that solvers understand, and the way back."""
+"""A take: an armature's action as motions for solvers, and back."""
 
 from dataclasses import dataclass, replace
 
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class BoneChannels:
-    """What the action and the pose say about one bone, over the frames of the take."""
+    """Channels of one bone over the frames of the take, from the action and the pose."""
 
     rotations: Array
     """Pose-bone rotation (Blender's basis), shape (n_frames, 4); NaN in gaps."""
@@ -37,7 +37,7 @@ class BoneChannels:
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """One tree of bones as a Motion; its root may hang on bones that are not part of it."""
+    """One tree of bones as a Motion; its root may have parents outside the tree."""
 
     motion: Motion
     bones: tuple[int, ...]
@@ -48,7 +48,7 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class ArmatureTake:
-    """What was read, in the form in which it is solved.
+    """Data of a take in the form that solvers use.
 
     `parts[0]` is the body: the tree of hips, spine and limbs, in the world. Further trees, such
     as props and IK controls, follow, each in the space in which its parent rests. `offsets`
@@ -74,7 +74,7 @@ class ArmatureTake:
         return motions if self.offsets is None else (*motions, self.offsets)
 
     def with_recordings(self, recordings: tuple[Motion | Tracks, ...]) -> "ArmatureTake":
-        """Return the take with other motions in the place of its own."""
+        """Return the take with its motions replaced."""
         n_parts = len(self.parts)
         parts = tuple(
             replace(part, motion=motion)
@@ -96,10 +96,10 @@ class ArmatureTake:
         for part in self.parts:
             found[part.bones[0]] = root_locations(part, self.rig)
         if self.offsets is not None:
-            for place, name in enumerate(self.offsets.names):
+            for index, name in enumerate(self.offsets.names):
                 bone = self.rig.bones.index(name)
                 axes = multiply(self.rest.rotations[0], self.rig.rest_rotations[bone])
-                shift = self.offsets.positions[:, place] / self.rest.scale
+                shift = self.offsets.positions[:, index] / self.rest.scale
                 found[bone] = rotate(inverse(axes), shift)
         return found
 
@@ -116,14 +116,16 @@ def part_of(
     """Turn pose-bone channels into local rotations about world axes, L = A B A^-1.
 
     A is the rest orientation of the bone in the world. No forward kinematics is needed, since
-    a joint's local rotation and Blender's basis are the same turn seen from different axes.
+    a joint's local rotation and Blender's basis are one rotation about different axes.
     The root's rotation is then carried into the world.
     """
     world = multiply(rest.rotations[0], rig.rest_rotations)
     rotations = []
     for number, bone in enumerate(bones):
-        turn = multiply(multiply(world[bone], channels[bone].rotations), inverse(world[bone]))
-        rotations.append(turn)
+        rotation = multiply(
+            multiply(world[bone], channels[bone].rotations), inverse(world[bone])
+        )
+        rotations.append(rotation)
         if should_yield():
             yield 0.7 + 0.3 * number / len(bones)
     carried = multiply(carrier.rotations, inverse(rest.rotations[0]))
@@ -162,9 +164,9 @@ def skeleton_of(
     rig: Rig, bones: list[int], rest: Placement
 ) -> tuple[Skeleton, tuple[int, ...]]:
     """Joints at the bones' heads, and an end site at the tail of each last bone."""
-    place = {bone: joint for joint, bone in enumerate(bones)}
+    joint_of = {bone: joint for joint, bone in enumerate(bones)}
     names = [rig.bones[bone] for bone in bones]
-    parents = [-1, *(place[rig.parents[bone]] for bone in bones[1:])]
+    parents = [-1, *(joint_of[rig.parents[bone]] for bone in bones[1:])]
     points = [rig.heads[bone] for bone in bones]
     for joint, bone in enumerate(bones):
         end = f"{rig.bones[bone]}_end"

@@ -122,9 +122,9 @@ def _tasks(arguments: argparse.Namespace) -> list[Task]:
         pairs = _blends(arguments.files, folder)
     else:
         pairs = find_recordings(arguments.files, folder, list_recordings)
-    places = unique_targets([place for _, place in pairs], [BLEND] * len(pairs))
+    targets = unique_targets([place for _, place in pairs], [BLEND] * len(pairs))
     tasks = []
-    for (source, _), place in zip(pairs, places, strict=True):
+    for (source, _), place in zip(pairs, targets, strict=True):
         if list_recordings is None and not is_folder(source) and source.suffix.lower() != BLEND:
             raise InvalidSettingError(
                 f"{source} is not a .blend file; only import and capture read others."
@@ -157,11 +157,11 @@ def _blends(paths: Sequence[Path], excluded: Path) -> list[tuple[Path, Path]]:
         if not is_folder(path):
             found.append((path, Path(path.name)))
             continue
-        whole = real_path(path)
+        resolved = real_path(path)
         inside = [
-            file for file in files_below(whole) if file.suffix == BLEND or is_folder(file)
+            file for file in files_below(resolved) if file.suffix == BLEND or is_folder(file)
         ]
-        above = whole.parent if len(paths) > 1 or inside == [whole] else whole
+        above = resolved.parent if len(paths) > 1 or inside == [resolved] else resolved
         kept = [file for file in inside if excluded not in file.parents]
         found += [(file, file.relative_to(above)) for file in kept]
     if not found:
@@ -217,8 +217,10 @@ def _perform(task: Task, stopped: Event) -> FinishedTask:
             return FinishedTask(task, None, f"{task.source}: Interrupted.")
         if ended.status == 0:
             return FinishedTask(task, Outcome("Done.", _figures(figures)))
-    said = [line for line in ended.errors.splitlines() if line.strip()]
-    sentence = said[-1] if ended.status == 2 and said else "the Blender for it has died."
+    error_lines = [line for line in ended.errors.splitlines() if line.strip()]
+    sentence = (
+        error_lines[-1] if ended.status == 2 and error_lines else "the Blender for it has died."
+    )
     named = task.source.name in sentence
     return FinishedTask(task, None, sentence if named else f"{task.source}: {sentence}")
 
@@ -243,6 +245,6 @@ def _figures(path: Path) -> dict[str, Any]:
     lines = [parse_json(line) for line in path.read_text(encoding="utf-8").splitlines()]
     first: dict[str, Any] = lines[0] if lines else {}
     if "objects" in first:  # What is said of the one recording that each is.
-        told = first["figures"][0] if "figures" in first else {"said": first["said"]}
-        return {"object": first["objects"][0], **told}
+        description = first["figures"][0] if "figures" in first else {"said": first["said"]}
+        return {"object": first["objects"][0], **description}
     return {**first, "armatures": len(lines)}

@@ -53,11 +53,11 @@ def perform_import(arguments: argparse.Namespace, screen: Screen) -> None:
         save(target)
     figures = {
         "objects": [made.name for made in imported.made],
-        "said": list(imported.said),
+        "said": list(imported.messages),
         "failed": list(imported.failed),
         "figures": list(imported.figures),
     }
-    report_figures(arguments, figures, imported.said)
+    report_figures(arguments, figures, imported.messages)
     if arguments.picture is not None and imported.made:
         draw_result(bpy.context.scene, imported.made[0], arguments.picture)
     if imported.failed:

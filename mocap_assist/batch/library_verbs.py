@@ -17,8 +17,8 @@ from ...solvers.files import real_path, write_atomically
 from ...solvers.progress import Progress
 from ..library.background import message_of
 from ..library.choices import FindBundle, LibraryChoices
-from ..library.places import asset_folders, background_blender, library_path
-from ..library.solve_indexing import IndexProblem, Place, index_places
+from ..library.solve_indexing import IndexProblem, Source, index_sources
+from ..library.sources import asset_folders, background_blender, library_path
 from ..search import searches
 from ..search.finding import list_found, read_finding
 from ..search.solve_finding import Found
@@ -60,16 +60,16 @@ def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
     InvalidFileError
         Something could not be read, or nothing was named.
     """
-    places = [Place(str(real_path(path))) for path in arguments.places]
+    sources = [Source(str(real_path(path))) for path in arguments.places]
     if arguments.asset_libraries:
-        places += [Place(folder, assets_only=True) for folder in asset_folders()]
-    if not places:
+        sources += [Source(folder, assets_only=True) for folder in asset_folders()]
+    if not sources:
         raise InvalidFileError("Nothing was named to index: name files or folders.")
     path = library_path(LibraryChoices(library_file=arguments.library))
     screen.title = "Index"
     blender = background_blender(arguments.rig)
-    problem = IndexProblem(str(path), tuple(places), tuple(arguments.tag), blender)
-    indexed = solve_in_subprocess(partial(index_places, problem), arguments, screen.progress)
+    problem = IndexProblem(str(path), tuple(sources), tuple(arguments.tag), blender)
+    indexed = solve_in_subprocess(partial(index_sources, problem), arguments, screen.progress)
     screen.clear()
     figures = {
         "library": str(path),

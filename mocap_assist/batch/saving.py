@@ -62,12 +62,12 @@ def save(target: Path) -> None:
 
 
 def report_figures(
-    arguments: argparse.Namespace, figures: Mapping[str, object], said: Iterable[str]
+    arguments: argparse.Namespace, figures: Mapping[str, object], messages: Iterable[str]
 ) -> None:
     """Print the result as text, or as one line of JSON if requested."""
     line = json.dumps(figures)
     sys.stdout.write(
-        "\n".join([line] if arguments.json == STDOUT else map(printable, said)) + "\n"
+        "\n".join([line] if arguments.json == STDOUT else map(printable, messages)) + "\n"
     )
     sys.stdout.flush()
     if arguments.json not in {None, STDOUT}:

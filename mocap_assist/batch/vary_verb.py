@@ -41,8 +41,8 @@ def perform_vary(
         read_varying(scene, armature, settings), arguments, within(progress, 0.0, 0.8)
     )
     progress(0.8, "Writing")
-    said = write_variants(scene, armature, settings, varied)
+    message = write_variants(scene, armature, settings, varied)
     if arguments.sheet is not None:
-        said += " " + write_sheet(scene, arguments.sheet)
+        message += " " + write_sheet(scene, arguments.sheet)
     names = [action.name for action in chosen(scene)]
-    return said, {"actions": names, "remarks": list(varied.remarks)}
+    return message, {"actions": names, "remarks": list(varied.remarks)}

@@ -117,9 +117,9 @@ def _check(
     settings = _bundle(arguments, CheckSettings)
     checked = solve_in_subprocess(read_checking(scene, armature, settings), arguments, progress)
     sentence = show_checked(scene, armature, settings, checked)
-    spots = [spot.sentence for spot in checked.spots]
-    text = "\n".join([checked.quality.report(), "", sentence, *spots])
-    return text, checked.quality.figures() | {"spots": spots}
+    issues = [issue.sentence for issue in checked.issues]
+    text = "\n".join([checked.quality.report(), "", sentence, *issues])
+    return text, checked.quality.figures() | {"spots": issues}
 
 
 def _convert_options(parser: argparse.ArgumentParser) -> None:

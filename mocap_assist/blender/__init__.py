@@ -1,1 +1,1 @@
-"""What Blender itself asks for: versions, names, paths, properties, long work in turns."""
+"""Adapters to Blender: versions, names, paths, properties, time slices."""

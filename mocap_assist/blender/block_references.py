@@ -24,14 +24,14 @@ class BlockReference(NamedTuple):
         return cls(block.id_type, block.session_uid, block.name)
 
     def find(self) -> Any:
-        """Return the data-block; raise InvalidMotionError where it was deleted meanwhile."""
+        """Return the data-block; raise InvalidMotionError if it was deleted meanwhile."""
         blocks = getattr(bpy.data, COLLECTIONS[self.kind])
-        found = next((each for each in blocks if each.session_uid == self.number), None)
-        if found is None:
+        block = next((each for each in blocks if each.session_uid == self.number), None)
+        if block is None:
             raise InvalidMotionError(
-                f"{self.name} was deleted while it was worked on; nothing was written."
+                f"{self.name} was deleted during the solve; nothing was written."
             )
-        return found
+        return block
 
 
 class SourceReference(NamedTuple):
@@ -47,12 +47,11 @@ class SourceReference(NamedTuple):
         return cls(BlockReference.of(action), slot.handle)
 
     def find(self) -> Source:
-        """Return both; raise InvalidMotionError where one was deleted meanwhile."""
+        """Return both; raise InvalidMotionError if one was deleted meanwhile."""
         action = self.action.find()
         slot = next((each for each in action.slots if each.handle == self.slot), None)
         if slot is None:
             raise InvalidMotionError(
-                f"A slot of {action.name} was deleted while it was worked on; nothing was"
-                " written."
+                f"A slot of {action.name} was deleted during the solve; nothing was written."
             )
         return action, slot

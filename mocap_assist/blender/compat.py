@@ -1,24 +1,24 @@
-"""What differs between Blender 4.5 and 5.x, and what its action model leaves unsaid.
+"""Differences between Blender 4.5 and 5.x, and helpers for the action model.
 
-One function, one difference; the oldest branch stands first, to be deleted first.
+One function per difference; the oldest branch comes first, to be deleted first.
 """
 
 import bpy
 
 Source = tuple[bpy.types.Action, bpy.types.ActionSlot]
-"""An action, and the slot of it that animates the object in question."""
+"""An action, and its slot that animates the object."""
 TARGETS = {"OBJECT", "UNSPECIFIED"}  # the second comes from files of Blender 4.3 and older
 
 
 def is_selected(bone: bpy.types.PoseBone) -> bool:
-    """Whether a pose bone is selected: a matter of the pose from Blender 5.0 on."""
+    """Whether a pose bone is selected; Blender 5.0 moved the flag to the pose."""
     if bpy.app.version < (5, 0):
         return bone.bone.select
     return bone.select
 
 
 def select_bone(bone: bpy.types.PoseBone, selected: bool = True) -> None:
-    """Select a pose bone, or not."""
+    """Select or deselect a pose bone."""
     if bpy.app.version < (5, 0):
         bone.bone.select = selected
     else:
@@ -35,7 +35,7 @@ def find_slot(action: bpy.types.Action, identifier: str) -> bpy.types.ActionSlot
 def channelbag(
     action: bpy.types.Action, slot: bpy.types.ActionSlot, ensure: bool = False
 ) -> bpy.types.ActionChannelbag | None:
-    """Return what holds the F-Curves of one slot; None where it has none, unless `ensure`."""
+    """Return the channelbag of a slot; without `ensure`, None if it has none."""
     if ensure:
         layer = action.layers[0] if action.layers else action.layers.new("Layer")
         strip = layer.strips[0] if layer.strips else layer.strips.new(type="KEYFRAME")
@@ -47,14 +47,14 @@ def channelbag(
 def assign(
     animated: bpy.types.ID, action: bpy.types.Action, slot: bpy.types.ActionSlot
 ) -> None:
-    """Let `slot` of `action` animate `animated`: without its slot an action moves nothing."""
+    """Assign an action and its slot; without a slot an action animates nothing."""
     animation = animated.animation_data or animated.animation_data_create()
     animation.action = action
     animation.action_slot = slot
 
 
 def new_action(name: str, animated: bpy.types.ID) -> Source:
-    """Make an action with an empty channelbag for `animated`, kept even when nobody uses it."""
+    """Create an action with an empty channelbag and a fake user for `animated`."""
     action = bpy.data.actions.new(name)
     action.use_fake_user = True
     slot = action.slots.new(animated.id_type, animated.name)

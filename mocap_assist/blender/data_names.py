@@ -1,9 +1,9 @@
 """Names that Blender can hold."""
 
-LONGEST = 63
-"""Bytes of a name of anything, in the oldest Blender that we run on."""
+MAX_NAME_BYTES = 63
+"""Limit for names of data-blocks and bones in Blender 4.5."""
 
 
 def fitting_name(name: str) -> str:
-    """Return a name cut between letters; Blender would cut it within one, and then stumble."""
-    return name.encode("utf-8", "replace")[:LONGEST].decode("utf-8", "ignore")
+    """Return a name cut between characters; Blender would cut within one and then fail."""
+    return name.encode("utf-8", "replace")[:MAX_NAME_BYTES].decode("utf-8", "ignore")

@@ -1,4 +1,4 @@
-"""Properties that hold paths, and the paths that a file browser hands to an operator."""
+"""Path properties, and the paths that a file browser passes to an operator."""
 
 from pathlib import Path
 from typing import Any
@@ -9,9 +9,9 @@ from ...solvers.errors import InvalidFileError
 
 FILE, FOLDER = "FILE_PATH", "DIR_PATH"
 HIDDEN = {"HIDDEN", "SKIP_SAVE"}
-"""Options of what a file browser or a caller sets: not shown, and not remembered."""
+"""Options of properties that a file browser or a caller sets: not shown, not remembered."""
 RELATIVE = "PATH_SUPPORTS_BLEND_RELATIVE"
-"""Without it Blender warns when a `//` path is set, and may raise that in a later call."""
+"""Without it Blender warns about `//` paths, and may raise the warning in a later call."""
 
 
 def path_property(
@@ -23,7 +23,7 @@ def path_property(
     ----------
     subtype : FILE or FOLDER
     options : more options of `bpy.props.StringProperty`
-    described : its other arguments, such as name and description
+    described : its other arguments, for example name and description
     """
     return bpy.props.StringProperty(
         subtype=subtype, options={RELATIVE} | (options or set()), **described
@@ -31,15 +31,15 @@ def path_property(
 
 
 def absolute(path: str) -> Path:
-    """Return a path as the system knows it: `//` is the folder of the open .blend file."""
+    """Return an absolute path; `//` is the folder of the open .blend file."""
     return Path(bpy.path.abspath(path))
 
 
 def file_to_write(path: str, ending: str) -> Path:
-    """Return the file that is chosen, with its ending; raises InvalidFileError if none is."""
+    """Return the chosen file with its ending; raise InvalidFileError if there is none."""
     chosen = absolute(path)
     if not chosen.name or path.endswith(("/", "\\")):
-        raise InvalidFileError(f"Choose the {ending} file to write: {path!r} names none.")
+        raise InvalidFileError(f"{path!r} names no file. Choose the {ending} file to write.")
     return chosen.with_suffix(ending)
 
 

@@ -1,8 +1,7 @@
-"""What this user has allowed on this machine: no .blend file can bring any of it along.
+"""Permissions of this user on this machine; a .blend file cannot grant them.
 
-It is kept in a file of the extension's own folder, so that what is automatic (timers, handlers
-of loaded files) never acts on what a .blend file says alone. A press is a permission for what
-was pressed, and needs none of these.
+They are stored in the extension's own folder. Automatic code (timers, load handlers) therefore
+never acts on the content of a .blend file alone. A press of a button needs no permission.
 """
 
 import json
@@ -21,11 +20,11 @@ EXTENSION = __package__.rsplit(".", 2)[0]
 NAME = "permissions.json"
 RECORDINGS, LIBRARIES = "depth_recordings", "kept_libraries"
 MAX_ENTRIES = 1000
-"""Of each kind; the oldest are forgotten first."""
+"""Entries per kind; the oldest are dropped first."""
 
 
 def allow_recording(path: str) -> None:
-    """Let a depth recording be opened whenever a .blend file shows it."""
+    """Allow a depth recording to be opened by every .blend file that shows it."""
     name = _name(path)
     change(RECORDINGS, [*[each for each in entries(RECORDINGS) if each != name], name])
 
@@ -36,7 +35,7 @@ def recording_allowed(path: str) -> bool:
 
 
 def entries(kind: str) -> list[Any]:
-    """Return what is allowed of a kind; nothing where the file is missing or damaged."""
+    """Return the permissions of a kind; none if the file is missing or damaged."""
     path = _file()
     try:
         stored = _read(path, path.stat().st_mtime_ns).get(kind, [])
@@ -46,7 +45,7 @@ def entries(kind: str) -> list[Any]:
 
 
 def change(kind: str, allowed: list[Any]) -> None:
-    """Allow these of a kind, and no others.
+    """Replace the permissions of a kind.
 
     Raises
     ------
@@ -57,9 +56,9 @@ def change(kind: str, allowed: list[Any]) -> None:
     stored = {each: entries(each) for each in (RECORDINGS, LIBRARIES)}
     stored[kind] = allowed[-MAX_ENTRIES:]
     bpy.utils.extension_path_user(EXTENSION, create=True)
-    with write_atomically(path) as part:
-        part.write_text(json.dumps(stored, indent=1), encoding="utf-8")
-    _read.cache_clear()  # Two changes may come within one tick of the file system's clock.
+    with write_atomically(path) as temporary:
+        temporary.write_text(json.dumps(stored, indent=1), encoding="utf-8")
+    _read.cache_clear()  # Two changes may share one time stamp of the file system.
 
 
 def _file() -> Path:
@@ -76,5 +75,5 @@ def _read(path: Path, modified: int) -> dict[str, Any]:
 
 
 def _name(path: str) -> str:
-    """Return a path as it is compared, without looking at the disk or a network."""
+    """Return a path normalized for comparison, without access to disk or network."""
     return os.path.normcase(os.path.normpath(absolute(path).absolute()))

@@ -1,4 +1,4 @@
-"""Blender properties made from settings classes, so that each setting is described once."""
+"""Blender properties from settings classes, so that each setting is described once."""
 
 from collections.abc import Callable
 from dataclasses import Field, fields
@@ -19,7 +19,7 @@ SUBTYPES = {"rad": "ANGLE", "m": "DISTANCE", "s": "TIME_ABSOLUTE", "%": "PERCENT
 
 
 def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
-    """Decorate an operator or property group: a property for each setting of a bundle.
+    """Decorate an operator or property group with a property for each setting of a bundle.
 
     A bundle is a NamedTuple of settings classes. The decorated class gets `settings()`, which
     returns the bundle with the checked values of the properties, and `setting_names`. Settings
@@ -32,8 +32,8 @@ def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
         return bundle(**{name: _settings_of(self, each) for name, each in classes.items()})
 
     def decorate(cls: Class) -> Class:
-        # Blender would fill in what a button did last, and so what the sidebar says now
-        # would seem to be what the caller gave.
+        # Otherwise Blender restores the values of the last press, and they look as if the
+        # caller had set them.
         options = {"SKIP_SAVE"} if issubclass(cls, bpy.types.Operator) else set()
         properties = {name: _property(item, options) for name, item in described.items()}
         cls.__annotations__ = properties | get_annotations(cls)
@@ -82,7 +82,7 @@ def _property(item: "Field[Any]", options: set[str]) -> Any:
 
 
 def _unit(described: Described) -> dict[str, str]:
-    """Let Blender show the unit where it knows it, and say it in the tooltip where not."""
+    """Return the subtype of a unit that Blender knows, or a tooltip with the unit."""
     if described.unit in SUBTYPES:
         return {"subtype": SUBTYPES[described.unit]}
     if (described.minimum, described.maximum, described.unit) == (0.0, 1.0, ""):
@@ -92,9 +92,9 @@ def _unit(described: Described) -> dict[str, str]:
 
 
 def _value(value: Any, item: "Field[Any]") -> Any:
-    """Undo what Blender does to a value: enums become words, floats lose half their digits.
+    """Convert a property to a setting: Blender stores enums as names and floats in 32 bits.
 
-    A file of another version may hold what is no value here: the nearest one is returned, or
+    A file of another version may hold an invalid value: the nearest valid one is returned, or
     the default.
     """
     default, described = item.default, item.metadata["described"]
@@ -105,5 +105,5 @@ def _value(value: Any, item: "Field[Any]") -> Any:
     if isinstance(default, float):
         if np.float32(default) == np.float32(value) or isnan(value):
             return default
-        value = float(f"{value:.7g}")  # 0.1 comes back as 0.10000000149
+        value = float(f"{value:.7g}")  # 0.1 is stored as 0.10000000149
     return type(default)(min(max(value, described.minimum), described.maximum))

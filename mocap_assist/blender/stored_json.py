@@ -12,20 +12,20 @@ Kind = TypeVar("Kind", dict[str, Any], list[Any])
 
 
 def store_json(holder: Any, key: str, value: dict[str, Any] | list[Any]) -> None:
-    """Keep a value in a custom property of a data-block or bone."""
+    """Store a value in a custom property of a data-block or bone."""
     holder[key] = json.dumps(value, ensure_ascii=False)
 
 
 def load_json(holder: bpy.types.ID, key: str, kind: type[Kind]) -> Kind:
-    """Return what `store_json` wrote; an empty list or dictionary where nothing of the kind is.
+    """Return a value of `store_json`; an empty list or dictionary if there is none.
 
-    Infinities and NaN count as damage, and numbers so large that Python takes them for some.
+    Infinities, NaN and numbers that overflow to infinity count as damage.
     """
     return parse_stored(holder.get(key), kind)
 
 
 def parse_stored(text: object, kind: type[Kind]) -> Kind:
-    """Return what a text says, as `load_json` does."""
+    """Parse a text like `load_json`."""
     try:
         value = parse_json(
             str(text), parse_constant=_finite, parse_float=_finite, parse_int=_integer

@@ -9,10 +9,9 @@ from typing import Any, Generic, ParamSpec, TypeVar
 Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
 Steps = Generator[float, None, Result]
-"""Yields the fraction that is done whenever `should_yield` says so.
+"""Generator that yields the completed fraction whenever `should_yield` is true.
 
-Blender runs between two slices: pointers to its data are stale afterwards and must be looked up
-again.
+Blender runs between two slices. Pointers to its data are then stale: look them up again.
 """
 
 _deadline = [inf]
@@ -30,8 +29,8 @@ class Sliced(Generic[Parameters, Result]):
         self.steps = steps
         update_wrapper(self, steps)
 
-    def __call__(self, *given: Parameters.args, **named: Parameters.kwargs) -> Result:
-        return _finished(self.steps(*given, **named), inf)
+    def __call__(self, *arguments: Parameters.args, **named: Parameters.kwargs) -> Result:
+        return _finished(self.steps(*arguments, **named), inf)
 
 
 class Work(Generic[Result]):
@@ -39,20 +38,20 @@ class Work(Generic[Result]):
 
     Parameters
     ----------
-    function : a `Sliced` function, or any other, which is then done at once
-    given : its arguments
+    function : a `Sliced` function, or another one, which then runs in one slice
+    arguments : its arguments
     """
 
-    def __init__(self, function: Callable[..., Result], *given: Any) -> None:
+    def __init__(self, function: Callable[..., Result], *arguments: Any) -> None:
         self._steps: Steps[Result] = (
-            function.steps(*given)
+            function.steps(*arguments)
             if isinstance(function, Sliced)
-            else _at_once(function, given)
+            else _in_one_slice(function, arguments)
         )
         self.fraction = 0.0
         self.result: Result
 
-    def go_on(self, seconds: float) -> bool:
+    def run_slice(self, seconds: float) -> bool:
         """Work for about this many seconds; return whether `result` is complete."""
         _deadline[0] = monotonic() + seconds
         try:
@@ -69,9 +68,9 @@ class Work(Generic[Result]):
         self._steps.close()
 
 
-def _at_once(function: Callable[..., Result], given: tuple[Any, ...]) -> Steps[Result]:
+def _in_one_slice(function: Callable[..., Result], arguments: tuple[Any, ...]) -> Steps[Result]:
     yield from ()
-    return function(*given)
+    return function(*arguments)
 
 
 def _finished(steps: Steps[Result], deadline: float) -> Result:
@@ -83,4 +82,4 @@ def _finished(steps: Steps[Result], deadline: float) -> Result:
         return result
     finally:
         _deadline[0] = before
-    raise AssertionError("sliced work has yielded where nobody takes turns")
+    raise AssertionError("sliced work has yielded in a call that cannot yield")

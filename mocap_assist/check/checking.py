@@ -1,4 +1,4 @@
-"""What the button Check reads from the scene and shows there, and the way to what it found."""
+"""Check: read the scene, list issues, and jump to them."""
 
 from functools import partial
 
@@ -23,7 +23,7 @@ from .solve_checking import Checked, check
 def read_checking(
     scene: bpy.types.Scene, subject: bpy.types.Object, settings: CheckSettings
 ) -> "Steps[partial[Checked]]":
-    """Read what a subject plays; return what is to be solved, which may be pickled."""
+    """Read what a subject plays; return the picklable solve."""
     here = Subject.of(scene, subject)
     take = yield from _read.steps(scene, subject)
     scene, subject = here.find()
@@ -35,7 +35,7 @@ def read_checking(
         check,
         take.recordings[0],
         settings.quality,
-        settings.spots,
+        settings.issues,
         contacts=contacts,
         limits=limits,
     )
@@ -47,44 +47,44 @@ def show_checked(
     subject: bpy.types.Object,
     settings: CheckSettings,
     checked: Checked,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> Steps[str]:
-    """List the spots in the scene; return a sentence about them."""
+    """List the issues in the scene; return a sentence about them."""
     here = Subject.of(scene, subject)
     take = yield from _read.steps(scene, subject)
     scene, subject = here.find()
     shown = scene.mocap_assist
-    check_unchanged(subject, asked, take.recordings[0])
+    check_unchanged(subject, solved_digest, take.recordings[0])
     frames = take.frames
-    shown.spots.clear()
-    shown.active_spot = 0
+    shown.issues.clear()
+    shown.active_issue = 0
     shown.checked = played_source(subject)[0].name
     shown.report = checked.quality.report()
-    for spot in checked.spots:
-        item = shown.spots.add()
-        item.name = spot.joint.removesuffix("_end")
-        item.start, item.stop = frames[spot.start_frame], frames[spot.stop_frame - 1]
-        item.kind, item.severity, item.sentence = spot.kind, spot.severity, spot.sentence
-    if not checked.spots:
+    for issue in checked.issues:
+        item = shown.issues.add()
+        item.name = issue.joint.removesuffix("_end")
+        item.start, item.stop = frames[issue.start_frame], frames[issue.stop_frame - 1]
+        item.kind, item.severity, item.sentence = issue.kind, issue.severity, issue.sentence
+    if not checked.issues:
         return "No issues found."
-    n_issues = len(checked.spots)
+    n_issues = len(checked.issues)
     found = "1 issue" if n_issues == 1 else f"{n_issues} issues"
-    return f"{found} found. Worst: {checked.spots[0].sentence}"
+    return f"{found} found. Worst: {checked.issues[0].sentence}"
 
 
-def jump_to(context: bpy.types.Context, spot: bpy.types.PropertyGroup) -> None:
-    """Move the playhead to the start of a spot and select its bone, or its marker, alone."""
-    whole, part = divmod(spot.start, 1.0)
-    context.scene.frame_set(int(whole), subframe=part)
+def jump_to(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> None:
+    """Move the playhead to the start of a issue and select its bone, or its marker, alone."""
+    frame, subframe = divmod(issue.start, 1.0)
+    context.scene.frame_set(int(frame), subframe=subframe)
     subject = selected_subject(context)
     if subject is None:
         return
     if subject.type == "ARMATURE":
-        _select_bone(subject, spot.name)
+        _select_bone(subject, issue.name)
         return
     markers = markers_of(subject)
     for name, marker in zip(point_names(markers), markers, strict=True):
-        if name == spot.name:
+        if name == issue.name:
             choose(context, [marker], marker)
 
 

@@ -1,4 +1,4 @@
-"""What an animator chooses for Check."""
+"""Settings of Check."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ from ...solvers.denoising import IssueSettings, QualitySettings
 
 
 class CheckSettings(NamedTuple):
-    """All that the button offers."""
+    """Settings of the button."""
 
     quality: QualitySettings
-    spots: IssueSettings
+    issues: IssueSettings

@@ -1,4 +1,4 @@
-"""Panel: raw and clean together, and the way back."""
+"""Panel: compare raw and clean, and revert."""
 
 import bpy
 

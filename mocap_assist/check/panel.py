@@ -1,4 +1,4 @@
-"""Panel: what is wrong with the action, in figures and place by place."""
+"""Panel: quality figures of the action, and the list of issues."""
 
 import bpy
 
@@ -8,7 +8,7 @@ from ..panels.figures import figure_rows, frames_text
 from ..runtime.selection import played_result, played_source, selected_subject
 from ..scene import history
 
-CHECK, JUMP = "mocap_assist.measure_quality", "mocap_assist.jump_to_spot"
+CHECK, JUMP = "mocap_assist.measure_quality", "mocap_assist.jump_to_issue"
 ICONS = {
     "spike": "IPO_ELASTIC",
     "gap": "REMOVE",
@@ -17,11 +17,11 @@ ICONS = {
     "limit": "CON_ROTLIMIT",
 }
 STALE = 'Results are for "{action}". Run Check again.'
-FEWEST, MOST = 4, 8  # rows of the list
+MIN_ROWS, MAX_ROWS = 4, 8
 
 
-class MOCAP_UL_spots(bpy.types.UIList):
-    """Worst spots; a click on one goes there."""
+class MOCAP_UL_issues(bpy.types.UIList):
+    """Worst issues; a click jumps to the issue."""
 
     def draw_item(
         self, context, layout, data, item, icon, active_data, active_property, index
@@ -36,7 +36,7 @@ class MOCAP_UL_spots(bpy.types.UIList):
 
 
 class CheckPanel:
-    """Figures before and after, and the worst spots."""
+    """Figures before and after, and the worst issues."""
 
     bl_label = "Check"
 
@@ -45,15 +45,15 @@ class CheckPanel:
         return exists(CHECK)
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout, found = self.layout, context.scene.mocap_assist
+        layout, shown = self.layout, context.scene.mocap_assist
         draw_job(layout, context, "check")
         row = layout.row()
         row.scale_y = 1.3
         row.operator(CHECK, icon="VIEWZOOM")
         _draw_figures(layout, context)
-        if found.spots:
-            _draw_spots(layout, context)
-        _draw_thresholds(layout, found.check)
+        if shown.issues:
+            _draw_issues(layout, context)
+        _draw_thresholds(layout, shown.check)
 
 
 def _draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -71,21 +71,21 @@ def _draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
         values.label(text=after)
 
 
-def _draw_spots(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    found = context.scene.mocap_assist
-    rows = min(max(len(found.spots), FEWEST), MOST)
+def _draw_issues(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    shown = context.scene.mocap_assist
+    rows = min(max(len(shown.issues), MIN_ROWS), MAX_ROWS)
     layout.template_list(
-        "MOCAP_UL_spots", "", found, "spots", found, "active_spot", rows=rows, maxrows=rows
+        "MOCAP_UL_issues", "", shown, "issues", shown, "active_issue", rows=rows, maxrows=rows
     )
     row = layout.row(align=True)
     row.operator(JUMP, text="Previous", icon="TRIA_LEFT").step = -1
     row.operator(JUMP, text="Next", icon="TRIA_RIGHT").step = 1
-    if 0 <= found.active_spot < len(found.spots):
-        draw_sentence(layout, context, found.spots[found.active_spot].sentence)
+    if 0 <= shown.active_issue < len(shown.issues):
+        draw_sentence(layout, context, shown.issues[shown.active_issue].sentence)
     subject = selected_subject(context)
-    if subject is not None and is_stale(found.checked, subject):
-        said = bpy.app.translations.pgettext_iface(STALE).format(action=found.checked)
-        draw_sentence(layout, context, said, icon="INFO")
+    if subject is not None and is_stale(shown.checked, subject):
+        message = bpy.app.translations.pgettext_iface(STALE).format(action=shown.checked)
+        draw_sentence(layout, context, message, icon="INFO")
 
 
 def is_stale(checked: str, subject: bpy.types.Object) -> bool:

@@ -1,4 +1,4 @@
-"""The way back from a result to the action that was recorded."""
+"""Revert from a result to the recorded action."""
 
 import bpy
 
@@ -8,19 +8,19 @@ from ..scene import history
 
 
 def why_not_revert(context: bpy.types.Context) -> str:
-    """Return why the button is grey, or nothing."""
+    """Return why the selection cannot be reverted, or an empty text."""
     subject = selected_subject(context)
     if subject is None:
         return "Select an animated armature or marker set."
     if played_result(subject) is None:
         return (
-            f"{subject.name} plays no result of Mocap Assist whose raw action is in this file."
+            f"{subject.name} plays no result of Mocap Assist with its raw action in this file."
         )
     return ""
 
 
 def revert(subject: bpy.types.Object) -> str:
-    """Let an armature, or each of the markers below an object, play what was recorded."""
+    """Assign the recorded action to an armature, or to each of the markers below an object."""
     result, _ = played_result(subject)
     raw, _ = history.raw_of(result)
     for player in animated_objects(subject):
@@ -30,14 +30,14 @@ def revert(subject: bpy.types.Object) -> str:
 
 
 def _revert(player: bpy.types.Object, result: bpy.types.Action, slot: object) -> None:
-    """Assign the recorded action and slot again; NLA tracks of results made from it go."""
+    """Assign the recorded action and slot; remove NLA tracks of its results."""
     raw = history.raw_of(result, slot)
     tracks = player.animation_data.nla_tracks
     for track in list(tracks):
-        made_from = [
+        sources = [
             strip.action and history.raw_of(strip.action, strip.action_slot)
             for strip in track.strips
         ]
-        if made_from == [raw] and not track.mute:
+        if sources == [raw] and not track.mute:
             tracks.remove(track)
     compat.assign(player, *raw)

@@ -1,4 +1,4 @@
-"""What the button Check has solved for it."""
+"""Solve of the button Check."""
 
 from dataclasses import dataclass
 
@@ -19,22 +19,22 @@ from ...solvers.progress import Progress, unwatched, within
 
 @dataclass(frozen=True, eq=False)
 class Checked:
-    """What is wrong with a take, in all and place by place."""
+    """Quality figures of a take, and its issues."""
 
     quality: Quality
-    spots: tuple[Issue, ...]
+    issues: tuple[Issue, ...]
 
 
 def check(
     body: Motion | Tracks,
     settings: QualitySettings,
-    spots: IssueSettings,
+    issues: IssueSettings,
     *,
     contacts: NDArray[np.bool_] | None,
     limits: JointLimits | None,
     progress: Progress = unwatched,
 ) -> Checked:
-    """Measure a body or its markers and list the worst spots."""
+    """Measure a body or its markers and list the worst issues."""
     quality = measure_quality(
         body,
         settings=settings,
@@ -42,7 +42,7 @@ def check(
         limits=limits,
         progress=within(progress, 0.0, 0.9),
     )
-    found = find_worst_issues(
-        body, quality, settings=spots, progress=within(progress, 0.9, 1.0)
+    worst = find_worst_issues(
+        body, quality, settings=issues, progress=within(progress, 0.9, 1.0)
     )
-    return Checked(quality, found)
+    return Checked(quality, worst)

@@ -28,7 +28,7 @@ class ArmatureReading(NamedTuple):
     armature: bpy.types.Object
     recorded: Source
     played: Source
-    """What the armature plays: the recorded action, or an earlier result made from it."""
+    """Action of the armature: the recorded one, or an earlier result made from it."""
     raw: ArmatureTake
     chosen: frozenset[str]
 
@@ -46,13 +46,13 @@ class ArmatureReading(NamedTuple):
         return cls(scene, armature, history.cleaned_from(played), played, raw, bones)
 
     def limits(self, choices: CleanChoices) -> JointLimits | None:
-        """Return how far the rig lets joints turn, if that was asked for."""
+        """Return the rig's joint limits, if the settings use them."""
         if choices.joint_limits is not Limits.CONSTRAINTS:
             return None
         return read_limits(self.armature, self.raw, self.chosen)
 
     def contacts(self) -> NDArray[np.bool_] | None:
-        """Return when each foot stands, as the animator keyed it."""
+        """Return the contacts of each foot as keyed by the animator."""
         return animators_contacts(self.played, self.raw.frames)
 
     def present(self) -> Steps[Recordings | None]:

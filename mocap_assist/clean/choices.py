@@ -28,9 +28,9 @@ class Prior(Choice):
 
 
 class Limits(Choice):
-    """How far joints may turn."""
+    """Limits of joint rotations."""
 
-    NONE = "none", "Let joints turn as far as they were recorded"
+    NONE = "none", "Do not limit the recorded joint rotations"
     CONSTRAINTS = (
         "constraints",
         "Keep joints within the Limit Rotation constraints of their bones",
@@ -45,7 +45,7 @@ class Limits(Choice):
 
 @dataclass(frozen=True, kw_only=True)
 class CleanChoices(Settings):
-    """What is cleaned, by what, and where the result goes."""
+    """Scope, motion model and output of Clean."""
 
     bones: Bones = setting(
         Bones.ALL,
@@ -54,7 +54,7 @@ class CleanChoices(Settings):
     frame_range: FrameRange = setting(FrameRange.ACTION, "Frames of the action to change")
     prior: Prior = setting(
         Prior.TAKE,
-        "Source of the motion model that says how this body moves naturally",
+        "Source of the model of natural motion",
         label="Motion Model",
     )
     examples: str = setting(
@@ -83,7 +83,7 @@ class CleanChoices(Settings):
 
 
 class CleanSettings(NamedTuple):
-    """All that the button offers."""
+    """Settings of the button."""
 
     choices: CleanChoices
     denoising: DenoiseSettings

@@ -1,4 +1,4 @@
-"""What the button Clean reads from the scene, and what it writes back."""
+"""Clean: read the scene and write the result."""
 
 from dataclasses import replace
 from functools import partial
@@ -27,7 +27,7 @@ from .markers import MarkerReading
 from .report import clean_report, entry_of
 from .solve_cleaning import Cleaned, Examples, Finish, Problem, Recordings, clean, names_of
 
-UNSURE = 0.5  # confidence below which a key counts as generated
+LOW_CONFIDENCE = 0.5  # confidence below which a key counts as generated
 EASE = 5  # frames over which a cleaned range joins the frames outside it
 
 
@@ -63,17 +63,16 @@ def write_cleaned(
     subject: bpy.types.Object,
     settings: CleanSettings,
     cleaned: Cleaned,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> Steps[str]:
-    """Write the result as a new action and put it to use; return a sentence about it.
+    """Write the result as a new action and assign it; return a message.
 
-    Raises InvalidMotionError if the subject plays something else than what was `asked`, a
-    fingerprint of the problem.
+    Raises InvalidMotionError if the subject plays another motion than the one that was solved.
     """
     here = Subject.of(scene, subject)
     examples, found = yield from _read(here, settings.choices)
     problem = _problem(found.raw, settings, examples)
-    check_unchanged(here.find()[1], asked, problem)
+    check_unchanged(here.find()[1], solved_digest, problem)
     redo.remember(problem, cleaned.solution)
     types = key_types(cleaned.solution.recordings, cleaned.solution.denoised)
     entry = entry_of("denoise", settings, cleaned)
@@ -87,9 +86,9 @@ def key_types(
     """Paint the keys of each bone: what was filled or corrected is GENERATED, the rest not."""
     types: dict[str, NDArray[np.uint8]] = {}
     for recording, result in zip(recordings, denoised, strict=True):
-        seen = recording.visible if isinstance(recording, Tracks) else recording.observed
-        unsure = ~seen | result.outliers | (result.confidence < UNSURE)
-        for name, flags in zip(names_of(recording), unsure.T, strict=True):
+        observed = recording.visible if isinstance(recording, Tracks) else recording.observed
+        flagged = ~observed | result.outliers | (result.confidence < LOW_CONFIDENCE)
+        for name, flags in zip(names_of(recording), flagged.T, strict=True):
             painted = np.where(flags, GENERATED, MEASURED).astype(np.uint8)
             types[name] = np.maximum(painted, types.get(name, MEASURED))
     return types
@@ -128,7 +127,7 @@ def _problem(
 
 
 def ease_of(grid: Grid) -> NDArray[np.float64]:
-    """Rise from 0 and fall to 0 where the action goes on before or after the cleaned frames."""
+    """Return weights that rise from 0 and fall to 0 where the action continues outside."""
     n_frames = len(grid.frames)
     ramp = np.minimum((np.arange(n_frames) + 1.0) / (EASE + 1.0), 1.0)
     before, after = grid.joins

@@ -1,4 +1,4 @@
-"""The list of clean actions and recordings to learn from, and the ways to fill it."""
+"""List of clean actions and recordings to learn from, and operators to fill it."""
 
 from pathlib import Path
 from typing import Any, ClassVar
@@ -17,7 +17,7 @@ CLEAN, RECONSTRUCT = "clean", "reconstruct"
 """Whose list it is: a property of `scene.mocap_assist`."""
 RECORDINGS = "*.bvh;*.amc;*.c3d;*.trc;*.blend"
 CHANGES_A_LIST = {"INTERNAL", "UNDO"}
-LONGEST_MENU = 30
+MAX_MENU_ENTRIES = 30
 
 
 def draw_examples(
@@ -60,7 +60,7 @@ class MOCAP_MT_examples(bpy.types.Menu):
 
 
 class MOCAP_MT_posture_examples(bpy.types.Menu):
-    """The same, of which postures are learned."""
+    """Examples for the pose library."""
 
     bl_label = "Add Clip"
 
@@ -69,7 +69,7 @@ class MOCAP_MT_posture_examples(bpy.types.Menu):
 
 
 def _draw_menu(layout: bpy.types.UILayout, context: bpy.types.Context, group: str) -> None:
-    for name in candidates(context, group)[:LONGEST_MENU]:
+    for name in candidates(context, group)[:MAX_MENU_ENTRIES]:
         button = layout.operator(ADD, text=name, translate=False, icon="ACTION")
         button.example, button.group = name, group
     layout.separator()
@@ -90,7 +90,7 @@ def _set_examples(context: bpy.types.Context, group: str, entries: list[str]) ->
 
 
 def _group() -> Any:
-    """Return a property that says whose list is meant."""
+    """Return a property that selects the list."""
     return bpy.props.StringProperty(default=CLEAN, options={"HIDDEN", "SKIP_SAVE"})
 
 
@@ -124,7 +124,7 @@ class MOCAP_OT_remove_example(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         entries = enumerate(_examples(context, self.group))
-        kept = [name for place, name in entries if place != self.index]
+        kept = [name for index, name in entries if index != self.index]
         return _set_examples(context, self.group, kept)
 
 

@@ -20,14 +20,14 @@ from .choices import CleanChoices, Prior
 from .solve_cleaning import Examples
 
 LINKED_AT_ONCE = 8
-"""Actions of another file; how many of them are read before Blender has a turn, time says."""
+"""Actions that are linked from another file at once."""
 
 
 @Sliced
 def read_prior(
     scene: bpy.types.Scene, armature: bpy.types.Object, choices: CleanChoices
 ) -> Steps[Examples]:
-    """Return what is to be learned from, if anything; see `read_examples`."""
+    """Return the examples to learn from, or None; see `read_examples`."""
     if choices.prior is Prior.TAKE:
         return Examples()
     if choices.prior is Prior.LEARNED:
@@ -48,7 +48,7 @@ def read_examples(
     Raises
     ------
     InvalidMotionError
-        Nothing was picked, or what was picked does not exist or fits no armature.
+        No example was picked, or one does not exist or fits no armature.
     """
     names = split_names(examples)
     if not names:
@@ -90,7 +90,7 @@ def _recordings_of(path: Path) -> Steps[list[Path]]:
 
 
 def _who_may_fit(scene: bpy.types.Scene, asking: bpy.types.Object) -> list[bpy.types.Object]:
-    """Return the armatures of a scene, first the one for which examples are asked."""
+    """Return the armatures of a scene, first the one that needs the examples."""
     armatures = [each for each in scene.objects if each.type == "ARMATURE"]
     return [*[each for each in (asking,) if each.type == "ARMATURE"], *armatures]
 
@@ -137,7 +137,7 @@ def _read_blend(here: Subject, path: Path) -> Steps[list[Motion]]:
 
 
 def _read_linked(here: Subject, clips: Linked, waiting: list[str]) -> list[Motion]:
-    """Read actions until Blender is due a turn, but one at least; take them from `waiting`."""
+    """Read at least one action of `waiting`, and more until the time slice ends."""
     scene, _ = here.find()
     motions = []
     for action in clips.actions:
@@ -156,8 +156,8 @@ def _player(
 ) -> tuple[bpy.types.Object, bpy.types.ActionSlot] | None:
     """Return the armature that plays an action, or the first that fits, and the slot for it."""
     players = [each for each in armatures if plays(each, action)]
-    for other in [*players, *armatures]:
+    for armature in [*players, *armatures]:
         for slot in action.slots:
-            if slot.target_id_type in compat.TARGETS and fits(other, action, slot):
-                return other, slot
+            if slot.target_id_type in compat.TARGETS and fits(armature, action, slot):
+                return armature, slot
     return None

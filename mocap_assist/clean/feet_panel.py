@@ -1,4 +1,4 @@
-"""Panel: when each foot stands, as keys that the animator can edit."""
+"""Panel: contacts of the feet as editable keys."""
 
 from typing import ClassVar
 

@@ -29,7 +29,7 @@ class LearnChoices(Settings):
 
 
 class LearnSettings(NamedTuple):
-    """All that the button offers."""
+    """Settings of the button."""
 
     choices: LearnChoices
     bases: FilterBasesSettings
@@ -39,7 +39,7 @@ class LearnSettings(NamedTuple):
 def read_learning(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: LearnSettings
 ) -> "Steps[partial[FilterBases]]":
-    """Read the examples; return what is to be solved, which may be pickled."""
+    """Read the examples; return the picklable solve."""
     target_of(settings)
     examples = yield from read_examples.steps(scene, armature, settings.choices.examples)
     return partial(learn, examples, settings.bases)
@@ -50,7 +50,7 @@ def write_learned(
     armature: bpy.types.Object,
     settings: LearnSettings,
     bases: FilterBases,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> str:
     """Save what was learned; return a sentence about it."""
     target = target_of(settings)

@@ -62,9 +62,9 @@ class MarkerReading(NamedTuple):
         played = read_markers(self.holder, self.scene, grid=self.raw.grid)
         take = played.with_recordings(cleaned.recordings)
         names = set()
-        for marker, source, made in write_markers(take, cleaned.moved, types):
-            if made[0].name not in names:
-                history.record(made[0], source, entry)
-            names.add(made[0].name)
-            put_to_use(marker, *made, choices.result_as)
+        for marker, source, source_new in write_markers(take, cleaned.moved, types):
+            if source_new[0].name not in names:
+                history.record(source_new[0], source, entry)
+            names.add(source_new[0].name)
+            put_to_use(marker, *source_new, choices.result_as)
         return ", ".join(sorted(names)), 0

@@ -1,4 +1,4 @@
-"""What the button Plant Feet reads from the scene, and what it writes back."""
+"""Plant Feet: read the scene and write the result."""
 
 from functools import partial
 from typing import NamedTuple
@@ -21,7 +21,7 @@ N_QUICK = 5000
 
 
 class FeetSettings(NamedTuple):
-    """All that the button offers."""
+    """Settings of the button."""
 
     planting: PlantSettings
 
@@ -30,7 +30,7 @@ class FeetSettings(NamedTuple):
 def read_planting(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: FeetSettings
 ) -> "Steps[partial[Replanted]]":
-    """Read what an armature plays; return what is to be solved, which may be pickled."""
+    """Read what an armature plays; return the picklable solve."""
     check_writable(armature)
     here = Subject.of(scene, armature)
     take = yield from read_take.steps(armature, scene, source=played_source(armature))
@@ -46,16 +46,16 @@ def write_planted(
     armature: bpy.types.Object,
     settings: FeetSettings,
     result: Replanted,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> Steps[str]:
-    """Write the result as a new action and put it to use; return a sentence about it."""
+    """Write the result as a new action and assign it; return a message."""
     here = Subject.of(scene, armature)
     take = yield from read_take.steps(armature, scene, source=played_source(armature))
     scene, armature = here.find()
     played, planted = played_source(armature), result.planted
-    body, *others = take.recordings
-    check_unchanged(armature, asked, body)
-    take = take.with_recordings((planted.motion, *others))
+    body, *other_trees = take.recordings
+    check_unchanged(armature, solved_digest, body)
+    take = take.with_recordings((planted.motion, *other_trees))
     action, slot = write_take(armature, played, take, result.moved, {})
     detected = animators_contacts(played, take.frames) is None
     write_contacts(armature, action, slot, take.frames, planted.contacts, detected=detected)

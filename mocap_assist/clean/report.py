@@ -1,4 +1,4 @@
-"""What Clean says about its result: in the status bar, and in the action's history."""
+"""Report of Clean for the status bar, and its entry in the action's history."""
 
 from typing import Any
 

@@ -37,7 +37,7 @@ from ..library.solve_prior import LibraryPrior
 Array = NDArray[np.float64]
 Recordings = tuple[Motion | Tracks, ...]
 
-SAME = 1e-6  # radians or metres below which planting did not move a joint
+MIN_CHANGE = 1e-6  # radians or meters; smaller changes by planting are ignored
 
 
 class Learned(NamedTuple):
@@ -45,13 +45,13 @@ class Learned(NamedTuple):
 
     bases: FilterBases | None
     limits: JointLimits | None
-    said: str = ""
-    """A sentence on where it is from, if there is more to say than what was chosen."""
+    message: str = ""
+    """Source of the prior, if it differs from the setting."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Examples:
-    """Where clean motion to learn from comes from; with nothing given, the take itself."""
+    """Source of clean motion to learn from; by default the take itself."""
 
     motions: tuple[Motion, ...] = ()
     files: tuple[str, ...] = ()
@@ -82,7 +82,7 @@ class Problem:
     settings: DenoiseSettings
     examples: Examples = Examples()
     learn_limits: bool = False
-    """Whether the examples also teach how far joints turn."""
+    """Whether joint limits are learned from the examples too."""
     unswap: bool = False
     """Whether labels of markers are put right first."""
 
@@ -94,17 +94,17 @@ class Finish:
     strength: float
     """Share of the estimate, 0 to 1; gaps are filled with it all the same."""
     ease: Array
-    """Shape (n_frames,): 1, and less where the cleaned frames join others."""
+    """Blend weights, shape (n_frames,): below 1 only next to frames outside the range."""
     chosen: frozenset[str]
     """Names of joints and points to change."""
     present: Recordings | None = None
-    """What an earlier result made of the others; without it they are as recorded."""
+    """Earlier result for the other joints; None keeps them as recorded."""
     limits: JointLimits | None = None
     """Of the rig."""
     planting: PlantSettings | None = None
     """None leaves the feet alone."""
     contacts: NDArray[np.bool_] | None = None
-    """When each foot stands, shape (n_frames, 2), as the animator keyed it."""
+    """Contacts of the feet, shape (n_frames, 2), as keyed by the animator."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +113,7 @@ class Solution:
 
     denoised: tuple[Denoised, ...]
     limits: JointLimits | None
-    """How far joints turn in the examples."""
+    """Joint limits of the examples."""
     recordings: Recordings
     """As they were, but for labels that were put right."""
     swaps: tuple[Swap, ...] = ()
@@ -121,7 +121,7 @@ class Solution:
 
 @dataclass(frozen=True, eq=False)
 class Cleaned:
-    """What is to be written, and what there is to say about it."""
+    """Recordings to write, and figures to report."""
 
     recordings: Recordings
     moved: frozenset[str]
@@ -140,7 +140,7 @@ def names_of(recording: Motion | Tracks) -> tuple[str, ...]:
 
 def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
     """Denoise the body by what the examples teach, and all else by what the take teaches."""
-    body, *others = problem.recordings
+    body, *other_trees = problem.recordings
     swaps: tuple[Swap, ...] = ()
     if problem.unswap and isinstance(body, Tracks):
         unswapped = unswap_markers(body, progress=within(progress, 0.0, 0.2))
@@ -154,11 +154,16 @@ def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
         settings=settings,
         progress=within(progress, 0.3, 0.8),
     )
-    results = [replace(result, prior_used=f"{learned.said} {result.prior_used}".strip())]
-    for index, recording in enumerate(others):
-        share = (0.8 + 0.2 * index / len(others), 0.8 + 0.2 * (index + 1) / len(others))
-        results.append(denoise(recording, settings=settings, progress=within(progress, *share)))
-    return Solution(tuple(results), learned.limits, (body, *others), swaps)
+    results = [replace(result, prior_used=f"{learned.message} {result.prior_used}".strip())]
+    for index, recording in enumerate(other_trees):
+        weight = (
+            0.8 + 0.2 * index / len(other_trees),
+            0.8 + 0.2 * (index + 1) / len(other_trees),
+        )
+        results.append(
+            denoise(recording, settings=settings, progress=within(progress, *weight))
+        )
+    return Solution(tuple(results), learned.limits, (body, *other_trees), swaps)
 
 
 def clean(
@@ -176,7 +181,7 @@ def clean(
     if solution is None:
         solution = solve(problem, progress=within(progress, 0.0, 0.8))
     estimates = [each.recording for each in solution.denoised]
-    body, *others = map(
+    body, *other_trees = map(
         partial(_mixed, finish=finish),
         solution.recordings,
         finish.present or solution.recordings,
@@ -195,7 +200,7 @@ def clean(
         measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.05))
         for each, start in ((problem.recordings[0], 0.9), (body, 0.95))
     )
-    return Cleaned((body, *others), moved, solution, planted, before, after)
+    return Cleaned((body, *other_trees), moved, solution, planted, before, after)
 
 
 def _planted(body: Motion | Tracks, finish: Finish, progress: Progress) -> Planted | None:
@@ -212,35 +217,38 @@ def _planted(body: Motion | Tracks, finish: Finish, progress: Progress) -> Plant
 def _mixed(
     raw: Motion | Tracks, present: Motion | Tracks, clean: Motion | Tracks, finish: Finish
 ) -> Motion | Tracks:
-    """Go from the recording towards the estimate; where nothing was recorded, all the way."""
+    """Blend from the recording to the estimate; gaps take the estimate alone."""
     chosen = np.array([name in finish.chosen for name in names_of(raw)])
-    share = finish.strength * finish.ease[:, None] * chosen
+    weight = finish.strength * finish.ease[:, None] * chosen
     if isinstance(raw, Tracks):
         start = np.where(chosen[:, None], raw.positions, present.positions)
-        known = np.isfinite(start).all(axis=-1, keepdims=True)
-        start = np.where(known, start, clean.positions)
-        return clean.with_positions(start + share[..., None] * (clean.positions - start))
-    turns = np.where(chosen[:, None], raw.rotations, present.rotations)
-    place = raw.root_positions if chosen[0] else present.root_positions
+        observed = np.isfinite(start).all(axis=-1, keepdims=True)
+        start = np.where(observed, start, clean.positions)
+        return clean.with_positions(start + weight[..., None] * (clean.positions - start))
+    rotations = np.where(chosen[:, None], raw.rotations, present.rotations)
+    root_positions = raw.root_positions if chosen[0] else present.root_positions
     start = clean.with_poses(
-        _first_known(turns, clean.rotations), _first_known(place, clean.root_positions)
+        _fill_missing(rotations, clean.rotations),
+        _fill_missing(root_positions, clean.root_positions),
     )
-    return toward(start, clean, share)
+    return toward(start, clean, weight)
 
 
-def toward(start: Motion, stop: Motion, share: Array) -> Motion:
-    """Turn and shift by a share, shape (n_frames, n_joints or 1), of the way."""
-    moved = start.root_positions + share[:, :1] * (stop.root_positions - start.root_positions)
-    return start.with_poses(slerp(start.rotations, stop.rotations, share), moved)
+def toward(start: Motion, stop: Motion, weight: Array) -> Motion:
+    """Blend two motions by a weight, shape (n_frames, n_joints or 1)."""
+    moved = start.root_positions + weight[:, :1] * (stop.root_positions - start.root_positions)
+    return start.with_poses(slerp(start.rotations, stop.rotations, weight), moved)
 
 
-def _first_known(values: Array, otherwise: Array) -> Array:
+def _fill_missing(values: Array, otherwise: Array) -> Array:
     return np.where(np.isfinite(values).all(axis=-1, keepdims=True), values, otherwise)
 
 
 def differing(before: Motion, after: Motion) -> frozenset[str]:
-    """Names of the joints that were turned or, the root, shifted."""
-    turned = np.abs(angle_between(before.rotations, after.rotations)).max(axis=0) > SAME
-    turned[0] |= np.abs(before.root_positions - after.root_positions).max() > SAME
+    """Return the names of the joints that rotated, or of the root if it moved."""
+    changed = np.abs(angle_between(before.rotations, after.rotations)).max(axis=0) > MIN_CHANGE
+    changed[0] |= np.abs(before.root_positions - after.root_positions).max() > MIN_CHANGE
     names = before.skeleton.names
-    return frozenset(name for name, turns in zip(names, turned, strict=True) if turns)
+    return frozenset(
+        name for name, is_changed in zip(names, changed, strict=True) if is_changed
+    )

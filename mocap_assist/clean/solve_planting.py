@@ -13,7 +13,7 @@ from .solve_cleaning import differing
 
 @dataclass(frozen=True, eq=False)
 class Replanted:
-    """A motion whose feet stand, and the names of the joints that moved for it."""
+    """Motion with planted feet, and the names of the joints that moved."""
 
     planted: Planted
     moved: frozenset[str]

@@ -5,16 +5,18 @@ import bpy
 NAME = "Depth Points"
 MADE = "mocap_assist_depth_points"
 """Custom property of the node group, whatever it is called meanwhile."""
-RADIUS = 0.006  # metres
+RADIUS = 0.006  # meters
 
 
-def point_nodes(seen: str) -> bpy.types.NodeTree:
-    """Return the node group that turns vertices into points, those alone that are `seen`."""
-    known = next((each for each in bpy.data.node_groups if each.get(MADE) == seen), None)
-    if known is not None and known.library is None:
-        return known
+def point_nodes(attribute_name: str) -> bpy.types.NodeTree:
+    """Return the node group that shows vertices with the attribute as points."""
+    existing = next(
+        (each for each in bpy.data.node_groups if each.get(MADE) == attribute_name), None
+    )
+    if existing is not None and existing.library is None:
+        return existing
     tree = bpy.data.node_groups.new(NAME, "GeometryNodeTree")
-    tree[MADE] = seen
+    tree[MADE] = attribute_name
     for direction in ("INPUT", "OUTPUT"):
         tree.interface.new_socket(
             "Geometry", in_out=direction, socket_type="NodeSocketGeometry"
@@ -25,13 +27,13 @@ def point_nodes(seen: str) -> bpy.types.NodeTree:
     )
     attribute = tree.nodes.new("GeometryNodeInputNamedAttribute")
     attribute.data_type = "BOOLEAN"
-    attribute.inputs["Name"].default_value = seen
+    attribute.inputs["Name"].default_value = attribute_name
     points.inputs["Radius"].default_value = RADIUS
-    for place, node in enumerate((given, points, made)):
-        node.location = (220.0 * place, 0.0)
+    for column, node in enumerate((given, points, made)):
+        node.location = (220.0 * column, 0.0)
     attribute.location = (0.0, -140.0)
-    said = next(socket for socket in attribute.outputs if socket.enabled)
+    selection = next(socket for socket in attribute.outputs if socket.enabled)
     tree.links.new(given.outputs[0], points.inputs["Mesh"])
-    tree.links.new(said, points.inputs["Selection"])
+    tree.links.new(selection, points.inputs["Selection"])
     tree.links.new(points.outputs[0], made.inputs[0])
     return tree

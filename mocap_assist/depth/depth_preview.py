@@ -27,38 +27,39 @@ from .depth_points import point_nodes
 logger = logging.getLogger(__name__)
 
 KEY = "mocap_assist_depth"
-"""Custom property of a mesh: which recording it shows, and when, as JSON."""
+"""Custom property of a mesh: its recording and timing, as JSON."""
 PROBLEM = "mocap_assist_depth_problem"
-"""Custom property of a mesh: why it shows nothing."""
-SEEN = "seen"
-"""Attribute of a point: whether the camera saw anything there."""
+"""Custom property of a mesh: why it shows no points."""
+OBSERVED = "seen"
+"""Attribute of a point: whether the camera measured a depth there."""
 NOT_ALLOWED = (
     "This file shows a depth recording that has not been opened on this machine yet."
     " Press Show Points."
 )
-MOST_POINTS = 20_000
+MAX_POINTS = 20_000
 N_SAMPLES = 5
-N_OPEN = 4
-"""Pictures that tell how much is seen, and recordings that are kept open."""
+"""Depth images that estimate the number of observed points."""
+MAX_OPEN = 4
+"""Recordings that are kept open."""
 
 
 @dataclass(frozen=True)
 class Shown:
-    """What a preview shows: a recording, its first frame, and frames between two pictures."""
+    """Recording of a preview, its first scene frame, and scene frames per depth image."""
 
     path: str
     settings: DepthSettings
     start: float
     step: float
     every: int
-    """Of the columns and rows of a picture, every so many are points."""
+    """Step between the columns and rows of an image that become points."""
 
     def write(self, mesh: bpy.types.Mesh) -> None:
-        """Keep this with a mesh."""
-        store_json(mesh, KEY, self.told())
+        """Store this in a mesh."""
+        store_json(mesh, KEY, self.as_dict())
 
-    def told(self) -> dict[str, Any]:
-        """Return this as JSON can keep it."""
+    def as_dict(self) -> dict[str, Any]:
+        """Return this as a dictionary for JSON."""
         settings = {
             name: value.name if isinstance(value, Enum) else value
             for name, value in asdict(self.settings).items()
@@ -67,25 +68,25 @@ class Shown:
 
     @classmethod
     def read(cls, mesh: bpy.types.Mesh) -> "Shown":
-        """Return what a mesh shows; raises ValueError, TypeError or KeyError if nothing."""
+        """Return the preview data of a mesh; raises ValueError, TypeError or KeyError."""
         return cls.of(load_json(mesh, KEY, dict))
 
     @classmethod
-    def of(cls, told: dict[str, Any]) -> "Shown":
-        """Undo `told`; raises ValueError, TypeError or KeyError where that is no preview."""
-        settings = {**told["settings"], "held": CameraOrientation[told["settings"]["held"]]}
-        start, step, every = float(told["start"]), float(told["step"]), int(told["every"])
+    def of(cls, data: dict[str, Any]) -> "Shown":
+        """Invert `as_dict`; raises ValueError, TypeError or KeyError for invalid data."""
+        settings = {**data["settings"], "held": CameraOrientation[data["settings"]["held"]]}
+        start, step, every = float(data["start"]), float(data["step"]), int(data["every"])
         if not (isfinite(start) and isfinite(step) and step > 0.0 and every > 0):
             raise ValueError(f"start {start}, step {step}, every {every}")
-        return cls(str(told["path"]), DepthSettings(**settings), start, step, every)
+        return cls(str(data["path"]), DepthSettings(**settings), start, step, every)
 
-    def picture(self, frame: float, n_frames: int) -> int:
-        """Return which picture is shown at a frame of the scene; before and after, the ends."""
+    def image_at(self, frame: float, n_frames: int) -> int:
+        """Return the index of the image at a scene frame, clamped to the recording."""
         return round(np.clip((frame - self.start) / self.step, 0, n_frames - 1))
 
-    def frame(self, picture: int) -> float:
-        """Return the frame of the scene at which a picture is shown."""
-        return self.start + self.step * picture
+    def frame(self, image: int) -> float:
+        """Return the scene frame of an image."""
+        return self.start + self.step * image
 
 
 def build_preview(
@@ -93,12 +94,12 @@ def build_preview(
     name: str,
     recording: DepthRecording,
     shown: Shown,
-    place: Floor,
+    camera_floor: Floor,
     scale: float,
 ) -> bpy.types.Object:
-    """Add a cloud of points that plays as the recording does, and make it active.
+    """Add an animated point cloud of a recording, and make it active.
 
-    Its own space is the camera's: x to the right, y down, z forward, in metres.
+    Its space is the camera's: x to the right, y down, z forward, in meters.
 
     Parameters
     ----------
@@ -107,73 +108,73 @@ def build_preview(
     recording : DepthRecording
         Read from `shown.path` with `shown.settings`.
     shown : Shown
-    place : Floor
-        Tells where the camera stood.
-    scale : units of the scene in a metre
+    camera_floor : Floor
+        Defines the pose of the camera.
+    scale : scene units per meter
     """
     in_object_mode(context)
     mesh = bpy.data.meshes.new(fitting_name(name))
     camera = recording.camera.every(shown.every)
-    mesh.vertices.add(min(camera.width * camera.height, MOST_POINTS))
-    mesh.attributes.new(SEEN, "BOOLEAN", "POINT")
-    made = bpy.data.objects.new(fitting_name(name), mesh)
-    turn, shift = place.world_from_camera()
+    mesh.vertices.add(min(camera.width * camera.height, MAX_POINTS))
+    mesh.attributes.new(OBSERVED, "BOOLEAN", "POINT")
+    preview = bpy.data.objects.new(fitting_name(name), mesh)
+    rotation, translation = camera_floor.world_from_camera()
     matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = scale * turn, scale * shift
-    made.matrix_world = Matrix(matrix.tolist())
-    made.modifiers.new("Points", "NODES").node_group = point_nodes(SEEN)
+    matrix[:3, :3], matrix[:3, 3] = scale * rotation, scale * translation
+    preview.matrix_world = Matrix(matrix.tolist())
+    preview.modifiers.new("Points", "NODES").node_group = point_nodes(OBSERVED)
     shown.write(mesh)
-    add_object(context, made)
+    add_object(context, preview)
     _show(mesh, context.scene.frame_current_final)
-    return made
+    return preview
 
 
 def previews() -> list[bpy.types.Mesh]:
-    """Return the meshes of this file that show recordings, and may be changed now."""
+    """Return the meshes of this file that show recordings and can be changed."""
     meshes = [mesh for mesh in bpy.data.meshes if KEY in mesh and mesh.library is None]
     return [mesh for mesh in meshes if not mesh.is_editmode]
 
 
-def problem_of(made: bpy.types.Object) -> str:
-    """Return why a preview shows nothing; empty if it does, or is none."""
-    return str(made.data.get(PROBLEM, "")) if made.type == "MESH" else ""
+def problem_of(preview: bpy.types.Object) -> str:
+    """Return why a preview shows no points; empty if it does, or is no preview."""
+    return str(preview.data.get(PROBLEM, "")) if preview.type == "MESH" else ""
 
 
 def recording_of(mesh: bpy.types.Mesh) -> DepthRecording:
-    """Open the recording that a mesh shows, or return it if it is open.
+    """Return the recording of a mesh, and open it if necessary.
 
-    Raises MocapAssistError where it cannot be read, or the mesh shows none.
+    Raises MocapAssistError if it cannot be read, or the mesh shows no recording.
     """
     return open_recording(shown_by(mesh))
 
 
 def shown_by(mesh: bpy.types.Mesh) -> Shown:
-    """Return what a mesh shows; raises MocapAssistError if nothing."""
+    """Return the preview data of a mesh; raises MocapAssistError if there are none."""
     try:
         return Shown.read(mesh)
     except (ValueError, TypeError, KeyError):
-        raise MocapAssistError(f"{mesh.name} shows no recording of depth.") from None
+        raise MocapAssistError(f"{mesh.name} shows no depth recording.") from None
 
 
 def open_recording(shown: Shown) -> DepthRecording:
-    """Open a recording, or return it if it is open; raises MocapAssistError."""
+    """Return a recording, and open it if necessary; raises MocapAssistError."""
     return _open(shown.path, shown.settings)
 
 
-@lru_cache(maxsize=N_OPEN)
+@lru_cache(maxsize=MAX_OPEN)
 def _open(path: str, settings: DepthSettings) -> DepthRecording:
     return read_depth(absolute(path), settings)
 
 
-@lru_cache(maxsize=N_OPEN)
+@lru_cache(maxsize=MAX_OPEN)
 def _rays(recording: DepthRecording, every: int) -> NDArray[np.float32]:
     return recording.camera.every(every).rays().astype(np.float32)
 
 
-def show_asked(mesh: bpy.types.Mesh, frame: float) -> str:
-    """Show the points of a mesh now and from now on; return a sentence about it.
+def show_on_request(mesh: bpy.types.Mesh, frame: float) -> str:
+    """Show the points of a mesh and permit its recording; return a message.
 
-    Raises MocapAssistError where the recording cannot be read, or the mesh shows none.
+    Raises MocapAssistError if the recording cannot be read, or the mesh shows no recording.
     """
     shown = shown_by(mesh)
     open_recording(shown)
@@ -183,29 +184,29 @@ def show_asked(mesh: bpy.types.Mesh, frame: float) -> str:
 
 
 def cheap_step(recording: DepthRecording) -> int:
-    """Return of how many columns and rows one makes no more points than are cheap to show.
+    """Return the smallest step between columns and rows that gives at most `MAX_POINTS`.
 
-    What counts is what is seen in some pictures: of an actor alone every pixel may be shown.
+    Only observed pixels of a few images count: an actor without background keeps every pixel.
     """
     frames = np.linspace(0, recording.n_frames - 1, N_SAMPLES).astype(int).tolist()
-    pictures = [recording.frame(frame) > 0.0 for frame in frames]
+    masks = [recording.frame(frame) > 0.0 for frame in frames]
     every = 1
-    while max(seen[::every, ::every].sum() for seen in pictures) > MOST_POINTS:
+    while max(mask[::every, ::every].sum() for mask in masks) > MAX_POINTS:
         every += 1
     return every
 
 
 def _show(mesh: bpy.types.Mesh, frame: float) -> None:
-    """Put the points of a mesh where they are at a frame of the scene."""
+    """Move the points of a mesh to their positions at a scene frame."""
     try:
         recording, shown = recording_of(mesh), Shown.read(mesh)
         rays = _rays(recording, shown.every)
-        depth = recording.frame(shown.picture(frame, recording.n_frames))
+        depth = recording.frame(shown.image_at(frame, recording.n_frames))
     except MocapAssistError as error:
         _hide(mesh, str(error))
         return
-    if (seen := _seen_of(mesh)) is None:
-        _hide(mesh, f"{mesh.name} was edited: import the recording again.")
+    if (observed := _observed_attribute(mesh)) is None:
+        _hide(mesh, f"{mesh.name} was edited. Import the recording again.")
         return
     if PROBLEM in mesh:
         del mesh[PROBLEM]
@@ -213,38 +214,43 @@ def _show(mesh: bpy.types.Mesh, frame: float) -> None:
     row, column = np.nonzero(depth)
     n_points = len(mesh.vertices)
     if len(row) > n_points:
-        kept = np.linspace(0, len(row) - 1, n_points).astype(int)
-        row, column = row[kept], column[kept]
+        sampled = np.linspace(0, len(row) - 1, n_points).astype(int)
+        row, column = row[sampled], column[sampled]
     points = np.zeros((n_points, 3), np.float32)
     points[: len(row)] = rays[row, column] * depth[row, column, np.newaxis]
     mesh.attributes["position"].data.foreach_set("vector", points.ravel())
-    seen.data.foreach_set("value", np.arange(n_points) < len(row))
+    observed.data.foreach_set("value", np.arange(n_points) < len(row))
     mesh.update()
 
 
 def _hide(mesh: bpy.types.Mesh, problem: str) -> None:
-    """Show no point, and remember why."""
+    """Hide all points, and store the reason."""
     if mesh.get(PROBLEM) == problem:
         return
     mesh[PROBLEM] = problem
     logger.warning("%s: %s", mesh.name, problem)
-    if _seen_of(mesh) is not None:
-        _seen_of(mesh).data.foreach_set("value", np.zeros(len(mesh.vertices), dtype=bool))
+    if _observed_attribute(mesh) is not None:
+        _observed_attribute(mesh).data.foreach_set(
+            "value", np.zeros(len(mesh.vertices), dtype=bool)
+        )
         mesh.update()
 
 
-def _seen_of(mesh: bpy.types.Mesh) -> bpy.types.BoolAttribute | None:
-    """Return the attribute that says which points are shown; None where it was edited."""
-    found = mesh.attributes.get(SEEN)
-    fits = found is not None and (found.domain, found.data_type) == ("POINT", "BOOLEAN")
-    return found if fits else None
+def _observed_attribute(mesh: bpy.types.Mesh) -> bpy.types.BoolAttribute | None:
+    """Return the attribute of observed points; None if it was edited."""
+    attribute = mesh.attributes.get(OBSERVED)
+    fits = attribute is not None and (attribute.domain, attribute.data_type) == (
+        "POINT",
+        "BOOLEAN",
+    )
+    return attribute if fits else None
 
 
 @handlers.persistent
 def _follow(scene: bpy.types.Scene, *_: object) -> None:
-    """The scene goes to another frame, or a file was loaded: show what was there.
+    """Show the points of the scene's new frame.
 
-    A recording that only the .blend file names stays closed until the animator asks for it.
+    A recording without a permission on this machine stays closed until the animator opens it.
     """
     for mesh in previews():
         if not _is_allowed(mesh):
@@ -259,12 +265,12 @@ def _is_allowed(mesh: bpy.types.Mesh) -> bool:
     try:
         return recording_allowed(shown_by(mesh).path)
     except MocapAssistError:
-        return True  # It names no recording, which is shown as its problem.
+        return True  # It names no recording; `_show` reports that.
 
 
 @handlers.persistent
 def _loaded(*_: object) -> None:
-    """Files may have changed meanwhile."""
+    """Close all recordings, since their files may have changed."""
     _open.cache_clear()
     _rays.cache_clear()
     _follow(bpy.context.scene)
@@ -277,7 +283,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Do so no longer, and close all recordings."""
+    """Stop following, and close all recordings."""
     handlers.load_post.remove(_loaded)
     handlers.frame_change_pre.remove(_follow)
     _open.cache_clear()

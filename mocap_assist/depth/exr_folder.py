@@ -1,6 +1,6 @@
-"""Folders of EXR pictures of depth, such as Blender's own Z pass, made readable for all.
+"""Folders of EXR depth images, for example Blender's Z pass, converted to archives.
 
-Blender reads the pictures; a process without Blender could not. So they are copied once, into
+Only Blender can read the images. They are therefore copied once, into
 an archive in the extension's own folder, which is read like any other recording.
 """
 
@@ -22,8 +22,8 @@ from ...solvers.recordings.depth_files import check_exr, sort_naturally
 
 EXR = ".exr"
 EXTENSION = __package__.rpartition(".mocap_assist")[0]
-FARTHEST = 65_000.0
-"""Units of the picture; Blender writes 10 000 000 000 where nothing is, or the most it can."""
+MAX_DEPTH = 65_000.0
+"""Units of the image; Blender writes 10 000 000 000, or the largest value, for background."""
 
 MAX_COPIES, MAX_COPY_BYTES = 16, 8_000_000_000
 """Copies that are kept: those that were used last, and those that the open file shows."""
@@ -32,7 +32,7 @@ Depth = NDArray[np.float32]
 
 
 def exr_files(folder: Path) -> list[Path]:
-    """Return the EXR pictures in a folder, in their order."""
+    """Return the EXR images in a folder, in their order."""
     if not folder.is_dir():
         return []
     names = [
@@ -46,9 +46,9 @@ def exr_files(folder: Path) -> list[Path]:
 def as_archive(
     folder: Path, camera: Camera, frame_rate: float, progress: Progress = unwatched
 ) -> Path:
-    """Return an archive of the depth in the first channel of the pictures of a folder.
+    """Return an archive of the depth in the first channel of the images of a folder.
 
-    One that was made before from the same pictures is used again. Before another one is made,
+    An existing archive of the same images is reused. Before another one is made,
     those go that were used longest ago, where there are too many (`MAX_COPIES`).
 
     Parameters
@@ -61,7 +61,7 @@ def as_archive(
     Raises
     ------
     InvalidFileError
-        A picture cannot be read, or has another size than the first.
+        An image cannot be read, or has another size than the first.
     SolveCancelled
         Raised by `progress`.
     """
@@ -69,12 +69,12 @@ def as_archive(
     states = [(each.name, each.stat().st_mtime_ns, each.stat().st_size) for each in files]
     key = repr((str(folder.resolve()), states, camera, frame_rate))
     digest = hashlib.sha256(key.encode()).hexdigest()[:16]
-    place = Path(bpy.utils.extension_path_user(EXTENSION, path="depth", create=True))
-    archive = place / digest / f"{folder.name}.npz"
+    archives = Path(bpy.utils.extension_path_user(EXTENSION, path="depth", create=True))
+    archive = archives / digest / f"{folder.name}.npz"
     if archive.is_file():
         archive.touch()
         return archive
-    remove_old_copies(place, MAX_COPIES - 1, MAX_COPY_BYTES)
+    remove_old_copies(archives, MAX_COPIES - 1, MAX_COPY_BYTES)
     archive.parent.mkdir(parents=True, exist_ok=True)
     numbers = {name: getattr(camera, name) for name in ("fx", "fy", "cx", "cy")}
     numbers["frame_rate"] = frame_rate
@@ -93,7 +93,7 @@ def as_archive(
     return archive
 
 
-def remove_old_copies(place: Path, n_copies: int, n_bytes: int) -> None:
+def remove_old_copies(archives: Path, n_copies: int, n_bytes: int) -> None:
     """Remove the copies that were used longest ago, until so many, and so many bytes, are left.
 
     Each is a folder of its own, named by its digest. Those that the open file shows stay.
@@ -104,7 +104,7 @@ def remove_old_copies(place: Path, n_copies: int, n_bytes: int) -> None:
         for value in data.values()
         if isinstance(value, str)
     ]
-    copies = sorted(filter(Path.is_dir, place.iterdir()), key=_last_use, reverse=True)
+    copies = sorted(filter(Path.is_dir, archives.iterdir()), key=_last_use, reverse=True)
     sizes = np.cumsum([sum(file.stat().st_size for file in copy.iterdir()) for copy in copies])
     for number, (copy, size) in enumerate(zip(copies, sizes, strict=True), start=1):
         in_use = any(copy.name in value for value in shown)
@@ -117,7 +117,7 @@ def _last_use(copy: Path) -> float:
 
 
 def size_of(path: Path) -> tuple[int, int]:
-    """Return width and height of a picture; raises InvalidFileError if it cannot be read."""
+    """Return width and height of an image; raises InvalidFileError if it cannot be read."""
     height, width = _picture(path).shape
     return width, height
 
@@ -134,8 +134,8 @@ def _pictures(files: list[Path], shape: tuple[int, ...]) -> Iterator[Depth]:
 
 
 def _picture(path: Path) -> Depth:
-    """Return the first channel, the top row first; 0 where nothing is seen."""
-    check_exr(path)  # Blender unpacks pictures of any size.
+    """Return the first channel, the top row first; 0 for the background."""
+    check_exr(path)  # Blender unpacks images of any size.
     try:
         image = bpy.data.images.load(str(path), check_existing=False)
     except RuntimeError:
@@ -145,7 +145,7 @@ def _picture(path: Path) -> Depth:
         width, height = image.size
         if not (width and height and image.has_data | bool(len(image.pixels))):
             raise InvalidFileError(
-                f"{path} is no picture that Blender can read: it is damaged, or has several"
+                f"{path} is no image that Blender can read: it is damaged, or has several"
                 " layers. Write depth as a file of its own."
             )
         pixels = np.empty(width * height * image.channels, np.float32)
@@ -153,5 +153,5 @@ def _picture(path: Path) -> Depth:
         depth = pixels.reshape(height, width, image.channels)[::-1, :, 0]
     finally:
         bpy.data.images.remove(image)
-    seen = np.isfinite(depth) & (depth > 0.0) & (depth < FARTHEST)
-    return np.where(seen, depth, np.float32(0.0))
+    observed = np.isfinite(depth) & (depth > 0.0) & (depth < MAX_DEPTH)
+    return np.where(observed, depth, np.float32(0.0))

@@ -1,1 +1,1 @@
-"""What is drawn over the 3D Views; nothing of the scene is changed."""
+"""Overlays of the 3D View; they do not change the scene."""

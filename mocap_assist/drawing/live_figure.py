@@ -1,4 +1,4 @@
-"""The actor before the camera, drawn over the 3D View; nothing of the scene is touched."""
+"""Live figure of the actor, drawn over the 3D View; the scene is not changed."""
 
 import bpy
 import numpy as np
@@ -11,14 +11,14 @@ from ..scene.units import unit_of
 from .overlay_drawing import Color, draw_lines
 from .view_drawing import ViewDrawing
 
-FAINT = 0.25
-"""Confidence below which a bone is not drawn."""
-FOOT_LENGTH = 0.05
-"""Metres from the lowest joint to the ground, about."""
+MIN_CONFIDENCE = 0.25
+"""Bones below this confidence are not drawn."""
+ANKLE_HEIGHT_M = 0.05
+"""Approximate height of the lowest joint over the ground."""
 
 
 class LiveFigure:
-    """The figure on the ground at the world's origin, as it was when it was first seen."""
+    """Figure that stands at the world's origin in its first frame."""
 
     def __init__(self, color: Color, width: float) -> None:
         self._color, self._width = color, width
@@ -27,25 +27,25 @@ class LiveFigure:
         self._drawing = ViewDrawing(self._draw)
 
     def show(self, frame: LiveFrame) -> None:
-        """Draw this frame from now on."""
+        """Draw this frame until the next call."""
         if self._origin is None and np.isfinite(frame.positions).any():
             middle = np.nanmean(frame.positions, axis=0)
-            ground = np.nanmin(frame.positions[:, 2]) - FOOT_LENGTH
+            ground = np.nanmin(frame.positions[:, 2]) - ANKLE_HEIGHT_M
             self._origin = np.array([middle[0], middle[1], ground])
         self._frame = frame
 
     def lines(self) -> NDArray[np.float64]:
-        """Return the bones that are seen, shape (n_bones, 2, 3), metres."""
+        """Return the observed bones, shape (n_bones, 2, 3), meters."""
         frame, origin = self._frame, self._origin
         if frame is None or origin is None:
             return np.zeros((0, 2, 3))
         parents = np.array(joint_parents(frame.names))
         ends = np.stack([frame.positions[parents], frame.positions], axis=1) - origin
-        seen = np.isfinite(ends).all(axis=(1, 2)) & (frame.confidence >= FAINT)
-        return np.asarray(ends[seen & (parents >= 0)])
+        observed = np.isfinite(ends).all(axis=(1, 2)) & (frame.confidence >= MIN_CONFIDENCE)
+        return np.asarray(ends[observed & (parents >= 0)])
 
     def remove(self) -> None:
-        """Draw nothing any more; again does nothing."""
+        """Remove the figure; a second call has no effect."""
         self._drawing.close()
 
     def _draw(self, context: bpy.types.Context) -> None:

@@ -1,4 +1,4 @@
-"""Places and trails of a take's markers, raw and clean, as plain arrays."""
+"""Positions and trails of a take's markers, raw and clean, as plain arrays."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -15,27 +15,27 @@ from ..scene.units import unit_of
 
 Array = NDArray[np.float64]
 
-TRAIL = 0.2
-"""Seconds that a trail shows before and after the present frame."""
-SIZE = 0.006
-"""Metres from the middle of a marker's cross to its ends."""
-BLOCK = 1000
-"""Frames that are read at a time."""
-N_KEPT = 8
-"""Blocks that are kept: of 41 markers, 500 kB each."""
+TRAIL_S = 0.2
+"""Length of a trail before and after the current frame."""
+CROSS_RADIUS_M = 0.006
+"""Half the width of a marker's cross."""
+BLOCK_FRAMES = 1000
+"""Frames that are read at once."""
+MAX_CACHED = 8
+"""Cached blocks; with 41 markers 500 kB each."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trails:
-    """Markers over whole frames of a take; NaN where one was not recorded."""
+    """Markers at integer frames of a take; NaN where a marker is missing."""
 
     start: int
     """Scene frame of the first row."""
-    places: NDArray[np.float32]
-    """Shape (n_frames, n_markers, 3), each in its marker's own space, in Blender's unit."""
+    positions: NDArray[np.float32]
+    """Shape (n_frames, n_markers, 3), in the space of each marker, in Blender's unit."""
 
     def segments(self, frame: float, reach: int, size: float, spaces: Array) -> Array:
-        """Return a cross for each marker at a frame, or the nearest one, and its trail.
+        """Return a cross and a trail for each marker at a frame, or at the nearest one.
 
         Parameters
         ----------
@@ -43,23 +43,23 @@ class Trails:
         reach : int
             Frames of the trail to either side.
         size : float
-            Of half a cross, in Blender's unit.
+            Half the width of a cross, in Blender's unit.
         spaces : shape (n_markers, 4, 4)
-            From each marker's own space to the world.
+            From the space of each marker to the world.
 
         Returns
         -------
         shape (n_lines, 2, 3), in the world, no NaN
         """
-        row = min(max(round(frame) - self.start, 0), len(self.places) - 1)
+        row = min(max(round(frame) - self.start, 0), len(self.positions) - 1)
         first = max(row - reach, 0)
-        near = np.einsum(
-            "mij,fmj->fmi", spaces[:, :3, :3], self.places[first : row + reach + 1]
+        nearby = np.einsum(
+            "mij,fmj->fmi", spaces[:, :3, :3], self.positions[first : row + reach + 1]
         )
-        near += spaces[:, :3, 3]
-        trails = np.stack([near[:-1], near[1:]], axis=2).reshape(-1, 2, 3)
+        nearby += spaces[:, :3, 3]
+        trails = np.stack([nearby[:-1], nearby[1:]], axis=2).reshape(-1, 2, 3)
         arms = size * np.stack([-np.eye(3), np.eye(3)], axis=1)
-        crosses = (near[row - first][:, None, None] + arms).reshape(-1, 2, 3)
+        crosses = (nearby[row - first][:, None, None] + arms).reshape(-1, 2, 3)
         lines = np.concatenate([crosses, trails])
         return lines[np.isfinite(lines).all(axis=(1, 2))]
 
@@ -71,14 +71,14 @@ class Played(NamedTuple):
     sources: tuple[Source, ...]
 
 
-_kept: dict[tuple[tuple[tuple[int, int, int], ...], range], Trails] = {}
+_cache: dict[tuple[tuple[tuple[int, int, int], ...], range], Trails] = {}
 
 
 def raw_and_clean(holder: bpy.types.Object) -> tuple[Played, Played]:
-    """Return the markers below an object with what was recorded, and with what was made of it.
+    """Return the markers below an object with their recorded action and with their result.
 
-    That is the result which a marker plays or, where it plays the recorded action, the last one
-    in the file that was made from it. A marker without a result is not in the second.
+    The result is the one that a marker plays. If it plays the recorded action, it is the newest
+    result of that action in the file. The second value leaves out markers without a result.
     """
     newest = _newest_results()
     raw: list[tuple[bpy.types.Object, Source]] = []
@@ -94,16 +94,16 @@ def raw_and_clean(holder: bpy.types.Object) -> tuple[Played, Played]:
 
 
 def _newest_results() -> dict[bpy.types.Action, bpy.types.Action]:
-    """Return the last result in the file by the action that was recorded."""
-    made_last = sorted(bpy.data.actions, key=lambda each: each.session_uid)
-    results = [(each.get(history.SOURCE), each) for each in made_last]
+    """Return the newest result in the file of each recorded action."""
+    by_age = sorted(bpy.data.actions, key=lambda each: each.session_uid)
+    results = [(each.get(history.SOURCE), each) for each in by_age]
     return {raw: each for raw, each in results if isinstance(raw, bpy.types.Action)}
 
 
 def _same_slot(action: bpy.types.Action | None, like: Source) -> Source | None:
     slots = () if action is None else action.slots
-    same = next((slot for slot in slots if slot.handle == like[1].handle), None)
-    return None if same is None else (action, same)
+    matching = next((slot for slot in slots if slot.handle == like[1].handle), None)
+    return None if matching is None else (action, matching)
 
 
 def _together(pairs: list[tuple[bpy.types.Object, Source]]) -> Played:
@@ -111,49 +111,49 @@ def _together(pairs: list[tuple[bpy.types.Object, Source]]) -> Played:
 
 
 def lines_at(played: Played, scene: bpy.types.Scene) -> Array:
-    """Return what to draw of markers at the scene's frame, in the world: (n_lines, 2, 3)."""
+    """Return the lines of markers at the scene's frame, in the world: (n_lines, 2, 3)."""
     if not played.markers:
         return np.zeros((0, 2, 3))
     spaces = [each.matrix_world @ each.matrix_basis.inverted_safe() for each in played.markers]
-    reach = round(TRAIL * scene.render.fps / scene.render.fps_base)
+    reach = round(TRAIL_S * scene.render.fps / scene.render.fps_base)
     frame = scene.frame_current_final
-    size = SIZE / unit_of(scene)
+    size = CROSS_RADIUS_M / unit_of(scene)
     return trails_at(played, frame, reach).segments(frame, reach, size, np.array(spaces))
 
 
 def trails_at(played: Played, frame: float, reach: int) -> Trails:
-    """Return the trails around a frame; a block of frames is read once, and kept till `forget`.
+    """Return the trails around a frame; each block is read once and cached until `forget`.
 
-    However long a take is, or how far out one of its keys: only what is near is read.
+    Only the blocks near the frame are read, so that long takes and distant keys cost nothing.
     """
     ends = np.array([action.curve_frame_range for action, _ in played.sources])
     first, last = round(ends[:, 0].min()), round(ends[:, 1].max())
-    start = min(max(round(frame), first), last) // BLOCK * BLOCK
-    frames = range(max(start - reach, first), min(start + BLOCK + reach, last) + 1)
+    start = min(max(round(frame), first), last) // BLOCK_FRAMES * BLOCK_FRAMES
+    frames = range(max(start - reach, first), min(start + BLOCK_FRAMES + reach, last) + 1)
     markers = tuple(
         (marker.session_uid, action.session_uid, slot.handle)
         for marker, (action, slot) in zip(*played, strict=True)
     )
     key = (markers, frames)
-    if key not in _kept:
-        while len(_kept) >= N_KEPT:
-            del _kept[next(iter(_kept))]
-        _kept[key] = read_trails(played, frames)
-    return _kept[key]
+    if key not in _cache:
+        while len(_cache) >= MAX_CACHED:
+            del _cache[next(iter(_cache))]
+        _cache[key] = read_trails(played, frames)
+    return _cache[key]
 
 
 def read_trails(played: Played, within: range) -> Trails:
-    """Read the location keys of markers at these whole frames of what they play."""
+    """Read the location keys of markers at integer frames of their actions."""
     frames = np.arange(within.start, within.stop, dtype=np.float64)
-    places = []
+    positions = []
     for marker, source in zip(*played, strict=True):
         curves = curves_of(animated_curves(*source), PATH, 3)
-        place = sampled(curves, marker.location, frames)
-        place[gaps_of(curves, frames)] = np.nan
-        places.append(place)
-    return Trails(within.start, np.stack(places, axis=1).astype(np.float32))
+        values = sampled(curves, marker.location, frames)
+        values[gaps_of(curves, frames)] = np.nan
+        positions.append(values)
+    return Trails(within.start, np.stack(positions, axis=1).astype(np.float32))
 
 
 def forget() -> None:
-    """Read everything anew when it is drawn next."""
-    _kept.clear()
+    """Clear the cache, so that the next drawing reads again."""
+    _cache.clear()

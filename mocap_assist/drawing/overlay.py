@@ -18,19 +18,19 @@ from ..scene.rig import Rig, read_rig
 
 Array = NDArray[np.float64]
 
-BLOCK = 2**13
-"""Poses of one bone that are worked out at once: so few that nobody waits for a drawing."""
-N_KEPT = 128
-"""Blocks that are kept, of 200 kB."""
-N_ACTIONS = 4
-"""Actions whose keys are kept: of 120 bones and 10,000 frames, 38 MB each."""
+BLOCK_POSES = 2**13
+"""Bone poses that are computed at once; more would delay the drawing."""
+MAX_CACHED = 128
+"""Cached blocks of 200 kB."""
+MAX_CACHED_ACTIONS = 4
+"""Actions with cached keys; with 120 bones and 10,000 frames 38 MB each."""
 
 
 @dataclass(frozen=True, eq=False)
 class Figures:
-    """The keyed bones of an armature over some frames, in the armature's own space.
+    """Keyed bones of an armature over a range of frames, in the armature's space.
 
-    NaN where a bone, or one above it, was not recorded.
+    NaN where a bone or one of its ancestors is missing.
     """
 
     start: int
@@ -40,10 +40,10 @@ class Figures:
     """Shape (n_frames, n_bones, 3), in the armature's unit."""
     tails: NDArray[np.float32]
     joins: tuple[tuple[int, int], ...]
-    """Pairs of bones whose heads are drawn joined: a bone that hangs free, and its parent."""
+    """Pairs of bones with a line between their heads: a disconnected bone and its parent."""
 
     def segments(self, frame: float) -> NDArray[np.float32]:
-        """Return the lines at a frame, or at the nearest one: shape (n_lines, 2, 3), no NaN."""
+        """Return the lines at a frame or the nearest one: shape (n_lines, 2, 3), no NaN."""
         row = min(max(round(frame) - self.start, 0), len(self.heads) - 1)
         heads, tails = self.heads[row], self.tails[row]
         joins = np.array(self.joins, dtype=np.intp).reshape(-1, 2)
@@ -54,11 +54,11 @@ class Figures:
 def read_figures(
     armature: bpy.types.Object, source: Source, frames: range, keys: Keys | None = None
 ) -> Figures:
-    """Pose the armature by an action alone, over some whole frames.
+    """Pose the armature by an action alone, at integer frames.
 
     As in reading takes, constraints, drivers, scale and the bones' inheritance options are
-    not looked at; the armature object's own place is left out. `keys` are those of the action,
-    if they were read before.
+    ignored, and so is the transform of the armature object. `keys` are those of the action if
+    they were read before.
     """
     rig = read_rig(armature)
     grid = np.arange(frames.start, frames.stop, dtype=np.float64)
@@ -68,11 +68,11 @@ def read_figures(
     keyed = [
         bone for bone, each in enumerate(channels) if each.rotation_keyed or each.location_keyed
     ]
-    place = {bone: index for index, bone in enumerate(keyed)}
+    row = {bone: index for index, bone in enumerate(keyed)}
     joins = tuple(
-        (place[rig.parents[bone]], place[bone])
+        (row[rig.parents[bone]], row[bone])
         for bone in keyed
-        if rig.parents[bone] in place and not rig.connected[bone]
+        if rig.parents[bone] in row and not rig.connected[bone]
     )
     names = tuple(rig.bones[bone] for bone in keyed)
     single = (each[:, keyed].astype(np.float32) for each in (heads, tails))
@@ -82,8 +82,8 @@ def read_figures(
 def raw_and_clean(armature: bpy.types.Object) -> tuple[Source | None, Source | None]:
     """Return the recorded action and the result to compare.
 
-    That is the result which the armature plays or, where it plays the recorded action, the
-    last one in the file that was made from it.
+    The result is the one that the armature plays. If it plays the recorded action, it is the
+    newest result of that action in the file.
     """
     result = history.played_result(armature)
     if result is not None:
@@ -105,7 +105,7 @@ def raw_and_clean(armature: bpy.types.Object) -> tuple[Source | None, Source | N
 
 
 class _Key(NamedTuple):
-    """Names a block of figures without holding anything of Blender's, which undo replaces."""
+    """Key of a block of figures; it holds no data-blocks, since undo replaces them."""
 
     armature: int
     action: int
@@ -113,24 +113,24 @@ class _Key(NamedTuple):
     frames: range
 
 
-_kept: dict[_Key, Figures] = {}
+_cache: dict[_Key, Figures] = {}
 _keys: dict[tuple[int, int], Keys] = {}
 
 
 def figures_at(armature: bpy.types.Object, source: Source, frame: float) -> Figures:
-    """Return the figures around a frame; keys are read once, then kept until `forget`."""
+    """Return the figures around a frame; keys are read once and cached until `forget`."""
     action, slot = source
     frames = _block(action, frame, len(armature.data.bones))
     key = _Key(armature.session_uid, action.session_uid, slot.handle, frames)
-    if key not in _kept:
-        _make_room(_kept, N_KEPT)
-        _kept[key] = read_figures(armature, source, frames, _keys_of(source))
-    return _kept[key]
+    if key not in _cache:
+        _make_room(_cache, MAX_CACHED)
+        _cache[key] = read_figures(armature, source, frames, _keys_of(source))
+    return _cache[key]
 
 
 def forget() -> None:
-    """Read everything anew when it is drawn next."""
-    _kept.clear()
+    """Clear the caches, so that the next drawing reads again."""
+    _cache.clear()
     _keys.clear()
 
 
@@ -138,20 +138,20 @@ def _keys_of(source: Source) -> Keys:
     action, slot = source
     key = (action.session_uid, slot.handle)
     if key not in _keys:
-        _make_room(_keys, N_ACTIONS)
+        _make_room(_keys, MAX_CACHED_ACTIONS)
         _keys[key] = read_keys(source)
     return _keys[key]
 
 
-def _make_room(store: dict[Any, Any], n_kept: int) -> None:
-    """Forget what was read first."""
-    while len(store) >= n_kept:
+def _make_room(store: dict[Any, Any], max_entries: int) -> None:
+    """Drop the oldest entries."""
+    while len(store) >= max_entries:
         del store[next(iter(store))]
 
 
 def _block(action: bpy.types.Action, frame: float, n_bones: int) -> range:
-    """Return the block of whole frames of the action that a frame is in, or is nearest to."""
-    length = max(BLOCK // n_bones, 1)
+    """Return the block of integer frames with a frame of the action, or nearest to it."""
+    length = max(BLOCK_POSES // n_bones, 1)
     first, last = (round(each) for each in action.curve_frame_range)
     inside = min(max(round(frame), first), last)
     start = first + (inside - first) // length * length
@@ -159,22 +159,24 @@ def _block(action: bpy.types.Action, frame: float, n_bones: int) -> range:
 
 
 def _pose(rig: Rig, channels: list[BoneChannels]) -> tuple[Array, Array]:
-    """Forward kinematics with bones that shift: heads and tails, (n_frames, n_bones, 3).
+    """Compute heads and tails by forward kinematics, (n_frames, n_bones, 3).
 
-    All bones of one generation are posed at once. `turns` are out of the rest pose. Gaps
-    spread downwards.
+    Bones may translate. All bones of one level are posed at once. `rotations` are relative to
+    the rest pose. Gaps spread to descendants.
     """
-    rest, parents = rig.rest_rotations, np.array(rig.parents)
-    own = np.stack([each.rotations for each in channels], axis=1)
-    own = multiply(multiply(rest, own), inverse(rest))
-    hinges = np.where(parents[:, None] < 0, 0.0, rig.heads[parents])
-    shifts = np.stack([each.locations for each in channels], axis=1)
-    offsets = rig.heads - hinges + rotate(rest, shifts)
-    turns, heads = own.copy(), offsets.copy()
-    generations = np.array([len(rig.chain_to(bone)) for bone in range(len(rig.bones))])
-    for generation in range(1, generations.max() + 1):
-        bones = np.flatnonzero(generations == generation)
-        above = turns[:, parents[bones]]
-        turns[:, bones] = multiply(above, own[:, bones])
-        heads[:, bones] = heads[:, parents[bones]] + rotate(above, offsets[:, bones])
-    return heads, heads + rotate(turns, rig.tails - rig.heads)
+    rest_rotations, parents = rig.rest_rotations, np.array(rig.parents)
+    local_rotations = np.stack([each.rotations for each in channels], axis=1)
+    local_rotations = multiply(
+        multiply(rest_rotations, local_rotations), inverse(rest_rotations)
+    )
+    parent_heads = np.where(parents[:, None] < 0, 0.0, rig.heads[parents])
+    locations = np.stack([each.locations for each in channels], axis=1)
+    offsets = rig.heads - parent_heads + rotate(rest_rotations, locations)
+    rotations, heads = local_rotations.copy(), offsets.copy()
+    levels = np.array([len(rig.chain_to(bone)) for bone in range(len(rig.bones))])
+    for level in range(1, levels.max() + 1):
+        bones = np.flatnonzero(levels == level)
+        parent_rotations = rotations[:, parents[bones]]
+        rotations[:, bones] = multiply(parent_rotations, local_rotations[:, bones])
+        heads[:, bones] = heads[:, parents[bones]] + rotate(parent_rotations, offsets[:, bones])
+    return heads, heads + rotate(rotations, rig.tails - rig.heads)

@@ -1,4 +1,4 @@
-"""Draw stick figures or markers over the 3D View; nothing of the scene is touched."""
+"""Draw stick figures or markers over the 3D View; the scene is not changed."""
 
 from collections.abc import Callable
 from typing import Any
@@ -11,12 +11,12 @@ from mathutils import Matrix
 
 from ..actions.markers import holder_of
 from . import marker_overlay, overlay
-from .view_drawing import ViewDrawing, redraw, seen_active
+from .view_drawing import ViewDrawing, redraw, visible_active
 
 Color = tuple[float, float, float, float]
 
-PAUSE = 0.3
-"""Seconds without an edit after which keys are read anew."""
+EDIT_PAUSE_S = 0.3
+"""Time without an edit after which keys are read again."""
 
 _drawing: list[ViewDrawing] = []
 
@@ -41,14 +41,14 @@ def stop() -> None:
 
 
 def forget() -> None:
-    """Read the actions anew when they are drawn next."""
+    """Clear the caches, so that the next drawing reads the actions again."""
     overlay.forget()
     marker_overlay.forget()
 
 
 def draw(context: bpy.types.Context, colors: tuple[Color, Color], width: float) -> None:
-    """Draw what raw and clean actions of the active armature or markers show at this frame."""
-    active = seen_active(context)
+    """Draw the raw and clean poses of the active armature or markers at the current frame."""
+    active = visible_active(context)
     if active is None:
         return
     if active.type == "ARMATURE":
@@ -69,7 +69,7 @@ def _draw_figures(
 
 
 def draw_lines(lines: np.ndarray, matrix: Any, color: Color, width: float) -> None:
-    """Draw lines of shape (n_lines, 2, 3) in the space of `matrix`, in front of everything."""
+    """Draw lines of shape (n_lines, 2, 3) in the space of `matrix`, in front of all objects."""
     from gpu_extras.batch import batch_for_shader
 
     shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
@@ -89,24 +89,24 @@ def draw_lines(lines: np.ndarray, matrix: Any, color: Color, width: float) -> No
 
 @handlers.persistent
 def _changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """Keys or rest poses were edited: read them anew, but not while they are being dragged."""
+    """Read keys and rest poses again after an edit, but not while they are dragged."""
     kinds = (bpy.types.Action, bpy.types.Armature)
     if not any(isinstance(update.id, kinds) for update in depsgraph.updates):
         return
     if bpy.app.timers.is_registered(refresh):
         bpy.app.timers.unregister(refresh)
-    bpy.app.timers.register(refresh, first_interval=PAUSE)
+    bpy.app.timers.register(refresh, first_interval=EDIT_PAUSE_S)
 
 
 def refresh() -> None:
-    """Read anew, and draw every 3D View again."""
+    """Read again, and redraw every 3D View."""
     forget()
     redraw(bpy.context, "VIEW_3D")
 
 
 @handlers.persistent
 def _replaced(*_: object) -> None:
-    """Undo, redo and loading put other data in the place of what was read."""
+    """Clear the caches because undo, redo or loading replaced the data."""
     forget()
 
 

@@ -1,4 +1,4 @@
-"""The overlay's switch: on the window manager, so that the scene stays as it is."""
+"""Switch of the comparison overlay; it is on the window manager, not in the scene."""
 
 import bpy
 
@@ -17,7 +17,7 @@ def _draw(context: bpy.types.Context) -> None:
 
 
 def register() -> None:
-    """Add the switch; nothing is drawn until it is on."""
+    """Add the switch, which starts off."""
     bpy.types.WindowManager.mocap_assist_overlay = bpy.props.BoolProperty(
         name="Compare Overlay",
         description=(
@@ -30,6 +30,6 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take the switch and the drawing away."""
+    """Remove the switch and the drawing."""
     overlay_drawing.stop()
     del bpy.types.WindowManager.mocap_assist_overlay

@@ -1,4 +1,4 @@
-"""What is drawn over the 3D Views, and how they come to be drawn again."""
+"""Draw handlers of the 3D Views, and redrawing."""
 
 from collections.abc import Callable
 from typing import Any
@@ -8,7 +8,7 @@ from bpy.types import SpaceView3D
 
 
 class ViewDrawing:
-    """Calls `draw` whenever a 3D View that shows overlays is drawn, until it is closed."""
+    """Calls `draw` for every redraw of a 3D View with overlays, until it is closed."""
 
     def __init__(self, draw: Callable[[bpy.types.Context], None]) -> None:
         self._draw = draw
@@ -16,11 +16,11 @@ class ViewDrawing:
 
     @property
     def is_on(self) -> bool:
-        """Whether it still draws."""
+        """Whether the handler is active."""
         return self._handle is not None
 
     def close(self) -> None:
-        """Draw nothing more; again does nothing."""
+        """Remove the handler; a second call has no effect."""
         if self._handle is not None:
             SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
             self._handle = None
@@ -31,8 +31,8 @@ class ViewDrawing:
             self._draw(context)
 
 
-def seen_active(context: bpy.types.Context) -> bpy.types.Object | None:
-    """Return the active object, unless it is hidden in the 3D View that is drawn."""
+def visible_active(context: bpy.types.Context) -> bpy.types.Object | None:
+    """Return the active object unless it is hidden in the current 3D View."""
     active = context.view_layer.objects.active
     if active is None or not active.visible_get(viewport=context.space_data):
         return None
@@ -40,7 +40,7 @@ def seen_active(context: bpy.types.Context) -> bpy.types.Object | None:
 
 
 def redraw(context: bpy.types.Context, kind: str = "") -> None:
-    """Have all areas drawn again, or those of a kind, such as VIEW_3D."""
+    """Redraw all areas, or those of a kind, for example VIEW_3D."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
             if kind in {"", area.type}:

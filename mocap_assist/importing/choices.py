@@ -41,7 +41,7 @@ class Unit(Choice):
 
     @property
     def metres(self) -> float | None:
-        """Metres in one of these; None for what the file says, or its reader guesses."""
+        """Meters in one of these; None for what the file says, or its reader guesses."""
         return METRES.get(self)
 
 
@@ -140,6 +140,6 @@ class ImportChoices(Settings):
 
 
 class ImportSettings(NamedTuple):
-    """All that the button offers."""
+    """Settings of the button."""
 
     choices: ImportChoices

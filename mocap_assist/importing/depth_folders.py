@@ -1,4 +1,4 @@
-"""Folders of pictures that are one recording of depth, and how they are chosen."""
+"""Folders of depth images that form one recording."""
 
 from pathlib import Path
 
@@ -20,11 +20,11 @@ from .choices import ImportChoices
 
 WITHIN = ("depth", "color", "rgb", "image", "confidence")
 """Folders that a recording has in it."""
-BESIDE = (
+EXTRA_FILES = (
     "depth.txt", "rgb.txt", "associations.txt", "associates.txt", "associated.txt",
     "camera_matrix.csv", "odometry.csv", "intrinsic.json", "camera_intrinsic.json",
 )  # fmt: skip
-"""Files that a recording has in it beside its pictures."""
+"""Files of a recording next to its images."""
 PICTURES = (".png", ".exr", ".jpg", ".jpeg")
 
 
@@ -50,28 +50,28 @@ def all_recordings_in(folder: Path) -> list[Path]:
 
 
 def take_of(path: Path) -> Path:
-    """Return the recording that a chosen file belongs to: the folder of a picture of depth."""
+    """Return the recording of a chosen file: for a depth image, its folder."""
     if path.suffix.lower() in PICTURES:
         inside = path.parent.name in WITHIN and is_take(path.parent.parent)
         return path.parent.parent if inside else path.parent
-    if path.name in BESIDE and is_take(path.parent):
+    if path.name in EXTRA_FILES and is_take(path.parent):
         return path.parent
     return path
 
 
 def readable(context: bpy.types.Context, path: Path, choices: ImportChoices) -> Path:
-    """Return a path that can be read without Blender: of EXR pictures, their archive.
+    """Return a path that can be read without Blender: for EXR images, their archive.
 
     The camera is the one that was given, or the scene's own, which may have rendered them.
 
-    Raises InvalidFileError where neither is known, or a picture cannot be read.
+    Raises InvalidFileError if neither is known, or an image cannot be read.
     """
     files = exr_files(path)
     if not files:
         return path
     width, height = size_of(files[0])
-    told = _scene_camera(context, width, height)
-    camera = choices.depth.camera(width, height, told)
+    scene_camera = _scene_camera(context, width, height)
+    camera = choices.depth.camera(width, height, scene_camera)
     if camera is None:
         raise InvalidFileError(
             f"{path} has no camera of the rendering: give the focal length"
@@ -82,7 +82,7 @@ def readable(context: bpy.types.Context, path: Path, choices: ImportChoices) -> 
 
 
 def _scene_camera(context: bpy.types.Context, width: int, height: int) -> Camera | None:
-    """Return the camera of the scene for pictures of a size; None without a usual one."""
+    """Return the scene's camera for images of a size; None without a perspective camera."""
     owner = context.scene.camera
     if owner is None or owner.type != "CAMERA" or owner.data.type != "PERSP":
         return None

@@ -11,7 +11,7 @@ from ..depth.depth_preview import Shown, build_preview, cheap_step
 from ..scene.scene_rate import timing
 from ..scene.units import unit_of
 from .choices import ImportChoices
-from .recording_objects import Made
+from .recording_objects import CreatedObjects
 
 
 def make_preview(
@@ -21,8 +21,8 @@ def make_preview(
     choices: ImportChoices,
     *,
     progress: Progress = unwatched,
-) -> Made:
-    """Add points that play as the recording does, on the floor if it is seen."""
+) -> CreatedObjects:
+    """Add the animated point cloud of a recording, on the floor if one is detected."""
     samples = timing(
         context.scene, choices.frame_rate, recording.frame_rate, choices.frame_start
     )
@@ -35,6 +35,6 @@ def make_preview(
     camera = recording.camera
     what = f"depth of {camera.width} x {camera.height} pixels"
     what += ", on the floor" if floor else ", without a floor"
-    if doubts := check_intrinsics(camera):
-        what += f". {' '.join(doubts).removesuffix('.')}"
-    return Made(made, None, float(samples.frames(recording.n_frames)[-1]), what)
+    if warnings := check_intrinsics(camera):
+        what += f". {' '.join(warnings).removesuffix('.')}"
+    return CreatedObjects(made, None, float(samples.frames(recording.n_frames)[-1]), what)

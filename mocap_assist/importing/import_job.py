@@ -11,12 +11,12 @@ from ...solvers.errors import InvalidFileError, MocapAssistError, OutOfMemoryErr
 from ...solvers.faults import Failure, attempt
 from ..jobs.job import Job, ProcessDied
 from ..runtime.watch import Watch
-from .arrival import READING, Arrival
 from .choices import ImportChoices
 from .depth_folders import readable
+from .import_transaction import READING_FRACTION, ImportTransaction
 from .recent_files import State, remember, state_of
-from .recording_objects import wanted_of
-from .solve_reading import Known, Read, read_files
+from .recording_objects import conversion_from_choices
+from .solve_reading import Read, ReadRecording, read_files
 
 BYTES_AT_ONCE = 64_000_000
 """Of the files that are read before what they hold comes into the scene."""
@@ -36,9 +36,9 @@ class ImportJob:
     def __init__(
         self, context: bpy.types.Context, paths: list[Path], choices: ImportChoices
     ) -> None:
-        self.arrival = Arrival(context, choices)
+        self.transaction = ImportTransaction(context, choices)
         paths = self._readable(context, paths, choices)
-        self._wanted = wanted_of(context, choices)
+        self._wanted = conversion_from_choices(context, choices)
         self._batches = deque(batches(paths))
         self._n_files, self._n_read, self._n_in = len(paths), 0, 0
         self._shown = 0.0
@@ -64,7 +64,7 @@ class ImportJob:
     def cancel(self, context: bpy.types.Context) -> None:
         """Stop at once and leave the scene as it was."""
         self.watch.abandon(context)
-        self.arrival.take_back(context)
+        self.transaction.take_back(context)
 
     def _stop(self) -> None:
         self.job.cancel()
@@ -80,7 +80,7 @@ class ImportJob:
             raise failed[0].as_error()
         for path, each in zip(paths, found, strict=True):
             if isinstance(each, Failure):
-                self.arrival.refuse(path, each.as_error())
+                self.transaction.refuse(path, each.as_error())
         return [each for each in found if isinstance(each, Path)]
 
     def _next_batch(self) -> "partial[list[Read | MocapAssistError]]":
@@ -114,11 +114,11 @@ class ImportJob:
         found: Read | MocapAssistError,
     ) -> None:
         if isinstance(found, MocapAssistError):
-            self.arrival.refuse(path, found)
+            self.transaction.refuse(path, found)
         else:
             recording, moving, warnings = found
-            remember(path, state, Known(recording, warnings), self._wanted.unit)
-            self.arrival.add(context, path, recording, moving=moving, warnings=warnings)
+            remember(path, state, ReadRecording(recording, warnings), self._wanted.unit)
+            self.transaction.add(context, path, recording, moving=moving, warnings=warnings)
 
     def _show(self, context: bpy.types.Context) -> None:
         fraction, message = 0.0, ""
@@ -127,8 +127,8 @@ class ImportJob:
             fraction *= len(self._batches[0])
         if self._read:
             message = f"Importing {self._read[0][0].name}"
-        reading = READING * (self._n_read + fraction)
-        done = (reading + (1.0 - READING) * self._n_in) / self._n_files
+        reading = READING_FRACTION * (self._n_read + fraction)
+        done = (reading + (1.0 - READING_FRACTION) * self._n_in) / self._n_files
         self._shown = max(self._shown, done)  # less is done where files are read once more
         self.watch.show(context, self._shown, message)
 
@@ -154,5 +154,5 @@ def _refusal(path: Path, error: ProcessDied | OutOfMemoryError) -> MocapAssistEr
         return InvalidFileError(f"{path} does not fit into memory. Import a part of the take.")
     return InvalidFileError(
         f"{path} made its reader end early, {error.cause}. Import a part of the take, or have"
-        f" it exported anew.{error.last_words}"
+        f" it exported anew.{error.last_output}"
     )

@@ -11,7 +11,7 @@ ENTRY = "Motion Capture (.bvh, .amc, .c3d, .trc, depth camera joints)"
 
 
 class MOCAP_FH_recording(bpy.types.FileHandler):
-    """Files dropped into the 3D view or the outliner; Blender asks where others want them."""
+    """Files dropped into the 3D View or the Outliner."""
 
     bl_idname = "MOCAP_FH_recording"
     bl_label = "Motion Capture (Mocap Assist)"

@@ -9,8 +9,8 @@ from ...solvers.errors import MocapAssistError
 from ..blender.path_properties import FILE, FOLDER, HIDDEN, path_property
 from ..panels.drawing import draw_lines
 from ..runtime.watch import why_busy
-from .arrival import Imported
 from .import_job import ImportJob
+from .import_transaction import Imported
 from .importing import chosen_paths, import_files
 
 WIDTH = 400  # of the dialog, pixels at scale 1
@@ -94,7 +94,7 @@ class WaitingImport(FilesOperator):
         except BaseException:
             job.cancel(context)
             raise
-        return self.end(job.arrival.end(context)) if ended else {"RUNNING_MODAL"}
+        return self.end(job.transaction.end(context)) if ended else {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the operator: another file is loaded, or the window closes."""

@@ -9,9 +9,9 @@ from ...solvers.faults import Failure, attempt
 from ...solvers.progress import Progress, unwatched, within
 from ..blender.path_properties import absolute, chosen_files
 from ..scene.scene_rate import scene_rate
-from .arrival import READING, Arrival, Imported
 from .choices import ImportChoices
 from .depth_folders import is_take, readable, take_of
+from .import_transaction import READING_FRACTION, Imported, ImportTransaction
 from .recent_files import read_again
 
 QUICKLY_READ = 2_000_000  # bytes
@@ -23,7 +23,7 @@ EXTENSIONS = (
 )  # fmt: skip
 """What files of a format known here may be called; what they hold decides."""
 PICTURES = (".png", ".exr")
-"""What pictures of depth may be called, of which a folder is a recording."""
+"""File endings of depth images; a folder of them is a recording."""
 FILTER = ";".join(f"*{extension}" for extension in (*EXTENSIONS, *PICTURES))
 
 
@@ -46,7 +46,7 @@ def chosen_paths(operator: bpy.types.Operator) -> list[Path]:
 
 
 def preview(context: bpy.types.Context, paths: list[Path]) -> str:
-    """Return a line about the first file, for a dialog that asks how to import it.
+    """Return a line about the first file for the import dialog.
 
     A large one is not read for it: the dialog would be long in coming.
     """
@@ -77,34 +77,34 @@ def import_files(
     A file that fails leaves nothing behind. Raises SolveCancelled by `progress`; the scene is
     then as it was.
     """
-    arrival = Arrival(context, choices)
+    transaction = ImportTransaction(context, choices)
     try:
         for index, path in enumerate(paths):
-            share = within(progress, index / len(paths), (index + 1) / len(paths))
+            file_progress = within(progress, index / len(paths), (index + 1) / len(paths))
             source = attempt(path, readable, context, path, choices)
             if isinstance(source, Failure):
-                arrival.refuse(path, source.as_error())
+                transaction.refuse(path, source.as_error())
                 continue
             try:
                 known = read_again(
                     source,
-                    within(share, 0.0, READING),
+                    within(file_progress, 0.0, READING_FRACTION),
                     unit=choices.unit.metres,
                     depth=choices.depth,
                 )
             except SolveCancelled:
                 raise
             except MocapAssistError as error:
-                arrival.refuse(path, error)
+                transaction.refuse(path, error)
             else:
-                arrival.add(
+                transaction.add(
                     context,
                     source,
                     known.recording,
-                    within(share, READING, 1.0),
+                    within(file_progress, READING_FRACTION, 1.0),
                     warnings=known.warnings,
                 )
     except BaseException:
-        arrival.take_back(context)
+        transaction.take_back(context)
         raise
-    return arrival.end(context)
+    return transaction.end(context)

@@ -39,8 +39,8 @@ class ImportPanel:
 
 
 def _figures(origin: dict[str, object]) -> str:
-    """Return length, rate and sensor of a recording in a few words."""
-    words = [f"{origin.get('n_frames', 0)} frames", f"{origin.get('frame_rate', 0):.4g} Hz"]
+    """Return length, rate and sensor of a recording as text."""
+    parts = [f"{origin.get('n_frames', 0)} frames", f"{origin.get('frame_rate', 0):.4g} Hz"]
     if "sensor" in origin:
-        words.append(str(origin["sensor"]).replace("_", " "))
-    return ", ".join(words)
+        parts.append(str(origin["sensor"]).replace("_", " "))
+    return ", ".join(parts)

@@ -9,12 +9,12 @@ from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import DepthSettings
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 from ...solvers.recordings.skeleton_files import find_skeleton
-from .solve_reading import Known, Recording, read_file
+from .solve_reading import ReadRecording, Recording, read_file
 
 MOST = 20_000_000  # numbers that are kept
 
 State = tuple[tuple[str, int, int], ...]
-_read: dict[tuple[State, float | None], Known] = {}
+_read: dict[tuple[State, float | None], ReadRecording] = {}
 
 
 def read_again(
@@ -23,7 +23,7 @@ def read_again(
     *,
     unit: float | None = None,
     depth: DepthSettings = DEFAULT_DEPTH_SETTINGS,
-) -> Known:
+) -> ReadRecording:
     """Return what a file holds, as `read_file` does; what has not changed is read once.
 
     Recordings of depth are opened anew: little is read for that.
@@ -34,7 +34,7 @@ def read_again(
     return known
 
 
-def remember(path: Path, state: State, known: Known, unit: float | None) -> None:
+def remember(path: Path, state: State, known: ReadRecording, unit: float | None) -> None:
     """Keep what was read from a file in this state and unit, unless it has changed since."""
     if isinstance(known.recording, DepthRecording):
         return
@@ -49,7 +49,7 @@ def state_of(path: Path) -> State:
     try:
         needed = [path, find_skeleton(path)] if path.suffix.lower() == ".amc" else [path]
         states = [(each, each.stat()) for each in needed]
-    except (OSError, InvalidFileError):  # which the reader says better
+    except (OSError, InvalidFileError):  # the reader reports it
         return ()
     return tuple((str(each), state.st_mtime_ns, state.st_size) for each, state in states)
 

@@ -13,46 +13,46 @@ from ...solvers.progress import Progress, unwatched
 from ..actions.armature_build import build_armature
 from ..actions.empties_build import build_empties, write_tracks
 from ..actions.new_action import write_motion
-from ..actions.sensor_notes import words_of, write_words
+from ..actions.sensor_notes import sensor_values, write_sensor_values
 from ..blender import compat
 from ..scene.scene_rate import FrameRate, scene_rate, timing
 from ..scene.units import unit_of
 from .choices import ImportChoices, Target
-from .solve_reading import Recording, Wanted, as_wanted, hanging
+from .solve_reading import Conversion, Recording, connected_joints, convert_recording
 
 Array = NDArray[np.float64]
-NAMED = 3  # joints that a sentence lists
+MAX_NAMED = 3  # joints that a sentence lists
 
 
-class Words(NamedTuple):
-    """What the sensor said, at its own samples even where the motion is resampled."""
+class SensorSamples(NamedTuple):
+    """Values of the sensor at its own samples, even if the motion is resampled."""
 
     frames: Array
     """Scene frames, shape (n_samples,)."""
-    said: dict[str, dict[str, Array]]
+    values: dict[str, dict[str, Array]]
     """By joint or marker."""
 
     def of(self, name: str) -> tuple[Array, dict[str, Array]]:
-        """Return the frames and what was said of one joint or marker."""
-        return self.frames, self.said.get(name, {})
+        """Return the frames and the values of one joint or marker."""
+        return self.frames, self.values.get(name, {})
 
 
-class Made(NamedTuple):
-    """What a recording became."""
+class CreatedObjects(NamedTuple):
+    """Objects of a recording."""
 
     top: bpy.types.Object
-    """The armature, the empty that holds the markers, or the points of depth."""
+    """The armature, the parent of the markers, or the animated point cloud."""
     action: bpy.types.Action | None
     """None for depth, which is read from its files."""
     last_frame: float
     what: str
-    """In words."""
+    """Description for messages."""
 
 
-def wanted_of(context: bpy.types.Context, choices: ImportChoices) -> Wanted:
-    """Return what choices mean for recordings before they come into the scene."""
+def conversion_from_choices(context: bpy.types.Context, choices: ImportChoices) -> Conversion:
+    """Return the conversion that the choices define."""
     resampled = choices.frame_rate is FrameRate.RESAMPLE
-    return Wanted(
+    return Conversion(
         choices.target is Target.ARMATURE,
         choices.global_scale,
         scene_rate(context.scene) if resampled else None,
@@ -69,56 +69,58 @@ def make_objects(
     *,
     moving: Motion | Tracks | None = None,
     progress: Progress = unwatched,
-) -> Made:
-    """Add what moves as the recording does; the scene's settings stay as they are.
+) -> CreatedObjects:
+    """Add the animated objects of a recording; the scene's settings are not changed.
 
-    `moving` is what the recording becomes, `as_wanted`, if that is known already.
+    `moving` is the result of `convert_recording`, if it exists already.
     """
     scene = context.scene
     samples = timing(scene, choices.frame_rate, recording.frame_rate, choices.frame_start)
     if moving is None:
-        moving = as_wanted(recording, wanted_of(context, choices))
+        moving = convert_recording(recording, conversion_from_choices(context, choices))
     resampled = choices.frame_rate is FrameRate.RESAMPLE
     frames = (samples._replace(step=1.0) if resampled else samples).frames(moving.n_frames)
-    words = Words(samples.frames(recording.n_frames), words_of(recording))
+    sensor_samples = SensorSamples(samples.frames(recording.n_frames), sensor_values(recording))
     if isinstance(moving, Motion):
         mode = choices.rotate_mode.name
-        made = _make_armature(context, name, moving, mode, frames, words, progress)
+        made = _make_armature(context, name, moving, mode, frames, sensor_samples, progress)
     else:
-        made = _make_empties(context, name, moving, frames, words, progress)
+        made = _make_empties(context, name, moving, frames, sensor_samples, progress)
     what = made.what
-    wanted = choices.target is Target.ARMATURE and isinstance(recording, JointRecording)
-    if wanted and not isinstance(moving, Motion):
+    needs_armature = choices.target is Target.ARMATURE and isinstance(recording, JointRecording)
+    if needs_armature and not isinstance(moving, Motion):
         what += ", since the parents of the joints are unknown"
-    elif wanted and (n_loose := recording.n_joints - len(hanging(recording))):
+    elif needs_armature and (n_loose := recording.n_joints - len(connected_joints(recording))):
         what += f", without {n_loose} points that have no joint"
     return made._replace(what=what + _never_seen(recording, made.top.type == "ARMATURE"))
 
 
 def _never_seen(recording: Recording, in_armature: bool) -> str:
-    """Name the joints or markers that were left out, or put where they must have been."""
+    """Name the joints or markers that were left out or added."""
     if isinstance(recording, Motion):
         return ""
     if in_armature and isinstance(recording, JointRecording):
-        whole = fill_missing_hips(recording)
-        if whole is not recording:
-            return f", with hips added between the legs{_never_seen(whole, True)}"
+        completed = fill_missing_hips(recording)
+        if completed is not recording:
+            return f", with hips added between the legs{_never_seen(completed, True)}"
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording
-    lost = [tracks.names[point] for point in np.flatnonzero(~tracks.visible.any(axis=0))]
-    if not lost:
+    never_observed = [
+        tracks.names[point] for point in np.flatnonzero(~tracks.visible.any(axis=0))
+    ]
+    if not never_observed:
         return ""
-    more = f" and {len(lost) - NAMED} more" * (len(lost) > NAMED)
-    return f", without {', '.join(lost[:NAMED])}{more} (never observed)"
+    more = f" and {len(never_observed) - MAX_NAMED} more" * (len(never_observed) > MAX_NAMED)
+    return f", without {', '.join(never_observed[:MAX_NAMED])}{more} (never observed)"
 
 
-def _seen(tracks: Tracks) -> Tracks:
-    """Leave out points that were never seen: they would stand at the origin, seen for sure."""
-    seen = np.flatnonzero(tracks.visible.any(axis=0))
-    if not len(seen):
+def _observed_points(tracks: Tracks) -> Tracks:
+    """Leave out points that were never observed: they would appear at the origin."""
+    observed = np.flatnonzero(tracks.visible.any(axis=0))
+    if not len(observed):
         raise InvalidMotionError("The recording has no observed points.")
-    confidence = None if tracks.confidence is None else tracks.confidence[:, seen]
-    names = tuple(tracks.names[point] for point in seen)
-    return Tracks(names, tracks.positions[:, seen], tracks.frame_rate, confidence)
+    confidence = None if tracks.confidence is None else tracks.confidence[:, observed]
+    names = tuple(tracks.names[point] for point in observed)
+    return Tracks(names, tracks.positions[:, observed], tracks.frame_rate, confidence)
 
 
 def _make_armature(
@@ -127,18 +129,18 @@ def _make_armature(
     motion: Motion,
     mode: str,
     frames: Array,
-    words: Words,
+    sensor_samples: SensorSamples,
     progress: Progress,
-) -> Made:
+) -> CreatedObjects:
     metres = unit_of(context.scene)
     armature, bones = build_armature(context, name, motion.skeleton, metres, mode)
     action, slot = write_motion(armature, bones, motion, frames, metres, progress=progress)
     bag = compat.channelbag(action, slot)
     for joint, bone in zip(motion.skeleton.names, bones, strict=True):
         if bone:
-            write_words(bag, armature.pose.bones[bone], *words.of(joint))
+            write_sensor_values(bag, armature.pose.bones[bone], *sensor_samples.of(joint))
     what = f"an armature of {len(armature.data.bones)} bones"
-    return Made(armature, action, float(frames[-1]), what)
+    return CreatedObjects(armature, action, float(frames[-1]), what)
 
 
 def _make_empties(
@@ -146,15 +148,17 @@ def _make_empties(
     name: str,
     tracks: Tracks,
     frames: Array,
-    words: Words,
+    sensor_samples: SensorSamples,
     progress: Progress,
-) -> Made:
+) -> CreatedObjects:
     metres = unit_of(context.scene)
-    tracks = _seen(tracks)
+    tracks = _observed_points(tracks)
     holder, empties = build_empties(context, name, tracks.names, metres)
     action = write_tracks(name, empties, tracks, frames, metres, progress=progress)
     for point, empty in zip(tracks.names, empties, strict=True):
-        write_words(
-            compat.channelbag(action, empty.animation_data.action_slot), empty, *words.of(point)
+        write_sensor_values(
+            compat.channelbag(action, empty.animation_data.action_slot),
+            empty,
+            *sensor_samples.of(point),
         )
-    return Made(holder, action, float(frames[-1]), f"{tracks.n_points} empties")
+    return CreatedObjects(holder, action, float(frames[-1]), f"{tracks.n_points} empties")

@@ -1,4 +1,4 @@
-"""What the button Import has done for it before anything comes into the scene."""
+"""Solve of the button Import: read and convert recordings."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -26,52 +26,56 @@ Recording = Motion | Tracks | JointRecording | DepthRecording
 Result = TypeVar("Result")
 
 
-class Wanted(NamedTuple):
-    """How recordings come into the scene."""
+class Conversion(NamedTuple):
+    """Conversion of recordings for the scene."""
 
     armature: bool
-    """Whether joints of a camera become a skeleton's motion, where they hang together."""
+    """Whether connected joints of a camera become a skeleton's motion."""
     scale: float
     frame_rate: float | None
     """Frames per second to resample to; None leaves each recording its own."""
     unit: float | None = None
-    """Metres in one unit of the files; None for what they say, or their readers guess."""
+    """Meters per unit of the files; None reads it from the file or estimates it."""
     depth: DepthSettings = DEFAULT_DEPTH_SETTINGS
-    """How pictures of depth are to be understood."""
+    """Interpretation of depth images."""
 
 
-class Known(NamedTuple):
-    """What a file holds."""
+class ReadRecording(NamedTuple):
+    """Content of a file."""
 
     recording: Recording
     warnings: tuple[str, ...] = ()
-    """What its reader said of it."""
+    """Warnings of its reader."""
 
 
 class Read(NamedTuple):
-    """What a file holds, and what is to be seen of it."""
+    """Content of a file, and its converted motion."""
 
     recording: Recording
     moving: Motion | Tracks | DepthRecording
     warnings: tuple[str, ...] = ()
-    """What its reader said of it."""
+    """Warnings of its reader."""
 
 
 def read_files(
-    paths: Sequence[Path], wanted: Wanted, *, progress: Progress = unwatched
+    paths: Sequence[Path], conversion: Conversion, *, progress: Progress = unwatched
 ) -> list[Read | MocapAssistError]:
-    """Return what each file holds, or the error that says why it cannot come in."""
+    """Return the content of each file, or the error that prevents its import."""
     found: list[Read | MocapAssistError] = []
     for path in paths:
 
-        def share(fraction: float, message: str = "", path: Path = path) -> None:
+        def file_progress(fraction: float, message: str = "", path: Path = path) -> None:
             progress((len(found) + fraction) / len(paths), f"Reading {path.name}")
 
-        share(0.0)
+        file_progress(0.0)
         try:
-            known = read_file(path, share, unit=wanted.unit, depth=wanted.depth)
-            moving = _tried(path, lambda known=known: as_wanted(known.recording, wanted))
-            found.append(Read(known.recording, moving, known.warnings))
+            content = read_file(
+                path, file_progress, unit=conversion.unit, depth=conversion.depth
+            )
+            moving = _attempt_read(
+                path, lambda content=content: convert_recording(content.recording, conversion)
+            )
+            found.append(Read(content.recording, moving, content.warnings))
         except SolveCancelled:
             raise
         except MocapAssistError as error:
@@ -85,33 +89,32 @@ def read_file(
     *,
     unit: float | None = None,
     depth: DepthSettings = DEFAULT_DEPTH_SETTINGS,
-) -> Known:
-    """Read a file or folder, as `read_recording` does, and keep what its reader says.
+) -> ReadRecording:
+    """Read a file or folder like `read_recording`, and keep the warnings of its reader.
 
-    `unit` is its metres in one unit of the file, `depth` how pictures of depth are understood.
-
-    Whatever goes wrong is a MocapAssistError, so that other files are read all the same.
+    `unit` is meters per unit of the file, `depth` the interpretation of depth images. Every
+    failure becomes a MocapAssistError, so that other files are still read.
     """
-    listener = _Listener(progress)
+    listener = _WarningCollector(progress)
 
     def read() -> Recording:
         if is_depth_recording(path):
             return read_depth(path, depth, progress=listener)
         return read_tracked(path, scale=unit, progress=listener)
 
-    recording = _tried(path, read)
-    return Known(recording, tuple(listener.warnings))
+    recording = _attempt_read(path, read)
+    return ReadRecording(recording, tuple(listener.warnings))
 
 
-def _tried(path: Path, read: Callable[[], Result]) -> Result:
+def _attempt_read(path: Path, read: Callable[[], Result]) -> Result:
     found = attempt(path, read)
     if isinstance(found, Failure):
         raise found.as_error()
     return found
 
 
-class _Listener:
-    """A Progress that keeps what a reader says beyond that it reads."""
+class _WarningCollector:
+    """A Progress that collects the warnings of a reader."""
 
     def __init__(self, progress: Progress) -> None:
         self._progress = progress
@@ -123,42 +126,42 @@ class _Listener:
         self._progress(fraction, message)
 
 
-def as_wanted(recording: Recording, wanted: Wanted) -> Motion | Tracks | DepthRecording:
-    """Turn a recording into what moves as it does in the scene; depth stays what it is."""
+def convert_recording(
+    recording: Recording, conversion: Conversion
+) -> Motion | Tracks | DepthRecording:
+    """Convert a recording to a motion or points for the scene; depth is not changed."""
     if isinstance(recording, DepthRecording):
         return recording
-    moving = _scaled(_joined(recording, wanted.armature), wanted.scale)
-    return moving if wanted.frame_rate is None else resample(moving, wanted.frame_rate)
+    moving = _scaled(_joined(recording, conversion.armature), conversion.scale)
+    return moving if conversion.frame_rate is None else resample(moving, conversion.frame_rate)
 
 
 def in_one_tree(recording: JointRecording) -> bool:
-    """Whether it is known which joint hangs on which, so that they can become an armature."""
+    """Whether the joints form one tree, so that they can become an armature."""
     parents = recording.parents
-    return sum(parents[joint] < 0 for joint in hanging(recording)) == 1
+    return sum(parents[joint] < 0 for joint in connected_joints(recording)) == 1
 
 
-def hanging(recording: JointRecording) -> list[int]:
-    """Return the joints that hang on another, or that others hang on."""
+def connected_joints(recording: JointRecording) -> list[int]:
+    """Return the joints that have a parent or a child."""
     parents = recording.parents
     return [joint for joint, parent in enumerate(parents) if parent >= 0 or joint in parents]
 
 
 def _joined(recording: Recording, armature: bool) -> Motion | Tracks:
-    """Turn the joints of a camera into a motion, where an armature is wanted and they hang
-    together; into points otherwise.
-    """
+    """Convert a camera's joints to a motion for an armature, otherwise to points."""
     if not isinstance(recording, JointRecording):
         return recording
     if armature and in_one_tree(recording):
-        kept, tracks = hanging(recording), fill_missing_hips(recording).tracks
-        names = tuple(tracks.names[joint] for joint in kept)
-        body = Tracks(names, tracks.positions[:, kept], tracks.frame_rate)
+        joints, tracks = connected_joints(recording), fill_missing_hips(recording).tracks
+        names = tuple(tracks.names[joint] for joint in joints)
+        body = Tracks(names, tracks.positions[:, joints], tracks.frame_rate)
         return motion_from_points(body, joint_parents(names))
     return recording.tracks
 
 
 def _scaled(recording: Motion | Tracks, factor: float) -> Motion | Tracks:
-    """Return the recording with all lengths so many times as long."""
+    """Return the recording with all lengths scaled."""
     if factor == 1.0:
         return recording
     if isinstance(recording, Tracks):

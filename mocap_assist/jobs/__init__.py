@@ -1,1 +1,1 @@
-"""A solve in a process of its own: start, ask, cancel, fetch. Knows nothing about Blender."""
+"""Solves in subprocesses: start, poll, cancel, fetch. Independent of Blender."""

@@ -1,4 +1,4 @@
-"""The other end of job.py: a script for a bare Python, which has no bpy to misuse."""
+"""Child process of job.py: a script for a Python without bpy."""
 
 import gc
 import importlib
@@ -13,11 +13,11 @@ from time import monotonic
 from types import ModuleType
 from typing import Any
 
-BETWEEN_REPORTS = 0.1  # seconds
+REPORT_INTERVAL_S = 0.1
 
 
 def main(folder: Path, extension: str) -> int:
-    """Run the request in `folder` and leave the result there, whole or not at all.
+    """Run the request in `folder` and write its complete result there, or none.
 
     Returns
     -------
@@ -34,36 +34,38 @@ def main(folder: Path, extension: str) -> int:
             return protocol.Ending.DISK_FULL
         traceback.print_exc()
         return protocol.Ending.FAILED
-    except BaseException:  # SystemExit, too: Blender may hang at a regular end
+    except BaseException:  # SystemExit too: Blender may hang at a regular exit
         traceback.print_exc()
         return protocol.Ending.FAILED
     return protocol.Ending.ANSWERED
 
 
 def outcome_of(folder: Path, protocol: ModuleType) -> Any:
-    """Return what the solver returns, in a tuple, or the exception that it raises."""
-    gc.disable()  # Importing makes no rubbish; looking for it takes a tenth of the time.
+    """Return the solver's result in a tuple, or the exception that it raises."""
+    gc.disable()  # Imports leave no garbage; collecting takes a tenth of the time.
     solve = pickle.loads((folder / protocol.REQUEST).read_bytes())
     gc.enable()
     try:
-        return (solve(progress=reporter(protocol), **onlooker(solve, folder, protocol)),)
+        return (
+            solve(progress=reporter(protocol), **preview_argument(solve, folder, protocol)),
+        )
     except MemoryError:
         raise
-    except Exception as error:  # handed over whole, to be raised in Blender
+    except Exception as error:  # passed on complete, to be raised in Blender
         error.add_note(traceback.format_exc())
         return error
 
 
 def write_outcome(folder: Path, protocol: ModuleType, outcome: Any) -> None:
-    """Leave the result where job.py looks for it."""
-    part = folder / "part"
-    with part.open("wb") as file:  # large arrays go straight into it, without a copy
+    """Write the result to the file that job.py reads."""
+    partial_path = folder / "part"
+    with partial_path.open("wb") as file:  # writes large arrays without a copy
         pickle.dump(outcome, file, protocol=pickle.HIGHEST_PROTOCOL)
-    part.replace(folder / protocol.RESULT)
+    partial_path.replace(folder / protocol.RESULT)
 
 
 def make_importable(extension: str, folder: Path) -> None:
-    """Let `bl_ext.user_default.mocap_assist.solvers` be found without running add-on code."""
+    """Make `bl_ext.user_default.mocap_assist.solvers` importable without add-on code."""
     parts = extension.split(".")
     for n in range(1, len(parts) + 1):
         package = ModuleType(".".join(parts[:n]))
@@ -72,29 +74,31 @@ def make_importable(extension: str, folder: Path) -> None:
 
 
 def reporter(protocol: ModuleType) -> Callable[..., None]:
-    """Return a Progress that prints now and then."""
-    spoken = -1.0
+    """Return a Progress that prints at most once per interval."""
+    printed_at = -1.0
 
     def report(fraction: float, message: str = "") -> None:
-        nonlocal spoken
-        if monotonic() - spoken < BETWEEN_REPORTS:
+        nonlocal printed_at
+        if monotonic() - printed_at < REPORT_INTERVAL_S:
             return
-        spoken = monotonic()
-        with suppress(OSError):  # a full disk: the result matters, if there is room for it
+        printed_at = monotonic()
+        with suppress(OSError):  # a full disk: only the result matters
             print(protocol.progress_line(fraction, message), flush=True)
 
     return report
 
 
-def onlooker(solve: Any, folder: Path, protocol: ModuleType) -> dict[str, Callable[..., None]]:
-    """Return what shows meanwhile, for solves that have something to show."""
+def preview_argument(
+    solve: Any, folder: Path, protocol: ModuleType
+) -> dict[str, Callable[..., None]]:
+    """Return the argument `show=` of a solve with previews, otherwise no argument."""
     if not isinstance(solve, protocol.PreviewSolve):
         return {}
-    return {"show": partial(protocol.append_shown, (folder / protocol.SHOWN).open("wb"))}
+    return {"show": partial(protocol.append_preview, (folder / protocol.PREVIEWS).open("wb"))}
 
 
-def solve_and_leave(folder: Path, extension: str) -> None:
-    """Solve, and end with the result, or as soon as Blender ends."""
+def solve_and_exit(folder: Path, extension: str) -> None:
+    """Solve, and exit with the result, or as soon as Blender exits."""
     make_importable(extension, Path(__file__).parents[2])
     processes = f"{extension}.solvers.processes"
     parent = importlib.import_module(f"{processes}.parent")
@@ -104,4 +108,4 @@ def solve_and_leave(folder: Path, extension: str) -> None:
 
 
 if __name__ == "__main__":
-    solve_and_leave(Path(sys.argv[1]), sys.argv[2])
+    solve_and_exit(Path(sys.argv[1]), sys.argv[2])

@@ -1,4 +1,4 @@
-"""Work for a background Blender, asked for by who has none himself."""
+"""Work in a background Blender, for a caller outside Blender."""
 
 import importlib
 from collections.abc import Sequence
@@ -39,18 +39,18 @@ def is_read_in_blender(path: Path | str) -> bool:
 
 @dataclass(frozen=True)
 class BackgroundBlender:
-    """Who reads .blend files, FBX, glTF and USD."""
+    """The Blender that reads .blend, FBX, glTF and USD files."""
 
     program: str
-    """Path; empty where Blender is a module of Python."""
+    """Path; empty if Blender is a Python module."""
     rig: str = ""
-    """A .blend file with the armatures of actions that are alone in theirs; none without."""
+    """A .blend file with armatures for files of actions only; empty for none."""
 
-    def look_for_rig(self) -> None:
-        """Raise InvalidFileError if the file of the rig is missing, or cannot be seen."""
+    def check_rig(self) -> None:
+        """Raise InvalidFileError if the rig's file is missing or inaccessible."""
         if self.rig and attempt(self.rig, Path(self.rig).is_file) is not True:
             raise InvalidFileError(
-                f"There is no file {self.rig} to take the rig of actions from."
+                f"The file of the rig, {self.rig}, does not exist. Choose another."
             )
 
 
@@ -59,18 +59,18 @@ class BlendClip:
     """An armature's action in a .blend file."""
 
     item: str
-    """Name of the action; with that of the slot where several move armatures."""
+    """Name of the action, and of the slot if several slots animate armatures."""
     motion: Motion
     tags: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
 class BlendRead:
-    """What a .blend file holds."""
+    """Clips of a .blend file."""
 
     clips: tuple[BlendClip, ...]
     refused: tuple[str, ...] = ()
-    """A sentence for each action that cannot be read, or for the file."""
+    """A message for each unreadable action, or for the file."""
 
 
 def read_blends(
@@ -81,28 +81,28 @@ def read_blends(
     items: Sequence[str] = (),
     progress: Progress = unwatched,
 ) -> list[BlendRead]:
-    """Read the armature actions of .blend, FBX, glTF and USD files in a Blender of its own.
+    """Read the armature actions of .blend, FBX, glTF and USD files in a background Blender.
 
     Parameters
     ----------
     blender : BackgroundBlender
     paths : of the files
-    assets_only : leave out actions that are not marked as assets
-    items : read only these actions; all without
+    assets_only : skip actions that are not marked as assets
+    items : read only these actions; empty reads all
 
     Raises
     ------
     InvalidFileError
         The file of the rig is missing.
     ProcessDied
-        Blender has crashed over one of the files.
+        Blender crashed while it read one of the files.
     """
-    blender.look_for_rig()
-    asked = partial(_asked, tuple(paths), assets_only, tuple(items), blender.rig)
-    return run(asked, progress, _program(blender.program))
+    blender.check_rig()
+    request = partial(_read_here, tuple(paths), assets_only, tuple(items), blender.rig)
+    return run(request, progress, _program(blender.program))
 
 
-def _asked(
+def _read_here(
     paths: tuple[str, ...],
     assets_only: bool,
     items: tuple[str, ...],
@@ -110,7 +110,7 @@ def _asked(
     *,
     progress: Progress,
 ) -> list[BlendRead]:
-    """Read, where there is a Blender: only there can the reader be imported."""
+    """Read in this Blender: the reader can be imported only there."""
     reader: Any = importlib.import_module(f"{EXTENSION}.{READER}")
     read: list[BlendRead] = reader.read_files(paths, assets_only, items, rig, progress=progress)
     return read
@@ -120,5 +120,5 @@ def _program(path: str) -> tuple[str, ...]:
     if not path:
         return (*isolated_command(BLEND_CHILD), "--")
     # It finds the extension's wheels by PYTHONPATH, which Blender otherwise ignores.
-    own = ("--python-use-system-env", "--background", "--factory-startup")
-    return (path, *own, "--python-exit-code", "1", "--python", str(BLEND_CHILD), "--")
+    options = ("--python-use-system-env", "--background", "--factory-startup")
+    return (path, *options, "--python-exit-code", "1", "--python", str(BLEND_CHILD), "--")

@@ -16,7 +16,7 @@ from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
 from ...solvers.files import reason_of
 from ...solvers.processes import ScratchFolder, thread_environment
 from ...solvers.progress import Progress, unwatched
-from .protocol import LOG, REQUEST, RESULT, Ending, last_progress, last_words, read_shown
+from .protocol import LOG, REQUEST, RESULT, Ending, last_output, last_progress, read_previews
 
 Result = TypeVar("Result")
 EXTENSION = __name__.rsplit(".", 3)[0]
@@ -31,21 +31,21 @@ NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # no console flashes up 
 
 
 class ProcessDied(MocapAssistError):
-    """The process of a solve ended without an answer.
+    """The process of a solve ended without a result.
 
     Parameters
     ----------
     cause : str
         How it ended: "with status 1".
-    said : str
+    last_output : str
         The last line that it printed, if any.
     """
 
-    def __init__(self, cause: str, said: str) -> None:
+    def __init__(self, cause: str, last_output: str) -> None:
         self.cause = cause
-        self.last_words = f" Its last words: {said}" if said else ""
+        self.last_output = f" Last output: {last_output}" if last_output else ""
         super().__init__(
-            f"The solver process ended early, {cause}. Nothing was changed.{self.last_words}"
+            f"The solver process ended early, {cause}. Nothing was changed.{self.last_output}"
         )
 
 
@@ -88,21 +88,21 @@ def run_in_subprocess(
 class Job(Generic[Result]):
     """Start `solve(progress=…)`; poll `done`; fetch `result` once.
 
-    A crash of its process, or a lack of memory, leaves this one unharmed.
+    A crash or a lack of memory in its process does not affect this process.
 
     Parameters
     ----------
     solve : callable
         Must be picklable.
     program : sequence of str
-        The command that runs it, by default a bare Python with child.py.
+        Command that runs it; by default an isolated Python with child.py.
     n_threads : int
-        Of linear algebra in that process, whatever Blender has: see `solvers.processes`.
+        Threads of linear algebra in that process: see `solvers.processes`.
 
     Raises
     ------
     MocapAssistError
-        The process cannot be started: a disk is full, or there is too little memory.
+        The process cannot be started: the disk is full, or memory is short.
     """
 
     def __init__(
@@ -113,13 +113,13 @@ class Job(Generic[Result]):
         n_threads: int = 1,
     ) -> None:
         self.cancelled = False
-        self._n_shown = 0
+        self._preview_offset = 0
         self._scratch = ScratchFolder()
         self._path = self._scratch.path
         try:
             with _convert_memory_errors():
                 (self._path / REQUEST).write_bytes(pickle.dumps(solve))
-            self._process = self._started(program or isolated_command(CHILD), n_threads)
+            self._process = self._start(program or isolated_command(CHILD), n_threads)
         except OSError as error:
             self._scratch.remove()
             raise MocapAssistError(
@@ -130,14 +130,14 @@ class Job(Generic[Result]):
             self._scratch.remove()
             raise
 
-    def _started(self, program: Sequence[str], n_threads: int) -> "subprocess.Popen[bytes]":
+    def _start(self, program: Sequence[str], n_threads: int) -> "subprocess.Popen[bytes]":
         environment = (
             thread_environment(n_threads) | CHILD_ENVIRONMENT | {"PYTHONPATH": _search_path()}
         )
         with (self._path / LOG).open("wb") as log:
             return subprocess.Popen(
                 [*program, str(self._path), EXTENSION],
-                stdin=subprocess.PIPE,  # nothing is written: it closes when this process ends
+                stdin=subprocess.PIPE,  # stays empty, and closes when this process ends
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 creationflags=NO_WINDOW,
@@ -148,15 +148,15 @@ class Job(Generic[Result]):
         """Return the last fraction, 0 to 1, and message of the solver."""
         return last_progress(self._path)
 
-    def shown(self) -> list[Any]:
-        """Return what a `PreviewSolve` solve has shown since this was asked last."""
-        things, self._n_shown = read_shown(self._path, self._n_shown)
-        return things
+    def new_previews(self) -> list[Any]:
+        """Return the previews of a `PreviewSolve` since the last call."""
+        previews, self._preview_offset = read_previews(self._path, self._preview_offset)
+        return previews
 
-    def all_shown(self) -> list[Any]:
-        """Wait for the end, and return all that a `PreviewSolve` solve has shown."""
+    def all_previews(self) -> list[Any]:
+        """Wait for the end, and return all previews of a `PreviewSolve`."""
         self._process.wait()
-        return read_shown(self._path, 0)[0]
+        return read_previews(self._path, 0)[0]
 
     def done(self) -> bool:
         """Return whether the result exists, or the process ended without one."""
@@ -175,18 +175,18 @@ class Job(Generic[Result]):
         self._scratch.remove()
 
     def result(self) -> Result:
-        """Wait for the end, tidy up, and return what the solver returned.
+        """Wait for the end, remove the folder, and return the solver's result.
 
         Raises
         ------
         SolveCancelled
             `cancel` was called.
         ProcessDied
-            It has left no answer.
+            It wrote no result.
         OutOfMemoryError
-            It, or this process, has too little memory for the answer.
+            It, or this process, has too little memory for the result.
         MocapAssistError
-            Or whatever the solver itself raised.
+            The solver raised it.
         """
         status = self._end()
         try:
@@ -213,11 +213,11 @@ class Job(Generic[Result]):
 
     def _outcome(self, status: int) -> Any:
         """Return the outcome of the process: an exception, or the result in a tuple."""
-        answer = self._path / RESULT
+        result = self._path / RESULT
         if self.cancelled:
             return SolveCancelled("Cancelled.")
-        if answer.exists():
-            with _convert_memory_errors(), answer.open("rb") as file:
+        if result.exists():
+            with _convert_memory_errors(), result.open("rb") as file:
                 return pickle.load(file)
         if status == Ending.OUT_OF_MEMORY:
             return OutOfMemoryError()
@@ -225,7 +225,7 @@ class Job(Generic[Result]):
             return MocapAssistError(
                 f"The disk is full. Make room for temporary files in {self._path.parent}."
             )
-        return ProcessDied(_cause(status), last_words(self._path))
+        return ProcessDied(_cause(status), last_output(self._path))
 
 
 @contextmanager
@@ -249,9 +249,10 @@ def _python() -> str:
 
 
 def _search_path() -> str:
-    """Where this process finds modules, the extension's wheels too; not the present folder.
+    """Return the module path of this process, with the extension's wheels.
 
-    Blender's scripts come last: in one that is a module of Python they would hide that.
+    The current folder is left out. Blender's scripts come last: they would hide a Blender that
+    is a Python module.
     """
     paths = sorted(filter(None, sys.path), key=lambda path: "scripts" in Path(path).parts)
     return os.pathsep.join(paths)

@@ -10,9 +10,9 @@ from typing import Any, BinaryIO, TypeVar
 
 from ...solvers.faults import escaped
 
-REQUEST, RESULT, LOG, SHOWN = "request", "result", "log", "shown"
-TAIL = 4096  # bytes of the log that are read
-SIZE = 8  # bytes of the length of a pickle
+REQUEST, RESULT, LOG, PREVIEWS = "request", "result", "log", "previews"
+TAIL_BYTES = 4096
+LENGTH_BYTES = 8  # of the length before each pickle
 DISK_FULL = {errno.ENOSPC, errno.EDQUOT}
 PROGRESS = re.compile(r"^@([01]\.\d+) (.*)$")
 
@@ -20,10 +20,10 @@ Result = TypeVar("Result")
 
 
 class Ending(IntEnum):
-    """Exit status of a child process. Neither a full disk nor memory can take more words."""
+    """Exit status of a child process; it needs neither disk space nor memory."""
 
     ANSWERED = 0
-    """The result, or what the solver raised, is on disk."""
+    """The result, or the solver's exception, is on disk."""
     FAILED = 1
     """The log ends with a traceback."""
     OUT_OF_MEMORY = 3
@@ -34,32 +34,36 @@ class PreviewSolve(partial[Result]):
     """A solve that is also called with `show=`, a callback for previews."""
 
 
-def append_shown(file: BinaryIO, thing: Any) -> None:
-    """Append a picklable preview to the file that `read_shown` reads."""
-    content = pickle.dumps(thing, protocol=pickle.HIGHEST_PROTOCOL)
-    file.write(len(content).to_bytes(SIZE, "little") + content)
+def append_preview(file: BinaryIO, preview: Any) -> None:
+    """Append a picklable preview to the file that `read_previews` reads."""
+    content = pickle.dumps(preview, protocol=pickle.HIGHEST_PROTOCOL)
+    file.write(len(content).to_bytes(LENGTH_BYTES, "little") + content)
     file.flush()
 
 
-def read_shown(folder: Path, start: int) -> tuple[list[Any], int]:
+def read_previews(folder: Path, start: int) -> tuple[list[Any], int]:
     """Return the previews after an offset in the file, and the next offset.
 
     A partly written or unreadable preview is left for the next call.
     """
     try:
-        with (folder / SHOWN).open("rb") as file:
+        with (folder / PREVIEWS).open("rb") as file:
             file.seek(start)
             content = file.read()
     except OSError:
         return [], start
-    things, offset = [], 0
-    while offset + SIZE <= len(content):
-        stop = offset + SIZE + int.from_bytes(content[offset : offset + SIZE], "little")
+    previews, offset = [], 0
+    while offset + LENGTH_BYTES <= len(content):
+        stop = (
+            offset
+            + LENGTH_BYTES
+            + int.from_bytes(content[offset : offset + LENGTH_BYTES], "little")
+        )
         if stop > len(content):
             break
-        things.append(pickle.loads(content[offset + SIZE : stop]))
+        previews.append(pickle.loads(content[offset + LENGTH_BYTES : stop]))
         offset = stop
-    return things, start + offset
+    return previews, start + offset
 
 
 def progress_line(fraction: float, message: str) -> str:
@@ -70,12 +74,12 @@ def progress_line(fraction: float, message: str) -> str:
 def last_progress(folder: Path) -> tuple[float, str]:
     """Return the last fraction and message in the log."""
     for line in reversed(_tail(folder)):
-        if found := PROGRESS.match(line):
-            return float(found[1]), found[2]
+        if match := PROGRESS.match(line):
+            return float(match[1]), match[2]
     return 0.0, "Starting"
 
 
-def last_words(folder: Path) -> str:
+def last_output(folder: Path) -> str:
     """Return the last line in the log that is not progress, such as the end of a traceback."""
     lines = [line for line in _tail(folder) if line.strip() and not PROGRESS.match(line)]
     return lines[-1] if lines else ""
@@ -84,7 +88,7 @@ def last_words(folder: Path) -> str:
 def _tail(folder: Path) -> list[str]:
     try:
         with (folder / LOG).open("rb") as log:
-            log.seek(max(log.seek(0, 2) - TAIL, 0))
+            log.seek(max(log.seek(0, 2) - TAIL_BYTES, 0))
             return log.read().decode("utf-8", "replace").splitlines()
     except OSError:
         return []

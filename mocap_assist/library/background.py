@@ -1,4 +1,4 @@
-"""Index beside the animator's work: the window stays free, and one is enough at a time."""
+"""Index in the background: the window stays responsive; only one runs at a time."""
 
 from collections.abc import Callable
 
@@ -15,7 +15,7 @@ _on: list["Indexing"] = []
 
 
 class Indexing:
-    """A running Index, and what the sidebar says about it until it ends."""
+    """A running Index, and its progress in the sidebar."""
 
     def __init__(self, context: bpy.types.Context, solve: Callable[..., Indexed]) -> None:
         self.job: Job[Indexed] = Job(solve)
@@ -36,11 +36,11 @@ class Indexing:
             state.running, state.fraction, state.message = True, fraction, message
             redraw(context)
 
-    def end(self, context: bpy.types.Context, said: str) -> None:
+    def end(self, context: bpy.types.Context, message: str) -> None:
         """Show nothing more but what it has done."""
         _on.remove(self)
         state = context.window_manager.mocap_assist_indexing
-        state.running, state.said = False, said
+        state.running, state.said = False, message
         redraw(context)
 
     def abandon(self, context: bpy.types.Context) -> None:
@@ -51,7 +51,7 @@ class Indexing:
 
 
 def why_indexing() -> str:
-    """Return why no other Index can start, or nothing."""
+    """Return why no other Index can start, or an empty text."""
     return RUNNING if _on else ""
 
 
@@ -78,8 +78,8 @@ def _abandon_all(*_: object) -> None:
 
 
 @handlers.persistent
-def _nothing_runs(*_: object) -> None:
-    """A file that was saved while it ran says that it still does."""
+def _reset_running(*_: object) -> None:
+    """Reset the state that a file saved during a run still holds."""
     for manager in bpy.data.window_managers:
         manager.mocap_assist_indexing.running = False
 
@@ -87,11 +87,11 @@ def _nothing_runs(*_: object) -> None:
 def register() -> None:
     """End it before another file is loaded."""
     handlers.load_pre.append(_abandon_all)
-    handlers.load_post.append(_nothing_runs)
+    handlers.load_post.append(_reset_running)
 
 
 def unregister() -> None:
     """End it with the extension, too."""
     _abandon_all()
-    handlers.load_post.remove(_nothing_runs)
+    handlers.load_post.remove(_reset_running)
     handlers.load_pre.remove(_abandon_all)

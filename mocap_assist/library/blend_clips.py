@@ -39,8 +39,8 @@ def read_files(
     `rig`.
     """
     found = []
-    for place, path in enumerate(paths):
-        progress(place / len(paths), f"Reading {Path(path).name}")
+    for index, path in enumerate(paths):
+        progress(index / len(paths), f"Reading {Path(path).name}")
         if sentence := path_fault(path):
             found.append(BlendRead((), (sentence,)))
             continue

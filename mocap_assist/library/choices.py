@@ -95,6 +95,6 @@ class UseBundle(NamedTuple):
 
 
 class LoadBundle(NamedTuple):
-    """All that the button offers."""
+    """Settings of the button."""
 
     choices: LoadChoices

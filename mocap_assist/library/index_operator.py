@@ -1,4 +1,4 @@
-"""The button Index: it waits without holding anybody up."""
+"""The button Build Library: it waits without blocking the window."""
 
 import logging
 from functools import partial
@@ -10,8 +10,8 @@ from ...solvers.errors import MocapAssistError, SolveCancelled
 from ..jobs.job import run
 from ..runtime.solver_operator import in_background
 from .background import Indexing, message_of, why_indexing
-from .places import index_problem
-from .solve_indexing import Indexed, index_places
+from .solve_indexing import Indexed, index_sources
+from .sources import index_problem
 
 logger = logging.getLogger(__name__)
 
@@ -93,7 +93,7 @@ class WaitingIndex:
 
     def _solve(self) -> "partial[Indexed]":
         settings: Any = self.settings()
-        return partial(index_places, index_problem(settings.choices))
+        return partial(index_sources, index_problem(settings.choices))
 
     def _stop_looking(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)

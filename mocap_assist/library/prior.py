@@ -9,8 +9,8 @@ from ...solvers.errors import InvalidFileError
 from ..blender.path_properties import absolute
 from ..runtime.selection import played_source
 from ..scene.origin import origin_of
-from .places import background_blender, library_path
 from .solve_prior import LibraryPrior, Own
+from .sources import background_blender, library_path
 
 
 def library_prior(scene: bpy.types.Scene, subject: bpy.types.Object) -> LibraryPrior:

@@ -12,13 +12,13 @@ from ...solvers.progress import Progress, unwatched, within
 from ...solvers.retargeting import RetargetSettings
 from ...solvers.retrieval import Origin
 from ...solvers.rotations import IDENTITY
-from ..importing.solve_reading import Wanted, as_wanted, read_file
+from ..importing.solve_reading import Conversion, convert_recording, read_file
 from ..jobs.in_blender import BackgroundBlender, read_blends
 from ..retarget.solve_retargeting import Clip, RetargetProblem, Start, retarget_clips
 from ..scene.controls import BoneKeys, TargetRig
 
 BLEND = ".blend"
-AS_ARMATURE = Wanted(armature=True, scale=1.0, frame_rate=None)
+AS_ARMATURE = Conversion(armature=True, scale=1.0, frame_rate=None)
 Keys = Mapping[str, BoneKeys]
 
 
@@ -61,7 +61,7 @@ class FetchedClips:
     trouble: str
 
 
-def fetch_clips(wanted: FetchProblems, *, progress: Progress = unwatched) -> FetchedClips:
+def fetch_clips(requests: FetchProblems, *, progress: Progress = unwatched) -> FetchedClips:
     """Read several clips again, and give them to the target.
 
     Raises
@@ -71,12 +71,14 @@ def fetch_clips(wanted: FetchProblems, *, progress: Progress = unwatched) -> Fet
     """
     found: list[Fetched | None] = []
     troubles: list[InvalidFileError | InvalidMotionError] = []
-    n = len(wanted.problems)
-    for place, (problem, name) in enumerate(zip(wanted.problems, wanted.names, strict=True)):
-        progress(place / n, f"Fetching {name}")
+    n = len(requests.problems)
+    for index, (problem, name) in enumerate(
+        zip(requests.problems, requests.names, strict=True)
+    ):
+        progress(index / n, f"Fetching {name}")
         try:
             found.append(
-                fetch_clip(problem, progress=within(progress, place / n, (place + 1) / n))
+                fetch_clip(problem, progress=within(progress, index / n, (index + 1) / n))
             )
         except (InvalidFileError, InvalidMotionError) as error:
             found.append(None)
@@ -103,8 +105,8 @@ def fetch_clip(problem: FetchProblem, *, progress: Progress = unwatched) -> Fetc
     motion = resample(motion, problem.frame_rate)
     clip = Clip(motion, np.zeros(3), np.array(IDENTITY), problem.start)
     roles = find_humanoid_map(motion.skeleton)
-    whole = RetargetProblem((clip,), roles, problem.target, problem.settings)
-    (keys,) = retarget_clips(whole, progress=within(progress, 0.3, 1.0))
+    retargeting = RetargetProblem((clip,), roles, problem.target, problem.settings)
+    (keys,) = retarget_clips(retargeting, progress=within(progress, 0.3, 1.0))
     return Fetched(keys, motion.n_frames)
 
 
@@ -125,7 +127,7 @@ def read_origin(origin: Origin, blender: BackgroundBlender) -> Motion:
                 " again."
             )
         return found.clips[0].motion
-    moving = as_wanted(read_file(Path(origin.path)).recording, AS_ARMATURE)
+    moving = convert_recording(read_file(Path(origin.path)).recording, AS_ARMATURE)
     if not isinstance(moving, Motion):
         raise InvalidMotionError(f"{origin.path} holds points without bones.")
     return moving

@@ -35,7 +35,7 @@ BYTES_AT_ONCE = 100_000_000
 
 
 @dataclass(frozen=True)
-class Place:
+class Source:
     """A file or a folder that clips come from."""
 
     path: str
@@ -48,7 +48,7 @@ class IndexProblem:
     """What is to be indexed."""
 
     library: str
-    places: tuple[Place, ...]
+    sources: tuple[Source, ...]
     tags: tuple[str, ...]
     """Given to all clips."""
     blender: BackgroundBlender
@@ -83,15 +83,15 @@ class _Blend:
         return found.st_size, found.st_mtime_ns
 
 
-def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> Indexed:
-    """Index what is new or has changed since; clips of other places stay.
+def index_sources(problem: IndexProblem, *, progress: Progress = unwatched) -> Indexed:
+    """Index new and changed files; clips of other sources are kept.
 
     Raises
     ------
     InvalidFileError
         The library cannot be read or written, or the file of the rig is missing.
     """
-    problem.blender.look_for_rig()
+    problem.blender.check_rig()
     path = Path(problem.library)
     try:
         if not path.exists():
@@ -102,21 +102,23 @@ def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> In
             f"The library {path} cannot be kept there: {reason_of(error)}."
         ) from None
     refused, files, blends = list[str](), list[str](), dict[Path, _Blend]()
-    for place in problem.places:
-        found = attempt(place.path, _blends, place)
+    for source in problem.sources:
+        found = attempt(source.path, _blends, source)
         if isinstance(found, Failure):
             refused.append(found.sentence)
             continue
         for each in found:
             blends.setdefault(each.path, each)
-        files += [] if is_read_in_blender(place.path) else [place.path]
-    share = len(files) / max(len(files) + len(blends), 1)
-    report = index_files(path, files, tags=problem.tags, progress=within(progress, 0.0, share))
+        files += [] if is_read_in_blender(source.path) else [source.path]
+    file_fraction = len(files) / max(len(files) + len(blends), 1)
+    report = index_files(
+        path, files, tags=problem.tags, progress=within(progress, 0.0, file_fraction)
+    )
     refused += [why for _, why in report.refused]
     with open_clip_library(path) as library:
         indexing = _Indexing(library, problem.tags, refused)
         blender = problem.blender
-        indexing.index_blends([*blends.values()], blender, within(progress, share, 1.0))
+        indexing.index_blends([*blends.values()], blender, within(progress, file_fraction, 1.0))
         return Indexed(
             n_clips=len(library.entries),
             n_added=len(report.added) + len(report.changed) + indexing.added,
@@ -126,21 +128,21 @@ def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> In
         )
 
 
-def _blends(place: Place) -> list[_Blend]:
-    """Return the .blend files in a place; not the backups beside them.
+def _blends(source: Source) -> list[_Blend]:
+    """Return the .blend files of a source, without backups.
 
-    Raises InvalidFileError where there is nothing, and OSError where that cannot be seen.
+    Raises InvalidFileError if the source does not exist, and OSError if it is inaccessible.
     """
     try:
-        Path(place.path).stat()
+        Path(source.path).stat()
     except (FileNotFoundError, NotADirectoryError):
-        raise InvalidFileError(f"There is no file or folder {place.path}.") from None
-    top = real_path(place.path)
+        raise InvalidFileError(f"There is no file or folder {source.path}.") from None
+    top = real_path(source.path)
     return [
         _Blend(
             path,
             path.relative_to(top.parent if path == top else top).with_suffix("").as_posix(),
-            place.assets_only,
+            source.assets_only,
         )
         for path in (files_below(top) if top.is_dir() else [top])
         if is_read_in_blender(path) and path.is_file()
@@ -209,7 +211,7 @@ class _Indexing:
             yield from zip(paths, found, strict=True)
 
     def _replace(self, blend: _Blend, read: BlendRead) -> None:
-        """Put what a file holds now in the place of what it held."""
+        """Replace the clips of a file by its current ones."""
         before = list(self._entries(blend))
         self._refused += read.refused
         described = []

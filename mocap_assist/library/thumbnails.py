@@ -1,4 +1,4 @@
-"""Small pictures of clips: a few figures side by side on a square card."""
+"""Thumbnails of clips: a few figures side by side on a square card."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,9 @@ SIZE = 128
 N_FIGURES = 3
 MARGIN = 6.0
 TALL = 2.3
-"""Metres that a card is high: a standing body with a raised hand."""
+"""Meters that a card is high: a standing body with a raised hand."""
 FOOT = 1.05
-"""Metres from the middle of the card's body, the hips, down to the floor."""
+"""Meters from the middle of the card's body, the hips, down to the floor."""
 LEFT = np.array([name.startswith("left") for name in POSTURE_JOINTS])
 
 
@@ -25,20 +25,20 @@ def thumbnail(postures: Array) -> Pixels:
 
     Parameters
     ----------
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
         Relative to the hips, facing -Y; NaN where not tracked.
     """
     canvas = Canvas(SIZE, SIZE)
     moments = np.linspace(0, len(postures) - 1, 2 * N_FIGURES + 1).round().astype(int)[1::2]
     scale = (SIZE - 2.0 * MARGIN) / TALL
-    seen = project_to_view(postures[moments], np.zeros(len(moments)), View.QUARTER)
+    figures = project_to_view(postures[moments], np.zeros(len(moments)), View.QUARTER)
     color = SERIES[1]
-    for place, figure in enumerate(seen):
-        middle = SIZE * (place + 0.5) / N_FIGURES
-        spots = figure[:, :2] * (scale, -scale) + (middle, SIZE - MARGIN - FOOT * scale)
+    for index, figure in enumerate(figures):
+        middle = SIZE * (index + 0.5) / N_FIGURES
+        points_2d = figure[:, :2] * (scale, -scale) + (middle, SIZE - MARGIN - FOOT * scale)
         for joint, parent in enumerate(PARENTS):
             if parent >= 0:
                 shade = lighten_color(color, 0.5) if LEFT[joint] else color
-                canvas.line(spots[[parent, joint]], shade, 2.0)
-        canvas.dot(spots[POSTURE_JOINTS.index("head")], color, 4.0)
+                canvas.line(points_2d[[parent, joint]], shade, 2.0)
+        canvas.dot(points_2d[POSTURE_JOINTS.index("head")], color, 4.0)
     return canvas.picture().pixels

@@ -1,7 +1,7 @@
 """What Blender does on each gesture.
 
-Each function returns the sentence that is shown. Zoom and turn move the 3D Views of the window
-in which Listen was pressed.
+Each function returns the message to show. Zoom and turn affect the 3D Views of the window of
+the button.
 """
 
 from collections.abc import Callable, Sequence
@@ -11,7 +11,7 @@ import bpy
 
 from ...solvers.gestures import Gesture, GestureEvent
 from ...solvers.motion import JointRecording
-from ..drawing.view_control import turn_views, zoom_views
+from ..drawing.view_control import rotate_views, zoom_views
 from ..search.performing import page, search_with, show_library
 
 STARTED = "Perform what you search for, then clap."
@@ -22,7 +22,7 @@ _performed: list[JointRecording] = []
 
 @dataclass(frozen=True)
 class Library:
-    """What the library can be told to do."""
+    """Commands for the library."""
 
     show: Callable[[bpy.types.Context], str]
     page: Callable[[bpy.types.Context, int], str]
@@ -41,7 +41,7 @@ def last_performance() -> JointRecording | None:
 
 
 def obey(context: bpy.types.Context, event: GestureEvent) -> str:
-    """Do what a gesture asks for; return the sentence to show."""
+    """Execute the command of a gesture; return the message to show."""
     gesture = event.gesture
     if gesture is Gesture.HAND_UP:
         return LIBRARY.show(context)
@@ -50,14 +50,14 @@ def obey(context: bpy.types.Context, event: GestureEvent) -> str:
     if gesture is Gesture.ZOOM:
         return zoom_views(context.window, event.amount)
     if gesture is Gesture.TURN:
-        return turn_views(context.window, event.amount)
+        return rotate_views(context.window, event.amount)
     return STARTED if gesture is Gesture.CAPTURE_START else ""
 
 
 def obey_all(context: bpy.types.Context, events: Sequence[GestureEvent]) -> str:
     """Do what gestures ask for, in their order; return the last sentence there is."""
-    said = [obey(context, event) for event in events]
-    return next((sentence for sentence in reversed(said) if sentence), "")
+    messages = [obey(context, event) for event in events]
+    return next((sentence for sentence in reversed(messages) if sentence), "")
 
 
 def search_for(context: bpy.types.Context, query: JointRecording) -> str:

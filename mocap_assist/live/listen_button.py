@@ -14,7 +14,7 @@ NO_WINDOW = "Listening needs Blender's window."
 class ListenButton:
     """Mix in before bpy.types.Operator: pressed once it listens, and again it stops."""
 
-    bl_options: ClassVar = set()  # the views and the library: nothing to undo
+    bl_options: ClassVar = set()  # changes only views and the list of matches
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -48,7 +48,7 @@ class ListenButton:
             self._listening.end(context)
             return {"FINISHED"}
         if event.type == "TIMER":
-            self._listening.look(context)
+            self._listening.poll(context)
         return {"PASS_THROUGH"}
 
     def cancel(self, context: bpy.types.Context) -> None:

@@ -1,4 +1,4 @@
-"""The one session that listens beside Blender's work, and what is shown of it."""
+"""The listening session, which runs next to Blender's work, and its display."""
 
 import logging
 from typing import Any
@@ -16,7 +16,7 @@ from .commands import obey_all, search_for
 
 logger = logging.getLogger(__name__)
 
-BETWEEN_LOOKS = 1.0 / 30.0
+TIMER_INTERVAL_S = 1.0 / 30.0
 """Seconds."""
 WAITING = "No data yet. Start your tracker."
 MODES = {
@@ -42,10 +42,10 @@ class Listening:
     ) -> None:
         self.receiver = Receiver(port)
         self.session = LiveSession()
-        self.said = ""
+        self.message = ""
         self.figure = LiveFigure(color, width)
         manager = context.window_manager
-        self._timer = manager.event_timer_add(BETWEEN_LOOKS, window=context.window)
+        self._timer = manager.event_timer_add(TIMER_INTERVAL_S, window=context.window)
         _on.append(self)
         self._show(context)
 
@@ -60,25 +60,25 @@ class Listening:
         return self.session.heard
 
     def state(self) -> str:
-        """Return what can be done now, in a few words."""
+        """Return the available commands in a few words."""
         return MODES[self.session.mode] if self.heard.frames else WAITING
 
-    def look(self, context: bpy.types.Context) -> None:
-        """Take what has come in, do what it asks for, and show it."""
+    def poll(self, context: bpy.types.Context) -> None:
+        """Receive new frames, execute their commands, and show the result."""
         came = self.receiver.poll()
         if not came:
             return
         news = self.session.receive(came)
         if news.frame is not None:
             self.figure.show(news.frame)
-        said = obey_all(context, news.events)
+        message = obey_all(context, news.events)
         if news.query is not None:
-            said = search_for(context, news.query)
-        self.said = news.message or said or self.said
+            message = search_for(context, news.query)
+        self.message = news.message or message or self.message
         self._show(context)
 
     def end(self, context: bpy.types.Context) -> None:
-        """Listen no more; again does nothing."""
+        """Stop listening; a second call has no effect."""
         if not self.is_on:
             return
         _on.remove(self)
@@ -90,8 +90,8 @@ class Listening:
         redraw(context, "VIEW_3D")
 
     def _show(self, context: bpy.types.Context) -> None:
-        said = f"{self.said}   " if self.said else ""
-        context.workspace.status_text_set(f"{said}{self.state()}   Esc: stop listening")
+        message = f"{self.message}   " if self.message else ""
+        context.workspace.status_text_set(f"{message}{self.state()}   Esc: stop listening")
         redraw(context, "VIEW_3D")
 
 

@@ -28,8 +28,8 @@ class PerformPanel:
             return
         layout.operator(LISTEN, text="Stop Listening", icon="CANCEL")
         draw_sentence(layout, context, listening.state())
-        if listening.said:
-            draw_sentence(layout, context, listening.said, icon="INFO")
+        if listening.message:
+            draw_sentence(layout, context, listening.message, icon="INFO")
         heard = listening.heard
         layout.label(text=f"{heard.frames} frames, {heard.dropped} dropped", translate=False)
         if heard.why:

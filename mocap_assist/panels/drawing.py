@@ -10,7 +10,7 @@ from ...solvers.settings import Settings
 LETTER = 6.2  # width of a letter of the interface, in pixels at scale 1, on average
 BORDER = 50  # of a panel, likewise
 WIDE = 340  # pixels; Blender's sidebars are narrower at first
-FEWEST_LETTERS = 24  # in a line
+MIN_LETTERS = 24  # in a line
 
 
 def exists(idname: str) -> bool:
@@ -22,12 +22,12 @@ def exists(idname: str) -> bool:
 def draw_sentence(
     layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str = "NONE"
 ) -> None:
-    """Draw a sentence over as many lines as the sidebar's width asks for."""
+    """Draw a sentence, wrapped to the sidebar's width."""
     draw_lines(layout, text, sidebar_width(context), icon)
 
 
 def draw_lines(layout: bpy.types.UILayout, text: str, width: float, icon: str = "NONE") -> None:
-    """Draw a sentence over as many lines as a width, in pixels at scale 1, asks for."""
+    """Draw a sentence, wrapped to a width in pixels at scale 1."""
     lines = column_lines(text, width)
     column = layout.column(align=True)
     column.scale_y = 0.8
@@ -41,11 +41,11 @@ def draw_lines(layout: bpy.types.UILayout, text: str, width: float, icon: str = 
 
 def column_lines(text: str, width: float) -> list[str]:
     """Break a sentence into lines for a panel of that width."""
-    return wrap(text, max(int((width - BORDER) / LETTER), FEWEST_LETTERS))
+    return wrap(text, max(int((width - BORDER) / LETTER), MIN_LETTERS))
 
 
 def is_wide(context: bpy.types.Context) -> bool:
-    """Whether there is room for a column more than usual."""
+    """Whether the sidebar has room for another column."""
     return sidebar_width(context) >= WIDE
 
 

@@ -1,4 +1,4 @@
-"""What panels say about a result, as plain text."""
+"""Texts of panels about a result."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -34,7 +34,7 @@ def figure_rows(entries: Sequence[Mapping[str, Any]]) -> list[Row]:
 
 
 def frames_text(start: float, stop: float) -> str:
-    """Return the frames of a spot: 12, or 12 – 15."""
+    """Return the frames of a issue: 12, or 12 – 15."""
     first, last = f"{start:g}", f"{stop:g}"
     return first if first == last else f"{first} – {last}"
 

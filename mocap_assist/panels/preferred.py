@@ -10,7 +10,7 @@ EXTENSION = __package__.rsplit(".", 2)[0]  # Blender knows preferences by the ro
 def preferences() -> bpy.types.AddonPreferences | None:
     """Return the preferences; none where the extension was switched on for one session alone.
 
-    Blender does so for `--addons`, and keeps preferences of none but the others.
+    Blender does so for `--addons`, and stores no preferences for such add-ons.
     """
     ours = bpy.context.preferences.addons.get(EXTENSION)
     return None if ours is None else ours.preferences

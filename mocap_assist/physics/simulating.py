@@ -1,4 +1,4 @@
-"""What the button Physics reads from the scene, and what it writes back."""
+"""Physics: read the scene and write the result."""
 
 from functools import partial
 from typing import NamedTuple
@@ -20,7 +20,7 @@ SUFFIX = ".physics"
 
 
 class SimulateBundle(NamedTuple):
-    """All that the button offers."""
+    """Settings of the button."""
 
     simulating: SimulateSettings
 
@@ -29,13 +29,13 @@ class SimulateBundle(NamedTuple):
 def read_simulating(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: SimulateBundle
 ) -> "Steps[partial[Resimulated]]":
-    """Read what an armature plays; return what is to be solved, which may be pickled."""
+    """Read what an armature plays; return the picklable solve."""
     check_writable(armature)
     read = yield from read_take.steps(armature, scene, source=played_source(armature))
     take = take_of(read.parts[0].motion, settings.simulating)
-    known = redo.recall(take)
-    kind = partial if known is None else ShortSolve
-    return kind(simulate_take, take, settings.simulating.strength, known)
+    cached = redo.recall(take)
+    kind = partial if cached is None else ShortSolve
+    return kind(simulate_take, take, settings.simulating.strength, cached)
 
 
 @Sliced
@@ -44,21 +44,21 @@ def write_simulated(
     armature: bpy.types.Object,
     settings: SimulateBundle,
     result: Resimulated,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> Steps[str]:
-    """Write the result as a new action and put it to use; return a sentence about it.
+    """Write the result as a new action and assign it; return a message.
 
-    Raises InvalidMotionError if the armature plays something else than what was `asked`.
+    Raises InvalidMotionError if the armature plays another motion than the one that was solved.
     """
     here = Subject.of(scene, armature)
     read = yield from read_take.steps(armature, scene, source=played_source(armature))
     scene, armature = here.find()
     played = played_source(armature)
-    body, *others = read.recordings
+    body, *other_trees = read.recordings
     take = take_of(body, settings.simulating)
-    check_unchanged(armature, asked, take)
+    check_unchanged(armature, solved_digest, take)
     redo.remember(take, result.simulated)
-    read = read.with_recordings((result.body, *others))
+    read = read.with_recordings((result.body, *other_trees))
     action, slot = write_take(armature, played, read, result.moved, {}, suffix=SUFFIX)
     history.record(action, played, _entry(settings, result))
     put_to_use(armature, action, slot, Output.ACTION)

@@ -1,4 +1,4 @@
-"""What the button Physics has solved for it."""
+"""Solve of the button Physics."""
 
 from dataclasses import replace
 from typing import NamedTuple

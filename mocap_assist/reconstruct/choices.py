@@ -33,7 +33,7 @@ class Postures(Choice):
 
 @dataclass(frozen=True, kw_only=True)
 class ReconstructChoices(Settings):
-    """What is rebuilt, by what, and where the result goes."""
+    """Scope, pose library and output of Reconstruct."""
 
     postures: Postures = setting(
         Postures.SHIPPED,
@@ -66,7 +66,7 @@ class ReconstructChoices(Settings):
 
 
 class ReconstructBundle(NamedTuple):
-    """All that the button offers."""
+    """Settings of the button."""
 
     choices: ReconstructChoices
     rebuilding: ReconstructSettings

@@ -1,4 +1,4 @@
-"""Panel: rebuild what a depth camera lost, and see how far each joint was trusted."""
+"""Panel: reconstruct missing joints of a depth camera, and show their reliability."""
 
 from typing import ClassVar
 
@@ -7,7 +7,7 @@ import bpy
 from ...solvers.denoising import PlantSettings
 from ...solvers.reconstruction import ReconstructSettings
 from ..clean.example_list import RECONSTRUCT, draw_examples
-from ..drawing.heat_switch import draw_heat_switch
+from ..drawing.confidence_switch import draw_confidence_switch
 from ..panels.drawing import draw_job, draw_sentence, exists, folded
 from .choices import Postures
 from .reconstructing import why_not_reconstruct
@@ -16,7 +16,7 @@ BUTTON = "mocap_assist.reconstruct"
 
 
 class ReconstructPanel:
-    """Settings of Reconstruct, its button, and the switch of the heat colours."""
+    """Settings of Reconstruct, its button, and the switch of the confidence colors."""
 
     bl_label = "Reconstruct"
     bl_options: ClassVar = {"DEFAULT_CLOSED"}
@@ -46,7 +46,7 @@ class ReconstructPanel:
         button.operator(BUTTON, icon="OUTLINER_OB_ARMATURE")
         if reason := why_not_reconstruct(context):
             draw_sentence(layout, context, reason, icon="INFO")
-        draw_heat_switch(layout, context)
+        draw_confidence_switch(layout, context)
 
 
 def _draw_folded(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:

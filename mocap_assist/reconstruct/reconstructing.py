@@ -1,4 +1,4 @@
-"""What the button Reconstruct reads from the scene, and what it writes back."""
+"""Reconstruct: read the scene and write the result."""
 
 from functools import partial
 from typing import Any, NamedTuple
@@ -63,7 +63,7 @@ class _Reading(NamedTuple):
 
 
 def why_not_reconstruct(context: bpy.types.Context) -> str:
-    """Return why nothing can be reconstructed, or nothing."""
+    """Return why the selection cannot be reconstructed, or an empty text."""
     if selected_armature(context) is None:
         return "Select an animated armature. Import depth camera joints as an armature."
     return why_not_clean(context)
@@ -73,12 +73,12 @@ def why_not_reconstruct(context: bpy.types.Context) -> str:
 def read_reconstructing(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: ReconstructBundle
 ) -> "Steps[partial[Rebuilt]]":
-    """Read what was recorded; return what is to be solved, which may be pickled."""
-    found, problem = yield from _read(Subject.of(scene, armature), settings)
+    """Read what was recorded; return the picklable solve."""
+    reading, problem = yield from _read(Subject.of(scene, armature), settings)
     finish = RebuildFinish(
-        ease=ease_of(found.take.grid),
+        ease=ease_of(reading.take.grid),
         planting=settings.planting if settings.choices.plant_feet else None,
-        contacts=animators_contacts(found.played, found.take.frames),
+        contacts=animators_contacts(reading.played, reading.take.frames),
     )
     solution = redo.recall(problem)
     return (partial if solution is None else ShortSolve)(rebuild, problem, finish, solution)
@@ -90,35 +90,34 @@ def write_reconstructed(
     armature: bpy.types.Object,
     settings: ReconstructBundle,
     rebuilt: Rebuilt,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> Steps[str]:
-    """Write the result as a new action and put it to use; return a sentence about it.
+    """Write the result as a new action and assign it; return a message.
 
-    Raises InvalidMotionError if the armature plays something else than what was `asked`, a
-    fingerprint of the problem.
+    Raises InvalidMotionError if the armature plays another motion than the one that was solved.
     """
     here = Subject.of(scene, armature)
-    found, problem = yield from _read(here, settings)
+    reading, problem = yield from _read(here, settings)
     scene, armature = here.find()
-    check_unchanged(armature, asked, problem)
+    check_unchanged(armature, solved_digest, problem)
     redo.remember(problem, rebuilt.solution)
     names = problem.body.skeleton.names
-    bones = frozenset(names) & frozenset(found.take.rig.bones)
-    others = found.take.recordings[1:]
-    take = found.take.with_recordings((rebuilt.motion, *others))
-    n_modified = count_modified(found.recorded, bones)
+    bones = frozenset(names) & frozenset(reading.take.rig.bones)
+    other_trees = reading.take.recordings[1:]
+    take = reading.take.with_recordings((rebuilt.motion, *other_trees))
+    n_modified = count_modified(reading.recorded, bones)
     action, slot = write_take(
-        armature, found.recorded, take, bones, _key_types(names, rebuilt), suffix=SUFFIX
+        armature, reading.recorded, take, bones, _key_types(names, rebuilt), suffix=SUFFIX
     )
     for term in Term:
         values = getattr(rebuilt.solution.reliability_terms, term.name.lower())
-        trusted = dict(zip(names, values.T, strict=True))
-        write_reliability(armature, action, slot, take.frames, trusted, term)
+        reliability = dict(zip(names, values.T, strict=True))
+        write_reliability(armature, action, slot, take.frames, reliability, term)
     if rebuilt.planted is not None:
-        detected = animators_contacts(found.played, take.frames) is None
+        detected = animators_contacts(reading.played, take.frames) is None
         contacts = rebuilt.planted.contacts
         write_contacts(armature, action, slot, take.frames, contacts, detected=detected)
-    history.record(action, found.recorded, _entry(settings, rebuilt))
+    history.record(action, reading.recorded, _entry(settings, rebuilt))
     put_to_use(armature, action, slot, settings.choices.result_as)
     return _said(action.name, rebuilt, n_modified)
 
@@ -128,18 +127,18 @@ def _read(here: Subject, settings: ReconstructBundle) -> Steps[tuple[_Reading, R
     examples, choices = None, settings.choices
     if choices.postures is Postures.EXAMPLES:
         examples = yield from read_examples.steps(*here.find(), choices.examples)
-    found = yield from _Reading.of(*here.find(), settings)
-    return found, _problem(*here.find(), found, settings, examples)
+    reading = yield from _Reading.of(*here.find(), settings)
+    return reading, _problem(*here.find(), reading, settings, examples)
 
 
 def _problem(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
-    found: _Reading,
+    reading: _Reading,
     settings: ReconstructBundle,
     examples: Examples | None,
 ) -> RebuildProblem:
-    body = found.body
+    body = reading.body
     choices, postures, library = settings.choices, None, None
     if choices.postures is Postures.LIBRARY:
         library = library_prior(scene, armature)
@@ -147,11 +146,11 @@ def _problem(
         if not choices.postures_file:
             raise InvalidMotionError("Choose a pose file, or another source of poses.")
         postures = _dated(choices.postures_file)
-    state = read_states(found.recorded, body.skeleton.names, found.take.frames)
+    state = read_states(reading.recorded, body.skeleton.names, reading.take.frames)
     return RebuildProblem(
         body=body,
         tracking_state=state,
-        source=_source_of(found.recorded[0]),
+        source=_source_of(reading.recorded[0]),
         settings=settings.rebuilding,
         examples=examples,
         postures_file=postures,
@@ -167,7 +166,7 @@ def _source_of(action: bpy.types.Action) -> tuple[str, int] | None:
 
 
 def _dated(file: str) -> tuple[str, int]:
-    """Return a file and its date; 0 where it is missing, which its reader says better."""
+    """Return a file and its date; 0 if it is missing, which its reader reports."""
     path = absolute(file)
     return str(path), path.stat().st_mtime_ns if path.is_file() else 0
 
@@ -198,7 +197,7 @@ def _said(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
     if planted := rebuilt.planted:
         slides = (100 * planted.slide_before, 100 * planted.slide_after)
         short += "; foot slide {:.1f} → {:.1f} cm".format(*slides)
-    said = [f"{short}.", *rebuilt.remarks]
+    remarks = [f"{short}.", *rebuilt.remarks]
     if n_modified:
-        said.append(f"Applied the modifiers of {n_modified} curves.")
-    return " ".join(said)
+        remarks.append(f"Applied the modifiers of {n_modified} curves.")
+    return " ".join(remarks)

@@ -37,7 +37,7 @@ class RebuildProblem:
 
     body: Motion
     tracking_state: NDArray[np.int8] | None
-    """What the sensor said of each joint, shape (n_frames, n_joints)."""
+    """Tracking state of each joint, shape (n_frames, n_joints)."""
     source: tuple[str, int] | None
     """The file that the take was imported from, if it is there, and its date."""
     settings: ReconstructSettings
@@ -48,7 +48,7 @@ class RebuildProblem:
     residuals_file: tuple[str, int] | None = None
     """The file of a residual prior, and its date; None for the one that is shipped."""
     library: LibraryPrior | None = None
-    """In which clips of natural postures are found, in the place of examples."""
+    """Library to find clips of natural poses in, instead of examples."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -56,16 +56,16 @@ class RebuildFinish:
     """How the solution is applied to the take."""
 
     ease: Array
-    """Shape (n_frames,): 1, and less where the frames join others that stay."""
+    """Blend weights, shape (n_frames,): below 1 only next to unchanged frames."""
     planting: PlantSettings | None
     """None leaves the feet alone."""
     contacts: NDArray[np.bool_] | None
-    """When each foot stands, shape (n_frames, 2), as the animator keyed it."""
+    """Contacts of the feet, shape (n_frames, 2), as keyed by the animator."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rebuilt:
-    """What is to be written, and what there is to say about it."""
+    """Motion to write, and remarks to report."""
 
     motion: Motion
     solution: RebuiltMotion
@@ -78,15 +78,15 @@ class Rebuilt:
 
 def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> RebuiltMotion:
     """Rebuild the poses of the body."""
-    postures, prior, said = None, None, ""
+    postures, prior, message = None, None, ""
     sharing = within(progress, 0.0, 0.2)
     if problem.postures_file is not None:
         postures = load_posture_library(problem.postures_file[0])
     if problem.residuals_file is not None:
         prior = load_residual_prior(problem.residuals_file[0])
     if problem.library is not None:
-        found = problem.library.postures(problem.body, sharing)
-        postures, said = found.postures, found.message
+        matches = problem.library.postures(problem.body, sharing)
+        postures, message = matches.postures, matches.message
     elif problem.examples is not None:
         clips = [*problem.examples.motions, *map(read_motion_or_tracks, problem.examples.files)]
         postures = posture_library_from_clips(clips, progress=sharing)
@@ -99,7 +99,7 @@ def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> Rebuilt
         settings=problem.settings,
         progress=within(progress, 0.2, 1.0),
     )
-    return replace(rebuilt, remarks=(said, *rebuilt.remarks)) if said else rebuilt
+    return replace(rebuilt, remarks=(message, *rebuilt.remarks)) if message else rebuilt
 
 
 def _source(problem: RebuildProblem) -> JointRecording | None:
@@ -140,13 +140,13 @@ def rebuild(
 
 
 def _eased(raw: Motion, motion: Motion, ease: Array) -> Motion:
-    """Join the frames outside, where the recording knows the way."""
+    """Blend into the frames outside, where the recording has data."""
     if (ease == 1.0).all():
         return motion
-    known = np.isfinite(raw.rotations).all(axis=-1, keepdims=True)
+    observed = np.isfinite(raw.rotations).all(axis=-1, keepdims=True)
     placed = np.isfinite(raw.root_positions).all(axis=-1, keepdims=True)
     start = motion.with_poses(
-        np.where(known, raw.rotations, motion.rotations),
+        np.where(observed, raw.rotations, motion.rotations),
         np.where(placed, raw.root_positions, motion.root_positions),
     )
     return toward(start, motion, ease[:, None])

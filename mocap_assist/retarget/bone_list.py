@@ -1,4 +1,4 @@
-"""The editable list of which bone plays which part, and its presets."""
+"""Editable list of bones by humanoid role, and its presets."""
 
 from collections.abc import Callable
 from functools import partial
@@ -121,7 +121,7 @@ class MOCAP_OT_save_bone_map(_PresetButton, bpy.types.Operator):
         return self.done(partial(self.save, context))
 
     def save(self, context: bpy.types.Context) -> None:
-        """Write the file, whole or not at all."""
+        """Write the file atomically."""
         maps = listed_maps(context.scene.mocap_assist.bone_map)
         write_humanoid_map(getattr(maps, self.side), absolute(self.filepath))
 
@@ -152,7 +152,7 @@ def preset_folder() -> Path:
 
 
 def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw the list, how sure it is, and its buttons."""
+    """Draw the list, its confidence, and its buttons."""
     listed = context.scene.mocap_assist.bone_map
     layout.operator(FIND, icon="VIEWZOOM")
     if not len(listed.rows):

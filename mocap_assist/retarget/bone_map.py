@@ -48,7 +48,7 @@ def maps_for(
 
 
 def listed_maps(listed: bpy.types.PropertyGroup) -> BoneMaps:
-    """Return what the list of bones says; a bone that is named twice counts once."""
+    """Return the humanoid map of the list; a bone that is named twice counts once."""
     maps = []
     for side in SIDES:
         roles: dict[str, str] = {}

@@ -45,7 +45,7 @@ class RetargetChoices(Settings):
 
 
 class RetargetBundle(NamedTuple):
-    """All that the button offers."""
+    """Settings of the button."""
 
     choices: RetargetChoices
     retargeting: RetargetSettings
@@ -63,7 +63,7 @@ class UnbakeChoices(Settings):
 
 
 class UnbakeBundle(NamedTuple):
-    """All that the button offers."""
+    """Settings of the button."""
 
     choices: UnbakeChoices
     unbaking: UnbakeSettings

@@ -18,7 +18,7 @@ RETARGET, UNBAKE, TICK = (
     f"mocap_assist.{name}" for name in ("retarget", "reduce_keys", "tick_action")
 )
 MAIN = ("root_motion", "keep_feet", "keep_hands")
-LONGEST = 30
+MAX_LISTED = 30
 
 
 class RetargetPanel:
@@ -62,7 +62,7 @@ class RetargetPanel:
 
 
 def why_not_pressed(context: bpy.types.Context) -> str:
-    """Return why Retarget would do nothing with what the panel shows, or nothing."""
+    """Return why Retarget has no effect with the shown settings, or an empty text."""
     if reason := why_not_retarget(context):
         return reason
     shown = context.scene.mocap_assist.retarget
@@ -80,10 +80,10 @@ def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
     source = selected_armature(context)
     found = [] if source is None else fitting_actions(source)
     box = column.column(align=True)
-    for action, _ in found[:LONGEST]:
+    for action, _ in found[:MAX_LISTED]:
         icon = "CHECKBOX_HLT" if action.name in ticked else "CHECKBOX_DEHLT"
         box.operator(TICK, text=action.name, translate=False, icon=icon).action = action.name
-    if len(found) > LONGEST:
+    if len(found) > MAX_LISTED:
         column.prop(context.scene.mocap_assist.retarget, "actions")
 
 

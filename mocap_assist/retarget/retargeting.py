@@ -1,4 +1,4 @@
-"""What the button Retarget reads from the scene, and what it writes back."""
+"""Retarget: read the scene and write the result."""
 
 from collections.abc import Iterable, Mapping
 from functools import partial
@@ -50,7 +50,7 @@ class Reading(NamedTuple):
 def read_retarget(
     scene: bpy.types.Scene, source: bpy.types.Object, settings: RetargetBundle
 ) -> "Steps[partial[Retargeted]]":
-    """Read source and target; return what is to be solved, which may be pickled."""
+    """Read source and target; return the picklable solve."""
     found = yield from _read(Subject.of(scene, source), settings)
     problem = found.problem
     n_frames = sum(clip.motion.n_frames for clip in problem.clips)
@@ -63,7 +63,7 @@ def write_retargeted(
     source: bpy.types.Object,
     settings: RetargetBundle,
     results: Retargeted,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> Steps[str]:
     """Write an action for each clip, let the target play the last; return a sentence.
 
@@ -72,7 +72,7 @@ def write_retargeted(
     here = Subject.of(scene, source)
     found = yield from _read(here, settings)
     scene, source = here.find()
-    check_unchanged(source, asked, found.problem)
+    check_unchanged(source, solved_digest, found.problem)
     for made_from, take, keys in zip(found.sources, found.takes, results, strict=True):
         name = f"{made_from[0].name}.{found.target.name}"
         action, slot = write_action(found.target, name, take.frames, keys, found.switches)

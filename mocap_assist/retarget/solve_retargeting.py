@@ -19,10 +19,10 @@ Array = NDArray[np.float64]
 
 
 class Start(NamedTuple):
-    """Where the body is to stand on the target's stage at first, and which way it faces."""
+    """Initial position and heading of the body on the target's stage."""
 
-    place: Array
-    """On the ground, shape (2,), metres."""
+    position: Array
+    """On the ground, shape (2,), meters."""
     heading: float
     """Radians about the vertical; 0 is -Y."""
 
@@ -33,19 +33,19 @@ class Clip:
 
     motion: Motion
     origin: Array
-    """Where the source's armature stands on the ground, shape (3,), metres."""
-    turn: Array
-    """How it is turned about the vertical, shape (4,)."""
+    """Position of the source's armature on the ground, shape (3,), meters."""
+    rotation: Array
+    """Its rotation about the vertical, shape (4,)."""
     start: Start | None = None
-    """Without, the target stands as the source does."""
+    """None starts the target where the source starts."""
 
     def on_stage(self) -> Motion:
         """Return the motion with the armature in the middle, facing as it was built."""
-        back, skeleton = inverse(self.turn), self.motion.skeleton
+        back, skeleton = inverse(self.rotation), self.motion.skeleton
         offsets = skeleton.offsets - (np.arange(skeleton.n_joints) == 0)[:, None] * self.origin
         return Motion(
             Skeleton(skeleton.names, skeleton.parents, rotate(back, offsets)),
-            multiply(multiply(back, self.motion.rotations), self.turn),
+            multiply(multiply(back, self.motion.rotations), self.rotation),
             rotate(back, self.motion.root_positions - self.origin),
             self.motion.frame_rate,
         )
@@ -68,11 +68,11 @@ Retargeted = tuple[Mapping[str, BoneKeys], ...]
 
 def retarget_clips(problem: RetargetProblem, *, progress: Progress = unwatched) -> Retargeted:
     """Give each clip to the target, one after the other."""
-    found, n_clips = [], len(problem.clips)
+    retargeted, n_clips = [], len(problem.clips)
     for index, clip in enumerate(problem.clips):
-        share = within(progress, index / n_clips, (index + 1) / n_clips)
-        found.append(_retarget(clip, problem, share))
-    return tuple(found)
+        clip_progress = within(progress, index / n_clips, (index + 1) / n_clips)
+        retargeted.append(_retarget(clip, problem, clip_progress))
+    return tuple(retargeted)
 
 
 def _retarget(
@@ -99,11 +99,12 @@ def _retarget(
         result = _started(result, target.humanoid, clip.start)
     gaps = ~np.isfinite(result.rotations).all(axis=-1)
     gaps[:, 0] |= ~np.isfinite(result.root_positions).all(axis=-1)
-    whole = result.with_poses(
-        _held(result.rotations), _held(result.root_positions[:, None])[:, 0]
+    completed = result.with_poses(
+        _hold_last_value(result.rotations),
+        _hold_last_value(result.root_positions[:, None])[:, 0],
     )
-    poses = forward_kinematics(whole)
-    keys = keys_of(target, poses, _travel(whole, target, settings))
+    poses = forward_kinematics(completed)
+    keys = keys_of(target, poses, _travel(completed, target, settings))
     return {
         control.bone: _with_gaps(keys[control.bone], gaps[:, max(control.joint, 0)])
         for control in target.controls
@@ -111,35 +112,37 @@ def _retarget(
 
 
 def _started(motion: Motion, roles: HumanoidMap, start: Start) -> Motion:
-    """Return the motion turned and shifted as a whole, so that it begins at `start`."""
+    """Return the motion with a rigid transform, so that it begins at `start`."""
     body = normalize_postures(postures_from_motion(motion, roles), motion.frame_rate)
     half = 0.5 * (start.heading - body.headings[0])
     turn = np.array([np.cos(half), 0.0, 0.0, np.sin(half)])
-    first = body.places[0] * (1.0, 1.0, 0.0)
+    first = body.hip_positions[0] * (1.0, 1.0, 0.0)
     rotations = np.array(motion.rotations)
     rotations[:, 0] = multiply(turn, rotations[:, 0])
-    places = rotate(turn, motion.root_positions - first) + np.append(start.place, 0.0)
-    return motion.with_poses(rotations, places)
+    root_positions = rotate(turn, motion.root_positions - first) + np.append(
+        start.position, 0.0
+    )
+    return motion.with_poses(rotations, root_positions)
 
 
 def _travel(motion: Motion, target: TargetRig, settings: RetargetSettings) -> Carried:
     """Return how a bone on the ground moves that carries the body along."""
     path = ground_path(
-        motion, target.humanoid, settings.travel_smoothing, turn=settings.turn_root
+        motion, target.humanoid, settings.travel_smoothing, follow_heading=settings.turn_root
     )
     hips = target.humanoid.indices(target.skeleton)["hips"]
     rest = target.skeleton.rest_positions[hips] * (1.0, 1.0, 0.0)
     return Carried(path.rotations, rest, path.positions)
 
 
-def _held(values: Array) -> Array:
-    """Return values, shape (n_frames, n, k), in whose gaps the last one seen is held."""
+def _hold_last_value(values: Array) -> Array:
+    """Return values, shape (n_frames, n, k), with gaps filled by the last observed value."""
     values = values.copy()
     for column in np.flatnonzero(~np.isfinite(values).all(axis=(0, 2))):
         known = np.isfinite(values[:, column]).all(axis=-1)
-        usual = IDENTITY if values.shape[2] == len(IDENTITY) else np.zeros(values.shape[2])
+        default = IDENTITY if values.shape[2] == len(IDENTITY) else np.zeros(values.shape[2])
         if not known.any():
-            values[:, column] = usual
+            values[:, column] = default
             continue
         frames = np.where(known, np.arange(len(known)), known.argmax())
         values[:, column] = values[np.maximum.accumulate(frames), column]

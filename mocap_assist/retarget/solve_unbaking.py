@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 MOVES = 1e-6  # radians
 FINEST = 0.1
 """Radians for each metre of tolerance that angles between keys may always be off."""
-LEAST = 2  # keys without which nothing moves
+MIN_KEYS = 2  # keys without which nothing moves
 TIGHTER, N_TRIES = 0.6, 6
 """Axes and angles do not go between keys as quaternions do: where that brings an end too far
 away, the keys are chosen for less than the tolerance, so many times at most."""
@@ -44,7 +44,7 @@ class BoneShape:
     """Blender's rotation mode."""
     axes: Array
     """Its rest pose in the world, shape (4,)."""
-    turns: bool
+    rotates: bool
     """Whether its rotation is keyed."""
 
 
@@ -57,7 +57,7 @@ class Tree:
     root_moves: bool
     """Whether the location of the topmost bone is keyed."""
     head: Array
-    """Where that bone rests, metres."""
+    """Rest position of the bone, meters."""
     metres: float
 
 
@@ -80,7 +80,7 @@ class SparseKeys:
 
 @dataclass(frozen=True, eq=False)
 class Unbaked:
-    """Keys of all bones, and how far the ends of limbs are off, metres."""
+    """Keys of all bones, and the error of the ends of limbs, meters."""
 
     keys: Mapping[str, SparseKeys]
     error: float
@@ -91,8 +91,8 @@ def unbake(problem: UnbakeProblem, *, progress: Progress = unwatched) -> Unbaked
     keys: dict[str, SparseKeys] = {}
     error, n_trees = 0.0, len(problem.trees)
     for index, tree in enumerate(problem.trees):
-        share = within(progress, index / n_trees, (index + 1) / n_trees)
-        found, off = _unbake_tree(_pruned(tree), problem, share)
+        tree_progress = within(progress, index / n_trees, (index + 1) / n_trees)
+        found, off = _unbake_tree(_pruned(tree), problem, tree_progress)
         keys |= found
         error = max(error, off)
     return Unbaked(keys, error)
@@ -103,15 +103,15 @@ def _unbake_tree(
 ) -> tuple[dict[str, SparseKeys], float]:
     tolerance = problem.tolerance
     for attempt in range(N_TRIES):
-        share = within(progress, attempt / N_TRIES, (attempt + 1) / N_TRIES)
+        tree_progress = within(progress, attempt / N_TRIES, (attempt + 1) / N_TRIES)
         sparse = reduce_keys(
             tree.motion,
             tolerance,
             channels=tuple(map(_channels_of, tree.shapes)),
             settings=problem.settings,
-            progress=share,
+            progress=tree_progress,
         )
-        turns = [
+        rotation_curves = [
             None
             if shape is None
             else _bone_curve(tree.motion.rotations[:, joint], shape, curve, FINEST * tolerance)
@@ -119,23 +119,23 @@ def _unbake_tree(
                 zip(tree.shapes, sparse.rotations, strict=True)
             )
         ]
-        off = _error(tree, turns, sparse.root)
+        off = _error(tree, rotation_curves, sparse.root)
         if off <= problem.tolerance:
             break
         tolerance *= TIGHTER
     keys = {
         shape.bone: SparseKeys(
-            curve if shape.turns else None,
+            curve if shape.rotates else None,
             _location_curve(tree, sparse.root) if not joint and tree.root_moves else None,
         )
-        for joint, (shape, curve) in enumerate(zip(tree.shapes, turns, strict=True))
+        for joint, (shape, curve) in enumerate(zip(tree.shapes, rotation_curves, strict=True))
         if shape is not None
     }
     return keys, off
 
 
 def _channels_of(shape: BoneShape | None) -> RotationChannels:
-    """Blender's XYZ turns about fixed axes, X first: about moving axes that is Z Y X."""
+    """Return the intrinsic order: Blender's XYZ is about fixed axes, so intrinsic Z Y X."""
     if shape is None:
         return RotationChannels()
     keyed_by_angles = shape.mode not in {QUATERNION, AXIS_ANGLE}
@@ -164,12 +164,12 @@ def _bone_curve(rotations: Array, shape: BoneShape, curve: KeyCurve, finest: flo
 def _refined(
     channels: Array, frames: NDArray[np.intp], basis: Array, mode: str, allowed: float
 ) -> KeyCurve:
-    """Add keys where axes and angles go another way than quaternions, by too much."""
+    """Add keys where interpolated axis-angles deviate too far from quaternions."""
     while True:
         curve = fit_curve(channels, frames)
         off = _apart(curve, basis, mode)
         worse = np.setdiff1d(np.flatnonzero(off > allowed), frames)
-        if len(frames) < LEAST or not len(worse):
+        if len(frames) < MIN_KEYS or not len(worse):
             return curve
         segments = np.searchsorted(frames, worse)
         worst = [
@@ -197,7 +197,7 @@ def _location_curve(tree: Tree, curve: KeyCurve) -> KeyCurve:
 
 
 def _error(tree: Tree, curves: Sequence[KeyCurve | None], root: KeyCurve) -> float:
-    """Return by how much any end is off when Blender plays the curves, metres."""
+    """Return by how much any end is off when Blender plays the curves, meters."""
     motion, frames = tree.motion, np.arange(tree.motion.n_frames)
     rotations = np.tile(IDENTITY, (*motion.rotations.shape[:2], 1))
     for joint, (shape, curve) in enumerate(zip(tree.shapes, curves, strict=True)):
@@ -211,11 +211,11 @@ def _error(tree: Tree, curves: Sequence[KeyCurve | None], root: KeyCurve) -> flo
 
 
 def _pruned(tree: Tree) -> Tree:
-    """Leave out what only rests on things that rest: a control rig has hundreds of helpers."""
+    """Leave out bones that never move; a control rig has hundreds of helpers."""
     motion = tree.motion
     skeleton = motion.skeleton
-    turned = angle_between(motion.rotations, IDENTITY)
-    moves = ~(np.nan_to_num(turned, nan=1.0).max(axis=0) <= MOVES)
+    angles = angle_between(motion.rotations, IDENTITY)
+    moves = ~(np.nan_to_num(angles, nan=1.0).max(axis=0) <= MOVES)
     moves[0] = True
     needed = moves.copy()
     for joint in range(skeleton.n_joints - 1, 0, -1):

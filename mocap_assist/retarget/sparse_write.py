@@ -1,4 +1,4 @@
-"""Write few keys with handles in the place of many."""
+"""Replace many keys by few keys with handles."""
 
 import re
 from collections.abc import Mapping
@@ -54,7 +54,9 @@ def count_keys(curves: Curves) -> int:
 
 def _write(channels: Mapping[int, Channel], grid: Grid, keys: KeyCurve) -> None:
     handle_frames, handle_values = keys.handles()
-    times, beside = (grid.frames[0] + grid.step * each for each in (keys.frames, handle_frames))
+    times, handle_times = (
+        grid.frames[0] + grid.step * each for each in (keys.frames, handle_frames)
+    )
     for index, channel in channels.items():
         points = channel.curve.keyframe_points
         points.clear()
@@ -62,8 +64,8 @@ def _write(channels: Mapping[int, Channel], grid: Grid, keys: KeyCurve) -> None:
         values = handle_values[:, :, index]
         columns = {
             "co": np.stack([times, keys.values[:, index]], axis=1),
-            "handle_left": np.stack([beside[:, 0], values[:, 0]], axis=1),
-            "handle_right": np.stack([beside[:, 1], values[:, 1]], axis=1),
+            "handle_left": np.stack([handle_times[:, 0], values[:, 0]], axis=1),
+            "handle_right": np.stack([handle_times[:, 1], values[:, 1]], axis=1),
         }
         for kind in ("handle_left_type", "handle_right_type"):
             points.foreach_set(kind, np.full(len(times), ALIGNED, np.uint8))

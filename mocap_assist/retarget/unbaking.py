@@ -1,4 +1,4 @@
-"""What the button Unbake reads from the scene, and what it writes back."""
+"""Unbake: read the scene and write the result."""
 
 from functools import partial
 
@@ -24,7 +24,7 @@ from .sparse_write import count_keys, write_sparse
 def read_unbaking(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: UnbakeBundle
 ) -> "Steps[partial[Unbaked]]":
-    """Read what an armature plays; return what is to be solved, which may be pickled."""
+    """Read what an armature plays; return the picklable solve."""
     check_writable(armature)
     take = yield from read_take.steps(armature, scene, source=played_source(armature))
     return partial(unbake, _problem(take, settings))
@@ -36,14 +36,14 @@ def write_unbaked(
     armature: bpy.types.Object,
     settings: UnbakeBundle,
     result: Unbaked,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> Steps[str]:
     """Write a copy of the action with few keys and put it to use; return a sentence."""
     here = Subject.of(scene, armature)
     take = yield from read_take.steps(armature, scene, source=played_source(armature))
     scene, armature = here.find()
     played = played_source(armature)
-    check_unchanged(armature, asked, _problem(take, settings))
+    check_unchanged(armature, solved_digest, _problem(take, settings))
     action, slot = write_sparse(armature, played, take.grid, result.keys)
     before, after = (count_keys(animated_curves(*each)) for each in (played, (action, slot)))
     entry = {
@@ -69,13 +69,13 @@ def _problem(take: ArmatureTake, settings: UnbakeBundle) -> UnbakeProblem:
 def _tree(take: ArmatureTake, part: Part) -> Tree:
     """Return a part as it moves within what carries it, which keeps its own keys."""
     rig, rest, root = take.rig, take.rest, part.bones[0]
-    turn = rest.rotations[0]
+    rotation = rest.rotations[0]
     motion = part.motion
     rotations = motion.rotations.copy()
-    carried = multiply(part.carrier.rotations, inverse(turn))
+    carried = multiply(part.carrier.rotations, inverse(rotation))
     rotations[:, 0] = multiply(inverse(carried), rotations[:, 0])
-    places = rest.points(part.carrier.points_back(motion.root_positions))
-    axes = multiply(turn, rig.rest_rotations)
+    positions = rest.points(part.carrier.points_back(motion.root_positions))
+    axes = multiply(rotation, rig.rest_rotations)
     shapes = tuple(
         None
         if bone < 0
@@ -85,7 +85,7 @@ def _tree(take: ArmatureTake, part: Part) -> Tree:
         for bone in part.bones
     )
     return Tree(
-        Motion(motion.skeleton, rotations, places, motion.frame_rate),
+        Motion(motion.skeleton, rotations, positions, motion.frame_rate),
         shapes,
         take.channels[root].location_keyed,
         np.asarray(rest.points(rig.heads[root])),

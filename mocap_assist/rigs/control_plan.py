@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ...solvers.settings import Choice
 
 ROOT = "root"
-"""Stands where a role is asked for: the travel over the ground."""
+"""Role name of the travel over the ground."""
 CENTRE = ("hips", "spine", "chest", "upperChest", "neck", "head")
 LIMB = {
     "Shoulder": "upperChest", "UpperArm": "Shoulder", "LowerArm": "UpperArm",
@@ -34,13 +34,13 @@ class Plan(NamedTuple):
 
     bone: str
     role: str
-    """The part of the body that it turns with, or ROOT."""
+    """Body part that defines its rotation, or ROOT."""
     anchor: str
-    """The role beside whose joint it keeps its place."""
-    turns: bool = True
+    """Role of the joint that defines its position."""
+    rotates: bool = True
     moves: bool = False
     limb: str = ""
-    """For a pole target the limb before whose hinge it lies, such as "leftLeg"."""
+    """Limb of a pole target, for example "leftLeg"."""
 
 
 @dataclass(frozen=True)
@@ -89,5 +89,5 @@ def _above(role: str) -> str:
     if part in LIMB:
         return LIMB[part] if LIMB[part] in CENTRE else side + LIMB[part]
     end = next(each for each in FINGER_PARTS if part.endswith(each))
-    place = FINGER_PARTS.index(end)
-    return side + (part.removesuffix(end) + FINGER_PARTS[place - 1] if place else "Hand")
+    index = FINGER_PARTS.index(end)
+    return side + (part.removesuffix(end) + FINGER_PARTS[index - 1] if index else "Hand")

@@ -29,7 +29,7 @@ ABOVE = {
     "Hand": "LowerArm", "UpperLeg": "hips", "LowerLeg": "UpperLeg", "Foot": "LowerLeg",
     "Toes": "Foot",
 }  # fmt: skip
-"""Part of the body that each part hangs on."""
+"""Parent of each body part."""
 PHALANGES = ("Distal", "Intermediate", "Proximal", "Metacarpal")
 
 
@@ -60,9 +60,9 @@ def with_body_shown(
     scene : bpy.types.Scene
     armature : bpy.types.Object
     take : ArmatureTake
-        Read from the controls: its frames, and where the armature stands.
+        Read from the controls; its frames and placement are used.
     body : HumanoidMap
-        Bones by role; they may hang on anything.
+        Bones by role, with any parents.
     source : action and slot
         Played for as long as it takes.
     """

@@ -118,7 +118,7 @@ def _ik(
         Plan(f"{end}_ik.{letter}", role, role, moves=True),
         Plan(
             f"{upper}_ik_target.{letter}", f"{side}Upper{limb}", f"{side}Upper{limb}",
-            turns=False, moves=True, limb=side + limb,
+            rotates=False, moves=True, limb=side + limb,
         ),
     ]  # fmt: skip
     if limb == "Leg" and f"{side}Toes" in roles:

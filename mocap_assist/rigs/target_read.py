@@ -11,7 +11,7 @@ from ...solvers.motion import HumanoidMap, Skeleton, find_humanoid_map
 from ...solvers.motion.humanoid import ESSENTIAL_ROLES
 from ...solvers.rotations import inverse, multiply, quaternion_from_matrix, rotate
 from ..actions.take import skeleton_of
-from ..scene.controls import AT_REST, Control, TargetRig
+from ..scene.controls import NO_CONTROL, Control, TargetRig
 from ..scene.rig import Placement, Rig, placement_of, read_rig
 from ..scene.units import metres_per_unit
 from .control_plan import ROOT, Limbs, Plan, RigPlan, plain_plan, role_above
@@ -43,17 +43,17 @@ def find_roles(armature: bpy.types.Object) -> HumanoidMap:
 def stage_of(armature: bpy.types.Object) -> tuple[Placement, Array]:
     """Return where the armature's own space lies in its stage, and the stage's turn.
 
-    The stage is upright, and turned about the vertical as the armature is.
+    The stage is upright, with the armature's rotation about the vertical.
     """
-    turn, _, scale = placement_of(armature.matrix_world, armature.name)
-    about = vertical_part(turn)
-    upright = multiply(inverse(about), turn)
+    rotation, _, scale = placement_of(armature.matrix_world, armature.name)
+    about = vertical_part(rotation)
+    upright = multiply(inverse(about), rotation)
     return Placement(upright[None], np.zeros((1, 3)), scale), about
 
 
-def vertical_part(turn: Array) -> Array:
-    """Return the turn about the vertical that a rotation, shape (4,), ends with."""
-    part = np.array([turn[0], 0.0, 0.0, turn[3]])
+def vertical_part(rotation: Array) -> Array:
+    """Return the rotation about the vertical of a rotation, shape (4,)."""
+    part = np.array([rotation[0], 0.0, 0.0, rotation[3]])
     length = np.linalg.norm(part)
     return np.asarray(part / length if length > 1e-6 else [1.0, 0.0, 0.0, 0.0])
 
@@ -85,7 +85,7 @@ def read_target(
     Raises
     ------
     InvalidMotionError
-        A bone is missing, or moves in a way that cannot be followed.
+        A bone is missing, or its motion cannot be followed.
     """
     rig = read_rig(armature)
     joints = {role: bone for role, bone in roles.joints.items() if bone in rig.bones}
@@ -104,16 +104,16 @@ def read_target(
     metres = metres_per_unit(scene, rig, _top_of(rig, root), stage.scale)
     stage = stage.in_unit(metres)
     _check_movers(rig, plan, armature.name)
-    wanted = [(each.bone, each.moves) for each in plan.plans]
-    carriers = find_carriers(scene, armature, wanted, plan.switches)
+    bones_to_probe = [(each.bone, each.moves) for each in plan.plans]
+    carriers = find_carriers(scene, armature, bones_to_probe, plan.switches)
     skeleton, order = _skeleton(rig, plan.joint_bones, stage)
-    places = {role: index for index, role in enumerate(order)} | {ROOT: AT_REST}
+    joint_indices = {role: index for index, role in enumerate(order)} | {ROOT: NO_CONTROL}
     names = [each.bone for each in plan.plans]
     controls = tuple(
-        _control(armature, rig, each, stage, places, _carrier(each, names, carriers))
+        _control(armature, rig, each, stage, joint_indices, _carrier(each, names, carriers))
         for each in plan.plans
     )
-    humanoid = HumanoidMap({role: skeleton.names[places[role]] for role in joints})
+    humanoid = HumanoidMap({role: skeleton.names[joint_indices[role]] for role in joints})
     return TargetRig(skeleton, humanoid, controls, stage.scale), plan.switches
 
 
@@ -152,7 +152,7 @@ def _carrier(plan: Plan, names: list[str], carriers: Mapping[str, str | None]) -
             f"What moves {plan.bone} could not be found out. Take it out of the list of bones,"
             " or mute the constraints above it."
         )
-    return names.index(found) if found else AT_REST
+    return names.index(found) if found else NO_CONTROL
 
 
 def _skeleton(
@@ -188,7 +188,7 @@ def _control(
     rig: Rig,
     plan: Plan,
     stage: Placement,
-    places: Mapping[str, int],
+    joint_indices: Mapping[str, int],
     carrier: int,
 ) -> Control:
     bone = rig.bones.index(plan.bone)
@@ -200,16 +200,16 @@ def _control(
         part = plan.limb.removeprefix(side)
         end = "Hand" if part == "Arm" else "Foot"
         roles = (f"{side}Upper{part}", f"{side}Lower{part}", f"{side}{end}")
-        limb = (places[roles[0]], places[roles[1]], places[roles[2]])
+        limb = (joint_indices[roles[0]], joint_indices[roles[1]], joint_indices[roles[2]])
     return Control(
         bone=plan.bone,
-        joint=places[plan.role],
-        anchor=places[plan.anchor],
+        joint=joint_indices[plan.role],
+        anchor=joint_indices[plan.anchor],
         carrier=carrier,
         axes=multiply(upright, rig.rest_rotations[bone]),
         location_axes=multiply(upright, quaternion_from_matrix(axes)),
         head=stage.scale * rotate(upright, rig.heads[bone]),
-        turns=plan.turns,
+        rotates=plan.rotates,
         moves=plan.moves,
         limb=limb,
     )

@@ -1,1 +1,1 @@
-"""What all buttons have in common: what is selected, solving, waiting and redoing."""
+"""Code shared by all buttons: selection, solving, waiting and redoing."""

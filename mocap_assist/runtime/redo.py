@@ -8,16 +8,16 @@ _last: dict[str, Any] = {}
 
 
 def fingerprint(problem: Any) -> str:
-    """Return a digest of a picklable value: equal problems, and only those, have equal ones."""
+    """Return a digest of a picklable value; only equal problems have equal digests."""
     return hashlib.sha256(pickle.dumps(problem)).hexdigest()
 
 
 def remember(problem: Any, solution: Any) -> None:
-    """Keep one solution; the one before is forgotten, so that memory stays bounded."""
+    """Cache one solution in place of the previous one, so that memory stays bounded."""
     _last.clear()
     _last[fingerprint(problem)] = solution
 
 
 def recall(problem: Any) -> Any:
-    """Return the solution of this very problem if it was the last one, else None."""
+    """Return the cached solution if it solves the same problem, otherwise None."""
     return _last.get(fingerprint(problem)) if _last else None

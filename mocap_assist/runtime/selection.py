@@ -1,4 +1,4 @@
-"""The armature and the bones that the animator means, and why a button may be grey."""
+"""The selected armature, bones and markers, and why a button is unavailable."""
 
 import bpy
 
@@ -27,12 +27,12 @@ def selected_armature(context: bpy.types.Context) -> bpy.types.Object | None:
 
 
 def selected_subject(context: bpy.types.Context) -> bpy.types.Object | None:
-    """Return the active armature, or what holds the markers of the active empty."""
+    """Return the active armature, or the parent of the active marker."""
     return selected_armature(context) or holder_of(context.view_layer.objects.active)
 
 
 def why_not_read(context: bpy.types.Context) -> str:
-    """Return why there is nothing to read, or nothing: the reason why a button is grey."""
+    """Return why there is no motion to read, or an empty text."""
     subject = selected_subject(context)
     if subject is None:
         return "Select an animated armature or marker set."
@@ -44,7 +44,7 @@ def why_not_read(context: bpy.types.Context) -> str:
 
 
 def why_not_clean(context: bpy.types.Context) -> str:
-    """Return why nothing can be cleaned, or nothing."""
+    """Return why the selection cannot be cleaned, or an empty text."""
     if reason := why_not_read(context):
         return reason
     try:
@@ -55,14 +55,14 @@ def why_not_clean(context: bpy.types.Context) -> str:
 
 
 def why_not_change(context: bpy.types.Context) -> str:
-    """Return why the motion of no armature can be changed, or nothing."""
+    """Return why the motion of the selection cannot be changed, or an empty text."""
     if selected_armature(context) is None:
         return "Select an animated armature."
     return why_not_clean(context)
 
 
 def why_not_retarget(context: bpy.types.Context) -> str:
-    """Return why nothing can be retargeted, or nothing."""
+    """Return why the selection cannot be retargeted, or an empty text."""
     armature = selected_armature(context)
     if armature is None:
         return "Select the source armature (the one with the motion)."
@@ -70,14 +70,14 @@ def why_not_retarget(context: bpy.types.Context) -> str:
 
 
 def why_not_learn(context: bpy.types.Context) -> str:
-    """Return why nothing can be learned, or nothing."""
+    """Return why the selection cannot be learned from, or an empty text."""
     if selected_armature(context) is None:
         return "Select an armature with the bones of the examples."
     return ""
 
 
 def animated_objects(subject: bpy.types.Object) -> tuple[bpy.types.Object, ...]:
-    """Return what plays the action: the armature itself, or the markers below an object."""
+    """Return the animated objects: the armature itself, or the markers below a parent."""
     return (subject,) if subject.type == "ARMATURE" else markers_of(subject)
 
 
@@ -87,18 +87,18 @@ def first_animated_object(subject: bpy.types.Object) -> bpy.types.Object:
 
 
 def played_source(subject: bpy.types.Object) -> Source:
-    """Return what the armature, or the first of the markers, plays: a result, or its action."""
+    """Return the result or action that the armature, or the first of the markers, plays."""
     player = first_animated_object(subject)
     return history.played_result(player) or action_of(player)
 
 
 def played_result(subject: bpy.types.Object | None) -> Source | None:
-    """Return the result of ours that the armature or the first of the markers plays."""
+    """Return the result of Mocap Assist that the armature or the first marker plays."""
     return None if subject is None else history.played_result(first_animated_object(subject))
 
 
 def chosen_bones(armature: bpy.types.Object, choice: Bones) -> frozenset[str]:
-    """Return the names of the bones to change, of which there must be one."""
+    """Return the names of the bones to change; raise InvalidMotionError if there are none."""
     bones = armature.pose.bones
     if choice is Bones.ALL:
         return frozenset(bone.name for bone in bones)
@@ -111,7 +111,7 @@ def chosen_bones(armature: bpy.types.Object, choice: Bones) -> frozenset[str]:
 
 
 def chosen_markers(take: MarkerTake, choice: Bones) -> frozenset[str]:
-    """Return the names of the markers to change, of which there must be one."""
+    """Return the names of the markers to change; raise InvalidMotionError if there are none."""
     chosen = frozenset(
         name
         for name, marker in zip(take.tracks.names, take.markers, strict=True)

@@ -1,4 +1,4 @@
-"""The three acts of every Mocap Assist operator: read the scene, solve, write the scene."""
+"""The three steps of every Mocap Assist operator: read the scene, solve, write the scene."""
 
 import logging
 from collections.abc import Callable, Generator
@@ -18,40 +18,40 @@ from .watch import Watch, why_busy
 
 logger = logging.getLogger(__name__)
 
-AT_ONCE = 0.04
-"""Seconds of work in Blender's own thread between two looks at what the animator does."""
+MAX_SLICE_S = 0.04
+"""Seconds of work in Blender's main thread between two checks for events."""
 
 
 def in_background() -> bool:
-    """Whether there is nobody to press Esc, and no loop of events to wait in."""
+    """Whether Blender runs without a window, and so without Esc and an event loop."""
     return bool(bpy.app.background)
 
 
 class SolverOperator:
     """Mix in before bpy.types.Operator and name the functions that read and write.
 
-    They run in Blender, in turns with its window where they are `Sliced`. What `read_scene`
-    returns is called with `progress=` in a process of its own: it must be picklable and cannot
-    use bpy. When the animator pressed a button, that window swallows all input but Esc and the
-    right mouse button meanwhile; whatever is done in another window, the result goes to what
-    was read, or nowhere. A script waits.
+    Both run in Blender, and `Sliced` ones take turns with its window. The solve that
+    `read_scene` returns is called with `progress=` in a subprocess: it must be picklable and
+    cannot use bpy. After a press of the button the window ignores all input except Esc and the
+    right mouse button. Changes in another window do not redirect the result: it goes to the
+    subject that was read, or is discarded. A script waits.
     """
 
     bl_options: ClassVar = {"REGISTER", "UNDO"}
     settings_group: ClassVar[str]
-    """Where the sidebar keeps the settings: a property of `scene.mocap_assist`."""
+    """Property of `scene.mocap_assist` with the settings of the sidebar."""
     setting_names: ClassVar[tuple[str, ...]]
     """Supplied by the decorator `settings_from`, as is the method `settings`."""
     selected: ClassVar[Callable[..., bpy.types.Object | None]] = selected_subject
-    """From the context, what the button works on."""
+    """Return the subject of the button from the context."""
     why_not: ClassVar[Callable[[bpy.types.Context], str]]
-    """Return why the button is grey, or nothing."""
+    """Return why the button is unavailable, or an empty text."""
     read_scene: ClassVar[Callable[..., "partial[Any]"]]
-    """From scene, subject and settings; the first argument of the solve is what is solved."""
+    """Return the solve for a scene, subject and settings; its first argument is the problem."""
     write_scene: ClassVar[Callable[..., str]]
-    """From scene, subject, settings, result and the fingerprint of what was solved.
+    """Write a result, and return the message for the status bar.
 
-    Returns the sentence to show in the status bar.
+    It is called with scene, subject, settings, result and the fingerprint of the problem.
     """
 
     @classmethod
@@ -61,14 +61,14 @@ class SolverOperator:
         return not reason
 
     def prepare(self, context: bpy.types.Context) -> None:
-        """Take over the sidebar's settings, but for those that the caller gave."""
+        """Copy the sidebar's settings, except those that the caller has set."""
         shown = getattr(context.scene.mocap_assist, self.settings_group)
         for name in type(self).setting_names:
             if hasattr(shown, name) and not self.properties.is_property_set(name):
                 setattr(self, name, getattr(shown, name))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        if not hasattr(self, "_subject"):  # else it is done again, to the same subject
+        if not hasattr(self, "_subject"):  # otherwise a redo, for the same subject
             self._subject = Subject.of(context.scene, type(self).selected(context))
         try:
             result = run(type(self).read_scene(*self._read_arguments()))
@@ -118,39 +118,39 @@ class SolverOperator:
         return {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Blender ends the operator: another file is loaded, or the window closes."""
+        """Stop because Blender loads another file or closes the window."""
         if self._watch.is_on:
             self._watch.abandon(context)
 
-    def look(self, job: Job[Any]) -> None:
-        """Do something now and then while it is solved; nothing here."""
+    def show_previews(self, job: Job[Any]) -> None:
+        """Show previews of a running solve; does nothing by default."""
 
-    def answer(self, job: Job[Any]) -> Any:
-        """Return what the job that has ended has solved."""
+    def result_from_job(self, job: Job[Any]) -> Any:
+        """Return the result of a job that has ended."""
         return job.result()
 
     def _perform(self) -> Generator[tuple[float, str], None, str]:
-        """Read, solve and write in turns with Blender; yield how far it is.
+        """Read, solve and write in turns with Blender; yield the progress.
 
         SolveCancelled is thrown in when the animator presses Esc.
         """
-        solve = yield from self._in_turns("Reading", type(self).read_scene)
-        asked = fingerprint(solve.args[0])
+        solve = yield from self._in_slices("Reading", type(self).read_scene)
+        problem_digest = fingerprint(solve.args[0])
         result = (
             run(solve) if isinstance(solve, ShortSolve) else (yield from self._solve(solve))
         )
-        message: str = yield from self._in_turns(
-            "Writing", type(self).write_scene, result, asked
+        message: str = yield from self._in_slices(
+            "Writing", type(self).write_scene, result, problem_digest
         )
         logger.info("%s took %.1f s", self.bl_idname, monotonic() - self._started)
         return message
 
-    def _in_turns(
+    def _in_slices(
         self, title: str, function: Callable[..., Any], *more: Any
     ) -> Generator[tuple[float, str], None, Any]:
         work = Work(function, *self._read_arguments(), *more)
         try:
-            while not work.go_on(AT_ONCE):
+            while not work.run_slice(MAX_SLICE_S):
                 yield work.fraction, title
         finally:
             work.stop()
@@ -160,15 +160,15 @@ class SolverOperator:
         self._job = job = Job(solve)
         try:
             while not job.done():
-                self.look(job)
+                self.show_previews(job)
                 yield job.progress()
         except SolveCancelled:
             job.cancel()
-        except BaseException:  # the file is closed, or the extension switched off
+        except BaseException:  # the file is closed, or the extension disabled
             job.cancel()
             job.tidy_up()
             raise
-        return self.answer(job)
+        return self.result_from_job(job)
 
     def _read_arguments(self) -> tuple[Any, ...]:
         return (*self._subject.find(), self.settings())

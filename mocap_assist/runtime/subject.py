@@ -1,4 +1,4 @@
-"""What a solve was started for, whatever is clicked while it runs."""
+"""The subject of a solve, independent of later clicks."""
 
 from typing import NamedTuple
 
@@ -10,32 +10,34 @@ from .redo import fingerprint
 
 
 class Subject(NamedTuple):
-    """A scene, and in it an armature or what holds the markers of a take."""
+    """A scene, and an armature or the parent of a take's markers in it."""
 
     scene: BlockReference
-    thing: BlockReference
+    target: BlockReference
 
     @classmethod
-    def of(cls, scene: bpy.types.Scene, thing: bpy.types.Object) -> "Subject":
-        """Remember both."""
-        return cls(BlockReference.of(scene), BlockReference.of(thing))
+    def of(cls, scene: bpy.types.Scene, target: bpy.types.Object) -> "Subject":
+        """Return references to both."""
+        return cls(BlockReference.of(scene), BlockReference.of(target))
 
     def find(self) -> tuple[bpy.types.Scene, bpy.types.Object]:
-        """Return both; raise InvalidMotionError where one was deleted meanwhile."""
-        return self.scene.find(), self.thing.find()
+        """Return both; raise InvalidMotionError if one was deleted meanwhile."""
+        return self.scene.find(), self.target.find()
 
 
-def check_unchanged(thing: bpy.types.Object, asked: str | None, present: object) -> None:
-    """Raise InvalidMotionError if what was solved is not what is there now.
+def check_unchanged(
+    target: bpy.types.Object, solved_digest: str | None, current: object
+) -> None:
+    """Raise InvalidMotionError if the scene no longer holds the problem that was solved.
 
     Parameters
     ----------
-    thing : the armature, or the holder of markers, that was read
-    asked : fingerprint of what was solved; None where nothing can have changed since
-    present : the same, read again
+    target : the armature, or the parent of markers, that was read
+    solved_digest : fingerprint of the solved problem; None if it cannot have changed since
+    current : the same problem, read again
     """
-    if asked is not None and asked != fingerprint(present):
+    if solved_digest is not None and solved_digest != fingerprint(current):
         raise InvalidMotionError(
-            f"The action, the rig or the frame range of {thing.name} was changed during the"
+            f"The action, the rig or the frame range of {target.name} was changed during the"
             " solve; nothing was written. Press the button again."
         )

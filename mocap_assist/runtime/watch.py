@@ -1,4 +1,4 @@
-"""The one solve that runs beside Blender's work: shown while it runs, ended with its file."""
+"""Display of the running solve; it ends with its file."""
 
 from collections.abc import Callable
 
@@ -7,23 +7,23 @@ from bpy.app import handlers
 
 from ..drawing.view_drawing import redraw
 
-BETWEEN_LOOKS = 0.05  # seconds
+TIMER_INTERVAL_S = 0.05
 BUSY = "Another solve is running. Wait until it is done, or press Esc in its window."
 
 _on: list["Watch"] = []
 
 
 class Watch:
-    """What the status bar and the sidebar say about a solve until it ends.
+    """Progress of a solve in the status bar and the sidebar.
 
     Parameters
     ----------
     context : bpy.types.Context
-        With a window, whose status bar says how far the work is.
+        With a window; its status bar shows the progress.
     owner : str
-        Names the panel that says so, too.
+        Name of the panel that shows the progress too.
     stop : callable
-        Ends the work, whatever it has found, before another file is loaded.
+        Discards the work before another file is loaded.
     """
 
     def __init__(
@@ -32,23 +32,23 @@ class Watch:
         self._stop = stop
         manager = context.window_manager
         manager.mocap_assist_job.owner = owner
-        self._timer = manager.event_timer_add(BETWEEN_LOOKS, window=context.window)
+        self._timer = manager.event_timer_add(TIMER_INTERVAL_S, window=context.window)
         _on.append(self)
 
     @property
     def is_on(self) -> bool:
-        """Whether it is still shown; not after another file was loaded."""
+        """Whether the solve is still shown; False after another file was loaded."""
         return self in _on
 
     def show(self, context: bpy.types.Context, fraction: float, message: str) -> None:
-        """Say how far the work is."""
+        """Show the progress."""
         state = context.window_manager.mocap_assist_job
         state.running, state.fraction, state.message = True, fraction, message
         context.workspace.status_text_set(f"{message} {fraction:.0%}   Esc: cancel")
         redraw(context)
 
     def end(self, context: bpy.types.Context) -> None:
-        """Show nothing more."""
+        """Remove the display."""
         _on.remove(self)
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.mocap_assist_job.running = False
@@ -56,7 +56,7 @@ class Watch:
         redraw(context)
 
     def abandon(self, context: bpy.types.Context) -> None:
-        """End the work too, whatever it has found."""
+        """Discard the work and remove the display."""
         try:
             self._stop()
         finally:
@@ -64,7 +64,7 @@ class Watch:
 
 
 def why_busy() -> str:
-    """Return why no other solve can start, or nothing."""
+    """Return why no other solve can start, or an empty text."""
     return BUSY if _on else ""
 
 
@@ -75,8 +75,8 @@ def _abandon_all(*_: object) -> None:
 
 
 @handlers.persistent
-def _nothing_runs(*_: object) -> None:
-    """A file that was saved while a solve ran says that it still does."""
+def _reset_running(*_: object) -> None:
+    """Reset the state that a file saved during a solve still holds."""
     for manager in bpy.data.window_managers:
         manager.mocap_assist_job.running = False
 
@@ -84,11 +84,11 @@ def _nothing_runs(*_: object) -> None:
 def register() -> None:
     """End a solve before the file that it works on is replaced."""
     handlers.load_pre.append(_abandon_all)
-    handlers.load_post.append(_nothing_runs)
+    handlers.load_post.append(_reset_running)
 
 
 def unregister() -> None:
-    """End it with the extension, too: Blender forgets the button without a word."""
+    """End the solve with the extension: Blender drops the operator without notice."""
     _abandon_all()
-    handlers.load_post.remove(_nothing_runs)
+    handlers.load_post.remove(_reset_running)
     handlers.load_pre.remove(_abandon_all)

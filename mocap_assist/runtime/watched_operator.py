@@ -1,4 +1,4 @@
-"""A button whose solve can be watched, and of which something may be kept on Esc."""
+"""A button whose solve shows previews, and may keep a partial result on Esc."""
 
 import logging
 from collections.abc import Callable, Generator, Iterable
@@ -15,28 +15,28 @@ logger = logging.getLogger(__name__)
 
 
 class View(Protocol):
-    """Shows what a solve shows meanwhile, in whatever way."""
+    """Display of the previews of a solve."""
 
-    def look(
-        self, scene: bpy.types.Scene, thing: bpy.types.Object, shown: Iterable[Any]
+    def show(
+        self, scene: bpy.types.Scene, target: bpy.types.Object, previews: Iterable[Any]
     ) -> None:
-        """Show what is new."""
+        """Show new previews."""
 
     def close(self) -> None:
-        """Show nothing more."""
+        """Remove the display."""
 
 
 class WatchedOperator(SolverOperator):
-    """Mix in as SolverOperator, where `read_scene` returns a `PreviewSolve` solve."""
+    """Mix in like SolverOperator if `read_scene` returns a `PreviewSolve`."""
 
     open_view: ClassVar[Callable[..., View | None]]
-    """From scene, subject and settings; None if nobody wants to look on."""
+    """Return a view for a scene, subject and settings; None without previews."""
     rescue: ClassVar[Callable[..., Callable[[list[Any]], Any] | None]] = staticmethod(
-        lambda scene, thing, settings: None
+        lambda scene, target, settings: None
     )
-    """From scene, subject and settings: what makes a result of all that was shown on Esc.
+    """Return a function that makes a result of all previews on Esc.
 
-    None, as here, where nothing is kept.
+    It is called with scene, subject and settings. None, the default, keeps no result.
     """
     _view: View | None = None
 
@@ -47,36 +47,36 @@ class WatchedOperator(SolverOperator):
         finally:
             self._close_view()
 
-    def look(self, job: Job[Any]) -> None:
-        """Show what is new; nothing where the animator has removed what is looked at."""
+    def show_previews(self, job: Job[Any]) -> None:
+        """Show new previews; none if the animator has removed the subject."""
         if self._view is None:
             return
         try:
-            self._view.look(*self._subject.find(), job.shown())
+            self._view.show(*self._subject.find(), job.new_previews())
         except MocapAssistError:
             pass
-        except Exception:  # from what is shown, handlers, files: the solve must go on
-            logger.exception("Nothing more is shown of this solve")
+        except Exception:  # from previews, handlers, files: the solve must continue
+            logger.exception("The previews of this solve are switched off")
             self._close_view()
 
-    def answer(self, job: Job[Any]) -> Any:
-        """Return what the job has solved or, after Esc, what is kept of it."""
+    def result_from_job(self, job: Job[Any]) -> Any:
+        """Return the result of the job or, after Esc, its partial result."""
         self._close_view()
         if not job.cancelled:
-            return super().answer(job)
+            return super().result_from_job(job)
         try:
             rescue = type(self).rescue(*self._read_arguments())
             if rescue is None:
                 raise SolveCancelled("Cancelled.")
-            return rescue(job.all_shown())
+            return rescue(job.all_previews())
         finally:
             job.tidy_up()
 
     def _close_view(self) -> None:
-        """Look on no longer, whatever goes wrong with that: the result is worth more."""
+        """Close the view, and only log its errors: the result matters more."""
         view, self._view = self._view, None
         try:
             if view is not None:
                 view.close()
         except Exception:
-            logger.exception("What was shown of a solve could not be put away")
+            logger.exception("The previews of a solve could not be removed")

@@ -9,7 +9,7 @@ ENDS_OF_BODY = ("leftFoot", "rightFoot", "head")
 
 
 def body_root(rig: Rig, travels: Sequence[bool]) -> int:
-    """Return the bone that plays the hips: what moves the whole figure.
+    """Return the hips: the bone that moves the complete figure.
 
     Candidates are the parentless bone with the most bones below it and all bones whose keyed
     location changes. Of them the deepest is taken that still carries both feet and the head:

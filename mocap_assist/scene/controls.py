@@ -1,9 +1,9 @@
-"""A rig as what is keyed of it: controls, the joints that they turn, and what carries them.
+"""A rig as its keyed controls, the joints that they follow, and their carriers.
 
-A control follows a joint: it turns as that joint does, from its own rest pose, and may keep its
-place beside another joint. What carries a control, be it a parent or bones with constraints, is
-known by the control that it moves along with. So the channels of all controls come out of the
-joints' places in the world without evaluating the rig.
+A control follows a joint: it rotates like that joint, from its own rest pose, and may keep its
+position relative to another joint. The carrier of a control, a parent or constrained bones, is
+represented by the control that it moves with. The channels of all controls therefore follow
+from the joints' world transforms without evaluating the rig.
 """
 
 from collections.abc import Mapping
@@ -16,34 +16,34 @@ from ...solvers.motion import HumanoidMap, Skeleton, WorldPoses
 from ...solvers.rotations import inverse, multiply, rotate
 
 Array = NDArray[np.float64]
-AT_REST = -1
+NO_CONTROL = -1
 STRAIGHT, BENT = 0.001, 0.005
-"""Way of a hinge from the line of its limb, as part of the limb's length: up to the first, the
-upper bone tells where the hinge points; beyond the second, the bend does."""
+"""Distance of a hinge from the line of its limb, as a fraction of the limb's length. Below the
+first, the upper bone defines the direction of the hinge; above the second, its flexion does."""
 
 
 @dataclass(frozen=True, eq=False)
 class Control:
-    """A bone that is keyed.
+    """A keyed bone.
 
     Attributes
     ----------
     bone : str
     joint : int
-        The joint that it turns with; -1 for the travel over the ground.
+        Joint that defines its rotation; -1 for the travel over the ground.
     anchor : int
-        The joint that it keeps its place beside, carried by the turn of `joint`.
+        Joint that defines its position, with an offset that rotates with `joint`.
     carrier : int
         Control that carries it, -1 for none.
     axes : shape (4,)
         Its rest pose in the stage.
     location_axes : shape (4,)
         Those of its location.
-    head : shape (3,), metres
-        Where it rests.
-    turns, moves : bool
-        Which channels are keyed.
-    limb : upper joint, hinge and end for a pole target, which lies before the hinge
+    head : shape (3,), meters
+        Rest position.
+    rotates, moves : bool
+        Whether rotation and location are keyed.
+    limb : upper joint, hinge and end for a pole target in front of the hinge
     """
 
     bone: str
@@ -53,17 +53,16 @@ class Control:
     axes: Array
     location_axes: Array
     head: Array
-    turns: bool
+    rotates: bool
     moves: bool
     limb: tuple[int, int, int] | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class TargetRig:
-    """All that has to be known of a rig to give it a motion.
+    """Description of a rig for retargeting.
 
-    The stage is the place in which the armature stands: the world, but with the armature's
-    origin in the middle and without its turn about the vertical.
+    The stage is the world relative to the armature's origin and rotation about the vertical.
 
     Attributes
     ----------
@@ -83,7 +82,7 @@ class TargetRig:
 
 @dataclass(frozen=True, eq=False)
 class BoneKeys:
-    """Channels of one bone, NaN where nothing is known of its joint."""
+    """Channels of one bone, NaN where its joint is missing."""
 
     rotations: Array | None
     """Shape (n_frames, 4), Blender's basis."""
@@ -93,23 +92,23 @@ class BoneKeys:
 
 @dataclass(frozen=True, eq=False)
 class Carried:
-    """How something has moved from its rest pose: x goes to turn(x - rest) + place."""
+    """Motion from a rest pose: x maps to rotate(x - rest) + position."""
 
-    turns: Array
+    rotations: Array
     rest: Array
-    places: Array
+    positions: Array
 
     def points(self, points: Array) -> Array:
-        """Take points of the rest pose, shape (3,), to where they are."""
-        return np.asarray(rotate(self.turns, points - self.rest) + self.places)
+        """Transform points of the rest pose, shape (3,), to the current pose."""
+        return np.asarray(rotate(self.rotations, points - self.rest) + self.positions)
 
     def points_back(self, points: Array) -> Array:
-        """Take points, shape (n_frames, 3), to where they are in the rest pose."""
-        return np.asarray(rotate(inverse(self.turns), points - self.places) + self.rest)
+        """Transform points, shape (n_frames, 3), back to the rest pose."""
+        return np.asarray(rotate(inverse(self.rotations), points - self.positions) + self.rest)
 
 
 def keys_of(target: TargetRig, poses: WorldPoses, travel: Carried) -> Mapping[str, BoneKeys]:
-    """Return the channels that bring each control to where its joints ask for it.
+    """Return the channels that move each control to its joints.
 
     Parameters
     ----------
@@ -124,16 +123,16 @@ def keys_of(target: TargetRig, poses: WorldPoses, travel: Carried) -> Mapping[st
     still = Carried(np.tile([1.0, 0.0, 0.0, 0.0], (n_frames, 1)), np.zeros(3), np.zeros(3))
     found = {}
     for control, delta in zip(target.controls, moved, strict=True):
-        carrier = still if control.carrier == AT_REST else moved[control.carrier]
+        carrier = still if control.carrier == NO_CONTROL else moved[control.carrier]
         found[control.bone] = BoneKeys(
-            _basis_turns(control, carrier, delta) if control.turns else None,
+            _basis_rotations(control, carrier, delta) if control.rotates else None,
             _basis_shifts(control, carrier, delta) / target.metres if control.moves else None,
         )
     return found
 
 
-def _basis_turns(control: Control, carrier: Carried, moved: Carried) -> Array:
-    local = multiply(inverse(carrier.turns), moved.turns)
+def _basis_rotations(control: Control, carrier: Carried, moved: Carried) -> Array:
+    local = multiply(inverse(carrier.rotations), moved.rotations)
     return np.asarray(multiply(multiply(inverse(control.axes), local), control.axes))
 
 
@@ -150,11 +149,11 @@ def _moved(control: Control, skeleton: Skeleton, poses: WorldPoses, travel: Carr
     moved = Carried(poses.rotations[:, control.joint], rest[anchor], poses.positions[:, anchor])
     if control.limb is None:
         return moved
-    return Carried(moved.turns, control.head, _pole_places(control, rest, poses, moved))
+    return Carried(moved.rotations, control.head, _pole_positions(control, rest, poses, moved))
 
 
-def _pole_places(control: Control, rest: Array, poses: WorldPoses, upper: Carried) -> Array:
-    """Return points before a limb's hinge, as far away as in the rest pose, (n_frames, 3)."""
+def _pole_positions(control: Control, rest: Array, poses: WorldPoses, upper: Carried) -> Array:
+    """Return points in front of a hinge, at their rest distance, (n_frames, 3)."""
     assert control.limb is not None
     start, hinge, end = (poses.positions[:, joint] for joint in control.limb)
     line = end - start
@@ -166,8 +165,8 @@ def _pole_places(control: Control, rest: Array, poses: WorldPoses, upper: Carrie
     straight = upper.points(control.head) - hinge
     axis = line / np.maximum(np.linalg.norm(line, axis=1, keepdims=True), 1e-9)
     straight -= axis * (straight * axis).sum(axis=1, keepdims=True)
-    share = np.clip((depth / length - STRAIGHT) / (BENT - STRAIGHT), 0.0, 1.0)
-    ahead = share * _unit(bend) + (1.0 - share) * _unit(straight)
+    weight = np.clip((depth / length - STRAIGHT) / (BENT - STRAIGHT), 0.0, 1.0)
+    ahead = weight * _unit(bend) + (1.0 - weight) * _unit(straight)
     distance = np.linalg.norm(control.head - rest[control.limb[1]])
     return np.asarray(hinge + distance * _unit(ahead))
 

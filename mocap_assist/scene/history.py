@@ -1,4 +1,4 @@
-"""What was done to an action, kept in the action itself, and the way back to the raw one."""
+"""History of an action, stored in the action, and its link to the raw one."""
 
 from dataclasses import asdict
 from enum import Enum
@@ -16,7 +16,7 @@ HISTORY = "mocap_assist_history"
 SOURCE = "mocap_assist_source"
 GIVEN_BY = "mocap_assist_given_by"
 REMADE = ("reconstruct", "simulate", "solve_skeleton", "retarget", "vary", "retrack")
-"""Operations that make another motion, which may be cleaned in its turn."""
+"""Operations whose result counts as raw for Clean."""
 
 
 def record(

@@ -13,7 +13,7 @@ ORIGIN = "mocap_assist_recording"
 NOTED: dict[str, Any] = {
     "file": str, "kind": str, "frame_rate": int | float, "n_frames": int, "sensor": str,
 }  # fmt: skip
-"""What a note holds, and of which type it must be to be believed."""
+"""Keys of a note, and the types of valid values."""
 
 
 def note_origin(made: bpy.types.ID, origin: dict[str, Any]) -> None:

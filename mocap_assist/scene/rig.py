@@ -1,4 +1,4 @@
-"""The rest pose of an armature and where the armature stands, as plain values."""
+"""The rest pose and the placement of an armature, as plain values."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from ...solvers.rotations import inverse, multiply, quaternion_from_matrix, rota
 
 Array = NDArray[np.float64]
 EVEN = 1e-3
-FARTHEST = 1e12
+MAX_COORDINATE = 1e12
 """Units of the scene; Blender keeps 3.4e38 where infinity is set."""
 END = "mocap_assist_end"
 """Custom property of bones whose tail was never captured."""
@@ -63,16 +63,16 @@ class Rig:
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """Where a space lies in the world, at every frame: v goes to scale * turn(v) + origin."""
+    """Transform of a space to the world, per frame: v maps to scale * rotate(v) + origin."""
 
     rotations: Array
     """Shape (n_frames, 4)."""
     origins: Array
-    """Shape (n_frames, 3), metres."""
+    """Shape (n_frames, 3), meters."""
     scale: float
 
     def in_unit(self, metres: float) -> "Placement":
-        """Return the placement with its metres taken for units of so many metres."""
+        """Return the placement with its metres taken for units of so many meters."""
         return Placement(self.rotations, metres * self.origins, metres * self.scale)
 
     def points(self, points: Array) -> Array:
@@ -84,10 +84,10 @@ class Placement:
         return np.asarray(rotate(inverse(self.rotations), points - self.origins) / self.scale)
 
     def moved(self, rotations: Array, locations: Array, pivot: Array) -> "Placement":
-        """Return the placement carried by something that turns about `pivot` and shifts."""
-        turned = multiply(self.rotations, rotations)
-        origins = self.points(pivot + locations) - self.scale * rotate(turned, pivot)
-        return Placement(turned, origins, self.scale)
+        """Return the placement below a parent that rotates about `pivot` and translates."""
+        rotated = multiply(self.rotations, rotations)
+        origins = self.points(pivot + locations) - self.scale * rotate(rotated, pivot)
+        return Placement(rotated, origins, self.scale)
 
 
 def read_rig(armature: bpy.types.Object) -> Rig:
@@ -95,11 +95,11 @@ def read_rig(armature: bpy.types.Object) -> Rig:
     bones = list(armature.data.bones)  # Blender lists parents before their children
     if not bones:
         raise InvalidMotionError(f"The armature {armature.name} has no bones.")
-    place = {bone.name: index for index, bone in enumerate(bones)}
+    order = {bone.name: index for index, bone in enumerate(bones)}
     rest = np.array([bone.matrix_local for bone in bones], dtype=np.float64)
     return Rig(
-        bones=tuple(place),
-        parents=tuple(place[bone.parent.name] if bone.parent else -1 for bone in bones),
+        bones=tuple(order),
+        parents=tuple(order[bone.parent.name] if bone.parent else -1 for bone in bones),
         rest_rotations=quaternion_from_matrix(rest[:, :3, :3]),
         heads=rest[:, :3, 3],
         tails=np.array([bone.tail_local for bone in bones], dtype=np.float64),
@@ -119,14 +119,14 @@ def placement_of(matrix: Matrix, name: str) -> tuple[Array, Array, float]:
         something is not a number.
     """
     check_finite(matrix, name)
-    whole = np.array(matrix, dtype=np.float64)
-    linear = whole[:3, :3]
+    array = np.array(matrix, dtype=np.float64)
+    linear = array[:3, :3]
     volume = np.linalg.det(linear)
     if volume > 0.0:
         scale = float(np.cbrt(volume))
-        turn = linear / scale
-        if np.abs(turn @ turn.T - np.eye(3)).max() <= EVEN:
-            return quaternion_from_matrix(turn), whole[:3, 3], scale
+        rotation = linear / scale
+        if np.abs(rotation @ rotation.T - np.eye(3)).max() <= EVEN:
+            return quaternion_from_matrix(rotation), array[:3, 3], scale
     sizes = ", ".join(f"{size:.3g}" for size in np.linalg.norm(linear, axis=0))
     fault = f"is scaled unevenly or sheared ({sizes} along X, Y, Z)"
     if volume <= 0.0:
@@ -137,8 +137,8 @@ def placement_of(matrix: Matrix, name: str) -> tuple[Array, Array, float]:
 
 
 def check_finite(matrix: Matrix, name: str) -> None:
-    """Raise InvalidMotionError where a matrix has NaN, or what nobody can reckon with."""
-    if not (np.abs(np.array(matrix, dtype=np.float64)) <= FARTHEST).all():
+    """Raise InvalidMotionError if a matrix has NaN or other invalid numbers."""
+    if not (np.abs(np.array(matrix, dtype=np.float64)) <= MAX_COORDINATE).all():
         raise InvalidMotionError(
             f"The location, rotation or scale of {name} is not a number or far too large at the"
             " current frame. Set it again, or delete the key that sets it."

@@ -1,4 +1,4 @@
-"""Objects that come into the scene, and that go again where something failed."""
+"""Add objects to the scene, and remove them again after a failure."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -59,7 +59,7 @@ def remove(numbers: Numbers) -> None:
 
 
 @contextmanager
-def all_or_nothing(context: bpy.types.Context) -> Iterator[Numbers]:
+def undo_on_error(context: bpy.types.Context) -> Iterator[Numbers]:
     """Leave the scene as it was if it ends with an error; else fill what it yields."""
     state, before = SceneState.of(context), present()
     made: Numbers = {}

@@ -27,7 +27,7 @@ class FrameRate(Choice):
 
 
 class Timing(NamedTuple):
-    """When samples are seen in the scene."""
+    """Scene frames of samples."""
 
     start: float
     """Scene frame of the first sample."""
@@ -42,8 +42,8 @@ class Timing(NamedTuple):
 def scene_rate(scene: bpy.types.Scene) -> float:
     """Return the scene's frames per second."""
     rate = scene.render.fps / scene.render.fps_base
-    whole = round(rate)
-    return float(whole) if abs(rate - whole) < SAME * rate else rate
+    rounded = round(rate)
+    return float(rounded) if abs(rate - rounded) < SAME * rate else rate
 
 
 def set_scene_rate(scene: bpy.types.Scene, frame_rate: float) -> None:

@@ -1,4 +1,4 @@
-"""How long one of Blender's units is, in metres."""
+"""How long one of Blender's units is, in meters."""
 
 import bpy
 
@@ -6,12 +6,12 @@ from ...solvers.recordings.conventions import guess_unit, longest_bone_path
 from .rig import Rig
 
 # Metres from foot to hand along the bones: from a cat to a dragon. Beyond it, a recording was
-# imported in the unit of its file, such as centimetres, as happens with BVH every day.
+# imported in the unit of its file, such as centimeters, as happens with BVH every day.
 PLAUSIBLE_REACH = (0.25, 15.0)
 
 
 def unit_of(scene: bpy.types.Scene) -> float:
-    """Return the length of one unit, in metres, that the scene states."""
+    """Return the length of one unit, in meters, that the scene states."""
     settings = scene.unit_settings
     return float(settings.scale_length) if settings.system != "NONE" else 1.0
 
@@ -28,15 +28,17 @@ def metres_per_unit(scene: bpy.types.Scene, rig: Rig, root: int, scale: float) -
     scale : float
         Of the armature in the scene.
     """
-    said = unit_of(scene)
+    stated = unit_of(scene)
     bones = rig.subtree(root)
-    place = {bone: index for index, bone in enumerate(bones)}
-    parents = [-1, *(place[rig.parents[bone]] for bone in bones[1:])]
+    joint_of = {bone: joint for joint, bone in enumerate(bones)}
+    parents = [-1, *(joint_of[rig.parents[bone]] for bone in bones[1:])]
     offsets = scale * (rig.heads[bones] - rig.heads[[rig.parents[bone] for bone in bones]])
     low, high = PLAUSIBLE_REACH
-    if low <= said * longest_bone_path(parents, offsets) <= high:
-        return float(said)
+    if low <= stated * longest_bone_path(parents, offsets) <= high:
+        return float(stated)
     guessed = guess_unit(parents, offsets)
     return (
-        guessed if low <= guessed * longest_bone_path(parents, offsets) <= high else float(said)
+        guessed
+        if low <= guessed * longest_bone_path(parents, offsets) <= high
+        else float(stated)
     )

@@ -13,8 +13,8 @@ from ..actions.frames import FrameRange, Grid
 from ..actions.marker_take import read_markers
 from ..blender.time_slices import Sliced, Steps
 from ..library.choices import FindBundle
-from ..library.places import library_path
 from ..library.prior import own_origins
+from ..library.sources import library_path
 from ..runtime.selection import Bones, chosen_bones, played_source, why_not_read
 from ..runtime.subject import Subject, check_unchanged
 from ..scene.units import unit_of
@@ -31,7 +31,7 @@ class Query(NamedTuple):
 
 
 def why_not_find(context: bpy.types.Context) -> str:
-    """Return why nothing can be looked for, or nothing."""
+    """Return why no search can start, or an empty text."""
     if reason := why_not_read(context):
         return reason
     choices = context.scene.mocap_assist.library.settings().choices
@@ -56,7 +56,7 @@ def read_query(
 def read_finding(
     scene: bpy.types.Scene, subject: bpy.types.Object, settings: FindBundle
 ) -> "Steps[partial[Finding]]":
-    """Read what is looked for; return what is to be solved, which may be pickled."""
+    """Read what is looked for; return the picklable solve."""
     problem, _ = yield from _problem(Subject.of(scene, subject), settings)
     return partial(find_clips, problem)
 
@@ -67,13 +67,13 @@ def list_found(
     subject: bpy.types.Object,
     settings: FindBundle,
     finding: Finding,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> Steps[str]:
     """List what was found; return a sentence about it."""
     here = Subject.of(scene, subject)
     problem, query = yield from _problem(here, settings)
     scene, subject = here.find()
-    check_unchanged(subject, asked, problem)
+    check_unchanged(subject, solved_digest, problem)
     grid = (float(query.grid.frames[0]), query.grid.step)
     name = played_source(subject)[0].name
     fill_list(bpy.context, searches.keep(name, grid, unit_of(scene), finding))

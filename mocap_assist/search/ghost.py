@@ -18,18 +18,18 @@ def ghost_lines(stage: Stage, found: Found, query_frame: float) -> Array:
     stage : Stage
     found : Found
     query_frame : float
-        Before the first one it stands still, as after the last one.
+        It stands still before the first and after the last one.
 
     Returns
     -------
-    shape (n_lines, 2, 3), metres
+    shape (n_lines, 2, 3), meters
         Without what was not tracked.
     """
     posture = _posture_at(found, clip_frame(found, query_frame))
-    row = int(np.clip(round(query_frame), 0, len(stage.places) - 1))
+    row = int(np.clip(round(query_frame), 0, len(stage.positions) - 1))
     heading = np.array([stage.headings[row]])
     body = resize_postures(posture[None], stage.lengths)
-    joints = rotate_about_vertical(body, heading)[0] + stage.places[row]
+    joints = rotate_about_vertical(body, heading)[0] + stage.positions[row]
     lines = joints[BONES]
     return lines[np.isfinite(lines).all(axis=(1, 2))]
 
@@ -47,11 +47,11 @@ def clip_frame(found: Found, query_frame: float) -> float:
 def _posture_at(found: Found, frame: float) -> Array:
     """Return the joints between two of the postures that are known, shape (20, 3)."""
     first = int(found.match.frames.start * found.rate / found.entry.frame_rate)
-    place = frame * found.rate / found.entry.frame_rate - first
-    place = float(np.clip(place, 0.0, len(found.postures) - 1.0))
-    before = int(place)
+    row_position = frame * found.rate / found.entry.frame_rate - first
+    row_position = float(np.clip(row_position, 0.0, len(found.postures) - 1.0))
+    before = int(row_position)
     after = min(before + 1, len(found.postures) - 1)
-    share = place - before
+    fraction = row_position - before
     return np.asarray(
-        (1.0 - share) * found.postures[before] + share * found.postures[after], np.float64
+        (1.0 - fraction) * found.postures[before] + fraction * found.postures[after], np.float64
     )

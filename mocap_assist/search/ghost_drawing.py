@@ -39,7 +39,7 @@ def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None
 
 
 def register() -> None:
-    """Add the switch; nothing is drawn until it is on."""
+    """Add the switch, which starts off."""
     bpy.types.WindowManager.mocap_assist_ghost = bpy.props.BoolProperty(
         name="Ghost",
         description=(
@@ -52,6 +52,6 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take the switch and the drawing away."""
+    """Remove the switch and the drawing."""
     _drawing.pop().close()
     del bpy.types.WindowManager.mocap_assist_ghost

@@ -16,7 +16,7 @@ CLEAN, RECONSTRUCT = "clean", "reconstruct"
 
 
 def learn_from_best(context: bpy.types.Context, group: str, n_best: int) -> str:
-    """Put the best matches, in place of others, on the list of examples.
+    """Replace the list of examples by the best matches.
 
     Returns a sentence about it; raises InvalidMotionError where nothing was found.
     """
@@ -29,10 +29,12 @@ def learn_from_best(context: bpy.types.Context, group: str, n_best: int) -> str:
         settings.prior = Prior.EXAMPLES.name
     else:
         settings.postures = Postures.EXAMPLES.name
-    said = f"{group.capitalize()} learns from {len(usable)} clips."
-    if lost := len(best) - len(usable):
-        said += f" {lost} could not be loaded: the file is gone, or no rig here has its bones."
-    return said
+    message = f"{group.capitalize()} learns from {len(usable)} clips."
+    if n_missing := len(best) - len(usable):
+        message += (
+            f" {n_missing} could not be loaded: the file is gone, or no rig here has its bones."
+        )
+    return message
 
 
 def _example(context: bpy.types.Context, found: Found) -> str:

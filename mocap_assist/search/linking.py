@@ -14,7 +14,7 @@ from .solve_finding import Found
 
 
 def why_not_link(context: bpy.types.Context) -> str:
-    """Return why no action can be linked, or nothing."""
+    """Return why no action can be linked, or an empty text."""
     if reason := searches.why_none(context):
         return reason
     _, found = searches.chosen(context)

@@ -14,8 +14,8 @@ from ..actions.armature_write import Output, check_writable
 from ..blender import compat
 from ..blender.stored_json import store_json
 from ..library.choices import LoadBundle, LoadChoices, Part
-from ..library.places import background_blender
 from ..library.solve_fetching import Fetched, FetchProblem, fetch_clip
+from ..library.sources import background_blender
 from ..retarget.solve_retargeting import Start
 from ..rigs.target_read import find_roles, read_target, vertical_part
 from ..runtime.selection import selected_armature
@@ -32,7 +32,7 @@ CLIP = "mocap_assist_clip"
 
 
 def why_not_load(context: bpy.types.Context) -> str:
-    """Return why no clip can be given to an armature, or nothing."""
+    """Return why no clip can be given to an armature, or an empty text."""
     armature = selected_armature(context)
     if armature is None:
         return "Select the armature that receives the motion of the clip."
@@ -48,7 +48,7 @@ def why_not_load(context: bpy.types.Context) -> str:
 def read_loading(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: LoadBundle
 ) -> "partial[Fetched]":
-    """Read the armature's rig; return what is to be solved, which may be pickled."""
+    """Read the armature's rig; return the picklable solve."""
     search, found = searches.chosen(bpy.context)
     problem, _ = problem_of(scene, armature, settings.choices, search, found)
     return partial(fetch_clip, problem)
@@ -59,12 +59,12 @@ def write_loaded(
     armature: bpy.types.Object,
     settings: LoadBundle,
     fetched: Fetched,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> str:
-    """Write the clip as a new action and put it to use; return a sentence about it."""
+    """Write the clip as a new action and assign it; return a message."""
     search, found = searches.chosen(bpy.context)
     problem, switches = problem_of(scene, armature, settings.choices, search, found)
-    check_unchanged(armature, asked, problem)
+    check_unchanged(armature, solved_digest, problem)
     check_writable(armature)
     frames = first_frame(search, found) + np.arange(fetched.n_frames, dtype=np.float64)
     name = f"{found.entry.name.rpartition('/')[2]}.{armature.name}"
@@ -94,7 +94,7 @@ def note_clip(action: bpy.types.Action, found: Found) -> None:
 
 
 def first_frame(search: Search, found: Found) -> float:
-    """Return the whole scene frame at which what is like the clip begins."""
+    """Return the integer scene frame where the matching segment begins."""
     return float(round(search.scene_frame(float(found.pairs[0, 0]))))
 
 
@@ -136,11 +136,11 @@ def problem_of(
 
 
 def _start(armature: bpy.types.Object, search: Search, found: Found) -> Start:
-    """Return where the query stands at first, as seen from where the armature does."""
+    """Return the initial position and heading of the query relative to the armature."""
     stage, first = search.finding.stage, found.pairs[0, 0]
-    turn, origin, _ = placement_of(armature.matrix_world, armature.name)
-    about = vertical_part(turn)
-    place: NDArray[np.float64] = stage.places[first] - search.metres * origin
+    rotation, origin, _ = placement_of(armature.matrix_world, armature.name)
+    about = vertical_part(rotation)
+    position: NDArray[np.float64] = stage.positions[first] - search.metres * origin
     angle = 2.0 * np.arctan2(about[3], about[0])
-    there = rotate(inverse(about), place)
-    return Start(there[:2], float(stage.headings[first] - angle))
+    local = rotate(inverse(about), position)
+    return Start(local[:2], float(stage.headings[first] - angle))

@@ -8,7 +8,7 @@ from ...solvers.errors import MocapAssistError
 
 
 class MarkOperator:
-    """Mixed into an operator, which says in `mark` what is marked."""
+    """Mix in before an operator that defines `mark`."""
 
     tags: bpy.props.StringProperty(
         name="Tags", description="Separated by commas", options={"SKIP_SAVE"}
@@ -20,14 +20,14 @@ class MarkOperator:
     )
 
     mark: Callable[[bpy.types.Context], str]
-    """Marks, and returns what to say: a method of the operator."""
+    """Mark assets, and return a message: a method of the operator."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for tags and catalog."""
         return context.window_manager.invoke_props_dialog(self)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Mark, and say so, or why not."""
+        """Mark assets, and report the result or the error."""
         try:
             self.report({"INFO"}, self.mark(context))
         except MocapAssistError as error:

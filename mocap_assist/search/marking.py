@@ -1,4 +1,4 @@
-"""An action as an asset: with tags, a catalog and a picture of what it does."""
+"""An action as an asset, with tags, a catalog and a thumbnail."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -18,7 +18,7 @@ from .previews import give_picture
 
 
 def why_not_mark(context: bpy.types.Context) -> str:
-    """Return why nothing can become an asset, or nothing."""
+    """Return why nothing can become an asset, or an empty text."""
     armature = selected_armature(context)
     if armature is None:
         return "Select an armature with an action."

@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ...solvers.retrieval import FindSettings
-from ..library.kept_libraries import choices_are_kept
+from ..library.auto_update_list import choices_are_kept
 from ..panels.drawing import draw_job, draw_sentence, exists, folded, is_wide
 from ..panels.figures import frames_text
 from ..runtime.selection import Bones
@@ -21,7 +21,7 @@ LEARN, MARK = "mocap_assist.learn_from_matches", "mocap_assist.mark_asset"
 USE = "mocap_assist.use_matches"
 PARTS = (("trunk",), ("left_arm", "right_arm"), ("left_leg", "right_leg"))
 SHOWN_APART = {"n_matches", "n_aligned", *(name for row in PARTS for name in row)}
-FEWEST, MOST = 3, 6  # rows of the list
+MIN_ROWS, MAX_ROWS = 3, 6
 ROW, LARGE = 1.6, 7.0  # sizes of the pictures
 
 
@@ -120,7 +120,7 @@ def _draw_matches(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
         draw_sentence(column, context, "Outdated. Press Find Similar again.", icon="INFO")
         return
     draw_sentence(column, context, f'Similar to "{listed.query}"')
-    rows = min(max(len(listed.rows), FEWEST), MOST)
+    rows = min(max(len(listed.rows), MIN_ROWS), MAX_ROWS)
     column.template_list(
         "MOCAP_UL_matches", "", listed, "rows", listed, "active", rows=rows, maxrows=rows
     )
@@ -129,10 +129,10 @@ def _draw_matches(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
 
 
 def _draw_chosen(
-    column: bpy.types.UILayout, context: bpy.types.Context, search: searches.Search, place: int
+    column: bpy.types.UILayout, context: bpy.types.Context, search: searches.Search, index: int
 ) -> None:
-    found = search.finding.found[place]
-    column.template_icon(icon_of(search, place), scale=LARGE)
+    found = search.finding.found[index]
+    column.template_icon(icon_of(search, index), scale=LARGE)
     entry, frames = found.entry, found.match.frames
     tags = f" Tags: {', '.join(entry.tags)}." if entry.tags else ""
     draw_sentence(

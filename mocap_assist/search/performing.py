@@ -1,4 +1,4 @@
-"""The library for somebody who stands before a camera: show, page, and search by performing.
+"""The library for an actor in front of a camera: show, page, and search by performing.
 
 Each function returns a sentence to show.
 """
@@ -12,14 +12,14 @@ from ...solvers.errors import MocapAssistError
 from ...solvers.motion import JointRecording
 from ..drawing.view_drawing import redraw
 from ..jobs.job import Job, run
-from ..library.places import library_path
+from ..library.sources import library_path
 from ..runtime.solver_operator import in_background
 from ..scene.units import unit_of
 from . import searches
 from .finding import fill_list
 from .solve_finding import Finding, FindProblem, find_clips
 
-BETWEEN_LOOKS = 0.2  # seconds
+POLL_INTERVAL_S = 0.2  # seconds
 PERFORMED = "your performance"
 
 
@@ -43,19 +43,21 @@ def page(context: bpy.types.Context, step: int) -> str:
 
 
 def search_with(context: bpy.types.Context, query: JointRecording) -> str:
-    """Search with a recording; the list is filled when that is done, nobody waits for it."""
+    """Search with a recording in the background, and fill the list at the end."""
     scene = bpy.context.scene
     library = library_path(scene.mocap_assist.library.settings().choices)
     if not library.is_file():
         return "There is no library yet. Add folders, then press Build Library."
-    wanted = scene.mocap_assist.find.settings().finding
-    solve = partial(find_clips, FindProblem(query, str(library), wanted))
+    settings = scene.mocap_assist.find.settings().finding
+    solve = partial(find_clips, FindProblem(query, str(library), settings))
     start, metres = float(scene.frame_current), unit_of(scene)
     step = scene.render.fps / scene.render.fps_base / query.frame_rate
     if in_background():
-        return _listed(run(solve), (start, step), metres)
+        return _list_matches(run(solve), (start, step), metres)
     job: Job[Finding] = Job(solve)
-    timers.register(partial(_look, job, (start, step), metres), first_interval=BETWEEN_LOOKS)
+    timers.register(
+        partial(_poll_search, job, (start, step), metres), first_interval=POLL_INTERVAL_S
+    )
     return f"Searching with {query.n_frames} frames..."
 
 
@@ -64,23 +66,23 @@ def chosen_sentence() -> str:
     listed = bpy.context.window_manager.mocap_assist_matches
     if not listed.rows:
         return "No search yet."
-    place = min(listed.active, len(listed.rows) - 1)
-    row = listed.rows[place]
-    return f"{place + 1} of {len(listed.rows)}: {row.name} ({row.score:.0%})."
+    index = min(listed.active, len(listed.rows) - 1)
+    row = listed.rows[index]
+    return f"{index + 1} of {len(listed.rows)}: {row.name} ({row.score:.0%})."
 
 
-def _look(job: Job[Finding], grid: tuple[float, float], metres: float) -> float | None:
-    """Fill the list once the job has ended; Blender asks again after so many seconds."""
+def _poll_search(job: Job[Finding], grid: tuple[float, float], metres: float) -> float | None:
+    """Fill the list once the job has ended; otherwise return the seconds to the next call."""
     if not job.done():
-        return BETWEEN_LOOKS
+        return POLL_INTERVAL_S
     try:
-        _listed(job.result(), grid, metres)
+        _list_matches(job.result(), grid, metres)
     except MocapAssistError as error:
         bpy.context.window_manager.mocap_assist_indexing.said = str(error)
     redraw(bpy.context)
     return None
 
 
-def _listed(finding: Finding, grid: tuple[float, float], metres: float) -> str:
+def _list_matches(finding: Finding, grid: tuple[float, float], metres: float) -> str:
     fill_list(bpy.context, searches.keep(PERFORMED, grid, metres, finding))
     return chosen_sentence()

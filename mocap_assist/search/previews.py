@@ -1,4 +1,4 @@
-"""The small pictures of matches as icons, kept for as long as their search is listed."""
+"""Thumbnails of matches as icons, stored while their search is listed."""
 
 from typing import Any
 
@@ -12,7 +12,7 @@ _icons: list[Any] = []
 _shown: list[int] = []
 
 
-def icon_of(search: Search, place: int) -> int:
+def icon_of(search: Search, index: int) -> int:
     """Return the number of the icon of a match; 0 where none can be made."""
     if not _icons:
         return 0
@@ -20,9 +20,9 @@ def icon_of(search: Search, place: int) -> int:
     if _shown != [search.number]:
         icons.clear()
         _shown[:] = [search.number]
-    name = str(place)
+    name = str(index)
     if name not in icons:
-        pixels = search.finding.found[place].picture
+        pixels = search.finding.found[index].picture
         height, width, _ = pixels.shape
         icon = icons.new(name)
         icon.image_size = (width, height)

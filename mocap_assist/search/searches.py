@@ -7,7 +7,7 @@ import bpy
 from ...solvers.errors import InvalidMotionError
 from .solve_finding import Finding, Found
 
-N_KEPT = 8
+MAX_CACHED = 8
 
 
 class Search(NamedTuple):
@@ -25,11 +25,11 @@ class Search(NamedTuple):
     finding: Finding
 
     def scene_frame(self, query_frame: float) -> float:
-        """Return when a frame of the query is seen."""
+        """Return the scene frame of a frame of the query."""
         return self.start + self.step * query_frame
 
 
-_kept: dict[int, Search] = {}
+_cache: dict[int, Search] = {}
 _last: list[int] = [0]
 
 
@@ -37,15 +37,15 @@ def keep(query: str, grid: tuple[float, float], metres: float, finding: Finding)
     """Keep what was found; what was found long before is forgotten."""
     _last[0] += 1
     search = Search(_last[0], query, *grid, metres, finding)
-    _kept[search.number] = search
-    while len(_kept) > N_KEPT:
-        del _kept[next(iter(_kept))]
+    _cache[search.number] = search
+    while len(_cache) > MAX_CACHED:
+        del _cache[next(iter(_cache))]
     return search
 
 
 def listed(context: bpy.types.Context) -> Search | None:
     """Return the search whose matches are listed, if it is still known."""
-    return _kept.get(context.window_manager.mocap_assist_matches.search)
+    return _cache.get(context.window_manager.mocap_assist_matches.search)
 
 
 def chosen(context: bpy.types.Context) -> tuple[Search, Found]:
@@ -54,14 +54,14 @@ def chosen(context: bpy.types.Context) -> tuple[Search, Found]:
     Raises InvalidMotionError where there is none.
     """
     search = listed(context)
-    place = context.window_manager.mocap_assist_matches.active
-    if search is None or not 0 <= place < len(search.finding.found):
+    index = context.window_manager.mocap_assist_matches.active
+    if search is None or not 0 <= index < len(search.finding.found):
         raise InvalidMotionError("No clip is chosen. Press Find Similar, and click on one.")
-    return search, search.finding.found[place]
+    return search, search.finding.found[index]
 
 
 def why_none(context: bpy.types.Context) -> str:
-    """Return why no match is chosen, or nothing."""
+    """Return why no match is chosen, or an empty text."""
     try:
         chosen(context)
     except InvalidMotionError as error:

@@ -28,8 +28,8 @@ from ..library.thumbnails import Pixels, thumbnail
 Array = NDArray[np.float64]
 Recording = Motion | Tracks | JointRecording
 
-MOST = 48
-"""Matches that are listed: nobody looks at more."""
+MAX_MATCHES = 48
+"""Maximum number of listed matches."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,30 +40,30 @@ class FindProblem:
     library: str
     settings: FindSettings
     own: Own = ()
-    """Files, and actions in them, that the query itself is from; they are not told."""
+    """Files and actions of the query itself; they are not listed."""
 
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """Where the query stands, frame by frame, and how the actor is built."""
+    """Position of the query in each frame, and the proportions of the actor."""
 
-    places: Array
-    """Of the hips, shape (n_frames, 3), metres."""
+    positions: Array
+    """Of the hips, shape (n_frames, 3), meters."""
     headings: Array
     """Shape (n_frames,), radians."""
     lengths: Array
-    """Of the actor's bones, shape (20,), metres."""
+    """Of the actor's bones, shape (20,), meters."""
     frame_rate: float
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """A clip that is like the query, with what is to be seen of it."""
+    """A clip similar to the query, with the data to display it."""
 
     entry: ClipEntry
     match: Match
     postures: NDArray[np.float32]
-    """Of the frames that match, at `rate`: shape (n, 20, 3), metres; see `ClipPostures`."""
+    """Of the frames that match, at `rate`: shape (n, 20, 3), meters; see `ClipPostures`."""
     rate: float
     picture: Pixels
 
@@ -92,16 +92,16 @@ def find_clips(problem: FindProblem, *, progress: Progress = unwatched) -> Findi
     InvalidFileError
         The library is missing or cannot be read.
     InvalidMotionError
-        The query shows no body, or nothing of what is to be compared.
+        The query has no body, or none of the parts to compare.
     """
     stage = stage_of(problem.query)
-    wanted = min(problem.settings.n_matches or MOST, MOST)
+    n_matches = min(problem.settings.n_matches or MAX_MATCHES, MAX_MATCHES)
     with load_clip_library(Path(problem.library)) as library:
         entries = library.numbered()
         settings = replace(
             problem.settings,
-            n_matches=wanted,
-            n_aligned=wanted,
+            n_matches=n_matches,
+            n_aligned=n_matches,
         )
         matches = find_similar(
             problem.query,
@@ -112,8 +112,8 @@ def find_clips(problem: FindProblem, *, progress: Progress = unwatched) -> Findi
         )
         numbers = {entry.name: number for number, entry in entries.items()}
         found = []
-        for place, match in enumerate(matches):
-            progress(0.7 + 0.3 * place / len(matches), "Drawing")
+        for index, match in enumerate(matches):
+            progress(0.7 + 0.3 * index / len(matches), "Drawing")
             found.append(_shown(match, numbers[match.clip], library))
     return Finding(tuple(found), stage, len(entries))
 
@@ -128,7 +128,7 @@ def _shown(match: Match, number: int, library: ClipLibrary) -> Found:
 
 
 def stage_of(query: Recording) -> Stage:
-    """Return where a recording stands and how its actor is built.
+    """Return the position of a recording and the proportions of its actor.
 
     Raises InvalidMotionError where no body is recognised in it.
     """
@@ -139,4 +139,4 @@ def stage_of(query: Recording) -> Stage:
         positions = posture_positions(tracks)
     body = normalize_postures(positions, tracks.frame_rate)
     lengths = estimate_bone_lengths(body.postures)
-    return Stage(body.places, np.unwrap(body.headings), lengths, tracks.frame_rate)
+    return Stage(body.hip_positions, np.unwrap(body.headings), lengths, tracks.frame_rate)

@@ -1,4 +1,4 @@
-"""The list of places that a library is made of, and the ways to fill it."""
+"""The list of a library's sources, and operators to fill it."""
 
 from pathlib import Path
 from typing import ClassVar
@@ -8,8 +8,8 @@ import bpy
 from ..blender.name_lists import split_names
 from ..blender.path_properties import FOLDER, HIDDEN, absolute, chosen_files, path_property
 from ..clean.example_list import CHANGES_A_LIST
-from ..library.kept_libraries import change_sources
-from ..library.places import asset_folders
+from ..library.auto_update_list import change_sources
+from ..library.sources import asset_folders
 
 ADD_FOLDER, ADD_FILES = "mocap_assist.add_source_folder", "mocap_assist.add_source_files"
 REMOVE = "mocap_assist.remove_source"
@@ -17,7 +17,7 @@ FILES = "*.bvh;*.amc;*.c3d;*.trc;*.skeleton;*.csv;*.json;*.txt;*.npy;*.npz;*.ble
 
 
 def draw_sources(layout: bpy.types.UILayout, library: bpy.types.PropertyGroup) -> None:
-    """Draw the places, each with a button that takes it out."""
+    """Draw the sources, each with a button to remove it."""
     column = layout.column(align=True)
     for index, name in enumerate(split_names(library.sources)):
         row = column.row(align=True)
@@ -88,7 +88,7 @@ class MOCAP_OT_remove_source(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         library = context.scene.mocap_assist.library
         entries = enumerate(split_names(library.sources))
-        change_sources(library, [name for place, name in entries if place != self.index])
+        change_sources(library, [name for index, name in entries if index != self.index])
         return {"FINISHED"}
 
 

@@ -1,4 +1,4 @@
-"""Matches as what Vary makes variants of: from a take to a crowd by way of its library."""
+"""Use matches as examples of Vary: from a take to a crowd through its library."""
 
 from functools import partial
 from typing import NamedTuple
@@ -33,7 +33,7 @@ why_not_use = why_not_load
 def read_best(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: UseBundle
 ) -> "partial[FetchedClips]":
-    """Read the armature's rig; return what is to be solved, which may be pickled."""
+    """Read the armature's rig; return the picklable solve."""
     return partial(fetch_clips, _read(scene, armature, settings).problems)
 
 
@@ -42,14 +42,14 @@ def write_best(
     armature: bpy.types.Object,
     settings: UseBundle,
     fetched: FetchedClips,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> str:
     """Write the best matches as actions and tick them, and no others, for Vary.
 
     Returns a sentence about it.
     """
     reading = _read(scene, armature, settings)
-    check_unchanged(armature, asked, reading.problems)
+    check_unchanged(armature, solved_digest, reading.problems)
     check_writable(armature)
     names = []
     for found, clip in zip(reading.found, fetched.clips, strict=True):
@@ -62,10 +62,10 @@ def write_best(
         names.append(action.name)
     scene.mocap_assist.vary.actions = join_names(names)
     clips = "1 clip" if len(names) == 1 else f"{len(names)} clips"
-    said = f"Vary has {clips} of the library as examples."
-    if lost := len(reading.found) - len(names):
-        said += f" {lost} could not be loaded: {fetched.trouble}"
-    return said
+    message = f"Vary has {clips} of the library as examples."
+    if n_missing := len(reading.found) - len(names):
+        message += f" {n_missing} could not be loaded: {fetched.trouble}"
+    return message
 
 
 def _read(scene: bpy.types.Scene, armature: bpy.types.Object, settings: UseBundle) -> _Reading:

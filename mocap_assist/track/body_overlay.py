@@ -1,4 +1,4 @@
-"""The switch of the body over the points, on the window manager: the scene stays as it is."""
+"""Switch of the body overlay; it is on the window manager, not in the scene."""
 
 from functools import lru_cache
 
@@ -9,24 +9,24 @@ from ...solvers.depth_tracking.body import CAPSULE_SEGMENTS, SEGMENTS, capsule_s
 from ...solvers.errors import MocapAssistError
 from ..actions.reliability_curves import reliability_at
 from ..drawing.body_drawing import Solid, draw_solid, solid
-from ..drawing.heat import shade, trusted_source
-from ..drawing.view_drawing import ViewDrawing, redraw, seen_active
+from ..drawing.confidence_colors import color_from_reliability, reliability_source
+from ..drawing.view_drawing import ViewDrawing, redraw, visible_active
 from .tracked_body import TrackedBody, bones_of, is_tracked, posed_frames
 
-PLAIN = np.array([0.62, 0.72, 0.85, 1.0])
-"""Colour of a joint whose trust is not told."""
-OPAQUE = 0.65
-"""So that bones and points within are seen, to be posed."""
+NEUTRAL_COLOR = np.array([0.62, 0.72, 0.85, 1.0])
+"""Color of a joint without a confidence."""
+OPACITY = 0.65
+"""Low enough to show bones and points inside the body."""
 N_BODIES = 8
 
 _drawing: list[ViewDrawing] = []
 _surface = lru_cache(maxsize=N_BODIES)(capsule_surface)
 
 
-def body_now(armature: bpy.types.Object | None, frame: float) -> Solid | None:
-    """Return the capsules of a tracked body as its armature is posed, in colours of trust.
+def body_at(armature: bpy.types.Object | None, frame: float) -> Solid | None:
+    """Return the capsules of a tracked body in its armature's pose, in confidence colors.
 
-    None for other armatures, and where its bones are no longer those of the body.
+    None for other armatures, and if its bones no longer match the body.
     """
     if not is_tracked(armature):
         return None
@@ -36,26 +36,29 @@ def body_now(armature: bpy.types.Object | None, frame: float) -> Solid | None:
     except MocapAssistError:
         return None
     names = [bones[name] for name in SEGMENTS]
-    source = trusted_source(armature)
-    told = {} if source is None else reliability_at(source, names, frame)
-    colors = np.array([shade(told[name]) if name in told else PLAIN for name in names])
-    colors[:, 3] = OPAQUE
+    source = reliability_source(armature)
+    confidence = {} if source is None else reliability_at(source, names, frame)
+    colors = np.array([
+        color_from_reliability(confidence[name]) if name in confidence else NEUTRAL_COLOR
+        for name in names
+    ])
+    colors[:, 3] = OPACITY
     surface = _surface(body)
     matrix = np.array(armature.matrix_world)
-    return solid(surface, *surface.placed(frames), matrix, colors[CAPSULE_SEGMENTS])
+    return solid(surface, *surface.at_pose(frames), matrix, colors[CAPSULE_SEGMENTS])
 
 
-def wanted(context: bpy.types.Context) -> Solid | None:
-    """Return what is to be drawn in this 3D View; not while a solve shows its own body."""
+def body_to_draw(context: bpy.types.Context) -> Solid | None:
+    """Return the body to draw in this 3D View; None while a solve shows its own body."""
     manager = context.window_manager
     job = manager.mocap_assist_job
     if not manager.mocap_assist_body or (job.running and job.owner in {"track", "retrack"}):
         return None
-    return body_now(seen_active(context), context.scene.frame_current_final)
+    return body_at(visible_active(context), context.scene.frame_current_final)
 
 
 def _draw(context: bpy.types.Context) -> None:
-    drawn = wanted(context)
+    drawn = body_to_draw(context)
     if drawn is not None:
         draw_solid(drawn, context.region_data)
 
@@ -65,7 +68,7 @@ def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None
 
 
 def register() -> None:
-    """Add the switch; nothing is drawn until it is on."""
+    """Add the switch, which starts off."""
     bpy.types.WindowManager.mocap_assist_body = bpy.props.BoolProperty(
         name="Body Overlay",
         description=(
@@ -78,6 +81,6 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take the switch and the drawing away."""
+    """Remove the switch and the drawing."""
     _drawing.pop().close()
     del bpy.types.WindowManager.mocap_assist_body

@@ -1,4 +1,4 @@
-"""Doubtful ranges of what was tracked, in the list of Check."""
+"""Low-confidence ranges of a tracked motion in the list of Check."""
 
 from collections.abc import Sequence
 
@@ -6,32 +6,32 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from .solve_tracking import Doubt
+from .solve_tracking import LowConfidenceRange
 
-MOST_SPOTS = 100
+MAX_LISTED = 100
 
 
-def list_doubts(
+def list_low_confidence(
     scene: bpy.types.Scene,
     action: bpy.types.Action,
     frames: NDArray[np.float64],
-    doubts: Sequence[Doubt],
+    ranges: Sequence[LowConfidenceRange],
     report: str,
 ) -> None:
-    """Show the doubtful ranges of an action in the list, worst first.
+    """Show the low-confidence ranges of an action in the list, worst first.
 
-    `frames` are those of the scene, for each frame of the motion; `report` is shown above.
+    `frames` are the scene frames of the motion; `report` is shown above the list.
     """
     shown = scene.mocap_assist
-    shown.spots.clear()
-    shown.active_spot = 0
+    shown.issues.clear()
+    shown.active_issue = 0
     shown.checked, shown.report = action.name, report
-    for doubt in doubts[:MOST_SPOTS]:
-        item = shown.spots.add()
-        item.name, item.kind = doubt.joint, "doubtful"
-        item.start, item.stop = np.round(frames[[doubt.first, doubt.last]], 2)
-        item.severity = float(doubt.last - doubt.first + 1)
+    for interval in ranges[:MAX_LISTED]:
+        item = shown.issues.add()
+        item.name, item.kind = interval.joint, "doubtful"
+        item.start, item.stop = np.round(frames[[interval.first, interval.last]], 2)
+        item.severity = float(interval.last - interval.first + 1)
         item.sentence = (
-            f"{doubt.joint} is hidden or fits badly from frame {item.start:g} to"
+            f"{interval.joint} is hidden or fits badly from frame {item.start:g} to"
             f" {item.stop:g}; its pose is estimated."
         )

@@ -1,4 +1,4 @@
-"""Panel: track the actor whom a depth camera recorded."""
+"""Panel: track the actor in a depth recording."""
 
 from typing import ClassVar
 
@@ -37,7 +37,7 @@ class TrackPanel:
 
 
 def _draw_tracking(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw what makes an armature of points."""
+    """Draw the settings and button that track an armature."""
     track = context.scene.mocap_assist.track
     column = _settings(layout)
     column.prop(track, "way")
@@ -52,7 +52,7 @@ def _draw_tracking(layout: bpy.types.UILayout, context: bpy.types.Context) -> No
 
 
 def _draw_correction(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw what shows and mends what was tracked."""
+    """Draw the controls that show and correct a tracked motion."""
     layout.prop(context.window_manager, "mocap_assist_body", toggle=True, icon="MOD_SKIN")
     column = _settings(layout)
     for name in ("reach", "watch"):

@@ -1,4 +1,4 @@
-"""Poses on their way from a solve to whoever looks on."""
+"""Send pose previews from a solve, and receive them."""
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
@@ -10,44 +10,44 @@ from ...solvers.depth_tracking.tracking import PosePreview
 Show = Callable[[Any], None]
 
 
-def unseen(thing: Any) -> None:
-    """The `Show` of a solve on which nobody looks."""
+def no_preview(preview: Any) -> None:
+    """Ignore a preview; the default of solves."""
 
 
-class Place(NamedTuple):
-    """Shown first: the floor on which the actor is."""
+class FloorPreview(NamedTuple):
+    """First preview: the floor under the actor."""
 
     floor: Floor | None
 
 
-class Glimpses:
-    """Shows poses; a body goes along only where it is not the one before."""
+class PosePreviewSender:
+    """Sends poses; sends a body only when it changes."""
 
     def __init__(self, show: Show) -> None:
         self._show = show
         self._body: BodyModel | None = None
 
-    def __call__(self, found: PosePreview) -> None:
-        """Show a pose."""
-        if found.body is not self._body:
-            self._show(found.body)
-            self._body = found.body
-        self._show((found.frame, found.pose, found.quality))
+    def __call__(self, pose: PosePreview) -> None:
+        """Send a pose."""
+        if pose.body is not self._body:
+            self._show(pose.body)
+            self._body = pose.body
+        self._show((pose.frame, pose.pose, pose.quality))
 
 
-class Onlooker:
-    """Understands what was shown."""
+class PosePreviewReceiver:
+    """Rebuilds poses from the previews of a sender."""
 
     def __init__(self) -> None:
         self.floor: Floor | None = None
         self._body: BodyModel | None = None
 
-    def poses(self, shown: Iterable[Any]) -> Iterator[PosePreview]:
-        """Return the poses in what was shown since the last time; their body is shared."""
-        for thing in shown:
-            if isinstance(thing, Place):
-                self.floor = thing.floor
-            elif isinstance(thing, BodyModel):
-                self._body = thing
+    def poses(self, previews: Iterable[Any]) -> Iterator[PosePreview]:
+        """Yield the poses of new previews; they share a body."""
+        for preview in previews:
+            if isinstance(preview, FloorPreview):
+                self.floor = preview.floor
+            elif isinstance(preview, BodyModel):
+                self._body = preview
             elif self._body is not None:
-                yield PosePreview(self._body, *thing)
+                yield PosePreview(self._body, *preview)

@@ -1,4 +1,4 @@
-"""What the button Track from Here reads from the scene, and what it writes back."""
+"""Track from Here: read the scene and write the result."""
 
 from typing import NamedTuple
 
@@ -19,12 +19,12 @@ from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
 from .hand_pose import HandPose
 from .live_body import LiveBody, Stage
-from .low_confidence import list_doubts
+from .low_confidence import list_low_confidence
 from .solve_retracking import Correction, Played, retrack_recording
-from .solve_tracking import Doubt, doubts_of, mean_cm
+from .solve_tracking import LowConfidenceRange, low_confidence_ranges, mean_cm
 from .tracked_body import TrackedBody, armature_from_motion, is_tracked
 from .tracked_checks import check_in_time
-from .tracked_curves import mend_trust, write_residual
+from .tracked_curves import update_reliability, write_residual
 from .tracked_take import TrackedTake, read_tracked_take
 from .tracking import WatchChoices
 
@@ -35,18 +35,18 @@ SUFFIX = ".retracked"
 DIGITS = 2
 SIDES = ("before", "after")
 EXTREME, KEYFRAME = 1, 0
-"""Blender's types of keys: what the animator posed, and the rest."""
+"""Blender's key types: for the corrected frame, and for the others."""
 
 
 class RetrackBundle(NamedTuple):
-    """All that the button offers."""
+    """Settings of the button."""
 
     retracking: RetrackSettings
     watching: WatchChoices = WatchChoices()
 
 
 def why_not_retrack(context: bpy.types.Context) -> str:
-    """Return why nothing can be tracked again, or nothing."""
+    """Return why the selection cannot be re-tracked, or an empty text."""
     armature = selected_armature(context)
     if not is_tracked(armature):
         return "Select a tracked armature and correct its pose at a wrong frame."
@@ -62,15 +62,14 @@ def why_not_retrack(context: bpy.types.Context) -> str:
 def read_retracking(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: RetrackBundle
 ) -> Steps[PreviewSolve[Retracked]]:
-    """Read what an armature plays and how it is posed; return what is to be solved."""
+    """Read the action and current pose of an armature; return the solve."""
     check_writable(armature)
     here = Subject.of(scene, armature)
     check_in_time(armature, played_source(armature))
     take, played = yield from _played(armature)
     scene, armature = here.find()
     source = played_source(armature)
-    place = (scene.frame_current_final - take.frames[0]) / take.tracked.shown.step
-    frame = round(place)
+    frame = round((scene.frame_current_final - take.frames[0]) / take.tracked.shown.step)
     if not 0 <= frame < len(take.frames):
         raise InvalidMotionError(
             f"Frame {scene.frame_current_final:g} is not in the recording. Go to one from"
@@ -83,19 +82,19 @@ def read_retracking(
 def watch_retracking(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: RetrackBundle
 ) -> "_View | None":
-    """Return what shows the body while it is tracked again, if that is wanted."""
+    """Return the view of the body during re-tracking, if *Live Preview* is on."""
     return _View(scene, armature) if settings.watching.watch else None
 
 
 class _View(LiveBody):
-    """Shows the body; then the armature is posed as by the animator again."""
+    """Shows the body, then restores the animator's pose of the armature."""
 
     def __init__(self, scene: bpy.types.Scene, armature: bpy.types.Object) -> None:
         super().__init__(scene, _stage_of)
         self._pose = HandPose(armature)
 
     def close(self) -> None:
-        """Go back to the frame of before, and to the pose of the armature there."""
+        """Restore the frame, and the pose of the armature there."""
         super().close()
         self._pose.restore()
 
@@ -114,34 +113,39 @@ def write_retracked(
     armature: bpy.types.Object,
     settings: RetrackBundle,
     result: Retracked,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> Steps[str]:
-    """Write the result as a new action and put it to use; return a sentence about it.
+    """Write the result as a new action and assign it; return a message.
 
-    Raises InvalidMotionError if the armature plays something else than what was `asked`.
+    Raises InvalidMotionError if the armature plays another motion than the one that was solved.
     """
     here = Subject.of(scene, armature)
     take, played = yield from _played(armature)
     scene, armature = here.find()
     source = played_source(armature)
-    check_unchanged(armature, asked, played)
+    check_unchanged(armature, solved_digest, played)
     rows = slice(result.first, result.last + 1)
     new = take.with_motion(result.motion, result.first, result.last)
     names = [take.bones[name] for name in SEGMENTS]
     types = np.full(len(new.frames), KEYFRAME, np.uint8)
     types[result.frame - result.first] = EXTREME
-    made = write_take(armature, source, new, names, dict.fromkeys(names, types), suffix=SUFFIX)
-    write_residual(armature, made, new.frames, result.residual)
-    trusted = mend_trust(armature, made, take.frames, rows, _trust_of(take, result))
-    said = _said(take, result)
-    list_doubts(scene, made[0], take.frames, _doubts(scene, trusted), said)
-    history.record(made[0], source, _entry(settings, take, result))
-    put_to_use(armature, *made, Output.ACTION)
-    return f"{made[0].name}: {said}"
+    source_new = write_take(
+        armature, source, new, names, dict.fromkeys(names, types), suffix=SUFFIX
+    )
+    write_residual(armature, source_new, new.frames, result.residual)
+    confidence = update_reliability(
+        armature, source_new, take.frames, rows, _confidence_by_bone(take, result)
+    )
+    report = _report(take, result)
+    ranges = _find_low_confidence(scene, confidence)
+    list_low_confidence(scene, source_new[0], take.frames, ranges, report)
+    history.record(source_new[0], source, _entry(settings, take, result))
+    put_to_use(armature, *source_new, Output.ACTION)
+    return f"{source_new[0].name}: {report}"
 
 
 def _played(armature: bpy.types.Object) -> Steps[tuple[TrackedTake, Played]]:
-    """Return what an armature plays, and that with all that tracking needs."""
+    """Return the take of an armature, and the same with the data for tracking."""
     tracked = TrackedBody.read(armature)
     recording = open_recording(tracked.shown)
     take = yield from read_tracked_take.steps(
@@ -153,40 +157,42 @@ def _played(armature: bpy.types.Object) -> Steps[tuple[TrackedTake, Played]]:
 
 
 def _fixed(source: Source, take: TrackedTake, frame: int) -> tuple[int, ...]:
-    """Return the other frames that were corrected before."""
-    pictures = [
+    """Return the other frames with earlier corrections."""
+    image_indices = [
         int(entry["picture"]) - take.first
         for entry in history.history(source[0])
         if entry.get("operation") == OPERATION and "picture" in entry
     ]
-    inside = {place for place in pictures if 0 <= place < len(take.frames)}
+    inside = {index for index in image_indices if 0 <= index < len(take.frames)}
     return tuple(sorted(inside - {frame}))
 
 
-def _trust_of(take: TrackedTake, result: Retracked) -> dict[str, Array]:
-    """Return how far the joint of each bone is trusted in the frames that were changed."""
-    told = result.joints.confidence
-    columns = () if told is None else zip(JOINTS, told.T, strict=True)
+def _confidence_by_bone(take: TrackedTake, result: Retracked) -> dict[str, Array]:
+    """Return the confidence of each bone's joint in the changed frames."""
+    confidence = result.joints.confidence
+    columns = () if confidence is None else zip(JOINTS, confidence.T, strict=True)
     return {take.bones[joint]: values for joint, values in columns if joint in take.bones}
 
 
-def _doubts(scene: bpy.types.Scene, trusted: dict[str, Array]) -> tuple[Doubt, ...]:
-    if not trusted:
+def _find_low_confidence(
+    scene: bpy.types.Scene, confidence: dict[str, Array]
+) -> tuple[LowConfidenceRange, ...]:
+    if not confidence:
         return ()
-    flags = np.stack(list(trusted.values()), axis=1) < scene.mocap_assist.track.doubtful
-    return doubts_of(tuple(trusted), flags)
+    flags = np.stack(list(confidence.values()), axis=1) < scene.mocap_assist.track.doubtful
+    return low_confidence_ranges(tuple(confidence), flags)
 
 
-def _said(take: TrackedTake, result: Retracked) -> str:
+def _report(take: TrackedTake, result: Retracked) -> str:
     rows = [result.first, result.frame, result.last]
     first, frame, last = np.round(take.frames[rows], DIGITS)
-    said = f"re-tracked frames {first:g} to {last:g} from frame {frame:g}."
+    message = f"re-tracked frames {first:g} to {last:g} from frame {frame:g}."
     open_ends = [side for side, met in zip(SIDES, result.met, strict=True) if not met]
     if not open_ends:
-        return f"{said} It joins the old motion on both sides."
+        return f"{message} It joins the old motion on both sides."
     return (
-        f"{said} {' and '.join(open_ends).capitalize()} it the new motion does not join the old"
-        " one: the take or the reach ends, or the old motion fits better."
+        f"{message} {' and '.join(open_ends).capitalize()} it the new motion does not join the"
+        " old one: the take or the reach ends, or the old motion fits better."
     )
 
 

@@ -1,4 +1,4 @@
-"""What the button Track from Here has solved for it."""
+"""Solve of the button Track from Here."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -10,33 +10,33 @@ from ...solvers.depth_tracking import BodyModel, Retracked, RetrackSettings, ret
 from ...solvers.depth_tracking.tracking import offset_frames
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched, within
-from .pose_previews import Glimpses, Place, Show, unseen
+from .pose_previews import FloorPreview, PosePreviewSender, Show, no_preview
 
-FOUND = 0.3
-"""Share of the work after which the actor is told from the room."""
+ACTOR_FRACTION = 0.3
+"""Fraction of the work for the separation of the actor from the room."""
 
 
 class Played(NamedTuple):
-    """What an armature plays of a recording, and whom that shows."""
+    """Motion of an armature, with the recording and body of its actor."""
 
     recording: DepthRecording
     actor: ForegroundSettings
     body: BodyModel
     floor: Floor | None
     first: int
-    """Picture of the recording with which the motion begins."""
+    """Index of the depth image at the start of the motion."""
     motion: Motion
 
 
 class Correction(NamedTuple):
-    """The pose that an animator has given to a frame."""
+    """An animator's pose at one frame."""
 
     frame: int
-    """Of the motion."""
+    """Frame of the motion."""
     pose: Motion
     """One frame."""
     fixed: tuple[int, ...]
-    """Other frames of the motion that are right."""
+    """Other corrected frames of the motion."""
 
 
 def retrack_recording(
@@ -44,34 +44,37 @@ def retrack_recording(
     correction: Correction,
     settings: RetrackSettings,
     *,
-    show: Show = unseen,
+    show: Show = no_preview,
     progress: Progress = unwatched,
 ) -> Retracked:
-    """Track again from a corrected frame; show each pose, as `Onlooker` understands it."""
-    alone = find_actor(
-        played.recording, played.actor, progress=within(progress, 0.0, FOUND)
+    """Track again from a corrected frame; show each pose, as `Onlooker` can rebuild it."""
+    actor_only = find_actor(
+        played.recording, played.actor, progress=within(progress, 0.0, ACTOR_FRACTION)
     ).recording
     n_frames, first = played.motion.n_frames, played.first
-    part = DepthRecording(
-        alone.camera, n_frames, alone.frame_rate, lambda frame: alone.frame(first + frame)
+    segment = DepthRecording(
+        actor_only.camera,
+        n_frames,
+        actor_only.frame_rate,
+        lambda frame: actor_only.frame(first + frame),
     )
-    show(Place(played.floor))
+    show(FloorPreview(played.floor))
     return retrack(
-        part,
+        segment,
         played.body,
         corrected(played.motion, correction),
         correction.frame,
         floor=played.floor,
         fixed=correction.fixed,
         settings=settings,
-        on_pose=offset_frames(Glimpses(show), first),
-        progress=within(progress, FOUND, 1.0),
+        on_pose=offset_frames(PosePreviewSender(show), first),
+        progress=within(progress, ACTOR_FRACTION, 1.0),
     )
 
 
 def corrected(motion: Motion, correction: Correction) -> Motion:
     """Return a motion with the animator's pose in it."""
-    rotations, places = np.array(motion.rotations), np.array(motion.root_positions)
+    rotations, root_positions = np.array(motion.rotations), np.array(motion.root_positions)
     rotations[correction.frame] = correction.pose.rotations[0]
-    places[correction.frame] = correction.pose.root_positions[0]
-    return replace(motion, rotations=rotations, root_positions=places)
+    root_positions[correction.frame] = correction.pose.root_positions[0]
+    return replace(motion, rotations=rotations, root_positions=root_positions)

@@ -1,4 +1,4 @@
-"""What the button Track has solved for it."""
+"""Solve of the button Track."""
 
 from collections.abc import Iterable
 from typing import Any, NamedTuple
@@ -13,14 +13,20 @@ from ...solvers.depth_tracking.capturing import Capture, CaptureSettings, unfini
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.workflows import capture_actor
-from .pose_previews import Glimpses, Onlooker, Place, Show, unseen
+from .pose_previews import (
+    FloorPreview,
+    PosePreviewReceiver,
+    PosePreviewSender,
+    Show,
+    no_preview,
+)
 
-FOUND = 0.1
-"""Share of the work after which the actor is told from the room."""
+ACTOR_FRACTION = 0.1
+"""Fraction of the work for the separation of the actor from the room."""
 
 
-class Doubt(NamedTuple):
-    """Frames in which a joint was out of sight or badly explained; the last one counts."""
+class LowConfidenceRange(NamedTuple):
+    """Frames, the last included, where a joint is hidden or fits badly."""
 
     joint: str
     first: int
@@ -28,20 +34,20 @@ class Doubt(NamedTuple):
 
 
 class Tracked(NamedTuple):
-    """What comes back: the actor's motion, and how far it can be trusted."""
+    """Motion of the actor with its confidence."""
 
     first: int
-    """Picture of the recording with which the motion begins."""
+    """Index of the depth image at the start of the motion."""
     motion: Motion
     body: BodyModel
     floor: Floor | None
     confidence: dict[str, NDArray[np.float64]]
     """Of each joint, shape (n_frames,), 0 to 1."""
     residual: NDArray[np.float64]
-    """Metres, shape (n_frames,); NaN where nobody was seen."""
+    """Meters, shape (n_frames,); NaN where no actor was detected."""
     coverage: float
     restarts: tuple[int, ...]
-    doubts: tuple[Doubt, ...]
+    low_confidence: tuple[LowConfidenceRange, ...]
     """The longest first."""
     remarks: tuple[str, ...]
 
@@ -52,39 +58,39 @@ def track_recording(
     actor: ForegroundSettings,
     planting: PlantSettings | None,
     *,
-    show: Show = unseen,
+    show: Show = no_preview,
     progress: Progress = unwatched,
 ) -> Tracked:
-    """Capture a recording; show where it is, and each pose, as `Onlooker` understands it."""
-    alone = find_actor(recording, actor, progress=within(progress, 0.0, FOUND))
-    show(Place(alone.floor))
+    """Capture a recording; send previews of floor and poses to a `PosePreviewReceiver`."""
+    actor_only = find_actor(recording, actor, progress=within(progress, 0.0, ACTOR_FRACTION))
+    show(FloorPreview(actor_only.floor))
     done = capture_actor(
-        alone,
+        actor_only,
         settings=tracking,
         planting=planting,
-        on_pose=Glimpses(show),
-        progress=within(progress, FOUND, 1.0),
+        on_pose=PosePreviewSender(show),
+        progress=within(progress, ACTOR_FRACTION, 1.0),
     )
-    return _told(0, done.motion, done.captured, alone.floor, done.remarks)
+    return _build_tracked(0, done.motion, done.captured, actor_only.floor, done.remarks)
 
 
-def tracked_so_far(
-    shown: Iterable[Any], recording: DepthRecording, settings: CaptureSettings
+def partial_result(
+    previews: Iterable[Any], recording: DepthRecording, settings: CaptureSettings
 ) -> Tracked:
-    """Return what `track_recording` had shown when it was ended; no feet are planted.
+    """Return the result of a stopped `track_recording`, without planted feet.
 
-    Raises InvalidMotionError where no pose was found yet.
+    Raises InvalidMotionError if no pose was found yet.
     """
-    onlooker = Onlooker()
-    found = list(onlooker.poses(shown))
-    rate, floor = recording.frame_rate, onlooker.floor
-    first, captured = unfinished_capture(found, rate, floor=floor, settings=settings)
+    receiver = PosePreviewReceiver()
+    poses = list(receiver.poses(previews))
+    rate, floor = recording.frame_rate, receiver.floor
+    first, captured = unfinished_capture(poses, rate, floor=floor, settings=settings)
     n_frames = captured.motion.n_frames
     remark = f"Stopped early: {n_frames} of {recording.n_frames} frames tracked."
-    return _told(first, captured.motion, captured, floor, (remark,))
+    return _build_tracked(first, captured.motion, captured, floor, (remark,))
 
 
-def _told(
+def _build_tracked(
     first: int,
     motion: Motion,
     captured: Capture,
@@ -92,8 +98,8 @@ def _told(
     remarks: tuple[str, ...],
 ) -> Tracked:
     joints = captured.joints
-    told = joints.confidence
-    confidence = {} if told is None else dict(zip(joints.names, told.T, strict=True))
+    columns = joints.confidence
+    confidence = {} if columns is None else dict(zip(joints.names, columns.T, strict=True))
     return Tracked(
         first,
         motion,
@@ -103,24 +109,26 @@ def _told(
         captured.residual,
         float(captured.coverage.mean()),
         captured.restarts,
-        doubts_of(joints.names, captured.doubtful),
+        low_confidence_ranges(joints.names, captured.low_confidence),
         remarks,
     )
 
 
 def mean_cm(residual: NDArray[np.float64]) -> float | None:
-    """Return the mean of a residual, centimetres; None where nobody was seen at all."""
-    known = residual[np.isfinite(residual)]
-    return 100.0 * float(known.mean()) if len(known) else None
+    """Return the mean of a residual in centimeters; None if no actor was detected."""
+    observed = residual[np.isfinite(residual)]
+    return 100.0 * float(observed.mean()) if len(observed) else None
 
 
-def doubts_of(names: tuple[str, ...], doubtful: NDArray[np.bool_]) -> tuple[Doubt, ...]:
-    """Return the stretches of frames, the longest first, of flags (n_frames, n_joints)."""
-    found = []
-    for name, flags in zip(names, doubtful.T, strict=True):
+def low_confidence_ranges(
+    names: tuple[str, ...], mask: NDArray[np.bool_]
+) -> tuple[LowConfidenceRange, ...]:
+    """Return the intervals of flags (n_frames, n_joints), the longest first."""
+    ranges = []
+    for name, flags in zip(names, mask.T, strict=True):
         edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]])))
-        found += [
-            Doubt(name, int(first), int(stop) - 1)
+        ranges += [
+            LowConfidenceRange(name, int(first), int(stop) - 1)
             for first, stop in zip(edges[::2], edges[1::2], strict=True)
         ]
-    return tuple(sorted(found, key=lambda doubt: doubt.first - doubt.last))
+    return tuple(sorted(ranges, key=lambda interval: interval.first - interval.last))

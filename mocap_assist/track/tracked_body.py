@@ -1,4 +1,4 @@
-"""The body that was tracked: kept with its armature, and where its segments are."""
+"""The tracked body that an armature stores, and the positions of its segments."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -17,18 +17,18 @@ from ..depth.depth_preview import Shown
 Array = NDArray[np.float64]
 
 KEY = "mocap_assist_tracked"
-"""Custom property of an armature's data: the body, and the recording of it, as JSON."""
+"""Custom property of an armature's data: body and recording, as JSON."""
 ROLE = "mocap_assist_joint"
-"""Custom property of a bone: which joint of the body it is, whatever it is called."""
+"""Custom property of a bone: its joint of the body, independent of its name."""
 DIGITS = 6
-N_KEPT = 8
-EVEN = 0.01
-"""Metres that bones at rest may be off before the rest pose counts as another one."""
+MAX_CACHED = 8
+REST_TOLERANCE_M = 0.01
+"""Maximum deviation of bones from the original rest pose."""
 
 
 @dataclass(frozen=True, eq=False)
 class TrackedBody:
-    """Whose motion an armature shows, and by which recording."""
+    """Actor and recording of an armature's motion."""
 
     body: BodyModel
     shown: Shown
@@ -36,24 +36,24 @@ class TrackedBody:
     actor: ForegroundSettings
 
     def write(self, armature: bpy.types.Object, bones: Mapping[str, str]) -> None:
-        """Keep this with an armature, whose bones are given by the body's joints."""
+        """Store this in an armature; `bones` maps joints of the body to bones."""
         lengths = np.round(self.body.lengths, DIGITS).tolist()
         radii = np.round(self.body.radii, DIGITS).tolist()
         floor = self.floor
-        told = {
+        stored = {
             "lengths": dict(zip(LENGTHS, lengths, strict=True)),
             "radii": dict(zip(CAPSULES, radii, strict=True)),
-            "shown": self.shown.told(),
+            "shown": self.shown.as_dict(),
             "floor": None if floor is None else [*floor.up.tolist(), floor.height],
             "actor": {**asdict(self.actor), "way": self.actor.way.name},
         }
-        store_json(armature.data, KEY, told)
+        store_json(armature.data, KEY, stored)
         for joint, bone in bones.items():
             armature.data.bones[bone][ROLE] = joint
 
     @classmethod
     def read(cls, armature: bpy.types.Object) -> "TrackedBody":
-        """Return what is kept; raises MocapAssistError if nothing, or nothing whole."""
+        """Return the stored body; raises MocapAssistError if it is missing or damaged."""
         try:
             return _parsed(armature.data[KEY])
         except (ValueError, TypeError, KeyError, MocapAssistError):
@@ -62,51 +62,51 @@ class TrackedBody:
             ) from None
 
 
-@lru_cache(maxsize=N_KEPT)
+@lru_cache(maxsize=MAX_CACHED)
 def _parsed(text: str) -> TrackedBody:
-    told = parse_stored(text, dict)
-    floor, actor = told["floor"], told["actor"]
+    stored = parse_stored(text, dict)
+    floor, actor = stored["floor"], stored["actor"]
     return TrackedBody(
         BodyModel(
-            np.array([told["lengths"][name] for name in LENGTHS]),
-            np.array([told["radii"][name] for name in CAPSULES]),
+            np.array([stored["lengths"][name] for name in LENGTHS]),
+            np.array([stored["radii"][name] for name in CAPSULES]),
         ),
-        Shown.of(told["shown"]),
+        Shown.of(stored["shown"]),
         None if floor is None else Floor(np.array(floor[:3]), float(floor[3])),
         ForegroundSettings(**actor | {"way": ForegroundMethod[actor["way"]]}),
     )
 
 
 def is_tracked(armature: bpy.types.Object | None) -> bool:
-    """Whether this is an armature that Track has made."""
+    """Whether Track has created this armature."""
     return armature is not None and armature.type == "ARMATURE" and KEY in armature.data
 
 
 def bones_of(armature: bpy.types.Object) -> dict[str, str]:
-    """Return the bone of each of the `SEGMENTS`; raises InvalidMotionError if one is gone.
+    """Return the bone of each of the `SEGMENTS`; raises InvalidMotionError if one is missing.
 
-    Copies of a bone have its role, too, and stand after it.
+    Copies of a bone share its role and come later in the list.
     """
     bones: dict[str, str] = {}
     for bone in armature.data.bones:
         bones.setdefault(str(bone.get(ROLE, "")), bone.name)
-    gone = [name for name in SEGMENTS if name not in bones]
-    if gone:
+    missing = [name for name in SEGMENTS if name not in bones]
+    if missing:
         raise InvalidMotionError(
-            f"{armature.name} has no bones any more for {', '.join(gone)}. Track again."
+            f"{armature.name} has lost its bones for {', '.join(missing)}. Track again."
         )
     return bones
 
 
 def armature_from_motion(armature: bpy.types.Object, body: BodyModel) -> Array:
-    """Return the similarity (4, 4) from the space of the motion, metres, to the armature's.
+    """Return the transform (4, 4) from the motion's space, in meters, to the armature's.
 
-    It is found from the rest pose [1]_, so that transforms may have been applied to it.
+    It is estimated from the rest pose [1]_ and includes applied transforms.
 
     Raises
     ------
     InvalidMotionError
-        The bones at rest are not as far apart as those of the body.
+        The bones at rest do not have the proportions of the body.
 
     References
     ----------
@@ -114,30 +114,30 @@ def armature_from_motion(armature: bpy.types.Object, body: BodyModel) -> Array:
        point patterns. IEEE Transactions on Pattern Analysis and Machine Intelligence 13(4).
     """
     bones = bones_of(armature)
-    there = np.array([armature.data.bones[bones[name]].head_local for name in SEGMENTS])
+    heads = np.array([armature.data.bones[bones[name]].head_local for name in SEGMENTS])
     rest = rest_frames(body)[:, :3, 3]
-    middle, centre = there.mean(axis=0), rest.mean(axis=0)
-    U, sizes, V = np.linalg.svd((there - middle).T @ (rest - centre))
+    head_mean, rest_mean = heads.mean(axis=0), rest.mean(axis=0)
+    U, sizes, V = np.linalg.svd((heads - head_mean).T @ (rest - rest_mean))
     signs = np.array([1.0, 1.0, np.sign(np.linalg.det(U @ V))])
-    scale = float((sizes * signs).sum() / ((rest - centre) ** 2).sum())
+    scale = float((sizes * signs).sum() / ((rest - rest_mean) ** 2).sum())
     matrix = np.eye(4)
     matrix[:3, :3] = scale * (U * signs) @ V
-    matrix[:3, 3] = middle - matrix[:3, :3] @ centre
-    off = np.abs(rest @ matrix[:3, :3].T + matrix[:3, 3] - there).max()
-    if off > EVEN * scale:
+    matrix[:3, 3] = head_mean - matrix[:3, :3] @ rest_mean
+    off = np.abs(rest @ matrix[:3, :3].T + matrix[:3, 3] - heads).max()
+    if off > REST_TOLERANCE_M * scale:
         raise InvalidMotionError(
-            f"The rest pose of {armature.name} is not the one that Track gave it. Undo what was"
-            " changed in Edit Mode, or track again."
+            f"The rest pose of {armature.name} has changed. Undo the changes of Edit Mode, or"
+            " track again."
         )
     return matrix
 
 
 def posed_frames(armature: bpy.types.Object, body: BodyModel) -> Array:
-    """Return where the segments (17, 4, 4) are in the armature's space, as it is posed now."""
+    """Return the posed segments' frames (17, 4, 4) in the armature's space."""
     bones = bones_of(armature)
     rest = armature_from_motion(armature, body) @ rest_frames(body)
     names = [bones[name] for name in SEGMENTS]
     posed = np.array([armature.pose.bones[name].matrix for name in names])
-    still = np.array([armature.data.bones[name].matrix_local for name in names])
-    frames: Array = posed @ np.linalg.inv(still) @ rest
+    rest_matrices = np.array([armature.data.bones[name].matrix_local for name in names])
+    frames: Array = posed @ np.linalg.inv(rest_matrices) @ rest
     return frames

@@ -1,4 +1,4 @@
-"""Curves that Track adds to an action: how well each frame was explained."""
+"""Curves that Track adds to an action: fit and confidence of each frame."""
 
 import bpy
 import numpy as np
@@ -12,17 +12,17 @@ from ..blender.compat import Source
 Array = NDArray[np.float64]
 
 RESIDUAL = "mocap_residual"
-"""Custom property of the armature: metres between body and points, keyed."""
+"""Keyed custom property of the armature: distance of body and points in meters."""
 
 
 def write_residual(
     armature: bpy.types.Object, source: Source, frames: Array, residual: Array
 ) -> None:
-    """Key how far the body lies beside the points, metres; not where that is NaN."""
-    known = np.isfinite(residual)
-    if not known.any():
+    """Key the distance of body and points in meters, except where it is NaN."""
+    observed = np.isfinite(residual)
+    if not observed.any():
         return
-    frames, residual = frames[known], residual[known]
+    frames, residual = frames[observed], residual[observed]
     bag = compat.channelbag(*source, ensure=True)
     if curve := bag.fcurves.find(_PATH):
         write_values(curve, frames, residual)
@@ -34,25 +34,25 @@ def write_residual(
 _PATH = f'["{RESIDUAL}"]'
 
 
-def mend_trust(
+def update_reliability(
     armature: bpy.types.Object,
     source: Source,
     frames: Array,
     rows: slice,
-    trusted: dict[str, Array],
+    changed: dict[str, Array],
 ) -> dict[str, Array]:
-    """Key how far joints are trusted in some of these frames, and return it for all of them.
+    """Key the reliability of joints in some of these frames, and return it for all of them.
 
-    Bones of which the action tells nothing are left out.
+    Bones without a reliability curve in the action are left out.
     """
     bag = compat.channelbag(*source, ensure=True)
-    known = {}
-    for bone, values in trusted.items():
+    reliability = {}
+    for bone, values in changed.items():
         curve = bag.fcurves.find(reliability_path(bone))
         if curve is None:
             continue
-        whole = np.array([curve.evaluate(frame) for frame in frames])
-        whole[rows] = values
-        known[bone] = whole
-    write_reliability(armature, *source, frames, known)
-    return known
+        merged = np.array([curve.evaluate(frame) for frame in frames])
+        merged[rows] = values
+        reliability[bone] = merged
+    write_reliability(armature, *source, frames, reliability)
+    return reliability

@@ -1,4 +1,4 @@
-"""What a tracked armature plays as a motion of the body, and the way back into an action."""
+"""Convert a tracked armature's action to a motion of the body, and back."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -24,37 +24,37 @@ from .tracked_checks import check_keyed, check_posed
 
 Array = NDArray[np.float64]
 
-STILL = (1.0, 0.0, 0.0, 0.0)
-OFF_GRID = 0.05
-"""Of a step, how far the ends of an action may be from a picture's moment."""
+IDENTITY = (1.0, 0.0, 0.0, 0.0)
+MAX_OFF_GRID = 0.05
+"""Maximum offset between the ends of an action and a depth image, in steps."""
 
 
 @dataclass(frozen=True, eq=False)
 class TrackedTake:
-    """An action over the moments of pictures, in the space in which the body was tracked."""
+    """An action sampled at the times of the depth images, in the space of the tracking."""
 
     tracked: TrackedBody
     bones: dict[str, str]
     """The bone of each joint of the body."""
     first: int
-    """Picture of the first frame."""
+    """Index of the depth image of the first frame."""
     frames: Array
     """Scene frames, shape (n_frames,)."""
     rig: Rig
     channels: tuple[BoneChannels, ...]
     space: Placement
-    """Takes the armature's space to the motion's; one row."""
+    """From the armature's space to the motion's; one row."""
     rate: float
 
     @property
     def motion(self) -> Motion:
-        """The motion of the body; hands and toes, which do not turn, are at rest."""
+        """Motion of the body; hands and toes, which do not rotate, are at rest."""
         return self._of_body(self._part(self.channels, len(self.frames)))
 
     def pose(self, armature: bpy.types.Object) -> Motion:
-        """Return the pose that the armature has now, keyed or not, as one frame.
+        """Return the current pose of the armature, keyed or not, as one frame.
 
-        Raises InvalidMotionError where that is not what is seen; see `check_posed`.
+        Raises InvalidMotionError if it differs from the visible pose; see `check_posed`.
         """
         bpy.context.view_layer.update()
         bones = [armature.pose.bones[name] for name in self.rig.bones]
@@ -72,19 +72,19 @@ class TrackedTake:
         return pose
 
     def with_motion(self, motion: Motion, first: int, last: int) -> ArmatureTake:
-        """Return frames of a motion of the body as `write_take` writes them."""
+        """Return frames of a motion of the body for `write_take`."""
         rows = slice(first, last + 1)
         part = self._part(self.channels, len(self.frames))
         joints = self._joints(part)
         rotations = np.array(part.motion.rotations[rows])
         rotations[:, joints] = motion.rotations[rows, : len(SEGMENTS)]
-        cut = replace(
+        segment = replace(
             part.motion, rotations=rotations, root_positions=motion.root_positions[rows]
         )
         carrier = self._carrier(last + 1 - first)
         frames = self.frames[rows]
         grid = Grid(frames, self.tracked.shown.step, (True, True))
-        parts = (Part(cut, part.bones, carrier),)
+        parts = (Part(segment, part.bones, carrier),)
         return ArmatureTake(self.rig, grid, parts, None, self.channels, self.space)
 
     def _part(self, channels: tuple[BoneChannels, ...], n_frames: int) -> Part:
@@ -93,19 +93,19 @@ class TrackedTake:
         return part_of(self.rig, bones, channels, carrier, self.space, self.rate)
 
     def _carrier(self, n_frames: int) -> Placement:
-        turns, places = (
+        rotations, positions = (
             np.tile(each, (n_frames, 1)) for each in (self.space.rotations, self.space.origins)
         )
-        return Placement(turns, places, self.space.scale)
+        return Placement(rotations, positions, self.space.scale)
 
     def _joints(self, part: Part) -> list[int]:
-        """Return the place of each of the `SEGMENTS` among the joints of a part."""
+        """Return the index of each of the `SEGMENTS` among the joints of a part."""
         owners = [self.rig.bones[bone] if bone >= 0 else "" for bone in part.bones]
         return [owners.index(self.bones[name]) for name in SEGMENTS]
 
     def _of_body(self, part: Part) -> Motion:
         motion = part.motion
-        rotations = np.tile(STILL, (motion.n_frames, len(JOINTS), 1))
+        rotations = np.tile(IDENTITY, (motion.n_frames, len(JOINTS), 1))
         rotations[:, : len(SEGMENTS)] = motion.rotations[:, self._joints(part)]
         skeleton = body_skeleton(self.tracked.body)
         return Motion(skeleton, rotations, motion.root_positions, self.rate)
@@ -113,51 +113,51 @@ class TrackedTake:
 
 @Sliced
 def read_tracked_take(
-    armature: bpy.types.Object, source: Source, n_pictures: int, rate: float
+    armature: bpy.types.Object, source: Source, n_images: int, rate: float
 ) -> Steps[TrackedTake]:
-    """Read an action of a tracked armature at the moments of the recording's pictures.
+    """Read an action of a tracked armature at the times of the depth images.
 
     Raises
     ------
     InvalidMotionError
-        The armature keeps no body, its bones are other ones now, have no keys, or those of the
-        hips are elsewhere in time.
+        The armature stores no body, its bones have changed or have no keys, or the keys of the
+        hips are outside the recording.
     """
     tracked = TrackedBody.read(armature)
     bones, rig = bones_of(armature), read_rig(armature)
     if rig.parents[rig.bones.index(bones["hips"])] >= 0:
         raise InvalidMotionError(
-            f"{bones['hips']} hangs on another bone now. Clear its parent, then track again."
+            f"{bones['hips']} has a parent bone now. Clear its parent, then track again."
         )
     curves = animated_curves(*source)
     check_keyed(armature, curves)
     keyed = rotation_curves(armature.pose.bones[bones["hips"]], curves).values()
-    frames, first = _moments(keyed, tracked, n_pictures, source[0].name)
-    lasting, channels = (BlockReference.of(armature), SourceReference.of(source)), []
+    frames, first = _sample_times(keyed, tracked, n_images, source[0].name)
+    references, channels = (BlockReference.of(armature), SourceReference.of(source)), []
     for number, bone in enumerate(rig.bones):
         channels.append(read_bone(armature.pose.bones[bone], curves, frames, gaps=False))
         if should_yield():
             yield number / len(rig.bones)
-            armature, source = (each.find() for each in lasting)
+            armature, source = (each.find() for each in references)
             curves = animated_curves(*source)
-            bones_of(armature)  # or one of them was deleted meanwhile
+            bones_of(armature)  # raises if one was deleted meanwhile
     motion_from_armature = np.linalg.inv(armature_from_motion(armature, tracked.body))
-    turn, origin, scale = placement_of(Matrix(motion_from_armature.tolist()), armature.name)
-    space = Placement(turn[np.newaxis], origin[np.newaxis], scale)
+    rotation, origin, scale = placement_of(Matrix(motion_from_armature.tolist()), armature.name)
+    space = Placement(rotation[np.newaxis], origin[np.newaxis], scale)
     return TrackedTake(tracked, bones, first, frames, rig, tuple(channels), space, rate)
 
 
-def _moments(
-    keyed: Iterable[Channel], tracked: TrackedBody, n_pictures: int, name: str
+def _sample_times(
+    keyed: Iterable[Channel], tracked: TrackedBody, n_images: int, name: str
 ) -> tuple[Array, int]:
-    """Return the frames of the pictures that these curves cover, and the first picture."""
+    """Return the frames of the images that these curves cover, and the first image."""
     shown = tracked.shown
     ends = np.concatenate([channel.keys[[0, -1], 0] for channel in keyed])
     start, stop = ((frame - shown.start) / shown.step for frame in (ends.min(), ends.max()))
-    first = max(int(np.ceil(start - OFF_GRID)), 0)
-    last = min(int(np.floor(stop + OFF_GRID)), n_pictures - 1)
+    first = max(int(np.ceil(start - MAX_OFF_GRID)), 0)
+    last = min(int(np.floor(stop + MAX_OFF_GRID)), n_images - 1)
     if last < first:
         raise InvalidMotionError(
-            f"{name} has no keys in the time of the recording. Move it back there."
+            f"{name} has no keys within the recording. Move its keys back in time."
         )
     return shown.start + shown.step * np.arange(first, last + 1), first

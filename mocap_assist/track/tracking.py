@@ -1,4 +1,4 @@
-"""What the button Track reads from the scene, and the armature that it adds."""
+"""Track: read the scene and add the tracked armature."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -23,22 +23,22 @@ from ..depth.depth_preview import KEY, Shown, problem_of, recording_of
 from ..jobs.protocol import PreviewSolve
 from ..runtime.subject import check_unchanged
 from ..scene import history
-from ..scene.scene_objects import all_or_nothing
+from ..scene.scene_objects import undo_on_error
 from ..scene.units import unit_of
 from .live_body import LiveBody, stage_of_preview
-from .low_confidence import list_doubts
-from .solve_tracking import Tracked, mean_cm, track_recording, tracked_so_far
+from .low_confidence import list_low_confidence
+from .solve_tracking import Tracked, mean_cm, partial_result, track_recording
 from .tracked_body import TrackedBody
 from .tracked_curves import write_residual
 
 MODE = "QUATERNION"
 CAPTURED = "mocap_assist_captured"
-"""Custom property of the action: how it was made, as JSON. To Clean it is raw."""
+"""Custom property of the action: its origin as JSON. Clean treats it as raw."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class TrackChoices(Settings):
-    """What is done besides tracking."""
+    """Steps after tracking."""
 
     plant_feet: bool = setting(
         True, "Keep planted feet from sliding, where the recording shows feet"
@@ -47,7 +47,7 @@ class TrackChoices(Settings):
 
 @dataclass(frozen=True, kw_only=True)
 class WatchChoices(Settings):
-    """What is done while somebody looks on."""
+    """Preview during a solve."""
 
     watch: bool = setting(
         True,
@@ -59,7 +59,7 @@ class WatchChoices(Settings):
 
 @dataclass(frozen=True, kw_only=True)
 class EscChoices(Settings):
-    """What is left of a solve that is ended early."""
+    """Result of a cancelled solve."""
 
     keep_on_esc: bool = setting(
         False,
@@ -69,7 +69,7 @@ class EscChoices(Settings):
 
 
 class TrackBundle(NamedTuple):
-    """All that the button offers."""
+    """Settings of the button."""
 
     choices: TrackChoices
     tracking: CaptureSettings
@@ -80,14 +80,14 @@ class TrackBundle(NamedTuple):
 
 
 def selected_preview(context: bpy.types.Context) -> bpy.types.Object | None:
-    """Return the active object if it shows a recording of depth."""
+    """Return the active object if it shows a depth recording."""
     active = context.view_layer.objects.active
     shows = active is not None and active.type == "MESH" and KEY in active.data
     return active if shows else None
 
 
 def why_not_track(context: bpy.types.Context) -> str:
-    """Return why nobody can be tracked, or nothing."""
+    """Return why the selection cannot be tracked, or an empty text."""
     preview = selected_preview(context)
     if preview is None:
         return "Select the points of an imported depth recording."
@@ -97,7 +97,7 @@ def why_not_track(context: bpy.types.Context) -> str:
 def read_tracking(
     scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
 ) -> PreviewSolve[Tracked]:
-    """Open the recording that is shown; return what is to be solved, which may be pickled."""
+    """Open the displayed recording; return the picklable solve."""
     planting = settings.planting if settings.choices.plant_feet else None
     recording = recording_of(preview.data)
     return PreviewSolve(track_recording, recording, settings.tracking, settings.actor, planting)
@@ -106,18 +106,18 @@ def read_tracking(
 def watch_tracking(
     scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
 ) -> LiveBody | None:
-    """Return what shows the body while it is tracked, if that is wanted."""
+    """Return the view of the body during tracking, if *Live Preview* is on."""
     return LiveBody(scene, stage_of_preview) if settings.watching.watch else None
 
 
-def keep_tracked(
+def rescue_partial(
     scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
 ) -> Callable[[list[Any]], Tracked] | None:
-    """Return what makes the best of what was tracked until Esc, if that is wanted."""
+    """Return a function that builds the partial result on Esc, if that is enabled."""
     if not settings.escaping.keep_on_esc:
         return None
     recording = recording_of(preview.data)
-    return partial(tracked_so_far, recording=recording, settings=settings.tracking)
+    return partial(partial_result, recording=recording, settings=settings.tracking)
 
 
 def write_tracked(
@@ -125,48 +125,52 @@ def write_tracked(
     preview: bpy.types.Object,
     settings: TrackBundle,
     result: Tracked,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> str:
-    """Add an armature that moves as the actor did, over the points; return a sentence.
+    """Add an armature with the actor's motion over the points; return a message.
 
-    Raises InvalidMotionError if the points show something else than what was `asked`.
+    Raises InvalidMotionError if the points show another recording than the one that was solved.
     """
-    check_unchanged(preview, asked, recording_of(preview.data))
-    shown, context, metres = Shown.read(preview.data), bpy.context, unit_of(scene)
-    pictures = result.first + np.arange(result.motion.n_frames)
-    frames = shown.start + shown.step * pictures
-    with all_or_nothing(context):
+    check_unchanged(preview, solved_digest, recording_of(preview.data))
+    shown, context, meters_per_unit = Shown.read(preview.data), bpy.context, unit_of(scene)
+    image_indices = result.first + np.arange(result.motion.n_frames)
+    frames = shown.start + shown.step * image_indices
+    with undo_on_error(context):
         name = f"{preview.name} tracked"
-        armature, bones = build_armature(context, name, result.motion.skeleton, metres, MODE)
-        source = write_motion(armature, bones, result.motion, frames, metres)
-        armature.matrix_world = _place(preview, result.floor) @ Matrix.Scale(metres, 4)
+        armature, bones = build_armature(
+            context, name, result.motion.skeleton, meters_per_unit, MODE
+        )
+        source = write_motion(armature, bones, result.motion, frames, meters_per_unit)
+        armature.matrix_world = _scene_from_motion(preview, result.floor) @ Matrix.Scale(
+            meters_per_unit, 4
+        )
         armature.show_in_front = True
         write_reliability(armature, *source, frames, result.confidence)
         write_residual(armature, source, frames, result.residual)
-        kept = TrackedBody(result.body, shown, result.floor, settings.actor)
-        kept.write(armature, dict(zip(result.motion.skeleton.names, bones, strict=True)))
+        body = TrackedBody(result.body, shown, result.floor, settings.actor)
+        body.write(armature, dict(zip(result.motion.skeleton.names, bones, strict=True)))
     action = source[0]
     store_json(action, CAPTURED, _entry(settings, result, shown))
-    list_doubts(scene, action, frames, result.doubts, _said(result))
-    return f"{armature.name}: {_said(result)}"
+    list_low_confidence(scene, action, frames, result.low_confidence, _report(result))
+    return f"{armature.name}: {_report(result)}"
 
 
-def _place(preview: bpy.types.Object, floor: Floor | None) -> Matrix:
-    """Return where the world of the motion is in the scene: as the points were put there."""
+def _scene_from_motion(preview: bpy.types.Object, floor: Floor | None) -> Matrix:
+    """Return the transform (4, 4) from the motion to the scene, where the points are."""
     motion_from_camera = scene_from_camera(floor)
     return preview.matrix_world @ Matrix(np.linalg.inv(motion_from_camera).tolist())
 
 
-def _said(result: Tracked) -> str:
-    off = mean_cm(result.residual)
-    beside = "" if off is None else f"; mean distance from the points {off:.1f} cm"
-    n_restarts, n_doubts = len(result.restarts), len(result.doubts)
-    helped = f" Redetected {n_restarts} times." if n_restarts else ""
-    doubtful = {0: "No low-confidence ranges.", 1: "1 low-confidence range."}.get(
-        n_doubts, f"{n_doubts} low-confidence ranges."
+def _report(result: Tracked) -> str:
+    mean = mean_cm(result.residual)
+    distance = "" if mean is None else f"; mean distance from the points {mean:.1f} cm"
+    n_restarts, n_ranges = len(result.restarts), len(result.low_confidence)
+    redetected = f" Redetected {n_restarts} times." if n_restarts else ""
+    ranges = {0: "No low-confidence ranges.", 1: "1 low-confidence range."}.get(
+        n_ranges, f"{n_ranges} low-confidence ranges."
     )
-    said = f"{result.motion.n_frames} frames{beside}.{helped} {doubtful}"
-    return " ".join([said, *result.remarks])
+    summary = f"{result.motion.n_frames} frames{distance}.{redetected} {ranges}"
+    return " ".join([summary, *result.remarks])
 
 
 def _entry(settings: TrackBundle, result: Tracked, shown: Shown) -> dict[str, object]:
@@ -180,5 +184,5 @@ def _entry(settings: TrackBundle, result: Tracked, shown: Shown) -> dict[str, ob
         "mean_residual_cm": mean_cm(result.residual),
         "coverage": result.coverage,
         "restarts": list(result.restarts),
-        "doubtful_ranges": len(result.doubts),
+        "doubtful_ranges": len(result.low_confidence),
     }

@@ -1,7 +1,7 @@
 """What the animator sees: panels in the sidebar, menus, preferences and the overlay."""
 
 from ..clean import example_list
-from ..drawing import heat_switch, overlay_switch
+from ..drawing import confidence_switch, overlay_switch
 from ..importing import import_menu
 from ..retarget import bone_list
 from ..retarget import panel as retarget_panel
@@ -23,7 +23,7 @@ PARTS = (
     menus,
     import_menu,
     overlay_switch,
-    heat_switch,
+    confidence_switch,
     manual,
 )
 

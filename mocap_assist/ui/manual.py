@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 
 MANUAL = Path(__file__).with_name("manual.html")
-"""The one place that says where the manual is: no network is needed to read it."""
+"""Location of the manual, which needs no network."""
 CHAPTERS = {
     "bpy.ops.mocap_assist.import_*": "import",
     "bpy.ops.mocap_assist.show_depth*": "import",
@@ -13,7 +13,7 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.learn_patterns*": "clean",
     "bpy.ops.mocap_assist.*_example*": "clean",
     "bpy.ops.mocap_assist.measure_quality*": "check",
-    "bpy.ops.mocap_assist.jump_to_spot*": "check",
+    "bpy.ops.mocap_assist.jump_to_issue*": "check",
     "bpy.ops.mocap_assist.revert_to_raw*": "compare",
     "bpy.ops.mocap_assist.plant_feet*": "feet",
     "bpy.ops.mocap_assist.reconstruct*": "reconstruct",

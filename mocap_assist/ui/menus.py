@@ -1,4 +1,4 @@
-"""Entries in the menus where an animator looks for them."""
+"""Entries of Blender's menus."""
 
 import bpy
 

@@ -9,7 +9,7 @@ from ...solvers.errors import MocapAssistError
 from ...solvers.recordings.live import PORT
 from ..actions.armature_write import Output
 from ..drawing import overlay_drawing
-from ..library.kept_libraries import kept_libraries, stop_keeping
+from ..library.auto_update_list import auto_updated_libraries, stop_keeping
 from ..panels.preferred import EXTENSION, preferences, preferred
 
 STOP = "mocap_assist.stop_keeping"
@@ -102,7 +102,7 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
 
 def _draw_kept(layout: bpy.types.UILayout) -> None:
     """Draw the libraries that are kept current, each with a button that ends it."""
-    kept = kept_libraries()
+    kept = auto_updated_libraries()
     if kept:
         layout.label(text="Auto-Updated Libraries")
     for problem in kept:

@@ -1,9 +1,9 @@
-"""The sidebar's tab, in the three editors in which an animator looks at motion."""
+"""Sidebar tab in the three editors for motion."""
 
 import bpy
 
 from ..check.compare_panel import ComparePanel
-from ..check.panel import CheckPanel, MOCAP_UL_spots
+from ..check.panel import CheckPanel, MOCAP_UL_issues
 from ..clean.feet_panel import FeetPanel
 from ..clean.panel import CleanPanel
 from ..importing.panel import ImportPanel
@@ -51,7 +51,7 @@ PANELS = [panel for body in BODIES for panel in _in_every_editor(body)]
 
 def register() -> None:
     """Show the panels, on the tab that the preferences name."""
-    bpy.utils.register_class(MOCAP_UL_spots)
+    bpy.utils.register_class(MOCAP_UL_issues)
     tab = preferred("tab").strip() or TAB
     for panel in PANELS:
         panel.bl_category = tab
@@ -62,7 +62,7 @@ def unregister() -> None:
     """Take the panels away."""
     for panel in reversed(PANELS):
         bpy.utils.unregister_class(panel)
-    bpy.utils.unregister_class(MOCAP_UL_spots)
+    bpy.utils.unregister_class(MOCAP_UL_issues)
 
 
 def move_to_tab() -> None:

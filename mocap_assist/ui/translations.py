@@ -1,4 +1,4 @@
-"""What the panels say, in other languages; what is missing here stays English."""
+"""Texts of panels in other languages; missing ones stay English."""
 
 import bpy
 
@@ -79,11 +79,11 @@ def dictionary() -> dict[str, dict[tuple[str, str], str]]:
     """Return the texts as Blender wants them: by language, then by context and English."""
     return {
         language: {
-            (context, english): texts[place]
+            (context, english): texts[column]
             for english, texts in TEXTS.items()
             for context in CONTEXTS
         }
-        for place, language in enumerate(LANGUAGES)
+        for column, language in enumerate(LANGUAGES)
     }
 
 

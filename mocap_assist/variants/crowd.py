@@ -1,4 +1,4 @@
-"""Variants for many armatures: who plays which, when it begins, and where it stands."""
+"""Assign variants to many armatures, each with its own delay, position and heading."""
 
 from typing import NamedTuple
 
@@ -17,47 +17,47 @@ from .tags import is_variant
 
 
 class Member(NamedTuple):
-    """What one armature of a crowd does."""
+    """Variant and placement of one armature of a crowd."""
 
     variant: int
     delay: float
     """Seconds."""
-    place: tuple[float, float]
-    """Metres from where it stands."""
-    turn: float
+    offset: tuple[float, float]
+    """Meters from its position."""
+    angle: float
     """Radians."""
 
 
 def draw_members(n_members: int, n_variants: int, choices: CrowdChoices) -> list[Member]:
-    """Draw a crowd: no variant comes again before all were given, nobody stands close by rule.
+    """Draw a crowd: each variant is used once before any is repeated.
 
-    The first members stay the same however many follow.
+    The first members do not depend on the number of members.
     """
     members: list[Member] = []
     orders: list[int] = []
-    for place in range(n_members):
-        rng = np.random.default_rng([choices.crowd_seed, place])
+    for member_index in range(n_members):
+        rng = np.random.default_rng([choices.crowd_seed, member_index])
         if not orders:
-            whole = np.random.default_rng([choices.crowd_seed, place, n_variants])
-            orders = whole.permutation(n_variants).tolist()
-        distance, angle, delay, turn = rng.uniform(size=4)
-        way = choices.spread * np.sqrt(distance)  # even over the disc
+            permutations = np.random.default_rng([choices.crowd_seed, member_index, n_variants])
+            orders = permutations.permutation(n_variants).tolist()
+        distance, angle, delay, rotation = rng.uniform(size=4)
+        radius = choices.spread * np.sqrt(distance)  # even over the disc
         members.append(
             Member(
                 orders.pop(0),
                 float(choices.delay * delay),
                 (
-                    float(way * np.cos(2 * np.pi * angle)),
-                    float(way * np.sin(2 * np.pi * angle)),
+                    float(radius * np.cos(2 * np.pi * angle)),
+                    float(radius * np.sin(2 * np.pi * angle)),
                 ),
-                float(choices.turn * (2.0 * turn - 1.0)),
+                float(choices.turn * (2.0 * rotation - 1.0)),
             )
         )
     return members
 
 
 def why_not_assign(context: bpy.types.Context) -> str:
-    """Return why the variants cannot be given to anybody, or nothing."""
+    """Return why the variants cannot be assigned, or an empty text."""
     if reason := listing.why_none(context):
         return reason
     if not crowd_of(context):
@@ -76,9 +76,9 @@ def crowd_of(context: bpy.types.Context) -> list[bpy.types.Object]:
 def assign(
     context: bpy.types.Context, armatures: list[bpy.types.Object], settings: CrowdBundle
 ) -> str:
-    """Give each armature a variant on an NLA track of its own; return a sentence.
+    """Assign each armature a variant on a new NLA track; return a message.
 
-    A member is shifted and turned by its delta transforms, so that a second press replaces
+    A member is moved and rotated by its delta transforms, so that a second press replaces
     what the first did, and its own location stays free.
 
     Raises
@@ -104,7 +104,7 @@ def assign(
 
 
 def _clear(armature: bpy.types.Object, ours: set[bpy.types.Action]) -> None:
-    """Take away what of the variants the armature played before."""
+    """Remove the variants that the armature played before."""
     animation = armature.animation_data
     if animation is None:
         return
@@ -115,15 +115,15 @@ def _clear(armature: bpy.types.Object, ours: set[bpy.types.Action]) -> None:
             animation.nla_tracks.remove(track)
 
 
-def _stand(armature: bpy.types.Object, member: Member, metres: float) -> None:
-    armature.delta_location = (*(each / metres for each in member.place), 0.0)
-    turn = Euler((0.0, 0.0, member.turn))
-    armature.delta_rotation_euler = turn
-    armature.delta_rotation_quaternion = turn.to_quaternion()
+def _stand(armature: bpy.types.Object, member: Member, meters_per_unit: float) -> None:
+    armature.delta_location = (*(each / meters_per_unit for each in member.offset), 0.0)
+    rotation = Euler((0.0, 0.0, member.angle))
+    armature.delta_rotation_euler = rotation
+    armature.delta_rotation_quaternion = rotation.to_quaternion()
 
 
 def why_not_stack(context: bpy.types.Context) -> str:
-    """Return why the variants cannot become strips, or nothing."""
+    """Return why the variants cannot become strips, or an empty text."""
     if reason := listing.why_none(context):
         return reason
     armature = listing.armature_of(context.scene)
@@ -137,7 +137,7 @@ def why_not_stack(context: bpy.types.Context) -> str:
 
 
 def stack(context: bpy.types.Context) -> str:
-    """Put the variants on NLA tracks of their armature, one after the other; say so."""
+    """Put the variants on NLA tracks of their armature in sequence; return a message."""
     scene = context.scene
     armature, actions = listing.armature_of(scene), listing.chosen(scene)
     sources = [listing.source_for(armature, action) for action in actions]

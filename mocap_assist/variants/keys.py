@@ -1,4 +1,4 @@
-"""The keys of a variant, in the channels of the bones of its armature."""
+"""Keys of a variant in the channels of its armature's bones."""
 
 import re
 from collections.abc import Collection, Mapping, Sequence
@@ -33,11 +33,11 @@ class Held(NamedTuple):
 
 
 class Stage(NamedTuple):
-    """The first example, of which all that is not the body's motion is taken."""
+    """The first example; it supplies every channel except the body's motion."""
 
     take: ArmatureTake
-    turned: frozenset[int]
-    """Bones whose turn any of the examples keys."""
+    rotated: frozenset[int]
+    """Bones with keyed rotations in any example."""
     held: tuple[Held, ...]
 
     @classmethod
@@ -45,7 +45,7 @@ class Stage(NamedTuple):
         cls, takes: Sequence[ArmatureTake], first: Source, movers: Collection[str] = ()
     ) -> "Stage":
         """Take it from the examples, but for the channels of some bones."""
-        turned = {
+        rotated = {
             index
             for take in takes
             for index, each in enumerate(take.channels)
@@ -57,34 +57,34 @@ class Stage(NamedTuple):
             for (path, index), channel in animated_curves(*first).items()
             if channel.is_on and not _moves(path, movers)
         )
-        return cls(takes[0], frozenset(turned), held)
+        return cls(takes[0], frozenset(rotated), held)
 
     def frames(self, n_frames: int) -> Array:
-        """Return scene frames from the example's first on: as far apart as there, or whole."""
+        """Return scene frames from the example's first, with its step or integer ones."""
         grid = self.take.grid
         return np.asarray(grid.frames[0] + max(grid.step, 1.0) * np.arange(n_frames))
 
     def keys(self, motion: Motion) -> Mapping[str, BoneKeys]:
-        """Return the channels of the bones that move the body as a motion does."""
+        """Return the channels of the bones for a motion of the body."""
         rig, body = self.take.rig, self.take.parts[0]
         carrier = Placement(
             body.carrier.rotations[:1], body.carrier.origins[:1], body.carrier.scale
         )
         part = Part(motion, body.bones, carrier)
-        turns = basis_rotations(part, rig, self.take.rest)
+        rotations_by_bone = basis_rotations(part, rig, self.take.rest)
         root = body.bones[0]
         return {
             rig.bones[bone]: BoneKeys(
-                _once_if_still(turns[bone]),
+                _once_if_still(rotations_by_bone[bone]),
                 root_locations(part, rig) if bone == root else None,
             )
-            for bone in turns
-            if bone in self.turned or bone == root
+            for bone in rotations_by_bone
+            if bone in self.rotated or bone == root
         }
 
 
 def without_still(keys: Mapping[str, BoneKeys]) -> Mapping[str, BoneKeys]:
-    """Return channels of which those that never turn have their first key only."""
+    """Return channels; bones that never rotate have their first key only."""
     return {
         bone: replace(each, rotations=_once_if_still(each.rotations))
         if each.rotations is not None and np.isfinite(each.rotations).all()
@@ -100,16 +100,16 @@ def _moves(path: str, movers: Collection[str]) -> bool:
 
 
 def _once_if_still(rotations: Array) -> Array:
-    """Return rotations, (n_frames, 4), of which only the first is kept if nothing turns."""
+    """Return rotations, (n_frames, 4), or only the first one if they are constant."""
     if np.abs(rotations - rotations[:1]).max() > STILL:
         return rotations
-    kept = np.full_like(rotations, np.nan)
-    kept[0] = rotations[0]
-    return kept
+    first_only = np.full_like(rotations, np.nan)
+    first_only[0] = rotations[0]
+    return first_only
 
 
 def hold_others(action: bpy.types.Action, slot: bpy.types.ActionSlot, stage: Stage) -> None:
-    """Give one key to each channel that the example has, and the action has not."""
+    """Add one key for each channel of the example that the action lacks."""
     bag = compat.channelbag(action, slot, ensure=True)
     there = {curve.data_path for curve in bag.fcurves}
     start = stage.take.frames[:1]

@@ -55,14 +55,14 @@ def chosen(scene: bpy.types.Scene) -> list[bpy.types.Action]:
 
 
 def why_none(context: bpy.types.Context) -> str:
-    """Return why there are no variants, or nothing."""
+    """Return why there are no variants, or an empty text."""
     if not chosen(context.scene):
         return "There are no variants yet. Press Vary."
     return ""
 
 
 def why_not_keep(context: bpy.types.Context) -> str:
-    """Return why no variants can be deleted, or nothing."""
+    """Return why no variants can be deleted, or an empty text."""
     if reason := why_none(context):
         return reason
     if not any(row.picked for row in context.scene.mocap_assist.variants.rows):
@@ -73,7 +73,7 @@ def why_not_keep(context: bpy.types.Context) -> str:
 def keep_picked(scene: bpy.types.Scene) -> str:
     """Delete the variants that are not picked; return a sentence.
 
-    Those that somebody else plays, or that are assets, stay; they only leave the list.
+    Variants with other users, and assets, are kept; they only leave the list.
     """
     variants = scene.mocap_assist.variants
     kept = chosen(scene)

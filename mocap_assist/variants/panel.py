@@ -29,8 +29,8 @@ PARTS = (("trunk",), ("left_arm", "right_arm"), ("left_leg", "right_leg"))
 OTHERS = ("pin_start", "pin_end")
 SHOWN_APART = {"seed", *MAIN, *OTHERS, *(name for row in PARTS for name in row)}
 CROWD = ("delay", "spread", "turn", "crowd_seed")
-LONGEST = 30
-FEWEST, MOST = 3, 7  # rows of the list
+MAX_LISTED = 30
+MIN_ROWS, MAX_ROWS = 3, 7  # rows of the list
 ROW, LARGE = 1.8, 7.0  # sizes of the pictures
 
 
@@ -88,13 +88,13 @@ def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
     armature = selected_armature(context)
     found = [] if armature is None else candidates(armature)
     box = column.column(align=True)
-    for action in found[:LONGEST]:
+    for action in found[:MAX_LISTED]:
         icon = "CHECKBOX_HLT" if action.name in ticked else "CHECKBOX_DEHLT"
         button = box.operator(TICK, text=action.name, translate=False, icon=icon)
         button.action, button.group = action.name, "vary"
     if search := searches.listed(context):
         column.operator(USE, text=f"Best Matches of {search.query}", icon="VIEWZOOM")
-    if len(found) > LONGEST:
+    if len(found) > MAX_LISTED:
         column.prop(context.scene.mocap_assist.vary, "actions")
 
 
@@ -131,7 +131,7 @@ def _draw_folded(column: bpy.types.UILayout, vary: bpy.types.PropertyGroup) -> N
 
 def _draw_variants(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
     variants = context.scene.mocap_assist.variants
-    rows = min(max(len(variants.rows), FEWEST), MOST)
+    rows = min(max(len(variants.rows), MIN_ROWS), MAX_ROWS)
     column.template_list(
         "MOCAP_UL_variants", "", variants, "rows", variants, "active", rows=rows, maxrows=rows
     )

@@ -48,7 +48,7 @@ class Reading(NamedTuple):
 
 
 def why_not_vary(context: bpy.types.Context) -> str:
-    """Return why nothing can be varied, or nothing."""
+    """Return why the selection cannot be varied, or an empty text."""
     armature = selected_armature(context)
     if armature is None:
         return "Select the armature whose actions to vary."
@@ -76,7 +76,7 @@ def chosen_sources(armature: bpy.types.Object, choices: VaryChoices) -> tuple[So
 
 
 def candidates(armature: bpy.types.Object) -> list[bpy.types.Action]:
-    """Return the actions that may show a behaviour: those for the armature, but no variants."""
+    """Return the actions that may show a behavior: those for the armature, but no variants."""
     others = (action for action in bpy.data.actions if not is_variant(action))
     return [action for action, _ in fitting_actions(armature, others)]
 
@@ -85,7 +85,7 @@ def candidates(armature: bpy.types.Object) -> list[bpy.types.Action]:
 def read_varying(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: VaryBundle
 ) -> "Steps[partial[Varied]]":
-    """Read the actions; return what is to be solved, which may be pickled."""
+    """Read the actions; return the picklable solve."""
     check_writable(armature)
     _shown.clear()
     found = yield from read.steps(scene, armature, settings)
@@ -172,5 +172,5 @@ def read_controls(
         scene, armature, find_roles(armature), chosen.choices.limbs, on_root
     )
     origin = take.rest.origins[0] * (1.0, 1.0, 0.0)
-    turn = vertical_part(take.rest.rotations[0])
-    return Controls(rig, chosen.retargeting, origin, turn), switches
+    rotation = vertical_part(take.rest.rotations[0])
+    return Controls(rig, chosen.retargeting, origin, rotation), switches

@@ -1,4 +1,4 @@
-"""A picture of all variants, one below the other."""
+"""Contact sheet of all variants."""
 
 from functools import partial
 from pathlib import Path

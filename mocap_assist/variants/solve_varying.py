@@ -1,4 +1,4 @@
-"""What the button Vary has solved for it."""
+"""Solve of the button Vary."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -27,33 +27,33 @@ SHEET = StickFigureSettings(n_figures=10, height=140)
 
 @dataclass(frozen=True, eq=False)
 class Controls:
-    """How a rig is keyed whose bones constraints move: variants of its body are retargeted."""
+    """Controls of a rig with constrained bones; variants of its body are retargeted to them."""
 
     rig: TargetRig
     settings: RetargetSettings
     origin: Array
-    """Where the armature stands on the ground, shape (3,), metres."""
-    turn: Array
-    """How it is turned about the vertical, shape (4,)."""
+    """Position of the armature on the ground, shape (3,), meters."""
+    rotation: Array
+    """Its rotation about the vertical, shape (4,)."""
 
 
 @dataclass(frozen=True, eq=False)
 class VaryProblem:
-    """All that Vary depends on."""
+    """Input of Vary."""
 
     examples: tuple[Motion, ...]
     n_variants: int
     settings: VarySettings
     planting: PlantSettings | None
-    """None leaves feet as they are."""
+    """None does not plant feet."""
     frame_rate: float
-    """Hertz, of the scene: more keys than frames would only fill the file."""
+    """Hertz, of the scene, which limits the number of keys."""
     controls: Controls | None = None
-    """Of a control rig; the joints of its examples are then named by roles."""
+    """Controls of a control rig; the joints of its examples are then named by roles."""
 
 
 class Varied(NamedTuple):
-    """New motions, each with a picture, and what is to be said of them."""
+    """New motions with thumbnails, and remarks to report."""
 
     motions: tuple[Motion, ...]
     pictures: tuple[Pixels, ...]
@@ -63,7 +63,7 @@ class Varied(NamedTuple):
 
 
 def vary(problem: VaryProblem, *, progress: Progress = unwatched) -> Varied:
-    """Make variants that begin where the first example does, facing the same way."""
+    """Synthesize variants that start at the position and heading of the first example."""
     made = vary_motions(
         problem.examples,
         problem.n_variants,
@@ -75,15 +75,15 @@ def vary(problem: VaryProblem, *, progress: Progress = unwatched) -> Varied:
         postures_from_motion(problem.examples[0]), problem.examples[0].frame_rate
     )
     motions, pictures = [], []
-    for place, (motion, is_loop) in enumerate(zip(made.motions, made.loops, strict=True)):
-        progress(0.8 + 0.1 * place / len(made.motions), "Drawing")
-        seen = normalize_postures(postures_from_motion(motion), motion.frame_rate)
-        turn = float(first.headings[0] - seen.headings[0])
-        there = moved(motion, seen.places[0], turn, first.places[0])
-        seen_as = resample_loop if is_loop else resample
+    for index, (motion, is_loop) in enumerate(zip(made.motions, made.loops, strict=True)):
+        progress(0.8 + 0.1 * index / len(made.motions), "Drawing")
+        normalized = normalize_postures(postures_from_motion(motion), motion.frame_rate)
+        angle = float(first.headings[0] - normalized.headings[0])
+        aligned = moved(motion, normalized.hip_positions[0], angle, first.hip_positions[0])
+        resample_variant = resample_loop if is_loop else resample
         finer = motion.frame_rate > problem.frame_rate
-        motions.append(seen_as(there, problem.frame_rate) if finer else there)
-        pictures.append(thumbnail(seen.postures))
+        motions.append(resample_variant(aligned, problem.frame_rate) if finer else aligned)
+        pictures.append(thumbnail(normalized.postures))
     remarks = (*made.remarks, ALIKE) if are_alike(motions) else made.remarks
     keys = _keyed(motions, problem.controls, within(progress, 0.9, 1.0))
     return Varied(tuple(motions), tuple(pictures), remarks, keys)
@@ -95,7 +95,7 @@ def _keyed(
     """Return the channels of a control rig's bones for each motion of its body."""
     if controls is None:
         return ()
-    clips = tuple(Clip(motion, controls.origin, controls.turn) for motion in motions)
+    clips = tuple(Clip(motion, controls.origin, controls.rotation) for motion in motions)
     names = motions[0].skeleton.names
     roles = HumanoidMap({name: name for name in names if name in HUMANOID_ROLES})
     problem = RetargetProblem(clips, roles, controls.rig, controls.settings)
@@ -111,19 +111,19 @@ def are_alike(motions: Sequence[Motion]) -> bool:
     )
 
 
-def moved(motion: Motion, pivot: Array, turn: float, place: Array) -> Motion:
-    """Turn a motion about the vertical through a point, which comes above a place.
+def moved(motion: Motion, pivot: Array, angle: float, target: Array) -> Motion:
+    """Rotate a motion about the vertical through a pivot, and move the pivot to a position.
 
     Parameters
     ----------
     motion : Motion
-    pivot, place : shape (3,), metres
+    pivot, target : shape (3,), meters
         Heights stay.
-    turn : float, radians
+    angle : float, radians
     """
-    about = np.array([np.cos(turn / 2.0), 0.0, 0.0, np.sin(turn / 2.0)])
+    about = np.array([np.cos(angle / 2.0), 0.0, 0.0, np.sin(angle / 2.0)])
     level = np.array([1.0, 1.0, 0.0])
-    positions = rotate(about, motion.root_positions - level * pivot) + level * place
+    positions = rotate(about, motion.root_positions - level * pivot) + level * target
     rotations = motion.rotations.copy()
     rotations[:, 0] = multiply(about, rotations[:, 0])
     return motion.with_poses(rotations, positions)
@@ -134,8 +134,8 @@ def draw_sheet(
 ) -> int:
     """Draw named motions one below the other to a PNG file; return how many."""
     rows = []
-    for place, (name, motion) in enumerate(motions):
-        progress(place / len(motions), f"Drawing {name}")
+    for index, (name, motion) in enumerate(motions):
+        progress(index / len(motions), f"Drawing {name}")
         rows.append(draw_stick_figures({name: motion}, SHEET))
     stack_pictures(rows).save(path)
     return len(rows)

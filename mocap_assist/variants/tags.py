@@ -1,4 +1,4 @@
-"""How a variant is known: by what its action says of itself."""
+"""Tags of variants in a custom property of their actions."""
 
 import re
 
@@ -10,11 +10,11 @@ VARIANT = "mocap_assist_variant"
 """Custom property of actions that Vary made: of which, its number, and the seed."""
 BETWEEN = ".variant "
 NUMBER = re.compile(re.escape(BETWEEN) + r"(\d+)(\.\d{3,})?$")
-FEWEST_DIGITS = 2
+MIN_DIGITS = 2
 
 
 def tag(action: bpy.types.Action, examples: list[str], number: int, seed: int) -> None:
-    """Let an action say what it is a variant of."""
+    """Store in an action the examples of the variant."""
     store_json(action, VARIANT, {"examples": examples, "number": number, "seed": seed})
 
 
@@ -30,7 +30,7 @@ def examples_of(action: bpy.types.Action) -> list[str]:
 
 
 def short_name(action: bpy.types.Action) -> str:
-    """Return what tells a variant from the others of its kind: variant 01."""
+    """Return the suffix of a variant: variant 01."""
     _, between, number = action.name.rpartition(BETWEEN)
     return f"{between}{number}".removeprefix(".")
 
@@ -44,6 +44,6 @@ def names_for(example: bpy.types.Action, n_variants: int) -> list[str]:
         if action.name.startswith(stem + BETWEEN) and (found := NUMBER.search(action.name))
     ]
     first = max(there, default=0) + 1
-    digits = max(len(str(first + n_variants - 1)), FEWEST_DIGITS)
+    digits = max(len(str(first + n_variants - 1)), MIN_DIGITS)
     numbers = range(first, first + n_variants)
     return [f"{stem}{BETWEEN}{number:0{digits}}" for number in numbers]

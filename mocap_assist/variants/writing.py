@@ -27,7 +27,7 @@ def write_variants(
     armature: bpy.types.Object,
     settings: VaryBundle,
     varied: Varied,
-    asked: str | None = None,
+    solved_digest: str | None = None,
 ) -> Steps[str]:
     """Write a new action for each variant; return a sentence about them.
 
@@ -40,7 +40,7 @@ def write_variants(
     armature : bpy.types.Object
     settings : VaryBundle
     varied : Varied
-    asked : fingerprint of what was solved; None where nothing can have changed since
+    solved_digest : fingerprint of the solved problem; None if it cannot have changed since
 
     Raises
     ------
@@ -50,7 +50,7 @@ def write_variants(
     here, made = Subject.of(scene, armature), list[int]()
     found = yield from read.steps(scene, armature, settings)
     scene, armature = here.find()
-    check_unchanged(armature, asked, found.problem)
+    check_unchanged(armature, solved_digest, found.problem)
     writer = _Writer.of(found, settings, varied)
     try:
         while len(made) < len(writer.names):

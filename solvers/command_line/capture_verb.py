@@ -115,7 +115,7 @@ def _outcome(found: CapturedMotion, messages: list[str]) -> Outcome:
         "residual_m": float(np.nanmean(captured.residual)),
         "coverage": float(captured.coverage.mean()),
         "restarts": list(captured.restarts),
-        "doubtful_share": float(captured.doubtful.mean()),
+        "doubtful_share": float(captured.low_confidence.mean()),
         "bone_lengths_m": dict(zip(LENGTHS, captured.body.lengths.tolist(), strict=True)),
         "remarks": remarks,
         "slide_before_m": found.planted and found.planted.slide_before,

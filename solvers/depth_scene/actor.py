@@ -111,18 +111,18 @@ def find_actor(
         room = uncovered_background(recording, progress=within(progress, 0.1, 0.2))
     finder = _PersonFinder(ActorImages(recording, settings, background, floor), room)
     people = _track_people(finder, frames, recording, within(progress, 0.2, 1.0))
-    seen = np.isfinite(people.trajectory).all(axis=-1)
-    if not seen.any():
+    visible = np.isfinite(people.trajectory).all(axis=-1)
+    if not visible.any():
         raise InvalidMotionError(_NO_PERSON)
     actor_only = cut_out_actor(
         recording, settings, background=background, floor=floor, trajectory=people.trajectory
     )
     warnings = (
         *check_intrinsics(recording.camera),
-        *_warnings(people, seen, recording),
+        *_warnings(people, visible, recording),
         *finder.warnings(),
     )
-    return Actor(actor_only, floor, method, seen, not finder.is_cropped(), warnings)
+    return Actor(actor_only, floor, method, visible, not finder.is_cropped(), warnings)
 
 
 _NO_PERSON = (
@@ -209,7 +209,7 @@ class _PersonFinder:
         return replace(bodies, areas=bodies.areas[is_person], centers=bodies.centers[is_person])
 
     def height(self) -> float:
-        """Return the 0.9 quantile of the largest body's height, metres."""
+        """Return the 0.9 quantile of the largest body's height, meters."""
         return float(np.quantile(self._heights, 0.9)) if self._heights else np.nan
 
     def is_cropped(self) -> bool:
@@ -239,14 +239,14 @@ def _track_people(
     def observe(frame: int) -> Bodies:
         nonlocal n_observed
         n_observed += 1
-        progress(n_observed / len(frames), "Looking for the actor")
+        progress(n_observed / len(frames), "Finding the actor")
         return finder(frame)
 
     return follow_people(observe, frames, recording.n_frames, recording.frame_rate)
 
 
 def _warnings(
-    people: People, seen: NDArray[np.bool_], recording: DepthRecording
+    people: People, visible: NDArray[np.bool_], recording: DepthRecording
 ) -> tuple[str, ...]:
     warnings = []
     crowded = np.flatnonzero(people.n_bodies > 1)
@@ -256,10 +256,10 @@ def _warnings(
             f"Up to {people.n_bodies.max()} people are visible, from {start:.1f} s on; the most"
             " visible one is tracked."
         )
-    if not seen.all():
-        start = int(np.argmin(seen)) / recording.frame_rate
+    if not visible.all():
+        start = int(np.argmin(visible)) / recording.frame_rate
         warnings.append(
-            f"No person is visible in {(~seen).sum()} of {len(seen)} frames, from {start:.1f} s"
-            " on."
+            f"No person is visible in {(~visible).sum()} of {len(visible)} frames,"
+            f" from {start:.1f} s on."
         )
     return tuple(warnings)

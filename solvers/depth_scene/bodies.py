@@ -15,14 +15,14 @@ Depth = NDArray[np.floating[Any]]
 Points = NDArray[np.float64]
 
 MAX_STEP_M, MAX_STEP_PER_M2 = 0.05, 0.005
-"""Maximum depth step between pixels of one surface: metres, and growth with squared depth."""
-MAX_PIECE_DISTANCE_M = 0.5
-"""A small piece, such as a hand held forward, belongs to a body within this distance."""
+"""Maximum depth step between pixels of one surface: meters, and growth with squared depth."""
+MAX_COMPONENT_DISTANCE_M = 0.5
+"""A small component, such as a hand held forward, belongs to a body within this distance."""
 MAX_LIMB_FRACTION, MAX_LIMB_GAP_M = 0.4, 0.3
-"""A piece counts as a limb of a body, such as a leg behind the other, up to this fraction of
+"""A component counts as a limb of a body, such as an occluded leg, up to this fraction of
 its area and this gap."""
-MIN_PIECE_M2 = 1e-3
-"""Smaller pieces count as noise."""
+MIN_COMPONENT_M2 = 1e-3
+"""Smaller components count as noise."""
 MAX_FULL_PIXELS, COARSE_WIDTH = 20_000, 200
 """Above this many pixels, the image is subsampled to about this width."""
 POINT_STEP = 12
@@ -35,15 +35,15 @@ class Bodies:
 
     Attributes
     ----------
-    depth : float array, shape (height, width), metres
+    depth : float array, shape (height, width), meters
         The depth image.
     step : int
         Step of the sampled columns and rows.
     labels : int array, shape (-(-height // step), -(-width // step))
         0: none; 1: the body with the largest surface; 2: the next, and so on.
-    areas : float array, shape (n,), square metres
+    areas : float array, shape (n,), square meters
         Visible surface of each body, as if it faced the camera.
-    centers : float array, shape (n, 3), metres
+    centers : float array, shape (n, 3), meters
         Median point of each body, camera frame.
     """
 
@@ -71,46 +71,53 @@ class Bodies:
 
 
 def find_bodies(depth: Depth, camera: Camera, min_area: float) -> Bodies:
-    """Segment a depth image into bodies of at least `min_area` square metres of surface.
+    """Segment a depth image into bodies of at least `min_area` square meters of surface.
 
     Neighboring pixels are connected if their depths differ by no more than the sensor noise.
-    Smaller pieces join the nearest body within reach, or none. Large images are subsampled,
+    Smaller components join the nearest body within reach, or none. Large images are subsampled,
     and the remaining pixels follow their neighbors.
     """
     is_small = int((depth > 0.0).sum()) <= MAX_FULL_PIXELS
     step = 1 if is_small else -(-camera.width // COARSE_WIDTH)
     coarse, camera = depth[::step, ::step], camera.every(step)
-    pieces, areas = _pieces(coarse, camera)
-    points = _group_points(pieces, camera.back_project(coarse))
+    components, areas = _label_components(coarse, camera)
+    points = _group_points(components, camera.back_project(coarse))
     large = np.flatnonzero(areas >= min_area)
     large = large[np.argsort(-areas[large], kind="stable")]
-    body_of_piece = np.zeros(len(areas) + 1, dtype=np.intp)
-    for piece in large + 1:
-        body_of_piece[piece] = (
-            _limb_owner(piece, body_of_piece, areas, points) or body_of_piece.max() + 1
+    body_of_component = np.zeros(len(areas) + 1, dtype=np.intp)
+    for component in large + 1:
+        body_of_component[component] = (
+            _limb_owner(component, body_of_component, areas, points)
+            or body_of_component.max() + 1
         )
-    _join_small_pieces(body_of_piece, areas, points)
-    n_bodies = int(body_of_piece.max())
+    _join_small_components(body_of_component, areas, points)
+    n_bodies = int(body_of_component.max())
     surfaces = np.zeros(n_bodies + 1)
-    np.add.at(surfaces, body_of_piece[1:], areas)
-    centers = [np.median(each, axis=0) for each in _bodies(body_of_piece, points)]
+    np.add.at(surfaces, body_of_component[1:], areas)
+    centers = [np.median(each, axis=0) for each in _bodies(body_of_component, points)]
     return Bodies(
-        depth, step, body_of_piece[pieces], surfaces[1:], np.array(centers).reshape(-1, 3)
+        depth,
+        step,
+        body_of_component[components],
+        surfaces[1:],
+        np.array(centers).reshape(-1, 3),
     )
 
 
-def _group_points(pieces: NDArray[np.intp], points: Points) -> list[Points]:
-    """Return the points of each piece, shape (n, 3); the first entry holds unlabeled points."""
-    order = np.argsort(pieces, axis=None, kind="stable")
-    ends = np.cumsum(np.bincount(pieces.ravel()))[:-1]
+def _group_points(components: NDArray[np.intp], points: Points) -> list[Points]:
+    """Return the points of each component, shape (n, 3); the first is unlabeled."""
+    order = np.argsort(components, axis=None, kind="stable")
+    ends = np.cumsum(np.bincount(components.ravel()))[:-1]
     return np.split(points.reshape(-1, 3)[order], ends)
 
 
-def _bodies(body_of_piece: NDArray[np.intp], points: list[Points]) -> list[Points]:
+def _bodies(body_of_component: NDArray[np.intp], points: list[Points]) -> list[Points]:
     """Return the points of each body."""
     return [
-        np.concatenate([points[piece] for piece in np.flatnonzero(body_of_piece == body)])
-        for body in range(1, int(body_of_piece.max(initial=0)) + 1)
+        np.concatenate([
+            points[component] for component in np.flatnonzero(body_of_component == body)
+        ])
+        for body in range(1, int(body_of_component.max(initial=0)) + 1)
     ]
 
 
@@ -136,8 +143,10 @@ def _refine_mask(depth: Depth, coarse_depth: Depth, step: int) -> Mask:
     return mask & (depth > 0.0)
 
 
-def _pieces(depth: Depth, camera: Camera) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
-    """Label connected pixels from 1 (0: no reading) and return the surface of each piece."""
+def _label_components(
+    depth: Depth, camera: Camera
+) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+    """Label connected pixels from 1 (0: no reading) and return their surfaces."""
     visible = depth > 0.0
     numbers = np.full(depth.shape, -1)
     numbers[visible] = np.arange(visible.sum())
@@ -145,12 +154,12 @@ def _pieces(depth: Depth, camera: Camera) -> tuple[NDArray[np.intp], NDArray[np.
     first, second = np.concatenate(links, axis=1)
     n = int(visible.sum())
     graph = coo_array((np.ones(len(first), dtype=bool), (first, second)), shape=(n, n))
-    n_pieces, labels = connected_components(graph, directed=False)
-    pieces = np.zeros(depth.shape, dtype=np.intp)
-    pieces[visible] = labels + 1
+    n_components, labels = connected_components(graph, directed=False)
+    components = np.zeros(depth.shape, dtype=np.intp)
+    components[visible] = labels + 1
     surfaces = _surface(depth, camera)[visible]
-    areas = np.bincount(labels, weights=surfaces, minlength=n_pieces)
-    return pieces, areas.astype(np.float64)
+    areas = np.bincount(labels, weights=surfaces, minlength=n_components)
+    return components, areas.astype(np.float64)
 
 
 def _links(numbers: NDArray[Any], depth: Depth, axis: int) -> NDArray[Any]:
@@ -168,50 +177,50 @@ def _links(numbers: NDArray[Any], depth: Depth, axis: int) -> NDArray[Any]:
 
 
 def _surface(depth: Depth, camera: Camera) -> NDArray[np.float64]:
-    """Return the surface of each pixel, square metres, as if it faced the camera."""
+    """Return the surface of each pixel, square meters, as if it faced the camera."""
     return np.asarray(depth, dtype=np.float64) ** 2 / (camera.fx * camera.fy)
 
 
 def _limb_owner(
-    piece: int,
-    body_of_piece: NDArray[np.intp],
+    component: int,
+    body_of_component: NDArray[np.intp],
     areas: NDArray[np.float64],
     points: list[Points],
 ) -> int:
-    """Return the existing body that a large piece is a limb of, 0 for none."""
-    for other in np.flatnonzero(body_of_piece):
-        is_smaller = areas[piece - 1] <= MAX_LIMB_FRACTION * areas[other - 1]
-        if is_smaller and _excess_gap(points[piece], points[other][::POINT_STEP]) <= 0.0:
-            return int(body_of_piece[other])
+    """Return the existing body that a large component is a limb of, 0 for none."""
+    for other in np.flatnonzero(body_of_component):
+        is_smaller = areas[component - 1] <= MAX_LIMB_FRACTION * areas[other - 1]
+        if is_smaller and _excess_gap(points[component], points[other][::POINT_STEP]) <= 0.0:
+            return int(body_of_component[other])
     return 0
 
 
-def _join_small_pieces(
-    body_of_piece: NDArray[np.intp], areas: NDArray[np.float64], points: list[Points]
+def _join_small_components(
+    body_of_component: NDArray[np.intp], areas: NDArray[np.float64], points: list[Points]
 ) -> None:
-    """Assign small pieces to the body next to them or within reach of their center.
+    """Assign small components to the body next to them or within reach of their center.
 
-    `body_of_piece` holds the body of each piece, 0 for none. It is modified.
+    `body_of_component` holds the body of each component, 0 for none. It is modified.
     """
-    bodies = [body[::POINT_STEP] for body in _bodies(body_of_piece, points)]
-    for piece in np.flatnonzero(areas >= MIN_PIECE_M2) + 1:
-        if body_of_piece[piece] or not bodies:
+    bodies = [body[::POINT_STEP] for body in _bodies(body_of_component, points)]
+    for component in np.flatnonzero(areas >= MIN_COMPONENT_M2) + 1:
+        if body_of_component[component] or not bodies:
             continue
-        distances = [_excess_distance(points[piece], body) for body in bodies]
+        distances = [_excess_distance(points[component], body) for body in bodies]
         if min(distances) <= 0.0:
-            body_of_piece[piece] = int(np.argmin(distances)) + 1
+            body_of_component[component] = int(np.argmin(distances)) + 1
 
 
 def _excess_distance(own: Points, body: Points) -> float:
-    """Return the distance beyond reach, metres; at or below 0 the piece belongs to the body."""
+    """Return the distance beyond reach, meters; components at or below 0 belong to the body."""
     box = np.maximum(body.min(axis=0) - own.max(axis=0), own.min(axis=0) - body.max(axis=0))
-    if box.max() > MAX_PIECE_DISTANCE_M:
+    if box.max() > MAX_COMPONENT_DISTANCE_M:
         return float(box.max())
     to_center = float(np.linalg.norm(body - np.median(own, axis=0), axis=-1).min())
-    return min(to_center - MAX_PIECE_DISTANCE_M, _excess_gap(own, body))
+    return min(to_center - MAX_COMPONENT_DISTANCE_M, _excess_gap(own, body))
 
 
 def _excess_gap(own: Points, body: Points) -> float:
-    """Return the gap between two point sets minus `MAX_LIMB_GAP_M`, metres."""
+    """Return the gap between two point sets minus `MAX_LIMB_GAP_M`, meters."""
     subset = own[:: max(1, len(own) // POINT_STEP)]
     return float(np.linalg.norm(subset[:, np.newaxis] - body, axis=-1).min()) - MAX_LIMB_GAP_M

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 class Camera:
     """A pinhole camera without distortion.
 
-    In its own frame x points to the right, y down and z forward, in metres. Column u and row v
+    In its own frame x points to the right, y down and z forward, in meters. Column u and row v
     of the image look along x / z = (u - cx) / fx and y / z = (v - cy) / fy; the center of the
     first pixel is (0, 0).
 
@@ -55,12 +55,12 @@ class Camera:
         return np.stack([self.fx * x / z + self.cx, self.fy * y / z + self.cy], axis=-1)
 
     def back_project(self, depth: NDArray[np.floating[Any]]) -> Array:
-        """Return the points (height, width, 3), metres, of a depth image (height, width)."""
+        """Return the points (height, width, 3), meters, of a depth image (height, width)."""
         depth = np.asarray(depth, dtype=np.float64)
         return self.rays() * depth[..., np.newaxis]
 
     def rays(self) -> Array:
-        """Return the ray of each pixel, shape (height, width, 3), at a depth of one metre."""
+        """Return the ray of each pixel, shape (height, width, 3), at a depth of one meter."""
         x = (np.arange(self.width) - self.cx) / self.fx
         y = (np.arange(self.height) - self.cy) / self.fy
         rays = np.ones((self.height, self.width, 3))

@@ -15,7 +15,7 @@ LEVEL_UP = np.array([0.0, -1.0, 0.0])
 """Up direction in the frame of a level camera."""
 MAX_IMAGES, MAX_POINTS = 12, 6000
 TOLERANCE_M, TOLERANCE_PER_M2 = 0.015, 0.003
-"""Inlier distance from the plane: metres, and its growth with squared depth (sensor noise)."""
+"""Inlier distance from the plane: meters, and its growth with squared depth (sensor noise)."""
 FIT_TOLERANCES = (1.0, 0.7, 0.5, 0.5)
 """Fraction of the tolerance for each refit; the last ones exclude the base of walls."""
 BELOW_TOLERANCES = 3.0
@@ -57,7 +57,7 @@ class Floor:
     ----------
     up : float array, shape (3,)
         Unit vector against gravity.
-    height : float, metres
+    height : float, meters
         Of the camera above the floor.
     """
 
@@ -65,7 +65,7 @@ class Floor:
     height: float
 
     def heights(self, points: Array) -> Array:
-        """Return the heights above the floor, metres, of camera-frame points (..., 3)."""
+        """Return the heights above the floor, meters, of camera-frame points (..., 3)."""
         return points @ self.up + self.height
 
     def world_from_camera(self) -> tuple[Array, Array]:

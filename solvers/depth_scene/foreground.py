@@ -99,9 +99,9 @@ class Background:
 
     Attributes
     ----------
-    depth : float32 array, shape (height, width), metres
+    depth : float32 array, shape (height, width), meters
         0: no reading.
-    spread : float32 array, shape (height, width), metres
+    spread : float32 array, shape (height, width), meters
         Standard deviation of one reading.
     """
 
@@ -177,7 +177,7 @@ class ActorImages:
         Pixels that are not in front of it are removed.
     floor : Floor, or None
         Pixels that are not above it are removed.
-    trajectory : float array, shape (n_frames, 3), metres, or None
+    trajectory : float array, shape (n_frames, 3), meters, or None
         Expected position of the actor; NaN while the actor is missing. Without it the body
         with the largest surface is the actor.
     """
@@ -189,7 +189,7 @@ class ActorImages:
     trajectory: Array | None = None
 
     def __call__(self, index: int) -> DepthImage:
-        """Return the depth of the actor in a frame, metres; 0 elsewhere."""
+        """Return the depth of the actor in a frame, meters; 0 elsewhere."""
         if self.trajectory is not None and np.isnan(self.trajectory[index]).any():
             return np.zeros((self.recording.camera.height, self.recording.camera.width), "f4")
         depth = self.foreground(self.recording.frame(index))
@@ -275,12 +275,12 @@ def is_in_front(depth: DepthImage, background: Background, margin: float) -> NDA
 def above_floor_mask(
     depth: DepthImage, camera: Camera, floor: Floor, min_height: float
 ) -> NDArray[np.bool_]:
-    """Return the mask of pixels more than `min_height` metres above the floor."""
+    """Return the mask of pixels more than `min_height` meters above the floor."""
     return np.asarray(depth * _upward_rays(camera, tuple(floor.up)) + floor.height > min_height)
 
 
 @lru_cache(maxsize=4)
 def _upward_rays(camera: Camera, up: tuple[float, ...]) -> DepthImage:
-    """Return the rise of each pixel's ray per metre of depth, metres."""
+    """Return the rise of each pixel's ray per meter of depth, meters."""
     upward: DepthImage = (camera.rays() @ np.array(up)).astype(np.float32)
     return upward

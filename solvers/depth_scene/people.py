@@ -42,7 +42,7 @@ class People:
         The sampled frames.
     n_bodies : int array, shape (n_samples,)
         Number of people in each sampled frame.
-    trajectory : float array, shape (n_frames, 3), metres
+    trajectory : float array, shape (n_frames, 3), meters
         Position of the actor in the camera frame, for every frame; NaN without the actor.
     """
 

@@ -24,7 +24,7 @@ class DepthRecording:
     n_frames : int
     frame_rate : float, hertz
     read_depth : callable
-        Maps a frame to its depth, shape (height, width), metres along the optical axis.
+        Maps a frame to its depth, shape (height, width), meters along the optical axis.
         0 means no reading.
     read_color : callable, or None
         Maps a frame to the colors aligned with the depth pixels, shape (height, width, 3),
@@ -43,7 +43,7 @@ class DepthRecording:
         check_frame_rate(self.frame_rate)
 
     def frame(self, index: int) -> DepthImage:
-        """Return the depth of a frame, shape (height, width), metres; 0: no reading."""
+        """Return the depth of a frame, shape (height, width), meters; 0: no reading."""
         self._check(index)
         depth = np.asarray(self.read_depth(index), dtype=np.float32)
         if depth.shape != (self.camera.height, self.camera.width):

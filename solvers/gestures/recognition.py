@@ -61,7 +61,9 @@ class GestureRecognizer:
         """Current activity of the actor."""
         return self._mode
 
-    def see(self, time: float, positions: Array, confidence: Array) -> tuple[GestureEvent, ...]:
+    def update(
+        self, time: float, positions: Array, confidence: Array
+    ) -> tuple[GestureEvent, ...]:
         """Process one frame; return the events that it completes.
 
         Skips a frame whose time is not finite, or not later than that of the frame before.
@@ -157,6 +159,6 @@ def recognize_gestures(
         for time, frame_positions, frame_confidence in zip(
             times, positions, confidences, strict=True
         )
-        for event in recognizer.see(float(time), frame_positions, frame_confidence)
+        for event in recognizer.update(float(time), frame_positions, frame_confidence)
     ]
     return tuple(events)

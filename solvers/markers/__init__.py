@@ -6,7 +6,7 @@
 ('CMU 41', 'Anna:', 'Anna:LFWT')
 """
 
-from .keep_rigid import ConstrainedMarkers, constrain_clusters
+from .constrain_clusters import ConstrainedMarkers, constrain_clusters
 from .marker_sets import MarkerSet, find_marker_set
 from .rigid_clusters import Cluster, ClusterSettings, find_rigid_clusters
 from .solve_skeleton import SolvedSkeleton, SolveSettings, solve_skeleton

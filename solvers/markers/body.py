@@ -16,10 +16,10 @@ Array = NDArray[np.float64]
 class Poses(NamedTuple):
     """Poses of a body over frames."""
 
-    turns: Array
+    rotations: Array
     """Local rotations, shape (n_frames, n_joints, 3, 3)."""
     roots: Array
-    """Positions of the root, shape (n_frames, 3), metres."""
+    """Positions of the root, shape (n_frames, 3), meters."""
 
 
 class WorldBody(NamedTuple):
@@ -28,9 +28,9 @@ class WorldBody(NamedTuple):
     frames: Array
     """Axes of all bones, shape (n_frames, n_joints, 3, 3)."""
     joints: Array
-    """Shape (n_frames, n_joints, 3), metres."""
+    """Shape (n_frames, n_joints, 3), meters."""
     markers: Array
-    """Shape (n_frames, n_markers, 3), metres."""
+    """Shape (n_frames, n_markers, 3), meters."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,9 +41,9 @@ class Body:
     """Parents precede children."""
     markers: tuple[MarkerPrior, ...]
     offsets: Array
-    """Offset of each joint from its parent in the T-pose, shape (n_joints, 3), metres."""
+    """Offset of each joint from its parent in the T-pose, shape (n_joints, 3), meters."""
     marker_offsets: Array
-    """Offset of each marker from its anchor in bone axes, shape (n_markers, 3), metres."""
+    """Offset of each marker from its anchor in bone axes, shape (n_markers, 3), meters."""
 
     @cached_property
     def index(self) -> dict[str, int]:
@@ -56,9 +56,9 @@ class Body:
         return tuple(self.index.get(joint.parent, -1) for joint in self.joints)
 
     @cached_property
-    def turning(self) -> NDArray[np.intp]:
+    def rotating_joints(self) -> NDArray[np.intp]:
         """Joints whose rotations are fitted."""
-        return np.flatnonzero([joint.turns for joint in self.joints])
+        return np.flatnonzero([joint.rotates for joint in self.joints])
 
     @cached_property
     def bones(self) -> NDArray[np.intp]:
@@ -72,7 +72,7 @@ class Body:
 
     @cached_property
     def noise(self) -> Array:
-        """Standard deviation of each marker on its bone, metres."""
+        """Standard deviation of each marker on its bone, meters."""
         return np.array([marker.noise for marker in self.markers])
 
     def path(self, joint: int) -> list[int]:
@@ -85,10 +85,10 @@ class Body:
 
     def body_in_pose(self, poses: Poses) -> WorldBody:
         """Return the world positions of joints and markers (forward kinematics)."""
-        frames, joints = np.empty_like(poses.turns), np.empty(poses.turns.shape[:-1])
-        frames[:, 0], joints[:, 0] = poses.turns[:, 0], poses.roots
+        frames, joints = np.empty_like(poses.rotations), np.empty(poses.rotations.shape[:-1])
+        frames[:, 0], joints[:, 0] = poses.rotations[:, 0], poses.roots
         for joint, parent in enumerate(self.parents[1:], start=1):
-            frames[:, joint] = frames[:, parent] @ poses.turns[:, joint]
+            frames[:, joint] = frames[:, parent] @ poses.rotations[:, joint]
             joints[:, joint] = joints[:, parent] + frames[:, parent] @ self.offsets[joint]
         arms = np.einsum("fmij,mj->fmi", frames[:, self.bones], self.marker_offsets)
         return WorldBody(frames, joints, joints[:, self.anchors] + arms)
@@ -106,11 +106,11 @@ def local_rotations(
     A joint without axes, or with missing axes in a frame, follows its parent.
     """
     world: dict[str, Array] = {"": np.broadcast_to(np.eye(3), (n_frames, 3, 3))}
-    turns = np.empty((n_frames, len(joints), 3, 3))
+    rotations = np.empty((n_frames, len(joints), 3, 3))
     for index, joint in enumerate(joints):
         parent_axes = world[joint.parent]
         axes = frames.get(joint.name, parent_axes)
         valid = np.isfinite(axes).all(axis=(-1, -2), keepdims=True)
         world[joint.name] = np.where(valid, axes, parent_axes)
-        turns[:, index] = np.swapaxes(parent_axes, -1, -2) @ world[joint.name]
-    return turns
+        rotations[:, index] = np.swapaxes(parent_axes, -1, -2) @ world[joint.name]
+    return rotations

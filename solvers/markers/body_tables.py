@@ -11,7 +11,7 @@ from .marker_sets import HEAD, PELVIS, TRUNK
 LOOSE_M, FIRM_M, TIGHT_M = 0.03, 0.012, 0.006
 """Standard deviations of a joint's or marker's offset from its mean."""
 FREE_M = 1.0
-"""Standard deviation of an offset that the markers determine alone."""
+"""Standard deviation of an offset that only the markers determine."""
 Triple = tuple[float, float, float]
 NO_PRIOR: Triple = (0.0, 0.0, 0.0)
 
@@ -22,26 +22,26 @@ class JointPrior(NamedTuple):
     name: str
     parent: str
     play: Triple = NO_PRIOR
-    """Standard deviation of each coordinate of the offset from the parent, metres; 0: fixed."""
+    """Standard deviation of each coordinate of the offset from the parent, meters; 0: fixed."""
     ease: Triple = NO_PRIOR
     """Standard deviation of the rotation vector, radians; 0: no prior."""
     hinge: Triple = NO_PRIOR
     """Standard deviation of its X axis from that of its parent, radians; 0: no prior."""
-    turns: bool = True
+    rotates: bool = True
 
 
 class MarkerPrior(NamedTuple):
     """A marker of the mean body. It moves with a bone and has an offset from an anchor."""
 
-    spot: str
+    landmark: str
     bone: str
     anchor: str
     play: float
-    """Standard deviation of each coordinate of its offset from the anchor, metres."""
+    """Standard deviation of each coordinate of its offset from the anchor, meters."""
     offset: Triple | None = None
     """Mean offset in bone axes; None: from the initial poses."""
     noise: float = 0.010
-    """Standard deviation of its soft-tissue motion on the bone, metres."""
+    """Standard deviation of its soft-tissue motion on the bone, meters."""
 
 
 TRUNK_FLEXION_RAD: Triple = (0.4, 0.4, 0.4)
@@ -51,24 +51,24 @@ CENTRE = (
     JointPrior("chest", "spine", (0.0, TIGHT_M, TIGHT_M), TRUNK_FLEXION_RAD),
     JointPrior("neck", "chest", (0.0, TIGHT_M, TIGHT_M), TRUNK_FLEXION_RAD),
     JointPrior("head", "neck", (0.0, TIGHT_M, FIRM_M), TRUNK_FLEXION_RAD),
-    JointPrior("head_end", "head", turns=False),
+    JointPrior("head_end", "head", rotates=False),
 )
 SIDE = (
     JointPrior("Shoulder", "chest", (TIGHT_M, TIGHT_M, TIGHT_M), (0.05, 0.5, 0.5)),
     JointPrior("UpperArm", "Shoulder", (FIRM_M, FIRM_M, FIRM_M)),
     JointPrior("LowerArm", "UpperArm", (FIRM_M, 0.0, 0.0), hinge=(0.0, 0.0, 0.5)),
     JointPrior("Hand", "LowerArm", (FIRM_M, 0.0, 0.0), (0.15, 1.0, 1.0)),
-    JointPrior("Hand_end", "Hand", turns=False),
+    JointPrior("Hand_end", "Hand", rotates=False),
     JointPrior("UpperLeg", "hips", (LOOSE_M, LOOSE_M, LOOSE_M)),
     JointPrior("LowerLeg", "UpperLeg", (0.0, 0.0, FREE_M), hinge=(0.0, 0.1, 0.1)),
     JointPrior("Foot", "LowerLeg", (0.0, 0.0, FREE_M), (1.0, 1.0, 1.0)),
-    JointPrior("Toes", "Foot", turns=False),
-    JointPrior("Toes_end", "Toes", turns=False),
+    JointPrior("Toes", "Foot", rotates=False),
+    JointPrior("Toes_end", "Toes", rotates=False),
 )
 CENTRE_MARKERS = (
-    *(MarkerPrior(spot, "hips", "hips", TIGHT_M) for spot in PELVIS),
-    *(MarkerPrior(spot, "chest", "neck", TIGHT_M) for spot in TRUNK),
-    *(MarkerPrior(spot, "head", "head", TIGHT_M) for spot in HEAD),
+    *(MarkerPrior(landmark, "hips", "hips", TIGHT_M) for landmark in PELVIS),
+    *(MarkerPrior(landmark, "chest", "neck", TIGHT_M) for landmark in TRUNK),
+    *(MarkerPrior(landmark, "head", "head", TIGHT_M) for landmark in HEAD),
 )  # fmt: skip
 SIDE_MARKERS = (
     MarkerPrior("SHO", "Shoulder", "UpperArm", FIRM_M, (0.0, 0.0, 0.05)),

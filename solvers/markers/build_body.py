@@ -17,8 +17,8 @@ from .body_tables import (
     MarkerPrior,
     Triple,
 )
-from .centres import Centres
-from .first_poses import bone_frames
+from .initial_poses import bone_frames
+from .joint_centers import JointCenters
 from .vectors import median
 
 Array = NDArray[np.float64]
@@ -28,15 +28,15 @@ TOE_ABOVE_SOLE_M = 0.02
 SOLE_BELOW_ANKLE_M = 0.07
 
 
-def joints_with(spots: Collection[str]) -> tuple[JointPrior, ...]:
+def joints_with(landmarks: Collection[str]) -> tuple[JointPrior, ...]:
     """Return the joints that these marker positions determine; parents first."""
     excluded = set()
     for bone, required in REQUIRED_MARKERS:
         if bone in {"chest", "head"}:
-            excluded |= set() if set(required) <= set(spots) else {bone}
+            excluded |= set() if set(required) <= set(landmarks) else {bone}
             continue
         for side, (letter, _) in SIDES.items():
-            if not {letter + spot for spot in required} <= set(spots):
+            if not {letter + landmark for landmark in required} <= set(landmarks):
                 excluded.add(side + bone)
     if "chest" in excluded:
         excluded.add("spine")
@@ -59,11 +59,13 @@ def _mirrored() -> list[JointPrior]:
     ]
 
 
-def markers_with(spots: Collection[str], joints: Collection[str]) -> tuple[MarkerPrior, ...]:
+def markers_with(
+    landmarks: Collection[str], joints: Collection[str]
+) -> tuple[MarkerPrior, ...]:
     """Return the markers at these positions that belong to these joints."""
     side_markers = [
         marker._replace(
-            spot=letter + marker.spot,
+            landmark=letter + marker.landmark,
             bone=side + marker.bone,
             anchor=side + marker.anchor,
             offset=None if marker.offset is None else _to_side(marker.offset, sign),
@@ -74,7 +76,7 @@ def markers_with(spots: Collection[str], joints: Collection[str]) -> tuple[Marke
     return tuple(
         marker
         for marker in (*CENTRE_MARKERS, *side_markers)
-        if marker.spot in spots and {marker.bone, marker.anchor} <= set(joints)
+        if marker.landmark in landmarks and {marker.bone, marker.anchor} <= set(joints)
     )
 
 
@@ -82,29 +84,29 @@ def _to_side(offset: Triple, sign: float) -> Triple:
     return (sign * offset[0], offset[1], offset[2])
 
 
-def build_body(centres: Centres, spots: Mapping[str, Array]) -> tuple[Body, Array]:
+def build_body(centers: JointCenters, landmarks: Mapping[str, Array]) -> tuple[Body, Array]:
     """Return the initial body, and the local rotations of its bones in all frames.
 
     Lengths are medians over frames and sides. The rotations have shape (n_frames, n_joints,
     3, 3); bones that are missing in a frame follow their parents.
     """
-    joints = joints_with(spots)
+    joints = joints_with(landmarks)
     names = [joint.name for joint in joints]
-    markers = markers_with(spots, names)
-    frames = bone_frames(centres, spots, names)
-    offsets = np.array([_offset(joint, centres, frames) for joint in joints])
+    markers = markers_with(landmarks, names)
+    frames = bone_frames(centers, landmarks, names)
+    offsets = np.array([_offset(joint, centers, frames) for joint in joints])
     offsets = _symmetric(offsets, names)
     offsets[0] = [0.0, 0.0, _hips_height(offsets, names)]
-    marker_offsets = [_marker_offset(marker, centres, frames, spots) for marker in markers]
+    marker_offsets = [_marker_offset(marker, centers, frames, landmarks) for marker in markers]
     body = Body(joints, markers, offsets, np.array(marker_offsets))
-    return body, local_rotations(frames, joints, len(spots["LASI"]))
+    return body, local_rotations(frames, joints, len(landmarks["LASI"]))
 
 
-def _offset(joint: JointPrior, centres: Centres, frames: Mapping[str, Array]) -> Array:
+def _offset(joint: JointPrior, centers: JointCenters, frames: Mapping[str, Array]) -> Array:
     """Return the initial offset of a joint from its parent, in the T-pose."""
     side = next((side for side in SIDES if joint.name.startswith(side)), "")
     sign = SIDES[side][1] if side else 1.0
-    part, scale = joint.name.removeprefix(side), centres.scale
+    part, scale = joint.name.removeprefix(side), centers.scale
     fixed = {
         "hips": np.zeros(3),
         "head_end": np.array([0.0, 0.0, HEAD_END_M]),
@@ -113,7 +115,7 @@ def _offset(joint: JointPrior, centres: Centres, frames: Mapping[str, Array]) ->
     }
     if part in fixed:
         return scale * fixed[part]
-    start, stop = centres.positions[joint.parent], centres.positions[joint.name]
+    start, stop = centers.positions[joint.parent], centers.positions[joint.name]
     axis = {"chest": 2, "neck": 2, "LowerArm": 0, "Hand": 0}.get(part)
     axis = 2 if part in {"LowerLeg", "Foot"} else axis
     if axis is None:
@@ -154,12 +156,12 @@ def _hips_height(offsets: Array, names: list[str]) -> float:
 
 def _marker_offset(
     marker: MarkerPrior,
-    centres: Centres,
+    centers: JointCenters,
     frames: Mapping[str, Array],
-    spots: Mapping[str, Array],
+    landmarks: Mapping[str, Array],
 ) -> Array:
     """Return the offset of a marker: the mean one, or that in the initial poses."""
     if marker.offset is not None:
-        return centres.scale * np.array(marker.offset)
-    displacement = spots[marker.spot] - centres.positions[marker.anchor]
+        return centers.scale * np.array(marker.offset)
+    displacement = landmarks[marker.landmark] - centers.positions[marker.anchor]
     return median(np.einsum("fji,fj->fi", frames[marker.bone], displacement))

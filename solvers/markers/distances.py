@@ -11,7 +11,7 @@ MAX_NEIGHBORS = 6
 MIN_SPREAD_M = 0.004
 """Lower bound of the spread of a distance."""
 RIGID_SPREAD_M = 0.02
-"""Maximum spread of a distance that identifies a marker alone."""
+"""Maximum spread of a distance that identifies a marker by itself."""
 MAX_FRAMES = 400
 MIN_FRAMES = 30
 MAX_MISFIT = 8.0
@@ -24,9 +24,9 @@ class Distances:
     """Statistics of the distances between markers."""
 
     median: Array
-    """Medians, shape (n_markers, n_markers), metres; NaN for rarely observed pairs."""
+    """Medians, shape (n_markers, n_markers), meters; NaN for rarely observed pairs."""
     spread: Array
-    """Robust standard deviations of the same, metres."""
+    """Robust standard deviations of the same, meters."""
 
     def neighbors(self, marker: int, without: tuple[int, ...] = ()) -> NDArray[np.intp]:
         """Return the markers whose distance to one varies least."""
@@ -51,8 +51,8 @@ class Distances:
         Parameters
         ----------
         marker : int
-        positions : shape (n_frames, 3), metres
-        others : shape (n_frames, n_markers, 3), metres
+        positions : shape (n_frames, 3), meters
+        others : shape (n_frames, n_markers, 3), meters
         neighbors : indices of the neighbors
         """
         separation = np.linalg.norm(positions[:, None] - others[:, neighbors], axis=-1)
@@ -67,7 +67,7 @@ def learn_distances(positions: Array) -> Distances:
 
     Parameters
     ----------
-    positions : shape (n_frames, n_markers, 3), metres
+    positions : shape (n_frames, n_markers, 3), meters
     """
     step = max(1, len(positions) // MAX_FRAMES)
     sample = positions[::step]

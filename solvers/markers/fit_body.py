@@ -29,7 +29,7 @@ class Measures(NamedTuple):
 
     @property
     def play(self) -> Array:
-        """Prior standard deviation of each parameter, metres."""
+        """Prior standard deviation of each parameter, meters."""
         return np.concatenate([self.joint_play, self.marker_play])
 
 
@@ -45,7 +45,7 @@ def fit_body(
     Parameters
     ----------
     body : Body
-    observed : shape (n_frames, n_markers, 3), metres
+    observed : shape (n_frames, n_markers, 3), meters
     poses : Poses
         Initial poses of the same frames.
     progress : Progress

@@ -30,7 +30,7 @@ class Residuals(NamedTuple):
     slopes: Array
     """Derivatives by the pose, shape (n_frames, n_residuals, n_unknowns)."""
     weights: Array
-    """Weights of the markers, per metre, shape (n_frames, n_markers, 1)."""
+    """Weights of the markers, per meter, shape (n_frames, n_markers, 1)."""
     world: WorldBody
 
 
@@ -50,7 +50,7 @@ def fit_poses(
     Parameters
     ----------
     body : Body
-    observed : shape (n_frames, n_markers, 3), metres
+    observed : shape (n_frames, n_markers, 3), meters
         In the order of the body's markers; NaN: missing.
     poses : Poses
         Initial poses.
@@ -60,13 +60,13 @@ def fit_poses(
     References
     ----------
     .. [1] Lu, O'Connor (1999). Bone position estimation from skin marker co-ordinates using
-       global optimisation with joint constraints. J Biomech 32(2).
+       global optimization with joint constraints. J Biomech 32(2).
        doi:10.1016/S0021-9290(98)00158-4
     """
     parts = []
     for start in range(0, len(observed), FRAMES_PER_BLOCK):
         block = slice(start, start + FRAMES_PER_BLOCK)
-        initial = Poses(poses.turns[block], poses.roots[block])
+        initial = Poses(poses.rotations[block], poses.roots[block])
         parts.append(_fit(body, observed[block], initial, most_steps))
         progress(min(1.0, (start + FRAMES_PER_BLOCK) / len(observed)), "Fitting poses")
     return Poses(*(np.concatenate(part) for part in zip(*parts, strict=True)))
@@ -86,7 +86,7 @@ def _fit(body: Body, observed: Array, poses: Poses, most_steps: int) -> Poses:
         new_cost = cost_of(body, observed, tried)
         better = new_cost < cost
         poses = Poses(
-            np.where(better[:, None, None, None], tried.turns, poses.turns),
+            np.where(better[:, None, None, None], tried.rotations, poses.rotations),
             np.where(better[:, None], tried.roots, poses.roots),
         )
         settled = (cost - new_cost)[better] <= MIN_COST_GAIN * cost[better]
@@ -100,12 +100,14 @@ def _fit(body: Body, observed: Array, poses: Poses, most_steps: int) -> Poses:
 
 def apply_step(body: Body, poses: Poses, step: Array) -> Poses:
     """Return poses after a step, shape (n_frames, 3 + 3 per rotating joint)."""
-    turns = poses.turns.copy()
+    rotations = poses.rotations.copy()
     vectors = step[:, 3:].reshape(len(step), -1, 3)
     size = np.linalg.norm(vectors, axis=-1).max(axis=1).clip(min=MAX_STEP_RAD)
     vectors = vectors * (MAX_STEP_RAD / size)[:, None, None]
-    turns[:, body.turning] = matrix_from_rotation_vector(vectors) @ turns[:, body.turning]
-    return Poses(turns, poses.roots + step[:, :3])
+    rotations[:, body.rotating_joints] = (
+        matrix_from_rotation_vector(vectors) @ rotations[:, body.rotating_joints]
+    )
+    return Poses(rotations, poses.roots + step[:, :3])
 
 
 def cost_of(body: Body, observed: Array, poses: Poses) -> Array:
@@ -150,9 +152,9 @@ def marker_slopes(body: Body, world: WorldBody) -> Array:
     The rotation of a joint is a small rotation vector in its parent's axes.
     """
     n_frames, n_markers = world.markers.shape[:2]
-    slopes = np.zeros((n_frames, n_markers, 3, 1 + len(body.turning), 3))
+    slopes = np.zeros((n_frames, n_markers, 3, 1 + len(body.rotating_joints), 3))
     slopes[:, :, :, 0] = np.eye(3)
-    number = {int(joint): index for index, joint in enumerate(body.turning, start=1)}
+    number = {int(joint): index for index, joint in enumerate(body.rotating_joints, start=1)}
     for joint, index in number.items():
         below = [m for m in range(n_markers) if joint in body.path(int(body.bones[m]))]
         parent = body.parents[joint]
@@ -164,9 +166,9 @@ def marker_slopes(body: Body, world: WorldBody) -> Array:
 
 def _prior_residuals(body: Body, poses: Poses) -> tuple[Array, Array]:
     """Return residuals and derivatives of the joint priors."""
-    n_unknowns = 3 + 3 * len(body.turning)
+    n_unknowns = 3 + 3 * len(body.rotating_joints)
     residuals, slopes = [], []
-    for number, joint in enumerate(body.turning):
+    for number, joint in enumerate(body.rotating_joints):
         prior = body.joints[joint]
         for widths, residuals_of_pose in (
             (prior.ease, _rotation_vectors),
@@ -175,7 +177,7 @@ def _prior_residuals(body: Body, poses: Poses) -> tuple[Array, Array]:
             used = np.flatnonzero(widths)
             if not len(used):
                 continue
-            value, slope = residuals_of_pose(poses.turns[:, joint])
+            value, slope = residuals_of_pose(poses.rotations[:, joint])
             width = np.array(widths)[used]
             row = np.zeros((len(value), len(used), n_unknowns))
             row[:, :, 3 + 3 * number : 6 + 3 * number] = slope[:, used] / width[:, None]
@@ -184,9 +186,9 @@ def _prior_residuals(body: Body, poses: Poses) -> tuple[Array, Array]:
     return np.concatenate(residuals, axis=1), np.concatenate(slopes, axis=1)
 
 
-def _rotation_vectors(turns: Array) -> tuple[Array, Array]:
+def _rotation_vectors(rotations: Array) -> tuple[Array, Array]:
     """Return rotation vectors, and their derivatives by a small rotation."""
-    vectors = rotation_vector_from_quaternion(quaternion_from_matrix(turns))
+    vectors = rotation_vector_from_quaternion(quaternion_from_matrix(rotations))
     angle = np.linalg.norm(vectors, axis=-1)[:, None, None]
     small = angle < 1e-4
     safe = np.where(small, 1.0, angle)
@@ -195,7 +197,7 @@ def _rotation_vectors(turns: Array) -> tuple[Array, Array]:
     return vectors, np.eye(3) - 0.5 * skew + np.where(small, 1.0 / 12.0, factor) * skew @ skew
 
 
-def _hinge_axes(turns: Array) -> tuple[Array, Array]:
+def _hinge_axes(rotations: Array) -> tuple[Array, Array]:
     """Return the deviation of a joint's X axis from its parent's, and its derivatives."""
-    axis = turns[:, :, 0]
+    axis = rotations[:, :, 0]
     return axis - np.array([1.0, 0.0, 0.0]), -skew_matrices(axis)

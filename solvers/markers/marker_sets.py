@@ -12,55 +12,55 @@ SIDED = (
 TRUNK = ("C7", "T10", "CLAV", "STRN", "RBAK")
 HEAD = ("LFHD", "RFHD", "LBHD", "RBHD")
 PELVIS = ("LASI", "RASI", "LPSI", "RPSI", "SACR")
-SPOTS = (*PELVIS, *TRUNK, *HEAD, *(side + spot for side in "LR" for spot in SIDED))
-"""Places on the body that a marker can sit on, by their Plug-in-Gait names."""
+LANDMARKS = (*PELVIS, *TRUNK, *HEAD, *(side + landmark for side in "LR" for landmark in SIDED))
+"""Anatomical landmarks of markers, by their Plug-in-Gait names."""
 
 _BOTH = ("THI", "KNE", "TIB", "ANK", "HEE", "TOE")
 _ARMS = ("SHO", "UPA", "ELB", "FRM", "WRA", "WRB", "FIN")
 
 
-def _own_names(spots: Sequence[str]) -> dict[str, str]:
-    return {spot: spot for spot in spots}
+def _same_names(landmarks: Sequence[str]) -> dict[str, str]:
+    return {landmark: landmark for landmark in landmarks}
 
 
-def _two_sided(spots: Sequence[str]) -> list[str]:
-    return [side + spot for side in "LR" for spot in spots]
+def _two_sided(landmarks: Sequence[str]) -> list[str]:
+    return [side + landmark for side in "LR" for landmark in landmarks]
 
 
 SETS: dict[str, Mapping[str, str]] = {
-    "Plug-in-Gait": _own_names((*HEAD, *TRUNK, *_two_sided(_ARMS), *PELVIS[:4]))
-    | _own_names(_two_sided(_BOTH)),
-    "Plug-in-Gait with a sacral marker": _own_names((*HEAD, *TRUNK, *_two_sided(_ARMS)))
-    | _own_names(("LASI", "RASI", "SACR", *_two_sided(_BOTH))),
-    "CMU 41": _own_names((*HEAD, *TRUNK[:4], *_two_sided(_ARMS)))
+    "Plug-in-Gait": _same_names((*HEAD, *TRUNK, *_two_sided(_ARMS), *PELVIS[:4]))
+    | _same_names(_two_sided(_BOTH)),
+    "Plug-in-Gait with a sacral marker": _same_names((*HEAD, *TRUNK, *_two_sided(_ARMS)))
+    | _same_names(("LASI", "RASI", "SACR", *_two_sided(_BOTH))),
+    "CMU 41": _same_names((*HEAD, *TRUNK[:4], *_two_sided(_ARMS)))
     | {"RBAC": "RBAK", "LFWT": "LASI", "RFWT": "RASI", "LBWT": "LPSI", "RBWT": "RPSI"}
-    | _own_names(_two_sided(("THI", "KNE", "ANK", "HEE", "TOE", "MT5")))
+    | _same_names(_two_sided(("THI", "KNE", "ANK", "HEE", "TOE", "MT5")))
     | {"LSHN": "LTIB", "RSHN": "RTIB"},
 }
-"""Spot of each marker's name, by set."""
+"""Landmark of each marker's name, by set."""
 
 ESSENTIAL = (
     "LASI", "RASI",
-    *(side + spot for side in "LR" for spot in ("KNE", "ANK", "TOE")),
+    *(side + landmark for side in "LR" for landmark in ("KNE", "ANK", "TOE")),
 )  # fmt: skip
-"""What no body can be solved without, besides one marker at the back of the pelvis."""
+"""Landmarks that every body needs, besides a marker at the back of the pelvis."""
 PREFIX = re.compile(r"^(.*[:.|_ ])?([^:.|_ ]+)$")
 
 
 @dataclass(frozen=True)
 class MarkerSet:
-    """Which marker sits where on the body.
+    """Assignment of the markers of a take to anatomical landmarks.
 
     Attributes
     ----------
     name : str
-        Of the set that fits best; empty where none does.
-    markers : mapping of spot to the marker's name in the take
-        Spots carry their Plug-in-Gait names, whatever the set calls them.
+        Name of the set that fits best; empty if none fits.
+    markers : mapping of landmark to the marker's name in the take
+        Landmarks have their Plug-in-Gait names in every set.
     score : float
-        0 to 1: the share of the set's markers that the take has.
+        Fraction of the set's markers that the take has, 0 to 1.
     subject : str
-        What stands before the markers' names (`Anna:`), or empty.
+        Prefix of the markers' names (`Anna:`), or empty.
     """
 
     name: str
@@ -68,31 +68,31 @@ class MarkerSet:
     score: float
     subject: str = ""
 
-    def lacks(self) -> tuple[str, ...]:
-        """Return the essential spots without a marker."""
-        lost = [spot for spot in ESSENTIAL if spot not in self.markers]
+    def missing_landmarks(self) -> tuple[str, ...]:
+        """Return the essential landmarks without a marker."""
+        missing = [landmark for landmark in ESSENTIAL if landmark not in self.markers]
         if not {"LPSI", "RPSI"} <= set(self.markers) and "SACR" not in self.markers:
-            lost.append("LPSI and RPSI, or SACR")
-        return tuple(lost)
+            missing.append("LPSI and RPSI, or SACR")
+        return tuple(missing)
 
 
 def find_marker_set(names: Sequence[str], subject: str | None = None) -> MarkerSet:
-    """Find out which set a take was captured with, and which marker is which.
+    """Identify the marker set of a take, and assign its markers to landmarks.
 
-    Capital and small letters are the same, and so is whatever stands before the last colon,
-    dot, bar, underscore or blank; of two people in one take, the one with more markers wins.
+    Letter case is ignored, and so is a prefix up to the last colon, dot, bar, underscore or
+    blank. If a take has several subjects, the one with the most markers is used.
 
     Parameters
     ----------
     names : sequence of str
-        The points of a take. Points of other names are left out.
+        Points of a take. Other names are ignored.
     subject : str, optional
-        Only markers with this before their names, with or without the colon.
+        Prefix of the markers to use, with or without the colon.
 
     Returns
     -------
     MarkerSet
-        The set of which most markers are there, then the one with the greater share of them.
+        The set with the most markers in the take; if two tie, the more complete one.
     """
     people: dict[str, dict[str, str]] = defaultdict(dict)
     for name in names:
@@ -107,7 +107,7 @@ def find_marker_set(names: Sequence[str], subject: str | None = None) -> MarkerS
     fits = [
         MarkerSet(
             title,
-            {spot: found[label] for label, spot in table.items() if label in found},
+            {landmark: found[label] for label, landmark in table.items() if label in found},
             sum(label in found for label in table) / len(table),
             who,
         )

@@ -79,12 +79,12 @@ def _steps(relative: Array, frame_rate: float) -> tuple[Array, Array, Array]:
 
     Parameters
     ----------
-    relative : shape (n_frames, n_pairs, 3), metres
+    relative : shape (n_frames, n_pairs, 3), meters
         From the first marker to the second.
 
     Returns
     -------
-    step_unchanged, step_swapped, typical : shape (n_frames, n_pairs), metres
+    step_unchanged, step_swapped, typical : shape (n_frames, n_pairs), meters
         Steps into each frame from the last one with both markers, NaN without one; and the
         typical step over this time.
     """
@@ -169,11 +169,11 @@ def _viterbi(stay: Array, change: Array, swapped: Array) -> NDArray[np.intp]:
     came = np.zeros((n_frames, 2), dtype=np.intp)
     plain, other = 0.0, float(swapped[0])
     for frame in range(1, n_frames):
-        keep, turn = stay[frame], change[frame]
-        came[frame] = (plain + keep > other + turn, other + keep <= plain + turn)
+        keep, swap = stay[frame], change[frame]
+        came[frame] = (plain + keep > other + swap, other + keep <= plain + swap)
         plain, other = (
-            min(plain + keep, other + turn),
-            min(other + keep, plain + turn) + swapped[frame],
+            min(plain + keep, other + swap),
+            min(other + keep, plain + swap) + swapped[frame],
         )
     labels = np.zeros(n_frames, dtype=np.intp)
     labels[-1] = int(other < plain)

@@ -49,9 +49,9 @@ class Cluster:
 
     names: tuple[str, ...]
     template: Array
-    """Positions relative to their mean, shape (n_markers, 3), metres."""
+    """Positions relative to their mean, shape (n_markers, 3), meters."""
     slack: float
-    """Largest robust standard deviation of a distance between two of them, metres."""
+    """Largest robust standard deviation of a distance between two of them, meters."""
 
 
 def find_rigid_clusters(
@@ -82,18 +82,18 @@ def find_rigid_clusters(
     SolveCancelled
         Raised by `progress`.
     """
-    progress(0.0, "Looking for rigid clusters")
+    progress(0.0, "Finding rigid clusters")
     median, spread = _spreads(tracks.positions)
     clusters = [
         _cluster(tracks, members, median, spread)
         for members in _groups(median, spread, settings)
     ]
-    progress(1.0, "Looking for rigid clusters")
+    progress(1.0, "Finding rigid clusters")
     return tuple(clusters)
 
 
 def _spreads(positions: Array) -> tuple[Array, Array]:
-    """Return medians and standard deviations of all distances, (n_markers, n_markers), metres.
+    """Return medians and standard deviations of all distances, (n_markers, n_markers), meters.
 
     The deviation is estimated from percentiles, as for a normal distribution, and jitter is
     subtracted. NaN for rarely observed pairs.
@@ -162,8 +162,8 @@ def _from_distances(median: Array) -> Array:
     """
     n_points = len(median)
     square = np.nan_to_num(median) ** 2
-    centre = np.eye(n_points) - 1.0 / n_points
-    values, vectors = np.linalg.eigh(-0.5 * centre @ square @ centre)
+    center = np.eye(n_points) - 1.0 / n_points
+    values, vectors = np.linalg.eigh(-0.5 * center @ square @ center)
     order = np.argsort(values)[::-1][:3]
     shape = np.zeros((n_points, 3))
     shape[:, : len(order)] = vectors[:, order] * np.sqrt(np.maximum(values[order], 0.0))

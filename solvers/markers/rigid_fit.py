@@ -17,13 +17,13 @@ def fit_rigid_transform(template: Array, positions: Array) -> tuple[Array, Array
 
     Parameters
     ----------
-    template : shape (n_points, 3), metres
-    positions : shape (n_frames, n_points, 3), metres
+    template : shape (n_points, 3), meters
+    positions : shape (n_frames, n_points, 3), meters
 
     Returns
     -------
     rotations : shape (n_frames, 3, 3)
-    translations : shape (n_frames, 3), metres
+    translations : shape (n_frames, 3), meters
         The template's origin in the world; NaN without observed points.
 
     References
@@ -55,13 +55,13 @@ def transform_shape(template: Array, rotations: Array, translations: Array) -> A
 def _weighted(template: Array, positions: Array, weights: Array) -> tuple[Array, Array]:
     total = weights.sum(axis=1)
     fraction = weights / np.where(total > 0.0, total, np.nan)[:, None]
-    centre = np.nan_to_num(np.einsum("fp,fpi->fi", fraction, positions))
+    center = np.nan_to_num(np.einsum("fp,fpi->fi", fraction, positions))
     origin = np.nan_to_num(np.einsum("fp,pi->fi", fraction, template))
-    arms = positions - centre[:, None]
+    arms = positions - center[:, None]
     shape = template - origin[:, None]
     spread = np.einsum("fp,fpi,fpj->fij", weights, arms, shape)
     left, _, right = np.linalg.svd(spread)
     left[:, :, 2] *= np.linalg.det(left @ right)[:, None]
     rotations = left @ right
-    translations = centre - np.einsum("fij,fj->fi", rotations, origin)
+    translations = center - np.einsum("fij,fj->fi", rotations, origin)
     return rotations, np.where(total[:, None] > 0.0, translations, np.nan)

@@ -1,4 +1,4 @@
-"""Solve a skeleton's motion from the labelled markers of an optical take."""
+"""Solve a skeleton's motion from the labeled markers of an optical take."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,10 +13,10 @@ from ..rotations import quaternion_from_matrix, unroll
 from ..settings import Settings, setting
 from .body import Body, Poses
 from .build_body import build_body
-from .centres import joint_centres
+from .determined_joints import find_determined_joints
 from .fit_body import fit_body
 from .fit_poses import fit_poses
-from .known_joints import find_determined_joints
+from .joint_centers import joint_centers
 from .marker_sets import PELVIS, MarkerSet, find_marker_set
 
 Array = NDArray[np.float64]
@@ -46,10 +46,10 @@ class SolvedSkeleton:
 
     motion: Motion
     """Joints have VRM's humanoid role names; the rest pose is the T-pose, facing -Y."""
-    joint_centres: Tracks
+    joint_centers: Tracks
     """World positions of all joints, with the same names; NaN where undetermined."""
     error: Array
-    """Distance of each marker from that of the body, shape (n_frames, n_markers), metres; NaN
+    """Distance of each marker from that of the body, shape (n_frames, n_markers), meters; NaN
     where the marker is missing."""
     markers: tuple[str, ...]
     """Names of the markers of `error` in the take."""
@@ -92,12 +92,12 @@ def solve_skeleton(
         Raised by `progress`.
     """
     found = find_marker_set(tracks.names, settings.subject or None)
-    spots = _spots(tracks, found)
+    landmarks = _landmark_positions(tracks, found)
     progress(0.02, "Estimating joint centers")
-    centres = joint_centres(spots)
-    body, turns = build_body(centres, spots)
-    observed = np.stack([spots[marker.spot] for marker in body.markers], axis=1)
-    initial_poses = _extend_to_all_frames(turns, centres.positions["hips"], observed)
+    centers = joint_centers(landmarks)
+    body, rotations = build_body(centers, landmarks)
+    observed = np.stack([landmarks[marker.landmark] for marker in body.markers], axis=1)
+    initial_poses = _extend_to_all_frames(rotations, centers.positions["hips"], observed)
     progress(0.1, "Measuring the body")
     body = _fit_dimensions(body, observed, initial_poses, settings, within(progress, 0.1, 0.4))
     poses = fit_poses(body, observed, initial_poses, progress=within(progress, 0.4, 0.9))
@@ -108,60 +108,68 @@ def solve_skeleton(
     return solved
 
 
-def _spots(tracks: Tracks, found: MarkerSet) -> dict[str, Array]:
-    """Return the positions of the markers of a set, by spot, without those never seen."""
+def _landmark_positions(tracks: Tracks, found: MarkerSet) -> dict[str, Array]:
+    """Return the marker positions by landmark, without markers that were never observed."""
     index = {name: index for index, name in enumerate(tracks.names)}
-    positions = {spot: tracks.positions[:, index[name]] for spot, name in found.markers.items()}
-    pelvis = [_is_observed(positions[spot]) for spot in PELVIS[:2] if spot in positions]
+    positions = {
+        landmark: tracks.positions[:, index[name]] for landmark, name in found.markers.items()
+    }
+    pelvis = [
+        _is_observed(positions[landmark]) for landmark in PELVIS[:2] if landmark in positions
+    ]
     together = np.logical_and.reduce([np.ones(tracks.n_frames, dtype=bool), *pelvis])
-    spots = {
-        spot: track
-        for spot, track in positions.items()
+    landmarks = {
+        landmark: track
+        for landmark, track in positions.items()
         if (_is_observed(track) & together).any()
     }
-    missing = MarkerSet(found.name, dict.fromkeys(spots, ""), found.score).lacks()
+    missing = MarkerSet(
+        found.name, dict.fromkeys(landmarks, ""), found.score
+    ).missing_landmarks()
     if missing:
         hint = f" It looks like {found.name}." if found.name else ""
         raise InvalidMotionError(
-            "A skeleton needs the labelled markers of pelvis and legs of the Plug-in-Gait or"
+            "A skeleton needs the labeled markers of pelvis and legs of the Plug-in-Gait or"
             f" CMU set; missing or never seen with the pelvis: {', '.join(missing)}.{hint}"
             " Label them first."
         )
-    _refuse_if_never_together(spots)
-    return spots
+    _refuse_if_never_together(landmarks)
+    return landmarks
 
 
 def _is_observed(positions: Array) -> NDArray[np.bool_]:
     return np.asarray(np.isfinite(positions).all(axis=-1))
 
 
-def _refuse_if_never_together(spots: Mapping[str, Array]) -> None:
+def _refuse_if_never_together(landmarks: Mapping[str, Array]) -> None:
     """Raise if no frame shows the pelvis together with a complete leg."""
-    pelvis = [spot for spot in PELVIS if spot in spots]
+    pelvis = [landmark for landmark in PELVIS if landmark in landmarks]
     if {"LPSI", "RPSI"} <= set(pelvis):
         pelvis = list(PELVIS[:4])
     for side in "LR":
-        needed = [*pelvis, *(side + spot for spot in ("KNE", "ANK", "TOE"))]
-        if not np.logical_and.reduce([_is_observed(spots[spot]) for spot in needed]).any():
+        needed = [*pelvis, *(side + landmark for landmark in ("KNE", "ANK", "TOE"))]
+        if not np.logical_and.reduce([
+            _is_observed(landmarks[landmark]) for landmark in needed
+        ]).any():
             raise InvalidMotionError(
                 f"No frame shows all of {', '.join(needed)}; fill their gaps first."
             )
 
 
-def _extend_to_all_frames(turns: Array, roots: Array, observed: Array) -> Poses:
+def _extend_to_all_frames(rotations: Array, roots: Array, observed: Array) -> Poses:
     """Return initial poses of all frames; missing ones are those of the nearest valid frame.
 
     The root is moved by the median displacement of the markers in both frames.
     """
     valid = np.flatnonzero(np.isfinite(roots).all(axis=-1))
-    turns, roots = turns.copy(), roots.copy()
+    rotations, roots = rotations.copy(), roots.copy()
     for frame in np.flatnonzero(~np.isfinite(roots).all(axis=-1)):
         nearest = valid[np.abs(valid - frame).argmin()]
         step = observed[frame] - observed[nearest]
         step = step[np.isfinite(step).all(axis=-1)]
         roots[frame] = roots[nearest] + (np.median(step, axis=0) if len(step) else 0.0)
-        turns[frame] = turns[nearest]
-    return Poses(turns, roots)
+        rotations[frame] = rotations[nearest]
+    return Poses(rotations, roots)
 
 
 def _fit_dimensions(
@@ -176,7 +184,7 @@ def _fit_dimensions(
     complete = np.flatnonzero(count >= MIN_MARKER_FRACTION * count.max())
     n_frames = min(settings.measured_frames, len(complete))
     frames = complete[np.linspace(0, len(complete) - 1, n_frames).round().astype(int)]
-    initial = Poses(initial_poses.turns[frames], initial_poses.roots[frames])
+    initial = Poses(initial_poses.rotations[frames], initial_poses.roots[frames])
     fitted = fit_poses(body, observed[frames], initial)
     return fit_body(body, observed[frames], fitted, progress=progress)[0]
 
@@ -192,13 +200,13 @@ def _refit_outliers(body: Body, observed: Array, poses: Poses) -> Poses:
     nearest = good[np.abs(good[:, None] - frames).argmin(axis=0)]
     shift = np.nanmedian(np.nan_to_num(observed[frames] - observed[nearest]), axis=1)
     candidate = fit_poses(
-        body, observed[frames], Poses(poses.turns[nearest], poses.roots[nearest] + shift)
+        body, observed[frames], Poses(poses.rotations[nearest], poses.roots[nearest] + shift)
     )
     better = frames[_mean_error(body, observed[frames], candidate) < error[frames]]
     improved = np.isin(frames, better)
-    turns, roots = poses.turns.copy(), poses.roots.copy()
-    turns[better], roots[better] = candidate.turns[improved], candidate.roots[improved]
-    return Poses(turns, roots)
+    rotations, roots = poses.rotations.copy(), poses.roots.copy()
+    rotations[better], roots[better] = candidate.rotations[improved], candidate.roots[improved]
+    return Poses(rotations, roots)
 
 
 def _mean_error(body: Body, observed: Array, poses: Poses) -> Array:
@@ -217,7 +225,7 @@ def _build_result(
     world = body.body_in_pose(poses)
     valid = find_determined_joints(body, observed, poses)
     skeleton = Skeleton(tuple(joint.name for joint in body.joints), body.parents, body.offsets)
-    rotations = unroll(quaternion_from_matrix(poses.turns))
+    rotations = unroll(quaternion_from_matrix(poses.rotations))
     motion = Motion(
         skeleton,
         np.where(valid[..., None], rotations, np.nan),
@@ -236,6 +244,6 @@ def _build_result(
             tracks.frame_rate,
         ),
         np.linalg.norm(world.markers - observed, axis=-1),
-        tuple(found.markers[marker.spot] for marker in body.markers),
+        tuple(found.markers[marker.landmark] for marker in body.markers),
         found,
     )

@@ -9,7 +9,7 @@ from ..motion import Tracks
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
 from .distances import Distances, learn_distances
-from .lost_labels import find_mistaken_labels
+from .mistaken_labels import find_mistaken_labels
 from .pair_swaps import PairSwap, find_candidate_pairs, most_likely_swap
 
 Array = NDArray[np.float64]
@@ -74,7 +74,7 @@ def unswap_markers(
     positions = tracks.positions.copy()
     confidence = None if tracks.confidence is None else tracks.confidence.copy()
     swaps: list[Swap] = []
-    progress(0.0, "Looking for swapped markers")
+    progress(0.0, "Finding swapped markers")
     for number in range(N_PASSES):
         distances = learn_distances(positions)
         found = _find_changes(positions, distances, tracks.frame_rate, settings)
@@ -84,10 +84,10 @@ def unswap_markers(
                 _swap_labels(confidence, change)
             names = (tracks.names[change.first], tracks.names[change.second])
             swaps.append(Swap(names, range(change.start, change.stop)))
-        progress((number + 1) / N_PASSES, "Looking for swapped markers")
+        progress((number + 1) / N_PASSES, "Finding swapped markers")
         if not found:
             break
-    progress(1.0, "Looking for swapped markers")
+    progress(1.0, "Finding swapped markers")
     corrected = Tracks(tracks.names, positions, tracks.frame_rate, confidence)
     return Unswapped(corrected, tuple(sorted(swaps, key=lambda swap: swap.frames.start)))
 

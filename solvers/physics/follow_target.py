@@ -44,7 +44,7 @@ class SimulatedTrajectory:
         Upward ground force at each end of `PhysicsBody.ground_capsules`, likewise.
     followed : bool, shape (n_frames,)
         Frames in which the body was near its target.
-    n_lost : int
+    n_resets : int
         Number of resets to the target.
     """
 
@@ -52,7 +52,7 @@ class SimulatedTrajectory:
     support: Array
     loads: Array
     followed: NDArray[np.bool_]
-    n_lost: int
+    n_resets: int
 
 
 def follow_target(

@@ -37,9 +37,9 @@ MAX_LOST_FRACTION = 0.3
 class Simulated:
     """A motion that a body with mass can perform.
 
-    `contacts`, `carried` and `support` describe the simulated body, also in frames that it did
-    not follow, and where the result is the input. For a single frame, `carried` and `support`
-    are 0.
+    `contacts`, `foot_loads` and `support` describe the simulated body, also in frames that it
+    did not follow, and where the result is the input. For a single frame, `foot_loads` and
+    `support` are 0.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Simulated:
         Frames in which the body followed its target; elsewhere the motion is the input's.
     contacts : bool, shape (n_frames, 2), left and right
         Frames in which the simulated feet touch the ground.
-    carried : float array, shape (n_frames, 2), left and right
+    foot_loads : float array, shape (n_frames, 2), left and right
         Fraction of the weight that each foot carries.
     support : float array, shape (n_frames,)
         External force that kept the body up, as a fraction of its weight.
@@ -70,7 +70,7 @@ class Simulated:
     motion: Motion
     followed: Flags
     contacts: Flags
-    carried: Array
+    foot_loads: Array
     support: Array
     ground: float
     penetration_before: float
@@ -213,9 +213,9 @@ def _assemble_result(
 ) -> Simulated:
     """Blend the simulated segments with the take, and measure the result."""
     followed = np.concatenate([segment.followed for segment in segments])
-    n_lost = sum(segment.n_lost for segment in segments)
-    lost_too_often = n_lost > 1 + motion.n_frames * motion.dt / MIN_SECONDS_PER_LOSS
-    given_up = lost_too_often or float((~followed).mean()) > MAX_LOST_FRACTION
+    n_resets = sum(segment.n_resets for segment in segments)
+    reset_too_often = n_resets > 1 + motion.n_frames * motion.dt / MIN_SECONDS_PER_LOSS
+    given_up = reset_too_often or float((~followed).mean()) > MAX_LOST_FRACTION
     if given_up:
         followed[:] = False
     rotations = np.concatenate([segment.motion.rotations for segment in segments])
@@ -233,7 +233,9 @@ def _assemble_result(
         motion=result.with_poses(),
         followed=followed,
         contacts=contacts,
-        carried=sum_foot_loads(body, np.concatenate([segment.loads for segment in segments])),
+        foot_loads=sum_foot_loads(
+            body, np.concatenate([segment.loads for segment in segments])
+        ),
         support=np.concatenate([segment.support for segment in segments]),
         ground=ground,
         penetration_before=measure_penetration(body, complete, ground),

@@ -79,7 +79,7 @@ class SimulationConditions(NamedTuple):
 class SimulatedSegment:
     """Result of simulating a segment: see `Simulated`.
 
-    `n_lost` counts losses. `loads` is the upward ground force at each end of
+    `n_resets` counts resets to the target. `loads` is the upward ground force at each end of
     `PhysicsBody.ground_capsules`, as a fraction of the weight. `stance_weights` is how firmly
     the feet of the target stand, shape (n_frames, 2), 0 to 1.
     """
@@ -90,13 +90,13 @@ class SimulatedSegment:
     support: Array
     loads: Array
     stance_weights: Array
-    n_lost: int
+    n_resets: int
     smoothing: float
 
     @property
     def badness(self) -> tuple[int, float]:
         """Number of losses, then the mean external force; lower is better."""
-        return self.n_lost, float(self.support.mean())
+        return self.n_resets, float(self.support.mean())
 
 
 def find_segments(body: PhysicsBody, motion: Motion) -> list[tuple[int, int]]:
@@ -219,7 +219,7 @@ def _attempt(
         trajectory.support,
         trajectory.loads,
         stance_weights,
-        trajectory.n_lost,
+        trajectory.n_resets,
         smoothing,
     )
 

@@ -137,10 +137,10 @@ def blend_motions(
     other's bits, and weight 0 those of the motion.
     """
     rotations = motion.rotations.copy()
-    own, others = rotations[:, list(joints)], other.rotations[:, list(joints)]
-    rotated = slerp(own, others, np.broadcast_to(weights[:, None], own.shape[:2]))
-    rotated = np.where(weights[:, None, None] == 0.0, own, rotated)
-    rotations[:, list(joints)] = np.where(weights[:, None, None] == 1.0, others, rotated)
+    first, rest = rotations[:, list(joints)], other.rotations[:, list(joints)]
+    rotated = slerp(first, rest, np.broadcast_to(weights[:, None], first.shape[:2]))
+    rotated = np.where(weights[:, None, None] == 0.0, first, rotated)
+    rotations[:, list(joints)] = np.where(weights[:, None, None] == 1.0, rest, rotated)
     weight = weights[:, None]
     roots = (1 - weight) * motion.root_positions + weight * other.root_positions
     return motion.with_poses(rotations, roots)

@@ -1,4 +1,4 @@
-"""Clean poses from the joints of a depth camera, where its tracker erred or lost them.
+"""Clean poses from the joints of a depth camera, where its tracker was wrong or lost them.
 
 >>> import numpy as np
 >>> from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor, Tracks

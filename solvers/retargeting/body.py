@@ -22,7 +22,7 @@ class Body:
     ----------
     skeleton : Skeleton
         Of these joints only.
-    kept : tuple of int
+    joint_indices : tuple of int
         Their indices in the complete skeleton.
     joints : dict of role to index in `skeleton`
     alignment : shape (n_joints, 4)
@@ -30,13 +30,13 @@ class Body:
     """
 
     skeleton: Skeleton
-    kept: tuple[int, ...]
+    joint_indices: tuple[int, ...]
     joints: dict[str, int]
     alignment: Array
 
     @property
     def rest(self) -> Array:
-        """Joint centers in the rest pose, shape (n_joints, 3), metres."""
+        """Joint centers in the rest pose, shape (n_joints, 3), meters."""
         return self.skeleton.rest_positions
 
     def limb(self, side: str, part: str) -> tuple[int, int, int] | None:
@@ -53,7 +53,7 @@ class Body:
         return limb if usable else None
 
     def limb_length(self, limb: tuple[int, int, int]) -> float:
-        """Return the length of a limb from upper joint over hinge to end, metres."""
+        """Return the length of a limb from upper joint over hinge to end, meters."""
         return float(np.linalg.norm(np.diff(self.rest[list(limb)], axis=0), axis=-1).sum())
 
     def hip_joints(self) -> list[int]:
@@ -81,13 +81,13 @@ def find_body(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> Body:
     ancestors = {up for joint in joints.values() for up in skeleton.ancestors(joint)}
     feet = [joints[role] for role in FEET if role in joints]
     ends = {child for foot in feet for child in skeleton.children[foot][:1]}
-    kept = tuple(sorted({*joints.values(), *ancestors, *ends, 0}))
-    new_index = {joint: index for index, joint in enumerate(kept)}
+    joint_indices = tuple(sorted({*joints.values(), *ancestors, *ends, 0}))
+    new_index = {joint: index for index, joint in enumerate(joint_indices)}
     return Body(
-        skeleton.select(kept),
-        kept,
+        skeleton.select(joint_indices),
+        joint_indices,
         {role: new_index[joint] for role, joint in joints.items()},
-        alignment[list(kept)],
+        alignment[list(joint_indices)],
     )
 
 
@@ -110,7 +110,7 @@ def without_gaps(motion: Motion, body: Body) -> tuple[Motion, NDArray[np.bool_]]
     -------
     Motion, and bool array of shape (n_frames, n_joints): missing rotations
     """
-    rotations = motion.rotations[:, list(body.kept)]
+    rotations = motion.rotations[:, list(body.joint_indices)]
     missing = ~np.isfinite(rotations).all(axis=-1)
     for joint in np.flatnonzero(missing.any(axis=0)):
         rotations[:, joint] = hold_gaps(rotations[:, joint], (1.0, 0.0, 0.0, 0.0))

@@ -23,7 +23,7 @@ class ErrorPoints:
     ----------
     carriers : int array, shape (n_points,)
         The joint that carries each point.
-    offsets : shape (n_points, 3), metres
+    offsets : shape (n_points, 3), meters
         In the joint's frame.
     chains : tuple of int arrays
         Joints that move each point, from the root to the carrier.
@@ -34,7 +34,7 @@ class ErrorPoints:
     chains: tuple[NDArray[np.intp], ...]
 
     def positions(self, poses: WorldPoses) -> Array:
-        """Return the world positions of the points, shape (n_frames, n_points, 3), metres."""
+        """Return the world positions of the points, shape (n_frames, n_points, 3), meters."""
         rotated = rotate(poses.rotations[:, self.carriers], self.offsets)
         return np.asarray(poses.positions[:, self.carriers] + rotated)
 

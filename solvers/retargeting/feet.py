@@ -7,13 +7,13 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 from ..motion import WorldPoses, world_poses
 from ..rotations import IDENTITY, rotate
 from .body import SIDES
+from .hand_distance import distance_to_reach
+from .leg_lengths import Leg, level_ankles
 from .limbs import Limb, Transfer, limb_extension, limb_pairs, reach_with_limb
-from .meeting_hands import distance_to_reach
 from .placement import rests_on_ground
 from .planting import planting_shift
 from .soles import allowed_depths, sole_above_ground, with_sole
 from .standing_feet import foot_bone
-from .uneven_legs import Leg, level_ankles
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -40,7 +40,7 @@ def place_feet(
     transfer : Transfer
     rotations : shape (n_frames, n_joints, 4)
         Local rotations of the target.
-    root_positions : shape (n_frames, 3), metres
+    root_positions : shape (n_frames, 3), meters
         Positions of its topmost joint.
     softness : float
         Fraction of a leg kept in reserve, unless the source's leg is straighter.
@@ -54,11 +54,13 @@ def place_feet(
     if not pairs:
         return rotations, root_positions
     before = world_poses(target.skeleton, rotations, root_positions)
-    extensions = [limb_extension(source, transfer.seen, source_leg) for source_leg, _ in pairs]
+    extensions = [
+        limb_extension(source, transfer.source_poses, source_leg) for source_leg, _ in pairs
+    ]
     lengths = [target.limb_length(target_leg) for _, target_leg in pairs]
     hips = [before.positions[:, target_leg[0]] for _, target_leg in pairs]
     wanted = [
-        transfer.placement.points(transfer.seen.positions[:, source_leg[2]])
+        transfer.placement.points(transfer.source_poses.positions[:, source_leg[2]])
         for source_leg, _ in pairs
     ]
     if transfer.contacts is not None and len(pairs) == len(SIDES):
@@ -122,13 +124,13 @@ def _keep_above_ground(
     for number, side in enumerate(SIDES):
         ankle, rotation = ankles[number], np.tile(IDENTITY, (len(before.positions), 1))
         if rests_on_ground(target):
-            allowed = allowed_depths(source, transfer.seen, side, placement)
+            allowed = allowed_depths(source, transfer.source_poses, side, placement)
             sole = sole_above_ground(
                 target, before, side, ankle, ground, allowed, transfer.frame_rate
             )
             rotations = with_sole(target, rotations, before, side, sole)
-            ankle, rotation = ankle + sole.lift[:, None] * UP, sole.turn
-        source_leg = transfer.seen.positions[:, list(foot_bone(source, side))]
+            ankle, rotation = ankle + sole.lift[:, None] * UP, sole.rotation
+        source_leg = transfer.source_poses.positions[:, list(foot_bone(source, side))]
         foot, ball = foot_bone(target, side)
         bone = rotate(before.rotations[:, foot], target.rest[ball] - target.rest[foot])
         ankle = ankle + planting_shift(
@@ -149,14 +151,14 @@ def pelvis_drop(
 
     Parameters
     ----------
-    hips, feet : of each leg, shape (n_frames, 3), metres
-    reaches : of each leg, shape (n_frames,), metres
+    hips, feet : of each leg, shape (n_frames, 3), meters
+    reaches : of each leg, shape (n_frames,), meters
         Maximum length of the leg.
     frame_rate : float
 
     Returns
     -------
-    NDArray, shape (n_frames,), metres
+    NDArray, shape (n_frames,), meters
         Sufficient in every frame, except above the limit or where the leg is lying: a drop
         would not bring its foot nearer.
     """

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from ..motion import world_poses
 from .body import SIDES
+from .hand_distance import Arms, match_meeting_hands
+from .hand_heights import Ground, ease_into_extension, keep_above_ground, pull_to_ground
 from .limbs import Transfer, limb_pairs, reach_with_limb
-from .low_hands import Ground, ease_into_extension, keep_above_ground, pull_to_ground
-from .meeting_hands import Arms, match_meeting_hands
 from .placement import leg_length
 
 Array = NDArray[np.float64]
@@ -19,15 +19,15 @@ def place_hands(transfer: Transfer, rotations: Array, root_positions: Array) -> 
     """Place the hands relative to the shoulders like the source's, scaled by the arm length.
 
     Hands near the ground keep their height above it and their support position; see
-    `low_hands`. Hands that meet in the source keep their distance, scaled by the arm length;
-    see `meeting_hands`.
+    `hand_heights`. Hands that meet in the source keep their distance, scaled by the arm length;
+    see `hand_distance`.
     """
     source, target = transfer.source, transfer.target
     pairs = limb_pairs(source, target, "Arm")
     if not pairs:
         return rotations
     world = world_poses(target.skeleton, rotations, root_positions)
-    source_positions = transfer.seen.positions
+    source_positions = transfer.source_poses.positions
     scales = [
         target.limb_length(target_arm) / source.limb_length(source_arm)
         for source_arm, target_arm in pairs

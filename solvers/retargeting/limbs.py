@@ -21,7 +21,7 @@ class Transfer:
 
     source: Body
     target: Body
-    seen: WorldPoses
+    source_poses: WorldPoses
     """World poses of the source."""
     placement: Placement
     frame_rate: float

@@ -85,7 +85,7 @@ def _check_sides(skeleton: Skeleton, joints: Joints, whose: str) -> None:
 
 
 def _lateral_vector(rest: Array, joints: Joints, part: str) -> Array:
-    """Return the vector from the right to the left limb, metres; zero if one is missing.
+    """Return the vector from the right to the left limb, meters; zero if one is missing.
 
     It is measured at the start of the limbs, since hands and feet may be crossed.
     """

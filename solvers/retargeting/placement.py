@@ -30,11 +30,11 @@ class Placement:
     ----------
     travel, rise : float
         Horizontal and vertical scale.
-    start : shape (3,), metres
+    start : shape (3,), meters
         The ground below the first position of the hips, the fixed point of the map.
-    ankles : (float, float), metres
+    ankles : (float, float), meters
         Heights of the ankles of source and target in contact.
-    floors : (float, float), metres, or None
+    floors : (float, float), meters, or None
         Heights of the ground of source and target; None without legs.
     """
 
@@ -66,8 +66,8 @@ def find_placement(
     Parameters
     ----------
     source, target : Body
-    positions : shape (n_frames, n_source_joints, 3), metres
-    height : float, metres
+    positions : shape (n_frames, n_source_joints, 3), meters
+    height : float, meters
         Height of the source's ankles in contact; None without contacts.
     travel : float
         Horizontal scale; 0 for the ratio of the legs.
@@ -91,12 +91,12 @@ def find_placement(
 
 
 def ankle_height(source: Body, positions: Array, contacts: Flags | None) -> float | None:
-    """Return the height of the ankles in contact, metres; None without contacts.
+    """Return the height of the ankles in contact, meters; None without contacts.
 
     Parameters
     ----------
     source : Body
-    positions : shape (n_frames, n_source_joints, 3), metres
+    positions : shape (n_frames, n_source_joints, 3), meters
     contacts : bool, shape (n_frames, 2), or None for bodies without feet
     """
     if contacts is None or not contacts.any():
@@ -106,13 +106,13 @@ def ankle_height(source: Body, positions: Array, contacts: Flags | None) -> floa
 
 
 def leg_length(body: Body) -> float:
-    """Return the mean length of the legs, metres; 0 without legs."""
+    """Return the mean length of the legs, meters; 0 without legs."""
     legs = [limb for side in SIDES if (limb := body.limb(side, "Leg"))]
     return float(np.mean([body.limb_length(leg) for leg in legs])) if legs else 0.0
 
 
 def standing_ankle(body: Body) -> float:
-    """Return the height of the ankles of a flat foot above the ground, metres.
+    """Return the height of the ankles of a flat foot above the ground, meters.
 
     Rigs that rest on height 0 show it. In others, the lowest joint of the foot is above the
     sole by an unknown height: their ankles are at least as high as a human's.
@@ -139,7 +139,7 @@ def rests_on_ground(body: Body) -> bool:
 
 
 def trunk_length(body: Body) -> float:
-    """Return the distance from hips to head, or to neck, metres; 0 without either."""
+    """Return the distance from hips to head, or to neck, meters; 0 without either."""
     top = body.joints.get("head", body.joints.get("neck"))
     if top is None:
         return 0.0
@@ -151,7 +151,7 @@ def _feet(body: Body) -> list[int]:
 
 
 def _lowest(body: Body, feet: list[int]) -> float:
-    """Return the height of the lowest joint of the feet in the rest pose, metres."""
+    """Return the height of the lowest joint of the feet in the rest pose, meters."""
     return float(min(body.rest[body.skeleton.subtree(foot), 2].min() for foot in feet))
 
 

@@ -8,7 +8,7 @@ from ..signals import smooth_correction
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Foot = tuple[Array, Array]
-"""Ankle and ball, each of shape (n_frames, 3), metres."""
+"""Ankle and ball, each of shape (n_frames, 3), meters."""
 
 BLEND_S = 0.3
 """Seconds in which the correction of a planted foot fades."""
@@ -18,7 +18,7 @@ MIN_STEP_M = 1e-9
 
 
 def planting_shift(
-    source_foot: Foot, target_foot: Foot, stands: Flags, scale: float, frame_rate: float
+    source_foot: Foot, target_foot: Foot, is_standing: Flags, scale: float, frame_rate: float
 ) -> Array:
     """Return the displacement of the ankle for which the foot slides like the source's, scaled.
 
@@ -29,18 +29,18 @@ def planting_shift(
     ----------
     source_foot, target_foot : Foot
         The target is that without the displacement.
-    stands : bool, shape (n_frames,)
+    is_standing : bool, shape (n_frames,)
     scale : float
         Horizontal scale.
     frame_rate : float, hertz
 
     Returns
     -------
-    NDArray, shape (n_frames, 3), metres
+    NDArray, shape (n_frames, 3), meters
         Horizontal; fades before and after each contact.
     """
     shift = np.zeros_like(target_foot[0])
-    in_contact = stands[1:] & stands[:-1]
+    in_contact = is_standing[1:] & is_standing[:-1]
     if not in_contact.any():
         return shift
     source, target = (

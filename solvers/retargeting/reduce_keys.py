@@ -16,8 +16,8 @@ from ..progress import Progress, unwatched, within
 from ..rotations import IDENTITY
 from ..settings import Settings, setting
 from .key_curves import KeyCurve
+from .key_thinning import ROOT, Thinning
 from .rotation_channels import RotationChannels
-from .thinning import ROOT, Thinning
 
 MAX_FRAMES = 10_000_000
 """Limit of a file: more than a day at 100 Hz."""
@@ -65,10 +65,10 @@ class SparseMotion:
         keys a quaternion is that of the four curves, normalized.
     channels : tuple of RotationChannels, one for each joint
     root : KeyCurve
-        Root positions, three channels, metres.
+        Root positions, three channels, meters.
     n_frames : int
     frame_rate : float, hertz
-    error : float, metres
+    error : float, meters
         Maximum error of any joint at any frame; not between frames.
     """
 
@@ -190,7 +190,7 @@ def reduce_keys(
     ----------
     motion : Motion
         Without gaps.
-    tolerance : float, metres
+    tolerance : float, meters
         Maximum error of any joint at any frame. For a hand, foot or head without further
         joints, it also applies to two points that show its rotation.
     channels : sequence of RotationChannels, one for each joint

@@ -35,7 +35,7 @@ class RootMotion(Choice):
     """Handling of the travel of the body."""
 
     KEEP = "keep", "Keep the travel on the hips", "On Hips"
-    IN_PLACE = "in place", "Remove the travel, so that the body moves on the spot"
+    IN_PLACE = "in place", "Remove the travel, so that the body moves in place"
     ROOT_BONE = "root bone", "Move the travel to the bone above the hips", "On Root Bone"
 
 
@@ -75,7 +75,7 @@ class RetargetSettings(Settings):
     )  # fmt: skip
     turn_root: bool = setting(
         True,
-        "Also turn the root bone to where the body faces",
+        "Also rotate the root bone to the heading of the body",
         advanced=True,
         label="Turn Root Bone",
     )
@@ -161,7 +161,7 @@ def retarget(
     root_positions[~np.isfinite(motion.root_positions).all(axis=1)] = np.nan
     rotations[missing] = np.nan
     all_rotations = np.tile(IDENTITY, (motion.n_frames, target_skeleton.n_joints, 1))
-    all_rotations[:, list(target.kept)] = rotations
+    all_rotations[:, list(target.joint_indices)] = rotations
     result = Motion(target_skeleton, all_rotations, root_positions, motion.frame_rate)
     progress(0.9, "Applying root motion")
     result = _apply_root_motion(result, target_map, settings)
@@ -205,12 +205,12 @@ def _compare_bodies(
 
 
 def _root_positions(transfer: Transfer, rotations: Array) -> Array:
-    """Return the positions of the target's root, shape (n_frames, 3), metres.
+    """Return the positions of the target's root, shape (n_frames, 3), meters.
 
     The placement maps the midpoint of the source's hip joints to that of the target's.
     """
     source, target = transfer.source, transfer.target
-    hips = transfer.seen.positions[:, source.hip_joints()].mean(axis=1)
+    hips = transfer.source_poses.positions[:, source.hip_joints()].mean(axis=1)
     middle = transfer.placement.points(hips)
     origin = world_poses(target.skeleton, rotations, np.zeros_like(middle))
     return np.asarray(middle - origin.positions[:, target.hip_joints()].mean(axis=1))
@@ -223,5 +223,5 @@ def _apply_root_motion(
         return in_place(motion, humanoid, settings.travel_smoothing)
     if settings.root_motion is RootMotion.ROOT_BONE:
         smoothing = settings.travel_smoothing
-        return on_root_bone(motion, humanoid, smoothing, turn=settings.turn_root)
+        return on_root_bone(motion, humanoid, smoothing, follow_heading=settings.turn_root)
     return motion

@@ -25,7 +25,7 @@ class GroundPath:
 
     Attributes
     ----------
-    positions : shape (n_frames, 3), metres
+    positions : shape (n_frames, 3), meters
         Below the hips, smoothed; height 0.
     rotations : shape (n_frames, 4)
         About the vertical; identity for the facing direction of the rest pose.
@@ -36,7 +36,11 @@ class GroundPath:
 
 
 def ground_path(
-    motion: Motion, humanoid: HumanoidMap, smoothing: float = 0.5, *, turn: bool = True
+    motion: Motion,
+    humanoid: HumanoidMap,
+    smoothing: float = 0.5,
+    *,
+    follow_heading: bool = True,
 ) -> GroundPath:
     """Return the path of a body over the ground.
 
@@ -47,7 +51,7 @@ def ground_path(
         Must have the role hips.
     smoothing : float, seconds
         Standard deviation of the Gaussian that removes the sway of steps.
-    turn : bool
+    follow_heading : bool
         Whether the path also rotates to the facing direction.
 
     Returns
@@ -65,7 +69,7 @@ def ground_path(
     rotations, positions = hips_in_world(motion, hips)
     sigma = smoothing * motion.frame_rate
     positions = _smoothed(positions, sigma) * (1.0, 1.0, 0.0)
-    if not turn:
+    if not follow_heading:
         return GroundPath(positions, np.tile(IDENTITY, (len(positions), 1)))
     rest = t_pose_alignment(motion.skeleton, humanoid)[hips]
     yaw = _smoothed(_yaw(multiply(rotations, rest)), sigma) - _yaw(rest[None])
@@ -76,19 +80,19 @@ def ground_path(
 
 def in_place(motion: Motion, humanoid: HumanoidMap, smoothing: float) -> Motion:
     """Return the motion without its travel: the hips only sway about their first position."""
-    path = ground_path(motion, humanoid, smoothing, turn=False).positions
+    path = ground_path(motion, humanoid, smoothing, follow_heading=False).positions
     return motion.with_poses(root_positions=motion.root_positions - (path - path[0]))
 
 
 def on_root_bone(
-    motion: Motion, humanoid: HumanoidMap, smoothing: float, *, turn: bool
+    motion: Motion, humanoid: HumanoidMap, smoothing: float, *, follow_heading: bool
 ) -> Motion:
     """Return the motion with a root that rotates to the facing direction.
 
     The world poses of the hips and their descendants are unchanged.
     """
     hips = hips_of(motion.skeleton, humanoid, "motion's")
-    headings = ground_path(motion, humanoid, smoothing, turn=turn).rotations
+    headings = ground_path(motion, humanoid, smoothing, follow_heading=follow_heading).rotations
     _, positions = hips_in_world(motion, hips)
     local = motion.rotations.copy()
     local[:, 0] = headings

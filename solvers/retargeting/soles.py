@@ -27,7 +27,7 @@ UP = np.array([0.0, 0.0, 1.0])
 
 
 class Depths(NamedTuple):
-    """Allowed depths of points of a foot below the ground, each (n_frames,), metres."""
+    """Allowed depths of points of a foot below the ground, each (n_frames,), meters."""
 
     heel: Array
     ball: Array
@@ -38,10 +38,10 @@ class Sole(NamedTuple):
     """Corrections that keep a foot above the ground."""
 
     lift: Array
-    """Lift of the ankle, shape (n_frames,), metres."""
-    turn: Array
+    """Lift of the ankle, shape (n_frames,), meters."""
+    rotation: Array
     """World rotation to add to that of the foot, shape (n_frames, 4)."""
-    toe_turn: Array
+    toe_rotation: Array
     """World rotation to add to that of the toes, shape (n_frames, 4)."""
 
 
@@ -88,9 +88,9 @@ def sole_above_ground(
     world : WorldPoses
         World poses of the target, for the rotations of the feet.
     side : "left" or "right"
-    ankle : shape (n_frames, 3), metres
+    ankle : shape (n_frames, 3), meters
         Target position of the ankle.
-    ground : float, metres
+    ground : float, meters
         Height that corresponds to 0 in the rest pose.
     allowed : Depths
     frame_rate : float, hertz
@@ -106,18 +106,18 @@ def sole_above_ground(
     length = max(float(np.linalg.norm(rest[ball] - rest[foot])), tolerance)
     steep_weight = _smoothstep(-foot_vector[:, 2] / length, MIN_SLOPE_SINE, MAX_SLOPE_SINE)
     lift = smooth_envelope(lift + steep_weight * required, frame_rate)
-    turn = _lifting_rotations(
+    rotation = _lifting_rotations(
         foot_vector, _lift_from_depth(height + lift - rest[ball, 2] + allowed.ball, tolerance)
     )
     tip = tip_of(target, ball)
     if ball == foot or tip is None:
-        return Sole(lift, turn, turn)
+        return Sole(lift, rotation, rotation)
     toes = rotate(world.rotations[:, ball], rest[tip] - rest[ball])
-    height = ankle[:, 2] + lift + rotate(turn, foot_vector)[:, 2] + toes[:, 2] - ground
+    height = ankle[:, 2] + lift + rotate(rotation, foot_vector)[:, 2] + toes[:, 2] - ground
     required = _lift_from_depth(height - rest[tip, 2] + allowed.tip, tolerance)
-    feet = multiply(turn, world.rotations[:, foot])
+    feet = multiply(rotation, world.rotations[:, foot])
     return Sole(
-        lift, turn, lift_toes(rest[[foot, ball, tip]], feet, toes, required, frame_rate)
+        lift, rotation, lift_toes(rest[[foot, ball, tip]], feet, toes, required, frame_rate)
     )
 
 
@@ -127,11 +127,11 @@ def with_sole(
     """Return local rotations, shape (n_frames, n_joints, 4), with new feet and toes."""
     foot, ball = foot_bone(target, side)
     result = rotations.copy()
-    rotated = multiply(sole.turn, world.rotations[:, foot])
+    rotated = multiply(sole.rotation, world.rotations[:, foot])
     parent = world.rotations[:, target.skeleton.parents[foot]]
     result[:, foot] = multiply(inverse(parent), rotated)
     if tip_of(target, ball) is not None and target.skeleton.parents[ball] == foot:
-        toes = multiply(sole.toe_turn, world.rotations[:, ball])
+        toes = multiply(sole.toe_rotation, world.rotations[:, ball])
         result[:, ball] = multiply(inverse(rotated), toes)
     return result
 

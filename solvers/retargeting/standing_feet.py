@@ -43,7 +43,7 @@ class Stance(NamedTuple):
     pitch: float
     """Downward pitch relative to the rest pose, radians."""
     ankle: float
-    """Height of its ankle, metres."""
+    """Height of its ankle, meters."""
 
 
 def find_stances(
@@ -61,11 +61,11 @@ def find_stances(
     """
     if contacts is None or rests_on_ground(source) or not rests_on_ground(target):
         return None
-    found = [
-        _stance(source, source_poses, side, stands, frame_rate)
-        for side, stands in zip(SIDES, contacts.T, strict=True)
+    stances = [
+        _stance(source, source_poses, side, in_contact, frame_rate)
+        for side, in_contact in zip(SIDES, contacts.T, strict=True)
     ]
-    measured = [stance for stance in found if stance]
+    measured = [stance for stance in stances if stance]
     if not measured:
         return None
     pitch, ankle = np.mean(measured, axis=0)
@@ -85,7 +85,7 @@ def find_stances(
             ),
             float(np.clip(one.ankle, ankle - max_difference, ankle + max_difference)),
         )
-        for one in (stance or Stance(pitch, ankle) for stance in found)
+        for one in (stance or Stance(pitch, ankle) for stance in stances)
     )
     return left, right
 
@@ -101,17 +101,17 @@ def with_level_soles(source: Body, stances: tuple[Stance, Stance]) -> Body:
 
 
 def _stance(
-    source: Body, source_poses: WorldPoses, side: str, stands: Flags, frame_rate: float
+    source: Body, source_poses: WorldPoses, side: str, in_contact: Flags, frame_rate: float
 ) -> Stance | None:
     foot, ball = foot_bone(source, side)
     bone = source.rest[ball] - source.rest[foot]
     rotations = source_poses.rotations[:, foot]
     upright = rotate(multiply(rotations, source.alignment[foot]), UP)[:, 2] > UPRIGHT_COSINE
-    stands = stands & upright
-    if not (bone.any() and stands.any()):
+    in_contact = in_contact & upright
+    if not (bone.any() and in_contact.any()):
         return None
     speed = _angular_speed(rotations, frame_rate)
-    still = stands & (speed <= np.quantile(speed[stands], STILL_QUANTILE))
+    still = in_contact & (speed <= np.quantile(speed[in_contact], STILL_QUANTILE))
     slopes = _slope(rotate(rotations[still], bone))
     flat = slopes <= np.median(slopes)
     ankle = np.median(source_poses.positions[still, foot, 2][flat])

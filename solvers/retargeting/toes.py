@@ -25,13 +25,13 @@ def lift_toes(rest: Array, feet: Array, toes: Array, lift: Array, frame_rate: fl
 
     Parameters
     ----------
-    rest : shape (3, 3), metres
+    rest : shape (3, 3), meters
         Rest positions of ankle, ball and tip.
     feet : shape (n_frames, 4)
         World rotations of the foot, from its rest pose.
-    toes : shape (n_frames, 3), metres
+    toes : shape (n_frames, 3), meters
         Vector from ball to tip.
-    lift : shape (n_frames,), metres
+    lift : shape (n_frames,), meters
         Required lift of the tip; not negative.
     frame_rate : float, hertz
     """

@@ -104,13 +104,13 @@ def _target_vector(
 
 
 def _rest_vector(body: Body, top: str) -> Array:
-    """Return the vector from hips to neck in the canonical T-pose, shape (3,), metres."""
+    """Return the vector from hips to neck in the canonical T-pose, shape (3,), meters."""
     low, high = body.joints["hips"], body.joints[top]
     return np.asarray(rotate(inverse(body.alignment[low]), body.rest[high] - body.rest[low]))
 
 
 def _trunk_vector(target: Body, rotations: dict[int, Array], top: int) -> Array:
-    """Return the vector from hips to neck, shape (n_frames, 3), metres."""
+    """Return the vector from hips to neck, shape (n_frames, 3), meters."""
     skeleton, hips = target.skeleton, target.joints["hips"]
     chain = [top, *skeleton.ancestors(top)]
     chain = chain[: chain.index(hips) + 1][::-1]

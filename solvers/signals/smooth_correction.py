@@ -24,7 +24,7 @@ def smooth_correction(
 ) -> Array:
     """Return the smoothest correction that gives a curve a target velocity where it is held.
 
-    The correction d minimises the integral of
+    The correction d minimizes the integral of
 
         |d|^2 + tau^4 |d''|^2 + held hold^2 |d' - speed|^2 + pulled p |d - goal|^2
 

@@ -115,7 +115,7 @@ def learn_stepwise(
     steps, learned = learn_stack(
         features, targets, columns, weights, published, initial[0], within(progress, 0.0, 0.8)
     )
-    progress(0.8, "Learning first frames")
+    progress(0.8, "Learning start poses")
     residuals = np.zeros_like(states)
     residuals[:, 3:] = (targets - steps.predict(features)).reshape(states[:, 3:].shape)
     first = []

@@ -30,7 +30,7 @@ def capture_remarks(actor: Actor, captured: Capture, *, fitted: bool) -> tuple[s
     remarks = [*actor.remarks]
     if actor.floor is None:
         remarks.append("No floor is visible, so the camera is assumed to be level.")
-    occluded = float(captured.doubtful.mean())
+    occluded = float(captured.low_confidence.mean())
     if occluded > MAX_OCCLUDED_FRACTION:
         remarks.append(
             f"{100 * occluded:.0f} % of the joints were occluded or fitted badly;"

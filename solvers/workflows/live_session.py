@@ -73,7 +73,7 @@ class LiveSession:
         """Add the events of a frame."""
         events = self._restart_if_needed(frame)
         positions, confidence = pose_from_frame(frame)
-        events += self._recognizer.see(frame.time, positions, confidence)
+        events += self._recognizer.update(frame.time, positions, confidence)
         update = replace(update, frame=frame, events=update.events + events)
         for event in events:
             update = self._apply_event(update, event)

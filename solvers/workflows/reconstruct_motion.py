@@ -167,7 +167,7 @@ def _for_skeleton_joints(
     has_no_tracking = recording.tracking_state is None and recording.tracks.confidence is None
     reliability_terms = Reliability(
         to_skeleton(found.combined),
-        to_skeleton(found.behaviour),
+        to_skeleton(found.behavior),
         np.full(shape, np.nan)
         if _is_constant(found.kinematics)
         else to_skeleton(found.kinematics),

@@ -160,7 +160,7 @@ def test_keys_stay_on_their_frames(make_armature, animate, press, blank, frames,
         assert [key[0] for key in after[name]] == [key[0] for key in keys]
 
 
-def test_a_range_without_keys_is_said(make_armature, animate, blank):
+def test_a_range_without_keys_is_reported(make_armature, animate, blank):
     armature = make_armature(ARM)
     animate(armature)
     blank.context.scene.frame_start, blank.context.scene.frame_end = 500, 600

@@ -90,13 +90,13 @@ def test_a_process_that_dies_is_mourned_in_a_sentence(job, load, problem):
     assert folders() == before
 
 
-def test_messages_in_the_log_are_told_from_progress(load, tmp_path):
+def test_the_log_separates_output_from_progress(load, tmp_path):
     protocol = load("mocap_assist.jobs.protocol")
     lines = ["@0.1000 Reading", "ImportError: no such module", "@0.2500 Filtering 1 of 2", ""]
     (tmp_path / protocol.LOG).write_text("\n".join(lines))
 
     assert protocol.last_progress(tmp_path) == (0.25, "Filtering 1 of 2")
-    assert protocol.last_words(tmp_path) == "ImportError: no such module"
+    assert protocol.last_output(tmp_path) == "ImportError: no such module"
 
 
 class Expression:

@@ -65,7 +65,7 @@ def test_process_ends_with_status_0_after_its_answer(module, load, programs, pro
 
     status = job._process.wait()
 
-    assert (status, job.shown()) == (0, ["a pose"] if showing else [])
+    assert (status, job.new_previews()) == (0, ["a pose"] if showing else [])
     assert job.result() == "the answer"
 
 

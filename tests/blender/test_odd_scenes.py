@@ -152,7 +152,7 @@ def test_a_take_of_nan_only_is_refused(walker, refused, button):
 @pytest.fixture
 def press_slowly(press_button, load, monkeypatch):
     """Press Clean in a window; Blender has a turn after each bone that is read."""
-    monkeypatch.setattr(load("mocap_assist.runtime.solver_operator"), "AT_ONCE", 0.0)
+    monkeypatch.setattr(load("mocap_assist.runtime.solver_operator"), "MAX_SLICE_S", 0.0)
     choices = load("mocap_assist.clean.choices")
     denoising = load("solvers.denoising")
 
@@ -234,7 +234,7 @@ def test_what_is_deleted_while_it_is_read_is_named(walker, press_slowly, window,
 
     assert wait(button, window) == {"CANCELLED"}
 
-    assert "was deleted while it was worked on" in window.reports[-1][1]
+    assert "was deleted during the solve" in window.reports[-1][1]
     assert nothing_is_left(window)
 
 

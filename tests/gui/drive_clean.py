@@ -216,20 +216,20 @@ def check():
     found = bpy.context.scene.mocap_assist
     yield from press("mocap_assist.measure_quality")
     yield from wait_until_done()
-    assert found.spots
+    assert found.issues
     yield from settle()
     yield from bgui.scan(columns=(0.25, 0.75))
-    yield from bgui.click(*bgui.at("mocap_assist.jump_to_spot(index=2)"))
-    spot = found.spots[2]
-    assert found.active_spot == 2
-    assert bpy.context.scene.frame_current == int(spot.start)
-    assert bpy.context.active_pose_bone.name == spot.name
-    yield from bgui.click(*bgui.at("mocap_assist.jump_to_spot(step=1)"))
+    yield from bgui.click(*bgui.at("mocap_assist.jump_to_issue(index=2)"))
+    issue = found.issues[2]
+    assert found.active_issue == 2
+    assert bpy.context.scene.frame_current == int(issue.start)
+    assert bpy.context.active_pose_bone.name == issue.name
+    yield from bgui.click(*bgui.at("mocap_assist.jump_to_issue(step=1)"))
     yield from settle()
-    assert found.active_spot == 3
+    assert found.active_issue == 3
     look_at_figure()
     yield from settle()
-    bgui.shot("7-spots.png")
+    bgui.shot("7-issues.png")
 
 
 def wide_sidebar_with_examples():

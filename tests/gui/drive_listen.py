@@ -65,7 +65,7 @@ def steps():
     yield 0.5
     bgui.shot("2-nobody.png")
     yield from perform("hand up", "wave right")
-    assert "No search yet" in listening.current().said
+    assert "No search yet" in listening.current().message
     bgui.shot("3-wave.png")
     yield from perform("zoom in", "turn")
     assert view.view_distance < 4.0

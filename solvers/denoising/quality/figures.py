@@ -56,7 +56,7 @@ def _signal_figures(signal: Signal) -> dict[str, Any]:
     """Return the figures of one signal; the root has both a rotation and a position."""
     spikes = find_runs(signal.spikes)
     kind, noise, factor = (
-        ("turn", "deg", 180.0 / np.pi) if signal.turns else ("move", "mm", 1e3)
+        ("turn", "deg", 180.0 / np.pi) if signal.is_rotation else ("move", "mm", 1e3)
     )
     return {
         f"{kind}_noise_{noise}": factor * signal.noise,

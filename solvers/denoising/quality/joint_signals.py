@@ -28,7 +28,7 @@ class Signal:
     Attributes
     ----------
     joint : str
-    turns : bool
+    is_rotation : bool
         True: rotation, in radians; False: position, in meters.
     noise : float, rad or m
         Robust standard deviation of the jitter of one component.
@@ -42,7 +42,7 @@ class Signal:
     """
 
     joint: str
-    turns: bool
+    is_rotation: bool
     noise: float
     deviation: Array
     spike_threshold: float
@@ -80,25 +80,27 @@ def extract_signals(
     trajectories = list(_trajectories(recording))
     signals = []
     padded_frames = _spread_at_cuts(recording.n_frames, cuts, half_window)
-    for index, (joint, turns, trajectory) in enumerate(trajectories):
+    for index, (joint, is_rotation, trajectory) in enumerate(trajectories):
         padded = np.full((padded_frames[-1] + 1, trajectory.shape[1]), np.nan)
         padded[padded_frames] = trajectory
-        min_spike = rule.min_rotation if turns else rule.min_displacement
+        min_spike = rule.min_rotation if is_rotation else rule.min_displacement
         disturbed = fit_lowess(padded, half_window, min_spike)
         threshold = max(min_spike, rule.noise_factor * disturbed.scale)
         spikes = disturbed.spikes(threshold)
-        deviation = _angle_from_chord(disturbed.deviation) if turns else disturbed.deviation
+        deviation = (
+            _angle_from_chord(disturbed.deviation) if is_rotation else disturbed.deviation
+        )
         without_spikes = np.where(spikes[:, None], np.nan, padded)
         local_noise = estimate_local_noise(
             without_spikes, round(NOISE_WINDOW_S * recording.frame_rate)
         )
         signals.append(
             Signal(
-                joint, turns, disturbed.scale, deviation[padded_frames], threshold,
+                joint, is_rotation, disturbed.scale, deviation[padded_frames], threshold,
                 spikes[padded_frames], local_noise[padded_frames],
             )
         )  # fmt: skip
-        progress((index + 1) / len(trajectories), "Looking for spikes")
+        progress((index + 1) / len(trajectories), "Finding spikes")
     return tuple(signals)
 
 

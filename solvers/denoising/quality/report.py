@@ -50,12 +50,16 @@ def compare_quality(before: "Quality", after: "Quality") -> str:
     ):
         values = (factor * getattr(quality, name) for quality in (before, after))
         rows.append((f"{label} ({unit})", *(_number(value) for value in values)))
-    for turns, label, factor in (
+    for is_rotation, label, factor in (
         (True, "shake (deg)", 180 / np.pi),
         (False, "shake (mm)", 1e3),
     ):
         noises = [
-            [factor * signal.noise for signal in quality.signals if signal.turns is turns]
+            [
+                factor * signal.noise
+                for signal in quality.signals
+                if signal.is_rotation is is_rotation
+            ]
             for quality in (before, after)
         ]
         if all(noises):
@@ -70,10 +74,10 @@ def compare_quality(before: "Quality", after: "Quality") -> str:
 
 
 def _row(signal: Signal, quality: "Quality", jitter: float) -> tuple[str, ...]:
-    root_moves = not signal.turns and any(other.turns for other in quality.signals)
+    root_moves = not signal.is_rotation and any(other.is_rotation for other in quality.signals)
     noise = (
         f"{np.degrees(signal.noise):.2f} deg"
-        if signal.turns
+        if signal.is_rotation
         else f"{1e3 * signal.noise:.2f} mm"
     )
     missing = signal.gaps.mean()

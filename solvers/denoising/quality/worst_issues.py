@@ -169,11 +169,11 @@ def _gaps(quality: Quality) -> Iterator[Issue]:
 
 
 def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[Issue]:
-    for turns, min_noise in (
+    for is_rotation, min_noise in (
         (True, settings.smallest_shake_turn),
         (False, settings.smallest_shake_move),
     ):
-        signals = [signal for signal in quality.signals if signal.turns is turns]
+        signals = [signal for signal in quality.signals if signal.is_rotation is is_rotation]
         if not signals:
             continue
         typical_noise = float(np.median([signal.local_noise for signal in signals]))
@@ -237,7 +237,7 @@ def _merged(intervals: list[tuple[int, int]], pause: int) -> list[tuple[int, int
 
 
 def _amount(signal: Signal, value: float) -> str:
-    if signal.turns:
+    if signal.is_rotation:
         return f"{np.degrees(value):.1f}°"
     return f"{100 * value:.1f} cm"
 

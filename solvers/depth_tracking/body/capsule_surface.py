@@ -16,7 +16,7 @@ class BodySurface(NamedTuple):
 
     Attributes
     ----------
-    vertices : shape (19, n_vertices, 3), metres
+    vertices : shape (19, n_vertices, 3), meters
         Vertices of each capsule.
     normals : shape (19, n_vertices, 3)
         Outward unit normals.
@@ -28,7 +28,7 @@ class BodySurface(NamedTuple):
     normals: Array
     triangles: NDArray[np.intp]
 
-    def placed(self, frames: Array) -> tuple[Array, Array]:
+    def at_pose(self, frames: Array) -> tuple[Array, Array]:
         """Return vertices and normals (19, n_vertices, 3) for segment transforms (17, 4, 4)."""
         rotations = frames[CAPSULE_SEGMENTS, :3, :3].swapaxes(1, 2)
         origins = frames[CAPSULE_SEGMENTS, np.newaxis, :3, 3]
@@ -82,7 +82,7 @@ def _bases(axes: Array) -> Array:
 
 
 def _triangles(n_around: int, n_rings: int) -> NDArray[np.intp]:
-    """Return the triangles between neighbouring rings; those at the poles are flat."""
+    """Return the triangles between neighboring rings; those at the poles are flat."""
     row, column = np.meshgrid(np.arange(n_rings - 1), np.arange(n_around), indexing="ij")
     current = row * n_around + column
     next_column = row * n_around + (column + 1) % n_around

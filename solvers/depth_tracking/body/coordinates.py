@@ -61,7 +61,7 @@ def _limbs(side: str) -> list[CoordinateRow]:
 
 
 ROOT = ("rootX", "rootY", "rootZ", "yaw", "roll", "pitch")
-"""Position (metres) and rotation of the hips in the camera frame: first pitch about their x,
+"""Position (meters) and rotation of the hips in the camera frame: first pitch about their x,
 then roll about z, then yaw about the camera's y. Yaw and pitch are unbounded; only lying
 exactly on the side is singular."""
 N_ROOT = len(ROOT)

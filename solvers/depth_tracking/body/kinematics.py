@@ -49,7 +49,7 @@ def segment_frames(body: BodyModel, poses: Array) -> Array:
     ----------
     body : BodyModel
     poses : shape (..., 36)
-        Coordinates in the order of `COORDINATES`; metres and radians.
+        Coordinates in the order of `COORDINATES`; meters and radians.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def segment_frames(body: BodyModel, poses: Array) -> Array:
 
 
 def joint_positions(body: BodyModel, frames: Array) -> Array:
-    """Return the `JOINTS` (..., 21, 3), metres, from segment transforms (..., 17, 4, 4)."""
+    """Return the `JOINTS` (..., 21, 3), meters, from segment transforms (..., 17, 4, 4)."""
     carriers = frames[..., list(END_SEGMENTS), :, :]
     ends = carriers[..., :3, 3] + np.einsum(
         "...sij,sj->...si", carriers[..., :3, :3], body.offsets[N_SEGMENTS:]

@@ -50,9 +50,9 @@ class BodyModel:
 
     Attributes
     ----------
-    lengths : shape (20,), metres
+    lengths : shape (20,), meters
         In the order of `LENGTHS`.
-    radii : shape (19, 2), metres
+    radii : shape (19, 2), meters
         Of the `CAPSULES`, across (along x) and from front to back; equal where round.
 
     References
@@ -82,22 +82,22 @@ class BodyModel:
 
     @cached_property
     def offsets(self) -> Array:
-        """Each of the `JOINTS` in the frame of its parent segment, shape (21, 3), metres."""
+        """Each of the `JOINTS` in the frame of its parent segment, shape (21, 3), meters."""
         offsets: Array = OFFSETS @ self.lengths
         return offsets
 
     @cached_property
     def capsule_ends(self) -> Array:
-        """Both ends of each capsule's axis in its segment's frame, shape (19, 2, 3), metres."""
+        """Both ends of each capsule's axis in its segment's frame, shape (19, 2, 3), meters."""
         ends: Array = CAPSULE_ENDS @ self.lengths
         return ends
 
     def length(self, name: str) -> float:
-        """Return one of the `LENGTHS`, metres."""
+        """Return one of the `LENGTHS`, meters."""
         return float(self.lengths[LENGTHS.index(name)])
 
     def with_lengths(self, **lengths: float) -> "BodyModel":
-        """Return the body with some of its `LENGTHS` replaced, metres."""
+        """Return the body with some of its `LENGTHS` replaced, meters."""
         changed = self.lengths.copy()
         for name, length in lengths.items():
             changed[LENGTHS.index(name)] = length
@@ -122,7 +122,7 @@ class BodyModel:
 
 
 def default_body(stature: float = DEFAULT_STATURE_M) -> BodyModel:
-    """Return an adult of default proportions, `stature` metres tall."""
+    """Return an adult of default proportions, `stature` meters tall."""
     if not 0.5 <= stature <= 2.5:
         raise InvalidMotionError(
             f"The stature {stature:g} m is invalid. Give between 0.5 and 2.5 m."

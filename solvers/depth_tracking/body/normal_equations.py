@@ -49,7 +49,7 @@ class SurfaceRows(NamedTuple):
     """Rows of a least-squares term: displacements of surface points along directions."""
 
     points: Array
-    """Camera frame, shape (n, 3), metres."""
+    """Camera frame, shape (n, 3), meters."""
     directions: Array
     """Shape (n, 3); a direction's length scales its residual."""
     residuals: Array

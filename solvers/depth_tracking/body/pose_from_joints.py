@@ -25,7 +25,7 @@ _LIMIT_WEIGHT = 1.0
 _MAX_STEP = 0.5
 _FRAME_WEIGHT = 100.0
 _ROTATION_POINTS = 0.05 * np.array([*np.eye(3), *-np.eye(3)])
-"""Points of a segment, metres, that constrain its rotation; larger offsets weigh more."""
+"""Points of a segment, meters, that constrain its rotation; larger offsets weigh more."""
 
 
 def pose_from_joints(
@@ -36,7 +36,7 @@ def pose_from_joints(
     Parameters
     ----------
     body : BodyModel
-    joints : shape (21, 3), metres
+    joints : shape (21, 3), meters
         The `JOINTS` in the camera frame; NaN: missing.
     start : shape (36,), optional
         Initial pose, such as the previous frame. Default: four headings are tested.
@@ -97,9 +97,9 @@ def pose_from_points(
     body : BodyModel
     segments : int, shape (n,)
         Index of the segment that carries each point.
-    local : shape (n, 3), metres
+    local : shape (n, 3), meters
         The points in the frames of their segments.
-    targets : shape (n, 3), metres
+    targets : shape (n, 3), meters
         Target positions, camera frame.
     weights : shape (n,)
         Weights of the squares; 1 for a reliable point.
@@ -170,7 +170,7 @@ def body_from_joints(body: BodyModel, joints: Array) -> BodyModel:
     ----------
     body : BodyModel
         Its radii and unmeasured lengths (hands, feet, head) are kept.
-    joints : shape (n_frames, 21, 3), metres
+    joints : shape (n_frames, 21, 3), meters
         The `JOINTS`; NaN: missing.
     """
     lengths = {}

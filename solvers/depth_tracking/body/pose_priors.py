@@ -30,19 +30,19 @@ def stay_near(pose: Array, expected: Array, weights: Array) -> PoseEquations:
     return PoseEquations(np.diag(weights), weights * change, 0.5 * float(weights @ change**2))
 
 
-def predict_pose(poses: list[Array], trust: float) -> Array:
+def predict_pose(poses: list[Array], weight: float) -> Array:
     """Predict the next pose by linear extrapolation.
 
     Parameters
     ----------
     poses : list of shape (36,)
         The previous poses, in temporal order.
-    trust : float
+    weight : float
         Fraction of the last movement that continues: 1 constant velocity, 0 no movement.
     """
     if len(poses) < 2:
         return poses[-1]
-    expected: Array = poses[-1] + trust * (poses[-1] - poses[-2])
+    expected: Array = poses[-1] + weight * (poses[-1] - poses[-2])
     return expected
 
 

@@ -27,7 +27,7 @@ class BodyImage:
     camera : Camera
     pixels : int, shape (n,)
         row * width + column; each once.
-    depths : shape (n,), metres
+    depths : shape (n,), meters
         Along the optical axis.
     capsules : int, shape (n,)
         Index of the visible capsule.
@@ -43,11 +43,11 @@ class BodyImage:
         """Index of the visible segment of each pixel, shape (n,)."""
         return CAPSULE_SEGMENTS[self.capsules]
 
-    def depth_picture(self) -> Array:
-        """Return the depth image (height, width), metres; 0 off the body."""
+    def depth_image(self) -> Array:
+        """Return the depth image (height, width), meters; 0 off the body."""
         return self._image(self.depths, 0.0)
 
-    def segment_picture(self) -> Array:
+    def segment_image(self) -> Array:
         """Return the segment image (height, width), -1 off the body."""
         return self._image(self.segments, NO_SEGMENT)
 

@@ -61,7 +61,7 @@ class CapsuleRow(NamedTuple):
     """Point in the segment's frame as vectors times lengths; x left, y down, z back."""
     stop: dict[str, Vector]
     radii: tuple[float, float]
-    """Across (along x) and from front to back, metres, of an adult of 1.75 m."""
+    """Across (along x) and from front to back, meters, of an adult of 1.75 m."""
 
 
 def _trunk_capsules() -> list[CapsuleRow]:

@@ -1,4 +1,4 @@
-"""A whole recording tracked: body size, passes with restarts, smoothing, manual fixes."""
+"""Track a complete recording: body size, passes with restarts, smoothing, manual fixes."""
 
 from .calibrate_body import CalibrationSettings, calibrate_body
 from .capture import Capture, CaptureSettings, capture

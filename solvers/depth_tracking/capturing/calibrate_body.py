@@ -42,7 +42,9 @@ TESTED_STATURES_M = tuple(1.3 + STATURE_STEP_M * step for step in range(6))
 class CalibrationSettings(CylinderSettings):
     """Settings of the body calibration."""
 
-    refine: bool = setting(True, "Fit bone lengths to whole bodies rather than to single limbs")
+    refine: bool = setting(
+        True, "Fit bone lengths to complete bodies rather than to single limbs"
+    )
 
 
 DEFAULT_CALIBRATION = CalibrationSettings()
@@ -119,7 +121,7 @@ def _detect_stature(
     for count, stature in enumerate(TESTED_STATURES_M):
         body = default_body(stature)
         detections[stature] = detect_pose(image, depth.camera, body, forest)
-        progress((count + 1) / len(TESTED_STATURES_M), "Estimating the stature")
+        progress((count + 1) / len(TESTED_STATURES_M), "Estimating the body size")
     best = max(detections, key=lambda stature: detections[stature].score)
     neighbors = [
         stature for stature in TESTED_STATURES_M if abs(stature - best) < 1.5 * STATURE_STEP_M
@@ -142,7 +144,7 @@ def body_from_cylinders(cylinders: dict[str, Cylinder], trunk: float) -> BodyMod
     ----------
     cylinders : dict of part name to Cylinder
         Some of `MEASURED_PARTS`, each from its inner to its outer end.
-    trunk : float, metres
+    trunk : float, meters
         From hip center to the base of the neck; NaN: unknown.
     """
     default = default_body()
@@ -243,7 +245,7 @@ def _trunk_length(
     camera: Camera,
     cylinders: dict[str, Cylinder],
 ) -> float:
-    """Return the distance from hip center to the base of the neck, metres."""
+    """Return the distance from hip center to the base of the neck, meters."""
     legs = [f"{side}UpperLeg" for side in SIDES]
     hips = [cylinders[leg].ends[0] for leg in legs if leg in cylinders]
     neck = _median_point("neck", image, labels, camera)

@@ -75,7 +75,7 @@ class Capture:
         Z up, on the skeleton of `body`; joints have humanoid roles as their names.
     joints : Tracks
         The same joints in the camera frame, with the confidence of each joint and frame.
-    residual : shape (n_frames,), metres
+    residual : shape (n_frames,), meters
         Mean distance in depth where body and actor overlap; NaN without a visible actor.
     coverage : shape (n_frames,)
         Intersection over union of the pixels of body and actor.
@@ -83,7 +83,7 @@ class Capture:
         Frames where the detector restarted the tracker, after the first.
     body : BodyModel
     poses : shape (n_frames, 36)
-    doubtful : bool, shape (n_frames, n_joints)
+    low_confidence : bool, shape (n_frames, n_joints)
         Joints with low confidence: occluded or poorly fitted. Their positions are interpolated
         from the frames before and after.
     """
@@ -95,7 +95,7 @@ class Capture:
     restarts: tuple[int, ...]
     body: BodyModel
     poses: Array
-    doubtful: NDArray[np.bool_]
+    low_confidence: NDArray[np.bool_]
 
 
 def capture(
@@ -179,7 +179,7 @@ def _passes(
     if not np.isfinite(forward.scores).any():
         raise InvalidMotionError(
             "No person was detected in any frame. Check the background settings, and that the"
-            " depth is in metres."
+            " depth is in meters."
         )
     if not settings.backward:
         return [forward]
@@ -215,11 +215,11 @@ def assemble_capture(
 ) -> Capture:
     """Assemble the result from tracked poses."""
     confidence = tracked.joints.confidence
-    doubtful = np.zeros(tracked.joints.positions.shape[:2], dtype=bool)
+    low_confidence = np.zeros(tracked.joints.positions.shape[:2], dtype=bool)
     if confidence is not None:
-        doubtful = confidence < settings.doubtful
+        low_confidence = confidence < settings.doubtful
     return Capture(
         body_motion(body, tracked.poses, tracked.joints.frame_rate, floor),
         tracked.joints, tracked.residual, tracked.coverage, restarts, body, tracked.poses,
-        doubtful,
+        low_confidence,
     )  # fmt: skip

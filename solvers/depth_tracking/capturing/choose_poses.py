@@ -20,9 +20,9 @@ def choose_poses(
     ----------
     scores : shape (n_frames, n_candidates)
         Fit of each candidate to its image, 0 to 1; NaN without a candidate.
-    joints : shape (n_frames, n_candidates, n_joints, 3), metres
+    joints : shape (n_frames, n_candidates, n_joints, 3), meters
     score_weight : float
-    movement_scale : float, metres
+    movement_scale : float, meters
         Mean movement of the joints between frames that costs 1.
 
     References

@@ -69,15 +69,18 @@ def find_body(
         tracked = track_with_restarts(
             actor, range(first_visible, clip.n_frames), start, part_progress
         )
-        good_frames = np.flatnonzero(np.isfinite(tracked.scores))
-        if not len(good_frames):
+        fitted_frames = np.flatnonzero(np.isfinite(tracked.scores))
+        if not len(fitted_frames):
             return body
-        start, first_visible = tracked.poses[good_frames[0]], int(good_frames[0])
-        good_frames = good_frames[
-            tracked.scores[good_frames] >= np.median(tracked.scores[good_frames])
+        start, first_visible = tracked.poses[fitted_frames[0]], int(fitted_frames[0])
+        fitted_frames = fitted_frames[
+            tracked.scores[fitted_frames] >= np.median(tracked.scores[fitted_frames])
         ]
-        chosen = good_frames[
-            np.linspace(0, len(good_frames) - 1, min(24, len(good_frames))).round().astype(int)
+        chosen = fitted_frames[
+            np
+            .linspace(0, len(fitted_frames) - 1, min(24, len(fitted_frames)))
+            .round()
+            .astype(int)
         ]
         body = refine_body(clip, body, tracked.poses, frames=chosen, tracker=tracker)
     return body
@@ -111,7 +114,7 @@ def _best_stature(
         if len(scores) == len(STATURES_M) and any(scores.values()):
             best = sorted(scores, key=lambda stature: scores[stature])[len(STATURES_M) // 2 :]
             scores = {stature: scores[stature] for stature in best}
-        progress((index + 1) / len(frames), "Trying statures")
+        progress((index + 1) / len(frames), "Trying body sizes")
     if not any(scores.values()):
         raise InvalidMotionError(message)
     return default_body(max(scores, key=lambda stature: scores[stature]))

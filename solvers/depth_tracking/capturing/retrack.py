@@ -41,7 +41,7 @@ class Retracked:
         Whether the path rejoined the previous motion before and after the corrected frame.
     joints : Tracks
         Of the changed frames, in the camera's frame, with the confidence of each joint.
-    residual : shape (last - first + 1,), metres
+    residual : shape (last - first + 1,), meters
     """
 
     motion: Motion

@@ -107,16 +107,16 @@ def track_from_correction(
         n_agreeing = n_agreeing + 1 if agrees else 0
         if n_agreeing == n_required:
             return RetrackedPath(np.array(trajectory[1:]), met=True)
-    n_kept = int(np.argmax(cumulative_gains)) + n_required
+    n_reused = int(np.argmax(cumulative_gains)) + n_required
     return RetrackedPath(
-        np.array(trajectory[1 : n_kept + 1]).reshape(-1, len(start)), met=False
+        np.array(trajectory[1 : n_reused + 1]).reshape(-1, len(start)), met=False
     )
 
 
 def _largest_distance(
     actor: TrackingContext, pose: Array, previous: Array, quality: FitQuality
 ) -> float:
-    """Return the largest joint distance, weighted by confidence, metres."""
+    """Return the largest joint distance, weighted by confidence, meters."""
     joints = joint_positions(actor.body, segment_frames(actor.body, np.stack([pose, previous])))
     distances = np.linalg.norm(joints[1] - joints[0], axis=-1)
     return float((distances * np.maximum(quality.confidence, _MIN_CONFIDENCE)).max())

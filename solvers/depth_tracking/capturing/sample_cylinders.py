@@ -41,9 +41,9 @@ class Cylinder:
 
     Attributes
     ----------
-    ends : shape (2, 3), metres
+    ends : shape (2, 3), meters
         Ends of the axis.
-    radius : float, metres
+    radius : float, meters
     quality : float
         Pixels of the part inside minus other pixels inside, divided by the pixels of the part.
     """
@@ -54,7 +54,7 @@ class Cylinder:
 
     @property
     def length(self) -> float:
-        """Length of the axis, metres."""
+        """Length of the axis, meters."""
         return float(np.linalg.norm(self.ends[1] - self.ends[0]))
 
 
@@ -75,12 +75,12 @@ def sample_cylinder(
 
     Parameters
     ----------
-    depth : shape (height, width), metres
+    depth : shape (height, width), meters
         0: no reading.
     part_mask : bool, shape (height, width)
         Pixels classified as the part.
     camera : Camera
-    radii : tuple of float, metres
+    radii : tuple of float, meters
         Minimum and maximum radius.
     rng : Generator
     settings : CylinderSettings

@@ -50,7 +50,7 @@ class DetectedPose:
     ----------
     pose : shape (36,)
         Coordinates of the body model, camera frame.
-    joints : shape (21, 3), metres
+    joints : shape (21, 3), meters
         The `JOINTS` of the body model.
     score : float
         Fit of the body in this pose to the image, 0 to 1.
@@ -73,7 +73,7 @@ class DetectedPose:
     step: int
 
     @property
-    def unseen(self) -> tuple[str, ...]:
+    def missing_parts(self) -> tuple[str, ...]:
         """The `PARTS` without pixels; their pose is a guess."""
         return tuple(
             part for part, weight in zip(PARTS, self.parts.weights, strict=True) if weight == 0
@@ -96,7 +96,7 @@ def detect_pose(
 
     Parameters
     ----------
-    depth_frame : float32, shape (height, width), metres
+    depth_frame : float32, shape (height, width), meters
         Contains only one body; 0: no reading.
     camera : Camera
     body : BodyModel
@@ -128,7 +128,7 @@ def detect_pose(
         )
     step_between = -(-len(observation.points) // settings.n_pixels)
     trials = trial_poses(
-        body, parts, observation.points[::step_between], pixels.shares[::step_between]
+        body, parts, observation.points[::step_between], pixels.probabilities[::step_between]
     )
     candidates = [
         _score_candidate(

@@ -34,7 +34,7 @@ EquationList = list[SegmentEquations]
 
 LIMIT_WEIGHT = 1.0
 REST_WEIGHT = 2e-3
-"""Weight per square radian; a fully observed part weighs 1 per square metre."""
+"""Weight per square radian; a fully observed part weighs 1 per square meter."""
 MAX_RESIDUAL_M = 0.08
 """Pixels farther from the surface of their part have a limited pull."""
 SURFACE_STD_M = 0.06
@@ -101,7 +101,7 @@ def fit_parts(
 def fit_pixels(
     body: BodyModel,
     points: Array,
-    shares: NDArray[np.float32],
+    probabilities: NDArray[np.float32],
     start: Array,
     *,
     rounds: int = 2,
@@ -115,8 +115,8 @@ def fit_pixels(
     Parameters
     ----------
     body : BodyModel
-    points : shape (n, 3), metres
-    shares : shape (n, N_PARTS)
+    points : shape (n, 3), meters
+    probabilities : shape (n, N_PARTS)
         Probability of each part for each point.
     start : shape (36,)
     rounds : int
@@ -124,7 +124,7 @@ def fit_pixels(
     iterations : int
         Steps of each round.
     """
-    label_costs = -np.log(shares @ CAPSULE_OF_PART + MIN_PROBABILITY)
+    label_costs = -np.log(probabilities @ CAPSULE_OF_PART + MIN_PROBABILITY)
     pose = start
     for _ in range(rounds):
         distances = capsule_distances(body, segment_frames(body, pose), points)
@@ -141,7 +141,7 @@ def fit_pixels(
 
 
 def capsule_distances(body: BodyModel, frames: Array, points: Array) -> Array:
-    """Return the signed distances (n, 19), metres, of points (n, 3) to the capsules.
+    """Return the signed distances (n, 19), meters, of points (n, 3) to the capsules.
 
     First order for elliptic capsules.
     """

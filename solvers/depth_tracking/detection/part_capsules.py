@@ -33,7 +33,7 @@ CAPSULE_OF_PART[np.arange(N_PARTS), PART_CAPSULES] = 1.0
 
 
 def part_axes(body: BodyModel) -> Array:
-    """Return both ends of each part's axis in its segment's frame, (N_PARTS, 2, 3), metres."""
+    """Return both ends of each part's axis in its segment's frame, (N_PARTS, 2, 3), meters."""
     starts, stops = body.capsule_ends[PART_CAPSULES].swapaxes(0, 1)
     fractions = PART_SPANS[:, :, np.newaxis]
     axes: Array = starts[:, np.newaxis] * (1.0 - fractions) + stops[:, np.newaxis] * fractions
@@ -41,6 +41,6 @@ def part_axes(body: BodyModel) -> Array:
 
 
 def part_radii(body: BodyModel) -> Array:
-    """Return the radii of each part, (N_PARTS, 2), metres: lateral and front to back."""
+    """Return the radii of each part, (N_PARTS, 2), meters: lateral and front to back."""
     radii: Array = body.radii[PART_CAPSULES]
     return radii

@@ -31,15 +31,15 @@ def pose_score(
     label_weight : float
         Weight of the forest; depth has weight 1.
     """
-    image = hypothesis.picture
+    image = hypothesis.image
     observed = observation.flat[image.pixels]
     both = observed > 0.0
     union = len(observation.pixels) + len(image.pixels) - int(both.sum())
     depth_errors = np.abs(observed[both] - image.depths[both])
     closeness = np.maximum(0.0, 1.0 - depth_errors / MAX_DEPTH_ERROR_M)
-    capsule_probabilities = pixels.shares @ CAPSULE_OF_PART
+    capsule_probabilities = pixels.probabilities @ CAPSULE_OF_PART
     label_scores = capsule_probabilities[
-        observation.index_picture[image.pixels[both]], image.capsules[both]
+        observation.index_image[image.pixels[both]], image.capsules[both]
     ]
     label_scores = np.where(closeness > 0.0, label_scores, 0.0)
     score = (closeness.sum() + label_weight * label_scores.sum()) / (

@@ -34,7 +34,7 @@ def trial_poses(
     ----------
     body : BodyModel
     parts : FoundParts
-    points : shape (n, 3), metres
+    points : shape (n, 3), meters
         Observed points.
     probabilities : shape (n, N_PARTS)
         Probability of each of the `PARTS` for each point.

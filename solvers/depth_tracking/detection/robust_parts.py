@@ -42,11 +42,11 @@ class FoundParts:
 
     Attributes
     ----------
-    centers : shape (N_PARTS, 3), metres
+    centers : shape (N_PARTS, 3), meters
         Axis center of the visible section of each part, camera frame; NaN: missing.
     weights : shape (N_PARTS,)
         Visible fraction of each part, 0 to 1.
-    points : shape (n, 3), metres
+    points : shape (n, 3), meters
         Inlier points on the surface.
     labels : int, shape (n,)
         Part of each point, as index in `PARTS`.
@@ -79,7 +79,7 @@ def find_parts(
 
     Parameters
     ----------
-    points : shape (n, 3), metres
+    points : shape (n, 3), meters
         Observed points of a body, camera frame.
     labels : int, shape (n,)
         Most probable part of each point, as index in `PARTS`.

@@ -1,6 +1,6 @@
 """Features of depth pixels: the difference of depth at two offsets.
 
-Offsets are in metres and divided by the depth of the pixel, so that a feature is independent of
+Offsets are in meters and divided by the depth of the pixel, so that a feature is independent of
 distance and camera. Pixels without reading, and outside of the image, have the depth
 `BACKGROUND_MM`.
 """
@@ -22,13 +22,13 @@ class PixelFeatures(NamedTuple):
     """Pixels to classify, with the data that their features need."""
 
     images: NDArray[np.uint16]
-    """Depth of all images, concatenated, millimetres; each has a border of `BACKGROUND_MM`."""
+    """Depth of all images, concatenated, millimeters; each has a border of `BACKGROUND_MM`."""
     flat_index: NDArray[np.int32]
     """Index of each pixel in `pictures`, shape (n,)."""
     column: NDArray[np.float32]
     row: NDArray[np.float32]
     across: NDArray[np.float32]
-    """Pixels per metre at the pixel's depth, to the right and down."""
+    """Pixels per meter at the pixel's depth, to the right and down."""
     down: NDArray[np.float32]
     width: int
     """Size of the images without their border, pixels."""
@@ -41,10 +41,10 @@ class PixelFeatures(NamedTuple):
 
 
 def pad_depth_image(depth: DepthImage) -> NDArray[np.uint16]:
-    """Return a depth image (height, width), metres, in millimetres with a background border."""
+    """Return a depth image (height, width), meters, in millimeters with a background border."""
     padded = np.full((depth.shape[0] + 2, depth.shape[1] + 2), BACKGROUND_MM, dtype=np.uint16)
-    millimetres = np.minimum(np.rint(depth * np.float32(MM_PER_M)), BACKGROUND_MM)
-    padded[1:-1, 1:-1] = np.where(depth > 0.0, millimetres, BACKGROUND_MM)
+    millimeters = np.minimum(np.rint(depth * np.float32(MM_PER_M)), BACKGROUND_MM)
+    padded[1:-1, 1:-1] = np.where(depth > 0.0, millimeters, BACKGROUND_MM)
     return padded
 
 
@@ -76,12 +76,12 @@ def pixel_features(
 
 
 def depth_differences(views: PixelFeatures, offsets: NDArray[np.float32]) -> NDArray[np.int32]:
-    """Return depth at the first offset less that at the second, millimetres, shape (n,).
+    """Return depth at the first offset less that at the second, millimeters, shape (n,).
 
     Parameters
     ----------
     views : PixelViews
-    offsets : shape (4,) or (4, n), metres
+    offsets : shape (4,) or (4, n), meters
         Right and down of the first offset, then of the second.
     """
     first = _depth_at_offset(views, offsets[0], offsets[1])
@@ -91,7 +91,7 @@ def depth_differences(views: PixelFeatures, offsets: NDArray[np.float32]) -> NDA
 def _depth_at_offset(
     views: PixelFeatures, right: NDArray[np.float32], down: NDArray[np.float32]
 ) -> NDArray[np.int32]:
-    """Return the depth, millimetres, at an offset from each pixel."""
+    """Return the depth, millimeters, at an offset from each pixel."""
     column = views.across * right
     column += views.column
     row = views.down * down

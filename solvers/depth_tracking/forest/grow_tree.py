@@ -63,8 +63,8 @@ class Tree:
     Attributes
     ----------
     splits : bool, shape (n_nodes,)
-    offsets : int8, shape (n_splits, 4), centimetres
-    thresholds : int16, shape (n_splits,), millimetres
+    offsets : int8, shape (n_splits, 4), centimeters
+    thresholds : int16, shape (n_splits,), millimeters
         Pixels at or below the threshold go to the first child.
     shares : uint8, shape (n_leaves, N_PARTS)
         Part histogram of each leaf, with a sum of about 255.
@@ -99,7 +99,7 @@ def grow_tree(
     """
     node = np.zeros(len(parts), dtype=np.int32)
     n_nodes, splits, offsets, thresholds = 1, [], [], []
-    shares = [np.empty((0, N_PARTS), dtype=np.uint8)]
+    histograms = [np.empty((0, N_PARTS), dtype=np.uint8)]
     for level in range(settings.levels + 1):
         counts = _counts(node, parts, n_nodes)
         open_nodes = (counts.sum(axis=1) >= settings.least_pixels) & (
@@ -113,7 +113,7 @@ def grow_tree(
         splits.append(split)
         offsets.append(features[best.feature[split]])
         thresholds.append(THRESHOLDS_MM[best.edge[split]])
-        shares.append(_leaf_shares(counts[~split]))
+        histograms.append(_leaf_histograms(counts[~split]))
         node = _next_nodes(views, node, split, features, best)
         n_nodes = 2 * int(split.sum())
         progress((level + 1) / (settings.levels + 1), "Growing a tree")
@@ -123,12 +123,12 @@ def grow_tree(
         np.concatenate(splits),
         np.concatenate(offsets),
         np.concatenate(thresholds),
-        np.concatenate(shares),
+        np.concatenate(histograms),
     )
 
 
 def random_offsets(n: int, reach: float, rng: np.random.Generator) -> NDArray[np.int8]:
-    """Return n features (n, 4), centimetres: log-uniform offsets, or one at the pixel."""
+    """Return n features (n, 4), centimeters: log-uniform offsets, or one at the pixel."""
     angle = rng.uniform(0.0, 2.0 * np.pi, (n, 2))
     radius = np.exp(rng.uniform(np.log(0.02), np.log(reach), (n, 2)))
     radius[rng.random(n) < 0.25, 1] = 0.0
@@ -227,10 +227,10 @@ def _counts(node: Nodes, parts: NDArray[np.uint8], n_nodes: int) -> NDArray[np.i
     return np.bincount(key, minlength=n_nodes * N_PARTS).reshape(n_nodes, N_PARTS)
 
 
-def _leaf_shares(counts: NDArray[np.int64]) -> NDArray[np.uint8]:
+def _leaf_histograms(counts: NDArray[np.int64]) -> NDArray[np.uint8]:
     total = np.maximum(counts.sum(axis=1, keepdims=True), 1)
-    shares: NDArray[np.uint8] = np.rint(255.0 * counts / total).astype(np.uint8)
-    return shares
+    histograms: NDArray[np.uint8] = np.rint(255.0 * counts / total).astype(np.uint8)
+    return histograms
 
 
 def _next_nodes(
@@ -243,12 +243,12 @@ def _next_nodes(
     """Return the node of each pixel on the next level, or AT_LEAF in a leaf."""
     next_nodes = np.full(len(node), AT_LEAF, dtype=np.int32)
     first_child = (2 * (np.cumsum(split) - 1)).astype(np.int32)
-    metres = features.astype(np.float32).T / np.float32(CM_PER_M)
+    meters = features.astype(np.float32).T / np.float32(CM_PER_M)
     for start in range(0, len(node), PIXELS_PER_BLOCK):
         block = np.arange(start, min(start + PIXELS_PER_BLOCK, len(node)))
         block = block[node[block] >= 0]
         block = block[split[node[block]]]
         current = node[block]
-        values = depth_differences(views.select(block), metres[:, best.feature[current]])
+        values = depth_differences(views.select(block), meters[:, best.feature[current]])
         next_nodes[block] = first_child[current] + (values > THRESHOLDS_MM[best.edge[current]])
     return next_nodes

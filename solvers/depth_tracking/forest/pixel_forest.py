@@ -81,10 +81,10 @@ class _Nodes:
         offsets: NDArray[np.float32],
         thresholds: NDArray[np.int32],
         children: NDArray[np.int32],
-        shares: NDArray[np.float32],
+        probabilities: NDArray[np.float32],
     ) -> None:
         self.roots, self.offsets, self.thresholds = roots, offsets, thresholds
-        self.children, self.shares = children, shares
+        self.children, self.probabilities = children, probabilities
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,18 +95,18 @@ class PixelParts:
     ----------
     rows, columns : int arrays, shape (n,)
         Pixels with a reading.
-    shares : float32, shape (n, N_PARTS)
+    probabilities : float32, shape (n, N_PARTS)
         Probability of each of the `PARTS`; sums to one.
     """
 
     rows: NDArray[np.intp]
     columns: NDArray[np.intp]
-    shares: NDArray[np.float32]
+    probabilities: NDArray[np.float32]
 
     @cached_property
     def labels(self) -> NDArray[np.intp]:
         """Most probable part of each pixel, as index in `PARTS`."""
-        return np.asarray(self.shares.argmax(axis=1))
+        return np.asarray(self.probabilities.argmax(axis=1))
 
 
 def classify_pixels(depth: DepthImage, camera: Camera, forest: PixelForest) -> PixelParts:
@@ -114,7 +114,7 @@ def classify_pixels(depth: DepthImage, camera: Camera, forest: PixelForest) -> P
 
     Parameters
     ----------
-    depth : float32, shape (height, width), metres
+    depth : float32, shape (height, width), meters
         Contains only the body; 0: no reading.
     camera : Camera
     forest : PixelForest
@@ -138,10 +138,10 @@ def classify_pixels(depth: DepthImage, camera: Camera, forest: PixelForest) -> P
         if len(still_active) < len(active):
             active, views = active[still_active], views.select(still_active)
     leaves = (-1 - nodes.children[current]).reshape(n_trees, len(rows))
-    shares = nodes.shares[leaves[0]]
+    probabilities = nodes.probabilities[leaves[0]]
     for leaf in leaves[1:]:
-        shares += nodes.shares[leaf]
-    return PixelParts(rows, columns, shares / np.float32(n_trees))
+        probabilities += nodes.probabilities[leaf]
+    return PixelParts(rows, columns, probabilities / np.float32(n_trees))
 
 
 def load_pixel_forest(path: Path | str = SHIPPED) -> PixelForest:
@@ -208,6 +208,6 @@ def _flatten_trees(trees: Sequence[Tree]) -> _Nodes:
         thresholds[split] = tree.thresholds
         children[split] = start + 1 + 2 * np.arange(len(split))
         children[leaf] = -1 - (leaf_start + np.arange(len(leaf)))
-    shares = np.concatenate([tree.shares for tree in trees]).astype(np.float32)
-    shares /= shares.sum(axis=1, keepdims=True)
-    return _Nodes(starts[:-1].astype(np.int32), offsets, thresholds, children, shares)
+    probabilities = np.concatenate([tree.shares for tree in trees]).astype(np.float32)
+    probabilities /= probabilities.sum(axis=1, keepdims=True)
+    return _Nodes(starts[:-1].astype(np.int32), offsets, thresholds, children, probabilities)

@@ -37,7 +37,7 @@ def select_diverse_poses(
     """Return diverse poses (n, n_joints, 4) by farthest-point sampling.
 
     Poses have no heading. The distance of two poses is the largest distance of a joint. No two
-    selected poses are closer than `spacing`, metres.
+    selected poses are closer than `spacing`, meters.
     """
     roots = np.zeros((len(rotations), 3))
     joints = world_poses(body.skeleton, rotations, roots).positions.astype(np.float32)
@@ -96,10 +96,10 @@ class PoseMixer:
         pose[joints["hips"]] = quaternion_from_rotation_vector(0.05 * rng.standard_normal(3))
         for sign, side in ((1.0, "left"), (-1.0, "right")):
             hip = [0.06 * rng.standard_normal(), -sign * rng.uniform(-0.06, 0.15), 0.0]
-            turns = (hip, [rng.uniform(0.0, 0.1), 0.0, 0.0], [0.0] * 3)
-            for role, turn in zip(LEG_ROLES, turns, strict=False):
+            rotation_vectors = (hip, [rng.uniform(0.0, 0.1), 0.0, 0.0], [0.0] * 3)
+            for role, rotation in zip(LEG_ROLES, rotation_vectors, strict=False):
                 if f"{side}{role}" in joints:
-                    pose[joints[f"{side}{role}"]] = quaternion_from_rotation_vector(turn)
+                    pose[joints[f"{side}{role}"]] = quaternion_from_rotation_vector(rotation)
 
     @staticmethod
     def _loosen_arm(
@@ -114,12 +114,12 @@ class PoseMixer:
         twist = quaternion_from_rotation_vector(straight * rng.uniform(-1.6, 1.6))
         flexion = rng.uniform(0.0, 2.5) * rng.choice([0.2, 1.0])
         hinge = quaternion_from_rotation_vector([0.0, 0.0, -sign * flexion])
-        for role, turn in (
+        for role, rotation in (
             ("UpperArm", multiply(rotation_between(straight, direction), twist)),
             ("LowerArm", hinge),
         ):
             if f"{side}{role}" in joints:
-                pose[joints[f"{side}{role}"]] = turn
+                pose[joints[f"{side}{role}"]] = rotation
 
     @staticmethod
     def _loosen_leg(

@@ -18,7 +18,7 @@ class RenderedMesh(NamedTuple):
     """Rendered image of a mesh."""
 
     depth: NDArray[np.float32]
-    """Shape (height, width), metres along the optical axis; 0: nothing."""
+    """Shape (height, width), meters along the optical axis; 0: nothing."""
     labels: NDArray[np.uint8]
     """Label of the nearest corner of each pixel's triangle, or `NO_PART`."""
 
@@ -31,7 +31,7 @@ def render_mesh(
     Parameters
     ----------
     vertices : shape (n_vertices, 3)
-        In the camera's frame, metres.
+        In the camera's frame, meters.
     triangles : int array, shape (n_triangles, 3)
         Both sides are rendered.
     labels : uint8, shape (n_vertices,)

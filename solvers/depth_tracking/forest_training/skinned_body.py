@@ -38,7 +38,7 @@ MEMBERS = {
 
 @dataclass(frozen=True, eq=False)
 class SkinnedBody:
-    """A mesh in the rest pose of its skeleton, Z up, facing -Y, metres.
+    """A mesh in the rest pose of its skeleton, Z up, facing -Y, meters.
 
     Attributes
     ----------
@@ -115,15 +115,15 @@ class SkinnedBody:
         """Return vertices (n_vertices, 3) and joints (n_joints, 3) in one pose.
 
         Linear blend skinning moves each vertex by the weighted mean of its joint transforms.
-        `rotations` are local, shape (n_joints, 4); `root` is the root position, metres.
+        `rotations` are local, shape (n_joints, 4); `root` is the root position, meters.
         """
-        turns, places = world_poses(self.skeleton, rotations, root)
+        turns, positions = world_poses(self.skeleton, rotations, root)
         matrices = matrix_from_quaternion(turns)
-        shifts = places - np.einsum("jab,jb->ja", matrices, self.skeleton.rest_positions)
+        shifts = positions - np.einsum("jab,jb->ja", matrices, self.skeleton.rest_positions)
         moves = np.concatenate([matrices, shifts[:, :, None]], axis=2).reshape(-1, 12)
         blended = (self.weights @ moves).reshape(-1, 3, 4)
-        turned = np.einsum("vab,vb->va", blended[:, :, :3], self.vertices)
-        return turned + blended[:, :, 3], places
+        rotated = np.einsum("vab,vb->va", blended[:, :, :3], self.vertices)
+        return rotated + blended[:, :, 3], positions
 
     def rotations_of(self, motion: Motion) -> Array:
         """Return this body's local rotations in the poses of any humanoid, (F, n_joints, 4).
@@ -132,13 +132,13 @@ class SkinnedBody:
         motion lacks, and rotations that were not observed, are as in the T-pose.
         """
         theirs = find_humanoid_map(motion.skeleton)
-        places = theirs.indices(motion.skeleton)
+        columns = theirs.indices(motion.skeleton)
         posed = canonical_rotations(motion, theirs)
         poses = np.tile(IDENTITY, (motion.n_frames, self.skeleton.n_joints, 1))
         for role, joint in self.humanoid.indices(self.skeleton).items():
-            if role in places:
-                seen = np.isfinite(posed[:, places[role]]).all(axis=-1)
-                poses[seen, joint] = posed[seen, places[role]]
+            if role in columns:
+                observed = np.isfinite(posed[:, columns[role]]).all(axis=-1)
+                poses[observed, joint] = posed[observed, columns[role]]
         return from_canonical(poses, self.skeleton, self.humanoid)
 
 

@@ -47,10 +47,10 @@ class PixelForestSettings(TrainingImagesSettings, TreeSettings):
 class LabeledImages(NamedTuple):
     """Training images with part labels."""
 
-    pictures: NDArray[np.uint16]
-    """Of `pad_depth_image`, (n_pictures, height + 2, width + 2)."""
+    images: NDArray[np.uint16]
+    """Of `pad_depth_image`, (n_images, height + 2, width + 2)."""
     labels: NDArray[np.uint8]
-    """(n_pictures, height, width)."""
+    """(n_images, height, width)."""
 
 
 def train_pixel_forest(
@@ -89,12 +89,12 @@ def train_pixel_forest(
        doi:10.1145/2366145.2366207
     """
     source = image_source(poses, bodies, settings, settings.seed)
-    seen = draw_images(source, range(-(-settings.n_pictures // IMAGES_PER_BODY)))
+    images = draw_images(source, range(-(-settings.n_pictures // IMAGES_PER_BODY)))
     progress(0.2, "Growing trees")
     grown = []
     for number in range(settings.n_trees):
         rng = np.random.default_rng((settings.seed, number, 1))
-        views, parts = draw_pixels(seen, settings.n_pixels, rng)
+        views, parts = draw_pixels(images, settings.n_pixels, rng)
         start, stop = 0.2 + 0.8 * np.array([number, number + 1]) / settings.n_trees
         grown.append(
             grow_tree(views, parts, settings, rng, progress=within(progress, start, stop))
@@ -104,23 +104,23 @@ def train_pixel_forest(
 
 def draw_images(source: ImageSource, blocks: Sequence[int]) -> LabeledImages:
     """Render some blocks of training images."""
-    drawn: list[RenderedMesh] = [one for block in blocks for one in source.pictures(block)]
+    drawn: list[RenderedMesh] = [one for block in blocks for one in source.render(block)]
     return LabeledImages(
-        np.stack([pad_depth_image(picture.depth) for picture in drawn]),
-        np.stack([picture.labels for picture in drawn]),
+        np.stack([pad_depth_image(image.depth) for image in drawn]),
+        np.stack([image.labels for image in drawn]),
     )
 
 
 def draw_pixels(
-    seen: LabeledImages, n_pixels: int, rng: np.random.Generator
+    images: LabeledImages, n_pixels: int, rng: np.random.Generator
 ) -> tuple[PixelFeatures, NDArray[np.uint8]]:
     """Sample pixels and their parts from each image, with more weight on small parts.
 
     A part of k pixels is sampled in proportion to the square root of k.
     """
-    places = []
-    area = seen.labels.shape[1] * seen.labels.shape[2]
-    for number, labels in enumerate(seen.labels.reshape(len(seen.labels), -1)):
+    positions = []
+    area = images.labels.shape[1] * images.labels.shape[2]
+    for number, labels in enumerate(images.labels.reshape(len(images.labels), -1)):
         body = np.flatnonzero(labels != NO_PART)
         if not len(body):
             continue
@@ -128,11 +128,11 @@ def draw_pixels(
         # Exponential races: the first n are a weighted sample without replacement.
         races = rng.standard_exponential(len(body)) * np.sqrt(sizes[labels[body]])
         first = min(n_pixels, len(body)) - 1
-        places.append(number * area + body[np.argpartition(races, first)[: first + 1]])
-    if not places:
+        positions.append(number * area + body[np.argpartition(races, first)[: first + 1]])
+    if not positions:
         raise InvalidMotionError("No training image shows a body.")
-    spots = np.concatenate(places)
-    number, rest = np.divmod(spots, area)
-    rows, columns = np.divmod(rest, seen.labels.shape[2])
-    views = pixel_features(seen.pictures, number, rows, columns, CAMERA)
-    return views, seen.labels.reshape(-1)[spots]
+    samples = np.concatenate(positions)
+    number, rest = np.divmod(samples, area)
+    rows, columns = np.divmod(rest, images.labels.shape[2])
+    views = pixel_features(images.images, number, rows, columns, CAMERA)
+    return views, images.labels.reshape(-1)[samples]

@@ -83,15 +83,15 @@ class ImageSource:
     settings: TrainingImagesSettings
     seed: int
 
-    def pictures(self, block: int) -> list[RenderedMesh]:
-        """Return pictures by `CAMERA`, (120, 160), of one shape of body in random poses."""
+    def render(self, block: int) -> list[RenderedMesh]:
+        """Return images by `CAMERA`, (120, 160), of one shape of body in random poses."""
         rng = np.random.default_rng((self.seed, block))
         body = vary_body(self.bodies, rng, self.settings)
         drawn = [self.mixer.draw(rng, self.settings.loose) for _ in range(IMAGES_PER_BODY)]
         poses = from_canonical(np.stack(drawn), body.skeleton, body.humanoid)
-        return [self._picture(body, pose, rng) for pose in poses]
+        return [self._render_pose(body, pose, rng) for pose in poses]
 
-    def _picture(
+    def _render_pose(
         self, body: SkinnedBody, pose: Array, rng: np.random.Generator
     ) -> RenderedMesh:
         vertices, _ = body.pose(pose, np.zeros(3))
@@ -100,17 +100,17 @@ class ImageSource:
             above = vertices[:, 2] > vertices[:, 2].min() + rng.uniform(0.0, FLOOR)
             triangles = triangles[above[triangles].all(axis=1)]
         vertices = _before_camera(vertices, rng, self.settings)
-        picture = render_mesh(vertices, triangles, body.vertex_parts, CAMERA)
+        image = render_mesh(vertices, triangles, body.vertex_parts, CAMERA)
         if rng.random() >= self.settings.noise:
-            return picture
-        usual, strength = SensorNoiseSettings(), rng.uniform(0.5, 1.5)
+            return image
+        default, strength = SensorNoiseSettings(), rng.uniform(0.5, 1.5)
         noise = replace(
-            usual,
-            jitter=0.5 * usual.jitter * strength,
-            disparity=usual.disparity * strength,
-            edge_holes=usual.edge_holes * strength,
+            default,
+            jitter=0.5 * default.jitter * strength,
+            disparity=default.disparity * strength,
+            edge_holes=default.edge_holes * strength,
         )
-        return add_sensor_noise(picture, CAMERA, rng, noise)
+        return add_sensor_noise(image, CAMERA, rng, noise)
 
 
 def image_source(
@@ -133,8 +133,8 @@ def image_source(
         raise InvalidMotionError("Bodies to learn pixels from must have the same joints.")
     rotations = np.concatenate([first.rotations_of(motion) for motion in poses])
     upright = remove_heading(rotations)
-    kept = select_diverse_poses(first, upright, settings.spacing, settings.n_poses)
-    still = Motion(first.skeleton, kept, np.zeros((len(kept), 3)), 1.0)
+    selected = select_diverse_poses(first, upright, settings.spacing, settings.n_poses)
+    still = Motion(first.skeleton, selected, np.zeros((len(selected), 3)), 1.0)
     mixer = PoseMixer(first, canonical_rotations(still, first.humanoid))
     return ImageSource(mixer, tuple(bodies), settings, seed)
 
@@ -145,13 +145,13 @@ def vary_body(
     """Return a random blend of two compatible bodies, scaled and clothed."""
     body = bodies[rng.integers(len(bodies))]
     other = bodies[rng.integers(len(bodies))]
-    share = rng.random()
+    fraction = rng.random()
     girth, height = np.exp(settings.shape * rng.standard_normal(2))
     scale = np.array([girth, girth, height])
     vertices, offsets = body.vertices, body.skeleton.offsets
     if other.vertices.shape == vertices.shape:
-        vertices = (1.0 - share) * vertices + share * other.vertices
-        offsets = (1.0 - share) * offsets + share * other.skeleton.offsets
+        vertices = (1.0 - fraction) * vertices + fraction * other.vertices
+        offsets = (1.0 - fraction) * offsets + fraction * other.skeleton.offsets
     dressed = CLOTHED * rng.uniform(0.0, settings.clothes, N_PARTS)
     dressed = np.minimum(dressed, dressed[MIRRORED_PARTS])
     vertices = vertices + dressed[body.vertex_parts, np.newaxis] * body.vertex_normals
@@ -171,25 +171,25 @@ def _before_camera(
     tilt and roll.
     """
     yaw = rng.uniform(-AHEAD, AHEAD) if rng.random() < 0.5 else rng.uniform(-np.pi, np.pi)
-    turn = _turn(yaw, 2)
+    rotation = _turn(yaw, 2)
     lowest, highest = vertices[:, 2].min(), vertices[:, 2].max()
     middle = np.array([0.0, 0.0, (lowest + highest) / 2.0])
-    points = (vertices - middle) @ turn.T
-    seen = np.stack([points[:, 0], -points[:, 2], points[:, 1]], axis=1)
+    points = (vertices - middle) @ rotation.T
+    camera_points = np.stack([points[:, 0], -points[:, 2], points[:, 1]], axis=1)
     distance = rng.uniform(settings.nearest, settings.farthest)
     height = rng.uniform(-0.6, 1.1)
     tilt = np.arctan2(height, distance) * rng.uniform(0.3, 1.1) + 0.05 * rng.standard_normal()
-    seen += [0.0, height, distance]
-    seen = seen @ (_turn(tilt, 0) @ _turn(0.05 * rng.standard_normal(), 2)).T
+    camera_points += [0.0, height, distance]
+    camera_points = camera_points @ (_turn(tilt, 0) @ _turn(0.05 * rng.standard_normal(), 2)).T
     aside = rng.uniform(-0.3, 0.3) * distance + 0.02 * rng.standard_normal()
     shift = np.array([aside, 0.05 * distance * rng.standard_normal(), 0.0])
-    return np.asarray(seen + shift)
+    return np.asarray(camera_points + shift)
 
 
 def _turn(angle: float, axis: int) -> Array:
     """Return the rotation matrix about a coordinate axis."""
     first, second = (axis + 1) % 3, (axis + 2) % 3
-    turn = np.eye(3)
-    turn[[first, second], [first, second]] = np.cos(angle)
-    turn[second, first], turn[first, second] = np.sin(angle), -np.sin(angle)
-    return turn
+    rotation = np.eye(3)
+    rotation[[first, second], [first, second]] = np.cos(angle)
+    rotation[second, first], rotation[first, second] = np.sin(angle), -np.sin(angle)
+    return rotation

@@ -25,10 +25,10 @@ def closest_surface_term(
     Parameters
     ----------
     hypothesis : Hypothesis
-    points : shape (n, 3), metres
+    points : shape (n, 3), meters
         Observed points, camera frame.
-    weight : float, per square metre
-    scale : float, metres
+    weight : float, per square meter
+    scale : float, meters
 
     References
     ----------
@@ -48,7 +48,7 @@ def closest_surface(hypothesis: Hypothesis, points: Array) -> tuple[Array, Array
     Returns
     -------
     (n,) array
-        Signed distance of each point, positive outside, metres; huge without a visible surface.
+        Signed distance of each point, positive outside, meters; huge without a visible surface.
     (n, 3) array
         Unit normals of the surface.
     (n,) array of int
@@ -58,7 +58,7 @@ def closest_surface(hypothesis: Hypothesis, points: Array) -> tuple[Array, Array
     scales = 1.0 / body.radii[:, [0, 1, 1]]
     starts, stops = body.capsule_ends.swapaxes(0, 1) * scales
     axes = stops - starts
-    # One array (n_points, n_capsules) per component: all steps run over whole arrays.
+    # One array (n_points, n_capsules) per component: all steps use complete arrays.
     rays, outward_components = [], []
     along = 0.0
     lengths = (axes**2).sum(axis=1)

@@ -10,7 +10,7 @@ Integers = NDArray[np.intp]
 SMOOTHING_PX = 1.0
 """Standard deviation, pixels."""
 STRONG_STEP_M, WEAK_STEP_M = 0.10, 0.04
-"""Hysteresis thresholds of the depth step, metres per pixel."""
+"""Hysteresis thresholds of the depth step, meters per pixel."""
 _BACKGROUND_OFFSET_M = 1.0
 """Assumed distance of the background behind the actor."""
 _SOBEL_GAIN = 8.0
@@ -69,7 +69,7 @@ def edge_pixels(depth: Array, nearest: Integers | None = None) -> Integers:
 
     Parameters
     ----------
-    depth : shape (height, width), metres
+    depth : shape (height, width), meters
         0 is background.
     nearest : int, shape (height * width,), optional
         The actor's pixel nearest to each pixel.

@@ -31,7 +31,7 @@ def depth_image_term(
     hypothesis : Hypothesis
     observation : Observation
     groups : PixelGroups
-    weight : float, per square metre
+    weight : float, per square meter
         1 / sigma^2 of one pixel.
 
     References
@@ -41,11 +41,11 @@ def depth_image_term(
     """
     chosen = groups.comparable
     residuals = (
-        observation.flat[hypothesis.picture.pixels[chosen]] - hypothesis.picture.depths[chosen]
+        observation.flat[hypothesis.image.pixels[chosen]] - hypothesis.image.depths[chosen]
     )
     return SurfaceRows(
         hypothesis.points[chosen], depth_gradients(hypothesis)[chosen], residuals,
-        np.full(len(chosen), weight), hypothesis.picture.capsules[chosen],
+        np.full(len(chosen), weight), hypothesis.image.capsules[chosen],
     )  # fmt: skip
 
 

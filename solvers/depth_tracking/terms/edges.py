@@ -24,7 +24,7 @@ def edge_term(hypothesis: Hypothesis, observation: Observation, weight: float) -
     ----------
     hypothesis : Hypothesis
     observation : Observation
-    weight : float, per square metre
+    weight : float, per square meter
 
     References
     ----------
@@ -34,10 +34,10 @@ def edge_term(hypothesis: Hypothesis, observation: Observation, weight: float) -
     width = observation.camera.width
     reach = max(1, round(WINDOW_RADIUS_PX * width / 320.0))
     observed_pixels = observation.edges
-    rendered = hypothesis.index_picture[edge_pixels(hypothesis.picture.depth_picture())]
+    rendered = hypothesis.index_image[edge_pixels(hypothesis.image.depth_image())]
     if not (len(observed_pixels) and len(rendered)):
         return NO_ROWS
-    pixels = hypothesis.picture.pixels[rendered]
+    pixels = hypothesis.image.pixels[rendered]
     rows = np.abs(observed_pixels[:, np.newaxis] // width - pixels // width)
     columns = np.abs(observed_pixels[:, np.newaxis] % width - pixels % width)
     targets, points = observation.points_at(observed_pixels), hypothesis.points[rendered]
@@ -49,5 +49,5 @@ def edge_term(hypothesis: Hypothesis, observation: Observation, weight: float) -
     moved = rendered[best[has_match]]
     return rows_toward_targets(
         hypothesis.points[moved], targets[has_match], np.full(len(moved), weight),
-        hypothesis.picture.capsules[moved],
+        hypothesis.image.capsules[moved],
     )  # fmt: skip

@@ -33,15 +33,15 @@ def extra_depth_term(
     hypothesis : Hypothesis
     observation : Observation
     groups : PixelGroups
-    weight : float, per square metre
+    weight : float, per square meter
         1 / sigma^2 of one pair.
-    limit : float, metres
+    limit : float, meters
     """
     if not (len(hypothesis.points) and len(observation.points)):
         return NO_ROWS
     pushed_points = np.concatenate([groups.off_actor, groups.too_near])
-    behind = hypothesis.picture.pixels[groups.too_far]
-    pulling = observation.index_picture[np.concatenate([groups.uncovered, behind])]
+    behind = hypothesis.image.pixels[groups.too_far]
+    pulling = observation.index_image[np.concatenate([groups.uncovered, behind])]
     rendered_tree = cKDTree(hypothesis.points, balanced_tree=False, compact_nodes=False)
     pushes = _one_to_one(
         pushed_points, *observation.tree.query(hypothesis.points[pushed_points])
@@ -53,7 +53,7 @@ def extra_depth_term(
     moved, targets = moved[near], targets[near]
     return rows_toward_targets(
         hypothesis.points[moved], targets, np.full(len(moved), weight),
-        hypothesis.picture.capsules[moved],
+        hypothesis.image.capsules[moved],
     )  # fmt: skip
 
 

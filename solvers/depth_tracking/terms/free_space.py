@@ -31,19 +31,19 @@ def off_actor_term(
     hypothesis : Hypothesis
     observation : Observation
     groups : PixelGroups
-    weight : float, per square metre
-    scale : float, metres
+    weight : float, per square meter
+    scale : float, meters
     """
     chosen = groups.off_actor
     points = hypothesis.points[chosen]
-    nearest = observation.nearest_pixel[hypothesis.picture.pixels[chosen]]
+    nearest = observation.nearest_pixel[hypothesis.image.pixels[chosen]]
     lateral_offsets = points[:, 2:] * rays_through_pixels(observation.camera, nearest) - points
     squared_distances = lateral_offsets[:, 0] ** 2 + lateral_offsets[:, 1] ** 2
     weights = weight / (1.0 + squared_distances / scale**2) ** 2
     return SurfaceRows(
         np.repeat(points, 2, axis=0), np.tile(_IMAGE_AXES, (len(points), 1)),
         lateral_offsets[:, :2].ravel(), np.repeat(weights, 2),
-        np.repeat(hypothesis.picture.capsules[chosen], 2),
+        np.repeat(hypothesis.image.capsules[chosen], 2),
     )  # fmt: skip
 
 
@@ -61,8 +61,8 @@ def too_near_term(
     hypothesis : Hypothesis
     observation : Observation
     groups : PixelGroups
-    weight : float, per square metre
-    scale : float, metres
+    weight : float, per square meter
+    scale : float, meters
         As in `off_actor_term`.
     """
     chosen = groups.too_near
@@ -70,5 +70,5 @@ def too_near_term(
     distances, nearest = observation.tree.query(points)
     weights = weight / (1.0 + (distances / scale) ** 2) ** 2
     return rows_toward_targets(
-        points, observation.points[nearest], weights, hypothesis.picture.capsules[chosen]
+        points, observation.points[nearest], weights, hypothesis.image.capsules[chosen]
     )

@@ -31,33 +31,33 @@ class Hypothesis:
     pose : shape (36,)
     frames : shape (17, 4, 4)
         Segment transforms in this pose.
-    picture : BodyImage
+    image : BodyImage
     """
 
     body: BodyModel
     pose: Array
     frames: Array
-    picture: BodyImage
+    image: BodyImage
 
     @cached_property
     def segments(self) -> Integers:
         """Segment of each visible point, shape (n,)."""
-        return self.picture.segments
+        return self.image.segments
 
     @cached_property
     def rays(self) -> Array:
-        """Rays of the visible points at a depth of one metre, shape (n, 3)."""
-        return rays_through_pixels(self.picture.camera, self.picture.pixels)
+        """Rays of the visible points at a depth of one meter, shape (n, 3)."""
+        return rays_through_pixels(self.image.camera, self.image.pixels)
 
     @cached_property
     def points(self) -> Array:
-        """Visible points of the surface, shape (n, 3), metres."""
-        return self.rays * self.picture.depths[:, np.newaxis]
+        """Visible points of the surface, shape (n, 3), meters."""
+        return self.rays * self.image.depths[:, np.newaxis]
 
     @cached_property
     def normals(self) -> Array:
         """Outward unit normals at the visible points, shape (n, 3)."""
-        return capsule_normals(self.body, self.frames, self.points, self.picture.capsules)
+        return capsule_normals(self.body, self.frames, self.points, self.image.capsules)
 
     @cached_property
     def twists(self) -> Array:
@@ -65,11 +65,11 @@ class Hypothesis:
         return segment_twists(self.pose, self.frames)
 
     @cached_property
-    def index_picture(self) -> Integers:
+    def index_image(self) -> Integers:
         """Index of the visible point of each pixel, -1 for none, shape (height * width,)."""
-        camera = self.picture.camera
+        camera = self.image.camera
         indices = np.full(camera.width * camera.height, -1)
-        indices[self.picture.pixels] = np.arange(len(self.picture.pixels))
+        indices[self.image.pixels] = np.arange(len(self.image.pixels))
         return indices
 
 
@@ -108,7 +108,7 @@ def capsule_offsets(
     (n,) array
         Distance from the axis in units of the radius there: 1 on the surface.
     (n, 3) array
-        Gradient of it in the camera's frame, per metre.
+        Gradient of it in the camera's frame, per meter.
     """
     frame = frames[CAPSULE_SEGMENTS[capsules]]
     scales = 1.0 / body.radii[capsules][:, [0, 1, 1]]

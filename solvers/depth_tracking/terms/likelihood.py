@@ -61,5 +61,5 @@ def likelihood_rows(
 
 
 def pixel_area(observation: Observation) -> float:
-    """Return the surface of a pixel at the actor's distance, square metres."""
+    """Return the surface of a pixel at the actor's distance, square meters."""
     return observation.pixel_area

@@ -27,7 +27,7 @@ class Observation:
     Attributes
     ----------
     camera : Camera
-    depth : shape (height, width), metres
+    depth : shape (height, width), meters
     read_color : callable, or None
         Returns the colors of the pixels, as in `color`. Only terms that compare colors read
         them, so other terms do not depend on damaged or slow color files.
@@ -59,11 +59,11 @@ class Observation:
 
     @cached_property
     def points(self) -> Array:
-        """Observed points of the actor, shape (n, 3), metres."""
+        """Observed points of the actor, shape (n, 3), meters."""
         return self.points_at(self.pixels)
 
     @cached_property
-    def index_picture(self) -> Integers:
+    def index_image(self) -> Integers:
         """Index in `points` of each pixel, -1 for none, shape (height * width,)."""
         indices = np.full(self.flat.shape, -1)
         indices[self.pixels] = np.arange(len(self.pixels))
@@ -71,7 +71,7 @@ class Observation:
 
     @cached_property
     def pixel_area(self) -> float:
-        """Surface of a pixel at the actor's distance, square metres."""
+        """Surface of a pixel at the actor's distance, square meters."""
         distance = float(np.median(self.points[:, 2]))
         return distance**2 / (self.camera.fx * self.camera.fy)
 
@@ -103,7 +103,7 @@ class Observation:
         return edge_pixels(self.depth, self.nearest_pixel)
 
     def points_at(self, pixels: Integers) -> Array:
-        """Return the observed points (n, 3), metres, at pixels (n,)."""
+        """Return the observed points (n, 3), meters, at pixels (n,)."""
         rays = rays_through_pixels(self.camera, pixels)
         return rays * self.flat[pixels][:, np.newaxis]
 
@@ -130,7 +130,7 @@ def observe(depth: DepthRecording, frame: int, picture_width: int) -> Observatio
 
 
 def rays_through_pixels(camera: Camera, pixels: Integers) -> Array:
-    """Return the rays (n, 3) of pixels (n,) at a depth of one metre."""
+    """Return the rays (n, 3) of pixels (n,) at a depth of one meter."""
     rows, columns = np.divmod(pixels, camera.width)
     rays = np.ones((len(pixels), 3))
     rays[:, 0] = (columns - camera.cx) / camera.fx

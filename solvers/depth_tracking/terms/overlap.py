@@ -37,7 +37,7 @@ def separation_term(hypothesis: Hypothesis, weight: float) -> SurfaceRows:
     Parameters
     ----------
     hypothesis : Hypothesis
-    weight : float, per square metre
+    weight : float, per square meter
         Weight of one pair.
     """
     body, frames = hypothesis.body, hypothesis.frames[CAPSULE_SEGMENTS]

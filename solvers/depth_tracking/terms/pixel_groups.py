@@ -39,12 +39,12 @@ class PixelGroups:
 
 
 def group_pixels(hypothesis: Hypothesis, observation: Observation, limit: float) -> PixelGroups:
-    """Group pixels; depths that differ by more than `limit`, metres, show different parts."""
-    rendered = hypothesis.picture.pixels
+    """Group pixels; depths that differ by more than `limit`, meters, show different parts."""
+    rendered = hypothesis.image.pixels
     observed = observation.flat[rendered]
     on_actor = observed > 0.0
-    difference = hypothesis.picture.depths - observed
-    uncovered = observation.pixels[hypothesis.index_picture[observation.pixels] < 0]
+    difference = hypothesis.image.depths - observed
+    uncovered = observation.pixels[hypothesis.index_image[observation.pixels] < 0]
     return PixelGroups(
         np.flatnonzero(on_actor & (np.abs(difference) <= limit)),
         np.flatnonzero(~on_actor),

@@ -29,22 +29,22 @@ def silhouette_term(
     camera = observation.camera
     silhouette = np.zeros((camera.height + 2, camera.width + 2))
     inner = silhouette[1:-1, 1:-1]
-    inner[:] = (hypothesis.index_picture >= 0).reshape(inner.shape)
+    inner[:] = (hypothesis.index_image >= 0).reshape(inner.shape)
     across = 0.5 * (silhouette[1:-1, 2:] - silhouette[1:-1, :-2]).ravel()
     down = 0.5 * (silhouette[2:, 1:-1] - silhouette[:-2, 1:-1]).ravel()
-    pixels = hypothesis.picture.pixels
+    pixels = hypothesis.image.pixels
     chosen = np.flatnonzero((across[pixels] != 0.0) | (down[pixels] != 0.0))
     pixels, points = pixels[chosen], hypothesis.points[chosen]
     residuals = (observation.flat[pixels] > 0.0) - 1.0
     return SurfaceRows(
         points, -point_gradients(across[pixels], down[pixels], points, hypothesis),
-        residuals, np.full(len(chosen), weight), hypothesis.picture.capsules[chosen],
+        residuals, np.full(len(chosen), weight), hypothesis.image.capsules[chosen],
     )  # fmt: skip
 
 
 def point_gradients(across: Array, down: Array, points: Array, hypothesis: Hypothesis) -> Array:
-    """Return grad . dx/dp (n, 3): image gradients per metre of point movement."""
-    camera = hypothesis.picture.camera
+    """Return grad . dx/dp (n, 3): image gradients per meter of point movement."""
+    camera = hypothesis.image.camera
     x, y, z = points.T
     right, lower = across * camera.fx / z, down * camera.fy / z
     return np.stack([right, lower, -(right * x + lower * y) / z], axis=1)

@@ -53,7 +53,7 @@ def surface_term(
     hypothesis : Hypothesis
     observation : Observation
     previous : PreviousFrame or None
-    weight : float, per square metre
+    weight : float, per square meter
 
     References
     ----------
@@ -62,7 +62,7 @@ def surface_term(
     """
     camera = observation.camera
     scale = camera.width / 320.0
-    rows, columns = np.divmod(hypothesis.picture.pixels, camera.width)
+    rows, columns = np.divmod(hypothesis.image.pixels, camera.width)
     step = max(1, round(GRID_STEP_PX * scale))
     chosen = np.flatnonzero((rows % step == 0) & (columns % step == 0))
     pixels = window_pixels(
@@ -82,7 +82,7 @@ def surface_term(
     targets = points + offsets[each, best]
     return rows_toward_targets(
         points[has_match], targets[has_match], np.full(int(has_match.sum()), weight),
-        hypothesis.picture.capsules[chosen[has_match]],
+        hypothesis.image.capsules[chosen[has_match]],
     )  # fmt: skip
 
 
@@ -117,7 +117,7 @@ def previous_intensities(
     hypothesis: Hypothesis, chosen: Integers, previous: PreviousFrame
 ) -> Array:
     """Return the intensities of points in the previous frame, NaN if occluded."""
-    segments = CAPSULE_SEGMENTS[hypothesis.picture.capsules[chosen]]
+    segments = CAPSULE_SEGMENTS[hypothesis.image.capsules[chosen]]
     current, previous_frames = hypothesis.frames[segments], previous.frames[segments]
     local = np.einsum(
         "nji,nj->ni", current[:, :3, :3], hypothesis.points[chosen] - current[:, :3, 3]

@@ -16,7 +16,7 @@ def _weight(default: float, help: str, unit: str = "1/m2") -> float:
 class TrackerSettings(Settings):
     """Weights of the terms of the tracker, and its solver. A weight of 0 disables a term.
 
-    Pixel weights apply to pixels that cover 4 square centimetres. They scale with distance and
+    Pixel weights apply to pixels that cover 4 square centimeters. They scale with distance and
     resolution.
     """
 
@@ -109,7 +109,7 @@ WZC12 = TrackerSettings(
     limit_weight=0.0, natural_weight=0.0, ankle_weight=NO_ANKLES, damping=1e-6,
     longest_step=10.0, accept_only_better=False,
 )  # fmt: skip
-"""Terms and standard deviations of [WZC12] appendix A, in metres and radians; each pixel
+"""Terms and standard deviations of [WZC12] appendix A, in meters and radians; each pixel
 here counts as four of their pixels (320 columns)."""
 
 LOU12 = TrackerSettings(

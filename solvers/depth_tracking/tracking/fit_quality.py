@@ -26,7 +26,7 @@ class FitQuality(NamedTuple):
     """Measures of the fit in one frame."""
 
     residual: float
-    """Mean distance in depth where body and actor overlap, metres; NaN without overlap."""
+    """Mean distance in depth where body and actor overlap, meters; NaN without overlap."""
     coverage: float
     """Intersection over union of body and actor [WZC12] section 5."""
     score: float
@@ -59,9 +59,9 @@ def fit_quality(
     body : BodyModel
     registered : Registered
     observation : Observation
-    limit : float, metres
+    limit : float, meters
     """
-    image = registered.hypothesis.picture
+    image = registered.hypothesis.image
     observed = observation.flat[image.pixels]
     both = observed > 0.0
     overlap = int(both.sum())
@@ -92,7 +92,7 @@ def _agreement(registered: Registered, observation: Observation, limit: float) -
 
 
 def _joint_variances(body: BodyModel, registered: Registered) -> Array:
-    """Return the variance of each joint position, square metres, from the normal equations."""
+    """Return the variance of each joint position, square meters, from the normal equations."""
     hypothesis = registered.hypothesis
     segment_frames = hypothesis.frames[JOINT_SEGMENTS]
     positions = segment_frames[:, :3, 3].copy()

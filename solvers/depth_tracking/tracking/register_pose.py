@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 Prior = Callable[[Array], PoseEquations]
 
 _MIN_STEP = 1e-3
-"""A shorter step, radians or metres, ends the search."""
+"""A shorter step, radians or meters, ends the search."""
 _DAMPING_INCREASE, _DAMPING_DECREASE = 5.0, 0.3
 _METRES_PER_RADIAN = 0.5
 """Ratio of the translation limit of the hips to the rotation limit."""

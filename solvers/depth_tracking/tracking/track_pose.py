@@ -37,11 +37,11 @@ class TrackedMotion:
     Attributes
     ----------
     poses : shape (n_frames, 36)
-        Coordinates in the order of `COORDINATES`; metres and radians, camera frame.
+        Coordinates in the order of `COORDINATES`; meters and radians, camera frame.
     joints : Tracks
         The `JOINTS`, named by humanoid roles, in the camera frame (x right, y down,
         z forward), with the confidence of each joint and frame.
-    residual : shape (n_frames,), metres
+    residual : shape (n_frames,), meters
         Mean distance in depth where body and actor overlap; NaN without an actor.
     coverage : shape (n_frames,)
         Intersection over union of the pixels of body and actor.

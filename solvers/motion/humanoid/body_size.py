@@ -12,7 +12,7 @@ ADULT_BONE_LENGTHS_M = np.array(
     + 2 * [0.19, 0.28, 0.25, 0.09]
     + 2 * [0.10, 0.42, 0.40, 0.15]
 )  # fmt: skip
-"""Distance of each joint from its parent in an adult of 1.75 m, metres (fractions of stature by
+"""Distance of each joint from its parent in an adult of 1.75 m, meters (fractions of stature by
 Drillis and Contini 1966; shoulders and hips as the Kinect places them)."""
 ADULT_STATURE_M = 1.75
 """Stature of that adult."""
@@ -24,7 +24,7 @@ MIN_RELIABLE_FRAMES = 15
 
 
 def segment_lengths(positions: Array) -> Array:
-    """Return the distance of each joint from its parent, shape (n_frames, 20), metres."""
+    """Return the distance of each joint from its parent, shape (n_frames, 20), meters."""
     parents = np.maximum(PARENTS, 0)
     return np.asarray(np.linalg.norm(positions - positions[..., parents, :], axis=-1))
 
@@ -34,7 +34,7 @@ def estimate_body_scale(positions: Array) -> float:
 
     Parameters
     ----------
-    positions : shape (n_frames, 20, 3), metres
+    positions : shape (n_frames, 20, 3), meters
     """
     bones = np.array(PARENTS) >= 0
     ratios = segment_lengths(positions)[:, bones] / ADULT_BONE_LENGTHS_M[bones]
@@ -42,7 +42,7 @@ def estimate_body_scale(positions: Array) -> float:
 
 
 def estimate_bone_lengths(positions: Array, reliability: Array | None = None) -> Array:
-    """Return the bone lengths of an actor, shape (20,), metres: medians of reliable frames.
+    """Return the bone lengths of an actor, shape (20,), meters: medians of reliable frames.
 
     A bone that is never observed has the adult's length, scaled by the other bones.
     """
@@ -75,9 +75,9 @@ def resize_postures(postures: Array, lengths: Array, scale: float | None = None)
 
     Parameters
     ----------
-    postures : shape (..., 20, 3), metres
+    postures : shape (..., 20, 3), meters
         NaN: missing.
-    lengths : shape (20,), metres
+    lengths : shape (20,), meters
     scale : float, optional
         Scale of the displacement from the nearest observed ancestor, for joints with a missing
         parent. None: all descendants of a missing joint become NaN.

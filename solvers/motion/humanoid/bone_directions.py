@@ -65,7 +65,7 @@ def positions_from_directions(vectors: NDArray[Real], lengths: NDArray[Real]) ->
     Parameters
     ----------
     vectors : shape (..., 20, 3)
-    lengths : shape (20,), metres
+    lengths : shape (20,), meters
     """
     result = np.zeros_like(vectors)
     for joint in range(1, N_JOINTS):

@@ -14,13 +14,13 @@ def fit_bone_lengths(positions: NDArray[np.float64], skeleton: Skeleton) -> NDAr
 
     Parameters
     ----------
-    positions : shape (n_frames, n_joints, 3), metres
+    positions : shape (n_frames, n_joints, 3), meters
         Joints of a body with this skeleton's hierarchy; NaN: missing.
     skeleton : Skeleton
 
     Returns
     -------
-    NDArray, shape (n_frames, n_joints, 3), metres
+    NDArray, shape (n_frames, n_joints, 3), meters
         The root does not move and every bone keeps its direction. A bone of length 0 takes the
         direction of the rest pose. All descendants of a missing joint are NaN.
 

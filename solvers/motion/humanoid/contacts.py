@@ -100,7 +100,7 @@ def contacts_of_points(
 
     Parameters
     ----------
-    positions : shape (n_frames, 2, 2, 3), metres
+    positions : shape (n_frames, 2, 2, 3), meters
         Left and right, ankle and toes (the same point twice if there is only one).
     frame_rate : float, hertz
     size : float
@@ -157,7 +157,7 @@ def foot_points(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.intp]:
 
 
 def leg_length(skeleton: Skeleton, humanoid: HumanoidMap) -> float:
-    """Return the mean length of both legs from hip to ankle along the bones, in metres.
+    """Return the mean length of both legs from hip to ankle along the bones, in meters.
 
     Legs without hip or knee get a length of 0.9 m.
     """

@@ -91,15 +91,15 @@ def sides_of_names(names: Sequence[str]) -> list[str]:
 
 def _match_table(row: Sequence[str], keys: dict[Key, str]) -> dict[str, str]:
     """Return the joints that one table matches, by role."""
-    found: dict[str, str] = {}
+    roles: dict[str, str] = {}
     for column, spellings in zip(COLUMNS, row, strict=True):
         for side in ("",) if column in CENTRAL_ROLES else ("left", "right"):
             for spelling in spellings.split():
                 joint = keys.get((side, "".join(_words(spelling))))
-                if joint is not None and joint not in found.values():
-                    found[side + column] = joint
+                if joint is not None and joint not in roles.values():
+                    roles[side + column] = joint
                     break
-    return found
+    return roles
 
 
 def _keys(names: Sequence[str]) -> dict[Key, str]:
@@ -192,7 +192,7 @@ def _words(name: str) -> list[str]:
     return [word.lower() for word in WORD.findall(plain)]
 
 
-def _fingers(names: Sequence[str], found: Mapping[str, str]) -> dict[str, str]:
+def _fingers(names: Sequence[str], roles: Mapping[str, str]) -> dict[str, str]:
     """Return the finger joints by role; a finger of one joint only (CMU) has no role.
 
     If several joints match one role (DEF- and ORG- bones), the name most similar to the hand's
@@ -211,7 +211,7 @@ def _fingers(names: Sequence[str], found: Mapping[str, str]) -> dict[str, str]:
             )
     return {
         side + finger + _part(finger, part): _best_match(
-            found.get(f"{side}Hand", ""), candidates
+            roles.get(f"{side}Hand", ""), candidates
         )
         for (side, finger), joints in candidates_by_finger.items()
         if len(joints) > 1

@@ -36,21 +36,21 @@ class NormalizedPostures:
 
     Attributes
     ----------
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
         Relative to the hips; the actor faces -Y, the actor's left is +X. NaN: missing.
-    places : shape (n_frames, 3), metres
+    hip_positions : shape (n_frames, 3), meters
         Positions of the hips.
     headings : shape (n_frames,), radians
         Rotation about Z that restores the heading.
     """
 
     postures: Array
-    places: Array
+    hip_positions: Array
     headings: Array
 
-    def put_back(self, postures: Array) -> Array:
+    def to_world(self, postures: Array) -> Array:
         """Return postures of these frames in world space, same shape."""
-        return rotate_about_vertical(postures, self.headings) + self.places[:, None]
+        return rotate_about_vertical(postures, self.headings) + self.hip_positions[:, None]
 
 
 def normalize_postures(
@@ -63,7 +63,7 @@ def normalize_postures(
 
     Parameters
     ----------
-    positions : shape (n_frames, 20, 3), metres
+    positions : shape (n_frames, 20, 3), meters
     frame_rate : float, hertz
     weights : shape (n_frames, 20), 0 to 1, optional
         Reliability of each joint.
@@ -71,7 +71,7 @@ def normalize_postures(
         Whether later frames are used for the heading and for missing hips.
     """
     reliability = np.ones(positions.shape[:2]) if weights is None else weights
-    places = np.nan_to_num(
+    hip_positions = np.nan_to_num(
         fill_gaps(positions[:, HIPS], reliability[:, HIPS] > 0.0, ahead=ahead)
     )
     lateral = np.zeros((len(positions), 2))
@@ -92,7 +92,9 @@ def normalize_postures(
     unit = smooth_gaussian(np.nan_to_num(unit), HEADING_SMOOTHING_S * frame_rate, ahead=ahead)
     headings = np.arctan2(unit[:, 1], unit[:, 0])
     return NormalizedPostures(
-        rotate_about_vertical(positions - places[:, None], -headings), places, headings
+        rotate_about_vertical(positions - hip_positions[:, None], -headings),
+        hip_positions,
+        headings,
     )
 
 

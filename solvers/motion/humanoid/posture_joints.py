@@ -85,7 +85,7 @@ def posture_positions(recording: JointRecording | Tracks) -> Array:
 
 
 def postures_from_motion(motion: Motion, humanoid_map: HumanoidMap | None = None) -> Array:
-    """Return the positions of the posture joints of a motion, shape (n_frames, 20, 3), metres.
+    """Return the positions of the posture joints of a motion, shape (n_frames, 20, 3), meters.
 
     "chest" is the common ancestor of both arms, "spine" the joint nearest to the middle between
     it and the hips, "HandEnd" the farthest descendant of the wrist within the hand.

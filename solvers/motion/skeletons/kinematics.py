@@ -16,7 +16,7 @@ class WorldPoses(NamedTuple):
     rotations: NDArray[np.float64]
     """Unit quaternions w x y z, rest pose to world, shape (n_frames, n_joints, 4)."""
     positions: NDArray[np.float64]
-    """Joint centers, shape (n_frames, n_joints, 3), metres."""
+    """Joint centers, shape (n_frames, n_joints, 3), meters."""
 
 
 def forward_kinematics(motion: Motion) -> WorldPoses:
@@ -36,7 +36,7 @@ def world_poses(
     skeleton : Skeleton
     rotations : shape (..., n_joints, 4)
         Local unit quaternions w x y z.
-    root_positions : shape (..., 3), metres
+    root_positions : shape (..., 3), meters
 
     Returns
     -------

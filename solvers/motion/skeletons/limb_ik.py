@@ -58,7 +58,7 @@ def reach(
     motion : Motion
     limb : upper, lower and end joint
         Indices such as those of hip, knee and ankle, each an ancestor of the next.
-    targets : shape (n_frames, 3), metres, world space
+    targets : shape (n_frames, 3), meters, world space
         NaN: the pose is unchanged.
     settings : ReachSettings
     keep_orientation : bool

@@ -26,7 +26,7 @@ class Motion:
     rotations : float array, shape (n_frames, n_joints, 4), unit quaternions w x y z
         Local: rotates the parent's frame to the joint's frame; identity in the rest pose.
         Where any component is NaN, all four are.
-    root_positions : float array, shape (n_frames, 3), metres, world space, Z up
+    root_positions : float array, shape (n_frames, 3), meters, world space, Z up
     frame_rate : float, hertz
         Frame i is at time i / frame_rate.
     """

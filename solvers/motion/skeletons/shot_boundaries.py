@@ -38,9 +38,9 @@ def find_shot_boundaries(recording: Motion | Tracks) -> tuple[int, ...]:
 
     Most takes have one shot. Many recordings begin with a T-pose of one frame; others were
     joined, or the sensor was restarted. At a boundary nearly all joints jump at once, much
-    farther than from frame to frame around it, and stay there. No boundary is a joint that is
-    lost and found, a body that jumps away and returns within a quarter of a second, or, in a
-    motion but not in tracks, a displacement of the complete body in one pose.
+    farther than between other frames, and stay there. Dropouts of a joint and jumps of a body
+    that returns within a quarter of a second are no boundaries. In a motion, but not in tracks,
+    neither is a displacement of the complete body in one pose.
     """
     min_step = MIN_STEP_M if isinstance(recording, Tracks) else MIN_STEP_RAD
     steps = _all_steps(recording)

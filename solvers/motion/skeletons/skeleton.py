@@ -26,7 +26,7 @@ class Skeleton:
     parents : tuple of int, length n_joints
         Index of each joint's parent, which comes before it; -1 for the root, which is joint 0
         and the only one without a parent.
-    offsets : float array, shape (n_joints, 3), metres
+    offsets : float array, shape (n_joints, 3), meters
         From the parent's joint center to the joint's, in the rest pose. The root's is its rest
         position.
     """
@@ -98,7 +98,7 @@ class Skeleton:
 
     @cached_property
     def rest_positions(self) -> NDArray[np.float64]:
-        """Joint centers in the rest pose, shape (n_joints, 3), metres."""
+        """Joint centers in the rest pose, shape (n_joints, 3), meters."""
         positions = self.offsets.copy()
         for joint, parent in enumerate(self.parents[1:], start=1):
             positions[joint] += positions[parent]
@@ -106,7 +106,7 @@ class Skeleton:
 
     @property
     def height(self) -> float:
-        """Vertical extent of the rest pose, metres."""
+        """Vertical extent of the rest pose, meters."""
         return float(np.ptp(self.rest_positions[:, 2]))
 
     def index(self, name: str) -> int:

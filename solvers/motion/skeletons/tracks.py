@@ -18,7 +18,7 @@ class Tracks:
     Attributes
     ----------
     names : tuple of str, length n_points, all different
-    positions : float array, shape (n_frames, n_points, 3), metres, world space, Z up
+    positions : float array, shape (n_frames, n_points, 3), meters, world space, Z up
     frame_rate : float, hertz
     confidence : float array, shape (n_frames, n_points), 0 to 1, or None
         Confidence of the sensor in each point.

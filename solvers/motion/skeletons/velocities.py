@@ -11,12 +11,12 @@ def linear_velocities(positions: NDArray[np.float64], frame_rate: float) -> NDAr
 
     Parameters
     ----------
-    positions : shape (n_frames, ..., 3), metres
+    positions : shape (n_frames, ..., 3), meters
     frame_rate : float, hertz
 
     Returns
     -------
-    NDArray, shape (n_frames, ..., 3), metres per second
+    NDArray, shape (n_frames, ..., 3), meters per second
         Exact for constant acceleration. One-sided at the ends and next to gaps. NaN where the
         point is missing or has no observed neighbor; zero for a recording of one frame.
     """

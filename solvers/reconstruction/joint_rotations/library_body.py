@@ -97,14 +97,14 @@ def bone_frames(postures: Array) -> dict[int, Array]:
 
 
 def bone_axis_corrections(
-    observed: Array, trust: Array, directions: Array, lengths: Array
+    observed: Array, reliability: Array, directions: Array, lengths: Array
 ) -> Array:
     """Return the rotations of the tracker's bone directions relative to the library's.
 
     Parameters
     ----------
     observed : shape (n_frames, 20, 3), meters
-    trust : shape (n_frames, 20)
+    reliability : shape (n_frames, 20)
     directions : shape (n_frames, 20, 3)
         Directions of the library pose that matches each observed pose.
     lengths : shape (20,), meters
@@ -126,7 +126,7 @@ def bone_axis_corrections(
             "fji,fj->fi", observed_frames[bone], direction / np.maximum(size, 1e-6)
         )
         library_local = np.einsum("fji,fj->fi", library_frames[bone], directions[:, bone])
-        weight = np.minimum(trust[:, bone], trust[:, above])
+        weight = np.minimum(reliability[:, bone], reliability[:, above])
         is_known = np.isfinite(observed_local).all(axis=-1) & np.isfinite(library_local).all(
             axis=-1
         )

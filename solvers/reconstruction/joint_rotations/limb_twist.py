@@ -44,7 +44,7 @@ class Limb(NamedTuple):
     upper: int
     lower: int
     end: int
-    bends_towards: tuple[float, float, float]
+    flexion_direction: tuple[float, float, float]
     role: str = ""
     """Role of the upper joint."""
 
@@ -71,13 +71,13 @@ class HingeAxes(NamedTuple):
     ----------
     vectors : shape (n_frames, 3), optional
         In the world; the length is their certainty. None without a library.
-    alone : bool
+    ignore_flexion : bool
         Whether to use only these, frame by frame; unknown hinges then mean zero axial
         rotation.
     """
 
     vectors: Array | None = None
-    alone: bool = False
+    ignore_flexion: bool = False
 
 
 UNKNOWN_HINGES = HingeAxes()
@@ -118,8 +118,8 @@ def rotations_from_flexion(
     """
     along = unit_vectors(skeleton.offsets[limb.lower])
     axis = rotate(rotations, along)
-    hinge = rotate(rotations, unit_vectors(np.cross(along, limb.bends_towards)))
-    normal, bend = measure_flexion(
+    hinge = rotate(rotations, unit_vectors(np.cross(along, limb.flexion_direction)))
+    normal, flexion = measure_flexion(
         axis, unit_vectors(positions[:, limb.end] - positions[:, limb.lower])
     )
     limb_reliability = np.min(reliability[:, [limb.upper, limb.lower, limb.end]], axis=1)
@@ -128,7 +128,7 @@ def rotations_from_flexion(
         library_twists = _angles_or_zero(axis, hinge, hinges.vectors) * np.linalg.norm(
             hinges.vectors, axis=-1
         )
-    if hinges.alone:
+    if hinges.ignore_flexion:
         return _rotate_about_axis(rotations, axis, np.angle(library_twists))
     expected = ExpectedTwists(
         library_twists, LIBRARY_WEIGHT * (1.0 - (1.0 - OBSERVED_FRACTION) * limb_reliability)
@@ -138,15 +138,15 @@ def rotations_from_flexion(
         axis,
         hinge,
         normal,
-        flexion_weights(bend) * limb_reliability,
+        flexion_weights(flexion) * limb_reliability,
         frame_rate,
         expected,
     )
 
 
-def flexion_weights(bends: Array) -> Array:
+def flexion_weights(flexion: Array) -> Array:
     """Return the weight of the plane of a flexion angle in radians: 0 to 1."""
-    return np.asarray(np.clip((bends - MIN_FLEXION) / (FULL_FLEXION - MIN_FLEXION), 0, 1))
+    return np.asarray(np.clip((flexion - MIN_FLEXION) / (FULL_FLEXION - MIN_FLEXION), 0, 1))
 
 
 def rotations_from_thumb(
@@ -218,11 +218,11 @@ def smooth_direction(
 def _palm_weights(observed: Array, local: Array, forward: Array) -> Array:
     """Return 0 for offsets too short or too strongly flexed for a palm, up to 1 for others."""
     length = np.linalg.norm(observed, axis=-1)
-    bend = np.arccos(np.clip(local @ unit_vectors(forward), -1.0, 1.0))
+    flexion = np.arccos(np.clip(local @ unit_vectors(forward), -1.0, 1.0))
     length_weights = np.clip((length - MIN_PALM_M) / (FULL_PALM_M - MIN_PALM_M), 0.0, 1.0)
     return np.asarray(
         length_weights
-        * np.clip((MAX_PALM_FLEXION - bend) / (MAX_PALM_FLEXION - FULL_PALM_FLEXION), 0.0, 1.0)
+        * np.clip((MAX_PALM_FLEXION - flexion) / (MAX_PALM_FLEXION - FULL_PALM_FLEXION), 0, 1)
     )
 
 

@@ -50,7 +50,7 @@ def motion_from_positions(
         with clavicles and a lower-spine joint (`add_clavicle_joints`).
     twists : LimbTwists, optional
         Axial rotations from similar library poses, weighted against the flexion planes; the
-        only source if `alone` is set.
+        only source if `ignore_flexion` is set.
 
     Returns
     -------

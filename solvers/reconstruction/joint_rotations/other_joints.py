@@ -27,8 +27,8 @@ def find_anchors(names: Sequence[str]) -> NDArray[np.intp]:
     A posture joint is its own anchor. Others use the nearest one in the tree, ancestors first.
     """
     posture_joints = {
-        place: POSTURE_JOINTS.index(role)
-        for role, place in posture_joint_indices(names).items()
+        index: POSTURE_JOINTS.index(role)
+        for role, index in posture_joint_indices(names).items()
     }
     parents = joint_parents(names)
     connected = [
@@ -69,8 +69,8 @@ def positions_from_postures(
         Posture joints as observed, and after they were moved.
     """
     posture_joints = {
-        place: POSTURE_JOINTS.index(role)
-        for role, place in posture_joint_indices(names).items()
+        index: POSTURE_JOINTS.index(role)
+        for role, index in posture_joint_indices(names).items()
     }
     result = np.empty_like(tracked)
     bones_before, bones_after = _bones(before), _bones(after)
@@ -103,15 +103,15 @@ def _bones(postures: Array) -> Array:
 def _trunk_rotations(postures: Array) -> Array:
     """Return the rotation of the trunk from a body that faces -Y, (n_frames, 4)."""
     tracked = postures[:, [POSTURE_JOINTS.index(role) for role in TRUNK]] - postures[:, :1]
-    turns = fit_rotations(np.array(list(TRUNK.values())), tracked)
-    return np.where(np.isfinite(turns), turns, IDENTITY)
+    rotations = fit_rotations(np.array(list(TRUNK.values())), tracked)
+    return np.where(np.isfinite(rotations), rotations, IDENTITY)
 
 
 def _bone_axes(trunk: Array, bones: Array, all_bones: Array) -> Array:
     """Return the trunk's axes, rotated from a bone's mean direction to its current one."""
-    known = np.isfinite(all_bones).all(axis=-1)
-    local = rotate(inverse(trunk[known]), all_bones[known])
-    mean_offset = local.mean(axis=0) if known.any() else np.zeros(3)
+    observed = np.isfinite(all_bones).all(axis=-1)
+    local = rotate(inverse(trunk[observed]), all_bones[observed])
+    mean_offset = local.mean(axis=0) if observed.any() else np.zeros(3)
     return multiply(_swings(rotate(trunk, mean_offset), bones), trunk)
 
 
@@ -119,5 +119,5 @@ def _swings(start: Array, stop: Array) -> Array:
     """Return the shortest rotations between directions, (n_frames, 4); NaN where one is
     unknown."""
     is_known = (np.isfinite(start) & np.isfinite(stop)).all(axis=-1, keepdims=True)
-    turns = rotation_between(np.where(is_known, start, 1.0), np.where(is_known, stop, 1.0))
-    return np.where(is_known, turns, np.nan)
+    rotations = rotation_between(np.where(is_known, start, 1.0), np.where(is_known, stop, 1.0))
+    return np.where(is_known, rotations, np.nan)

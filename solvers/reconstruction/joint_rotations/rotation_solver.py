@@ -47,7 +47,7 @@ class _ChildDirections(NamedTuple):
     """Shape (n_frames, n, 3)."""
     is_exclusive: Array
     """Whether only this joint points there, shape (n,)."""
-    known: NDArray[np.bool_]
+    observed: NDArray[np.bool_]
     """Whether both ends were observed, shape (n_frames, n)."""
 
 
@@ -70,13 +70,13 @@ class RotationSolver:
         """Where like postures have the hinges of limbs, by the roles of their upper joints."""
 
     def _limbs(self) -> dict[int, Limb]:
-        found = {}
+        limbs = {}
         for upper, below in LIMBS.items():
             first, second, end = (self.roles.get(role, -1) for role in (upper, *below))
             parents = [self.skeleton.parents[joint] for joint in (second, end)]
             if parents == [first, second] and first > 0:
-                found[first] = Limb(first, second, end, HINGES[upper[-3:]], upper)
-        return found
+                limbs[first] = Limb(first, second, end, HINGES[upper[-3:]], upper)
+        return limbs
 
     def legs(self) -> dict[int, Limb]:
         """Return the limbs that are legs, by their upper joints."""
@@ -96,9 +96,9 @@ class RotationSolver:
         for joint, parent in enumerate(self.skeleton.parents):
             if parent >= 0:
                 offset = rotate(self.world[:, parent], self.skeleton.offsets[joint])
-                known = self.at[:, parent] + offset
-                is_known = np.isfinite(known).all(axis=-1, keepdims=True)
-                self.at[:, joint] = np.where(is_known, known, self.observed[:, joint])
+                expected = self.at[:, parent] + offset
+                is_finite = np.isfinite(expected).all(axis=-1, keepdims=True)
+                self.at[:, joint] = np.where(is_finite, expected, self.observed[:, joint])
             above = self._base_rotation(joint, parent, trunk)
             self.world[:, joint] = self._aim_joint(joint, above)
             self.world[:, joint] = self._twist_joint(joint)
@@ -108,9 +108,9 @@ class RotationSolver:
         rotations = self.world[:, joint]
         if joint in self.limbs:
             limb, body = self.limbs[joint], self.skeleton
-            known = self.hinges.get(limb.role, UNKNOWN_HINGES)
+            hinges = self.hinges.get(limb.role, UNKNOWN_HINGES)
             return rotations_from_flexion(
-                rotations, limb, body, self.observed, self.reliability, self.frame_rate, known
+                rotations, limb, body, self.observed, self.reliability, self.frame_rate, hinges
             )
         if joint in self.hands and len(self.skeleton.children[joint]) > 1:
             hand, thumb = self.skeleton.children[joint][:2]
@@ -144,11 +144,11 @@ class RotationSolver:
         if min(arms) < 0:
             return {}
         chains = [self.skeleton.ancestors(arm) for arm in arms]
-        shared = [joint for joint in chains[0] if joint in chains[1]]
-        if len(shared) < 3:
+        common = [joint for joint in chains[0] if joint in chains[1]]
+        if len(common) < 3:
             return {}
-        self.chest = shared[0]
-        between = shared[1:-1][::-1]
+        self.chest = common[0]
+        between = common[1:-1][::-1]
         return {joint: 1.0 / (len(between) + 1 - at) for at, joint in enumerate(between)}
 
     def _child_directions(self, joint: int) -> _ChildDirections:
@@ -211,7 +211,7 @@ class RotationSolver:
             rotations = _fill_undefined(
                 fit_rotations(directions.rest, directions.tracked),
                 above,
-                directions.known,
+                directions.observed,
             )
         aims = (
             np.flatnonzero(directions.is_exclusive)
@@ -231,7 +231,7 @@ class RotationSolver:
         return _fill_undefined(
             np.where(is_known, multiply(swing, rotations), np.nan),
             rotations,
-            directions.known[:, aims],
+            directions.observed[:, aims],
         )
 
 

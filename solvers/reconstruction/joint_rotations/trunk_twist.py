@@ -31,12 +31,12 @@ class TwistedLimb(NamedTuple):
     lower: int
     end: int
     along: tuple[float, float, float]
-    bends_towards: tuple[float, float, float]
+    flexion_direction: tuple[float, float, float]
 
     @property
     def hinge(self) -> Array:
         """Axis of elbow or knee in a T-pose that faces -Y."""
-        return np.asarray(np.cross(self.along, self.bends_towards), dtype=np.float64)
+        return np.asarray(np.cross(self.along, self.flexion_direction), dtype=np.float64)
 
 
 def _limb(side: str, sign: float, upper: str, lower: str, end: str) -> TwistedLimb:
@@ -65,14 +65,14 @@ class LimbTwists:
     vectors : complex, shape (n_frames, 4)
         Points in the unit circle, one for each of `TWISTED_LIMBS`: the angle is the twist,
         the length its certainty; 0: unknown.
-    alone : bool
+    ignore_flexion : bool
         Whether to use these alone [SHJT13, section VII-B] and ignore the flexion of elbows
         and knees. Unknown twists are then zero; holding the last known twist measured
         worse.
     """
 
     vectors: Complex
-    alone: bool = False
+    ignore_flexion: bool = False
 
 
 def untwisted_hinges(postures: Array) -> tuple[Array, Array]:
@@ -134,7 +134,7 @@ def hinges_from_twists(postures: Array, twists: LimbTwists) -> dict[str, HingeAx
     cos, sin = twists.vectors.real[..., None], twists.vectors.imag[..., None]
     axes = np.nan_to_num(cos * untwisted + sin * perpendicular)
     return {
-        POSTURE_JOINTS[limb.upper]: HingeAxes(axes[:, index], twists.alone)
+        POSTURE_JOINTS[limb.upper]: HingeAxes(axes[:, index], twists.ignore_flexion)
         for index, limb in enumerate(TWISTED_LIMBS)
     }
 
@@ -145,7 +145,7 @@ def mirror_twists(twists: Complex) -> Complex:
 
 
 def mean_twists(
-    twists: Complex, postures: Array, neighbours: Array, reliability: Array
+    twists: Complex, postures: Array, neighbors: Array, reliability: Array
 ) -> Complex:
     """Return the mean twist of the neighbors, weighted by similarity [SHJT13, VII-B].
 
@@ -157,14 +157,14 @@ def mean_twists(
     twists : shape (n_frames, n_neighbours, 4)
     postures : shape (n_frames, 20, 3), meters
         Synthesized poses.
-    neighbours : shape (n_frames, n_neighbours, 60), meters
+    neighbors : shape (n_frames, n_neighbours, 60), meters
     reliability : shape (n_frames, 20)
 
     Returns
     -------
     shape (n_frames, 4)
     """
-    differences = neighbours - postures.reshape(len(postures), 1, -1)
+    differences = neighbors - postures.reshape(len(postures), 1, -1)
     joint_weights = np.repeat(np.maximum(reliability, MIN_RELIABILITY), 3, axis=1)
     squares = np.einsum(
         "fni,fni,fi->fn", differences, differences, joint_weights, optimize=False

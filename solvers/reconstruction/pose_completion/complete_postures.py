@@ -68,14 +68,14 @@ class _ObservedTake:
     """Observations of a take: joints relative to the observed hips, and their reliability."""
 
     postures: Array
-    trust: Array
+    reliability: Array
     frame_rate: float
     lengths: Array
 
 
 def complete_postures(
     observed: NormalizedPostures,
-    trust: Array,
+    reliability: Array,
     frame_rate: float,
     lengths: Array,
     library: PostureLibrary,
@@ -87,7 +87,7 @@ def complete_postures(
     Parameters
     ----------
     observed : Normalised
-    trust : shape (n_frames, 20)
+    reliability : shape (n_frames, 20)
         0 where a joint is missing.
     frame_rate : float, hertz
     lengths : shape (20,), meters
@@ -95,7 +95,7 @@ def complete_postures(
     settings : PostureSettings
     progress : Progress
     """
-    take = _ObservedTake(observed.postures, trust, frame_rate, lengths)
+    take = _ObservedTake(observed.postures, reliability, frame_rate, lengths)
     if settings.method is PostureMethod.PUBLISHED:
         return _search_as_published(take, library, settings, progress)
     body = _fit_library_to_actor(take, library, settings)
@@ -103,27 +103,27 @@ def complete_postures(
     errors = _measure_errors(take, body, index, settings)
     take = replace(take, postures=take.postures - errors.offset)
     rounds = 1 if settings.causal else settings.rounds
-    offset = np.zeros((len(trust), 1, 3))
+    offset = np.zeros((len(reliability), 1, 3))
     targets, given = take.postures, _ramp_reliability(take, settings)
     for number in range(rounds):
         part = within(progress, number / rounds, (number + 1) / rounds)
         chosen, twists = _synthesize(
-            replace(take, postures=targets, trust=given), body, index, settings, part
+            replace(take, postures=targets, reliability=given), body, index, settings, part
         )
         residuals = take.postures - offset - chosen.values
-        offset = offset + _hips_offset(residuals, trust, frame_rate, settings)
+        offset = offset + _hips_offset(residuals, reliability, frame_rate, settings)
         corrected = _add_residuals(chosen, take.postures - offset, take, errors.size, settings)
         if number + 1 < rounds:
-            missing = (trust < REUSED_RELIABILITY)[..., None]
+            missing = (reliability < REUSED_RELIABILITY)[..., None]
             targets = np.where(missing, corrected.values, take.postures - offset)
             reused = REUSED_RELIABILITY / (1.0 + (corrected.spread / HALF_CONFIDENCE_M) ** 2)
             given = np.maximum(given, reused)
     spread_ratio = corrected.spread / errors.size
-    uncertainty = np.hypot(
-        settings.noise, spread_ratio * np.hypot(chosen.spread, MODEL_ERROR_M)
-    )
+    spread = spread_ratio * np.hypot(chosen.spread, MODEL_ERROR_M)
+    uncertainty = np.hypot(settings.noise, spread)
     confidence = 1.0 / (1.0 + (uncertainty / HALF_CONFIDENCE_M) ** 2)
-    postures = constrain_lengths(corrected.values + errors.offset, lengths, trust, confidence)
+    postures = corrected.values + errors.offset
+    postures = constrain_lengths(postures, lengths, reliability, confidence)
     return CompletedPostures(postures + offset, confidence, twists)
 
 
@@ -140,7 +140,8 @@ def _search_as_published(
     chosen, twists = _synthesize(take, body, index, causal_settings, progress)
     uncertainty = np.hypot(chosen.spread, MODEL_ERROR_M)
     confidence = 1.0 / (1.0 + (uncertainty / HALF_CONFIDENCE_M) ** 2)
-    return CompletedPostures(chosen.values, confidence, twists and replace(twists, alone=True))
+    twists = twists and replace(twists, ignore_flexion=True)
+    return CompletedPostures(chosen.values, confidence, twists)
 
 
 def _fit_library_to_actor(
@@ -149,11 +150,11 @@ def _fit_library_to_actor(
     """Fit the library to the actor's size and to the tracker's definition of joints."""
     directions, changes, lengths = library.directions, library.changes, take.lengths
     body = build_body_postures(directions, changes, lengths)
-    frames = np.linspace(0, len(take.trust) - 1, CORRECTION_FRAMES).astype(int)
+    frames = np.linspace(0, len(take.reliability) - 1, CORRECTION_FRAMES).astype(int)
     frames = np.unique(frames)
     speeds = _speeds(take, settings)[frames]
     query_sample = PostureQuery(
-        take.postures[frames], speeds, take.trust[frames], settings.pace
+        take.postures[frames], speeds, take.reliability[frames], settings.pace
     )
     for _ in range(CORRECTION_ROUNDS):
         index = index_postures(body, library.groups)
@@ -161,7 +162,7 @@ def _fit_library_to_actor(
         each = indices.shape[1]
         corrections = bone_axis_corrections(
             np.repeat(query_sample.postures, each, axis=0),
-            np.repeat(query_sample.trust, each, axis=0) / each,
+            np.repeat(query_sample.reliability, each, axis=0) / each,
             directions[indices.reshape(-1)].astype(np.float64),
             lengths,
         )
@@ -181,28 +182,29 @@ def _measure_errors(
     """Estimate the errors of unobserved limbs by cross-validation."""
     speeds = _speeds(take, settings)
 
-    def synthesize(frames: NDArray[np.intp], trust: Array) -> Array:
-        query = PostureQuery(take.postures[frames], speeds[frames], trust, settings.pace)
+    def synthesize(frames: NDArray[np.intp], reliability: Array) -> Array:
+        observed = take.postures[frames]
+        query = PostureQuery(observed, speeds[frames], reliability, settings.pace)
         indices, _ = nearest_postures(index, query, settings.n_neighbours)
         spaces = local_pca(body.positions[indices].astype(np.float64), settings.n_dimensions)
-        targets = EnergyTargets(take.postures[frames], trust, spaces.neighbours, take.lengths)
+        targets = EnergyTargets(observed, reliability, spaces.neighbors, take.lengths)
         return probable_postures(spaces, targets)[0]
 
-    return cross_validate_limbs(take.postures, take.trust, synthesize)
+    return cross_validate_limbs(take.postures, take.reliability, synthesize)
 
 
 def _ramp_reliability(take: _ObservedTake, settings: PostureSettings) -> Array:
     """Ramp reliability down before and up after a dropout; only up in causal mode."""
-    trust = take.trust
+    reliability = take.reliability
     n_ramp = round(RAMP_S * take.frame_rate)
-    ramped = trust
-    for distance in range(1, min(n_ramp, len(trust) - 1) + 1):
+    ramped = reliability
+    for distance in range(1, min(n_ramp, len(reliability) - 1) + 1):
         weight = distance / (n_ramp + 1)
-        nearby_reliability = np.ones_like(trust)
-        nearby_reliability[distance:] = trust[:-distance]
+        nearby_reliability = np.ones_like(reliability)
+        nearby_reliability[distance:] = reliability[:-distance]
         if not settings.causal:
             nearby_reliability[:-distance] = np.minimum(
-                nearby_reliability[:-distance], trust[distance:]
+                nearby_reliability[:-distance], reliability[distance:]
             )
         ramped = np.minimum(ramped, nearby_reliability + (1.0 - nearby_reliability) * weight)
     return ramped
@@ -220,25 +222,23 @@ def _synthesize(
     The spread of the result is the standard deviation of each joint in its pose space.
     """
     speeds = _speeds(take, settings)
-    query = PostureQuery(take.postures, speeds, take.trust, settings.pace)
+    query = PostureQuery(take.postures, speeds, take.reliability, settings.pace)
     indices, _ = nearest_postures(
         index, query, settings.n_neighbours, progress=within(progress, 0.0, 0.4)
     )
-    values, spread = np.empty_like(take.postures), np.empty_like(take.trust)
+    values, spread = np.empty_like(take.postures), np.empty_like(take.reliability)
     twists = np.zeros((len(values), N_TWISTED_LIMBS), np.complex128)
     last = None
     for start in range(0, len(values), BLOCK_FRAMES):
         part = slice(start, min(start + BLOCK_FRAMES, len(values)))
         spaces = local_pca(body.positions[indices[part]], settings.n_dimensions)
-        targets = EnergyTargets(
-            take.postures[part], take.trust[part], spaces.neighbours, take.lengths
-        )
+        reliability, near = take.reliability[part], spaces.neighbors
+        targets = EnergyTargets(take.postures[part], reliability, near, take.lengths)
         probable, spread[part] = probable_postures(spaces, targets)
         values[part] = _choose_postures(spaces, targets, probable, settings, last)
         if body.twists is not None:
-            twists[part] = mean_twists(
-                body.twists[indices[part]], values[part], spaces.neighbours, take.trust[part]
-            )
+            similar = body.twists[indices[part]]
+            twists[part] = mean_twists(similar, values[part], near, reliability)
         last = values[max(part.stop - 2, 0) : part.stop]
         progress(0.4 + 0.6 * part.stop / len(values), "Synthesizing poses")
     if settings.smoothing and not settings.causal:
@@ -260,17 +260,18 @@ def _choose_postures(
 
 
 def _hips_offset(
-    residuals: Array, trust: Array, frame_rate: float, settings: PostureSettings
+    residuals: Array, reliability: Array, frame_rate: float, settings: PostureSettings
 ) -> Array:
     """Return the offset of the hips from their observed position, shape (n_frames, 1, 3).
 
     Reliable joints determine the offset, as far as the hips themselves are unreliable.
     """
-    weight = np.where(np.isfinite(residuals).all(axis=-1), trust, 0.0)
+    weight = np.where(np.isfinite(residuals).all(axis=-1), reliability, 0.0)
     weight[:, HIPS] = 0.0
     total = weight.sum(axis=1)[:, None]
     displacement = np.einsum("fi,fik->fk", weight, np.nan_to_num(residuals)) / (1.0 + total)
-    displacement *= 1.0 - np.where(np.isfinite(residuals[:, HIPS, :1]), trust[:, [HIPS]], 0.0)
+    is_observed = np.isfinite(residuals[:, HIPS, :1])
+    displacement *= 1.0 - np.where(is_observed, reliability[:, [HIPS]], 0.0)
     if settings.smoothing and not settings.causal:
         displacement = gaussian_filter1d(
             displacement, settings.smoothing * frame_rate, axis=0, mode="nearest"
@@ -286,7 +287,8 @@ def _add_residuals(
     settings: PostureSettings,
 ) -> Estimates:
     """Add smoothed residuals of the observations to synthesized poses."""
-    dt, deviation = 1.0 / take.frame_rate, measurement_deviation(take.trust, settings.noise)
+    dt = 1.0 / take.frame_rate
+    deviation = measurement_deviation(take.reliability, settings.noise)
     if settings.causal:
         corrected = filter_residuals(
             chosen.values, observed, deviation, dt, size, settings.memory

@@ -27,7 +27,7 @@ def probable_postures(spaces: PostureSpaces, targets: EnergyTargets) -> tuple[Ar
     targets : EnergyTargets
     """
     is_observed = np.isfinite(targets.observed).all(axis=-1)
-    weights = np.repeat(np.where(is_observed, targets.trust, 0.0), 3, axis=1)
+    weights = np.repeat(np.where(is_observed, targets.reliability, 0.0), 3, axis=1)
     residuals = np.nan_to_num(targets.observed).reshape(weights.shape) - spaces.means
     transposed = spaces.axes.swapaxes(-1, -2)
     H = transposed @ (spaces.axes * weights[..., None])

@@ -116,14 +116,14 @@ def complete_joints(
     library = load_posture_library() if postures is None else postures
     positions = posture_positions(recording)
     observed = np.isfinite(positions).all(axis=-1)
-    trust = np.where(observed, posture_reliability(recording, combined), 0.0)
-    _check_observed(recording, positions, trust)
+    reliability = np.where(observed, posture_reliability(recording, combined), 0.0)
+    _check_observed(recording, positions, reliability)
     rate = recording.frame_rate
-    body = normalize_postures(positions, rate, trust, ahead=not settings.causal)
-    lengths = estimate_bone_lengths(body.postures, trust)
-    completed = complete_postures(body, trust, rate, lengths, library, settings, progress)
+    body = normalize_postures(positions, rate, reliability, ahead=not settings.causal)
+    lengths = estimate_bone_lengths(body.postures, reliability)
+    completed = complete_postures(body, reliability, rate, lengths, library, settings, progress)
     tracks = recording.tracks
-    world_positions = body.put_back(completed.postures)
+    world_positions = body.to_world(completed.postures)
     joints = positions_from_postures(
         tracks.names, tracks.positions, combined, positions, world_positions
     )
@@ -134,9 +134,9 @@ def complete_joints(
     )
 
 
-def _check_observed(recording: JointRecording, positions: Array, trust: Array) -> None:
+def _check_observed(recording: JointRecording, positions: Array, reliability: Array) -> None:
     """Raise InvalidMotionError with the reason if no frame has enough reliable joints."""
-    if _max_joints(trust > 0.0) >= MIN_JOINTS:
+    if _max_joints(reliability > 0.0) >= MIN_JOINTS:
         return
     recognized = posture_joint_indices(recording.names)
     if len(recognized) < MIN_JOINTS:
@@ -176,6 +176,6 @@ def _describe_method(settings: PostureSettings, library: PostureLibrary) -> str:
     causality = ", causal" if settings.causal else ""
     source = f" ({library.trained_on})" if library.trained_on else ""
     return (
-        f"{methods[settings.method]} among {settings.n_neighbours} neighbours of"
+        f"{methods[settings.method]} among {settings.n_neighbours} neighbors of"
         f" {library.n_postures}{source}{causality}"
     )

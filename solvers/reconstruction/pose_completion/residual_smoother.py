@@ -29,11 +29,13 @@ class _Process(NamedTuple):
     start: Array
 
 
-def measurement_deviation(trust: Array, noise: float) -> Array:
+def measurement_deviation(reliability: Array, noise: float) -> Array:
     """Return the standard deviation of observations; infinite for unreliable joints."""
     with np.errstate(divide="ignore"):
         return np.where(
-            trust > MIN_RELIABILITY, noise / np.maximum(trust, MIN_RELIABILITY) ** 2, np.inf
+            reliability > MIN_RELIABILITY,
+            noise / np.maximum(reliability, MIN_RELIABILITY) ** 2,
+            np.inf,
         )
 
 
@@ -82,7 +84,7 @@ def filter_residuals(
     Parameters
     ----------
     synthesised : shape (n_frames, n_joints, 3), meters
-    seen, deviation, dt, size, memory
+    observed, deviation, dt, size, memory
         As in `smooth_residuals`; `observed` holds positions, not differences.
     """
     is_observed = np.isfinite(observed).all(axis=-1) & (deviation < np.inf)

@@ -28,7 +28,7 @@ class PostureQuery(NamedTuple):
     postures : shape (n_frames, 20, 3), meters
         NaN: missing.
     speeds : shape (n_frames, 20, 3), meters per second
-    trust : shape (n_frames, 20)
+    reliability : shape (n_frames, 20)
     pace : float, seconds
         Time that converts velocities to distances; 0: only the pose counts, as in
         [SHJT13].
@@ -36,13 +36,15 @@ class PostureQuery(NamedTuple):
 
     postures: Array
     speeds: Array
-    trust: Array
+    reliability: Array
     pace: float
 
     def slice(self, start: int, stop: int) -> "PostureQuery":
         """Return the frames from `start` up to, not including, `stop`."""
         part = slice(start, stop)
-        return PostureQuery(self.postures[part], self.speeds[part], self.trust[part], self.pace)
+        return PostureQuery(
+            self.postures[part], self.speeds[part], self.reliability[part], self.pace
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +60,7 @@ class PostureIndex:
     points : float32, shape (n_postures, 40, 3)
         Positions and speeds, in that order.
     squares : float32, shape (n_postures, 40)
-    centres : float32, shape (n_groups, 40, 3)
+    centers : float32, shape (n_groups, 40, 3)
     radii : float32, shape (n_groups, 40)
         Root mean square distance of a group's points from its center.
     """
@@ -67,7 +69,7 @@ class PostureIndex:
     starts: Indices
     points: Single
     squares: Single
-    centres: Single
+    centers: Single
     radii: Single
 
 
@@ -84,12 +86,12 @@ def index_postures(body: BodyPostures, groups: NDArray[np.int32]) -> PostureInde
     _, starts = np.unique(groups[order], return_index=True)
     points = np.concatenate([body.positions, body.speeds], axis=1)[order]
     sizes = np.diff(np.append(starts, len(order)))
-    centres = np.add.reduceat(points, starts, axis=0) / sizes[:, None, None]
-    differences = points - np.repeat(centres, sizes, axis=0)
+    centers = np.add.reduceat(points, starts, axis=0) / sizes[:, None, None]
+    differences = points - np.repeat(centers, sizes, axis=0)
     spread = np.add.reduceat(np.einsum("nik,nik->ni", differences, differences), starts, axis=0)
     return PostureIndex(
         order, np.append(starts, len(order)), points,
-        np.einsum("nik,nik->ni", points, points), centres.astype(np.float32),
+        np.einsum("nik,nik->ni", points, points), centers.astype(np.float32),
         np.sqrt(spread / sizes[:, None]).astype(np.float32),
     )  # fmt: skip
 
@@ -144,7 +146,7 @@ def nearest_postures(
 def _as_points(query: PostureQuery) -> tuple[Single, Single]:
     """Return positions and velocities without NaN, and their weights."""
     points = np.concatenate([query.postures, query.speeds], axis=1)
-    weights = np.concatenate([query.trust, query.pace**2 * query.trust], axis=1)
+    weights = np.concatenate([query.reliability, query.pace**2 * query.reliability], axis=1)
     is_observed = np.isfinite(points).all(axis=-1)
     points = np.where(is_observed[..., None], points, 0.0)
     return points.astype(np.float32), np.where(is_observed, weights, 0.0).astype(np.float32)
@@ -224,9 +226,9 @@ def _merge_best(
 
 def _expected_distances(index: PostureIndex, points: Single, weights: Single) -> Single:
     """Return the minimum distance to expect in each group, shape (n_frames, n_groups)."""
-    result = np.zeros((len(points), len(index.centres)), dtype=np.float32)
+    result = np.zeros((len(points), len(index.centers)), dtype=np.float32)
     for joint in np.flatnonzero(weights.any(axis=0)):
-        distance = squared_distances(points[:, joint], index.centres[:, joint])
+        distance = squared_distances(points[:, joint], index.centers[:, joint])
         np.sqrt(distance, out=distance)
         distance -= index.radii[:, joint]
         np.maximum(distance, 0.0, out=distance)

@@ -109,7 +109,7 @@ class PostureLibrary:
         return len(self.directions)
 
     @property
-    def known_twists(self) -> NDArray[np.complex64]:
+    def twists_or_zero(self) -> NDArray[np.complex64]:
         """Twists, shape (n_postures, 4); 0 where they are unknown."""
         if self.twists is None:
             return np.zeros((self.n_postures, N_TWISTED_LIMBS), np.complex64)
@@ -174,7 +174,7 @@ def merge_posture_libraries(
         group_postures(directions),
         first.n_seen + second.n_seen,
         words.format(first.trained_on, second.trained_on),
-        np.concatenate([first.known_twists, second.known_twists]) if has_twists else None,
+        np.concatenate([first.twists_or_zero, second.twists_or_zero]) if has_twists else None,
     )
 
 

@@ -29,8 +29,8 @@ class EnergyTargets:
     ----------
     observed : shape (n_frames, 20, 3), meters
         NaN: not tracked.
-    trust : shape (n_frames, 20)
-    neighbours : shape (n_frames, n_neighbours, 60), meters
+    reliability : shape (n_frames, 20)
+    neighbors : shape (n_frames, n_neighbours, 60), meters
     lengths : shape (20,), meters
     expected : shape (n_frames, 20, 3), meters, or None
         Positions by linear extrapolation; NaN where unknown.
@@ -38,8 +38,8 @@ class EnergyTargets:
     """
 
     observed: Array
-    trust: Array
-    neighbours: Array
+    reliability: Array
+    neighbors: Array
     lengths: Array
     expected: Array | None = None
     weights: EnergyWeights = EnergyWeights()
@@ -49,8 +49,8 @@ class EnergyTargets:
         return replace(
             self,
             observed=self.observed[frames],
-            trust=self.trust[frames],
-            neighbours=self.neighbours[frames],
+            reliability=self.reliability[frames],
+            neighbors=self.neighbors[frames],
             expected=None if self.expected is None else self.expected[frames],
         )
 
@@ -81,13 +81,13 @@ def control_term(x: Array, targets: EnergyTargets) -> Array:
     """Squared distances from observed joints, weighted by reliability (eq. 10)."""
     differences = x - targets.observed[:, None]
     squares = np.nan_to_num(np.einsum("fsik,fsik->fsi", differences, differences))
-    return np.asarray(np.einsum("fsi,fi->fs", squares, targets.trust))
+    return np.asarray(np.einsum("fsi,fi->fs", squares, targets.reliability))
 
 
 def style_distances(x: Array, targets: EnergyTargets) -> Array:
     """Mean squared distance to each neighbor; eq. 11 is their minimum."""
     flat = x.reshape(*x.shape[:2], -1)
-    neighbors = targets.neighbours
+    neighbors = targets.neighbors
     squares = np.einsum("fsi,fsi->fs", flat, flat)[..., None]
     cross = flat @ neighbors.swapaxes(-1, -2)
     distances = squares - 2.0 * cross + np.einsum("fni,fni->fn", neighbors, neighbors)[:, None]

@@ -24,13 +24,13 @@ class PostureSpaces:
         Orthonormal, the strongest first; zero beyond the rank of the neighbors.
     spreads : shape (n_frames, n_dimensions), square meters
         Variance of the neighbors along each axis.
-    neighbours : shape (n_frames, n_neighbours, 60), meters
+    neighbors : shape (n_frames, n_neighbours, 60), meters
     """
 
     means: Array
     axes: Array
     spreads: Array
-    neighbours: Array
+    neighbors: Array
 
     def at(self, frames: slice) -> "PostureSpaces":
         """Return the spaces of some frames."""
@@ -47,7 +47,7 @@ class PostureSpaces:
         return np.asarray(np.einsum("fij,fi->fj", self.axes, flat))
 
 
-def local_pca(neighbours: Array, n_dimensions: int = 20) -> PostureSpaces:
+def local_pca(neighbors: Array, n_dimensions: int = 20) -> PostureSpaces:
     """Span a space by the neighbors of each frame [1]_, [2]_.
 
     The eigenvectors of the Gram matrix are used, since there are fewer neighbors than
@@ -55,7 +55,7 @@ def local_pca(neighbours: Array, n_dimensions: int = 20) -> PostureSpaces:
 
     Parameters
     ----------
-    neighbours : shape (n_frames, n_neighbours, 20, 3), meters
+    neighbors : shape (n_frames, n_neighbours, 20, 3), meters
     n_dimensions : int
 
     References
@@ -63,7 +63,7 @@ def local_pca(neighbours: Array, n_dimensions: int = 20) -> PostureSpaces:
     .. [1] Shum, Ho, Jiang, Takagi (2013), section V-B.
     .. [2] Lou (2012), section 3.5.
     """
-    flat = np.asarray(neighbours, dtype=np.float64).reshape(*neighbours.shape[:2], -1)
+    flat = np.asarray(neighbors, dtype=np.float64).reshape(*neighbors.shape[:2], -1)
     n_kept = min(n_dimensions, flat.shape[1], flat.shape[2])
     means = flat.mean(axis=1)
     deviations = flat - means[:, None]

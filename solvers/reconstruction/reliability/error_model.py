@@ -37,7 +37,7 @@ are wrong more often than others, but mostly right."""
 class ErrorModel:
     """Linear model: log(error + 1 cm) is normal about a line over the log of the indicators."""
 
-    length_share: float
+    length_weight: float
     """Weight of a length error relative to a deviation from the smoothed path."""
     floor: float
     """Offset (m) added to the indicators before the logarithm."""
@@ -45,23 +45,23 @@ class ErrorModel:
     slope: float
     spread: float
 
-    def sign(self, signs: "ErrorIndicators") -> Array:
+    def combine(self, indicators: "ErrorIndicators") -> Array:
         """Return the logarithm of both indicators combined."""
-        combined = np.hypot(signs.deviation, self.length_share * signs.stretch)
+        combined = np.hypot(indicators.deviation, self.length_weight * indicators.length_error)
         return np.asarray(np.log(combined + self.floor))
 
-    def chance_within(self, signs: "ErrorIndicators", tolerance: float) -> Array:
+    def probability_within(self, indicators: "ErrorIndicators", tolerance: float) -> Array:
         """Return the probability that the error of a joint is below a tolerance, in meters."""
-        expected = self.level + self.slope * self.sign(signs)
-        chance = ndtr((np.log(tolerance + ONE_CENTIMETER) - expected) / self.spread)
-        return np.where(signs.away, 0.0, chance)
+        expected = self.level + self.slope * self.combine(indicators)
+        probability = ndtr((np.log(tolerance + ONE_CENTIMETER) - expected) / self.spread)
+        return np.where(indicators.jumps, 0.0, probability)
 
 
 CENTERED_MODEL = ErrorModel(
-    length_share=0.15, floor=0.0005, level=-1.431, slope=0.395, spread=0.467
+    length_weight=0.15, floor=0.0005, level=-1.431, slope=0.395, spread=0.467
 )
 CAUSAL_MODEL = ErrorModel(
-    length_share=0.5, floor=0.001, level=-2.056, slope=0.344, spread=0.488
+    length_weight=0.5, floor=0.001, level=-2.056, slope=0.344, spread=0.488
 )
 """Fitted to all subjects of UI-PRMD: `bench_reliability --fit`."""
 
@@ -72,10 +72,10 @@ class ErrorIndicators:
 
     deviation: Array
     """Root mean square over `DEVIATION_WINDOW_S` of the distance from the smoothed path."""
-    stretch: Array
+    length_error: Array
     """Root mean square over `LENGTH_WINDOW_S` of the largest length error of adjacent segments.
     """
-    away: Flags
+    jumps: Flags
     """Frames of transient jumps; averages ignore the size of the jump."""
 
 
@@ -99,22 +99,22 @@ def measure_error_indicators(
         If true, use past frames only, and second differences instead of a smoothed path.
         Transient jumps are then not detected, since they show only when the joint returns.
     """
-    away = np.zeros(positions.shape[:2], bool)
+    jumps = np.zeros(positions.shape[:2], bool)
     if not causal:
-        away = find_transient_jumps(positions, frame_rate)
-        positions = np.where(away[..., None], np.nan, positions)
-        is_excluded = away | away[:, np.maximum(parents, 0)]
+        jumps = find_transient_jumps(positions, frame_rate)
+        positions = np.where(jumps[..., None], np.nan, positions)
+        is_excluded = jumps | jumps[:, np.maximum(parents, 0)]
         length_errors = np.where(is_excluded, np.nan, length_errors)
     off = _second_differences if causal else _smoothing_residuals
-    far = np.where(away, JUMP_DEVIATION_M, off(positions, frame_rate))
+    far = np.where(jumps, JUMP_DEVIATION_M, off(positions, frame_rate))
     deviation = _root_mean_square(far, DEVIATION_WINDOW_S, frame_rate, causal)
     max_errors = np.where(np.isfinite(length_errors), np.abs(length_errors), 0.0)
     at_segments = max_errors.copy()
     for joint, parent in enumerate(parents):
         if parent >= 0:
             np.maximum(max_errors[:, parent], at_segments[:, joint], out=max_errors[:, parent])
-    stretch = _root_mean_square(max_errors, LENGTH_WINDOW_S, frame_rate, causal)
-    return ErrorIndicators(deviation, stretch, away)
+    length_error = _root_mean_square(max_errors, LENGTH_WINDOW_S, frame_rate, causal)
+    return ErrorIndicators(deviation, length_error, jumps)
 
 
 def _smoothing_residuals(positions: Array, frame_rate: float) -> Array:
@@ -126,8 +126,8 @@ def _smoothing_residuals(positions: Array, frame_rate: float) -> Array:
     """
     from scipy.signal import savgol_filter  # takes a second to import: only when needed
 
-    longest = len(positions) - 1 + len(positions) % 2
-    n_frames = min(2 * round(0.5 * SMOOTHING_WINDOW_S * frame_rate) + 1, longest)
+    max_length = len(positions) - 1 + len(positions) % 2
+    n_frames = min(2 * round(0.5 * SMOOTHING_WINDOW_S * frame_rate) + 1, max_length)
     degree = min(DEGREE, n_frames // 2)
     smooth = savgol_filter(np.nan_to_num(fill_gaps(positions)), n_frames, degree, axis=0)
     return vector_lengths(positions - smooth)

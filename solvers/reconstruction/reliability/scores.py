@@ -11,7 +11,7 @@ from ...progress import Progress, unwatched
 from .error_model import CAUSAL_MODEL, CENTERED_MODEL, measure_error_indicators
 from .reference import find_reference_postures, parent_distances, reference_lengths
 from .settings import DEFAULT_SETTINGS, ReliabilityMethod, ReliabilitySettings
-from .terms import behaviour_term, gaussian_mean, is_tracked, kinematics_term, tracking_term
+from .terms import behavior_term, gaussian_mean, is_tracked, kinematics_term, tracking_term
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,13 +20,13 @@ class Reliability:
 
     Attributes
     ----------
-    combined, behaviour, kinematics, tracking : shape (n_frames, n_joints)
+    combined, behavior, kinematics, tracking : shape (n_frames, n_joints)
         The last three are the terms of [SHJT13], eq. 4, 6 and 7; a term without data in
         the recording is 1.
     """
 
     combined: NDArray[np.float64]
-    behaviour: NDArray[np.float64]
+    behavior: NDArray[np.float64]
     kinematics: NDArray[np.float64]
     tracking: NDArray[np.float64]
 
@@ -63,35 +63,35 @@ def measure_reliability(
     """
     positions, parents = recording.tracks.positions, np.array(recording.parents)
     visible = recording.tracks.visible
-    behaviour = behaviour_term(positions, recording.frame_rate, settings)
+    behavior = behavior_term(positions, recording.frame_rate, settings)
     tracking = tracking_term(recording, settings)
     progress(0.4, "Measuring reliability")
     lengths = parent_distances(positions, parents)
     tracked = is_tracked(recording)
     postures = find_reference_postures(recording.names, positions, tracked)
-    steady_and_tracked = np.minimum(behaviour, tracked)
+    smooth_and_tracked = np.minimum(behavior, tracked)
     segment_reliability = np.minimum(
-        steady_and_tracked, steady_and_tracked[:, np.maximum(parents, 0)]
+        smooth_and_tracked, smooth_and_tracked[:, np.maximum(parents, 0)]
     )
     reference = reference_lengths(lengths, postures, segment_reliability)
     kinematics = kinematics_term(lengths, reference, parents)
-    behaviour, kinematics, tracking = (
-        np.where(visible, term, 0.0) for term in (behaviour, kinematics, tracking)
+    behavior, kinematics, tracking = (
+        np.where(visible, term, 0.0) for term in (behavior, kinematics, tracking)
     )
     rate = recording.frame_rate
     if settings.method is ReliabilityMethod.PUBLISHED:
-        worst = np.minimum(np.minimum(behaviour, kinematics), tracking)
+        worst = np.minimum(np.minimum(behavior, kinematics), tracking)
         combined = gaussian_mean(worst, rate, settings)
     else:
         signs = measure_error_indicators(
             positions, lengths - reference, parents, rate, settings.causal
         )
         model = CAUSAL_MODEL if settings.causal else CENTERED_MODEL
-        within = model.chance_within(signs, settings.tolerance)
+        within = model.probability_within(signs, settings.tolerance)
         combined = np.minimum(within, gaussian_mean(tracking, rate, settings))
     combined = np.where(visible, combined, 0.0)
     progress(1.0, "Measuring reliability")
-    return Reliability(combined, behaviour, kinematics, tracking)
+    return Reliability(combined, behavior, kinematics, tracking)
 
 
 def posture_reliability(

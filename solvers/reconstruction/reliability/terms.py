@@ -17,7 +17,7 @@ MIN_TRACKED_CONFIDENCE = 0.5
 """Confidence from which on a joint counts as tracked, not inferred."""
 
 
-def behaviour_term(positions: Array, frame_rate: float, settings: ReliabilitySettings) -> Array:
+def behavior_term(positions: Array, frame_rate: float, settings: ReliabilitySettings) -> Array:
     """Return 1 for a smooth path, 0 for one that vibrates [SHJT13, eq. 1 to 4].
 
     Displacements are those within 1/30 s, or within one frame where that is longer. Eq. 3 gives

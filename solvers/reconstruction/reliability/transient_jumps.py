@@ -34,7 +34,7 @@ def find_transient_jumps(positions: Array, frame_rate: float) -> Flags:
     positions : shape (n_frames, n_joints, 3), meters
     frame_rate : float, hertz
     """
-    away = np.zeros(positions.shape[:2], bool)
+    is_displaced = np.zeros(positions.shape[:2], bool)
     n_frames = len(positions)
     steps = np.zeros(positions.shape[:2])
     steps[1:] = vector_lengths(positions[1:] - positions[:-1])  # into each frame
@@ -47,23 +47,25 @@ def find_transient_jumps(positions: Array, frame_rate: float) -> Flags:
     jumps_back = (step_sizes > min_step) & (
         step_sizes > MIN_STEP_RATIO * _max_before(step_sizes[::-1], n_context)[::-1]
     )
-    for n_away in range(1, max(1, round(MAX_JUMP_S * frame_rate)) + 1):
-        if n_away + 1 >= n_frames:
+    for n_displaced in range(1, max(1, round(MAX_JUMP_S * frame_rate)) + 1):
+        if n_displaced + 1 >= n_frames:
             break
-        smaller = np.minimum(step_sizes[1:-n_away], step_sizes[n_away + 1 :])
-        return_distance = vector_lengths(positions[n_away + 1 :] - positions[: -n_away - 1])
+        smaller = np.minimum(step_sizes[1:-n_displaced], step_sizes[n_displaced + 1 :])
+        return_distance = vector_lengths(
+            positions[n_displaced + 1 :] - positions[: -n_displaced - 1]
+        )
         is_transient = (
-            jumps_away[1:-n_away]
-            & jumps_back[n_away + 1 :]
+            jumps_away[1:-n_displaced]
+            & jumps_back[n_displaced + 1 :]
             & (return_distance < MAX_RETURN_RATIO * smaller)
         )
-        if n_away > 1:
+        if n_displaced > 1:
             is_transient &= smaller > MIN_STEP_RATIO * np.maximum(
-                step_sizes[2 : 1 - n_away], step_sizes[n_away:-1]
+                step_sizes[2 : 1 - n_displaced], step_sizes[n_displaced:-1]
             )
-        for offset in range(n_away):
-            away[1 + offset : n_frames - n_away + offset] |= is_transient
-    return away
+        for offset in range(n_displaced):
+            is_displaced[1 + offset : n_frames - n_displaced + offset] |= is_transient
+    return is_displaced
 
 
 def _max_before(steps: Array, n_steps: int) -> Array:

@@ -38,7 +38,7 @@ class Calibration(NamedTuple):
 IDENTITY_CALIBRATION = Calibration()
 
 
-def chance_within(
+def probability_within(
     variances: Array, distance: float, calibration: Calibration = IDENTITY_CALIBRATION
 ) -> Array:
     """Return the probability of a point within a distance of its mean (Maxwell distribution).
@@ -62,6 +62,7 @@ def chance_within(
     )
     nodes = zip(NODES, NODE_WEIGHTS, strict=True) if spread else [(0.0, 1.0)]
     chance = sum(
-        share * gammainc(1.5, scaled_distance * np.exp(-spread * node)) for node, share in nodes
+        fraction * gammainc(1.5, scaled_distance * np.exp(-spread * node))
+        for node, fraction in nodes
     )
     return np.where(known, chance, 0.0)

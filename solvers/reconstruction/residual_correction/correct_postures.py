@@ -127,8 +127,10 @@ def correct_postures(
     .. [ZH14] Zhou (2014). Modeling of single character motions with temporal sparse
        representation and Gaussian processes. PhD thesis, City University of Hong Kong, 5.2.
     """
-    trust = reliability or measure_reliability(recording, progress=within(progress, 0.0, 0.3))
-    weights = posture_reliability(recording, trust.combined)
+    reliability = reliability or measure_reliability(
+        recording, progress=within(progress, 0.0, 0.3)
+    )
+    weights = posture_reliability(recording, reliability.combined)
     progress(0.4, "Correcting")
     corrected, prediction, variances = predict_positions(recording, prior, weights, settings)
     progress(0.9, "Correcting")
@@ -138,17 +140,23 @@ def correct_postures(
     confidence = coverage * probability + (1.0 - coverage) * weights
     tracks = recording.tracks
     joints = positions_from_postures(
-        tracks.names, tracks.positions, trust.combined, posture_positions(recording), corrected
+        tracks.names,
+        tracks.positions,
+        reliability.combined,
+        posture_positions(recording),
+        corrected,
     )
     joints[:, ~tracks.visible.any(axis=0)] = np.nan
     confidence = confidence[:, find_anchors(tracks.names)]
     rebuilt = tracks.with_positions(joints)
-    motion = motion_from_positions(rebuilt, recording.parents, trust.combined, twists=twists)
+    motion = motion_from_positions(
+        rebuilt, recording.parents, reliability.combined, twists=twists
+    )
     progress(1.0, "Corrected")
     method = f"smoothed ({settings.method.value})"
     if uses_prior:
         method += f" with a residual prior of {prior.source}"
-    return Reconstruction(rebuilt, motion, trust, confidence, method, twists)
+    return Reconstruction(rebuilt, motion, reliability, confidence, method, twists)
 
 
 def predict_positions(
@@ -161,14 +169,16 @@ def predict_positions(
     causal = settings.method is CorrectionMethod.CAUSAL
     smooth = smooth_postures(recording, float(prior.calm), weights, ahead=not causal)
     prediction = prior.predict(smooth, ahead=settings.method is CorrectionMethod.WHOLE_TAKE)
-    predicted = smooth.positions + smooth.turn_back(_offsets(prediction, weights, settings))
+    predicted = smooth.positions + smooth.rotate_to_world(
+        _offsets(prediction, weights, settings)
+    )
     variances = prediction.variances + prior.constant_variances(constant=settings.shift)
     if settings.method is CorrectionMethod.PUBLISHED:
         positions = _frame_by_frame(recording, predicted, variances, weights, settings)
         return positions, prediction, variances
-    steady = filter_trajectories if causal else smooth_trajectories
+    smoother = filter_trajectories if causal else smooth_trajectories
     frames = settings.smoothing * recording.frame_rate
-    return steady(predicted, np.maximum(weights, MIN_WEIGHT), frames), prediction, variances
+    return smoother(predicted, np.maximum(weights, MIN_WEIGHT), frames), prediction, variances
 
 
 def _offsets(prediction: Prediction, weights: Array, settings: CorrectionSettings) -> Array:
@@ -196,15 +206,17 @@ def _frame_by_frame(
     observed = fill_gaps(posture_positions(recording)) * CM_PER_M
     offsets = predicted * CM_PER_M - observed
     spatial = settings.spatial / (2.0 * variances * CM_PER_M**2)
-    trust = settings.trust * weights**2
+    measured = settings.trust * weights**2
     result = observed.copy()
     step = max(round(recording.frame_rate / REFERENCE_RATE_HZ), 1)
     for frame in range(len(observed)):
         temporal = settings.temporal if frame >= 2 * step else 0.0
-        total = spatial[frame] + trust[frame] + temporal
+        total = spatial[frame] + measured[frame] + temporal
         weighted_sum = spatial[frame][:, None] * offsets[frame]
         if frame >= 2 * step:
-            steady = 2.0 * result[frame - step] - result[frame - 2 * step] - observed[frame]
-            weighted_sum = weighted_sum + temporal * steady
+            extrapolated = (
+                2.0 * result[frame - step] - result[frame - 2 * step] - observed[frame]
+            )
+            weighted_sum = weighted_sum + temporal * extrapolated
         result[frame] = observed[frame] + weighted_sum / np.maximum(total, 1e-12)[:, None]
     return result / CM_PER_M

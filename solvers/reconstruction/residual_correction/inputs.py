@@ -41,21 +41,21 @@ class SmoothedPostures:
     ----------
     positions : shape (n_frames, 20, 3), meters, world
         Smoothed and without gaps; joints that are never observed are NaN.
-    normalised : Normalised
+    normalized : Normalised
         The same without heading and position.
     features : shape (n_frames, 20, 3)
-        The same for a body of mean size; NaN where `normalised` is.
+        The same for a body of mean size; NaN where `normalized` is.
     frame_rate : float, hertz
     """
 
     positions: Array
-    normalised: NormalizedPostures
+    normalized: NormalizedPostures
     features: Array
     frame_rate: float
 
-    def turn_back(self, offsets: Array) -> Array:
+    def rotate_to_world(self, offsets: Array) -> Array:
         """Rotate offsets of these frames from body to world axes, (n_frames, n, 3)."""
-        return rotate_about_vertical(offsets, self.normalised.headings)
+        return rotate_about_vertical(offsets, self.normalized.headings)
 
 
 def smooth_postures(
@@ -85,9 +85,9 @@ def smooth_postures(
     return SmoothedPostures(positions, normalized, features, rate)
 
 
-def fill_missing(features: Array, usual: Array) -> Array:
+def fill_missing(features: Array, default: Array) -> Array:
     """Replace joints that are never observed by the mean posture, shape (20, 3)."""
-    return np.where(np.isfinite(features), features, usual)
+    return np.where(np.isfinite(features), features, default)
 
 
 def neighborhood_features(features: Array, joint: int) -> Array:

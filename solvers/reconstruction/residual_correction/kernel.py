@@ -32,7 +32,7 @@ class Kernel:
 
     Attributes
     ----------
-    lengths, shared, personal : (local, whole)
+    lengths, shared, personal : (local, complete pose)
         Length scales of the features; strengths of f and of f_actor.
     take, actor, noise : float
         Variances of the constant offsets and of the residual.
@@ -84,7 +84,7 @@ def learn_kernel(
 
     Parameters
     ----------
-    features : local and whole, each of shape (n, n_features)
+    features : local and of the complete pose, each of shape (n, n_features)
     errors : shape (n, 3), meters; axes share the hyper-parameters
     takes, actors : shape (n,), int
     simple : bool

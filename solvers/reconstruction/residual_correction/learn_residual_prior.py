@@ -39,7 +39,7 @@ MIN_FRAMES = 20
 class ResidualMethod(Choice):
     """Method that learns errors."""
 
-    HIERARCHICAL = "hierarchical", "Learn from neighboring joints and from the whole pose"
+    HIERARCHICAL = "hierarchical", "Learn from neighboring joints and from the complete pose"
     PUBLISHED = (
         "published",
         "Learn from neighboring joints only, as Zhou et al. (2014)",
@@ -59,7 +59,7 @@ class ResidualPriorSettings(Settings):
         minimum=5, maximum=500, advanced=True,
     )  # fmt: skip
     whole_points: int = setting(
-        100, "Inducing points of whole poses; more is finer and slower",
+        100, "Inducing points of complete poses; more is finer and slower",
         minimum=5, maximum=500, advanced=True,
     )  # fmt: skip
     movement_points: int = setting(
@@ -196,14 +196,14 @@ def _check_pairs(
 
 
 def _read_takes(
-    pairs: Sequence[tuple[JointRecording, Tracks]], actor_names: Sequence[str], calm: float
+    pairs: Sequence[tuple[JointRecording, Tracks]], actor_names: Sequence[str], smoothing: float
 ) -> list[Take]:
     """Smooth all recordings; errors are relative to the heading."""
     takes = []
     for (observed, true), actor in zip(pairs, actor_names, strict=True):
-        smoothed = smooth_postures(observed, calm)
+        smoothed = smooth_postures(observed, smoothing)
         off = posture_positions(true) - smoothed.positions
-        errors = rotate_about_vertical(off, -smoothed.normalised.headings)
+        errors = rotate_about_vertical(off, -smoothed.normalized.headings)
         takes.append(Take(smoothed.features, errors, observed.frame_rate, actor))
     return takes
 

@@ -1,7 +1,7 @@
 """Gaussian process over a pose and the poses before and after it.
 
-Errors depend on movement too: a hand is drawn to the body on its way down, a knee is observed
-late. All joints share one covariance, so one solution serves them all:
+Errors depend on movement too: a falling hand is estimated too near the body, a knee lags
+behind. All joints share one covariance, so one solution serves them all:
 
 k = a1 k(pose) + a2 linear(pose) + a3 k(pose, before, after) + a4 k(movement)
 

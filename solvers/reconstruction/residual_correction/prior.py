@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...archives import ArchiveLayout
 from ...motion.humanoid import MIRROR_JOINTS, N_JOINTS, POSTURE_JOINTS, mirror_postures
 from ...npz_members import flags, numbers, words
-from .confidence import IDENTITY_CALIBRATION, Calibration, chance_within
+from .confidence import IDENTITY_CALIBRATION, Calibration, probability_within
 from .inputs import (
     N_NEIGHBORHOOD_FEATURES,
     SmoothedPostures,
@@ -67,7 +67,7 @@ class ResidualPrior:
     joints : shape (n,), str
         Which of `POSTURE_JOINTS` were learned.
     usual : shape (20, 3), meters
-        The mean pose, for joints that a recording lacks.
+        Mean pose, for joints that are missing from a recording.
     components : shape (57, n_components)
         Principal components of the complete pose without the hips.
     local_points : shape (n, n_local, 15)
@@ -79,16 +79,16 @@ class ResidualPrior:
     means, covariances : shapes (n, n_weights, 3) and (n, n_weights, n_weights)
         Of the weights of the shared functions and the mean error.
     calm : shape (), seconds
-        Gaussian that recordings are calmed with before they are looked at.
+        Standard deviation of the Gaussian that smooths recordings before prediction.
     mirrored : shape (), bool
-        Right limbs are not among the joints, but err as left ones do in a mirror.
+        Whether right limbs, not in `joints`, use the mirrored errors of left limbs.
     source : shape (), str
-        What it was learned from.
+        Description of the training recordings.
     movement : MovementProcess, optional
-        What postures tell together with where they come from and go to.
+        Process over each pose and the poses before and after it.
     calibration : shape (2, 3)
-        How the variances of new actors follow (`Calibration`), with the constant offset and
-        beside it. Files of before have none: variances are taken as they are told.
+        `Calibration` of the variances for new actors, with the constant offset and without
+        it. The identity in files that have none.
     """
 
     joints: NDArray[np.str_]
@@ -119,17 +119,17 @@ class ResidualPrior:
     @cached_property
     def _cholesky_roots(self) -> list[tuple[Array, Array]]:
         """Roots for local and complete-pose inducing points, joint by joint."""
-        found = []
-        for place, points in enumerate(self.local_points):
-            near, far = self.kernel(place).lengths
-            found.append((cholesky_root(points, near), cholesky_root(self.whole_points, far)))
-        return found
+        roots = []
+        for index, points in enumerate(self.local_points):
+            near, far = self.kernel(index).lengths
+            roots.append((cholesky_root(points, near), cholesky_root(self.whole_points, far)))
+        return roots
 
-    def kernel(self, place: int) -> Kernel:
+    def kernel(self, index: int) -> Kernel:
         """Return the hyper-parameters of one of the joints."""
-        return Kernel.from_logs(np.log(self.kernels[place]))
+        return Kernel.from_logs(np.log(self.kernels[index]))
 
-    def predict(self, calm: SmoothedPostures, ahead: bool = True) -> Prediction:
+    def predict(self, smoothed: SmoothedPostures, ahead: bool = True) -> Prediction:
         """Predict true minus observed position of every joint.
 
         With `ahead`, some frames of each second are predicted and the others interpolated, and
@@ -137,14 +137,14 @@ class ResidualPrior:
         without training data, such as fingertips, are ignored.
         """
         has_model = (self.usual != 0.0).any(axis=-1, keepdims=True)
-        features = np.where(has_model, fill_missing(calm.features, self.usual), 0.0)
-        step = max(round(calm.frame_rate / PREDICTION_RATE_HZ), 1) if ahead else 1
+        features = np.where(has_model, fill_missing(smoothed.features, self.usual), 0.0)
+        step = max(round(smoothed.frame_rate / PREDICTION_RATE_HZ), 1) if ahead else 1
         last = len(features) - 1
         frames = np.unique(np.append(np.arange(0, last + 1, step), last))
         prediction = self._predict_static(features[frames])
         if ahead and self.movement is not None:
             prediction = self._blend_movement(
-                prediction, *self.movement.predict(features, calm.frame_rate, frames)
+                prediction, *self.movement.predict(features, smoothed.frame_rate, frames)
             )
         return (
             prediction
@@ -160,10 +160,10 @@ class ResidualPrior:
         known = np.zeros(N_JOINTS, dtype=np.bool_)
         known[self.movement.joints] = True
         known &= np.isfinite(static.variances).all(axis=0)
-        share = np.where(known, MOVEMENT_FRACTION, 0.0)[:, None]
+        weight = np.where(known, MOVEMENT_FRACTION, 0.0)[:, None]
         near = np.where(known, nearness[:, None], 1.0)
         return Prediction(
-            share * offsets + (1.0 - share) * static.offsets,
+            weight * offsets + (1.0 - weight) * static.offsets,
             static.variances,
             near * static.coverage,
         )
@@ -175,10 +175,10 @@ class ResidualPrior:
             return prediction
         mirror_image = self._predict_learned(mirror_postures(features))
         counterparts = list(MIRROR_JOINTS)
-        share = np.where(
+        weight = np.where(
             np.arange(N_JOINTS) == counterparts, 0.5, np.arange(N_JOINTS) < counterparts
         )
-        own = np.where(np.isfinite(prediction.variances), share, 0.0)
+        own = np.where(np.isfinite(prediction.variances), weight, 0.0)
         variances = np.where(
             own > 0.0, prediction.variances, mirror_image.variances[:, counterparts]
         )
@@ -196,21 +196,21 @@ class ResidualPrior:
         coverage = np.zeros(shape[:2])
         pose_features = posture_components(features, self.usual, self.components)
         near = proximity(pose_features, self.whole_points, POSTURE_COVERAGE_M)
-        for place, name in enumerate(self.joints):
-            joint, kernel = POSTURE_JOINTS.index(str(name)), self.kernel(place)
-            local, roots = neighborhood_features(features, joint), self._cholesky_roots[place]
+        for index, name in enumerate(self.joints):
+            joint, kernel = POSTURE_JOINTS.index(str(name)), self.kernel(index)
+            local, roots = neighborhood_features(features, joint), self._cholesky_roots[index]
             bases = (
-                basis_functions(local, self.local_points[place], kernel.lengths[0], roots[0]),
+                basis_functions(local, self.local_points[index], kernel.lengths[0], roots[0]),
                 basis_functions(pose_features, self.whole_points, kernel.lengths[1], roots[1]),
             )
             columns = shared_design(bases, kernel)
-            offsets[:, joint] = columns @ self.means[place]
-            variance = np.einsum("ni,ni->n", columns @ self.covariances[place], columns)
+            offsets[:, joint] = columns @ self.means[index]
+            variance = np.einsum("ni,ni->n", columns @ self.covariances[index], columns)
             for one, shared in zip(bases, kernel.shared, strict=True):
                 variance += shared * np.maximum(1.0 - (one**2).sum(axis=1), 0.0)
             variances[:, joint] = variance
             coverage[:, joint] = near * proximity(
-                local, self.local_points[place], LOCAL_COVERAGE_M
+                local, self.local_points[index], LOCAL_COVERAGE_M
             )
         return Prediction(offsets, variances, coverage)
 
@@ -221,8 +221,8 @@ class ResidualPrior:
         of an actor and a take.
         """
         result = np.full(N_JOINTS, np.inf)
-        for place, name in enumerate(self.joints):
-            kernel = self.kernel(place)
+        for index, name in enumerate(self.joints):
+            kernel = self.kernel(index)
             joint = POSTURE_JOINTS.index(str(name))
             mirrored_joints = [joint, MIRROR_JOINTS[joint]] if self.mirrored else [joint]
             result[mirrored_joints] = (
@@ -239,7 +239,7 @@ class ResidualPrior:
         `constant` states whether the variances include the constant offset.
         """
         calibration = Calibration(*map(float, self.calibration[0 if constant else 1]))
-        return chance_within(variances, distance, calibration)
+        return probability_within(variances, distance, calibration)
 
 
 def posture_components(features: Array, usual: Array, components: Array) -> Array:

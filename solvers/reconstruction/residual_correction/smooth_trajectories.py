@@ -49,7 +49,7 @@ def filter_trajectories(positions: Array, weights: Array, frames: float) -> Arra
         return positions.copy()
     result = positions.copy()
     position, speed = positions[0].copy(), np.zeros_like(positions[0])
-    position_variance = 1.0 / weights[0]  # variances of place and speed, and their covariance
+    position_variance = 1.0 / weights[0]  # of position and speed, with their covariance
     covariance, speed_variance = (
         np.zeros_like(position_variance),
         np.ones_like(position_variance),

@@ -30,7 +30,7 @@ MAX_CELLS = 1_000_000
 
 
 def pairwise_warping_costs(sequences: Single) -> Single:
-    """Return the warping cost between all clips, shape (n, n), metres: mean along the path.
+    """Return the warping cost between all clips, shape (n, n), meters: mean along the path.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ class Segments:
         First frame and the frame after the last, at 20 Hz; the first is the complete clip.
     histograms : uint8, shape (n_segments, 5, 3, n_words)
         For each body part: over the complete segment and over each half.
-    summaries : float16, shape (n_segments, 16, 5, 8), metres
+    summaries : float16, shape (n_segments, 16, 5, 8), meters
         Features of each body part at evenly spaced time samples.
     """
 

@@ -32,11 +32,11 @@ FRAMES_PER_WORD = 4
 N_NEAREST = 3
 """Words with a nonzero weight in one frame."""
 JITTER_M = 1e-6
-"""Metres of random noise that separates equal frames: k-means needs distinct points."""
+"""Meters of random noise that separates equal frames: k-means needs distinct points."""
 MIN_SPREAD_M2 = 1e-6
-"""Squared metres."""
+"""Squared meters."""
 MAX_VALUE = 1e12
-"""Limit of all learned numbers; squared metres and frame counts stay far below."""
+"""Limit of all learned numbers; squared meters and frame counts stay far below."""
 MAX_TRAINING_FRAMES = 12000
 """Training frames; more are slower and not better."""
 RELEARNING_RATIO = 4
@@ -64,7 +64,7 @@ class Vocabulary:
     centre, axes : shapes (5, 22) and (5, 22, 8)
         Mean and principal components of the features of each part.
     words : shape (5, n_words, 8)
-    spread : shape (5,), squared metres
+    spread : shape (5,), squared meters
         Median squared distance of a frame from its nearest word.
     usual : UsualPostures
         Prior for joints that are not tracked.
@@ -84,7 +84,7 @@ class Vocabulary:
         return self.n_frames < SUFFICIENT_FRAMES and n_frames > RELEARNING_RATIO * self.n_frames
 
     def features(self, postures: ClipPostures) -> Array:
-        """Return the features of each part, shape (n_frames, 5, 8), metres."""
+        """Return the features of each part, shape (n_frames, 5, 8), meters."""
         filled = self.posture_distribution.fill_gaps(postures)
         features = part_features(filled.positions, filled.root_velocity, filled.frame_rate)
         return np.asarray(np.einsum("fpd,pdk->fpk", features - self.centre, self.axes))
@@ -101,13 +101,13 @@ class Vocabulary:
         The three nearest words have nonzero weights, which sum to 1 and decrease with distance.
         """
         by_part = features.swapaxes(0, 1) @ self.words.swapaxes(1, 2)
-        apart: Array = (self.words**2).sum(axis=-1) - 2.0 * by_part.swapaxes(0, 1)
+        distance: Array = (self.words**2).sum(axis=-1) - 2.0 * by_part.swapaxes(0, 1)
         n_nearest = min(N_NEAREST, self.words.shape[1])
-        nearest = np.argpartition(apart, n_nearest - 1, axis=-1)[..., :n_nearest]
-        near = np.take_along_axis(apart, nearest, axis=-1)
+        nearest = np.argpartition(distance, n_nearest - 1, axis=-1)[..., :n_nearest]
+        near = np.take_along_axis(distance, nearest, axis=-1)
         excess = near - near.min(axis=-1, keepdims=True)
         weights = np.exp(-0.5 * excess / self.spread[:, None])
-        codes = np.zeros_like(apart)
+        codes = np.zeros_like(distance)
         np.put_along_axis(
             codes, nearest, weights / weights.sum(axis=-1, keepdims=True), axis=-1
         )
@@ -146,10 +146,10 @@ def learn_vocabulary(clips: list[ClipPostures], seed: int = 0) -> Vocabulary:
 
 def _learn_words(features: Array, n_words: int, rng: np.random.Generator) -> Array:
     """Return the centers of clusters; empty clusters get a random frame."""
-    apart = features + rng.normal(scale=JITTER_M, size=features.shape)
+    distance = features + rng.normal(scale=JITTER_M, size=features.shape)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "One of the clusters is empty")
-        words, labels = kmeans2(apart, n_words, minit="++", seed=rng, missing="warn")
+        words, labels = kmeans2(distance, n_words, minit="++", seed=rng, missing="warn")
     empty = np.setdiff1d(np.arange(n_words), labels)
     words[empty] = features[rng.integers(len(features), size=len(empty))]
     return np.asarray(words)

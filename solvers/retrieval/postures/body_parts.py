@@ -44,24 +44,24 @@ VELOCITY_TIME_S = 0.08
 ROOT_VELOCITY_TIME_S = 0.3
 """Seconds, the same for the root velocity, which is a feature of the trunk."""
 TURNING_RADIUS_M = 0.5
-"""Metres: converts the turning rate of the body to a velocity."""
+"""Meters: converts the turning rate of the body to a velocity."""
 N_PER_JOINT = 6
 N_TRAVEL = 4
 N_FEATURES = JOINTS.shape[1] * N_PER_JOINT + N_TRAVEL
 
 
 def part_features(positions: Array, root_velocity: Array, frame_rate: float) -> Array:
-    """Return the features of each part, shape (n_frames, 5, 22), metres.
+    """Return the features of each part, shape (n_frames, 5, 22), meters.
 
     Positions and velocities of the joints relative to the reference joint of the part. The
     trunk also has the root velocity; the other parts have zeros there.
 
     Parameters
     ----------
-    positions : shape (n_frames, 20, 3), metres
+    positions : shape (n_frames, 20, 3), meters
         Joints of the standard body without heading and root position.
     root_velocity : shape (n_frames, 4)
-        Velocity of the hips, metres per second, and turning rate, radians per second.
+        Velocity of the hips, meters per second, and turning rate, radians per second.
     frame_rate : float, hertz
     """
     local = positions[:, JOINTS] - positions[:, ROOTS][:, :, None]

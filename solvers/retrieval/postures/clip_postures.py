@@ -31,11 +31,11 @@ class ClipPostures:
 
     Attributes
     ----------
-    positions : shape (n_frames, 20, 3), metres
+    positions : shape (n_frames, 20, 3), meters
         Joints of the standard body relative to its hips, facing -Y; in the order of
         `POSTURE_JOINTS`. NaN: not tracked.
     root_velocity : shape (n_frames, 4)
-        Velocity of the hips to the left, backward and up relative to the heading, in metres per
+        Velocity of the hips to the left, backward and up relative to the heading, in meters per
         second, and turning rate, in radians per second.
     frame_rate : float, hertz
     """
@@ -86,7 +86,7 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
     return ClipPostures(
         resize_postures(body.postures, ADULT_BONE_LENGTHS_M, scale),
         np.column_stack([
-            _actor_velocity(_per_second(scale * body.places, rate), body.headings),
+            _actor_velocity(_per_second(scale * body.hip_positions, rate), body.headings),
             _per_second(angles, rate),
         ]),
         rate,

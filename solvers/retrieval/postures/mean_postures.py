@@ -20,11 +20,11 @@ Array = NDArray[np.float64]
 
 N_COORDINATES = 3 * N_JOINTS
 POSITION_NOISE_M = 0.03
-"""Standard deviation of a joint position in metres, in addition to the covariance."""
+"""Standard deviation of a joint position in meters, in addition to the covariance."""
 MAX_LENGTH_RATIO = 1.4
 """Maximum ratio by which a path past missing joints is scaled up or down."""
 MIN_PATH_M = 0.01
-"""Minimum length of such a path in metres."""
+"""Minimum length of such a path in meters."""
 MIN_OBSERVED_FRACTION = 0.9
 """Fraction of frames with an observed joint above which it helps to find the heading."""
 MIN_HEADING_JOINTS = 3
@@ -37,7 +37,7 @@ ALL_ANGLES = np.radians(np.arange(-180.0, 180.0, 5.0))
 HEADING_ERROR_RAD = np.radians(20.0)
 """Standard deviation of the heading error of a body with missing joints."""
 HEADING_NOISE_M = 0.03
-"""Standard deviation of a joint position in metres, for the estimation of the heading."""
+"""Standard deviation of a joint position in meters, for the estimation of the heading."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class PostureDistribution:
 
     Attributes
     ----------
-    mean, covariance : shapes (60,) and (60, 60), metres
+    mean, covariance : shapes (60,) and (60, 60), meters
     """
 
     mean: Array
@@ -135,7 +135,7 @@ def _correct_proportions(positions: Array, observed: NDArray[np.bool_]) -> Array
 
     Parameters
     ----------
-    positions : shape (n_frames, 20, 3), metres
+    positions : shape (n_frames, 20, 3), meters
         First estimates for missing joints.
     observed : shape (n_frames, 20)
     """

@@ -54,7 +54,7 @@ class PostureDictionary:
     Attributes
     ----------
     atoms : shape (n_atoms, 60), of length 1
-    mean : shape (60,), metres
+    mean : shape (60,), meters
         Mean that is subtracted from postures; 0 unless centred.
     n_nonzeros : int
         Atoms per posture.
@@ -117,7 +117,7 @@ def learn_dictionary(
     initial = random.permutation(np.flatnonzero(sizes > 0.0))[: settings.n_atoms]
     atoms = examples[initial] / sizes[initial, None]
     for done in range(settings.n_rounds):
-        progress(done / settings.n_rounds, "Learning postures")
+        progress(done / settings.n_rounds, "Learning poses")
         codes = sparse_codes(examples, atoms, min(settings.n_nonzeros, *atoms.shape))
         atoms = _update_atoms(examples, atoms, codes)
     return PostureDictionary(atoms, mean, settings.n_nonzeros)

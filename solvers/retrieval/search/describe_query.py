@@ -18,7 +18,7 @@ class DescribedQuery:
 
     Attributes
     ----------
-    features : shape (n_frames, 5, 8), metres
+    features : shape (n_frames, 5, 8), meters
         Features of each part at 20 Hz.
     weights : shape (5,)
         Weight of each part.

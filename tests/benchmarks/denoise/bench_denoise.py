@@ -121,7 +121,7 @@ def priors(chosen: argparse.Namespace) -> list[Scores | str]:
     """Right and wrong examples."""
     scores, said = compare_priors(_walks(chosen)[:PRIOR_CLIPS])
     sentences = {what: [sentence] for what, sentence in said.items()}
-    return [*scores, table(["target, examples", "what it says that it used"], sentences)]
+    return [*scores, table(["target, examples", "prior in the report"], sentences)]
 
 
 PARTS: dict[str, Callable[[argparse.Namespace], Sequence[Scores | str]]] = {

@@ -1,4 +1,4 @@
-"""Gaps: joints lost for a quarter of a second up to whole clips, on clean CMU walks."""
+"""Gaps: joints missing for a quarter of a second up to complete clips, on clean CMU walks."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class Gap:
     seconds: float
 
     def __str__(self) -> str:
-        length = "whole clip" if self.seconds >= WHOLE else f"{self.seconds:g} s"
+        length = "complete clip" if self.seconds >= WHOLE else f"{self.seconds:g} s"
         return f"{self.title}, {length}"
 
 
@@ -45,7 +45,7 @@ Filler = Callable[[Case, Array], Array]
 
 def compare_gaps(cases: list[Case], fillers: Mapping[str, Filler]) -> list[Scores]:
     """Fill the same gaps by all methods; error on what was lost."""
-    scores = Scores("CMU walks with gaps: lost joints", "geodesic angle, degrees")
+    scores = Scores("CMU walks with gaps: missing joints", "geodesic angle, degrees")
     for case in cases:
         for gap in GAPS:
             draws = 1 if gap.seconds >= WHOLE else DRAWS

@@ -72,7 +72,7 @@ WITHOUT = {
     "no prediction": {"trust": 0.0},
     "no smoothness": {"turn_weight": 0.0, "shift_weight": 0.0},
     "no natural stance": {"natural_weight": 0.0},
-    "limbs also push each other apart": {"apart_weight": 20000.0},
+    "limbs also repel each other": {"apart_weight": 20000.0},
     "no joint limits": {"limit_weight": 0.0},
     "no occlusion handling": {"limit": 1.0},
     "not robust": {"robust_scale": 10.0},
@@ -146,8 +146,8 @@ def trackers() -> list[str]:
         "ours (default)": partial(ours, DEFAULT_TRACKER),
         "WZC12 preset": partial(ours, WZC12),
         "WZC12 terms, damped, with limits": partial(ours, DAMPED_WZC12),
-        "LOU12 preset, colour and clips": lou12,
-        "LOU12 preset, no colour, no clips": partial(ours, LOU12),
+        "LOU12 preset, color and clips": lou12,
+        "LOU12 preset, no color, no clips": partial(ours, LOU12),
         "articulated ICP": partial(peer, articulated_icp),
         "ray-constrained ICP": partial(peer, ray_constrained_icp),
     }
@@ -203,19 +203,19 @@ def _without(sequences: list[Sequence], title: str) -> Scores:
 
 
 def bodies() -> list[str]:
-    """Track with wrong radii, with a usual body, and with bodies refined from tracking."""
+    """Track with wrong radii, with the mean body, and with bodies refined from tracking."""
     scores = Scores("Bodies", UNIT, "")
     for name in HARD:
         one = sequence(name)
         true = one.body
         cases = {
-            "true lengths, usual radii": true,
+            "true lengths, mean radii": true,
             "radii 15 % thinner": BodyModel(true.lengths, 0.85 * true.radii),
             "radii 15 % thicker": BodyModel(true.lengths, 1.15 * true.radii),
-            "usual body": one.usual,
-            "usual body 5 % too tall": one.usual.scaled(1.05),
+            "mean body": one.usual,
+            "mean body 5 % too tall": one.usual.scaled(1.05),
         }
-        for label in ("usual body", "usual body 5 % too tall"):
+        for label in ("mean body", "mean body 5 % too tall"):
             cases[f"{label}, refined"] = _refined(one, cases[label])
         for label, body in cases.items():
             found, _ = measured(partial(ours, DEFAULT_TRACKER), one, body)
@@ -246,7 +246,7 @@ def noise() -> list[str]:
 
 def resolution() -> list[str]:
     """Look at fewer or more columns."""
-    scores = Scores("Columns looked at", UNIT, "")
+    scores = Scores("Selected columns", UNIT, "")
     for width in (80, 160, 320):
         settings = replace(DEFAULT_TRACKER, picture_width=width)
         for name in HARD:

@@ -26,14 +26,14 @@ def overlay(
 ) -> Image.Image:
     """Draw one frame, and joints (n, 3) of somebody else, 240 pixels about the actor."""
     seen, camera = depth.frame(frame), depth.camera
-    drawn = render_hypothesis(found.body, found.poses[frame], camera).picture.depth_picture()
+    drawn = render_hypothesis(found.body, found.poses[frame], camera).image.depth_image()
     image = Image.fromarray(_tinted(seen, drawn))
     image = image.resize((int(ENLARGED * camera.width), int(ENLARGED * camera.height)))
     pen = ImageDraw.Draw(image)
     places = ENLARGED * camera.project(found.joints.positions[frame])
     for joint, parent in enumerate(JOINT_PARENTS):
         if parent >= 0:
-            color = DOUBTFUL if found.doubtful[frame, joint] else SURE
+            color = DOUBTFUL if found.low_confidence[frame, joint] else SURE
             pen.line([*places[parent], *places[joint]], fill=color, width=3)
     for x, y in [] if others is None else ENLARGED * camera.project(others):
         if np.isfinite(x + y):

@@ -44,8 +44,8 @@ class Sequence:
     def body(self) -> BodyModel:
         """Lengths from the true joints, other proportions and radii usual."""
         usual = default_body()
-        told = body_from_joints(usual, self.joints)
-        factor = float(np.median(told.lengths / usual.lengths))
+        measured = body_from_joints(usual, self.joints)
+        factor = float(np.median(measured.lengths / usual.lengths))
         return body_from_joints(usual.scaled(factor), self.joints)
 
     @property
@@ -114,9 +114,9 @@ def errors(found: np.ndarray, truth: np.ndarray) -> Errors:
 
 def length_error(found: BodyModel, truth: BodyModel) -> float:
     """Return the mean difference of the lengths that joints tell, per cent."""
-    told = [
+    measured = [
         LENGTHS.index(f"{side}{name}")
         for side in ("left", "right")
         for name in ("UpperArm", "LowerArm", "UpperLeg", "LowerLeg")
     ]
-    return 100.0 * float(np.abs(found.lengths / truth.lengths - 1.0)[told].mean())
+    return 100.0 * float(np.abs(found.lengths / truth.lengths - 1.0)[measured].mean())

@@ -44,7 +44,7 @@ AWAY = 0.1
 
 @dataclass(frozen=True, eq=False)
 class KinectTake:
-    """A depth recording, and the joints that the Kinect's SDK told."""
+    """A depth recording, and the joints that of the Kinect's SDK."""
 
     action: int
     subject: int
@@ -67,14 +67,14 @@ class KinectTake:
 
     def hands_in_air(self, hands: np.ndarray) -> float:
         """Return the share of hands (n_frames, 2, 3) that are far from all that was seen."""
-        told = []
+        sdk_joints = []
         for frame in range(self.depth.n_frames):
             depth = self.depth.frame(frame)
             points = self.depth.camera.back_project(depth)[depth > 0.0]
             here = hands[frame][np.isfinite(hands[frame]).all(axis=-1)]
             if len(points) and len(here):
-                told += (cKDTree(points).query(here)[0] > AWAY).tolist()
-        return float(np.mean(told))
+                sdk_joints += (cKDTree(points).query(here)[0] > AWAY).tolist()
+        return float(np.mean(sdk_joints))
 
 
 def kinect_take(action: int, subject: int) -> KinectTake | None:
@@ -83,8 +83,12 @@ def kinect_take(action: int, subject: int) -> KinectTake | None:
     if not (TAKES / f"{stem}_depth.mat").exists():
         return None
     depth = read_depth(TAKES / f"{stem}_depth.mat")
-    told = np.moveaxis(loadmat(TAKES / f"{stem}_skeleton.mat")["d_skel"], 2, 0)
+    sdk_joints = np.moveaxis(loadmat(TAKES / f"{stem}_skeleton.mat")["d_skel"], 2, 0)
     joints = np.full((depth.n_frames, len(SDK), 3), np.nan)
-    n_frames = min(depth.n_frames - LATE, len(told))
-    joints[LATE : LATE + n_frames] = told[:n_frames, list(SDK.values())] * [-1.0, -1.0, 1.0]
+    n_frames = min(depth.n_frames - LATE, len(sdk_joints))
+    joints[LATE : LATE + n_frames] = sdk_joints[:n_frames, list(SDK.values())] * [
+        -1.0,
+        -1.0,
+        1.0,
+    ]
     return KinectTake(action, subject, depth, joints)

@@ -29,7 +29,7 @@ BY_JOINT = {
     "tracker alone, from the true first pose": "tracker",
     "both, forward and backward, smoothed": "both",
 }
-"""Ways of which each joint is told, and what they are called there."""
+"""Joints to report, and their names in the tables."""
 Found = tuple[np.ndarray, np.ndarray, int]
 """Joints (n, 21, 3), their frames (n,), and restarts."""
 
@@ -45,8 +45,8 @@ def captures() -> list[str]:
             ("nothing given", None, CaptureSettings()),
             ("forward only, not smoothed, body known", one.body, FORWARD),
         ):
-            told = _captured(one, given, settings)
-            for column, figure in told.items():
+            rows = _captured(one, given, settings)
+            for column, figure in rows.items():
                 scores.add(label, column, name, figure)
                 if given is None:
                     by_sequence.add(name, column, name, figure)
@@ -59,16 +59,16 @@ def more() -> list[str]:
     alone = Scores(
         "More sequences, tracker from the true first pose", "one each; lengths known", ""
     )
-    told = []
+    rows = []
     for name in TAKES:
         one = more_sequence(name)
-        told += [
+        rows += [
             (whole, name, each) for each in _captured(one, None, CaptureSettings()).items()
         ]
-        told += [(alone, name, each) for each in _measured(_tracker_alone, one).items()]
-    for scores, name, (column, figure) in told:
+        rows += [(alone, name, each) for each in _measured(_tracker_alone, one).items()]
+    for scores, name, (column, figure) in rows:
         scores.add(name, column, name, figure)
-    for scores, name, (column, figure) in told:
+    for scores, name, (column, figure) in rows:
         scores.add("all", column, name, figure)
     return [one.markdown().replace(" ± 0.00", "") for one in (whole, alone)]
 
@@ -112,7 +112,7 @@ def _captured(
     off = errors(found.joints.positions, one.joints)
     return off.figures() | {
         "restarts": float(len(found.restarts)),
-        "flagged %": 100.0 * found.doubtful.mean(),
+        "flagged %": 100.0 * found.low_confidence.mean(),
         "cm where not flagged": _where_sure(found, off.offset_taken),
         "% off in length": length_error(found.body, one.body),
         FPS: speed,
@@ -120,7 +120,7 @@ def _captured(
 
 
 def _where_sure(found: Capture, off: np.ndarray) -> float:
-    sure = off[~found.doubtful]
+    sure = off[~found.low_confidence]
     return 100.0 * float(sure.mean()) if len(sure) else float("nan")
 
 

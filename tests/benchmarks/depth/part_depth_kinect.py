@@ -38,12 +38,14 @@ def kinect(subjects: Sequence[int] = SUBJECTS) -> list[str]:
             if take is None:
                 continue
             found = capture(take.depth)
-            told = figures(take, found)
-            for column, figure in told.items():
+            scores_ = figures(take, found)
+            for column, figure in scores_.items():
                 scores.add(f"{action} {label}", column, take.name, figure)
                 everything.append((column, take.name, figure))
             rows.append(drawn(take, found))
-            print(take.name, {key: round(value, 2) for key, value in told.items()}, flush=True)
+            print(
+                take.name, {key: round(value, 2) for key, value in scores_.items()}, flush=True
+            )
         per_sheet = -(-len(rows) // SHEETS)
         for sheet in range(SHEETS):
             part = rows[sheet * per_sheet : (sheet + 1) * per_sheet]
@@ -64,18 +66,18 @@ def _pictures() -> list[str]:
 def figures(take: KinectTake, found: Capture) -> dict[str, float]:
     """Return what the table says of one take."""
     apart = take.distances(found.joints.positions)
-    told = apart[np.isfinite(apart).all(axis=1)]
+    scores_ = apart[np.isfinite(apart).all(axis=1)]
     hands = [OURS[place] for place in HANDS]
     return {
-        "cm, stable joints": 100.0 * float(told[:, STABLE].mean()),
-        "% < 10 cm": 100.0 * float((told < NEAR)[:, STABLE].mean()),
-        "cm, hands": 100.0 * float(told[:, HANDS].mean()),
+        "cm, stable joints": 100.0 * float(scores_[:, STABLE].mean()),
+        "% < 10 cm": 100.0 * float((scores_ < NEAR)[:, STABLE].mean()),
+        "cm, hands": 100.0 * float(scores_[:, HANDS].mean()),
         "% hands in air": 100.0 * take.hands_in_air(found.joints.positions[:, hands]),
         "% SDK's in air": 100.0 * take.hands_in_air(take.joints[:, HANDS]),
         "cm in depth": 100.0 * float(np.nanmean(found.residual)),
         "coverage": float(found.coverage.mean()),
         "restarts": float(len(found.restarts)),
-        "flagged %": 100.0 * float(found.doubtful.mean()),
+        "flagged %": 100.0 * float(found.low_confidence.mean()),
     }
 
 

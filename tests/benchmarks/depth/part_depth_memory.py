@@ -32,11 +32,11 @@ def memory(lengths: Sequence[int] = LENGTHS) -> list[str]:
     """Return the table."""
     rows, peaks = {}, []
     for n_frames in lengths:
-        told = _in_its_own_process(n_frames)
-        peaks.append(told["peak"])
+        report = _in_its_own_process(n_frames)
+        peaks.append(report["peak"])
         rows[f"{n_frames} frames, {n_frames / 1800:.3g} min"] = [
-            number(told["peak"]), number(told["n_frames"] / told["seconds"]),
-            number(told["residual"]),
+            number(report["peak"]), number(report["n_frames"] / report["seconds"]),
+            number(report["residual"]),
         ]  # fmt: skip
     grown = 1024.0 * (peaks[-1] - peaks[0]) / (lengths[-1] - lengths[0])
     header = ["recording", "peak MB", "frames/s", "cm in depth"]
@@ -69,13 +69,13 @@ def main(n_frames: int) -> None:
     """Capture and print what it took."""
     started = process_time()
     found = capture_recording(_looped(n_frames), settings=CHEAP)
-    told = {
+    report = {
         "n_frames": found.motion.n_frames,
         "seconds": process_time() - started,
         "peak": getrusage(RUSAGE_SELF).ru_maxrss / MEGABYTE,
         "residual": 100.0 * float(found.captured.residual.mean()),
     }
-    print(json.dumps(told))
+    print(json.dumps(report))
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ def recorded() -> list[str]:
         for label, wanted in (("", False), (", drawn to recorded motions", True)):
             _note(scores, f"tracker{label}", one, *_tracked(one, wanted))
             found = capture(one.depth, one.usual, settings=CaptureSettings(recorded=wanted))
-            _note(scores, f"capture{label}", one, found.joints.positions, found.doubtful)
+            _note(scores, f"capture{label}", one, found.joints.positions, found.low_confidence)
     return [scores.markdown()]
 
 

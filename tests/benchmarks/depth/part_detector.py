@@ -1,4 +1,4 @@
-"""The detector: parts told by pixel, and poses found in single frames.
+"""The detector: parts classified per pixel, and poses detected in single frames.
 
     python -m tests.benchmarks.depth.part_detector [--forest FILE] [--every N] [--peer]
 
@@ -60,7 +60,9 @@ def detector() -> list[str]:
         pose_rows(forest, EVERY, settings, calibrated) for calibrated in (False, True)
     )
     tables = {
-        f"Parts told by pixel, at 160 x 120; {forest.trained_on}": accuracy_rows(forest, EVERY),
+        f"Parts classified per pixel, at 160 x 120; {forest.trained_on}": accuracy_rows(
+            forest, EVERY
+        ),
         "Poses in single frames, body of the usual adult": usual,
         "Poses in single frames, limbs of true length": true,
         "Against scikit-learn's forest on the same features": peer_rows(EVERY),
@@ -71,7 +73,7 @@ def detector() -> list[str]:
 
 
 def confusion(frames: Iterable[LabelledFrame], forest: PixelForest) -> tuple[Array, float]:
-    """Count pixels by true and told part, and the milliseconds that a frame takes."""
+    """Count pixels by true and classified part, and measure milliseconds per frame."""
     counts, times = np.zeros((N_PARTS, N_PARTS)), []
     for frame in frames:
         start = process_time()
@@ -84,7 +86,7 @@ def confusion(frames: Iterable[LabelledFrame], forest: PixelForest) -> tuple[Arr
 
 
 def accuracy_rows(forest: PixelForest, every: int) -> list[str]:
-    """Return a table of pixels told rightly, by source."""
+    """Return a table of correctly classified pixels by source."""
     sources = {take: truth_frames(take, every) for take in TRUTH} | {"HDM05": unseen_frames()}
     total = np.zeros((N_PARTS, N_PARTS))
     rows = ["| source | pixels right | mean of parts | other side | ms |", "|" + "---|" * 5]
@@ -190,10 +192,10 @@ def peer_rows(every: int) -> list[str]:
                 pad_depth_image(frame.depth)[np.newaxis], np.zeros(len(true), dtype=np.intp),
                 found.rows, found.columns, frame.camera,
             )  # fmt: skip
-            told = np.stack(
+            values = np.stack(
                 [depth_differences(here, one).clip(-1001, 1001) for one in offsets], 1
             )
-            labels = peer.predict(told.astype(np.float32))
+            labels = peer.predict(values.astype(np.float32))
             right["ours"] += int((found.labels == true)[known].sum())
             right["scikit-learn"] += int((labels == true)[known].sum())
             total += int(known.sum())

@@ -119,7 +119,7 @@ def distance_rows(takes: list[KinectTake]) -> list[str]:
 
 
 def draw(take: KinectTake, body: BodyModel, number: int) -> NDArray[np.uint8]:
-    """Draw depth, told parts, and the body found, beside each other."""
+    """Draw depth, classified parts and the detected body next to each other."""
     pose, frame = take.found[number], take.camera_frames[number]
     depth = take.depth.frame(frame)[:: pose.step, :: pose.step]
     grey = np.where(
@@ -128,7 +128,7 @@ def draw(take: KinectTake, body: BodyModel, number: int) -> NDArray[np.uint8]:
     pictures = [np.repeat(grey[..., None], 3, axis=2)]
     told = pictures[0].copy()
     told[pose.pixels.rows, pose.pixels.columns] = COLORS[pose.pixels.labels]
-    picture = render_hypothesis(body, pose.pose, take.depth.camera.every(pose.step)).picture
+    picture = render_hypothesis(body, pose.pose, take.depth.camera.every(pose.step)).image
     fitted = pictures[0].copy()
     spots = np.divmod(picture.pixels, picture.camera.width)
     fitted[spots] = 0.5 * fitted[spots] + 0.5 * COLORS[_capsule_parts()[picture.capsules]]

@@ -1,4 +1,4 @@
-"""How well wrong poses are told: the learned failure test against published thresholds."""
+"""Detection of wrong poses: the learned failure test against published thresholds."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,27 +26,27 @@ def failures() -> list[str]:
     chance = found.features @ LEARNED_WEIGHTS + LEARNED_BIAS
     residual, overlap = columns["residual"] * RESIDUAL_UNIT, columns["overlap"]
     rows = {
-        "learned, chance over 50 %": _row(chance, chance >= 0.0, failed),
+        "learned, probability over 50 %": _row(chance, chance >= 0.0, failed),
         "depth, published: over 2.5 cm": _row(
             residual, residual > PUBLISHED_MAX_RESIDUAL_M, failed
         ),
         "overlap, published: under 90 %": _row(
             -overlap, overlap < PUBLISHED_MIN_OVERLAP, failed
         ),
-        "either of both, published": ["-", *_shares(found.published, failed)],
+        "either of both, published": ["-", *_rates(found.published, failed)],
         "score under 0.5": _row(-columns["score"], columns["score"] < 0.5, failed),
     }
     head = (
-        f"**Telling failures** (joints off by more than 10 cm on average: {failed.sum()} of"
-        f" {len(failed)} poses of four trackers with usual bodies, not those learned from)\n\n"
+        f"**Failure detection** (mean joint error above 10 cm: {failed.sum()} of {len(failed)}"
+        " held-out poses of four trackers with the mean body)\n\n"
     )
-    names = ["test", "area under ROC", "failures told, %", "false alarms, %"]
+    names = ["test", "area under ROC", "failures detected, %", "false alarms, %"]
     return [head + table(names, rows) + "\n"]
 
 
-def _row(values: Array, told: NDArray[np.bool_], failed: NDArray[np.bool_]) -> list[str]:
-    return [number(area_under_roc(values, failed)), *_shares(told, failed)]
+def _row(values: Array, detected: NDArray[np.bool_], failed: NDArray[np.bool_]) -> list[str]:
+    return [number(area_under_roc(values, failed)), *_rates(detected, failed)]
 
 
-def _shares(told: NDArray[np.bool_], failed: NDArray[np.bool_]) -> list[str]:
-    return [number(100.0 * told[failed].mean()), number(100.0 * told[~failed].mean())]
+def _rates(detected: NDArray[np.bool_], failed: NDArray[np.bool_]) -> list[str]:
+    return [number(100.0 * detected[failed].mean()), number(100.0 * detected[~failed].mean())]

@@ -43,7 +43,7 @@ def retracking() -> list[str]:
         for side in ("left", "right"):
             for coordinate, value in STIFF.items():
                 spoilt[stretch, COORDINATES.index(f"{side}{coordinate}")] = value
-        _correct(scores, name, one, spoilt, middle, "arms lost for 25 frames")
+        _correct(scores, name, one, spoilt, middle, "arms missing for 25 frames")
     return [scores.markdown()]
 
 
@@ -63,8 +63,8 @@ def _correct(
     around = around[around != frame]
     scores.add(label, "before", name, before[around].mean())
     scores.add(label, "after", name, after[around].mean())
-    scores.add(label, "before, whole take", name, before.mean())
-    scores.add(label, "after, whole take", name, after.mean())
+    scores.add(label, "before, complete take", name, before.mean())
+    scores.add(label, "after, complete take", name, after.mean())
     scores.add(label, "frames changed", name, found.last - found.first + 1)
     scores.add(label, "s", name, seconds)
 

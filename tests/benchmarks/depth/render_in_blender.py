@@ -71,8 +71,8 @@ def _depth_material() -> bpy.types.Material:
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
-    told, light = nodes.new("ShaderNodeCameraData"), nodes.new("ShaderNodeEmission")
-    links.new(told.outputs["View Z Depth"], light.inputs["Color"])
+    camera_data, light = nodes.new("ShaderNodeCameraData"), nodes.new("ShaderNodeEmission")
+    links.new(camera_data.outputs["View Z Depth"], light.inputs["Color"])
     links.new(light.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
     return material
 

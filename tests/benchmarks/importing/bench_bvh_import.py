@@ -45,7 +45,7 @@ def main() -> None:
         write_bvh(_take(), path)
         seconds = {
             "ours (read_bvh)": _median_time(lambda: read_bvh(path)),
-            "plain float() per word, numbers only": _median_time(lambda: _plain(path)),
+            "plain float() per number": _median_time(lambda: _plain(path)),
             "Blender's importer": _blender(path),
         }
         size = path.stat().st_size / 1e6

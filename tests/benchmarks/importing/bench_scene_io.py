@@ -65,7 +65,7 @@ def main() -> None:
         seconds = timed(run)
         bare = seconds if "bare" in name else bare
         rows[name] = [f"{seconds:.2f}", f"{1e6 * seconds / keys:.2f}", f"{seconds / bare:.1f}"]
-    header = ["what", "seconds", "microseconds per key", "times the bare way"]
+    header = ["what", "seconds", "microseconds per key", "relative to a bare loop"]
     text = f"**{title}**, median of {REPEATS} runs\n\n{table(header, rows)}\n"
     Report(arguments.docs).part("scene", [text], perf_counter() - started)
 

@@ -38,7 +38,7 @@ def compare_rigid() -> str:
                 _rms(kept - tracks.positions, members),
                 _rms((found - tracks.positions)[100 : 100 + length], [lost]),
             ]
-    header = ["take", "clusters of 3 or more", "before", "after", "LFHD lost for 2 s"]
+    header = ["take", "clusters of 3 or more", "before", "after", "LFHD missing for 2 s"]
     title = (
         "**Rigid clusters found in the noisy take** (rms distance to the clean take, mm)\n\n"
     )

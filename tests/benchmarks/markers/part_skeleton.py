@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.markers import find_marker_set, solve_skeleton
-from solvers.markers.centres import joint_centres
+from solvers.markers.joint_centers import joint_centers
 from solvers.motion import Motion, Tracks, find_humanoid_map, forward_kinematics
 from solvers.recordings import read_acclaim, read_c3d
 from tests.fixtures.marked_bodies import markers_on
@@ -34,14 +34,14 @@ AMC_TURN = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
 def _solved(tracks: Tracks) -> Mapping[str, Array]:
-    centres = solve_skeleton(tracks).joint_centres
+    centres = solve_skeleton(tracks).joint_centers
     return {name: centres.positions[:, place] for place, name in enumerate(centres.names)}
 
 
 def _regressed(tracks: Tracks) -> Mapping[str, Array]:
     found = find_marker_set(tracks.names).markers
     place = {name: index for index, name in enumerate(tracks.names)}
-    return joint_centres({s: tracks.positions[:, place[n]] for s, n in found.items()}).positions
+    return joint_centers({s: tracks.positions[:, place[n]] for s, n in found.items()}).positions
 
 
 METHODS: dict[str, Solver] = {
@@ -72,9 +72,9 @@ def against_amc() -> list[str]:
     spread["from ours"] = _wander(markers, _solved(markers))
     title = "**CMU 05_13, 1095 frames, 41 markers: distance to the joints of its AMC** (cm)\n\n"
     wander = (
-        "**How much the distance from a joint to the marker beside it varies** (standard"
-        " deviation, cm; on a body hardly. It tells how far the AMC itself can be trusted; ours"
-        " is made to hold it still)\n\n"
+        "**Variation of the distance from a joint to its nearest marker** (standard deviation,"
+        " cm; nearly constant on a body. It shows how reliable the AMC itself is; ours"
+        " minimizes it)\n\n"
     )
     return [
         title + table(["method", *PARTS, "all", "seconds"], rows) + "\n",

@@ -187,7 +187,7 @@ MISTAKES = {
     "five at once": _several,
     "three in turn": _three,
     "between gaps": _between_gaps,
-    "taken for a lost one": _taken_for_lost,
+    "swapped with a missing one": _taken_for_lost,
 }
 
 

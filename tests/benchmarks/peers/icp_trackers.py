@@ -59,25 +59,25 @@ def _closest_points(hypothesis: Hypothesis, observation: Observation) -> Surface
     moved = nearest[near]
     return rows_toward_targets(
         hypothesis.points[moved], observation.points[near], np.full(len(moved), 1.0),
-        hypothesis.picture.capsules[moved],
+        hypothesis.image.capsules[moved],
     )  # fmt: skip
 
 
 def _with_rays(hypothesis: Hypothesis, observation: Observation) -> SurfaceRows:
-    pixels, points = hypothesis.picture.pixels, hypothesis.points
+    pixels, points = hypothesis.image.pixels, hypothesis.points
     seen = observation.flat[pixels]
     nearest = observation.nearest_pixel[pixels]
     off = seen == 0.0
     targets = points.copy()
     targets[off] = points[off, 2:] * rays_through_pixels(observation.camera, nearest[off])
-    before = ~off & (hypothesis.picture.depths < seen)
+    before = ~off & (hypothesis.image.depths < seen)
     targets[before] = hypothesis.rays[before] * seen[before][:, np.newaxis]
     broken = np.flatnonzero(off | before)
     weights = np.full(len(broken), 1.0)
     far = np.linalg.norm(targets[broken] - points[broken], axis=1) > FARTHEST
     weights[far] = 0.0
     rays = rows_toward_targets(
-        points[broken], targets[broken], weights, hypothesis.picture.capsules[broken]
+        points[broken], targets[broken], weights, hypothesis.image.capsules[broken]
     )
     return concatenate_rows([_closest_points(hypothesis, observation), rays])
 

@@ -161,7 +161,7 @@ def row(motion: Motion, result: Motion, simulated: Simulated, speed: float = np.
     is_input = result is motion
     return Row((
         100 * measure_foot_slide(body, result, detect_contacts(motion, humanoid)) / seconds,
-        100 * measure_foot_slide(body, result, simulated.carried > CARRIES) / seconds,
+        100 * measure_foot_slide(body, result, simulated.foot_loads > CARRIES) / seconds,
         1000 * depths.max(),
         1000 * np.percentile(depths, 99),
         1000 * length_change(result, after),

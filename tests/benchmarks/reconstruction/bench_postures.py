@@ -6,7 +6,7 @@
     python -m tests.benchmarks.reconstruction.bench_postures --search # large libraries alone
 
 Libraries are of other persons than the clips: CMU walkers for development and one actor of
-HDM05. "Lost" joints are taken out of the capture; all methods are told which. Interpolation
+HDM05. "Lost" joints are taken out of the capture; all methods get the mask. Interpolation
 knows both ends of a loss, as does ours but for "causal". Only one loss in each take.
 """
 
@@ -89,8 +89,8 @@ def growth() -> str:
         shared = [len(set(a) & set(b)) / 30 for a, b in zip(found, truth, strict=True)]
         times = [1e3 * each / N_QUERIES for each in (quick, slow)]
         rows[f"{size:,}"] = [*map(number, times), f"{np.mean(shared):.3f}"]
-    header = ["postures", "ours, ms per frame", "each posture, ms", "true neighbours found"]
-    return "**Search in large libraries** (30 neighbours)\n\n" + table(header, rows) + "\n"
+    header = ["postures", "ours, ms per frame", "each pose, ms", "true neighbors found"]
+    return "**Search in large libraries** (30 neighbors)\n\n" + table(header, rows) + "\n"
 
 
 def _mixed(

@@ -43,7 +43,7 @@ KINECT = DATA / "kinect"
 FLAGGED = ("irds", "kimore", "laban", "msr_action3d", "azure")
 BINS = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0)
 EYES_CLOSED = ReliabilitySettings(inferred=1.0)
-"""Without the tracking state, which is what is to be foretold."""
+"""Without the tracking state, since that is to be predicted."""
 
 
 def main() -> None:
@@ -84,10 +84,14 @@ def areas(pairs: list[Pair]) -> str:
     for causal in (False, True):
         signs = [signs_of(pair.recording, causal) for pair in pairs]
         measures = dict(doubts(pairs, causal))
-        measures["path: off its smoothed self"] = [each.deviation for each in signs]
-        measures["lengths: greatest error"] = [each.stretch for each in signs]
-        for name, doubt in measures.items():
-            _put_areas(rows, name, [areas_by_subject(pairs, doubt, limit) for limit in LIMITS])
+        measures["path: distance from the smoothed path"] = [each.deviation for each in signs]
+        measures["lengths: maximum error"] = [each.length_error for each in signs]
+        for name, error_probability in measures.items():
+            _put_areas(
+                rows,
+                name,
+                [areas_by_subject(pairs, error_probability, limit) for limit in LIMITS],
+            )
         left_out = [
             areas_by_subject(pairs, doubts_left_out(pairs, signs, limit), limit)
             for limit in LIMITS
@@ -97,7 +101,7 @@ def areas(pairs: list[Pair]) -> str:
     shares = " and ".join(f"{np.nanmean(error > limit):.1%}" for limit in LIMITS)
     columns = [f"{when}, > {100 * limit:.0f} cm" for when in WHEN for limit in LIMITS]
     head = (
-        f"**Area under the ROC curve** of telling joints more than 5 and 10 cm wrong ({shares}"
+        f"**Area under the ROC curve** of detecting joint errors above 5 and 10 cm ({shares}"
         f" of all), {len(pairs)} takes of UI-PRMD; mean over subjects (worst subject)\n\n"
     )
     return head + table(["measure", *columns], rows) + "\n"
@@ -118,28 +122,30 @@ def calibration(pairs: list[Pair]) -> str:
     rows: dict[str, list[str]] = {}
     for limit in LIMITS:
         left_out = doubts_left_out(pairs, signs, limit)
-        doubt = np.concatenate([each.ravel() for each in left_out])[np.isfinite(error)]
+        error_probability = np.concatenate([each.ravel() for each in left_out])[
+            np.isfinite(error)
+        ]
         wrong = error[np.isfinite(error)] > limit
         for low, high in pairwise(BINS):
-            here = (doubt >= low) & (doubt < high)
+            here = (error_probability >= low) & (error_probability < high)
             cells = [
                 f"{here.mean():.2%}",
-                f"{doubt[here].mean():.3f}",
+                f"{error_probability[here].mean():.3f}",
                 f"{wrong[here].mean():.3f}",
             ]
             rows.setdefault(f"{low:g} to {high:g}", []).extend(cells)
     columns = [f"{words}, {100 * limit:.0f} cm" for limit in LIMITS for words in WORDS]
     return (
-        "**Calibration** of the default, subject left out: chance to be wrong as it was told,"
-        " and share of joints that were\n\n" + table(["chance", *columns], rows) + "\n"
+        "**Calibration** of the default, subject left out: predicted probability of an error,"
+        " and fraction of joints with one\n\n" + table(["probability", *columns], rows) + "\n"
     )
 
 
-WORDS = ("of all", "told", "wrong")
+WORDS = ("fraction", "predicted", "actual")
 
 
 def flags() -> str:
-    """Return how far measures agree with the device's own word, by data set."""
+    """Return the agreement of measures with the device's own state, by data set."""
     rows: dict[str, list[str]] = {}
     for name in FLAGGED:
         files = sorted(path for path in (KINECT / name).iterdir() if path.is_file())
@@ -148,14 +154,15 @@ def flags() -> str:
             rows[f"{name}, {len(takes)} takes"] = _agreement(takes)
     names = ["inferred", *MEASURES]
     return (
-        "**The device's own flag**: share of seen joints that it calls inferred"
-        " (msr_action3d: whose confidence is below 1), and the area under the curve of"
-        " foretelling that\n\n" + table(["data", *names], rows) + "\n"
+        "**The device's own flag**: fraction of observed joints with the state inferred"
+        " (msr_action3d: confidence below 1), and area under the ROC curve of predicting it\n\n"
+        + table(["data", *names], rows)
+        + "\n"
     )
 
 
 MEASURES: dict[str, Callable[..., np.ndarray]] = {
-    "behaviour term": lambda found: found.behaviour,
+    "behaviour term": lambda found: found.behavior,
     "kinematics term": lambda found: found.kinematics,
     "default": lambda found: found.combined,
 }
@@ -169,8 +176,10 @@ def _agreement(takes: list[JointRecording]) -> list[str]:
     ])
     cells = [f"{inferred.mean():.1%}"]
     for measure in MEASURES.values():
-        doubt = [1.0 - measure(each)[known] for each, known in zip(found, seen, strict=True)]
-        cells.append(f"{area_under_curve(np.concatenate(doubt), inferred):.3f}")
+        error_probability = [
+            1.0 - measure(each)[known] for each, known in zip(found, seen, strict=True)
+        ]
+        cells.append(f"{area_under_curve(np.concatenate(error_probability), inferred):.3f}")
     return cells
 
 

@@ -53,12 +53,12 @@ class Damaged:
 
 def lost(pair: Pair, random: np.random.Generator) -> Iterator[Damaged]:
     """Lose some joints at random, or whole limbs, once in the take."""
-    told = np.flatnonzero(np.isfinite(seen_of(pair)).all(axis=(0, 2)))
+    observed = np.flatnonzero(np.isfinite(seen_of(pair)).all(axis=(0, 2)))
     for seconds in SECONDS:
         n = round(seconds * pair.kinect.frame_rate)
         if n + 2 * LEAST_SEEN >= pair.kinect.n_frames:
             continue
-        choices = {str(n): random.choice(told, n, replace=False) for n in COUNTS}
+        choices = {str(n): random.choice(observed, n, replace=False) for n in COUNTS}
         for what, joints in {**choices, **LIMBS}.items():
             where = _stretch(pair, n, joints, random)
             yield Damaged(what, f"{seconds:g} s", without(pair, where), where)
@@ -106,7 +106,7 @@ def occluded(positions: Array, frame_rate: float, angle: float) -> Flags:
     """Tell which joints lie behind a part of the body that they do not belong to."""
     plain = normalize_postures(positions, frame_rate)
     ahead = rotate_about_vertical(np.array([[[0.0, -DISTANCE, 0.0]]]), np.array([angle]))[0, 0]
-    middle = np.median(plain.places, axis=0)
+    middle = np.median(plain.hip_positions, axis=0)
     facing = np.angle(np.exp(1j * plain.headings).mean())
     sensor = middle + rotate_about_vertical(ahead[None, None], np.array([facing]))[0, 0]
     sensor[2] = np.nanmin(positions[..., 2]) + HEIGHT

@@ -49,7 +49,7 @@ Method = Callable[[Pair, str], Array]
 CALM = 1 / 30
 """Seconds of the Gaussian that regressions see through, as our prior does."""
 SMOOTHING = 0.05
-"""Seconds; what regressions foretell is smoothed as ours is."""
+"""Seconds; predictions of regressions are smoothed like ours."""
 THINNED = 5
 """Every so manieth frame is an example, 6 a second as for our prior."""
 SIGNS_PUBLISHED = ReliabilitySettings(method=ReliabilityMethod.PUBLISHED)
@@ -73,14 +73,14 @@ def filtered(
 
 
 def regressed(learn: Callable[[Array, Array], Predict], pair: Pair, subject: str) -> Array:
-    """Add the offsets that a regression foretells in the frame of the heading."""
+    """Add the offsets that a regression predicts in the frame of the heading."""
     calm = smooth_postures(pair.kinect, CALM)
     columns = _tracked(calm.features)
     offsets = np.zeros_like(calm.features)
     predict = _regression(learn, subject)
-    foretold = predict(calm.features[:, columns[1:]].reshape(len(offsets), -1))
-    offsets[:, columns] = foretold.reshape(len(offsets), -1, 3)
-    return _calmed(calm.positions + calm.turn_back(offsets), pair)
+    predicted = predict(calm.features[:, columns[1:]].reshape(len(offsets), -1))
+    offsets[:, columns] = predicted.reshape(len(offsets), -1, 3)
+    return _calmed(calm.positions + calm.rotate_to_world(offsets), pair)
 
 
 def from_examples(learn: Callable[[Array], Predict], pair: Pair, subject: str) -> Array:
@@ -90,10 +90,10 @@ def from_examples(learn: Callable[[Array], Predict], pair: Pair, subject: str) -
     predict = _memory(learn, subject)
     made = np.full_like(calm.features, np.nan)
     found = predict(calm.features[:, columns].reshape(len(made), -1))
-    seen = calm.normalised.postures[:, columns]
+    seen = calm.normalized.postures[:, columns]
     size = np.linalg.norm(seen) / np.linalg.norm(calm.features[:, columns])
     made[:, columns] = size * found.reshape(len(made), -1, 3)
-    return _calmed(calm.normalised.put_back(made), pair)
+    return _calmed(calm.normalized.to_world(made), pair)
 
 
 @cache
@@ -102,7 +102,7 @@ def _regression(learn: Callable[[Array, Array], Predict], subject: str) -> Predi
     for pair in others(subject):
         calm = smooth_postures(pair.kinect, CALM)
         columns = _tracked(calm.features)
-        off = rotate_about_vertical(truth_of(pair) - calm.positions, -calm.normalised.headings)
+        off = rotate_about_vertical(truth_of(pair) - calm.positions, -calm.normalized.headings)
         features.append(calm.features[::THINNED, columns[1:]])
         offsets.append(off[::THINNED, columns])
     X, Y = (_flat(parts) for parts in (features, offsets))
@@ -116,7 +116,7 @@ def _memory(learn: Callable[[Array], Predict], subject: str) -> Predict:
     for pair in others(subject):
         plain = normalize_postures(truth_of(pair), pair.truth.frame_rate)
         seen = smooth_postures(pair.kinect, CALM)
-        size = np.nanmax(np.abs(seen.features)) / np.nanmax(np.abs(seen.normalised.postures))
+        size = np.nanmax(np.abs(seen.features)) / np.nanmax(np.abs(seen.normalized.postures))
         columns = _tracked(seen.features)
         examples.append(size * plain.postures[::THINNED, columns])
     X = _flat(examples)
@@ -204,7 +204,7 @@ METHODS: dict[str, Method] = {
     "Kalman, constant velocity, smoothed": partial(filtered, constant_velocity, agility=0.5),
     "GCV smoothing spline": partial(filtered, gcv_spline),
     "constant offset": partial(regressed, posture_regression.constant),
-    "ridge, whole posture": partial(regressed, posture_regression.ridge),
+    "ridge, complete pose": partial(regressed, posture_regression.ridge),
     "random-forest offsets (as Shen 2012)": partial(
         regressed, posture_regression.random_forest
     ),

@@ -7,7 +7,7 @@ mirrored: the repetitions that were paired are of the other leg.
 Nor do the markers of four more exercises by that subject. In these he stands all the time, and
 his ankles are 9 to 20 cm apart as the Kinect has it, 39 to 48 cm as the markers have it, never
 less than 20 cm off; of others, who stand so too, some frame is at most 15 cm off. Nobody learns
-from these 40 takes; they are compared with all the same, and figures are told without them too.
+from these 40 takes; they are still compared, and figures without them are given as well.
 """
 
 from collections.abc import Iterator
@@ -63,7 +63,7 @@ def true_joints(markers: Tracks) -> Tracks:
     """Place the joints that UI-PRMD names amid the markers of Plug-in Gait.
 
     Hips: Harrington et al. 2007. Elbows, knees, ankles and toes are where their markers are; a
-    constant offset of a joint is no error of the sensor, and measures are told without it too.
+    constant offset of a joint is no sensor error; measures without it are given as well.
     """
     spots = {name: markers.positions[:, place] for place, name in enumerate(markers.names)}
 

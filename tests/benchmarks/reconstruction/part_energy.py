@@ -74,10 +74,16 @@ def energy_weights() -> str:
         )
         cells = [f"{100.0 * np.nanmean(one):.2f}" for one in (gone, apart, lengths)]
         rows[name] = [*cells, number(float(np.nanmean(jerks)))]
-    columns = ["lost joints, cm", "to the joint above, cm", "lengths vary by, cm", "jerk, m/s³"]
+    columns = [
+        "missing joints, cm",
+        "vector from the parent, cm",
+        "length deviation, cm",
+        "jerk, m/s³",
+    ]
     head = (
         "**Weights of the energy of [SHJT13]** (eq. 10 to 15; published 1, .5, 1.5, .25;"
-        f" Gauss-Newton), joints lost for {SECONDS}, {len(asked)} cases, subject left out\n\n"
+        f" Gauss-Newton), joints missing for {SECONDS}, {len(asked)} cases, subject left"
+        " out\n\n"
     )
     return head + table(["terms", *columns], rows) + "\n"
 
@@ -98,17 +104,17 @@ def _all_asked() -> Iterator[Asked]:
                     query = PostureQuery(plain.postures, speeds, trust, 0.0)
                     places, _ = nearest_postures(index, query)
                     spaces = local_pca(body.positions[places].astype(np.float64))
-                    demands = EnergyTargets(plain.postures, trust, spaces.neighbours, lengths)
+                    demands = EnergyTargets(plain.postures, trust, spaces.neighbors, lengths)
                     yield Asked(damaged, plain, spaces, demands)
 
 
 def _measured(asked: Asked, weights: EnergyWeights) -> tuple[Array, Array, Array, Array]:
     """Return errors of lost joints, of ways from the joint above, of lengths, and jerks."""
     demands = EnergyTargets(
-        asked.demands.observed, asked.demands.trust, asked.demands.neighbours,
+        asked.demands.observed, asked.demands.reliability, asked.demands.neighbors,
         asked.demands.lengths, weights=weights,
     )  # fmt: skip
-    made = asked.plain.put_back(solve_sequentially(asked.spaces, demands)[0])
+    made = asked.plain.to_world(solve_sequentially(asked.spaces, demands)[0])
     pair = asked.damaged.pair
     _, apart, _ = compared(made, truth_of(pair))
     return (
@@ -125,10 +131,10 @@ def classes() -> str:
     for subject in SUBJECTS:
         for pair in takes_of(subject, *REPETITIONS)[::EVERY]:
             nothing = np.zeros(seen_of(pair).shape[:2], bool)
-            cases = [("(a) as it is", Damaged("", "", pair, nothing))]
+            cases = [("(a) unchanged", Damaged("", "", pair, nothing))]
             cases += [(f"(b) hidden, {one.what}", one) for one in hidden(pair)]
             cases += [
-                (f"(c) 8 joints lost, {one.seconds}", one)
+                (f"(c) 8 joints missing, {one.seconds}", one)
                 for one in lost(pair, np.random.default_rng(0))
                 if one.what == "8"
             ]

@@ -31,7 +31,7 @@ LENGTHS = (3.0, 10.0, 30.0)
 WORST = 0.1
 """Share of the joint-frames, those in which raw is most off."""
 COLUMNS = (
-    "absolute, cm", "to the joint above, cm", "offset-free, cm", "worst tenth, cm",
+    "absolute, cm", "vector from the parent, cm", "offset-free, cm", "worst tenth, cm",
     "jerk, m/s³", "ms per frame",
 )  # fmt: skip
 
@@ -46,7 +46,7 @@ SLOW, FEW = (
 """Methods of which only the first repetitions are looked at, and how many."""
 OTHERWISE = (
     "absolute, cm", "offset-free, cm", "worst tenth, cm",
-    "to the joint above, cm", "the same, offset-free", "the same, worst tenth",
+    "vector from the parent, cm", "the same, offset-free", "the same, worst tenth",
 )  # fmt: skip
 EXERCISES = {
     "m01": "deep squat", "m02": "hurdle step", "m03": "inline lunge", "m04": "side lunge",
@@ -55,8 +55,8 @@ EXERCISES = {
 }  # fmt: skip
 EXERCISES_TITLE = "\n**Absolute error by exercise** (cm; table 5.2 of [ZH14])\n\n"
 OTHERWISE_TITLE = (
-    "\n**Counted otherwise**: the first three columns without the 40 takes whose markers are of"
-    " another stance, the others of all takes by the way from the joint above (eq. 18 of"
+    "\n**Other measures**: the first three columns without the 40 takes whose markers show"
+    " another stance, the others for all takes, by the vector from the parent joint (eq. 18 of"
     " [SHJT13])\n\n"
 )
 
@@ -205,7 +205,7 @@ def _to_and_fro(recording: JointRecording, n_frames: int) -> JointRecording:
 
 
 def _correction_alone(takes: list[Pair]) -> str:
-    """Return what foretelling and smoothing take, without reliability and skeleton."""
+    """Return the time of prediction and smoothing, without reliability and skeleton."""
     taken, n_frames = 0.0, 0
     usual = CorrectionSettings()
     for pair in takes:
@@ -218,6 +218,7 @@ def _correction_alone(takes: list[Pair]) -> str:
         n_frames += pair.kinect.n_frames
     each = 1e3 * taken / n_frames
     return (
-        f"\nThe correction alone (calming, foretelling, smoothing) takes {each:.2f} ms per"
-        " frame; the rest of *residuals* is reliability, exchanged limbs and the skeleton.\n"
+        "\nThe correction alone (input smoothing, prediction, output smoothing) takes"
+        f" {each:.2f} ms per frame; the rest of *residuals* is reliability, swapped limbs and"
+        " the skeleton.\n"
     )

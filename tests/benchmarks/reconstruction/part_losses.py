@@ -59,7 +59,7 @@ def bridged_by(
         return fill(seen.reshape(len(seen), -1), rate).reshape(seen.shape)
     plain = normalize_postures(seen, rate, np.isfinite(seen).all(axis=-1).astype(float))
     flat = plain.postures.reshape(len(seen), -1)
-    return plain.put_back(fill(flat, rate).reshape(seen.shape))
+    return plain.to_world(fill(flat, rate).reshape(seen.shape))
 
 
 def by_example(complete: Callable[..., Array], pair: Pair, subject: str) -> Array:
@@ -70,43 +70,43 @@ def by_example(complete: Callable[..., Array], pair: Pair, subject: str) -> Arra
     )
     size = _size(smooth_postures(pair.kinect, CALM))
     flat = size * plain.postures.reshape(len(seen), -1)
-    told = np.isfinite(flat)
+    observed = np.isfinite(flat)
     examples = seen_examples(subject)
     known = np.isfinite(examples).all(axis=0)
     result = flat.copy()
-    patterns, which = np.unique(told, axis=0, return_inverse=True)
+    patterns, which = np.unique(observed, axis=0, return_inverse=True)
     for number, pattern in enumerate(patterns):
         rows = np.flatnonzero(which.ravel() == number)
         result[np.ix_(rows, ~pattern & known)] = complete(
             examples, flat[rows][:, pattern], pattern, ~pattern & known
         )
-    made = plain.put_back(result.reshape(seen.shape) / size)
+    made = plain.to_world(result.reshape(seen.shape) / size)
     return np.where(np.isfinite(seen), seen, made)
 
 
-def nearest_mean(examples: Array, seen: Array, told: Array, wanted: Array) -> Array:
+def nearest_mean(examples: Array, seen: Array, observed: Array, wanted: Array) -> Array:
     """Mean of the nearest examples."""
-    known = examples[:, told]
+    known = examples[:, observed]
     far = (known**2).sum(axis=1) - 2.0 * seen @ known.T
     nearest = np.argpartition(far, N_NEIGHBOURS, axis=1)[:, :N_NEIGHBOURS]
     return examples[:, wanted][nearest].mean(axis=1)
 
 
-def principal(examples: Array, seen: Array, told: Array, wanted: Array) -> Array:
+def principal(examples: Array, seen: Array, observed: Array, wanted: Array) -> Array:
     """Most probable point in the space of principal components."""
     mean, axes, spread = examples.mean(axis=0), *_components(examples)
-    known = axes[:, told]
+    known = axes[:, observed]
     pull = np.diag(NOISE**2 / spread)
-    found = np.linalg.solve(known @ known.T + pull, known @ (seen - mean[told]).T)
+    found = np.linalg.solve(known @ known.T + pull, known @ (seen - mean[observed]).T)
     return mean[wanted] + found.T @ axes[:, wanted]
 
 
 def _components(examples: Array) -> tuple[Array, Array]:
     """Principal axes, (n, 60), and variances along them."""
-    told = np.isfinite(examples).all(axis=0)
-    spread, vectors = np.linalg.eigh(np.cov(examples[:, told].T))
+    observed = np.isfinite(examples).all(axis=0)
+    spread, vectors = np.linalg.eigh(np.cov(examples[:, observed].T))
     axes = np.zeros((N_COMPONENTS, examples.shape[1]))
-    axes[:, told] = vectors.T[::-1][:N_COMPONENTS]
+    axes[:, observed] = vectors.T[::-1][:N_COMPONENTS]
     return axes, spread[::-1][:N_COMPONENTS]
 
 
@@ -119,7 +119,7 @@ def seen_examples(subject: str) -> Array:
 
 
 def _size(calm: SmoothedPostures) -> float:
-    sizes = [np.nanmax(np.abs(one)) for one in (calm.features, calm.normalised.postures)]
+    sizes = [np.nanmax(np.abs(one)) for one in (calm.features, calm.normalized.postures)]
     return float(sizes[0] / sizes[1])
 
 
@@ -179,8 +179,8 @@ def losses(n_repetitions: int) -> list[str]:
         errors_of(hidden, methods, every=2),
     )
     return [
-        errors_table("Joints lost, by how many", random, lambda one: one.what),
-        errors_table("Joints lost, by how long", random, lambda one: one.seconds),
+        errors_table("Missing joints, by number", random, lambda one: one.what),
+        errors_table("Missing joints, by duration", random, lambda one: one.seconds),
         errors_table(
             "Joints hidden by the body, by where the sensor is", behind, lambda one: one.what
         ),

@@ -61,7 +61,7 @@ PARTS = {
     "hands, feet, elbows, knees": (6, 10, 14, 18, 5, 9, 13, 17),
     "all": tuple(range(N_JOINTS)),
 }
-"""Of [SHJT13], table III; the hips are always used: postures are told relative to them."""
+"""Of [SHJT13], table III; the hips are always used: poses are relative to them."""
 
 
 class Clip(NamedTuple):
@@ -147,7 +147,7 @@ def interpolated(
     if in_body:
         seen = np.where(lost[..., None], np.nan, postures)
         plain = normalize_postures(seen, RATE, 1.0 - lost)
-        return plain.put_back(interpolated(kind, False, plain.postures, lost, library))
+        return plain.to_world(interpolated(kind, False, plain.postures, lost, library))
     result, frames = postures.copy(), np.arange(len(postures))
     for joint in np.flatnonzero(lost.any(axis=0)):
         gone = lost[:, joint]
@@ -178,15 +178,15 @@ def from_neighbours(
         query = PostureQuery(plain.postures, 0.0 * plain.postures, 1.0 - lost, 0.0)
         places, _ = nearest_postures(index_postures(body, 0 * library.groups), query)
         made = body.positions[places].mean(axis=1).astype(np.float64)
-    return np.where(lost[..., None], plain.put_back(made), postures)
+    return np.where(lost[..., None], plain.to_world(made), postures)
 
 
 def _projected(mean: Array, axes: Array, postures: Array) -> Array:
     """Least squares on what was seen."""
     result = np.empty_like(postures)
     for frame, flat in enumerate(postures.reshape(len(postures), -1)):
-        told = np.isfinite(flat)
-        z = np.linalg.lstsq(axes[told], (flat - mean)[told], rcond=1e-3)[0]
+        observed = np.isfinite(flat)
+        z = np.linalg.lstsq(axes[observed], (flat - mean)[observed], rcond=1e-3)[0]
         result[frame] = (mean + axes @ z).reshape(N_JOINTS, 3)
     return result
 
@@ -206,9 +206,9 @@ METHODS: dict[str, Method] = {
 
 
 def lost_joints(title: str, found: tuple[Clip, ...]) -> tuple[Scores, Scores]:
-    """Error of lost joints, by how many were lost and by how long."""
+    """Error of missing joints by number and duration."""
     by_joints, by_seconds = (
-        Scores(f"Lost joints, {title}, by {by}", "mm on the lost joints")
+        Scores(f"Missing joints, {title}, by {by}", "mm on the missing joints")
         for by in ("joints", "seconds")
     )
     for number, clip in enumerate(found):
@@ -281,7 +281,7 @@ def energies(found: tuple[Clip, ...]) -> Scores:
         )
         places, _ = nearest_postures(index_postures(body, library.groups), query)
         spaces = local_pca(body.positions[places].astype(np.float64))
-        asked = EnergyTargets(plain.postures, 1.0 - lost, spaces.neighbours, lengths)
+        asked = EnergyTargets(plain.postures, 1.0 - lost, spaces.neighbors, lengths)
         for name, solve in solvers.items():
             started = perf_counter()
             _, found_energies = solve(spaces, asked)

@@ -37,8 +37,8 @@ FILES = {
 N_FILES = 5
 SOUND, WRONG = 0.8, 0.5
 COLUMNS = (
-    "lengths vary by, cm", "jerk, m/s³", "moved, trusted joints, cm",
-    "moved, doubted joints, cm", "ms per frame",
+    "length deviation, cm", "jerk, m/s³", "displacement, reliable joints, cm",
+    "displacement, unreliable joints, cm", "ms per frame",
 )  # fmt: skip
 
 
@@ -56,10 +56,10 @@ def takes_of(name: str) -> list[JointRecording]:
 
 
 def _table(name: str, takes: list[JointRecording]) -> str:
-    trust = [measure_reliability(take).combined for take in takes]
+    reliabilities = [measure_reliability(take).combined for take in takes]
     rows = {
-        "before": _row(takes, trust, lambda take: take.tracks),
-        "linear, Gaussian, 2 frames": _row(takes, trust, _filtered),
+        "before": _row(takes, reliabilities, lambda take: take.tracks),
+        "linear, Gaussian, 2 frames": _row(takes, reliabilities, _filtered),
     }
     for method in (
         ReconstructMethod.POSTURES,
@@ -68,14 +68,13 @@ def _table(name: str, takes: list[JointRecording]) -> str:
     ):
         words = "ours (both)" if method is ReconstructMethod.BOTH else method.value
         solve = partial(reconstruct, settings=ReconstructSettings(method=method))
-        rows[words] = _row(takes, trust, _tracks(solve))
+        rows[words] = _row(takes, reliabilities, _tracks(solve))
         if method is ReconstructMethod.BOTH:
-            rows["ours, skeleton"] = _row(takes, trust, _skeleton(solve))
+            rows["ours, skeleton"] = _row(takes, reliabilities, _skeleton(solve))
     words = f"{sum(take.n_frames for take in takes)} frames, {_flags(takes)}"
-    told = np.concatenate([one.ravel() for one in trust])
-    words += (
-        f"; mean reliability {told.mean():.2f}, {(told < WRONG).mean():.1%} below {WRONG:g}"
-    )
+    reliability = np.concatenate([one.ravel() for one in reliabilities])
+    below = (reliability < WRONG).mean()
+    words += f"; mean reliability {reliability.mean():.2f}, {below:.1%} below {WRONG:g}"
     return f"**{name}** ({len(takes)} takes, {words})\n\n" + table(["", *COLUMNS], rows) + "\n"
 
 
@@ -112,21 +111,21 @@ def _skeleton(solve: Callable[[JointRecording], Reconstruction]) -> Callable[...
 
 def _row(
     takes: list[JointRecording],
-    trust: list[Array],
+    reliabilities: list[Array],
     solve: Callable[[JointRecording], Tracks],
 ) -> list[str]:
-    lengths, jerks, sure, doubted, taken = [], [], [], [], 0.0
-    for take, told in zip(takes, trust, strict=True):
+    lengths, jerks, reliable, unreliable, taken = [], [], [], [], 0.0
+    for take, reliability in zip(takes, reliabilities, strict=True):
         started = process_time()
         made = solve(take)
         taken += process_time() - started
         lengths.append(_varying(made))
         jerks.append(_jerk(made))
         moved = np.linalg.norm(made.positions - take.tracks.positions, axis=-1)
-        sure.append(moved[(told > SOUND) & np.isfinite(moved)])
-        doubted.append(moved[(told < WRONG) & np.isfinite(moved)])
+        reliable.append(moved[(reliability > SOUND) & np.isfinite(moved)])
+        unreliable.append(moved[(reliability < WRONG) & np.isfinite(moved)])
     n_frames = sum(take.n_frames for take in takes)
-    ways = [np.concatenate(one) for one in (sure, doubted)]
+    ways = [np.concatenate(one) for one in (reliable, unreliable)]
     figures = [
         100.0 * float(np.mean(lengths)),
         float(np.mean(jerks)),

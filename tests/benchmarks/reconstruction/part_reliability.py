@@ -86,9 +86,12 @@ def doubts(pairs: list[Pair], causal: bool) -> Iterator[tuple[str, list[Array]]]
         settings = ReliabilitySettings(method=method, causal=causal)
         ways[method].append(measure_reliability(pair.recording, settings=settings))
     published = ways[ReliabilityMethod.PUBLISHED]
-    yield "behaviour term", [1.0 - found.behaviour for found in published]
+    yield "behaviour term", [1.0 - found.behavior for found in published]
     yield "kinematics term", [1.0 - found.kinematics for found in published]
-    yield "published: least of the terms, window", [1.0 - found.combined for found in published]
+    yield (
+        "published: minimum of the terms, window",
+        [1.0 - found.combined for found in published],
+    )
     yield (
         "default as it ships",
         [1.0 - found.combined for found in ways[ReliabilityMethod.DEFAULT]],
@@ -114,12 +117,12 @@ def fit_model(signs: Iterable[ErrorIndicators], errors: Iterable[Array]) -> Erro
     both = list(signs)
     every = ErrorIndicators(
         np.concatenate([each.deviation.ravel() for each in both])[known],
-        np.concatenate([each.stretch.ravel() for each in both])[known],
-        np.concatenate([each.away.ravel() for each in both])[known],
+        np.concatenate([each.length_error.ravel() for each in both])[known],
+        np.concatenate([each.jumps.ravel() for each in both])[known],
     )
     fits = []
     for share, floor in product(SHARES, FLOORS):
-        sign = ErrorModel(share, floor, 0.0, 1.0, 1.0).sign(every)
+        sign = ErrorModel(share, floor, 0.0, 1.0, 1.0).combine(every)
         slope, level = np.polyfit(sign, aim, 1)
         spread = float(np.std(aim - level - slope * sign))
         fits.append(ErrorModel(share, floor, float(level), float(slope), spread))
@@ -138,5 +141,5 @@ def doubts_left_out(
         )
         for place, pair in enumerate(pairs):
             if pair.subject == subject:
-                found[place] = 1.0 - model.chance_within(signs[place], limit)
+                found[place] = 1.0 - model.probability_within(signs[place], limit)
     return [found[place] for place in range(len(pairs))]

@@ -56,9 +56,9 @@ TERMS = {
 }
 SIGNS = {
     "no reliability": (),
-    "behaviour": ("behaviour",),
+    "behaviour": ("behavior",),
     "kinematics": ("kinematics",),
-    "both, published": ("behaviour", "kinematics"),
+    "both, published": ("behavior", "kinematics"),
 }
 BINS = (0.0, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 WITHIN = 0.05
@@ -96,18 +96,16 @@ def _cells(found: Errors, worst: NDArray[np.bool_]) -> list[str]:
 
 
 def signs() -> list[str]:
-    """Return errors of postures by which signs of reliability were looked at."""
+    """Return errors of poses by reliability term."""
     methods: dict[str, Method] = {"raw": raw}
     for name, used in SIGNS.items():
         methods[name] = joints(_trusting, used=used)
     methods["ours"] = joints(_trusting, used=None)
     return [
-        errors_table(
-            f"Postures by sign of reliability, {what}", damage_errors(damage, methods), by
-        )
+        errors_table(f"Poses by reliability term, {what}", damage_errors(damage, methods), by)
         for what, damage, by in (
-            ("joints that vibrate", shaken, _seconds),
-            ("limbs swapped", swapped, _what),
+            ("vibrating joints", shaken, _seconds),
+            ("swapped limbs", swapped, _what),
         )
     ]
 
@@ -121,7 +119,7 @@ def _what(found: Found) -> str:
 
 
 def _trusting(pair: Pair, subject: str, used: tuple[str, ...] | None) -> Reconstruction:
-    """Rebuild postures, trusting joints by some signs only; None: as by default."""
+    """Reconstruct poses with some reliability terms only; None uses the default."""
     trust = measure_reliability(pair.kinect)
     if used is not None:
         trust = _only(measure_reliability(pair.kinect, settings=SIGNS_PUBLISHED), used)
@@ -138,25 +136,28 @@ def _only(trust: Reliability, used: tuple[str, ...]) -> Reliability:
 
 
 def confidence(n_repetitions: int) -> list[str]:
-    """Return what was told of joints, and how many of them lay within 5 cm."""
-    plain, residuals, both = "as the prior tells", "residuals", "ours (both)"
-    ways = {
+    """Return the confidence of joints, and the fraction of them within 5 cm."""
+    plain, residuals, both = "prior alone", "residuals", "ours (both)"
+    methods = {
         plain: partial(by_reconstruct, method=ReconstructMethod.RESIDUALS),
         residuals: partial(by_reconstruct, method=ReconstructMethod.RESIDUALS, confident=True),
         both: partial(by_reconstruct, method=ReconstructMethod.BOTH, confident=True),
     }
-    beside = {name: partial(ways[name], shift=False) for name in (plain, both)}
+    relative = {name: partial(methods[name], shift=False) for name in (plain, both)}
     return [
         _confidence_table(
-            "**Confidence**, subject left out: chance that a joint lies within 5 cm of the true"
-            " one as told, and share that does; in the row before the last all, and the mean of"
-            " -log(chance of what came true)",
-            {name: _told(solve, n_repetitions) for name, solve in ways.items()},
+            "**Confidence**, subject left out: predicted probability that a joint is within"
+            " 5 cm of the truth, and fraction of joints that are; the last two rows hold all"
+            " joints and the mean of -log(probability of the outcome)",
+            {name: _confidences(solve, n_repetitions) for name, solve in methods.items()},
         ),
         _confidence_table(
-            "**The same beside the mean offset of joint and take**, where that is not to be"
-            " taken out (without *shift*, as Reconstruct does by default)",
-            {name: _told(solve, n_repetitions, True) for name, solve in beside.items()},
+            "**The same relative to the mean offset of joint and take**, which is not removed"
+            " here (without *shift*, the default of Reconstruct)",
+            {
+                name: _confidences(solve, n_repetitions, True)
+                for name, solve in relative.items()
+            },
         ),
     ]
 
@@ -164,40 +165,44 @@ def confidence(n_repetitions: int) -> list[str]:
 def _confidence_table(title: str, found: dict[str, tuple[Array, Array]]) -> str:
     rows: dict[str, list[str]] = {}
     columns: list[str] = []
-    for name, (told, right) in found.items():
-        columns += [f"{word}, {name}" for word in ("of all", "told", "true")]
+    for name, (confidences, correct) in found.items():
+        columns += [f"{word}, {name}" for word in ("fraction", "predicted", "actual")]
         for low, high in [*pairwise(BINS), (0.0, 1.0 + 1e-9)]:
-            here = (told >= low) & (told < high)
+            here = (confidences >= low) & (confidences < high)
             label = f"{low:g} to {min(high, 1.0):g}"
             figures = [f"{here.mean():.1%}", "-", "-"]
             if here.any():
-                figures[1:] = [f"{told[here].mean():.3f}", f"{right[here].mean():.3f}"]
+                figures[1:] = [f"{confidences[here].mean():.3f}", f"{correct[here].mean():.3f}"]
             rows.setdefault(label, []).extend(figures)
-        rows.setdefault("log-loss", []).extend(["-", f"{_log_loss(told, right):.3f}", "-"])
-    return f"{title}\n\n" + table(["told", *columns], rows) + "\n"
+        rows.setdefault("log-loss", []).extend([
+            "-",
+            f"{_log_loss(confidences, correct):.3f}",
+            "-",
+        ])
+    return f"{title}\n\n" + table(["predicted", *columns], rows) + "\n"
 
 
-def _log_loss(told: Array, right: Array) -> float:
-    chance = np.clip(np.where(right, told, 1.0 - told), 1e-3, 1.0)
+def _log_loss(confidences: Array, correct: Array) -> float:
+    chance = np.clip(np.where(correct, confidences, 1.0 - confidences), 1e-3, 1.0)
     return float(-np.log(chance).mean())
 
 
-def _told(
-    solve: Callable[..., Reconstruction], n_repetitions: int, beside_offset: bool = False
+def _confidences(
+    solve: Callable[..., Reconstruction], n_repetitions: int, relative_to_offset: bool = False
 ) -> tuple[Array, Array]:
-    told, right = [], []
+    confidences, correct = [], []
     for subject in SUBJECTS:
         for pair in takes_of(subject, n_repetitions):
             result = solve(pair, subject)
-            ways = posture_positions(result.tracks) - truth_of(pair)
-            if beside_offset:
-                seen = np.isfinite(ways).any(axis=(0, 2))
-                ways[:, seen] -= np.nanmean(ways[:, seen], axis=0)
-            off = np.linalg.norm(ways, axis=-1)
-            known = np.isfinite(off)
-            said = np.zeros((len(off), N_JOINTS))
+            methods = posture_positions(result.tracks) - truth_of(pair)
+            if relative_to_offset:
+                seen = np.isfinite(methods).any(axis=(0, 2))
+                methods[:, seen] -= np.nanmean(methods[:, seen], axis=0)
+            off = np.linalg.norm(methods, axis=-1)
+            observed = np.isfinite(off)
+            confidence_values = np.zeros((len(off), N_JOINTS))
             for role, place in posture_joint_indices(pair.kinect.names).items():
-                said[:, POSTURE_JOINTS.index(role)] = result.confidence[:, place]
-            told.append(said[known])
-            right.append(off[known] < WITHIN)
-    return np.concatenate(told), np.concatenate(right)
+                confidence_values[:, POSTURE_JOINTS.index(role)] = result.confidence[:, place]
+            confidences.append(confidence_values[observed])
+            correct.append(off[observed] < WITHIN)
+    return np.concatenate(confidences), np.concatenate(correct)

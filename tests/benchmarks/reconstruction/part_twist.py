@@ -50,21 +50,21 @@ COLUMNS = (
 def untwisted(result: Reconstruction) -> LimbTwists:
     """No twist against the trunk at all."""
     return LimbTwists(
-        np.zeros((result.tracks.n_frames, len(TWISTED_LIMBS)), complex), alone=True
+        np.zeros((result.tracks.n_frames, len(TWISTED_LIMBS)), complex), ignore_flexion=True
     )
 
 
 def neighbours(result: Reconstruction) -> LimbTwists:
     """As [SHJT13]: the neighbours' mean alone."""
     assert result.twists is not None
-    return LimbTwists(result.twists.vectors, alone=True)
+    return LimbTwists(result.twists.vectors, ignore_flexion=True)
 
 
 METHODS: dict[str, Callable[[Reconstruction], LimbTwists | None]] = {
     "no twist": untwisted,
-    "bends alone": lambda result: None,
-    "neighbours' mean, as [SHJT13]": neighbours,
-    "bends and neighbours (ours)": lambda result: result.twists,
+    "flexion alone": lambda result: None,
+    "mean of neighbors, as [SHJT13]": neighbours,
+    "flexion and neighbors (ours)": lambda result: result.twists,
 }
 
 
@@ -118,8 +118,8 @@ def _table(title: str, groups: list[Group]) -> str:
         for motions, library in groups:
             for case in cases(motions, seen):
                 result = reconstruct(case.recording, library)
-                for name, told in METHODS.items():
-                    found[name].append((*_errors(case, result, told(result)), case))
+                for name, method in METHODS.items():
+                    found[name].append((*_errors(case, result, method(result)), case))
         for name, errors in found.items():
             rows[f"{seen}: {name}"] = _cells(errors)
     n_clips = sum(len(motions) for motions, _ in groups)

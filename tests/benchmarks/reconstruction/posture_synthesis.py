@@ -75,7 +75,7 @@ class _Quadratic:
         w, axes = demands.weights, spaces.axes
         told = np.isfinite(demands.observed).all(axis=-1)
         self.style = w.style / N_JOINTS
-        control = np.repeat(w.control * np.where(told, demands.trust, 0.0), 3, axis=1)
+        control = np.repeat(w.control * np.where(told, demands.reliability, 0.0), 3, axis=1)
         asked = np.nan_to_num(demands.observed).reshape(control.shape) - spaces.means
         weights, pull = control + self.style, control * asked
         if demands.expected is not None:
@@ -86,7 +86,7 @@ class _Quadratic:
         turned = axes.swapaxes(-1, -2)
         self.H = turned @ (axes * weights[..., None]) + RIDGE * np.eye(axes.shape[-1])
         self.b = np.einsum("fji,fj->fi", axes, pull)
-        self.off = spaces.neighbours - spaces.means[:, None]
+        self.off = spaces.neighbors - spaces.means[:, None]
         self.places = self.off @ axes
         """Coordinates of the neighbours."""
 

@@ -26,7 +26,7 @@ from .kinect_folds import pairs, seen_of, truth_of
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-TRUE, KINECT, LOST = "as it was", "as a Kinect errs", "limb lost 1.5 s"
+TRUE, KINECT, LOST = "optical capture", "Kinect errors", "limb missing 1.5 s"
 BENT = np.radians(30.0)
 """Bends from which on a maker's hinge is measured."""
 HAND_ENDS, HANDS = (7, 11), (6, 10)

@@ -76,8 +76,8 @@ def _hdm05(dev: bool) -> Iterator[tuple[str, Motion]]:
 
 def _retargeted(title: str, motions: list[tuple[str, Motion]]) -> list[Scores]:
     where = f"{title}, {len(motions)} clips to {len(BODIES)} rigs"
-    seen = Scores(f"{where}: what is seen", UNITS, OURS)
-    by_rig = Scores(f"{where}: what is seen, {OURS}, by rig", UNITS)
+    seen = Scores(f"{where}: poses in the world", UNITS, OURS)
+    by_rig = Scores(f"{where}: poses in the world, {OURS}, by rig", UNITS)
     reached = Scores(f"{where}: what the solver aimed at", UNITS, OURS)
     for name, motion in motions:
         source = acted(motion, find_humanoid_map(motion.skeleton))

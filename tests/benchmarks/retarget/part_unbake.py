@@ -32,8 +32,8 @@ def unbaked(dev: bool, decimate: bool) -> str:
         header += ["Decimate: keys", "error cm", "seconds", "times our keys"]
     return (
         f"**Keys (each channel counted) of walks on a rig of {motion.n_joints} bones, at a"
-        " given greatest error of any joint at any frame**, 60 Hz; Decimate's two margins, of"
-        " rotations and of places, are searched for, its seconds are those of one run\n\n"
+        " given maximum error of any joint at any frame**, 60 Hz; Decimate's two margins, of"
+        " rotations and positions, are searched for; its seconds are those of one run\n\n"
         + table(header, rows)
         + "\n"
     )

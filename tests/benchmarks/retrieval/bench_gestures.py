@@ -1,10 +1,10 @@
-"""Gestures told, missed, and told where none was meant; and how soon.
+"""Detected, missed and false gestures, and delays.
 
     make bench-gestures                     # half a minute
     make bench-gestures ARGUMENTS=--docs    # into docs/benchmarks_retrieval.md
 
 Thresholds were set on subjects 1 and 2 of MSR Action3D, 1, 3 and 5 of UTD-MHAD, 1, 2, 5 of
-UI-PRMD and 215 of IRDS, which are shown apart; nobody looked at the others for that.
+UI-PRMD and 215 of IRDS, which have columns and rows of their own. The others were not used.
 """
 
 import argparse
@@ -76,10 +76,10 @@ SENSORS = {
     "no noise, 30 Hz": {},
     "1 cm noise": {"noise": 0.01},
     "2 cm noise": {"noise": 0.02},
-    "1 cm; each joint hidden every 2 s; 10 % of frames lost": {
+    "1 cm; each joint hidden every 2 s; 10 % of frames dropped": {
         "noise": 0.01, "hidden": 0.5, "lost": 0.1, "lateness": 0.005,
     },
-    "1 cm; every second; 30 % lost": {
+    "1 cm; every second; 30 % dropped": {
         "noise": 0.01, "hidden": 1.0, "lost": 0.3, "lateness": 0.01,
     },
     "1 cm, 15 Hz": {"noise": 0.01, "frame_rate": 15.0},
@@ -109,7 +109,7 @@ def main() -> None:
 
 
 def detections() -> str:
-    """Return how many real gestures are told, clip by clip."""
+    """Return how many real gestures are detected, clip by clip."""
     rows: dict[str, list[str]] = {}
     for subjects, utd_subjects in (("34", "7"), ("12", "135")):
         msr = {path.name: read_stream([path]) for path in _msr(subjects)}
@@ -120,17 +120,17 @@ def detections() -> str:
         for streams, meanings in ((msr, MEANT), (utd, MEANT_UTD)):
             for action, meant in meanings.items():
                 number = action.split()[0] + "_"
-                _told(
+                _count_detections(
                     rows, action, [streams[n] for n in streams if n.startswith(number)], meant
                 )
             others = [streams[n] for n in streams if not n.startswith(CLAPPING)]
             name = OTHERS if streams is msr else OTHERS_UTD
-            _told(rows, name, others, {Gesture.CAPTURE_START})
+            _count_detections(rows, name, others, {Gesture.CAPTURE_START})
     columns = [f"{name}, {who}" for who in ("held out", "*tuned on*") for name in METHODS]
     return (
         "**Gestures of MSR Action3D** (Kinect v1, 15 Hz; subjects 3 and 4, *1 and 2*) **and of"
-        " UTD-MHAD** (Kinect v1, 30 Hz; subject 7, *1, 3 and 5*): clips in which they are"
-        " told; waves counted at any time\n\n" + table(["action", *columns], rows) + "\n"
+        " UTD-MHAD** (Kinect v1, 30 Hz; subject 7, *1, 3 and 5*): clips with a detection; waves"
+        " count at any time\n\n" + table(["action", *columns], rows) + "\n"
     )
 
 
@@ -138,19 +138,19 @@ def _msr(subjects: str) -> list[Path]:
     return sorted((KINECT / "msr_action3d").glob(f"a*_s0[{subjects}]_*"))
 
 
-def _told(
+def _count_detections(
     rows: dict[str, list[str]], name: str, clips: Sequence[Stream], meant: set[Gesture]
 ) -> None:
     for method in METHODS.values():
-        told = sum(
+        detected = sum(
             bool(meant & {event.gesture for event in method(stream, ALWAYS)})
             for stream in clips
         )
-        rows.setdefault(name, []).append(f"{told} of {len(clips)}")
+        rows.setdefault(name, []).append(f"{detected} of {len(clips)}")
 
 
 def alarms() -> str:
-    """Return how often something is told to those who mean nothing."""
+    """Return false alarms in recordings without gestures."""
     rows: dict[str, list[str]] = {}
     for name, pattern in EXERCISES.items():
         paths = [path for path in sorted(KINECT.glob(pattern)) if path.name[:3] != "a10"]
@@ -165,53 +165,60 @@ def alarms() -> str:
     columns = ["minutes", *NAMES, "per minute", "simple thresholds, per minute"]
     return (
         "**False alarms** while people exercise, all takes of a data set as one stream, as in"
-        " use: waves count after a hand was up, and nothing but a clap between two claps\n\n"
+        " use: waves count after a raised hand, and only a clap counts between two claps\n\n"
         + table(["data", *columns], rows)
         + "\n"
     )
 
 
 def made_streams() -> str:
-    """Return what is told of gestures that were made, through noise and losses."""
+    """Return detections of synthetic gestures under noise and dropouts."""
     rows: dict[str, list[str]] = {}
     expected = {each: N_SEEDS * number for each, number in EXPECTED.items()}
     for name, sensor in SENSORS.items():
-        told, extra, late = Counter[Gesture](), 0, {each: [] for each in DONE}
+        detected, extra, delays_by_gesture = Counter[Gesture](), 0, {each: [] for each in DONE}
         for seed in range(N_SEEDS):
             performance = perform_gestures(MADE, PerformanceSettings(**sensor, seed=seed))
             stream = Stream(performance.times, performance.positions, performance.confidence)
             events = ours(stream, GestureSettings())
             found = Counter(counted(events))
-            told += found & EXPECTED
+            detected += found & EXPECTED
             extra += (found - EXPECTED).total()
             for gesture, done in performance.made:
-                _note_delay(late, gesture, done, events)
-        shares = [
-            f"{sum(told[each] for each in kind) / sum(expected[each] for each in kind):.0%}"
+                _note_delay(delays_by_gesture, gesture, done, events)
+        rates = [
+            f"{sum(detected[each] for each in kind) / sum(expected[each] for each in kind):.0%}"
             for kind in KINDS
         ]
-        delays = [*late["wave right"], *late["wave left"]], late["clap"], late["hand up"]
+        delays = (
+            [*delays_by_gesture["wave right"], *delays_by_gesture["wave left"]],
+            delays_by_gesture["clap"],
+            delays_by_gesture["hand up"],
+        )
         shown = [f"{1000 * np.median(each):.0f}" if each else "-" for each in delays]
-        rows[name] = [*shares, str(extra), *shown]
-    columns = [*NAMES, "told besides", "wave, ms", "clap, ms", "hand up, ms"]
+        rows[name] = [*rates, str(extra), *shown]
+    columns = [*NAMES, "false detections", "wave, ms", "clap, ms", "hand up, ms"]
     return (
-        f"**Made gestures**, {N_SEEDS} streams each: share that is told, and the median time"
-        " from the end of the gesture until it is (a hand that is up must be held for a"
-        " second; a wave is told before it ends)\n\n" + table(["camera", *columns], rows) + "\n"
+        f"**Synthetic gestures**, {N_SEEDS} streams each: detection rate, and median delay"
+        " after the end of the gesture (a raised hand must be held for a second; a wave is"
+        " detected before it ends)\n\n" + table(["camera", *columns], rows) + "\n"
     )
 
 
 def _note_delay(
-    late: dict[str, list[float]], name: str, done: float, events: Sequence[GestureEvent]
+    delays_by_gesture: dict[str, list[float]],
+    name: str,
+    done: float,
+    events: Sequence[GestureEvent],
 ) -> None:
-    """Note how long after its end a gesture was told, if it was about then."""
+    """Add the delay of a detection after the end of its gesture, if it is near."""
     if name in DONE:
         delays = [event.time - done for event in events if event.gesture in DONE[name]]
-        late[name] += [each for each in delays if -0.3 < each < 1.5][:1]
+        delays_by_gesture[name] += [each for each in delays if -0.3 < each < 1.5][:1]
 
 
 def speed() -> str:
-    """Return what a frame costs from the socket to the events."""
+    """Return the time per frame from the socket to the events."""
     recording = perform_gestures(MADE).recording()
     lines = [encode_frame(frame) for frame in frames_from_recording(recording)]
     started = perf_counter()
@@ -224,7 +231,7 @@ def speed() -> str:
     heard = perf_counter()
     rows = {
         "decoding a line of 20 joints": [f"{1000 * (decoded - started) / len(lines):.2f}"],
-        "the whole session": [f"{1000 * (heard - decoded) / len(lines):.2f}"],
+        "complete session": [f"{1000 * (heard - decoded) / len(lines):.2f}"],
     }
     return "**Time**\n\n" + table(["step", "ms per frame"], rows) + "\n"
 

@@ -7,7 +7,7 @@ make bench-retrieval ARGUMENTS=--choose             # settings of pyramids, trai
 make bench-retrieval ARGUMENTS=--pursuit            # sparse codes, beside scikit-learn's
 make bench-retrieval ARGUMENTS=--times              # one search, step by step
 
-What methods answer is kept under build/retrieval, and told of all methods that are there.
+Answers of methods are stored under build/retrieval; tables show all stored methods.
 """
 
 import argparse

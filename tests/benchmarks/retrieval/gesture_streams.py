@@ -84,7 +84,7 @@ def thresholds(stream: Stream, settings: GestureSettings) -> tuple[GestureEvent,
     wrist, other = stream.positions[:, RIGHT_WRIST], stream.positions[:, LEFT_WRIST]
     speed = np.gradient(wrist[:, 0], stream.times) if len(wrist) > 1 else np.zeros(len(wrist))
     clap = np.linalg.norm(wrist - other, axis=-1) < TOUCH
-    told = {
+    rules = {
         Gesture.HAND_UP: wrist[:, 2] > stream.positions[:, HEAD, 2],
         Gesture.CAPTURE_START: clap,
         Gesture.PAGE_NEXT: speed < -QUICK,  # the actor faces the camera
@@ -92,7 +92,7 @@ def thresholds(stream: Stream, settings: GestureSettings) -> tuple[GestureEvent,
     }
     events = [
         GestureEvent(gesture, float(stream.times[frame]), float(stream.times[frame]))
-        for gesture, holds in told.items()
+        for gesture, holds in rules.items()
         for frame in np.flatnonzero(holds[1:] & ~holds[:-1]) + 1
     ]
     return tuple(sorted(events, key=lambda event: event.time))

@@ -2,14 +2,14 @@ r"""How a clip library grows: 300 to 100,000 clips, built in one file and search
 
     python -m tests.benchmarks.retrieval.part_growth  # up to 10,000: ten minutes
     python -m tests.benchmarks.retrieval.part_growth --sizes 300 1000 100000  # an hour
-    python -m tests.benchmarks.retrieval.part_growth --told growth.log --docs  # of a run
+    python -m tests.benchmarks.retrieval.part_growth --log growth.log --docs  # of a run
 
 The clips are those of HDM05 and the CMU walks, varied: faster or slower (0.7 to 1.4), bones
 turned by some degrees, shaken, mirrored. They are varied as postures of the standard body, in
 which all actors have the same bone lengths anyway; to read and describe a real clip of two
 seconds takes about 15 ms beside that. Each query is a clip of the library, at another speed and
 shaken again; it is found when that clip comes first, or among the first ten. At each size a
-process of its own searches, so that its memory can be told. Times are of the processor, with
+process of its own searches, so that its memory can be measured. Times are CPU times, with
 one thread: other work on the machine does not count.
 """
 
@@ -196,8 +196,8 @@ def search(path: Path, n_queries: int) -> dict[str, float]:
     opened = process_time() - began
     rng = np.random.default_rng(len(entries))
     asked = rng.permutation(len(entries))[:n_queries]
-    told = [_asked(library, int(number)) for number in asked]
-    ask, find, first, in_ten, kin = (np.array(column) for column in zip(*told, strict=True))
+    answers = [_asked(library, int(number)) for number in asked]
+    ask, find, first, in_ten, kin = (np.array(column) for column in zip(*answers, strict=True))
     return {
         "open_ms": 1000.0 * opened,
         "search_mb": _peak(),
@@ -252,10 +252,10 @@ def _peak() -> float:
 def rows_of(path: Path) -> list[Row]:
     """Read the rows that a run printed, which may have been cut short."""
     lines = [line for line in path.read_text(encoding="utf-8").splitlines() if "Row(" in line]
-    told = [dict(re.findall(r"(\w+)=([^,)]+)", line)) for line in lines]
+    answers = [dict(re.findall(r"(\w+)=([^,)]+)", line)) for line in lines]
     return [
         Row(int(one.pop("n_clips")), **{name: float(value) for name, value in one.items()})
-        for one in told
+        for one in answers
     ]
 
 
@@ -280,14 +280,14 @@ def main() -> None:
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES)
     parser.add_argument("--queries", type=int, default=N_QUERIES)
     parser.add_argument("--search", type=Path, help=argparse.SUPPRESS)
-    parser.add_argument("--told", type=Path, help="rows that an earlier run printed")
+    parser.add_argument("--log", type=Path, help="rows that an earlier run printed")
     parser.add_argument("--docs", action="store_true", help="into docs/benchmarks_retrieval.md")
     chosen = parser.parse_args()
     if chosen.search is not None:
         print(json.dumps(search(chosen.search, chosen.queries)))
         return
     began = perf_counter()
-    rows = rows_of(chosen.told) if chosen.told else run(sorted(chosen.sizes), chosen.queries)
+    rows = rows_of(chosen.log) if chosen.log else run(sorted(chosen.sizes), chosen.queries)
     if chosen.docs:
         drawn = {SHOWN[name]: [getattr(row, name) for row in rows] for name in DRAWN}
         draw_growth([row.n_clips for row in rows], drawn, "Growth of a library", PICTURE)

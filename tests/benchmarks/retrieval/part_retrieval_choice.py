@@ -18,7 +18,7 @@ from .retrieval_clips import training_library
 from .retrieval_damage import DAMAGES
 from .retrieval_protocol import Method, Query, answer, mean_precision, queries
 
-ASKED = ("clean", "joints lost", "lost at random", "0.7x speed")
+ASKED = ("clean", "joints missing", "missing at random", "0.7x speed")
 EVERY = 2
 """Of the clips, that many-th is asked for."""
 START = Pyramids(

@@ -37,7 +37,7 @@ def time_searches() -> str:
     ]
     for n_aligned in (0, FindSettings().n_aligned):
         settings = FindSettings(n_matches=TOLD, n_aligned=n_aligned)
-        name = f"find_similar, {TOLD} told, {n_aligned} aligned frame by frame, 120 Hz"
+        name = f"find_similar, {TOLD} matches, {n_aligned} aligned frame by frame, 120 Hz"
         rows[name] = [
             _shortest(
                 partial(find_similar, clips[at].tracks, prepared.library, settings=settings)

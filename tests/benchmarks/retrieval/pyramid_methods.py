@@ -101,10 +101,10 @@ class PyramidLibrary:
 
 
 def only(postures: ClipPostures, root: int, joints: tuple[int, ...]) -> ClipPostures:
-    """Return postures in which only these joints are told, relative to the root."""
+    """Return poses with only these joints, relative to the root."""
     if not root and len(joints) == postures.positions.shape[1]:
         return postures
     positions = np.zeros_like(postures.positions)
-    told = postures.positions[:, list(joints)] - postures.positions[:, root, None]
-    positions[:, list(joints)] = told
+    relative = postures.positions[:, list(joints)] - postures.positions[:, root, None]
+    positions[:, list(joints)] = relative
     return replace(postures, positions=positions)

@@ -48,8 +48,8 @@ def at_speed(speed: float, tracks: Tracks) -> Tracks:
 
 DAMAGES: dict[str, Damage] = {
     "clean": unharmed,
-    "joints lost": lose_joints,
-    "lost at random": lose_at_random,
+    "joints missing": lose_joints,
+    "missing at random": lose_at_random,
     "noise 2 cm": add_noise,
     "0.7x speed": lambda tracks, random: at_speed(0.7, tracks),
     "1.4x speed": lambda tracks, random: at_speed(1.4, tracks),

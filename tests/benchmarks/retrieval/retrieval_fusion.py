@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 SPREADING = 0.95
-"""Part of what a clip is told that it passes on (alpha of [ZBL04])."""
+"""Fraction of its score that a clip passes on (alpha of [ZBL04])."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Fused:
     """The sum of distances of several methods, each with mean 0 and deviation 1 over clips.
 
     With `n_neighbours`, manifold ranking [ZBL04] comes after: each clip is linked to that many
-    nearest, the query's own nearest are told 1, and all pass on what they are told.
+    nearest, the query's own nearest get score 1, and all pass on their scores.
 
     [ZBL04] Zhou, Weston, Gretton, Bousquet, Schoelkopf (2004). Ranking on data manifolds. NIPS.
     """
@@ -58,9 +58,9 @@ class FusedLibrary:
         places = np.flatnonzero(allowed)
         result = np.full(len(allowed), np.inf)
         within = self.between[np.ix_(places, places)]
-        told = manifold_ranking(within, plain[places], self.n_neighbours)
+        scores_ = manifold_ranking(within, plain[places], self.n_neighbours)
         # Clips that nothing reaches come last, in the order of plain distances.
-        result[places] = -told + 1e-6 * plain[places]
+        result[places] = -scores_ + 1e-6 * plain[places]
         return result
 
     def plain(self, query: list[Any], allowed: Flags) -> Array:
@@ -73,7 +73,7 @@ class FusedLibrary:
 
 
 def manifold_ranking(between: Array, query: Array, n_neighbours: int) -> Array:
-    """Return how much each clip is told.
+    """Return the score of each clip.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ N_NEIGHBOURS = 3
 METHODS: dict[str, Method] = {
     OURS: Default(),
     "ours, without asking the like": Default(FindSettings(n_alike=0)),
-    "ours, words alone": Default(FindSettings(n_alike=0, n_warped=0)),
+    "ours, codewords alone": Default(FindSettings(n_alike=0, n_warped=0)),
     PUBLISHED: Pyramids(),
     CUBES: Pyramids(pyramid=PyramidSettings(normalise_cubes=True)),
     "pyramids, settings chosen": CHOSEN,
@@ -40,7 +40,7 @@ METHODS: dict[str, Method] = {
     "covariances": Covariances(),
     "log-covariances": LOGARITHMS,
     "Euclidean, resampled": Resampled(),
-    "bag of words": BagOfWords(),
+    "bag of codewords": BagOfWords(),
     "low-rank volumes, as [SJF11]": MotionVolumes(),
     "strings of patterns, as [DGL09]": StringMatching(),
     "find_similar + log-covariances": Fused((Default(), LOGARITHMS)),

@@ -1,9 +1,8 @@
-"""Ask every clip for its likes, and say how well they came first.
+"""Query with every clip, and score the ranking of its class.
 
-A method prepares a library, describes a query, and returns how far each clip of the library is
-from it. The clip that the query came from is never among those to be ranked (leave one out), or
-none of its actor's (leave one actor out); methods that look at the whole library are told which
-clips they may use.
+A method prepares a library, describes a query, and returns the distance of each clip of the
+library. The clip of the query is never ranked (leave one out), or no clip of its actor (leave
+one actor out). Methods that use the complete library get the clips that they may use.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -43,7 +42,7 @@ class Method(Protocol):
     """A way to find similar clips."""
 
     def prepare(self, clips: Sequence[Tracks]) -> Prepared:
-        """Learn what is needed, and describe the clips. Labels are not told."""
+        """Learn what is needed, and describe the clips. Labels are not given."""
 
 
 class Query(NamedTuple):

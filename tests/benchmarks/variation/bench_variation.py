@@ -31,7 +31,7 @@ from ..shared.report import DOCS, Report
 from ..shared.tables import Scores, number, table
 from . import variation_peers as peers
 from .plot_variation import draw_components, draw_strips
-from .variation_discriminator import told_apart
+from .variation_discriminator import classification_accuracy
 from .variation_measures import Judge
 from .variation_sets import development_sets, scored_sets
 
@@ -174,19 +174,19 @@ def discriminated(sets: Sets) -> list[str]:
     for examples in large.values():
         given, held = examples[::2], examples[1::2]
         rows.setdefault("the captures that variants are made of", []).append(
-            number(told_apart(held, given))
+            number(classification_accuracy(held, given))
         )
         for method, way in methods().items():
             if method in EXCUSED:
                 continue
             variants = _timed(way, given)[0]
             motions = [one.motion for one in variants]
-            rows.setdefault(method, []).append(number(told_apart(held, motions)))
+            rows.setdefault(method, []).append(number(classification_accuracy(held, motions)))
             if method == OURS:
                 planted = [plant_variant(one).motion for one in variants]
-                told = number(told_apart(held, planted))
-                rows.setdefault(f"{OURS}, feet planted", []).append(told)
-    title = "**Told from held-out captures** (balanced accuracy, %; 50 is chance)\n\n"
+                accuracy = number(classification_accuracy(held, planted))
+                rows.setdefault(f"{OURS}, feet planted", []).append(accuracy)
+    title = "**Distinguished from held-out captures** (balanced accuracy, %; 50 is chance)\n\n"
     return [title + table(["method", *large], rows) + "\n"]
 
 

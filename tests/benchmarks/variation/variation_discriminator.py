@@ -13,7 +13,7 @@ from solvers.variation.align_examples import positions_in_body_frame
 WINDOW, RATE, N_AXES = 15, 30.0, 20
 
 
-def told_apart(captures: Sequence[Motion], others: Sequence[Motion]) -> float:
+def classification_accuracy(captures: Sequence[Motion], others: Sequence[Motion]) -> float:
     """Return the balanced accuracy in percent on clips that were not trained on; 50 is chance.
 
     A random forest sees half a second at 30 Hz: the principal components of the body, and how

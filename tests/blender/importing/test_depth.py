@@ -185,14 +185,14 @@ def test_of_a_room_only_so_many_points_are_shown_as_are_cheap(tmp_path, bring, r
 
 
 @pytest.mark.parametrize("told", ["nonsense", "{}", '{"path": 3, "every": null}'])
-def test_what_was_edited_by_hand_shows_nothing_and_says_so(archive, bring, blank, told):
+def test_an_edited_preview_is_hidden_with_a_message(archive, bring, blank, told):
     made = bring(archive)
 
     made.data["mocap_assist_depth"] = told
     blank.context.scene.frame_set(3)
 
     assert not len(points_of(made))
-    assert "shows no recording of depth" in made.data["mocap_assist_depth_problem"]
+    assert "shows no depth recording" in made.data["mocap_assist_depth_problem"]
 
 
 def test_all_four_numbers_of_the_camera_can_be_given(archive, depth, bring):
@@ -204,7 +204,7 @@ def test_all_four_numbers_of_the_camera_can_be_given(archive, depth, bring):
     np.testing.assert_allclose(points_of(made), points[depth[0] > 0], atol=NEAR)
 
 
-def test_a_camera_that_cannot_be_right_is_doubted(archive, blank, load):
+def test_import_warns_of_implausible_intrinsics(archive, blank, load):
     choices = load("mocap_assist.importing.choices").ImportChoices(focal_length=900.0)
     told = load("mocap_assist.importing.importing").import_files(
         blank.context, [archive], choices

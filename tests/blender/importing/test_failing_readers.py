@@ -98,7 +98,7 @@ def test_a_fault_of_a_reader_keeps_no_other_file_out(load, walks, monkeypatch, f
     monkeypatch.setattr(reading, "read_tracked", fail)
     paths = [walks / name for name in ("first.bvh", "cut.bvh", "second.bvh")]
 
-    first, refusal, second = reading.read_files(paths, reading.Wanted(True, 1.0, None))
+    first, refusal, second = reading.read_files(paths, reading.Conversion(True, 1.0, None))
 
     assert first.recording.n_frames == second.recording.n_frames == 317
     assert isinstance(refusal, load("solvers.errors").InvalidFileError)
@@ -109,8 +109,8 @@ def test_a_fault_of_a_reader_keeps_no_other_file_out(load, walks, monkeypatch, f
 
 
 def test_a_fault_over_one_file_leaves_the_others_in_the_scene(load, walks, blank, monkeypatch):
-    arrival = load("mocap_assist.importing.arrival")
-    real = arrival.make_objects
+    transaction = load("mocap_assist.importing.import_transaction")
+    real = transaction.make_objects
 
     def fail(context, name, *words, **more):
         made = real(context, name, *words, **more)
@@ -118,7 +118,7 @@ def test_a_fault_over_one_file_leaves_the_others_in_the_scene(load, walks, blank
             raise IndexError
         return made
 
-    monkeypatch.setattr(arrival, "make_objects", fail)
+    monkeypatch.setattr(transaction, "make_objects", fail)
     importing = load("mocap_assist.importing.importing")
     choices = load("mocap_assist.importing.choices").ImportChoices()
 
@@ -131,7 +131,9 @@ def test_a_fault_over_one_file_leaves_the_others_in_the_scene(load, walks, blank
     assert "first.bvh: this is a bug in Mocap Assist (IndexError at" in sentence
 
 
-def test_what_readers_say_is_told_in_a_window_and_by_a_script(press, window, walks, blank):
+def test_warnings_of_readers_are_reported_in_a_window_and_by_a_script(
+    press, window, walks, blank
+):
     (walks / "late.csv").write_text(LATE)
     operator = press("late.csv", "first.bvh")
 
@@ -140,7 +142,7 @@ def test_what_readers_say_is_told_in_a_window_and_by_a_script(press, window, wal
     ((_, said),) = window.reports
     assert "40 frames at 30 Hz. Resampled to 30 Hz. first: " in said
     assert operator.note == said
-    figures = operator._job.arrival.end(blank.context).figures
+    figures = operator._job.transaction.end(blank.context).figures
     assert figures[0]["warnings"].startswith("Resampled to 30 Hz.")
     assert not figures[1]["warnings"]
     for _ in range(2):  # read, or remembered

@@ -155,7 +155,7 @@ def test_what_fails_half_way_leaves_nothing(walk, blank, load, monkeypatch):
     assert blank.context.scene.render.fps == before
 
 
-def test_nothing_chosen_is_said(blank):
+def test_import_reports_that_no_file_was_chosen(blank):
     with pytest.raises(RuntimeError, match="No file was chosen"):
         blank.ops.mocap_assist.import_recording()
 

@@ -127,7 +127,7 @@ def test_our_own_tables_of_joints_become_armatures(extension, kinect, bring, loa
         assert_allclose(values, again.tracks.confidence[:, joint], atol=1e-6)
 
 
-def test_joints_of_unknown_parents_become_empties_and_it_is_said(
+def test_joints_without_parents_become_empties_with_a_message(
     kinect, bring, load, tmp_path, capfd
 ):
     motion, path = load("solvers.motion"), tmp_path / "three.json"

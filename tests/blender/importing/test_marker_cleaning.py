@@ -137,14 +137,14 @@ def test_cleaning_again_starts_from_what_was_recorded(holder, keys_of, blank):
     assert keys_of(action) == first
 
 
-def test_check_lists_spots_and_jumps_to_the_marker(holder, blank):
+def test_check_lists_issues_and_jumps_to_the_marker(holder, blank):
     assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
 
-    spots = blank.context.scene.mocap_assist.spots
-    gap = next(index for index, spot in enumerate(spots) if spot.kind == "gap")
-    assert blank.ops.mocap_assist.jump_to_spot(index=gap) == {"FINISHED"}
+    issues = blank.context.scene.mocap_assist.issues
+    gap = next(index for index, issue in enumerate(issues) if issue.kind == "gap")
+    assert blank.ops.mocap_assist.jump_to_issue(index=gap) == {"FINISHED"}
     active = blank.context.view_layer.objects.active
-    assert active["mocap_assist_point"] == spots[gap].name
+    assert active["mocap_assist_point"] == issues[gap].name
 
 
 def test_buttons_for_armatures_say_so(holder, blank):

@@ -122,7 +122,7 @@ def test_keys_are_read_once_until_they_are_edited(blank, load, overlay, holder):
 
     new = overlay.trails_at(overlay.raw_and_clean(holder)[0], 1.0, 12)
 
-    assert_allclose(new.places[19, 0], 9.0)
+    assert_allclose(new.positions[19, 0], 9.0)
 
 
 def test_another_file_makes_it_forget(blank, overlay, holder):
@@ -130,16 +130,16 @@ def test_another_file_makes_it_forget(blank, overlay, holder):
 
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
 
-    assert not overlay._kept
+    assert not overlay._cache
 
 
 def test_only_so_much_is_kept(overlay, holder, monkeypatch):
-    monkeypatch.setattr(overlay, "N_KEPT", 3)
+    monkeypatch.setattr(overlay, "MAX_CACHED", 3)
     raw, _ = overlay.raw_and_clean(holder)
     for count in range(1, N_MARKERS + 1):
         overlay.trails_at(overlay.Played(raw.markers[:count], raw.sources[:count]), 1.0, 12)
 
-    assert len(overlay._kept) == overlay.N_KEPT
+    assert len(overlay._cache) == overlay.MAX_CACHED
 
 
 def test_a_stray_key_far_out_is_drawn_without_what_lies_between(blank, overlay, holder):
@@ -153,4 +153,4 @@ def test_a_stray_key_far_out_is_drawn_without_what_lies_between(blank, overlay, 
     lines = overlay.lines_at(raw, blank.context.scene)
 
     assert len(lines) > 3 * N_MARKERS
-    assert all(len(kept.places) < 2000 for kept in overlay._kept.values())
+    assert all(len(block.positions) < 2000 for block in overlay._cache.values())

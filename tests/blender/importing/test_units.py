@@ -32,7 +32,7 @@ def height(armature):
     ("unit", "size"),
     [("GUESS", 1.0), ("MILLIMETRES", 1.0), ("CENTIMETRES", 10.0), ("METRES", 1000.0)],
 )
-def test_a_unit_that_is_chosen_counts_and_a_guess_is_told(bring, silent, capfd, unit, size):
+def test_a_chosen_unit_is_used_and_a_guess_is_reported(bring, silent, capfd, unit, size):
     armature = bring(silent, unit=unit)
 
     assert 1.2 * size < height(armature) < 2.0 * size

@@ -152,7 +152,9 @@ def test_what_goes_wrong_unforeseen_leaves_no_watch(
     def fail(*_, **__):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(load("mocap_assist.importing.arrival").Arrival, "add", fail)
+    monkeypatch.setattr(
+        load("mocap_assist.importing.import_transaction").ImportTransaction, "add", fail
+    )
     operator = press("first.bvh")
     with pytest.raises(ZeroDivisionError):
         wait(operator, window)
@@ -169,7 +171,7 @@ def test_a_fault_over_the_only_file_is_a_sentence_and_leaves_nothing(
     def fail(*_, **__):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(load("mocap_assist.importing.arrival"), "make_objects", fail)
+    monkeypatch.setattr(load("mocap_assist.importing.import_transaction"), "make_objects", fail)
 
     assert wait(press("first.bvh"), window) == {"CANCELLED"}
 

@@ -111,9 +111,9 @@ def index(load, tmp_path):
     indexing = load("mocap_assist.library.solve_indexing")
 
     def do(*places, tags=(), assets_only=False, library=tmp_path / "clips.library", rig=""):
-        found = tuple(indexing.Place(str(place), assets_only) for place in places)
+        found = tuple(indexing.Source(str(place), assets_only) for place in places)
         blender = indexing.BackgroundBlender("", str(rig))
-        return indexing.index_places(
+        return indexing.index_sources(
             indexing.IndexProblem(str(library), found, tuple(tags), blender)
         )
 
@@ -186,25 +186,25 @@ def keep(blank):
 @pytest.fixture
 def look(load, monkeypatch):
     """Let so many looks pass, each until its end; return how often something was indexed."""
-    keeping = load("mocap_assist.library.keeping")
+    auto_update = load("mocap_assist.library.auto_update")
     started = []
-    begin = keeping.Indexing.__init__
+    begin = auto_update.Indexing.__init__
     monkeypatch.setattr(
-        keeping.Indexing, "__init__",
+        auto_update.Indexing, "__init__",
         lambda *given: started.append("Index") or begin(*given),
     )  # fmt: skip
 
     def look(times):
         started.clear()
         for _ in range(times):
-            keeping.look()
-            while keeping._running:
+            auto_update.update_libraries()
+            while auto_update._running:
                 time.sleep(0.02)
-                keeping.look()
-            for keeper in keeping._keepers.values():
-                keeper._look.result(timeout=10)
+                auto_update.update_libraries()
+            for watcher in auto_update._watchers.values():
+                watcher._scan.result(timeout=10)
         return len(started)
 
     yield look
-    keeping.unregister()
-    keeping.register()
+    auto_update.unregister()
+    auto_update.register()

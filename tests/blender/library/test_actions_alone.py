@@ -19,7 +19,7 @@ def alone(blank, blend_file):
     return path
 
 
-def test_without_the_rig_they_are_told_of(index, entries, alone):
+def test_actions_are_reported_without_the_rig(index, entries, alone):
     done = index(alone)
 
     assert len(done.refused) == 2 and entries() == {}
@@ -42,7 +42,7 @@ def test_with_it_they_are_clips_like_any_other(
             np.testing.assert_allclose(found, expected, atol=1e-6)
 
 
-def test_a_rig_of_other_bones_is_told_of(
+def test_a_rig_with_other_bones_is_reported(
     index, entries, alone, blank, make_armature, animate, tmp_path
 ):
     armature = make_armature(name="Plain")

@@ -14,9 +14,9 @@ from addon_utils import enable
 enable({package!r}, default_set=True)
 from importlib import import_module
 indexing = import_module({package!r} + ".mocap_assist.library.solve_indexing")
-places = tuple(indexing.Place(path) for path in sys.argv[2:])
+places = tuple(indexing.Source(path) for path in sys.argv[2:])
 blender = indexing.BackgroundBlender("")
-done = indexing.index_places(indexing.IndexProblem(sys.argv[1], places, (), blender))
+done = indexing.index_sources(indexing.IndexProblem(sys.argv[1], places, (), blender))
 print("READ", done.n_added, flush=True)
 os._exit(0)
 """

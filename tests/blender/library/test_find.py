@@ -27,7 +27,7 @@ def test_the_very_motion_has_the_full_score(find, bring, clip_files, tmp_path):
     assert best.name == "walk_0" and best.score > 0.9
 
 
-def test_what_it_was_imported_from_is_not_told(find, bring, clip_files):
+def test_find_leaves_out_the_source_of_the_query(find, bring, clip_files):
     bring(clip_files / "wave_0.bvh")
 
     assert "wave_0" not in {row.name for row in find()}
@@ -61,7 +61,7 @@ def test_a_range_of_frames_is_found_where_it_lies(find, newcomer, blank, bring, 
 
     search = load("mocap_assist.search.searches").listed(blank.context)
     assert (search.start, search.step) == (61.0, 1.0)
-    assert len(search.finding.stage.places) == 60
+    assert len(search.finding.stage.positions) == 60
     assert search.query == armature.animation_data.action.name
 
 
@@ -106,7 +106,7 @@ def test_without_a_library_the_button_says_so(blank, newcomer, tmp_path):
 
 def test_without_the_shared_library_the_button_is_gray(blank, newcomer, load, monkeypatch):
     newcomer("walk")
-    monkeypatch.setattr(load("mocap_assist.library.places"), "SHARED", "never indexed.clips")
+    monkeypatch.setattr(load("mocap_assist.library.sources"), "SHARED", "never indexed.clips")
 
     with pytest.raises(RuntimeError, match="There is no library yet"):
         blank.ops.mocap_assist.find_similar()

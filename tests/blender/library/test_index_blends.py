@@ -69,7 +69,7 @@ def test_actions_that_are_gone_leave_the_library(blank, index, entries, blend_fi
     assert (done.n_removed, sorted(entries())) == (1, ["shot/walk_0", "shot/wave_0"])
 
 
-def test_a_deleted_file_stays_in_the_library_and_is_told_of(index, entries, blend_file):
+def test_a_deleted_file_stays_in_the_library_and_is_reported(index, entries, blend_file):
     index(blend_file)
     blend_file.unlink()
 
@@ -80,7 +80,7 @@ def test_a_deleted_file_stays_in_the_library_and_is_told_of(index, entries, blen
 
 
 @pytest.mark.parametrize("content", [b"", b"no blend file at all", b"BLENDER-v405" + bytes(99)])
-def test_what_is_no_blend_file_is_told_of_and_keeps_nothing_else_out(
+def test_an_invalid_blend_file_is_reported_and_others_are_read(
     index, entries, blend_file, content
 ):
     (blend_file.parent / "broken.blend").write_bytes(content)

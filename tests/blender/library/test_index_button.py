@@ -33,13 +33,13 @@ def test_sources_tags_and_asset_libraries(blank, clip_files, blend_file, entries
     assert found["walk_0"].tags == ("take one", "hall")
 
 
-def test_nothing_listed_is_said(blank, library):
+def test_index_reports_missing_sources(blank, library):
     with pytest.raises(RuntimeError, match="No sources are listed"):
         blank.ops.mocap_assist.index_library()
 
 
 def test_the_library_that_all_files_share(load, blank):
-    places = load("mocap_assist.library.places")
+    places = load("mocap_assist.library.sources")
     choices = load("mocap_assist.library.choices").LibraryChoices()
 
     path = places.library_path(choices)

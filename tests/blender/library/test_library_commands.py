@@ -41,7 +41,7 @@ def test_index_then_find(command, newcomer, blend_file, clip_files, tmp_path):
     assert status == 0 and "Most similar to" in out and "shot/wave_0" in out
 
 
-def test_what_cannot_be_read_is_told_and_the_rest_is_done(command, clip_files, tmp_path):
+def test_unreadable_files_are_reported_and_others_are_indexed(command, clip_files, tmp_path):
     (clip_files / "cut.bvh").write_bytes((clip_files / "walk_0.bvh").read_bytes()[:900])
     target = tmp_path / "index.json"
 
@@ -61,7 +61,9 @@ def test_what_cannot_be_read_is_told_and_the_rest_is_done(command, clip_files, t
         (["find", "--library", "none.library"], "There is no clip library"),
     ],
 )
-def test_slips_are_told_in_one_sentence(command, newcomer, words, said, tmp_path, monkeypatch):
+def test_wrong_arguments_give_one_message(
+    command, newcomer, words, said, tmp_path, monkeypatch
+):
     newcomer("walk")
     monkeypatch.chdir(tmp_path)
     if words[0] == "index":

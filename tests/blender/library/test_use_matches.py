@@ -65,7 +65,7 @@ def test_another_rig_gets_them_retargeted(
         assert (found * expected).sum(axis=-1).min() > 0.97, bone
 
 
-def test_a_clip_whose_file_is_gone_is_left_out_and_said(
+def test_a_clip_without_its_file_is_left_out_and_reported(
     find, newcomer, use, clip_files, at_once, capfd
 ):
     newcomer("walk")

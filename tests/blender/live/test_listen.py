@@ -79,7 +79,7 @@ def test_another_file_stops_it(listen, load, blank, window, event):
     assert button.modal(window.context, event("TIMER")) == {"CANCELLED"}
 
 
-def test_a_port_that_is_taken_is_told(listen, load, window, port):
+def test_a_port_in_use_is_reported(listen, load, window, port):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("127.0.0.1", port))
 
@@ -186,7 +186,7 @@ def test_turning_goes_round_the_vertical_and_zoom_has_ends(load, view):
     window = SimpleNamespace(screen=SimpleNamespace(areas=[area]))
 
     for _ in range(4):
-        control.turn_views(window, np.pi / 2)
+        control.rotate_views(window, np.pi / 2)
     for _ in range(100):
         control.zoom_views(window, 100.0)
 

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 CLEAN = "walk.clean"
 
 
-def test_nothing_selected_is_said(noisy, clean, load):
+def test_clean_reports_an_empty_selection(noisy, clean, load):
     compat = load("mocap_assist.blender.compat")
     for bone in noisy.pose.bones:
         compat.select_bone(bone, False)

@@ -64,7 +64,7 @@ def read_in_turns(load, monkeypatch, blank, work_of):
         )
         reading = load("mocap_assist.clean.cleaning").read_cleaning
         work, done = turns.Work(reading, blank.context.scene, armature, settings), []
-        while not work.go_on(LOOKS):
+        while not work.run_slice(LOOKS):
             done.append(work_of())
         return work.result.args[0], [*done, work_of()]
 

@@ -62,7 +62,7 @@ def test_the_command_passes_over_armatures_that_play_nothing(dancer, make_armatu
     assert (status, json.loads(out)["armature"]) == (0, "Actor")
 
 
-def test_a_file_that_cannot_be_saved_is_said(dancer, command, tmp_path):
+def test_an_unwritable_file_is_reported(dancer, command, tmp_path):
     (tmp_path / "x.blend").mkdir()
 
     status, _, err = command("denoise", "--output", str(tmp_path / "x.blend"))
@@ -161,7 +161,7 @@ def test_several_armatures_are_converted_into_a_folder(
         ("x.c3d", "cannot be written as"),
     ],
 )
-def test_what_cannot_be_converted_is_said(dancer, command, tmp_path, name, sentence):
+def test_convert_reports_an_unsupported_format(dancer, command, tmp_path, name, sentence):
     status, _, err = command("convert", str(tmp_path / name))
 
     assert status == 2 and sentence in err and not list(tmp_path.iterdir())

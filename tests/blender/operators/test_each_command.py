@@ -149,7 +149,7 @@ def test_markers_are_cleaned_where_there_is_no_armature(blank, command, load, tm
     assert "no animated armature" in command("unbake", "--output", tmp_path / "x.blend")[2]
 
 
-def test_what_a_reader_warns_of_is_told(blank, command, tmp_path):
+def test_each_reports_warnings_of_readers(blank, command, tmp_path):
     lines = ["mocap-assist-joints,1,units=m", "time,A.x,A.y,A.z,B.x,B.y,B.z,C.x,C.y,C.z"]
     lines += [f"{frame / 30 + 0.002 * (frame % 3)},1,2,{frame},1,1,1,,," for frame in range(40)]
     (tmp_path / "late.csv").write_text("\n".join(lines) + "\n")
@@ -168,7 +168,7 @@ def test_what_a_reader_warns_of_is_told(blank, command, tmp_path):
     )
 
 
-def test_a_folder_that_cannot_be_made_is_told_in_a_sentence(command, takes, tmp_path):
+def test_each_reports_a_folder_that_cannot_be_created(command, takes, tmp_path):
     (tmp_path / "in_the_way").write_text("a file where a folder should be")
     out = tmp_path / "in_the_way" / "out"
 

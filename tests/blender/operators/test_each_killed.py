@@ -97,7 +97,7 @@ def test_no_second_blender_starts_when_one_still_makes_the_file(module, load, tm
     assert target.exists()
 
 
-def test_no_blender_starts_when_nobody_wants_the_result_any_more(module, load, tmp_path):
+def test_no_blender_starts_after_a_cancel(module, load, tmp_path):
     scratch_module = load("solvers.processes.scratch")
     target = tmp_path / "take.blend"
     lock = load("solvers.processes.locks").try_lock(scratch_module.lock_for_work_on(target))

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 
-def test_check_lists_the_worst_spots_and_jump_goes_there(bad_arm, blank, load):
+def test_check_lists_the_worst_issues_and_jump_goes_there(bad_arm, blank, load):
     assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
 
     found = blank.context.scene.mocap_assist
-    spot = next(each for each in found.spots if each.kind == "gap")
-    assert (spot.name, spot.start, spot.stop) == ("LeftArm", 101, 160)
-    assert "missing" in spot.sentence and "LeftArm" in found.report
-    assert blank.ops.mocap_assist.jump_to_spot(index=found.spots.values().index(spot)) == {
+    issue = next(each for each in found.issues if each.kind == "gap")
+    assert (issue.name, issue.start, issue.stop) == ("LeftArm", 101, 160)
+    assert "missing" in issue.sentence and "LeftArm" in found.report
+    assert blank.ops.mocap_assist.jump_to_issue(index=found.issues.values().index(issue)) == {
         "FINISHED"
     }
     assert blank.context.scene.frame_current == 101
@@ -27,14 +27,14 @@ def test_check_lists_the_worst_spots_and_jump_goes_there(bad_arm, blank, load):
 
 def test_jump_steps_through_the_list(bad_arm, blank):
     with pytest.raises(RuntimeError, match="Press Check first"):
-        blank.ops.mocap_assist.jump_to_spot()
+        blank.ops.mocap_assist.jump_to_issue()
     blank.ops.mocap_assist.measure_quality()
     found = blank.context.scene.mocap_assist
 
-    blank.ops.mocap_assist.jump_to_spot(step=-1)
+    blank.ops.mocap_assist.jump_to_issue(step=-1)
 
-    assert found.active_spot == len(found.spots) - 1
-    assert blank.context.scene.frame_current == int(found.spots[-1].start)
+    assert found.active_issue == len(found.issues) - 1
+    assert blank.context.scene.frame_current == int(found.issues[-1].start)
 
 
 def test_plant_feet_uses_the_keyed_contacts_and_moves_only_legs_and_hips(

@@ -159,13 +159,13 @@ def test_what_was_changed_meanwhile_is_not_overwritten(
     assert kind == {"ERROR"} and "Actor was changed during the solve; nothing was" in said
 
 
-def test_an_armature_that_was_deleted_meanwhile_is_said(noisy, press_clean, window, blank):
+def test_a_deleted_armature_is_reported(noisy, press_clean, window, blank):
     button = press_clean()
     blank.data.objects.remove(noisy)
 
     assert wait(button, window) == {"CANCELLED"}
 
-    assert "Actor was deleted while it was worked on" in window.reports[-1][1]
+    assert "Actor was deleted during the solve" in window.reports[-1][1]
 
 
 def test_one_solve_at_a_time(noisy, press_clean, window, blank):

@@ -79,7 +79,7 @@ def in_turns(load, *given):
         load("mocap_assist.clean.examples").read_examples, *given
     )
     n_turns = 0
-    while not work.go_on(0.0):
+    while not work.run_slice(0.0):
         n_turns += 1
         yield n_turns, None
     yield n_turns, work.result
@@ -128,9 +128,7 @@ def test_it_may_be_linked_already(library, walk, reconstruct, blank, all_there_i
 
 
 @pytest.mark.parametrize("content", ["text", "no rig"])
-def test_what_cannot_serve_is_told_in_one_sentence(
-    content, walk, blank, tmp_path, all_there_is
-):
+def test_invalid_examples_give_one_message(content, walk, blank, tmp_path, all_there_is):
     path = tmp_path / "other.blend"
     if content == "text":
         path.write_text("No Blender file.")

@@ -82,7 +82,7 @@ def test_postures_learned_anew_are_read_anew(walk, reconstruct, postures_file, l
 
 
 @pytest.mark.parametrize("setting", ["postures_file", "residuals_file"])
-def test_a_bad_file_is_told_in_one_sentence(
+def test_a_damaged_model_file_gives_one_message(
     walk, refused, setting, postures_file, residuals_file, tmp_path
 ):
     other = {"postures_file": residuals_file, "residuals_file": postures_file}[setting]

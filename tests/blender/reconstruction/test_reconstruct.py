@@ -57,7 +57,7 @@ def test_the_hidden_forearm_comes_nearer_to_the_truth(walk, reconstruct, body, t
     assert all(np.isfinite(places).all() for places in clean.values())
 
 
-def test_what_was_trusted_stays_where_it_was(walk, reconstruct, body):
+def test_reliable_joints_keep_their_positions(walk, reconstruct, body):
     raw = body(walk)
 
     reconstruct()
@@ -68,7 +68,7 @@ def test_what_was_trusted_stays_where_it_was(walk, reconstruct, body):
         assert np.nanmedian(moved) < 0.03, name
 
 
-def test_trust_is_kept_with_the_action(walk, reconstruct, load):
+def test_reliability_is_stored_in_the_action(walk, reconstruct, load):
     result = reconstruct()
 
     trust = load("mocap_assist.actions.reliability_curves").reliability_at
@@ -169,7 +169,7 @@ def test_clips_of_your_own_teach_postures(
     assert "1 clip of your own" in json.loads(result[HISTORY])[-1]["method"]
 
 
-def test_the_status_bar_has_room_for_what_is_said(walk, reconstruct, capfd):
+def test_the_message_fits_the_status_bar(walk, reconstruct, capfd):
     reconstruct(plant_feet=True)
 
     told = capfd.readouterr().out.strip().splitlines()[-1].removeprefix("Info: ")

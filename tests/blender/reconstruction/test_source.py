@@ -104,7 +104,7 @@ def test_a_part_of_the_take_is_found_in_its_file(
         for places, each in zip(wrists, (found, recording), strict=True)
     )
     assert np.allclose(mine, theirs[first - 1 : last], atol=1e-4)
-    terms = load("mocap_assist.drawing.heat").terms_told(walk)
+    terms = load("mocap_assist.drawing.confidence_colors").available_terms(walk)
     assert "KINEMATICS" in {term.name for term in terms}
 
 
@@ -129,5 +129,5 @@ def test_hips_that_were_never_tracked_are_between_the_legs(
     assert "with hips added between the legs" in told
     assert "HipCenter" in armature.pose.bones
     assert result.name == "walk.reconstructed"
-    terms = load("mocap_assist.drawing.heat").terms_told(armature)
+    terms = load("mocap_assist.drawing.confidence_colors").available_terms(armature)
     assert "KINEMATICS" in {term.name for term in terms}

@@ -103,7 +103,7 @@ def test_gaps_of_the_source_get_no_keys(target, walker, give, keys_of):
         ({"root_motion": "ROOT_BONE"}, "no bone above the hips"),
     ],
 )
-def test_what_cannot_be_done_is_said(target, blank, settings, sentence):
+def test_retarget_reports_impossible_requests(target, blank, settings, sentence):
     with pytest.raises(RuntimeError, match=sentence):
         blank.ops.mocap_assist.retarget(target=target.name, **settings)
     assert not made_of(blank) and target.animation_data is None

@@ -19,7 +19,7 @@ def tracked(walk, blank):
 @pytest.fixture
 def body(load):
     overlay = load("mocap_assist.track.body_overlay")
-    return lambda armature, frame=3: overlay.body_now(armature, frame)
+    return lambda armature, frame=3: overlay.body_at(armature, frame)
 
 
 def place(load, armature, points, frame):
@@ -40,7 +40,7 @@ def distances(seen, drawn):
     return np.sqrt(((seen[:, None] - drawn.points[None]) ** 2).sum(axis=-1).min(axis=1))
 
 
-def test_capsules_lie_on_the_points_and_tell_trust_in_colours(
+def test_capsules_match_the_points_and_have_confidence_colors(
     tracked, points, body, load, blank
 ):
     drawn = body(tracked)
@@ -104,9 +104,9 @@ def test_what_was_damaged_is_not_drawn(tracked, body, load):
         kept.TrackedBody.read(tracked)
 
 
-def test_trust_is_shown_of_what_track_has_made(tracked, load):
-    heat = load("mocap_assist.drawing.heat")
-    shown = heat.heat_at(tracked, 3)
+def test_confidence_is_shown_for_tracked_armatures(tracked, load):
+    colors = load("mocap_assist.drawing.confidence_colors")
+    shown = colors.colored_bones_at(tracked, 3)
     assert shown is not None and len(shown.ends) == len(tracked.pose.bones)
     assert len(np.unique(shown.colors.reshape(-1, 4), axis=0)) > 3
 

@@ -10,7 +10,7 @@ import pytest
 def drawn(made, load, blank):
     def drawn():
         blank.context.view_layer.update()
-        return load("mocap_assist.track.body_overlay").body_now(made.armature, 5.0)
+        return load("mocap_assist.track.body_overlay").body_at(made.armature, 5.0)
 
     return drawn
 
@@ -43,7 +43,7 @@ def test_normals_and_triangles_face_outwards(scale, made, drawn):
 
 @pytest.mark.parametrize("how", ["hidden", "no armatures", "excluded"])
 def test_the_body_of_a_hidden_armature_is_not_drawn(how, made, load, blank, monkeypatch):
-    wanted = load("mocap_assist.track.body_overlay").wanted
+    wanted = load("mocap_assist.track.body_overlay").body_to_draw
     areas = blank.context.window_manager.windows[0].screen.areas
     (area, *_) = (each for each in areas if each.type == "VIEW_3D")
     context = SimpleNamespace(

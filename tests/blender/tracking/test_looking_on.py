@@ -15,7 +15,7 @@ class ShortJob:
     def __init__(self, solve):
         self.left = 3
 
-    def shown(self):
+    def new_previews(self):
         return []
 
     def done(self):
@@ -41,7 +41,7 @@ class View:
     def __init__(self, looks=None, closes=None):
         self.looks, self.closes, self.n_looks, self.is_closed = looks, closes, 0, False
 
-    def look(self, scene, thing, shown):
+    def show(self, scene, target, previews):
         self.n_looks += 1
         if self.looks:
             raise self.looks
@@ -113,17 +113,17 @@ def test_a_view_that_cannot_even_be_closed_leaves_the_button_free(looks, press, 
     assert view.is_closed and nothing_is_left(window)
 
 
-def test_files_that_cannot_be_read_now_are_as_if_nothing_was_said(load, tmp_path, monkeypatch):
+def test_unreadable_files_count_as_no_progress(load, tmp_path, monkeypatch):
     """As where a virus scanner holds them."""
     protocol = load("mocap_assist.jobs.protocol")
-    with (tmp_path / protocol.SHOWN).open("wb") as file:
-        protocol.append_shown(file, "one")
+    with (tmp_path / protocol.PREVIEWS).open("wb") as file:
+        protocol.append_preview(file, "one")
     (tmp_path / protocol.LOG).write_text("@0.5 Half way\n")
     with monkeypatch.context() as held:
         held.setattr("pathlib.Path.open", lambda *_: (_ for _ in ()).throw(PermissionError()))
-        assert protocol.read_shown(tmp_path, 0) == ([], 0)
+        assert protocol.read_previews(tmp_path, 0) == ([], 0)
         assert protocol.last_progress(tmp_path) == (0.0, "Starting")
-    assert protocol.read_shown(tmp_path, 0)[0] == ["one"]
+    assert protocol.read_previews(tmp_path, 0)[0] == ["one"]
     assert protocol.last_progress(tmp_path) == (0.5, "Half way")
 
 

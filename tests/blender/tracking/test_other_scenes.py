@@ -31,7 +31,7 @@ def test_body_and_correction_in_centimetres_between_whole_frames(
     assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
     armature = blank.context.object
     blank.context.scene.frame_set(5)  # picture 5 is at frame 1 + 5 * 0.8
-    drawn = load("mocap_assist.track.body_overlay").body_now(armature, 5)
+    drawn = load("mocap_assist.track.body_overlay").body_at(armature, 5)
     place = np.array(centimetres.matrix_world)
     seen = truth["joints"][5] @ place[:3, :3].T + place[:3, 3]
     assert np.ptp(drawn.points[:, 2]) == pytest.approx(np.ptp(seen[:, 2]), rel=0.2)

@@ -48,7 +48,7 @@ def test_a_strip_that_plays_at_other_frames_is_refused(change, strip, made, why_
         strip.use_reverse = True
     else:
         strip.use_animated_time = True
-    sentence = "wall tracked.clean plays at other frames on its NLA strip"
+    sentence = "The NLA strip of wall tracked.clean does not match its frames"
     assert why_grey().startswith(sentence)
     retracking = load("mocap_assist.track.retracking")
     settings = retracking.RetrackBundle(load("solvers.depth_tracking").RetrackSettings())
@@ -121,4 +121,4 @@ def test_a_take_whose_hips_were_moved_away_in_time_is_refused(curves, refused):
             for key in curve.keyframe_points:
                 key.co.x += 500.0
             curve.update()
-    refused("no keys in the time of the recording")
+    refused("no keys within the recording")

@@ -119,7 +119,7 @@ def test_it_works_after_moving_scaling_and_renaming_and_again_on_its_result(
     assert "retracked" not in tracked.animation_data.action.name
 
 
-def test_trust_and_residual_go_along_and_doubts_are_listed(tracked, blank, load):
+def test_confidence_and_residual_are_updated_and_issues_are_listed(tracked, blank, load):
     blank.context.scene.frame_set(8)
     assert blank.ops.mocap_assist.retrack(reach=0.2) == {"FINISHED"}
     action, slot = tracked.animation_data.action, tracked.animation_data.action_slot
@@ -163,7 +163,7 @@ def test_it_can_be_watched_and_esc_leaves_the_hand_pose_as_it_was(
     wait(button, window, until=lambda: button._view.drawn is not None)
     drawn = button._view.drawn.points
     shown = blank.context.scene.frame_current  # on a busy machine not the first one
-    body = load("mocap_assist.track.body_overlay").body_now(tracked, shown).points
+    body = load("mocap_assist.track.body_overlay").body_at(tracked, shown).points
     assert np.linalg.norm(drawn.mean(axis=0) - body.mean(axis=0)) < 0.1
     assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
 

@@ -45,7 +45,7 @@ def test_it_follows_points_that_were_moved_and_scaled(points, truth, blank, load
     assert np.linalg.norm(head - expected) < 2.0 * 0.12
 
 
-def test_residual_trust_and_how_it_was_made_are_kept_and_clean_takes_it(points, blank, load):
+def test_residual_confidence_and_origin_are_stored_and_clean_accepts_them(points, blank, load):
     assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
     armature = blank.context.object
     action = armature.animation_data.action
@@ -84,7 +84,7 @@ def test_a_recording_that_is_gone_is_named_and_nothing_is_added(points, blank, l
     assert set(blank.data.objects.keys()) == before
 
 
-def test_nobody_is_said_in_one_sentence(blank, tmp_path, truth):
+def test_track_reports_that_no_actor_was_detected(blank, tmp_path, truth):
     path = tmp_path / "empty.npz"
     np.savez_compressed(path, **{**truth, "depth": 0 * truth["depth"]})
     blank.ops.mocap_assist.import_recording(filepath=str(path))

@@ -71,7 +71,7 @@ def test_esc_keeps_what_is_tracked_if_that_was_asked_for(press, window, blank, t
     button = press(keep_on_esc=True)
 
     def three_poses():
-        told, _ = load("mocap_assist.jobs.protocol").read_shown(button._job._path, 0)
+        told, _ = load("mocap_assist.jobs.protocol").read_previews(button._job._path, 0)
         return sum(isinstance(each, tuple) and len(each) == 3 for each in told) >= 3
 
     wait(button, window, until=three_poses)
@@ -114,11 +114,11 @@ def test_points_that_are_deleted_meanwhile_are_named_at_the_end(press, window, b
     assert wait(button, window) == {"CANCELLED"}
 
     ((kind, said),) = window.reports
-    assert kind == {"ERROR"} and "was deleted while it was worked on" in said
+    assert kind == {"ERROR"} and "was deleted during the solve" in said
     assert nothing_is_left(window)
 
 
-def test_nothing_is_drawn_where_nobody_wants_to_look(press, window, blank):
+def test_nothing_is_drawn_without_live_preview(press, window, blank):
     blank.context.scene.frame_set(9)
     button = press(watch=False)
     assert button._view is None
@@ -140,16 +140,16 @@ def test_blender_may_end_it_as_when_another_file_is_loaded(press, window):
 
 def test_half_a_pose_is_left_for_the_next_look(load, tmp_path):
     protocol = load("mocap_assist.jobs.protocol")
-    path = tmp_path / protocol.SHOWN
+    path = tmp_path / protocol.PREVIEWS
     with path.open("wb") as file:
         for thing in ("one", {"two": 2}):
-            protocol.append_shown(file, thing)
+            protocol.append_preview(file, thing)
     whole = path.read_bytes()
     path.write_bytes(whole[:-3])
 
-    assert protocol.read_shown(tmp_path / "none", 0) == ([], 0)
-    first, place = protocol.read_shown(tmp_path, 0)
+    assert protocol.read_previews(tmp_path / "none", 0) == ([], 0)
+    first, place = protocol.read_previews(tmp_path, 0)
     assert first == ["one"]
-    assert protocol.read_shown(tmp_path, place) == ([], place)
+    assert protocol.read_previews(tmp_path, place) == ([], place)
     path.write_bytes(whole)
-    assert protocol.read_shown(tmp_path, place) == ([{"two": 2}], len(whole))
+    assert protocol.read_previews(tmp_path, place) == ([{"two": 2}], len(whole))

@@ -3,17 +3,17 @@
 from types import SimpleNamespace
 
 
-def test_next_goes_on_from_a_spot_that_was_clicked(blank, actor):
+def test_next_goes_on_from_an_issue_that_was_clicked(blank, actor):
     found = blank.context.scene.mocap_assist
     for frame in (10.0, 20.0, 30.0):
-        spot = found.spots.add()
-        spot.name, spot.start, spot.stop = "LeftLeg", frame, frame
-    jump = blank.ops.mocap_assist.jump_to_spot
+        issue = found.issues.add()
+        issue.name, issue.start, issue.stop = "LeftLeg", frame, frame
+    jump = blank.ops.mocap_assist.jump_to_issue
 
     assert jump(index=1) == {"FINISHED"}
     assert jump(step=1) == {"FINISHED"}
 
-    assert (found.active_spot, blank.context.scene.frame_current) == (2, 30)
+    assert (found.active_issue, blank.context.scene.frame_current) == (2, 30)
 
 
 def test_nothing_that_a_button_was_given_is_filled_in_at_the_next_press(blank):

@@ -71,7 +71,7 @@ def test_a_bone_that_is_not_recorded_and_all_below_it_are_left_out(overlay, acto
 
 
 def test_a_long_action_is_read_in_blocks(overlay, actor, monkeypatch):
-    monkeypatch.setattr(overlay, "BLOCK", 25 * len(actor.data.bones))
+    monkeypatch.setattr(overlay, "BLOCK_POSES", 25 * len(actor.data.bones))
 
     blocks = [overlay.figures_at(actor, source_of(actor), frame) for frame in (25, 26, 60)]
 
@@ -82,7 +82,7 @@ def test_a_long_action_is_read_in_blocks(overlay, actor, monkeypatch):
 def test_keys_are_read_once_however_many_blocks_are_drawn(overlay, actor, monkeypatch):
     whole = overlay.read_figures(actor, source_of(actor), range(1, 61))
     read, read_keys = [], overlay.read_keys
-    monkeypatch.setattr(overlay, "BLOCK", 10 * len(actor.data.bones))
+    monkeypatch.setattr(overlay, "BLOCK_POSES", 10 * len(actor.data.bones))
     monkeypatch.setattr(
         overlay, "read_keys", lambda source: read.append(source) or read_keys(source)
     )
@@ -104,7 +104,7 @@ def test_a_gap_is_one_in_blocks_of_any_length(overlay, actor, monkeypatch, lengt
                     curve.keyframe_points.remove(key)
             curve.update()
     whole = overlay.read_figures(actor, (action, slot), range(1, 61))
-    monkeypatch.setattr(overlay, "BLOCK", length * len(actor.data.bones))
+    monkeypatch.setattr(overlay, "BLOCK_POSES", length * len(actor.data.bones))
 
     for frame in (1, 9, 10, 30, 49, 50, 60):
         block = overlay.figures_at(actor, (action, slot), frame)
@@ -127,7 +127,7 @@ def test_raw_and_clean_are_found_from_either(blank, load, overlay, actor):
 def test_what_is_kept_holds_nothing_of_blenders(overlay, actor):
     overlay.figures_at(actor, source_of(actor), 17)
 
-    ((key, figures),) = overlay._kept.items()
+    ((key, figures),) = overlay._cache.items()
 
     (keys,) = overlay._keys.values()
     assert all(type(part) in {int, range} for part in key)
@@ -140,7 +140,7 @@ def test_another_file_makes_it_forget(blank, overlay, actor):
 
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
 
-    assert not overlay._kept
+    assert not overlay._cache
 
 
 def test_edited_keys_are_read_anew_after_a_pause(blank, load, overlay, actor):
@@ -164,14 +164,14 @@ def test_playing_on_keeps_what_was_read(blank, overlay, actor):
     for frame in FRAMES:
         blank.context.scene.frame_set(frame)
 
-    assert len(overlay._kept) == 1
+    assert len(overlay._cache) == 1
 
 
 def test_only_so_much_is_kept(overlay, actor, animate, monkeypatch):
-    monkeypatch.setattr(overlay, "N_KEPT", 5)
-    for _ in range(overlay.N_KEPT + 3):
+    monkeypatch.setattr(overlay, "MAX_CACHED", 5)
+    for _ in range(overlay.MAX_CACHED + 3):
         animate(actor)
         overlay.figures_at(actor, source_of(actor), 1)
 
-    assert len(overlay._kept) == overlay.N_KEPT
-    assert len(overlay._keys) == overlay.N_ACTIONS
+    assert len(overlay._cache) == overlay.MAX_CACHED
+    assert len(overlay._keys) == overlay.MAX_CACHED_ACTIONS

@@ -106,25 +106,25 @@ def test_a_running_solve_shows_how_far_it_is_in_its_own_panel(blank, draw, actor
     assert "Esc cancels" in shown[PANELS[owner]]
 
 
-def test_a_checked_take_lists_its_spots_and_ways_to_them(blank, draw, actor):
-    assert "mocap_assist.jump_to_spot" not in draw("MOCAP_PT_check")
+def test_a_checked_take_lists_its_issues_with_buttons(blank, draw, actor):
+    assert "mocap_assist.jump_to_issue" not in draw("MOCAP_PT_check")
     found = blank.context.scene.mocap_assist
-    spot = found.spots.add()
-    spot.name, spot.start, spot.stop, spot.kind = "LeftLeg", 12.0, 15.0, "spike"
-    spot.sentence = "LeftLeg jumps at frame 12."
+    issue = found.issues.add()
+    issue.name, issue.start, issue.stop, issue.kind = "LeftLeg", 12.0, 15.0, "spike"
+    issue.sentence = "LeftLeg jumps at frame 12."
 
     shown = draw("MOCAP_PT_check")
 
-    assert shown.count("mocap_assist.jump_to_spot") == 2 + 2
+    assert shown.count("mocap_assist.jump_to_issue") == 2 + 2
     assert "LeftLeg jumps at frame 12." in " ".join(shown)
 
 
-def test_spots_of_another_action_are_said_to_be_so(blank, draw, actor):
+def test_issues_of_another_action_are_said_to_be_so(blank, draw, actor):
     action = actor.animation_data.action
     for curve in action.layers[0].strips[0].channelbag(action.slots[0]).fcurves:
         curve.keyframe_points[30].co.y += 1.0
     assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
-    assert blank.context.scene.mocap_assist.spots
+    assert blank.context.scene.mocap_assist.issues
     stale = 'Results are for "walk".'
     assert stale not in " ".join(draw("MOCAP_PT_check"))
 
@@ -183,7 +183,7 @@ def test_a_figure_that_is_not_known_is_a_dash(load):
     assert rows == [("Foot Slide (cm/s)", "–", "1.2")]
 
 
-def test_frames_of_a_spot_are_read_as_one_says_them(load):
+def test_frames_of_an_issue_are_read_as_one_says_them(load):
     frames_text = load("mocap_assist.panels.figures").frames_text
 
     assert frames_text(12.0, 12.0) == "12"

@@ -8,7 +8,7 @@ from modal_events import event, nothing_is_left, wait
 def button(load, press_button, walker, monkeypatch):
     """Vary, pressed for two walks; one variant is written between two looks."""
     choices = load("mocap_assist.variants.choices")
-    monkeypatch.setattr(load("mocap_assist.runtime.solver_operator"), "AT_ONCE", 0.0)
+    monkeypatch.setattr(load("mocap_assist.runtime.solver_operator"), "MAX_SLICE_S", 0.0)
     settings = choices.VaryBundle(
         choices.VaryChoices(actions="walk_1; walk_2", n_variants=4, plant_feet=False),
         choices.VarySettings(),

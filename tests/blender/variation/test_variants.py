@@ -92,9 +92,7 @@ def test_a_crowd_plays_them_at_other_times_and_places_the_same_for_a_seed(
     assert all(place == (0.0, 0.0, 0.0) and turn == 0.0 for *_, place, turn in placed(crowd))
 
 
-def test_somebody_with_other_bones_is_said_and_nobody_gets_anything(
-    crowd, make_armature, blank
-):
+def test_other_bones_are_reported_and_no_variant_is_assigned(crowd, make_armature, blank):
     stranger = make_armature(bones={"Wheel": (None, (0, 0, 0), (0, 0, 1), False)}, name="Car")
     stranger.select_set(True)
 

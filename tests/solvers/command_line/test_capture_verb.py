@@ -20,7 +20,7 @@ QUICK = ("--no-backward", "--no-refine", "--no-feet", "--check-every", "1000")
 def take(tmp_path_factory):
     """Four frames of our own body, standing three meters away."""
     body = default_body()
-    depth = cast_rays(body, segment_frames(body, NATURAL), CAMERA).depth_picture()
+    depth = cast_rays(body, segment_frames(body, NATURAL), CAMERA).depth_image()
     path = tmp_path_factory.mktemp("depth") / "standing.npz"
     pictures = np.repeat(np.round(1000 * depth)[None], 4, axis=0).astype(np.uint16)
     camera = {name: getattr(CAMERA, name) for name in ("fx", "fy", "cx", "cy")}

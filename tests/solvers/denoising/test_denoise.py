@@ -152,11 +152,13 @@ def test_beats_the_published_filter_on_a_real_walk(recordings, rng):
     bases = learn_filter_bases(clips[1:])
     noisy = shaken(truth, rng, np.radians(3), n_still=0)
 
-    ours = error(denoise(noisy, bases), truth)
+    result = error(denoise(noisy, bases), truth)
     published_settings = DenoiseSettings(method=Method.PUBLISHED)
 
-    assert ours < 0.9 * error(denoise(noisy, bases, settings=published_settings), truth)
-    assert ours < 0.6 * angle_between(noisy.rotations, truth.rotations)[:, moving(truth)].mean()
+    assert result < 0.9 * error(denoise(noisy, bases, settings=published_settings), truth)
+    assert (
+        result < 0.6 * angle_between(noisy.rotations, truth.rotations)[:, moving(truth)].mean()
+    )
 
 
 def test_limb_wrong_for_a_fifth_of_a_second_is_corrected(recordings, rng):
@@ -164,22 +166,22 @@ def test_limb_wrong_for_a_fifth_of_a_second_is_corrected(recordings, rng):
     clips = [real_walk(recordings, name) for name in WALKS]
     truth, bases = clips[0], learn_filter_bases(clips[1:])
     noisy = shaken(truth, rng, np.radians(3), n_still=0)
-    off = np.zeros(noisy.rotations.shape[:2], dtype=bool)
+    is_wrong = np.zeros(noisy.rotations.shape[:2], dtype=bool)
     for start, name in (
         (20, "LeftForeArm"),
         (40, "RightArm"),
         (60, "LeftArm"),
         (80, "LeftLeg"),
     ):
-        off[start : start + 6, noisy.skeleton.index(name)] = True
+        is_wrong[start : start + 6, noisy.skeleton.index(name)] = True
     rotation = quaternion_from_rotation_vector([0.5, -0.5, 0.5])
-    noisy.rotations[off] = multiply(rotation, noisy.rotations[off])
+    noisy.rotations[is_wrong] = multiply(rotation, noisy.rotations[is_wrong])
 
     result = denoise(noisy, bases)
 
-    assert result.outliers[off].mean() > 0.9
+    assert result.outliers[is_wrong].mean() > 0.9
     before, after = (
-        angle_between(take.rotations, truth.rotations)[off].mean()
+        angle_between(take.rotations, truth.rotations)[is_wrong].mean()
         for take in (noisy, result.recording)
     )
     assert after < 0.25 * before
@@ -191,16 +193,16 @@ def test_wrong_limb_is_detected_from_the_other_limbs(rng):
     bases = learn_filter_bases([dancer(mix, seed) for seed in range(6)])
     truth = dancer(mix, 6)
     noisy = shaken(truth, rng, np.radians(1), n_still=0)
-    off = np.zeros((truth.n_frames, 7), dtype=bool)
-    off[30:36, 2] = off[60:66, 4] = off[90:95, 5] = True
+    is_wrong = np.zeros((truth.n_frames, 7), dtype=bool)
+    is_wrong[30:36, 2] = is_wrong[60:66, 4] = is_wrong[90:95, 5] = True
     rotation = quaternion_from_rotation_vector([0.5, -0.5, 0.5])
-    noisy.rotations[off] = multiply(rotation, noisy.rotations[off])
+    noisy.rotations[is_wrong] = multiply(rotation, noisy.rotations[is_wrong])
 
     result = denoise(noisy, bases)
 
-    assert result.outliers[off].all()
-    assert result.outliers[~off].mean() < 0.02
-    after = angle_between(result.recording.rotations, truth.rotations)[off]
+    assert result.outliers[is_wrong].all()
+    assert result.outliers[~is_wrong].mean() < 0.02
+    after = angle_between(result.recording.rotations, truth.rotations)[is_wrong]
     assert after.max() < 0.2 * np.linalg.norm([0.5, 0.5, 0.5])
 
 

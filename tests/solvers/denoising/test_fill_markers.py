@@ -67,7 +67,7 @@ def test_observed_positions_are_returned_unchanged(body):
     assert (filled[observed] == gapped_take[observed]).all()
 
 
-def test_two_missing_markers_of_a_cluster_are_predicted_from_the_other_three(body):
+def test_two_markers_are_predicted_from_three_of_their_cluster(body):
     filled = fill_markers(tracks_of(gapped(body, [6, 8]))).tracks.positions
     assert np.linalg.norm(filled - body, axis=2).max() < 5e-4
 

@@ -85,19 +85,22 @@ def test_clip_without_a_joint_does_not_affect_it(swinging_leg):
     without_knee = swinging_leg.with_poses(swinging_leg.rotations.copy())
     without_knee.rotations[:, 1] = np.nan
 
-    alone, both = (
+    separate, both = (
         learn_filter_bases([swinging_leg]),
         learn_filter_bases([swinging_leg, without_knee]),
     )
 
-    knee = 3 * alone.keys.tolist().index("joint knee") + np.arange(3)
-    assert_allclose(both.mean[knee], alone.mean[knee], atol=1e-9)
-    assert set(both.moving) == set(alone.moving)
-    knee_channels = np.flatnonzero(np.isin(alone.moving, knee))
+    knee = 3 * separate.keys.tolist().index("joint knee") + np.arange(3)
+    assert_allclose(both.mean[knee], separate.mean[knee], atol=1e-9)
+    assert set(both.moving) == set(separate.moving)
+    knee_channels = np.flatnonzero(np.isin(separate.moving, knee))
     knee_block = np.ix_(
-        np.arange(len(alone.slow)), knee_channels, np.arange(len(alone.slow)), knee_channels
+        np.arange(len(separate.slow)),
+        knee_channels,
+        np.arange(len(separate.slow)),
+        knee_channels,
     )
-    assert_allclose(both.slow[knee_block], alone.slow[knee_block], rtol=1e-6, atol=1e-9)
+    assert_allclose(both.slow[knee_block], separate.slow[knee_block], rtol=1e-6, atol=1e-9)
 
 
 def test_example_has_one_mean_pose_at_any_frame_rate(swinging_leg):

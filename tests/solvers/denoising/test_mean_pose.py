@@ -51,7 +51,7 @@ def test_missing_limb_has_the_mean_pose_of_the_same_actor(means):
 
 
 def test_mean_is_the_product_of_two_gaussians():
-    """One example has no variance between clips; with two, by hand."""
+    """One example has no variance between clips; two are computed manually."""
     means = np.array([[-3.0, 1.0], [3.0, 1.0]])
     own_mean, observed = np.array([50.0, 1.0]), np.array([0.2, 0.2])
 

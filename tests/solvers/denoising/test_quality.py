@@ -75,7 +75,7 @@ def test_noise_is_measured_at_any_frame_rate(rng, leg, rate):
         leg, quaternion_from_rotation_vector(vectors), np.zeros((len(time), 3)), rate
     )
 
-    noise = [signal.noise for signal in measure_quality(motion).signals if signal.turns]
+    noise = [signal.noise for signal in measure_quality(motion).signals if signal.is_rotation]
 
     assert_allclose(noise, 0.05, rtol=0.3)
 
@@ -151,8 +151,8 @@ def test_bones_are_found_and_their_drift_measured(rng):
     """Two rigid rods drift away from each other; one point moves along its rod by 4 cm."""
     n_frames = 400
     origins = np.cumsum(rng.normal(scale=0.05, size=(n_frames, 2, 3)), axis=0)
-    turns = quaternion_from_rotation_vector(rng.normal(size=(n_frames, 2, 3)))
-    rods = rotate(turns, [0.3, 0.0, 0.0])
+    rotations = quaternion_from_rotation_vector(rng.normal(size=(n_frames, 2, 3)))
+    rods = rotate(rotations, [0.3, 0.0, 0.0])
     rods[:, 1] *= np.linspace(1.0, 1.0 + 0.04 / 0.3, n_frames)[:, None]
     positions = np.stack(
         [origins[:, 0], origins[:, 0] + rods[:, 0], origins[:, 1], origins[:, 1] + rods[:, 1]],

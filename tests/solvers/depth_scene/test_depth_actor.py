@@ -44,7 +44,7 @@ def changed(take: DepthRecording, change) -> DepthRecording:
 
 
 def floor_of(take: DepthRecording) -> float:
-    """Height of the camera above the lowest point of the actor, metres."""
+    """Height of the camera above the lowest point of the actor, meters."""
     lowest = [
         take.camera.back_project(take.frame(frame))[take.frame(frame) > 0.0, 1].max()
         for frame in range(0, take.n_frames, 5)
@@ -67,7 +67,7 @@ def test_find_actor_works_in_a_room_with_default_settings(takes, name):
 
 
 def test_find_actor_ignores_furniture(takes):
-    """A cupboard that shows more surface than the actor, and a stool."""
+    """A cupboard with more visible surface than the actor, and a stool."""
     take = takes["walk_side"]
     empty = room(KINECT, UP, floor_of(take) + 0.01, 5.5)
     empty[40:200, 5:60] = np.minimum(empty[40:200, 5:60], 3.0)
@@ -80,7 +80,7 @@ def test_find_actor_ignores_furniture(takes):
 
 
 def test_find_actor_uses_frames_of_the_empty_room(takes):
-    """The actor stands at the cupboard, and still the two are separated."""
+    """The actor stands at the cupboard and is separated from it."""
     take = takes["walk_front"]
     empty = room(KINECT, UP, floor_of(take) + 0.01, 5.0)
     column = np.nonzero((take.frame(40) > 0.0).any(axis=0))[0].max()
@@ -131,7 +131,7 @@ def test_find_actor_reports_missing_feet_of_a_close_actor(recordings):
 
 @pytest.mark.parametrize("in_a_room", [False, True])
 def test_find_actor_follows_the_same_person_when_two_pass(takes, in_a_room):
-    """A smaller one comes from the right edge and leaves at the left, behind the actor."""
+    """A smaller person enters at the right edge and leaves at the left, behind the actor."""
     take, other = takes["walk_front"], takes["walk_side"]
 
     def with_another(frame, depth):

@@ -72,7 +72,7 @@ def test_cut_out_actor_keeps_the_more_visible_person(actor):
         first = actor.frame(frame)
         second = np.roll(first[::2, ::2], 0)
         behind = np.zeros_like(first)
-        behind[120:, :160] = 2.0 * second  # A child: half the size, seen at the same scale.
+        behind[120:, :160] = 2.0 * second  # A child: half the size at the same scale.
         return np.where(first > 0.0, first, behind)
 
     recording = replace(actor, read_depth=with_another)

@@ -1,4 +1,4 @@
-"""Segments go where a second, naive way puts them, and the derivative is exact."""
+"""Segment transforms equal those of another implementation; derivatives are exact."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def posed(**coordinates):
     return pose
 
 
-def at(pose, name, body=None):
+def segment_origin(pose, name, body=None):
     body = body or default_body()
     return joint_positions(body, segment_frames(body, pose))[JOINTS.index(name)]
 
@@ -30,9 +30,18 @@ def at(pose, name, body=None):
 def test_zero_pose_stands_upright():
     body, zeros = default_body(), np.zeros(36)
     assert_allclose(segment_frames(body, zeros)[:, :3, :3], np.tile(np.eye(3), (17, 1, 1)))
-    assert at(zeros, "leftHand")[0] > 0.1 > -0.1 > at(zeros, "rightHand")[0]
-    assert at(zeros, "head")[1] < at(zeros, "leftHand")[1] < at(zeros, "leftFoot")[1]
-    assert at(zeros, "leftToes")[2] < at(zeros, "leftFoot")[2]
+    assert (
+        segment_origin(zeros, "leftHand")[0]
+        > 0.1
+        > -0.1
+        > segment_origin(zeros, "rightHand")[0]
+    )
+    assert (
+        segment_origin(zeros, "head")[1]
+        < segment_origin(zeros, "leftHand")[1]
+        < segment_origin(zeros, "leftFoot")[1]
+    )
+    assert segment_origin(zeros, "leftToes")[2] < segment_origin(zeros, "leftFoot")[2]
 
 
 @pytest.mark.parametrize(
@@ -52,7 +61,9 @@ def test_zero_pose_stands_upright():
     ],
 )
 def test_coordinates_rotate_in_the_direction_of_their_limits(coordinate, joint, axis, sign):
-    moved = at(posed(**{coordinate: 0.3}), joint) - at(np.zeros(36), joint)
+    moved = segment_origin(posed(**{coordinate: 0.3}), joint) - segment_origin(
+        np.zeros(36), joint
+    )
 
     assert np.sign(np.round(moved[axis], 9)) == sign
 
@@ -63,27 +74,27 @@ def test_segment_frames_match_an_explicit_chain(rng):
     rotations = [Rotation.from_euler("YZX", pose[3:6])]
     origins = [pose[:3]]
     for segment, parent in list(enumerate(PARENTS))[1:]:
-        turned = Rotation.from_rotvec(ROTATION_AXES[segment] @ pose)
+        rotated = Rotation.from_rotvec(ROTATION_AXES[segment] @ pose)
         origins.append(origins[parent] + rotations[parent].apply(body.offsets[segment]))
-        rotations.append(rotations[parent] * turned)
+        rotations.append(rotations[parent] * rotated)
 
     assert_allclose(frames[:, :3, 3], origins, atol=1e-12)
     assert_allclose(frames[:, :3, :3], [r.as_matrix() for r in rotations], atol=1e-12)
 
 
-def test_many_poses_at_once_equal_each_alone(rng):
+def test_batched_poses_equal_single_poses(rng):
     body, poses = default_body(), rng.normal(size=(2, 3, 36))
-    alone = [[segment_frames(body, pose) for pose in row] for row in poses]
+    separate = [[segment_frames(body, pose) for pose in row] for row in poses]
 
     together = segment_frames(body, poses)
 
-    assert_allclose(together, alone, atol=1e-12)
+    assert_allclose(together, separate, atol=1e-12)
     assert joint_positions(body, together).shape == (2, 3, len(JOINTS), 3)
 
 
 @pytest.mark.parametrize("scale", [0.0, 1e-5, 0.6, 2.0])
-def test_the_derivative_equals_central_differences(rng, scale):
-    """A point fixed to each segment moves as the twists say, for every coordinate."""
+def test_derivative_equals_central_differences(rng, scale):
+    """Move a point fixed to each segment by every coordinate."""
     body, step = default_body(), 1e-6
     pose = rng.normal(scale=scale, size=36) if scale else np.zeros(36)
     pose[:3] = (0.3, -0.2, 3.0)
@@ -105,13 +116,13 @@ def test_the_derivative_equals_central_differences(rng, scale):
 
 def test_segment_frames_are_periodic_in_yaw(rng):
     body, pose = default_body(), rng.normal(scale=0.4, size=36)
-    turned = pose.copy()
-    turned[COORDINATES.index("yaw")] += 2 * np.pi
+    rotated = pose.copy()
+    rotated[COORDINATES.index("yaw")] += 2 * np.pi
 
-    assert_allclose(segment_frames(body, turned), segment_frames(body, pose), atol=1e-12)
+    assert_allclose(segment_frames(body, rotated), segment_frames(body, pose), atol=1e-12)
 
 
-def test_the_lower_back_bends_spine_and_chest_by_half_each():
+def test_lower_back_flexes_spine_and_chest_by_half_each():
     body = default_body()
     frames = segment_frames(body, posed(lowerBackY=0.8))
     angles = Rotation.from_matrix(frames[:3, :3, :3]).magnitude()

@@ -1,4 +1,4 @@
-"""The body has the parts, lengths and symmetry that its description promises."""
+"""The body has the documented parts, lengths and symmetry."""
 
 import pickle
 
@@ -18,10 +18,10 @@ def joint(body, pose, name):
     return joint_positions(body, segment_frames(body, pose))[JOINTS.index(name)]
 
 
-def test_the_parts_are_those_of_the_paper():
+def test_parts_equal_those_of_the_paper():
     """[WZC12] section 2: 15 segments and 34 coordinates, head 3, neck 2, lower back 3, ...
 
-    Ours has two feet that bend besides.
+    This body also has two flexible feet.
     """
     assert (len(SEGMENTS), len(COORDINATES)) == (15 + 2, 34 + 2)
     for start, n in {"lowerBack": 3, "lowerNeck": 2, "head": 3, "leftClavicle": 2,
@@ -56,8 +56,8 @@ def test_joint_distances_equal_the_lengths(rng):
         ("leftUpperLeg", "leftLowerLeg", "leftUpperLeg"),
         ("rightLowerLeg", "rightFoot", "rightLowerLeg"),
     ):
-        apart = joint(body, pose, upper) - joint(body, pose, lower)
-        assert_allclose(np.linalg.norm(apart), body.length(length), atol=1e-12)
+        distances = joint(body, pose, upper) - joint(body, pose, lower)
+        assert_allclose(np.linalg.norm(distances), body.length(length), atol=1e-12)
     hips = joint(body, pose, "leftUpperLeg") - joint(body, pose, "rightUpperLeg")
     assert_allclose(np.linalg.norm(hips), 2 * body.length("hipWidth"), atol=1e-12)
 
@@ -135,7 +135,7 @@ def test_body_model_raises_for_invalid_values(lengths, radii, words):
 
 
 def test_pickle_excludes_cached_properties():
-    """Whoever compares pickles to see whether a body was changed depends on that."""
+    """Callers compare pickles to detect whether a body was changed."""
     body = default_body()
     before = pickle.dumps(body)
     assert body.offsets.shape == (len(JOINTS), 3) and body.capsule_ends.shape[0] == 19

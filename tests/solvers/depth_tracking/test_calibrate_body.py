@@ -1,4 +1,6 @@
-"""Bodies measured in one frame: cylinders by random sampling, and whole bodies."""
+"""Measure bodies in one frame, by cylinders from random samples and by a fit of the complete
+body.
+"""
 
 from dataclasses import replace
 
@@ -30,7 +32,7 @@ def forest():
 
 
 def arms_away(body, arms=0.7):
-    """A recording of one frame: the body faces the camera, arms lifted aside."""
+    """A recording of one frame: the body faces the camera, arms lifted sideways."""
     pose = np.zeros(N_COORDINATES)
     pose[:3] = 0.0, -0.05, 2.6
     for name, angle in (
@@ -38,12 +40,12 @@ def arms_away(body, arms=0.7):
         ("leftFemurZ", 0.15), ("rightFemurZ", 0.15),
     ):  # fmt: skip
         pose[COORDINATES.index(name)] = angle
-    depth = render_hypothesis(body, pose, CAMERA).picture.depth_picture().astype(np.float32)
+    depth = render_hypothesis(body, pose, CAMERA).image.depth_image().astype(np.float32)
     return DepthRecording(CAMERA, 1, 30.0, lambda frame: depth)
 
 
 def bar(start, stop, radius):
-    """Depth and outline of a capsule, by marching along every ray: no closed form."""
+    """Depth and silhouette of a capsule, by marching along every ray."""
     rays = CAMERA.rays()
     rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
     depth = np.zeros(rays.shape[:2])
@@ -68,7 +70,7 @@ def test_sample_cylinder_measures_a_cylinder(rng, radius):
 
 
 def test_sample_cylinder_counts_other_parts_as_outliers(rng):
-    """Half as long, when the other half of the bar is told to be another part."""
+    """Half of the bar is labeled as another part, so the cylinder is half as long."""
     start, stop = np.array([-0.2, 0.0, 2.0]), np.array([0.2, 0.0, 2.0])
     depth = bar(start, stop, 0.05)
     own = depth > 0
@@ -84,7 +86,7 @@ def test_sample_cylinder_returns_none_for_three_pixels(rng):
     assert sample_cylinder(depth, depth > 0, CAMERA, (0.02, 0.1), rng) is None
 
 
-def test_joints_lie_between_cylinders_and_sides_are_averaged():
+def test_joints_are_between_cylinders_and_sides_are_averaged():
     arm = {
         "leftUpperArm": Cylinder(np.array([[0, 0, 2], [0, 0.28, 2.0]]), 0.05, 1.0),
         "leftLowerArm": Cylinder(np.array([[0, 0.32, 2], [0, 0.56, 2.0]]), 0.04, 1.0),
@@ -102,7 +104,7 @@ def test_joints_lie_between_cylinders_and_sides_are_averaged():
 
 
 @pytest.mark.parametrize("stature", [1.55, 1.9])
-def test_bodies_of_capsules_are_measured(forest, stature):
+def test_calibrate_body_measures_bodies_of_capsules(forest, stature):
     true = default_body(stature)
     found = calibrate_body(arms_away(true), 0, forest)
     for limb in LIMBS:
@@ -122,7 +124,7 @@ def test_published_calibration_is_less_accurate(forest):
     assert 0.15 < plain.length("leftUpperArm") < 0.4
 
 
-def test_the_same_frame_gives_the_same_body(forest):
+def test_calibrate_body_repeats_for_the_same_frame(forest):
     depth = arms_away(default_body())
     settings = CalibrationSettings(refine=False, n_samples=60)
     one, other = (calibrate_body(depth, 0, forest, settings=settings) for _ in range(2))
@@ -131,13 +133,13 @@ def test_the_same_frame_gives_the_same_body(forest):
 
 
 def test_calibrate_body_raises_for_frames_with_few_limbs(forest):
-    whole = arms_away(default_body())
+    complete = arms_away(default_body())
     with pytest.raises(InvalidMotionError, match="no frame 3"):
-        calibrate_body(whole, 3, forest)
-    empty = replace(whole, read_depth=lambda frame: np.zeros((240, 320), np.float32))
+        calibrate_body(complete, 3, forest)
+    empty = replace(complete, read_depth=lambda frame: np.zeros((240, 320), np.float32))
     with pytest.raises(InvalidMotionError, match="Frame 0 shows only 0 arms and legs"):
         calibrate_body(empty, 0, forest)
-    head = whole.frame(0).copy()
+    head = complete.frame(0).copy()
     head[50:] = 0.0
     with pytest.raises(InvalidMotionError, match="arms and legs well enough"):
-        calibrate_body(replace(whole, read_depth=lambda frame: head), 0, forest)
+        calibrate_body(replace(complete, read_depth=lambda frame: head), 0, forest)

@@ -1,4 +1,4 @@
-"""Limbs that are inside each other are pushed apart, by as much as they overlap."""
+"""Overlapping limbs push each other apart in proportion to the overlap."""
 
 import numpy as np
 from drawn_bodies import CAMERA, posed
@@ -28,12 +28,12 @@ def test_closest_points_of_segments_equal_a_fine_search(rng):
 
     near, far = _closest_points(first, second)
 
-    shares = np.linspace(0.0, 1.0, 401)
+    fractions = np.linspace(0.0, 1.0, 401)
     for pair in range(20):
-        a = first[pair, 0] + shares[:, None] * (first[pair, 1] - first[pair, 0])
-        b = second[pair, 0] + shares[:, None] * (second[pair, 1] - second[pair, 0])
-        least = np.linalg.norm(a[:, None] - b, axis=-1).min()
-        assert_allclose(np.linalg.norm(near[pair] - far[pair]), least, atol=0.01)
+        a = first[pair, 0] + fractions[:, None] * (first[pair, 1] - first[pair, 0])
+        b = second[pair, 0] + fractions[:, None] * (second[pair, 1] - second[pair, 0])
+        minimum = np.linalg.norm(a[:, None] - b, axis=-1).min()
+        assert_allclose(np.linalg.norm(near[pair] - far[pair]), minimum, atol=0.01)
 
 
 def test_separation_term_ignores_adjacent_legs():
@@ -56,7 +56,7 @@ def test_separation_term_separates_crossed_legs():
     assert RADIUS_FRACTION < 1.0
 
 
-def test_both_limbs_are_pushed_equally():
+def test_separation_term_moves_both_limbs_equally():
     rows = separation_term(
         render_hypothesis(BODY, posed(leftFemurZ=-0.3, rightFemurZ=-0.3), CAMERA), 1.0
     )
@@ -68,9 +68,9 @@ def test_both_limbs_are_pushed_equally():
 
 
 def test_natural_stance_weighs_the_trunk_more_than_limbs():
-    asked = natural_stance(np.ones(36), 2.0, 5.0)
-    assert_allclose(asked.vector[:6], 0.0)
+    requested = natural_stance(np.ones(36), 2.0, 5.0)
+    assert_allclose(requested.vector[:6], 0.0)
     trunk, limb = (COORDINATES.index(name) for name in ("lowerBackZ", "leftFemurX"))
-    assert asked.vector[trunk] < asked.vector[limb] < 0.0
-    assert asked.vector[COORDINATES.index("rightAnkle")] == -5.0
-    assert_allclose(asked.cost, 0.5 * np.trace(asked.matrix))
+    assert requested.vector[trunk] < requested.vector[limb] < 0.0
+    assert requested.vector[COORDINATES.index("rightAnkle")] == -5.0
+    assert_allclose(requested.cost, 0.5 * np.trace(requested.matrix))

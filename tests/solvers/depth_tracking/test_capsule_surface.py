@@ -1,4 +1,4 @@
-"""The surface that is drawn is the one that is tracked."""
+"""The displayed surface equals the tracked one."""
 
 import numpy as np
 from drawn_bodies import posed
@@ -13,15 +13,15 @@ from solvers.depth_tracking.terms.hypothesis import capsule_normals, capsule_off
 BODY = default_body()
 
 
-def placed():
+def surface_in_pose():
     pose = posed(leftHumerusZ=0.8, rightFemurX=0.4)
     frames = segment_frames(BODY, pose)
     surface = capsule_surface(BODY)
-    return surface, frames, *surface.placed(frames)
+    return surface, frames, *surface.at_pose(frames)
 
 
-def test_each_vertex_is_on_its_capsule_and_its_normal_is_the_trackers():
-    _, frames, vertices, normals = placed()
+def test_vertices_are_on_their_capsule_with_the_same_normals():
+    _, frames, vertices, normals = surface_in_pose()
     capsules = np.repeat(np.arange(len(CAPSULES)), vertices.shape[1])
 
     sizes, _ = capsule_offsets(BODY, frames, vertices.reshape(-1, 3), capsules)
@@ -31,14 +31,14 @@ def test_each_vertex_is_on_its_capsule_and_its_normal_is_the_trackers():
     assert_allclose(normals.reshape(-1, 3), expected, atol=1e-9)
 
 
-def test_triangles_close_each_capsule_and_look_outward():
-    """By the divergence theorem the volume is that of a closed surface, and positive."""
-    surface, _, vertices, _ = placed()
+def test_triangles_close_each_capsule_and_face_outward():
+    """By the divergence theorem, the volume equals that of a closed surface and is positive."""
+    surface, _, vertices, _ = surface_in_pose()
 
     a, b, c = (vertices[:, surface.triangles[:, corner]] for corner in range(3))
     found = np.einsum("cti,cti->c", a, np.cross(b, c)) / 6.0
 
     across, deep = BODY.radii.T
-    way = (BODY.capsule_ends[:, 1] - BODY.capsule_ends[:, 0]) / BODY.radii[:, [0, 1, 1]]
-    stretched = np.pi * np.linalg.norm(way, axis=-1) + 4.0 / 3.0 * np.pi
+    direction = (BODY.capsule_ends[:, 1] - BODY.capsule_ends[:, 0]) / BODY.radii[:, [0, 1, 1]]
+    stretched = np.pi * np.linalg.norm(direction, axis=-1) + 4.0 / 3.0 * np.pi
     assert_allclose(found, across * deep * deep * stretched, rtol=0.12)

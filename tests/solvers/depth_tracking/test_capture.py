@@ -1,4 +1,4 @@
-"""Without a first pose or a body: the whole way from pictures to motion."""
+"""Capture a motion from depth images, without an initial pose or body."""
 
 import tracemalloc
 
@@ -35,38 +35,38 @@ def captured() -> Capture:
     return capture(recorded(waving(24)), BODY)
 
 
-def test_finds_the_first_pose_and_follows(captured):
+def test_capture_finds_the_first_pose_and_follows_the_actor(captured):
     truth = joints_of(waving(24))
     assert np.linalg.norm(captured.joints.positions - truth, axis=-1).mean() < 0.03
     assert captured.joints.names == JOINTS
-    assert captured.doubtful.shape == (24, 21)
+    assert captured.low_confidence.shape == (24, 21)
     assert captured.residual.max() < 0.03 and captured.coverage.min() > 0.75
 
 
-def test_the_motion_has_the_joints_where_they_were_seen(captured):
+def test_motion_has_the_tracked_joint_positions(captured):
     world = forward_kinematics(captured.motion).positions
 
     expected = captured.joints.positions @ SCENE_FROM_CAMERA.T
     assert_allclose(world, expected, atol=1e-9)
 
 
-def test_a_swap_in_the_middle_is_undone():
-    """From frame 8 on the tracker is thrown off by 12 frames in which legs cannot be seen."""
+def test_left_right_swap_in_a_recording_is_corrected():
+    """Legs are invisible for 12 frames from frame 8 on, so the tracker fails there."""
     truth = waving(30)
     truth[:, COORDINATES.index("rightHumerusZ")] = np.linspace(0.2, 1.4, 30)
     recording = recorded(truth)
 
     def read(frame):
-        picture = recording.frame(frame).copy()
+        image = recording.frame(frame).copy()
         if 8 <= frame < 14:
-            picture[:, 80:] = 0.0
-        return picture
+            image[:, 80:] = 0.0
+        return image
 
     found = capture(DepthRecording(CAMERA, 30, 30.0, read), BODY)
 
-    off = np.linalg.norm(found.joints.positions - joints_of(truth), axis=-1)
-    assert off[20:].mean() < 0.04
-    assert off[:8].mean() < 0.04
+    errors = np.linalg.norm(found.joints.positions - joints_of(truth), axis=-1)
+    assert errors[20:].mean() < 0.04
+    assert errors[:8].mean() < 0.04
 
 
 def test_capture_bridges_and_flags_empty_frames():
@@ -79,21 +79,21 @@ def test_capture_bridges_and_flags_empty_frames():
 
     found = capture(DepthRecording(CAMERA, 20, 30.0, read), BODY)
 
-    assert found.doubtful[[0, 1, 9, 10, 11]].all()
-    assert not found.doubtful[[5, 15]].all()
+    assert found.low_confidence[[0, 1, 9, 10, 11]].all()
+    assert not found.low_confidence[[5, 15]].all()
     assert np.isnan(found.residual[10])
     assert np.isfinite(found.poses).all()
-    off = np.linalg.norm(found.joints.positions - joints_of(truth), axis=-1)
-    assert off[9:12].mean() < 0.06
+    errors = np.linalg.norm(found.joints.positions - joints_of(truth), axis=-1)
+    assert errors[9:12].mean() < 0.06
 
 
 def test_capture_uses_the_motion_prior_when_requested():
-    """They draw an arm that nothing shows to what arms do; one of them can be given."""
+    """The prior pulls an invisible arm to typical poses of arms; callers may pass a prior."""
     truth = waving(4)
     found = [
         capture(recorded(truth), BODY, motion_prior=given,
-                settings=CaptureSettings(backward=False, recorded=wanted)).poses
-        for given, wanted in ((None, False), (None, True), (load_motion_prior(), False))
+                settings=CaptureSettings(backward=False, recorded=expected)).poses
+        for given, expected in ((None, False), (None, True), (load_motion_prior(), False))
     ]  # fmt: skip
     assert np.abs(found[0] - found[1]).max() > 1e-4
     assert_allclose(found[1], found[2], atol=1e-12)
@@ -106,7 +106,7 @@ def test_capture_raises_for_an_empty_recording():
             capture(empty, body)
 
 
-def test_reports_progress_and_can_be_cancelled():
+def test_capture_reports_progress_and_can_be_cancelled():
     fractions = []
     settings = CaptureSettings(backward=False)
     capture(recorded(waving(3)), BODY, settings=settings,
@@ -121,7 +121,7 @@ def test_reports_progress_and_can_be_cancelled():
         capture(recorded(waving(2)), BODY, progress=stop)
 
 
-def test_the_skeleton_rests_in_a_t_pose():
+def test_skeleton_has_a_t_pose():
     skeleton = body_skeleton(BODY)
     rest = dict(zip(skeleton.names, skeleton.rest_positions, strict=True))
 
@@ -132,7 +132,7 @@ def test_the_skeleton_rests_in_a_t_pose():
     assert find_humanoid_map(skeleton).score > 0.9
 
 
-def test_a_tilted_camera_is_levelled_by_the_floor():
+def test_floor_levels_a_tilted_camera():
     """The camera looks down by 20 degrees from 1.5 m; an upright actor stays upright."""
     tilt = np.radians(20.0)
     up = np.array([0.0, -np.cos(tilt), -np.sin(tilt)])
@@ -150,17 +150,19 @@ def test_a_tilted_camera_is_levelled_by_the_floor():
 
 
 def test_smooth_take_is_linear_without_observations(rng):
-    """Two known frames, nothing between: second differences vanish on a line."""
+    """Two fixed frames without observations between them: second differences are zero on a
+    line.
+    """
     start, stop = rng.normal(size=(2, 36))
     poses = rng.normal(size=(9, 36))
     poses[0], poses[-1] = start, stop
     nothing = (np.zeros((36, 36)), np.zeros(36))
-    sure = (1e6 * np.eye(36), np.zeros(36))
+    certain = (1e6 * np.eye(36), np.zeros(36))
 
-    smooth = smooth_take(poses, [sure, *[nothing] * 7, sure], np.full(36, 1e3))
+    smooth = smooth_take(poses, [certain, *[nothing] * 7, certain], np.full(36, 1e3))
 
-    shares = np.linspace(0.0, 1.0, 9)[:, np.newaxis]
-    assert_allclose(smooth, (1.0 - shares) * start + shares * stop, atol=1e-4)
+    fractions = np.linspace(0.0, 1.0, 9)[:, np.newaxis]
+    assert_allclose(smooth, (1.0 - fractions) * start + fractions * stop, atol=1e-4)
 
 
 def test_smoothing_solves_the_dense_system(rng):
@@ -175,16 +177,16 @@ def test_smoothing_solves_the_dense_system(rng):
 
     second = np.kron(np.diff(np.eye(6), 2, axis=0), np.diag(np.sqrt(stiffness)))
     dense = second.T @ second + 1e-6 * np.eye(6 * 36)
-    wanted = 1e-6 * poses.ravel()
+    expected = 1e-6 * poses.ravel()
     for frame, (matrix, vector) in enumerate(equations):
-        place = slice(36 * frame, 36 * (frame + 1))
-        dense[place, place] += matrix
-        wanted[place] += matrix @ poses[frame] + vector
-    assert_allclose(smooth.ravel(), np.linalg.solve(dense, wanted), atol=1e-8)
+        index = slice(36 * frame, 36 * (frame + 1))
+        dense[index, index] += matrix
+        expected[index] += matrix @ poses[frame] + vector
+    assert_allclose(smooth.ravel(), np.linalg.solve(dense, expected), atol=1e-8)
 
 
 def test_choose_poses_rejects_a_brief_swap_with_a_higher_score():
-    """Candidate 1 jumps away for three frames: its joints have to come and go."""
+    """Candidate 1 jumps for three frames; its joints would have to jump twice."""
     joints = np.zeros((10, 2, 4, 3))
     joints[4:7, 1] += 0.3
     scores = np.full((10, 2), 0.7)
@@ -198,20 +200,23 @@ def test_choose_poses_rejects_a_brief_swap_with_a_higher_score():
 
 
 @given(
-    known=st.lists(st.integers(0, 30), min_size=1, unique=True).map(sorted),
+    tracked_frames=st.lists(st.integers(0, 30), min_size=1, unique=True).map(sorted),
     n_frames=st.integers(1, 40),
 )
-def test_nearest_tracked_matches_a_brute_force_search(known, n_frames):
-    found = nearest_tracked(np.array(known), n_frames)
+def test_nearest_tracked_matches_a_brute_force_search(tracked_frames, n_frames):
+    found = nearest_tracked(np.array(tracked_frames), n_frames)
 
-    slowly = [min(known, key=lambda one: (abs(one - frame), one)) for frame in range(n_frames)]
+    slowly = [
+        min(tracked_frames, key=lambda one: (abs(one - frame), one))
+        for frame in range(n_frames)
+    ]
     assert_array_equal(found, slowly)
 
 
 def test_nearest_tracked_handles_an_hour_of_frames():
-    known = np.arange(0, 108_000, 2)
+    tracked_frames = np.arange(0, 108_000, 2)
     tracemalloc.start()
-    found = nearest_tracked(known, 108_000)
+    found = nearest_tracked(tracked_frames, 108_000)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
 
@@ -219,7 +224,7 @@ def test_nearest_tracked_handles_an_hour_of_frames():
     assert peak < 20e6
 
 
-def test_a_missing_candidate_is_never_chosen():
+def test_choose_poses_never_chooses_a_missing_candidate():
     scores = np.full((5, 2), 0.5)
     scores[2, 0] = np.nan
     assert choose_poses(scores, np.zeros((5, 2, 3, 3)), 40.0, 0.04)[2] == 1
@@ -227,4 +232,4 @@ def test_a_missing_candidate_is_never_chosen():
 
 def test_capture_has_high_confidence_for_a_visible_static_pose():
     found = capture(recorded(np.tile(NATURAL, (4, 1))), BODY)
-    assert not found.doubtful[:, JOINTS.index("leftLowerArm")].any()
+    assert not found.low_confidence[:, JOINTS.index("leftLowerArm")].any()

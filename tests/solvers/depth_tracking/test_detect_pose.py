@@ -1,4 +1,4 @@
-"""Poses found in single pictures, with the forest that is shipped."""
+"""Detect poses in single depth images with the shipped forest."""
 
 import numpy as np
 import pytest
@@ -32,9 +32,7 @@ def capsule_person(**angles):
     pose[:3] = 0.05, -0.1, 2.6
     for name, angle in angles.items():
         pose[COORDINATES.index(name)] = angle
-    return pose, render_hypothesis(BODY, pose, CAMERA).picture.depth_picture().astype(
-        np.float32
-    )
+    return pose, render_hypothesis(BODY, pose, CAMERA).image.depth_image().astype(np.float32)
 
 
 @pytest.mark.parametrize(
@@ -44,12 +42,12 @@ def capsule_person(**angles):
         {"leftHumerusX": 1.0, "rightHumerusZ": 0.5, "yaw": 0.4},
     ],
 )
-def test_a_person_of_capsules_is_found(forest, angles):
+def test_detect_pose_finds_a_body_of_capsules(forest, angles):
     true, depth = capsule_person(**angles)
     found = detect_pose(depth, CAMERA, BODY, forest)
     exact = joint_positions(BODY, segment_frames(BODY, true))
-    apart = np.linalg.norm(found.joints - exact, axis=1)
-    assert apart.mean() < 0.05
+    distances = np.linalg.norm(found.joints - exact, axis=1)
+    assert distances.mean() < 0.05
     assert found.overlap > 0.85
     assert 0.0 < found.score <= 1.0
     np.testing.assert_allclose(
@@ -57,13 +55,13 @@ def test_a_person_of_capsules_is_found(forest, angles):
     )
 
 
-def test_the_same_picture_gives_the_same_pose(forest):
+def test_detect_pose_repeats_for_the_same_image(forest):
     _, depth = capsule_person(leftHumerusZ=1.0)
     one, other = (detect_pose(depth, CAMERA, BODY, forest) for _ in range(2))
     np.testing.assert_array_equal(one.pose, other.pose)
 
 
-def test_a_finer_camera_is_thinned_to_the_same(forest):
+def test_detect_pose_subsamples_a_finer_camera(forest):
     _, depth = capsule_person(leftHumerusZ=1.0, rightHumerusZ=1.0)
     fine = np.repeat(np.repeat(depth, 4, axis=0), 4, axis=1)
     camera = Camera(4 * 142.8, 4 * 142.8, 4 * 79.5, 4 * 59.5, 640, 480)
@@ -78,8 +76,8 @@ def test_detect_pose_reports_parts_outside_of_the_image(forest):
     _, depth = capsule_person(leftHumerusZ=1.2, rightHumerusZ=1.2)
     depth[62:] = 0.0
     found = detect_pose(depth, CAMERA, BODY, forest)
-    assert {"leftFoot", "rightFoot"} <= set(found.unseen)
-    assert "head" not in found.unseen
+    assert {"leftFoot", "rightFoot"} <= set(found.missing_parts)
+    assert "head" not in found.missing_parts
     assert np.isfinite(found.pose).all()
 
 
@@ -106,14 +104,14 @@ def test_detect_pose_rejects_noise(forest, rng):
 
 
 def test_detect_pose_scores_a_wall_low(forest):
-    """A flat wall has parts, as far as the forest can tell, but no pose explains it."""
+    """The forest finds parts on a flat wall, but no pose explains them."""
     wall = np.full((120, 160), 2.5, dtype=np.float32)
     assert detect_pose(wall, CAMERA, BODY, forest).overlap < 0.4
 
 
-@pytest.mark.parametrize(("take", "most"), [("walk_front", 0.05), ("jump", 0.06)])
-def test_frames_with_known_joints(recordings, forest, take, most):
-    """A skinned human seen by a noisy sensor, while the body is but the usual adult's."""
+@pytest.mark.parametrize(("take", "maximum"), [("walk_front", 0.05), ("jump", 0.06)])
+def test_detect_pose_is_accurate_on_frames_with_known_joints(recordings, forest, take, maximum):
+    """A skinned human and a noisy sensor; the body model is a default adult."""
     with np.load(recordings / "depth" / "truth" / f"{take}.npz") as truth:
         depth, joints = truth["depth"], truth["joints"]
         names = truth["joint_names"].tolist()
@@ -121,24 +119,24 @@ def test_frames_with_known_joints(recordings, forest, take, most):
     camera = Camera(*focal, 320, 240)
     for frame in (5, 35, 65):
         found = detect_pose((depth[frame] / 1000.0).astype(np.float32), camera, BODY, forest)
-        ours = found.joints[[JOINTS.index(joint) for joint in CMU]]
-        apart = ours - joints[frame][[names.index(joint) for joint in CMU.values()]]
-        assert np.linalg.norm(apart, axis=1).mean() < most
+        result = found.joints[[JOINTS.index(joint) for joint in CMU]]
+        distances = result - joints[frame][[names.index(joint) for joint in CMU.values()]]
+        assert np.linalg.norm(distances, axis=1).mean() < maximum
 
 
 def test_detect_pose_reports_missing_legs_of_an_upper_body(recordings, forest):
-    """skeltrack's frames: raw Kinect depth, somebody close up, cut off by the picture."""
+    """Raw Kinect depth of skeltrack: a person close to the camera, cropped by the image."""
     path = sorted((recordings / "depth" / "skeltrack").iterdir())[0]
     depth = np.fromfile(path, dtype="<u2").reshape(480, 640) / 1000.0
     near = np.where((depth > 0.5) & (depth < 1.6), depth, 0.0).astype(np.float32)
     camera = Camera(571.3, 571.3, 319.5, 239.5, 640, 480)
     found = detect_pose(near, camera, BODY, forest)
-    assert {"head", "chest"}.isdisjoint(found.unseen)
-    assert {"leftFoot", "rightFoot"} <= set(found.unseen)
+    assert {"head", "chest"}.isdisjoint(found.missing_parts)
+    assert {"leftFoot", "rightFoot"} <= set(found.missing_parts)
 
 
-def test_real_people_who_stand_have_their_heads_on_top(recordings, forest):
-    """UTD-MHAD: the forest knows the head of each subject who stands before a real Kinect."""
+def test_heads_of_standing_people_are_on_top(recordings, forest):
+    """UTD-MHAD: the forest finds the head of each subject in front of a real Kinect."""
     from scipy.io import loadmat
 
     camera = Camera(285.63, 285.63, 160.0, 120.0, 320, 240).every(2)

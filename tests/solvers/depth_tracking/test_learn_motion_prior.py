@@ -20,7 +20,7 @@ from solvers.samples import GaitSettings, walking_gait
 ENDS = ("leftHand", "rightHand", "leftFoot", "rightFoot", "leftLowerLeg", "rightLowerArm")
 
 
-def test_the_body_walks_like_the_walker():
+def test_body_follows_the_joints_of_a_walk():
     gait = walking_gait(GaitSettings(duration=1.0, seed=2))
     joints = camera_joints(gait)
     body = body_from_joints(default_body(), joints)
@@ -28,13 +28,13 @@ def test_the_body_walks_like_the_walker():
     poses = poses_from_motion(gait)
 
     found = joint_positions(body, segment_frames(body, poses))
-    places = [JOINTS.index(name) for name in ENDS]
-    off = np.linalg.norm(found - joints, axis=-1)[:, places]
-    assert off.mean() < 0.03
+    indices = [JOINTS.index(name) for name in ENDS]
+    errors = np.linalg.norm(found - joints, axis=-1)[:, indices]
+    assert errors.mean() < 0.03
     assert np.abs(np.diff(poses[:, 6:], axis=0)).max() < 0.5
 
 
-def test_joints_of_a_known_pose_give_the_pose_back(rng):
+def test_pose_from_joints_recovers_a_known_pose(rng):
     body = default_body()
     pose = np.zeros(36)
     pose[:6] = (0.2, -0.1, 3.0, 2.5, 0.1, -0.2)
@@ -58,7 +58,7 @@ def test_lengths_are_measured_between_joints():
         assert_allclose(measured.length(name), body.length(name), atol=1e-9)
 
 
-def test_a_motion_of_the_body_becomes_its_poses_again(rng):
+def test_poses_from_a_motion_of_the_body_are_exact(rng):
     body = default_body()
     poses = np.zeros((5, 36))
     poses[:, 2] = 3.0
@@ -67,9 +67,9 @@ def test_a_motion_of_the_body_becomes_its_poses_again(rng):
     again = poses_from_motion(body_motion(body, poses, 30.0))
 
     joints = [joint_positions(body, segment_frames(body, one)) for one in (poses, again)]
-    places = [JOINTS.index(name) for name in ENDS]
-    off = np.linalg.norm(joints[0] - joints[1], axis=-1)[:, places]
-    assert off.mean() < 0.02
+    indices = [JOINTS.index(name) for name in ENDS]
+    errors = np.linalg.norm(joints[0] - joints[1], axis=-1)[:, indices]
+    assert errors.mean() < 0.02
 
 
 def test_learn_motion_prior_stores_clip_indices():

@@ -1,4 +1,4 @@
-"""Colours, edges and recorded motions pull where they should."""
+"""Color, edge and prior terms move the body as expected."""
 
 from dataclasses import replace
 
@@ -38,28 +38,28 @@ from solvers.errors import InvalidFileError, InvalidMotionError
 BODY = default_body()
 
 
-def test_canny_finds_a_step_as_one_line_in_its_place():
-    picture = np.zeros((20, 30))
-    picture[:, 12:] = 1.0
+def test_canny_finds_a_step_as_one_line():
+    image = np.zeros((20, 30))
+    image[:, 12:] = 1.0
 
-    edges = canny(picture, 0.1, 0.05)
+    edges = canny(image, 0.1, 0.05)
 
     columns = np.flatnonzero(edges[5:15].all(axis=0))
     assert len(columns) == 1 and columns[0] in {11, 12}
     assert edges[5:15].sum() == 10
 
 
-def test_canny_keeps_weak_edges_only_where_they_touch_strong_ones():
+def test_canny_keeps_weak_edges_next_to_strong_ones_only():
     rows = np.linspace(0.15, 1.0, 40)[:, np.newaxis]
-    picture = np.where(np.arange(40) >= 20, rows, 0.0)
+    image = np.where(np.arange(40) >= 20, rows, 0.0)
     lonely = np.where(np.arange(40) >= 30, 0.15, 0.0) * np.ones((40, 1))
 
-    assert canny(picture, 0.2, 0.04)[3:-3].any(axis=1).all()
+    assert canny(image, 0.2, 0.04)[3:-3].any(axis=1).all()
     assert not canny(lonely, 0.2, 0.04).any()
     assert canny(lonely, 0.04, 0.04).any()
 
 
-def test_edges_of_an_actor_are_its_own_pixels_near_the_outline():
+def test_edges_of_an_actor_are_its_pixels_near_the_silhouette():
     depth = drawn(NATURAL)
     pixels = edge_pixels(depth)
 
@@ -69,10 +69,10 @@ def test_edges_of_an_actor_are_its_own_pixels_near_the_outline():
 
 
 @pytest.mark.parametrize("term", [surface_term, edge_term])
-def test_a_step_of_each_term_brings_the_body_back(term):
-    there = NATURAL.copy()
-    there[:2] += (0.03, -0.02)
-    hypothesis = render_hypothesis(BODY, there, CAMERA)
+def test_step_of_each_term_reduces_the_pose_error(term):
+    start = NATURAL.copy()
+    start[:2] += (0.03, -0.02)
+    hypothesis = render_hypothesis(BODY, start, CAMERA)
     extra = (None,) if term is surface_term else ()
 
     equations = term(hypothesis, observed(NATURAL), *extra, 1.0)
@@ -84,7 +84,7 @@ def test_a_step_of_each_term_brings_the_body_back(term):
     assert change[:2] @ [0.03, -0.02] < 0.0
 
 
-def test_a_perfect_pose_is_left_alone():
+def test_true_pose_stays_unchanged():
     hypothesis, observation = render_hypothesis(BODY, NATURAL, CAMERA), observed(NATURAL)
     for equations in (
         surface_term(hypothesis, observation, None, 1.0),
@@ -94,13 +94,13 @@ def test_a_perfect_pose_is_left_alone():
 
 
 def striped(pose):
-    """A body whose colours are painted on its skin: each point's place along its segment."""
+    """A body with a texture fixed to its skin: the color is the position along its segment."""
     hypothesis = render_hypothesis(BODY, pose, CAMERA)
     frame = hypothesis.frames[hypothesis.segments]
     local = np.einsum("nji,nj->ni", frame[:, :3, :3], hypothesis.points - frame[:, :3, 3])
     color = np.zeros((120 * 160, 3))
-    color[hypothesis.picture.pixels] = 127.0 + 120.0 * np.sin(40.0 * local[:, 1:2])
-    depth = hypothesis.picture.depth_picture()
+    color[hypothesis.image.pixels] = 127.0 + 120.0 * np.sin(40.0 * local[:, 1:2])
+    depth = hypothesis.image.depth_image()
     return hypothesis, Observation(CAMERA, depth, lambda: color.reshape(120, 160, 3))
 
 
@@ -113,29 +113,29 @@ def test_previous_intensities_move_with_the_surface():
 
     remembered = previous_intensities(now, chosen, PreviousFrame(then.frames, before))
 
-    actual = after.intensities[now.picture.pixels]
+    actual = after.intensities[now.image.pixels]
     known = np.isfinite(remembered)
     assert known.mean() > 0.8
-    off = np.abs(remembered - actual)[known]
-    assert np.median(off) < 25.0 < np.abs(127.0 - actual).mean()
+    errors = np.abs(remembered - actual)[known]
+    assert np.median(errors) < 25.0 < np.abs(127.0 - actual).mean()
 
 
 def test_color_constrains_motion_along_a_limb():
-    """Depth alone hardly sees a body that rises a little; painted stripes do."""
+    """Depth hardly changes when a body rises slightly; painted stripes do."""
     then, before = striped(NATURAL)
     risen = NATURAL.copy()
     risen[1] -= 0.03
     _, after = striped(risen)
     change = []
     for memory in (None, PreviousFrame(then.frames, before)):
-        asked = segment_equations(surface_term(then, after, memory, 1.0))
+        requested = segment_equations(surface_term(then, after, memory, 1.0))
         change.append(
-            solve_step(equations_in_coordinates([asked], then.twists), np.full(36, 0.5))[1]
+            solve_step(equations_in_coordinates([requested], then.twists), np.full(36, 0.5))[1]
         )
     assert abs(change[1] + 0.03) < abs(change[0] + 0.03)
 
 
-def test_the_published_tracker_follows_a_slow_actor():
+def test_published_tracker_follows_a_slow_actor():
     truth = waving(6)
     prior = motion_prior_from_poses([waving(60)])
 
@@ -146,17 +146,17 @@ def test_the_published_tracker_follows_a_slow_actor():
 
 
 def test_local_pca_contains_the_successors():
-    """Poses on a line in pose space: one component, and poses off it are asked back."""
+    """Poses on a line in pose space: one component, which pulls other poses back."""
     line = np.linspace(0.0, 1.0, 200)[:, np.newaxis] * np.eye(36)[10] + 0.1 * np.eye(36)[20]
     prior = motion_prior_from_poses([line])
 
     plane = local_pca(prior, line[100])
-    asked = plane.equations(line[100] + 0.5 * np.eye(36)[15], 2.0)
+    requested = plane.equations(line[100] + 0.5 * np.eye(36)[15], 2.0)
 
     assert plane.basis.shape == (30, 1)
     assert plane.mean[10 - N_ROOT] > line[100, 10]
-    assert_allclose(asked.vector, -1.0 * np.eye(36)[15], atol=1e-9)
-    assert_allclose(asked.cost, 0.25)
+    assert_allclose(requested.vector, -1.0 * np.eye(36)[15], atol=1e-9)
+    assert_allclose(requested.cost, 0.25)
 
 
 def test_local_pca_does_not_cross_clips():
@@ -166,22 +166,22 @@ def test_local_pca_does_not_cross_clips():
     assert (plane.mean < 0.2).all()
 
 
-def test_equations_equal_the_dense_ones(rng):
-    """Eq. 3.12: || (U U' - I)(q + dq - mean) ||^2 with the root left out."""
+def test_prior_equations_equal_the_dense_ones(rng):
+    """Eq. 3.12: || (U U' - I)(q + dq - mean) ||^2 without the root."""
     basis = np.linalg.qr(rng.normal(size=(30, 4)))[0]
     plane, pose = LocalPca(rng.normal(size=30), basis), rng.normal(size=36)
     jacobian = np.zeros((30, 36))
     jacobian[:, N_ROOT:] = basis @ basis.T - np.eye(30)
-    off = jacobian @ pose - jacobian[:, N_ROOT:] @ plane.mean
+    residual = jacobian @ pose - jacobian[:, N_ROOT:] @ plane.mean
 
     found = plane.equations(pose, 3.0)
 
     assert_allclose(found.matrix, 3.0 * jacobian.T @ jacobian, atol=1e-12)
-    assert_allclose(found.vector, -3.0 * jacobian.T @ off, atol=1e-12)
-    assert_allclose(found.cost, 1.5 * off @ off)
+    assert_allclose(found.vector, -3.0 * jacobian.T @ residual, atol=1e-12)
+    assert_allclose(found.cost, 1.5 * residual @ residual)
 
 
-def test_saving_and_loading_a_prior(tmp_path):
+def test_load_restores_a_saved_prior(tmp_path):
     prior = motion_prior_from_poses([waving(5), waving(3)], "two waves")
     prior.save(tmp_path / "prior.npz")
 
@@ -198,7 +198,7 @@ def test_saving_and_loading_a_prior(tmp_path):
         motion_prior_from_poses([])
 
 
-def test_the_shipped_prior_knows_walking_and_its_licence():
+def test_shipped_prior_contains_walking_and_names_its_license():
     shipped = load_motion_prior()
 
     assert "CMU" in shipped.trained_on and "UI-PRMD" in shipped.trained_on
@@ -211,12 +211,12 @@ def test_the_shipped_prior_knows_walking_and_its_licence():
 N_ROOT_OF = {name: place for place, name in enumerate(COORDINATES[N_ROOT:])}
 
 
-def test_colors_are_read_only_where_a_term_compares_them():
-    """One damaged image of color must not end a capture that looks at none."""
-    truth, asked = waving(4), []
+def test_colors_are_read_only_if_a_term_uses_them():
+    """A damaged color image must not end a capture that ignores color."""
+    truth, requested = waving(4), []
 
     def read_color(frame):
-        asked.append(frame)
+        requested.append(frame)
         raise InvalidFileError("rgb/4.png is missing or damaged.")
 
     depth = replace(recorded(truth), read_color=read_color)
@@ -225,7 +225,7 @@ def test_colors_are_read_only_where_a_term_compares_them():
     for settings in (DEFAULT_TRACKER, WZC12, replace(LOU12, surface_weight=0.0)):
         track_pose(depth, BODY, truth[0], settings=settings)
 
-    assert (found.motion.n_frames, asked) == (4, [])
+    assert (found.motion.n_frames, requested) == (4, [])
     with pytest.raises(InvalidFileError, match=r"rgb/4\.png"):
         track_pose(depth, BODY, truth[0], settings=LOU12)
-    assert asked == [0]  # It is remembered for frame 1.
+    assert requested == [0]  # It is remembered for frame 1.

@@ -1,4 +1,4 @@
-"""Pixel forests: features, growing, telling pixels, files."""
+"""Pixel forests: features, training, classification and files."""
 
 from dataclasses import replace
 
@@ -69,16 +69,18 @@ def forest(gait, bodies):
 
 
 @pytest.fixture(scope="module")
-def unseen(gait, bodies):
-    """Pictures of another seed."""
+def held_out(gait, bodies):
+    """Images with another seed."""
     source = image_source([gait], bodies, SMALL, 99)
-    seen = draw_images(source, range(1))
-    depth = np.where(seen.pictures == BACKGROUND_MM, 0, seen.pictures)[:, 1:-1, 1:-1] / 1000.0
-    return depth.astype(np.float32), seen.labels
+    observed = draw_images(source, range(1))
+    depth = (
+        np.where(observed.images == BACKGROUND_MM, 0, observed.images)[:, 1:-1, 1:-1] / 1000.0
+    )
+    return depth.astype(np.float32), observed.labels
 
 
-def probed(depth, camera, row, column, right, down):
-    """Depth in millimetres at one place, as the features define it."""
+def depth_difference(depth, camera, row, column, right, down):
+    """Depth feature of one pixel in millimeters, from its definition."""
     z = depth[row, column]
     u = int(np.rint(column + camera.fx * right / z))
     v = int(np.rint(row + camera.fy * down / z))
@@ -88,7 +90,7 @@ def probed(depth, camera, row, column, right, down):
 
 @settings(max_examples=30)
 @given(seed=st.integers(0, 1000))
-def test_features_are_differences_at_places_in_metres(seed):
+def test_features_are_differences_at_metric_offsets(seed):
     rng = np.random.default_rng(seed)
     camera = Camera(rng.uniform(20, 60), rng.uniform(20, 60), 9.5, 7.5, 20, 16)
     depth = (rng.uniform(0.5, 3, (16, 20)) * (rng.random((16, 20)) < 0.7)).astype(np.float32)
@@ -97,37 +99,37 @@ def test_features_are_differences_at_places_in_metres(seed):
     views = pixel_features(
         pad_depth_image(depth)[None], np.zeros(len(rows), int), rows, columns, camera
     )
-    told = depth_differences(views, offsets)
+    differences = depth_differences(views, offsets)
     exact = [
-        probed(depth, camera, row, column, *offsets[:2])
-        - probed(depth, camera, row, column, *offsets[2:])
+        depth_difference(depth, camera, row, column, *offsets[:2])
+        - depth_difference(depth, camera, row, column, *offsets[2:])
         for row, column in zip(rows, columns, strict=True)
     ]
-    # A place just between two pixels may fall to either by rounding.
-    assert (np.abs(told - exact) <= 1).mean() > 0.98
+    # Rounding may assign a position between two pixels to either.
+    assert (np.abs(differences - exact) <= 1).mean() > 0.98
 
 
-def test_gains_are_those_of_entropies(rng):
+def test_gains_equal_differences_of_entropy(rng):
     counts = rng.integers(0, 9, (5, N_BINS, N_PARTS))
     gain, edge = _gains(counts)
 
     def entropy(parts):
-        shares = parts[parts > 0] / parts.sum() if parts.sum() else np.ones(1)
-        return -(shares * np.log(shares)).sum()
+        fractions = parts[parts > 0] / parts.sum() if parts.sum() else np.ones(1)
+        return -(fractions * np.log(fractions)).sum()
 
     for node in range(5):
-        whole = counts[node].sum(axis=0)
+        complete = counts[node].sum(axis=0)
         each = []
         for bins in range(1, N_BINS):
             low = counts[node, :bins].sum(axis=0)
-            after = low.sum() * entropy(low) + (whole - low).sum() * entropy(whole - low)
-            each.append(whole.sum() * entropy(whole) - after)
+            after = low.sum() * entropy(low) + (complete - low).sum() * entropy(complete - low)
+            each.append(complete.sum() * entropy(complete) - after)
         np.testing.assert_allclose(gain[node], max(each), rtol=1e-3)
         assert each[edge[node]] == pytest.approx(max(each), rel=1e-3)
 
 
 def test_grow_tree_learns_a_single_feature(rng):
-    """Half of the pixels have nothing to their right: one test must tell them apart."""
+    """Half of the pixels have background on their right: one test separates them."""
     depth = np.full((40, 60), 2.0, dtype=np.float32)
     depth[:, 30:] = 0.0
     rows, columns = np.nonzero(depth)
@@ -142,48 +144,50 @@ def test_grow_tree_learns_a_single_feature(rng):
     assert len(tree.splits) == 2 * tree.splits.sum() + 1
 
 
-def test_classify_pixels_matches_a_scalar_traversal(forest, unseen):
-    depth = unseen[0][3]
+def test_classify_pixels_matches_a_scalar_traversal(forest, held_out):
+    depth = held_out[0][3]
     found = classify_pixels(depth, CAMERA, forest)
     for pixel in range(0, len(found.rows), 41):
         spot = int(found.rows[pixel]), int(found.columns[pixel])
-        shares = np.mean([leaf(tree, depth, *spot) for tree in forest.trees], axis=0)
-        np.testing.assert_allclose(found.shares[pixel], shares, atol=1e-6)
+        fractions = np.mean(
+            [leaf_probabilities(tree, depth, *spot) for tree in forest.trees], axis=0
+        )
+        np.testing.assert_allclose(found.probabilities[pixel], fractions, atol=1e-6)
 
 
-def leaf(tree, depth, row, column):
+def leaf_probabilities(tree, depth, row, column):
     node = 0
     while tree.splits[node]:
         rank = int(tree.splits[:node].sum())
-        places = tree.offsets[rank].astype(np.float32) / np.float32(100)
-        told = probed(depth, CAMERA, row, column, *places[:2])
-        told -= probed(depth, CAMERA, row, column, *places[2:])
-        node = 1 + 2 * rank + (told > tree.thresholds[rank])
-    shares = tree.shares[int((~tree.splits[:node]).sum())].astype(float)
-    return shares / shares.sum()
+        offsets = tree.offsets[rank].astype(np.float32) / np.float32(100)
+        difference = depth_difference(depth, CAMERA, row, column, *offsets[:2])
+        difference -= depth_difference(depth, CAMERA, row, column, *offsets[2:])
+        node = 1 + 2 * rank + (difference > tree.thresholds[rank])
+    fractions = tree.shares[int((~tree.splits[:node]).sum())].astype(float)
+    return fractions / fractions.sum()
 
 
-def test_classify_pixels_beats_chance_on_held_out_images(forest, unseen):
+def test_classify_pixels_beats_chance_on_held_out_images(forest, held_out):
     right, total = 0, 0
-    for depth, labels in zip(*unseen, strict=True):
+    for depth, labels in zip(*held_out, strict=True):
         found = classify_pixels(depth, CAMERA, forest)
         right += (found.labels == labels[found.rows, found.columns]).sum()
         total += len(found.rows)
-    assert right / total > 0.35  # The commonest part is a sixth of all pixels.
+    assert right / total > 0.35  # The most frequent part has a sixth of all pixels.
 
 
-def test_classify_pixels_is_independent_of_resolution(forest, unseen):
-    depth = unseen[0][5]
+def test_classify_pixels_is_independent_of_resolution(forest, held_out):
+    depth = held_out[0][5]
     fine = np.repeat(np.repeat(depth, 2, axis=0), 2, axis=1)
     camera = Camera(2 * 142.8, 2 * 142.8, 159.5, 119.5, 320, 240)
     small = classify_pixels(depth, CAMERA, forest)
     large = classify_pixels(fine, camera, forest)
-    told = np.full(fine.shape, -1)
-    told[large.rows, large.columns] = large.labels
-    assert (told[2 * small.rows, 2 * small.columns] == small.labels).mean() > 0.7
+    labels = np.full(fine.shape, -1)
+    labels[large.rows, large.columns] = large.labels
+    assert (labels[2 * small.rows, 2 * small.columns] == small.labels).mean() > 0.7
 
 
-def test_the_same_seed_grows_the_same_forest(gait, bodies, forest):
+def test_training_repeats_for_the_same_seed(gait, bodies, forest):
     again = train_pixel_forest([gait], bodies, SMALL)
     other = train_pixel_forest([gait], bodies, replace(SMALL, seed=1))
     np.testing.assert_array_equal(again.trees[1].offsets, forest.trees[1].offsets)
@@ -191,29 +195,29 @@ def test_the_same_seed_grows_the_same_forest(gait, bodies, forest):
     assert not np.array_equal(other.trees[0].offsets, forest.trees[0].offsets)
 
 
-def test_pixels_to_learn_from_are_of_bodies_and_none_twice(gait, bodies, rng):
-    seen = draw_images(image_source([gait], bodies, SMALL, 0), range(1))
-    views, parts = draw_pixels(seen, 50, rng)
+def test_training_pixels_are_of_bodies_and_unique(gait, bodies, rng):
+    observed = draw_images(image_source([gait], bodies, SMALL, 0), range(1))
+    views, parts = draw_pixels(observed, 50, rng)
     assert len(np.unique(views.flat_index)) == len(views.flat_index)
     assert parts.max() < N_PARTS
-    assert (seen.labels != NO_PART).sum(axis=(1, 2)).clip(max=50).sum() == len(parts)
+    assert (observed.labels != NO_PART).sum(axis=(1, 2)).clip(max=50).sum() == len(parts)
 
 
-def test_an_empty_picture_has_no_parts(forest):
+def test_empty_image_has_no_parts(forest):
     found = classify_pixels(np.zeros((120, 160), np.float32), CAMERA, forest)
-    assert found.shares.shape == (0, N_PARTS)
+    assert found.probabilities.shape == (0, N_PARTS)
     assert found.labels.shape == (0,)
 
 
-def test_a_forest_comes_back_from_its_file(forest, unseen, tmp_path):
+def test_load_restores_a_saved_forest(forest, held_out, tmp_path):
     forest.save(tmp_path / "forest.npz")
     loaded = load_pixel_forest(tmp_path / "forest.npz")
     assert loaded.trained_on == "a made walk"
-    for mine, theirs in zip(forest.trees, loaded.trees, strict=True):
+    for original, restored in zip(forest.trees, loaded.trees, strict=True):
         for name in ("splits", "offsets", "thresholds", "shares"):
-            np.testing.assert_array_equal(getattr(mine, name), getattr(theirs, name))
-    one, other = (classify_pixels(unseen[0][0], CAMERA, each) for each in (forest, loaded))
-    np.testing.assert_array_equal(one.shares, other.shares)
+            np.testing.assert_array_equal(getattr(original, name), getattr(restored, name))
+    one, other = (classify_pixels(held_out[0][0], CAMERA, each) for each in (forest, loaded))
+    np.testing.assert_array_equal(one.probabilities, other.probabilities)
 
 
 @pytest.mark.parametrize(
@@ -226,7 +230,7 @@ def test_a_forest_comes_back_from_its_file(forest, unseen, tmp_path):
         ("shares", None, "missing"),
     ],
 )
-def test_damaged_forests_are_refused(forest, tmp_path, name, value, fault):
+def test_load_raises_for_damaged_forests(forest, tmp_path, name, value, fault):
     path = tmp_path / "forest.npz"
     forest.save(path)
     arrays = LAYOUT.read(path)
@@ -240,14 +244,14 @@ def test_damaged_forests_are_refused(forest, tmp_path, name, value, fault):
 
 
 def test_load_pixel_forest_raises_for_empty_leaves(forest, tmp_path):
-    shares = np.zeros_like(forest.trees[0].shares)
-    empty = PixelForest((Tree(*vars(replace(forest.trees[0], shares=shares)).values()),))
+    fractions = np.zeros_like(forest.trees[0].shares)
+    empty = PixelForest((Tree(*vars(replace(forest.trees[0], shares=fractions)).values()),))
     empty.save(tmp_path / "forest.npz")
     with pytest.raises(InvalidFileError, match="a leaf is empty"):
         load_pixel_forest(tmp_path / "forest.npz")
 
 
-def test_training_needs_poses_and_bodies(gait, bodies):
+def test_training_raises_without_poses_or_bodies(gait, bodies):
     with pytest.raises(InvalidMotionError, match="at least one motion"):
         train_pixel_forest([], bodies, SMALL)
     with pytest.raises(InvalidMotionError, match="at least one motion"):
@@ -256,12 +260,12 @@ def test_training_needs_poses_and_bodies(gait, bodies):
         PixelForest(())
 
 
-def test_edges_are_in_order():
+def test_threshold_edges_are_sorted():
     assert (np.diff(THRESHOLDS_MM) > 0).all()
     np.testing.assert_array_equal(THRESHOLDS_MM, -THRESHOLDS_MM[::-1])
 
 
-def test_the_shipped_forest_is_small_and_says_what_it_learned_from():
+def test_shipped_forest_is_small_and_names_its_sources():
     forest = load_pixel_forest()
     assert SHIPPED.stat().st_size <= 3_000_000
     assert "CMU" in forest.trained_on

@@ -1,4 +1,4 @@
-"""Lengths and radii are found from pictures of a body that moves."""
+"""Estimate lengths and radii from depth images of a moving body."""
 
 import numpy as np
 import pytest
@@ -26,35 +26,35 @@ BODY = default_body()
 
 def depth_rows(body, pose):
     hypothesis = render_hypothesis(body, pose, CAMERA)
-    observation = Observation(CAMERA, hypothesis.picture.depth_picture())
+    observation = Observation(CAMERA, hypothesis.image.depth_image())
     groups = group_pixels(hypothesis, observation, 0.08)
     return hypothesis, depth_image_term(hypothesis, observation, groups, 1.0)
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_pixels_change_with_each_measure_as_the_jacobian_says(measure):
+def test_measure_jacobian_equals_differences_of_rendered_depth(measure):
     hypothesis, rows = depth_rows(BODY, NATURAL)
-    place, size = MEASURES.index(measure), 1e-5
-    exact = shape_jacobian(BODY, hypothesis.frames, rows)[:, place]
-    pictures = [
+    index, size = MEASURES.index(measure), 1e-5
+    exact = shape_jacobian(BODY, hypothesis.frames, rows)[:, index]
+    images = [
         render_hypothesis(
-            resize_body(BODY, sign * size * np.eye(len(MEASURES))[place]), NATURAL, CAMERA
+            resize_body(BODY, sign * size * np.eye(len(MEASURES))[index]), NATURAL, CAMERA
         )
         for sign in (1.0, -1.0)
     ]
-    pixels = hypothesis.picture.pixels
-    high, low = (one.picture.depth_picture().ravel()[pixels] for one in pictures)
-    same = pictures[0].picture.segment_picture() == pictures[1].picture.segment_picture()
+    pixels = hypothesis.image.pixels
+    high, low = (one.image.depth_image().ravel()[pixels] for one in images)
+    same = images[0].image.segment_image() == images[1].image.segment_image()
     facing = -np.einsum("ni,ni->n", hypothesis.normals, hypothesis.rays) > 0.4
     inner = same.ravel()[pixels] & facing & (high > 0.0) & (low > 0.0)
 
-    off = np.abs((high - low)[inner] / (2 * size) - exact[inner])
+    errors = np.abs((high - low)[inner] / (2 * size) - exact[inner])
 
-    # A neck or a foot turns a little where its length grows; few pixels see those.
-    assert (off < 2e-3 + 0.02 * np.abs(exact[inner])).mean() > 0.96
+    # A neck or a foot rotates slightly as its length grows; few pixels show them.
+    assert (errors < 2e-3 + 0.02 * np.abs(exact[inner])).mean() > 0.96
 
 
-def test_the_pose_jacobian_is_that_of_the_tracker():
+def test_pose_jacobian_equals_that_of_the_tracker():
     hypothesis, rows = depth_rows(BODY, NATURAL)
     twists = hypothesis.twists[hypothesis.segments]
     moved = np.cross(twists[:, :3], rows.points[:, :, None], axis=1) + twists[:, 3:]
@@ -63,14 +63,14 @@ def test_the_pose_jacobian_is_that_of_the_tracker():
     assert_allclose(pose_jacobian(hypothesis, rows), expected, atol=1e-9)
 
 
-def test_resizing_keeps_both_sides_alike():
+def test_resizing_keeps_both_sides_equal():
     body = resize_body(BODY, 0.1 * np.arange(len(MEASURES)) / len(MEASURES))
     assert_allclose(body.symmetric().lengths, body.lengths)
     assert_allclose(body.symmetric().radii, body.radii)
 
 
-def test_finds_the_body_that_was_drawn():
-    """From a body 5 % shorter and 12 % thinner, tracked as well as it goes."""
+def test_refine_body_recovers_the_rendered_body():
+    """The initial body is 5 % shorter and 12 % thinner, tracked as accurately as possible."""
     truth = waving(40)
     actor = BODY.with_lengths(leftUpperArm=0.28, rightUpperArm=0.28)
     recording = recorded(truth, actor)
@@ -79,16 +79,18 @@ def test_finds_the_body_that_was_drawn():
 
     found = refine_body(recording, wrong, tracked.poses)
 
-    told = [LENGTHS.index(n) for n in ("leftUpperArm", "leftUpperLeg", "leftLowerLeg", "chest")]
-    before = np.abs(np.log(wrong.lengths / actor.lengths))[told].mean()
-    after = np.abs(np.log(found.lengths / actor.lengths))[told].mean()
+    columns = [
+        LENGTHS.index(n) for n in ("leftUpperArm", "leftUpperLeg", "leftLowerLeg", "chest")
+    ]
+    before = np.abs(np.log(wrong.lengths / actor.lengths))[columns].mean()
+    after = np.abs(np.log(found.lengths / actor.lengths))[columns].mean()
     assert after < 0.6 * before
     radii = [np.abs(np.log(one.radii / actor.radii)).mean() for one in (wrong, found)]
-    # The mean includes feet, hands and shoulders, of which few pixels tell.
+    # The mean includes feet, hands and shoulders, which have few pixels.
     assert radii[1] < 0.75 * radii[0]
 
 
-def test_a_body_that_fits_stays():
+def test_exact_body_stays_unchanged():
     truth = waving(10)
     found = refine_body(
         recorded(truth), BODY, truth, settings=RefineBodySettings(n_frames=4, rounds=2)
@@ -97,7 +99,7 @@ def test_a_body_that_fits_stays():
     assert_allclose(found.radii, BODY.radii, rtol=0.01)
 
 
-def test_refuses_what_it_cannot_use():
+def test_refine_body_raises_for_invalid_input():
     recording = recorded(waving(2))
     with pytest.raises(InvalidMotionError, match=r"not \(2, 36\)"):
         refine_body(recording, BODY, np.zeros((3, 36)))

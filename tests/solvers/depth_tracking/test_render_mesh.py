@@ -1,4 +1,4 @@
-"""The z-buffer against rays that meet triangles one by one, and against known shapes."""
+"""Compare the z-buffer with ray casting and known shapes."""
 
 import numpy as np
 import pytest
@@ -13,9 +13,9 @@ CAMERA = Camera(30.0, 32.0, 14.5, 11.5, 31, 24)
 
 
 def by_rays(vertices, triangles, labels, camera):
-    """Meet every ray with every triangle (Möller and Trumbore 1997)."""
+    """Intersect every ray with every triangle (Möller and Trumbore 1997)."""
     depth = np.zeros((camera.height, camera.width))
-    seen = np.full(depth.shape, NO_PART, dtype=np.uint8)
+    observed = np.full(depth.shape, NO_PART, dtype=np.uint8)
     for spot, ray in zip(np.ndindex(depth.shape), camera.rays().reshape(-1, 3), strict=True):
         for corners in triangles:
             a, b, c = vertices[corners]
@@ -29,45 +29,49 @@ def by_rays(vertices, triangles, labels, camera):
             z = (c - a) @ side / scale
             if min(u, v, 1.0 - u - v) >= 0.0 and z > 0.0 and not 0.0 < depth[spot] <= z:
                 depth[spot] = z
-                seen[spot] = labels[corners[np.argmax([1.0 - u - v, u, v])]]
-    return depth, seen
+                observed[spot] = labels[corners[np.argmax([1.0 - u - v, u, v])]]
+    return depth, observed
 
 
 @settings(max_examples=12)
 @given(seed=st.integers(0, 10_000))
-def test_as_rays_that_meet_triangles(seed):
+def test_render_mesh_equals_ray_casting(seed):
     rng = np.random.default_rng(seed)
     vertices = rng.uniform([-1, -1, 0.5], [1, 1, 3], (12, 3))
     triangles = rng.permuted(np.tile(np.arange(12), (8, 1)), axis=1)[:, :3]
     labels = rng.integers(0, 20, 12).astype(np.uint8)
-    picture = render_mesh(vertices, triangles, labels, CAMERA)
-    depth, seen = by_rays(vertices, triangles, labels, CAMERA)
-    np.testing.assert_allclose(picture.depth, depth, rtol=1e-5)
-    np.testing.assert_array_equal(picture.labels, seen)
+    image = render_mesh(vertices, triangles, labels, CAMERA)
+    depth, observed = by_rays(vertices, triangles, labels, CAMERA)
+    np.testing.assert_allclose(image.depth, depth, rtol=1e-5)
+    np.testing.assert_array_equal(image.labels, observed)
 
 
-def test_a_fine_ball_has_the_depth_of_a_sphere():
+def test_fine_ball_has_the_depth_of_a_sphere():
     camera = Camera(140.0, 140.0, 39.5, 29.5, 80, 60)
     across, around = np.meshgrid(np.linspace(0, np.pi, 120), np.linspace(0, 2 * np.pi, 241))
-    ways = [np.sin(across) * np.cos(around), np.sin(across) * np.sin(around), np.cos(across)]
-    vertices = 0.3 * np.stack(ways, axis=-1).reshape(-1, 3) + [0.05, -0.02, 2.0]
+    directions = [
+        np.sin(across) * np.cos(around),
+        np.sin(across) * np.sin(around),
+        np.cos(across),
+    ]
+    vertices = 0.3 * np.stack(directions, axis=-1).reshape(-1, 3) + [0.05, -0.02, 2.0]
     first = (np.arange(240)[:, None] * 120 + np.arange(119)).reshape(-1)
     second = first + 120
     halves = [first, first + 1, second], [first + 1, second + 1, second]
     triangles = np.concatenate([np.stack(half, axis=1) for half in halves])
-    picture = render_mesh(vertices, triangles, np.zeros(len(vertices), np.uint8), camera)
+    image = render_mesh(vertices, triangles, np.zeros(len(vertices), np.uint8), camera)
     rays = camera.rays()
     centre = np.array([0.05, -0.02, 2.0])
     square, along = (rays**2).sum(-1), rays @ centre
     inside = along**2 - square * (centre @ centre - 0.3**2)
     exact = np.where(inside > 0, (along - np.sqrt(np.maximum(inside, 0))) / square, 0.0)
     well_inside = inside > 0.02
-    np.testing.assert_allclose(picture.depth[well_inside], exact[well_inside], atol=3e-4)
-    assert (picture.depth[inside < 0] == 0).all()
-    np.testing.assert_array_equal(picture.labels == NO_PART, picture.depth == 0)
+    np.testing.assert_allclose(image.depth[well_inside], exact[well_inside], atol=3e-4)
+    assert (image.depth[inside < 0] == 0).all()
+    np.testing.assert_array_equal(image.labels == NO_PART, image.depth == 0)
 
 
-def test_what_is_behind_or_aside_is_not_drawn():
+def test_triangles_outside_of_the_view_are_not_rendered():
     vertices = np.array([[-1, -1, 1], [1, -1, 1], [0, 1, 1.0]])
     labels = np.zeros(3, np.uint8)
     triangle = np.array([[0, 1, 2]])
@@ -79,11 +83,11 @@ def test_what_is_behind_or_aside_is_not_drawn():
 
 
 @pytest.mark.parametrize("step", [2, 3])
-def test_a_coarser_camera_sees_some_of_the_same_pixels(step):
+def test_coarser_camera_has_a_subset_of_the_pixels(step):
     person = box_person()
     x, y, z = person.vertices.T
-    seen = np.stack([x, 0.95 - z, y + 2.5], axis=1)
+    observed = np.stack([x, 0.95 - z, y + 2.5], axis=1)
     camera = Camera(140.0, 140.0, 79.5, 59.5, 160, 120)
-    fine = render_mesh(seen, person.triangles, person.vertex_parts, camera)
-    coarse = render_mesh(seen, person.triangles, person.vertex_parts, camera.every(step))
+    fine = render_mesh(observed, person.triangles, person.vertex_parts, camera)
+    coarse = render_mesh(observed, person.triangles, person.vertex_parts, camera.every(step))
     np.testing.assert_allclose(coarse.depth, fine.depth[::step, ::step], rtol=1e-6)

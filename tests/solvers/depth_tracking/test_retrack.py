@@ -1,4 +1,4 @@
-"""An animator corrects one frame: the frames around it follow, the others stay."""
+"""Adjacent frames follow the correction of one frame; other frames stay unchanged."""
 
 from dataclasses import replace
 
@@ -28,8 +28,8 @@ N_FRAMES, CORRECTED, WRONG = 40, 20, slice(10, 30)
 ARM = [JOINTS.index(name) for name in ("rightLowerArm", "rightHand")]
 
 
-def spoilt(poses):
-    """The right forearm points up, where it was never seen, for some frames."""
+def with_error(poses):
+    """The right forearm points up for some frames, where it is invisible."""
     wrong = poses.copy()
     wrong[WRONG, COORDINATES.index("rightHumerusZ")] += 1.6
     wrong[CORRECTED] = poses[CORRECTED]
@@ -44,11 +44,11 @@ def joints_of(motion, floor=FLOOR):
 @pytest.fixture(scope="module")
 def take():
     truth = waving(N_FRAMES)
-    return recorded(truth), truth, body_motion(BODY, spoilt(truth), 30.0, FLOOR)
+    return recorded(truth), truth, body_motion(BODY, with_error(truth), 30.0, FLOOR)
 
 
 @pytest.fixture(scope="module")
-def found(take):
+def retracked(take):
     depth, _, motion = take
     return retrack(depth, BODY, motion, CORRECTED, floor=FLOOR)
 
@@ -59,7 +59,7 @@ def test_motion_frames_invert_body_motion():
     assert_allclose(motion_frames(BODY, motion, FLOOR), segment_frames(BODY, poses), atol=1e-9)
 
 
-def test_a_pose_is_found_from_its_frames_without_a_start():
+def test_pose_from_frames_needs_no_initial_pose():
     for pose in waving(40)[::13]:
         frames = segment_frames(BODY, pose)
         again = segment_frames(BODY, pose_from_frames(BODY, frames))
@@ -67,82 +67,88 @@ def test_a_pose_is_found_from_its_frames_without_a_start():
         assert_allclose(again[:, :3, :3], frames[:, :3, :3], atol=0.02)
 
 
-def test_retrack_corrects_the_error_and_keeps_other_frames(take, found):
+def test_retrack_corrects_the_error_and_keeps_other_frames(take, retracked):
     _, truth, motion = take
     right = joint_positions(BODY, segment_frames(BODY, truth))
 
     before = np.linalg.norm(joints_of(motion) - right, axis=-1)[WRONG][:, ARM]
-    after = np.linalg.norm(joints_of(found.motion) - right, axis=-1)
+    after = np.linalg.norm(joints_of(retracked.motion) - right, axis=-1)
 
     assert before.mean() > 0.3
     assert after[WRONG][:, ARM].mean() < 0.02
     assert after.max() < 0.08
-    assert found.met == (True, True)
-    assert 0 <= found.first <= 4 and 35 <= found.last <= 39
-    outside = [*range(found.first), CORRECTED, *range(found.last + 1, N_FRAMES)]
-    assert_array_equal(found.motion.rotations[outside], motion.rotations[outside])
-    assert_array_equal(found.motion.root_positions[outside], motion.root_positions[outside])
-    assert len(found.residual) == found.last - found.first + 1 == found.joints.n_frames
+    assert retracked.met == (True, True)
+    assert 0 <= retracked.first <= 4 and 35 <= retracked.last <= 39
+    outside = [*range(retracked.first), CORRECTED, *range(retracked.last + 1, N_FRAMES)]
+    assert_array_equal(retracked.motion.rotations[outside], motion.rotations[outside])
+    assert_array_equal(retracked.motion.root_positions[outside], motion.root_positions[outside])
+    assert (
+        len(retracked.residual)
+        == retracked.last - retracked.first + 1
+        == retracked.joints.n_frames
+    )
 
 
-def test_retrack_is_continuous_at_the_joins(take, found):
+def test_retrack_is_continuous_at_the_joins(take, retracked):
     _, truth, _ = take
     right = joint_positions(BODY, segment_frames(BODY, truth))
-    step = np.linalg.norm(np.diff(joints_of(found.motion), axis=0), axis=-1).max()
+    step = np.linalg.norm(np.diff(joints_of(retracked.motion), axis=0), axis=-1).max()
     assert step < np.linalg.norm(np.diff(right, axis=0), axis=-1).max() + 0.02
 
 
 def test_retrack_fades_out_unreachable_rotations(take):
-    """The animator twists the forearm, about which pictures and coordinates say nothing."""
+    """Images and coordinates do not determine the forearm's axial rotation that was edited."""
     depth, truth, _ = take
     motion = body_motion(BODY, truth, 30.0, FLOOR)
     rotations = motion.rotations.copy()
     elbow, twist = JOINTS.index("leftLowerArm"), np.array([0.8, 0.0, 0.0])
-    turn = quaternion_from_rotation_vector(twist)
-    rotations[CORRECTED, elbow] = multiply(rotations[CORRECTED, elbow], turn)
+    rotation = quaternion_from_rotation_vector(twist)
+    rotations[CORRECTED, elbow] = multiply(rotations[CORRECTED, elbow], rotation)
     twisted = replace(motion, rotations=rotations)
 
-    found = retrack(depth, BODY, twisted, CORRECTED, floor=FLOOR).motion
+    retracked = retrack(depth, BODY, twisted, CORRECTED, floor=FLOOR).motion
 
-    assert_array_equal(found.rotations[CORRECTED], rotations[CORRECTED])
-    angles = angle_between(found.rotations[:, elbow], motion.rotations[:, elbow])
+    assert_array_equal(retracked.rotations[CORRECTED], rotations[CORRECTED])
+    angles = angle_between(retracked.rotations[:, elbow], motion.rotations[:, elbow])
     assert angles[CORRECTED] == pytest.approx(0.8)
     assert 0.6 < angles[CORRECTED + 1] < 0.8 and 0.6 < angles[CORRECTED - 1] < 0.8
     assert 0.1 < angles[CORRECTED + 5] < 0.6 and angles[CORRECTED + 9] < 0.05
     joints = joints_of(motion)
-    assert np.linalg.norm(joints_of(found) - joints, axis=-1).max() < 0.03
+    assert np.linalg.norm(joints_of(retracked) - joints, axis=-1).max() < 0.03
 
 
-def test_reach_and_fixed_frames_end_it(take):
+def test_reach_and_fixed_frames_end_the_segment(take):
     depth, _, motion = take
     short = retrack(depth, BODY, motion, CORRECTED, floor=FLOOR, fixed=[3, 23],
                     settings=RetrackSettings(reach=0.1))  # fmt: skip
     assert (short.first, short.last) == (17, 22)
     assert short.met == (False, False)
-    alone = retrack(depth, BODY, motion, CORRECTED, floor=FLOOR,
+    separate = retrack(depth, BODY, motion, CORRECTED, floor=FLOOR,
                     settings=RetrackSettings(reach=0.0))  # fmt: skip
-    assert (alone.first, alone.last) == (CORRECTED, CORRECTED)
-    assert_array_equal(alone.motion.rotations, motion.rotations)
+    assert (separate.first, separate.last) == (CORRECTED, CORRECTED)
+    assert_array_equal(separate.motion.rotations, motion.rotations)
 
 
-def test_the_first_frame_can_be_corrected(take):
+def test_first_frame_can_be_corrected(take):
     depth, truth, _ = take
     wrong = truth.copy()
     wrong[1:12, COORDINATES.index("rightHumerusZ")] += 1.6
-    found = retrack(depth, BODY, body_motion(BODY, wrong, 30.0), 0)
+    retracked = retrack(depth, BODY, body_motion(BODY, wrong, 30.0), 0)
 
     right = joint_positions(BODY, segment_frames(BODY, truth))
-    after = np.linalg.norm(joints_of(found.motion, None) - right, axis=-1)
-    assert found.first == 0 and after[:, ARM].max() < 0.08
+    after = np.linalg.norm(joints_of(retracked.motion, None) - right, axis=-1)
+    assert retracked.first == 0 and after[:, ARM].max() < 0.08
 
 
-def test_poses_are_shown_and_it_can_be_cancelled(take):
+def test_retrack_previews_poses_and_can_be_cancelled(take):
     depth, _, motion = take
-    seen, fractions = [], []
-    found = retrack(depth, BODY, motion, CORRECTED, floor=FLOOR, on_pose=seen.append,
+    observed, fractions = [], []
+    retracked = retrack(depth, BODY, motion, CORRECTED, floor=FLOOR, on_pose=observed.append,
                     progress=lambda fraction, _="": fractions.append(fraction))  # fmt: skip
-    last = len(found.residual)
-    assert [one.frame for one in seen[-last:]] == list(range(found.first, found.last + 1))
+    last = len(retracked.residual)
+    assert [one.frame for one in observed[-last:]] == list(
+        range(retracked.first, retracked.last + 1)
+    )
     assert fractions == sorted(fractions) and fractions[-1] == pytest.approx(1.0)
 
     def stop(fraction, message=""):

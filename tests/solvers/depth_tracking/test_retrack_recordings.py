@@ -1,4 +1,4 @@
-"""One corrected frame mends a stretch of a recording whose joints are known."""
+"""One corrected frame repairs a segment of a recording with known joints."""
 
 import numpy as np
 import pytest
@@ -25,15 +25,15 @@ CMU = {
 N_FRAMES, CORRECTED, WRONG = 40, 20, slice(8, 33)
 
 
-def known(recordings, take, first):
+def with_known_joints(recordings, take, first):
     """Return the recording, the body, and its poses by the known joints."""
     with np.load(recordings / "depth" / "truth" / f"{take}.npz") as truth:
         depth = truth["depth"][first : first + N_FRAMES]
         names = truth["joint_names"].tolist()
         joints = np.full((N_FRAMES, len(JOINTS), 3), np.nan)
-        for ours, theirs in CMU.items():
-            place = names.index(theirs)
-            joints[:, JOINTS.index(ours)] = truth["joints"][first : first + N_FRAMES, place]
+        for name, recorded_name in CMU.items():
+            index = names.index(recorded_name)
+            joints[:, JOINTS.index(name)] = truth["joints"][first : first + N_FRAMES, index]
         focal = [float(truth[name]) for name in ("fx", "fy", "cx", "cy")]
     recording = DepthRecording(
         Camera(*focal, 320, 240), N_FRAMES, 30.0, lambda frame: depth[frame] / np.float32(1e3)
@@ -47,14 +47,14 @@ def known(recordings, take, first):
 
 
 @pytest.mark.parametrize(
-    ("take", "first", "most"), [("walk_diagonal", 20, 0.13), ("hop", 60, 0.04)]
+    ("take", "first", "maximum"), [("walk_diagonal", 20, 0.13), ("hop", 60, 0.04)]
 )
-def test_retrack_recovers_lost_arms(recordings, take, first, most):
-    """Both arms hang stiffly forward for 25 frames, but for the one that is corrected.
+def test_retrack_recovers_occluded_arms(recordings, take, first, maximum):
+    """Both arms hang stiffly forward for 25 frames, except for the corrected one.
 
-    In the diagonal walk one arm is hidden behind the body for most of them.
+    In the diagonal walk the body occludes one arm in most of them.
     """
-    recording, body, poses = known(recordings, take, first)
+    recording, body, poses = with_known_joints(recordings, take, first)
     wrong = poses.copy()
     for side in ("left", "right"):
         for name, value in (("HumerusX", 1.2), ("HumerusZ", 0.1), ("Radius", 0.1)):
@@ -70,10 +70,10 @@ def test_retrack_recovers_lost_arms(recordings, take, first, most):
         for one in (motion, found.motion)
     )
     assert before > 0.3
-    assert after < most
+    assert after < maximum
 
 
 def elbows_and_hands(body, motion):
-    places = [JOINTS.index(f"{side}{name}") for side in ("left", "right")
+    indices = [JOINTS.index(f"{side}{name}") for side in ("left", "right")
               for name in ("LowerArm", "Hand")]  # fmt: skip
-    return joint_positions(body, motion_frames(body, motion))[:, places]
+    return joint_positions(body, motion_frames(body, motion))[:, indices]

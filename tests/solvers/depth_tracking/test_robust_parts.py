@@ -1,4 +1,4 @@
-"""Parts found among misclassified pixels, poses fitted to them, and what scores them."""
+"""Find parts among misclassified pixels, fit poses to them and score the poses."""
 
 import numpy as np
 import pytest
@@ -33,29 +33,34 @@ BODY = default_body()
 
 
 def standing(**angles: float):
-    """A pose at 2.8 m whose left elbow is bent, so that left and right differ."""
+    """A pose at 2.8 m whose left elbow is flexed, so that left and right differ."""
     pose = np.zeros(N_COORDINATES)
     pose[:3] = 0.05, 0.0, 2.8
-    told = {"leftHumerusX": 0.7, "leftRadius": 1.2, "rightHumerusZ": 0.6, "rightFemurX": 0.4}
-    for name, angle in (told | angles).items():
+    default_angles = {
+        "leftHumerusX": 0.7,
+        "leftRadius": 1.2,
+        "rightHumerusZ": 0.6,
+        "rightFemurX": 0.4,
+    }
+    for name, angle in (default_angles | angles).items():
         pose[COORDINATES.index(name)] = angle
     return pose
 
 
-def seen_parts(pose):
-    """What the camera sees of the body: points, parts, rows and columns."""
-    picture = render_hypothesis(BODY, pose, CAMERA).picture
-    rows, columns = np.divmod(picture.pixels, CAMERA.width)
-    points = CAMERA.rays()[rows, columns] * picture.depths[:, None]
+def visible_parts(pose):
+    """Visible surface of the body: points, parts, rows and columns."""
+    image = render_hypothesis(BODY, pose, CAMERA).image
+    rows, columns = np.divmod(image.pixels, CAMERA.width)
+    points = CAMERA.rays()[rows, columns] * image.depths[:, None]
     frames = segment_frames(BODY, pose)
     parts = np.zeros(len(points), dtype=int)
-    for place, point in enumerate(points):
-        parts[place] = part_at(picture.capsules[place], point, frames)
+    for index, point in enumerate(points):
+        parts[index] = part_at(image.capsules[index], point, frames)
     return points, parts, rows, columns
 
 
 def part_at(capsule, point, frames):
-    """The part by brute force: of this capsule, and on the nearer half of its axis."""
+    """Part by brute force: of this capsule, on the nearer half of its axis."""
     of_it = [part for part in range(N_PARTS) if PART_CAPSULES[part] == capsule]
     if len(of_it) == 1:
         return of_it[0]
@@ -68,11 +73,11 @@ def part_at(capsule, point, frames):
 
 def joint_error(pose, true):
     frames, exact = segment_frames(BODY, pose), segment_frames(BODY, true)
-    apart = joint_positions(BODY, frames) - joint_positions(BODY, exact)
-    return float(np.linalg.norm(apart, axis=1).mean())
+    distances = joint_positions(BODY, frames) - joint_positions(BODY, exact)
+    return float(np.linalg.norm(distances, axis=1).mean())
 
 
-def test_every_part_has_a_capsule_and_halves_make_a_whole():
+def test_every_part_has_a_capsule_and_halves_are_complete():
     assert {CAPSULES[capsule] for capsule in PART_CAPSULES} == set(CAPSULES)
     covered = np.zeros(len(CAPSULES))
     np.add.at(covered, PART_CAPSULES, PART_SPANS[:, 1] - PART_SPANS[:, 0])
@@ -81,20 +86,20 @@ def test_every_part_has_a_capsule_and_halves_make_a_whole():
 
 @pytest.mark.parametrize("wrong", [0.0, 0.35])
 def test_find_parts_is_robust_to_wrong_labels(rng, wrong):
-    """A third of the pixels is told at random; middles stay within some centimetres."""
+    """A third of the labels are random; centers change by a few centimeters."""
     true = standing()
-    points, parts, _, _ = seen_parts(true)
+    points, parts, _, _ = visible_parts(true)
     labels = np.where(
         rng.random(len(parts)) < wrong, rng.integers(0, N_PARTS, len(parts)), parts
     )
     found = find_parts(points, labels, BODY, rng)
     frames = segment_frames(BODY, true)
     for part in ("head", "rightUpperArm", "leftLowerLeg", "rightUpperLegEnd"):
-        place = PARTS.index(part)
-        assert found.weights[place] >= 0.4
-        capsule = PART_CAPSULES[place]
-        far = capsule_distances(BODY, frames, found.centers[place][None])[0, capsule]
-        assert far < 0.03
+        index = PARTS.index(part)
+        assert found.weights[index] >= 0.4
+        capsule = PART_CAPSULES[index]
+        distance = capsule_distances(BODY, frames, found.centers[index][None])[0, capsule]
+        assert distance < 0.03
     true_part = {point.tobytes(): part for point, part in zip(points, parts, strict=True)}
     right = [
         true_part[point.tobytes()] == label
@@ -104,7 +109,7 @@ def test_find_parts_is_robust_to_wrong_labels(rng, wrong):
 
 
 def test_find_parts_returns_nan_for_missing_parts(rng):
-    points, parts, _, _ = seen_parts(standing())
+    points, parts, _, _ = visible_parts(standing())
     left = np.char.startswith(np.array(PARTS), "left")[parts]
     found = find_parts(points[~left], parts[~left], BODY, rng)
     assert not found.weights[np.char.startswith(np.array(PARTS), "left")].any()
@@ -112,16 +117,16 @@ def test_find_parts_returns_nan_for_missing_parts(rng):
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1.2, 3.0])
-def test_a_pose_is_fitted_to_its_parts(rng, yaw):
+def test_fit_parts_recovers_the_pose(rng, yaw):
     true = standing(yaw=yaw)
-    points, parts, _, _ = seen_parts(true)
+    points, parts, _, _ = visible_parts(true)
     found = find_parts(points, parts, BODY, rng)
     start = first_pose(BODY, found)
-    turned = start[COORDINATES.index("yaw")] - yaw
-    assert abs(np.angle(np.exp(1j * turned))) < 0.5
-    shares = np.eye(N_PARTS, dtype=np.float32)[parts]
+    rotated = start[COORDINATES.index("yaw")] - yaw
+    assert abs(np.angle(np.exp(1j * rotated))) < 0.5
+    fractions = np.eye(N_PARTS, dtype=np.float32)[parts]
     pose = fit_parts(BODY, found, start)
-    pose = fit_pixels(BODY, points[::3], shares[::3], pose)
+    pose = fit_pixels(BODY, points[::3], fractions[::3], pose)
     assert joint_error(pose, true) < 0.05
 
 
@@ -129,23 +134,23 @@ def test_distances_to_round_capsules_are_exact(rng):
     pose = standing()
     frames = segment_frames(BODY, pose)
     points = rng.normal([0.05, 0.0, 2.8], 0.4, (50, 3))
-    far = capsule_distances(BODY, frames, points)
-    place = CAPSULES.index("leftLowerLeg")
-    frame = frames[CAPSULE_SEGMENTS[place]]
-    start, stop = BODY.capsule_ends[place] @ frame[:3, :3].T + frame[:3, 3]
+    distances = capsule_distances(BODY, frames, points)
+    index = CAPSULES.index("leftLowerLeg")
+    frame = frames[CAPSULE_SEGMENTS[index]]
+    start, stop = BODY.capsule_ends[index] @ frame[:3, :3].T + frame[:3, 3]
     along = np.clip((points - start) @ (stop - start) / ((stop - start) ** 2).sum(), 0, 1)
     exact = np.linalg.norm(points - start - along[:, None] * (stop - start), axis=1)
-    np.testing.assert_allclose(far[:, place], exact - BODY.radii[place, 0], atol=1e-9)
+    np.testing.assert_allclose(distances[:, index], exact - BODY.radii[index, 0], atol=1e-9)
 
 
-def test_the_true_pose_scores_best(rng):
+def test_true_pose_has_the_best_score(rng):
     true = standing()
     hypothesis = render_hypothesis(BODY, true, CAMERA)
-    observation = Observation(CAMERA, hypothesis.picture.depth_picture())
-    _, parts, rows, columns = seen_parts(true)
+    observation = Observation(CAMERA, hypothesis.image.depth_image())
+    _, parts, rows, columns = visible_parts(true)
     order = np.argsort(rows * CAMERA.width + columns)
-    shares = np.eye(N_PARTS, dtype=np.float32)[parts[order]]
-    pixels = PixelParts(rows[order], columns[order], shares)
+    fractions = np.eye(N_PARTS, dtype=np.float32)[parts[order]]
+    pixels = PixelParts(rows[order], columns[order], fractions)
     score, overlap = pose_score(hypothesis, observation, pixels, 0.3)
     assert score == pytest.approx(1.0, abs=1e-6)
     assert overlap == 1.0
@@ -154,9 +159,12 @@ def test_the_true_pose_scores_best(rng):
         other[COORDINATES.index(name)] += change
         worse, _ = pose_score(render_hypothesis(BODY, other, CAMERA), observation, pixels, 0.3)
         assert worse < score - 0.01
-    away = true.copy()
-    away[0] += 3.0
-    assert pose_score(render_hypothesis(BODY, away, CAMERA), observation, pixels, 0.3)[1] == 0.0
+    offset_pose = true.copy()
+    offset_pose[0] += 3.0
+    assert (
+        pose_score(render_hypothesis(BODY, offset_pose, CAMERA), observation, pixels, 0.3)[1]
+        == 0.0
+    )
 
 
 def test_swap_orders_cover_all_combinations():
@@ -170,13 +178,14 @@ def test_swap_orders_cover_all_combinations():
 
 def test_trial_poses_recover_swapped_legs(rng):
     true = standing(yaw=-1.3, leftFemurX=-0.3)
-    points, parts, _, _ = seen_parts(true)
+    points, parts, _, _ = visible_parts(true)
     legs = np.array([part.endswith(("Leg", "LegEnd", "Foot")) for part in PARTS])
-    told = np.where(legs[parts], MIRRORED_PARTS[parts], parts)
-    shares = np.eye(N_PARTS, dtype=np.float32)[told]
-    found = find_parts(points, told, BODY, rng)
+    labels = np.where(legs[parts], MIRRORED_PARTS[parts], parts)
+    fractions = np.eye(N_PARTS, dtype=np.float32)[labels]
+    found = find_parts(points, labels, BODY, rng)
     errors = [
-        joint_error(pose, true) for pose in trial_poses(BODY, found, points[::3], shares[::3])
+        joint_error(pose, true)
+        for pose in trial_poses(BODY, found, points[::3], fractions[::3])
     ]
     assert min(errors) < 0.06
 
@@ -191,16 +200,16 @@ def test_swap_parts_permutes_centers_and_labels(rng):
 
 
 def test_fit_pixels_reassigns_wrong_labels(rng):
-    """The left shin is told to be rather the right one, and the start is the truth."""
+    """The left shin is labeled mostly as the right one; the initial pose is the true one."""
     true = standing(rightFemurX=0.0)
-    points, parts, _, _ = seen_parts(true)
-    told = parts.copy()
+    points, parts, _, _ = visible_parts(true)
+    labels = parts.copy()
     for end in ("", "End"):
         shin = PARTS.index(f"leftLowerLeg{end}")
-        told[parts == shin] = MIRRORED_PARTS[shin]
+        labels[parts == shin] = MIRRORED_PARTS[shin]
     one_hot = np.eye(N_PARTS, dtype=np.float32)
-    shares = 0.7 * one_hot[told] + 0.3 * one_hot[parts]
-    pose = fit_pixels(BODY, points, shares, true)
+    fractions = 0.7 * one_hot[labels] + 0.3 * one_hot[parts]
+    pose = fit_pixels(BODY, points, fractions, true)
     ankles = [JOINTS.index(f"{side}Foot") for side in ("left", "right")]
     found, exact = (joint_positions(BODY, segment_frames(BODY, one)) for one in (pose, true))
     assert np.linalg.norm(found[ankles] - exact[ankles], axis=1).max() < 0.03

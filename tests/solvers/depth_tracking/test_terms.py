@@ -1,4 +1,4 @@
-"""Each term's equations are the derivatives of what it says it measures."""
+"""Equations of each term equal the derivatives of its definition."""
 
 import numpy as np
 import pytest
@@ -26,33 +26,33 @@ from solvers.depth_tracking.terms.silhouette import silhouette_term
 BODY = default_body()
 
 
-def moved(hypothesis, directions):
-    """How fast visible points move along directions (n, 3) with each coordinate, (n, 36)."""
+def point_velocities(hypothesis, directions):
+    """Speed of visible points along directions (n, 3) by each coordinate, (n, 36)."""
     twists = hypothesis.twists[hypothesis.segments]
     speeds = np.cross(twists[:, :3], hypothesis.points[:, :, None], axis=1) + twists[:, 3:]
     return np.einsum("ni,nik->nk", directions, speeds)
 
 
-def test_equations_of_segments_equal_the_dense_ones(rng):
-    """One 6 x 6 matrix per segment holds what a Jacobian with a row per pixel holds."""
+def test_segment_equations_equal_the_dense_ones(rng):
+    """One 6 x 6 matrix per segment replaces a Jacobian with a row per pixel."""
     hypothesis = render_hypothesis(BODY, NATURAL, CAMERA)
     n = len(hypothesis.points)
     directions, residuals = rng.normal(size=(n, 3)), rng.normal(size=n)
     weights = rng.uniform(0.5, 2.0, size=n)
 
     rows = SurfaceRows(
-        hypothesis.points, directions, residuals, weights, hypothesis.picture.capsules
+        hypothesis.points, directions, residuals, weights, hypothesis.image.capsules
     )
 
     found = equations_in_coordinates([segment_equations(rows)], hypothesis.twists)
 
-    jacobian = moved(hypothesis, directions)
+    jacobian = point_velocities(hypothesis, directions)
     assert_allclose(found.matrix, jacobian.T @ (weights[:, None] * jacobian), atol=1e-8)
     assert_allclose(found.vector, jacobian.T @ (weights * residuals), atol=1e-8)
     assert_allclose(found.cost, 0.5 * (weights * residuals**2).sum())
 
 
-def test_moving_toward_is_moving_along_three_axes(rng):
+def test_point_equations_equal_those_along_three_axes(rng):
     points, targets = rng.normal(size=(2, 7, 3))
     weights, capsules = rng.uniform(size=7), rng.integers(0, 19, size=7)
 
@@ -67,42 +67,44 @@ def test_moving_toward_is_moving_along_three_axes(rng):
     assert_allclose(found.vectors, sum(part.vectors for part in parts), atol=1e-12)
 
 
-def test_depth_of_a_pixel_changes_as_its_gradient_says():
-    """Central differences of drawn pictures, where neither outline nor other part is near."""
+def test_depth_gradient_equals_differences_of_rendered_depth():
+    """Central differences of rendered images, away from silhouettes and part boundaries."""
     hypothesis, size = render_hypothesis(BODY, NATURAL, CAMERA), 1e-5
-    exact = moved(hypothesis, depth_gradients(hypothesis))
-    pixels = hypothesis.picture.pixels
+    exact = point_velocities(hypothesis, depth_gradients(hypothesis))
+    pixels = hypothesis.image.pixels
     facing = -np.einsum("ni,ni->n", hypothesis.normals, hypothesis.rays) > 0.4
     for coordinate in (0, 2, 3, 5, 8, 11, 14, 16, 18, 20, 21, 23, 29, 33):
-        pictures = [
+        images = [
             render_hypothesis(
                 BODY, NATURAL + sign * size * np.eye(36)[coordinate], CAMERA
-            ).picture
+            ).image
             for sign in (1.0, -1.0)
         ]
-        high, low = (picture.depth_picture().ravel()[pixels] for picture in pictures)
-        same = (pictures[0].segment_picture() == pictures[1].segment_picture()).ravel()[pixels]
+        high, low = (image.depth_image().ravel()[pixels] for image in images)
+        same = (images[0].segment_image() == images[1].segment_image()).ravel()[pixels]
         inner = facing & same & (high > 0.0) & (low > 0.0)
         differences = (high - low)[inner] / (2 * size)
         assert inner.sum() > 900
         # Kinks where one capsule of a segment meets another are a few pixels only.
-        off = np.abs(differences - exact[inner, coordinate])
-        assert (off < 1e-4).mean() > 0.99
+        errors = np.abs(differences - exact[inner, coordinate])
+        assert (errors < 1e-4).mean() > 0.99
 
 
-@pytest.mark.parametrize("aside", [(0.03, 0.0), (0.0, -0.03)])
-def test_silhouette_term_pulls_back_to_the_outline(aside):
-    there = NATURAL.copy()
-    there[:2] += aside
-    hypothesis = render_hypothesis(BODY, there, CAMERA)
+@pytest.mark.parametrize("offset", [(0.03, 0.0), (0.0, -0.03)])
+def test_silhouette_term_pulls_back_to_the_outline(offset):
+    start = NATURAL.copy()
+    start[:2] += offset
+    hypothesis = render_hypothesis(BODY, start, CAMERA)
 
-    asked = equations_in_coordinates(
+    requested = equations_in_coordinates(
         [segment_equations(silhouette_term(hypothesis, observed(NATURAL), 1.0))],
         hypothesis.twists,
     ).vector[:2]
 
-    assert asked @ np.array(aside) < 0.0
-    assert abs(asked @ np.array(aside)) > 0.9 * np.linalg.norm(asked) * np.linalg.norm(aside)
+    assert requested @ np.array(offset) < 0.0
+    assert abs(requested @ np.array(offset)) > 0.9 * np.linalg.norm(requested) * np.linalg.norm(
+        offset
+    )
 
 
 def test_terms_have_zero_residuals_at_the_true_pose():
@@ -120,8 +122,8 @@ def test_terms_have_zero_residuals_at_the_true_pose():
         assert_allclose(term.residuals, 0.0, atol=1e-9)
 
 
-def test_pixels_fall_into_the_groups_of_the_paper():
-    """An arm before the chest hides it; a raised arm is not where it was expected."""
+def test_pixel_groups_equal_those_of_the_paper():
+    """An arm occludes the chest, and a raised arm differs from the hypothesis."""
     acted = posed(leftHumerusX=1.0, leftHumerusY=1.0, leftRadius=1.6, rightHumerusZ=1.4)
     hypothesis, observation = render_hypothesis(BODY, posed(), CAMERA), observed(acted)
 
@@ -133,13 +135,13 @@ def test_pixels_fall_into_the_groups_of_the_paper():
     arm = hypothesis.segments == SEGMENTS.index("rightLowerArm")
     assert arm[groups.off_actor].sum() > 0.7 * arm.sum()
     assert len(groups.uncovered) > 30
-    assert set(observation.pixels) <= set(hypothesis.picture.pixels) | set(groups.uncovered)
+    assert set(observation.pixels) <= set(hypothesis.image.pixels) | set(groups.uncovered)
     back = group_pixels(render_hypothesis(BODY, acted, CAMERA), observed(posed()), 0.08)
     assert len(back.too_near) > 10
 
 
-@pytest.mark.parametrize("away", [-0.02, 0.03])
-def test_the_closest_surface_of_a_round_limb_is_its_radius_from_the_axis(away):
+@pytest.mark.parametrize("distance", [-0.02, 0.03])
+def test_closest_surface_of_a_round_limb_is_a_radius_from_its_axis(distance):
     hypothesis = render_hypothesis(BODY, posed(leftHumerusZ=1.2), CAMERA)
     limb = CAPSULES.index("leftLowerArm")
     frame = hypothesis.frames[SEGMENTS.index("leftLowerArm")]
@@ -147,20 +149,20 @@ def test_the_closest_surface_of_a_round_limb_is_its_radius_from_the_axis(away):
     toward = -middle / np.linalg.norm(middle)
     toward -= frame[:3, 1] * (frame[:3, 1] @ toward)
     toward /= np.linalg.norm(toward)
-    point = middle + (BODY.radii[limb, 0] + away) * toward
+    point = middle + (BODY.radii[limb, 0] + distance) * toward
 
     distances, normals, capsules = closest_surface(hypothesis, point[np.newaxis])
 
     assert capsules == limb
-    assert_allclose(distances, away, atol=1e-12)
+    assert_allclose(distances, distance, atol=1e-12)
     assert_allclose(normals[0], toward, atol=1e-12)
 
 
-def test_every_depth_term_moves_the_body_nearer():
-    """A step of each term alone from 4 cm too near shortens the way to the truth."""
-    there = NATURAL.copy()
-    there[2] -= 0.04
-    hypothesis, observation = render_hypothesis(BODY, there, CAMERA), observed(NATURAL)
+def test_step_of_every_depth_term_reduces_the_distance():
+    """One step of each term, from 4 cm too near."""
+    start = NATURAL.copy()
+    start[2] -= 0.04
+    hypothesis, observation = render_hypothesis(BODY, start, CAMERA), observed(NATURAL)
     groups = group_pixels(hypothesis, observation, 0.08)
     for term in (
         depth_image_term(hypothesis, observation, groups, 1.0),
@@ -170,7 +172,7 @@ def test_every_depth_term_moves_the_body_nearer():
             equations_in_coordinates([segment_equations(term)], hypothesis.twists),
             np.full(36, 0.1),
         )
-        nearer = render_hypothesis(BODY, there + change, CAMERA).points[:, 2].mean()
+        nearer = render_hypothesis(BODY, start + change, CAMERA).points[:, 2].mean()
         assert abs(nearer - observation.points[:, 2].mean()) < 0.03
 
 

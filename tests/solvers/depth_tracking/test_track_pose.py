@@ -1,4 +1,4 @@
-"""The tracker finds the pose that made the picture, from near it, and follows it."""
+"""The tracker finds and follows the pose of rendered depth images."""
 
 import numpy as np
 import pytest
@@ -35,8 +35,8 @@ def no_prior(pose):
     return stay_near(pose, pose, np.zeros(36))
 
 
-def test_converges_from_a_wide_basin(rng):
-    """From 3 cm and 6 degrees per joint away, nearly always to less than 1 cm."""
+def test_tracker_converges_from_a_wide_basin(rng):
+    """From errors of 3 cm and 6 degrees per joint, nearly always to less than 1 cm."""
     errors, before = [], []
     for _ in range(12):
         start = NATURAL + rng.normal(scale=0.1, size=36)
@@ -51,7 +51,7 @@ def test_converges_from_a_wide_basin(rng):
     assert np.mean(np.array(errors) < 0.03) >= 0.75
 
 
-def test_costs_only_fall_where_only_better_is_accepted(rng):
+def test_cost_decreases_if_only_improvements_are_accepted(rng):
     start = NATURAL + rng.normal(scale=0.1, size=36)
     costs = [
         register_pose(
@@ -77,31 +77,31 @@ def test_track_pose_follows_a_waving_actor(settings, worst):
     assert tracked.coverage.min() > 0.7
 
 
-def test_standing_still_would_be_worse():
+def test_constant_pose_has_a_larger_error():
     truth = waving(30)
     assert mean_error(np.tile(truth[0], (30, 1)), truth) > 0.1
 
 
-def test_the_same_numbers_every_time():
+def test_track_pose_repeats_exactly():
     truth = waving(5)
     first, second = (track_pose(recorded(truth), BODY, truth[0]) for _ in range(2))
     assert_array_equal(first.poses, second.poses)
 
 
-def test_moving_the_actor_moves_the_result():
-    """Straight back by a step that keeps the rays: everything twice as far and twice as big."""
+def test_result_scales_with_the_actor_and_the_distance():
+    """Twice the distance and twice the size give the same rays."""
     truth = waving(6)
-    far = truth.copy()
-    far[:, :3] *= 2.0
+    doubled = truth.copy()
+    doubled[:, :3] *= 2.0
 
     near_result = track_pose(recorded(truth), BODY, truth[0])
-    far_result = track_pose(recorded(far, BODY.scaled(2.0)), BODY.scaled(2.0), far[0])
+    far_result = track_pose(recorded(doubled, BODY.scaled(2.0)), BODY.scaled(2.0), doubled[0])
 
     assert_allclose(far_result.poses[:, 3:], near_result.poses[:, 3:], atol=0.12)
 
 
-def test_confidence_falls_where_a_limb_is_out_of_sight():
-    """The left arm behind the back, seen from the front, is surer from behind."""
+def test_confidence_is_low_for_an_occluded_limb():
+    """The left arm behind the back has a higher confidence from behind than from the front."""
     front = waving(3) * 0.0 + NATURAL
     behind = front.copy()
     for pose in (front, behind):
@@ -135,7 +135,7 @@ def test_track_pose_bridges_an_empty_frame_with_zero_confidence():
     assert mean_error(tracked.poses, truth) < 0.03
 
 
-def test_reports_progress_and_can_be_cancelled():
+def test_track_pose_reports_progress_and_can_be_cancelled():
     fractions = []
     track_pose(recorded(waving(3)), BODY, NATURAL, progress=lambda f, _="": fractions.append(f))
     assert_allclose(fractions, [1 / 3, 2 / 3, 1.0])
@@ -160,8 +160,8 @@ def test_joint_limits_affect_only_exceeded_coordinates():
     assert joint_limits(inside, 1.0).cost == 0.0
     beyond = inside.copy()
     beyond[10] = UPPER_LIMITS[10] + 0.2
-    asked = joint_limits(beyond, 3.0)
-    assert_allclose(asked.vector, -0.6 * np.eye(36)[10], atol=1e-12)
+    requested = joint_limits(beyond, 3.0)
+    assert_allclose(requested.vector, -0.6 * np.eye(36)[10], atol=1e-12)
 
 
 def test_predict_pose_extrapolates_constant_velocity():
@@ -188,7 +188,7 @@ def test_observation_of_a_few_pixels_is_empty():
     assert mean_error(tracked.poses, truth) < 0.03
 
 
-def test_without_any_term_the_pose_stays_where_it_is_expected():
+def test_pose_without_terms_is_the_predicted_one():
     nothing = TrackerSettings(
         closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0, depth_weight=0.0,
         extra_weight=0.0, silhouette_weight=0.0, natural_weight=0.0, limit_weight=0.0,

@@ -1,4 +1,4 @@
-"""Poses and pictures to learn from: different, natural enough, dressed, and reproducible."""
+"""Training poses and images are diverse, plausible, clothed and reproducible."""
 
 from dataclasses import replace
 
@@ -45,34 +45,36 @@ def gait():
     return walking_gait(GaitSettings(duration=2.0, frame_rate=20.0))
 
 
-def test_poses_without_heading_stand_as_they_did(person, rng):
-    turns = quaternion_from_rotation_vector(rng.normal(size=(20, person.skeleton.n_joints, 3)))
-    upright = remove_heading(turns)
-    np.testing.assert_array_equal(upright[:, 1:], turns[:, 1:])
-    up = rotate(turns[:, 0], [0.0, 0.0, 1.0])
+def test_poses_without_heading_stay_upright(person, rng):
+    rotations = quaternion_from_rotation_vector(
+        rng.normal(size=(20, person.skeleton.n_joints, 3))
+    )
+    upright = remove_heading(rotations)
+    np.testing.assert_array_equal(upright[:, 1:], rotations[:, 1:])
+    up = rotate(rotations[:, 0], [0.0, 0.0, 1.0])
     np.testing.assert_allclose(rotate(upright[:, 0], [0.0, 0.0, 1.0])[:, 2], up[:, 2])
-    spun = turns.copy()
-    spun[:, 0] = multiply(quaternion_from_rotation_vector([0.0, 0.0, 1.3]), turns[:, 0])
+    spun = rotations.copy()
+    spun[:, 0] = multiply(quaternion_from_rotation_vector([0.0, 0.0, 1.3]), rotations[:, 0])
     same = np.abs(np.einsum("fi,fi->f", remove_heading(spun)[:, 0], upright[:, 0]))
     np.testing.assert_allclose(same, 1.0)
 
 
-def test_kept_poses_differ_and_stand_for_the_others(person, gait):
+def test_selected_poses_differ_and_cover_the_rest(person, gait):
     poses = remove_heading(person.rotations_of(gait))
     kept = select_diverse_poses(person, poses, 0.15, 1000)
     assert 3 < len(kept) < len(poses)
 
-    def joints(turns):
-        return world_poses(person.skeleton, turns, np.zeros((len(turns), 3))).positions
+    def joints(rotations):
+        return world_poses(person.skeleton, rotations, np.zeros((len(rotations), 3))).positions
 
-    apart = np.linalg.norm(joints(kept)[:, None] - joints(kept), axis=-1).max(axis=-1)
-    assert apart[~np.eye(len(kept), dtype=bool)].min() > 0.15
+    distances = np.linalg.norm(joints(kept)[:, None] - joints(kept), axis=-1).max(axis=-1)
+    assert distances[~np.eye(len(kept), dtype=bool)].min() > 0.15
     to_kept = np.linalg.norm(joints(poses)[:, None] - joints(kept), axis=-1).max(axis=-1)
     assert to_kept.min(axis=1).max() <= 0.15 + 1e-6
     assert len(select_diverse_poses(person, poses, 0.0, 7)) == 7
 
 
-def test_loosened_arms_stay_out_of_the_back_and_bend_forward(person, rng):
+def test_random_arms_avoid_the_back_and_flex_forward(person, rng):
     n_joints = person.skeleton.n_joints
     mixer = PoseMixer(person, np.tile(IDENTITY, (1, n_joints, 1)))
     joints = person.humanoid.indices(person.skeleton)
@@ -80,51 +82,53 @@ def test_loosened_arms_stay_out_of_the_back_and_bend_forward(person, rng):
         pose = mixer.draw(rng, 1.0)
         np.testing.assert_allclose(np.linalg.norm(pose, axis=-1), 1.0)
         for side, sign in (("left", 1.0), ("right", -1.0)):
-            way = rotate(pose[joints[f"{side}UpperArm"]], [sign, 0.0, 0.0])
-            assert way[0] * sign >= -0.36
-            assert way[1] <= 0.36
+            direction = rotate(pose[joints[f"{side}UpperArm"]], [sign, 0.0, 0.0])
+            assert direction[0] * sign >= -0.36
+            assert direction[1] <= 0.36
             forearm = rotate(pose[joints[f"{side}LowerArm"]], [sign, 0.0, 0.0])
             assert forearm[1] <= 1e-9
             shin = rotate(pose[joints[f"{side}LowerLeg"]], [0.0, 0.0, -1.0])
             assert shin[1] >= -1e-9
 
 
-def test_poses_that_are_not_loosened_are_those_of_the_clip(person, rng):
-    turns = quaternion_from_rotation_vector(rng.normal(size=(5, person.skeleton.n_joints, 3)))
-    mixer = PoseMixer(person, turns)
+def test_poses_without_randomization_equal_those_of_the_clip(person, rng):
+    rotations = quaternion_from_rotation_vector(
+        rng.normal(size=(5, person.skeleton.n_joints, 3))
+    )
+    mixer = PoseMixer(person, rotations)
     for _ in range(10):
         pose = mixer.draw(rng, 0.0)
-        assert (np.abs(turns - pose).max(axis=(1, 2)) == 0.0).any()
+        assert (np.abs(rotations - pose).max(axis=(1, 2)) == 0.0).any()
 
 
 def test_images_are_determined_by_their_block(person, gait):
     settings = TrainingImagesSettings()
     one, again = (image_source([gait], [person], settings, 3) for _ in range(2))
     other = image_source([gait], [person], settings, 4)
-    first, second, third = (source.pictures(2) for source in (one, again, other))
+    first, second, third = (source.render(2) for source in (one, again, other))
     assert len(first) == IMAGES_PER_BODY
     np.testing.assert_array_equal(first[4].depth, second[4].depth)
     assert not np.array_equal(first[4].depth, third[4].depth)
-    assert not np.array_equal(first[4].depth, one.pictures(3)[4].depth)
+    assert not np.array_equal(first[4].depth, one.render(3)[4].depth)
 
 
-def test_bodies_are_where_the_settings_say(person, gait):
+def test_bodies_are_within_the_distances_of_the_settings(person, gait):
     source = image_source([gait], [person], PLAIN, 0)
-    for picture in source.pictures(0) + source.pictures(1):
-        seen = picture.depth > 0
-        assert seen.sum() > 300
-        np.testing.assert_array_equal(seen, picture.labels != NO_PART)
-        assert 2.0 < np.median(picture.depth[seen]) < 3.5
-        assert picture.depth.shape == (CAMERA.height, CAMERA.width)
+    for image in source.render(0) + source.render(1):
+        observed = image.depth > 0
+        assert observed.sum() > 300
+        np.testing.assert_array_equal(observed, image.labels != NO_PART)
+        assert 2.0 < np.median(image.depth[observed]) < 3.5
+        assert image.depth.shape == (CAMERA.height, CAMERA.width)
 
 
 def test_feet_are_removed_with_the_requested_frequency(person, gait):
     foot = [PARTS.index("leftFoot"), PARTS.index("rightFoot")]
 
-    def feet(lost):
-        source = image_source([gait], [person], replace(PLAIN, lost_feet=lost), 0)
-        pictures = source.pictures(0) + source.pictures(1)
-        return sum(np.isin(picture.labels, foot).sum() for picture in pictures)
+    def feet(missing):
+        source = image_source([gait], [person], replace(PLAIN, lost_feet=missing), 0)
+        images = source.render(0) + source.render(1)
+        return sum(np.isin(image.labels, foot).sum() for image in images)
 
     assert feet(1.0) < 0.7 * feet(0.0)
 
@@ -141,7 +145,7 @@ def test_clothes_expand_the_body_symmetrically(person, rng):
     np.testing.assert_allclose(thickness, thickness[MIRRORED_PARTS], atol=1e-9)
 
 
-def test_bodies_between_two_have_bones_between_theirs(person, rng):
+def test_blended_bodies_have_blended_bones(person, rng):
     tall = replace(
         person,
         vertices=1.2 * person.vertices,
@@ -163,7 +167,7 @@ def test_normals_point_outwards(person):
     np.testing.assert_allclose(np.linalg.norm(normals, axis=-1), 1.0)
 
 
-def test_bodies_of_other_joints_cannot_be_mixed(person, gait):
+def test_bodies_with_other_joints_cannot_be_blended(person, gait):
     names = tuple(f"{name}_" for name in person.skeleton.names)
     skeleton = Skeleton(names, person.skeleton.parents, person.skeleton.offsets)
     other = replace(person, skeleton=skeleton)

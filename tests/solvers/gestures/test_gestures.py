@@ -1,4 +1,4 @@
-"""Recognition of simulated gestures, and of movements that are no gestures."""
+"""Recognize simulated gestures, and ignore movements that are no gestures."""
 
 from dataclasses import replace
 from math import pi
@@ -74,15 +74,15 @@ def test_standing_with_noise_gives_no_gesture(seed):
 @given(
     heading=st.floats(-pi, pi),
     size=st.floats(0.5, 1.5),
-    place=st.tuples(*[st.floats(-3.0, 3.0)] * 3),
+    position=st.tuples(*[st.floats(-3.0, 3.0)] * 3),
 )
-def test_recognition_ignores_heading_size_and_position(heading, size, place):
-    made = ["hand up", "wave right", "turn", "clap"]
-    plain = perform_gestures(made)
-    moved = perform_gestures(made, PerformanceSettings(heading=heading, size=size))
+def test_recognition_ignores_heading_size_and_position(heading, size, position):
+    result = ["hand up", "wave right", "turn", "clap"]
+    plain = perform_gestures(result)
+    moved = perform_gestures(result, PerformanceSettings(heading=heading, size=size))
 
     expected = recognize_gestures(plain.times, plain.positions)
-    events = recognize_gestures(moved.times, moved.positions + place)
+    events = recognize_gestures(moved.times, moved.positions + position)
 
     assert [event.gesture for event in events] == [event.gesture for event in expected]
     assert [event.amount for event in events] == pytest.approx([e.amount for e in expected])
@@ -99,7 +99,7 @@ def test_zoom_is_the_factor_of_the_hands_distance():
 
 
 def test_hands_that_zoom_out_do_not_clap():
-    """Though they end as near each other as hands that touch, and quickly enough."""
+    """Though they end as near as in a clap, and fast enough."""
     for seed in range(10):
         corrupted = PerformanceSettings(noise=0.02, seed=seed)
 
@@ -145,13 +145,13 @@ def test_performance_ends_before_the_last_clap_starts():
 
 
 def test_waves_count_only_while_the_library_is_shown():
-    alone = perform_gestures(["wave right", "rest"])
+    separate = perform_gestures(["wave right", "rest"])
     late = perform_gestures(["hand up", *["rest"] * 16, "wave right", "rest"])
 
-    assert recognized(alone) == []
+    assert recognized(separate) == []
     assert recognized(late) == [Gesture.HAND_UP]
     always = GestureSettings(waves_need_hand_up=False)
-    assert recognized(alone, always) == [Gesture.PAGE_NEXT]
+    assert recognized(separate, always) == [Gesture.PAGE_NEXT]
 
 
 def test_left_hand_gives_no_gesture():
@@ -174,7 +174,7 @@ def test_slowly_closing_hands_do_not_clap(monkeypatch, seconds, expected):
 
 
 def test_clap_above_the_head_is_ignored(monkeypatch):
-    """As in a jumping jack, which must fit between two claps."""
+    """A jumping jack has it, and it must fit between two claps."""
     over = tuple(
         step and (step[0], *((hand[0], hand[1] * 0.3, 0.9) for hand in step[1:]))
         for step in GESTURES["clap"]
@@ -208,7 +208,7 @@ def test_applause_counts_once(monkeypatch):
 
 
 def test_dropping_hands_do_not_zoom(monkeypatch):
-    """They come together as they fall, after they have had hold of the view."""
+    """They meet while they fall, after they held the view."""
     near, held, *_ = GESTURES["zoom out"]
     fall = (0.6, (-0.1, 0.35, -0.9), (-0.1, 0.35, -0.9))
     monkeypatch.setitem(GESTURES, "zoom out", (near, held, fall))
@@ -223,12 +223,12 @@ def test_dropping_hands_do_not_zoom(monkeypatch):
 def test_single_moving_hand_does_not_clap(monkeypatch, fraction, expected):
     """From 0.98 arm lengths between the hands to 0.08, by the right one alone or by both."""
     seconds = [key[0] for key in GESTURES["clap"] if key]
-    apart = (0.3, 0.6, -0.4), (0.0, 0.6, -0.4)
-    way = 0.9 * fraction, 0.9 * (1.0 - fraction)
-    near = tuple((x - far, y, z) for (x, y, z), far in zip(apart, way, strict=True))
-    keys = (apart, near, near, apart, ((0.05, 0.05, -0.96),) * 2)
-    made = tuple((time, *key) for time, key in zip(seconds, keys, strict=False))
-    monkeypatch.setitem(GESTURES, "clap", made)
+    distances = (0.3, 0.6, -0.4), (0.0, 0.6, -0.4)
+    direction = 0.9 * fraction, 0.9 * (1.0 - fraction)
+    near = tuple((x - step, y, z) for (x, y, z), step in zip(distances, direction, strict=True))
+    keys = (distances, near, near, distances, ((0.05, 0.05, -0.96),) * 2)
+    result = tuple((time, *key) for time, key in zip(seconds, keys, strict=False))
+    monkeypatch.setitem(GESTURES, "clap", result)
 
     assert recognized(perform_gestures(["clap"])) == expected
 
@@ -271,9 +271,9 @@ def test_break_in_the_stream_resets_gestures_but_not_the_mode():
     performance = perform_gestures(["clap", "rest"])
     recognizer = GestureRecognizer()
     for time, positions in zip(performance.times, performance.positions, strict=True):
-        recognizer.see(time, positions, np.ones(20))
+        recognizer.update(time, positions, np.ones(20))
 
-    recognizer.see(performance.times[-1] + 10.0, performance.positions[0], np.ones(20))
+    recognizer.update(performance.times[-1] + 10.0, performance.positions[0], np.ones(20))
 
     assert recognizer.mode is Mode.CAPTURING
 
@@ -292,4 +292,4 @@ def test_no_frame_raises(frames):
     recognizer = GestureRecognizer()
     for time, size, confidence in frames:
         positions = size * np.sin(np.arange(60.0)).reshape(20, 3)
-        recognizer.see(time, positions, np.full(20, confidence))
+        recognizer.update(time, positions, np.full(20, confidence))

@@ -1,4 +1,4 @@
-"""The slopes by which poses and bodies are fitted, against finite differences."""
+"""Compare the derivatives of the body fit with finite differences."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,6 @@ from numpy.testing import assert_allclose
 
 from solvers.markers.body import Poses
 from solvers.markers.build_body import build_body
-from solvers.markers.centres import chord, joint_centres
 from solvers.markers.fit_body import body_slopes, fit_body, measures_of
 from solvers.markers.fit_poses import (
     _prior_residuals,
@@ -16,6 +15,7 @@ from solvers.markers.fit_poses import (
     fit_poses,
     marker_slopes,
 )
+from solvers.markers.joint_centers import chord, joint_centers
 from solvers.markers.marker_sets import find_marker_set
 from solvers.samples import GaitSettings, walking_gait
 
@@ -23,24 +23,27 @@ STEP = 1e-6
 
 
 @pytest.fixture(scope="module")
-def started():
-    """A body, the markers seen, and poses that are a little off."""
+def initial_fit():
+    """A body, the observed markers, and poses with small errors."""
     tracks = markers_on(walking_gait(GaitSettings(duration=0.5, frame_rate=20.0)))
     found = find_marker_set(tracks.names).markers
-    spots = {
-        spot: tracks.positions[:, tracks.names.index(name)] for spot, name in found.items()
+    landmarks = {
+        landmark: tracks.positions[:, tracks.names.index(name)]
+        for landmark, name in found.items()
     }
-    centres = joint_centres(spots)
-    body, turns = build_body(centres, spots)
-    seen = np.stack([spots[marker.spot] for marker in body.markers], axis=1)
-    off = Poses(turns, centres.positions["hips"])
+    centers = joint_centers(landmarks)
+    body, rotations = build_body(centers, landmarks)
+    observed = np.stack([landmarks[marker.landmark] for marker in body.markers], axis=1)
+    poses = Poses(rotations, centers.positions["hips"])
     rng = np.random.default_rng(1)
-    off = apply_step(body, off, 0.05 * rng.normal(size=(len(seen), 3 + 3 * len(body.turning))))
-    return body, seen, off
+    poses = apply_step(
+        body, poses, 0.05 * rng.normal(size=(len(observed), 3 + 3 * len(body.rotating_joints)))
+    )
+    return body, observed, poses
 
 
-def test_markers_move_with_the_pose_as_their_slopes_say(started):
-    body, _, poses = started
+def test_pose_derivatives_equal_finite_differences(initial_fit):
+    body, _, poses = initial_fit
     slopes = marker_slopes(body, body.body_in_pose(poses))
 
     for unknown in range(slopes.shape[-1]):
@@ -51,8 +54,8 @@ def test_markers_move_with_the_pose_as_their_slopes_say(started):
         assert_allclose(slopes[..., unknown], (ahead - behind) / (2 * STEP), atol=1e-8)
 
 
-def test_what_joints_usually_do_changes_as_its_slopes_say(started):
-    body, _, poses = started
+def test_pose_prior_derivatives_equal_finite_differences(initial_fit):
+    body, _, poses = initial_fit
     _, slopes = _prior_residuals(body, poses)
 
     for unknown in range(slopes.shape[-1]):
@@ -63,8 +66,8 @@ def test_what_joints_usually_do_changes_as_its_slopes_say(started):
         assert_allclose(slopes[..., unknown], (ahead - behind) / (2 * STEP), atol=1e-5)
 
 
-def test_markers_move_with_the_measures_as_their_slopes_say(started):
-    body, _, poses = started
+def test_body_derivatives_equal_finite_differences(initial_fit):
+    body, _, poses = initial_fit
     measures = measures_of(body)
     slopes = body_slopes(body, body.body_in_pose(poses), measures)
 
@@ -77,28 +80,30 @@ def test_markers_move_with_the_measures_as_their_slopes_say(started):
         assert_allclose(slopes[..., number], change, atol=1e-6)
 
 
-def test_fitting_never_makes_it_worse_and_settles(started):
-    body, seen, poses = started
+def test_fit_reduces_the_cost_and_converges(initial_fit):
+    body, observed, poses = initial_fit
 
-    fitted = fit_poses(body, seen, poses)
-    again = fit_poses(body, seen, fitted)
+    fitted = fit_poses(body, observed, poses)
+    again = fit_poses(body, observed, fitted)
 
-    assert (cost_of(body, seen, fitted) < cost_of(body, seen, poses)).all()
-    assert_allclose(cost_of(body, seen, again), cost_of(body, seen, fitted), rtol=0.02)
+    assert (cost_of(body, observed, fitted) < cost_of(body, observed, poses)).all()
+    assert_allclose(cost_of(body, observed, again), cost_of(body, observed, fitted), rtol=0.02)
 
 
-def test_a_body_fits_better_once_it_is_measured(started):
-    body, seen, poses = started
-    fitted = fit_poses(body, seen, poses)
+def test_fitted_body_reduces_the_marker_error(initial_fit):
+    body, observed, poses = initial_fit
+    fitted = fit_poses(body, observed, poses)
 
-    better, refitted = fit_body(body, seen, fitted)
+    better, refitted = fit_body(body, observed, fitted)
 
-    assert cost_of(better, seen, refitted).sum() < 0.5 * cost_of(body, seen, fitted).sum()
+    assert (
+        cost_of(better, observed, refitted).sum() < 0.5 * cost_of(body, observed, fitted).sum()
+    )
     left, right = better.index["leftLowerLeg"], better.index["rightLowerLeg"]
     assert_allclose(better.offsets[left], better.offsets[right] * (-1.0, 1.0, 1.0))
 
 
-def test_the_chord_makes_a_right_angle_at_the_joint():
+def test_chord_forms_a_right_angle_at_the_joint():
     start, marker = np.zeros((1, 3)), np.array([[0.1, 0.02, -0.4]])
 
     joint = chord(start, marker, np.array([[1.0, 0.0, 0.0]]), 0.06)

@@ -1,26 +1,26 @@
-"""Which marker sits where, from names alone."""
+"""Identify marker sets and their landmarks by names."""
 
 import pytest
 
 from solvers.markers import find_marker_set
-from solvers.markers.marker_sets import SETS, SPOTS
+from solvers.markers.marker_sets import LANDMARKS, SETS
 from solvers.recordings.joint_files.ui_prmd import MARKERS
 
 
 @pytest.mark.parametrize("title", SETS)
-def test_finds_each_set_whole(title):
+def test_find_marker_set_identifies_each_complete_set(title):
     found = find_marker_set(list(SETS[title]))
 
-    assert (found.name, found.score, found.lacks()) == (title, 1.0, ())
-    assert set(found.markers) <= set(SPOTS)
+    assert (found.name, found.score, found.missing_landmarks()) == (title, 1.0, ())
+    assert set(found.markers) <= set(LANDMARKS)
 
 
-def test_the_sets_are_as_large_as_they_are_said_to_be():
+def test_sets_have_their_documented_sizes():
     assert len(SETS["CMU 41"]) == 41
     assert set(SETS["Plug-in-Gait"]) == set(MARKERS)
 
 
-def test_case_and_prefixes_do_not_count():
+def test_case_and_prefixes_are_ignored():
     names = ["anna:lfwt", "anna:RFWT", "ANNA_LBWT", "anna.rbwt", "LKNE"]
 
     found = find_marker_set(names)
@@ -29,21 +29,21 @@ def test_case_and_prefixes_do_not_count():
     assert found.name == "CMU 41"
 
 
-def test_of_two_people_the_one_with_more_markers_wins_unless_the_other_is_named():
+def test_subject_with_more_markers_is_the_default():
     names = ["Ben:LASI", "Ben:RASI"] + [f"Anna:{name}" for name in MARKERS]
 
     assert find_marker_set(names).markers["LASI"] == "Anna:LASI"
     assert find_marker_set(names, "ben").markers == {"LASI": "Ben:LASI", "RASI": "Ben:RASI"}
 
 
-def test_says_what_a_body_cannot_do_without():
+def test_missing_landmarks_are_listed():
     names = [name for name in MARKERS if name not in {"RKNE", "LPSI"}]
 
-    assert find_marker_set(names).lacks() == ("RKNE", "LPSI and RPSI, or SACR")
+    assert find_marker_set(names).missing_landmarks() == ("RKNE", "LPSI and RPSI, or SACR")
 
 
 @pytest.mark.parametrize("names", [[], ["point_1"], ["Hips", ""], ["  "]])
-def test_unknown_names_are_no_set(names):
+def test_unknown_names_match_no_set(names):
     found = find_marker_set(names)
 
-    assert found.score == 0.0 and not found.markers and len(found.lacks()) > 5
+    assert found.score == 0.0 and not found.markers and len(found.missing_landmarks()) > 5

@@ -1,4 +1,4 @@
-"""Rigid clusters: what they are, and what holding them does."""
+"""Find rigid clusters of markers, and constrain them."""
 
 import numpy as np
 import pytest
@@ -22,18 +22,20 @@ NAMES = ("head1", "head2", "head3", "head4", "loose", "stick1", "stick2")
 
 @pytest.fixture
 def take(rng) -> Tracks:
-    """Four markers of a head, a stick of two and one marker by itself, for 5 s at 60 Hz."""
+    """Four markers on a head, two on a stick and a single one, for 5 s at 60 Hz."""
     time = np.arange(300) / 60.0
-    turn = Rotation.from_rotvec(np.stack([np.sin(time), np.cos(2 * time), 0.5 * time], axis=1))
+    rotation = Rotation.from_rotvec(
+        np.stack([np.sin(time), np.cos(2 * time), 0.5 * time], axis=1)
+    )
     path = np.stack([np.sin(time), 0.3 * time, 1.6 + 0.1 * np.cos(3 * time)], axis=1)
-    head = np.einsum("fij,pj->fpi", turn.as_matrix(), HEAD) + path[:, None]
+    head = np.einsum("fij,pj->fpi", rotation.as_matrix(), HEAD) + path[:, None]
     loose = path + np.stack(
         [0.2 + 0.2 * np.sin(5 * time), 0 * time, 0.3 * np.cos(time)], axis=1
     )
     along = np.stack([np.cos(time), np.sin(time), 0 * time], axis=1)
     stick = loose - [0.0, 0.4, 0.3] + np.sin(2 * time)[:, None] * 0.2
-    places = [*head.swapaxes(0, 1), loose, stick, stick + 0.15 * along]
-    return Tracks(NAMES, np.stack(places, axis=1), 60.0)
+    positions = [*head.swapaxes(0, 1), loose, stick, stick + 0.15 * along]
+    return Tracks(NAMES, np.stack(positions, axis=1), 60.0)
 
 
 def lengths(positions: np.ndarray, members: list[int]) -> np.ndarray:
@@ -41,7 +43,7 @@ def lengths(positions: np.ndarray, members: list[int]) -> np.ndarray:
     return np.linalg.norm(some[:, :, None] - some[:, None], axis=-1)
 
 
-def test_finds_the_head_and_the_stick_and_nothing_else(take):
+def test_find_clusters_returns_head_and_stick_only(take):
     found = find_rigid_clusters(take)
 
     assert [cluster.names for cluster in found] == [NAMES[:4], NAMES[5:]]
@@ -54,14 +56,14 @@ def test_finds_the_head_and_the_stick_and_nothing_else(take):
     )
 
 
-def test_finds_them_through_noise_too(take, rng):
+def test_find_clusters_tolerates_noise(take, rng):
     noisy = take.with_positions(take.positions + 0.003 * rng.normal(size=take.positions.shape))
 
     assert [cluster.names for cluster in find_rigid_clusters(noisy)] == [NAMES[:4], NAMES[5:]]
 
 
 @pytest.mark.parametrize("noise", [0.001, 0.003])
-def test_distances_are_constant_afterwards_and_noise_is_less(take, rng, noise):
+def test_constrained_distances_are_constant_and_noise_is_lower(take, rng, noise):
     noisy = take.with_positions(take.positions + noise * rng.normal(size=take.positions.shape))
 
     kept = constrain_clusters(noisy, find_rigid_clusters(noisy)).tracks.positions
@@ -72,12 +74,12 @@ def test_distances_are_constant_afterwards_and_noise_is_less(take, rng, noise):
         np.sqrt(((each - take.positions)[:, :4] ** 2).mean())
         for each in (noisy.positions, kept)
     )
-    # Twelve coordinates with six freedoms keep half the variance of noise.
+    # Twelve coordinates with six degrees of freedom keep half of the noise variance.
     assert after == pytest.approx(np.sqrt(0.5) * before, rel=0.05)
     assert np.array_equal(kept[:, 4], noisy.positions[:, 4])
 
 
-def test_finds_a_lost_marker_from_three_others_and_not_from_two(take):
+def test_missing_marker_needs_three_reference_markers(take):
     positions = take.positions.copy()
     positions[50:100, 0] = np.nan
     positions[200:250, :2] = np.nan
@@ -90,11 +92,11 @@ def test_finds_a_lost_marker_from_three_others_and_not_from_two(take):
     assert kept.moved.max() < 1e-6
 
 
-def test_three_on_a_line_do_not_place_a_fourth():
+def test_three_collinear_markers_do_not_determine_a_fourth():
     rod = np.array([[0.0, 0, 0], [0.1, 0, 0], [0.25, 0, 0], [0.1, 0.1, 0.0]])
-    places = np.tile(rod, (10, 1, 1))
-    places[5:, 3] = np.nan
-    take = Tracks(tuple("abcd"), places, 60.0)
+    positions = np.tile(rod, (10, 1, 1))
+    positions[5:, 3] = np.nan
+    take = Tracks(tuple("abcd"), positions, 60.0)
 
     kept = constrain_clusters(
         take, [Cluster(tuple("abcd"), rod - rod.mean(axis=0), 0.0)]
@@ -104,7 +106,7 @@ def test_three_on_a_line_do_not_place_a_fourth():
     assert_allclose(kept.positions[:5], rod + np.zeros((5, 1, 1)), atol=1e-9)
 
 
-def test_a_marker_that_strays_is_brought_back_and_moves_the_others_little(take):
+def test_outlier_marker_is_corrected_and_hardly_moves_others(take):
     positions = take.positions.copy()
     positions[100:110, 2] += [0.0, 0.0, 0.08]
 
@@ -112,29 +114,29 @@ def test_a_marker_that_strays_is_brought_back_and_moves_the_others_little(take):
         take.with_positions(positions), find_rigid_clusters(take)
     ).tracks.positions
 
-    off = np.linalg.norm(kept - take.positions, axis=-1)[:, :4]
-    assert off.max() < 0.004
+    errors = np.linalg.norm(kept - take.positions, axis=-1)[:, :4]
+    assert errors.max() < 0.004
 
 
-def test_kabsch_gives_the_turn_back(rng):
-    turns = Rotation.random(10, random_state=1).as_matrix()
+def test_kabsch_recovers_the_rotation(rng):
+    rotations = Rotation.random(10, random_state=1).as_matrix()
     shifts = rng.normal(size=(10, 3))
-    places = np.einsum("fij,pj->fpi", turns, HEAD) + shifts[:, None]
+    positions = np.einsum("fij,pj->fpi", rotations, HEAD) + shifts[:, None]
 
-    found, where = fit_rigid_transform(HEAD, places)
+    found, where = fit_rigid_transform(HEAD, positions)
 
-    assert_allclose(found, turns, atol=1e-9)
+    assert_allclose(found, rotations, atol=1e-9)
     assert_allclose(where, shifts, atol=1e-9)
 
 
-def test_a_take_in_which_nothing_moves_has_no_clusters(rng):
+def test_take_without_motion_has_no_clusters(rng):
     still = np.tile(rng.normal(size=(1, 8, 3)), (100, 1, 1))
 
     assert find_rigid_clusters(Tracks(tuple("abcdefgh"), still, 60.0)) == ()
 
 
 @pytest.mark.parametrize("n_points", [1, 2])
-def test_few_points_and_frames_are_no_trouble(n_points):
+def test_few_points_and_frames_are_accepted(n_points):
     names = tuple("ab"[:n_points])
     tracks = Tracks(names, np.full((1, n_points, 3), np.nan), 60.0)
 
@@ -142,12 +144,12 @@ def test_few_points_and_frames_are_no_trouble(n_points):
     assert constrain_clusters(tracks, ()).tracks.n_points == n_points
 
 
-def test_says_which_marker_a_cluster_has_and_the_take_has_not(take):
+def test_constrain_clusters_names_markers_missing_from_the_take(take):
     with pytest.raises(InvalidMotionError, match="hat"):
         constrain_clusters(take, [Cluster(("hat", "head1"), np.zeros((2, 3)), 0.0)])
 
 
-def test_the_head_of_a_real_take_is_a_cluster_and_moves_by_millimetres(recordings):
+def test_head_of_a_real_take_is_a_cluster_and_moves_by_millimeters(recordings):
     take = read_c3d(recordings / "markers" / "85_02.c3d")
 
     clusters = find_rigid_clusters(take)

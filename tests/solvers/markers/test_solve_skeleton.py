@@ -1,4 +1,4 @@
-"""Joint centres and angles from markers, against bodies whose joints are known."""
+"""Solve joint centers and rotations from markers, and compare with known bodies."""
 
 import numpy as np
 import pytest
@@ -26,31 +26,33 @@ def walk() -> Motion:
     return walking_gait(GaitSettings(duration=4.0, frame_rate=60.0))
 
 
-def apart(solved, truth: Motion, parts=LIMBS) -> np.ndarray:
-    """Distance of each joint from the truth, (n_frames, n_parts), metres."""
+def joint_errors(solved, truth: Motion, parts=LIMBS) -> np.ndarray:
+    """Distance of each joint from the truth, (n_frames, n_parts), meters."""
     joints = find_humanoid_map(truth.skeleton).indices(truth.skeleton)
     true = forward_kinematics(truth).positions[:, [joints[part] for part in parts]]
-    places = [solved.joint_centres.names.index(part) for part in parts]
-    return np.linalg.norm(solved.joint_centres.positions[:, places] - true, axis=-1)
+    indices = [solved.joint_centers.names.index(part) for part in parts]
+    return np.linalg.norm(solved.joint_centers.positions[:, indices] - true, axis=-1)
 
 
 @pytest.mark.parametrize(("noise", "skin"), [(0.0, 0.0), (0.001, 0.0), (0.001, 0.006)])
-def test_joint_centres_are_near_the_truth_of_a_walk(walk, noise, skin):
+def test_joint_centers_of_a_walk_are_accurate(walk, noise, skin):
     solved = solve_skeleton(markers_on(walk, noise=noise, skin=skin))
 
-    assert apart(solved, walk).mean() < 0.022
-    knees = apart(solved, walk, ["leftLowerLeg", "rightLowerLeg", "leftFoot", "rightFoot"])
+    assert joint_errors(solved, walk).mean() < 0.022
+    knees = joint_errors(
+        solved, walk, ["leftLowerLeg", "rightLowerLeg", "leftFoot", "rightFoot"]
+    )
     assert knees.mean() < 0.015
     assert np.nanmean(solved.error) < 0.002 + noise + 1.5 * skin
 
 
-def test_limbs_turn_as_they_do(walk):
-    """Bends of knees and elbows, which do not depend on how the bones' axes are chosen."""
+def test_flexion_of_knees_and_elbows_is_accurate(walk):
+    """Flexion does not depend on the definition of the bone axes."""
     solved = solve_skeleton(markers_on(walk))
-    theirs = forward_kinematics(walk).positions
+    reference = forward_kinematics(walk).positions
     joints = find_humanoid_map(walk.skeleton).indices(walk.skeleton)
-    found = solved.joint_centres
-    ours = {name: found.positions[:, place] for place, name in enumerate(found.names)}
+    found = solved.joint_centers
+    result = {name: found.positions[:, index] for index, name in enumerate(found.names)}
 
     for start, middle, end in (
         ("UpperLeg", "LowerLeg", "Foot"),
@@ -58,19 +60,19 @@ def test_limbs_turn_as_they_do(walk):
     ):
         for side in ("left", "right"):
             names = [side + part for part in (start, middle, end)]
-            true = bend(*(theirs[:, joints[name]] for name in names))
-            found = bend(*(ours[name] for name in names))
-            off = found - true
-            assert np.degrees(np.abs(off - np.median(off))).mean() < 2.5
+            true = flexion(*(reference[:, joints[name]] for name in names))
+            found = flexion(*(result[name] for name in names))
+            differences = found - true
+            assert np.degrees(np.abs(differences - np.median(differences))).mean() < 2.5
 
 
-def bend(start, middle, end) -> np.ndarray:
+def flexion(start, middle, end) -> np.ndarray:
     upper, lower = middle - start, end - middle
     cosine = np.einsum("fi,fi->f", upper, lower)
     return np.arccos(cosine / np.linalg.norm(upper, axis=1) / np.linalg.norm(lower, axis=1))
 
 
-def test_the_skeleton_is_a_humanoid_in_the_t_pose(walk):
+def test_skeleton_is_a_humanoid_in_t_pose(walk):
     solved = solve_skeleton(markers_on(walk))
     skeleton = solved.motion.skeleton
 
@@ -83,7 +85,7 @@ def test_the_skeleton_is_a_humanoid_in_the_t_pose(walk):
     assert rest["leftToes"][1] < rest["leftFoot"][1] - 0.08
     assert abs(rest["leftToes"][2]) < 0.06
     assert_allclose(
-        forward_kinematics(solved.motion).positions, solved.joint_centres.positions, atol=1e-9
+        forward_kinematics(solved.motion).positions, solved.joint_centers.positions, atol=1e-9
     )
 
 
@@ -94,63 +96,65 @@ def test_bones_keep_their_lengths_and_rotations_are_smooth(walk):
     assert np.degrees(angle_between(knee[1:], knee[:-1])).max() < 15.0
 
 
-def test_a_lost_marker_hardly_matters_and_a_lost_limb_is_not_known(walk):
-    whole = markers_on(walk)
-    positions = whole.positions.copy()
-    positions[50:90, whole.names.index("LKNE")] = np.nan
-    for name in whole.names:
+def test_missing_marker_hardly_matters_and_missing_limb_is_nan(walk):
+    complete = markers_on(walk)
+    positions = complete.positions.copy()
+    positions[50:90, complete.names.index("LKNE")] = np.nan
+    for name in complete.names:
         if name in {"RELB", "RUPA", "RFRM", "RWRA", "RWRB", "RFIN"}:
-            positions[100:140, whole.names.index(name)] = np.nan
+            positions[100:140, complete.names.index(name)] = np.nan
 
-    solved = solve_skeleton(whole.with_positions(positions))
+    solved = solve_skeleton(complete.with_positions(positions))
 
-    assert apart(solved, walk, ["leftLowerLeg"])[50:90].max() < 0.03
-    lost = [solved.motion.skeleton.index(f"right{part}") for part in ("LowerArm", "Hand")]
+    assert joint_errors(solved, walk, ["leftLowerLeg"])[50:90].max() < 0.03
+    missing = [solved.motion.skeleton.index(f"right{part}") for part in ("LowerArm", "Hand")]
     known = solved.motion.observed
-    assert not known[100:140, lost].any()
+    assert not known[100:140, missing].any()
     assert known[:100].all() and known[140:].all()
-    assert np.isnan(solved.joint_centres.positions[100:140, lost[1]]).all()
+    assert np.isnan(solved.joint_centers.positions[100:140, missing[1]]).all()
 
 
-def test_nothing_is_known_of_frames_without_markers(walk):
-    whole = markers_on(walk)
-    positions = whole.positions.copy()
+def test_frames_without_markers_are_missing(walk):
+    complete = markers_on(walk)
+    positions = complete.positions.copy()
     positions[60:80] = np.nan
 
-    solved = solve_skeleton(whole.with_positions(positions))
+    solved = solve_skeleton(complete.with_positions(positions))
 
     assert not solved.motion.observed[60:80].any()
     assert np.isnan(solved.error[60:80]).all()
-    assert apart(solved, walk)[85:].mean() < 0.022
+    assert joint_errors(solved, walk)[85:].mean() < 0.022
 
 
-def test_one_wrong_marker_pulls_little(walk):
-    whole = markers_on(walk)
-    positions = whole.positions.copy()
-    positions[50:60, whole.names.index("LTHI")] += 0.5
+def test_one_outlier_marker_has_little_effect(walk):
+    complete = markers_on(walk)
+    positions = complete.positions.copy()
+    positions[50:60, complete.names.index("LTHI")] += 0.5
 
-    moved = solve_skeleton(whole.with_positions(positions)).joint_centres
-    still = solve_skeleton(whole).joint_centres
+    moved = solve_skeleton(complete.with_positions(positions)).joint_centers
+    still = solve_skeleton(complete).joint_centers
 
-    place = still.names.index("leftLowerLeg")
-    off = np.linalg.norm(moved.positions - still.positions, axis=-1)[50:60, place]
-    assert off.max() < 0.02
+    index = still.names.index("leftLowerLeg")
+    errors = np.linalg.norm(moved.positions - still.positions, axis=-1)[50:60, index]
+    assert errors.max() < 0.02
 
 
-def test_legs_alone_make_a_skeleton_of_legs(walk):
-    spots = ("FWT", "BWT", "THI", "KNE", "SHN", "ANK", "HEE", "TOE", "MT5")
-    keep = frozenset(side + spot for side in "LR" for spot in spots)
+def test_markers_of_legs_give_a_skeleton_of_legs(walk):
+    landmarks = ("FWT", "BWT", "THI", "KNE", "SHN", "ANK", "HEE", "TOE", "MT5")
+    keep = frozenset(side + landmark for side in "LR" for landmark in landmarks)
 
     solved = solve_skeleton(markers_on(walk, keep=keep))
 
     assert "chest" not in solved.motion.skeleton.names
     assert (
-        apart(solved, walk, [part for part in LIMBS if "L" in part and "eg" in part]).mean()
+        joint_errors(
+            solved, walk, [part for part in LIMBS if "L" in part and "eg" in part]
+        ).mean()
         < 0.03
     )
 
 
-def test_whose_markers_they_are_can_be_said(walk):
+def test_subject_selects_its_markers(walk):
     one = markers_on(walk)
     names = tuple(f"Anna:{name}" for name in one.names) + tuple(f"Ben:{n}" for n in one.names)
     both = np.concatenate((one.positions, one.positions + np.array([2.0, 0.0, 0.0])), axis=1)
@@ -165,68 +169,70 @@ def test_whose_markers_they_are_can_be_said(walk):
     )
 
 
-def test_says_which_markers_are_missing(walk):
-    whole = markers_on(walk)
-    positions = whole.positions.copy()
-    positions[:, whole.names.index("LKNE")] = np.nan
-    unnamed = Tracks(tuple(f"p{n}" for n in range(whole.n_points)), positions, 60.0)
+def test_solve_skeleton_names_missing_markers(walk):
+    complete = markers_on(walk)
+    positions = complete.positions.copy()
+    positions[:, complete.names.index("LKNE")] = np.nan
+    unnamed = Tracks(tuple(f"p{n}" for n in range(complete.n_points)), positions, 60.0)
 
     with pytest.raises(InvalidMotionError, match="pelvis: LKNE\\. It looks like CMU 41"):
-        solve_skeleton(whole.with_positions(positions))
+        solve_skeleton(complete.with_positions(positions))
     with pytest.raises(InvalidMotionError, match="LASI, RASI"):
         solve_skeleton(unnamed)
 
 
-def test_refuses_a_pelvis_of_no_size(walk):
-    whole = markers_on(walk)
+def test_solve_skeleton_raises_for_a_pelvis_of_size_zero(walk):
+    complete = markers_on(walk)
 
     with pytest.raises(InvalidMotionError, match="one place or on one line"):
-        solve_skeleton(whole.with_positions(np.ones_like(whole.positions)))
+        solve_skeleton(complete.with_positions(np.ones_like(complete.positions)))
 
 
-def test_needs_a_frame_that_shows_a_whole_leg(walk):
-    whole = markers_on(walk)
-    positions = whole.positions.copy()
-    positions[::2, whole.names.index("LKNE")] = np.nan
-    positions[1::2, whole.names.index("LANK")] = np.nan
+def test_solve_skeleton_needs_a_frame_with_a_complete_leg(walk):
+    complete = markers_on(walk)
+    positions = complete.positions.copy()
+    positions[::2, complete.names.index("LKNE")] = np.nan
+    positions[1::2, complete.names.index("LANK")] = np.nan
 
     with pytest.raises(InvalidMotionError, match="No frame shows all of"):
-        solve_skeleton(whole.with_positions(positions))
+        solve_skeleton(complete.with_positions(positions))
 
 
-def test_one_frame_is_enough(walk):
+def test_solve_skeleton_accepts_one_frame(walk):
     solved = solve_skeleton(markers_on(walk).slice(30, 31))
 
     assert solved.motion.n_frames == 1
-    assert apart(solved, walk.slice(30, 31)).mean() < 0.04
+    assert joint_errors(solved, walk.slice(30, 31)).mean() < 0.04
 
 
-def test_solves_a_dance_of_cmu_near_their_own_joints(recordings):
+def test_cmu_dance_agrees_with_the_published_joints(recordings):
     folder = recordings / "mocap"
     dance = read_acclaim(folder / "05_13.amc", folder / "05.asf")
     solved = solve_skeleton(read_c3d(folder / "05_13.c3d"))
 
-    turned = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    theirs = forward_kinematics(dance).positions @ turned
+    rotated = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    reference = forward_kinematics(dance).positions @ rotated
     roles = {"UpperLeg": "femur", "LowerLeg": "tibia", "Foot": "foot",
              "UpperArm": "humerus", "LowerArm": "radius", "Hand": "hand"}  # fmt: skip
     for part, bone in roles.items():
         for side in ("left", "right"):
-            place = solved.joint_centres.names.index(side + part)
-            joint = theirs[:, dance.skeleton.index(side[0] + bone)]
-            off = np.linalg.norm(solved.joint_centres.positions[:, place] - joint, axis=1)
-            assert off.mean() < 0.07, side + part
+            index = solved.joint_centers.names.index(side + part)
+            joint = reference[:, dance.skeleton.index(side[0] + bone)]
+            errors = np.linalg.norm(solved.joint_centers.positions[:, index] - joint, axis=1)
+            assert errors.mean() < 0.07, side + part
     assert solved.motion.observed.all()
     assert np.nanmean(solved.error) < 0.006
 
 
-def test_solves_a_plug_in_gait_take_near_where_the_kinect_sees_the_joints(recordings):
+def test_plug_in_gait_take_agrees_with_kinect_joints(recordings):
     kinect, markers = read_ui_prmd_pair(recordings / "kinect/ui_prmd/m01_s01_e01.npz")
 
     solved = solve_skeleton(markers)
 
-    theirs = dict(zip(kinect.tracks.names, kinect.tracks.positions.swapaxes(0, 1), strict=True))
-    for ours, name in (("leftLowerLeg", "LLowLeg"), ("rightLowerArm", "RForeArm")):
-        place = solved.joint_centres.names.index(ours)
-        off = solved.joint_centres.positions[:, place] - theirs[name]
-        assert np.linalg.norm(np.nanmedian(off, axis=0)) < 0.15
+    reference = dict(
+        zip(kinect.tracks.names, kinect.tracks.positions.swapaxes(0, 1), strict=True)
+    )
+    for role, name in (("leftLowerLeg", "LLowLeg"), ("rightLowerArm", "RForeArm")):
+        index = solved.joint_centers.names.index(role)
+        differences = solved.joint_centers.positions[:, index] - reference[name]
+        assert np.linalg.norm(np.nanmedian(differences, axis=0)) < 0.15

@@ -1,4 +1,4 @@
-"""Frames and turns against other ways to compute them."""
+"""Compare vector algebra with other implementations."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ from solvers.markers.vectors import (
 
 
 @pytest.mark.parametrize(("first", "second"), [(0, 1), (1, 0), (2, 1), (1, 2), (0, 2), (2, 0)])
-def test_frames_are_rotations_with_the_axes_asked_for(rng, first, second):
+def test_frames_are_rotations_with_the_requested_axes(rng, first, second):
     along, hint = rng.normal(size=(2, 20, 3))
 
     axes = frame(first, along, second, hint)
@@ -26,7 +26,7 @@ def test_frames_are_rotations_with_the_axes_asked_for(rng, first, second):
     assert (np.einsum("fi,fi->f", axes[:, :, second], hint) > 0.0).all()
 
 
-def test_turns_as_scipy_does(rng):
+def test_rotations_agree_with_scipy(rng):
     vectors = np.concatenate([rng.normal(size=(20, 3)), np.zeros((1, 3))])
 
     assert_allclose(
@@ -36,17 +36,17 @@ def test_turns_as_scipy_does(rng):
     )
 
 
-def test_skewed_makes_the_cross_product(rng):
+def test_skew_matrix_gives_the_cross_product(rng):
     a, b = rng.normal(size=(2, 20, 3))
 
     assert_allclose(np.einsum("fij,fj->fi", skew_matrices(a), b), np.cross(a, b))
 
 
-def test_swings_the_axis_and_does_not_twist(rng):
+def test_swing_rotates_the_axis_without_twist(rng):
     axis, onto = np.array([0.0, 0.0, -1.0]), rng.normal(size=(20, 3))
 
-    turned = swing_frames(np.eye(3), axis, onto)
+    rotated = swing_frames(np.eye(3), axis, onto)
 
-    assert_allclose(turned @ axis, onto / np.linalg.norm(onto, axis=1)[:, None], atol=1e-12)
-    twist = np.einsum("fi,i->f", Rotation.from_matrix(turned).as_rotvec(), axis)
+    assert_allclose(rotated @ axis, onto / np.linalg.norm(onto, axis=1)[:, None], atol=1e-12)
+    twist = np.einsum("fi,i->f", Rotation.from_matrix(rotated).as_rotvec(), axis)
     assert_allclose(twist, 0.0, atol=1e-9)

@@ -1,4 +1,4 @@
-"""A whole body at rest in an exact T-pose, for the tests of humanoid things."""
+"""Fixtures: a complete body in an exact T-pose, and a motion of it."""
 
 import numpy as np
 import pytest
@@ -45,11 +45,11 @@ def body() -> Skeleton:
 
 @pytest.fixture
 def lively(body, rng) -> Motion:
-    """Ninety frames at 30 Hz in which every joint turns smoothly, none far."""
+    """Ninety frames at 30 Hz; every joint rotates smoothly by small angles."""
     time = np.arange(90) / 30.0
     phase = rng.uniform(0, 2 * np.pi, (body.n_joints, 3))
     swing = 0.4 * np.sin(2 * np.pi * 0.7 * time[:, None, None] + phase)
     ends = [body.is_end_site(joint) for joint in range(body.n_joints)]
     swing[:, ends] = 0.0
-    place = np.stack([0.05 * np.sin(3 * time), -0.8 * time, 0.98 + 0 * time], axis=-1)
-    return Motion(body, quaternion_from_rotation_vector(swing), place, 30.0)
+    root_positions = np.stack([0.05 * np.sin(3 * time), -0.8 * time, 0.98 + 0 * time], axis=-1)
+    return Motion(body, quaternion_from_rotation_vector(swing), root_positions, 30.0)

@@ -1,4 +1,4 @@
-"""Lengths change, directions and the manner of moving do not."""
+"""Bone lengths change; directions and style of the motion do not."""
 
 import numpy as np
 import pytest
@@ -9,8 +9,8 @@ from solvers.motion import Skeleton, fit_bone_lengths, forward_kinematics, trans
 
 
 @pytest.fixture
-def tall(body, rng) -> Skeleton:
-    """Legs a fifth longer, everything else stretched at random."""
+def resized(body, rng) -> Skeleton:
+    """Legs are longer by a fifth, other bones have random lengths."""
     scale = rng.uniform(0.7, 1.4, size=(body.n_joints, 1))
     for joint, name in enumerate(body.names):
         if name.endswith(("Leg", "Foot")):
@@ -18,37 +18,37 @@ def tall(body, rng) -> Skeleton:
     return Skeleton(body.names, body.parents, scale * body.offsets)
 
 
-def test_equals_the_same_rotations_on_the_other_skeleton(lively, tall):
-    """Both change lengths along the same directions, by different ways."""
+def test_equals_the_same_rotations_on_the_other_skeleton(lively, resized):
+    """Both change lengths along the same directions, by different methods."""
     positions = forward_kinematics(lively).positions
 
-    fitted = fit_bone_lengths(positions, tall)
+    fitted = fit_bone_lengths(positions, resized)
 
-    moved = forward_kinematics(transfer_motion(lively, tall)).positions
+    moved = forward_kinematics(transfer_motion(lively, resized)).positions
     assert_allclose(fitted - fitted[:, :1], moved - moved[:, :1], atol=1e-12)
 
 
-def test_there_and_back_is_where_it_was(lively, tall):
+def test_changing_lengths_back_restores_the_motion(lively, resized):
     positions = forward_kinematics(lively).positions
 
-    back = fit_bone_lengths(fit_bone_lengths(positions, tall), lively.skeleton)
+    back = fit_bone_lengths(fit_bone_lengths(positions, resized), lively.skeleton)
 
     assert_allclose(back, positions, atol=1e-12)
 
 
-def test_unseen_joints_hide_what_hangs_on_them(lively, tall):
+def test_missing_joints_make_their_descendants_missing(lively, resized):
     positions = forward_kinematics(lively).positions
     arm = lively.skeleton.index("LeftArm")
     positions[5, arm] = np.nan
 
-    fitted = fit_bone_lengths(positions, tall)
+    fitted = fit_bone_lengths(positions, resized)
 
     hidden = np.isnan(fitted[5]).all(axis=-1)
     assert set(np.flatnonzero(hidden)) == set(lively.skeleton.subtree(arm))
     assert np.isfinite(fitted[6:]).all()
 
 
-def test_a_bone_of_no_length_takes_the_direction_of_the_rest_pose(leg):
+def test_bone_of_length_zero_has_the_rest_direction(leg):
     positions = np.zeros((1, 4, 3))
 
     assert_allclose(
@@ -56,17 +56,17 @@ def test_a_bone_of_no_length_takes_the_direction_of_the_rest_pose(leg):
     )
 
 
-def test_longer_legs_make_longer_steps(lively, tall):
-    moved = transfer_motion(lively, tall)
+def test_longer_legs_make_longer_steps(lively, resized):
+    moved = transfer_motion(lively, resized)
 
-    way, old_way = (np.ptp(one.root_positions, axis=0) for one in (moved, lively))
-    assert_allclose(way, 1.2 * old_way)
+    travel, old_way = (np.ptp(one.root_positions, axis=0) for one in (moved, lively))
+    assert_allclose(travel, 1.2 * old_way)
     assert_allclose(moved.root_positions[:, 2], 1.2 * lively.root_positions[:, 2])
     assert_allclose(moved.root_positions[0, :2], lively.root_positions[0, :2])
     assert_allclose(moved.rotations, lively.rotations)
 
 
-def test_a_scaled_body_makes_the_scaled_motion(lively):
+def test_scaled_body_performs_the_scaled_motion(lively):
     skeleton = lively.skeleton
     doubled = Skeleton(skeleton.names, skeleton.parents, 2.0 * skeleton.offsets)
     start = lively.root_positions[0] * (1, 1, 0)
@@ -77,7 +77,7 @@ def test_a_scaled_body_makes_the_scaled_motion(lively):
     assert_allclose(moved, expected, atol=1e-12)
 
 
-def test_without_legs_height_decides(swinging_leg, leg):
+def test_root_scales_with_the_height_without_legs(swinging_leg, leg):
     longer = Skeleton(leg.names, leg.parents, 1.5 * leg.offsets)
 
     moved = transfer_motion(swinging_leg, longer)
@@ -85,7 +85,7 @@ def test_without_legs_height_decides(swinging_leg, leg):
     assert_allclose(moved.root_positions[:, 2], 1.5 * swinging_leg.root_positions[:, 2])
 
 
-def test_refuses_other_joints(lively, leg):
+def test_resizing_raises_for_other_joints(lively, leg):
     with pytest.raises(InvalidMotionError, match="retarget the motion instead"):
         transfer_motion(lively, leg)
     with pytest.raises(InvalidMotionError, match=r"need shape \(n_frames, 4, 3\)"):

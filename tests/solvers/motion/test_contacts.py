@@ -1,4 +1,4 @@
-"""Feet must be found planted when they are, in spite of jitter, drift and scale."""
+"""Foot contacts are detected in spite of jitter, drift and scale."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ STANCE = 0.6
 
 @pytest.fixture
 def walk(body) -> Motion:
-    """Five seconds at 100 Hz of a gait whose contacts are known by construction."""
+    """Five seconds at 100 Hz of a gait with known contacts."""
     return walking(body)
 
 
@@ -42,9 +42,9 @@ def test_finds_the_stance_phases_of_a_known_gait(walk):
 
 
 def test_jitter_changes_little(walk, rng):
-    turns = rng.normal(scale=np.radians(1.0), size=(walk.n_frames, walk.n_joints, 3))
+    rotations = rng.normal(scale=np.radians(1.0), size=(walk.n_frames, walk.n_joints, 3))
     noisy = walk.with_poses(
-        multiply(walk.rotations, quaternion_from_rotation_vector(turns)),
+        multiply(walk.rotations, quaternion_from_rotation_vector(rotations)),
         walk.root_positions + rng.normal(scale=0.005, size=(walk.n_frames, 3)),
     )
 
@@ -55,9 +55,9 @@ def test_clean_and_noisy_real_walks_agree(recordings, rng):
     for name in ("07_01", "35_10", "26_01"):
         clean = read_bvh(recordings / f"mocap/cmu_walk/{name}.bvh")
         clean = clean.slice(1, 600)
-        turns = rng.normal(scale=np.radians(1.0), size=(clean.n_frames, clean.n_joints, 3))
+        rotations = rng.normal(scale=np.radians(1.0), size=(clean.n_frames, clean.n_joints, 3))
         noisy = clean.with_poses(
-            multiply(clean.rotations, quaternion_from_rotation_vector(turns))
+            multiply(clean.rotations, quaternion_from_rotation_vector(rotations))
         )
 
         found = detect_contacts(clean)
@@ -66,7 +66,7 @@ def test_clean_and_noisy_real_walks_agree(recordings, rng):
         assert 0.4 < found.mean() < 0.85  # a walker's foot stands 60 % of the time
 
 
-def test_one_leg_hops_are_told_from_two(recordings):
+def test_hops_on_one_leg_have_contacts_of_that_leg(recordings):
     """CMU 49_02 hops on the left leg from 8 to 12 s, on the right from 12.5 to 15.5 s."""
     found = detect_contacts(read_bvh(recordings / "mocap/cmu_hop/49_02.bvh"))
 
@@ -76,7 +76,7 @@ def test_one_leg_hops_are_told_from_two(recordings):
 
 
 @pytest.mark.parametrize("size", [0.01, 0.5, 100.0])
-def test_does_not_depend_on_size(walk, size):
+def test_contacts_do_not_depend_on_size(walk, size):
     skeleton = walk.skeleton
     scaled = Motion(
         Skeleton(skeleton.names, skeleton.parents, size * skeleton.offsets),
@@ -86,18 +86,18 @@ def test_does_not_depend_on_size(walk, size):
     assert_array_equal(detect_contacts(scaled), detect_contacts(walk))
 
 
-def test_does_not_depend_on_place_or_heading(walk):
-    turn = quaternion_from_rotation_vector([0.0, 0.0, 1.1])
+def test_contacts_do_not_depend_on_position_or_heading(walk):
+    rotation = quaternion_from_rotation_vector([0.0, 0.0, 1.1])
     rotations = walk.rotations.copy()
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
-    place = rotate(turn, walk.root_positions) + np.array([5.0, 2.0, -3.0])
-    moved = walk.with_poses(rotations, place)
+    rotations[:, 0] = multiply(rotation, rotations[:, 0])
+    root_positions = rotate(rotation, walk.root_positions) + np.array([5.0, 2.0, -3.0])
+    moved = walk.with_poses(rotations, root_positions)
 
     assert_array_equal(detect_contacts(moved), detect_contacts(walk))
 
 
-def test_a_floor_captured_aslant_is_still_the_floor(walk):
-    """Subject 07 of CMU climbs 5 cm in four metres."""
+def test_contacts_are_found_on_a_sloping_floor(walk):
+    """Subject 07 of CMU climbs by 5 cm in four meters."""
     climb = np.zeros((walk.n_frames, 3))
     climb[:, 2] = 0.02 * np.arange(walk.n_frames) / walk.frame_rate
 
@@ -106,7 +106,7 @@ def test_a_floor_captured_aslant_is_still_the_floor(walk):
     assert (found == detect_contacts(walk)).mean() > 0.97
 
 
-def test_the_frame_rate_changes_little(body):
+def test_contacts_hardly_depend_on_the_frame_rate(body):
     slow, fast = walking(body, 30.0), walking(body, 120.0)
 
     every_fourth = detect_contacts(fast)[::4]
@@ -115,7 +115,7 @@ def test_the_frame_rate_changes_little(body):
     assert (detect_contacts(slow) != every_fourth).sum() <= n_changes
 
 
-def test_a_lifted_foot_held_still_does_not_stand(walk):
+def test_lifted_still_foot_has_no_contact(walk):
     lifted = walk.skeleton.index("RightUpLeg")
     still = walk.slice(0, 1)
     rotations = np.repeat(still.rotations, 300, axis=0)
@@ -125,20 +125,20 @@ def test_a_lifted_foot_held_still_does_not_stand(walk):
     assert_array_equal(detect_contacts(posed), np.tile([True, False], (300, 1)))
 
 
-def test_hanging_feet_do_not_stand(walk):
-    """After two seconds the body is lifted by a metre and hangs still for three."""
-    place = np.repeat(walk.root_positions[:1], walk.n_frames, axis=0)
-    place[200:, 2] += 1.0
+def test_hanging_feet_have_no_contact(walk):
+    """After two seconds the body is lifted by 1 m and hangs still for three."""
+    root_positions = np.repeat(walk.root_positions[:1], walk.n_frames, axis=0)
+    root_positions[200:, 2] += 1.0
     still = np.repeat(walk.rotations[:1], walk.n_frames, axis=0)
 
-    found = detect_contacts(walk.with_poses(still, place))
+    found = detect_contacts(walk.with_poses(still, root_positions))
 
     assert found[:190].all()
     assert not found[210:].any()
 
 
-def test_a_foot_stands_on_its_toes_while_the_heel_rises(walk):
-    """From flat, the foot tilts by 50 degrees about its toes within a second."""
+def test_contact_lasts_while_the_heel_rises(walk):
+    """Within a second the flat foot tilts by 50 degrees about its toes."""
     n_frames = 200
     still = walk.slice(0, 1)
     base = walk.with_poses(
@@ -165,7 +165,7 @@ def test_a_foot_stands_on_its_toes_while_the_heel_rises(walk):
     assert detect_contacts(tiptoe)[:, 0].all()
 
 
-def test_unseen_feet_do_not_stand(walk):
+def test_missing_feet_have_no_contact(walk):
     rotations = walk.rotations.copy()
     rotations[200:260, walk.skeleton.index("LeftLeg")] = np.nan
 
@@ -175,7 +175,7 @@ def test_unseen_feet_do_not_stand(walk):
     assert_array_equal(found[:, 1], detect_contacts(walk)[:, 1])
 
 
-def test_all_hidden_or_one_frame_is_answered(walk):
+def test_missing_bodies_and_single_frames_are_accepted(walk):
     hidden = walk.with_poses(root_positions=np.full_like(walk.root_positions, np.nan))
 
     assert not detect_contacts(hidden).any()
@@ -188,7 +188,7 @@ def test_lower_thresholds_find_less(walk):
     assert strict.sum() < detect_contacts(walk).sum()
 
 
-def test_asks_for_feet(leg, swinging_leg):
+def test_detect_contacts_raises_without_feet(leg, swinging_leg):
     with pytest.raises(InvalidMotionError, match="role leftFoot or rightFoot"):
         detect_contacts(swinging_leg)
     with pytest.raises(InvalidMotionError, match="role rightFoot"):
@@ -196,11 +196,13 @@ def test_asks_for_feet(leg, swinging_leg):
 
 
 def walking(body: Skeleton, frame_rate: float = 100.0) -> Motion:
-    """Feet follow a planned path, legs reach for it; step length 0.8 m."""
+    """Feet follow a planned path, and legs reach for it; the step length is 0.8 m."""
     time = np.arange(round(5.0 * frame_rate)) / frame_rate
     n_frames = len(time)
-    place = np.stack([0 * time, -0.8 * time, 0 * time + 0.93], axis=-1)
-    motion = Motion(body, np.tile(IDENTITY, (n_frames, body.n_joints, 1)), place, frame_rate)
+    root_positions = np.stack([0 * time, -0.8 * time, 0 * time + 0.93], axis=-1)
+    motion = Motion(
+        body, np.tile(IDENTITY, (n_frames, body.n_joints, 1)), root_positions, frame_rate
+    )
     for side, lag in (("Left", 0.0), ("Right", 0.5)):
         joints = tuple(body.index(side + name) for name in ("UpLeg", "Leg", "Foot"))
         ankle = forward_kinematics(motion).positions[:, joints[2]]
@@ -210,7 +212,7 @@ def walking(body: Skeleton, frame_rate: float = 100.0) -> Motion:
 
 
 def planned_ankle(time: np.ndarray, lag: float) -> np.ndarray:
-    """Forward and upward place of an ankle that rests at 0.08 m while it stands."""
+    """Forward and upward position of an ankle that is at 0.08 m in stance."""
     cycle, phase = np.divmod(time, 1.0)
     swing = np.clip((phase - STANCE) / (1.0 - STANCE), 0.0, 1.0)
     eased = swing * swing * (3.0 - 2.0 * swing)

@@ -1,4 +1,4 @@
-"""Roles must be found on the rigs that animators have, by name or else by shape."""
+"""Roles are found on common rigs, by names or by shape."""
 
 import pickle
 
@@ -35,8 +35,8 @@ def test_helper_joints_of_a_cmu_skeleton_have_no_role(recordings):
         assert found.role(helper) is None
 
 
-def test_a_heel_is_no_toe(body):
-    """Rigify hangs a heel on the foot, as low as the toes and behind them."""
+def test_heel_is_not_classified_as_toe(body):
+    """Rigify parents a heel to the foot, as low as the toes and behind them."""
     parents, offsets, names = list(body.parents), list(body.offsets), list(body.names)
     for side in ("Left", "Right"):
         names.append(f"{side}Heel")
@@ -50,7 +50,7 @@ def test_a_heel_is_no_toe(body):
     assert roles["rightToes"] == "RightToeBase"
 
 
-def test_shape_answers_when_names_say_nothing(body):
+def test_shape_determines_roles_when_names_are_meaningless(body):
     by_name = find_humanoid_map(body)
 
     by_shape = find_humanoid_map(scrambled(body))
@@ -74,7 +74,7 @@ def test_shape_agrees_with_names_on_real_skeletons(recordings, name):
     assert unscrambled(by_shape, skeleton) == dict(find_humanoid_map(skeleton).joints)
 
 
-def test_shape_does_not_depend_on_scale_or_place(body):
+def test_roles_by_shape_ignore_scale_and_position(body):
     offsets = 100.0 * body.offsets
     offsets[0] += (700.0, -50.0, 300.0)
     big = Skeleton(body.names, body.parents, offsets)
@@ -82,7 +82,7 @@ def test_shape_does_not_depend_on_scale_or_place(body):
     assert roles_by_structure(big)[0] == roles_by_structure(body)[0]
 
 
-def test_nothing_human_gives_an_empty_map():
+def test_skeleton_of_no_human_has_an_empty_map():
     stick = Skeleton(("a", "b"), (-1, 0), np.array([[0, 0, 1.0], [0, 0, 1.0]]))
 
     assert dict(find_humanoid_map(stick).joints) == {}
@@ -109,7 +109,7 @@ WORDS = st.sampled_from([
 
 
 @given(st.data())
-def test_any_tree_of_any_names_is_answered(data):
+def test_random_trees_and_names_give_a_valid_map(data):
     n_joints = data.draw(st.integers(1, 14))
     names = data.draw(
         st.lists(st.lists(WORDS, min_size=1, max_size=4).map("".join), min_size=n_joints,
@@ -127,7 +127,7 @@ def test_any_tree_of_any_names_is_answered(data):
     assert HumanoidMap(*roles_by_structure(skeleton)).score <= 1.0
 
 
-def test_an_arm_alone_is_still_known_by_its_names():
+def test_single_arm_is_recognized_by_its_names():
     names = ("LeftArm", "LeftForeArm", "LeftHand")
     arm = Skeleton(names, (-1, 0, 1), np.array([[0, 0, 1.4], [0.3, 0, 0], [0.25, 0, 0]]))
 
@@ -137,14 +137,14 @@ def test_an_arm_alone_is_still_known_by_its_names():
     assert found.score < 0.3
 
 
-def test_names_on_the_wrong_parents_are_less_sure(body):
+def test_wrong_parents_lower_the_confidence(body):
     parents = [max(parent, -1) if joint < 7 else 0 for joint, parent in enumerate(body.parents)]
     flat = Skeleton(body.names, tuple(parents), body.offsets)
 
     assert find_humanoid_map(flat).score < 0.7
 
 
-def test_an_animator_can_correct_it(body):
+def test_roles_can_be_corrected(body):
     found = find_humanoid_map(body)
 
     edited = found.with_joint("neck", "Spine2").with_joint("head", None)
@@ -155,30 +155,30 @@ def test_an_animator_can_correct_it(body):
     assert found.joint("head") == "Head"
 
 
-def test_travels_to_another_process(body):
+def test_humanoid_map_can_be_pickled(body):
     found = find_humanoid_map(body)
 
     assert pickle.loads(pickle.dumps(found)) == found
 
 
-def test_cannot_be_changed_in_place():
+def test_humanoid_map_is_immutable():
     with pytest.raises(TypeError):
         HumanoidMap({"hips": "Hips"}).joints["head"] = "Head"
 
 
-def test_refuses_unknown_roles_and_joints_with_two():
+def test_unknown_roles_and_joints_with_two_roles_are_refused():
     with pytest.raises(InvalidMotionError, match="These are not humanoid roles: tail"):
         HumanoidMap({"tail": "Tail"})
     with pytest.raises(InvalidMotionError, match="more than one has Spine"):
         HumanoidMap({"chest": "Spine", "spine": "Spine"})
 
 
-def test_roles_are_unique_and_hold_all_of_vrm():
+def test_roles_are_unique_and_include_those_of_vrm():
     assert len(set(HUMANOID_ROLES)) == len(HUMANOID_ROLES) == 6 + 2 * (4 + 4 + 15)
 
 
 def scrambled(skeleton: Skeleton) -> Skeleton:
-    """Return the same skeleton with names that say nothing but where chains end."""
+    """Return the skeleton with meaningless names, except for end sites."""
     names = [f"j{i}" for i in range(skeleton.n_joints)]
     for joint, parent in enumerate(skeleton.parents):
         if skeleton.is_end_site(joint):

@@ -1,4 +1,4 @@
-"""Every rig family's names must be read, however it spells sides and numbers."""
+"""Joint names of every rig family are recognized in all spellings of sides and numbers."""
 
 import pytest
 
@@ -37,7 +37,7 @@ FAMILIES = {
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_knows_the_names_of_each_family(family):
+def test_names_of_each_family_have_their_roles(family):
     expected = written_out(FAMILIES[family])
 
     found = roles_by_name([*expected.values(), "prop", "weapon", "cape_01", "cape_02"])
@@ -45,13 +45,13 @@ def test_knows_the_names_of_each_family(family):
     assert {role: found.get(role) for role in ESSENTIAL_ROLES} == expected
 
 
-def test_tells_vertebrae_and_backs_from_left_and_right():
+def test_vertebrae_and_backs_are_not_mistaken_for_sides():
     names = ["Pelvis", "L5", "L3", "T12", "T8", "lowerback", "root", "leg", "ribs"]
 
     assert not any(role.startswith(("left", "right")) for role in roles_by_name(names))
 
 
-def test_five_vertebrae_of_unreal_5_are_spread_over_three_roles():
+def test_five_vertebrae_of_unreal_5_have_three_roles():
     names = [
         "pelvis",
         *(f"spine_0{i}" for i in range(1, 6)),
@@ -76,7 +76,7 @@ def test_five_vertebrae_of_unreal_5_are_spread_over_three_roles():
         ("lIndex{1}", ""), ("J_Bip_L_{}{}", "Index"),
     ],
 )  # fmt: skip
-def test_fingers_are_known_in_every_spelling(style, finger):
+def test_fingers_are_recognized_in_every_spelling(style, finger):
     names = [style.format(finger, number) for number in (1, 2, 3)]
 
     found = roles_by_name([*names, *(mirrored(name) for name in names)])
@@ -86,8 +86,8 @@ def test_fingers_are_known_in_every_spelling(style, finger):
     assert found["rightIndexDistal"] == mirrored(names[2])
 
 
-def test_fingers_belong_to_the_hand_that_was_found():
-    """A generated Rigify rig holds every bone several times over."""
+def test_fingers_belong_to_the_recognized_hand():
+    """A generated Rigify rig contains every bone several times."""
     names = [
         f"{prefix}{bone}.{side}"
         for prefix in ("ORG-", "DEF-")

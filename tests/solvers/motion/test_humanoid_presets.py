@@ -1,4 +1,4 @@
-"""A map that was written is read again; anything else is refused in one sentence."""
+"""Humanoid maps are saved and loaded; other files are refused in one sentence."""
 
 import json
 
@@ -18,7 +18,7 @@ from solvers.motion import (
 HEAD = {"kind": "mocap_assist humanoid map", "version": 1}
 
 
-def test_a_map_returns_as_it_was(body, tmp_path):
+def test_load_restores_a_saved_map(body, tmp_path):
     humanoid = find_humanoid_map(body).with_joint("head", None)
 
     write_humanoid_map(humanoid, tmp_path / "rig.json")
@@ -33,7 +33,7 @@ def test_a_map_returns_as_it_was(body, tmp_path):
         lambda joints: len(set(joints.values())) == len(joints)
     )
 )
-def test_names_in_any_script_return(tmp_path_factory, joints):
+def test_load_restores_names_in_any_script(tmp_path_factory, joints):
     path = tmp_path_factory.mktemp("maps") / "rig.json"
 
     write_humanoid_map(HumanoidMap(joints), path)
@@ -60,7 +60,7 @@ def test_names_in_any_script_return(tmp_path_factory, joints):
         ),
     ],
 )
-def test_says_what_is_wrong_with_a_file(body, tmp_path, content, sentence):
+def test_load_names_the_fault_of_a_file(body, tmp_path, content, sentence):
     path = tmp_path / "rig.json"
     path.write_text(content, encoding="utf-8")
 
@@ -69,7 +69,7 @@ def test_says_what_is_wrong_with_a_file(body, tmp_path, content, sentence):
     assert str(path) in str(caught.value)
 
 
-def test_says_that_a_file_is_missing_or_a_folder(tmp_path):
+def test_load_raises_for_missing_files_and_folders(tmp_path):
     with pytest.raises(InvalidFileError, match="There is no file"):
         read_humanoid_map(tmp_path / "none.json")
     with pytest.raises(InvalidFileError, match="not a readable"):
@@ -78,7 +78,7 @@ def test_says_that_a_file_is_missing_or_a_folder(tmp_path):
         write_humanoid_map(HumanoidMap(), tmp_path / "nowhere" / "rig.json")
 
 
-def test_bytes_that_are_no_text_are_refused(tmp_path):
+def test_load_raises_for_binary_files(tmp_path):
     path = tmp_path / "rig.json"
     path.write_bytes(b"\xff\xfe\x00{")
 

@@ -1,4 +1,4 @@
-"""Where names say nothing, the rest pose must: the same roles as the names would have given."""
+"""Roles found by the shape of the rest pose equal those found by names."""
 
 import pytest
 from rigs import RIGS, with_all_fingers
@@ -12,7 +12,7 @@ BODY = [role for role in HUMANOID_ROLES if not any(finger in role for finger in 
 
 @pytest.mark.parametrize("family", [*RIGS, "fingers"])
 @pytest.mark.parametrize("size", [0.7, 1.0])
-def test_collar_bones_twist_bones_and_fingers_mislead_nobody(family, size):
+def test_clavicles_twist_bones_and_fingers_are_not_confused(family, size):
     rig = with_all_fingers() if family == "fingers" else RIGS[family](size)
 
     assert by_shape(rig) == by_name(rig)
@@ -22,7 +22,7 @@ def test_collar_bones_twist_bones_and_fingers_mislead_nobody(family, size):
     "name",
     ["optitrack_louise.bvh", "milad.bvh", "test_mocapbank.bvh", "xsens_walk.bvh"],
 )
-def test_skeletons_of_real_suits_and_cameras(recordings, name):
+def test_roles_by_shape_equal_those_by_name_on_real_skeletons(recordings, name):
     skeleton = read_bvh(recordings / "formats" / "bvh" / name).skeleton
 
     assert by_shape(skeleton) == by_name(skeleton)
@@ -41,8 +41,8 @@ def test_poser_skeleton_but_for_two_joints_three_centimetres_apart(recordings):
 
 
 @pytest.mark.parametrize("actor", ["bd", "bk", "dg"])
-def test_acclaim_skeletons_but_for_the_last_joints_of_the_hand(recordings, actor):
-    """Between wrist and hand, a few centimetres apart, proportions cannot tell."""
+def test_roles_by_shape_of_acclaim_skeletons_except_fingers(recordings, actor):
+    """Proportions do not distinguish joints a few centimeters apart in the hand."""
     take = min((recordings / "mocap" / "hdm05").glob(f"HDM_{actor}_*.amc"))
     skeleton = read_acclaim(take).skeleton
 
@@ -59,7 +59,7 @@ def by_name(skeleton: Skeleton) -> dict[str, int]:
 
 
 def by_shape(skeleton: Skeleton) -> dict[str, int]:
-    """Roles of the same skeleton with names that mean nothing."""
+    """Find the roles of the same skeleton with meaningless names."""
     names = tuple(
         f"j{skeleton.parents[joint]}_end" if skeleton.is_end_site(joint) else f"j{joint}"
         for joint in range(skeleton.n_joints)

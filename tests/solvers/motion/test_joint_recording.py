@@ -1,4 +1,4 @@
-"""Joint recordings keep their promises, and the tables of joints are trees."""
+"""Joint recordings are valid, and the joint tables are trees."""
 
 import pickle
 
@@ -39,7 +39,7 @@ def up_to_the_root(joint: int, parents: tuple[int, ...]) -> int:
 
 
 @pytest.mark.parametrize("sensor", list(SENSOR_JOINTS))
-def test_left_and_right_hang_alike(sensor):
+def test_left_and_right_have_symmetric_parents(sensor):
     names = SENSOR_JOINTS[sensor]
     tree = {
         name: names[parent] for name, parent in zip(names, joint_parents(names), strict=True)
@@ -63,18 +63,18 @@ def test_left_and_right_hang_alike(sensor):
         (Sensor.AZURE_KINECT, 31, "EarRight", "Head"),
     ],
 )
-def test_numbers_and_parents_are_the_makers(sensor, number, name, parent):
+def test_numbers_and_parents_equal_those_of_the_manufacturer(sensor, number, name, parent):
     names = SENSOR_JOINTS[sensor]
 
     assert names[number] == name
     assert names[joint_parents(names)[number]] == parent
 
 
-def test_a_joint_whose_parent_is_left_out_hangs_on_the_next_above():
+def test_joint_without_its_parent_gets_the_next_ancestor():
     assert joint_parents(("Neck", "SpineBase", "HandLeft", "beard")) == (1, -1, 1, -1)
 
 
-def test_a_cut_keeps_all_together(recording):
+def test_slice_keeps_tracks_and_states_aligned(recording):
     cut = recording.slice(1, 3)
 
     assert (cut.n_frames, cut.n_joints, cut.frame_rate) == (2, 20, 30.0)
@@ -94,26 +94,26 @@ def test_other_tracks_keep_the_state(recording):
         recording.with_tracks(recording.tracks.slice(0, 2))
 
 
-def test_nothing_is_shared_and_it_travels(recording):
+def test_recording_copies_its_arrays_and_can_be_pickled(recording):
     state = np.full((5, 20), 2, dtype=np.int8)
-    made = JointRecording(recording.tracks, state, Sensor.OTHER)
+    result = JointRecording(recording.tracks, state, Sensor.OTHER)
     state[:] = 0
 
-    copied = pickle.loads(pickle.dumps(made))
+    copied = pickle.loads(pickle.dumps(result))
 
     assert (copied.tracking_state == 2).all()
     assert copied.sensor is Sensor.OTHER
 
 
 @pytest.mark.parametrize("wrong", [3, -1, 0.5, np.nan, 258])
-def test_refuses_states_that_are_none(recording, wrong):
+def test_recording_raises_for_invalid_states(recording, wrong):
     state = np.zeros((5, 20))
     state[2, 3] = wrong
     with pytest.raises(InvalidMotionError, match="must be 0"):
         JointRecording(recording.tracks, state, Sensor.OTHER)
 
 
-def test_refuses_a_sensor_that_is_none(recording):
+def test_recording_raises_for_an_invalid_sensor(recording):
     with pytest.raises(
         InvalidMotionError, match=r"'kinect' is not a sensor.*Sensor\.AZURE_KINECT"
     ):

@@ -1,4 +1,4 @@
-"""Forward kinematics against matrices multiplied by hand."""
+"""Compare forward kinematics with products of matrices."""
 
 import numpy as np
 from numpy.testing import assert_allclose
@@ -13,7 +13,7 @@ from solvers.rotations.representations import (
 )
 
 
-def test_equals_a_chain_of_matrices(lively):
+def test_forward_kinematics_equals_a_chain_of_matrices(lively):
     world = forward_kinematics(lively)
 
     for frame in (0, 41, 89):
@@ -24,7 +24,7 @@ def test_equals_a_chain_of_matrices(lively):
         )
 
 
-def test_the_rest_pose_stands_as_the_skeleton_says(body):
+def test_identity_rotations_give_the_rest_pose(body):
     identity = np.tile([1.0, 0, 0, 0], (1, body.n_joints, 1))
 
     world = world_poses(body, identity, body.offsets[:1])
@@ -42,24 +42,26 @@ def test_bones_keep_their_lengths(lively):
     assert_allclose(lengths, np.tile(expected, (lively.n_frames, 1)))
 
 
-def test_local_rotations_undo_it(lively):
+def test_local_rotations_invert_forward_kinematics(lively):
     world = forward_kinematics(lively).rotations
 
     assert angle_between(local_rotations(lively.skeleton, world), lively.rotations).max() < 1e-7
 
 
-def test_moving_and_turning_the_root_moves_and_turns_all(lively):
-    turn = quaternion_from_rotation_vector([0.3, -0.2, 1.0])
+def test_moving_and_rotating_the_root_moves_and_rotates_all(lively):
+    rotation = quaternion_from_rotation_vector([0.3, -0.2, 1.0])
     rotations = lively.rotations.copy()
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
-    place = rotate(turn, lively.root_positions) + 7.0
+    rotations[:, 0] = multiply(rotation, rotations[:, 0])
+    root_positions = rotate(rotation, lively.root_positions) + 7.0
 
-    moved = forward_kinematics(lively.with_poses(rotations, place)).positions
+    moved = forward_kinematics(lively.with_poses(rotations, root_positions)).positions
 
-    assert_allclose(moved, rotate(turn, forward_kinematics(lively).positions) + 7.0, atol=1e-12)
+    assert_allclose(
+        moved, rotate(rotation, forward_kinematics(lively).positions) + 7.0, atol=1e-12
+    )
 
 
-def test_what_is_not_observed_hides_what_hangs_on_it(lively):
+def test_missing_joints_make_their_descendants_missing(lively):
     rotations = lively.rotations.copy()
     arm = lively.skeleton.index("LeftArm")
     rotations[4, arm] = np.nan
@@ -71,7 +73,7 @@ def test_what_is_not_observed_hides_what_hangs_on_it(lively):
     assert np.isfinite(world.positions[5:]).all()
 
 
-def test_any_leading_axes_serve(lively):
+def test_forward_kinematics_accepts_leading_axes(lively):
     stacked = lively.rotations.reshape(9, 10, -1, 4)
 
     world = world_poses(lively.skeleton, stacked, lively.root_positions.reshape(9, 10, 3))
@@ -82,7 +84,7 @@ def test_any_leading_axes_serve(lively):
     assert_allclose(one.rotations, flat.rotations[5])
 
 
-def test_a_single_joint_is_its_own_world():
+def test_single_joint_keeps_its_local_rotation():
     lone = Skeleton(("root",), (-1,), np.zeros((1, 3)))
     motion = Motion(lone, [[[0.6, 0.8, 0, 0]]], [[1.0, 2.0, 3.0]], 30.0)
 

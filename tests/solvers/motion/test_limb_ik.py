@@ -1,4 +1,4 @@
-"""A limb must arrive where it can, stretch without popping where it cannot, and else rest."""
+"""A limb reaches its target if it can, and does not pop at its limits."""
 
 import numpy as np
 import pytest
@@ -22,13 +22,13 @@ def ankle(motion: Motion, joint: int = 2) -> np.ndarray:
 
 
 @pytest.fixture
-def arm(lively) -> tuple[Motion, tuple[int, int, int]]:
-    """A whole body and the joints of its left arm."""
+def body_with_arm(lively) -> tuple[Motion, tuple[int, int, int]]:
+    """A complete body, and the joints of its left arm."""
     joints = [lively.skeleton.index(f"Left{name}") for name in ("Arm", "ForeArm", "Hand")]
     return lively, (joints[0], joints[1], joints[2])
 
 
-def test_arrives_where_it_can(swinging_leg, rng):
+def test_limb_reaches_targets_in_range(swinging_leg, rng):
     targets = ankle(swinging_leg) + rng.normal(scale=0.05, size=(120, 3)) + UP
 
     moved = reach(swinging_leg, LEG, targets, ReachSettings(softness=0.0))
@@ -38,11 +38,11 @@ def test_arrives_where_it_can(swinging_leg, rng):
     assert_allclose(ankle(moved)[near], targets[near], atol=1e-9)
 
 
-def test_arrives_in_the_middle_of_a_body(arm, rng):
-    body, limb = arm
+def test_arm_of_a_body_reaches_its_target(body_with_arm, rng):
+    body, limb = body_with_arm
     start = forward_kinematics(body).positions[:, limb[0]]
-    way = rng.normal(size=(body.n_frames, 3))
-    targets = start + 0.4 * way / np.linalg.norm(way, axis=-1, keepdims=True)
+    direction = rng.normal(size=(body.n_frames, 3))
+    targets = start + 0.4 * direction / np.linalg.norm(direction, axis=-1, keepdims=True)
 
     moved = reach(body, limb, targets)
 
@@ -51,8 +51,8 @@ def test_arrives_in_the_middle_of_a_body(arm, rng):
     assert set(np.flatnonzero(changed)) == set(limb)
 
 
-def test_the_end_keeps_its_orientation_in_the_world(arm):
-    body, limb = arm
+def test_end_joint_keeps_its_world_orientation(body_with_arm):
+    body, limb = body_with_arm
     targets = forward_kinematics(body).positions[:, limb[2]] + UP
 
     kept = forward_kinematics(reach(body, limb, targets)).rotations[:, limb[2]]
@@ -62,8 +62,8 @@ def test_the_end_keeps_its_orientation_in_the_world(arm):
     assert_allclose(loose.rotations[:, limb[2]], body.rotations[:, limb[2]])
 
 
-def test_rests_where_it_already_is(arm, swinging_leg):
-    body, limb = arm
+def test_limb_at_its_target_stays_unchanged(body_with_arm, swinging_leg):
+    body, limb = body_with_arm
 
     assert (
         angle_between(reach(body, limb, ankle(body, limb[2])).rotations, body.rotations).max()
@@ -73,7 +73,7 @@ def test_rests_where_it_already_is(arm, swinging_leg):
     assert angle_between(still.rotations, swinging_leg.rotations).max() < 1e-6
 
 
-def test_a_straight_leg_rests_too(leg):
+def test_straight_leg_at_its_target_stays_unchanged(leg):
     straight = Motion(
         leg, np.tile([1.0, 0, 0, 0], (3, 4, 1)), np.tile([0, 0, 0.9], (3, 1)), 30.0
     )
@@ -83,14 +83,14 @@ def test_a_straight_leg_rests_too(leg):
     assert angle_between(still.rotations, straight.rotations).max() < 1e-6
 
 
-def test_a_straight_knee_bends_forward_and_an_elbow_back(leg):
+def test_straight_knee_flexes_forward_and_elbow_backward(leg):
     straight = Motion(
         leg, np.tile([1.0, 0, 0, 0], (2, 4, 1)), np.tile([0, 0, 0.9], (2, 1)), 30.0
     )
-    arm = Skeleton(
+    body_with_arm = Skeleton(
         leg.names, leg.parents, np.array([[0, 0, 1.4], [0.3, 0, 0], [0.25, 0, 0], [0.1, 0, 0]])
     )
-    level = Motion(arm, straight.rotations, np.tile([0, 0, 1.4], (2, 1)), 30.0)
+    level = Motion(body_with_arm, straight.rotations, np.tile([0, 0, 1.4], (2, 1)), 30.0)
 
     knee = ankle(reach(straight, LEG, ankle(straight) + UP), 1)
     elbow = ankle(reach(level, LEG, ankle(level) - (0.1, 0, 0)), 1)
@@ -100,14 +100,14 @@ def test_a_straight_knee_bends_forward_and_an_elbow_back(leg):
     assert_allclose([knee[0, 0], elbow[0, 2]], [0.0, 1.4], atol=1e-9)
 
 
-def test_stays_in_its_own_plane(swinging_leg):
-    """The leg swings about X: with targets in that plane no joint leaves it."""
+def test_limb_stays_in_its_plane(swinging_leg):
+    """The leg swings about X; targets in its plane keep all joints in that plane."""
     moved = reach(swinging_leg, LEG, ankle(swinging_leg) + 1.2 * UP)
 
     assert_allclose(forward_kinematics(moved).positions[..., 0], 0.0, atol=1e-9)
 
 
-def test_points_at_what_it_cannot_reach(swinging_leg):
+def test_limb_points_at_targets_out_of_reach(swinging_leg):
     targets = swinging_leg.root_positions + np.array([0.0, 1.0, -1.0])
 
     moved = ankle(reach(swinging_leg, LEG, targets)) - swinging_leg.root_positions
@@ -119,7 +119,7 @@ def test_points_at_what_it_cannot_reach(swinging_leg):
     )
 
 
-def test_comes_as_near_as_it_can_to_what_is_too_close():
+def test_limb_folds_as_far_as_possible_for_close_targets():
     """Bones of 0.45 and 0.2 m cannot fold below 0.25 m."""
     bones = Skeleton(
         ("a", "b", "c"), (-1, 0, 1), np.array([[0, 0, 1.0], [0, 0, -0.45], [0, 0, -0.2]])
@@ -133,10 +133,10 @@ def test_comes_as_near_as_it_can_to_what_is_too_close():
 
 
 def test_no_knee_pops_through_full_extension(leg):
-    """A foot carried steadily past the leg's reach: the knee must not jump.
+    """A foot moves at constant speed past the leg's reach; the knee must not jump.
 
-    Without softness the knee angle changes infinitely fast at full extension; eased, no frame
-    may turn it more than three times as far as the frames before.
+    Without softness, the knee angle changes infinitely fast at full extension. With it, the
+    step of a frame is at most three times that of the frames before.
     """
     n = 400
     pose = np.tile(
@@ -154,8 +154,8 @@ def test_no_knee_pops_through_full_extension(leg):
     assert largest_jerk(0.01) < 0.25 * largest_jerk(0.0)
 
 
-def test_no_limb_snaps_when_it_folds():
-    """Bones of 0.5 and 0.3 m; the target comes nearer than the 0.2 m that are left."""
+def test_limb_does_not_snap_when_it_folds():
+    """Bones of 0.5 and 0.3 m; the target comes nearer than their difference of 0.2 m."""
     bones = Skeleton(
         ("hip", "knee", "ankle"), (-1, 0, 1), np.array([[0, 0, 1], [0, 0, -0.5], [0, -0.3, 0]])
     )
@@ -168,16 +168,16 @@ def test_no_limb_snaps_when_it_folds():
     jerks = []
     for softness in (0.0, 0.05):
         moved = reach(rest, LEG, targets, ReachSettings(softness=softness))
-        away = np.linalg.norm(ankle(moved) - [0.0, 0.0, 1.0], axis=1)
-        assert away.min() > 0.2 - 1e-9
-        assert_allclose(away[:50], np.linspace(0.3, 0.15, 200)[:50], atol=1e-9)
+        distances = np.linalg.norm(ankle(moved) - [0.0, 0.0, 1.0], axis=1)
+        assert distances.min() > 0.2 - 1e-9
+        assert_allclose(distances[:50], np.linspace(0.3, 0.15, 200)[:50], atol=1e-9)
         knee = angle_between(moved.rotations[1:, 1], moved.rotations[:-1, 1])
         jerks.append(np.abs(np.diff(knee)).max())
     assert jerks[1] < 0.25 * jerks[0]
 
 
-def test_a_knee_that_wavers_about_straight_does_not_flip(leg, rng):
-    """One degree of jitter about straight; the foot is lifted until the knee bends by 40."""
+def test_noisy_straight_knee_does_not_flip(leg, rng):
+    """One degree of jitter about straight; lifting the foot flexes the knee by 40 degrees."""
     n = 100
     vectors = np.zeros((n, 4, 3))
     vectors[:, 1] = np.radians(1.0) * rng.normal(size=(n, 3))
@@ -193,8 +193,8 @@ def test_a_knee_that_wavers_about_straight_does_not_flip(leg, rng):
     assert np.abs(np.diff(knee, axis=0)).max() < 0.02
 
 
-def test_bones_between_turn_along(leg):
-    """A twist bone in the thigh: the ankle arrives all the same."""
+def test_twist_bones_rotate_with_the_limb(leg):
+    """With a twist bone in the thigh, the ankle reaches its target."""
     names = ("hip", "twist", "knee", "ankle")
     offsets = np.array([[0, 0, 0.9], [0, 0, -0.2], [0, 0, -0.25], [0, 0, -0.42]])
     vectors = np.array([[[0.1, 0, 0], [0, 0, 0.3], [0.5, 0, 0], [0, 0, 0]]])
@@ -212,7 +212,7 @@ def test_bones_between_turn_along(leg):
     assert_allclose(moved.rotations[:, 1], motion.rotations[:, 1])
 
 
-def test_no_target_no_change(swinging_leg):
+def test_missing_targets_change_nothing(swinging_leg):
     targets = ankle(swinging_leg) + UP
     targets[::2] = np.nan
 
@@ -222,19 +222,21 @@ def test_no_target_no_change(swinging_leg):
     assert np.isfinite(moved.rotations).all()
 
 
-def test_moving_and_turning_everything_moves_the_result(swinging_leg, rng):
-    turn = np.array([[np.cos(0.4), 0.0, 0.0, np.sin(0.4)]])
+def test_solution_is_equivariant_to_rotation_and_translation(swinging_leg, rng):
+    rotation = np.array([[np.cos(0.4), 0.0, 0.0, np.sin(0.4)]])
     targets = ankle(swinging_leg) + rng.normal(scale=0.03, size=(120, 3))
     rotations = swinging_leg.rotations.copy()
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
-    moved = swinging_leg.with_poses(rotations, rotate(turn, swinging_leg.root_positions) + 3.0)
+    rotations[:, 0] = multiply(rotation, rotations[:, 0])
+    moved = swinging_leg.with_poses(
+        rotations, rotate(rotation, swinging_leg.root_positions) + 3.0
+    )
 
-    a = reach(moved, LEG, rotate(turn, targets) + 3.0).rotations[:, 1:]
+    a = reach(moved, LEG, rotate(rotation, targets) + 3.0).rotations[:, 1:]
 
     assert angle_between(a, reach(swinging_leg, LEG, targets).rotations[:, 1:]).max() < 1e-6
 
 
-def test_refuses_joints_that_are_no_limb(swinging_leg):
+def test_solve_limb_raises_for_joints_of_no_limb(swinging_leg):
     with pytest.raises(InvalidMotionError, match="knee, hip, ankle are not"):
         reach(swinging_leg, (1, 0, 2), np.zeros((120, 3)))
     with pytest.raises(InvalidMotionError, match="Targets need shape"):

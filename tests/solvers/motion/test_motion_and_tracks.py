@@ -1,4 +1,4 @@
-"""Motions and tracks keep their promises: shapes, units, gaps, and nothing shared."""
+"""Motions and tracks are valid: shapes, units, gaps and copies."""
 
 import pickle
 
@@ -10,13 +10,13 @@ from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, Tracks
 
 
-def test_rotations_are_made_exactly_unit(swinging_leg):
+def test_rotations_are_normalized(swinging_leg):
     near = swinging_leg.with_poses(1.0004 * swinging_leg.rotations)
 
     assert_allclose(np.linalg.norm(near.rotations, axis=-1), 1.0, atol=1e-15)
 
 
-def test_names_the_joints_whose_rotations_are_none(swinging_leg):
+def test_motion_names_joints_with_invalid_rotations(swinging_leg):
     rotations = swinging_leg.rotations.copy()
     rotations[5, 1] *= 2.0
     rotations[9, 2] = 0.0
@@ -25,7 +25,7 @@ def test_names_the_joints_whose_rotations_are_none(swinging_leg):
         swinging_leg.with_poses(rotations)
 
 
-def test_names_those_of_all_frames_however_far_apart(leg):
+def test_motion_names_joints_with_invalid_rotations_in_any_frame(leg):
     rotations = np.zeros((5000, 4, 4))
     rotations[..., 0] = 1.0
     rotations[10, 2] = 0.0
@@ -35,7 +35,7 @@ def test_names_those_of_all_frames_however_far_apart(leg):
         Motion(leg, rotations, np.zeros((5000, 3)), 30.0)
 
 
-def test_one_missing_component_hides_the_rotation(swinging_leg):
+def test_rotation_with_a_missing_component_is_missing(swinging_leg):
     rotations = swinging_leg.rotations.copy()
     rotations[5, 1, 2] = np.nan
 
@@ -46,17 +46,17 @@ def test_one_missing_component_hides_the_rotation(swinging_leg):
     assert gapped.observed.sum() == gapped.observed.size - 1
 
 
-def test_a_root_without_a_place_is_not_observed(swinging_leg):
-    place = swinging_leg.root_positions.copy()
-    place[3, 1] = np.nan
+def test_root_without_a_position_is_not_observed(swinging_leg):
+    root_positions = swinging_leg.root_positions.copy()
+    root_positions[3, 1] = np.nan
 
-    observed = swinging_leg.with_poses(root_positions=place).observed
+    observed = swinging_leg.with_poses(root_positions=root_positions).observed
 
     assert not observed[3, 0]
     assert observed[3, 1:].all()
 
 
-def test_a_slice_is_those_frames(swinging_leg):
+def test_slice_holds_the_requested_frames(swinging_leg):
     cut = swinging_leg.slice(10, 25)
 
     assert (cut.n_frames, cut.n_joints, cut.frame_rate) == (15, 4, 60.0)
@@ -65,21 +65,21 @@ def test_a_slice_is_those_frames(swinging_leg):
     assert cut.dt == 1.0 / 60.0
 
 
-def test_nothing_is_shared_with_whoever_made_it(swinging_leg):
-    place = swinging_leg.root_positions.copy()
-    motion = swinging_leg.with_poses(root_positions=place)
-    place[:] = 9.0
+def test_motion_copies_its_arrays(swinging_leg):
+    root_positions = swinging_leg.root_positions.copy()
+    motion = swinging_leg.with_poses(root_positions=root_positions)
+    root_positions[:] = 9.0
 
     assert_allclose(motion.root_positions, swinging_leg.root_positions)
 
 
-def test_travels_to_another_process(swinging_leg):
+def test_motion_can_be_pickled(swinging_leg):
     copied = pickle.loads(pickle.dumps(swinging_leg))
 
     assert_allclose(copied.rotations, swinging_leg.rotations, atol=0)
 
 
-@pytest.mark.parametrize(("rotations", "places", "rate", "sentence"), [
+@pytest.mark.parametrize(("rotations", "positions", "rate", "sentence"), [
     ((0, 4, 4), (0, 3), 30.0, "at least one frame"),
     ((2, 3, 4), (2, 3), 30.0, r"shape \(n_frames, 4, 4\), not \(2, 3, 4\)"),
     ((2, 4, 4), (3, 3), 30.0, r"of shape \(2, 3\), not \(3, 3\)"),
@@ -87,19 +87,19 @@ def test_travels_to_another_process(swinging_leg):
     ((2, 4, 4), (2, 3), np.nan, "frame rate of nan Hz is not that of a recording"),
     ((2, 4, 4), (2, 3), 3.3e9, "between 0.01 and 10,000 Hz"),
 ])  # fmt: skip
-def test_refuses_what_is_no_motion(leg, rotations, places, rate, sentence):
-    turns = np.zeros(rotations)
-    turns[..., 0] = 1.0
+def test_motion_raises_for_invalid_arrays(leg, rotations, positions, rate, sentence):
+    values = np.zeros(rotations)
+    values[..., 0] = 1.0
     with pytest.raises(InvalidMotionError, match=sentence):
-        Motion(leg, turns, np.zeros(places), rate)
+        Motion(leg, values, np.zeros(positions), rate)
 
 
-def test_refuses_a_root_at_infinity(swinging_leg):
-    place = swinging_leg.root_positions.copy()
-    place[0, 0] = np.inf
+def test_motion_raises_for_an_infinite_root(swinging_leg):
+    root_positions = swinging_leg.root_positions.copy()
+    root_positions[0, 0] = np.inf
 
     with pytest.raises(InvalidMotionError, match="infinite positions"):
-        swinging_leg.with_poses(root_positions=place)
+        swinging_leg.with_poses(root_positions=root_positions)
 
 
 @pytest.fixture
@@ -109,7 +109,7 @@ def tracks() -> Tracks:
     return Tracks(("wrist", "elbow"), positions, 50.0, np.full((5, 2), 0.5))
 
 
-def test_a_point_is_visible_where_all_its_coordinates_are(tracks):
+def test_point_is_visible_where_all_coordinates_are_finite(tracks):
     expected = np.ones((5, 2), dtype=bool)
     expected[2, 1] = False
 
@@ -132,6 +132,6 @@ def test_confidence_follows_the_frames(tracks):
     (("a",), (4, 1, 3), 30.0, np.full((4, 1), 1.5), "between 0 and 1"),
     (("a",), (4, 1, 3), 30.0, np.full((4, 1), np.nan), "between 0 and 1"),
 ])  # fmt: skip
-def test_refuses_what_are_no_tracks(names, shape, rate, confidence, sentence):
+def test_tracks_raise_for_invalid_arrays(names, shape, rate, confidence, sentence):
     with pytest.raises(InvalidMotionError, match=sentence):
         Tracks(names, np.zeros(shape), rate, confidence)

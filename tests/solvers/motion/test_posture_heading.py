@@ -1,4 +1,4 @@
-"""The heading follows the actor, and not a tracker that exchanges left and right."""
+"""The heading follows the actor, not left-right swaps of a tracker."""
 
 import kinect_walks
 import numpy as np
@@ -21,29 +21,29 @@ def headings(postures):
 
 
 @pytest.mark.parametrize("n_frames", [1, 5, 10])
-def test_exchanged_sides_do_not_turn_the_body(walk, n_frames):
-    spoilt = walk.copy()
-    spoilt[40 : 40 + n_frames] = spoilt[40 : 40 + n_frames][:, list(MIRROR_JOINTS)]
+def test_left_right_swaps_do_not_change_the_heading(walk, n_frames):
+    corrupted = walk.copy()
+    corrupted[40 : 40 + n_frames] = corrupted[40 : 40 + n_frames][:, list(MIRROR_JOINTS)]
 
-    assert_allclose(headings(spoilt), headings(walk), atol=np.radians(3.0))
+    assert_allclose(headings(corrupted), headings(walk), atol=np.radians(3.0))
 
 
 @pytest.mark.parametrize("turns_per_second", [0.5, 1.0, 2.0])
-def test_who_turns_and_spins_is_followed(walk, turns_per_second):
+def test_heading_of_a_spinning_actor_is_followed(walk, turns_per_second):
     angles = 2.0 * np.pi * turns_per_second * np.arange(len(walk)) / 30.0
-    middle = slice(10, -10)  # the ends are steadied towards themselves
+    middle = slice(10, -10)  # smoothing shortens the ends
 
     found = headings(rotate_about_vertical(walk, angles)) - headings(walk)
 
-    off = found - angles
-    assert_allclose(off[middle], off[middle].mean(), atol=np.radians(4.0))
-    assert np.cos(off[middle]).min() > 0.99
+    differences = found - angles
+    assert_allclose(differences[middle], differences[middle].mean(), atol=np.radians(4.0))
+    assert np.cos(differences[middle]).min() > 0.99
 
 
-def test_half_a_turn_in_a_third_of_a_second_is_followed(walk):
+def test_rotation_by_180_degrees_in_a_third_second_is_followed(walk):
     angles = np.pi * np.clip((np.arange(len(walk)) - 40.0) / 10.0, 0.0, 1.0)
 
     found = headings(rotate_about_vertical(walk, angles)) - headings(walk)
 
-    assert np.abs(found - angles).max() < np.radians(25.0)  # steadied over a tenth of a second
+    assert np.abs(found - angles).max() < np.radians(25.0)  # smoothed over a tenth of a second
     assert np.abs(found - angles)[[30, 60]].max() < np.radians(2.0)

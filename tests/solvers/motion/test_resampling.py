@@ -1,4 +1,4 @@
-"""A recording at another rate is the same motion in the same seconds."""
+"""Resampled recordings show the same motion over the same time."""
 
 import numpy as np
 import pytest
@@ -13,15 +13,15 @@ from solvers.rotations.representations import (
 )
 
 
-def waves(rate: float, seconds: float, highest: float = 4.0) -> Tracks:
+def sine_tracks(rate: float, seconds: float, highest: float = 4.0) -> Tracks:
     """Three points that move with frequencies up to `highest` hertz."""
     time = np.arange(round(seconds * rate) + 1) / rate
     angles = 2 * np.pi * np.linspace(0.3, highest, 9).reshape(3, 3) * time[:, None, None]
     return Tracks(("a", "b", "c"), np.sin(angles + np.arange(3)), rate)
 
 
-def test_between_frames_lies_the_true_motion():
-    slow, fast = waves(30.0, 4.0, 2.0), waves(120.0, 4.0, 2.0)
+def test_interpolated_frames_are_accurate():
+    slow, fast = sine_tracks(30.0, 4.0, 2.0), sine_tracks(120.0, 4.0, 2.0)
 
     result = resample(slow, 120.0)
 
@@ -30,7 +30,7 @@ def test_between_frames_lies_the_true_motion():
     assert np.abs(result.positions - fast.positions)[8:-8].max() < 1.5e-3
 
 
-def test_an_interpolated_cubic_is_exact():
+def test_interpolation_of_a_cubic_is_exact():
     """Four points determine a cubic, even at the ends."""
     time = np.arange(8) / 10.0
     cubic = np.stack([time**3 - time, 1 - time**2, 2 * time], axis=-1)[:, None]
@@ -46,8 +46,8 @@ def test_an_interpolated_cubic_is_exact():
 
 
 @pytest.mark.parametrize("rate", [45.0, 60.0, 100.0, 240.0])
-def test_there_and_back_is_the_same_for_what_both_rates_carry(rate):
-    original = waves(60.0, 3.0)
+def test_resampling_back_restores_low_frequencies(rate):
+    original = sine_tracks(60.0, 3.0)
 
     back = resample(resample(original, rate), 60.0)
 
@@ -56,15 +56,15 @@ def test_there_and_back_is_the_same_for_what_both_rates_carry(rate):
     assert np.abs(back.positions - original.positions[:n])[6:-6].max() < 0.02
 
 
-def test_doubling_and_halving_keeps_the_frames():
-    original = waves(60.0, 3.0)
+def test_doubling_and_halving_the_rate_restores_the_frames():
+    original = sine_tracks(60.0, 3.0)
 
     back = resample(resample(original, 120.0), 60.0)
 
     assert np.abs(back.positions - original.positions)[10:-10].max() < 2e-3
 
 
-def test_rotations_turn_on_the_shorter_way_at_any_rate(swinging_leg, rng):
+def test_rotations_are_interpolated_along_the_shortest_path(swinging_leg, rng):
     signs = rng.choice([-1.0, 1.0], size=(swinging_leg.n_frames, swinging_leg.n_joints, 1))
     flipped = swinging_leg.with_poses(signs * swinging_leg.rotations)
 
@@ -78,7 +78,7 @@ def test_rotations_turn_on_the_shorter_way_at_any_rate(swinging_leg, rng):
     assert_allclose(unroll(result.rotations), result.rotations)
 
 
-def test_what_the_new_rate_cannot_carry_is_removed_not_folded_back():
+def test_downsampling_does_not_alias():
     time = np.arange(600) / 120.0
     hum = np.sin(2 * np.pi * 27.0 * time)  # would look like 3 Hz at 30 Hz
     positions = np.stack([hum, np.sin(2 * np.pi * time), 0 * time], axis=-1)[:, None]
@@ -91,7 +91,7 @@ def test_what_the_new_rate_cannot_carry_is_removed_not_folded_back():
     assert np.abs(result[inner, 1] - slow[inner]).max() < 2e-3
 
 
-def test_a_steady_drift_goes_on_to_the_very_ends():
+def test_constant_drift_is_exact_at_the_ends():
     drift = np.arange(121)[:, None, None] / 120.0 * np.array([1.0, -2.0, 0.5])
 
     slower = resample(Tracks(("a",), drift, 120.0), 30.0).positions
@@ -99,7 +99,7 @@ def test_a_steady_drift_goes_on_to_the_very_ends():
     assert_allclose(slower, drift[::4], atol=1e-12)
 
 
-def test_the_direction_of_time_does_not_matter(rng):
+def test_resampling_is_symmetric_in_time(rng):
     noise = Tracks(("a",), rng.normal(size=(41, 1, 3)), 60.0)
     backwards = noise.with_positions(noise.positions[::-1])
 
@@ -112,7 +112,7 @@ def test_the_direction_of_time_does_not_matter(rng):
     (61, 60.0, 30.0, 31), (60, 60.0, 30.0, 30), (11, 10.0, 30.0, 31), (5, 30.0, 29.97, 4),
     (101, 29.97, 59.94, 201), (1, 30.0, 120.0, 1), (2, 120.0, 30.0, 1),
 ])  # fmt: skip
-def test_the_last_frame_is_not_after_the_recordings_last(n_frames, old, new, expected):
+def test_last_frame_is_not_after_that_of_the_recording(n_frames, old, new, expected):
     still = Tracks(("a",), np.ones((n_frames, 1, 3)), old)
 
     result = resample(still, new)
@@ -121,8 +121,8 @@ def test_the_last_frame_is_not_after_the_recordings_last(n_frames, old, new, exp
     assert_allclose(result.positions, 1.0)
 
 
-def test_gaps_stay_gaps_of_the_same_seconds():
-    positions = waves(60.0, 2.0).positions
+def test_gaps_keep_their_times():
+    positions = sine_tracks(60.0, 2.0).positions
     positions[30:60, 1] = np.nan
 
     result = resample(Tracks(("a", "b", "c"), positions, 60.0), 120.0)
@@ -133,8 +133,8 @@ def test_gaps_stay_gaps_of_the_same_seconds():
     assert np.isfinite(result.positions[:, [0, 2]]).all()
 
 
-def test_a_point_never_seen_is_never_seen():
-    positions = waves(60.0, 1.0).positions
+def test_point_never_observed_stays_missing():
+    positions = sine_tracks(60.0, 1.0).positions
     positions[:, 0] = np.nan
 
     assert np.isnan(
@@ -149,28 +149,28 @@ def test_the_same_rate_changes_nothing(swinging_leg):
     assert_allclose(result.root_positions, swinging_leg.root_positions)
 
 
-def test_feet_go_where_they_went(swinging_leg):
+def test_feet_keep_their_paths(swinging_leg):
     result = forward_kinematics(resample(swinging_leg, 240.0)).positions[::4]
 
     expected = forward_kinematics(swinging_leg).positions
     assert_allclose(result, expected, atol=1e-12)
 
 
-def test_confidence_comes_along():
+def test_confidence_is_resampled():
     tracks = Tracks(("a",), np.zeros((3, 1, 3)), 10.0, np.array([[0.0], [1.0], [0.5]]))
 
     assert_allclose(resample(tracks, 20.0).confidence[:, 0], [0, 0.5, 1, 0.75, 0.5])
 
 
 @pytest.mark.parametrize("rate", [0.0, -1.0, np.nan, np.inf])
-def test_refuses_a_rate_that_is_none(swinging_leg, rate):
+def test_resample_raises_for_invalid_rates(swinging_leg, rate):
     with pytest.raises(
         InvalidMotionError, match=r"frame rate of .* is not that of a recording"
     ):
         resample(swinging_leg, rate)
 
 
-def test_does_not_touch_its_input(swinging_leg):
+def test_resample_does_not_modify_its_input(swinging_leg):
     before = swinging_leg.rotations.copy()
 
     resample(swinging_leg, 24.0)

@@ -1,4 +1,4 @@
-"""The rigs that motions are given to, with all the names they come with."""
+"""Names of the rigs that animators retarget to."""
 
 import pytest
 
@@ -149,7 +149,7 @@ FAMILIES: dict[str, tuple[str, str, str]] = {
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_every_role_goes_to_the_right_name_and_to_no_other(family):
+def test_roles_are_assigned_to_the_expected_names_only(family):
     sides, described, others = FAMILIES[family]
     expected, extra = written_out(sides.split(), described, others)
     names = [*expected.values(), *extra]
@@ -162,7 +162,7 @@ def test_every_role_goes_to_the_right_name_and_to_no_other(family):
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_the_order_of_the_names_does_not_matter(family):
+def test_roles_do_not_depend_on_the_order_of_names(family):
     sides, described, others = FAMILIES[family]
     expected, extra = written_out(sides.split(), described, others)
 
@@ -171,14 +171,14 @@ def test_the_order_of_the_names_does_not_matter(family):
     assert {role: found.get(role) for role in expected} == expected
 
 
-def test_names_of_a_whole_rig_are_believed(body):
+def test_names_of_a_complete_rig_have_full_confidence(body):
     assert find_humanoid_map(body).score == 1.0
 
 
 def written_out(
     sides: list[str], described: str, others: str
 ) -> tuple[dict[str, str], dict[str, bool]]:
-    """Return names by role, and further names with whether they may play one ("+")."""
+    """Return names by role, and further names with whether they may have one ("+")."""
     expected = {}
     for role, name in (word.split("=") for word in described.split()):
         if role in SIDED:

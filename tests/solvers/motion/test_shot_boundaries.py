@@ -1,4 +1,4 @@
-"""A cut is where the whole body jumps for good; nothing that a body does is one."""
+"""A cut is a lasting jump of the complete body; no movement of a body is one."""
 
 import numpy as np
 import pytest
@@ -35,11 +35,11 @@ def joined(*motions):
     )
 
 
-def pose_apart(motion, n_frames=1, turn=0.5):
-    """Every joint turned by up to 0.5 rad, about an axis of its own."""
-    ways = np.random.default_rng(7).normal(size=(motion.n_joints, 3))
-    ways *= turn / np.linalg.norm(ways, axis=1, keepdims=True)
-    rotations = multiply(motion.rotations[0], quaternion_from_rotation_vector(ways))
+def with_pose_outlier(motion, n_frames=1, angle=0.5):
+    """Rotate every joint by up to 0.5 rad about a random axis."""
+    directions = np.random.default_rng(7).normal(size=(motion.n_joints, 3))
+    directions *= angle / np.linalg.norm(directions, axis=1, keepdims=True)
+    rotations = multiply(motion.rotations[0], quaternion_from_rotation_vector(directions))
     ends = [motion.skeleton.is_end_site(joint) for joint in range(motion.n_joints)]
     rotations[ends] = IDENTITY
     return motion.with_poses(
@@ -48,31 +48,31 @@ def pose_apart(motion, n_frames=1, turn=0.5):
 
 
 @pytest.mark.parametrize("n_frames", [1, 2, 12])
-def test_a_pose_apart_is_found_at_either_end(walk, n_frames):
-    apart = pose_apart(walk, n_frames)
+def test_pose_outliers_are_found_at_both_ends(walk, n_frames):
+    with_outlier = with_pose_outlier(walk, n_frames)
 
-    assert find_shot_boundaries(joined(apart, walk)) == (n_frames,)
-    assert find_shot_boundaries(joined(walk, apart)) == (walk.n_frames,)
+    assert find_shot_boundaries(joined(with_outlier, walk)) == (n_frames,)
+    assert find_shot_boundaries(joined(walk, with_outlier)) == (walk.n_frames,)
 
 
-def test_a_join_is_found_in_tracks_too(walk):
-    other = pose_apart(walk, 30)
-    places = forward_kinematics(joined(walk, other)).positions
-    tracks = Tracks(walk.skeleton.names, places, walk.frame_rate)
+def test_cut_is_found_in_tracks(walk):
+    other = with_pose_outlier(walk, 30)
+    positions = forward_kinematics(joined(walk, other)).positions
+    tracks = Tracks(walk.skeleton.names, positions, walk.frame_rate)
 
     assert find_shot_boundaries(tracks) == (walk.n_frames,)
 
 
 @pytest.mark.parametrize("n_frames", [1, 3, 8])
-def test_a_body_that_jumps_away_and_comes_back_is_not_cut(walk, n_frames):
-    glitch = pose_apart(walk.slice(60, 61), n_frames)
+def test_transient_jump_of_a_body_is_no_cut(walk, n_frames):
+    glitch = with_pose_outlier(walk.slice(60, 61), n_frames)
 
     assert not find_shot_boundaries(
         joined(walk.slice(0, 60), glitch, walk.slice(60 + n_frames, 180))
     )
 
 
-def test_one_joint_lost_and_found_is_no_cut(walk):
+def test_dropout_of_one_joint_is_no_cut(walk):
     rotations = walk.rotations.copy()
     rotations[40:90, 5] = np.nan
     rotations[90:, 5] = multiply(
@@ -83,7 +83,7 @@ def test_one_joint_lost_and_found_is_no_cut(walk):
 
 
 @pytest.mark.parametrize("held", [2, 4])
-def test_frames_that_are_repeated_are_no_cuts(walk, held):
+def test_repeated_frames_are_no_cuts(walk, held):
     assert not find_shot_boundaries(
         walk.with_poses(
             np.repeat(walk.rotations[::held], held, axis=0),
@@ -93,7 +93,7 @@ def test_frames_that_are_repeated_are_no_cuts(walk, held):
 
 
 @pytest.mark.parametrize(
-    "spoilt",
+    "corrupted",
     [
         CorruptionSettings(jitter=1.0),
         CorruptionSettings(jitter=7.0, spikes=0.4),
@@ -102,11 +102,11 @@ def test_frames_that_are_repeated_are_no_cuts(walk, held):
     ],
     ids=["noise", "noise and outliers", "outliers", "many outliers"],
 )
-def test_no_noise_makes_a_cut(walk, spoilt):
-    assert not find_shot_boundaries(corrupt(walk, spoilt))
+def test_noise_is_no_cut(walk, corrupted):
+    assert not find_shot_boundaries(corrupt(walk, corrupted))
 
 
-def test_t_poses_of_real_recordings_are_found_and_hops_are_not_cut(recordings):
+def test_t_poses_of_real_recordings_are_cut_and_hops_are_not(recordings):
     for path in sorted((recordings / "mocap" / "cmu_hop").glob("*.bvh")):
         motion = read_bvh(path, scale=0.0254 / 0.45)
         thinned = Motion(
@@ -117,22 +117,24 @@ def test_t_poses_of_real_recordings_are_found_and_hops_are_not_cut(recordings):
         assert not find_shot_boundaries(read_acclaim(path)), path.name
 
 
-def test_a_pose_apart_stays_and_does_not_touch_what_follows(walk):
+def test_pose_outlier_stays_and_does_not_affect_later_frames(walk):
     noisy = corrupt(walk, CorruptionSettings(jitter=0.5))
-    take = joined(pose_apart(walk), noisy)
+    take = joined(with_pose_outlier(walk), noisy)
 
-    whole, alone = denoise(take), denoise(noisy)
+    complete, separate = denoise(take), denoise(noisy)
 
-    assert_array_equal(whole.recording.rotations[0], take.rotations[0])
-    assert_allclose(whole.recording.rotations[1:], alone.recording.rotations, atol=1e-12)
+    assert_array_equal(complete.recording.rotations[0], take.rotations[0])
+    assert_allclose(complete.recording.rotations[1:], separate.recording.rotations, atol=1e-12)
     assert (
-        whole.cuts == (1,) and not whole.outliers[0].any() and (whole.confidence[0] == 1).all()
+        complete.cuts == (1,)
+        and not complete.outliers[0].any()
+        and (complete.confidence[0] == 1).all()
     )
-    assert whole.prior_used.endswith("Frame 1 is a separate pose and was kept as recorded.")
+    assert complete.prior_used.endswith("Frame 1 is a separate pose and was kept as recorded.")
 
 
-def test_gaps_of_a_short_piece_are_filled(walk):
-    take = joined(pose_apart(walk, 3), walk)
+def test_gaps_of_a_short_segment_are_filled(walk):
+    take = joined(with_pose_outlier(walk, 3), walk)
     rotations = take.rotations.copy()
     rotations[1, 4] = np.nan
 
@@ -141,9 +143,9 @@ def test_gaps_of_a_short_piece_are_filled(walk):
     assert np.isfinite(cleaned.rotations).all()
 
 
-def test_pieces_of_a_joined_take_are_cleaned_apart(walk):
+def test_segments_of_a_joined_take_are_cleaned_separately(walk):
     noisy = corrupt(walk, CorruptionSettings(jitter=0.5))
-    other = joined(*[pose_apart(walk.slice(frame, frame + 1)) for frame in range(60)])
+    other = joined(*[with_pose_outlier(walk.slice(frame, frame + 1)) for frame in range(60)])
 
     cleaned = denoise(joined(noisy, other))
 
@@ -156,43 +158,45 @@ def test_pieces_of_a_joined_take_are_cleaned_apart(walk):
 def test_patterns_are_not_learned_across_a_cut(walk):
     plain, cut = (
         learn_filter_bases([walk]),
-        learn_filter_bases([joined(pose_apart(walk), walk)]),
+        learn_filter_bases([joined(with_pose_outlier(walk), walk)]),
     )
 
     assert_allclose(cut.slow, plain.slow, atol=1e-9)
     assert_allclose(cut.mean, plain.mean, atol=1e-9)
 
 
-def test_the_jump_is_named_and_is_no_fault_of_the_body(walk):
-    take = joined(pose_apart(walk), walk)
+def test_cut_is_an_issue_and_no_spike(walk):
+    take = joined(with_pose_outlier(walk), walk)
     take = take.with_poses(root_positions=take.root_positions + np.eye(1, 181).T)
     standing = np.ones((181, 2), dtype=bool)
     quality = measure_quality(take, contacts=standing)
     plain = measure_quality(walk, contacts=standing[1:])
 
-    spots = find_worst_issues(take, quality)
+    issues = find_worst_issues(take, quality)
 
     assert quality.cuts == (1,) and "cut before frame 2" in quality.report()
     assert quality.mean_jitter == pytest.approx(plain.mean_jitter)
     assert not quality.spikes.any()
     assert quality.feet[0].distance == pytest.approx(plain.feet[0].distance)
-    assert [(spot.kind, spot.start_frame) for spot in spots if spot.kind == "cut"] == [
+    assert [(spot.kind, spot.start_frame) for spot in issues if spot.kind == "cut"] == [
         ("cut", 0)
     ]
 
 
 def test_feet_are_not_planted_across_a_cut(walk):
-    take, alone = joined(pose_apart(walk), walk), plant_feet(walk)
+    take, separate = joined(with_pose_outlier(walk), walk), plant_feet(walk)
 
     planted = plant_feet(take)
 
     assert_array_equal(planted.motion.rotations[0], take.rotations[0])
-    assert_allclose(planted.motion.root_positions[1:], alone.motion.root_positions, atol=1e-9)
-    assert planted.slide_before == pytest.approx(alone.slide_before)
+    assert_allclose(
+        planted.motion.root_positions[1:], separate.motion.root_positions, atol=1e-9
+    )
+    assert planted.slide_before == pytest.approx(separate.slide_before)
 
 
-def test_the_sentence_names_frames_from_one(walk):
-    take = joined(pose_apart(walk, 2), walk, pose_apart(walk, 60))
+def test_message_counts_frames_from_one(walk):
+    take = joined(with_pose_outlier(walk, 2), walk, with_pose_outlier(walk, 60))
 
     assert describe_shots(take, ()) == ""
     assert describe_shots(take, (2, 182)) == (

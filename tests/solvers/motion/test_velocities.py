@@ -1,4 +1,4 @@
-"""Velocities must be exact where finite differences are, and honest beside gaps."""
+"""Velocities are exact where finite differences are, also next to gaps."""
 
 import numpy as np
 from numpy.testing import assert_allclose
@@ -7,7 +7,7 @@ from solvers.motion import angular_velocities, linear_velocities
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 
 
-def test_exact_for_constant_acceleration_inside():
+def test_velocities_are_exact_for_constant_acceleration():
     time = np.arange(20) / 50.0
     positions = np.stack([3.0 * time**2, 2.0 * time, 0 * time], axis=-1)[:, None]
 
@@ -17,7 +17,7 @@ def test_exact_for_constant_acceleration_inside():
     assert_allclose(velocities[:, 1], 2.0, atol=1e-12)
 
 
-def test_one_step_serves_at_the_ends_and_beside_gaps():
+def test_ends_and_gap_boundaries_use_one_sided_differences():
     positions = np.arange(10.0)[:, None, None] ** 2 * np.ones(3)
     positions[4] = np.nan
 
@@ -26,31 +26,31 @@ def test_one_step_serves_at_the_ends_and_beside_gaps():
     assert_allclose(velocities, [1, 2, 4, 5, np.nan, 11, 12, 14, 16, 17])
 
 
-def test_a_lone_frame_between_gaps_has_no_velocity():
+def test_single_frame_between_gaps_has_no_velocity():
     positions = np.zeros((5, 1, 3))
     positions[[1, 3]] = np.nan
 
     assert np.isnan(linear_velocities(positions, 30.0)[2]).all()
 
 
-def test_one_frame_stands_still():
+def test_single_frame_has_velocity_zero():
     assert_allclose(linear_velocities(np.ones((1, 2, 3)), 30.0), 0.0)
     assert_allclose(angular_velocities(np.tile([1.0, 0, 0, 0], (1, 2, 1)), 30.0), 0.0)
 
 
-def test_steady_turning_is_measured_in_the_outer_frame(rng):
+def test_constant_angular_velocity_is_in_the_parent_frame(rng):
     omega = np.array([0.3, -1.2, 2.0])
     start = quaternion_from_rotation_vector(rng.normal(size=3))
-    turned = multiply(
+    rotated = multiply(
         quaternion_from_rotation_vector(np.arange(30)[:, None] / 60.0 * omega), start
     )
 
-    velocities = angular_velocities(turned[:, None], 60.0)
+    velocities = angular_velocities(rotated[:, None], 60.0)
 
     assert_allclose(velocities[:, 0], np.tile(omega, (30, 1)), atol=1e-12)
 
 
-def test_signs_of_quaternions_do_not_matter(rng):
+def test_angular_velocity_ignores_quaternion_signs(rng):
     rotations = quaternion_from_rotation_vector(rng.normal(scale=0.2, size=(12, 3, 3)))
     signs = rng.choice([-1.0, 1.0], size=(12, 3, 1))
 

@@ -1,4 +1,4 @@
-"""The alignment must be the best there is, and lie in the band that was asked for."""
+"""The alignment is optimal and lies within the requested band."""
 
 from functools import cache
 
@@ -17,20 +17,20 @@ VALUES = st.floats(-10, 10, allow_nan=False)
 
 
 @given(st.data())
-def test_no_path_is_cheaper(data):
-    """Against a recursion over all paths, on sequences short enough to try them all."""
+def test_path_has_the_minimum_cost(data):
+    """Compare with a recursion over all paths, on short sequences."""
     n, m = data.draw(SMALL), data.draw(SMALL)
     a = data.draw(arrays(float, (n, 2), elements=VALUES))
     b = data.draw(arrays(float, (m, 2), elements=VALUES))
 
     found = warp(a, b)
 
-    assert_allclose(found.distances.sum(), least_total(a, b), atol=1e-9)
+    assert_allclose(found.distances.sum(), min_total_cost(a, b), atol=1e-9)
     assert_allclose(found.cost, found.distances.mean())
 
 
 @given(st.data())
-def test_the_path_goes_from_end_to_end_without_skipping(data):
+def test_path_connects_both_ends_without_skipping(data):
     a = data.draw(arrays(float, (data.draw(SMALL), 1), elements=VALUES))
     b = data.draw(arrays(float, (data.draw(SMALL), 1), elements=VALUES))
 
@@ -41,7 +41,7 @@ def test_the_path_goes_from_end_to_end_without_skipping(data):
     assert {tuple(step) for step in np.diff(path, axis=0)} <= {(0, 1), (1, 0), (1, 1)}
 
 
-def test_a_sequence_costs_nothing_beside_itself(rng):
+def test_sequence_has_cost_zero_to_itself(rng):
     a = rng.normal(size=(30, 5, 3))
 
     found = warp(a, a)
@@ -50,8 +50,8 @@ def test_a_sequence_costs_nothing_beside_itself(rng):
     assert_array_equal(found.path, np.stack([np.arange(30)] * 2, axis=-1))
 
 
-def test_undoes_a_change_of_tempo():
-    """The same wave, played with a varying tempo: the path is that tempo."""
+def test_path_recovers_a_change_of_tempo():
+    """The same sine with a varying tempo: the path equals that tempo."""
     time = np.linspace(0, 1, 200)
     warped = time**1.6
     wave = np.stack([np.sin(9 * time), np.cos(5 * time)], axis=-1)
@@ -63,13 +63,13 @@ def test_undoes_a_change_of_tempo():
     assert np.abs(time[found.path[:, 0]] - warped[found.path[:, 1]]).max() < 0.02
 
 
-def test_both_directions_cost_the_same(rng):
+def test_cost_is_symmetric(rng):
     a, b = rng.normal(size=(20, 3)), rng.normal(size=(27, 3))
 
     assert_allclose(warp(a, b).distances.sum(), warp(b, a).distances.sum())
 
 
-def test_a_window_keeps_the_path_near_the_diagonal(rng):
+def test_window_limits_the_path_to_the_diagonal(rng):
     a, b = rng.normal(size=(60, 3)), rng.normal(size=(60, 3))
 
     narrow = warp(a, b, window=0.05)
@@ -79,20 +79,20 @@ def test_a_window_keeps_the_path_near_the_diagonal(rng):
     assert_allclose(warp(a, b, window=1.0).cost, warp(a, b).cost)
 
 
-def test_a_window_of_none_still_joins_unequal_lengths(rng):
+def test_window_of_size_zero_aligns_unequal_lengths(rng):
     found = warp(rng.normal(size=(10, 2)), rng.normal(size=(35, 2)), window=0.0)
 
     assert found.path[-1].tolist() == [9, 34]
 
 
-def test_the_distance_is_the_mean_over_joints():
+def test_distance_is_the_mean_over_joints():
     a, b = np.zeros((1, 4, 3)), np.zeros((1, 4, 3))
     b[0, 1] = (3.0, 4.0, 0.0)
 
     assert warp(a, b).cost == 5.0 / 4.0
 
 
-def test_unseen_joints_are_left_out_of_the_mean():
+def test_missing_joints_are_excluded_from_the_mean():
     a, b = np.zeros((2, 2, 3)), np.ones((2, 2, 3))
     a[0, 1] = np.nan
     b[:, 1] = 50.0
@@ -100,7 +100,7 @@ def test_unseen_joints_are_left_out_of_the_mean():
     assert_allclose(warp(a[:1], b[:1]).cost, 3**0.5)
 
 
-def test_refuses_what_cannot_be_compared(rng):
+def test_warp_raises_for_incompatible_sequences(rng):
     a = rng.normal(size=(5, 3, 3))
     with pytest.raises(InvalidMotionError, match="the same joints"):
         warp(a, a[:, :2])
@@ -110,7 +110,7 @@ def test_refuses_what_cannot_be_compared(rng):
         warp(a, np.full_like(a, np.nan))
 
 
-def least_total(a: np.ndarray, b: np.ndarray) -> float:
+def min_total_cost(a: np.ndarray, b: np.ndarray) -> float:
     @cache
     def total(i: int, j: int) -> float:
         here = float(np.linalg.norm(a[i] - b[j]))

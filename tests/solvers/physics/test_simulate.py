@@ -25,7 +25,7 @@ def simulated(walk):
 
 @pytest.fixture(scope="module")
 def standing(walk):
-    """Three seconds in the pose in which both feet are on the ground."""
+    """Three seconds in a pose with both feet on the ground."""
     frame = detect_contacts(walk).all(axis=1).argmax()
     return Motion(
         walk.skeleton,
@@ -67,7 +67,7 @@ def test_standing_body_keeps_standing(standing):
 
 
 def test_unsupported_body_falls_freely(standing):
-    """In the air a body without help from outside has the acceleration of gravity."""
+    """In the air, a body without external forces has the acceleration of gravity."""
     high = raised(standing, 1.5).slice(0, 9)
 
     result = simulate(high, settings=SimulateSettings(support=0.0))
@@ -203,7 +203,7 @@ def test_half_strength_is_halfway(walk, simulated):
 
 
 def test_root_bone_on_the_floor_moves_with_the_body(walk, simulated):
-    """Hips that hang on another joint are simulated as hips; the joint above only moves."""
+    """Hips with a parent are simulated as hips; the parent only moves."""
     floor = np.array([0.0, 0.0, 0.0])
     skeleton, hips = walk.skeleton, walk.rotations[:, :1]
     offsets = skeleton.offsets.copy()
@@ -212,9 +212,9 @@ def test_root_bone_on_the_floor_moves_with_the_body(walk, simulated):
         (-1, *(parent + 1 for parent in skeleton.parents)),
         np.concatenate([[floor], [[0.0, 0.0, 1.0]], offsets[1:]]),
     )
-    turn = quaternion_from_rotation_vector([0.0, 0.0, 0.4])
-    still = np.tile(turn, (walk.n_frames, 1, 1))
-    back = multiply(turn * (1, -1, -1, -1), hips)
+    rotation = quaternion_from_rotation_vector([0.0, 0.0, 0.4])
+    still = np.tile(rotation, (walk.n_frames, 1, 1))
+    back = multiply(rotation * (1, -1, -1, -1), hips)
     motion = Motion(
         rigged,
         np.concatenate([still, back, walk.rotations[:, 1:]], axis=1),
@@ -238,12 +238,12 @@ def raised(motion, height):
 
 def distance(one, other):
     """Mean distance of the joints, meters."""
-    here, there = (forward_kinematics(each).positions for each in (one, other))
-    return float(np.linalg.norm(here - there, axis=-1).mean())
+    positions, other_positions = (forward_kinematics(each).positions for each in (one, other))
+    return float(np.linalg.norm(positions - other_positions, axis=-1).mean())
 
 
 def jerk(motion):
-    """Mean third derivative of the joints' places, m/s^3."""
+    """Mean third derivative of the joint positions, m/s^3."""
     positions = forward_kinematics(motion).positions
     thirds = np.diff(positions, 3, axis=0) * motion.frame_rate**3
     return float(np.linalg.norm(thirds, axis=-1).mean())

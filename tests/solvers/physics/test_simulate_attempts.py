@@ -52,7 +52,7 @@ def test_smoothing_is_as_requested():
     assert speeds[1] < speeds[0]
 
 
-def test_shaken_take_is_smoothed_where_the_body_is_lost():
+def test_noisy_take_is_smoothed_where_the_simulation_fails():
     assert simulate(SHAKEN, settings=SimulateSettings(smoothing=0.0)).followed.all()
 
 
@@ -66,7 +66,7 @@ def test_body_in_balance_is_simulated_once(monkeypatch):
 
 
 def record_smoothing(monkeypatch) -> list[float]:
-    """Return a list that fills with the smoothing of each try."""
+    """Return a list that receives the smoothing of each attempt."""
     attempts, found = simulate_segment._attempt, []
 
     def noted(engine, body, motion, conditions, smoothing, progress):
@@ -79,7 +79,7 @@ def record_smoothing(monkeypatch) -> list[float]:
 
 @pytest.mark.parametrize("n_frames", [5, 2])
 def test_support_covers_all_frames_of_a_hanging_body(n_frames):
-    """One that hovers over the ground has nothing to stand on."""
+    """A body above the ground has no support from it."""
     sky = WALK.slice(0, n_frames)
     sky = sky.with_poses(root_positions=sky.root_positions + np.array([0, 0, 0.9]))
 

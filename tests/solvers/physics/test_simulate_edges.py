@@ -32,7 +32,7 @@ def test_body_far_above_the_ground_is_unchanged_and_reported():
 
 
 def test_frames_not_followed_are_those_of_the_take():
-    """A walker is lifted by more than a meter, for a second and a half of eight."""
+    """A walker is lifted by more than 1 m for 1.5 of 8 seconds."""
     long = walking_gait(GaitSettings(duration=8.0, frame_rate=30.0))
     lift = np.interp(np.arange(240), [100, 108, 145, 153], [0.0, 1.2, 1.2, 0.0])
     roots = long.root_positions + np.outer(lift, [0.0, 0.0, 1.0])
@@ -56,8 +56,8 @@ def test_segments_between_jumps_are_simulated_separately():
 
     assert result.followed.all()
     assert np.abs(result.motion.root_positions - roots).max() < 0.05
-    alone = simulate(WALK.slice(0, 12)).motion
-    assert_allclose(result.motion.root_positions[:12], alone.root_positions, atol=0.01)
+    separate = simulate(WALK.slice(0, 12)).motion
+    assert_allclose(result.motion.root_positions[:12], separate.root_positions, atol=0.01)
 
 
 def test_gaps_are_filled_in_simulated_joints():
@@ -102,7 +102,7 @@ def test_simulate_accepts_few_frames(n_frames):
 
 @pytest.mark.parametrize("plant", [True, False])
 def test_unstable_engine_returns_the_take(monkeypatch, plant):
-    """Where muscles pull beyond all bounds in one step, forces of the ground are no numbers."""
+    """Muscle forces without bounds make the ground forces NaN in one step."""
     calls = []
 
     def exploding(engine, world, *others):
@@ -116,7 +116,7 @@ def test_unstable_engine_returns_the_take(monkeypatch, plant):
 
     result = simulate(WALK, settings=SimulateSettings(plant=plant))
 
-    assert np.isfinite(result.carried).all() and np.isfinite(result.support).all()
+    assert np.isfinite(result.foot_loads).all() and np.isfinite(result.support).all()
     failed = ~result.followed
     assert failed.any()
     assert np.array_equal(result.motion.rotations[failed], WALK.rotations[failed])
@@ -125,7 +125,7 @@ def test_unstable_engine_returns_the_take(monkeypatch, plant):
 
 @pytest.mark.parametrize("n_joints", [1, 2, 5])
 def test_other_skeleton_is_simulated_bone_by_bone(n_joints):
-    """A stick that starts upright above the ground falls onto it and keeps its length."""
+    """An upright stick above the ground falls onto it and keeps its length."""
     names = tuple(f"joint{n}" for n in range(n_joints))
     offsets = np.tile([0.0, 0.0, 0.2], (n_joints, 1))
     skeleton = Skeleton(names, tuple(range(-1, n_joints - 1)), offsets)
@@ -159,7 +159,7 @@ def test_bones_of_zero_length_are_stable(bones):
 @settings(max_examples=12)
 @given(
     seed=some.integers(0, 1000),
-    turns=some.floats(0.0, 3.0),
+    noise=some.floats(0.0, 3.0),
     travel=some.floats(0.0, 2.0),
     options=some.fixed_dictionaries({
         "support": some.floats(0.0, 3.0),
@@ -168,9 +168,9 @@ def test_bones_of_zero_length_are_stable(bones):
         "smoothing": some.floats(0.0, 0.5),
     }),
 )
-def test_random_motion_gives_finite_results(seed, turns, travel, options):
+def test_random_motion_gives_finite_results(seed, noise, travel, options):
     rng = np.random.default_rng(seed)
-    shaken = WALK.rotations + turns * rng.normal(size=WALK.rotations.shape)
+    shaken = WALK.rotations + noise * rng.normal(size=WALK.rotations.shape)
     shaken /= np.linalg.norm(shaken, axis=-1, keepdims=True)
     roots = WALK.root_positions + travel * rng.normal(size=WALK.root_positions.shape)
     motion = WALK.with_poses(shaken, roots)

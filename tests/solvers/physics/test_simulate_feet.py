@@ -51,44 +51,47 @@ def by_friction(shaking):
 
 
 @pytest.fixture(scope="module")
-def kept(shaking):
+def planted(shaking):
     return simulate(shaking)
 
 
-def test_loaded_foot_rests_on_a_fixed_point(body, by_friction, kept):
-    assert np.array_equal(kept.carried, by_friction.carried)
-    loaded = kept.carried[:-1] > LOADED
+def test_loaded_foot_rests_on_a_fixed_point(body, by_friction, planted):
+    assert np.array_equal(planted.foot_loads, by_friction.foot_loads)
+    loaded = planted.foot_loads[:-1] > LOADED
     assert loaded.mean() > 0.3
     slow = steps(body, by_friction.motion)[loaded] < 0.3 / 60.0
 
-    creep, rest = (steps(body, each.motion)[loaded][slow] for each in (by_friction, kept))
+    creep, rest = (steps(body, each.motion)[loaded][slow] for each in (by_friction, planted))
 
     assert rest.mean() < 0.35 * creep.mean()
     assert np.percentile(rest, 95) < 0.5 * MILLIMETRE
 
 
-def test_planting_is_horizontal(body, by_friction, kept):
-    before, after = (lowest_points(body, each.motion)[..., 2] for each in (by_friction, kept))
+def test_planting_is_horizontal(body, by_friction, planted):
+    before, after = (
+        lowest_points(body, each.motion)[..., 2] for each in (by_friction, planted)
+    )
 
     own = select_foot_ends(body, "left") | select_foot_ends(body, "right")
     assert_allclose(after[:, own], before[:, own], atol=1.5 * MILLIMETRE)
-    assert kept.penetration_after < by_friction.penetration_after + MILLIMETRE
-    assert np.abs(kept.motion.root_positions - by_friction.motion.root_positions).max() < 0.01
+    assert planted.penetration_after < by_friction.penetration_after + MILLIMETRE
+    shift = planted.motion.root_positions - by_friction.motion.root_positions
+    assert np.abs(shift).max() < 0.01
 
 
-def test_planting_stays_smooth_and_near_the_take(shaking, by_friction, kept):
-    assert jerk(kept.motion) < 1.03 * jerk(by_friction.motion)
-    assert kept.distance < by_friction.distance + MILLIMETRE
+def test_planting_stays_smooth_and_near_the_take(shaking, by_friction, planted):
+    assert jerk(planted.motion) < 1.03 * jerk(by_friction.motion)
+    assert planted.distance < by_friction.distance + MILLIMETRE
 
 
-def test_planting_keeps_bone_lengths_and_the_input(shaking, kept):
+def test_planting_keeps_bone_lengths_and_the_input(shaking, planted):
     before = shaking.rotations.copy(), shaking.root_positions.copy()
 
     again = simulate(shaking)
 
     assert np.array_equal(shaking.rotations, before[0])
     assert np.array_equal(shaking.root_positions, before[1])
-    assert np.array_equal(again.motion.rotations, kept.motion.rotations)
+    assert np.array_equal(again.motion.rotations, planted.motion.rotations)
     positions = forward_kinematics(again.motion).positions
     bones = positions[:, 1:] - positions[:, list(shaking.skeleton.parents[1:])]
     lengths = np.linalg.norm(shaking.skeleton.offsets[1:], axis=-1)
@@ -96,10 +99,10 @@ def test_planting_keeps_bone_lengths_and_the_input(shaking, kept):
 
 
 def test_ground_carries_the_weight_in_stance(walk):
-    """Newton's third law, on average over the steps of a walk that comes back to its height."""
+    """Newton's third law, averaged over the steps of a walk of constant height."""
     result = simulate(walk)
 
-    carried = result.carried.sum(axis=1)[30:-30].mean()
+    carried = result.foot_loads.sum(axis=1)[30:-30].mean()
     helped = result.support.mean()
     assert abs(carried - 1.0) < 0.05 + helped
 
@@ -123,13 +126,13 @@ def test_hop_has_a_flight_phase(walk):
     in_air = ~result.contacts.any(axis=1)
     assert in_air[33:39].all()
     assert result.contacts[:20].any(axis=1).mean() > 0.9
-    assert result.carried[33:39].max() == 0.0
+    assert result.foot_loads[33:39].max() == 0.0
     rise = np.ptp(result.motion.root_positions[:, 2])
     assert 0.4 * flight.max() < rise < 1.3 * flight.max()
 
 
-def test_fast_sliding_foot_is_not_held(walk):
-    """Who is carried sideways at 2 m/s in a stiff pose, feet on the ground, slides."""
+def test_fast_sliding_foot_is_not_planted(walk):
+    """A stiff pose that moves sideways at 2 m/s with both feet on the ground slides."""
     frame = in_contact_of(walk).all(axis=1).argmax()
     n_frames, rate = 60, 60.0
     displacement = np.outer(np.arange(n_frames) / rate * 2.0, [1.0, 0.0, 0.0])
@@ -140,40 +143,40 @@ def test_fast_sliding_foot_is_not_held(walk):
         rate,
     )
 
-    kept, free = (
+    planted, free = (
         simulate(sliding, settings=SimulateSettings(plant=plant)).motion
         for plant in (True, False)
     )
 
-    assert np.array_equal(kept.rotations, free.rotations)
-    assert np.array_equal(kept.root_positions, free.root_positions)
-    displacements = kept.root_positions[-1] - kept.root_positions[0]
+    assert np.array_equal(planted.rotations, free.rotations)
+    assert np.array_equal(planted.root_positions, free.root_positions)
+    displacements = planted.root_positions[-1] - planted.root_positions[0]
     assert_allclose(displacements, displacement[-1], atol=0.1)
 
 
-def test_held_feet_do_not_move(walk, body, rng):
-    """Planting alone: the part of the sole that bears the foot rests to a tenth of a mm."""
+def test_planted_feet_do_not_move(walk, body, rng):
+    """Planting without simulation: the loaded part of the sole moves by less than 0.1 mm."""
     sway = np.cumsum(rng.normal(scale=0.0008, size=(walk.n_frames, 2)), axis=0)
-    turn = np.cumsum(rng.normal(scale=0.001, size=walk.n_frames))
+    angles = np.cumsum(rng.normal(scale=0.001, size=walk.n_frames))
     rotations = walk.rotations.copy()
-    turn = quaternion_from_rotation_vector(turn[:, None] * (0.0, 0.0, 1.0))
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    angles = quaternion_from_rotation_vector(angles[:, None] * (0.0, 0.0, 1.0))
+    rotations[:, 0] = multiply(angles, rotations[:, 0])
     roots = walk.root_positions + np.pad(sway, ((0, 0), (0, 1)))
     swaying = walk.with_poses(rotations, roots)
-    stands = detect_target_contacts(body, walk)
-    held = stands[1:] & stands[:-1]
+    in_contact = detect_target_contacts(body, walk)
+    held = in_contact[1:] & in_contact[:-1]
 
     result = plant_target_feet(body, swaying, held.astype(np.float64), 0.0)
 
     assert loaded_steps(body, swaying)[held].mean() > 0.5 * MILLIMETRE
     assert np.percentile(loaded_steps(body, result)[held], 99) < 0.1 * MILLIMETRE
     assert (
-        measure_turning(body, result)[held].mean()
-        < 0.5 * measure_turning(body, swaying)[held].mean()
+        vertical_rotations(body, result)[held].mean()
+        < 0.5 * vertical_rotations(body, swaying)[held].mean()
     )
 
 
-def test_planting_changes_nothing_without_held_feet(walk, body):
+def test_planting_changes_nothing_without_planted_feet(walk, body):
     result = plant_target_feet(body, walk, np.zeros((walk.n_frames - 1, 2)), 0.0)
 
     assert result is walk
@@ -194,23 +197,23 @@ def test_lowest_part_of_the_sole_bears_the_load():
 
 def test_target_feet_are_placed_on_the_ground(walk, body):
     low = walk.with_poses(root_positions=walk.root_positions - (0.0, 0.0, 0.02))
-    stands = detect_target_contacts(body, walk).astype(np.float64)
+    in_contact = detect_target_contacts(body, walk).astype(np.float64)
 
-    result = place_feet_on_ground(body, low, stands, stands, 0.0)
+    result = place_feet_on_ground(body, low, in_contact, in_contact, 0.0)
 
     points = lowest_points(body, result)
     inner = slice(15, -15)
     for column, side in enumerate(SIDES):
         lowest = points[:, select_foot_ends(body, side), 2].min(axis=1)[inner] / body.size
-        always = moving_minimum(stands[inner, column]) == 1.0
-        never = moving_minimum(1.0 - stands[inner, column]) == 1.0
+        always = moving_minimum(in_contact[inner, column]) == 1.0
+        never = moving_minimum(1.0 - in_contact[inner, column]) == 1.0
         assert always.any() and never.any()
         assert_allclose(lowest[always], -STANCE_DEPTH_M, atol=MILLIMETRE)
         assert lowest[never].min() > 0.5 * MIN_SWING_CLEARANCE_M
 
 
 def test_pelvis_moves_where_straight_legs_would_stretch(walk, body):
-    """A goal that is farther along a straight leg is reached by the hips, not by the knee."""
+    """The hips, not the knee, reach a target farther along a straight leg."""
     straight = quaternion_from_rotation_vector(np.zeros((40, walk.n_joints, 3)))
     upright = walk.slice(0, 40).with_poses(straight)
     poses = forward_kinematics(upright)
@@ -233,21 +236,21 @@ def test_pelvis_stays_where_no_leg_changes(walk, body):
     assert_allclose(solve_pelvis_offset(poses, goals, 60.0, body.size), 0.0, atol=1e-12)
 
 
-def test_planting_is_equivariant_to_heading(shaking, kept):
-    turn = quaternion_from_rotation_vector([0.0, 0.0, 1.0])
+def test_planting_is_equivariant_to_heading(shaking, planted):
+    rotation = quaternion_from_rotation_vector([0.0, 0.0, 1.0])
     rotations = shaking.rotations.copy()
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    rotations[:, 0] = multiply(rotation, rotations[:, 0])
     c, s = np.cos(1.0), np.sin(1.0)
     about = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
 
     result = simulate(shaking.with_poses(rotations, shaking.root_positions @ about))
 
-    differences = result.motion.root_positions - kept.motion.root_positions @ about
+    differences = result.motion.root_positions - planted.motion.root_positions @ about
     assert np.abs(differences).mean() < MILLIMETRE
 
 
 def steps(body, motion):
-    """Way of the slowest point of each sole to the next frame, (n_frames - 1, 2), meters."""
+    """Displacement of the slowest point of each sole per frame, (n_frames - 1, 2), meters."""
     points = lowest_points(body, motion)
     displacements = np.linalg.norm(np.diff(points[..., :2], axis=0), axis=-1)
     return np.stack(
@@ -256,7 +259,7 @@ def steps(body, motion):
 
 
 def loaded_steps(body, motion):
-    """Way of what bears each sole, (n_frames - 1, 2), meters."""
+    """Displacement of the loaded part of each sole, (n_frames - 1, 2), meters."""
     points = lowest_points(body, motion)
     found = []
     for side in SIDES:
@@ -268,11 +271,11 @@ def loaded_steps(body, motion):
     return np.stack(found, axis=-1)
 
 
-def measure_turning(body, motion):
-    """Angle about the vertical by which feet turn to the next frame, (n_frames - 1, 2)."""
+def vertical_rotations(body, motion):
+    """Rotation of the feet about the vertical to the next frame, (n_frames - 1, 2)."""
     ankles = [find_leg_chain(body, side)[-1] for side in SIDES]
-    turns = forward_kinematics(motion).rotations[:, ankles]
-    steps = multiply(turns[1:], turns[:-1] * (1, -1, -1, -1))
+    rotations = forward_kinematics(motion).rotations[:, ankles]
+    steps = multiply(rotations[1:], rotations[:-1] * (1, -1, -1, -1))
     return np.abs(rotation_vector_from_quaternion(steps)[..., 2])
 
 

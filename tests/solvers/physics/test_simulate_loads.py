@@ -16,7 +16,7 @@ RADIUS = 0.1
 
 
 def test_ground_load_is_greater_at_the_heavier_end_of_a_beam():
-    """A light beam that bears a ball over its second end: the lever of the first is nought."""
+    """A light beam with a ball over its second end: the lever arm of the first end is 0."""
     engine = load_engine()
     beam = Capsule(0, np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]), RADIUS, 1e-6)
     keel = Capsule(0, np.array([[0.0, -0.5, 0.0], [0.0, 0.5, 0.0]]), RADIUS, 1e-6)

@@ -1,4 +1,4 @@
-"""Good takes hardly change, and bad ones come to stand on the ground."""
+"""Good takes hardly change, and noisy ones stand on the ground."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ GOOD = {
 
 @pytest.fixture(scope="module")
 def good_takes(recordings):
-    """Each take and what was simulated of it."""
+    """Each take and its simulation."""
     takes = {}
     for name, pattern in GOOD.items():
         motion = read_recording(sorted(recordings.glob(pattern))[0])
@@ -55,23 +55,23 @@ def test_feet_slide_less_by_an_independent_measure(good_takes):
 
 
 def test_feet_rest_while_loaded(good_takes):
-    """Against friction alone, by contacts that the take has no say in."""
+    """Compare with friction only, by contacts that do not depend on the take."""
     for motion, kept in good_takes.values():
         settings = SimulateSettings(ground=Ground.FEET, plant=False)
         free = simulate(motion, settings=settings)
-        loaded = kept.carried > 0.1
+        loaded = kept.foot_loads > 0.1
         creeps, rests = (
             sum(foot.distance for foot in measure_quality(each.motion, contacts=loaded).feet)
             for each in (free, kept)
         )
 
-        assert loaded.any() and np.array_equal(free.carried, kept.carried)
+        assert loaded.any() and np.array_equal(free.foot_loads, kept.foot_loads)
         assert rests < 0.8 * creeps
         assert jerk(kept.motion) < 1.1 * jerk(free.motion)
 
 
 def test_planting_does_not_sink_knees(recordings):
-    """Squatting low, the foot that carries nothing wanders, and its knee is near the ground."""
+    """In a low squat, the unloaded foot moves, and its knee is near the ground."""
     path = recordings / "mocap" / "hdm05" / "HDM_bd_squat1Reps_006_120.amc"
 
     result = simulate(read_recording(path), settings=UNDER_FEET)

@@ -137,10 +137,10 @@ def test_fingers_and_rigid_joints_are_no_segments():
     skeleton = Skeleton(
         (*names, "finger"), (-1, 0, 1, 0, 2, 3, 0), np.array([*offsets, [0, 0, 0.3]])
     )
-    turns = np.zeros((9, 7, 3))
-    turns[:, 1, 2] = 0.5
-    turns[:, 6, 2] = np.arange(9)
-    motion = Motion(skeleton, quaternion_from_rotation_vector(turns), np.zeros((9, 3)), 30.0)
+    vectors = np.zeros((9, 7, 3))
+    vectors[:, 1, 2] = 0.5
+    vectors[:, 6, 2] = np.arange(9)
+    motion = Motion(skeleton, quaternion_from_rotation_vector(vectors), np.zeros((9, 3)), 30.0)
     humanoid = HumanoidMap({name: name for name in names if name != "joint"})
 
     body = build_physics_body(motion, humanoid)
@@ -155,7 +155,7 @@ def test_fingers_and_rigid_joints_are_no_segments():
 
 
 def test_target_velocities_equal_finite_differences(rng):
-    """Velocities and accelerations, against differences of the places."""
+    """Compare velocities and accelerations with differences of positions."""
     coordinates = rng.normal(size=(8, 3))
     rotations = quaternion_from_rotation_vector(rng.normal(scale=0.3, size=(8, 2, 3)))
     target = smooth_target(coordinates, rotations, 30.0, 0.05)
@@ -179,9 +179,9 @@ def test_target_velocities_equal_finite_differences(rng):
 
 
 def angular_velocities(coordinates, dt):
-    """Angular velocity in the joint's own frame, from how two of its axes move."""
-    turns = coordinates[:, 3:].reshape(len(coordinates), -1, 4)
-    x, y = (rotate(turns, axis) for axis in np.eye(3)[:2])
+    """Angular velocity in the joint's frame, from the motion of two of its axes."""
+    rotations = coordinates[:, 3:].reshape(len(coordinates), -1, 4)
+    x, y = (rotate(rotations, axis) for axis in np.eye(3)[:2])
     z = np.cross(x, y)
     dx, dy, dz = (np.gradient(axis, dt, axis=0) for axis in (x, y, z))
     own = np.stack([(z * dy).sum(-1), (x * dz).sum(-1), (y * dx).sum(-1)], axis=-1)
@@ -200,14 +200,14 @@ def test_target_smoothing_equals_a_gaussian_at_any_frame_rate(frame_rate):
     inner = slice(len(time) // 4, -len(time) // 4)
     kept = np.exp(-0.5 * (2 * np.pi * 4.0 * 0.03) ** 2)
     assert_allclose(target[inner, 0], kept * wave[inner], atol=0.02)
-    assert_allclose(target[:, 2], 3.0 * time, atol=1e-9)  # a straight way is not changed
+    assert_allclose(target[:, 2], 3.0 * time, atol=1e-9)  # a straight path stays unchanged
 
 
 def test_fill_gaps_interpolates_and_holds_the_ends():
     skeleton = Skeleton(("a", "b"), (-1, 0), np.zeros((2, 3)))
-    turns = np.zeros((7, 2, 3))
-    turns[:, 0, 2] = [9.0, 0.0, 9.0, 9.0, 0.9, 9.0, 9.0]
-    rotations = quaternion_from_rotation_vector(turns)
+    vectors = np.zeros((7, 2, 3))
+    vectors[:, 0, 2] = [9.0, 0.0, 9.0, 9.0, 0.9, 9.0, 9.0]
+    rotations = quaternion_from_rotation_vector(vectors)
     coordinates = np.arange(21.0).reshape(7, 3)
     rotations[[0, 2, 3, 5, 6], 0] = np.nan
     coordinates[2] = np.nan
@@ -215,8 +215,8 @@ def test_fill_gaps_interpolates_and_holds_the_ends():
     filled = fill_motion_gaps(Motion(skeleton, rotations, coordinates, 30.0))
 
     angles = [0.0, 0.0, 0.3, 0.6, 0.9, 0.9, 0.9]
-    turns[:, 0, 2] = angles
-    assert_allclose(filled.rotations, quaternion_from_rotation_vector(turns), atol=1e-12)
+    vectors[:, 0, 2] = angles
+    assert_allclose(filled.rotations, quaternion_from_rotation_vector(vectors), atol=1e-12)
     assert_allclose(filled.root_positions, np.arange(21.0).reshape(7, 3))
 
 
@@ -229,14 +229,14 @@ def test_ground_forces_stay_in_the_friction_cone():
 
 
 def test_lowest_points_are_a_radius_below_the_ends():
-    """A rod of 1 m with a skin of 10 cm, turned about X from level to upright and back."""
+    """A rod of 1 m with a skin of 10 cm, rotated about X from level to upright and back."""
     rod = Capsule(0, np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), 0.1, 1.0)
     body = body_of(rod, replace(rod, touches=False))
-    turns = np.zeros((3, 1, 3))
-    turns[:, 0, 0] = 0.0, -np.pi / 2, np.pi / 6
+    vectors = np.zeros((3, 1, 3))
+    vectors[:, 0, 0] = 0.0, -np.pi / 2, np.pi / 6
     motion = Motion(
         body.skeleton,
-        quaternion_from_rotation_vector(turns),
+        quaternion_from_rotation_vector(vectors),
         np.tile([5.0, 0, 2.0], (3, 1)),
         30.0,
     )
@@ -265,13 +265,13 @@ def test_height_correction_raises_sunk_bodies_and_keeps_jumps():
 
 
 def test_blend_motions_is_exact_at_weights_zero_and_one(walk):
-    turned = walk.with_poses(np.roll(walk.rotations, 5, axis=0), walk.root_positions + 1.0)
+    rotated = walk.with_poses(np.roll(walk.rotations, 5, axis=0), walk.root_positions + 1.0)
     weights = np.linspace(0.0, 1.0, walk.n_frames)
 
-    between = blend_motions(walk, turned, range(walk.n_joints), weights)
+    between = blend_motions(walk, rotated, range(walk.n_joints), weights)
 
     assert np.array_equal(between.rotations[0], walk.rotations[0])
-    assert np.array_equal(between.rotations[-1], turned.rotations[-1])
+    assert np.array_equal(between.rotations[-1], rotated.rotations[-1])
     offsets = between.root_positions - walk.root_positions
     assert_allclose(offsets, weights[:, None] + np.zeros(3))
 

@@ -1,4 +1,4 @@
-"""Confidence holds for people whom the prior has never seen."""
+"""Calibrate the confidence of residual priors for actors outside the training set."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from solvers.reconstruction import correct_postures, learn_residual_prior, load_
 from solvers.reconstruction.residual_correction.confidence import (
     IDENTITY_CALIBRATION,
     Calibration,
-    chance_within,
+    probability_within,
 )
 from solvers.reconstruction.residual_correction.learn_confidence import (
     calibrate_confidence,
@@ -36,37 +36,39 @@ def prior(pairs):
     return learn_residual_prior(pairs, actors=ACTORS, settings=QUICK)
 
 
-def test_an_unknown_variance_is_averaged_over(rng):
-    """Second way: draw somebody's variance, then his error."""
+def test_probability_integrates_over_an_unknown_variance(rng):
+    """Compare with Monte Carlo: draw a variance of an actor, then an error."""
     spread = 0.9
     deviation = 0.03 * np.exp(0.5 * spread * rng.normal(size=400_000))
     drawn = np.linalg.norm(rng.normal(size=(400_000, 3)), axis=-1) * deviation
 
-    told = chance_within(np.array(0.03**2), 0.05, Calibration(spread=spread))
+    probability = probability_within(np.array(0.03**2), 0.05, Calibration(spread=spread))
 
-    assert told == pytest.approx((drawn < 0.05).mean(), abs=0.005)
+    assert probability == pytest.approx((drawn < 0.05).mean(), abs=0.005)
 
 
 def test_differences_between_joints_shrink_toward_their_level():
     level = np.log(0.03**2)
     variances = np.exp(level + np.array([-1.0, 0.0, 1.0]))
 
-    told = chance_within(variances, 0.05, Calibration(0.0, 0.5, 0.0))
+    probability = probability_within(variances, 0.05, Calibration(0.0, 0.5, 0.0))
 
-    assert_allclose(told, chance_within(np.exp(level + np.array([-0.5, 0.0, 0.5])), 0.05))
+    assert_allclose(
+        probability, probability_within(np.exp(level + np.array([-0.5, 0.0, 0.5])), 0.05)
+    )
 
 
 @pytest.mark.parametrize("slope", [0.0, 0.5, 1.0])
 def test_calibration_of_unknown_variances_has_no_confidence(slope):
-    assert chance_within(np.array(np.inf), 0.05, Calibration(0.0, slope, 1.0)) == 0.0
+    assert probability_within(np.array(np.inf), 0.05, Calibration(0.0, slope, 1.0)) == 0.0
 
 
-def test_slope_and_spread_are_those_of_actors_who_were_left_out(rng):
-    told = rng.normal(-7.0, 1.0, 4000)
-    found = -7.0 + 0.6 * (told + 7.0) + rng.normal(scale=0.8, size=4000)
+def test_calibration_recovers_slope_and_spread_of_held_out_actors(rng):
+    log_variances = rng.normal(-7.0, 1.0, 4000)
+    found = -7.0 + 0.6 * (log_variances + 7.0) + rng.normal(scale=0.8, size=4000)
     gaps = np.full((5, 2), np.nan)
 
-    points = np.concatenate([np.stack([told, found], axis=-1), gaps])
+    points = np.concatenate([np.stack([log_variances, found], axis=-1), gaps])
     shift, slope, spread = fit_calibration(points, keep_level=True)
 
     assert shift == 0.0
@@ -74,56 +76,60 @@ def test_slope_and_spread_are_those_of_actors_who_were_left_out(rng):
     assert spread == pytest.approx(0.8, abs=0.03)
 
 
-def test_those_who_all_err_more_widen_the_spread_and_leave_the_level():
-    told = np.linspace(-8.0, -6.0, 50)
+def test_larger_errors_of_all_actors_widen_the_spread_at_equal_level():
+    log_variances = np.linspace(-8.0, -6.0, 50)
 
-    kept = fit_calibration(np.stack([told, told + 0.7], axis=-1), keep_level=True)
+    kept = fit_calibration(
+        np.stack([log_variances, log_variances + 0.7], axis=-1), keep_level=True
+    )
 
     assert kept == pytest.approx((0.0, 1.0, 0.7))
 
 
 def test_without_constant_offset_the_level_is_learned():
-    told = np.linspace(-8.0, -6.0, 50)
+    log_variances = np.linspace(-8.0, -6.0, 50)
 
-    learned = fit_calibration(np.stack([told, told - 1.8], axis=-1), keep_level=False)
+    learned = fit_calibration(
+        np.stack([log_variances, log_variances - 1.8], axis=-1), keep_level=False
+    )
 
     assert learned == pytest.approx((-1.8, 1.0, 0.0), abs=1e-9)
 
 
-def test_confidence_is_right_of_new_actors_whose_sensors_err_by_any_amount(rng):
-    """As many as are told lie within; without a calibration too few of the surest do."""
+def test_confidence_is_calibrated_for_new_actors_at_any_error_size(rng):
+    """The expected fraction of errors lies within the distance; without calibration it is
+    smaller.
+    """
     known, new = (np.exp(0.5 * 1.2 * rng.normal(size=n)) for n in (60, 400))
     variances = np.exp(rng.normal(-7.6, 0.4, size=20))
     points = [
         np.stack([np.log(variances), np.log(variances) + 2.0 * np.log(each)], axis=-1)
         for each in known
     ]
-    off = (
+    errors = (
         rng.normal(size=(400, 20, 50, 3)) * (new[:, None] * np.sqrt(variances))[..., None, None]
     )
-    right = (np.linalg.norm(off, axis=-1) < 0.05).mean(axis=(0, 2))
+    right = (np.linalg.norm(errors, axis=-1) < 0.05).mean(axis=(0, 2))
 
-    plain, told = (
-        chance_within(variances, 0.05, each)
+    plain, calibrated = (
+        probability_within(variances, 0.05, each)
         for each in (
             IDENTITY_CALIBRATION,
             fit_calibration(np.concatenate(points), keep_level=True),
         )
     )
 
-    assert np.abs(told - right).max() < 0.06
+    assert np.abs(calibrated - right).max() < 0.06
     assert (plain - right).max() > 0.1
 
 
-def test_a_calibration_is_learned_by_leaving_actors_out_and_kept_in_the_file(
-    prior, pairs, tmp_path
-):
-    told = calibrate_confidence(prior, pairs, ACTORS, settings=QUICK)
-    told.save(tmp_path / "prior.npz")
+def test_calibration_from_held_out_actors_is_saved_in_the_file(prior, pairs, tmp_path):
+    calibrated = calibrate_confidence(prior, pairs, ACTORS, settings=QUICK)
+    calibrated.save(tmp_path / "prior.npz")
     again = load_residual_prior(tmp_path / "prior.npz")
 
-    assert_allclose(again.calibration, told.calibration)
-    assert (told.calibration[:, 2] > 0.0).all()
+    assert_allclose(again.calibration, calibrated.calibration)
+    assert (calibrated.calibration[:, 2] > 0.0).all()
     take = recording(seen_by_a_bad_sensor(truth(1.3)))
     before, after = (correct_postures(take, each) for each in (prior, again))
     assert_allclose(after.tracks.positions, before.tracks.positions)
@@ -143,19 +149,19 @@ def test_older_files_have_an_identity_calibration(prior, tmp_path):
     )
 
 
-def test_a_calibration_that_cannot_be_is_refused(prior, tmp_path):
+def test_load_raises_for_an_invalid_calibration(prior, tmp_path):
     replace(prior, calibration=-np.ones((2, 3))).save(tmp_path / "prior.npz")
 
     with pytest.raises(InvalidFileError, match="calibration is negative"):
         load_residual_prior(tmp_path / "prior.npz")
 
 
-def test_two_actors_are_too_few(prior, pairs):
+def test_calibrate_confidence_raises_for_two_actors(prior, pairs):
     with pytest.raises(InvalidMotionError, match="needs 3; there are 2"):
         calibrate_confidence(prior, pairs, ("anna", "anna", "bob", "bob"), settings=QUICK)
 
 
-def test_calibration_of_no_measurement_is_the_identity(prior):
+def test_calibration_without_measurements_is_the_identity(prior):
     nothing = np.full((2, 20, 2), np.nan)
 
     assert_allclose(

@@ -1,4 +1,4 @@
-"""Residual priors: learned from made sensors whose errors are known, and applied."""
+"""Learn residual priors from simulated sensors with known errors, and apply them."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ from solvers.reconstruction import (
     correct_postures,
     learn_residual_prior,
 )
-from solvers.reconstruction.residual_correction.confidence import chance_within
+from solvers.reconstruction.residual_correction.confidence import probability_within
 from solvers.reconstruction.residual_correction.correct_postures import _frame_by_frame
 from solvers.reconstruction.residual_correction.smooth_trajectories import (
     filter_trajectories,
@@ -62,9 +62,9 @@ def test_prior_ignores_heading_and_position(prior):
         rotate_about_vertical(given_.tracks.positions, angles) + np.array([4.0, 1.0, 0.0])
     )
     here = correct_postures(given_, prior).tracks.positions
-    there = correct_postures(turned_, prior).tracks.positions
+    moved = correct_postures(turned_, prior).tracks.positions
     np.testing.assert_allclose(
-        rotate_about_vertical(here, angles) + np.array([4.0, 1.0, 0.0]), there, atol=1e-4
+        rotate_about_vertical(here, angles) + np.array([4.0, 1.0, 0.0]), moved, atol=1e-4
     )
 
 
@@ -87,14 +87,14 @@ def test_prior_predicts_nothing_far_from_its_training_data(prior):
         moved.append(np.linalg.norm(taken - left, axis=-1)[:, KNEE].max())
     assert moved[0] < 0.05 * moved[1]
     strange = correct_postures(recording(upside_down), prior, settings=settings)
-    usual = correct_postures(given_, prior, settings=settings)
+    default = correct_postures(given_, prior, settings=settings)
     np.testing.assert_allclose(
         strange.confidence[:, KNEE], strange.reliability.combined[:, KNEE], atol=1e-3
     )
-    assert usual.confidence[:, KNEE].mean() > 0.9
+    assert default.confidence[:, KNEE].mean() > 0.9
 
 
-def test_a_joint_that_was_never_tracked_hurts_no_other(prior):
+def test_joint_never_observed_does_not_affect_others(prior):
     positions = seen_by_a_bad_sensor(truth(1.3))
     positions[:, HAND] = np.nan
     result = correct_postures(recording(positions), prior)
@@ -104,7 +104,7 @@ def test_a_joint_that_was_never_tracked_hurts_no_other(prior):
 
 
 def test_joint_without_training_data_changes_nothing():
-    """Sensors that tell the ends of hands, and a prior of one that does not."""
+    """The sensor reports fingertips; the prior is of a sensor without them."""
     ends = [NAMES.index("HandRight"), NAMES.index("HandLeft")]
 
     def blind(positions):
@@ -112,13 +112,13 @@ def test_joint_without_training_data_changes_nothing():
 
     takes = []
     for speed in (0.9, 1.1, 1.45, 1.6):
-        seen, true = pair(truth(speed))
-        takes.append((recording(blind(seen.tracks.positions)), true))
+        observed, true = pair(truth(speed))
+        takes.append((recording(blind(observed.tracks.positions)), true))
     handless = learn_residual_prior(takes, settings=QUICK)
-    seen = seen_by_a_bad_sensor(truth(1.3))
+    observed = seen_by_a_bad_sensor(truth(1.3))
 
     with_ends, without = (
-        correct_postures(recording(one), handless) for one in (seen, blind(seen))
+        correct_postures(recording(one), handless) for one in (observed, blind(observed))
     )
 
     shared = [joint for joint in range(20) if joint not in ends]
@@ -135,7 +135,7 @@ def test_gaps_are_bridged(prior):
 
 
 @pytest.mark.parametrize("n_frames", [1, 2, 3, 5, 6])
-def test_short_takes(prior, n_frames):
+def test_correct_postures_accepts_short_takes(prior, n_frames):
     given_ = recording(seen_by_a_bad_sensor(truth(1.3))[:n_frames])
     for method in CorrectionMethod:
         result = correct_postures(given_, prior, settings=CorrectionSettings(method=method))
@@ -152,7 +152,7 @@ def test_smoothing_solves_the_least_squares_problem(rng):
         np.testing.assert_allclose(found[:, joint], expected, atol=1e-10)
 
 
-def test_smoothing_halves_waves_of_its_length():
+def test_smoothing_halves_sines_of_its_wavelength():
     frames = 20.0
     wave = np.sin(np.arange(2000) / frames)[:, None, None] * np.ones(3)
     found = smooth_trajectories(wave, np.ones((2000, 1)), frames)
@@ -160,7 +160,7 @@ def test_smoothing_halves_waves_of_its_length():
 
 
 def test_filter_ends_where_the_smoother_of_past_frames_ends(rng):
-    """The filter's last frame is the smoother's of the same frames, the start being far."""
+    """Filter and smoother agree in the last frame if the first frame is long ago."""
     positions = np.cumsum(rng.normal(size=(60, 2, 3)), axis=0)
     weights = rng.uniform(0.2, 1.0, size=(60, 2))
     found = filter_trajectories(positions, weights, 2.0)
@@ -169,23 +169,23 @@ def test_filter_ends_where_the_smoother_of_past_frames_ends(rng):
         np.testing.assert_allclose(found[last], expected, atol=1e-3)
 
 
-def test_the_published_frame_minimises_the_published_energy(rng):
-    """Eq. 5.6 of [ZH14], minimised numerically in the third frame."""
+def test_published_method_minimizes_the_published_energy(rng):
+    """Minimize eq. 5.6 of [ZH14] numerically in the third frame."""
     positions = truth(1.3)[:3] + rng.normal(scale=0.02, size=(3, 20, 3))
     foretold = positions + rng.normal(scale=0.03, size=positions.shape)
     variances = rng.uniform(1e-4, 1e-3, size=(3, 20))
-    trust = rng.uniform(size=(3, 20))
+    reliability = rng.uniform(size=(3, 20))
     settings = CorrectionSettings(method=CorrectionMethod.PUBLISHED)
-    found = _frame_by_frame(recording(positions), foretold, variances, trust, settings)
+    found = _frame_by_frame(recording(positions), foretold, variances, reliability, settings)
 
     def energy(offset: np.ndarray) -> float:
         y = offset * 100.0
         spatial = ((y - 100.0 * (foretold - positions)[2, KNEE]) ** 2).sum()
-        steady = 100.0 * (2.0 * found[1, KNEE] - found[0, KNEE] - positions[2, KNEE])
+        smooth = 100.0 * (2.0 * found[1, KNEE] - found[0, KNEE] - positions[2, KNEE])
         return float(
             0.6 * spatial / (2.0 * 1e4 * variances[2, KNEE])
-            + 0.2 * ((y - steady) ** 2).sum()
-            + 0.2 * (trust[2, KNEE] ** 2) * (y**2).sum()
+            + 0.2 * ((y - smooth) ** 2).sum()
+            + 0.2 * (reliability[2, KNEE] ** 2) * (y**2).sum()
         )
 
     best = minimize(
@@ -194,30 +194,30 @@ def test_the_published_frame_minimises_the_published_energy(rng):
     np.testing.assert_allclose(found[2, KNEE] - positions[2, KNEE], best.x, atol=1e-5)
 
 
-def test_chance_within_is_that_of_drawing(rng):
+def test_probability_within_equals_a_monte_carlo_estimate(rng):
     drawn = np.linalg.norm(rng.normal(scale=0.03, size=(200_000, 3)), axis=-1)
-    assert chance_within(np.array(0.03**2), 0.05) == pytest.approx(
+    assert probability_within(np.array(0.03**2), 0.05) == pytest.approx(
         (drawn < 0.05).mean(), abs=0.005
     )
-    assert chance_within(np.array(np.inf), 0.05) == 0.0
+    assert probability_within(np.array(np.inf), 0.05) == 0.0
 
 
 def test_actor_labels_separate_actor_specific_errors():
-    """Four of five takes are of one actor, whose knee the sensor sees 10 cm aside."""
+    """One actor performs four of five takes; the sensor offsets his knee by 10 cm."""
     takes = [pair(truth(speed), 0.10) for speed in (1.0, 1.2, 1.4, 1.6)] + [
         pair(truth(1.3), 0.0)
     ]
-    told = learn_residual_prior(takes, actors=[*"aaaa", "b"], settings=QUICK)
+    labeled = learn_residual_prior(takes, actors=[*"aaaa", "b"], settings=QUICK)
     untold = learn_residual_prior(takes, settings=QUICK)
     given_ = recording(seen_by_a_bad_sensor(truth(1.5), 0.05))
     sideways = [
         (correct_postures(given_, one).tracks.positions - given_.tracks.positions)[:, KNEE, 0]
-        for one in (told, untold)
+        for one in (labeled, untold)
     ]
     assert abs(sideways[0].mean() + 0.05) < abs(sideways[1].mean() + 0.05)
 
 
-def test_same_pairs_same_prior(prior):
+def test_learn_residual_prior_repeats_for_the_same_pairs(prior):
     again = learn_residual_prior(
         [pair(truth(speed)) for speed in (0.9, 1.1, 1.45, 1.6)], settings=QUICK
     )
@@ -240,32 +240,32 @@ def test_published_prior_uses_neighbors_only():
 
 
 def test_mirror_setting_shares_errors_of_left_and_right_limbs():
-    """Learned from a left knee alone, whose right one was never tracked."""
+    """Learn from a left knee only; the right knee was never tracked."""
     takes = []
     for speed in (0.9, 1.1, 1.45, 1.6):
-        seen, true = pair(truth(speed))
-        blind = true.positions.copy()
-        blind[:, [MIRROR_JOINTS[joint] for joint in (KNEE, KNEE + 1, KNEE + 2)]] = np.nan
-        takes.append((seen, true.with_positions(blind)))
+        observed, true = pair(truth(speed))
+        unobserved = true.positions.copy()
+        unobserved[:, [MIRROR_JOINTS[joint] for joint in (KNEE, KNEE + 1, KNEE + 2)]] = np.nan
+        takes.append((observed, true.with_positions(unobserved)))
     both_sides = learn_residual_prior(takes, settings=replace(QUICK, mirror=True))
     assert "rightLowerLeg" not in both_sides.joints
     given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
     image = recording(mirror_postures(given_.tracks.positions))
     here = correct_postures(given_, both_sides).tracks.positions
-    there = correct_postures(image, both_sides).tracks.positions
-    np.testing.assert_allclose(mirror_postures(here), there, atol=1e-6)
-    moved = (there - image.tracks.positions)[:, MIRROR_JOINTS[KNEE]]
+    mirrored = correct_postures(image, both_sides).tracks.positions
+    np.testing.assert_allclose(mirror_postures(here), mirrored, atol=1e-6)
+    moved = (mirrored - image.tracks.positions)[:, MIRROR_JOINTS[KNEE]]
     assert np.linalg.norm(moved, axis=-1).mean() > 0.03
 
 
-def test_pairs_must_fit():
-    seen, true = pair(truth(1.3))
+def test_learn_residual_prior_raises_for_mismatched_pairs():
+    observed, true = pair(truth(1.3))
     with pytest.raises(InvalidMotionError, match="no pair"):
         learn_residual_prior([])
     with pytest.raises(InvalidMotionError, match="90 frames at 30 Hz do not fit 80"):
-        learn_residual_prior([(seen, true.slice(0, 80))])
+        learn_residual_prior([(observed, true.slice(0, 80))])
     with pytest.raises(InvalidMotionError, match="1 pairs but 2 actors"):
-        learn_residual_prior([(seen, true)], actors=["a", "b"])
-    blind = Tracks(NAMES, np.full((90, 20, 3), np.nan), 30.0)
+        learn_residual_prior([(observed, true)], actors=["a", "b"])
+    unobserved = Tracks(NAMES, np.full((90, 20, 3), np.nan), 30.0)
     with pytest.raises(InvalidMotionError, match="No joint is known in both"):
-        learn_residual_prior([(seen, blind)], settings=QUICK)
+        learn_residual_prior([(observed, unobserved)], settings=QUICK)

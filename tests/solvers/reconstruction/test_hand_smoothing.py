@@ -1,4 +1,4 @@
-"""Hands and twists do not flip, whatever a camera makes of palm and thumb."""
+"""Hands and axial rotations do not flip when palms and thumbs are noisy."""
 
 import numpy as np
 import pytest
@@ -14,46 +14,51 @@ ACROSS = np.tile((1.0, 0.0, 0.0), (60, 1))
 STILL = np.tile(IDENTITY, (60, 1))
 
 
-def seen_at(degrees: np.ndarray) -> np.ndarray:
-    """Ways about UP, so far from ACROSS."""
+def directions_at(degrees: np.ndarray) -> np.ndarray:
+    """Directions at these angles (degrees) from ACROSS about UP."""
     angles = np.radians(degrees)
     return np.stack([np.cos(angles), np.sin(angles), np.zeros(60)], axis=-1)
 
 
 @pytest.mark.parametrize("rate", [15.0, 30.0, 120.0])
-def test_twist_jump_of_almost_a_turn_is_interpolated(rate):
+def test_axial_jump_of_almost_360_degrees_is_interpolated(rate):
     degrees = np.where(np.arange(60) < 30, -87.0, 87.0)
 
-    turns = twist_to_normal(STILL, UP, ACROSS, seen_at(degrees), np.ones(60), rate)
+    rotations = twist_to_normal(STILL, UP, ACROSS, directions_at(degrees), np.ones(60), rate)
 
-    steps = np.degrees(angle_between(turns[1:], turns[:-1]))
+    steps = np.degrees(angle_between(rotations[1:], rotations[:-1]))
     assert steps.max() < 60.0
-    shown = rotate(turns, ACROSS)
-    assert np.degrees(np.arccos(shown[0] @ seen_at(degrees)[0])) < 10.0
-    assert np.degrees(np.arccos(shown[-1] @ seen_at(degrees)[-1])) < 10.0
+    shown = rotate(rotations, ACROSS)
+    assert np.degrees(np.arccos(shown[0] @ directions_at(degrees)[0])) < 10.0
+    assert np.degrees(np.arccos(shown[-1] @ directions_at(degrees)[-1])) < 10.0
 
 
 def test_constant_twist_rate_is_followed():
     degrees = np.linspace(-60.0, 60.0, 60)
 
-    turns = twist_to_normal(STILL, UP, ACROSS, seen_at(degrees), np.ones(60), RATE)
+    rotations = twist_to_normal(STILL, UP, ACROSS, directions_at(degrees), np.ones(60), RATE)
 
-    shown = rotate(turns, ACROSS)
-    off = np.einsum("fi,fi->f", shown, seen_at(degrees))
-    assert np.degrees(np.arccos(np.clip(off, -1.0, 1.0))).max() < 8.0
+    shown = rotate(rotations, ACROSS)
+    cosine = np.einsum("fi,fi->f", shown, directions_at(degrees))
+    assert np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))).max() < 8.0
 
 
 @pytest.mark.parametrize(
     "wrong", [(0.0, 0.015, 0.0), (0.02, 0.0, -0.07)], ids=["too short", "folded back"]
 )
 def test_impossible_palm_is_ignored(wrong):
-    seen = np.tile((0.0, 0.0, 0.08), (60, 1))
-    seen[30:34] = wrong
+    observed = np.tile((0.0, 0.0, 0.08), (60, 1))
+    observed[30:34] = wrong
 
-    ways = smooth_direction(seen, STILL, np.array([0.0, 0.0, 0.25]), np.ones(60), RATE)
+    directions = smooth_direction(
+        observed, STILL, np.array([0.0, 0.0, 0.25]), np.ones(60), RATE
+    )
 
     assert (
-        np.degrees(np.arccos(ways[30:34, 2] / np.linalg.norm(ways[30:34], axis=-1))).max() < 5
+        np.degrees(
+            np.arccos(directions[30:34, 2] / np.linalg.norm(directions[30:34], axis=-1))
+        ).max()
+        < 5
     )
 
 
@@ -61,12 +66,14 @@ def test_impossible_palm_is_ignored(wrong):
     "file", ["irds/217_18_0_3_1_wheelchair.txt", "kimore/JointPositionExercise3.csv"]
 )
 def test_wrists_of_real_takes_never_flip(recordings, file):
-    """Palms are seen 2 cm long there, folded onto the forearm; they turned by 140 degrees."""
+    """Tracked palms are 2 cm long and folded onto the forearm; wrists had flipped by 140
+    degrees.
+    """
     recording = read_recording(recordings / "kinect" / file)
 
     motion = motion_from_positions(recording.tracks, recording.parents)
 
     for name in ("WristLeft", "WristRight"):
-        turns = motion.rotations[:, motion.skeleton.index(name)]
-        steps = np.degrees(angle_between(turns[1:], turns[:-1]))
+        rotations = motion.rotations[:, motion.skeleton.index(name)]
+        steps = np.degrees(angle_between(rotations[1:], rotations[:-1]))
         assert np.nanmax(steps) < 60.0, name

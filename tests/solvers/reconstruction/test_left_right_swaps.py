@@ -1,4 +1,4 @@
-"""Exchanges of left and right are undone; movements that only look alike are left alone."""
+"""Left-right swaps are corrected, and similar movements stay unchanged."""
 
 import kinect_walks
 import numpy as np
@@ -20,19 +20,21 @@ ALL = ("Shoulder", "Hip", *ARMS, *LEGS)
 def walk():
     true = kinect_walks.true_positions(samples, posture_joints)
     tracked = kinect_walks.tracked_walk(motion, true)
-    seen = true + np.random.default_rng(4).normal(scale=0.005, size=true.shape)
+    observed = true + np.random.default_rng(4).normal(scale=0.005, size=true.shape)
     return JointRecording(
-        Tracks(tracked.names, seen, 30.0, np.random.default_rng(5).random(seen.shape[:2])),
+        Tracks(
+            tracked.names, observed, 30.0, np.random.default_rng(5).random(observed.shape[:2])
+        ),
         tracked.tracking_state,
         tracked.sensor,
     )
 
 
-def exchanged(take, parts, frames):
-    """Exchange left and right of these joints, with all that is told of them."""
+def swapped(take, parts, frames):
+    """Swap left and right joints of these parts, with their states."""
     names = take.names
-    left = [place for place, name in enumerate(names) if name in {f"{p}Left" for p in parts}]
-    right = [names.index(names[place].replace("Left", "Right")) for place in left]
+    left = [index for index, name in enumerate(names) if name in {f"{p}Left" for p in parts}]
+    right = [names.index(names[index].replace("Left", "Right")) for index in left]
     order = np.arange(len(names))
     order[left], order[right] = right, left
 
@@ -54,10 +56,10 @@ def exchanged(take, parts, frames):
 @pytest.mark.parametrize("n_frames", [1, 5, 10])
 @pytest.mark.parametrize("parts", [ARMS, ("Shoulder", *ARMS), LEGS, ALL])
 def test_swapped_joints_are_restored_bit_for_bit(walk, parts, n_frames):
-    spoilt = exchanged(walk, parts, slice(40, 40 + n_frames))
-    assert np.abs(spoilt.tracks.positions - walk.tracks.positions).max() > 0.1
+    corrupted = swapped(walk, parts, slice(40, 40 + n_frames))
+    assert np.abs(corrupted.tracks.positions - walk.tracks.positions).max() > 0.1
 
-    found = fix_left_right_swaps(spoilt)
+    found = fix_left_right_swaps(corrupted)
 
     assert_array_equal(found.tracks.positions, walk.tracks.positions)
     assert_array_equal(found.tracks.confidence, walk.tracks.confidence)
@@ -65,26 +67,26 @@ def test_swapped_joints_are_restored_bit_for_bit(walk, parts, n_frames):
 
 
 @pytest.mark.parametrize("frames", [slice(0, 6), slice(80, 90)])
-def test_the_first_and_the_last_frames_come_back_too(walk, frames):
-    found = fix_left_right_swaps(exchanged(walk, ALL, frames))
+def test_swaps_in_the_first_and_last_frames_are_corrected(walk, frames):
+    found = fix_left_right_swaps(swapped(walk, ALL, frames))
 
     assert_array_equal(found.tracks.positions, walk.tracks.positions)
 
 
 def test_several_adjacent_swaps_are_corrected(walk):
-    spoilt = exchanged(walk, ARMS, [20, 21, 25, 40, 41, 42, 43])
-    spoilt = exchanged(spoilt, LEGS, [24, 25, 26])
+    corrupted = swapped(walk, ARMS, [20, 21, 25, 40, 41, 42, 43])
+    corrupted = swapped(corrupted, LEGS, [24, 25, 26])
 
-    assert_array_equal(fix_left_right_swaps(spoilt).tracks.positions, walk.tracks.positions)
+    assert_array_equal(fix_left_right_swaps(corrupted).tracks.positions, walk.tracks.positions)
 
 
 def test_joints_missing_at_the_swap_do_not_hide_it(walk):
     gone = walk.tracks.positions.copy()
     gone[38:42, walk.names.index("WristLeft")] = np.nan
     blank = JointRecording(walk.tracks.with_positions(gone), None, walk.sensor)
-    spoilt = exchanged(blank, ARMS, slice(40, 46))
+    corrupted = swapped(blank, ARMS, slice(40, 46))
 
-    assert_array_equal(fix_left_right_swaps(spoilt).tracks.positions, gone)
+    assert_array_equal(fix_left_right_swaps(corrupted).tracks.positions, gone)
 
 
 def test_take_without_swaps_is_returned_unchanged(walk):
@@ -92,9 +94,9 @@ def test_take_without_swaps_is_returned_unchanged(walk):
 
 
 def test_permanently_swapped_sides_stay_unchanged(walk):
-    spoilt = exchanged(walk, ALL, slice(45, None))
+    corrupted = swapped(walk, ALL, slice(45, None))
 
-    assert fix_left_right_swaps(spoilt) is spoilt
+    assert fix_left_right_swaps(corrupted) is corrupted
 
 
 def test_hands_crossing_in_one_frame_are_no_swap(walk):
@@ -108,13 +110,13 @@ def test_hands_crossing_in_one_frame_are_no_swap(walk):
     assert fix_left_right_swaps(take) is take
 
 
-def test_the_input_is_not_modified(walk):
-    spoilt = exchanged(walk, ALL, slice(40, 45))
-    before = spoilt.tracks.positions.copy()
+def test_fix_left_right_swaps_does_not_modify_its_input(walk):
+    corrupted = swapped(walk, ALL, slice(40, 45))
+    before = corrupted.tracks.positions.copy()
 
-    fix_left_right_swaps(spoilt)
+    fix_left_right_swaps(corrupted)
 
-    assert_array_equal(spoilt.tracks.positions, before)
+    assert_array_equal(corrupted.tracks.positions, before)
 
 
 @pytest.mark.parametrize("folder", ["irds", "kimore", "laban"])
@@ -132,8 +134,8 @@ def test_swapped_sides_of_a_real_take_are_corrected(recordings, parts, n_frames)
     if parts is ALL:
         parts = (*ALL, "HandTip", "Thumb")
     start = take.n_frames // 2 - n_frames // 2
-    spoilt = exchanged(take, parts, slice(start, start + n_frames))
+    corrupted = swapped(take, parts, slice(start, start + n_frames))
 
-    found = reconstruct(spoilt).tracks.positions
+    found = reconstruct(corrupted).tracks.positions
 
     assert_allclose(found, reconstruct(take).tracks.positions, atol=0.005)

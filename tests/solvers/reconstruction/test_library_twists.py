@@ -1,4 +1,4 @@
-"""The twist of like postures, weighed against what elbows and knees show."""
+"""Axial rotations from similar library poses, weighted against elbow and knee flexion."""
 
 from dataclasses import replace
 
@@ -31,90 +31,94 @@ AT = np.radians(50.0)
 """By so much the left upper arm is twisted in like postures."""
 
 
-def hanging(bends: np.ndarray) -> Tracks:
-    """The left elbow bends forward, by so many radians."""
-    still = np.zeros((len(bends), 20, 3))
-    for name, place in PLACES.items():
-        still[:, NAMES.index(name)] = place
-    way = np.stack([0.0 * bends, -np.sin(bends), -np.cos(bends)], axis=-1)
+def hanging_arm(flexion: np.ndarray) -> Tracks:
+    """A body whose left elbow flexes forward by these angles, radians."""
+    still = np.zeros((len(flexion), 20, 3))
+    for name, position in PLACES.items():
+        still[:, NAMES.index(name)] = position
+    direction = np.stack([0.0 * flexion, -np.sin(flexion), -np.cos(flexion)], axis=-1)
     elbow = still[:, NAMES.index("ElbowLeft")]
-    still[:, NAMES.index("WristLeft")] = elbow + 0.25 * way
-    still[:, NAMES.index("HandLeft")] = elbow + 0.35 * way
+    still[:, NAMES.index("WristLeft")] = elbow + 0.25 * direction
+    still[:, NAMES.index("HandLeft")] = elbow + 0.35 * direction
     return Tracks(NAMES, still, 30.0)
 
 
-def alike(n_frames: int, length: float = 1.0, alone: bool = False) -> LimbTwists:
+def similar_twists(
+    n_frames: int, length: float = 1.0, library_only: bool = False
+) -> LimbTwists:
     vectors = np.zeros((n_frames, 4), complex)
     vectors[:, 0] = length * np.exp(1j * AT)
-    return LimbTwists(vectors, alone)
+    return LimbTwists(vectors, library_only)
 
 
-def twist(motion: Motion) -> np.ndarray:
-    """Degrees by which the elbow's axis is turned about the hanging arm, from facing front."""
+def elbow_twist_deg(motion: Motion) -> np.ndarray:
+    """Angle of the elbow axis about the hanging arm from facing front, degrees."""
     world = forward_kinematics(motion).rotations[:, motion.skeleton.index("ShoulderLeft")]
     hinge = rotate(world, np.array([0.0, 0.0, -1.0]))
-    # The axis of an arm that hangs without twist points to the right; down is the limb's way.
+    # The elbow axis of an untwisted hanging arm points to the right; the limb points down.
     return np.degrees(np.arctan2(hinge[:, 1], -hinge[:, 0]))
 
 
 def test_straight_arm_gets_the_twist_of_similar_postures():
-    tracks = hanging(np.zeros(30))
+    tracks = hanging_arm(np.zeros(30))
 
     plain, motion = (
-        motion_from_positions(tracks, PARENTS, twists=x) for x in (None, alike(30))
+        motion_from_positions(tracks, PARENTS, twists=x) for x in (None, similar_twists(30))
     )
 
-    assert_allclose(twist(plain), 0.0, atol=1.0)
-    assert_allclose(twist(motion), np.degrees(AT), atol=10.0)
+    assert_allclose(elbow_twist_deg(plain), 0.0, atol=1.0)
+    assert_allclose(elbow_twist_deg(motion), np.degrees(AT), atol=10.0)
 
 
 def test_library_twist_weighs_less_where_neighbors_disagree():
-    tracks = hanging(np.zeros(30))
+    tracks = hanging_arm(np.zeros(30))
 
-    motion = motion_from_positions(tracks, PARENTS, twists=alike(30, length=0.1))
+    motion = motion_from_positions(tracks, PARENTS, twists=similar_twists(30, length=0.1))
 
-    mean = 0.1 * np.exp(1j * AT) + 0.9  # what they leave open is no twist
-    assert_allclose(twist(motion), np.degrees(np.angle(mean)), atol=0.5)
+    mean = 0.1 * np.exp(1j * AT) + 0.9  # the rest has no twist
+    assert_allclose(elbow_twist_deg(motion), np.degrees(np.angle(mean)), atol=0.5)
 
 
 def test_flexion_plane_determines_the_twist_where_the_elbow_flexes():
-    tracks = hanging(np.full(30, np.radians(80.0)))
+    tracks = hanging_arm(np.full(30, np.radians(80.0)))
 
-    motion = motion_from_positions(tracks, PARENTS, twists=alike(30))
+    motion = motion_from_positions(tracks, PARENTS, twists=similar_twists(30))
 
-    assert_allclose(twist(motion), 0.0, atol=3.0)
+    assert_allclose(elbow_twist_deg(motion), 0.0, atol=3.0)
 
 
 def test_actor_bias_of_flexed_frames_applies_to_straight_ones():
-    bends = np.where(np.arange(300) < 100, np.radians(80.0), 0.0)
+    flexion = np.where(np.arange(300) < 100, np.radians(80.0), 0.0)
 
-    motion = motion_from_positions(hanging(bends), PARENTS, twists=alike(300))
+    motion = motion_from_positions(hanging_arm(flexion), PARENTS, twists=similar_twists(300))
 
-    assert_allclose(twist(motion), 0.0, atol=10.0)
-
-
-def test_as_published_nothing_else_counts():
-    tracks = hanging(np.full(30, np.radians(80.0)))
-
-    motion = motion_from_positions(tracks, PARENTS, twists=alike(30, length=0.3, alone=True))
-
-    assert_allclose(twist(motion), np.degrees(AT), atol=0.5)
+    assert_allclose(elbow_twist_deg(motion), 0.0, atol=10.0)
 
 
-def test_as_published_there_is_no_twist_where_none_is_known():
-    known, unknown = alike(30, alone=True), np.arange(30) >= 20
+def test_published_method_uses_library_twists_only():
+    tracks = hanging_arm(np.full(30, np.radians(80.0)))
+
+    motion = motion_from_positions(
+        tracks, PARENTS, twists=similar_twists(30, length=0.3, library_only=True)
+    )
+
+    assert_allclose(elbow_twist_deg(motion), np.degrees(AT), atol=0.5)
+
+
+def test_published_method_has_no_twist_where_it_is_unknown():
+    known, unknown = similar_twists(30, library_only=True), np.arange(30) >= 20
     known.vectors[unknown] = 0.0
 
     motion = motion_from_positions(
-        hanging(np.full(30, np.radians(80.0))), PARENTS, twists=known
+        hanging_arm(np.full(30, np.radians(80.0))), PARENTS, twists=known
     )
 
-    assert_allclose(twist(motion), np.where(unknown, 0.0, np.degrees(AT)), atol=0.5)
+    assert_allclose(elbow_twist_deg(motion), np.where(unknown, 0.0, np.degrees(AT)), atol=0.5)
 
 
 @pytest.mark.parametrize("dip", [0.5, 1.9])
 def test_unobserved_twist_changes_equally_fast_at_all_frame_rates(dip):
-    """From -85 to 85 degrees, while for so many seconds no bend shows it."""
+    """From -85 to 85 degrees while no flexion shows it for `dip` seconds."""
     speeds = []
     for rate in (30.0, 120.0, 240.0):
         times = np.arange(round(6.0 * rate) + 1) / rate - 3.0
@@ -122,19 +126,19 @@ def test_unobserved_twist_changes_equally_fast_at_all_frame_rates(dip):
         still = np.tile([1.0, 0.0, 0.0, 0.0], (len(times), 1))
         along, plain = (np.tile(each, (len(times), 1)) for each in np.eye(3)[[2, 0]])
         normals = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=-1)
-        told = np.where(np.abs(times) < dip / 2, 0.0, 1.0)
-        turned = twist_to_normal(still, along, plain, normals, told, rate)
-        course = np.unwrap(2.0 * np.arctan2(turned[:, 3], turned[:, 0]))
+        weights = np.where(np.abs(times) < dip / 2, 0.0, 1.0)
+        rotated = twist_to_normal(still, along, plain, normals, weights, rate)
+        course = np.unwrap(2.0 * np.arctan2(rotated[:, 3], rotated[:, 0]))
         speeds.append(np.abs(np.diff(course)).max() * rate)
 
     assert_allclose(speeds[1:], speeds[0], rtol=0.05)
 
 
-def test_a_single_frame_is_twisted_as_one_of_many():
-    tracks = hanging(np.full(2, np.radians(20.0)))
+def test_a_single_frame_gets_the_twist_of_a_longer_take():
+    tracks = hanging_arm(np.full(2, np.radians(20.0)))
 
     one, two = (
-        motion_from_positions(tracks.slice(0, n), PARENTS, twists=alike(n)).rotations
+        motion_from_positions(tracks.slice(0, n), PARENTS, twists=similar_twists(n)).rotations
         for n in (1, 2)
     )
 
@@ -160,9 +164,9 @@ def test_reconstruction_returns_the_twist_of_its_library(gait):
     )
 
     assert residuals.twists is None
-    for one, alone in ((both, False), (published, True)):
+    for one, separate in ((both, False), (published, True)):
         assert one.twists is not None
-        assert one.twists.alone is alone
+        assert one.twists.ignore_flexion is separate
         assert one.twists.vectors.shape == (gait.n_frames, 4)
         assert np.abs(one.twists.vectors).min() > 0.5
     assert both.motion.observed.all()

@@ -1,4 +1,4 @@
-"""Positions to a rig: joints keep their places, and nothing turns needlessly."""
+"""Build a motion from joint positions without needless rotations."""
 
 import numpy as np
 import pytest
@@ -45,45 +45,47 @@ def walk() -> np.ndarray:
     return true_positions(samples, posture_joints)
 
 
-def shown(motion: Motion, tracks: Tracks) -> list[str]:
+def visible_positions(motion: Motion, tracks: Tracks) -> list[str]:
     return [name for name in motion.skeleton.names if name in tracks.names]
 
 
-def miss(motion: Motion, tracks: Tracks) -> np.ndarray:
-    """How far each tracked joint is from where it was, shape (n_frames, n_joints), meters."""
-    own = [motion.skeleton.index(name) for name in shown(motion, tracks)]
-    theirs = [tracks.names.index(name) for name in shown(motion, tracks)]
-    places = forward_kinematics(motion).positions[:, own]
-    return np.linalg.norm(places - tracks.positions[:, theirs], axis=-1)
+def position_errors(motion: Motion, tracks: Tracks) -> np.ndarray:
+    """Distance of each joint from its tracked position, shape (n_frames, n_joints), meters."""
+    own = [motion.skeleton.index(name) for name in visible_positions(motion, tracks)]
+    reference = [tracks.names.index(name) for name in visible_positions(motion, tracks)]
+    positions = forward_kinematics(motion).positions[:, own]
+    return np.linalg.norm(positions - tracks.positions[:, reference], axis=-1)
 
 
 def test_joints_of_constant_lengths_keep_their_positions(walk):
     motion = motion_from_positions(as_tracks(walk), PARENTS)
 
-    assert miss(motion, as_tracks(walk)).mean() < 0.003
+    assert position_errors(motion, as_tracks(walk)).mean() < 0.003
 
 
 @pytest.mark.parametrize("file", REAL)
 def test_real_cameras_have_no_swaps(recordings, file):
-    """Their shoulders and hips shift on the trunk; a rigid one misses by up to 45 mm.
+    """Tracked shoulders and hips shift on the trunk; a rigid trunk misses them by up to 45 mm.
 
-    Palms, tips and thumbs shake, and are steadied.
+    Palms, fingertips and thumbs are noisy and are smoothed.
     """
     recording = read_recording(recordings / "kinect" / file)
     parents, tracks = recording.parents, recording.tracks
     body = motion_from_points(tracks, parents).skeleton
     order = [tracks.names.index(name) for name in body.names]
-    steady = np.array(tracks.positions)
-    steady[:, order] = fit_bone_lengths(tracks.positions[:, order], body)
-    steady = tracks.with_positions(steady)
+    smooth = np.array(tracks.positions)
+    smooth[:, order] = fit_bone_lengths(tracks.positions[:, order], body)
+    smooth = tracks.with_positions(smooth)
 
-    motion = motion_from_positions(steady, parents)
+    motion = motion_from_positions(smooth, parents)
 
-    firm = [not name.startswith(("Hand", "Thumb")) for name in shown(motion, steady)]
-    assert np.nanmean(miss(motion, steady)[:, firm]) < 0.005
+    firm = [
+        not name.startswith(("Hand", "Thumb")) for name in visible_positions(motion, smooth)
+    ]
+    assert np.nanmean(position_errors(motion, smooth)[:, firm]) < 0.005
 
 
-def test_bones_have_one_length_that_of_reliable_frames(walk):
+def test_bone_lengths_are_constant_and_from_reliable_frames(walk):
     tracks, reliability = as_tracks(walk.copy()), np.ones((90, 20))
     wrist = NAMES.index("WristLeft")
     tracks.positions[40:, wrist] += (0.3, 0.0, 0.0)
@@ -96,25 +98,27 @@ def test_bones_have_one_length_that_of_reliable_frames(walk):
     assert np.linalg.norm(offset) == pytest.approx(true, abs=0.003)
 
 
-def bending_arm(angles: np.ndarray, plane: float) -> Tracks:
-    """An upright body whose left upper arm hangs and whose elbow bends by so many radians.
+def flexing_arm(angles: np.ndarray, plane: float) -> Tracks:
+    """A body with a hanging left arm whose elbow flexes by these angles, radians.
 
-    It bends forward (-Y), turned about the upper arm by `plane` towards the body.
+    The elbow flexes forward (-Y), rotated about the upper arm by `plane` toward the body.
     """
     still = np.zeros((len(angles), 20, 3))
-    for name, place in PLACES.items():
-        still[:, NAMES.index(name)] = place
-    way = np.stack(
+    for name, position in PLACES.items():
+        still[:, NAMES.index(name)] = position
+    direction = np.stack(
         [-np.sin(angles) * np.sin(plane), -np.sin(angles) * np.cos(plane), -np.cos(angles)],
         axis=-1,
     )
-    still[:, NAMES.index("WristLeft")] = still[:, NAMES.index("ElbowLeft")] + 0.25 * way
-    still[:, NAMES.index("HandLeft")] = still[:, NAMES.index("ElbowLeft")] + 0.35 * way
+    still[:, NAMES.index("WristLeft")] = still[:, NAMES.index("ElbowLeft")] + 0.25 * direction
+    still[:, NAMES.index("HandLeft")] = still[:, NAMES.index("ElbowLeft")] + 0.35 * direction
     return as_tracks(still)
 
 
-def hinge_of(motion: Motion, joint: str, axis: tuple[float, float, float]) -> np.ndarray:
-    """Where the axis of a hinge in the T-pose points in the world, shape (n_frames, 3)."""
+def hinge_directions(
+    motion: Motion, joint: str, axis: tuple[float, float, float]
+) -> np.ndarray:
+    """World direction of a hinge axis given in the T-pose, shape (n_frames, 3)."""
     return rotate(
         forward_kinematics(motion).rotations[:, motion.skeleton.index(joint)], np.array(axis)
     )
@@ -122,7 +126,7 @@ def hinge_of(motion: Motion, joint: str, axis: tuple[float, float, float]) -> np
 
 @pytest.mark.parametrize("plane", np.radians([-30.0, 0.0, 60.0]))
 def test_upper_arm_twist_follows_the_flexion_plane_of_the_elbow(plane):
-    motion = motion_from_positions(bending_arm(np.full(60, np.radians(80)), plane), PARENTS)
+    motion = motion_from_positions(flexing_arm(np.full(60, np.radians(80)), plane), PARENTS)
 
     elbow = motion.rotations[:, motion.skeleton.index("ElbowLeft")]
     axis = elbow[:, 1:] / np.linalg.norm(elbow[:, 1:], axis=-1, keepdims=True)
@@ -131,29 +135,29 @@ def test_upper_arm_twist_follows_the_flexion_plane_of_the_elbow(plane):
 
 
 def test_straight_arm_keeps_the_twist_of_adjacent_flexion():
-    """It is stretched for a fifth of a second; noise there must not turn it."""
+    """The arm is straight for a fifth of a second; noise there must not rotate it."""
     angles = np.full(60, np.radians(60.0))
     angles[27:33] = 0.0
-    tracks = bending_arm(angles, np.radians(60.0))
+    tracks = flexing_arm(angles, np.radians(60.0))
     tracks.positions[27:33, NAMES.index("WristLeft")] += np.random.default_rng(1).normal(
         scale=0.005, size=(6, 3)
     )
 
     motion = motion_from_positions(tracks, PARENTS)
 
-    hinge = hinge_of(motion, "ShoulderLeft", (0.0, 0.0, 1.0))
-    turned = np.degrees(np.arccos(np.clip(hinge @ hinge[0], -1.0, 1.0)))
-    assert turned.max() < 10.0
+    hinge = hinge_directions(motion, "ShoulderLeft", (0.0, 0.0, 1.0))
+    rotated = np.degrees(np.arccos(np.clip(hinge @ hinge[0], -1.0, 1.0)))
+    assert rotated.max() < 10.0
 
 
-def test_an_arm_that_never_bends_is_not_twisted_against_the_trunk():
-    motion = motion_from_positions(bending_arm(np.zeros(30), 0.0), PARENTS)
+def test_an_arm_without_flexion_has_no_axial_rotation():
+    motion = motion_from_positions(flexing_arm(np.zeros(30), 0.0), PARENTS)
 
-    hinge = hinge_of(motion, "ShoulderLeft", (0.0, 0.0, 1.0))
+    hinge = hinge_directions(motion, "ShoulderLeft", (0.0, 0.0, 1.0))
     assert_allclose(hinge, np.tile((1.0, 0.0, 0.0), (30, 1)), atol=0.02)
 
 
-def test_nothing_jumps_while_a_body_turns_round(walk):
+def test_no_joint_jumps_while_a_body_rotates_by_360_degrees(walk):
     angles = np.linspace(0.0, 4.0 * np.pi, len(walk))
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
     x, y, z = np.moveaxis(walk, -1, 0)
@@ -170,16 +174,16 @@ def test_nothing_jumps_while_a_body_turns_round(walk):
     )
 
 
-def test_the_twist_of_the_trunk_is_shared_by_the_spine():
-    tracks = bending_arm(np.full(5, 1.0), 0.0)
+def test_the_spine_distributes_the_twist_of_the_trunk():
+    tracks = flexing_arm(np.full(5, 1.0), 0.0)
     above = [
         name for name in NAMES if not name.startswith(("Hip", "Knee", "Ankle", "Foot", "Sp"))
     ]
-    places = tracks.positions
-    for name in above:  # turned by 60 degrees to the left
-        x, y = places[:, NAMES.index(name), :2].T.copy()
-        places[:, NAMES.index(name), 0] = 0.5 * x - np.sqrt(0.75) * y
-        places[:, NAMES.index(name), 1] = np.sqrt(0.75) * x + 0.5 * y
+    positions = tracks.positions
+    for name in above:  # rotated by 60 degrees to the left
+        x, y = positions[:, NAMES.index(name), :2].T.copy()
+        positions[:, NAMES.index(name), 0] = 0.5 * x - np.sqrt(0.75) * y
+        positions[:, NAMES.index(name), 1] = np.sqrt(0.75) * x + 0.5 * y
 
     motion = motion_from_positions(tracks, PARENTS)
 
@@ -189,7 +193,7 @@ def test_the_twist_of_the_trunk_is_shared_by_the_spine():
     assert np.degrees(angle_between(chest, [1.0, 0, 0, 0])).mean() < 40.0
 
 
-def test_the_skeleton_is_still_that_of_a_human(walk):
+def test_the_skeleton_is_recognized_as_a_humanoid(walk):
     motion = motion_from_positions(as_tracks(walk), PARENTS)
 
     assert {"ClavicleLeft", "ClavicleRight", "SpineLow"} <= set(motion.skeleton.names)
@@ -198,7 +202,7 @@ def test_the_skeleton_is_still_that_of_a_human(walk):
     assert found.joint("leftUpperArm") == "ShoulderLeft"
 
 
-def test_a_skeleton_that_is_given_is_moved(walk):
+def test_motion_uses_the_given_skeleton(walk):
     body = motion_from_points(as_tracks(walk), PARENTS).skeleton
 
     motion = motion_from_positions(as_tracks(walk), PARENTS, skeleton=body)
@@ -208,7 +212,7 @@ def test_a_skeleton_that_is_given_is_moved(walk):
 
 
 def test_error_of_a_rigid_trunk_does_not_reach_the_hand(walk):
-    """The shoulder is pulled up by 5 cm; the bones of the arm make for elbow and wrist."""
+    """The shoulder is 5 cm too high; the arm compensates at elbow and wrist."""
     body = motion_from_points(as_tracks(walk), PARENTS).skeleton
     arm = [NAMES.index(f"{part}Left") for part in ("Shoulder", "Elbow", "Wrist")]
     shrugging = walk.copy()
@@ -217,14 +221,14 @@ def test_error_of_a_rigid_trunk_does_not_reach_the_hand(walk):
     motion = motion_from_positions(as_tracks(shrugging), PARENTS, skeleton=body)
 
     order = [motion.skeleton.index(NAMES[joint]) for joint in arm]
-    places = forward_kinematics(motion).positions[:, order]
-    shoulder, _, wrist = np.linalg.norm(places - shrugging[:, arm], axis=-1).mean(axis=0)
+    positions = forward_kinematics(motion).positions[:, order]
+    shoulder, _, wrist = np.linalg.norm(positions - shrugging[:, arm], axis=-1).mean(axis=0)
     assert shoulder > 0.03
     assert wrist < 0.4 * shoulder
 
 
-def test_fingertips_do_not_flutter(walk):
-    """They shake by 3 cm on a bone of 9 cm; fingers that really bend, bend."""
+def test_fingertips_are_smoothed(walk):
+    """Fingertips are noisy by 3 cm on bones of 9 cm; true flexion remains."""
     rng = np.random.default_rng(5)
     noisy, tip = walk.copy(), NAMES.index("HandLeft")
     noisy[:, tip] += rng.normal(scale=0.03, size=(len(walk), 3))
@@ -237,7 +241,7 @@ def test_fingertips_do_not_flutter(walk):
     assert np.linalg.norm(tips - walk[:, tip], axis=-1).mean() < 0.03
 
 
-def test_coincident_joints_define_no_direction_and_do_no_harm(walk):
+def test_coincident_joints_are_ignored(walk):
     tracks = as_tracks(walk.copy())
     tracks.positions[20, NAMES.index("HandLeft")] = walk[20, NAMES.index("WristLeft")]
 
@@ -246,7 +250,7 @@ def test_coincident_joints_define_no_direction_and_do_no_harm(walk):
     assert motion.observed.all()
 
 
-def test_gaps_stay_gaps(walk):
+def test_gaps_remain_missing(walk):
     tracks = as_tracks(walk.copy())
     tracks.positions[10:20, NAMES.index("KneeLeft")] = np.nan
 
@@ -257,7 +261,7 @@ def test_gaps_stay_gaps(walk):
     assert motion.observed[:10].all()
 
 
-def test_the_input_stays_as_it_is(walk):
+def test_motion_from_positions_does_not_modify_its_input(walk):
     tracks = as_tracks(walk)
     before = tracks.positions.copy()
 
@@ -266,7 +270,7 @@ def test_the_input_stays_as_it_is(walk):
     assert_allclose(tracks.positions, before, rtol=0, atol=0)
 
 
-def test_refuses_what_does_not_fit(walk):
+def test_motion_from_positions_raises_for_invalid_input(walk):
     body = motion_from_points(as_tracks(walk), PARENTS).skeleton
     fewer = Tracks(NAMES[:-1], walk[:, :-1], 30.0)
 

@@ -1,4 +1,4 @@
-"""The Gaussian process of movements: exact, the same in a mirror, silent far away."""
+"""The Gaussian process of movements: exact, mirrored, and inactive far from its data."""
 
 from dataclasses import replace
 
@@ -31,7 +31,7 @@ RATE = 30.0
 
 
 def take(speed: float, actor: str) -> Take:
-    """A walk, whose errors depend on posture and on speed."""
+    """A walk with errors that depend on posture and speed."""
     features = truth(speed)
     features = features - features[:, :1]
     errors = 0.1 * np.roll(features, 1, axis=1) + 0.02 * np.gradient(features, axis=0) * RATE
@@ -47,28 +47,32 @@ def process():
 
 
 def test_movement_process_equals_the_naive_full_process(process):
-    """Each example and its mirror image in one dense system, joint after joint."""
+    """Solve one dense system of all examples and their mirror images, joint by joint."""
     parts, errors, takes, actors = [], [], [], []
     for image in (False, True):
         for number, one in enumerate(TAKES):
-            seen, off = movement_parts(one.features, RATE)[:, 5::10], one.errors[5::10]
-            parts.append(mirror_postures(seen) if image else seen)
+            observed, off = movement_parts(one.features, RATE)[:, 5::10], one.errors[5::10]
+            parts.append(mirror_postures(observed) if image else observed)
             errors.append(mirror_postures(off) if image else off)
             takes += [number + 10 * image] * len(off)
             actors += [one.actor + "m" * image] * len(off)
-    examples, asked = (
+    examples, requested = (
         np.concatenate(parts, axis=1),
         movement_parts(take(1.4, "c").features, RATE),
     )
     same_take, same_actor = (np.equal.outer(one, one) for one in (takes, np.array(actors)))
     covariance = (
-        naive(examples, examples, SHARED_STRENGTHS) + MEAN_VARIANCE + TAKE_VARIANCE * same_take
+        naive_covariance(examples, examples, SHARED_STRENGTHS)
+        + MEAN_VARIANCE
+        + TAKE_VARIANCE * same_take
     )
-    covariance += same_actor * (naive(examples, examples, PERSONAL_STRENGTHS) + ACTOR_VARIANCE)
+    covariance += same_actor * (
+        naive_covariance(examples, examples, PERSONAL_STRENGTHS) + ACTOR_VARIANCE
+    )
     covariance += np.eye(len(covariance))
-    expected = (naive(asked, examples, SHARED_STRENGTHS) + MEAN_VARIANCE) @ np.linalg.solve(
-        covariance, np.concatenate(errors).reshape(len(covariance), -1)
-    )
+    expected = (
+        naive_covariance(requested, examples, SHARED_STRENGTHS) + MEAN_VARIANCE
+    ) @ np.linalg.solve(covariance, np.concatenate(errors).reshape(len(covariance), -1))
 
     offsets, _ = process.predict(take(1.4, "c").features, RATE, np.arange(90))
 
@@ -76,18 +80,18 @@ def test_movement_process_equals_the_naive_full_process(process):
     assert np.abs(expected).max() > 0.05
 
 
-def naive(one: np.ndarray, other: np.ndarray, strengths: tuple) -> np.ndarray:
-    """The covariance by its definition, from (5, n, 20, 3) parts."""
-    far = ((one[:, :, None] - other[:, None]) ** 2).sum(axis=(-2, -1))
+def naive_covariance(one: np.ndarray, other: np.ndarray, strengths: tuple) -> np.ndarray:
+    """Compute the covariance from its definition, for (5, n, 20, 3) parts."""
+    distances = ((one[:, :, None] - other[:, None]) ** 2).sum(axis=(-2, -1))
     centre = np.concatenate([movement_parts(t.features, RATE)[0, 5::10] for t in TAKES])
     centre = 0.5 * (centre + mirror_postures(centre)).mean(axis=0)
     slope = np.einsum("ijk,mjk->im", one[0] - centre, other[0] - centre)
     a, b, c, d = strengths
     return (
-        a * np.exp(-0.5 * far[0] / POSTURE_SCALE_M**2)
+        a * np.exp(-0.5 * distances[0] / POSTURE_SCALE_M**2)
         + b * slope
-        + c * np.exp(-0.5 * far[:3].sum(axis=0) / CONTEXT_SCALE_M**2)
-        + d * np.exp(-0.5 * far[3:].sum(axis=0) / MOVEMENT_SCALE_M**2)
+        + c * np.exp(-0.5 * distances[:3].sum(axis=0) / CONTEXT_SCALE_M**2)
+        + d * np.exp(-0.5 * distances[3:].sum(axis=0) / MOVEMENT_SCALE_M**2)
     )
 
 
@@ -101,12 +105,12 @@ def test_movement_process_predicts_errors_at_a_new_speed(process):
     assert nearness.min() > 0.9
 
 
-def test_in_a_mirror_errors_are_mirrored(process):
+def test_errors_of_a_mirrored_pose_are_mirrored(process):
     new = take(1.4, "c").features
     here, near = process.predict(new, RATE, np.arange(90))
-    there, also_near = process.predict(mirror_postures(new), RATE, np.arange(90))
+    mirrored, also_near = process.predict(mirror_postures(new), RATE, np.arange(90))
 
-    assert_allclose(mirror_postures(here), there, atol=1e-5)
+    assert_allclose(mirror_postures(here), mirrored, atol=1e-5)
     assert_allclose(near, also_near, atol=1e-5)
 
 
@@ -118,17 +122,19 @@ def test_proximity_is_zero_far_from_the_points(process):
     assert nearness.max() < 0.01
 
 
-def test_rarely_known_joints_are_not_predicted():
-    blind = replace(TAKES[0], errors=TAKES[0].errors.copy())
-    blind.errors[:, KNEE] = np.nan
-    blind.errors[::2, 3] = np.nan
+def test_rarely_observed_joints_are_not_predicted():
+    unobserved = replace(TAKES[0], errors=TAKES[0].errors.copy())
+    unobserved.errors[:, KNEE] = np.nan
+    unobserved.errors[::2, 3] = np.nan
 
-    made = learn_movement_process((blind, TAKES[1]), 30.0, 500, mirror=False)
+    result = learn_movement_process((unobserved, TAKES[1]), 30.0, 500, mirror=False)
 
-    assert KNEE in made.joints
-    assert len(made.points) == 90
-    both = replace(TAKES[1], errors=blind.errors)
-    assert KNEE not in learn_movement_process((blind, both), 30.0, 500, mirror=False).joints
+    assert KNEE in result.joints
+    assert len(result.points) == 90
+    both = replace(TAKES[1], errors=unobserved.errors)
+    assert (
+        KNEE not in learn_movement_process((unobserved, both), 30.0, 500, mirror=False).joints
+    )
 
 
 def test_too_few_examples_return_no_process():
@@ -153,14 +159,14 @@ def prior():
 
 
 def test_interpolation_between_predictions_is_accurate(prior):
-    """Every second frame and straight lines; the error of the knee has cusps."""
-    calm = smooth_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 1 / 30)
-    few = prior.predict(calm)
-    all_frames = prior.predict(replace(calm, frame_rate=10.0))
+    """Interpolate linearly between every second frame; the knee's error has cusps."""
+    smoothed = smooth_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 1 / 30)
+    few = prior.predict(smoothed)
+    all_frames = prior.predict(replace(smoothed, frame_rate=10.0))
     still = replace(prior, movement=None)
 
-    each = still.predict(calm, ahead=False)
-    some = still.predict(calm)
+    each = still.predict(smoothed, ahead=False)
+    some = still.predict(smoothed)
 
     assert few.offsets.shape == all_frames.offsets.shape == each.offsets.shape
     assert_allclose(some.offsets[::2], each.offsets[::2], atol=1e-12)
@@ -169,26 +175,26 @@ def test_interpolation_between_predictions_is_accurate(prior):
 
 
 def test_causal_prediction_ignores_later_frames(prior):
-    """The first second is foretold alike whatever comes after."""
-    calm = smooth_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 0.0)
-    cut = replace(calm, features=calm.features[:30])
+    """Predictions of the first second do not depend on later frames."""
+    smoothed = smooth_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 0.0)
+    cut = replace(smoothed, features=smoothed.features[:30])
 
-    whole, begun = (prior.predict(one, ahead=False).offsets for one in (calm, cut))
+    complete, begun = (prior.predict(one, ahead=False).offsets for one in (smoothed, cut))
 
-    assert_allclose(whole[:30], begun, atol=1e-9)
+    assert_allclose(complete[:30], begun, atol=1e-9)
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         ({"mean": np.zeros(4)}, "shapes do not fit, first that of movement_mean"),
         ({"joints": np.arange(1, 21)}, "movement_joints has numbers out of range"),
         ({"weights": np.full((1, 1), np.nan)}, "first that of movement_weights"),
     ],
 )
-def test_damaged_movements_are_refused(prior, tmp_path, change, said):
+def test_load_raises_for_damaged_movement_processes(prior, tmp_path, change, message):
     path = tmp_path / "prior.npz"
     replace(prior, movement=replace(prior.movement, **change)).save(path)
 
-    with pytest.raises(InvalidFileError, match=said):
+    with pytest.raises(InvalidFileError, match=message):
         load_residual_prior(path)

@@ -1,4 +1,4 @@
-"""Libraries of postures: what is kept of clips, and what comes back from a file."""
+"""Build posture libraries from clips, save and load them."""
 
 import numpy as np
 import pytest
@@ -44,17 +44,17 @@ def walk(gait):
     return normalize_postures(postures_from_motion(gait), 30.0).postures
 
 
-def test_directions_and_lengths_give_the_posture_back(walk):
+def test_directions_and_lengths_restore_the_posture(walk):
     for one in walk[::20, None]:
         postures = positions_from_directions(bone_directions(one), estimate_bone_lengths(one))
         np.testing.assert_allclose(postures, one, atol=1e-9)
 
 
-def test_changes_of_a_steady_turn_are_its_speed():
+def test_changes_of_a_constant_rotation_equal_its_speed():
     angle = 2.0 * np.arange(30) / 30.0
-    steady = np.stack([angle, 0.5 * angle, -angle], axis=-1)
+    smooth = np.stack([angle, 0.5 * angle, -angle], axis=-1)
     np.testing.assert_allclose(
-        rates_from_directions(steady, 30.0), np.tile([2.0, 1.0, -2.0], (30, 1))
+        rates_from_directions(smooth, 30.0), np.tile([2.0, 1.0, -2.0], (30, 1))
     )
 
 
@@ -64,38 +64,38 @@ def test_mirrored_posture_has_left_and_right_swapped(walk):
     np.testing.assert_array_equal(mirror_postures(mirror_postures(walk)), walk)
 
 
-def test_kept_postures_are_distinct_and_cover_the_others():
+def test_subsampled_postures_are_distinct_and_cover_the_rest():
     random = np.random.default_rng(0)
-    ways = random.normal(size=(3, 60)) * 0.1
-    directions = (random.normal(size=(400, 3)) @ ways).reshape(400, 20, 3)
+    displacements = random.normal(size=(3, 60)) * 0.1
+    directions = (random.normal(size=(400, 3)) @ displacements).reshape(400, 20, 3)
     spacing = 0.03
     kept = subsample_postures(directions, 400, spacing)
     points = positions_from_directions(directions, ADULT_BONE_LENGTHS_M).reshape(400, -1)
-    ways = np.linalg.norm(points[:, None] - points[kept], axis=-1) / np.sqrt(20.0)
-    among = ways[kept] + np.eye(len(kept))
+    displacements = np.linalg.norm(points[:, None] - points[kept], axis=-1) / np.sqrt(20.0)
+    among = displacements[kept] + np.eye(len(kept))
     assert 1 < len(kept) < 400
     assert among.min() > 0.8 * spacing  # compared in principal components
-    assert ways.min(axis=1).max() < 1.2 * spacing
+    assert displacements.min(axis=1).max() < 1.2 * spacing
 
 
-def test_a_library_has_the_postures_of_its_clip(gait, library, walk):
+def test_library_contains_the_postures_of_its_clip(gait, library, walk):
     body = build_body_postures(library.directions, library.changes, estimate_bone_lengths(walk))
     postures = np.concatenate([walk, mirror_postures(walk)]).reshape(-1, 60)
-    ways = np.linalg.norm(postures[:, None] - body.positions.reshape(-1, 60), axis=-1)
-    assert ways.min(axis=1).max() / np.sqrt(20.0) < 0.05
+    distances = np.linalg.norm(postures[:, None] - body.positions.reshape(-1, 60), axis=-1)
+    assert distances.min(axis=1).max() / np.sqrt(20.0) < 0.05
     assert library.n_postures < library.n_seen
-    alone = build_posture_library(
+    separate = build_posture_library(
         [gait], settings=PostureLibrarySettings(mirror=False, spacing=0.02)
     )
-    assert library.n_seen == 2 * alone.n_seen
+    assert library.n_seen == 2 * separate.n_seen
 
 
-def test_fewer_postures_are_the_most_different_ones(gait, library):
+def test_smaller_libraries_hold_the_most_different_postures(gait, library):
     few = build_posture_library([gait], settings=PostureLibrarySettings(n_postures=10))
     np.testing.assert_array_equal(few.directions, library.directions[:10])
 
 
-def test_a_library_comes_back_from_its_file(library, tmp_path):
+def test_load_restores_a_saved_library(library, tmp_path):
     library.save(tmp_path / "postures.npz")
     read = load_posture_library(tmp_path / "postures.npz")
     np.testing.assert_allclose(read.directions, library.directions, atol=2e-3)
@@ -113,15 +113,15 @@ def test_shipped_library_is_small_and_names_its_sources():
 
 
 def test_shipped_library_has_twists_of_clips_with_rotations():
-    twists = np.abs(load_posture_library().known_twists)
+    twists = np.abs(load_posture_library().twists_or_zero)
 
     knowing = (twists > 0.0).all(axis=1)
-    assert knowing.sum() == 2500  # CMU's; UI-PRMD tells places of markers
+    assert knowing.sum() == 2500  # of CMU; UI-PRMD has positions of markers
     assert twists[knowing].min() > 0.5
 
 
 @pytest.mark.parametrize("fault", ["missing", "zero", "shape"])
-def test_damaged_libraries_are_refused(library, tmp_path, fault):
+def test_load_raises_for_damaged_libraries(library, tmp_path, fault):
     directions = np.round(library.directions[:, 1:] * 500).astype(np.int16)
     arrays = {
         "directions": 0 * directions if fault == "zero" else directions,
@@ -137,13 +137,13 @@ def test_damaged_libraries_are_refused(library, tmp_path, fault):
         load_posture_library(tmp_path / "bad.npz")
 
 
-def test_nothing_to_learn_from_is_refused():
+def test_build_raises_without_postures():
     with pytest.raises(InvalidMotionError, match="Choose clean clips"):
         build_posture_library([])
 
 
-def test_bone_axis_corrections_of_a_tracker_are_found(walk, library):
-    """Bones of the observed body are turned by known angles; the same turns are found."""
+def test_bone_axis_corrections_recover_known_rotations(walk, library):
+    """Rotate the bones of the observed body by known angles and estimate them."""
     lengths = estimate_bone_lengths(walk)
     known = np.tile(np.eye(3), (20, 1, 1))
     cos, sin = np.cos(0.3), np.sin(0.3)
@@ -152,15 +152,17 @@ def test_bone_axis_corrections_of_a_tracker_are_found(walk, library):
         if bone in CORRECTED_BONES and name not in {"spine", "chest", "head"}:
             known[bone] = [[cos, 0, side * sin], [0, 1, 0], [-side * sin, 0, cos]]
     directions = bone_directions(walk)
-    seen = build_body_postures(directions, np.zeros_like(directions), lengths, known).positions
+    observed = build_body_postures(
+        directions, np.zeros_like(directions), lengths, known
+    ).positions
     plain = positions_from_directions(directions, lengths)
-    trust = np.full(walk.shape[:2], 100.0)
+    reliability = np.full(walk.shape[:2], 100.0)
     found = build_body_postures(
         directions,
         0 * directions,
         lengths,
-        bone_axis_corrections(seen, trust, directions, lengths),
+        bone_axis_corrections(observed, reliability, directions, lengths),
     ).positions
-    before, after = (np.linalg.norm(each - seen, axis=-1).mean() for each in (plain, found))
+    before, after = (np.linalg.norm(each - observed, axis=-1).mean() for each in (plain, found))
     assert before > 0.02
     assert after < 0.25 * before

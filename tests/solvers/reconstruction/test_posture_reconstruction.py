@@ -1,4 +1,4 @@
-"""Reconstruction from a library: what was right stays, what was lost comes back."""
+"""Complete missing joints from a library and keep observed ones."""
 
 import numpy as np
 import pytest
@@ -31,16 +31,16 @@ def recorded(positions, names=KINECT):
     return JointRecording(Tracks(names, positions, 30.0), None, Sensor.KINECT_V1)
 
 
-def trusted(trust):
-    return Reliability(trust, trust, trust, trust)
+def known_reliability(reliability):
+    return Reliability(reliability, reliability, reliability, reliability)
 
 
-def rebuilt(positions, library, **settings):
-    """What is NaN is not trusted, all else is."""
-    trust = np.isfinite(positions).all(axis=-1).astype(float)
+def reconstructed(positions, library, **settings):
+    """Reconstruct with reliability 0 for missing (NaN) and 1 for observed joints."""
+    reliability = np.isfinite(positions).all(axis=-1).astype(float)
     return reconstruct_postures(
         recorded(positions), library, settings=PostureSettings(**settings),
-        reliability=trusted(trust),
+        reliability=known_reliability(reliability),
     )  # fmt: skip
 
 
@@ -61,110 +61,116 @@ def walk():
 
 
 @pytest.fixture
-def lame(walk):
-    seen = walk.copy()
-    seen[GONE, LEG] = np.nan
-    return seen
+def walk_without_leg(walk):
+    observed = walk.copy()
+    observed[GONE, LEG] = np.nan
+    return observed
 
 
-def test_observed_joints_stay_and_a_missing_leg_continues_to_walk(walk, lame, library):
-    result = rebuilt(lame, library)
-    away = np.linalg.norm(result.tracks.positions - walk, axis=-1)
-    kept = np.isfinite(lame).all(axis=-1)
-    assert np.quantile(away[kept], 0.99) < 0.02
+def test_missing_leg_walks_on_and_observed_joints_stay(walk, walk_without_leg, library):
+    result = reconstructed(walk_without_leg, library)
+    errors = np.linalg.norm(result.tracks.positions - walk, axis=-1)
+    kept = np.isfinite(walk_without_leg).all(axis=-1)
+    assert np.quantile(errors[kept], 0.99) < 0.02
     straight = walk.copy()
     frames = np.arange(len(walk))
-    seen = np.setdiff1d(frames, frames[GONE])
+    observed = np.setdiff1d(frames, frames[GONE])
     for joint in LEG:
         for axis in range(3):
-            straight[:, joint, axis] = np.interp(frames, seen, walk[seen, joint, axis])
-    usual = np.linalg.norm(straight - walk, axis=-1)[~kept].mean()
-    assert usual > 0.1
-    assert away[~kept].mean() < 0.3 * usual
+            straight[:, joint, axis] = np.interp(frames, observed, walk[observed, joint, axis])
+    default = np.linalg.norm(straight - walk, axis=-1)[~kept].mean()
+    assert default > 0.1
+    assert errors[~kept].mean() < 0.3 * default
 
 
 @pytest.mark.parametrize(
     "settings", [{"method": method} for method in PostureMethod] + [{"causal": True}], ids=str
 )
-def test_every_method_fills_every_frame_plausibly(walk, lame, library, settings):
-    result = rebuilt(lame, library, **settings)
-    away = np.linalg.norm(result.tracks.positions - walk, axis=-1)
-    assert np.isfinite(away).all()
-    assert away[GONE][:, LEG].mean() < 0.15
+def test_every_method_fills_every_frame_plausibly(walk, walk_without_leg, library, settings):
+    result = reconstructed(walk_without_leg, library, **settings)
+    errors = np.linalg.norm(result.tracks.positions - walk, axis=-1)
+    assert np.isfinite(errors).all()
+    assert errors[GONE][:, LEG].mean() < 0.15
     assert ((result.confidence >= 0.0) & (result.confidence <= 1.0)).all()
     assert np.isfinite(result.motion.rotations).all()
 
 
-def test_causal_frames_ignore_the_future(lame, library):
-    """But for lengths of bones and usual errors of limbs, which the whole take tells."""
-    whole = rebuilt(lame, library, causal=True).tracks.positions
-    changed = lame.copy()
+def test_causal_frames_ignore_the_future(walk_without_leg, library):
+    """Except for bone lengths and mean errors of limbs, which need the complete take."""
+    complete = reconstructed(walk_without_leg, library, causal=True).tracks.positions
+    changed = walk_without_leg.copy()
     changed[70:, POSTURE_JOINTS.index("rightHand")] = np.nan
-    other = rebuilt(changed, library, causal=True).tracks.positions
-    np.testing.assert_allclose(other[:60], whole[:60], atol=0.03)
+    other = reconstructed(changed, library, causal=True).tracks.positions
+    np.testing.assert_allclose(other[:60], complete[:60], atol=0.03)
 
 
-def test_confidence_is_high_where_observed_and_low_inside_a_gap(lame, library):
-    found = rebuilt(lame, library).confidence
+def test_confidence_is_high_where_observed_and_low_inside_a_gap(walk_without_leg, library):
+    found = reconstructed(walk_without_leg, library).confidence
     assert found[:20].min() > 0.9
     assert found[45, LEG[1]] < 0.8 < found[10, LEG[1]]
     assert found[45, LEG[1]] < found[31, LEG[1]]
 
 
-def test_position_and_heading_do_not_matter(lame, library):
-    moved = rotate_about_vertical(lame, np.full(len(lame), 1.9)) + np.array([2.0, 3.0, 0.0])
-    one, other = rebuilt(lame, library), rebuilt(moved, library)
+def test_position_and_heading_do_not_matter(walk_without_leg, library):
+    moved = rotate_about_vertical(
+        walk_without_leg, np.full(len(walk_without_leg), 1.9)
+    ) + np.array([2.0, 3.0, 0.0])
+    one, other = reconstructed(walk_without_leg, library), reconstructed(moved, library)
     back = rotate_about_vertical(
-        other.tracks.positions - np.array([2.0, 3.0, 0.0]), np.full(len(lame), -1.9)
+        other.tracks.positions - np.array([2.0, 3.0, 0.0]), np.full(len(walk_without_leg), -1.9)
     )
     np.testing.assert_allclose(back, one.tracks.positions, atol=1e-3)
 
 
-def test_a_larger_body_is_reconstructed_as_well(walk, lame, library):
-    away = [
+def test_larger_bodies_are_reconstructed_equally_well(walk, walk_without_leg, library):
+    errors = [
         np.linalg.norm(
-            rebuilt(size * lame, library).tracks.positions / size - walk, axis=-1
+            reconstructed(size * walk_without_leg, library).tracks.positions / size - walk,
+            axis=-1,
         ).mean()
         for size in (1.0, 1.3)
     ]
-    assert away[1] < 1.3 * away[0]
+    assert errors[1] < 1.3 * errors[0]
 
 
-def test_the_take_is_not_changed_and_the_same_comes_out_twice(lame, library):
-    before = lame.copy()
-    one, other = rebuilt(lame, library), rebuilt(lame, library)
-    np.testing.assert_array_equal(lame, before)
+def test_reconstruction_repeats_and_does_not_modify_the_take(walk_without_leg, library):
+    before = walk_without_leg.copy()
+    one, other = (
+        reconstructed(walk_without_leg, library),
+        reconstructed(walk_without_leg, library),
+    )
+    np.testing.assert_array_equal(walk_without_leg, before)
     np.testing.assert_array_equal(one.tracks.positions, other.tracks.positions)
 
 
 def test_missing_hips_follow_the_joints_around_them(walk, library):
-    """The body bobs, so that a straight line through the loss would be far off."""
+    """The body bobs, so linear interpolation of the gap would be inaccurate."""
     bob = 0.15 * np.sin(2.0 * np.pi * np.arange(len(walk)) / 30.0)
     truth = walk + bob[:, None, None] * (0.0, 0.0, 1.0)
-    seen = truth.copy()
-    seen[GONE, 0] = np.nan
-    away = np.linalg.norm(rebuilt(seen, library).tracks.positions - truth, axis=-1)
-    assert away[GONE, 0].max() < 0.06
+    observed = truth.copy()
+    observed[GONE, 0] = np.nan
+    errors = np.linalg.norm(reconstructed(observed, library).tracks.positions - truth, axis=-1)
+    assert errors[GONE, 0].max() < 0.06
 
 
 def test_constant_offset_of_a_limb_is_learned_where_observed(walk, library):
-    """A tracker that sees this leg ten centimetres to the side, lost for long."""
+    """The tracker offsets a leg by 10 cm, and the leg is missing for a long time."""
     truth = walk.copy()
     truth[:, LEG] += (0.1, 0.0, 0.0)
-    seen = truth.copy()
-    seen[15:75, LEG] = np.nan
-    off = (rebuilt(seen, library).tracks.positions - truth)[35:55, LEG]
-    assert np.abs(off.mean(axis=(0, 1))[0]) < 0.05
+    observed = truth.copy()
+    observed[15:75, LEG] = np.nan
+    differences = (reconstructed(observed, library).tracks.positions - truth)[35:55, LEG]
+    assert np.abs(differences.mean(axis=(0, 1))[0]) < 0.05
 
 
-def test_the_motion_has_bones_of_constant_length_and_follows(lame, library):
-    result = rebuilt(lame, library)
+def test_motion_has_constant_bone_lengths_and_follows(walk_without_leg, library):
+    result = reconstructed(walk_without_leg, library)
     world = forward_kinematics(result.motion).positions
     order = [result.motion.skeleton.index(name) for name in result.tracks.names]
     assert np.linalg.norm(world[:, order] - result.tracks.positions, axis=-1).mean() < 0.03
 
 
-def test_joints_beyond_the_twenty_move_with_their_neighbours():
+def test_joints_that_are_not_posture_joints_follow_neighbors():
     names = SENSOR_JOINTS[Sensor.KINECT_V2]
     found = dict(zip(names, find_anchors(names), strict=True))
     assert POSTURE_JOINTS[found["HandTipLeft"]] == "leftHandEnd"
@@ -175,41 +181,41 @@ def test_joints_beyond_the_twenty_move_with_their_neighbours():
     assert POSTURE_JOINTS[found["Nose"]] == "head"
 
 
-def _places(names):
+def _joint_order(names):
     found = posture_joint_indices(names)
     return [found[role] for role in POSTURE_JOINTS]
 
 
 def test_attached_joints_keep_their_offset_from_the_anchor(walk):
     order = SENSOR_JOINTS[Sensor.KINECT_V2]
-    names = tuple(order[place] for place in _places(order))
+    names = tuple(order[index] for index in _joint_order(order))
     names = (*names, "HandTipLeft")
     hand = POSTURE_JOINTS.index("leftHandEnd")
     tip = walk[:, hand] + np.array([0.0, 0.0, -0.08])
-    seen = np.concatenate([walk, tip[:, None]], axis=1)
-    trust = np.ones((len(walk), 21))
+    observed = np.concatenate([walk, tip[:, None]], axis=1)
+    reliability = np.ones((len(walk), 21))
     moved = walk + np.array([0.1, 0.2, 0.3])
-    found = positions_from_postures(names, seen, trust, walk, moved)
+    found = positions_from_postures(names, observed, reliability, walk, moved)
     np.testing.assert_allclose(found[:, 20], tip + np.array([0.1, 0.2, 0.3]), atol=1e-9)
-    seen[20:40, 20] = np.nan
-    found = positions_from_postures(names, seen, trust, walk, walk)
+    observed[20:40, 20] = np.nan
+    found = positions_from_postures(names, observed, reliability, walk, walk)
     assert np.linalg.norm(found[20:40, 20] - tip[20:40], axis=-1).max() < 0.06
 
 
-def test_a_take_that_shows_no_body_is_refused(walk, library):
-    blind = np.full_like(walk, np.nan)
-    blind[:, :2] = walk[:, :2]
+def test_reconstruction_raises_for_a_take_without_a_body(walk, library):
+    unobserved = np.full_like(walk, np.nan)
+    unobserved[:, :2] = walk[:, :2]
     with pytest.raises(InvalidMotionError, match="No frame shows 3 joints"):
-        rebuilt(blind, library)
+        reconstructed(unobserved, library)
 
 
 @pytest.mark.parametrize("n_frames", [1, 2, 5])
-def test_short_takes_are_fine(lame, library, n_frames):
-    result = rebuilt(lame[40 : 40 + n_frames], library)
+def test_short_takes_are_reconstructed(walk_without_leg, library, n_frames):
+    result = reconstructed(walk_without_leg[40 : 40 + n_frames], library)
     assert np.isfinite(result.tracks.positions[:, :12]).all()
 
 
-def test_cancelling_ends_it(walk, library):
+def test_reconstruction_can_be_cancelled(walk, library):
     def cancel(fraction, message=""):
         raise SolveCancelled
 
@@ -217,24 +223,24 @@ def test_cancelling_ends_it(walk, library):
         reconstruct_postures(recorded(walk), library, progress=cancel)
 
 
-def test_real_walks_of_another_person(recordings, library):
+def test_real_walks_of_another_actor_are_reconstructed(recordings, library):
     folder = recordings / "mocap" / "cmu_walk"
     clips = [read_bvh(path, scale=0.0254 / 0.45) for path in sorted(folder.glob("3[25]*.bvh"))]
     learned = build_posture_library([clip.slice(1, clip.n_frames) for clip in clips[:12]])
     clip = read_bvh(folder / "07_03.bvh", scale=0.0254 / 0.45)
     walk = postures_from_motion(clip.slice(1, clip.n_frames))[::4]
-    seen = walk.copy()
-    seen[20:50, LEG] = np.nan
-    away = np.linalg.norm(rebuilt(seen, learned).tracks.positions - walk, axis=-1)
-    assert away[20:50][:, LEG].mean() < 0.12
+    observed = walk.copy()
+    observed[20:50, LEG] = np.nan
+    errors = np.linalg.norm(reconstructed(observed, learned).tracks.positions - walk, axis=-1)
+    assert errors[20:50][:, LEG].mean() < 0.12
 
 
-def test_a_real_kinect_take_with_the_shipped_library(recordings):
+def test_shipped_library_reconstructs_a_real_kinect_take(recordings):
     take = read_recording(next((recordings / "kinect" / "kimore").glob("*.csv")))
     result = reconstruct_postures(take.slice(0, 120))
     assert result.tracks.names == take.names
     assert np.isfinite(result.tracks.positions).all()
-    sure = result.reliability.combined > 0.9
+    certain = result.reliability.combined > 0.9
     moved = np.linalg.norm(result.tracks.positions - take.tracks.positions[:120], axis=-1)
-    assert np.median(moved[sure]) < 0.03
+    assert np.median(moved[certain]) < 0.03
     assert "CMU" in result.method

@@ -1,4 +1,4 @@
-"""Postures: which joints they are made of, without heading and place, on other bodies."""
+"""Posture joints, normalized heading and position, and other body sizes."""
 
 import numpy as np
 import pytest
@@ -27,16 +27,16 @@ def walk():
 
 
 @pytest.mark.parametrize("sensor", list(SENSOR_JOINTS))
-def test_every_kinect_tracks_all_joints_of_postures(sensor):
+def test_every_kinect_tracks_all_posture_joints(sensor):
     names = SENSOR_JOINTS[sensor]
-    found = {role: names[place] for role, place in posture_joint_indices(names).items()}
+    found = {role: names[index] for role, index in posture_joint_indices(names).items()}
     assert set(found) == set(POSTURE_JOINTS)
     assert found["leftLowerArm"] == "ElbowLeft"
     assert found["rightHandEnd"] == "HandRight"
     assert found["chest"] in {"ShoulderCenter", "SpineShoulder", "SpineChest"}
 
 
-def test_names_that_are_no_body_are_refused():
+def test_posture_positions_raise_for_names_without_a_body():
     tracks = Tracks(("LFHD", "RFHD"), np.zeros((3, 2, 3)), 30.0)
     with pytest.raises(InvalidMotionError, match="No body was recognised"):
         posture_positions(tracks)
@@ -52,14 +52,14 @@ def test_missing_joints_are_nan_and_others_keep_their_position():
     )
 
 
-def test_normal_postures_do_not_depend_on_position_and_heading(walk):
+def test_normalized_postures_ignore_position_and_heading(walk):
     moved = rotate_about_vertical(walk, np.full(len(walk), 2.5)) + np.array([3.0, -1.0, 0.2])
     one, other = normalize_postures(walk, 30.0), normalize_postures(moved, 30.0)
     np.testing.assert_allclose(one.postures, other.postures, atol=1e-9)
-    np.testing.assert_allclose(other.put_back(other.postures), moved, atol=1e-12)
+    np.testing.assert_allclose(other.to_world(other.postures), moved, atol=1e-12)
 
 
-def test_a_normal_posture_faces_forward_with_its_left_at_plus_x(walk):
+def test_normalized_posture_faces_forward_with_left_at_plus_x(walk):
     posture = normalize_postures(walk, 30.0).postures.mean(axis=0)
     assert posture[POSTURE_JOINTS.index("leftUpperArm"), 0] > 0.1
     assert (
@@ -72,17 +72,17 @@ def test_unreliable_joints_do_not_change_the_heading(walk):
     wrong = walk.copy()
     arm = POSTURE_JOINTS.index("leftUpperArm")
     wrong[:, arm] += (0.0, 1.0, 0.0)
-    trust = np.ones(walk.shape[:2])
-    trust[:, arm] = 0.0
+    reliability = np.ones(walk.shape[:2])
+    reliability[:, arm] = 0.0
     believed = np.abs(
         normalize_postures(wrong, 30.0).headings - normalize_postures(walk, 30.0).headings
     ).max()
-    doubted = np.abs(
-        normalize_postures(wrong, 30.0, trust).headings
-        - normalize_postures(walk, 30.0, trust).headings
+    uncertain = np.abs(
+        normalize_postures(wrong, 30.0, reliability).headings
+        - normalize_postures(walk, 30.0, reliability).headings
     ).max()
     assert believed > 0.3
-    assert doubted < 0.01
+    assert uncertain < 0.01
 
 
 def test_a_resized_body_has_the_lengths_and_keeps_directions(walk):
@@ -102,9 +102,9 @@ def test_lengths_ignore_unreliable_frames(walk):
     shin = POSTURE_JOINTS.index("leftFoot")
     wrong = walk.copy()
     wrong[:40, shin] += (0.0, 0.0, 0.4)
-    trust = np.ones(walk.shape[:2])
-    trust[:40, shin] = 0.1
-    assert estimate_bone_lengths(wrong, trust)[shin] == pytest.approx(
+    reliability = np.ones(walk.shape[:2])
+    reliability[:40, shin] = 0.1
+    assert estimate_bone_lengths(wrong, reliability)[shin] == pytest.approx(
         estimate_bone_lengths(walk)[shin], abs=1e-6
     )
     assert abs(estimate_bone_lengths(wrong)[shin] - estimate_bone_lengths(walk)[shin]) > 0.1

@@ -1,4 +1,4 @@
-"""Legs reach the ankles that were seen: the pelvis gives way, knees bend for the rest."""
+"""Legs reach observed ankles: the pelvis is offset, and knees flex for the rest."""
 
 import numpy as np
 import pytest
@@ -33,65 +33,67 @@ def walk() -> np.ndarray:
     return true_positions(samples, posture_joints)
 
 
-def places_of(motion: Motion, names: tuple[str, ...]) -> np.ndarray:
+def joint_positions(motion: Motion, names: tuple[str, ...]) -> np.ndarray:
     order = [motion.skeleton.index(name) for name in names]
     return forward_kinematics(motion).positions[:, order]
 
 
-def followed(positions: np.ndarray, names=NAMES) -> Motion:
+def position_errors(positions: np.ndarray, names=NAMES) -> Motion:
     return motion_from_positions(Tracks(names, positions, 30.0), joint_parents(names))
 
 
 @pytest.mark.parametrize("file", REAL)
 def test_ankles_of_real_takes_reach_observed_positions(recordings, file):
-    """Bones alone miss them by up to 12 cm, and the feet sink."""
+    """Without it, ankles miss by up to 12 cm and feet sink."""
     recording = read_recording(recordings / "kinect" / file).slice(0, 300)
     order = [recording.names.index(name) for name in ANKLES]
-    seen = recording.tracks.positions[:, order]
+    observed = recording.tracks.positions[:, order]
 
-    reached = places_of(motion_from_positions(recording.tracks, recording.parents), ANKLES)
+    reached = joint_positions(
+        motion_from_positions(recording.tracks, recording.parents), ANKLES
+    )
 
-    missed = np.linalg.norm(reached - seen, axis=-1)
+    missed = np.linalg.norm(reached - observed, axis=-1)
     assert np.nanmean(missed) < 0.01
     assert np.nanpercentile(missed, 95) < 0.02
 
 
 def test_hips_observed_low_do_not_push_feet_through_the_floor(walk):
     low = walk.copy()
-    above = [place for place, name in enumerate(NAMES) if not name.startswith(("Ank", "Foot"))]
+    above = [index for index, name in enumerate(NAMES) if not name.startswith(("Ank", "Foot"))]
     low[40:60, above, 2] -= 0.06
     order = [NAMES.index(name) for name in ANKLES]
 
-    reached = places_of(followed(low), ANKLES)
+    reached = joint_positions(position_errors(low), ANKLES)
 
     assert np.linalg.norm(reached - low[:, order], axis=-1)[40:60].max() < 0.02
 
 
 def test_pelvis_is_offset_for_straight_legs_and_knees_stay(walk):
-    """Legs seen 6 cm too short: bent knees would come 16 cm forward."""
+    """Observed legs are 6 cm too short: flexed knees would move forward by 16 cm."""
     standing = np.repeat(walk[:1], 40, axis=0)
     for side, across in (("Left", 0.1), ("Right", -0.1)):
         for part, height in (("Hip", 0.92), ("Knee", 0.5), ("Ankle", 0.1)):
             standing[:, NAMES.index(part + side)] = (across, 0.0, height)
         standing[:, NAMES.index(f"Foot{side}")] = (across, -0.15, 0.05)
     standing[:, NAMES.index("HipCenter")] = (0.0, 0.0, 0.95)
-    above = [place for place, name in enumerate(NAMES) if standing[0, place, 2] > 0.6]
+    above = [index for index, name in enumerate(NAMES) if standing[0, index, 2] > 0.6]
     short = standing.copy()
     short[15:25, above, 2] -= 0.06
 
-    motion = followed(short)
+    motion = position_errors(short)
 
-    knees = places_of(motion, ("KneeLeft", "KneeRight"))
+    knees = joint_positions(motion, ("KneeLeft", "KneeRight"))
     order = [NAMES.index(name) for name in ("KneeLeft", "KneeRight")]
     assert np.abs((knees - short[:, order])[..., 1])[18:22].max() < 0.1
 
 
 def test_matching_ankles_stay_unchanged(walk):
-    once = followed(walk)
+    once = position_errors(walk)
     names = tuple(name for name in once.skeleton.names if name in NAMES)
     again = np.array(walk)
-    again[:, [NAMES.index(name) for name in names]] = places_of(once, names)
+    again[:, [NAMES.index(name) for name in names]] = joint_positions(once, names)
 
-    twice = places_of(followed(again), names)
+    twice = joint_positions(position_errors(again), names)
 
-    assert np.linalg.norm(twice - places_of(once, names), axis=-1).max() < 0.02
+    assert np.linalg.norm(twice - joint_positions(once, names), axis=-1).max() < 0.02

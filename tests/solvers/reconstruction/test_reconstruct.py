@@ -1,4 +1,6 @@
-"""Both ways of reconstruction together, on a walk whose left forearm shakes behind the body."""
+"""Both methods of reconstruction together, on a walk whose left forearm is noisy behind the
+body.
+"""
 
 from dataclasses import replace
 
@@ -42,51 +44,53 @@ def walk(true):
     return kinect_walks.tracked_walk(motion, true)
 
 
-def off(positions, true, joints, frames=slice(None)):
+def mean_error(positions, true, joints, frames=slice(None)):
     return float(np.linalg.norm((positions - true)[frames][:, joints], axis=-1).mean())
 
 
 @pytest.mark.parametrize("method", OURS)
 @pytest.mark.parametrize("causal", [False, True])
-def test_a_shaking_forearm_comes_nearer_to_the_truth(walk, true, method, causal):
+def test_reconstruction_reduces_the_error_of_a_noisy_forearm(walk, true, method, causal):
     settings = ReconstructSettings(method=method, causal=causal)
     found = reconstruct(walk, settings=settings).tracks.positions
-    before = off(walk.tracks.positions, true, HIDDEN, LOST)
-    assert off(found, true, HIDDEN, LOST) < (0.7 if causal else 0.5) * before
+    before = mean_error(walk.tracks.positions, true, HIDDEN, LOST)
+    assert mean_error(found, true, HIDDEN, LOST) < (0.7 if causal else 0.5) * before
 
 
-def test_the_published_methods_are_what_their_parts_make(walk):
+def test_published_methods_equal_their_separate_verbs(walk):
     signs = measure_reliability(
         walk, settings=ReliabilitySettings(method=ReliabilityMethod.PUBLISHED)
     )
     search = PostureSettings(method=PostureMethod.PUBLISHED)
-    alone = reconstruct_postures(walk, settings=search, reliability=signs)
+    separate = reconstruct_postures(walk, settings=search, reliability=signs)
     chosen = ReconstructSettings(method=ReconstructMethod.PUBLISHED_POSTURES)
-    whole = reconstruct(walk, settings=chosen)
-    np.testing.assert_array_equal(whole.tracks.positions, alone.tracks.positions)
-    np.testing.assert_array_equal(whole.motion.rotations, alone.motion.rotations)
-    assert "stochastic search" in whole.method
+    complete = reconstruct(walk, settings=chosen)
+    np.testing.assert_array_equal(complete.tracks.positions, separate.tracks.positions)
+    np.testing.assert_array_equal(complete.motion.rotations, separate.motion.rotations)
+    assert "stochastic search" in complete.method
 
     three_terms = CorrectionSettings(method=CorrectionMethod.PUBLISHED, shift=True)
     v2 = replace(walk, sensor=Sensor.KINECT_V2)
-    alone = correct_postures(
+    separate = correct_postures(
         v2, shipped_residual_prior(), reliability=signs, settings=three_terms
     )
     chosen = ReconstructSettings(method=ReconstructMethod.PUBLISHED_RESIDUALS, shift=True)
-    whole = reconstruct(v2, settings=chosen)
-    np.testing.assert_array_equal(whole.tracks.positions, alone.tracks.positions)
-    moved = off(whole.tracks.positions, walk.tracks.positions, SEEN)
+    complete = reconstruct(v2, settings=chosen)
+    np.testing.assert_array_equal(complete.tracks.positions, separate.tracks.positions)
+    moved = mean_error(complete.tracks.positions, walk.tracks.positions, SEEN)
     other = reconstruct(walk, settings=chosen)  # whose errors the prior does not know
-    assert off(other.tracks.positions, walk.tracks.positions, SEEN) < moved
+    assert mean_error(other.tracks.positions, walk.tracks.positions, SEEN) < moved
 
 
-def test_postures_help_where_the_residuals_alone_can_only_smooth(walk, true):
-    lost = walk.tracks.positions.copy()
-    lost[LOST, HIDDEN[0] : HIDDEN[-1] + 1] = np.nan
-    blind = JointRecording(walk.tracks.with_positions(lost), None, walk.sensor)
+def test_postures_improve_joints_that_residuals_only_smooth(walk, true):
+    missing = walk.tracks.positions.copy()
+    missing[LOST, HIDDEN[0] : HIDDEN[-1] + 1] = np.nan
+    unobserved = JointRecording(walk.tracks.with_positions(missing), None, walk.sensor)
     error = {
-        method: off(
-            reconstruct(blind, settings=ReconstructSettings(method=method)).tracks.positions,
+        method: mean_error(
+            reconstruct(
+                unobserved, settings=ReconstructSettings(method=method)
+            ).tracks.positions,
             true, HIDDEN, LOST,
         )
         for method in (ReconstructMethod.BOTH, ReconstructMethod.RESIDUALS)
@@ -96,7 +100,7 @@ def test_postures_help_where_the_residuals_alone_can_only_smooth(walk, true):
 
 def test_observed_joints_keep_their_positions(walk, true):
     found = reconstruct(walk)
-    assert off(found.tracks.positions, walk.tracks.positions, SEEN) < 0.015
+    assert mean_error(found.tracks.positions, walk.tracks.positions, SEEN) < 0.015
     assert found.confidence[:, SEEN].mean() > 0.7
     assert found.confidence[LOST][:, HIDDEN].mean() < found.confidence[:, SEEN].mean() - 0.1
 
@@ -115,22 +119,29 @@ def test_heading_and_position_do_not_matter(walk):
     moved = walk.with_tracks(
         walk.tracks.with_positions(rotate_about_vertical(walk.tracks.positions, angles) + shift)
     )
-    here, there = reconstruct(walk).tracks.positions, reconstruct(moved).tracks.positions
-    np.testing.assert_allclose(rotate_about_vertical(here, angles) + shift, there, atol=1e-3)
+    result, moved_result = (
+        reconstruct(walk).tracks.positions,
+        reconstruct(moved).tracks.positions,
+    )
+    np.testing.assert_allclose(
+        rotate_about_vertical(result, angles) + shift, moved_result, atol=1e-3
+    )
 
 
 def test_reconstruction_repeats_and_leaves_the_input_unchanged(walk):
-    given = walk.tracks.positions.copy()
+    original = walk.tracks.positions.copy()
     one, other = reconstruct(walk), reconstruct(walk)
     np.testing.assert_array_equal(one.tracks.positions, other.tracks.positions)
-    np.testing.assert_array_equal(walk.tracks.positions, given)
+    np.testing.assert_array_equal(walk.tracks.positions, original)
 
 
 def test_inferred_joints_are_reconstructed_more_at_lower_weight(walk, true):
-    calm = walk.with_tracks(walk.tracks.with_positions(true))
+    clean = walk.with_tracks(walk.tracks.with_positions(true))
     moved = [
-        off(
-            reconstruct(calm, settings=ReconstructSettings(inferred=count)).tracks.positions,
+        mean_error(
+            reconstruct(
+                clean, settings=ReconstructSettings(inferred=count)
+            ).tracks.positions,
             true, HIDDEN, LOST,
         )
         for count in (0.0, 0.5, 1.0)
@@ -139,8 +150,8 @@ def test_inferred_joints_are_reconstructed_more_at_lower_weight(walk, true):
     assert moved[1] < 0.02
 
 
-def another_end(walk, start):
-    """Return the same frames, from `start` on backwards: the body is as long as it was."""
+def reversed_after(walk, start):
+    """Reverse the frames from `start` on; the bone lengths stay the same."""
     order = np.arange(len(walk.tracks.positions))
     order[start:] = order[start:][::-1]
     return frames_of(walk, order)
@@ -153,12 +164,12 @@ def frames_of(walk, order):
 
 @pytest.fixture
 def one_body(monkeypatch):
-    """The first take tells bodies and usual errors once and for all, as calibration would."""
+    """Measure body size and mean errors on the first take only, as a calibration would."""
     for name in ("_fit_library_to_actor", "_measure_errors"):
-        monkeypatch.setattr(complete_postures, name, held(getattr(complete_postures, name)))
+        monkeypatch.setattr(complete_postures, name, frozen(getattr(complete_postures, name)))
 
 
-def held(measure):
+def frozen(measure):
     results = []
 
     def first(*given):
@@ -177,7 +188,7 @@ def test_causal_joints_ignore_later_frames_except_for_the_body(walk, method, one
         settings = ReconstructSettings(method=method, causal=causal)
         one, other = (
             reconstruct(take, settings=settings).tracks.positions[:40]
-            for take in (short, another_end(short, 40))
+            for take in (short, reversed_after(short, 40))
         )
         far[causal] = float(np.abs(one - other).max())
     assert far[True] < 3e-4 < 1e-3 < far[False]

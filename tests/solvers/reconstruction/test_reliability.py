@@ -1,4 +1,4 @@
-"""Reliability of whole bodies: low where a joint is wrong, and only there."""
+"""Reliability of complete bodies is low for wrong joints only."""
 
 import numpy as np
 import pytest
@@ -38,7 +38,7 @@ def named(settings: ReliabilitySettings) -> str:
     return f"{settings.method.value}{' causal' if settings.causal else ''}"
 
 
-every_way = pytest.mark.parametrize("settings", METHODS, ids=named)
+every_method = pytest.mark.parametrize("settings", METHODS, ids=named)
 
 
 def recorded(positions: np.ndarray, frame_rate: float = 30.0) -> JointRecording:
@@ -59,19 +59,19 @@ def walk() -> np.ndarray:
     return walk_at(30.0)
 
 
-def place(name: str) -> int:
+def joint_index(name: str) -> int:
     return NAMES.index(name)
 
 
-def shaken(walk: np.ndarray, name: str, size: float = 0.06) -> np.ndarray:
-    """One joint jumps to and fro in the middle of the take."""
+def vibrating(walk: np.ndarray, name: str, size: float = 0.06) -> np.ndarray:
+    """One joint vibrates in the middle of the take."""
     wrong = walk.copy()
     jumps = size * (-1.0) ** np.arange(30)
-    wrong[30:60, place(name), 0] += jumps
+    wrong[30:60, joint_index(name), 0] += jumps
     return wrong
 
 
-@every_way
+@every_method
 def test_still_body_is_reliable(walk, settings):
     still = np.tile(walk[:1], (60, 1, 1))
 
@@ -85,24 +85,26 @@ def test_clean_walk_is_reliable(walk):
     assert combined.min() > 0.85  # knees and feet at footfall
 
 
-@every_way
+@every_method
 def test_vibrating_joint_is_unreliable_and_others_hardly(walk, settings):
     before = measure_reliability(recorded(walk), settings=settings).combined
-    after = measure_reliability(recorded(shaken(walk, "HandLeft")), settings=settings).combined
+    after = measure_reliability(
+        recorded(vibrating(walk, "HandLeft")), settings=settings
+    ).combined
 
     fall = (before - after)[38:58].mean(axis=0)
-    hand = place("HandLeft")
-    near = [hand, place("WristLeft")]  # they share a segment
+    hand = joint_index("HandLeft")
+    near = [hand, joint_index("WristLeft")]  # they share a segment
     assert fall[hand] > 0.4
     assert np.delete(fall, near).max() < 0.01
-    assert fall[place("WristLeft")] < 0.75 * fall[hand]
+    assert fall[joint_index("WristLeft")] < 0.75 * fall[hand]
     assert (before - after)[:15].max() < 0.05
 
 
-@every_way
-def test_leg_too_long_for_a_while_is_unreliable(walk, settings):
+@every_method
+def test_leg_with_a_temporary_length_error_is_unreliable(walk, settings):
     wrong = walk.copy()
-    knee, ankle, foot = (place(f"{part}Left") for part in ("Knee", "Ankle", "Foot"))
+    knee, ankle, foot = (joint_index(f"{part}Left") for part in ("Knee", "Ankle", "Foot"))
     longer = 0.3 * (walk[20:40, ankle] - walk[20:40, knee])
     wrong[20:40, [ankle, foot]] += longer[:, None]
 
@@ -116,12 +118,12 @@ def test_leg_too_long_for_a_while_is_unreliable(walk, settings):
     fall = (before.combined - after.combined)[28:38].mean(axis=0)
     assert fall[ankle] > 0.1
     assert fall[knee] > 0.05
-    assert fall[place("KneeRight")] < 1e-9
+    assert fall[joint_index("KneeRight")] < 1e-9
 
 
-@every_way
+@every_method
 def test_posture_ignores_position_and_heading(walk, settings):
-    wrong = shaken(walk, "AnkleRight")
+    wrong = vibrating(walk, "AnkleRight")
     moved = rotate_about_vertical(wrong, np.full(len(walk), 2.1)) + np.array([3.0, -4.0, 0.5])
 
     one = measure_reliability(recorded(wrong), settings=settings)
@@ -131,7 +133,7 @@ def test_posture_ignores_position_and_heading(walk, settings):
 
 
 def test_constant_velocity_walk_has_no_deviation(walk):
-    """The ends of a path go on as they came: nothing falls there because of speed."""
+    """The ends of a path are extrapolated, so speed does not lower reliability there."""
     gone = walk + np.arange(len(walk))[:, None, None] * np.array([0.06, 0.0, 0.0])
 
     one, other = (measure_reliability(recorded(each)).combined for each in (walk, gone))
@@ -140,7 +142,7 @@ def test_constant_velocity_walk_has_no_deviation(walk):
 
 
 @pytest.mark.parametrize("frame_rate", [60.0, 120.0])
-def test_frame_rates_agree(frame_rate):
+def test_reliability_agrees_at_all_frame_rates(frame_rate):
     step = int(frame_rate / 30.0)
     rng = np.random.default_rng(5)
     sway = np.cumsum(rng.normal(size=(91, 20, 3)), axis=0)
@@ -159,38 +161,40 @@ def test_frame_rates_agree(frame_rate):
     assert np.abs(slow - quick).mean() < 0.06
 
 
-@every_way
+@every_method
 def test_missing_joints_have_no_reliability_and_others_keep_theirs(walk, settings):
     gone = walk.copy()
-    gone[20:30, place("HandRight")] = np.nan
-    gone[:, place("FootLeft")] = np.nan
+    gone[20:30, joint_index("HandRight")] = np.nan
+    gone[:, joint_index("FootLeft")] = np.nan
 
     found = measure_reliability(recorded(gone), settings=settings)
 
-    for term in (found.combined, found.behaviour, found.kinematics, found.tracking):
+    for term in (found.combined, found.behavior, found.kinematics, found.tracking):
         assert np.isfinite(term).all()
         assert ((term >= 0.0) & (term <= 1.0)).all()
-        assert (term[20:30, place("HandRight")] == 0.0).all()
-        assert (term[:, place("FootLeft")] == 0.0).all()
-    assert found.combined[:, place("Head")].min() > 0.9
-    assert found.combined[45:, place("HandRight")].min() > 0.7
+        assert (term[20:30, joint_index("HandRight")] == 0.0).all()
+        assert (term[:, joint_index("FootLeft")] == 0.0).all()
+    assert found.combined[:, joint_index("Head")].min() > 0.9
+    assert found.combined[45:, joint_index("HandRight")].min() > 0.7
 
 
 def test_input_stays_unchanged_and_progress_is_reported(walk):
-    recording = recorded(shaken(walk, "HandLeft"))
+    recording = recorded(vibrating(walk, "HandLeft"))
     before = recording.tracks.positions.copy()
-    told = []
+    fractions = []
 
-    measure_reliability(recording, progress=lambda fraction, message="": told.append(fraction))
+    measure_reliability(
+        recording, progress=lambda fraction, message="": fractions.append(fraction)
+    )
 
     assert_array_equal(recording.tracks.positions, before)
-    assert told == sorted(told)
-    assert told[-1] == 1.0
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
 
 
-@every_way
+@every_method
 @pytest.mark.parametrize("shape", [(1, 1), (1, 20), (2, 20), (5, 1)])
-def test_the_shortest_takes_have_a_reliability(walk, settings, shape):
+def test_shortest_takes_have_a_reliability(walk, settings, shape):
     positions = walk[: shape[0], : shape[1]]
     tracks = Tracks(NAMES[: shape[1]], positions, 30.0)
 
@@ -202,19 +206,19 @@ def test_the_shortest_takes_have_a_reliability(walk, settings, shape):
     assert (found.combined > 0.9).all()
 
 
-def test_reference_postures_are_standing_and_t_pose_and_no_other():
+def test_reference_postures_are_standing_and_t_pose_only():
     limbs = {"down": (0.0, 0.0, -1.0), "out": (1.0, 0.0, 0.0), "ahead": (0.0, -1.0, 0.0)}
     frames = np.stack([body(limbs["down"]), body(limbs["out"]), body(limbs["ahead"])])
     tracked = np.ones(frames.shape[:2], bool)
 
     assert find_reference_postures(NAMES, frames, tracked).tolist() == [True, True, False]
     tilt = np.radians(35.0)
-    turn = np.array([
+    rotation = np.array([
         [1, 0, 0],
         [0, np.cos(tilt), -np.sin(tilt)],
         [0, np.sin(tilt), np.cos(tilt)],
     ])
-    assert find_reference_postures(NAMES, frames @ turn.T, tracked).tolist() == [
+    assert find_reference_postures(NAMES, frames @ rotation.T, tracked).tolist() == [
         True,
         True,
         False,
@@ -224,45 +228,45 @@ def test_reference_postures_are_standing_and_t_pose_and_no_other():
 
 
 def body(arm: tuple[float, float, float]) -> np.ndarray:
-    """All joints of a body that stands, its arms held so; the left is at +X."""
+    """All joints of a standing body with its arms in this direction; left is at +X."""
     at = {"HipCenter": (0.0, 0.0, 0.9), "Spine": (0, 0, 1.1), "ShoulderCenter": (0, 0, 1.4),
           "Head": (0, 0, 1.6)}  # fmt: skip
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         shoulder = np.array([0.2 * sign, 0.0, 1.4])
-        way = np.array(arm) * (sign, 1.0, 1.0)
+        direction = np.array(arm) * (sign, 1.0, 1.0)
         parts = ("Shoulder", "Elbow", "Wrist", "Hand")
-        at |= {f"{p}{side}": shoulder + 0.28 * n * way for n, p in enumerate(parts)}
+        at |= {f"{p}{side}": shoulder + 0.28 * n * direction for n, p in enumerate(parts)}
         for rise, part in ((0.9, "Hip"), (0.5, "Knee"), (0.1, "Ankle"), (0.02, "Foot")):
             at[f"{part}{side}"] = np.array([0.1 * sign, -0.15 * (part == "Foot"), rise])
     return np.array([at[name] for name in NAMES])
 
 
-def test_lengths_are_those_of_reference_postures_where_there_are_any():
+def test_lengths_are_measured_in_reference_postures_if_any():
     lengths = np.full((40, 2), 0.5)
     lengths[10:20] = 0.4
     postures = np.zeros(40, bool)
-    trust = np.ones((40, 2))
-    trust[:, 1] = 0.0
-    trust[10:17, 1] = 1.0
+    reliability = np.ones((40, 2))
+    reliability[:, 1] = 0.0
+    reliability[10:17, 1] = 1.0
 
-    assert_allclose(reference_lengths(lengths, postures, trust), [0.5, 0.4])
+    assert_allclose(reference_lengths(lengths, postures, reliability), [0.5, 0.4])
     postures[10:20] = True
-    assert_allclose(reference_lengths(lengths, postures, trust), [0.4, 0.4])
+    assert_allclose(reference_lengths(lengths, postures, reliability), [0.4, 0.4])
     postures[14:20] = False  # four are too few
-    assert_allclose(reference_lengths(lengths, postures, trust), [0.5, 0.4])
+    assert_allclose(reference_lengths(lengths, postures, reliability), [0.5, 0.4])
 
 
 def test_reference_postures_with_an_inferred_joint_are_ignored():
     frames = np.tile(body((0.0, 0.0, -1.0)), (30, 1, 1))
-    frames[:20, place("HandLeft"), 2] -= 0.1
+    frames[:20, joint_index("HandLeft"), 2] -= 0.1
     state = np.full(frames.shape[:2], 2)
-    state[:20, place("Head")] = 1
+    state[:20, joint_index("Head")] = 1
     recording = JointRecording(Tracks(NAMES, frames, 30.0), state, Sensor.KINECT_V1)
 
     kinematics = measure_reliability(recording).kinematics
 
     assert_allclose(kinematics[20:], 1.0)
-    assert_allclose(kinematics[:20, place("HandLeft")], 1.0 - 0.1 / 0.28)
+    assert_allclose(kinematics[:20, joint_index("HandLeft")], 1.0 - 0.1 / 0.28)
 
 
 def test_low_reliability_lasts_equally_long_at_any_frame_rate():
@@ -271,9 +275,9 @@ def test_low_reliability_lasts_equally_long_at_any_frame_rate():
         still = np.tile(walk_at(30.0)[:1], (round(4.0 * frame_rate), 1, 1))
         burst = slice(round(2.0 * frame_rate), round(2.3 * frame_rate))
         sign = (-1.0) ** (np.arange(still[burst].shape[0]) * 30.0 // frame_rate)
-        still[burst, place("HandLeft"), 1] += 0.05 * sign
+        still[burst, joint_index("HandLeft"), 1] += 0.05 * sign
         found = measure_reliability(recorded(still, frame_rate)).combined
-        lasting.append((found[:, place("HandLeft")] < 0.9).sum() / frame_rate)
+        lasting.append((found[:, joint_index("HandLeft")] < 0.9).sum() / frame_rate)
 
     assert 0.5 < lasting[0] < 1.5
     assert lasting[1] == pytest.approx(lasting[0], abs=0.2)

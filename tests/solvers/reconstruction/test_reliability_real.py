@@ -1,4 +1,4 @@
-"""Reliability on real recordings: it tells wrong joints, and agrees with the device's flag."""
+"""Reliability on real recordings detects wrong joints and agrees with the device's states."""
 
 import numpy as np
 import pytest
@@ -16,74 +16,74 @@ AT_JOINTS = {"LForeArm": "LELB", "RForeArm": "RELB", "LFoot": "LANK", "RFoot": "
 
 
 def area_under_curve(reliability: np.ndarray, wrong: np.ndarray) -> float:
-    """Chance that a wrong joint is trusted less than a right one."""
+    """Probability that a wrong joint has a lower reliability than a correct one."""
     n_wrong, n_right = wrong.sum(), (~wrong).sum()
     ranks = rankdata(-reliability)[wrong].sum() - n_wrong * (n_wrong + 1) / 2.0
     return float(ranks / (n_wrong * n_right))
 
 
 def test_wrong_kinect_joints_are_less_reliable_than_as_published(recordings):
-    ours, published, wrong = [], [], []
+    result, published, wrong = [], [], []
     for path in sorted((recordings / "kinect" / "ui_prmd").glob("m0[268]_s02_e0[1-4].npz")):
         recording, markers = read_ui_prmd_pair(path)
         joints = [recording.names.index(name) for name in AT_JOINTS]
         true = markers.positions[:, [markers.names.index(name) for name in AT_JOINTS.values()]]
-        off = recording.tracks.positions[:, joints] - true
-        error = np.linalg.norm(off - np.median(off, axis=0), axis=-1)
+        differences = recording.tracks.positions[:, joints] - true
+        error = np.linalg.norm(differences - np.median(differences, axis=0), axis=-1)
         wrong.append(error > 0.05)
-        ours.append(measure_reliability(recording).combined[:, joints])
+        result.append(measure_reliability(recording).combined[:, joints])
         published.append(measure_reliability(recording, settings=PUBLISHED).combined[:, joints])
     is_wrong = np.concatenate(wrong)
 
     assert 0.02 < is_wrong.mean() < 0.5
-    area = area_under_curve(np.concatenate(ours).ravel(), is_wrong.ravel())
+    area = area_under_curve(np.concatenate(result).ravel(), is_wrong.ravel())
     assert area > 0.8
     assert area > 0.03 + area_under_curve(np.concatenate(published).ravel(), is_wrong.ravel())
 
 
 @pytest.mark.parametrize("folder", ["irds", "kimore", "azure"])
 def test_inferred_joints_are_less_reliable_without_states(recordings, folder):
-    found, doubted = [], []
+    found, uncertain = [], []
     files = [path for path in (recordings / "kinect" / folder).iterdir() if path.is_file()]
     for path in sorted(files)[:12]:
         take = read_recording(path)
-        seen = take.tracks.visible
-        found.append(measure_reliability(take, settings=WITHOUT_STATE).combined[seen])
-        doubted.append(take.tracking_state[seen] < TRACKED)
+        observed = take.tracks.visible
+        found.append(measure_reliability(take, settings=WITHOUT_STATE).combined[observed])
+        uncertain.append(take.tracking_state[observed] < TRACKED)
 
-    assert area_under_curve(np.concatenate(found), np.concatenate(doubted)) > 0.65
+    assert area_under_curve(np.concatenate(found), np.concatenate(uncertain)) > 0.65
 
 
 @pytest.mark.parametrize(
-    ("folder", "least"),
+    ("folder", "minimum"),
     [("irds", 0.8), ("kimore", 0.8), ("laban", 0.8), ("msr_action3d", 0.7), ("azure", 0.8),
      ("ui_prmd", 0.8)],
 )  # fmt: skip
-def test_every_sensor_is_reliable_until_joints_vibrate(recordings, folder, least):
-    """By the signs of errors alone, without the tracker's word."""
+def test_every_sensor_is_reliable_until_joints_vibrate(recordings, folder, minimum):
+    """By error indicators only, without the tracker's states."""
     files = [path for path in (recordings / "kinect" / folder).iterdir() if path.is_file()]
-    given = read_recording(min(files))
-    tracks = Tracks(given.names, given.tracks.positions, given.frame_rate)
-    take = JointRecording(tracks, None, given.sensor)
+    recording = read_recording(min(files))
+    tracks = Tracks(recording.names, recording.tracks.positions, recording.frame_rate)
+    take = JointRecording(tracks, None, recording.sensor)
     shaken = tracks.positions + np.random.default_rng(1).normal(
         scale=0.1, size=tracks.positions.shape
     )
 
     sound = measure_reliability(take)
-    spoilt = measure_reliability(take.with_tracks(tracks.with_positions(shaken)))
+    corrupted = measure_reliability(take.with_tracks(tracks.with_positions(shaken)))
 
-    seen = tracks.visible
-    for term in (sound.combined, sound.behaviour, sound.kinematics, sound.tracking):
+    observed = tracks.visible
+    for term in (sound.combined, sound.behavior, sound.kinematics, sound.tracking):
         assert term.shape == (take.n_frames, take.n_joints)
         assert ((term >= 0.0) & (term <= 1.0)).all()
-    assert sound.combined[seen].mean() > least
-    assert (sound.combined[seen] < 0.5).mean() < 0.1
-    assert (spoilt.combined[seen] < 0.5).mean() > 0.95
+    assert sound.combined[observed].mean() > minimum
+    assert (sound.combined[observed] < 0.5).mean() < 0.1
+    assert (corrupted.combined[observed] < 0.5).mean() > 0.95
 
 
 @pytest.mark.parametrize("folder", ["irds", "kimore", "azure"])
 def test_joint_missing_for_long_has_no_reliability(recordings, folder):
-    """The mean over the window leaves none where all of it was guessed."""
+    """The window mean is 0 where all of it was inferred."""
     for path in sorted((recordings / "kinect" / folder).iterdir())[:12]:
         take = read_recording(path)
         guessed = take.tracking_state < TRACKED
@@ -102,26 +102,26 @@ def test_ankles_at_24_meters_per_second_are_unreliable(recordings):
     assert take.frame_rate == 15.0
     assert speeds.max() > 24.0
 
-    trust = measure_reliability(JointRecording(take.tracks, None, take.sensor)).combined
+    reliability = measure_reliability(JointRecording(take.tracks, None, take.sensor)).combined
     signs = measure_reliability(take, settings=WITHOUT_STATE).combined
 
-    assert trust[1:][speeds > 10.0].max() < 0.2
+    assert reliability[1:][speeds > 10.0].max() < 0.2
     assert signs[1:][speeds > 10.0].max() < 0.2
 
 
-def test_the_confidence_of_a_tracker_without_states_counts(recordings):
-    doubted, sure = [], []
+def test_confidence_of_a_tracker_without_states_is_used(recordings):
+    uncertain, certain = [], []
     for path in sorted((recordings / "kinect" / "msr_action3d").iterdir())[::40]:
         take = read_recording(path)
-        found, told = measure_reliability(take).combined, take.tracks.confidence
-        doubted.append(found[told < 0.05])
-        sure.append(found[told == 1.0])
+        found, confidence = measure_reliability(take).combined, take.tracks.confidence
+        uncertain.append(found[confidence < 0.05])
+        certain.append(found[confidence == 1.0])
 
-    assert np.concatenate(doubted).mean() < 0.4
-    assert np.concatenate(sure).mean() > 0.6
+    assert np.concatenate(uncertain).mean() < 0.4
+    assert np.concatenate(certain).mean() > 0.6
 
 
-def test_names_that_are_no_body_have_reliability_too():
+def test_names_without_a_body_have_a_reliability():
     names = ("a", "b", "c")
     tracks = Tracks(names, np.zeros((12, 3, 3)) + np.arange(3.0)[:, None], 30.0)
 

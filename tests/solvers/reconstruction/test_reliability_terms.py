@@ -1,4 +1,4 @@
-"""The terms of reliability, against cases worked out by hand from [SHJT13], eq. 3 to 8."""
+"""Terms of reliability, compared with manual results of [SHJT13], eq. 3 to 8."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measu
 from solvers.reconstruction.reliability.error_model import CAUSAL_MODEL as AS_IT_COMES
 from solvers.reconstruction.reliability.error_model import CENTERED_MODEL
 from solvers.reconstruction.reliability.terms import (
-    behaviour_term,
+    behavior_term,
     gaussian_mean,
     kinematics_term,
     tracking_term,
@@ -21,62 +21,64 @@ CAUSAL = ReliabilitySettings(causal=True)
 PUBLISHED = ReliabilitySettings(method=ReliabilityMethod.PUBLISHED)
 
 
-def path_that_turns(*turns: float, length: float = 0.1) -> np.ndarray:
-    """One joint that goes on by equal lengths in a plane and turns by these degrees."""
-    ways = np.radians(np.cumsum([0.0, *turns]))
-    moves = length * np.stack([np.cos(ways), np.sin(ways), 0.0 * ways], axis=-1)
+def path_with_turns(*angles: float, length: float = 0.1) -> np.ndarray:
+    """One joint that moves in a plane by steps of equal length and rotates by these degrees."""
+    directions = np.radians(np.cumsum([0.0, *angles]))
+    moves = length * np.stack(
+        [np.cos(directions), np.sin(directions), 0.0 * directions], axis=-1
+    )
     return np.concatenate([np.zeros((1, 3)), np.cumsum(moves, axis=0)])[:, None]
 
 
 @pytest.mark.parametrize(
-    ("turns", "expected"),
+    ("angles", "expected"),
     [
         ((90.0, 90.0, 90.0), 1.0),
         ((120.0, 120.0, 120.0), 1.0 / 3.0),  # 1 - (120 - 90) / (135 - 90)
         ((180.0, 90.0, 90.0), 1.0 / 3.0),  # the same mean
         ((135.0, 135.0, 135.0), 0.0),
-        ((180.0, 180.0, 180.0), 0.0),  # to and fro
-        ((180.0, 0.0, 0.0), 1.0),  # one spike alone is not held against a joint
+        ((180.0, 180.0, 180.0), 0.0),  # back and forth
+        ((180.0, 0.0, 0.0), 1.0),  # a single spike is ignored
     ],
 )
-def test_the_behaviour_term_is_that_of_the_mean_turn(turns, expected):
-    term = behaviour_term(path_that_turns(*turns), 30.0, CAUSAL)
+def test_behavior_term_depends_on_the_mean_turn(angles, expected):
+    term = behavior_term(path_with_turns(*angles), 30.0, CAUSAL)
 
     assert term[-1, 0] == pytest.approx(expected, abs=1e-6)
 
 
 @pytest.mark.parametrize(("length", "expected"), [(0.0299, 1.0), (0.0301, 0.0)])
-def test_steps_below_three_centimeters_are_no_vibration(length, expected):
-    path = path_that_turns(180.0, 180.0, 180.0, length=length)
+def test_steps_below_three_centimeters_are_not_vibration(length, expected):
+    path = path_with_turns(180.0, 180.0, 180.0, length=length)
 
-    assert behaviour_term(path, 30.0, CAUSAL)[-1, 0] == pytest.approx(expected, abs=1e-6)
+    assert behavior_term(path, 30.0, CAUSAL)[-1, 0] == pytest.approx(expected, abs=1e-6)
 
 
-def test_a_roof_below_the_floor_is_refused():
+def test_settings_raise_for_a_roof_below_the_floor():
     with pytest.raises(InvalidSettingError, match="it must lie above vibration_floor, 90"):
         ReliabilitySettings(vibration_roof=80.0)
 
 
 def test_the_floor_is_a_speed_at_any_frame_rate():
-    corners = path_that_turns(*[180.0] * 9, length=0.0299)[:, 0, 0]
+    corners = path_with_turns(*[180.0] * 9, length=0.0299)[:, 0, 0]
     path = np.zeros((41, 1, 3))
     path[:, 0, 0] = np.interp(np.arange(41) / 4.0, np.arange(11), corners)
 
-    assert_allclose(behaviour_term(path, 120.0, PUBLISHED), 1.0)
-    assert behaviour_term(3.0 * path, 120.0, PUBLISHED).min() < 0.5
+    assert_allclose(behavior_term(path, 120.0, PUBLISHED), 1.0)
+    assert behavior_term(3.0 * path, 120.0, PUBLISHED).min() < 0.5
 
 
 def test_causal_vibration_uses_past_frames_only():
-    path = path_that_turns(*[0.0] * 9, *[180.0] * 10)
+    path = path_with_turns(*[0.0] * 9, *[180.0] * 10)
     changed = path.copy()
     changed[12:] = 5.0
 
-    before = behaviour_term(path, 30.0, CAUSAL)
-    after = behaviour_term(changed, 30.0, CAUSAL)
+    before = behavior_term(path, 30.0, CAUSAL)
+    after = behavior_term(changed, 30.0, CAUSAL)
 
     assert_allclose(after[:12], before[:12])
-    assert before[13, 0] == pytest.approx(0.0)  # frames 10 to 12 turned back
-    assert behaviour_term(path, 30.0, PUBLISHED)[11, 0] == pytest.approx(0.0)
+    assert before[13, 0] == pytest.approx(0.0)  # frames 10 to 12 reverse
+    assert behavior_term(path, 30.0, PUBLISHED)[11, 0] == pytest.approx(0.0)
 
 
 def test_same_vibration_is_detected_at_any_frame_rate():
@@ -86,7 +88,7 @@ def test_same_vibration_is_detected_at_any_frame_rate():
     rates = {30.0: 4, 60.0: 2, 120.0: 1}
 
     means = [
-        behaviour_term(path[::step], rate, PUBLISHED)[step:-step].mean()
+        behavior_term(path[::step], rate, PUBLISHED)[step:-step].mean()
         for rate, step in rates.items()
     ]
 
@@ -94,8 +96,8 @@ def test_same_vibration_is_detected_at_any_frame_rate():
     assert np.ptp(means) < 0.1
 
 
-def test_the_kinematics_term_is_the_mean_over_segments_that_meet():
-    """A root with two children, one of which has a child: segments of 0.5, 0.4 and 0.2 m."""
+def test_kinematics_term_is_the_mean_over_adjacent_segments():
+    """A root with two children and one grandchild: segments of 0.5, 0.4 and 0.2 m."""
     parents = np.array([-1, 0, 0, 1])
     reference = np.array([np.nan, 0.5, 0.4, 0.2])
     lengths = np.array([[np.nan, 0.6, 0.4, 0.5]])
@@ -115,7 +117,7 @@ def test_the_kinematics_term_is_the_mean_over_segments_that_meet():
     )
 
 
-def test_missing_segments_do_not_count():
+def test_missing_segments_are_ignored():
     parents = np.array([-1, 0, 0])
     lengths = np.array([[np.nan, 0.6, np.nan]])
 
@@ -124,24 +126,24 @@ def test_missing_segments_do_not_count():
     assert_allclose(term[0], [0.8, 0.8, 1.0])
 
 
-def test_the_window_is_six_frames_with_most_weight_on_the_present():
-    """Eq. 8, written out for a joint that is lost in one frame."""
-    lost = np.ones((20, 1))
-    lost[10] = 0.0
+def test_window_is_six_frames_with_most_weight_on_the_last():
+    """Eq. 8, computed explicitly for a joint that is missing in one frame."""
+    missing = np.ones((20, 1))
+    missing[10] = 0.0
     weights = np.exp(-0.5 * (np.arange(6) / 2.0) ** 2)
 
-    mean = gaussian_mean(lost, 30.0, CAUSAL)
+    mean = gaussian_mean(missing, 30.0, CAUSAL)
 
     assert_allclose(mean[:10], 1.0)
     assert_allclose(mean[10:16, 0], 1.0 - weights / weights.sum(), atol=1e-12)
     assert_allclose(mean[16:], 1.0)
 
 
-def test_the_window_lies_on_both_sides_offline():
-    lost = np.ones((21, 1))
-    lost[10] = 0.0
+def test_offline_window_is_centered():
+    missing = np.ones((21, 1))
+    missing[10] = 0.0
 
-    mean = gaussian_mean(lost, 30.0, PUBLISHED)[:, 0]
+    mean = gaussian_mean(missing, 30.0, PUBLISHED)[:, 0]
 
     assert_allclose(mean, mean[::-1], atol=1e-12)
     assert mean.argmin() == 10
@@ -150,13 +152,13 @@ def test_the_window_lies_on_both_sides_offline():
 
 def still(n_frames: int = 40, state: np.ndarray | None = None) -> JointRecording:
     names = ("ShoulderLeft", "ElbowLeft", "WristLeft")
-    places = np.tile([[0.0, 2.0, 1.4], [0.3, 2.0, 1.4], [0.55, 2.0, 1.4]], (n_frames, 1, 1))
-    return JointRecording(Tracks(names, places, 30.0), state, Sensor.KINECT_V2)
+    positions = np.tile([[0.0, 2.0, 1.4], [0.3, 2.0, 1.4], [0.55, 2.0, 1.4]], (n_frames, 1, 1))
+    return JointRecording(Tracks(names, positions, 30.0), state, Sensor.KINECT_V2)
 
 
 @pytest.mark.parametrize(("causal", "model"), [(False, CENTERED_MODEL), (True, AS_IT_COMES)])
-def test_the_default_is_the_chance_of_a_normal_distribution(causal, model):
-    """Of a still body all signs are 0, and the line over them is at its floor."""
+def test_default_reliability_is_a_normal_probability(causal, model):
+    """All indicators of a still body are 0, and the linear model is at its floor."""
     settings = ReliabilitySettings(causal=causal, tolerance=0.02)
 
     found = measure_reliability(still(), settings=settings).combined
@@ -182,26 +184,26 @@ def test_tracking_states_have_their_configured_values():
 def test_published_is_the_windowed_minimum_of_the_terms():
     recording = still()
     rng = np.random.default_rng(2)
-    places = recording.tracks.positions + rng.normal(scale=0.06, size=(40, 3, 3))
+    positions = recording.tracks.positions + rng.normal(scale=0.06, size=(40, 3, 3))
     state = np.where(rng.random((40, 3)) < 0.2, 1, 2)
-    noisy = JointRecording(recording.tracks.with_positions(places), state, Sensor.KINECT_V2)
+    noisy = JointRecording(recording.tracks.with_positions(positions), state, Sensor.KINECT_V2)
     settings = ReliabilitySettings(method=ReliabilityMethod.PUBLISHED, causal=True)
 
     found = measure_reliability(noisy, settings=settings)
 
-    least = np.minimum(np.minimum(found.behaviour, found.kinematics), found.tracking)
+    minimum = np.minimum(np.minimum(found.behavior, found.kinematics), found.tracking)
     weights = np.exp(-0.5 * (np.arange(6) / 2.0) ** 2)
     for frame in (0, 3, 17, 39):
-        past = least[max(frame - 5, 0) : frame + 1][::-1]
-        share = weights[: len(past)] / weights[: len(past)].sum()
-        assert_allclose(found.combined[frame], share @ past, atol=1e-12)
+        past = minimum[max(frame - 5, 0) : frame + 1][::-1]
+        fraction = weights[: len(past)] / weights[: len(past)].sum()
+        assert_allclose(found.combined[frame], fraction @ past, atol=1e-12)
     assert 0.05 < found.combined.mean() < 0.95
 
 
 @pytest.mark.parametrize("inferred", [0.0, 0.5])
 def test_confidence_without_states_maps_from_inferred_to_one(inferred):
-    told = np.array([[0.0, 0.5, 1.0]])
-    tracks = Tracks(("a", "b", "c"), np.zeros((1, 3, 3)), 30.0, told)
+    confidence = np.array([[0.0, 0.5, 1.0]])
+    tracks = Tracks(("a", "b", "c"), np.zeros((1, 3, 3)), 30.0, confidence)
     settings = ReliabilitySettings(inferred=inferred)
     state = np.array([[2, 1, 0]])
 

@@ -1,4 +1,4 @@
-"""Residual priors in files: whole, damaged, broken."""
+"""Save and load residual priors; damaged files are refused."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ def prior():
     return learn_residual_prior([pair(truth(speed)) for speed in (0.9, 1.6)], settings=QUICK)
 
 
-def test_a_prior_comes_back_from_its_file(prior, tmp_path):
+def test_load_restores_a_saved_prior(prior, tmp_path):
     path = tmp_path / "prior.npz"
     prior.save(path)
     again = load_residual_prior(path)
@@ -30,7 +30,7 @@ def test_a_prior_comes_back_from_its_file(prior, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         ({"kernels": np.ones((2, 9))}, "shapes do not fit"),
         ({"kernels": -np.ones((20, 9))}, "not positive"),
@@ -38,16 +38,16 @@ def test_a_prior_comes_back_from_its_file(prior, tmp_path):
         ({"joints": np.array(["tail"] * 20)}, "unknown joints"),
     ],
 )
-def test_a_damaged_prior_is_refused(prior, tmp_path, change, said):
+def test_load_raises_for_a_damaged_prior(prior, tmp_path, change, message):
     path = tmp_path / "prior.npz"
     replace(prior, **change).save(path)
-    with pytest.raises(InvalidFileError, match=said):
+    with pytest.raises(InvalidFileError, match=message):
         load_residual_prior(path)
 
 
 @given(data=st.data())
 @searching(20)
-def test_a_broken_file_is_refused(prior, tmp_path_factory, data):
+def test_load_raises_for_a_broken_file(prior, tmp_path_factory, data):
     path = tmp_path_factory.mktemp("broken") / "prior.npz"
     prior.save(path)
     path.write_bytes(data.draw(damaged(path.read_bytes(), [b"0", b"\xff", b"PK"])))
@@ -57,6 +57,6 @@ def test_a_broken_file_is_refused(prior, tmp_path_factory, data):
         assert str(path) in str(refused)
 
 
-def test_coincident_joints_are_refused(prior):
+def test_load_raises_for_coincident_joints(prior):
     with pytest.raises(InvalidMotionError, match="at one position"):
         correct_postures(recording(np.zeros((40, 20, 3))), prior)

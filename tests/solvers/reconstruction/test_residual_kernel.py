@@ -1,4 +1,4 @@
-"""The residual prior's Gaussian process against formulas written out."""
+"""Compare the residual prior's Gaussian process with explicit formulas."""
 
 import numpy as np
 import pytest
@@ -24,20 +24,20 @@ KERNEL = Kernel((0.5, 1.5), (0.8, 0.3), (0.2, 0.1), 0.05, 0.1, 0.02)
 @pytest.fixture
 def examples():
     random = np.random.default_rng(3)
-    local, whole = random.normal(size=(24, 3)), random.normal(size=(24, 2))
+    local, complete = random.normal(size=(24, 3)), random.normal(size=(24, 2))
     takes = np.repeat(np.arange(6), 4)
-    return local, whole, random.normal(size=(24, 3)), takes, takes // 3
+    return local, complete, random.normal(size=(24, 3)), takes, takes // 3
 
 
-def dense_covariance(local, whole, takes, actors, kernel):
-    """K of all examples, written out pair by pair."""
+def dense_covariance(local, complete, takes, actors, kernel):
+    """Covariance K of all examples, computed pair by pair."""
     n = len(local)
     covariance = np.zeros((n, n))
     for a in range(n):
         for b in range(n):
             near = [
                 np.exp(-((one[a] - one[b]) ** 2).sum() / (2.0 * size**2))
-                for one, size in zip((local, whole), kernel.lengths, strict=True)
+                for one, size in zip((local, complete), kernel.lengths, strict=True)
             ]
             covariance[a, b] = kernel.shared[0] * near[0] + kernel.shared[1] * near[1]
             if actors[a] == actors[b]:
@@ -47,41 +47,43 @@ def dense_covariance(local, whole, takes, actors, kernel):
     return covariance
 
 
-def test_distances_are_those_of_pairs():
+def test_squared_distances_equal_those_of_all_pairs():
     one = np.array([[0.0, 0.0], [3.0, 4.0]])
     np.testing.assert_allclose(squared_distances(one, one), [[0.0, 25.0], [25.0, 0.0]])
     np.testing.assert_allclose(squared_exponential(one, one, 5.0)[0, 1], np.exp(-0.5))
 
 
-def test_likelihood_is_that_of_a_normal_distribution(examples):
-    local, whole, errors, takes, actors = examples
-    covariance = dense_covariance(local, whole, takes, actors, KERNEL)
+def test_likelihood_equals_a_normal_density(examples):
+    local, complete, errors, takes, actors = examples
+    covariance = dense_covariance(local, complete, takes, actors, KERNEL)
     sign, log = np.linalg.slogdet(covariance)
     expected = 0.5 * np.trace(errors.T @ np.linalg.inv(covariance) @ errors) + 1.5 * log
     assert sign > 0
-    assert unlikeliness(logs_of(KERNEL), examples)[0] == pytest.approx(expected)
+    assert negative_log_likelihood(logs_of(KERNEL), examples)[0] == pytest.approx(expected)
 
 
-def test_gradient_is_that_of_finite_differences(examples):
+def test_gradient_equals_finite_differences(examples):
     logs = logs_of(KERNEL)
-    _, gradient = unlikeliness(logs, examples)
-    for place, slope in enumerate(gradient):
+    _, gradient = negative_log_likelihood(logs, examples)
+    for index, slope in enumerate(gradient):
         step = np.zeros(9)
-        step[place] = 1e-5
-        ahead, behind = (unlikeliness(logs + sign * step, examples)[0] for sign in (1, -1))
+        step[index] = 1e-5
+        ahead, behind = (
+            negative_log_likelihood(logs + sign * step, examples)[0] for sign in (1, -1)
+        )
         assert slope == pytest.approx((ahead - behind) / 2e-5, rel=1e-4, abs=1e-5)
 
 
 def test_learning_increases_the_likelihood_of_the_examples(examples):
-    local, whole, errors, takes, actors = examples
-    learned = learn_kernel((local, whole), errors, takes, actors, simple=False)
+    local, complete, errors, takes, actors = examples
+    learned = learn_kernel((local, complete), errors, takes, actors, simple=False)
     assert (
-        unlikeliness(logs_of(learned), examples, centred=True)[0]
-        < unlikeliness(logs_of(KERNEL), examples, centred=True)[0]
+        negative_log_likelihood(logs_of(learned), examples, centred=True)[0]
+        < negative_log_likelihood(logs_of(KERNEL), examples, centred=True)[0]
     )
 
 
-def test_noise_is_found():
+def test_optimization_recovers_the_noise():
     random = np.random.default_rng(0)
     local = random.uniform(-2.0, 2.0, size=(300, 1))
     errors = np.sin(2.0 * local) * [1.0, -1.0, 0.5] + random.normal(0.0, 0.2, size=(300, 3))
@@ -90,28 +92,32 @@ def test_noise_is_found():
     assert np.sqrt(learned.noise) == pytest.approx(0.2, rel=0.15)
 
 
-def test_with_an_inducing_point_at_each_example_it_is_the_exact_process(examples):
-    local, whole, errors, takes, actors = examples
+def test_process_is_exact_with_an_inducing_point_at_each_example(examples):
+    local, complete, errors, takes, actors = examples
     bases = (
         basis_functions(local, local, KERNEL.lengths[0]),
-        basis_functions(whole, whole, KERNEL.lengths[1]),
+        basis_functions(complete, complete, KERNEL.lengths[1]),
     )
     mean, covariance = posterior(bases, errors, takes, actors, KERNEL, 1.0)
-    new_local, new_whole = local[:5] + 0.3, whole[:5] - 0.2
+    new_local, new_whole = local[:5] + 0.3, complete[:5] - 0.2
     columns = shared_design(
         (
             basis_functions(new_local, local, KERNEL.lengths[0]),
-            basis_functions(new_whole, whole, KERNEL.lengths[1]),
+            basis_functions(new_whole, complete, KERNEL.lengths[1]),
         ),
         KERNEL,
     )
     between = MEAN_VARIANCE + sum(
         shared * squared_exponential(new, old, size)
         for shared, new, old, size in zip(
-            KERNEL.shared, (new_local, new_whole), (local, whole), KERNEL.lengths, strict=True
+            KERNEL.shared,
+            (new_local, new_whole),
+            (local, complete),
+            KERNEL.lengths,
+            strict=True,
         )
     )
-    dense = dense_covariance(local, whole, takes, actors, KERNEL) + MEAN_VARIANCE
+    dense = dense_covariance(local, complete, takes, actors, KERNEL) + MEAN_VARIANCE
     solved = np.linalg.solve(dense, np.c_[errors, between.T])
     np.testing.assert_allclose(columns @ mean, between @ solved[:, :3], atol=2e-3)
     own = MEAN_VARIANCE + sum(KERNEL.shared)
@@ -122,19 +128,19 @@ def test_with_an_inducing_point_at_each_example_it_is_the_exact_process(examples
 
 
 def test_constant_error_of_one_actor_is_not_generalized(examples):
-    local, whole, _, takes, actors = examples
+    local, complete, _, takes, actors = examples
     errors = np.where(actors[:, None] == 0, 1.0, -1.0) * np.ones((24, 3))
     bases = (
         basis_functions(local, local, KERNEL.lengths[0]),
-        basis_functions(whole, whole, KERNEL.lengths[1]),
+        basis_functions(complete, complete, KERNEL.lengths[1]),
     )
     mean, _ = posterior(bases, errors, takes, actors, KERNEL, 1.0)
-    told = np.abs(shared_design(bases, KERNEL) @ mean).mean()
+    prediction = np.abs(shared_design(bases, KERNEL) @ mean).mean()
     unaware, _ = posterior(bases, errors, takes, np.zeros(24, int), KERNEL, 1.0)
-    assert told < 0.6 * np.abs(shared_design(bases, KERNEL) @ unaware).mean()
+    assert prediction < 0.6 * np.abs(shared_design(bases, KERNEL) @ unaware).mean()
 
 
-def test_few_different_features_are_their_own_inducing_points():
+def test_few_distinct_features_are_the_inducing_points():
     features = np.repeat(np.eye(3), 5, axis=0)
     assert sorted(map(tuple, inducing_points(features, 10, 0))) == sorted(map(tuple, np.eye(3)))
 
@@ -150,8 +156,10 @@ def logs_of(kernel):
     ])
 
 
-def unlikeliness(logs, examples, centred=False):
-    local, whole, errors, takes, actors = examples
-    far = tuple(squared_distances(one, one) for one in (local, whole))
+def negative_log_likelihood(logs, examples, centred=False):
+    local, complete, errors, takes, actors = examples
+    distances = tuple(squared_distances(one, one) for one in (local, complete))
     same = tuple((one[:, None] == one).astype(float) for one in (takes, actors))
-    return _negative_log_likelihood(logs, far, same, errors - errors.mean(axis=0) * centred)
+    return _negative_log_likelihood(
+        logs, distances, same, errors - errors.mean(axis=0) * centred
+    )

@@ -1,4 +1,4 @@
-"""One bad frame is found, costs itself alone, and fast movement is not taken for it."""
+"""Transient jumps are detected in their frames only, and fast movement is kept."""
 
 import kinect_walks
 import numpy as np
@@ -15,39 +15,39 @@ from solvers.recordings import read_recording
 CAUSAL = ReliabilitySettings(causal=True)
 
 
-def path_along(*places):
+def path_along(*positions):
     """One joint along a line, shape (n_frames, 1, 3)."""
-    path = np.zeros((len(places), 1, 3))
-    path[:, 0, 0] = places
+    path = np.zeros((len(positions), 1, 3))
+    path[:, 0, 0] = positions
     return path
 
 
-@pytest.mark.parametrize("n_away", [1, 2, 6])
-def test_transient_jump_is_detected_in_its_frames_only(n_away):
+@pytest.mark.parametrize("n_displaced", [1, 2, 6])
+def test_transient_jump_is_detected_in_its_frames_only(n_displaced):
     path = path_along(*np.linspace(0.0, 0.3, 40))
-    path[20 : 20 + n_away, 0, 2] += 0.2
+    path[20 : 20 + n_displaced, 0, 2] += 0.2
 
     found = find_transient_jumps(path, 30.0)
 
-    assert np.flatnonzero(found[:, 0]).tolist() == list(range(20, 20 + n_away))
+    assert np.flatnonzero(found[:, 0]).tolist() == list(range(20, 20 + n_displaced))
 
 
 @pytest.mark.parametrize(
-    "places",
+    "positions",
     [
         [0.0] * 10 + [0.3] * 7 + [0.0] * 10,  # seven frames are longer than a fifth of a second
-        [0.0] * 10 + [0.3] * 15,  # it does not come back
-        [0.0] * 10 + [0.3] * 2 + [0.6] * 10,  # nor here
+        [0.0] * 10 + [0.3] * 15,  # it does not return
+        [0.0] * 10 + [0.3] * 2 + [0.6] * 10,  # it does not return either
         [0.0] * 10 + [0.3, 0.0] * 6 + [0.0] * 10,  # shakes
         [0, 0, 0.05, 0.2, 0.4, 0.45, 0.3, 0.12, 0.02, 0, 0],  # a punch
         [0.0] * 10 + [0.1] * 2 + [0.0] * 10,  # 0.1 m in 1/30 s: 90 m/s^2
     ],
 )
-def test_short_jumps_exclude_other_movements(places):
-    assert not find_transient_jumps(path_along(*places), 30.0).any()
+def test_short_jumps_exclude_other_movements(positions):
+    assert not find_transient_jumps(path_along(*positions), 30.0).any()
 
 
-def test_two_jumps_at_twice_the_rate_are_the_same_frames():
+def test_jumps_are_detected_equally_at_twice_the_frame_rate():
     slow = path_along(*[0.0] * 10, *[0.3] * 3, *[0.0] * 10)
     fast = np.repeat(slow, 2, axis=0)
 
@@ -59,7 +59,7 @@ def test_the_shortest_takes_have_no_jumps(n_frames):
     assert not find_transient_jumps(path_along(*np.zeros(n_frames)), 30.0).any()
 
 
-def test_missing_frames_are_no_jumps():
+def test_missing_frames_are_not_jumps():
     path = path_along(*np.zeros(20))
     path[8:10] = np.nan
 
@@ -70,11 +70,11 @@ def test_missing_frames_are_no_jumps():
 def walk():
     true = kinect_walks.true_positions(samples, posture_joints)
     tracked = kinect_walks.tracked_walk(motion, true)
-    seen = true + np.random.default_rng(4).normal(scale=0.005, size=true.shape)
-    return JointRecording(tracked.tracks.with_positions(seen), None, tracked.sensor)
+    observed = true + np.random.default_rng(4).normal(scale=0.005, size=true.shape)
+    return JointRecording(tracked.tracks.with_positions(observed), None, tracked.sensor)
 
 
-def thrown(take, name, frames, by=(0.4, 0.0, 0.0)):
+def with_jump(take, name, frames, by=(0.4, 0.0, 0.0)):
     positions = take.tracks.positions.copy()
     positions[frames, take.names.index(name)] += by
     return take.with_tracks(take.tracks.with_positions(positions))
@@ -82,7 +82,7 @@ def thrown(take, name, frames, by=(0.4, 0.0, 0.0)):
 
 def test_wrong_frame_hardly_lowers_reliability_of_others(walk):
     before = measure_reliability(walk).combined
-    after = measure_reliability(thrown(walk, "WristLeft", 45)).combined
+    after = measure_reliability(with_jump(walk, "WristLeft", 45)).combined
 
     wrist = walk.names.index("WristLeft")
     others = np.delete(np.arange(walk.n_frames), 45)
@@ -92,21 +92,21 @@ def test_wrong_frame_hardly_lowers_reliability_of_others(walk):
     assert np.abs(after - before)[:, np.arange(walk.n_joints) != wrist].max() < 0.1
 
 
-def test_causal_reliability_is_low_whether_or_not_the_joint_returns(walk):
+def test_causal_reliability_is_low_even_if_the_joint_returns(walk):
     wrist = walk.names.index("WristLeft")
     for frames in (slice(45, 46), slice(45, 55)):
-        found = measure_reliability(thrown(walk, "WristLeft", frames), settings=CAUSAL)
+        found = measure_reliability(with_jump(walk, "WristLeft", frames), settings=CAUSAL)
         assert 0.0 < found.combined[45, wrist] < 0.5
 
 
 def test_frames_next_to_a_wrong_one_stay_unchanged(walk):
     wrist = walk.names.index("WristLeft")
     before = reconstruct(walk).tracks.positions[:, wrist]
-    after = reconstruct(thrown(walk, "WristLeft", 45)).tracks.positions[:, wrist]
+    after = reconstruct(with_jump(walk, "WristLeft", 45)).tracks.positions[:, wrist]
 
-    off = np.linalg.norm(after - before, axis=-1)
-    assert off[45] < 0.02
-    assert np.delete(off, 45).max() < 0.01
+    errors = np.linalg.norm(after - before, axis=-1)
+    assert errors[45] < 0.02
+    assert np.delete(errors, 45).max() < 0.01
 
 
 @pytest.mark.parametrize("frame_rate", [30.0, 20.0, 15.0, 12.0, 10.0])
@@ -118,8 +118,10 @@ def test_transient_wrist_jump_is_unreliable_at_any_rate(recordings, frame_rate):
     middle, wrist = len(frames) // 2, take.names.index("WristLeft")
 
     sound = measure_reliability(slow).combined
-    spoilt = measure_reliability(thrown(slow, "WristLeft", middle, (0.5, 0.0, 0.3))).combined
+    corrupted = measure_reliability(
+        with_jump(slow, "WristLeft", middle, (0.5, 0.0, 0.3))
+    ).combined
 
-    assert spoilt[middle, wrist] < 0.1
+    assert corrupted[middle, wrist] < 0.1
     assert sound[:, wrist].mean() > 0.7
     assert (sound < 0.5).mean() < 0.03

@@ -1,4 +1,4 @@
-"""How limbs are twisted against the trunk: one number, whoever made the clip."""
+"""Axial rotation of limbs relative to the trunk does not depend on the rig of a clip."""
 
 from dataclasses import replace
 
@@ -44,15 +44,15 @@ def gait() -> Motion:
 
 
 def standing(rng, n_frames=40) -> np.ndarray:
-    """Bodies whose trunks lean anyhow, and whose limbs point anywhere but far back."""
+    """Bodies with random trunk lean and limbs in any direction except far back."""
     postures = np.zeros((n_frames, 20, 3))
-    usual = {
+    default = {
         "chest": (0, 0, 0.5), "spine": (0, 0, 0.25), "head": (0, 0, 0.7),
         "leftUpperArm": (0.2, 0, 0.5), "rightUpperArm": (-0.2, 0, 0.5),
         "leftUpperLeg": (0.1, 0, -0.05), "rightUpperLeg": (-0.1, 0, -0.05),
     }  # fmt: skip
-    for name, place in usual.items():
-        postures[:, POSTURE_JOINTS.index(name)] = place
+    for name, position in default.items():
+        postures[:, POSTURE_JOINTS.index(name)] = position
     for limb in TWISTED_LIMBS:
         upper, lower = (
             Rotation.from_rotvec(rng.normal(scale=0.8, size=(n_frames, 3))).apply(limb.along)
@@ -64,17 +64,17 @@ def standing(rng, n_frames=40) -> np.ndarray:
     return np.stack([lean.apply(postures[:, joint]) for joint in range(20)], axis=1)
 
 
-def test_untwisted_hinges_take_the_shortest_rotation_from_the_trunk():
-    """Second way: the least rotation by its axis and angle, in the trunk's axes."""
+def test_untwisted_hinges_use_the_shortest_rotation_from_the_trunk():
+    """Compare with the shortest rotation by axis and angle in the trunk's axes."""
     postures = standing(np.random.default_rng(1))
 
     directions, hinges = untwisted_hinges(postures)
 
-    places = {name: postures[:, place] for place, name in enumerate(POSTURE_JOINTS)}
+    positions = {name: postures[:, index] for index, name in enumerate(POSTURE_JOINTS)}
     for row, limb in enumerate(TWISTED_LIMBS):
         part = POSTURE_JOINTS[limb.upper].removeprefix("left").removeprefix("right")
-        across = places[f"left{part}"] - places[f"right{part}"]
-        for frame, up in enumerate(places["chest"] - places["hips"]):
+        across = positions[f"left{part}"] - positions[f"right{part}"]
+        for frame, up in enumerate(positions["chest"] - positions["hips"]):
             z = up / np.linalg.norm(up)
             y = np.cross(z, across[frame])
             y /= np.linalg.norm(y)
@@ -82,11 +82,11 @@ def test_untwisted_hinges_take_the_shortest_rotation_from_the_trunk():
             goal = trunk.T @ directions[frame, row]
             axis = np.cross(limb.along, goal)
             angle = np.arctan2(np.linalg.norm(axis), np.dot(limb.along, goal))
-            turn = Rotation.from_rotvec(angle * axis / np.linalg.norm(axis))
-            assert_allclose(hinges[frame, row], trunk @ turn.apply(limb.hinge), atol=1e-9)
+            rotation = Rotation.from_rotvec(angle * axis / np.linalg.norm(axis))
+            assert_allclose(hinges[frame, row], trunk @ rotation.apply(limb.hinge), atol=1e-9)
 
 
-def test_heading_and_position_change_nothing():
+def test_twists_ignore_heading_and_position():
     postures = standing(np.random.default_rng(2))
     normals, _ = flexion_normals(postures)
     moved = rotate_about_vertical(postures, np.full(len(postures), 2.0)) + np.array([
@@ -95,19 +95,19 @@ def test_heading_and_position_change_nothing():
         0.5,
     ])
 
-    there = axial_angles(*untwisted_hinges(moved), flexion_normals(moved)[0])
+    moved_angles = axial_angles(*untwisted_hinges(moved), flexion_normals(moved)[0])
 
-    assert_allclose(there, axial_angles(*untwisted_hinges(postures), normals), atol=1e-9)
+    assert_allclose(moved_angles, axial_angles(*untwisted_hinges(postures), normals), atol=1e-9)
 
 
 def test_mirror_swaps_sides_and_negates_twists():
     postures = standing(np.random.default_rng(3))
     image = mirror_postures(postures)
 
-    seen = axial_angles(*untwisted_hinges(image), flexion_normals(image)[0])
+    observed = axial_angles(*untwisted_hinges(image), flexion_normals(image)[0])
 
     own = axial_angles(*untwisted_hinges(postures), flexion_normals(postures)[0])
-    assert_allclose(seen, mirror_twists(own), atol=1e-9)
+    assert_allclose(observed, mirror_twists(own), atol=1e-9)
 
 
 def test_hinges_match_the_twists():
@@ -117,17 +117,19 @@ def test_hinges_match_the_twists():
 
     known = hinges_from_twists(postures, LimbTwists(twists))
 
-    ways = np.stack(
+    directions = np.stack(
         [known[POSTURE_JOINTS[limb.upper]].vectors for limb in TWISTED_LIMBS], axis=1
     )
-    assert_allclose(np.linalg.norm(ways, axis=-1), 0.7)
-    assert_allclose(axial_angles(*untwisted_hinges(postures), ways), twists / 0.7, atol=1e-9)
+    assert_allclose(np.linalg.norm(directions, axis=-1), 0.7)
+    assert_allclose(
+        axial_angles(*untwisted_hinges(postures), directions), twists / 0.7, atol=1e-9
+    )
 
 
-def twisting(gait: Motion, angles: np.ndarray, maker: float = 0.0) -> Motion:
-    """The left upper arm of a walk twisted about itself, the elbow's bend with it.
+def with_twisted_arm(gait: Motion, angles: np.ndarray, maker: float = 0.0) -> Motion:
+    """A walk with an axial rotation of the left upper arm and its flexion plane.
 
-    Then, in all frames, the bone turned by what its maker means by no twist.
+    In all frames, the bone also has the constant rotation `maker` of the rig's rest pose.
     """
     joints = find_humanoid_map(gait.skeleton).indices(gait.skeleton)
     upper, lower = joints["leftUpperArm"], joints["leftLowerArm"]
@@ -151,7 +153,7 @@ def twists_of(motion: Motion) -> np.ndarray:
 def test_twist_of_a_bone_matches_its_clip(gait):
     angles = np.linspace(-0.8, 0.8, gait.n_frames)
 
-    before, after = twists_of(gait), twists_of(twisting(gait, angles))
+    before, after = twists_of(gait), twists_of(with_twisted_arm(gait, angles))
 
     turned_by = np.angle(after[:, LEFT_ARM] * np.conj(before[:, LEFT_ARM]))
     assert_allclose(turned_by, angles, atol=0.02)
@@ -160,17 +162,19 @@ def test_twist_of_a_bone_matches_its_clip(gait):
 
 @pytest.mark.parametrize("maker", [-0.5, 0.6])
 def test_rigs_with_other_bone_axes_agree(gait, maker):
-    """30 degrees in the arms of CMU and HDM05: elbows bend about another axis of the bone."""
+    """Arm axes differ by 30 degrees in CMU and HDM05: elbows rotate about another bone axis."""
     angles = np.linspace(-0.5, 0.5, gait.n_frames)
 
-    plain, theirs = (twists_of(twisting(gait, angles, each)) for each in (0.0, maker))
+    plain, reference = (
+        twists_of(with_twisted_arm(gait, angles, each)) for each in (0.0, maker)
+    )
 
-    assert np.abs(np.angle(theirs * np.conj(plain))).max() < 0.15
-    assert np.abs(theirs).min() > 0.5
+    assert np.abs(np.angle(reference * np.conj(plain))).max() < 0.15
+    assert np.abs(reference).min() > 0.5
 
 
 def test_rig_is_recognized_with_rounded_offsets(gait):
-    """A walk that tells how the maker turns arms, and one of this rig that tells nothing."""
+    """One walk shows the bone axes of the rig; another walk of this rig does not."""
     skeleton = gait.skeleton
     rounded = replace(skeleton, offsets=skeleton.offsets - 1e-6)
     clip = read_clip_twists(gait, postures_from_motion(gait))
@@ -186,7 +190,7 @@ def test_rig_is_recognized_with_rounded_offsets(gait):
 
 
 def test_rigs_with_other_rest_poses_agree(gait):
-    """The same walk of a rig that rests with its arms lowered."""
+    """The same walk, on a rig whose rest pose has lowered arms."""
     skeleton = gait.skeleton
     humanoid = find_humanoid_map(skeleton)
     arm = humanoid.indices(skeleton)["leftUpperArm"]
@@ -202,7 +206,9 @@ def test_rigs_with_other_rest_poses_agree(gait):
 
 
 def test_rotations_that_contradict_flexion_get_a_low_weight(gait):
-    """Points have no twist: an upper arm that is turned at random says nothing."""
+    """Joint positions define no twist: an upper arm with random axial rotation has no
+    information.
+    """
     rng = np.random.default_rng(5)
     clip = read_clip_twists(gait, postures_from_motion(gait))
     wild = clip._replace(
@@ -212,56 +218,56 @@ def test_rotations_that_contradict_flexion_get_a_low_weight(gait):
         flexion_fractions=np.where(np.arange(len(wild.flexion_fractions))[:, None] < 60, 1.0, 0)
     )
 
-    told = combine_clip_twists([gait.skeleton], [straight])[0]
+    combined = combine_clip_twists([gait.skeleton], [straight])[0]
 
-    assert np.abs(told[:60]).min() > 0.99
-    assert np.abs(told[60:]).max() < 0.35
+    assert np.abs(combined[:60]).min() > 0.99
+    assert np.abs(combined[60:]).max() < 0.35
 
 
 def test_mean_twist_is_weighted_by_similarity():
-    """Neighbours at 1 and 2 cm of one joint: weights 4 to 1."""
-    neighbours = np.zeros((1, 2, 60))
-    neighbours[0, :, 9] = (0.01, 0.02)
+    """Neighbors at 1 and 2 cm of one joint have weights 4 to 1."""
+    neighbors = np.zeros((1, 2, 60))
+    neighbors[0, :, 9] = (0.01, 0.02)
     twists = np.tile(np.array([1.0, 1j])[None, :, None], (1, 1, 4))
 
-    mean = mean_twists(twists, np.zeros((1, 20, 3)), neighbours, np.ones((1, 20)))
+    mean = mean_twists(twists, np.zeros((1, 20, 3)), neighbors, np.ones((1, 20)))
 
     assert_allclose(mean / np.abs(mean), np.full((1, 4), (0.8 + 0.2j) / np.hypot(0.8, 0.2)))
-    far = mean_twists(twists, np.full((1, 20, 3), 0.5), neighbours, np.ones((1, 20)))
-    assert np.abs(far).max() < 0.02 < 0.8 < np.abs(mean).min()
+    distant = mean_twists(twists, np.full((1, 20, 3), 0.5), neighbors, np.ones((1, 20)))
+    assert np.abs(distant).max() < 0.02 < 0.8 < np.abs(mean).min()
 
 
 def test_unreliable_joints_select_no_neighbor():
-    neighbours = np.zeros((1, 2, 60))
-    neighbours[0, 0, 9] = 0.3
-    neighbours[0, 1, 12] = 0.1
-    trust = np.ones((1, 20))
-    trust[0, 3] = 0.0
+    neighbors = np.zeros((1, 2, 60))
+    neighbors[0, 0, 9] = 0.3
+    neighbors[0, 1, 12] = 0.1
+    reliability = np.ones((1, 20))
+    reliability[0, 3] = 0.0
     twists = np.tile(np.array([1.0, 1j])[None, :, None], (1, 1, 4))
 
-    mean = mean_twists(twists, np.zeros((1, 20, 3)), neighbours, trust)
+    mean = mean_twists(twists, np.zeros((1, 20, 3)), neighbors, reliability)
 
     assert np.abs(np.angle(mean)).max() < 0.05
 
 
-def test_a_library_keeps_twists_and_their_mirror_images(gait, tmp_path):
+def test_library_stores_twists_and_their_mirror_images(gait, tmp_path):
     angles = np.full(gait.n_frames, 0.6)
-    library = build_posture_library([twisting(gait, angles)])
+    library = build_posture_library([with_twisted_arm(gait, angles)])
     plain = build_posture_library([gait])
     assert (
-        np.angle(library.known_twists[:, 0]).mean()
-        > 0.1 + np.angle(plain.known_twists[:, 0]).mean()
+        np.angle(library.twists_or_zero[:, 0]).mean()
+        > 0.1 + np.angle(plain.twists_or_zero[:, 0]).mean()
     )
-    sides = np.sort(np.angle(library.known_twists[:, :2]), axis=0)
+    sides = np.sort(np.angle(library.twists_or_zero[:, :2]), axis=0)
     assert_allclose(sides[:, 0], -sides[::-1, 1], atol=0.05)
 
     library.save(tmp_path / "kept.npz")
     read = load_posture_library(tmp_path / "kept.npz")
 
-    assert_allclose(read.known_twists, library.known_twists, atol=0.006)
+    assert_allclose(read.twists_or_zero, library.twists_or_zero, atol=0.006)
     both = merge_posture_libraries(library, replace(library, twists=None))
-    assert_allclose(both.known_twists[: library.n_postures], library.known_twists)
-    assert not both.known_twists[library.n_postures :].any()
+    assert_allclose(both.twists_or_zero[: library.n_postures], library.twists_or_zero)
+    assert not both.twists_or_zero[library.n_postures :].any()
 
 
 def test_libraries_without_twists_merge_to_one_without(gait):
@@ -270,7 +276,7 @@ def test_libraries_without_twists_merge_to_one_without(gait):
     assert merge_posture_libraries(old, old).twists is None
 
 
-def test_older_files_are_read_and_damaged_ones_refused(gait, tmp_path):
+def test_load_reads_older_files_and_raises_for_damaged_ones(gait, tmp_path):
     path = tmp_path / "postures.npz"
     library = build_posture_library([gait])
     library.save(path)
@@ -284,5 +290,5 @@ def test_older_files_are_read_and_damaged_ones_refused(gait, tmp_path):
     old = load_posture_library(path)
 
     assert old.twists is None
-    assert not old.known_twists.any()
+    assert not old.twists_or_zero.any()
     assert_allclose(old.directions, library.directions, atol=2e-3)

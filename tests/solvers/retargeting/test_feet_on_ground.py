@@ -1,4 +1,4 @@
-"""Feet stand level on the ground, sink into it nowhere, and slide as the source's."""
+"""Feet stand level on the ground, do not sink into it, and slide no more than the source's."""
 
 import numpy as np
 import pytest
@@ -39,8 +39,8 @@ WALK = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
 
 @pytest.mark.parametrize("clip", CLIPS)
 @pytest.mark.parametrize("family", BODIES)
-def test_no_foot_sinks_and_none_slides_more(recordings, clip, family):
-    """Before, balls were up to 3 cm in the ground; ankles alone followed the source's."""
+def test_feet_do_not_sink_or_slide_more_than_the_source(recordings, clip, family):
+    """Without correction, balls were up to 3 cm in the ground; only ankles followed."""
     motion = every_fourth(read_recording(recordings / f"mocap/hdm05/HDM_{clip}_120.amc"))
     rig = BODIES[family]()
 
@@ -51,12 +51,12 @@ def test_no_foot_sinks_and_none_slides_more(recordings, clip, family):
     assert (lowest - rig.rest_positions[balls, 2]).min() > -0.005
     contacts = detect_contacts(motion)
     held = contacts[1:] & contacts[:-1]
-    theirs, ours = (slower_steps(one)[held].mean() for one in (motion, result))
-    assert ours < 1.02 * growth(motion, rig) * theirs
+    reference, actual = (min_foot_steps(one)[held].mean() for one in (motion, result))
+    assert actual < 1.02 * growth(motion, rig) * reference
 
 
-def test_soles_are_level_whatever_the_feet_of_the_rest_pose():
-    """A source whose feet rest pointing down by 10 degrees more than they stand."""
+def test_soles_are_level_for_any_feet_of_the_rest_pose():
+    """Feet of the source's rest pose point down by 10 degrees more than in stance."""
     plain = standing()
     drawn = with_feet_drawn_down(plain)
     assert_allclose(
@@ -64,18 +64,18 @@ def test_soles_are_level_whatever_the_feet_of_the_rest_pose():
     )
     rig = RIGS["Unreal"]()
 
-    usual, other = given_to(plain, rig), given_to(drawn, rig)
+    default, other = given_to(plain, rig), given_to(drawn, rig)
 
     feet = foot_points(rig, find_humanoid_map(rig))
-    for motion in (usual, other):
+    for motion in (default, other):
         heights = forward_kinematics(motion).positions[:, feet, 2]
         assert_allclose(heights, heights[0] * np.ones((60, 1, 1)), atol=1e-3)
         level = heights - rig.rest_positions[feet, 2]
         assert_allclose(level[..., 0], level[..., 1], atol=2e-3)
 
 
-def test_a_body_that_rests_around_its_hips_makes_its_own_steps_as_they_are(recordings):
-    """What its rest pose does not tell is as unknown of the target as of the source."""
+def test_body_with_hips_at_the_origin_repeats_its_own_steps(recordings):
+    """Its rest pose shows no ground, for source and target alike."""
     motion = every_fourth(
         read_recording(recordings / "mocap/hdm05/HDM_bd_sneak2StepsLStart_001_120.amc")
     )
@@ -87,19 +87,21 @@ def test_a_body_that_rests_around_its_hips_makes_its_own_steps_as_they_are(recor
     assert angle_between(again.rotations, motion.rotations)[:, feet].max() < 1e-6
 
 
-def test_the_same_point_goes_as_far_and_no_shift_is_needed_where_it_does(rng):
-    theirs = path(rng), path(rng)
-    stands = np.zeros(90, dtype=np.bool_)
-    stands[30:60] = True
+def test_planted_point_moves_as_far_as_the_source_point(rng):
+    reference = path(rng), path(rng)
+    in_contact = np.zeros(90, dtype=np.bool_)
+    in_contact[30:60] = True
 
     assert_allclose(
-        planting_shift(theirs, (1.3 * theirs[0], 1.3 * theirs[1]), stands, 1.3, 30.0),
+        planting_shift(
+            reference, (1.3 * reference[0], 1.3 * reference[1]), in_contact, 1.3, 30.0
+        ),
         np.zeros((90, 3)),
         atol=1e-9,
     )
-    dragged = theirs[0] + np.linspace(0.0, 0.2, 90)[:, None] * np.array([1.0, 0.0, 0.0])
-    resting = np.tile(theirs[0][:1], (90, 1)), theirs[1]
-    shift = planting_shift(resting, (dragged, theirs[1]), stands, 1.0, 30.0)
+    dragged = reference[0] + np.linspace(0.0, 0.2, 90)[:, None] * np.array([1.0, 0.0, 0.0])
+    resting = np.tile(reference[0][:1], (90, 1)), reference[1]
+    shift = planting_shift(resting, (dragged, reference[1]), in_contact, 1.0, 30.0)
     after = np.diff((dragged + shift)[30:60, :2], axis=0)
     assert np.abs(after).max() < 2e-4
     assert np.abs(np.diff(dragged[30:60, :2], axis=0)).max() > 2e-3
@@ -108,10 +110,10 @@ def test_the_same_point_goes_as_far_and_no_shift_is_needed_where_it_does(rng):
 
 
 @pytest.mark.parametrize("sunk", [0.0, 0.01, 0.03])
-def test_a_sunken_foot_is_lifted(sunk):
+def test_sunken_foot_is_lifted(sunk):
     rig = mixamo()
     body = find_body(rig, find_humanoid_map(rig), "target's")
-    pose = Motion(body.skeleton, np.tile([1.0, 0, 0, 0], (1, len(body.kept), 1)),
+    pose = Motion(body.skeleton, np.tile([1.0, 0, 0, 0], (1, len(body.joint_indices), 1)),
                   body.rest[:1], 30.0)  # fmt: skip
     world = forward_kinematics(pose)
     foot, ball = body.joints["leftFoot"], body.joints["leftToes"]
@@ -119,17 +121,17 @@ def test_a_sunken_foot_is_lifted(sunk):
 
     sole = sole_above_ground(body, world, "left", ankle, 0.0, Depths(*np.zeros((3, 1))), 30.0)
 
-    way = rotate(sole.turn, body.rest[ball] - body.rest[foot])
-    height = (ankle + way)[0, 2] + sole.lift[0] - body.rest[ball, 2]
+    direction = rotate(sole.rotation, body.rest[ball] - body.rest[foot])
+    height = (ankle + direction)[0, 2] + sole.lift[0] - body.rest[ball, 2]
     assert -0.004 <= height <= 1e-9
     assert -0.004 <= sole.lift[0] - sunk <= 1e-9
 
 
 def standing() -> Motion:
-    """Two seconds on both feet, breathing; the hips at 0 in the rest pose, as Acclaim's."""
+    """Two seconds on both feet, breathing; hips at 0 in the rest pose, as in Acclaim."""
     walker = WALK.skeleton
     offsets = walker.offsets.copy()
-    places = np.tile(offsets[0], (60, 1))
+    positions = np.tile(offsets[0], (60, 1))
     offsets[0] = 0.0
     rig = Skeleton(walker.names, walker.parents, offsets)
     rotations = np.tile([1.0, 0, 0, 0], (60, rig.n_joints, 1))
@@ -137,20 +139,20 @@ def standing() -> Motion:
     rotations[:, spine] = quaternion_from_rotation_vector(
         np.sin(np.linspace(0.0, 6.0, 60))[:, None] * np.array([0.02, 0.0, 0.0])
     )
-    return Motion(rig, rotations, places, 30.0)
+    return Motion(rig, rotations, positions, 30.0)
 
 
 def with_feet_drawn_down(motion: Motion) -> Motion:
-    """The same motion of the same body, whose rest pose has other feet."""
+    """The same motion with other feet in the rest pose."""
     rig = motion.skeleton
     joints = find_humanoid_map(rig).indices(rig)
-    turn = quaternion_from_rotation_vector([DOWN, 0.0, 0.0])
+    rotation = quaternion_from_rotation_vector([DOWN, 0.0, 0.0])
     back = quaternion_from_rotation_vector([-DOWN, 0.0, 0.0])
     offsets, rotations = rig.offsets.copy(), motion.rotations.copy()
     for side in ("left", "right"):
         foot = joints[f"{side}Foot"]
         below = rig.subtree(foot)[1:]
-        offsets[below] = rotate(turn, offsets[below])
+        offsets[below] = rotate(rotation, offsets[below])
         rotations[:, foot] = multiply(rotations[:, foot], back)
     return Motion(
         Skeleton(rig.names, rig.parents, offsets), rotations, motion.root_positions, 30.0
@@ -161,8 +163,8 @@ def path(rng: np.random.Generator) -> np.ndarray:
     return np.cumsum(rng.normal(scale=0.01, size=(90, 3)), axis=0)
 
 
-def slower_steps(motion: Motion) -> np.ndarray:
-    """How far the slower of ankle and ball goes, level, (n_frames - 1, 2), metres."""
+def min_foot_steps(motion: Motion) -> np.ndarray:
+    """Horizontal steps of the slower of ankle and ball, (n_frames - 1, 2), meters."""
     feet = foot_points(motion.skeleton, find_humanoid_map(motion.skeleton))
     steps = np.diff(forward_kinematics(motion).positions[:, feet, :2], axis=0)
     return np.linalg.norm(steps, axis=-1).min(axis=-1)

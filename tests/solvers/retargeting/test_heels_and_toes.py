@@ -1,4 +1,4 @@
-"""Heels stay above the ground, and toes bend as toes do, whatever the source."""
+"""Heels stay above the ground, and toes flex within their range, for any source."""
 
 import numpy as np
 import pytest
@@ -37,66 +37,66 @@ TAKES = ("cmu_walk/07_05.bvh", "cmu_walk/07_01.bvh", "05_13.amc")
 
 
 @pytest.mark.parametrize("take", SENSED)
-def test_sensed_feet_below_the_floor_do_not_bend_the_toes_up(recordings, take):
-    """Sensors know no tips of toes: all that the foot lacked was taken out by the toes."""
+def test_sensor_feet_below_the_floor_do_not_flex_the_toes(recordings, take):
+    """Sensors track no tips of toes; the toes used to compensate for the missing height."""
     folder, name = take.split("/")
     path = next((recordings / "kinect" / folder).glob(f"{name}*"))
 
-    result = given_to_rig(sensed(read_recording(path)))
+    result = retargeted_to(sensor_motion(read_recording(path)))
 
-    assert np.nanmax(bends(result)) < 60.0
+    assert np.nanmax(toe_flexion_deg(result)) < 60.0
 
 
 @pytest.mark.parametrize("take", TAKES)
-def test_heels_stay_up_and_toes_in_the_plane_of_their_foot(recordings, take):
+def test_heels_stay_above_ground_and_toes_in_the_foot_plane(recordings, take):
     motion = first_frames(read_recording(recordings / "mocap" / take))
 
-    result = given_to_rig(motion)
+    result = retargeted_to(motion)
 
     world = forward_kinematics(result)
-    stands = detect_contacts(motion)
+    in_contact = detect_contacts(motion)
     ankles = foot_points(RIG, find_humanoid_map(RIG))[:, 0]
     heights = world.positions[:, ankles, 2] - RIG.rest_positions[ankles, 2]
-    assert heights[stands].min() > -0.01
+    assert heights[in_contact].min() > -0.01
     for foot, ball, tip in FEET:
         toes = world.positions[:, tip] - world.positions[:, ball]
         across = rotate(world.rotations[:, foot], ACROSS)
-        aside = (toes * across).sum(axis=1) / np.linalg.norm(toes, axis=1)
-        assert np.degrees(np.arcsin(np.abs(aside).max())) < 10.0
+        offset = (toes * across).sum(axis=1) / np.linalg.norm(toes, axis=1)
+        assert np.degrees(np.arcsin(np.abs(offset).max())) < 10.0
         low = world.positions[:, [ball, tip], 2] - RIG.rest_positions[[ball, tip], 2]
         assert low[:, 0].min() > -0.005
         assert low[:, 1].min() > -0.045
-    assert bends(result).max() < 75.0
+    assert toe_flexion_deg(result).max() < 75.0
 
 
 @pytest.mark.parametrize("tilt", [-50.0, -25.0, 0.0, 10.0])
-def test_a_small_lift_of_the_tip_is_exact_whatever_the_slope(tilt):
-    feet = turned(tilt)
-    toes = rotate(turned(tilt - 10.0), REST[2] - REST[1])
+def test_small_lift_of_the_tip_is_exact_at_any_slope(tilt):
+    feet = toes_up(tilt)
+    toes = rotate(toes_up(tilt - 10.0), REST[2] - REST[1])
 
-    turn = lift_toes(REST, feet, toes, np.array([0.004]), 30.0)
+    rotation = lift_toes(REST, feet, toes, np.array([0.004]), 30.0)
 
-    assert_allclose((rotate(turn, toes) - toes)[0, 2], 0.004, atol=1e-4)
-    assert abs((rotate(turn, toes) - toes)[0, 0]) < 0.002
+    assert_allclose((rotate(rotation, toes) - toes)[0, 2], 0.004, atol=1e-4)
+    assert abs((rotate(rotation, toes) - toes)[0, 0]) < 0.002
 
 
-def test_toes_bend_no_further_than_toes_do():
-    toes = rotate(turned(-70.0), REST[2] - REST[1])
+def test_toe_flexion_is_limited():
+    toes = rotate(toes_up(-70.0), REST[2] - REST[1])
 
-    turn = lift_toes(REST, turned(-60.0), toes, np.array([0.1]), 30.0)
+    rotation = lift_toes(REST, toes_up(-60.0), toes, np.array([0.1]), 30.0)
 
-    foot = rotate(turned(-60.0), REST[1] - REST[0])
-    assert 20.0 < angle(foot, rotate(turn, toes))[0] - BENT_AT_REST < 33.0
-    soles_up = lift_toes(REST, turned(-170.0), toes, np.array([0.1]), 30.0)
+    foot = rotate(toes_up(-60.0), REST[1] - REST[0])
+    assert 20.0 < angle(foot, rotate(rotation, toes))[0] - BENT_AT_REST < 33.0
+    soles_up = lift_toes(REST, toes_up(-170.0), toes, np.array([0.1]), 30.0)
     assert_allclose(np.abs(soles_up[0]), [1.0, 0.0, 0.0, 0.0], atol=1e-9)
 
 
-@pytest.mark.parametrize(("tilt", "least"), [(0.0, 0.98), (40.0, 0.97), (90.0, 0.78)])
-def test_an_ankle_on_the_floor_is_lifted_to_where_its_heel_is_on_it(tilt, least):
-    """Toes up by 90 degrees, as who lies on the back, the heel is behind the ankle."""
+@pytest.mark.parametrize(("tilt", "minimum"), [(0.0, 0.98), (40.0, 0.97), (90.0, 0.78)])
+def test_ankle_on_the_floor_is_lifted_by_the_height_of_its_heel(tilt, minimum):
+    """Lying on the back, toes are up by 90 degrees, and the heel is behind the ankle."""
     body = find_body(RIG, find_humanoid_map(RIG), "target's")
-    pose = np.tile([1.0, 0.0, 0.0, 0.0], (1, len(body.kept), 1))
-    pose[:, body.joints["leftFoot"]] = turned(tilt)
+    pose = np.tile([1.0, 0.0, 0.0, 0.0], (1, len(body.joint_indices), 1))
+    pose[:, body.joints["leftFoot"]] = toes_up(tilt)
     world = forward_kinematics(Motion(body.skeleton, pose, body.rest[:1], 30.0))
     ankle = body.rest[[body.joints["leftFoot"]]]
 
@@ -104,14 +104,14 @@ def test_an_ankle_on_the_floor_is_lifted_to_where_its_heel_is_on_it(tilt, least)
         body, world, "left", ankle * (1.0, 1.0, 0.0), 0.0, Depths(LEFT, LEFT, LEFT), 30.0
     )
 
-    assert least - 0.03 < sole.lift[0] / ankle[0, 2] < 1.0
+    assert minimum - 0.03 < sole.lift[0] / ankle[0, 2] < 1.0
     deep = Depths(*np.full((3, 1), ankle[0, 2]))
     free = sole_above_ground(body, world, "left", ankle * (1.0, 1.0, 0.0), 0.0, deep, 30.0)
     assert free.lift[0] == pytest.approx(0.0, abs=1e-9)
 
 
-def turned(degrees: float) -> np.ndarray:
-    """Toes up by so much, shape (1, 4)."""
+def toes_up(degrees: float) -> np.ndarray:
+    """Toes up by these degrees, shape (1, 4)."""
     return quaternion_from_rotation_vector([[-np.radians(degrees), 0.0, 0.0]])
 
 
@@ -120,16 +120,16 @@ def angle(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     return np.degrees(np.arccos(np.clip((one * other).sum(axis=-1) / lengths, -1.0, 1.0)))
 
 
-def bends(motion: Motion) -> np.ndarray:
-    """By how much the balls of both feet are bent, shape (2, n_frames), degrees."""
-    places = forward_kinematics(motion).positions
+def toe_flexion_deg(motion: Motion) -> np.ndarray:
+    """Flexion of the balls of both feet, shape (2, n_frames), degrees."""
+    positions = forward_kinematics(motion).positions
     return np.array([
-        angle(places[:, ball] - places[:, foot], places[:, tip] - places[:, ball])
+        angle(positions[:, ball] - positions[:, foot], positions[:, tip] - positions[:, ball])
         for foot, ball, tip in FEET
     ])
 
 
-def sensed(recording) -> Motion:
+def sensor_motion(recording) -> Motion:
     kept = [j for j, up in enumerate(recording.parents) if up >= 0 or j in recording.parents]
     names = tuple(recording.tracks.names[joint] for joint in kept)
     tracks = Tracks(names, recording.tracks.positions[:300, kept], recording.tracks.frame_rate)
@@ -137,7 +137,7 @@ def sensed(recording) -> Motion:
 
 
 def first_frames(motion: Motion) -> Motion:
-    """Every second of the first 900, without the T-pose."""
+    """Every second of the first 900 frames, without the T-pose."""
     few = slice(3, 900, 2)
     return Motion(
         motion.skeleton, motion.rotations[few], motion.root_positions[few],
@@ -145,5 +145,5 @@ def first_frames(motion: Motion) -> Motion:
     )  # fmt: skip
 
 
-def given_to_rig(motion: Motion, rig: Skeleton = RIG) -> Motion:
+def retargeted_to(motion: Motion, rig: Skeleton = RIG) -> Motion:
     return retarget(motion, find_humanoid_map(motion.skeleton), rig, find_humanoid_map(rig))

@@ -1,4 +1,4 @@
-"""Few keys give the motion within the tolerance, by the curves that Blender draws."""
+"""Few keys reproduce the motion within the tolerance with the curves of Blender."""
 
 import numpy as np
 import pytest
@@ -31,25 +31,25 @@ def walk() -> Motion:
 
 
 @pytest.mark.parametrize("tolerance", [0.0025, 0.01, 0.05])
-def test_no_joint_is_off_by_more_than_the_tolerance(walk, tolerance):
+def test_joint_errors_stay_within_the_tolerance(walk, tolerance):
     sparse = reduce_keys(walk, tolerance)
 
     before, after = (forward_kinematics(motion).positions for motion in (walk, sparse.dense()))
-    off = np.linalg.norm(after - before, axis=-1).max()
-    assert off <= tolerance
-    assert off <= sparse.error + 1e-12 <= tolerance + 1e-12
+    errors = np.linalg.norm(after - before, axis=-1).max()
+    assert errors <= tolerance
+    assert errors <= sparse.error + 1e-12 <= tolerance + 1e-12
     assert sparse.n_keys < walk.n_frames * (4 * walk.n_joints + 3)
 
 
-def test_hands_that_only_turn_are_kept_too(walk):
-    """A hand without fingers moves no joint: its turns must be seen all the same."""
+def test_rotations_of_hands_without_fingers_stay_within_tolerance(walk):
+    """Such a hand moves no joint, but its rotation is visible."""
     hand = walk.skeleton.index("LeftHand")
-    turns = walk.rotations.copy()
+    rotations = walk.rotations.copy()
     angle = np.sin(np.arange(walk.n_frames) / 4.0)
-    turns[:, hand] = quaternion_from_rotation_vector(angle[:, None] * (1.0, 0.0, 0.0))
+    rotations[:, hand] = quaternion_from_rotation_vector(angle[:, None] * (1.0, 0.0, 0.0))
     chosen = [joint for joint, name in enumerate(walk.skeleton.names) if name != "LeftHand_end"]
     handy = Motion(
-        walk.skeleton.select(chosen), turns[:, chosen], walk.root_positions, walk.frame_rate
+        walk.skeleton.select(chosen), rotations[:, chosen], walk.root_positions, walk.frame_rate
     )
 
     dense = reduce_keys(handy, 0.005).dense()
@@ -65,7 +65,7 @@ def test_a_looser_tolerance_takes_fewer_keys(walk):
     assert counts == sorted(counts, reverse=True) and counts[-1] < counts[0] / 2
 
 
-def test_what_keeps_still_needs_one_key_and_what_rests_none(walk):
+def test_constant_joints_need_one_key_and_resting_ones_none(walk):
     rotations = np.tile(IDENTITY, (90, walk.n_joints, 1))
     rotations[:, 3] = quaternion_from_rotation_vector(np.array([0.3, 0.0, 0.0]))
     still = Motion(walk.skeleton, rotations, np.tile([1.0, 2.0, 3.0], (90, 1)), 30.0)
@@ -87,7 +87,7 @@ def test_key_poses_are_the_same_for_all_joints(walk):
     assert sparse.error <= 0.02
 
 
-def test_a_real_walk_needs_a_third_of_its_keys(recordings):
+def test_real_walk_needs_a_third_of_its_keys(recordings):
     walk = read_bvh(recordings / "mocap/cmu_walk/05_01.bvh", scale=0.0254 / 0.45).slice(1, 400)
 
     sparse = reduce_keys(walk, 0.01)
@@ -98,7 +98,7 @@ def test_a_real_walk_needs_a_third_of_its_keys(recordings):
 
 
 @pytest.mark.parametrize("n_frames", [1, 2, 3])
-def test_the_shortest_clips(walk, n_frames):
+def test_shortest_clips_are_accepted(walk, n_frames):
     clip = walk.slice(0, n_frames)
 
     assert_allclose(
@@ -106,14 +106,14 @@ def test_the_shortest_clips(walk, n_frames):
     )
 
 
-def test_noise_is_kept_within_the_tolerance_too(walk, rng):
+def test_noisy_motion_stays_within_the_tolerance(walk, rng):
     rotations = quaternion_from_rotation_vector(rng.normal(0, 0.5, (40, walk.n_joints, 3)))
     noise = Motion(walk.skeleton, rotations, rng.normal(0, 0.1, (40, 3)), 30.0)
 
     assert reduce_keys(noise, 0.005).error <= 0.005
 
 
-def test_keys_travel_through_a_file(walk, tmp_path):
+def test_keys_survive_export_and_import(walk, tmp_path):
     sparse = reduce_keys(walk, 0.01)
 
     sparse.save(tmp_path / "walk.npz")
@@ -127,8 +127,8 @@ def test_keys_travel_through_a_file(walk, tmp_path):
 
 
 @pytest.mark.parametrize("order", ["XYZ", "ZYX", "YXZ"])
-def test_euler_angles_about_the_bones_own_axes(walk, rng, order, tmp_path):
-    """What Blender would make of the three curves, by its own composition of angles."""
+def test_euler_channels_compose_as_in_blender(walk, rng, order, tmp_path):
+    """Compose three curves of angles as Blender does."""
     axes = quaternion_from_rotation_vector(rng.normal(size=(walk.n_joints, 3)))
     channels = [RotationChannels(order, each) for each in axes]
 
@@ -138,15 +138,17 @@ def test_euler_angles_about_the_bones_own_axes(walk, rng, order, tmp_path):
     joint = walk.skeleton.index("LeftUpLeg")
     angles = sparse.rotations[joint].at(np.arange(walk.n_frames))
     rest = Rotation.from_quat(axes[joint], scalar_first=True)
-    turn = rest * Rotation.from_euler(order, angles) * rest.inv()
-    difference = turn * Rotation.from_quat(walk.rotations[:, joint], scalar_first=True).inv()
+    rotation = rest * Rotation.from_euler(order, angles) * rest.inv()
+    difference = (
+        rotation * Rotation.from_quat(walk.rotations[:, joint], scalar_first=True).inv()
+    )
     assert np.degrees(difference.magnitude().max()) < 3.0
     sparse.save(tmp_path / "walk.npz")
     again = load_sparse_motion(tmp_path / "walk.npz").dense()
     assert_allclose(again.rotations, sparse.dense().rotations, atol=1e-14)
 
 
-def test_channels_go_back_and_forth(rng):
+def test_channels_restore_the_rotations(rng):
     rotations = quaternion_from_rotation_vector(rng.normal(size=(50, 3)))
     for order in ("", "XYZ", "YZX"):
         channels = RotationChannels(order, [0.5, 0.5, -0.5, 0.5])
@@ -158,7 +160,7 @@ def test_channels_go_back_and_forth(rng):
         RotationChannels("XYZ", [1.0, 0.0])
 
 
-def test_gaps_and_nonsense_are_refused(walk):
+def test_reduce_keys_raises_for_gaps_and_invalid_input(walk):
     rotations = walk.rotations.copy()
     rotations[3, 2] = np.nan
 
@@ -171,8 +173,8 @@ def test_gaps_and_nonsense_are_refused(walk):
             reduce_keys(walk, tolerance)
 
 
-def test_handles_draw_the_curve_as_bezier_segments_do():
-    """De Casteljau's construction, which knows nothing of Hermite polynomials."""
+def test_hermite_curve_equals_bezier_segments():
+    """De Casteljau's construction, independent of Hermite polynomials."""
     curve = KeyCurve(
         np.array([0, 7, 10]), np.array([[0.0], [2.0], [-1.0]]), np.array([[0.5], [0.0], [-2.0]])
     )
@@ -193,7 +195,7 @@ def test_handles_draw_the_curve_as_bezier_segments_do():
 
 
 @given(st.lists(st.integers(1, 58), unique=True, max_size=20), st.integers(0, 1000))
-def test_a_fit_is_no_worse_than_going_through_the_samples(inner, seed):
+def test_fit_is_at_least_as_accurate_as_interpolation(inner, seed):
     samples = np.random.default_rng(seed).normal(size=(60, 2)).cumsum(axis=0)
     keys = np.array([0, *sorted(inner), 59])
 
@@ -206,14 +208,14 @@ def test_a_fit_is_no_worse_than_going_through_the_samples(inner, seed):
     assert errors[0] <= errors[1] * 1.01 + 1e-9
 
 
-def test_a_cubic_needs_two_keys():
+def test_cubic_needs_two_keys():
     time = np.arange(100.0)
     samples = np.stack([1e-5 * time**3 - 2e-3 * time**2, 3.0 - time], axis=1)
 
     assert_allclose(fit_curve(samples, np.array([0, 99])).at(time), samples, atol=1e-3)
 
 
-def test_a_tree_of_one_joint_has_ends():
+def test_single_joint_has_end_points():
     lone = Skeleton(("hips",), (-1,), np.zeros((1, 3)))
     angle = np.linspace(0, 3, 50)
     turning = quaternion_from_rotation_vector(angle[:, None, None] * np.array([0, 0, 1.0]))

@@ -1,4 +1,4 @@
-"""Bodies that lack parts, and maps that make no sense: numbers or one clear sentence."""
+"""Incomplete bodies and invalid maps give finite numbers or one clear message."""
 
 import numpy as np
 import pytest
@@ -30,7 +30,7 @@ SOME_ROLES = [
 
 @st.composite
 def mapped_trees(draw):
-    """A random tree, some bones of no length, with random roles; hips at a random joint."""
+    """A random tree, some bones of length 0, with random roles; hips at a random joint."""
     n_joints = draw(st.integers(1, 14))
     parents = [-1, *(draw(st.integers(0, joint - 1)) for joint in range(1, n_joints))]
     coordinate = st.floats(-0.5, 0.5).map(lambda value: round(value, 1))
@@ -49,11 +49,11 @@ def mapped_trees(draw):
 
 @settings(max_examples=60)
 @given(mapped_trees(), mapped_trees(), st.sampled_from(list(RootMotion)), st.integers(0, 99))
-def test_any_tree_gives_numbers_or_a_sentence(source, target, root_motion, seed):
+def test_random_trees_give_finite_numbers_or_a_message(source, target, root_motion, seed):
     rng = np.random.default_rng(seed)
     skeleton, source_map = source
-    turns = quaternion_from_rotation_vector(rng.normal(0, 0.5, (7, skeleton.n_joints, 3)))
-    motion = Motion(skeleton, turns, rng.normal(0, 1, (7, 3)), 30.0)
+    rotations = quaternion_from_rotation_vector(rng.normal(0, 0.5, (7, skeleton.n_joints, 3)))
+    motion = Motion(skeleton, rotations, rng.normal(0, 1, (7, 3)), 30.0)
 
     try:
         given_motion = retarget(
@@ -70,7 +70,7 @@ def test_any_tree_gives_numbers_or_a_sentence(source, target, root_motion, seed)
 
 @settings(max_examples=20)
 @given(st.sets(st.sampled_from([role for role in MAP.joints if role != "hips"]), max_size=21))
-def test_any_part_of_the_roles_may_be_missing(lost):
+def test_any_roles_may_be_missing(lost):
     rig = unreal()
     partial = find_humanoid_map(rig)
     for role in lost:
@@ -85,9 +85,9 @@ def test_any_part_of_the_roles_may_be_missing(lost):
 
 @settings(max_examples=20)
 @given(st.data())
-def test_gaps_anywhere_leave_the_rest_finite(data):
-    """What is unknown in the source is unknown in the joints that it concerns, no more."""
-    rotations, places = WALK.rotations.copy(), WALK.root_positions.copy()
+def test_gaps_affect_only_dependent_joints(data):
+    """Missing joints of the source are missing in the joints that depend on them."""
+    rotations, positions = WALK.rotations.copy(), WALK.root_positions.copy()
     n_gaps = data.draw(st.integers(0, 6))
     for _ in range(n_gaps):
         joint, frame = (
@@ -96,33 +96,33 @@ def test_gaps_anywhere_leave_the_rest_finite(data):
         )
         rotations[frame : frame + 5, joint] = np.nan
     if data.draw(st.booleans()):
-        places[:] = np.nan
-    gappy = WALK.with_poses(rotations, places)
+        positions[:] = np.nan
+    gappy = WALK.with_poses(rotations, positions)
 
     result = retarget(gappy, MAP, mixamo(), find_humanoid_map(mixamo()))
 
-    lost = ~np.isfinite(result.rotations).all(axis=-1)
+    missing = ~np.isfinite(result.rotations).all(axis=-1)
     gaps = np.isnan(rotations).any(axis=-1)
-    assert lost.sum() <= 2 * gaps.sum()
-    assert_allclose(np.isnan(result.root_positions), np.isnan(places))
+    assert missing.sum() <= 2 * gaps.sum()
+    assert_allclose(np.isnan(result.root_positions), np.isnan(positions))
     for role in ("leftLowerArm", "rightFoot", "head"):
-        theirs, ours = (
+        reference, actual = (
             roles.indices(skeleton)[role]
             for roles, skeleton in (
                 (MAP, WALK.skeleton), (find_humanoid_map(mixamo()), mixamo()),
             )
         )  # fmt: skip
-        assert (lost[:, ours] >= gaps[:, theirs]).all()
+        assert (missing[:, actual] >= gaps[:, reference]).all()
 
 
-def test_a_single_frame():
+def test_single_frame_is_retargeted():
     result = retarget(WALK.slice(5, 6), MAP, unreal(), find_humanoid_map(unreal()))
 
     assert result.n_frames == 1 and np.isfinite(result.rotations).all()
 
 
-def test_deform_bones_that_hang_beside_the_hips_are_refused():
-    """As the thighs of a generated Rigify rig do."""
+def test_deform_bones_next_to_the_hips_are_refused():
+    """The thighs of a generated Rigify rig are such bones."""
     rig = mixamo()
     parents = list(rig.parents)
     loose = rig.index("mixamorig:LeftUpLeg")
@@ -135,8 +135,8 @@ def test_deform_bones_that_hang_beside_the_hips_are_refused():
         retarget(WALK, MAP, beside, find_humanoid_map(beside))
 
 
-def test_exchanged_sides_are_refused():
-    """As a mirrored Kinect has them: the feet would point backwards."""
+def test_swapped_sides_are_refused():
+    """A mirrored Kinect has them: the feet would point backward."""
     swapped = {
         role.replace("left", "?").replace("right", "left").replace("?", "right"): name
         for role, name in MAP.joints.items()
@@ -146,14 +146,14 @@ def test_exchanged_sides_are_refused():
         retarget(WALK, HumanoidMap(swapped), unreal(), find_humanoid_map(unreal()))
 
 
-def partial_of(humanoid: HumanoidMap, lost: set[str]) -> HumanoidMap:
-    joints = {role: name for role, name in humanoid.joints.items() if role not in lost}
+def partial_of(humanoid: HumanoidMap, missing: set[str]) -> HumanoidMap:
+    joints = {role: name for role, name in humanoid.joints.items() if role not in missing}
     return HumanoidMap(joints)
 
 
 @pytest.mark.parametrize("whose", ["source", "target"])
 @pytest.mark.parametrize(
-    ("exchanged", "sentence"),
+    ("swapped", "sentence"),
     [
         ([("leftUpperLeg", "leftLowerLeg")], r"\(leftLowerLeg\) does not hang below"),
         ([("rightLowerArm", "rightHand")], r"\(rightHand\) does not hang below"),
@@ -174,10 +174,10 @@ def partial_of(humanoid: HumanoidMap, lost: set[str]) -> HumanoidMap:
         ),
     ],
 )
-def test_maps_that_make_no_body_are_refused(whose, exchanged, sentence):
+def test_maps_without_a_body_are_refused(whose, swapped, sentence):
     humanoid = MAP if whose == "source" else find_humanoid_map(unreal())
     joints = dict(humanoid.joints)
-    for one, other in exchanged:
+    for one, other in swapped:
         joints[one], joints[other] = joints[other], joints[one]
     nonsense = HumanoidMap(joints)
     maps = (nonsense, find_humanoid_map(unreal())) if whose == "source" else (MAP, nonsense)
@@ -194,15 +194,15 @@ def test_a_head_below_the_hips_is_refused():
         retarget(WALK, MAP, unreal(), headless)
 
 
-def test_hips_that_hang_on_the_head_are_refused():
+def test_hips_below_the_head_in_the_tree_are_refused():
     upside_down = HumanoidMap({"hips": "head", "head": "pelvis"})
 
     with pytest.raises(InvalidMotionError, match=r"head \(hips\) hangs below pelvis \(head\)"):
         retarget(WALK, MAP, unreal(), upside_down)
 
 
-def test_arms_without_a_middle_joint_still_hang_on_the_body():
-    """A role that is missing breaks no chain."""
+def test_arms_without_an_elbow_stay_connected():
+    """A missing role does not interrupt a chain."""
     partial = find_humanoid_map(unreal()).with_joint("leftLowerArm", None)
 
     assert np.isfinite(retarget(WALK, MAP, unreal(), partial).rotations).all()

@@ -1,4 +1,4 @@
-"""What must hold for any two rigs: rest poses do not matter, hands meet, knees bend forward."""
+"""Laws for any two rigs: rest poses have no effect, hands meet, knees flex forward."""
 
 import numpy as np
 import pytest
@@ -28,96 +28,98 @@ AS_EVER = RetargetSettings()
     st.lists(st.floats(-0.7, 0.7), min_size=len(LIMBS), max_size=len(LIMBS)),
     st.sampled_from([0.0, np.pi / 2, np.pi, -np.pi / 2, 0.15, 0.5, -0.8, 2.5]),
 )
-def test_the_rest_pose_of_the_target_does_not_matter(angles, facing):
-    """Limbs turned about the axis from front to back, the body about the vertical."""
+def test_rest_pose_of_the_target_has_no_effect(angles, facing):
+    """Rotate limbs about the axis from front to back, the body about the vertical."""
     rig = mixamo()
-    posed = rested_otherwise(rig, dict(zip(LIMBS, angles, strict=True)), facing)
+    posed = with_rest_pose(rig, dict(zip(LIMBS, angles, strict=True)), facing)
 
-    usual, other = given_to(WALK, rig), given_to(WALK, posed)
+    default, other = retargeted(WALK, rig), retargeted(WALK, posed)
 
     assert_allclose(
-        forward_kinematics(other).positions, forward_kinematics(usual).positions, atol=1e-6
+        forward_kinematics(other).positions, forward_kinematics(default).positions, atol=1e-6
     )
 
 
 @settings(max_examples=25)
 @given(st.lists(st.floats(-0.7, 0.7), min_size=len(LIMBS), max_size=len(LIMBS)))
-def test_the_rest_pose_of_the_source_does_not_matter(angles):
+def test_rest_pose_of_the_source_has_no_effect(angles):
     rig = mixamo()
-    source = given_to(WALK, rig)
-    posed = given_to(WALK, rested_otherwise(rig, dict(zip(LIMBS, angles, strict=True)), 0.0))
+    source = retargeted(WALK, rig)
+    posed = retargeted(WALK, with_rest_pose(rig, dict(zip(LIMBS, angles, strict=True)), 0.0))
 
-    usual, other = given_to(source, unreal()), given_to(posed, unreal())
+    default, other = retargeted(source, unreal()), retargeted(posed, unreal())
 
     assert_allclose(
-        forward_kinematics(other).positions, forward_kinematics(usual).positions, atol=1e-6
+        forward_kinematics(other).positions, forward_kinematics(default).positions, atol=1e-6
     )
 
 
 @pytest.mark.parametrize("family", RIGS)
-def test_there_and_back_again(family):
-    """Feet and hands come back exactly; what is between them to what the rig can tell."""
-    there = given_to(WALK, RIGS[family](1.3))
+def test_retargeting_back_restores_feet_and_hands(family):
+    """Feet and hands are exact; joints between them depend on what the rig represents."""
+    retargeted_walk = retargeted(WALK, RIGS[family](1.3))
 
-    back = given_to(there, WALK.skeleton)
+    back = retargeted(retargeted_walk, WALK.skeleton)
 
-    here, again = (forward_kinematics(motion).positions for motion in (WALK, back))
+    before, again = (forward_kinematics(motion).positions for motion in (WALK, back))
     joints = find_humanoid_map(WALK.skeleton).indices(WALK.skeleton)
     for role in ("leftFoot", "rightFoot", "leftLowerLeg", "rightLowerLeg"):
-        shift = again[:, joints[role]] - here[:, joints[role]]
+        shift = again[:, joints[role]] - before[:, joints[role]]
         assert np.ptp(shift, axis=0).max() < 0.01, role
 
 
 @pytest.mark.parametrize("family", RIGS)
-def test_knees_and_elbows_bend_the_way_the_sources_do(family):
-    given = given_to(WALK, RIGS[family](0.8))
+def test_knees_and_elbows_flex_in_the_source_directions(family):
+    result = retargeted(WALK, RIGS[family](0.8))
 
     for side in ("left", "right"):
         for roles in (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand")):
-            theirs, ours = (bend(motion, side, roles) for motion in (WALK, given))
-            lengths = [np.linalg.norm(axis, axis=1) for axis in (theirs, ours)]
+            reference, actual = (flexion_axis(motion, side, roles) for motion in (WALK, result))
+            lengths = [np.linalg.norm(axis, axis=1) for axis in (reference, actual)]
             clear = np.minimum(*lengths) > 0.1
-            cosine = np.einsum("fi,fi->f", theirs, ours) / (lengths[0] * lengths[1])
+            cosine = np.einsum("fi,fi->f", reference, actual) / (lengths[0] * lengths[1])
             assert cosine[clear].min() > 0.8
 
 
 @pytest.mark.parametrize("family", RIGS)
-def test_no_joint_turns_much_more_than_the_sources(family):
-    given = given_to(WALK, RIGS[family](1.2))
+def test_joints_rotate_hardly_more_than_the_source(family):
+    result = retargeted(WALK, RIGS[family](1.2))
 
-    theirs, ours = (roles_in_world(motion) for motion in (WALK, given))
-    for role in set(theirs) & set(ours):
-        more = turns(ours[role]) - turns(theirs[role])
+    reference, actual = (roles_in_world(motion) for motion in (WALK, result))
+    for role in set(reference) & set(actual):
+        more = rotation_angles(actual[role]) - rotation_angles(reference[role])
         assert np.degrees(more.max()) < 5.0, role
 
 
 @pytest.mark.parametrize("family", RIGS)
 def test_hands_that_meet_in_the_source_meet(family):
-    """Clapping: both hands at one place in front of the chest, then apart; broad shoulders."""
+    """Clapping in front of the chest, on a rig with broad shoulders."""
     body, rig = mixamo(), with_broad_shoulders(RIGS[family](1.1))
     clapping = claps(body)
 
-    given = given_to(clapping, rig)
-    alone = given_to(clapping, rig, RetargetSettings(keep_hands=False))
+    result = retargeted(clapping, rig)
+    separate = retargeted(clapping, rig, RetargetSettings(keep_hands=False))
 
-    apart, ours, without = (hands_apart(motion) for motion in (clapping, given, alone))
-    closed, open_ = apart < 0.08, apart > 0.6
+    distances, actual, without = (
+        hand_distance(motion) for motion in (clapping, result, separate)
+    )
+    closed, open_ = distances < 0.08, distances > 0.6
     growth = arm_length(rig) / arm_length(body)
     assert closed.sum() >= 5 and open_.sum() >= 5
-    assert np.abs(ours - growth * apart)[closed].max() < 0.005
-    assert np.abs(without - growth * apart)[closed].min() > 0.03
-    assert ours[open_].min() > 0.6
+    assert np.abs(actual - growth * distances)[closed].max() < 0.005
+    assert np.abs(without - growth * distances)[closed].min() > 0.03
+    assert actual[open_].min() > 0.6
 
 
-def test_travel_is_scaled_as_asked():
-    marks = given_to(WALK, mixamo(1.5), RetargetSettings(travel_scale=1.0))
-    ours = marks.root_positions[-1, :2] - marks.root_positions[0, :2]
+def test_travel_scale_is_a_setting():
+    marks = retargeted(WALK, mixamo(1.5), RetargetSettings(travel_scale=1.0))
+    result = marks.root_positions[-1, :2] - marks.root_positions[0, :2]
 
-    assert_allclose(ours, (WALK.root_positions[-1] - WALK.root_positions[0])[:2], atol=0.03)
+    assert_allclose(result, (WALK.root_positions[-1] - WALK.root_positions[0])[:2], atol=0.03)
 
 
-def test_hips_sink_no_less_than_needed_and_smoothly():
-    """A foot that steps aside for a moment, out of reach of a leg of 1 m."""
+def test_hips_are_lowered_enough_and_smoothly():
+    """A foot briefly steps beyond the reach of a leg of 1 m."""
     hip, foot = np.tile([0, 0, 1.0], (100, 1)), np.zeros((100, 3))
     foot[48:52, 0] = 0.4
 
@@ -130,8 +132,8 @@ def test_hips_sink_no_less_than_needed_and_smoothly():
 
 
 @pytest.mark.parametrize(("degrees", "sinks"), [(0, 1.0), (45, 1.0), (75, 0.0), (90, 0.0)])
-def test_hips_sink_for_no_leg_that_lies(degrees, sinks):
-    """A leg of 1 m reaches for a foot 1.02 m away, ever farther from straight down."""
+def test_hips_are_not_lowered_for_a_horizontal_leg(degrees, sinks):
+    """A leg of 1 m and a foot at 1.02 m, at increasing angles from vertical."""
     angle = np.radians(degrees)
     foot = np.tile(1.02 * np.array([np.sin(angle), 0.0, -np.cos(angle)]), (10, 1))
 
@@ -142,44 +144,44 @@ def test_hips_sink_for_no_leg_that_lies(degrees, sinks):
     assert_allclose(drop, sinks * needed, atol=1e-12)
 
 
-def test_the_ground_path_turns_with_the_body():
+def test_ground_path_rotates_with_the_body():
     circle = np.linspace(0, 2 * np.pi, 240)
-    places = np.stack([2 * np.cos(circle), 2 * np.sin(circle), np.full(240, 0.9)], axis=1)
+    positions = np.stack([2 * np.cos(circle), 2 * np.sin(circle), np.full(240, 0.9)], axis=1)
     yaw = quaternion_from_rotation_vector(np.stack([0 * circle, 0 * circle, circle], axis=1))
     rotations = np.tile([1.0, 0, 0, 0], (240, WALK.n_joints, 1))
     rotations[:, 0] = yaw
-    walk = Motion(WALK.skeleton, rotations, places, 60.0)
+    walk = Motion(WALK.skeleton, rotations, positions, 60.0)
 
     path = ground_path(walk, find_humanoid_map(walk.skeleton), smoothing=0.1)
 
-    assert_allclose(path.positions[30:-30, :2], places[30:-30, :2], atol=0.03)
+    assert_allclose(path.positions[30:-30, :2], positions[30:-30, :2], atol=0.03)
     assert np.abs(path.positions[:, 2]).max() == 0.0
     assert angle_between(path.rotations[30:-30], yaw[30:-30]).max() < 0.05
 
 
-def test_a_root_bone_need_not_turn():
+def test_root_bone_rotation_is_optional():
     kept = RetargetSettings(root_motion=RootMotion.ROOT_BONE, turn_root=False)
 
-    assert_allclose(given_to(WALK, unreal(), kept).rotations[:, 0, 0], 1.0)
+    assert_allclose(retargeted(WALK, unreal(), kept).rotations[:, 0, 0], 1.0)
 
 
-def given_to(motion: Motion, rig: Skeleton, settings: RetargetSettings = AS_EVER) -> Motion:
+def retargeted(motion: Motion, rig: Skeleton, settings: RetargetSettings = AS_EVER) -> Motion:
     maps = find_humanoid_map(motion.skeleton), find_humanoid_map(rig)
     return retarget(motion, maps[0], rig, maps[1], settings=settings)
 
 
-def rested_otherwise(rig: Skeleton, angles: dict[str, float], facing: float) -> Skeleton:
-    """Turn bones of limbs in the rest pose, and the whole body, which stands as before."""
+def with_rest_pose(rig: Skeleton, angles: dict[str, float], facing: float) -> Skeleton:
+    """Rotate bones of limbs in the rest pose, and the complete body about the vertical."""
     joints = find_humanoid_map(rig).indices(rig)
     offsets = rig.offsets.copy()
     for part, angle in angles.items():
         for side, sign in (("left", 1.0), ("right", -1.0)):
-            turn = quaternion_from_rotation_vector([0.0, sign * angle, 0.0])
+            rotation = quaternion_from_rotation_vector([0.0, sign * angle, 0.0])
             below = rig.subtree(joints[side + part])[1:]
             if part.endswith("Leg"):
                 feet = set(rig.subtree(joints[f"{side}Foot"])[1:])
                 below = [joint for joint in below if joint not in feet]
-            offsets[below] = rotate(turn, offsets[below])
+            offsets[below] = rotate(rotation, offsets[below])
     offsets = rotate(quaternion_from_rotation_vector([0.0, 0.0, facing]), offsets)
     posed = Skeleton(rig.names, rig.parents, offsets)
     ankle = joints["leftFoot"]
@@ -187,7 +189,7 @@ def rested_otherwise(rig: Skeleton, angles: dict[str, float], facing: float) -> 
     return Skeleton(rig.names, rig.parents, offsets)
 
 
-def role_places(motion: Motion) -> dict[str, np.ndarray]:
+def role_positions(motion: Motion) -> dict[str, np.ndarray]:
     positions = forward_kinematics(motion).positions
     joints = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
     return {role: positions[:, joint] for role, joint in joints.items()}
@@ -199,41 +201,42 @@ def roles_in_world(motion: Motion) -> dict[str, np.ndarray]:
     return {role: rotations[:, joint] for role, joint in joints.items()}
 
 
-def turns(rotations: np.ndarray) -> np.ndarray:
+def rotation_angles(rotations: np.ndarray) -> np.ndarray:
     return angle_between(rotations[1:], rotations[:-1])
 
 
-def bend(motion: Motion, side: str, roles: tuple[str, str, str]) -> np.ndarray:
-    """Axis about which a limb is bent, as long as the sine of the angle."""
-    places = role_places(motion)
-    upper, hinge, end = (places[side + role] for role in roles)
+def flexion_axis(motion: Motion, side: str, roles: tuple[str, str, str]) -> np.ndarray:
+    """Flexion axis of a limb; its length is the sine of the angle."""
+    positions = role_positions(motion)
+    upper, hinge, end = (positions[side + role] for role in roles)
     first, second = (
-        way / np.linalg.norm(way, axis=1, keepdims=True) for way in (hinge - upper, end - hinge)
+        direction / np.linalg.norm(direction, axis=1, keepdims=True)
+        for direction in (hinge - upper, end - hinge)
     )
     return np.cross(first, second)
 
 
-def hands_apart(motion: Motion) -> np.ndarray:
-    places = role_places(motion)
-    return np.linalg.norm(places["leftHand"] - places["rightHand"], axis=1)
+def hand_distance(motion: Motion) -> np.ndarray:
+    positions = role_positions(motion)
+    return np.linalg.norm(positions["leftHand"] - positions["rightHand"], axis=1)
 
 
 def with_broad_shoulders(rig: Skeleton) -> Skeleton:
     joints = find_humanoid_map(rig).indices(rig)
     offsets = rig.offsets.copy()
-    for role, aside in (("leftUpperArm", 0.05), ("rightUpperArm", -0.05)):
-        offsets[joints[role], 0] += aside
+    for role, offset in (("leftUpperArm", 0.05), ("rightUpperArm", -0.05)):
+        offsets[joints[role], 0] += offset
     return Skeleton(rig.names, rig.parents, offsets)
 
 
 def arm_length(rig: Skeleton) -> float:
     joints = find_humanoid_map(rig).indices(rig)
-    places = rig.rest_positions[[joints[f"left{part}"] for part in ("UpperArm", *ARM_ENDS)]]
-    return float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
+    positions = rig.rest_positions[[joints[f"left{part}"] for part in ("UpperArm", *ARM_ENDS)]]
+    return float(np.linalg.norm(np.diff(positions, axis=0), axis=1).sum())
 
 
 def claps(body: Skeleton) -> Motion:
-    """Arms level ahead that swing together until the wrists touch, and open."""
+    """Level arms that swing together until the wrists touch, and open."""
     joints = HumanoidMap(find_humanoid_map(body).joints).indices(body)
     half_width = body.rest_positions[joints["leftUpperArm"], 0]
     arm = body.rest_positions[joints["leftHand"], 0] - half_width

@@ -1,4 +1,4 @@
-"""A root bone turns with a body that walks, and not with one that flips or lies down."""
+"""A root bone follows the heading of a walk, and does not rotate in flips or on the ground."""
 
 import numpy as np
 import pytest
@@ -19,8 +19,8 @@ WHOLE_TURN = np.linspace(0.0, 2.0 * np.pi, 120)
 
 @pytest.mark.parametrize("axis", [(1.0, 0, 0), (-1.0, 0, 0), (0, 1.0, 0)])
 @pytest.mark.parametrize("smoothing", [0.0, 0.5])
-def test_the_root_turns_in_no_flip_and_no_cartwheel(axis, smoothing):
-    flip = turning(quaternion_from_rotation_vector(WHOLE_TURN[:, None] * np.array(axis)))
+def test_root_does_not_rotate_in_flips_and_cartwheels(axis, smoothing):
+    flip = rotating_body(quaternion_from_rotation_vector(WHOLE_TURN[:, None] * np.array(axis)))
 
     path = ground_path(flip, find_humanoid_map(flip.skeleton), smoothing)
 
@@ -28,23 +28,23 @@ def test_the_root_turns_in_no_flip_and_no_cartwheel(axis, smoothing):
 
 
 @pytest.mark.parametrize("bow", [0.5, 1.0, 1.7])
-def test_who_bows_while_turning_still_turns(bow):
-    """Turned by 250 degrees, bowed in the middle: the twist is known in every frame."""
+def test_heading_of_a_bowing_actor_is_followed(bow):
+    """Rotated by 250 degrees with a bow; the heading is defined in every frame."""
     yaw = quaternion_from_rotation_vector(0.7 * WHOLE_TURN[:, None] * np.array([0, 0, 1.0]))
     tilt = bow * np.sin(0.5 * WHOLE_TURN)[:, None] * np.array([1.0, 0, 0])
-    motion = turning(multiply(yaw, quaternion_from_rotation_vector(tilt)))
+    motion = rotating_body(multiply(yaw, quaternion_from_rotation_vector(tilt)))
 
     path = ground_path(motion, find_humanoid_map(motion.skeleton), 0.0)
 
     assert angle_between(path.rotations, yaw).max() < 1e-6
 
 
-def test_who_gets_up_facing_elsewhere_has_turned_smoothly():
-    """Lies down facing -Y and gets up a quarter turn farther on."""
+def test_root_rotates_smoothly_while_an_actor_gets_up():
+    """Lies down facing -Y and gets up with another heading, 90 degrees away."""
     tilt = np.radians(90.0) * np.sin(0.5 * WHOLE_TURN)[:, None] * np.array([1.0, 0, 0])
-    turn = 0.5 * np.pi * np.round(0.5 * WHOLE_TURN / np.pi)[:, None] * np.array([0, 0, 1.0])
-    motion = turning(
-        multiply(quaternion_from_rotation_vector(turn), quaternion_from_rotation_vector(tilt))
+    angle = 0.5 * np.pi * np.round(0.5 * WHOLE_TURN / np.pi)[:, None] * np.array([0, 0, 1.0])
+    motion = rotating_body(
+        multiply(quaternion_from_rotation_vector(angle), quaternion_from_rotation_vector(tilt))
     )
 
     path = ground_path(motion, find_humanoid_map(motion.skeleton), 0.0)
@@ -53,8 +53,8 @@ def test_who_gets_up_facing_elsewhere_has_turned_smoothly():
     assert angle_between(path.rotations[1:], path.rotations[:-1]).max() < np.radians(3.0)
 
 
-def test_the_root_does_not_spin_when_a_person_lies_down(recordings):
-    """Before, the direction over the ground reversed: 3000 degrees a second."""
+def test_root_does_not_spin_when_an_actor_lies_down(recordings):
+    """The horizontal direction reverses there: 3000 degrees per second."""
     motion = read_recording(recordings / "mocap/hdm05/HDM_bd_lieDownFloor_002_120.amc")
 
     path = ground_path(motion, find_humanoid_map(motion.skeleton))
@@ -63,7 +63,7 @@ def test_the_root_does_not_spin_when_a_person_lies_down(recordings):
     assert np.degrees(speed.max()) < 100.0
 
 
-def turning(hips: np.ndarray) -> Motion:
+def rotating_body(hips: np.ndarray) -> Motion:
     rig = mixamo()
     rotations = np.tile([1.0, 0, 0, 0], (len(hips), rig.n_joints, 1))
     rotations[:, 0] = hips

@@ -1,4 +1,4 @@
-"""Spines share the turn, heads look where the source's do, and feet stand on the ground."""
+"""Spines distribute rotations, heads face as the source's, and feet stand on the ground."""
 
 import numpy as np
 import pytest
@@ -30,64 +30,66 @@ TRUNK = ("hips", "spine", "chest", "upperChest")
 
 
 @pytest.mark.parametrize(
-    ("lost", "shares"),
+    ("missing", "fractions"),
     [
         ((), (0.0, 1 / 3, 2 / 3, 1.0)),
         (("upperChest",), (0.0, 0.5, 1.0)),
         (("chest", "upperChest"), (0.0, 1.0)),
     ],
 )
-def test_a_bow_is_shared_evenly_by_the_spine_there_is(monkeypatch, lost, shares):
-    """A source whose three vertebrae bow by 20 degrees each; targets of three, two and one.
+def test_bow_is_distributed_over_the_existing_spine(monkeypatch, missing, fractions):
+    """Three vertebrae of the source flex by 20 degrees each; targets have three, two and one.
 
-    So it is before the trunk is swung to lean as the source's.
+    This is before the trunk is rotated to lean as the source's.
     """
     monkeypatch.setattr(SWINGS, lambda *nothing: {})
     bow = bowing(20.0)
-    target_map = without(find_humanoid_map(mixamo()), lost)
+    target_map = without(find_humanoid_map(mixamo()), missing)
 
     result = retarget(bow, find_humanoid_map(bow.skeleton), mixamo(), target_map)
 
-    found = [leaning(result, target_map, role) for role in TRUNK if role in target_map.joints]
-    assert_allclose(found, 60.0 * np.array(shares), atol=1e-4)
+    found = [lean_deg(result, target_map, role) for role in TRUNK if role in target_map.joints]
+    assert_allclose(found, 60.0 * np.array(fractions), atol=1e-4)
 
 
-@pytest.mark.parametrize("lost", [("upperChest",), ("chest", "upperChest")])
-def test_a_bow_of_few_vertebrae_is_shared_by_many(monkeypatch, lost):
+@pytest.mark.parametrize("missing", [("upperChest",), ("chest", "upperChest")])
+def test_bow_of_few_vertebrae_is_distributed_over_many(monkeypatch, missing):
     monkeypatch.setattr(SWINGS, lambda *nothing: {})
     bow = bowing(20.0)
-    source_map = without(find_humanoid_map(bow.skeleton), lost)
+    source_map = without(find_humanoid_map(bow.skeleton), missing)
     target_map = find_humanoid_map(mixamo())
 
     result = retarget(bow, source_map, mixamo(), target_map)
 
     top = [role for role in TRUNK if role in source_map.joints][-1]
-    whole = leaning(bow, source_map, top)
-    found = [leaning(result, target_map, role) for role in TRUNK]
-    assert found[-1] == pytest.approx(whole, abs=1e-4)
-    assert (np.diff(found) > 0.1 * whole).all()
+    complete = lean_deg(bow, source_map, top)
+    found = [lean_deg(result, target_map, role) for role in TRUNK]
+    assert found[-1] == pytest.approx(complete, abs=1e-4)
+    assert (np.diff(found) > 0.1 * complete).all()
 
 
 @pytest.mark.parametrize("family", RIGS)
-@pytest.mark.parametrize("lost", [(), ("neck",), ("chest",), ("leftShoulder", "rightShoulder")])
-def test_chest_head_and_hands_end_up_turned_as_in_the_source(family, lost):
+@pytest.mark.parametrize(
+    "missing", [(), ("neck",), ("chest",), ("leftShoulder", "rightShoulder")]
+)
+def test_chest_head_and_hands_rotate_as_in_the_source(family, missing):
     walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
-    source_map = without(find_humanoid_map(walk.skeleton), lost)
+    source_map = without(find_humanoid_map(walk.skeleton), missing)
     rig = RIGS[family](1.1)
     target_map = find_humanoid_map(rig)
 
     result = retarget(walk, source_map, rig, target_map)
 
     for role in ("head", "leftHand", "rightHand", "leftFoot"):
-        change = [turned_since_start(m, roles, role) for m, roles in
+        change = [rotations_since_start(m, roles, role) for m, roles in
                   ((walk, source_map), (result, target_map))]  # fmt: skip
         assert angle_between(*change).max() < 1e-6, role
 
 
 @pytest.mark.parametrize("family", RIGS)
 @pytest.mark.parametrize("size", [0.5, 1.0, 2.0])
-def test_feet_that_stand_stand_on_the_ground(recordings, family, size):
-    """Rigs stand on height 0 in their rest pose; ankles come back to that height."""
+def test_standing_feet_are_on_the_ground(recordings, family, size):
+    """Rigs stand on height 0 in their rest pose; ankles return to that height."""
     walk = read_bvh(recordings / "mocap/cmu_walk/05_01.bvh", scale=CMU_METRES)
     walk = walk.slice(1, walk.n_frames)
     rig = RIGS[family](size)
@@ -103,8 +105,8 @@ def test_feet_that_stand_stand_on_the_ground(recordings, family, size):
         assert np.percentile(ankle, 20) == pytest.approx(standing, abs=0.02 * size)
 
 
-def test_a_body_that_rests_around_its_hips_stands_at_its_own_height(recordings):
-    """CMU's skeletons have the hips at 0 and no soles: a walk comes back about as high."""
+def test_body_with_hips_at_the_origin_keeps_its_height(recordings):
+    """CMU skeletons have hips at 0 and no soles; a walk keeps its height approximately."""
     walk = read_bvh(recordings / "mocap/cmu_walk/05_01.bvh", scale=CMU_METRES)
     walk = walk.slice(1, walk.n_frames)
     roles = find_humanoid_map(walk.skeleton)
@@ -117,8 +119,8 @@ def test_a_body_that_rests_around_its_hips_stands_at_its_own_height(recordings):
     assert angle_between(again.rotations, walk.rotations)[:, joints].max() < 1e-3
 
 
-def test_a_source_on_a_stage_keeps_its_height():
-    """A floor at 3 m is a floor at 3 m."""
+def test_source_on_a_stage_keeps_its_height():
+    """A floor at 3 m remains at 3 m."""
     walk = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
     raised = walk.with_poses(root_positions=walk.root_positions + STAGE)
     maps = find_humanoid_map(walk.skeleton), find_humanoid_map(unreal())
@@ -138,24 +140,24 @@ def bowing(angle: float) -> Motion:
     rotations = np.zeros((3, rig.n_joints, 3))
     for name in ("Spine", "Spine1", "Spine2"):
         rotations[:, rig.index(f"mixamorig:{name}"), 0] = np.radians(angle)
-    places = np.tile(rig.offsets[0], (3, 1))
-    return Motion(rig, quaternion_from_rotation_vector(rotations), places, 30.0)
+    positions = np.tile(rig.offsets[0], (3, 1))
+    return Motion(rig, quaternion_from_rotation_vector(rotations), positions, 30.0)
 
 
-def without(humanoid: HumanoidMap, lost: tuple[str, ...]) -> HumanoidMap:
-    for role in lost:
+def without(humanoid: HumanoidMap, missing: tuple[str, ...]) -> HumanoidMap:
+    for role in missing:
         humanoid = humanoid.with_joint(role, None)
     return humanoid
 
 
-def leaning(motion: Motion, humanoid: HumanoidMap, role: str) -> float:
-    """Degrees by which a joint leans in the world, in the first frame, from its rest pose."""
+def lean_deg(motion: Motion, humanoid: HumanoidMap, role: str) -> float:
+    """Lean of a joint in the world relative to its rest pose in the first frame, degrees."""
     joint = humanoid.indices(motion.skeleton)[role]
-    turn = forward_kinematics(motion).rotations[0, joint]
-    return float(np.degrees(2.0 * np.arccos(min(abs(turn[0]), 1.0))))
+    rotation = forward_kinematics(motion).rotations[0, joint]
+    return float(np.degrees(2.0 * np.arccos(min(abs(rotation[0]), 1.0))))
 
 
-def turned_since_start(motion: Motion, humanoid: HumanoidMap, role: str) -> np.ndarray:
-    """World rotations since the first frame, about the world's axes."""
-    turns = forward_kinematics(motion).rotations[:, humanoid.indices(motion.skeleton)[role]]
-    return multiply(turns, inverse(turns[:1]))
+def rotations_since_start(motion: Motion, humanoid: HumanoidMap, role: str) -> np.ndarray:
+    """World rotations relative to the first frame, about the world's axes."""
+    rotations = forward_kinematics(motion).rotations[:, humanoid.indices(motion.skeleton)[role]]
+    return multiply(rotations, inverse(rotations[:1]))

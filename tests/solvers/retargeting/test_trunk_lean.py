@@ -1,4 +1,4 @@
-"""In a bow the neck is where the source's is, wherever the vertebrae lie."""
+"""In a bow the neck moves as the source's, for any positions of the vertebrae."""
 
 import numpy as np
 import pytest
@@ -16,94 +16,94 @@ from solvers.samples import GaitSettings, walking_gait
 
 
 @pytest.mark.parametrize("family", RIGS)
-def test_a_deep_bow_leans_as_the_sources(family):
-    """Most of it in the lowest vertebra, which the rigs have elsewhere.
+def test_deep_bow_leans_as_the_source(family):
+    """Most of it is in the lowest vertebra, at another position in the rigs.
 
-    On its way it may be off by a little more, as the swing comes gradually.
+    In between, the error may be slightly larger, since the correction is blended in.
     """
     bow = bowing(mixamo(), 70.0)
 
-    result = given_to(bow, RIGS[family]())
+    result = retargeted(bow, RIGS[family]())
 
-    theirs, ours = (lean(motion) for motion in (bow, result))
-    assert theirs[-1] - theirs[0] > 50.0
-    off = np.abs((ours - ours[0]) - (theirs - theirs[0]))
-    assert off.max() < 4.0
-    assert off[-1] < 3.0
+    reference, actual = (lean_deg(motion) for motion in (bow, result))
+    assert reference[-1] - reference[0] > 50.0
+    errors = np.abs((actual - actual[0]) - (reference - reference[0]))
+    assert errors.max() < 4.0
+    assert errors[-1] < 3.0
 
 
-def test_without_the_swing_it_would_not(monkeypatch):
-    """The bow is deep enough to tell: Rigify's spine leans by 9 degrees more or less."""
+def test_deep_bow_leans_differently_without_the_correction(monkeypatch):
+    """Rigify's spine leans by 9 degrees more or less."""
     monkeypatch.setattr("solvers.retargeting.pose_transfer.leaning_swings", lambda *nothing: {})
     bow = bowing(mixamo(), 70.0)
 
-    theirs, ours = (lean(motion) for motion in (bow, given_to(bow, rigify_deform())))
+    reference, result = (lean_deg(motion) for motion in (bow, retargeted(bow, rigify_deform())))
 
-    assert np.abs((ours - ours[0]) - (theirs - theirs[0])).max() > 3.0
+    assert np.abs((result - result[0]) - (reference - reference[0])).max() > 3.0
 
 
 @pytest.mark.parametrize("family", RIGS)
-def test_a_cut_of_a_take_leans_as_within_it(family):
-    """Even where all that is left of it is the bow, and where it is a single frame."""
+def test_segment_of_a_take_leans_as_within_the_take(family):
+    """Also where the segment is only the bow, or a single frame."""
     bow = bowing(mixamo(), 70.0)
-    whole = lean(given_to(bow, RIGS[family]()))
+    complete = lean_deg(retargeted(bow, RIGS[family]()))
 
     for first, last in ((40, 60), (0, 35), (59, 60)):
-        cut = given_to(bow.slice(first, last), RIGS[family]())
-        assert lean(cut) == pytest.approx(whole[first:last], abs=1e-6)
+        cut = retargeted(bow.slice(first, last), RIGS[family]())
+        assert lean_deg(cut) == pytest.approx(complete[first:last], abs=1e-6)
 
 
-def test_heads_and_arms_keep_their_turns():
+def test_heads_and_arms_keep_their_rotations():
     bow = bowing(mixamo(), 70.0)
     rig = rigify_deform()
 
-    result = given_to(bow, rig)
+    result = retargeted(bow, rig)
 
-    theirs, ours = (turns(motion) for motion in (bow, result))
+    reference, actual = (world_rotations(motion) for motion in (bow, result))
     for role in ("head", "leftHand", "rightHand"):
         assert angle_between(
-            turned_since(ours[role]), turned_since(theirs[role])
+            rotations_since(actual[role]), rotations_since(reference[role])
         ).max() == pytest.approx(0.0, abs=1e-6)
 
 
-def test_a_walk_is_hardly_touched(monkeypatch):
+def test_walk_hardly_changes(monkeypatch):
     walk = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
-    result = given_to(walk, rigify_deform())
+    result = retargeted(walk, rigify_deform())
     monkeypatch.setattr("solvers.retargeting.pose_transfer.leaning_swings", lambda *nothing: {})
 
-    usual = given_to(walk, rigify_deform())
+    default = retargeted(walk, rigify_deform())
 
-    places = [forward_kinematics(motion).positions for motion in (result, usual)]
-    assert np.abs(places[0] - places[1]).max() < 0.01
+    positions = [forward_kinematics(motion).positions for motion in (result, default)]
+    assert np.abs(positions[0] - positions[1]).max() < 0.01
 
 
 def bowing(rig: Skeleton, degrees: float) -> Motion:
-    """Upright for a second, then a bow: most of it low down."""
+    """Upright for a second, then a bow, mostly in the lower spine."""
     angle = np.radians(degrees) * np.clip(np.linspace(-1.0, 1.0, 60), 0.0, 1.0)
     vectors = np.zeros((60, rig.n_joints, 3))
-    for name, share in (("Spine", 0.8), ("Spine1", 0.1), ("Spine2", 0.1)):
-        vectors[:, rig.index(f"mixamorig:{name}"), 0] = share * angle
-    places = np.tile(rig.offsets[0], (60, 1))
-    return Motion(rig, quaternion_from_rotation_vector(vectors), places, 30.0)
+    for name, fraction in (("Spine", 0.8), ("Spine1", 0.1), ("Spine2", 0.1)):
+        vectors[:, rig.index(f"mixamorig:{name}"), 0] = fraction * angle
+    positions = np.tile(rig.offsets[0], (60, 1))
+    return Motion(rig, quaternion_from_rotation_vector(vectors), positions, 30.0)
 
 
-def lean(motion: Motion) -> np.ndarray:
-    """Degrees by which the line from hips to neck leans forward."""
+def lean_deg(motion: Motion) -> np.ndarray:
+    """Forward lean of the line from hips to neck, degrees."""
     joints = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    places = forward_kinematics(motion).positions
-    way = places[:, joints["neck"]] - places[:, joints["hips"]]
-    return np.degrees(np.arctan2(-way[:, 1], way[:, 2]))
+    positions = forward_kinematics(motion).positions
+    direction = positions[:, joints["neck"]] - positions[:, joints["hips"]]
+    return np.degrees(np.arctan2(-direction[:, 1], direction[:, 2]))
 
 
-def turns(motion: Motion) -> dict[str, np.ndarray]:
+def world_rotations(motion: Motion) -> dict[str, np.ndarray]:
     rotations = forward_kinematics(motion).rotations
     joints = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
     return {role: rotations[:, joint] for role, joint in joints.items()}
 
 
-def turned_since(rotations: np.ndarray) -> np.ndarray:
+def rotations_since(rotations: np.ndarray) -> np.ndarray:
     return multiply(rotations, inverse(rotations[:1]))
 
 
-def given_to(motion: Motion, rig: Skeleton) -> Motion:
+def retargeted(motion: Motion, rig: Skeleton) -> Motion:
     return retarget(motion, find_humanoid_map(motion.skeleton), rig, find_humanoid_map(rig))

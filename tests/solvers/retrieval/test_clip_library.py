@@ -1,4 +1,4 @@
-"""A library is what was put into it, less what was taken out, however that came about."""
+"""A library holds the clips that were added and not removed, by any sequence of changes."""
 
 from dataclasses import replace
 
@@ -42,7 +42,7 @@ def names(library: ClipLibrary) -> list[str]:
     return [entry.name for entry in library.entries]
 
 
-def test_entries_tell_what_was_put_in():
+def test_entries_describe_the_added_clips():
     origin = Origin("/clips/a.blend", "Wave", 12, 34)
     library = build_clip_library([Clip("a", act("wave", 2.0, 50.0), ("x", "é"), origin)])
 
@@ -51,8 +51,8 @@ def test_entries_tell_what_was_put_in():
     assert (entry.n_frames, entry.frame_rate, entry.seconds) == (100, 50.0, 2.0)
 
 
-def test_what_is_removed_is_as_if_it_had_never_been_there():
-    """The words stay those that were learned with it."""
+def test_removed_clips_leave_no_trace():
+    """The vocabulary that was learned with them remains."""
     library = build_clip_library(clips())
     before = ranking(library)
     library.add(clips(speeds=(1.8,)))
@@ -64,7 +64,7 @@ def test_what_is_removed_is_as_if_it_had_never_been_there():
     assert len(library.entries) == len(ACTS) * len(SPEEDS)
 
 
-def test_added_in_parts_or_at_once_clips_rank_the_same():
+def test_ranking_does_not_depend_on_the_order_of_additions():
     first, *rest = (clips(speeds=(seconds,)) for seconds in (*SPEEDS, 3.2))
     in_parts, at_once = build_clip_library(first), build_clip_library(first)
     assert in_parts.vocabulary is not None
@@ -79,7 +79,7 @@ def test_added_in_parts_or_at_once_clips_rank_the_same():
     np.testing.assert_allclose(*scores, rtol=1e-6)
 
 
-def test_a_library_that_has_outgrown_its_words_is_as_if_built_at_once():
+def test_grown_library_learns_a_new_vocabulary():
     grown = build_clip_library(clips(speeds=(2.0,)))
     grown.add(clips(speeds=(1.6, 1.8, 2.2, 2.4, 2.6)))
 
@@ -91,7 +91,7 @@ def test_a_library_that_has_outgrown_its_words_is_as_if_built_at_once():
     assert [*best] == [{f"kick {seconds}" for seconds in (1.6, 1.8, 2.0, 2.2, 2.4, 2.6)}] * 2
 
 
-def test_a_clip_of_the_same_name_replaces_the_one_before():
+def test_clip_with_the_same_name_replaces_the_previous_one():
     library = build_clip_library(clips())
     library.add([Clip("wave 2.0", act("squat", 2.0))])
 
@@ -101,7 +101,7 @@ def test_a_clip_of_the_same_name_replaces_the_one_before():
     assert "wave 2.0" not in [match[0] for match in ranking(library, act("wave"))[:3]]
 
 
-def test_many_small_blocks_rank_as_one(monkeypatch):
+def test_small_blocks_rank_like_a_single_one(monkeypatch):
     one = build_clip_library(clips(speeds=(2.0,)))
     one.add(clips())
     monkeypatch.setattr(clip_library, "MAX_BLOCK_SEGMENTS", 3)
@@ -113,14 +113,14 @@ def test_many_small_blocks_rank_as_one(monkeypatch):
     assert [match[0] for match in ranking(many)] == [match[0] for match in ranking(one)]
 
 
-def test_what_was_described_elsewhere_is_the_same():
+def test_clips_described_in_advance_rank_the_same():
     here, elsewhere = build_clip_library(clips()), build_clip_library([])
     elsewhere.add_described([describe_clip(clip) for clip in clips()])
 
     assert ranking(here) == ranking(elsewhere)
 
 
-def test_an_empty_library_finds_nothing_and_can_be_filled(tmp_path):
+def test_empty_library_finds_nothing_and_can_be_filled(tmp_path):
     for library in (build_clip_library([]), open_clip_library(tmp_path / "new.clips")):
         assert library.entries == ()
         assert library.vocabulary is None
@@ -130,7 +130,7 @@ def test_an_empty_library_finds_nothing_and_can_be_filled(tmp_path):
         assert len(ranking(library)) == len(SPEEDS)
 
 
-def test_a_library_that_was_emptied_finds_nothing():
+def test_emptied_library_finds_nothing():
     library = build_clip_library(clips())
     library.remove(names(library))
 
@@ -140,23 +140,23 @@ def test_a_library_that_was_emptied_finds_nothing():
 
 
 @pytest.mark.parametrize("n_frames", [1, 2])
-def test_clips_of_few_frames(n_frames):
+def test_clips_with_few_frames_are_accepted(n_frames):
     short = [Clip(name, act(name).slice(30, 30 + n_frames)) for name in ACTS]
     library = build_clip_library([*short, *clips()])
 
     assert len(ranking(library)) == len(ACTS) * (1 + len(SPEEDS))
-    asked = FindSettings(n_alike=0)  # Of five clips the best five are all.
-    found = find_similar(short[0].recording, build_clip_library(short), settings=asked)
+    requested = FindSettings(n_alike=0)  # Of five clips the best five are all.
+    found = find_similar(short[0].recording, build_clip_library(short), settings=requested)
     assert found[0].clip == ACTS[0]
     assert set(found[0].frames) <= set(range(n_frames))
     assert len(found[0].frames)
 
 
-def test_a_clip_without_a_body_is_named_and_nothing_is_added():
+def test_clip_without_a_body_is_named_and_nothing_is_added():
     library = build_clip_library(clips())
     markers = Clip("some markers", Tracks(("a", "b"), np.zeros((9, 2, 3)), 30.0))
-    lost = act("wave")
-    unseen = Clip("nobody", lost.with_positions(np.full_like(lost.positions, np.nan)))
+    missing = act("wave")
+    unseen = Clip("nobody", missing.with_positions(np.full_like(missing.positions, np.nan)))
 
     for bad, sentence in ((markers, "some markers: No body was"), (unseen, "nobody: No joint")):
         with pytest.raises(InvalidMotionError, match=sentence):
@@ -164,7 +164,7 @@ def test_a_clip_without_a_body_is_named_and_nothing_is_added():
     assert len(library.entries) == len(ACTS) * len(SPEEDS)
 
 
-def test_two_clips_of_one_name_and_unknown_names_are_refused():
+def test_duplicate_and_unknown_names_are_refused():
     with pytest.raises(InvalidMotionError, match=r"Two clips have the name wave 1\.6"):
         build_clip_library(clips(("wave",)) + clips(("wave",)))
     library = build_clip_library(clips())
@@ -173,7 +173,7 @@ def test_two_clips_of_one_name_and_unknown_names_are_refused():
     assert "wave 2.0" in names(library)
 
 
-def test_cancelling_leaves_the_library_as_it_was(tmp_path):
+def test_cancelling_leaves_the_library_unchanged(tmp_path):
     build_clip_library(clips()).save(tmp_path / "library")
     with load_clip_library(tmp_path / "library") as library:
         before = ranking(library)
@@ -189,14 +189,16 @@ def test_cancelling_leaves_the_library_as_it_was(tmp_path):
 
 
 def test_progress_rises_to_one():
-    told = []
-    build_clip_library(clips(), progress=lambda fraction, message="": told.append(fraction))
+    fractions = []
+    build_clip_library(
+        clips(), progress=lambda fraction, message="": fractions.append(fraction)
+    )
 
-    assert told == sorted(told)
-    assert (told[0], told[-1]) == (0.0, 1.0)
+    assert fractions == sorted(fractions)
+    assert (fractions[0], fractions[-1]) == (0.0, 1.0)
 
 
-def test_clips_are_as_they_were():
+def test_clips_are_not_modified():
     clip = Clip("a", act("wave"))
     before = replace(clip.recording, positions=clip.recording.positions.copy())
     build_clip_library([clip])

@@ -1,4 +1,4 @@
-"""Who did it, where, and how large he is are no part of a clip's postures."""
+"""Postures of a clip do not depend on actor, position and size."""
 
 from dataclasses import replace
 
@@ -17,45 +17,45 @@ from solvers.samples import GaitSettings, walking_gait
 
 
 @pytest.mark.parametrize("name", ["step", "kick"])
-def test_turned_moved_and_larger_is_the_same(name):
+def test_postures_ignore_heading_position_and_size(name):
     here = clip_postures(act(name))
-    there = clip_postures(act(name, heading=2.5, place=(7.0, -2.0)))
-    assert_allclose(there.positions, here.positions, atol=1e-9)
-    assert_allclose(there.root_velocity, here.root_velocity, atol=1e-9)
+    moved = clip_postures(act(name, heading=2.5, place=(7.0, -2.0)))
+    assert_allclose(moved.positions, here.positions, atol=1e-9)
+    assert_allclose(moved.root_velocity, here.root_velocity, atol=1e-9)
     assert_allclose(clip_postures(act(name, size=1.3)).positions, here.positions, atol=1e-9)
 
 
-def test_bones_have_the_usual_lengths():
+def test_bones_have_default_lengths():
     found = segment_lengths(clip_postures(act("kick", size=0.8)).positions)
     assert_allclose(found, np.tile(ADULT_BONE_LENGTHS_M, (60, 1)), atol=1e-9)
 
 
-def test_the_course_is_told_as_the_actor_sees_it():
-    seen = clip_postures(act("step", heading=1.0))
-    forward = -seen.root_velocity[5:-5, 1]
-    assert_allclose(seen.root_velocity[5:-5, 0], 0.0, atol=1e-9)
+def test_velocity_is_in_the_actors_frame():
+    observed = clip_postures(act("step", heading=1.0))
+    forward = -observed.root_velocity[5:-5, 1]
+    assert_allclose(observed.root_velocity[5:-5, 0], 0.0, atol=1e-9)
     assert forward.min() > 1.0
-    assert_allclose(seen.root_velocity[:, 3], 0.0, atol=1e-9)
+    assert_allclose(observed.root_velocity[:, 3], 0.0, atol=1e-9)
 
 
-def test_turning_is_told_in_radians_per_second():
+def test_turning_rate_is_in_radians_per_second():
     still = act("kick", seconds=3.0, amount=0.0)
     angles = 1.5 * np.arange(90) / 30.0
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
     x, y, z = np.moveaxis(still.positions, -1, 0)
-    turned = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
-    root_velocity = clip_postures(replace(still, positions=turned)).root_velocity
+    rotated = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
+    root_velocity = clip_postures(replace(still, positions=rotated)).root_velocity
     assert_allclose(root_velocity[20:-20, 3], 1.5, atol=0.01)
 
 
-def test_another_rate_shows_the_same_moments():
+def test_another_frame_rate_has_the_same_times():
     fine = clip_postures(act("kick", frame_rate=60.0), 20.0)
     coarse = clip_postures(act("kick", frame_rate=20.0))
     assert fine.n_frames == coarse.n_frames == 40
     assert_allclose(fine.positions, coarse.positions, atol=0.01)
 
 
-def test_short_gaps_of_motions_and_of_points_are_bridged_alike():
+def test_short_gaps_of_motions_and_points_are_filled_equally():
     """Four frames of a forearm at 60 Hz, and three fifths of a second of the other."""
     walk = walking_gait(GaitSettings(duration=2.0, frame_rate=60.0))
     joints = find_humanoid_map(walk.skeleton).indices(walk.skeleton)
@@ -69,31 +69,31 @@ def test_short_gaps_of_motions_and_of_points_are_bridged_alike():
 
     of_motion, of_points = (clip_postures(each, 20.0).positions for each in (motion, points))
 
-    for seen in (of_motion, of_points):
-        assert np.isfinite(seen[:, left]).all()
-        assert np.isnan(seen[18:28, right]).all()
+    for observed in (of_motion, of_points):
+        assert np.isfinite(observed[:, left]).all()
+        assert np.isnan(observed[18:28, right]).all()
     assert_allclose(of_motion, of_points, atol=0.01)
 
 
-def test_a_joint_past_a_lost_one_lies_where_it_was_seen():
-    whole, lost = act("wave", size=1.2), act("wave", size=1.2)
+def test_joint_below_a_missing_one_keeps_its_observed_position():
+    complete, missing = act("wave", size=1.2), act("wave", size=1.2)
     elbow, wrist = (POSTURE_JOINTS.index(f"right{part}") for part in ("LowerArm", "Hand"))
-    lost.positions[:, elbow] = np.nan
-    seen = clip_postures(lost).positions
-    assert not np.isfinite(seen[:, elbow]).any()
-    assert_allclose(seen[:, wrist], clip_postures(whole).positions[:, wrist], atol=0.05)
+    missing.positions[:, elbow] = np.nan
+    observed = clip_postures(missing).positions
+    assert not np.isfinite(observed[:, elbow]).any()
+    assert_allclose(observed[:, wrist], clip_postures(complete).positions[:, wrist], atol=0.05)
 
 
 @pytest.mark.parametrize(
-    "lost", [("leftUpperLeg", "rightUpperArm"), ("leftUpperArm", "leftUpperLeg")]
+    "missing", [("leftUpperLeg", "rightUpperArm"), ("leftUpperArm", "leftUpperLeg")]
 )
-def test_the_heading_is_known_from_one_of_each_pair(lost):
-    whole, part = act("bow", heading=2.0), act("bow", heading=2.0)
-    part.positions[:, [POSTURE_JOINTS.index(name) for name in lost]] = np.nan
+def test_heading_needs_one_joint_of_each_pair(missing):
+    complete, part = act("bow", heading=2.0), act("bow", heading=2.0)
+    part.positions[:, [POSTURE_JOINTS.index(name) for name in missing]] = np.nan
     head = POSTURE_JOINTS.index("head")
     assert_allclose(
         clip_postures(part).positions[:, head],
-        clip_postures(whole).positions[:, head],
+        clip_postures(complete).positions[:, head],
         atol=0.03,
     )
 
@@ -104,12 +104,12 @@ def test_motions_points_and_sensors_are_read(recordings):
     for name in ("mocap/hdm05", "mocap/cmu_walk", "kinect/irds", "kinect/msr_action3d"):
         files = sorted((recordings / name).iterdir())
         file = next(file for file in files if file.suffix in {".amc", ".bvh", ".txt"})
-        seen = clip_postures(read_recording(file), 20.0)
-        assert np.isfinite(seen.positions).mean() > 0.8
-        assert np.abs(seen.positions[np.isfinite(seen.positions)]).max() < 1.5
+        observed = clip_postures(read_recording(file), 20.0)
+        assert np.isfinite(observed.positions).mean() > 0.8
+        assert np.abs(observed.positions[np.isfinite(observed.positions)]).max() < 1.5
 
 
-def test_what_shows_no_body_is_refused():
+def test_clip_without_a_body_is_refused():
     points = Tracks(("a", "b"), np.zeros((3, 2, 3)), 30.0)
     with pytest.raises(InvalidMotionError, match="No body was recognised"):
         clip_postures(points)

@@ -1,4 +1,4 @@
-"""K-SVD: atoms that are known to be there, rank-one updates, lost joints."""
+"""K-SVD recovers known atoms, also with missing joints."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def sums_of_known_atoms(rng, n_atoms=12, n_frames=800, n_nonzeros=2):
     return atoms, weights @ atoms
 
 
-def test_known_atoms_are_found_again(rng):
+def test_known_atoms_are_recovered(rng):
     atoms, signals = sums_of_known_atoms(rng)
     settings = DictionarySettings(n_atoms=12, n_nonzeros=2, n_rounds=30)
 
@@ -39,7 +39,7 @@ def test_known_atoms_are_found_again(rng):
     assert (likeness > 0.99).sum() >= 10
 
 
-def test_each_round_tells_more(rng):
+def test_each_round_reduces_the_error(rng):
     signals = rng.normal(size=(400, 8)) @ rng.normal(size=(8, 60))
     left = []
     for n_rounds in (1, 4, 12):
@@ -52,8 +52,8 @@ def test_each_round_tells_more(rng):
     assert left[0] > 1.05 * left[1] > 1.05 * left[2]
 
 
-def test_one_atom_is_the_first_singular_vector(rng):
-    """With one non-zero and two atoms whose users never mix, K-SVD is two rank-one fits."""
+def test_single_atom_is_the_first_singular_vector(rng):
+    """With one non-zero and two atoms with separate users, K-SVD is two rank-one fits."""
     a, b = rng.normal(size=(2, 50, 60)) * 0.05
     a[:, 0] += rng.uniform(1.0, 2.0, 50)
     b[:, 30] += rng.uniform(1.0, 2.0, 50)
@@ -61,11 +61,11 @@ def test_one_atom_is_the_first_singular_vector(rng):
 
     learned = learn_dictionary([as_clip(np.concatenate([a, b]))], settings)
 
-    wanted = [np.linalg.svd(part)[2][0] for part in (a, b)]
-    assert_allclose(np.sort(np.abs(learned.atoms @ np.transpose(wanted)).max(axis=0)), 1.0)
+    expected = [np.linalg.svd(part)[2][0] for part in (a, b)]
+    assert_allclose(np.sort(np.abs(learned.atoms @ np.transpose(expected)).max(axis=0)), 1.0)
 
 
-def test_centred_takes_out_the_mean(rng):
+def test_centering_removes_the_mean(rng):
     signals = 5.0 + rng.normal(size=(100, 60))
     settings = DictionarySettings(n_atoms=10, n_nonzeros=3, centred=True)
 
@@ -76,7 +76,7 @@ def test_centred_takes_out_the_mean(rng):
     assert_allclose(moved.atoms, learned.atoms, atol=1e-6)
 
 
-def test_same_seed_same_atoms_and_clips_are_left_as_they_are(rng):
+def test_learning_repeats_and_does_not_modify_clips(rng):
     clips = [as_clip(rng.normal(size=(60, 60))) for _ in range(2)]
     before = clips[0].positions.copy()
     settings = DictionarySettings(n_atoms=20, n_nonzeros=3, n_rounds=2)
@@ -89,20 +89,20 @@ def test_same_seed_same_atoms_and_clips_are_left_as_they_are(rng):
     assert not np.allclose(learn_dictionary(clips, other).atoms, one.atoms)
 
 
-def test_clips_with_joints_that_were_never_seen_teach_nothing(rng):
-    whole, lost = rng.normal(size=(2, 60, 60))
-    lost[:, 6:9] = np.nan
+def test_clips_with_joints_never_observed_are_ignored(rng):
+    complete, missing = rng.normal(size=(2, 60, 60))
+    missing[:, 6:9] = np.nan
     settings = DictionarySettings(n_atoms=20, n_nonzeros=3, n_rounds=2)
 
-    both = learn_dictionary([as_clip(lost), as_clip(whole)], settings)
+    both = learn_dictionary([as_clip(missing), as_clip(complete)], settings)
 
-    assert (both.atoms == learn_dictionary([as_clip(whole)], settings).atoms).all()
+    assert (both.atoms == learn_dictionary([as_clip(complete)], settings).atoms).all()
     with pytest.raises(InvalidMotionError, match="20 atoms cannot be learned from 0 complete"):
-        learn_dictionary([as_clip(lost)], settings)
+        learn_dictionary([as_clip(missing)], settings)
 
 
-def test_lost_joints_leave_what_the_others_tell(rng):
-    """One non-zero, and half the entries lost: the same atom is chosen as for the whole."""
+def test_missing_joints_do_not_change_the_chosen_atom(rng):
+    """With one non-zero and half of the entries missing, the choice equals the complete one."""
     atoms = np.linalg.qr(rng.normal(size=(60, 60)))[0][:10]
     dictionary = PostureDictionary(atoms, np.zeros(60), 1)
     signals = 3.0 * atoms[rng.integers(10, size=40)]
@@ -114,19 +114,19 @@ def test_lost_joints_leave_what_the_others_tell(rng):
     assert (codes.atoms == dictionary.codes(as_clip(signals)).atoms).all()
 
 
-def test_gaps_are_bridged_and_what_is_never_seen_is_told():
+def test_gaps_are_filled_and_joints_never_observed_reported():
     positions = np.zeros((5, 20, 3))
     positions[:, 2, 0] = [0.0, 1.0, np.nan, 3.0, np.nan]
     positions[:, 4] = np.nan
 
-    signals, seen = observed_signals(positions)
+    signals, observed = observed_signals(positions)
 
     assert_allclose(signals[:, 6], [0.0, 1.0, 2.0, 3.0, 3.0])
-    assert np.flatnonzero(~seen).tolist() == [12, 13, 14]
+    assert np.flatnonzero(~observed).tolist() == [12, 13, 14]
     assert not signals[:, 12].any()
 
 
-def test_escape_stops_it(rng):
+def test_learning_can_be_cancelled(rng):
     def escape(fraction, message=""):
         raise SolveCancelled
 

@@ -1,4 +1,4 @@
-"""Searches find what is alike, whoever did it, wherever, however fast, whatever was lost."""
+"""Searches find similar motion by any actor, at any position and tempo, with missing joints."""
 
 from dataclasses import replace
 
@@ -41,11 +41,11 @@ def kinds(matches, n=3):
         {"amount": 0.9},
     ],
 )
-def test_the_same_act_is_found_first_however_it_is_done(library, name, done):
+def test_same_action_is_found_first_in_any_variation(library, name, done):
     assert kinds(find_similar(act(name, **done), library)) == [name] * 3
 
 
-def test_the_clip_itself_is_the_best_match_and_scores_nearly_one(library):
+def test_query_itself_is_the_best_match(library):
     best = find_similar(act("kick"), library, settings=FindSettings(n_alike=0))[0]
     assert best.clip == "kick 0"
     assert best.score > 0.98
@@ -54,7 +54,7 @@ def test_the_clip_itself_is_the_best_match_and_scores_nearly_one(library):
     assert np.abs(query - clip).max() <= 2
 
 
-def test_all_clips_are_ranked_once_and_scores_fall(library):
+def test_all_clips_are_ranked_once_with_decreasing_scores(library):
     matches = find_similar(act("bow"), library)
     assert sorted(match.clip for match in matches) == sorted(
         entry.name for entry in library.entries
@@ -67,13 +67,13 @@ def test_all_clips_are_ranked_once_and_scores_fall(library):
     assert [match.clip for match in few] == [match.clip for match in matches[:4]]
 
 
-def test_the_query_is_left_out_where_asked(library):
+def test_query_can_be_excluded(library):
     names = [match.clip for match in find_similar(act("bow"), library, ignore=["bow 0"])]
     assert "bow 0" not in names
     assert len(names) == 14
 
 
-def test_an_act_is_found_within_a_long_take(library):
+def test_action_is_found_within_a_long_take(library):
     parts = [act(name, 3.0) for name in ("step", "bow", "kick", "squat", "step")]
     take = Tracks(POSTURE_JOINTS, np.concatenate([part.positions for part in parts]), 30.0)
     long = build_clip_library([
@@ -92,7 +92,7 @@ def test_an_act_is_found_within_a_long_take(library):
     assert best.frames == range(clip[0], clip[-1] + 1)
 
 
-def test_frames_are_told_in_the_clips_own_rate():
+def test_frames_of_matches_are_at_the_clips_own_rate():
     fast = build_clip_library([Clip("kick", act("kick", frame_rate=120.0))])
     best = find_similar(act("kick", frame_rate=60.0), fast)[0]
     assert best.frames.stop - best.frames.start > 220
@@ -100,7 +100,7 @@ def test_frames_are_told_in_the_clips_own_rate():
     assert best.alignment[:, 1].max() <= 239
 
 
-def test_parts_of_the_body_are_asked_for_alone(library):
+def test_search_can_be_limited_to_body_parts(library):
     wave, kick = act("wave"), act("kick")
     mixed = wave.positions.copy()
     legs = [POSTURE_JOINTS.index(f"left{part}") for part in ("LowerLeg", "Foot", "Toes")]
@@ -113,7 +113,7 @@ def test_parts_of_the_body_are_asked_for_alone(library):
 
 
 @pytest.mark.parametrize("name", ["squat", "kick", "bow"])
-def test_a_third_of_the_joints_may_be_lost(library, name):
+def test_a_third_of_the_joints_may_be_missing(library, name):
     taken = np.random.default_rng(3).choice(np.arange(1, 20), 6, replace=False)
     query = act(name)
     query.positions[:, taken] = np.nan
@@ -123,25 +123,25 @@ def test_a_third_of_the_joints_may_be_lost(library, name):
     assert kinds(find_similar(query, library)) == [name] * 3
 
 
-def test_a_sensor_may_ask(library):
+def test_query_may_be_a_sensor_recording(library):
     query = act("squat")
     shaken = query.positions + np.random.default_rng(0).normal(scale=0.02, size=(60, 20, 3))
     recording = JointRecording(replace(query, positions=shaken), None, Sensor.OTHER)
     assert kinds(find_similar(recording, library)) == ["squat"] * 3
 
 
-def test_joints_that_a_sensor_puts_elsewhere_cost_less_than_those_of_a_motion(library):
+def test_offset_joints_of_a_sensor_cost_less_than_of_a_motion(library):
     query = act("kick")
-    aside = query.positions + np.random.default_rng(3).normal(scale=0.06, size=(20, 3))
-    seen = replace(query, positions=aside, confidence=np.ones((query.n_frames, 20)))
+    offset = query.positions + np.random.default_rng(3).normal(scale=0.06, size=(20, 3))
+    observed = replace(query, positions=offset, confidence=np.ones((query.n_frames, 20)))
     sensor, motion = (
-        find_similar(one, library) for one in (seen, replace(seen, confidence=None))
+        find_similar(one, library) for one in (observed, replace(observed, confidence=None))
     )
     assert kinds(sensor) == ["kick"] * 3
     assert sensor[0].score > motion[0].score + 0.02
 
 
-def test_the_inputs_are_as_they_were_and_the_answer_is_the_same(library):
+def test_search_repeats_and_does_not_modify_its_input(library):
     query = act("wave")
     before = query.positions.copy()
     first, second = find_similar(query, library), find_similar(query, library)
@@ -150,34 +150,34 @@ def test_the_inputs_are_as_they_were_and_the_answer_is_the_same(library):
 
 
 @pytest.mark.parametrize("n_frames", [1, 2, 3])
-def test_queries_and_clips_of_few_frames(library, n_frames):
+def test_queries_and_clips_with_few_frames_are_accepted(library, n_frames):
     short = replace(act("kick"), positions=act("kick").positions[29 : 29 + n_frames])
     assert len(find_similar(short, library)) == 15
-    alone = build_clip_library([Clip("short", short)])
-    match = find_similar(act("kick"), alone)[0]
+    separate = build_clip_library([Clip("short", short)])
+    match = find_similar(act("kick"), separate)[0]
     assert match.frames.start >= 0
     assert match.frames.stop <= n_frames
 
 
-def test_an_empty_library_has_nothing():
+def test_empty_library_has_no_matches():
     assert find_similar(act("kick"), build_clip_library([])) == ()
 
 
-def test_what_cannot_be_asked_is_said(library):
+def test_invalid_queries_are_refused(library):
     with pytest.raises(InvalidMotionError, match="No part of the body is chosen"):
         find_similar(act("kick"), library, settings=FindSettings(**KEPT))
-    blind = act("kick")
+    unobserved = act("kick")
     arm = [POSTURE_JOINTS.index(f"left{part}") for part in ("UpperArm", "LowerArm", "Hand")]
-    blind.positions[:, arm] = np.nan
+    unobserved.positions[:, arm] = np.nan
     with pytest.raises(InvalidMotionError, match="no tracked joints in: left arm"):
-        find_similar(blind, library, settings=FindSettings(**KEPT | {"left_arm": True}))
-    blind.positions[:] = np.nan
+        find_similar(unobserved, library, settings=FindSettings(**KEPT | {"left_arm": True}))
+    unobserved.positions[:] = np.nan
     with pytest.raises(InvalidMotionError, match="No joint was tracked"):
-        find_similar(blind, library)
+        find_similar(unobserved, library)
 
 
-def test_the_published_form_can_be_chosen():
-    """Acts in place, since it looks at postures only; kept while the library is as it was."""
+def test_published_method_can_be_selected():
+    """Actions in place, since it uses postures only; cached while the library is unchanged."""
     library = build_clip_library([
         Clip(f"{name} {number}", act(name, seconds, amount=amount), (name,))
         for name in ("wave", "squat", "kick", "bow")

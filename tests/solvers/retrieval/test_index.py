@@ -1,4 +1,4 @@
-"""Words, segments and posting lists, each against a plainer way to the same numbers."""
+"""Codewords, segments and posting lists, compared with simpler implementations."""
 
 from dataclasses import fields, replace
 
@@ -36,74 +36,74 @@ CLIPS = [clip_postures(act(name, 2.5), 20.0) for name in ACTS]
 
 
 @pytest.fixture(scope="module")
-def words():
+def vocabulary():
     return learn_vocabulary(CLIPS)
 
 
-@given(seed=st.integers(0, 500), most=st.sampled_from([10_000, 40, 1]))
-def test_posting_lists_add_up_like_a_product(seed, most):
+@given(seed=st.integers(0, 500), maximum=st.sampled_from([10_000, 40, 1]))
+def test_posting_lists_equal_a_matrix_product(seed, maximum):
     rng = np.random.default_rng(seed)
     histograms = (rng.integers(0, 255, (20, 12)) * (rng.random((20, 12)) < 0.3)).astype(
         np.uint8
     )
     query = (rng.random(12) * (rng.random(12) < 0.6)).astype(np.float32)
     lists = build_posting_lists(histograms)
-    found = lists.scores(query, most)
+    found = lists.scores(query, maximum)
     exact = histograms.astype(np.float32) @ query
-    if most == 10_000:
+    if maximum == 10_000:
         assert_allclose(found, exact, rtol=1e-5)
     assert (found <= exact + 1e-3).all()
 
 
-def test_a_part_of_the_body_tells_nothing_of_the_others():
+def test_part_features_do_not_depend_on_other_parts():
     still, waving = act("wave", amount=0.0), act("wave")
-    told = [
-        part_features(seen.positions, seen.root_velocity, 30.0)
-        for seen in (clip_postures(still), clip_postures(waving))
+    result = [
+        part_features(observed.positions, observed.root_velocity, 30.0)
+        for observed in (clip_postures(still), clip_postures(waving))
     ]
-    moved = np.abs(told[1] - told[0]).max(axis=(0, 2))
+    moved = np.abs(result[1] - result[0]).max(axis=(0, 2))
     arm = list(BodyPart).index(BodyPart.RIGHT_ARM)
     assert moved[arm] > 0.3
     assert np.delete(moved, arm).max() < 1e-9
 
 
-def test_coverage_is_the_share_of_what_was_tracked():
-    seen = np.ones((10, 20), bool)
-    seen[:5, POSTURE_JOINTS.index("leftHand")] = False
-    assert_allclose(part_coverage(seen), [1.0, 1.0 - 0.5 / 3.0, 1.0, 1.0, 1.0])
+def test_coverage_is_the_fraction_of_tracked_joints():
+    observed = np.ones((10, 20), bool)
+    observed[:5, POSTURE_JOINTS.index("leftHand")] = False
+    assert_allclose(part_coverage(observed), [1.0, 1.0 - 0.5 / 3.0, 1.0, 1.0, 1.0])
 
 
-def test_codes_are_shares_of_the_nearest_words(words):
-    features = words.features(CLIPS[0])
-    codes = words.codes(features)
+def test_codes_are_weights_of_the_nearest_words(vocabulary):
+    features = vocabulary.features(CLIPS[0])
+    codes = vocabulary.codes(features)
     assert_allclose(codes.sum(axis=-1), 1.0)
     assert ((codes > 0).sum(axis=-1) <= 3).all()
-    apart = ((features[:, :, None] - words.words) ** 2).sum(axis=-1)
-    assert_array_equal(codes.argmax(axis=-1), apart.argmin(axis=-1))
+    distances = ((features[:, :, None] - vocabulary.words) ** 2).sum(axis=-1)
+    assert_array_equal(codes.argmax(axis=-1), distances.argmin(axis=-1))
 
 
-def test_words_are_the_same_for_the_same_seed_and_survive_storage(words):
+def test_vocabulary_repeats_and_survives_storage(vocabulary):
     again = learn_vocabulary(CLIPS)
-    stored = vocabulary_from_arrays(vocabulary_arrays(words))
-    for item in fields(words):
+    stored = vocabulary_from_arrays(vocabulary_arrays(vocabulary))
+    for item in fields(vocabulary):
         if item.name != "posture_distribution":
-            assert_array_equal(getattr(again, item.name), getattr(words, item.name))
-            assert_array_equal(getattr(stored, item.name), getattr(words, item.name))
+            assert_array_equal(getattr(again, item.name), getattr(vocabulary, item.name))
+            assert_array_equal(getattr(stored, item.name), getattr(vocabulary, item.name))
     assert_array_equal(
-        stored.posture_distribution.covariance, words.posture_distribution.covariance
+        stored.posture_distribution.covariance, vocabulary.posture_distribution.covariance
     )
 
 
-def test_lost_joints_are_expected_where_they_are(words):
+def test_missing_joints_are_expected_at_their_positions(vocabulary):
     hidden = replace(CLIPS[1], positions=CLIPS[1].positions.copy())
     knee = POSTURE_JOINTS.index("leftLowerLeg")
     hidden.positions[10:40, knee] = np.nan
-    filled = words.posture_distribution.fill_positions(hidden)
+    filled = vocabulary.posture_distribution.fill_positions(hidden)
     assert np.abs(filled - CLIPS[1].positions).max() < 0.06
     assert_allclose(filled[:, :knee], CLIPS[1].positions[:, :knee], atol=1e-12)
 
 
-def test_short_clips_are_one_segment_and_long_ones_also_their_parts():
+def test_long_clips_have_segments_and_short_ones_a_single_one():
     assert_array_equal(segment_frames(80, 20.0), [[0, 80]])
     segments = segment_frames(240, 20.0)
     assert_array_equal(segments[0], [0, 240])
@@ -125,32 +125,32 @@ def test_segments_lie_within_the_clip(n_frames):
     assert len(segments) <= 1 + n_frames / 10
 
 
-def test_histograms_are_of_length_one(words):
-    segments = describe_clip_segments(CLIPS[3], words)
+def test_histograms_have_unit_length(vocabulary):
+    segments = describe_clip_segments(CLIPS[3], vocabulary)
     lengths = np.linalg.norm(segments.histograms / HISTOGRAM_SCALE, axis=-1)
     assert_allclose(lengths, 1.0, atol=0.02)
     assert segments.summaries.shape == (1, 16, 5, 8)
-    features = words.features(CLIPS[3])
+    features = vocabulary.features(CLIPS[3])
     assert_allclose(segments.summaries[0, [0, -1]], features[[0, -1]], atol=2e-3)
 
 
-def test_the_mean_posture_is_told_apart_from_the_movement():
+def test_mean_posture_is_separate_from_movement():
     moves = np.random.default_rng(2).normal(size=(3, 16, 5, 8)).astype(np.float32)
     moves -= moves.mean(axis=1, keepdims=True)
-    stands = 5.0 * np.ones((3, 1, 5, 8), dtype=np.float32)
-    assert_allclose(weight_mean_posture(moves + stands, 0.0), moves, atol=1e-5)
-    assert_allclose(weight_mean_posture(moves + stands, 0.4), moves + 2.0, atol=1e-5)
+    in_contact = 5.0 * np.ones((3, 1, 5, 8), dtype=np.float32)
+    assert_allclose(weight_mean_posture(moves + in_contact, 0.0), moves, atol=1e-5)
+    assert_allclose(weight_mean_posture(moves + in_contact, 0.4), moves + 2.0, atol=1e-5)
     assert_array_equal(weight_mean_posture(moves, 1.0), moves)
 
 
-def test_the_halves_of_a_clip_are_told_apart(words):
+def test_halves_of_a_clip_are_distinguished(vocabulary):
     rising = CLIPS[1]
     rising = replace(
         rising, positions=rising.positions[:25], root_velocity=0.0 * rising.root_velocity[:25]
     )
     falling = replace(rising, positions=rising.positions[::-1])
     up, down = (
-        describe_clip_segments(clip, words).histograms[0] / HISTOGRAM_SCALE
+        describe_clip_segments(clip, vocabulary).histograms[0] / HISTOGRAM_SCALE
         for clip in (rising, falling)
     )
     legs = [list(BodyPart).index(part) for part in (BodyPart.LEFT_LEG, BodyPart.RIGHT_LEG)]
@@ -159,8 +159,10 @@ def test_the_halves_of_a_clip_are_told_apart(words):
     assert alike[2, 1] > alike[2, 2] + 0.04
 
 
-def test_a_large_block_finds_the_same_best_segments(words, monkeypatch):
-    block = build_block(list(range(5)), [describe_clip_segments(clip, words) for clip in CLIPS])
+def test_large_block_finds_the_same_best_segments(vocabulary, monkeypatch):
+    block = build_block(
+        list(range(5)), [describe_clip_segments(clip, vocabulary) for clip in CLIPS]
+    )
     query = (block.histograms[2] / HISTOGRAM_SCALE).astype(np.float32)
     exact = block.similarities(query)
     monkeypatch.setattr(index_block, "MAX_POSTINGS", 300)
@@ -171,21 +173,21 @@ def test_a_large_block_finds_the_same_best_segments(words, monkeypatch):
     assert (rough <= exact + 1e-3).all()
 
 
-def test_blocks_survive_storage_and_merging(words):
-    described = [describe_clip_segments(clip, words) for clip in CLIPS]
-    whole = build_block([1, 2, 3, 4, 5], described)
-    n_words = words.words.shape[1]
-    read = block_from_arrays(block_arrays(whole), n_words)
+def test_blocks_survive_storage_and_merging(vocabulary):
+    described = [describe_clip_segments(clip, vocabulary) for clip in CLIPS]
+    complete = build_block([1, 2, 3, 4, 5], described)
+    n_words = vocabulary.words.shape[1]
+    read = block_from_arrays(block_arrays(complete), n_words)
     together = merge_blocks(
         [build_block([1, 2], described[:2]), build_block([3, 4, 5], described[2:])],
         np.array([1, 2, 4, 5]),
     )
-    kept = whole.clips != 3
-    query = (whole.histograms[0] / HISTOGRAM_SCALE).astype(np.float32)
-    assert_array_equal(read.similarities(query), whole.similarities(query))
-    assert_array_equal(together.clips, whole.clips[kept])
-    assert_array_equal(together.summaries, whole.summaries[kept])
-    assert_array_equal(together.similarities(query), whole.similarities(query)[kept])
+    kept = complete.clips != 3
+    query = (complete.histograms[0] / HISTOGRAM_SCALE).astype(np.float32)
+    assert_array_equal(read.similarities(query), complete.similarities(query))
+    assert_array_equal(together.clips, complete.clips[kept])
+    assert_array_equal(together.summaries, complete.summaries[kept])
+    assert_array_equal(together.similarities(query), complete.similarities(query)[kept])
 
 
 @pytest.mark.parametrize(
@@ -201,8 +203,8 @@ def test_blocks_survive_storage_and_merging(words):
         ("summaries", lambda raw: b"\x00\x7c" + raw[2:]),
     ],
 )
-def test_an_index_that_does_not_fit_itself_is_refused(words, column, damage):
-    stored = block_arrays(build_block([1], [describe_clip_segments(CLIPS[0], words)]))
+def test_inconsistent_index_is_refused(vocabulary, column, damage):
+    stored = block_arrays(build_block([1], [describe_clip_segments(CLIPS[0], vocabulary)]))
     stored[column] = damage(stored[column])
     with pytest.raises(ValueError):
-        block_from_arrays(stored, words.words.shape[1])
+        block_from_arrays(stored, vocabulary.words.shape[1])

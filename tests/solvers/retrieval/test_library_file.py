@@ -1,4 +1,4 @@
-"""The file of a library: whole whatever happens, and refused in one sentence if it is none."""
+"""The file of a library stays intact in all events; other files are refused in one sentence."""
 
 import pickle
 import shutil
@@ -39,8 +39,8 @@ with open_clip_library(path) as library:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory) -> Path:
-    """The file of a library of fifteen clips."""
+def intact_file(tmp_path_factory) -> Path:
+    """File of a library of fifteen clips."""
     path = tmp_path_factory.mktemp("whole") / "library.clips"
     clips = [
         Clip(f"{name} {s}", act(name, s), (name,)) for name in ACTS for s in (1.6, 2.0, 2.4)
@@ -50,9 +50,9 @@ def whole(tmp_path_factory) -> Path:
 
 
 @pytest.fixture
-def path(whole, tmp_path) -> Path:
+def path(intact_file, tmp_path) -> Path:
     """A copy of it."""
-    return Path(shutil.copy(whole, tmp_path / "library.clips"))
+    return Path(shutil.copy(intact_file, tmp_path / "library.clips"))
 
 
 def ranking(library) -> list[tuple]:
@@ -68,7 +68,7 @@ def adding(name: str, path: Path, n_rounds: int) -> subprocess.Popen:
     )  # fmt: skip
 
 
-def test_saved_and_loaded_it_ranks_the_same_bit_for_bit(tmp_path):
+def test_loaded_library_ranks_exactly_the_same(tmp_path):
     library = build_clip_library([Clip(name, act(name), (name,)) for name in ACTS])
     library.add([Clip("again", act("kick", 2.7))])
     library.save(tmp_path / "a")
@@ -81,7 +81,7 @@ def test_saved_and_loaded_it_ranks_the_same_bit_for_bit(tmp_path):
         assert ranking(copy) == ranking(library)
 
 
-def test_others_who_have_it_open_see_what_is_added_and_removed(path):
+def test_open_libraries_show_changes_by_other_processes(path):
     with load_clip_library(path) as one, load_clip_library(path) as other:
         assert ranking(other)[0][0] == "kick 2.4"
         one.add([Clip("new", act("kick", 2.2))])
@@ -92,7 +92,7 @@ def test_others_who_have_it_open_see_what_is_added_and_removed(path):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs permissions as on Unix")
-def test_a_file_that_may_not_be_written_can_be_searched(path, monkeypatch):
+def test_read_only_file_can_be_searched(path, monkeypatch):
     with load_clip_library(path) as library:
         expected = ranking(library)
         library._database.execute("PRAGMA query_only = 1")  # Root may write everywhere.
@@ -102,7 +102,7 @@ def test_a_file_that_may_not_be_written_can_be_searched(path, monkeypatch):
         assert ranking(library) == expected
 
 
-def test_where_it_cannot_be_made_is_said(tmp_path):
+def test_open_names_the_path_where_no_file_can_be_created(tmp_path):
     (tmp_path / "file").write_text("")
     for wrong in (tmp_path / "none" / "a.clips", tmp_path / "file" / "a.clips"):
         with pytest.raises(InvalidFileError, match="cannot be used"):
@@ -111,7 +111,7 @@ def test_where_it_cannot_be_made_is_said(tmp_path):
             build_clip_library([]).save(wrong)
 
 
-def test_a_newer_version_is_refused_in_one_sentence(path):
+def test_newer_version_is_refused_in_one_sentence(path):
     database = sqlite3.connect(path)
     database.execute(f"PRAGMA user_version = {library_file.VERSION + 1}")
     database.close()
@@ -122,7 +122,7 @@ def test_a_newer_version_is_refused_in_one_sentence(path):
         open_clip_library(path)
 
 
-def test_what_is_no_library_is_refused(tmp_path):
+def test_other_files_are_refused(tmp_path):
     other = tmp_path / "other.sqlite"
     with closing(sqlite3.connect(other)) as database:
         database.executescript("CREATE TABLE clips (a); INSERT INTO clips VALUES (1)")
@@ -142,8 +142,8 @@ def test_what_is_no_library_is_refused(tmp_path):
         assert before is None or wrong.read_bytes() == before
 
 
-def test_a_library_is_begun_in_an_empty_file(tmp_path):
-    """As one is left behind by a process that was killed at its very beginning."""
+def test_library_is_created_in_an_empty_file(tmp_path):
+    """A process that was killed at its start leaves such a file."""
     (tmp_path / "empty.clips").touch()
     with open_clip_library(tmp_path / "empty.clips") as library:
         library.add([Clip("wave", act("wave"))])
@@ -153,16 +153,16 @@ def test_a_library_is_begun_in_an_empty_file(tmp_path):
 
 @settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
-def test_a_damaged_file_is_refused_or_works(whole, tmp_path, data):
-    """Bytes are changed, or the end is missing: nothing but an InvalidFileError may come."""
-    content = bytearray(whole.read_bytes())
-    places = st.integers(0, len(content) - 1)
-    near = st.one_of(st.integers(0, 4096), places)
-    for place in data.draw(st.lists(near, min_size=1, max_size=20)):
+def test_damaged_file_is_refused_or_works(intact_file, tmp_path, data):
+    """Bytes are changed or the end is missing; the only error is InvalidFileError."""
+    content = bytearray(intact_file.read_bytes())
+    offsets = st.integers(0, len(content) - 1)
+    near = st.one_of(st.integers(0, 4096), offsets)
+    for offset in data.draw(st.lists(near, min_size=1, max_size=20)):
         length = data.draw(st.integers(1, 64))
-        content[place : place + length] = data.draw(st.binary(min_size=1, max_size=64))
+        content[offset : offset + length] = data.draw(st.binary(min_size=1, max_size=64))
     damaged = tmp_path / "damaged"
-    damaged.write_bytes(content[: data.draw(st.one_of(st.just(len(content)), places))])
+    damaged.write_bytes(content[: data.draw(st.one_of(st.just(len(content)), offsets))])
 
     try:
         with load_clip_library(damaged) as library:
@@ -176,7 +176,7 @@ def test_a_damaged_file_is_refused_or_works(whole, tmp_path, data):
 
 
 @pytest.mark.parametrize("table", ["clips", "blocks", "vocabulary"])
-def test_a_table_that_is_missing_or_garbled_is_said(path, table):
+def test_missing_or_garbled_table_is_reported(path, table):
     with closing(sqlite3.connect(path)) as database, database:
         columns = [row[1] for row in database.execute(f"PRAGMA table_info({table})")]
         database.execute(f"UPDATE {table} SET {columns[-1]} = x'0102030405'")
@@ -189,7 +189,7 @@ def test_a_table_that_is_missing_or_garbled_is_said(path, table):
         ranking(load_clip_library(path))
 
 
-def test_nothing_in_it_is_unpickled(path, monkeypatch):
+def test_no_content_is_unpickled(path, monkeypatch):
     def refuse(*arguments, **options):
         raise AssertionError("unpickled")
 
@@ -200,7 +200,7 @@ def test_nothing_in_it_is_unpickled(path, monkeypatch):
     assert b"pickle" not in path.read_bytes()
 
 
-def test_while_another_writes_one_waits_and_then_says_so(path, monkeypatch):
+def test_locked_library_waits_and_then_reports_it(path, monkeypatch):
     monkeypatch.setattr(library_file, "LOCK_TIMEOUT_S", 0.1)
     writer = sqlite3.connect(path, isolation_level=None)
     with load_clip_library(path) as library:
@@ -218,7 +218,7 @@ def test_while_another_writes_one_waits_and_then_says_so(path, monkeypatch):
     writer.close()
 
 
-def test_two_processes_may_add_at_once_even_to_a_new_file(tmp_path):
+def test_two_processes_can_add_to_a_new_file_at_once(tmp_path):
     path = tmp_path / "shared.clips"
     processes = [adding(name, path, 12) for name in ("wave", "kick", "squat")]
     for process in processes:
@@ -229,29 +229,29 @@ def test_two_processes_may_add_at_once_even_to_a_new_file(tmp_path):
         names = {entry.name for entry in library.entries}
         assert names == {f"{act} {n}" for act in ("wave", "kick", "squat") for n in range(12)}
         assert {match[0] for match in ranking(library)} == names
-    assert sound(path)
+    assert is_intact(path)
 
 
 @pytest.mark.parametrize("after", [0.0, 0.011])
-def test_a_process_that_is_killed_leaves_the_file_whole(path, after):
+def test_killed_process_leaves_the_file_intact(path, after):
     process = adding("wave", path, 10_000)
-    told = [process.stdout.readline() for _ in range(3)]
+    output = [process.stdout.readline() for _ in range(3)]
     time.sleep(after)
     process.kill()
-    told += process.communicate()[0].splitlines()
+    output += process.communicate()[0].splitlines()
 
-    assert sound(path)
+    assert is_intact(path)
     with load_clip_library(path) as library:
         waves = [entry.name for entry in library.entries if entry.origin is None][15:]
-        assert len(waves) in {len(told), len(told) + 1}
+        assert len(waves) in {len(output), len(output) + 1}
         assert {match[0] for match in ranking(library)} == {e.name for e in library.entries}
         library.add([Clip("afterwards", act("bow"))])
 
 
-def test_every_error_of_it_is_one_of_ours():
+def test_all_database_errors_are_converted():
     assert issubclass(InvalidFileError, MocapAssistError)
 
 
-def sound(path: Path) -> bool:
+def is_intact(path: Path) -> bool:
     with closing(sqlite3.connect(path)) as database, database:
         return database.execute("PRAGMA integrity_check").fetchone() == ("ok",)

@@ -1,4 +1,4 @@
-"""What a library refuses: odd names, files that are not its own, a full disk; and why."""
+"""A library refuses invalid names, files of other programs and full disks, with a reason."""
 
 import sqlite3
 import struct
@@ -38,16 +38,16 @@ def names(library) -> list[str]:
     return [entry.name for entry in library.entries]
 
 
-@pytest.mark.parametrize("odd", ODD)
-def test_odd_name_or_tag_is_refused_and_shown_escaped(odd):
-    for wrong in (lambda: Clip(odd, None), lambda: Clip("walk", None, ("tag", odd))):
+@pytest.mark.parametrize("invalid", ODD)
+def test_invalid_name_or_tag_is_refused_and_escaped(invalid):
+    for wrong in (lambda: Clip(invalid, None), lambda: Clip("walk", None, ("tag", invalid))):
         with pytest.raises(InvalidMotionError) as caught:
             wrong()
-        assert ODD[odd] in str(caught.value)
+        assert ODD[invalid] in str(caught.value)
         assert str(caught.value).isprintable()
 
 
-def test_path_that_is_no_utf_8_is_refused_and_shown_escaped():
+def test_path_that_is_not_utf_8_is_refused_and_escaped():
     with pytest.raises(InvalidMotionError, match=r"walk: its path '/caf\\udce9/a.bvh' is no"):
         Clip("walk", None, (), Origin("/caf\udce9/a.bvh"))
 
@@ -57,7 +57,7 @@ def test_name_in_any_language_is_kept(name):
     assert Clip(name, None, (name,)).name == name
 
 
-def test_clip_of_another_file_stays_when_the_name_is_the_same():
+def test_clip_of_another_file_with_the_same_name_stays():
     library = build_clip_library([clip("walk", "wave", "/a/walk.bvh")])
 
     library.add([
@@ -81,7 +81,7 @@ def test_clip_of_the_same_file_is_replaced_and_keeps_its_name():
     assert library.entries == ()
 
 
-def test_free_names_are_chosen_from_what_the_library_holds_now(tmp_path):
+def test_free_names_depend_on_the_current_library(tmp_path):
     path = tmp_path / "a.clips"
     with open_clip_library(path) as one, open_clip_library(path) as other:
         assert one.entries == other.entries == ()
@@ -96,7 +96,7 @@ def test_free_names_are_chosen_from_what_the_library_holds_now(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["x.bat", "x", "x.clips.sh", ".clips", "walk.bvh"])
-def test_library_is_not_begun_where_its_suffix_is_missing(tmp_path, name):
+def test_library_is_not_created_without_its_suffix(tmp_path, name):
     for _ in range(2):
         with pytest.raises(InvalidFileError, match=r"end its name in \.clips"):
             open_clip_library(tmp_path / name)
@@ -105,27 +105,27 @@ def test_library_is_not_begun_where_its_suffix_is_missing(tmp_path, name):
 
 
 @pytest.mark.parametrize("name", ["a.clips", "a.library", "A.CLIPS"])
-def test_library_is_begun_where_the_suffix_is_its_own(tmp_path, name):
+def test_library_is_created_with_its_suffix(tmp_path, name):
     open_clip_library(tmp_path / name).close()
     assert load_clip_library(tmp_path / name).entries == ()
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs links")
-def test_library_is_not_begun_where_a_link_leads_to_another_suffix(tmp_path):
+def test_library_is_not_created_by_a_link_to_another_suffix(tmp_path):
     (tmp_path / "a.clips").symlink_to(tmp_path / "x.bat")
     with pytest.raises(InvalidFileError, match="end its name"):
         open_clip_library(tmp_path / "a.clips")
     assert not (tmp_path / "x.bat").exists()
 
 
-def test_older_library_of_any_name_is_still_opened(tmp_path):
+def test_older_library_with_any_suffix_is_opened(tmp_path):
     build_clip_library([clip("walk", "wave", "/a/walk.bvh")]).save(tmp_path / "my library")
     with open_clip_library(tmp_path / "my library") as library:
         library.add([clip("run", "kick", "/a/run.bvh")])
         assert names(library) == ["walk", "run"]
 
 
-def test_database_of_somebody_else_stays_as_it_is_even_without_tables(tmp_path):
+def test_database_of_another_program_stays_unchanged(tmp_path):
     path = tmp_path / "other.clips"
     with closing(sqlite3.connect(path)) as database:
         database.execute("PRAGMA user_version = 7")
@@ -139,7 +139,7 @@ def test_database_of_somebody_else_stays_as_it_is_even_without_tables(tmp_path):
         open_clip_library(path)
 
 
-def test_full_disk_is_reported_and_the_library_stays_as_it_was(tmp_path):
+def test_full_disk_is_reported_and_the_library_unchanged(tmp_path):
     path = tmp_path / "a.clips"
     with open_clip_library(path) as library:
         library.add([clip("walk", "wave", "/a/walk.bvh")])
@@ -156,7 +156,7 @@ def test_full_disk_is_reported_and_the_library_stays_as_it_was(tmp_path):
         assert len(library.entries) == 10
 
 
-def test_error_of_a_solver_is_not_taken_for_damage(tmp_path, monkeypatch):
+def test_solver_error_is_not_reported_as_damage(tmp_path, monkeypatch):
     def fail(*_):
         raise ValueError("a mistake of ours")
 
@@ -175,7 +175,7 @@ def test_error_of_a_solver_is_not_taken_for_damage(tmp_path, monkeypatch):
         "n_frames = 'many'", "n_frames = -1", "positions = x'007c'", "course = 'words'",
     ],
 )  # fmt: skip
-def test_stored_value_that_means_nothing_is_damage(tmp_path, change):
+def test_invalid_stored_value_is_damage(tmp_path, change):
     path = tmp_path / "a.clips"
     build_clip_library([clip("walk", "wave", "/a/walk.bvh")]).save(path)
     with closing(sqlite3.connect(path)) as database, database:
@@ -192,8 +192,8 @@ def test_segment_beyond_the_end_of_its_clip_is_damage(tmp_path):
     path, query = tmp_path / "a.clips", clip("walk", "wave", "/a/walk.bvh")
     build_clip_library([query]).save(path)
     with closing(sqlite3.connect(path)) as database, database:
-        far = struct.pack("<2i", 10_000, 10_001)
-        database.execute("UPDATE blocks SET frames = ?", [far])
+        segment = struct.pack("<2i", 10_000, 10_001)
+        database.execute("UPDATE blocks SET frames = ?", [segment])
 
     with (
         load_clip_library(path) as library,
@@ -202,7 +202,7 @@ def test_segment_beyond_the_end_of_its_clip_is_damage(tmp_path):
         find_similar(query.recording, library)
 
 
-def test_clip_that_another_program_has_just_removed_is_one_sentence():
+def test_clip_removed_by_another_process_is_reported():
     library = build_clip_library([clip("walk", "wave", "/a/walk.bvh")])
     (number,) = library.numbered()
     library.discard([number])

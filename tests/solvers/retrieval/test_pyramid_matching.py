@@ -1,4 +1,4 @@
-"""Temporal codes and pyramids against the equations of [ZH14], written out densely."""
+"""Temporal codes and pyramids equal the equations of [ZH14]."""
 
 import numpy as np
 import pytest
@@ -45,7 +45,7 @@ def dense_codes(postures, dictionary):
 
 
 def dense_slices(x, gap):
-    """Equations 3.6 to 3.9, with frames counted from 1 as there."""
+    """Equations 3.6 to 3.9, with frames counted from 1."""
     t = len(x)
     k = max(k for k in range(t) if 1 + k * gap < t)
     slices = []
@@ -81,7 +81,7 @@ def dense_kernel(a, b, n_levels, normalise):
 @pytest.mark.parametrize("normalise", [False, True])
 @pytest.mark.parametrize("n_levels", [1, 2, 3, 4])
 @pytest.mark.parametrize("gap", [1, 2, 7])
-def test_kernel_is_the_equations(rng, dictionary, gap, n_levels, normalise):
+def test_kernel_equals_the_equations(rng, dictionary, gap, n_levels, normalise):
     settings = PyramidSettings(gap=gap / 30.0, n_levels=n_levels, normalise_cubes=normalise)
     clips = [clip_of(rng, n_frames) for n_frames in (40, 23, 2)]
     rows = [pyramid_descriptor(clip, dictionary, settings) for clip in clips]
@@ -89,29 +89,29 @@ def test_kernel_is_the_equations(rng, dictionary, gap, n_levels, normalise):
 
     kernel = pyramid_kernel(vstack(rows), vstack(rows))
 
-    wanted = [[dense_kernel(a, b, n_levels, normalise) for b in slices] for a in slices]
-    assert_allclose(kernel, wanted, atol=1e-12)
+    expected = [[dense_kernel(a, b, n_levels, normalise) for b in slices] for a in slices]
+    assert_allclose(kernel, expected, atol=1e-12)
 
 
-def test_blocks_change_nothing_unless_cubes_are_normalised(rng, dictionary):
-    """Maxima and intersections work entry by entry; why the default differs from [ZH14]."""
+def test_blocks_have_no_effect_unless_cubes_are_normalized(rng, dictionary):
+    """Maxima and intersections are elementwise, so the default differs from [ZH14]."""
     a, b = (dense_slices(dense_codes(clip_of(rng, 40), dictionary), 2) for _ in range(2))
 
-    def whole(slices, level):
+    def cubes_of_level(slices, level):
         segment = np.arange(len(slices)) * 2**level // len(slices)
         return [np.abs(slices[segment == s]).max(axis=0) for s in range(2**level)]
 
     unsplit = sum(
         np.minimum(one, other).sum() / 2**level
         for level in range(3)
-        for one, other in zip(whole(a, level), whole(b, level), strict=True)
+        for one, other in zip(cubes_of_level(a, level), cubes_of_level(b, level), strict=True)
     )
     assert_allclose(dense_kernel(a, b, 3, False), unsplit)
     assert not np.isclose(dense_kernel(a, b, 3, True), unsplit)
 
 
 def test_slices_of_the_toy_example():
-    """Figure 3.3 of [ZH14]: 4 atoms, 7 frames and a gap of 2 make a 4 x 4 x 3 volume."""
+    """Figure 3.3 of [ZH14]: 4 atoms, 7 frames and a gap of 2 give a 4 x 4 x 3 volume."""
     codes = SparseCodes(np.tile(np.arange(4), (7, 1)), np.arange(28.0).reshape(7, 4))
 
     found = temporal_codes(codes, 2)
@@ -122,7 +122,7 @@ def test_slices_of_the_toy_example():
 
 
 @pytest.mark.parametrize("n_frames", [1, 2, 3])
-def test_very_short_clips(rng, dictionary, n_frames):
+def test_very_short_clips_are_accepted(rng, dictionary, n_frames):
     row = pyramid_descriptor(clip_of(rng, n_frames), dictionary)
 
     assert row.shape == (1, 7 * N_ATOMS**2)
@@ -131,7 +131,7 @@ def test_very_short_clips(rng, dictionary, n_frames):
 
 
 @given(st.integers(0, 10**6))
-def test_kernel_of_sparse_rows_is_the_dense_one(seed):
+def test_sparse_kernel_equals_the_dense_one(seed):
     rng = np.random.default_rng(seed)
     a, b = (np.maximum(rng.normal(size=(n, 30)), 0.0) for n in (4, 6))
 
@@ -141,7 +141,7 @@ def test_kernel_of_sparse_rows_is_the_dense_one(seed):
     assert_allclose(pyramid_kernel(csr_array(b), csr_array(a)), kernel.T)
 
 
-def test_each_normalised_cube_counts_one(rng, dictionary):
+def test_each_normalized_cube_has_sum_one(rng, dictionary):
     settings = PyramidSettings(gap=1 / 30.0, normalise_cubes=True)
     row = pyramid_descriptor(clip_of(rng, 200), dictionary, settings)
 
@@ -168,8 +168,8 @@ def test_other_actors_hops_are_nearer_than_squats(recordings):
     kernel = pyramid_kernel(vstack(rows), vstack(rows))
 
     same = np.arange(6)[:, None] // 3 == np.arange(6) // 3
-    off = ~np.eye(6, dtype=bool)
-    assert kernel[same & off].mean() > 1.5 * kernel[~same].mean()
-    for row, alike in zip(kernel, same & off, strict=True):
+    is_off_diagonal = ~np.eye(6, dtype=bool)
+    assert kernel[same & is_off_diagonal].mean() > 1.5 * kernel[~same].mean()
+    for row, alike in zip(kernel, same & is_off_diagonal, strict=True):
         others = ~alike & (np.arange(6) != row.argmax())
         assert row[alike].max() > row[others].max()

@@ -1,4 +1,4 @@
-"""The order of clips, each step against a plainer way to the same numbers."""
+"""Each step of the ranking, compared with a simpler implementation."""
 
 import numpy as np
 import pytest
@@ -40,24 +40,24 @@ def block(clips, seed=0):
 
 
 @given(seed=st.integers(0, 999))
-def test_the_best_segment_of_each_clip_is_found(seed):
+def test_best_segment_of_each_clip_is_found(seed):
     rng = np.random.default_rng(seed)
     clips = [rng.integers(1, 6, size=size) for size in (4, 7)]
     alive = [rng.random(len(one)) < 0.8 for one in clips]
     index = SearchIndex(list(zip(map(block, clips), alive, strict=True)))
-    apart = rng.integers(0, 5, 11).astype(np.float32)
+    distances = rng.integers(0, 5, 11).astype(np.float32)
 
-    least, segments = index.best_segments(apart, [3])
+    minimum, segments = index.best_segments(distances, [3])
 
     numbers, living = np.concatenate(clips), np.concatenate(alive)
-    wanted = [one for one in np.unique(numbers[living]) if one != 3]
-    assert index.clips[segments].tolist() == wanted
-    for one, found, segment in zip(wanted, least, segments, strict=True):
+    expected = [one for one in np.unique(numbers[living]) if one != 3]
+    assert index.clips[segments].tolist() == expected
+    for one, found, segment in zip(expected, minimum, segments, strict=True):
         assert living[segment]
-        assert found == apart[segment] == apart[living & (numbers == one)].min()
+        assert found == distances[segment] == distances[living & (numbers == one)].min()
 
 
-def test_segments_are_fetched_from_the_blocks_that_hold_them():
+def test_segments_are_loaded_from_their_blocks():
     first, second = block([1, 2, 3]), block([4, 5], seed=1)
     index = SearchIndex([(first, np.ones(3, bool)), (second, np.ones(2, bool))])
     steps = index.steps(np.array([4, 0, 3, 2]))
@@ -66,7 +66,7 @@ def test_segments_are_fetched_from_the_blocks_that_hold_them():
 
 
 @pytest.mark.parametrize("at_once", [1, 300, likes.MAX_CELLS])
-def test_clips_are_from_each_other_as_far_as_the_plain_programme_says(at_once, monkeypatch):
+def test_distances_of_clips_equal_the_plain_algorithm(at_once, monkeypatch):
     monkeypatch.setattr(likes, "MAX_CELLS", at_once)
     sequences = RNG.normal(size=(5, 16, 3)).astype(np.float32)
     between = likes.pairwise_warping_costs(sequences)
@@ -75,7 +75,7 @@ def test_clips_are_from_each_other_as_far_as_the_plain_programme_says(at_once, m
         assert_allclose(between[one, other], expected, rtol=1e-4, atol=1e-3)
 
 
-def test_a_small_library_keeps_what_a_large_one_works_out_anew(monkeypatch):
+def test_only_small_libraries_cache_clip_distances(monkeypatch):
     index = SearchIndex([(block(range(6)), np.ones(6, bool))])
     segments = np.array([5, 1, 2])
     kept = index.pairwise_distances(segments)
@@ -86,8 +86,8 @@ def test_a_small_library_keeps_what_a_large_one_works_out_anew(monkeypatch):
     assert index.pairwise_distances(segments) is None
 
 
-def test_each_clip_is_judged_by_those_nearest_to_it():
-    apart = RNG.random(9).astype(np.float32) + 0.5
+def test_clips_are_reranked_by_their_nearest_neighbors():
+    distances = RNG.random(9).astype(np.float32) + 0.5
     between = RNG.random((9, 9)).astype(np.float32)
     between += between.T
     others = [
@@ -97,33 +97,33 @@ def test_each_clip_is_judged_by_those_nearest_to_it():
         for one in range(9)
     ]
     nearest = [some[:3] for some in others]
-    told = apart.astype(float)
+    result = distances.astype(float)
     for _ in range(likes.N_ROUNDS):
-        before = told.copy()
+        before = result.copy()
         for one in range(9):
             voices = [
                 1.0 + likes.RECIPROCAL_WEIGHT * (one in nearest[other])
                 for other in nearest[one]
             ]
             heard = np.average(before[nearest[one]], weights=voices)
-            told[one] = (before[one] + BELIEVED * heard) / (1.0 + BELIEVED)
-    expected = np.minimum(told, BLAMED * apart)
-    assert_allclose(likes.rerank_by_neighbors(apart, between, 3), expected, rtol=1e-5)
+            result[one] = (before[one] + BELIEVED * heard) / (1.0 + BELIEVED)
+    expected = np.minimum(result, BLAMED * distances)
+    assert_allclose(likes.rerank_by_neighbors(distances, between, 3), expected, rtol=1e-5)
 
 
-def test_what_is_nearly_the_query_stays_first_among_strangers():
-    apart = np.array([0.05, 0.5, 0.52, 0.55], dtype=np.float32)
+def test_near_duplicate_of_the_query_stays_first():
+    distances = np.array([0.05, 0.5, 0.52, 0.55], dtype=np.float32)
     between = np.array(
         [[0, 2, 2.1, 2.2], [2, 0, 0.1, 0.1], [2.1, 0.1, 0, 0.1], [2.2, 0.1, 0.1, 0]],
         dtype=np.float32,
     )
-    assert likes.rerank_by_neighbors(apart, between, 2).argmin() == 0
+    assert likes.rerank_by_neighbors(distances, between, 2).argmin() == 0
 
 
 @pytest.mark.parametrize(
     "settings", [{}, {"n_warped": 0}, {"n_warped": 7}, {"n_alike": 0}, {"n_alike": 100}]
 )
-def test_all_are_ranked_or_as_many_as_are_asked_for(settings):
+def test_number_of_ranked_clips_is_a_setting(settings):
     library = build_clip_library([
         Clip(f"{name} {number}", act(name, 2.0 + 0.1 * number))
         for name in ACTS
@@ -141,29 +141,29 @@ def test_all_are_ranked_or_as_many_as_are_asked_for(settings):
 
 
 @pytest.mark.parametrize("angle", [-0.6, 0.3, 0.7])
-def test_a_body_without_some_joints_is_turned_where_it_usually_faces(angle):
+def test_heading_of_incomplete_bodies_is_the_typical_one(angle):
     clips = [clip_postures(act(name, 2.5), 20.0) for name in ACTS]
-    usual, true = learn_posture_distribution(clips), clips[0]
-    lost = [POSTURE_JOINTS.index(name) for name in ("leftUpperLeg", "rightUpperArm", "head")]
+    default, true = learn_posture_distribution(clips), clips[0]
+    missing = [POSTURE_JOINTS.index(name) for name in ("leftUpperLeg", "rightUpperArm", "head")]
     positions = rotate_about_vertical(true.positions, np.full(true.n_frames, angle))
-    positions[:, lost] = np.nan
+    positions[:, missing] = np.nan
     cos, sin = np.cos(angle), np.sin(angle)
     root_velocity = true.root_velocity.copy()
     root_velocity[:, :2] = root_velocity[:, :2] @ [[cos, sin], [-sin, cos]]
 
-    found = usual.fill_gaps(ClipPostures(positions, root_velocity, 20.0))
+    found = default.fill_gaps(ClipPostures(positions, root_velocity, 20.0))
 
-    seen = np.setdiff1d(np.arange(20), lost)
-    assert np.abs(found.positions[:, seen] - true.positions[:, seen]).max() < 0.1
+    observed = np.setdiff1d(np.arange(20), missing)
+    assert np.abs(found.positions[:, observed] - true.positions[:, observed]).max() < 0.1
     assert (
         np.abs(found.root_velocity - true.root_velocity).max()
         < 0.2 * np.abs(true.root_velocity).max() + 1e-9
     )
     assert np.isfinite(found.positions).all()
-    assert not np.isfinite(positions[:, lost]).any()
+    assert not np.isfinite(positions[:, missing]).any()
 
 
-def test_parts_that_move_count_more_and_hanging_arms_little():
+def test_moving_parts_weigh_more_than_hanging_arms():
     clips = [clip_postures(act(name, 2.5), 20.0) for name in ACTS]
     words = learn_vocabulary(clips)
     activity = words.activity(words.features(clip_postures(act("kick", 2.5), 20.0)))
@@ -177,12 +177,12 @@ def test_parts_that_move_count_more_and_hanging_arms_little():
 
 
 @pytest.mark.parametrize("activity", [np.zeros(5), np.array([0.0, 1e-9, 0.0, 1e-6, 0.0])])
-def test_all_parts_of_a_pose_count_alike(activity):
+def test_all_parts_of_a_pose_have_equal_weight(activity):
     weights = FindSettings().part_weights(np.ones(5), np.ones(5), activity)
     assert_allclose(weights, 1.0, atol=1e-3)
 
 
-def test_a_part_that_is_not_asked_for_does_not_count_however_it_moves():
+def test_excluded_parts_have_no_weight():
     settings = FindSettings(left_leg=False)
     weights = settings.part_weights(np.ones(5), np.ones(5), np.array([1.0, 1.0, 1.0, 9.0, 1.0]))
     assert_allclose(weights, [1.25, 1.25, 1.25, 0.0, 1.25])

@@ -1,4 +1,4 @@
-"""Orthogonal matching pursuit: scikit-learn's answers, exact cases, laws."""
+"""Orthogonal matching pursuit equals scikit-learn and exact cases."""
 
 import numpy as np
 import pytest
@@ -24,16 +24,16 @@ def dense(codes, n_atoms):
 
 
 @pytest.mark.parametrize(("n_atoms", "n_nonzeros"), [(40, 1), (40, 5), (200, 20), (700, 35)])
-def test_codes_are_scikit_learns(rng, n_atoms, n_nonzeros):
+def test_codes_equal_those_of_scikit_learn(rng, n_atoms, n_nonzeros):
     atoms = unit(rng.normal(size=(n_atoms, 60)))
     signals = rng.normal(size=(30, 60))
 
     codes = sparse_codes(signals, atoms, n_nonzeros)
 
-    theirs = orthogonal_mp(atoms.T, signals.T, n_nonzero_coefs=n_nonzeros).T
+    reference = orthogonal_mp(atoms.T, signals.T, n_nonzero_coefs=n_nonzeros).T
     mine = dense(codes, n_atoms)
-    assert_allclose((mine != 0).astype(int), (theirs != 0).astype(int))
-    assert_allclose(mine, theirs, atol=1e-9)
+    assert_allclose((mine != 0).astype(int), (reference != 0).astype(int))
+    assert_allclose(mine, reference, atol=1e-9)
 
 
 def test_weights_are_least_squares_on_the_chosen_atoms(rng):
@@ -55,7 +55,7 @@ def test_orthogonal_atoms_give_the_largest_products(rng):
     assert_allclose(codes.weights, [[-5.0, 3.0, -1.0]])
 
 
-def test_a_signal_of_few_atoms_leaves_the_rest_at_zero(rng):
+def test_signal_of_few_atoms_has_zero_weights_elsewhere(rng):
     atoms = unit(rng.normal(size=(30, 20)))
     signals = 2.0 * atoms[[7]]
 
@@ -65,7 +65,7 @@ def test_a_signal_of_few_atoms_leaves_the_rest_at_zero(rng):
     assert_allclose(codes.weights, [[2.0, 0, 0, 0, 0]], atol=1e-12)
 
 
-def test_a_signal_of_nothing_and_atoms_that_repeat(rng):
+def test_zero_signals_and_repeated_atoms_are_accepted(rng):
     atom = unit(rng.normal(size=(1, 5)))
     atoms = np.concatenate([atom, atom, unit(rng.normal(size=(2, 5))), np.zeros((1, 5))])
 
@@ -78,7 +78,7 @@ def test_a_signal_of_nothing_and_atoms_that_repeat(rng):
 
 
 @given(st.integers(1, 20), st.integers(0, 10**6))
-def test_more_atoms_tell_more_and_any_part_can_be_coded_alone(n_nonzeros, seed):
+def test_more_atoms_reduce_the_error(n_nonzeros, seed):
     rng = np.random.default_rng(seed)
     atoms, signals = unit(rng.normal(size=(35, 20))), rng.normal(size=(300, 20))
 
@@ -88,8 +88,8 @@ def test_more_atoms_tell_more_and_any_part_can_be_coded_alone(n_nonzeros, seed):
     if n_nonzeros > 1:
         fewer = sparse_codes(signals, atoms, n_nonzeros - 1)
         assert (left <= np.linalg.norm(signals - fewer.signals(atoms), axis=1) + 1e-9).all()
-    alone = sparse_codes(signals[260:], atoms, n_nonzeros)
-    assert_allclose(alone.weights, codes[slice(260, None)].weights, atol=1e-8)
+    separate = sparse_codes(signals[260:], atoms, n_nonzeros)
+    assert_allclose(separate.weights, codes[slice(260, None)].weights, atol=1e-8)
 
 
 def test_scaling_a_signal_scales_its_weights(rng):
@@ -103,6 +103,6 @@ def test_scaling_a_signal_scales_its_weights(rng):
 
 
 @pytest.mark.parametrize("n_nonzeros", [0, 21, 100])
-def test_impossible_numbers_of_atoms_are_told(rng, n_nonzeros):
+def test_invalid_numbers_of_atoms_are_refused(rng, n_nonzeros):
     with pytest.raises(InvalidSettingError, match=f"^n_nonzeros is {n_nonzeros}"):
         sparse_codes(rng.normal(size=(2, 20)), unit(rng.normal(size=(35, 20))), n_nonzeros)

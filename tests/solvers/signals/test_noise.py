@@ -1,4 +1,4 @@
-"""The first guess of the noise decides how much is believed, of odd channels too."""
+"""The initial noise estimate determines the weight of the data, also of unusual channels."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_g
 from solvers.signals.noise import estimate_noise, shrink_noise
 
 
-def test_rough_noise_sees_the_noise_and_not_the_motion(rng):
+def test_rough_noise_estimates_the_noise_without_the_motion(rng):
     time = np.arange(2000) / 60.0
     smooth = 30.0 * np.sin(2 * np.pi * time)[:, None]
 
@@ -18,7 +18,7 @@ def test_rough_noise_sees_the_noise_and_not_the_motion(rng):
     assert_allclose(found, [0.5, 3.0], rtol=0.1)
 
 
-def test_channels_that_differ_by_chance_are_drawn_together(rng):
+def test_random_differences_of_channels_are_shrunk(rng):
     n_samples = np.full(60, 50)
     found = np.exp(np.log(2.0) + rng.normal(scale=np.sqrt(0.5 / 50), size=60))
 
@@ -27,16 +27,16 @@ def test_channels_that_differ_by_chance_are_drawn_together(rng):
 
 
 @pytest.mark.parametrize("own", [0.3, 20.0])
-def test_a_channel_of_another_kind_keeps_its_own_noise(own, rng):
-    """The root's place in centimetres, among rotations in degrees."""
+def test_channel_with_another_unit_keeps_its_own_noise(own, rng):
+    """The root position in centimeters, among rotations in degrees."""
     found = np.append(np.exp(np.log(3.0) + rng.normal(scale=0.05, size=60)), own)
 
     assert_allclose(shrink_noise(found, np.full(61, 200))[-1], own, rtol=0.05)
 
 
 @pytest.mark.parametrize("jitter", [0.0, 3.0])
-def test_the_root_is_cleaned_whatever_the_joints_noise(jitter):
-    """With the joints' 3 degrees taken for its 4 mm, the root would lose its bob and sway."""
+def test_root_is_cleaned_at_any_noise_of_the_joints(jitter):
+    """With the 3 degrees of the joints for its 4 mm, the root would lose its bob and sway."""
     walk = walking_gait(GaitSettings(duration=6.0, frame_rate=30.0))
     raw = corrupt(walk, CorruptionSettings(jitter=jitter, root_jitter=0.004))
 

@@ -1,4 +1,4 @@
-"""The correction must be the minimum that it claims to be, at any frame rate."""
+"""The correction is the minimum of its cost at any frame rate."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from solvers.signals.smooth_correction import (
 )
 
 
-def test_equals_the_dense_least_squares_solution(rng):
+def test_correction_equals_the_dense_least_squares_solution(rng):
     rate, blend, hold = 30.0, 0.4, 3.0
     speed = rng.normal(size=(19, 1))
     held = (rng.random((19, 1)) > 0.4) * rng.random((19, 1))
@@ -32,8 +32,8 @@ def test_equals_the_dense_least_squares_solution(rng):
 
 
 @pytest.mark.parametrize("rate", [60.0, 240.0])
-def test_a_free_correction_fades_as_announced(rate):
-    """Behind a long pull to 1: exp(-x) (cos x + sin x) with x = t / (tau sqrt 2)."""
+def test_free_correction_decays_as_documented(rate):
+    """After a long constraint to 1: exp(-x) (cos x + sin x) with x = t / (tau sqrt 2)."""
     n_frames = int(4 * rate)
     pulled = (np.arange(n_frames) < 2 * rate)[:, None].astype(float)
     rest = np.zeros((n_frames - 1, 1))
@@ -45,11 +45,11 @@ def test_a_free_correction_fades_as_announced(rate):
     time = np.arange(n_frames - int(2 * rate) + 1) / rate
     x = time * FADE_TIME_CONSTANTS / 0.5 / np.sqrt(2.0)
     expected = np.exp(-x) * (np.cos(x) + np.sin(x))
-    # The last frame that is pulled ends half a frame late, and gives way by a hundredth.
+    # The last constrained frame ends half a frame late and deviates by a hundredth.
     assert_allclose(found[int(2 * rate) - 1 :], expected, atol=0.015 + 1.5 / rate)
 
 
-def test_a_held_curve_has_its_speed_and_moves_least():
+def test_constrained_curve_keeps_its_speed():
     speed = np.full((119, 1), 0.2)
     held = np.ones((119, 1))
 
@@ -59,7 +59,7 @@ def test_a_held_curve_has_its_speed_and_moves_least():
     assert_allclose(found.mean(), 0.0, atol=1e-9)
 
 
-def test_nothing_held_is_nothing_changed(rng):
+def test_correction_is_zero_without_constraints(rng):
     assert not smooth_correction(rng.normal(size=(50, 3)), np.zeros(50), 30.0, 0.3).any()
 
 

@@ -25,7 +25,7 @@ def about(axis, angles):
 
 
 def with_rotation(motion, joint, axis, angles):
-    """Turn a joint further, by an angle in each frame, about an axis of its parent."""
+    """Rotate a joint by an angle in each frame about an axis of its parent."""
     rotations = motion.rotations.copy()
     index = motion.skeleton.names.index(joint)
     rotations[:, index] = multiply(about(axis, angles), rotations[:, index])
@@ -33,12 +33,12 @@ def with_rotation(motion, joint, axis, angles):
 
 
 def passing(motion, exponent):
-    """The part of the time that has passed, a little hastened or delayed."""
+    """The elapsed fraction of the time, slightly accelerated or delayed."""
     return np.linspace(0.0, 1.0, motion.n_frames) ** exponent
 
 
 def fastest(motions, joint):
-    """Meters per second that a joint moves at most, as the actor faces."""
+    """Maximum speed of a joint in the actor's frame, meters per second."""
     index = motions[0].skeleton.names.index(joint)
     return max(
         np.linalg.norm(np.diff(positions_in_body_frame(one)[:, index], axis=0), axis=-1).max()
@@ -49,7 +49,7 @@ def fastest(motions, joint):
 
 @pytest.mark.parametrize("method", EVERY)
 def test_variants_keep_arms_that_rotate_twice(method, walks):
-    """Their rotation vectors pass pi again and again."""
+    """Their rotation vectors pass pi repeatedly."""
     mills = [
         with_rotation(walk, "LeftArm", (1, 0, 0), 4 * np.pi * passing(walk, power))
         for walk, power in zip(walks, (1.0, 1.1, 0.95, 1.05), strict=True)
@@ -66,13 +66,13 @@ def test_variants_keep_arms_that_rotate_twice(method, walks):
     for motion in variants:
         body = positions_in_body_frame(motion)
         arm = body[:, index] - body[:, shoulder]
-        turned = np.unwrap(np.arctan2(arm[:, 1], arm[:, 2]))
-        assert abs(abs(turned[-1] - turned[0]) - 4 * np.pi) < 1.0
+        rotated = np.unwrap(np.arctan2(arm[:, 1], arm[:, 2]))
+        assert abs(abs(rotated[-1] - rotated[0]) - 4 * np.pi) < 1.0
 
 
 @pytest.mark.parametrize("method", EVERY)
 def test_variants_do_not_flip_arms_that_point_up(method, walks):
-    """Beyond straight up in some examples, short of it in others: half a turn from rest."""
+    """Beyond straight up in some examples, short of it in others: 180 degrees from rest."""
     raised = [
         with_rotation(walk, "LeftArm", (0, 1, 0), -np.pi / 2 - lift * passing(walk, 1.0))
         for walk, lift in zip(walks, (1.4, 1.75, 1.5, 1.65), strict=True)
@@ -84,7 +84,7 @@ def test_variants_do_not_flip_arms_that_point_up(method, walks):
     )
 
     variants = [one.motion for one in drawn]
-    # The latent factor model is quicker where a clip begins; a flip would be ten times so.
+    # The latent factor model is faster at the start of a clip; a flip is ten times as fast.
     times = 1.3 if method is Method.MIXTURE else 3.0
     assert fastest(variants, "LeftHand") < times * fastest(raised, "LeftHand")
 
@@ -93,22 +93,22 @@ def test_variants_do_not_flip_arms_that_point_up(method, walks):
 def test_variants_keep_several_rotations_on_the_spot(method, walks):
     spun = []
     for walk, power in zip(walks, (1.0, 1.1, 0.95, 1.05), strict=True):
-        turn = about((0, 0, 1), 6 * np.pi * passing(walk, power))
+        angle = about((0, 0, 1), 6 * np.pi * passing(walk, power))
         rotations = walk.rotations.copy()
-        rotations[:, 0] = multiply(turn, rotations[:, 0])
-        there = walk.root_positions * (0.0, 0.0, 1.0)
-        spun.append(walk.with_poses(rotations, there))
+        rotations[:, 0] = multiply(angle, rotations[:, 0])
+        in_place = walk.root_positions * (0.0, 0.0, 1.0)
+        spun.append(walk.with_poses(rotations, in_place))
     settings = VarySettings(method=method)
 
     drawn = draw_variants(learn_variation_model(spun, settings=settings), 6, settings=settings)
 
-    wanted = np.mean([np.ptp(headings_from_motion(one)) for one in spun])
+    expected = np.mean([np.ptp(headings_from_motion(one)) for one in spun])
     for variant in drawn:
-        assert np.ptp(headings_from_motion(variant.motion)) == pytest.approx(wanted, rel=0.1)
+        assert np.ptp(headings_from_motion(variant.motion)) == pytest.approx(expected, rel=0.1)
 
 
 def test_two_flips_in_one_direction_do_not_wind_up_a_joint(walks):
-    """A thigh that is half a turn off for five frames: before and after all is as without."""
+    """A thigh rotated by 180 degrees for five frames: other frames are as without it."""
     angles = np.zeros(walks[1].n_frames)
     angles[25:30], angles[30:] = np.pi, 2.0 * np.pi
     broken = with_rotation(walks[1], "LeftUpLeg", (0.0, 0.0, 1.0), angles)
@@ -127,30 +127,30 @@ def test_two_flips_in_one_direction_do_not_wind_up_a_joint(walks):
 
 
 def test_model_is_the_same_at_twice_the_frame_rate(walks):
-    """Of another rate and length: variants go as fast and as far."""
+    """Rate and length differ: variants have the same speed and distance."""
     resampled = [walks[0], *(resample(walk, 150.0) for walk in walks[1:])]
-    reference_rotations, mixed = (
+    reference, mixed = (
         [one.motion for one in draw_variants(learn_variation_model(some), 8)]
         for some in (walks, resampled)
     )
 
     assert {one.frame_rate for one in mixed} == {60.0}
-    lengths = [np.mean([one.n_frames for one in some]) for some in (reference_rotations, mixed)]
+    lengths = [np.mean([one.n_frames for one in some]) for some in (reference, mixed)]
     assert lengths[1] == pytest.approx(lengths[0], rel=0.05)
     path_lengths = [
         np.mean([np.ptp(one.root_positions[:, 1]) for one in some])
-        for some in (reference_rotations, mixed)
+        for some in (reference, mixed)
     ]
     assert path_lengths[1] == pytest.approx(path_lengths[0], rel=0.05)
 
 
 @pytest.mark.parametrize("method", Method)
 def test_twenty_thousand_frames(method, walks):
-    """Of a walk that comes again and again: many frames, and their kernels, are the same."""
+    """A repeated walk: many frames and their kernels are equal."""
     walk = walks[0]
     rotations = np.tile(walk.rotations, (400, 1, 1))[:20_000]
-    places = np.tile(walk.root_positions, (400, 1))[:20_000]
-    long = replace(walk, rotations=rotations, root_positions=places, frame_rate=400.0)
+    positions = np.tile(walk.root_positions, (400, 1))[:20_000]
+    long = replace(walk, rotations=rotations, root_positions=positions, frame_rate=400.0)
     settings = VarySettings(method=method)
 
     model = learn_variation_model([long, long.slice(0, 19_900)], settings=settings)

@@ -21,10 +21,10 @@ from solvers.variation import (
 from solvers.variation.learn_variation import MAX_VALUES
 
 
-def turned_about_z(motion, angle):
-    turn = np.array([np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)])
+def rotated_about_z(motion, angle):
+    rotation = np.array([np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)])
     rotations = motion.rotations.copy()
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    rotations[:, 0] = multiply(rotation, rotations[:, 0])
     cos, sin = np.cos(angle), np.sin(angle)
     x, y, z = motion.root_positions.T
     return replace(
@@ -35,13 +35,11 @@ def turned_about_z(motion, angle):
 
 
 def test_model_ignores_position_and_heading_of_examples(walks):
-    there = [turned_about_z(walk, 0.7 * index) for index, walk in enumerate(walks)]
+    moved = [rotated_about_z(walk, 0.7 * index) for index, walk in enumerate(walks)]
 
-    reference_rotations, turned = (
-        synthesize(learn_variation_model(one), 2) for one in (walks, there)
-    )
+    reference, rotated = (synthesize(learn_variation_model(one), 2) for one in (walks, moved))
 
-    for one, other in zip(reference_rotations, turned, strict=True):
+    for one, other in zip(reference, rotated, strict=True):
         assert one.n_frames == other.n_frames
         assert_allclose(one.root_positions, other.root_positions, atol=1e-5)
         assert_allclose(np.abs(np.sum(one.rotations * other.rotations, axis=-1)), 1, atol=1e-7)
@@ -76,11 +74,9 @@ def test_examples_are_scaled_to_the_size_of_the_first(walks):
         root_positions=0.6 * walks[1].root_positions,
     )
 
-    grown, reference_rotations = (
-        learn_variation_model([walks[0], one]) for one in (child, walks[1])
-    )
+    grown, reference = (learn_variation_model([walks[0], one]) for one in (child, walks[1]))
 
-    assert_allclose(grown.root, reference_rotations.root, atol=0.01)
+    assert_allclose(grown.root, reference.root, atol=0.01)
 
 
 def test_errors_name_the_example_and_the_remedy(walks, leg):
@@ -132,16 +128,16 @@ def test_clips_of_a_few_frames(walks, n_frames, method):
 
 
 def test_single_clip_varies_only_by_borrowed_variation(walks):
-    alone, generic = learn_variation_model(walks[:1]), borrow_variation(walks[0])
+    separate, generic = learn_variation_model(walks[:1]), borrow_variation(walks[0])
     others = borrow_variation(walks[0], [learn_variation_model(walks[1:])])
 
-    found = [measure_variation(synthesize(one, 6)) for one in (alone, generic, others)]
+    found = [measure_variation(synthesize(one, 6)) for one in (separate, generic, others)]
 
     assert found[0] < 1e-6
     assert 0.2 < found[1] / measure_variation(walks) < 2.0
     assert 0.2 < found[2] / measure_variation(walks) < 2.0
     assert generic.warning == "There is one example; how it varies is borrowed."
-    assert_allclose(generic.joints.mean(axis=0), alone.joints[0], atol=1e-12)
+    assert_allclose(generic.joints.mean(axis=0), separate.joints[0], atol=1e-12)
 
 
 def test_generic_model_does_not_move_joints_at_rest(walks):
@@ -168,8 +164,8 @@ def test_saved_model_gives_the_same_variants(learned, tmp_path):
 
     again = load_variation_model(tmp_path / "walks.npz")
 
-    ours, theirs = (synthesize(one, 2, settings=settings) for one in (model, again))
-    for one, other in zip(ours, theirs, strict=True):
+    result, reference = (synthesize(one, 2, settings=settings) for one in (model, again))
+    for one, other in zip(result, reference, strict=True):
         assert_allclose(one.rotations, other.rotations, atol=1e-9)
 
 

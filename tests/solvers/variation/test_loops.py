@@ -81,9 +81,9 @@ def test_close_loop_closes_a_cut_cycle(cycles):
 
 
 @pytest.mark.parametrize("planted", [False, True])
-@pytest.mark.parametrize("alone", [False, True])
-def test_variants_of_a_looping_walk_loop(alone, planted, cycles):
-    model = borrow_variation(cycles[0]) if alone else learn_variation_model(cycles)
+@pytest.mark.parametrize("separate", [False, True])
+def test_variants_of_a_looping_walk_loop(separate, planted, cycles):
+    model = borrow_variation(cycles[0]) if separate else learn_variation_model(cycles)
     assert model.loops
 
     for variant in draw_variants(model, 4):
@@ -163,11 +163,11 @@ def test_close_loop_matches_root_speeds():
 def test_repeated_cycles_start_where_the_previous_ended():
     """Four cycles of a walk through a right angle each return to the start."""
     walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
-    turn = np.linspace(0.0, np.pi / 2, walk.n_frames)
-    about = np.stack([np.cos(turn / 2), 0 * turn, 0 * turn, np.sin(turn / 2)], axis=-1)
+    angle = np.linspace(0.0, np.pi / 2, walk.n_frames)
+    about = np.stack([np.cos(angle / 2), 0 * angle, 0 * angle, np.sin(angle / 2)], axis=-1)
     rotations = walk.rotations.copy()
     rotations[:, 0] = multiply(about, walk.rotations[:1, 0])
-    positions = np.stack([np.sin(turn), 1 - np.cos(turn), 0 * turn + 0.9], axis=-1)
+    positions = np.stack([np.sin(angle), 1 - np.cos(angle), 0 * angle + 0.9], axis=-1)
     quarter = walk.with_poses(rotations, positions)
 
     circle = repeat_loop(quarter, 4)

@@ -72,13 +72,13 @@ def test_narrow_joints_need_no_moving_reference(walks):
 
 
 def test_windmill_survives_copying_and_saving(walks, tmp_path):
-    place = walks[0].skeleton.names.index("LeftArm")
+    index = walks[0].skeleton.names.index("LeftArm")
     mills = []
     for walk in walks[:3]:
         rotations = walk.rotations.copy()
         angles = np.linspace(0.0, 4.0 * np.pi, walk.n_frames)
-        turn = quaternion_from_rotation_vector(angles[:, None] * np.array([1.0, 0.0, 0.0]))
-        rotations[:, place] = multiply(turn, rotations[:, place])
+        rotation = quaternion_from_rotation_vector(angles[:, None] * np.array([1.0, 0.0, 0.0]))
+        rotations[:, index] = multiply(rotation, rotations[:, index])
         mills.append(walk.with_poses(rotations))
     model = learn_variation_model(mills)
 

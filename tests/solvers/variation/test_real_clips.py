@@ -1,4 +1,4 @@
-"""Variants of real captures: as varied, as smooth, near the examples and none a copy."""
+"""Variants of real captures are varied, smooth, near the examples and no copies."""
 
 from itertools import combinations
 
@@ -31,13 +31,13 @@ def test_variants_are_near_the_examples_but_not_copies(clips):
     assert 0.65 < measure_variation(variants) / measure_variation(clips) < 1.4
     # Body positions jerk more than joint angles: .9 to 1.1 in docs/benchmarks_variation.md.
     assert 0.6 < jerk(variants) / jerk(clips) < 1.45
-    theirs, ours = (
+    reference, result = (
         [positions_in_body_frame(one)[::6] for one in group] for group in (clips, variants)
     )
-    apart = np.median([warp(a, b).cost for a, b in combinations(theirs, 2)])
-    nearest = [min(warp(one, other).cost for other in theirs) for one in ours]
-    assert min(nearest) > 0.05 * apart
-    assert max(nearest) < apart
+    distances = np.median([warp(a, b).cost for a, b in combinations(reference, 2)])
+    nearest = [min(warp(one, other).cost for other in reference) for one in result]
+    assert min(nearest) > 0.05 * distances
+    assert max(nearest) < distances
 
 
 def test_the_latent_factor_model_neither_drifts_nor_jerks(recordings):
@@ -52,6 +52,6 @@ def test_the_latent_factor_model_neither_drifts_nor_jerks(recordings):
 
 
 def jerk(motions):
-    """Mean absolute third difference of where joints are, at 30 Hz, meters."""
+    """Mean absolute third difference of joint positions at 30 Hz, meters."""
     bodies = (positions_in_body_frame(one)[::4] for one in motions)
     return np.mean([np.abs(np.diff(body, 3, axis=0)).mean() for body in bodies])

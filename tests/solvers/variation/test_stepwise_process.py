@@ -30,9 +30,9 @@ def data(rng):
 
 
 def processes(one, other, hyperparameters):
-    far = cdist(one, other, "sqeuclidean")
+    distances = cdist(one, other, "sqeuclidean")
     return [
-        np.exp(-0.5 * far / length**2) + bias
+        np.exp(-0.5 * distances / length**2) + bias
         for length, bias in zip(hyperparameters.lengths, hyperparameters.biases, strict=True)
     ]
 
@@ -94,12 +94,12 @@ def test_published_likelihood_equals_that_of_three_outputs(data, hyperparameters
 
 @pytest.mark.parametrize("cost", [_latent_cost, _published_cost])
 def test_gradients_equal_finite_differences(cost, data, hyperparameters):
-    far = cdist(data[0], data[0], "sqeuclidean")
+    distances = cdist(data[0], data[0], "sqeuclidean")
 
-    slope = cost(point(hyperparameters), far, data[1])[1]
+    slope = cost(point(hyperparameters), distances, data[1])[1]
 
     differences = approx_fprime(
-        point(hyperparameters), lambda x: cost(x, far, data[1])[0], 1e-6
+        point(hyperparameters), lambda x: cost(x, distances, data[1])[0], 1e-6
     )
     assert_allclose(slope, differences, atol=2e-4)
 
@@ -108,13 +108,15 @@ def test_gradients_equal_finite_differences(cost, data, hyperparameters):
 def test_learning_increases_the_likelihood(published, rng):
     features = rng.normal(size=(40, 2))
     outputs = np.sin(features @ rng.normal(size=(2, 3))) + 0.05 * rng.normal(size=(40, 3))
-    far = cdist(features, features, "sqeuclidean")
+    distances = cdist(features, features, "sqeuclidean")
     cost = _published_cost if published else _latent_cost
 
     costs = [
-        cost(point(learn_hyperparameters(features, outputs, published, rounds)), far, outputs)[
-            0
-        ]
+        cost(
+            point(learn_hyperparameters(features, outputs, published, rounds)),
+            distances,
+            outputs,
+        )[0]
         for rounds in (1, 5, 40)
     ]
 
@@ -128,19 +130,19 @@ def test_prediction_is_exact_when_all_examples_are_inducing(
     features, outputs = data
     stack, _ = one_stack(features, outputs, hyperparameters, published)
     new = rng.normal(size=(5, 4))
-    seen, there = ((x - features.mean(0)) / features.std(0) for x in (features, new))
+    observed, new_features = ((x - features.mean(0)) / features.std(0) for x in (features, new))
     scale, middle = outputs.std(axis=0).max(), outputs.mean(axis=0)
     weights = hyperparameters.mixing**2 if published else np.eye(3)
     mixing = np.eye(3) if published else np.linalg.inv(hyperparameters.mixing)
     channels = np.linalg.solve(mixing, ((outputs - middle) / scale).T)
     predict = []
-    for row, told in zip(weights, channels, strict=True):
+    for row, result in zip(weights, channels, strict=True):
         own, other = (
-            np.tensordot(row, np.stack(processes(x, seen, hyperparameters)), axes=1)
-            for x in (seen, there)
+            np.tensordot(row, np.stack(processes(x, observed, hyperparameters)), axes=1)
+            for x in (observed, new_features)
         )
         noise = row @ hyperparameters.noises
-        predict.append(other @ np.linalg.solve(own + noise * np.eye(9), told))
+        predict.append(other @ np.linalg.solve(own + noise * np.eye(9), result))
 
     got = stack.predict(new)[:, 0]
 
@@ -150,8 +152,8 @@ def test_prediction_is_exact_when_all_examples_are_inducing(
 def test_drawn_functions_have_the_exact_covariance(data, hyperparameters, rng):
     features, outputs = data
     stack, _ = one_stack(features, outputs, hyperparameters, published=False)
-    seen = (features - features.mean(0)) / features.std(0)
-    kernel, noise = processes(seen, seen, hyperparameters)[0], hyperparameters.noises[0]
+    observed = (features - features.mean(0)) / features.std(0)
+    kernel, noise = processes(observed, observed, hyperparameters)[0], hyperparameters.noises[0]
     exact = kernel - kernel @ np.linalg.solve(kernel + noise * np.eye(9), kernel)
 
     functions = stack.draw_functions(20_000, rng)[0, 0]
@@ -161,7 +163,7 @@ def test_drawn_functions_have_the_exact_covariance(data, hyperparameters, rng):
 
 
 def test_outputs_covary_only_in_the_latent_factor_model(rng):
-    """Two outputs that are one and the same up to a factor: what is drawn must be so too."""
+    """Two outputs that are proportional: so must be the samples."""
     features = rng.normal(size=(60, 3))
     curves = np.sin(2.0 * features[:, 0]) + 0.3 * rng.normal(size=60)
     outputs = np.column_stack([curves, 2.0 * curves, 0.1 * rng.normal(size=60)])

@@ -82,9 +82,9 @@ def test_frozen_partition_equals_that_of_the_base(partition, learned, walks):
 
     variant = synthesize(model, 1, settings=frozen)[0]
 
-    apart = rotation_between(variant.rotations, walks[model.center].rotations)
-    assert apart[:, members].max() < 1e-5
-    assert apart[:, ~members].max() > 0.01
+    distances = rotation_between(variant.rotations, walks[model.center].rotations)
+    assert distances[:, members].max() < 1e-5
+    assert distances[:, ~members].max() > 0.01
 
 
 def test_small_amount_stays_near_the_base(learned, walks):
@@ -93,10 +93,10 @@ def test_small_amount_stays_near_the_base(learned, walks):
     little = replace(settings, amount=0.02, base=farthest + 1)
 
     for variant in synthesize(model, 3, settings=little):
-        apart = warp(
+        distance = warp(
             positions_in_body_frame(variant), positions_in_body_frame(walks[farthest])
         ).cost
-        assert 1e-5 < apart < 0.15 * measure_variation(walks)
+        assert 1e-5 < distance < 0.15 * measure_variation(walks)
 
 
 def test_pins_hold_with_any_timing(learned, walks):
@@ -105,11 +105,11 @@ def test_pins_hold_with_any_timing(learned, walks):
     example = positions_in_body_frame(walks[model.center])
 
     for variant in synthesize(model, 3, settings=pinned):
-        seen = positions_in_body_frame(variant)
+        observed = positions_in_body_frame(variant)
         # Millimeters: `positions_in_body_frame` removes a heading averaged over frames.
-        assert_allclose(seen[0], example[0], atol=3e-3)
-        assert_allclose(seen[-1], example[-1], atol=3e-3)
-        assert warp(seen, example).distances.max() > 0.005
+        assert_allclose(observed[0], example[0], atol=3e-3)
+        assert_allclose(observed[-1], example[-1], atol=3e-3)
+        assert warp(observed, example).distances.max() > 0.005
 
 
 @pytest.mark.parametrize("amount", [1.0, 2.0])
@@ -129,11 +129,11 @@ def test_joints_stay_near_the_range_of_the_examples(amount, learned):
 
 
 def test_variant_has_the_requested_length(model, walks):
-    reference_rotations, slow = (
+    reference, slow = (
         synthesize(model, 1, settings=VarySettings(length=length))[0] for length in (1.0, 2.0)
     )
 
-    assert abs(slow.n_frames - 2 * reference_rotations.n_frames) <= 2
+    assert abs(slow.n_frames - 2 * reference.n_frames) <= 2
 
 
 def test_timing_changes_only_the_length(model):
@@ -170,13 +170,13 @@ def test_errors_say_what_to_do(model):
 
 
 def test_progress_reaches_one_and_can_cancel(model):
-    told = []
-    synthesize(model, 4, progress=lambda fraction, message="": told.append(fraction))
+    fractions = []
+    synthesize(model, 4, progress=lambda fraction, message="": fractions.append(fraction))
 
     def cancel(fraction, message=""):
         raise SolveCancelled
 
-    assert told == sorted(told)
-    assert told[-1] == 1.0
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
     with pytest.raises(SolveCancelled):
         synthesize(model, 4, progress=cancel)

@@ -74,7 +74,10 @@ def test_actor_outside_the_image_is_estimated_flagged_and_reported():
 
     gone = np.array([not seen.any() for seen in map(drawn, poses)])
     assert 3 < gone.sum() < 20
-    assert found.captured.doubtful[gone].all() and found.captured.doubtful[:8].mean() < 0.1
+    assert (
+        found.captured.low_confidence[gone].all()
+        and found.captured.low_confidence[:8].mean() < 0.1
+    )
     assert re.match(
         r"No person is visible in 1\d of 30 frames, from 0\.\d s on\.", found.remarks[0]
     )
@@ -92,9 +95,9 @@ def test_upper_body_has_tracked_arms_and_unreliable_legs():
     found = caught(recording)
 
     assert "The image ends above the feet: legs are estimated or omitted." in found.remarks
-    assert found.captured.doubtful[:, LEGS].all()
+    assert found.captured.low_confidence[:, LEGS].all()
     assert off(found, poses)[:, ARMS].mean() < 0.05
-    assert not found.captured.doubtful[:, ARMS].any()
+    assert not found.captured.low_confidence[:, ARMS].any()
 
 
 def test_real_upper_bodies_close_by(recordings):
@@ -102,7 +105,7 @@ def test_real_upper_bodies_close_by(recordings):
         found = caught(read_depth(path), None)
 
         assert any("ends above the feet" in remark for remark in found.remarks)
-        assert found.captured.doubtful[0, LEGS].all()
+        assert found.captured.low_confidence[0, LEGS].all()
         assert found.captured.residual[0] < 0.05
 
 
@@ -132,7 +135,7 @@ def test_missing_frames_are_interpolated_and_reported():
         "frames no person is detected" in message or "Nobody is" in message
         for message in found.remarks
     )
-    assert found.captured.doubtful[list(missing)].all()
+    assert found.captured.low_confidence[list(missing)].all()
     assert off(found, poses).mean() < 0.04
 
 

@@ -49,7 +49,7 @@ def test_missing_tracking_state_gives_no_term(moved):
     reliability = reconstruct_motion(moved).reliability_terms
 
     assert np.isnan(reliability.tracking).all()
-    assert np.isfinite(reliability.combined).all() and np.isfinite(reliability.behaviour).all()
+    assert np.isfinite(reliability.combined).all() and np.isfinite(reliability.behavior).all()
 
 
 def test_length_term_needs_the_recording_of_an_armature(walk, moved):
@@ -64,7 +64,7 @@ def test_length_term_needs_the_recording_of_an_armature(walk, moved):
 def test_jittering_joint_has_a_low_behavior_term(walk, moved):
     reliability = reconstruct_motion(moved, source=walk).reliability_terms
 
-    wrist = of(reliability.behaviour, moved, "WristLeft")
+    wrist = of(reliability.behavior, moved, "WristLeft")
     assert wrist[LOST].mean() < 0.7
     assert np.allclose(wrist[: LOST.start - 3], 1.0)
 
@@ -80,7 +80,7 @@ def test_other_joints_have_no_reliability():
     umbrella = names.index("Umbrella")
     for term in (
         result.reliability_terms.combined,
-        result.reliability_terms.behaviour,
+        result.reliability_terms.behavior,
         result.confidence,
     ):
         assert np.isnan(term[:, umbrella]).all()

@@ -1,4 +1,4 @@
-"""The switch of the heat colours: on the window manager, so that the scene stays as it is."""
+"""Switch of the confidence colors; it is on the window manager, not in the scene."""
 
 from typing import Any
 
@@ -9,11 +9,11 @@ import numpy as np
 from ..actions.reliability_curves import Term
 from ..panels.drawing import draw_sentence
 from ..panels.preferred import preferred
-from .heat import Heat, heat_at, terms_told
-from .view_drawing import ViewDrawing, redraw, seen_active
+from .confidence_colors import ColoredBones, available_terms, colored_bones_at
+from .view_drawing import ViewDrawing, redraw, visible_active
 
-WIDER = 2.0
-"""Times as wide as the lines of the overlay, for they lie upon the bones."""
+WIDTH_FACTOR = 2.0
+"""Line width relative to the comparison overlay, so that bones do not hide the lines."""
 TERMS = (
     (Term.COMBINED, "Combined", "Overall probability that each joint is right"),
     (Term.BEHAVIOUR, "Movement", "Red joints vibrate in a way that no limb does"),
@@ -29,34 +29,34 @@ MISSING = {
     Term.TRACKING: "Sensor: the recording has no tracking state of the joints.",
 }
 OLDER = "Made by an earlier version without details. Run Reconstruct again."
-NOTHING_TOLD = "No confidence data in this action. Run Reconstruct first."
+NO_TERMS = "No confidence data in this action. Run Reconstruct first."
 _drawing: list[ViewDrawing] = []
 
 
-def draw_heat_switch(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw the switch and, while it is on, whose trust is shown and what is not known."""
+def draw_confidence_switch(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the switch and, while it is on, the sources of confidence and missing ones."""
     manager = context.window_manager
     layout.prop(manager, "mocap_assist_heat", toggle=True, icon="COLOR")
     armature = context.view_layer.objects.active
     if not manager.mocap_assist_heat or armature is None or armature.type != "ARMATURE":
         return
-    told = terms_told(armature)
-    signs = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
+    available = available_terms(armature)
+    grid = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
     for term, _, _ in TERMS:
-        cell = signs.row(align=True)
-        cell.enabled = term in told
+        cell = grid.row(align=True)
+        cell.enabled = term in available
         cell.prop_enum(manager, "mocap_assist_heat_term", term.name)
-    for sentence in _missing(told):
+    for sentence in _missing(available):
         draw_sentence(layout, context, sentence, icon="INFO")
 
 
-def _missing(told: frozenset[Term]) -> list[str]:
-    """Say what cannot be shown, and why."""
-    if not told:
-        return [NOTHING_TOLD]
-    if told == {Term.COMBINED}:
+def _missing(available: frozenset[Term]) -> list[str]:
+    """Return a message for each missing term."""
+    if not available:
+        return [NO_TERMS]
+    if available == {Term.COMBINED}:
         return [OLDER]
-    return [MISSING[term] for term in MISSING if term not in told]
+    return [MISSING[term] for term in MISSING if term not in available]
 
 
 def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
@@ -66,21 +66,23 @@ def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None
 def _draw(context: bpy.types.Context) -> None:
     if not context.window_manager.mocap_assist_heat:
         return
-    armature = seen_active(context)
+    armature = visible_active(context)
     if armature is None or armature.type != "ARMATURE":
         return
     term = Term[context.window_manager.mocap_assist_heat_term]
-    heat = heat_at(armature, context.scene.frame_current_final, term)
-    if heat is not None:
-        _draw_heat(heat, armature.matrix_world, WIDER * preferred("line_width"))
+    bones = colored_bones_at(armature, context.scene.frame_current_final, term)
+    if bones is not None:
+        _draw_colored_bones(
+            bones, armature.matrix_world, WIDTH_FACTOR * preferred("line_width")
+        )
 
 
-def _draw_heat(heat: Heat, matrix: Any, width: float) -> None:
-    """Draw bones and joints in front of everything."""
+def _draw_colored_bones(bones: ColoredBones, matrix: Any, width: float) -> None:
+    """Draw bones and joints in front of all objects."""
     from gpu_extras.batch import batch_for_shader
 
-    points = np.ascontiguousarray(heat.ends.reshape(-1, 3))
-    colors = np.ascontiguousarray(heat.colors.reshape(-1, 4))
+    points = np.ascontiguousarray(bones.ends.reshape(-1, 3))
+    colors = np.ascontiguousarray(bones.colors.reshape(-1, 4))
     lines = gpu.shader.from_builtin("POLYLINE_SMOOTH_COLOR")
     batch = batch_for_shader(lines, "LINES", {"pos": points, "color": colors})
     lines.bind()
@@ -95,7 +97,7 @@ def _draw_heat(heat: Heat, matrix: Any, width: float) -> None:
 
 
 def register() -> None:
-    """Add the switch; nothing is drawn until it is on."""
+    """Add the switch, which starts off."""
     bpy.types.WindowManager.mocap_assist_heat = bpy.props.BoolProperty(
         name="Show Confidence",
         description=(
@@ -117,7 +119,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take the switch and the drawing away."""
+    """Remove the switch and the drawing."""
     _drawing.pop().close()
     del bpy.types.WindowManager.mocap_assist_heat_term
     del bpy.types.WindowManager.mocap_assist_heat

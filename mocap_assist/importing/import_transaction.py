@@ -1,4 +1,4 @@
-"""Recordings that come into the scene one after the other, and go again if need be."""
+"""Add recordings to the scene one by one, and remove them again on failure."""
 
 import logging
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import recording_figures
 from ..scene.origin import note_origin, origin_of_file
-from ..scene.scene_objects import Numbers, all_or_nothing, choose, in_object_mode, remove
+from ..scene.scene_objects import Numbers, choose, in_object_mode, remove, undo_on_error
 from ..scene.scene_rate import FrameRate, extend_duration, set_scene_rate
 from ..scene.scene_state import SceneState
 from .choices import ImportChoices
@@ -25,16 +25,16 @@ from .solve_reading import Recording, in_one_tree
 
 logger = logging.getLogger(__name__)
 
-TOLD = 2  # of what a reader said
-NOTED = 3  # recordings that the redo panel lists
-READING = 0.6  # share of the time that goes into reading
+MAX_WARNINGS = 2  # of what a reader said
+MAX_LISTED = 3  # recordings that the redo panel lists
+READING_FRACTION = 0.6  # share of the time that goes into reading
 
 
 class Imported(NamedTuple):
-    """What became of the files."""
+    """Result of an import."""
 
     made: tuple[bpy.types.Object, ...]
-    said: tuple[str, ...]
+    messages: tuple[str, ...]
     """A sentence for each file that was read."""
     failed: tuple[str, ...]
     """A sentence for each that was not."""
@@ -43,30 +43,33 @@ class Imported(NamedTuple):
 
     @property
     def note(self) -> str:
-        """What the redo panel says: the first few recordings."""
-        more = len(self.said) - NOTED
-        return " ".join([*self.said[:NOTED], *[f"And {more} more."] * (more > 0)])
+        """Message for the redo panel: the first few recordings."""
+        more = len(self.messages) - MAX_LISTED
+        return " ".join([*self.messages[:MAX_LISTED], *[f"And {more} more."] * (more > 0)])
 
     @property
     def sentence(self) -> str:
-        """What to say in the status bar: what failed first."""
+        """Message for the status bar, failures first."""
         several = [f"{len(self.failed)} of {len(self.made) + len(self.failed)} files failed."]
-        return " ".join([*several * bool(self.failed and self.made), *self.failed, *self.said])
+        return " ".join([
+            *several * bool(self.failed and self.made),
+            *self.failed,
+            *self.messages,
+        ])
 
 
-class Arrival:
-    """What has come in so far.
+class ImportTransaction:
+    """Objects that an import has added so far.
 
-    Everything is known by its number, since undo in another window replaces what Blender's own
-    pointers mean.
+    It refers to data-blocks by number, since undo in another window invalidates pointers.
     """
 
     def __init__(self, context: bpy.types.Context, choices: ImportChoices) -> None:
         self._choices = choices
         self._state = SceneState.of(context)
-        self._made: list[Numbers] = []
+        self._created: list[Numbers] = []
         self._tops: list[int] = []
-        self._said: list[str] = []
+        self._messages: list[str] = []
         self._failed: list[str] = []
         self._figures: list[dict[str, Any]] = []
 
@@ -80,18 +83,20 @@ class Arrival:
         moving: Motion | Tracks | None = None,
         warnings: Sequence[str] = (),
     ) -> None:
-        """Make an armature or empties of a recording, or note why not; all or nothing.
+        """Create the objects of a recording completely, or note why not.
 
-        `moving` is what it becomes (`make_objects`), `warnings` what its reader said of it.
+        `moving` is its converted motion (`make_objects`), `warnings` those of its reader.
         """
         built = attempt(path, self._build, context, path, recording, moving, progress)
         if isinstance(built, Failure):
             self.refuse(path, built.as_error())
             return
         made, top, sentence = built
-        self._made.append(made)
+        self._created.append(made)
         self._tops.append(top.session_uid)
-        self._said.append(" ".join([sentence, *[f"{told}." for told in warnings[:TOLD]]]))
+        self._messages.append(
+            " ".join([sentence, *[f"{texts}." for texts in warnings[:MAX_WARNINGS]]])
+        )
         self._figures.append(_figures(recording, warnings))
 
     def refuse(self, path: Path, error: MocapAssistError) -> None:
@@ -102,21 +107,21 @@ class Arrival:
         self._failed.append(str(error) if named else f"{path.name}: {error}")
 
     def take_back(self, context: bpy.types.Context) -> None:
-        """Leave the scene as it was before all."""
-        if self._made:
+        """Restore the scene as it was before the import."""
+        if self._created:
             in_object_mode(context)
-            for made in self._made:
+            for made in self._created:
                 remove(made)
         self._state.restore(context)
 
     def end(self, context: bpy.types.Context) -> Imported:
         """Select what came in; return it."""
-        there = {each.session_uid: each for each in context.view_layer.objects}
-        tops = tuple(there[number] for number in self._tops if number in there)
+        objects = {each.session_uid: each for each in context.view_layer.objects}
+        tops = tuple(objects[number] for number in self._tops if number in objects)
         if tops:
             choose(context, list(tops), tops[-1])
-        failed = self._failed if self._said or self._failed else ["No file was chosen."]
-        return Imported(tops, tuple(self._said), tuple(failed), tuple(self._figures))
+        failed = self._failed if self._messages or self._failed else ["No file was chosen."]
+        return Imported(tops, tuple(self._messages), tuple(failed), tuple(self._figures))
 
     def _build(
         self,
@@ -126,7 +131,7 @@ class Arrival:
         moving: Motion | Tracks | None,
         progress: Progress,
     ) -> tuple[Numbers, bpy.types.Object, str]:
-        with all_or_nothing(context) as made:
+        with undo_on_error(context) as made:
             return made, *self._make(context, path, recording, moving, progress)
 
     def _make(
@@ -158,8 +163,11 @@ class Arrival:
 
 def _figures(recording: Recording, warnings: Sequence[str]) -> dict[str, Any]:
     figures = recording_figures(recording)
-    lost = figures.pop("never_seen", [])
-    told = [*warnings, *[f"Never observed: {', '.join(lost)}"] * bool(lost)]
+    never_observed = figures.pop("never_seen", [])
+    texts = [
+        *warnings,
+        *[f"Never observed: {', '.join(never_observed)}"] * bool(never_observed),
+    ]
     if isinstance(recording, JointRecording) and not in_one_tree(recording):
-        told.append("The parents of the joints are unknown")
-    return {**figures, "warnings": ". ".join(told)}
+        texts.append("The parents of the joints are unknown")
+    return {**figures, "warnings": ". ".join(texts)}

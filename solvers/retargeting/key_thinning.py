@@ -19,7 +19,7 @@ NewKey = tuple[int, int]
 """A joint, and the frame of a new key."""
 
 MIN_CHANGE = 1e-7
-"""Change, in radians or metres, below which a joint or the root needs only one key."""
+"""Change, in radians or meters, below which a joint or the root needs only one key."""
 INITIAL_TOLERANCE_FACTOR = 3.0
 """Initial error of each joint alone, as a multiple of the tolerance."""
 ROUNDING = 1e-12
@@ -74,7 +74,7 @@ class Thinning:
         for number, joint in enumerate(self.samples):
             while new_keys := self._too_far(joint):
                 self._add({(joint, frame) for frame in new_keys})
-            progress((number + 1) / len(self.samples), "Thinning out the keys of each joint")
+            progress((number + 1) / len(self.samples), "Reducing keys")
 
     def finish(self, progress: Progress) -> float:
         """Add keys until all errors are within the tolerance; return the largest error."""

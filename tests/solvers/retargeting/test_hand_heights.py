@@ -1,4 +1,4 @@
-"""Hands near the ground stay near it and go through it on no body."""
+"""Hands near the ground stay near it and do not penetrate it."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from rigs import RIGS, mixamo
 
 from solvers.motion import Motion, Skeleton, find_humanoid_map, forward_kinematics, reach
 from solvers.recordings import read_recording
-from solvers.retargeting.low_hands import ease_into_extension
+from solvers.retargeting.hand_heights import ease_into_extension
 from solvers.rotations.representations import quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
@@ -36,81 +36,81 @@ BODIES = {
 
 @pytest.mark.parametrize("clip", CLIPS)
 @pytest.mark.parametrize("body", BODIES)
-def test_no_wrist_goes_through_the_floor(recordings, clip, body):
-    """Before, wrists came to -23.5 cm, where the lowest of the source are at -1.2 cm."""
+def test_wrists_do_not_penetrate_the_floor(recordings, clip, body):
+    """Without correction, wrists are at -23.5 cm where the source's minimum is -1.2 cm."""
     motion = read_recording(recordings / f"mocap/hdm05/HDM_{clip}_120.amc")
     motion = every_fourth(motion)
 
     result = given_to(motion, BODIES[body])
 
     for role in WRISTS:
-        lowest = place(motion, role)[:, 2].min()
-        assert place(result, role)[:, 2].min() > min(lowest, 0.0) - 0.001
+        lowest = role_position(motion, role)[:, 2].min()
+        assert role_position(result, role)[:, 2].min() > min(lowest, 0.0) - 0.001
 
 
 @pytest.mark.parametrize("body", BODIES)
-def test_what_is_put_down_is_put_down_as_low(recordings, body):
-    """The wrist's height over the ground grows with the legs; it was off by up to 27 cm."""
+def test_hand_height_scales_with_the_legs(recordings, body):
+    """Without correction, the wrist's height above the ground was off by up to 27 cm."""
     motion = read_recording(recordings / "mocap/hdm05/HDM_bd_depositFloorR_001_120.amc")
     motion = every_fourth(motion)
     rig = BODIES[body]
 
     result = given_to(motion, rig)
 
-    theirs = place(motion, "rightHand")[:, 2]
-    frame = int(theirs.argmin())
-    expected = growth(motion, rig) * theirs[frame]
-    assert place(result, "rightHand")[frame, 2] == pytest.approx(expected, abs=0.04)
+    reference = role_position(motion, "rightHand")[:, 2]
+    frame = int(reference.argmin())
+    expected = growth(motion, rig) * reference[frame]
+    assert role_position(result, "rightHand")[frame, 2] == pytest.approx(expected, abs=0.04)
 
 
-def test_elbows_are_not_flung_where_a_straight_arm_comes_to_the_ground(recordings):
-    """Before, up to 2.5 times as much as the source's, grown."""
+def test_elbows_stay_slow_when_a_straight_arm_reaches_the_ground(recordings):
+    """Without easing, elbows were up to 2.5 times as fast as the source's, scaled."""
     motion = every_fourth(read_recording(recordings / f"mocap/hdm05/HDM_{CLIPS[0]}_120.amc"))
     rig = mixamo()
 
     result = given_to(motion, rig)
 
-    theirs, ours = (
-        np.linalg.norm(np.diff(place(one, "rightLowerArm"), 2, axis=0), axis=1).max()
+    reference, actual = (
+        np.linalg.norm(np.diff(role_position(one, "rightLowerArm"), 2, axis=0), axis=1).max()
         for one in (motion, result)
     )
-    assert ours < 1.3 * growth(motion, rig) * theirs
+    assert actual < 1.3 * growth(motion, rig) * reference
 
 
 @pytest.mark.parametrize("family", RIGS)
-def test_hands_that_lean_on_the_ground_do_not_slide(family):
-    """On all fours, the shoulders rock to and fro above the hands."""
+def test_hands_that_support_the_body_do_not_slide(family):
+    """On all fours, the shoulders rock back and forth above the hands."""
     source = on_all_fours()
     rig = RIGS[family](1.3)
 
     result = given_to(source, rig)
 
     for role in WRISTS:
-        theirs, ours = place(source, role), place(result, role)
-        slide = np.ptp(ours, axis=0) - growth(source, rig) * np.ptp(theirs, axis=0)
+        reference, actual = role_position(source, role), role_position(result, role)
+        slide = np.ptp(actual, axis=0) - growth(source, rig) * np.ptp(reference, axis=0)
         assert np.abs(slide).max() < 0.005
 
 
-def test_the_hands_of_a_walk_are_those_of_the_arms():
+def test_hands_of_a_walk_stay_unchanged():
     walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
     rig = stretched(("ForeArm", "Hand"), 1.4)
 
     result = given_to(walk, rig)
 
     for side in ("left", "right"):
-        theirs, ours = (
-            place(motion, f"{side}Hand") - place(motion, f"{side}UpperArm")
+        reference, actual = (
+            role_position(motion, f"{side}Hand") - role_position(motion, f"{side}UpperArm")
             for motion in (walk, result)
         )
-        ratio = np.linalg.norm(ours, axis=1) / np.linalg.norm(theirs, axis=1)
+        ratio = np.linalg.norm(actual, axis=1) / np.linalg.norm(reference, axis=1)
         assert_allclose(ratio, ratio[0], rtol=1e-6)
 
 
-def test_an_arm_eases_into_full_extension():
+def test_arm_eases_into_full_extension():
     distances = np.linspace(0.1, 3.0, 300)
-    way = distances[:, None] * np.array([0.0, 0.0, -1.0])
+    direction = distances[:, None] * np.array([0.0, 0.0, -1.0])
 
-    eased = np.linalg.norm(ease_into_extension(way, np.full((300, 3), 0.1), 1.0), axis=1)
+    eased = np.linalg.norm(ease_into_extension(direction, np.full((300, 3), 0.1), 1.0), axis=1)
 
     assert_allclose(eased[distances < 0.9], distances[distances < 0.9])
     assert (np.diff(eased) >= 0.0).all()
@@ -119,11 +119,11 @@ def test_an_arm_eases_into_full_extension():
 
 
 def on_all_fours() -> Motion:
-    """Trunk level, thighs upright, hands held on the ground; the body rocks by 8 cm."""
+    """Level trunk, upright thighs, hands on the ground; the body rocks by 8 cm."""
     rig = mixamo()
     rotations = np.tile([1.0, 0, 0, 0], (120, rig.n_joints, 1))
-    places = np.tile([0.0, 0.0, 0.5], (120, 1))
-    places[:, 1] = 0.04 * np.sin(np.linspace(0.0, 4.0 * np.pi, 120))
+    positions = np.tile([0.0, 0.0, 0.5], (120, 1))
+    positions[:, 1] = 0.04 * np.sin(np.linspace(0.0, 4.0 * np.pi, 120))
     rotations[:, 0] = about_x(0.5 * np.pi)
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         rotations[:, rig.index(f"mixamorig:{side}Arm")] = quaternion_from_rotation_vector([
@@ -133,7 +133,7 @@ def on_all_fours() -> Motion:
         ])
         rotations[:, rig.index(f"mixamorig:{side}UpLeg")] = about_x(-0.5 * np.pi)
         rotations[:, rig.index(f"mixamorig:{side}Leg")] = about_x(0.5 * np.pi)
-    motion = Motion(rig, rotations, places, 60.0)
+    motion = Motion(rig, rotations, positions, 60.0)
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         arm = [rig.index(f"mixamorig:{side}{part}") for part in ("Arm", "ForeArm", "Hand")]
         spot = np.tile([sign * 0.2, -0.5, 0.05], (120, 1))
@@ -145,6 +145,6 @@ def about_x(angle: float) -> np.ndarray:
     return quaternion_from_rotation_vector([angle, 0.0, 0.0])
 
 
-def place(motion: Motion, role: str) -> np.ndarray:
+def role_position(motion: Motion, role: str) -> np.ndarray:
     joint = find_humanoid_map(motion.skeleton).indices(motion.skeleton)[role]
     return forward_kinematics(motion).positions[:, joint]

@@ -13,19 +13,19 @@ class Leg(NamedTuple):
     """One leg of the target, with the extension and contacts of the source's."""
 
     hip: Array
-    """Start of the upper leg, shape (n_frames, 3), metres."""
+    """Start of the upper leg, shape (n_frames, 3), meters."""
     ankle: Array
-    """Target position of the ankle, shape (n_frames, 3), metres."""
+    """Target position of the ankle, shape (n_frames, 3), meters."""
     distance: Array
     """Distance from hip to ankle with the knee as straight as the source's, (n_frames,)."""
-    stands: Flags
+    in_contact: Flags
     """Whether the foot is in contact, shape (n_frames,)."""
     excess: float
-    """Length of the source's leg minus the mean of both, scaled, metres."""
+    """Length of the source's leg minus the mean of both, scaled, meters."""
 
 
 def level_ankles(left: Leg, right: Leg) -> list[Array]:
-    """Return corrected positions of the left and right ankle, shape (n_frames, 3), metres.
+    """Return corrected positions of the left and right ankle, shape (n_frames, 3), meters.
 
     Sensors measure one leg a little shorter than the other, so that its foot stays higher. On
     legs of equal length, two percent of difference flex that knee by 20 degrees. The ankle of
@@ -33,7 +33,7 @@ def level_ankles(left: Leg, right: Leg) -> list[Array]:
     the source's, but at most by the difference of the legs. The correction is constant over
     time, so that no foot slides.
     """
-    if not (left.stands.any() and right.stands.any()):
+    if not (left.in_contact.any() and right.in_contact.any()):
         return [left.ankle, right.ankle]
     difference = 0.5 * (_missing_height(left) - _missing_height(right))
     lift = min(max(difference, min(left.excess, 0.0)), max(left.excess, 0.0))
@@ -42,8 +42,8 @@ def level_ankles(left: Leg, right: Leg) -> list[Array]:
 
 
 def _missing_height(leg: Leg) -> float:
-    """Return the correction of height that the standing ankle needs, metres."""
+    """Return the correction of height that the standing ankle needs, meters."""
     leg_vector = leg.ankle - leg.hip
     horizontal_square = (leg_vector[:, :2] ** 2).sum(axis=1)
     height = -np.sqrt(np.maximum(leg.distance**2 - horizontal_square, 0.0))
-    return float(np.median((height - leg_vector[:, 2])[leg.stands]))
+    return float(np.median((height - leg_vector[:, 2])[leg.in_contact]))

@@ -34,7 +34,7 @@ def test_pressing_again_ends_it(look, library, keep, clip_files):
 
 
 def test_the_button_shows_whether_these_sources_are_kept(library, keep, load, blank):
-    are_kept = load("mocap_assist.library.kept_libraries").choices_are_kept
+    are_kept = load("mocap_assist.library.auto_update_list").choices_are_kept
     assert not are_kept(library.settings().choices)
     keep()
     assert are_kept(library.settings().choices)
@@ -50,7 +50,7 @@ def test_a_library_without_sources_is_no_longer_kept(library, keep, load, blank)
     keep()
     blank.ops.mocap_assist.remove_source(index=0)
 
-    assert not load("mocap_assist.library.kept_libraries").kept_libraries()
+    assert not load("mocap_assist.library.auto_update_list").auto_updated_libraries()
 
 
 def test_nothing_to_keep_is_refused(library, blank):
@@ -61,13 +61,13 @@ def test_nothing_to_keep_is_refused(library, blank):
 
 def test_it_waits_for_another_solve(load, library, keep, monkeypatch):
     keep()
-    keeping = load("mocap_assist.library.keeping")
-    monkeypatch.setattr(keeping, "why_busy", lambda: "Track runs.")
+    auto_update = load("mocap_assist.library.auto_update")
+    monkeypatch.setattr(auto_update, "why_busy", lambda: "Track runs.")
 
     for _ in range(4):
-        keeping.look()
+        auto_update.update_libraries()
 
-    assert not keeping._keepers
+    assert not auto_update._watchers
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def test_it_waits_for_another_solve(load, library, keep, monkeypatch):
 def test_damaged_permissions_allow_nothing(permissions, load, stored):
     permissions._file().write_text(stored)
 
-    assert load("mocap_assist.library.kept_libraries").kept_libraries() == []
+    assert load("mocap_assist.library.auto_update_list").auto_updated_libraries() == []
     assert not permissions.recording_allowed("/x")
 
 
@@ -99,7 +99,7 @@ def test_permissions_are_kept_in_a_file_of_this_machine(permissions, library, ke
 
 
 def test_the_extension_can_be_switched_off_after_the_looking_has_ended(load):
-    keeping = load("mocap_assist.library.keeping")
-    keeping.unregister()
-    keeping.unregister()
-    keeping.register()
+    auto_update = load("mocap_assist.library.auto_update")
+    auto_update.unregister()
+    auto_update.unregister()
+    auto_update.register()

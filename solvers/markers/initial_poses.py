@@ -12,7 +12,7 @@ from ..rotations import (
     rotation_vector_from_quaternion,
 )
 from .body_tables import SIDES
-from .centres import Centres
+from .joint_centers import JointCenters
 from .vectors import frame, median, swing_frames, unit
 
 Array = NDArray[np.float64]
@@ -23,21 +23,21 @@ MAX_SLOPE_SINE = 0.4
 
 
 def bone_frames(
-    centres: Centres, spots: Mapping[str, Array], names: Sequence[str]
+    centers: JointCenters, landmarks: Mapping[str, Array], names: Sequence[str]
 ) -> dict[str, Array]:
     """Return the axes of the bones named, each of shape (n_frames, 3, 3).
 
     Collar bones swing about their median direction. The spine gets half of the rotation from
     pelvis to thorax, the neck half of that from thorax to head.
     """
-    frames = dict(centres.frames)
+    frames = dict(centers.frames)
     if "chest" in frames:
         frames["spine"] = _halfway(frames["hips"], frames["chest"])
         frames["neck"] = _halfway(frames["chest"], frames.get("head", frames["chest"]))
     for side, (letter, sign) in SIDES.items():
-        _leg(centres, spots, frames, side, letter)
+        _leg(centers, landmarks, frames, side, letter)
         if f"{side}UpperArm" in names:
-            _arm(centres, spots, frames, side, letter, sign)
+            _arm(centers, landmarks, frames, side, letter, sign)
     return frames
 
 
@@ -49,20 +49,20 @@ def _halfway(start: Array, stop: Array) -> Array:
 
 
 def _leg(
-    centres: Centres,
-    spots: Mapping[str, Array],
+    centers: JointCenters,
+    landmarks: Mapping[str, Array],
     frames: dict[str, Array],
     side: str,
     letter: str,
 ) -> None:
     hip, knee, ankle = (
-        centres.positions[side + joint] for joint in ("UpperLeg", "LowerLeg", "Foot")
+        centers.positions[side + joint] for joint in ("UpperLeg", "LowerLeg", "Foot")
     )
-    lateral = SIDES[side][1] * (spots[f"{letter}KNE"] - knee)
+    lateral = SIDES[side][1] * (landmarks[f"{letter}KNE"] - knee)
     frames[f"{side}UpperLeg"] = frame(2, hip - knee, 0, lateral)
     frames[f"{side}LowerLeg"] = frame(2, knee - ankle, 0, lateral)
-    if f"{letter}HEE" in spots:
-        heel, toe = spots[f"{letter}HEE"], spots[f"{letter}TOE"]
+    if f"{letter}HEE" in landmarks:
+        heel, toe = landmarks[f"{letter}HEE"], landmarks[f"{letter}TOE"]
         leveling = _leveling_matrix(heel, toe)
         frames[f"{side}Foot"] = (
             frame(0, frames[f"{side}LowerLeg"][..., 0], 1, heel - toe) @ leveling
@@ -87,26 +87,26 @@ def _leveling_matrix(heel: Array, toe: Array) -> Array:
 
 
 def _arm(
-    centres: Centres,
-    spots: Mapping[str, Array],
+    centers: JointCenters,
+    landmarks: Mapping[str, Array],
     frames: dict[str, Array],
     side: str,
     letter: str,
     sign: float,
 ) -> None:
-    positions, thorax = centres.positions, frames["chest"]
+    positions, thorax = centers.positions, frames["chest"]
     collar, shoulder, elbow = (
         positions[side + joint] for joint in ("Shoulder", "UpperArm", "LowerArm")
     )
     local = np.einsum("fji,fj->fi", thorax, shoulder - collar)
     frames[f"{side}Shoulder"] = swing_frames(thorax, unit(median(local)), shoulder - collar)
-    upward = spots[f"{letter}ELB"] - elbow
+    upward = landmarks[f"{letter}ELB"] - elbow
     frames[f"{side}UpperArm"] = frame(0, sign * (elbow - shoulder), 2, upward)
     if f"{side}Hand" not in positions:
         return
     wrist = positions[f"{side}Hand"]
-    back = spots[f"{letter}WRB"] - spots[f"{letter}WRA"]
+    back = landmarks[f"{letter}WRB"] - landmarks[f"{letter}WRA"]
     frames[f"{side}LowerArm"] = frame(0, sign * (wrist - elbow), 1, back)
-    if f"{letter}FIN" in spots:
-        knuckle = spots[f"{letter}FIN"]
+    if f"{letter}FIN" in landmarks:
+        knuckle = landmarks[f"{letter}FIN"]
         frames[f"{side}Hand"] = frame(0, sign * (knuckle - wrist), 1, back)

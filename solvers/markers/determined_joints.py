@@ -22,7 +22,7 @@ def find_determined_joints(body: Body, observed: Array, poses: Poses) -> NDArray
     and joint priors leave a small uncertainty of its rotation. Joints without rotations have
     the state of their parents.
     """
-    determined = np.zeros(poses.turns.shape[:2], dtype=bool)
+    determined = np.zeros(poses.rotations.shape[:2], dtype=bool)
     has_marker = np.isfinite(observed).all(axis=-1)
     for joint in range(len(body.joints)):
         below = [
@@ -32,18 +32,18 @@ def find_determined_joints(body: Body, observed: Array, poses: Poses) -> NDArray
     for start in range(0, len(observed), FRAMES_PER_BLOCK):
         block = slice(start, start + FRAMES_PER_BLOCK)
         deviation = _standard_deviations(
-            body, observed[block], Poses(poses.turns[block], poses.roots[block])
+            body, observed[block], Poses(poses.rotations[block], poses.roots[block])
         )
-        determined[block, body.turning] &= deviation[:, 1:] < MAX_ROTATION_STD_RAD
+        determined[block, body.rotating_joints] &= deviation[:, 1:] < MAX_ROTATION_STD_RAD
         determined[block, 0] &= deviation[:, 0] < MAX_POSITION_STD_M
     for joint, parent in enumerate(body.parents):
-        if not body.joints[joint].turns:
+        if not body.joints[joint].rotates:
             determined[:, joint] = determined[:, parent]
     return determined
 
 
 def _standard_deviations(body: Body, observed: Array, poses: Poses) -> Array:
-    """Return standard deviations of the root position, metres, and all rotations, radians.
+    """Return standard deviations of the root position, meters, and all rotations, radians.
 
     Shape (n_frames, 1 + n_rotating_joints); the largest of three coordinates.
     """

@@ -1,4 +1,4 @@
-"""Libraries that a stranger made harm no other file, run nothing and are checked."""
+"""Libraries of unknown origin are checked, harm no other file and run no code."""
 
 import sqlite3
 import sys
@@ -74,7 +74,7 @@ def test_journal_that_names_another_file_is_refused(path, tmp_path, start):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs links")
 @pytest.mark.parametrize("ending", ["-journal", "-wal", "-shm"])
-def test_link_beside_a_library_is_refused(path, tmp_path, ending):
+def test_link_next_to_a_library_is_refused(path, tmp_path, ending):
     (tmp_path / "victim").write_bytes(b"\0" * 9)
     (tmp_path / f"a.clips{ending}").symlink_to(tmp_path / "victim")
     (tmp_path / "link.clips").symlink_to(path)
@@ -84,7 +84,7 @@ def test_link_beside_a_library_is_refused(path, tmp_path, ending):
     assert (tmp_path / "victim").read_bytes() == b"\0" * 9
 
 
-def test_journal_of_a_program_that_was_killed_is_rolled_back(path):
+def test_journal_of_a_killed_process_is_rolled_back(path):
     with closing(sqlite3.connect(path, isolation_level=None)) as database:
         database.execute("PRAGMA cache_size = 1")
         database.execute("BEGIN IMMEDIATE")
@@ -124,7 +124,7 @@ def test_view_in_place_of_a_table_is_refused(path):
         load_clip_library(path)
 
 
-def test_trigger_that_comes_while_a_library_is_open_is_refused(path):
+def test_trigger_added_to_an_open_library_is_refused(path):
     with load_clip_library(path) as library:
         change(path, "CREATE TRIGGER t AFTER DELETE ON clips BEGIN DELETE FROM blocks; END")
         for work in (
@@ -136,7 +136,7 @@ def test_trigger_that_comes_while_a_library_is_open_is_refused(path):
                 work()
 
 
-def test_library_from_before_files_were_refused_is_opened(path):
+def test_library_without_the_refused_files_table_is_opened(path):
     change(path, "DROP TABLE refused")
     use(path)
 
@@ -189,7 +189,7 @@ def test_vocabulary_that_was_never_learned_is_damage(path, name, filled):
 
 
 @pytest.mark.parametrize("number", [-5, 2**63 - 1])
-def test_vocabulary_without_room_for_another_is_damage(path, number):
+def test_full_vocabulary_is_damage(path, number):
     change(path, "DELETE FROM vocabulary WHERE number > 1")
     change(path, "UPDATE vocabulary SET number = ?", number)
     with pytest.raises(InvalidFileError, match="damaged"):
@@ -206,7 +206,7 @@ def test_index_that_is_missing_is_damage(path):
     ("table", "column"),
     [("blocks", "summaries"), ("clips", "positions"), ("clips", "course")],
 )
-def test_random_numbers_are_damage_or_are_searched_in_silence(path, table, column):
+def test_random_numbers_are_damage_or_searched_without_warnings(path, table, column):
     with closing(sqlite3.connect(path)) as database:
         (stored,) = database.execute(f"SELECT {column} FROM {table}").fetchone()
     random = np.random.default_rng(0)
@@ -218,11 +218,11 @@ def test_random_numbers_are_damage_or_are_searched_in_silence(path, table, colum
             use(path)
 
 
-def test_motion_beyond_half_precision_is_kept_and_found(tmp_path):
+def test_motion_beyond_half_precision_is_stored_and_found(tmp_path):
     motion = act("wave")
     positions = motion.positions.copy()
     positions[20:] += 1e7
-    far = motion.with_positions(positions)
-    build_clip_library([Clip("far", far)]).save(tmp_path / "a.clips")
+    distant = motion.with_positions(positions)
+    build_clip_library([Clip("far", distant)]).save(tmp_path / "a.clips")
     with load_clip_library(tmp_path / "a.clips") as library:
-        assert find_similar(far, library)
+        assert find_similar(distant, library)

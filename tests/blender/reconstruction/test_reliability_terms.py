@@ -14,8 +14,8 @@ def curves(load):
 
 
 @pytest.fixture
-def heat(load):
-    return load("mocap_assist.drawing.heat")
+def colors(load):
+    return load("mocap_assist.drawing.confidence_colors")
 
 
 @pytest.fixture
@@ -46,26 +46,29 @@ def test_each_sign_says_its_own_of_the_hidden_hand(walk, reconstruct, curves):
     assert np.mean([trust("KINEMATICS", frame) for frame in range(1, LOST.start - 3)]) > 0.85
 
 
-def test_colours_are_those_of_the_sign(walk, reconstruct, heat, curves):
+def test_colors_follow_the_chosen_term(walk, reconstruct, colors, curves):
     reconstruct()
     wrist = [bone.name for bone in walk.pose.bones].index("WristLeft")
 
     shown = {
-        term: heat.heat_at(walk, INSIDE, curves.Term[term]).colors[wrist, 0] for term in TERMS
+        term: colors.colored_bones_at(walk, INSIDE, curves.Term[term]).colors[wrist, 0]
+        for term in TERMS
     }
 
-    assert np.allclose(shown["TRACKING"], heat.shade(0.5), atol=1e-6)
+    assert np.allclose(shown["TRACKING"], colors.color_from_reliability(0.5), atol=1e-6)
     assert not np.allclose(shown["COMBINED"], shown["TRACKING"], atol=0.05)
-    assert names(heat.terms_told(walk)) == TERMS
+    assert names(colors.available_terms(walk)) == TERMS
 
 
-def test_lengths_are_told_while_the_file_is_there(walk, walk_file, reconstruct, heat, curves):
+def test_lengths_have_a_term_while_the_file_exists(
+    walk, walk_file, reconstruct, colors, curves
+):
     walk_file.unlink()
 
     reconstruct()
 
-    assert names(heat.terms_told(walk)) == TERMS - {"KINEMATICS"}
-    assert heat.heat_at(walk, INSIDE, curves.Term.KINEMATICS) is None
+    assert names(colors.available_terms(walk)) == TERMS - {"KINEMATICS"}
+    assert colors.colored_bones_at(walk, INSIDE, curves.Term.KINEMATICS) is None
 
 
 def test_the_panel_offers_the_signs_and_says_what_is_missing(
@@ -93,7 +96,7 @@ def test_a_sensor_that_was_silent_is_said_to_be(make_armature, animate, reconstr
     assert "Sensor: the recording" in " ".join(draw("MOCAP_PT_reconstruct"))
 
 
-def test_results_of_earlier_versions_are_told_so(walk, reconstruct, draw, switch, curves):
+def test_results_of_earlier_versions_are_reported(walk, reconstruct, draw, switch, curves):
     bag = reconstruct().layers[0].strips[0].channelbags[0]
     for curve in list(bag.fcurves):
         if "mocap_reliability_" in curve.data_path:

@@ -87,12 +87,12 @@ def test_a_place_that_cannot_be_looked_at_does_not_hide_the_others(
 def test_a_file_that_is_opened_meanwhile_only_delays_it(
     load, library, keep, blank, clip_files, entries, look
 ):
-    keeping = load("mocap_assist.library.keeping")
+    auto_update = load("mocap_assist.library.auto_update")
     keep()
-    while not keeping._running:
-        keeping.look()
-        for keeper in keeping._keepers.values():
-            keeper._look.result(timeout=10)
+    while not auto_update._running:
+        auto_update.update_libraries()
+        for watcher in auto_update._watchers.values():
+            watcher._scan.result(timeout=10)
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
 
     assert look(4) == 1

@@ -1,12 +1,12 @@
-"""Button: show one of the places that Check found."""
+"""Button: jump to an issue that Check found."""
 
 import bpy
 
 from ..mocap_assist.check.checking import jump_to
 
 
-class MOCAP_OT_jump_to_spot(bpy.types.Operator):
-    bl_idname = "mocap_assist.jump_to_spot"
+class MOCAP_OT_jump_to_issue(bpy.types.Operator):
+    bl_idname = "mocap_assist.jump_to_issue"
     bl_label = "Jump to Issue"
     bl_description = "Go to this frame and select the affected bone"
     bl_options = {"REGISTER", "UNDO"}
@@ -26,14 +26,14 @@ class MOCAP_OT_jump_to_spot(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not context.scene.mocap_assist.spots:
+        if not context.scene.mocap_assist.issues:
             cls.poll_message_set("No issues are listed. Press Check first")
             return False
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         found = context.scene.mocap_assist
-        index = found.active_spot + self.step if self.index < 0 else self.index
-        found.active_spot = index % len(found.spots)
-        jump_to(context, found.spots[found.active_spot])
+        index = found.active_issue + self.step if self.index < 0 else self.index
+        found.active_issue = index % len(found.issues)
+        jump_to(context, found.issues[found.active_issue])
         return {"FINISHED"}

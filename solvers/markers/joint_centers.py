@@ -31,18 +31,18 @@ CHEST_FRACTION = 0.4
 
 
 @dataclass(frozen=True, eq=False)
-class Centres:
+class JointCenters:
     """Joint centers, and the axes of bones with three or more markers."""
 
     positions: PositionsByJoint
-    """By joint, each of shape (n_frames, 3), metres; NaN where a marker is missing."""
+    """By joint, each of shape (n_frames, 3), meters; NaN where a marker is missing."""
     frames: PositionsByJoint
     """Axes of pelvis ("hips"), "chest" and "head", each of shape (n_frames, 3, 3)."""
     scale: float
     """Size of the body relative to an adult."""
 
 
-def joint_centres(spots: Mapping[str, Array]) -> Centres:
+def joint_centers(landmarks: Mapping[str, Array]) -> JointCenters:
     """Estimate the joint centers of every frame.
 
     Hips: Harrington et al. 2007 [1]_. Knees and elbows: chord function [2]_ in the
@@ -50,7 +50,7 @@ def joint_centres(spots: Mapping[str, Array]) -> Centres:
 
     Parameters
     ----------
-    spots : mapping of spot to positions of shape (n_frames, 3), metres
+    landmarks : mapping of landmark to positions of shape (n_frames, 3), meters
 
     Raises
     ------
@@ -65,9 +65,9 @@ def joint_centres(spots: Mapping[str, Array]) -> Centres:
        technique. Human Movement Science 10(5). doi:10.1016/0167-9457(91)90046-Z
     """
     positions: PositionsByJoint = {}
-    frames = {"hips": _pelvis(spots, positions)}
+    frames = {"hips": _pelvis(landmarks, positions)}
     legs = [
-        np.linalg.norm(positions[f"{side}UpperLeg"] - spots[f"{letter}ANK"], axis=-1)
+        np.linalg.norm(positions[f"{side}UpperLeg"] - landmarks[f"{letter}ANK"], axis=-1)
         for side, (letter, _) in SIDES.items()
     ]
     if not np.isfinite(legs).any():
@@ -77,21 +77,23 @@ def joint_centres(spots: Mapping[str, Array]) -> Centres:
         )
     scale = float(np.nanmedian(legs) / ADULT_LEG_M)
     for side in SIDES:
-        _leg(spots, positions, frames["hips"], side, scale)
-    if {"C7", "CLAV", "T10", "STRN"} <= set(spots):
-        frames["chest"] = _trunk(spots, positions, frames["hips"], scale)
+        _leg(landmarks, positions, frames["hips"], side, scale)
+    if {"C7", "CLAV", "T10", "STRN"} <= set(landmarks):
+        frames["chest"] = _trunk(landmarks, positions, frames["hips"], scale)
         for side in SIDES:
-            _arm(spots, positions, frames["chest"], side, scale)
-    if {"LFHD", "RFHD", "LBHD", "RBHD"} <= set(spots):
-        frames["head"] = _head(spots, positions, scale)
-    return Centres(positions, frames, scale)
+            _arm(landmarks, positions, frames["chest"], side, scale)
+    if {"LFHD", "RFHD", "LBHD", "RBHD"} <= set(landmarks):
+        frames["head"] = _head(landmarks, positions, scale)
+    return JointCenters(positions, frames, scale)
 
 
-def _pelvis(spots: Mapping[str, Array], positions: PositionsByJoint) -> Array:
+def _pelvis(landmarks: Mapping[str, Array], positions: PositionsByJoint) -> Array:
     """Add the hip joints; return the axes of the pelvis."""
-    left, right = spots["LASI"], spots["RASI"]
+    left, right = landmarks["LASI"], landmarks["RASI"]
     back_point = (
-        (spots["LPSI"] + spots["RPSI"]) / 2 if {"LPSI", "RPSI"} <= set(spots) else spots["SACR"]
+        (landmarks["LPSI"] + landmarks["RPSI"]) / 2
+        if {"LPSI", "RPSI"} <= set(landmarks)
+        else landmarks["SACR"]
     )
     front = (left + right) / 2
     axes = frame(0, left - right, 1, back_point - front)
@@ -118,7 +120,7 @@ def _pelvis(spots: Mapping[str, Array], positions: PositionsByJoint) -> Array:
 
 
 def _leg(
-    spots: Mapping[str, Array],
+    landmarks: Mapping[str, Array],
     positions: PositionsByJoint,
     pelvis: Array,
     side: str,
@@ -126,14 +128,18 @@ def _leg(
 ) -> None:
     letter, sign = SIDES[side]
     hip, knee, ankle = (
-        positions[f"{side}UpperLeg"], spots[f"{letter}KNE"], spots[f"{letter}ANK"],
+        positions[f"{side}UpperLeg"], landmarks[f"{letter}KNE"], landmarks[f"{letter}ANK"],
     )  # fmt: skip
     down, lateral_offset = np.array([0.0, 0.0, -1.0]), np.array([1.0, 0.0, 0.0])
     outward = sign * _flexion_axis((hip, knee, ankle), 1.0, pelvis, down, lateral_offset)
     positions[f"{side}LowerLeg"] = chord(hip, knee, outward, scale * HALF_KNEE_M)
     lateral = unit(perpendicular(outward, unit(ankle - positions[f"{side}LowerLeg"])))
     positions[f"{side}Foot"] = ankle - scale * HALF_ANKLE_M * lateral
-    toes = [spots[letter + spot] for spot in ("TOE", "MT5") if letter + spot in spots]
+    toes = [
+        landmarks[letter + landmark]
+        for landmark in ("TOE", "MT5")
+        if letter + landmark in landmarks
+    ]
     positions[f"{side}Toes"] = np.mean(toes, axis=0)
 
 
@@ -164,7 +170,7 @@ def chord(start: Array, marker: Array, outward: Array, half_width: float) -> Arr
     """Return the joint center for which the marker is perpendicular to the bone.
 
     The marker is `half_width` from it, on the side of `outward`, and the bone starts at `start`
-    (the chord function of [2]_ in `joint_centres`).
+    (the chord function of [2]_ in `joint_centers`).
     """
     arm = marker - start
     length = np.linalg.norm(arm, axis=-1, keepdims=True)
@@ -176,22 +182,28 @@ def chord(start: Array, marker: Array, outward: Array, half_width: float) -> Arr
 
 
 def _trunk(
-    spots: Mapping[str, Array], positions: PositionsByJoint, pelvis: Array, scale: float
+    landmarks: Mapping[str, Array], positions: PositionsByJoint, pelvis: Array, scale: float
 ) -> Array:
     """Add the spine and neck joints; return the axes of the thorax."""
-    top, bottom = spots["C7"] + spots["CLAV"], spots["T10"] + spots["STRN"]
-    back_point, front = spots["C7"] + spots["T10"], spots["CLAV"] + spots["STRN"]
+    top, bottom = landmarks["C7"] + landmarks["CLAV"], landmarks["T10"] + landmarks["STRN"]
+    back_point, front = (
+        landmarks["C7"] + landmarks["T10"],
+        landmarks["CLAV"] + landmarks["STRN"],
+    )
     axes = frame(2, top - bottom, 1, back_point - front)
-    positions["neck"] = 0.65 * spots["C7"] + 0.35 * spots["CLAV"]
+    positions["neck"] = 0.65 * landmarks["C7"] + 0.35 * landmarks["CLAV"]
     positions["chest"] = positions["spine"] + CHEST_FRACTION * (
         positions["neck"] - positions["spine"]
     )
     return axes
 
 
-def _head(spots: Mapping[str, Array], positions: PositionsByJoint, scale: float) -> Array:
-    left, right = spots["LFHD"] + spots["LBHD"], spots["RFHD"] + spots["RBHD"]
-    front, back_point = spots["LFHD"] + spots["RFHD"], spots["LBHD"] + spots["RBHD"]
+def _head(landmarks: Mapping[str, Array], positions: PositionsByJoint, scale: float) -> Array:
+    left, right = landmarks["LFHD"] + landmarks["LBHD"], landmarks["RFHD"] + landmarks["RBHD"]
+    front, back_point = (
+        landmarks["LFHD"] + landmarks["RFHD"],
+        landmarks["LBHD"] + landmarks["RBHD"],
+    )
     axes = frame(0, left - right, 1, back_point - front)
     positions["head"] = (front + back_point) / 4 + axes @ np.array([
         0.0,
@@ -202,24 +214,24 @@ def _head(spots: Mapping[str, Array], positions: PositionsByJoint, scale: float)
 
 
 def _arm(
-    spots: Mapping[str, Array],
+    landmarks: Mapping[str, Array],
     positions: PositionsByJoint,
     thorax: Array,
     side: str,
     scale: float,
 ) -> None:
     letter, sign = SIDES[side]
-    if not {f"{letter}SHO", f"{letter}ELB"} <= set(spots):
+    if not {f"{letter}SHO", f"{letter}ELB"} <= set(landmarks):
         return
-    shoulder = spots[f"{letter}SHO"] - scale * SHOULDER_DEPTH_M * thorax[..., 2]
-    collar = 0.25 * spots["C7"] + 0.75 * spots["CLAV"]
+    shoulder = landmarks[f"{letter}SHO"] - scale * SHOULDER_DEPTH_M * thorax[..., 2]
+    collar = 0.25 * landmarks["C7"] + 0.75 * landmarks["CLAV"]
     positions[f"{side}Shoulder"] = collar + thorax @ np.array([sign * 0.025 * scale, 0.0, 0.0])
     positions[f"{side}UpperArm"] = shoulder
-    elbow = spots[f"{letter}ELB"]
-    if not {f"{letter}WRA", f"{letter}WRB"} <= set(spots):
+    elbow = landmarks[f"{letter}ELB"]
+    if not {f"{letter}WRA", f"{letter}WRB"} <= set(landmarks):
         positions[f"{side}LowerArm"] = elbow
         return
-    inner, outer = spots[f"{letter}WRA"], spots[f"{letter}WRB"]
+    inner, outer = landmarks[f"{letter}WRA"], landmarks[f"{letter}WRB"]
     backward_offset = unit(sign * np.cross(elbow - (inner + outer) / 2, inner - outer))
     wrist = (inner + outer) / 2 - scale * WRIST_DEPTH_M * backward_offset
     out, up = np.array([sign, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])

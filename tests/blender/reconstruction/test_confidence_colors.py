@@ -8,8 +8,8 @@ INSIDE = LOST.start + 15
 
 
 @pytest.fixture
-def heat(load):
-    return load("mocap_assist.drawing.heat")
+def colors(load):
+    return load("mocap_assist.drawing.confidence_colors")
 
 
 def of_bone(armature, shown, name):
@@ -17,11 +17,11 @@ def of_bone(armature, shown, name):
     return shown.colors[[bone.name for bone in armature.pose.bones].index(name)]
 
 
-def test_a_hidden_arm_is_red_and_the_other_blue(walk, reconstruct, heat):
+def test_a_hidden_arm_is_red_and_the_other_blue(walk, reconstruct, colors):
     reconstruct()
 
-    shown = heat.heat_at(walk, INSIDE)
-    before = heat.heat_at(walk, 5)
+    shown = colors.colored_bones_at(walk, INSIDE)
+    before = colors.colored_bones_at(walk, 5)
 
     red, _, blue, _ = of_bone(walk, shown, "WristLeft")[0]
     assert red > 0.6 and blue < 0.4
@@ -30,10 +30,10 @@ def test_a_hidden_arm_is_red_and_the_other_blue(walk, reconstruct, heat):
     assert of_bone(walk, before, "WristLeft")[0][2] > of_bone(walk, shown, "WristLeft")[0][2]
 
 
-def test_a_bone_goes_over_into_the_colour_of_the_next(walk, reconstruct, heat):
+def test_a_bone_blends_into_the_color_of_the_next(walk, reconstruct, colors):
     reconstruct()
 
-    shown = [heat.heat_at(walk, frame) for frame in range(LOST.start - 10, INSIDE)]
+    shown = [colors.colored_bones_at(walk, frame) for frame in range(LOST.start - 10, INSIDE)]
 
     arms = np.array([of_bone(walk, each, "ShoulderLeft") for each in shown])
     elbows = np.array([of_bone(walk, each, "ElbowLeft")[0] for each in shown])
@@ -41,32 +41,32 @@ def test_a_bone_goes_over_into_the_colour_of_the_next(walk, reconstruct, heat):
     assert np.abs(arms[:, 0] - arms[:, 1]).max() > 0.2
 
 
-def test_lines_lie_where_the_bones_are_posed(walk, reconstruct, heat, blank):
+def test_lines_lie_where_the_bones_are_posed(walk, reconstruct, colors, blank):
     reconstruct()
     blank.context.scene.frame_set(INSIDE)
 
-    shown = heat.heat_at(walk, INSIDE)
+    shown = colors.colored_bones_at(walk, INSIDE)
 
     for bone, (head, tail) in zip(walk.pose.bones, shown.ends, strict=True):
         assert np.allclose(head, bone.head, atol=1e-6)
         assert np.allclose(tail, bone.tail, atol=1e-6)
 
 
-def test_there_is_none_on_what_was_not_reconstructed(walk, heat, blank):
-    assert heat.heat_at(walk, 5) is None
+def test_there_is_none_on_what_was_not_reconstructed(walk, colors, blank):
+    assert colors.colored_bones_at(walk, 5) is None
 
     blank.ops.mocap_assist.denoise(plant_feet=False)
 
-    assert heat.heat_at(walk, 5) is None
+    assert colors.colored_bones_at(walk, 5) is None
 
 
-@pytest.mark.parametrize(("trust", "channel"), [(0.0, 0), (1.0, 2)])
-def test_shades_go_from_red_to_blue(heat, trust, channel):
-    assert np.argmax(heat.shade(trust)[:3]) == channel
+@pytest.mark.parametrize(("reliability", "channel"), [(0.0, 0), (1.0, 2)])
+def test_shades_go_from_red_to_blue(colors, reliability, channel):
+    assert np.argmax(colors.color_from_reliability(reliability)[:3]) == channel
 
 
-def test_what_is_not_known_is_grey(heat):
-    red, green, blue, _ = heat.shade(np.nan)
+def test_an_unknown_reliability_is_gray(colors):
+    red, green, blue, _ = colors.color_from_reliability(np.nan)
 
     assert red == green == blue
 

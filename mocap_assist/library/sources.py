@@ -9,14 +9,14 @@ from ..blender.name_lists import split_names
 from ..blender.path_properties import absolute
 from ..jobs.in_blender import BackgroundBlender
 from .choices import LibraryChoices
-from .solve_indexing import IndexProblem, Place
+from .solve_indexing import IndexProblem, Source
 
 EXTENSION = __package__.rsplit(".", 2)[0]
 SHARED = "clips.library"
 
 
 def library_path(choices: LibraryChoices) -> Path:
-    """Return the library's file: the chosen one, or that which all files share."""
+    """Return the library's file: the chosen one, or the shared default."""
     if choices.library_file:
         return absolute(choices.library_file)
     return Path(bpy.utils.extension_path_user(EXTENSION)) / SHARED
@@ -28,12 +28,12 @@ def asset_folders() -> tuple[str, ...]:
     return tuple(bpy.path.abspath(each.path) for each in libraries if each.path)
 
 
-def places_of(choices: LibraryChoices) -> tuple[Place, ...]:
+def listed_sources(choices: LibraryChoices) -> tuple[Source, ...]:
     """Return what is to be indexed."""
-    places = [Place(str(absolute(each))) for each in split_names(choices.sources)]
+    sources = [Source(str(absolute(each))) for each in split_names(choices.sources)]
     if choices.asset_libraries:
-        places += [Place(folder, assets_only=True) for folder in asset_folders()]
-    return tuple(places)
+        sources += [Source(folder, assets_only=True) for folder in asset_folders()]
+    return tuple(sources)
 
 
 def index_problem(choices: LibraryChoices) -> IndexProblem:
@@ -44,14 +44,14 @@ def index_problem(choices: LibraryChoices) -> IndexProblem:
     InvalidFileError
         Nothing was named.
     """
-    places = places_of(choices)
-    if not places:
+    sources = listed_sources(choices)
+    if not sources:
         raise InvalidFileError(
             "No sources are listed. Add folders or files, or turn on asset libraries."
         )
     tags = tuple(tag.strip() for tag in choices.tags.split(",") if tag.strip())
     library = library_path(choices)
-    return IndexProblem(str(library), places, tags, background_blender(choices.rig_file))
+    return IndexProblem(str(library), sources, tags, background_blender(choices.rig_file))
 
 
 def background_blender(rig_file: str) -> BackgroundBlender:

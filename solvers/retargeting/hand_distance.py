@@ -18,20 +18,20 @@ class Arms(NamedTuple):
     """Both arms of the target, left and right."""
 
     shoulders: Array
-    """Start of the upper arms, shape (2, n_frames, 3), metres."""
+    """Start of the upper arms, shape (2, n_frames, 3), meters."""
     hands: Array
-    """Positions of the hands from each arm alone, shape (2, n_frames, 3), metres."""
+    """Positions of the hands from each arm alone, shape (2, n_frames, 3), meters."""
     lengths: Array
-    """Shape (2,), metres."""
+    """Shape (2,), meters."""
 
 
 def match_meeting_hands(arms: Arms, separation: Array) -> Array:
-    """Return the positions of the hands, shape (2, n_frames, 3), metres.
+    """Return the positions of the hands, shape (2, n_frames, 3), meters.
 
     Parameters
     ----------
     arms : Arms
-    separation : shape (n_frames, 3), metres
+    separation : shape (n_frames, 3), meters
         From the right hand to the left in the source, scaled by the arms.
 
     Returns
@@ -62,10 +62,10 @@ def distance_to_reach(offset: Array, direction: Array, reach: Array | float) -> 
 
     Parameters
     ----------
-    offset : shape (n_frames, 3), metres
+    offset : shape (n_frames, 3), meters
         From the start of the limb to the point.
     direction : shape (n_frames, 3) or (3,), unit vectors
-    reach : metres, one for all frames or shape (n_frames,)
+    reach : meters, one for all frames or shape (n_frames,)
 
     Returns
     -------

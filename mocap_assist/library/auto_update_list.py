@@ -13,11 +13,11 @@ from ..blender import permissions
 from ..blender.name_lists import join_names
 from ..jobs.in_blender import BackgroundBlender
 from .choices import LibraryChoices
-from .places import index_problem, library_path, places_of
-from .solve_indexing import IndexProblem, Place
+from .solve_indexing import IndexProblem, Source
+from .sources import index_problem, library_path, listed_sources
 
 
-def kept_libraries() -> list[IndexProblem]:
+def auto_updated_libraries() -> list[IndexProblem]:
     """Return what is to be kept current."""
     stored = permissions.entries(permissions.LIBRARIES)
     return [kept for each in stored if (kept := _problem(each)) is not None]
@@ -25,11 +25,11 @@ def kept_libraries() -> list[IndexProblem]:
 
 def is_kept(problem: IndexProblem) -> bool:
     """Whether a library is kept current from exactly these sources."""
-    return problem in kept_libraries()
+    return problem in auto_updated_libraries()
 
 
 def keep(problem: IndexProblem) -> None:
-    """Keep a library current from these sources, in place of others."""
+    """Update a library automatically from these sources, which replace earlier ones."""
     permissions.change(permissions.LIBRARIES, [*_without(problem.library), _stored(problem)])
 
 
@@ -52,7 +52,7 @@ def toggle_kept(choices: LibraryChoices) -> str:
         stop_keeping(problem.library)
         return f"{name} is updated only when you press Build Library."
     keep(problem)
-    return f"{name} is updated automatically from {len(problem.places)} sources."
+    return f"{name} is updated automatically from {len(problem.sources)} sources."
 
 
 def change_sources(library: Any, sources: list[str]) -> None:
@@ -66,7 +66,7 @@ def change_sources(library: Any, sources: list[str]) -> None:
     was_kept = choices_are_kept(library.settings().choices)
     library.sources = join_names(sources)
     choices = library.settings().choices
-    if was_kept and places_of(choices):
+    if was_kept and listed_sources(choices):
         keep(index_problem(choices))
     elif was_kept:
         stop_keeping(str(library_path(choices)))
@@ -74,17 +74,17 @@ def change_sources(library: Any, sources: list[str]) -> None:
 
 def choices_are_kept(choices: LibraryChoices) -> bool:
     """Whether the library of these choices is kept current from their sources."""
-    return bool(places_of(choices)) and is_kept(index_problem(choices))
+    return bool(listed_sources(choices)) and is_kept(index_problem(choices))
 
 
 def _without(library: str) -> list[Any]:
-    return [_stored(each) for each in kept_libraries() if each.library != library]
+    return [_stored(each) for each in auto_updated_libraries() if each.library != library]
 
 
 def _stored(problem: IndexProblem) -> dict[str, Any]:
     return {
         "library": problem.library,
-        "places": [[place.path, place.assets_only] for place in problem.places],
+        "places": [[place.path, place.assets_only] for place in problem.sources],
         "tags": list(problem.tags),
         "rig": problem.blender.rig,
     }
@@ -93,9 +93,9 @@ def _stored(problem: IndexProblem) -> dict[str, Any]:
 def _problem(stored: Any) -> IndexProblem | None:
     """Undo `_stored`; None for what this version does not understand."""
     try:
-        places = tuple(Place(str(path), bool(assets)) for path, assets in stored["places"])
+        sources = tuple(Source(str(path), bool(assets)) for path, assets in stored["places"])
         tags = tuple(map(str, stored["tags"]))
         blender = BackgroundBlender(str(bpy.app.binary_path), str(stored["rig"]))
-        return IndexProblem(str(stored["library"]), places, tags, blender)
+        return IndexProblem(str(stored["library"]), sources, tags, blender)
     except (TypeError, ValueError, KeyError):
         return None

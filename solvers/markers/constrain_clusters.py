@@ -25,7 +25,7 @@ class ConstrainedMarkers:
     filled: NDArray[np.bool_]
     """Where a missing marker was filled in, shape (n_frames, n_markers)."""
     moved: Array
-    """Displacement of each marker, same shape, metres; 0 where unchanged."""
+    """Displacement of each marker, same shape, meters; 0 where unchanged."""
 
 
 def constrain_clusters(

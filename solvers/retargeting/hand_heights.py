@@ -35,9 +35,9 @@ class Ground(NamedTuple):
 
     placement: Placement
     floors: tuple[float, float]
-    """Height of the ground of source and target, metres."""
+    """Height of the ground of source and target, meters."""
     leg: float
-    """Leg length of the source, metres."""
+    """Leg length of the source, meters."""
     frame_rate: float
 
 
@@ -48,19 +48,19 @@ def pull_to_ground(
 
     Parameters
     ----------
-    hand : shape (n_frames, 3), metres
+    hand : shape (n_frames, 3), meters
         Position from the arm alone.
-    source_hand : shape (n_frames, 3), metres
+    source_hand : shape (n_frames, 3), meters
         The source's hand.
-    shoulder : shape (n_frames, 3), metres
+    shoulder : shape (n_frames, 3), meters
         Start of the arm.
-    length : float, metres
+    length : float, meters
         Length of the arm.
     ground : Ground
 
     Returns
     -------
-    NDArray, shape (n_frames, 3), metres
+    NDArray, shape (n_frames, 3), meters
         The lower the source's hand, the more the height follows the source's, scaled by the
         legs. The lower and slower it is, the more the position does, within the arm's reach.
     """
@@ -111,20 +111,20 @@ def keep_above_ground(hand: Array, source_hand: Array, ground: Ground) -> Array:
     return raised
 
 
-def ease_into_extension(arm_vector: Array, arm_alone: Array, length: float) -> Array:
+def ease_into_extension(arm_vector: Array, free_arm: Array, length: float) -> Array:
     """Return the vector from shoulder to hand, shape (n_frames, 3), eased into full extension.
 
-    The arm does not snap straight if the ground is out of reach. `arm_alone` is the vector
+    The arm does not snap straight if the ground is out of reach. `free_arm` is the vector
     without the ground, whose extension is not reduced.
     """
-    wanted, unconstrained = (
+    target, unconstrained = (
         np.linalg.norm(arm_vector, axis=1),
-        np.linalg.norm(arm_alone, axis=1),
+        np.linalg.norm(free_arm, axis=1),
     )
     begin = np.minimum(np.maximum(EASE_EXTENSION_FRACTION * length, unconstrained), length)
     margin = np.maximum(length - begin, 1e-9)
-    reached = begin + margin * -np.expm1(-np.maximum(wanted - begin, 0.0) / margin)
-    return np.asarray(arm_vector * np.minimum(reached / np.maximum(wanted, 1e-9), 1.0)[:, None])
+    reached = begin + margin * -np.expm1(-np.maximum(target - begin, 0.0) / margin)
+    return np.asarray(arm_vector * np.minimum(reached / np.maximum(target, 1e-9), 1.0)[:, None])
 
 
 def _envelope(lift: Array, frame_rate: float) -> Array:
