@@ -10,7 +10,7 @@ import bpy
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import open_regular
 from ...solvers.json_text import parse_json
-from ..jobs.in_blender import SCENE_SUFFIXES
+from ..jobs.in_blender import is_scene_file
 
 COMMON_RATES = (15.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 200.0, 240.0)
 MIN_RATE_HZ = 12.0
@@ -33,7 +33,7 @@ def open_scene_file(path: str) -> None:
         This Blender cannot read the file.
     """
     suffix = Path(path).suffix.lower()
-    if suffix not in SCENE_SUFFIXES:
+    if not is_scene_file(path):
         return _run(path, bpy.ops.wm.open_mainfile, load_ui=False, use_scripts=False)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     if suffix == ".fbx":

@@ -16,7 +16,7 @@ from .depth_folders import readable
 from .import_transaction import READING_FRACTION, ImportTransaction
 from .recent_files import State, remember, state_of
 from .recording_objects import conversion_from_choices
-from .solve_reading import Read, ReadRecording, read_files
+from .solve_reading import Read, read_files
 
 BYTES_AT_ONCE = 64_000_000
 """Of the files that are read before what they hold comes into the scene."""
@@ -43,8 +43,8 @@ class ImportJob:
         self._n_files, self._n_read, self._n_in = len(paths), 0, 0
         self._shown = 0.0
         self._states: list[State] = []
-        self._read: deque[tuple[Path, State, Read | MocapAssistError]] = deque()
-        self.job: Job[list[Read | MocapAssistError]] = Job(self._next_batch())
+        self._read: deque[tuple[Path, State, list[Read] | MocapAssistError]] = deque()
+        self.job: Job[list[list[Read] | MocapAssistError]] = Job(self._next_batch())
         self.watch = Watch(context, "import", self._stop)
         self._show(context)
 
@@ -83,7 +83,7 @@ class ImportJob:
                 self.transaction.refuse(path, each.as_error())
         return [each for each in found if isinstance(each, Path)]
 
-    def _next_batch(self) -> "partial[list[Read | MocapAssistError]]":
+    def _next_batch(self) -> "partial[list[list[Read] | MocapAssistError]]":
         self._states = [state_of(path) for path in self._batches[0]]
         return partial(read_files, self._batches[0], self._wanted)
 
@@ -111,14 +111,14 @@ class ImportJob:
         context: bpy.types.Context,
         path: Path,
         state: State,
-        found: Read | MocapAssistError,
+        found: list[Read] | MocapAssistError,
     ) -> None:
         if isinstance(found, MocapAssistError):
             self.transaction.refuse(path, found)
-        else:
-            recording, moving, warnings = found
-            remember(path, state, ReadRecording(recording, warnings), self._wanted.unit)
-            self.transaction.add(context, path, recording, moving=moving, warnings=warnings)
+            return
+        remember(path, state, [take.content for take in found], self._wanted.unit)
+        for content, moving in found:
+            self.transaction.add(context, path, content, moving=moving)
 
     def _show(self, context: bpy.types.Context) -> None:
         fraction, message = 0.0, ""

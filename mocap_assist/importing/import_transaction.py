@@ -1,7 +1,6 @@
 """Add recordings to the scene one by one, and remove them again on failure."""
 
 import logging
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -21,7 +20,7 @@ from ..scene.scene_state import SceneState
 from .choices import ImportChoices
 from .depth_objects import make_preview
 from .recording_objects import make_objects
-from .solve_reading import Recording, in_one_tree
+from .solve_reading import ReadRecording, in_one_tree
 
 logger = logging.getLogger(__name__)
 
@@ -77,17 +76,16 @@ class ImportTransaction:
         self,
         context: bpy.types.Context,
         path: Path,
-        recording: Recording,
+        content: ReadRecording,
         progress: Progress = unwatched,
         *,
         moving: Motion | Tracks | None = None,
-        warnings: Sequence[str] = (),
     ) -> None:
         """Create the objects of a recording completely, or note why not.
 
-        `moving` is its converted motion (`make_objects`), `warnings` those of its reader.
+        `moving` is its converted motion (`make_objects`).
         """
-        built = attempt(path, self._build, context, path, recording, moving, progress)
+        built = attempt(path, self._build, context, path, content, moving, progress)
         if isinstance(built, Failure):
             self.refuse(path, built.as_error())
             return
@@ -95,9 +93,9 @@ class ImportTransaction:
         self._created.append(made)
         self._tops.append(top.session_uid)
         self._messages.append(
-            " ".join([sentence, *[f"{texts}." for texts in warnings[:MAX_WARNINGS]]])
+            " ".join([sentence, *[f"{text}." for text in content.warnings[:MAX_WARNINGS]]])
         )
-        self._figures.append(_figures(recording, warnings))
+        self._figures.append(_figures(content))
 
     def refuse(self, path: Path, error: MocapAssistError) -> None:
         """Note that a file failed."""
@@ -127,29 +125,30 @@ class ImportTransaction:
         self,
         context: bpy.types.Context,
         path: Path,
-        recording: Recording,
+        content: ReadRecording,
         moving: Motion | Tracks | None,
         progress: Progress,
     ) -> tuple[Numbers, bpy.types.Object, str]:
         with undo_on_error(context) as made:
-            return made, *self._make(context, path, recording, moving, progress)
+            return made, *self._make(context, path, content, moving, progress)
 
     def _make(
         self,
         context: bpy.types.Context,
         path: Path,
-        recording: Recording,
+        content: ReadRecording,
         moving: Motion | Tracks | None,
         progress: Progress,
     ) -> tuple[bpy.types.Object, str]:
-        choices = self._choices
+        choices, recording = self._choices, content.recording
+        name = f"{path.stem} {content.take}".strip()
         if self._tops and choices.frame_rate is FrameRate.UPDATE:  # the first has set the rate
             choices = replace(choices, frame_rate=FrameRate.SCALE)
         if isinstance(recording, DepthRecording):
             made = make_preview(context, path, recording, choices, progress=progress)
         else:
             made = make_objects(
-                context, path.stem, recording, choices, moving=moving, progress=progress
+                context, name, recording, choices, moving=moving, progress=progress
             )
         for owner in filter(None, (made.top, made.action)):
             note_origin(owner, origin_of_file(path, recording))
@@ -161,7 +160,8 @@ class ImportTransaction:
         return made.top, f"{made.top.name}: {made.what}, {rate}."
 
 
-def _figures(recording: Recording, warnings: Sequence[str]) -> dict[str, Any]:
+def _figures(content: ReadRecording) -> dict[str, Any]:
+    recording, warnings, _ = content
     figures = recording_figures(recording)
     never_observed = figures.pop("never_seen", [])
     texts = [

@@ -8,16 +8,20 @@ from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.faults import Failure, attempt
 from ...solvers.progress import Progress, unwatched, within
 from ..blender.path_properties import absolute, chosen_files
+from ..jobs.in_blender import SCENE_SUFFIXES, is_scene_file
 from ..scene.scene_rate import scene_rate
 from .choices import ImportChoices
 from .depth_folders import is_take, readable, take_of
 from .import_transaction import READING_FRACTION, Imported, ImportTransaction
 from .recent_files import read_again
+from .recording_objects import conversion_from_choices
+from .solve_reading import Conversion
 
 QUICKLY_READ = 2_000_000  # bytes
 
 
 EXTENSIONS = (
+    *sorted(SCENE_SUFFIXES),
     ".bvh", ".amc", ".asf", ".c3d", ".trc", ".skeleton", ".csv", ".json", ".txt", ".npy",
     ".npz", ".mkv", ".mat",
 )  # fmt: skip
@@ -54,9 +58,9 @@ def preview(context: bpy.types.Context, paths: list[Path]) -> str:
     plays = f"the scene plays at {scene:g} FPS"
     try:
         size = path.stat().st_size
-        if size > QUICKLY_READ:
-            return f"{path.name}: {size / 1e6:.0f} MB; {plays}"
-        recording, warnings = read_again(path)
+        if size > QUICKLY_READ or is_scene_file(path):
+            return f"{path.name}: {size / 1e6:.1f} MB; {plays}"
+        ((recording, warnings, _),) = read_again(path, Conversion())
     except MocapAssistError as error:
         return str(error)
     except OSError as error:
@@ -78,6 +82,7 @@ def import_files(
     then as it was.
     """
     transaction = ImportTransaction(context, choices)
+    conversion = conversion_from_choices(context, choices)
     try:
         for index, path in enumerate(paths):
             file_progress = within(progress, index / len(paths), (index + 1) / len(paths))
@@ -86,24 +91,18 @@ def import_files(
                 transaction.refuse(path, source.as_error())
                 continue
             try:
-                known = read_again(
-                    source,
-                    within(file_progress, 0.0, READING_FRACTION),
-                    unit=choices.unit.metres,
-                    depth=choices.depth,
+                takes = read_again(
+                    source, conversion, within(file_progress, 0.0, READING_FRACTION)
                 )
             except SolveCancelled:
                 raise
             except MocapAssistError as error:
                 transaction.refuse(path, error)
             else:
-                transaction.add(
-                    context,
-                    source,
-                    known.recording,
-                    within(file_progress, READING_FRACTION, 1.0),
-                    warnings=known.warnings,
-                )
+                making = within(file_progress, READING_FRACTION, 1.0)
+                for number, take in enumerate(takes):
+                    part = within(making, number / len(takes), (number + 1) / len(takes))
+                    transaction.add(context, source, take, part)
     except BaseException:
         transaction.take_back(context)
         raise

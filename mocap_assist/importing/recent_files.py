@@ -6,41 +6,35 @@ from ...solvers.depth_scene import DepthRecording
 from ...solvers.errors import InvalidFileError
 from ...solvers.motion import JointRecording, Motion
 from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings import DepthSettings
-from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 from ...solvers.recordings.skeleton_files import find_skeleton
-from .solve_reading import ReadRecording, Recording, read_file
+from .solve_reading import Conversion, ReadRecording, Recording, read_takes
 
 MOST = 20_000_000  # numbers that are kept
 
 State = tuple[tuple[str, int, int], ...]
-_read: dict[tuple[State, float | None], ReadRecording] = {}
+_read: dict[tuple[State, float | None], list[ReadRecording]] = {}
 
 
 def read_again(
-    path: Path,
-    progress: Progress = unwatched,
-    *,
-    unit: float | None = None,
-    depth: DepthSettings = DEFAULT_DEPTH_SETTINGS,
-) -> ReadRecording:
-    """Return what a file holds, as `read_file` does; what has not changed is read once.
+    path: Path, conversion: Conversion, progress: Progress = unwatched
+) -> list[ReadRecording]:
+    """Return the takes of a file, as `read_takes` does; an unchanged file is read once.
 
     Recordings of depth are opened anew: little is read for that.
     """
-    state = state_of(path)
-    known = _read.pop((state, unit), None) or read_file(path, progress, unit=unit, depth=depth)
-    remember(path, state, known, unit)
-    return known
+    state, unit = state_of(path), conversion.unit
+    takes = _read.pop((state, unit), None) or read_takes(path, conversion, progress)
+    remember(path, state, takes, unit)
+    return takes
 
 
-def remember(path: Path, state: State, known: ReadRecording, unit: float | None) -> None:
+def remember(path: Path, state: State, takes: list[ReadRecording], unit: float | None) -> None:
     """Keep what was read from a file in this state and unit, unless it has changed since."""
-    if isinstance(known.recording, DepthRecording):
+    if any(isinstance(take.recording, DepthRecording) for take in takes):
         return
     if state and state == state_of(path):
-        _read[state, unit] = known
-    while sum(_size(known.recording) for known in _read.values()) > MOST:
+        _read[state, unit] = takes
+    while sum(_size(take.recording) for takes in _read.values() for take in takes) > MOST:
         _read.pop(next(iter(_read)))
 
 

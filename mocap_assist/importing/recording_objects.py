@@ -15,6 +15,7 @@ from ..actions.empties_build import build_empties, write_tracks
 from ..actions.new_action import write_motion
 from ..actions.sensor_notes import sensor_values, write_sensor_values
 from ..blender import compat
+from ..jobs.in_blender import BackgroundBlender
 from ..scene.scene_rate import FrameRate, scene_rate, timing
 from ..scene.units import unit_of
 from .choices import ImportChoices, Target
@@ -58,6 +59,7 @@ def conversion_from_choices(context: bpy.types.Context, choices: ImportChoices) 
         scene_rate(context.scene) if resampled else None,
         choices.unit.metres,
         choices.depth,
+        BackgroundBlender(str(bpy.app.binary_path)),
     )
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from ...solvers.depth_scene import DepthRecording
-from ...solvers.errors import MocapAssistError, SolveCancelled
+from ...solvers.errors import InvalidFileError, MocapAssistError, SolveCancelled
 from ...solvers.faults import Failure, attempt
 from ...solvers.motion import (
     JointRecording,
@@ -21,6 +21,7 @@ from ...solvers.motion.humanoid import fill_missing_hips
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import DepthSettings, is_depth_recording, read_depth, read_tracked
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
+from ..jobs.in_blender import BackgroundBlender, is_scene_file, read_blends
 
 Recording = Motion | Tracks | JointRecording | DepthRecording
 Result = TypeVar("Result")
@@ -29,39 +30,41 @@ Result = TypeVar("Result")
 class Conversion(NamedTuple):
     """Conversion of recordings for the scene."""
 
-    armature: bool
+    armature: bool = True
     """Whether connected joints of a camera become a skeleton's motion."""
-    scale: float
-    frame_rate: float | None
+    scale: float = 1.0
+    frame_rate: float | None = None
     """Frames per second to resample to; None leaves each recording its own."""
     unit: float | None = None
     """Meters per unit of the files; None reads it from the file or estimates it."""
     depth: DepthSettings = DEFAULT_DEPTH_SETTINGS
     """Interpretation of depth images."""
+    blender: BackgroundBlender = BackgroundBlender("")
+    """The Blender whose importers read FBX, glTF and USD."""
 
 
 class ReadRecording(NamedTuple):
-    """Content of a file."""
+    """Content of a file, or of one of its takes."""
 
     recording: Recording
     warnings: tuple[str, ...] = ()
     """Warnings of its reader."""
+    take: str = ""
+    """Name of the take in a file with several."""
 
 
 class Read(NamedTuple):
-    """Content of a file, and its converted motion."""
+    """Content of a file or take, and its converted motion."""
 
-    recording: Recording
+    content: ReadRecording
     moving: Motion | Tracks | DepthRecording
-    warnings: tuple[str, ...] = ()
-    """Warnings of its reader."""
 
 
 def read_files(
     paths: Sequence[Path], conversion: Conversion, *, progress: Progress = unwatched
-) -> list[Read | MocapAssistError]:
-    """Return the content of each file, or the error that prevents its import."""
-    found: list[Read | MocapAssistError] = []
+) -> list[list[Read] | MocapAssistError]:
+    """Return the takes of each file, or the error that prevents its import."""
+    found: list[list[Read] | MocapAssistError] = []
     for path in paths:
 
         def file_progress(fraction: float, message: str = "", path: Path = path) -> None:
@@ -69,18 +72,41 @@ def read_files(
 
         file_progress(0.0)
         try:
-            content = read_file(
-                path, file_progress, unit=conversion.unit, depth=conversion.depth
-            )
-            moving = _attempt_read(
-                path, lambda content=content: convert_recording(content.recording, conversion)
-            )
-            found.append(Read(content.recording, moving, content.warnings))
+            takes = read_takes(path, conversion, file_progress)
+            found.append([_convert(path, take, conversion) for take in takes])
         except SolveCancelled:
             raise
         except MocapAssistError as error:
             found.append(error)
     return found
+
+
+def _convert(path: Path, content: ReadRecording, conversion: Conversion) -> Read:
+    moving = _attempt_read(path, lambda: convert_recording(content.recording, conversion))
+    return Read(content, moving)
+
+
+def read_takes(
+    path: Path, conversion: Conversion, progress: Progress = unwatched
+) -> list[ReadRecording]:
+    """Return the takes of a file: several perhaps of FBX, glTF and USD, else one.
+
+    Every failure becomes a MocapAssistError, so that other files are still read.
+    """
+    if not is_scene_file(path):
+        return [read_file(path, progress, unit=conversion.unit, depth=conversion.depth)]
+    (found,) = _attempt_read(
+        path, lambda: read_blends(conversion.blender, [str(path)], progress=progress)
+    )
+    if not found.clips:
+        raise InvalidFileError(
+            found.refused[0] if found.refused else f"{path} has no animation of a skeleton."
+        )
+    several = len(found.clips) > 1
+    return [
+        ReadRecording(clip.motion, found.refused, clip.item if several else "")
+        for clip in found.clips
+    ]
 
 
 def read_file(

@@ -31,10 +31,14 @@ SCENE_SUFFIXES = frozenset({
 """Files of other programs that Blender's own importers read."""
 
 
+def is_scene_file(path: Path | str) -> bool:
+    """Whether a file is one of another program that Blender reads, by its name."""
+    return Path(path).suffix.lower() in SCENE_SUFFIXES
+
+
 def is_read_in_blender(path: Path | str) -> bool:
-    """Whether a file is one that a background Blender reads, by its name."""
-    suffix = Path(path).suffix.lower()
-    return suffix == BLEND or suffix in SCENE_SUFFIXES
+    """Whether a background Blender reads a file, by its name."""
+    return Path(path).suffix.lower() == BLEND or is_scene_file(path)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from ..actions.fitting import fitting_slots, plays
 from ..blender import compat
 from ..blender.compat import Source
 from ..blender.scene_files import open_scene_file
-from ..jobs.in_blender import SCENE_SUFFIXES, BlendClip, BlendRead
+from ..jobs.in_blender import BlendClip, BlendRead, is_scene_file
 from ..rigs.evaluated_body import body_bones, with_body_shown
 from ..rigs.rigify import is_rigify
 from ..rigs.target_read import find_roles
@@ -94,7 +94,7 @@ def read_source(scene: bpy.types.Scene, armature: bpy.types.Object, source: Sour
 
 def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> BlendRead:
     open_scene_file(path)
-    if Path(path).suffix.lower() in SCENE_SUFFIXES:
+    if is_scene_file(path):
         if sentence := _without_motion(path):
             return BlendRead((), (sentence,))
         _mark_invented_tails()

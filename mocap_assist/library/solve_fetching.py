@@ -13,11 +13,10 @@ from ...solvers.retargeting import RetargetSettings
 from ...solvers.retrieval import Origin
 from ...solvers.rotations import IDENTITY
 from ..importing.solve_reading import Conversion, convert_recording, read_file
-from ..jobs.in_blender import BackgroundBlender, read_blends
+from ..jobs.in_blender import BackgroundBlender, is_read_in_blender, read_blends
 from ..retarget.solve_retargeting import Clip, RetargetProblem, Start, retarget_clips
 from ..scene.controls import BoneKeys, TargetRig
 
-BLEND = ".blend"
 AS_ARMATURE = Conversion(armature=True, scale=1.0, frame_rate=None)
 Keys = Mapping[str, BoneKeys]
 
@@ -117,7 +116,7 @@ def read_origin(origin: Origin, blender: BackgroundBlender) -> Motion:
             f"The source file {origin.path} was moved or deleted. Put it back, or build the"
             " library again."
         )
-    if origin.path.endswith(BLEND):
+    if is_read_in_blender(origin.path):
         (found,) = read_blends(blender, [origin.path], items=[origin.item])
         if not found.clips:
             why = " ".join(found.refused)

@@ -7,7 +7,7 @@ import bpy
 from ...solvers.errors import InvalidFileError, InvalidMotionError
 from ..actions.fitting import fitting_slots
 from ..blender import compat
-from ..library.solve_indexing import BLEND
+from ..jobs.in_blender import BLEND
 from ..runtime.selection import selected_armature
 from . import searches
 from .solve_finding import Found

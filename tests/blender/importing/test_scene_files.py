@@ -1,0 +1,106 @@
+"""FBX, glTF and USD come in through Blender's importers, standing, in true size."""
+
+import json
+import struct
+
+import numpy as np
+import pytest
+
+FIGURES = {
+    "fbx/mixamo_web/Walking.fbx": (37, 30.0, 1.9),
+    "fbx/mixamo_web/Rolling.fbx": (74, 30.0, 0.9),
+    "glb/mixamo_blender/walking.glb": (30, 30.0, 1.7),
+    "glb/khronos_cesiumman/CesiumMan.glb": (49, 24.0, 1.13),
+}
+
+
+@pytest.fixture
+def bring(blank):
+    """Import a file; return the armatures and the operator's result."""
+
+    def bring(path):
+        try:
+            result = blank.ops.mocap_assist.import_recording(filepath=str(path))
+        except RuntimeError as error:
+            return [], str(error)
+        return [each for each in blank.data.objects if each.type == "ARMATURE"], result
+
+    return bring
+
+
+@pytest.mark.parametrize("file", FIGURES)
+def test_takes_come_in_standing_in_true_size(bring, recordings, blank, file, load):
+    n_frames, rate, height = FIGURES[file]
+
+    armatures, _ = bring(recordings / "corpus" / file)
+
+    read = load("mocap_assist.actions.armature_read").read_take
+    motion = read(armatures[-1], blank.context.scene).parts[0].motion
+    poses = load("solvers.motion").world_poses(
+        motion.skeleton, motion.rotations, motion.root_positions
+    )
+    assert motion.n_frames == n_frames
+    assert motion.frame_rate == pytest.approx(rate)
+    tall = np.median(np.ptp(poses.positions[..., 2], axis=1))
+    assert tall == pytest.approx(height, rel=0.06)
+    roles = load("solvers.motion").find_humanoid_map(motion.skeleton)
+    assert roles.has("hips", "head", "leftFoot", "rightHand")
+
+
+def test_every_take_of_a_file_comes_in(bring, recordings):
+    armatures, _ = bring(recordings / "corpus/glb/mixamo_blender/walking.glb")
+
+    assert {each.animation_data.action.name for each in armatures} == {
+        "walking Idle",
+        "walking Walk",
+    }
+
+
+@pytest.mark.parametrize(
+    ("file", "sentence"),
+    [
+        ("vrm/example_vrm/Example.vrm", "has a skeleton but no animation"),
+        ("vrm/vrma_pixiv/test.vrma", "has no skeleton"),
+        ("fbx/ue4_mannequin/SK_Mannequin.FBX", "has a skeleton but no animation"),
+    ],
+)
+def test_what_a_file_lacks_is_said(bring, recordings, file, sentence):
+    armatures, message = bring(recordings / "corpus" / file)
+
+    assert not armatures
+    assert sentence in message
+
+
+@pytest.mark.parametrize("content", [b"<html></html>", b"", b"\0" * 64])
+@pytest.mark.parametrize("suffix", ["glb", "gltf", "fbx", "usda", "vrm"])
+def test_what_is_no_such_file_is_refused_in_a_sentence(bring, tmp_path, content, suffix):
+    path = tmp_path / f"take.{suffix}"
+    path.write_bytes(content)
+
+    armatures, message = bring(path)
+
+    assert not armatures
+    assert "take." in message and "Traceback" not in message
+
+
+def test_a_lying_header_of_a_glb_costs_no_memory(bring, tmp_path):
+    path = tmp_path / "take.glb"
+    path.write_bytes(struct.pack("<IIIII", 0x46546C67, 2, 100, 0xFFFFFFFF, 0x4E4F534A))
+
+    _, message = bring(path)
+
+    assert "damaged GLB" in message
+
+
+def test_odd_samplers_do_not_stop_a_file(bring, tmp_path):
+    content = {
+        "asset": {"version": "2.0"},
+        "accessors": [{"count": "x", "min": 3, "max": []}, None],
+        "animations": [{"samplers": [{"input": 0}, {"input": 1}, {"input": 99}, 5]}, 7],
+    }
+    (tmp_path / "take.gltf").write_text(json.dumps(content))
+
+    armatures, message = bring(tmp_path / "take.gltf")
+
+    assert not armatures
+    assert "take.gltf" in message
