@@ -27,7 +27,6 @@ from .joint_files import (
     is_ui_prmd,
     read_azure_csv,
     read_azure_json,
-    read_freemocap,
     read_irds,
     read_joint_csv,
     read_joint_json,
@@ -37,7 +36,15 @@ from .joint_files import (
     read_ui_prmd,
 )
 from .marker_files import read_c3d, read_trc
-from .skeleton_files import read_acclaim, read_bvh
+from .numpy_files import read_npy
+from .skeleton_files import (
+    is_kimodo,
+    is_smpl,
+    read_acclaim,
+    read_bvh,
+    read_kimodo,
+    read_smpl,
+)
 
 HEAD = 4096
 
@@ -80,6 +87,37 @@ def _is_trc(head: bytes) -> bool:
     return re.match(rb"(?i)[\s\"]*(PathFileType|DataRate\W+CameraRate)\b", head) is not None
 
 
+def _is_pickle(head: bytes) -> bool:
+    """Detect pickles, also those in the archives of PyTorch and joblib."""
+    in_archive = head[:4] == b"PK\x03\x04" and b"data.pkl" in head[:128]
+    return in_archive or (head[:1] == b"\x80" and head[1:2] in b"\x02\x03\x04\x05")
+
+
+def _refuse_pickle(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Motion:
+    raise InvalidFileError(
+        f"{path} is a pickle, which is never opened here: it may run any program. Convert it"
+        " to .npz where it was made (docs/formats/smpl.md has the lines)."
+    )
+
+
+SCENE_MAGIC = (b"Kaydara FBX Binary", b"; FBX", b"glTF", b"PXR-USDC", b"#usda")
+
+
+def _is_scene_file(head: bytes) -> bool:
+    return head.startswith(SCENE_MAGIC) or b"<COLLADA" in head[:512]
+
+
+def _refuse_scene_file(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Motion:
+    raise InvalidFileError(
+        f"{path} is read by Blender's own importers. Import it in Blender, or run blender"
+        " --background --command mocap_assist import."
+    )
+
+
 def _refuse_skeleton(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> Motion:
@@ -92,6 +130,10 @@ FORMATS = (
     Format("BVH", _is_bvh, read_bvh, has_skeleton=True),
     Format("Acclaim AMC", _is_acclaim, read_acclaim, has_skeleton=True),
     Format("Acclaim ASF", _is_acclaim_skeleton, _refuse_skeleton, has_skeleton=True),
+    Format("FBX, glTF or USD", _is_scene_file, _refuse_scene_file, has_skeleton=True),
+    Format("pickle", _is_pickle, _refuse_pickle, has_skeleton=True),
+    Format("SMPL parameters", is_smpl, read_smpl, has_skeleton=True),
+    Format("Kimodo", is_kimodo, read_kimodo, has_skeleton=True),
     Format("C3D", is_c3d, read_c3d),
     Format("TRC", _is_trc, read_trc),
     Format("IRDS", is_irds, read_irds),
@@ -101,11 +143,13 @@ FORMATS = (
     Format("NTU RGB+D", is_ntu_skeleton, read_ntu_skeleton),
     Format("MSR Action3D", is_msr_action3d, read_msr_action3d),
     Format("UI-PRMD", is_ui_prmd, read_ui_prmd),
-    Format("freemocap", is_npy, read_freemocap),
+    Format("freemocap", is_npy, read_npy),
     Format("joint CSV", is_joint_csv, read_joint_csv),
     Format("joint JSON", is_joint_json, read_joint_json),
 )
 """Supported formats; add a line here for a new one."""
+REFUSED = (_refuse_skeleton, _refuse_scene_file, _refuse_pickle)
+"""Readers of what is recognized, but is no recording."""
 
 
 def read_recording(
@@ -172,7 +216,7 @@ def read_tracked(
         )
     if Path(path).is_dir():
         raise InvalidFileError(f"{path} is a folder without depth images. Choose a file in it.")
-    names = ", ".join(each.name for each in FORMATS if each.read is not _refuse_skeleton)
+    names = ", ".join(each.name for each in FORMATS if each.read not in REFUSED)
     raise InvalidFileError(
         f"{path} is of no known format ({names}). Export it as one of these first."
     )
@@ -213,7 +257,7 @@ def recordings_in(folder: Path) -> list[Path]:
 def may_contain_motion(path: Path) -> bool:
     """Whether a file is a recording by its first bytes, or cannot be opened."""
     format_ = attempt(path, detect_format, path)
-    return format_ is not None and getattr(format_, "read", None) is not _refuse_skeleton
+    return format_ is not None and getattr(format_, "read", None) not in REFUSED
 
 
 def depth_takes_in(

@@ -11,7 +11,7 @@ from .matroska import Matroska, Track, index_matroska, is_matroska
 from .names import MAX_NAME_LENGTH, UniqueNames, printable, shown
 from .png_header import PngHeader, is_png, read_png_header
 from .row_stream import stream_rows
-from .stored_arrays import NPY_MAGIC, NUMBERS, read_archive, read_array
+from .stored_arrays import NPY_MAGIC, NUMBERS, read_archive, read_archive_members, read_array
 from .stored_bytes import (
     CHUNK,
     MAX_CHECKED_BYTES,
@@ -76,6 +76,7 @@ __all__ = [
     "parse_rows",
     "printable",
     "read_archive",
+    "read_archive_members",
     "read_array",
     "read_bytes",
     "read_number",

@@ -2,6 +2,8 @@
 
 import os
 import zipfile
+from collections.abc import Collection
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +43,24 @@ def read_archive(path: Path | str, names: tuple[str, ...]) -> list[NDArray[np.fl
     except READABLE:
         raise _damaged(path) from None
     return [_as_float(arrays[name]) for name in names]
+
+
+def read_archive_members(
+    path: Path | str, names: Collection[str]
+) -> dict[str, NDArray[np.float64]]:
+    """Return those of these arrays of numbers that a `.npz` archive has.
+
+    Raises InvalidFileError on failure; other members are not read.
+    """
+    wanted = dict.fromkeys(names, replace(NUMBERS, optional=True))
+    try:
+        with open_regular(path) as file, zipfile.ZipFile(file) as archive:
+            arrays = read_members(archive, wanted, RECORDED)
+    except FileNotFoundError:
+        raise InvalidFileError(f"There is no file {path}.") from None
+    except READABLE:
+        raise _damaged(path) from None
+    return {name: _as_float(array) for name, array in arrays.items()}
 
 
 def _as_float(array: NDArray[Any]) -> NDArray[np.float64]:

@@ -13,7 +13,13 @@ from .axes import (
     z_up_from_y_up,
 )
 from .bodies import longest_observed_body, stack_body_frames
-from .body_axes import UpAxisName, describe_guessed_axis, judge_up_axis, rotate_to_z_up
+from .body_axes import (
+    UpAxisName,
+    judge_up_axis,
+    put_on_floor,
+    rotate_to_z_up,
+    stand_upright,
+)
 from .body_unit import describe_guessed_unit
 from .points import (
     METERS,
@@ -23,7 +29,12 @@ from .points import (
     points_z_up,
 )
 from .sensor_axes import from_azure_space, from_kinect_space
-from .time_stamps import DEFAULT_FRAME_RATE, ConstantRate, constant_rate_from_times
+from .time_stamps import (
+    DEFAULT_FRAME_RATE,
+    ConstantRate,
+    common_rate,
+    constant_rate_from_times,
+)
 from .tracked_joints import joint_recording
 
 __all__ = [
@@ -35,8 +46,8 @@ __all__ = [
     "ConstantRate",
     "UpAxisName",
     "check_scale",
+    "common_rate",
     "constant_rate_from_times",
-    "describe_guessed_axis",
     "describe_guessed_unit",
     "from_azure_space",
     "from_kinect_space",
@@ -49,10 +60,12 @@ __all__ = [
     "meters_from_unit_name",
     "point_names",
     "points_z_up",
+    "put_on_floor",
     "rotate_to_z_up",
     "rotations_y_up_from_z_up",
     "rotations_z_up_from_y_up",
     "stack_body_frames",
+    "stand_upright",
     "y_up_from_z_up",
     "z_up_from_y_up",
 ]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...motion import Motion, Skeleton, find_humanoid_map, world_poses
+from ...progress import Progress, unwatched
 from ...rotations import inverse, multiply, rotate
 from .axes import longest_bone_path, rotation_to_z_up
 
@@ -39,6 +40,10 @@ MAX_FLOOR_FRACTION = 0.4
 """Distance of the lowest joint from zero, relative to the height, that is no evidence."""
 CLEAR_LEAD = 0.5
 """Lead over the next axis below which the report says that the evidence disagrees."""
+SOLE_M = 0.02
+"""Height of a toe joint above the sole."""
+FLOOR_PERCENTILE = 5.0
+"""Of the heights of the lower foot, that is on the floor: some frames sink in or are wrong."""
 MIN_REST_STANDING = 0.7
 """Evidence from which the rest pose has an axis of its own."""
 MIN_SPREAD_FRACTION = 0.03
@@ -97,6 +102,33 @@ def judge_up_axis(motion: Motion) -> UpAxis:
         rest_best if in_rest[rest_best] > MIN_REST_STANDING else best,
         totals[best] - totals[second] >= CLEAR_LEAD,
     )
+
+
+def stand_upright(motion: Motion, progress: Progress = unwatched) -> Motion:
+    """Turn a motion that was read with Y up so that the actor stands (`judge_up_axis`).
+
+    `progress` is given a message where the evidence disagrees.
+    """
+    judged = judge_up_axis(motion)
+    if not judged.is_clear:
+        progress(1.0, describe_guessed_axis(judged.axis))
+    return rotate_to_z_up(motion, judged.axis, judged.rest_axis)
+
+
+def put_on_floor(motion: Motion) -> Motion:
+    """Move a motion up or down so that its feet are on the floor where they are lowest.
+
+    The lowest joint of the feet is then `SOLE_M` above the floor in all but a few frames.
+    """
+    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
+    feet = [joint for role, joint in roles.items() if role.endswith(("Foot", "Toes"))]
+    positions = world_poses(motion.skeleton, motion.rotations, motion.root_positions).positions
+    heights = positions[:, feet, 2].min(axis=1, initial=np.inf)
+    observed = heights[np.isfinite(heights)]
+    if not len(observed):
+        return motion
+    lift = SOLE_M - float(np.percentile(observed, FLOOR_PERCENTILE))
+    return replace(motion, root_positions=motion.root_positions + np.array([0.0, 0.0, lift]))
 
 
 def describe_guessed_axis(axis: UpAxisName) -> str:

@@ -24,7 +24,17 @@ MAX_COUNTED_STEPS = 5.0
 MAX_DISTANCE_FRAMES = 0.5
 """Maximum distance in frame times of a time sample in a gap from the frame it copies."""
 TIME_TOLERANCE = 1e-6
+RATE_TOLERANCE = 1e-4
+"""Of a stated rate, relative to a common one; 29.97 Hz differs from 30 by 1e-3."""
 MAX_LENGTH_RATIO, MAX_EXTRA_FRAMES = 10, 1000
+
+
+def common_rate(rate: float) -> float:
+    """Return the common rate that a rate such as 120.00004 Hz means, else the rate itself."""
+    nearest = min(
+        (*COMMON_RATES, 200.0, 240.0, 250.0, 300.0), key=lambda common: abs(common - rate)
+    )
+    return nearest if abs(nearest - rate) <= RATE_TOLERANCE * nearest else rate
 
 
 def constant_rate_from_times(

@@ -1,14 +1,23 @@
-"""Read and write skeletons with rotations: BVH and Acclaim."""
+"""Read and write skeletons with rotations: BVH, Acclaim, SMPL and Kimodo."""
 
 from .acclaim import find_skeleton, read_acclaim
 from .acclaim_limits import read_acclaim_limits
 from .bvh import read_bvh
 from .bvh_writing import write_bvh
+from .kimodo import is_kimodo, read_kimodo
+from .smpl import NAMES_OF_BODY, is_motion_x, is_smpl, read_motion_x, read_smpl
 
 __all__ = [
+    "NAMES_OF_BODY",
     "find_skeleton",
+    "is_kimodo",
+    "is_motion_x",
+    "is_smpl",
     "read_acclaim",
     "read_acclaim_limits",
     "read_bvh",
+    "read_kimodo",
+    "read_motion_x",
+    "read_smpl",
     "write_bvh",
 ]

@@ -12,11 +12,10 @@ from ...progress import Progress
 from ...rotations import inverse, multiply, quaternion_from_euler, rotate, rotation_between
 from ..conventions import (
     UpAxisName,
-    describe_guessed_axis,
     guess_unit,
-    judge_up_axis,
     rotate_to_z_up,
     rotations_z_up_from_y_up,
+    stand_upright,
     z_up_from_y_up,
 )
 from .bvh_hierarchy import BvhJoint
@@ -201,10 +200,7 @@ def motion_from_poses(
     motion = Motion(skeleton, poses.rotations, scale * poses.root, frame_rate)
     if up is not None:
         return rotate_to_z_up(motion, up, up)
-    judged = judge_up_axis(motion)
-    if not judged.is_clear:
-        progress(1.0, describe_guessed_axis(judged.axis))
-    return rotate_to_z_up(motion, judged.axis, judged.rest_axis)
+    return stand_upright(motion, progress)
 
 
 def _median_position(positions: NDArray[np.float64]) -> NDArray[np.float64]:

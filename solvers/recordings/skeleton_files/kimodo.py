@@ -1,0 +1,116 @@
+"""Read the archives of Kimodo: joints and world rotations of the SOMA skeleton."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError
+from ...motion import Motion, Skeleton
+from ...progress import Progress, unwatched
+from ...rotations import inverse, multiply, quaternion_from_matrix, rotate
+from ..containers import read_archive_members
+from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    check_scale,
+    rotations_z_up_from_y_up,
+    stand_upright,
+    z_up_from_y_up,
+)
+
+Array = NDArray[np.float64]
+
+JOINTS: tuple[tuple[str, str], ...] = (
+    ("Hips", ""), ("Spine1", "Hips"), ("Spine2", "Spine1"), ("Chest", "Spine2"),
+    ("Neck1", "Chest"), ("Neck2", "Neck1"), ("Head", "Neck2"), ("Jaw", "Head"),
+    ("LeftEye", "Head"), ("RightEye", "Head"),
+    ("LeftShoulder", "Chest"), ("LeftArm", "LeftShoulder"), ("LeftForeArm", "LeftArm"),
+    ("LeftHand", "LeftForeArm"), ("LeftHandThumbEnd", "LeftHand"),
+    ("LeftHandMiddleEnd", "LeftHand"),
+    ("RightShoulder", "Chest"), ("RightArm", "RightShoulder"), ("RightForeArm", "RightArm"),
+    ("RightHand", "RightForeArm"), ("RightHandThumbEnd", "RightHand"),
+    ("RightHandMiddleEnd", "RightHand"),
+    ("LeftLeg", "Hips"), ("LeftShin", "LeftLeg"), ("LeftFoot", "LeftShin"),
+    ("LeftToeBase", "LeftFoot"),
+    ("RightLeg", "Hips"), ("RightShin", "RightLeg"), ("RightFoot", "RightShin"),
+    ("RightToeBase", "RightFoot"),
+)  # fmt: skip
+"""Names and parents of the 30 joints, in the order of the archives, which name none."""
+MEMBERS = ("posed_joints", "global_rot_mats", "fps")
+NAMES = frozenset({"posed_joints", "global_rot_mats", "local_rot_mats", "foot_contacts"})
+MAX_OFFSET_ERROR_M = 0.02
+"""Standard deviation of a bone over time, above which joints and rotations do not agree."""
+
+
+def is_kimodo(head: bytes) -> bool:
+    """Return whether the first bytes are an archive that begins with a member of Kimodo."""
+    name = head[30 : 30 + int.from_bytes(head[26:28], "little")].decode("ascii", "replace")
+    return head[:4] == b"PK\x03\x04" and name.removesuffix(".npy") in NAMES
+
+
+def read_kimodo(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Motion:
+    """Read a motion of Kimodo, in meters, Z up.
+
+    The archives hold positions and world rotations of 30 joints, without names, parents or
+    frame rate. Parents are those of the SOMA skeleton; its bones are the mean of the joints
+    seen from their parents; 30 Hz is assumed where no rate is given.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, meters per unit of the file, or None
+        None: 1.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, has other joints, or joints and rotations disagree.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    arrays = read_archive_members(path, MEMBERS)
+    joints, matrices = (arrays.get(name) for name in MEMBERS[:2])
+    if joints is None or matrices is None or not len(joints):
+        raise InvalidFileError(
+            f"{path} has no posed_joints and global_rot_mats. Save both from Kimodo."
+        )
+    expected = (len(joints), len(JOINTS), 3)
+    if joints.shape != expected or matrices.shape != (*expected, 3):
+        raise InvalidFileError(
+            f"{path} has joints of shape {joints.shape}; the SOMA skeleton of Kimodo has"
+            f" {len(JOINTS)}. Export it as BVH."
+        )
+    names = tuple(name for name, _ in JOINTS)
+    parents = np.array([names.index(parent) if parent else -1 for _, parent in JOINTS])
+    finite = np.isfinite(joints).all(axis=(1, 2)) & np.isfinite(matrices).all(axis=(1, 2, 3))
+    world = np.full((*joints.shape[:2], 4), np.nan)
+    world[finite] = quaternion_from_matrix(matrices[finite])
+    above = world[:, np.maximum(parents, 0)]
+    bones = rotate(inverse(above), joints - joints[:, np.maximum(parents, 0)])
+    if not finite.any() or np.nanstd(bones, axis=0).max() > MAX_OFFSET_ERROR_M:
+        raise InvalidFileError(
+            f"The joints and rotations of {path} do not agree. Export it as BVH."
+        )
+    offsets = np.nanmean(bones, axis=0)
+    offsets[0] = np.nanmean(joints[:, 0], axis=0)
+    local = multiply(inverse(above), world)
+    local[:, 0] = world[:, 0]
+    rate = arrays.get("fps")
+    if rate is None:
+        progress(0.5, f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
+    unit = 1.0 if scale is None else scale
+    motion = Motion(
+        Skeleton(
+            names, tuple(int(parent) for parent in parents), z_up_from_y_up(unit * offsets)
+        ),
+        rotations_z_up_from_y_up(local),
+        z_up_from_y_up(unit * joints[:, 0]),
+        DEFAULT_FRAME_RATE if rate is None or rate.size != 1 else float(rate.ravel()[0]),
+    )
+    return stand_upright(motion, progress)

@@ -1,0 +1,219 @@
+"""Read the parameter files of SMPL bodies: AMASS, SMPL-X and what video models write."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError, InvalidSettingError
+from ...motion import Motion, Skeleton
+from ...progress import Progress, unwatched
+from ...rotations import quaternion_from_rotation_vector
+from ..containers import read_archive_members
+from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    check_scale,
+    common_rate,
+    put_on_floor,
+    rotations_z_up_from_y_up,
+    stand_upright,
+    z_up_from_y_up,
+)
+from .smpl_body import BODY, FINGERS, STATURE_M, smpl_joints
+
+Array = NDArray[np.float64]
+
+ROTATIONS = ("poses", "smpl_poses", "fullpose")
+ROOT = ("root_orient", "global_orient")
+BODY_POSE = ("pose_body", "body_pose")
+HANDS = ("pose_hand",)
+LEFT_HAND, RIGHT_HAND = ("left_hand_pose",), ("right_hand_pose",)
+POSITIONS = ("trans", "transl", "translation", "smpl_trans")
+RATES = ("mocap_frame_rate", "mocap_framerate", "frame_rate", "framerate", "fps")
+SCALES = ("smpl_scaling",)
+NAMES = frozenset(
+    (*ROTATIONS, *ROOT, *BODY_POSE, *HANDS, *LEFT_HAND, *RIGHT_HAND, *POSITIONS, *RATES,
+     *SCALES, "betas", "gender", "dmpls", "surface_model_type", "pose_jaw", "pose_eye",
+     "num_betas", "marker_data", "marker_labels", "mocap_time_length", "trans_vel")
+)  # fmt: skip
+READ = (
+    *ROTATIONS, *ROOT, *BODY_POSE, *HANDS, *LEFT_HAND, *RIGHT_HAND, *POSITIONS, *RATES, *SCALES,
+)  # fmt: skip
+NAMES_OF_BODY = tuple(name for name, _, _ in BODY)
+"""The 22 joints that all models share."""
+N_BODY = len(BODY)
+N_HAND = 9 * len(FINGERS)
+"""Numbers of one hand: three joints of each finger, with an axis and angle each."""
+FIRST_HAND = {52: 22, 55: 25}
+"""Index of the first finger joint, by the number of joints: SMPL-H and SMPL-X."""
+FIRST_MEMBER = 30
+"""Byte of a ZIP archive at which the name of its first member begins."""
+MAX_HEIGHT_M = 10.0
+MOTION_X_COLUMNS = 322
+MOTION_X_POSITION = slice(309, 312)
+"""Columns of the position, after root, body, hands, jaw, expression and shape of the face."""
+
+
+def is_smpl(head: bytes) -> bool:
+    """Return whether the first bytes are an archive that begins with a parameter of SMPL."""
+    if head[:4] != b"PK\x03\x04":
+        return False
+    length = int.from_bytes(head[26:28], "little")
+    name = head[FIRST_MEMBER : FIRST_MEMBER + length].decode("ascii", "replace")
+    return name.removesuffix(".npy") in NAMES
+
+
+def read_smpl(
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    height: float = STATURE_M,
+    progress: Progress = unwatched,
+) -> Motion:
+    """Read the pose parameters of an SMPL, SMPL-H or SMPL-X body from an `.npz` archive.
+
+    Both layouts of AMASS [1]_ are read, as one array `poses` or in parts (`root_orient`,
+    `pose_body`, `pose_hand`), and the names that video models use (`global_orient`,
+    `body_pose`, `transl`). Rotations are exact. Bone lengths depend on a licensed model that
+    is neither read nor needed: they are those of an adult, scaled to `height`. The height
+    above the floor depends on them too, so the feet are put on the floor. Which way is up is
+    judged by the body (`judge_up_axis`): AMASS has Z up, most video models Y.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, meters per unit of the positions, or None
+        None: 1, or 1 / `smpl_scaling` where the file has it (AIST++).
+    height : float, meters
+        Stature of the actor.
+    progress : Progress
+
+    Returns
+    -------
+    Motion
+        22 joints, and 30 of the fingers where the file has hands that move.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged or has no rotations of a body.
+    InvalidSettingError
+        Scale or height is not positive.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Mahmood, Ghorbani, Troje, Pons-Moll, Black (2019). AMASS: Archive of motion capture
+       as surface shapes. ICCV.
+    """
+    check_scale(scale)
+    if not 0.0 < height < MAX_HEIGHT_M:
+        raise InvalidSettingError(f"height is {height:g} m; it must be above 0 and below 10.")
+    arrays = read_archive_members(path, READ)
+    vectors = _rotation_vectors(path, arrays)
+    n_frames = len(vectors)
+    hands = vectors.shape[1] > N_BODY
+    positions = _member(arrays, POSITIONS)
+    if positions is None:
+        positions = np.zeros((n_frames, 3))
+        progress(0.5, "The file has no positions, so the body stays in place")
+    if positions.shape != (n_frames, 3):
+        raise InvalidFileError(
+            f"{path} has {n_frames} poses but positions of shape {positions.shape}."
+        )
+    rate = _rate(arrays, progress)
+    unit = scale if scale is not None else 1.0 / _number(arrays, SCALES, 1.0)
+    names, parents, offsets = smpl_joints(hands, height)
+    rotations = rotations_z_up_from_y_up(quaternion_from_rotation_vector(vectors))
+    motion = Motion(
+        Skeleton(names, parents, z_up_from_y_up(offsets)),
+        rotations,
+        z_up_from_y_up(positions * unit),
+        rate,
+    )
+    return put_on_floor(stand_upright(motion, progress))
+
+
+def is_motion_x(shape: tuple[int, ...]) -> bool:
+    """Return whether an array has the columns of Motion-X."""
+    return len(shape) == 2 and shape[0] > 0 and shape[1] == MOTION_X_COLUMNS
+
+
+def read_motion_x(columns: Array, scale: float | None, progress: Progress) -> Motion:
+    """Return the motion of a Motion-X array, shape (n_frames, 322): SMPL-X at 30 Hz.
+
+    Its columns are the rotations of root, body and hands, face and shape, which are left out,
+    and the position.
+    """
+    vectors = columns[:, : 3 * (N_BODY + 2 * N_HAND // 3)].reshape(len(columns), -1, 3)
+    names, parents, offsets = smpl_joints(hands=True)
+    motion = Motion(
+        Skeleton(names, parents, z_up_from_y_up(offsets)),
+        rotations_z_up_from_y_up(quaternion_from_rotation_vector(vectors)),
+        z_up_from_y_up(columns[:, MOTION_X_POSITION] * (1.0 if scale is None else scale)),
+        DEFAULT_FRAME_RATE,
+    )
+    return put_on_floor(stand_upright(motion, progress))
+
+
+def _rotation_vectors(path: Path | str, arrays: dict[str, Array]) -> Array:
+    """Return axis times angle, radians, of body and moving fingers, (n_frames, n, 3)."""
+    poses = _member(arrays, ROTATIONS)
+    if poses is None:
+        poses = _joined_parts(arrays)
+    if (
+        poses is None
+        or poses.ndim < 2
+        or not poses.size
+        or poses[0].size < 3 * N_BODY
+        or poses[0].size % 3
+    ):
+        raise InvalidFileError(
+            f"{path} has no rotations of an SMPL body: neither poses nor root_orient and"
+            " pose_body. Save the parameters of one person, with their names."
+        )
+    vectors = poses.reshape(len(poses), -1, 3)
+    vectors = np.where(np.isfinite(vectors).all(axis=(1, 2), keepdims=True), vectors, np.nan)
+    body, first = vectors[:, :N_BODY], FIRST_HAND.get(vectors.shape[1])
+    fingers = vectors[:, first:] if first else vectors[:, :0]
+    if fingers.size and np.ptp(fingers, axis=0).max() > 0.0:
+        return np.concatenate([body, fingers], axis=1)
+    return body
+
+
+def _joined_parts(arrays: dict[str, Array]) -> Array | None:
+    """Return root, body and hands side by side, as SMPL-H has them; None without a body."""
+    root, body = _member(arrays, ROOT), _member(arrays, BODY_POSE)
+    if root is None or body is None or not len(root) or len(root) != len(body):
+        return None
+    n_frames = len(root)
+    parts = [root.reshape(n_frames, -1)[:, :3], body.reshape(n_frames, -1)[:, : 3 * N_BODY - 3]]
+    hands = [_member(arrays, names) for names in (HANDS, LEFT_HAND, RIGHT_HAND)]
+    found = [hand for hand in hands if hand is not None and len(hand) == n_frames]
+    found = [hand.reshape(n_frames, -1) for hand in found]
+    if sum(hand.shape[1] for hand in found) == 2 * N_HAND:
+        parts += found
+    return np.asarray(np.concatenate(parts, axis=1))
+
+
+def _member(arrays: dict[str, Array], names: tuple[str, ...]) -> Array | None:
+    """Return the first of these arrays that the file has; without a leading batch of one."""
+    array = next((arrays[name] for name in names if name in arrays), None)
+    if array is None:
+        return None
+    return array[0] if array.ndim == 3 and len(array) == 1 else array
+
+
+def _number(arrays: dict[str, Array], names: tuple[str, ...], default: float) -> float:
+    array = _member(arrays, names)
+    value = float(array.ravel()[0]) if array is not None and array.size else default
+    return value if 0.0 < value < np.inf else default
+
+
+def _rate(arrays: dict[str, Array], progress: Progress) -> float:
+    rate = _number(arrays, RATES, 0.0)
+    if rate > 0.0:
+        return common_rate(rate)
+    progress(0.5, f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
+    return DEFAULT_FRAME_RATE
