@@ -9,7 +9,7 @@ from kinect_walks import HIDDEN, LOST, tracked_walk, true_positions
 import solvers.motion as motion_module
 from solvers import samples
 from solvers.errors import InvalidMotionError
-from solvers.motion import motion_from_points
+from solvers.motion import Skeleton, motion_from_points
 from solvers.motion.humanoid import posture_joints
 from solvers.workflows import reconstruct_motion
 
@@ -71,13 +71,20 @@ def test_jittering_joint_has_a_low_behavior_term(walk, moved):
 
 def test_other_joints_have_no_reliability():
     walk = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=30.0))
-    names = list(walk.skeleton.names)
-    names[names.index("LeftHand")] = "Umbrella"
-    renamed = replace(walk, skeleton=replace(walk.skeleton, names=tuple(names)))
+    hand = walk.skeleton.index("LeftHand")
+    skeleton = Skeleton(
+        (*walk.skeleton.names, "Umbrella"),
+        (*walk.skeleton.parents, hand),
+        np.vstack([walk.skeleton.offsets, (0.0, 0.0, 0.4)]),
+    )
+    still = np.tile((1.0, 0.0, 0.0, 0.0), (walk.n_frames, 1, 1))
+    held = replace(
+        walk, skeleton=skeleton, rotations=np.concatenate([walk.rotations, still], axis=1)
+    )
 
-    result = reconstruct_motion(renamed)
+    result = reconstruct_motion(held)
 
-    umbrella = names.index("Umbrella")
+    umbrella = skeleton.index("Umbrella")
     for term in (
         result.reliability_terms.combined,
         result.reliability_terms.behavior,
