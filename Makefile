@@ -11,6 +11,7 @@ VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' blender_manifest.toml)
 ZIP := dist/mocap_assist-$(VERSION)-linux_x64.zip
 PYTHON_4.5 := .venv-4.5/bin/python
 PYTHON_5.2 := .venv-5.2/bin/python
+TYPED := build/types/mocap_assist_extension
 NO_PYTHON = no Python $(1) that can make environments was found: not on the PATH, nor in uv's or pyenv's folders
 NO_5.2 := SKIPPED on Blender 5.2: $(call NO_PYTHON,3.13).
 
@@ -34,10 +35,15 @@ test: environments  ## every check and test below, on Blender 4.5 and 5.2, two a
 	@if [ -e .venv-5.2/ready ]; then echo "All is well, on Blender 4.5 and 5.2."; \
 	else echo "$(NO_5.2)"; echo "All is well, on Blender 4.5."; fi
 
-lint: .venv-4.5/ready  ## ruff, and mypy on the solvers
+lint: .venv-4.5/ready $(TYPED)  ## ruff, and mypy on all that ships
 	$(PYTHON_4.5) -m ruff check .
 	$(PYTHON_4.5) -m ruff format --check .
 	$(PYTHON_4.5) -m mypy
+
+# The extension as one package, which is what its parts import each other from.
+$(TYPED):
+	@mkdir -p $(@D)
+	@ln -sfn ../.. $@
 
 test-source-4.5: .venv-4.5/ready  ## the checkout: Python 3.11 and the numpy of Blender 4.5
 	$(AT_MOST) $(PYTHON_4.5) -m pytest

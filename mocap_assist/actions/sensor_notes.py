@@ -1,6 +1,7 @@
 """How well a sensor saw each joint or marker: custom properties, keyed where they change."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import bpy
 import numpy as np
@@ -25,7 +26,7 @@ def words_of(recording: Motion | Tracks | JointRecording) -> dict[str, dict[str,
         return {}
     state = recording.tracking_state if isinstance(recording, JointRecording) else None
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording
-    said = {CONFIDENCE: tracks.confidence, STATE: state}
+    said: dict[str, NDArray[Any] | None] = {CONFIDENCE: tracks.confidence, STATE: state}
     return {
         name: {kind: values[:, point] for kind, values in said.items() if values is not None}
         for point, name in enumerate(tracks.names)

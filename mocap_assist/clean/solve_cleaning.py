@@ -182,14 +182,15 @@ def clean(
         finish.present or solution.recordings,
         estimates,
     )
-    for limits in (finish.limits, solution.limits):
-        body = body if limits is None else clamp_to_limits(body, limits)
-    planted = _planted(body, finish, within(progress, 0.8, 0.9))
-    moved = finish.chosen
-    if planted is not None:
-        eased = toward(body, planted.motion, finish.ease[:, None])
-        moved |= differing(body, eased)
-        body = eased
+    moved, planted = finish.chosen, None
+    if isinstance(body, Motion):
+        for limits in (finish.limits, solution.limits):
+            body = body if limits is None else clamp_to_limits(body, limits)
+        planted = _planted(body, finish, within(progress, 0.8, 0.9))
+        if planted is not None:
+            eased = toward(body, planted.motion, finish.ease[:, None])
+            moved |= differing(body, eased)
+            body = eased
     contacts = None if planted is None else planted.contacts
     before, after = (
         measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.05))
@@ -198,9 +199,9 @@ def clean(
     return Cleaned((body, *others), moved, solution, planted, before, after)
 
 
-def _planted(body: Motion | Tracks, finish: Finish, progress: Progress) -> Planted | None:
+def _planted(body: Motion, finish: Finish, progress: Progress) -> Planted | None:
     """Plant the feet of what has legs, if the legs were chosen at all."""
-    if finish.planting is None or isinstance(body, Tracks):
+    if finish.planting is None:
         return None
     legs = find_legs(body.skeleton)
     joints = {body.skeleton.names[joint] for leg in legs for joint in (leg.hip, leg.knee)}
@@ -215,17 +216,19 @@ def _mixed(
     """Go from the recording towards the estimate; where nothing was recorded, all the way."""
     chosen = np.array([name in finish.chosen for name in names_of(raw)])
     share = finish.strength * finish.ease[:, None] * chosen
-    if isinstance(raw, Tracks):
-        start = np.where(chosen[:, None], raw.positions, present.positions)
-        known = np.isfinite(start).all(axis=-1, keepdims=True)
-        start = np.where(known, start, clean.positions)
-        return clean.with_positions(start + share[..., None] * (clean.positions - start))
-    turns = np.where(chosen[:, None], raw.rotations, present.rotations)
-    place = raw.root_positions if chosen[0] else present.root_positions
-    start = clean.with_poses(
-        _first_known(turns, clean.rotations), _first_known(place, clean.root_positions)
-    )
-    return toward(start, clean, share)
+    match raw, present, clean:
+        case Tracks(), Tracks(), Tracks():
+            points = np.where(chosen[:, None], raw.positions, present.positions)
+            points = _first_known(points, clean.positions)
+            return clean.with_positions(points + share[..., None] * (clean.positions - points))
+        case Motion(), Motion(), Motion():
+            turns = np.where(chosen[:, None], raw.rotations, present.rotations)
+            place = raw.root_positions if chosen[0] else present.root_positions
+            start = clean.with_poses(
+                _first_known(turns, clean.rotations), _first_known(place, clean.root_positions)
+            )
+            return toward(start, clean, share)
+    raise TypeError(f"{type(raw)}, {type(present)} and {type(clean)} cannot be mixed")
 
 
 def toward(start: Motion, stop: Motion, share: Array) -> Motion:

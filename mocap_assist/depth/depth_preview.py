@@ -81,7 +81,7 @@ class Shown:
 
     def picture(self, frame: float, n_frames: int) -> int:
         """Return which picture is shown at a frame of the scene; before and after, the ends."""
-        return round(np.clip((frame - self.start) / self.step, 0, n_frames - 1))
+        return round(float(np.clip((frame - self.start) / self.step, 0, n_frames - 1)))
 
     def frame(self, picture: int) -> float:
         """Return the frame of the scene at which a picture is shown."""
@@ -228,8 +228,8 @@ def _hide(mesh: bpy.types.Mesh, problem: str) -> None:
         return
     mesh[PROBLEM] = problem
     logger.warning("%s: %s", mesh.name, problem)
-    if _seen_of(mesh) is not None:
-        _seen_of(mesh).data.foreach_set("value", np.zeros(len(mesh.vertices), dtype=bool))
+    if (seen := _seen_of(mesh)) is not None:
+        seen.data.foreach_set("value", np.zeros(len(mesh.vertices), dtype=bool))
         mesh.update()
 
 

@@ -18,7 +18,7 @@ from ..blender import compat
 from ..scene.scene_rate import FrameRate, scene_rate, timing
 from ..scene.units import unit_of
 from .choices import ImportChoices, Target
-from .solve_reading import Recording, Wanted, as_wanted, hanging
+from .solve_reading import Pointwise, Wanted, hanging, moved
 
 Array = NDArray[np.float64]
 NAMED = 3  # joints that a sentence lists
@@ -64,7 +64,7 @@ def wanted_of(context: bpy.types.Context, choices: ImportChoices) -> Wanted:
 def make_objects(
     context: bpy.types.Context,
     name: str,
-    recording: Recording,
+    recording: Pointwise,
     choices: ImportChoices,
     *,
     moving: Motion | Tracks | None = None,
@@ -72,12 +72,12 @@ def make_objects(
 ) -> Made:
     """Add what moves as the recording does; the scene's settings stay as they are.
 
-    `moving` is what the recording becomes, `as_wanted`, if that is known already.
+    `moving` is what the recording becomes (`moved`), if that is known already.
     """
     scene = context.scene
     samples = timing(scene, choices.frame_rate, recording.frame_rate, choices.frame_start)
     if moving is None:
-        moving = as_wanted(recording, wanted_of(context, choices))
+        moving = moved(recording, wanted_of(context, choices))
     resampled = choices.frame_rate is FrameRate.RESAMPLE
     frames = (samples._replace(step=1.0) if resampled else samples).frames(moving.n_frames)
     words = Words(samples.frames(recording.n_frames), words_of(recording))
@@ -87,15 +87,16 @@ def make_objects(
     else:
         made = _make_empties(context, name, moving, frames, words, progress)
     what = made.what
-    wanted = choices.target is Target.ARMATURE and isinstance(recording, JointRecording)
-    if wanted and not isinstance(moving, Motion):
+    if choices.target is not Target.ARMATURE or not isinstance(recording, JointRecording):
+        pass
+    elif not isinstance(moving, Motion):
         what += ", since the parents of the joints are unknown"
-    elif wanted and (n_loose := recording.n_joints - len(hanging(recording))):
+    elif n_loose := recording.n_joints - len(hanging(recording)):
         what += f", without {n_loose} points that have no joint"
     return made._replace(what=what + _never_seen(recording, made.top.type == "ARMATURE"))
 
 
-def _never_seen(recording: Recording, in_armature: bool) -> str:
+def _never_seen(recording: Pointwise, in_armature: bool) -> str:
     """Name the joints or markers that were left out, or put where they must have been."""
     if isinstance(recording, Motion):
         return ""

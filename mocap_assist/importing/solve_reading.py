@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
@@ -22,7 +23,9 @@ from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import DepthSettings, is_depth, read_depth, read_tracked
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 
-Recording = Motion | Tracks | JointRecording | DepthRecording
+Pointwise = Motion | Tracks | JointRecording
+"""What is known joint by joint, or marker by marker."""
+Recording = Pointwise | DepthRecording
 Result = TypeVar("Result")
 
 
@@ -52,7 +55,8 @@ class Read(NamedTuple):
     """What a file holds, and what is to be seen of it."""
 
     recording: Recording
-    moving: Motion | Tracks | DepthRecording
+    moving: Motion | Tracks | None
+    """None for depth, which is read from its files."""
     warnings: tuple[str, ...] = ()
     """What its reader said of it."""
 
@@ -70,7 +74,7 @@ def read_files(
         share(0.0)
         try:
             known = read_file(path, share, unit=wanted.unit, depth=wanted.depth)
-            moving = _tried(path, lambda known=known: as_wanted(known.recording, wanted))
+            moving = _tried(path, partial(as_wanted, known.recording, wanted))
             found.append(Read(known.recording, moving, known.warnings))
         except SolveCancelled:
             raise
@@ -123,12 +127,19 @@ class _Listener:
         self._progress(fraction, message)
 
 
-def as_wanted(recording: Recording, wanted: Wanted) -> Motion | Tracks | DepthRecording:
-    """Turn a recording into what moves as it does in the scene; depth stays what it is."""
-    if isinstance(recording, DepthRecording):
-        return recording
+def as_wanted(recording: Recording, wanted: Wanted) -> Motion | Tracks | None:
+    """Turn a recording into what moves as it does in the scene; None for depth."""
+    return None if isinstance(recording, DepthRecording) else moved(recording, wanted)
+
+
+def moved(recording: Pointwise, wanted: Wanted) -> Motion | Tracks:
+    """Turn joints or markers into what moves as they do in the scene."""
     moving = _scaled(_joined(recording, wanted.armature), wanted.scale)
-    return moving if wanted.frame_rate is None else resample(moving, wanted.frame_rate)
+    if wanted.frame_rate is None:
+        return moving
+    if isinstance(moving, Motion):
+        return resample(moving, wanted.frame_rate)
+    return resample(moving, wanted.frame_rate)
 
 
 def in_one_tree(recording: JointRecording) -> bool:
@@ -143,7 +154,7 @@ def hanging(recording: JointRecording) -> list[int]:
     return [joint for joint, parent in enumerate(parents) if parent >= 0 or joint in parents]
 
 
-def _joined(recording: Recording, armature: bool) -> Motion | Tracks:
+def _joined(recording: Pointwise, armature: bool) -> Motion | Tracks:
     """Turn the joints of a camera into a motion, where an armature is wanted and they hang
     together; into points otherwise.
     """

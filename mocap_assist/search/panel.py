@@ -1,10 +1,11 @@
 """Panel: a library of clips, what in it is like the action, and what to do with that."""
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import bpy
 
 from ...solvers.retrieval import FindSettings
+from ..blender.mixins import PanelMixin
 from ..library.kept_libraries import choices_are_kept
 from ..panels.drawing import draw_job, draw_sentence, exists, folded, is_wide
 from ..panels.figures import frames_text
@@ -29,7 +30,15 @@ class MOCAP_UL_matches(bpy.types.UIList):
     """Clips that are like the query, the best first."""
 
     def draw_item(
-        self, context, layout, data, item, icon, active_data, active_property, index
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        data: object,
+        item: Any,
+        icon: int,
+        active_data: object,
+        active_property: str,
+        index: int,
     ) -> None:
         search = searches.listed(context)
         row = layout.row()
@@ -44,7 +53,7 @@ class MOCAP_UL_matches(bpy.types.UIList):
             texts.label(text=frames_text(item.start, item.stop), translate=False)
 
 
-class LibraryPanel:
+class LibraryPanel(PanelMixin):
     """The library, the search, and its matches."""
 
     bl_label = "Library"

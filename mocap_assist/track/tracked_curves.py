@@ -23,7 +23,7 @@ def write_residual(
     if not known.any():
         return
     frames, residual = frames[known], residual[known]
-    bag = compat.channelbag(*source, ensure=True)
+    bag = compat.ensure_channelbag(*source)
     if curve := bag.fcurves.find(_PATH):
         write_values(curve, frames, residual)
         return
@@ -45,7 +45,7 @@ def mend_trust(
 
     Bones of which the action tells nothing are left out.
     """
-    bag = compat.channelbag(*source, ensure=True)
+    bag = compat.ensure_channelbag(*source)
     known = {}
     for bone, values in trusted.items():
         curve = bag.fcurves.find(reliability_path(bone))
