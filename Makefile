@@ -60,6 +60,10 @@ test-blender-5.2: optional-5.2 zip  ## the installed zip, in Blender 5.2
 	@[ ! -e .venv-5.2/ready ] || { set -x; \
 	    MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_5.2) -m pytest tests/blender; }
 
+.PHONY: test-gui
+test-gui: extension-plain  ## press buttons in a Blender with a window; DRIVERS="clean vary"
+	$(PYTHON_4.5) tests/gui/run_drivers.py --zip dist/mocap_assist-$(VERSION)-plain.zip $(DRIVERS)
+
 # The fuzzer comes as a wheel for Linux; it finds files, and no verdict depends on time.
 SECONDS ?= 60
 .PHONY: fuzz

@@ -1,0 +1,27 @@
+"""What the drivers have in common. Runs in the Blender with a window, as they do."""
+
+import bgui
+import bpy
+
+PANELS = "MOCAP_PT_"
+
+
+def empty_scene():
+    for each in list(bpy.data.objects):
+        bpy.data.objects.remove(each)
+
+
+def unfold_alone(name):
+    """Take all other panels away, and unfold this one, before the tab is first drawn."""
+    panel = getattr(bpy.types, f"{PANELS}{name}")
+    for each in [other for other in dir(bpy.types) if other.startswith(PANELS)]:
+        bpy.utils.unregister_class(getattr(bpy.types, each))
+    panel.bl_options = set()
+    bpy.utils.register_class(panel)
+
+
+def settle(times=3):
+    """Wait until everything is drawn."""
+    for _ in range(times):
+        bgui.redraw()
+        yield 0.5
