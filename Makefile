@@ -76,31 +76,35 @@ kills: .venv-4.5/ready zip  ## kill commands at random moments; ARGUMENTS="--kil
 
 # --- What there is to see ---
 
-.PHONY: demo docs bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth
+.PHONY: demo docs pictures bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth
 demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
 
 docs: .venv-4.5/ready  ## the tables of settings and the pictures in README.md and docs
-	$(PYTHON_4.5) .ci/write_docs.py --pictures
+	PYTHONPATH=. $(PYTHON_4.5) .ci/write_docs.py --pictures
+
+pictures: .venv-4.5/ready  ## the pictures of docs/formats and of Reconstruct, from ../shared/data
+	PYTHONPATH=. $(PYTHON_4.5) .ci/draw_formats.py ../shared/data
+	PYTHONPATH=. $(PYTHON_4.5) .ci/draw_reconstruction.py ../shared/data
 
 # Each writes what is shipped from recordings of ../shared/data; ARGUMENTS="--out FILE" writes
 # elsewhere, and each script says which clips, bodies and licences. The forest takes half an hour.
 .PHONY: forest postures residuals motion-prior failures
 forest: .venv-4.5/ready  ## train the shipped forest that tells the parts of bodies in depth
-	PYTHONPATH=. $(PYTHON_4.5) .ci/train_forest.py $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.training.train_forest $(ARGUMENTS)
 
 postures: .venv-4.5/ready  ## thin out the shipped library of postures
-	PYTHONPATH=. $(PYTHON_4.5) .ci/train_postures.py $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.training.train_postures $(ARGUMENTS)
 
 residuals: .venv-4.5/ready  ## learn the shipped errors of a Kinect, and how sure they are
-	PYTHONPATH=. $(PYTHON_4.5) .ci/train_residuals.py $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.training.train_residuals $(ARGUMENTS)
 
 motion-prior: .venv-4.5/ready  ## learn the shipped motion prior of the depth tracker
-	PYTHONPATH=. $(PYTHON_4.5) .ci/train_motion_prior.py $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.training.train_motion_prior $(ARGUMENTS)
 
 failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the weights
-	PYTHONPATH=. $(PYTHON_4.5) .ci/learn_failures.py
+	$(PYTHON_4.5) -m tests.training.learn_failures
 
 # Each prints tables; with ARGUMENTS=--docs it rewrites its own part of docs/benchmarks.md, and
 # ARGUMENTS=--help tells what else there is.
