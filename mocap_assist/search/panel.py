@@ -156,10 +156,11 @@ def _draw_chosen(
     load = context.scene.mocap_assist.load
     column.prop(load, "part")
     column.prop(load, "at_query", text="Place at Query")
-    row = column.row(align=True)
+    block = column.column(align=True)
+    row = block.row(align=True)
     row.operator(LOAD, text="Append", icon="ACTION").result_as = "ACTION"
     row.operator(LOAD, text="Add to NLA", icon="NLA").result_as = "NLA_TRACK"
-    row.operator(LINK, text="Link", icon="LINKED")
+    block.operator(LINK, text="Link", icon="LINKED")
     column.label(text="Use Best Matches in:")
     row = column.row(align=True)
     row.operator(LEARN, text="Clean", icon="BRUSH_DATA").group = "clean"

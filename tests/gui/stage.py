@@ -12,12 +12,14 @@ def empty_scene():
 
 
 def unfold_alone(name):
-    """Take all other panels away, and unfold this one, before the tab is first drawn."""
-    panel = getattr(bpy.types, f"{PANELS}{name}")
-    for each in [other for other in dir(bpy.types) if other.startswith(PANELS)]:
-        bpy.utils.unregister_class(getattr(bpy.types, each))
-    panel.bl_options = set()
-    bpy.utils.register_class(panel)
+    """Hide all other panels, and unfold this one, before the tab is first drawn."""
+    alone = getattr(bpy.types, f"{PANELS}{name}")
+    for other in [each for each in dir(bpy.types) if each.startswith(PANELS)]:
+        if other != alone.__name__:
+            getattr(bpy.types, other).poll = classmethod(lambda cls, context: False)
+    bpy.utils.unregister_class(alone)
+    alone.bl_options = set()
+    bpy.utils.register_class(alone)
 
 
 def settle(times=3):
