@@ -181,4 +181,4 @@ def steps():
     yield from many()
 
 
-bgui.run(steps, timeout=560)
+bgui.run(steps, timeout=1200)

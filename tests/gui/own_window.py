@@ -11,7 +11,7 @@ from pathlib import Path
 
 NEEDED = ("blender", "Xvfb", "xdotool", "maim")
 SIZE = (1600, 1000)
-SECONDS = 1500
+SECONDS = 1600
 WRONG = re.compile(r"Traceback|property not found|unknown operator|operator missing")
 """In the log: Blender goes on after errors in buttons and panels."""
 

@@ -83,7 +83,11 @@ def passes(name: str, zip_path: Path) -> bool:
         return True
     driver, picture = FOLDER / f"drive_{name}.py", out / f"{name}.png"
     if TOOL.exists():
-        options = {"BG_DEBS": PACKAGES, "BG_FILES": " ".join(map(str, given))}
+        options = {
+            "BG_DEBS": PACKAGES,
+            "BG_FILES": " ".join(map(str, given)),
+            "BG_TIMEOUT": str(own_window.SECONDS),
+        }
         command = ["bash", TOOL, "run", zip_path, driver, picture]
         ended = subprocess.run(
             command, env=os.environ | options, capture_output=True, text=True, check=False
