@@ -26,9 +26,9 @@ VARY, KEEP, SHEET, STACK, MARK, ASSIGN = (
 )  # fmt: skip
 USE = "mocap_assist.use_matches"
 MAIN = ("amount", "timing", "length")
-PARTS = (("trunk",), ("left_arm", "right_arm"), ("left_leg", "right_leg"))
+PARTS = ("trunk", "left_arm", "right_arm", "left_leg", "right_leg")
 OTHERS = ("pin_start", "pin_end")
-SHOWN_APART = {"seed", *MAIN, *OTHERS, *(name for row in PARTS for name in row)}
+SHOWN_APART = {"seed", *MAIN, *OTHERS, *PARTS}
 CROWD = ("delay", "spread", "turn", "crowd_seed")
 LONGEST = 30
 FEWEST, MOST = 3, 7  # rows of the list
@@ -114,10 +114,8 @@ def _draw_settings(column: bpy.types.UILayout, vary: bpy.types.PropertyGroup) ->
         column.prop(vary, name, slider=name != "length")
     parts = column.column(align=True)
     parts.use_property_split = False
-    for names in PARTS:
-        row = parts.row(align=True)
-        for name in names:
-            row.prop(vary, name, slider=True)
+    for name in PARTS:
+        parts.prop(vary, name, slider=True)
     column.prop(vary, "plant_feet")
     _draw_folded(column, vary)
 

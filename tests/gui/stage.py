@@ -13,13 +13,14 @@ def empty_scene():
 
 def unfold_alone(name):
     """Hide all other panels, and unfold this one, before the tab is first drawn."""
-    alone = getattr(bpy.types, f"{PANELS}{name}")
-    for other in [each for each in dir(bpy.types) if each.startswith(PANELS)]:
-        if other != alone.__name__:
-            getattr(bpy.types, other).poll = classmethod(lambda cls, context: False)
-    bpy.utils.unregister_class(alone)
-    alone.bl_options = set()
-    bpy.utils.register_class(alone)
+    for each in [other for other in dir(bpy.types) if other.startswith(PANELS)]:
+        panel = getattr(bpy.types, each)
+        bpy.utils.unregister_class(panel)
+        if each == f"{PANELS}{name}":
+            panel.bl_options = set()
+        else:
+            panel.poll = classmethod(lambda cls, context: False)
+        bpy.utils.register_class(panel)
 
 
 def settle(times=3):
