@@ -48,6 +48,8 @@ def look_at(armature, distance):
 
 
 def press(text):
+    bgui.move(500, 500)  # else a slow scan begins with the button that was pressed last
+    yield 0.5
     yield from bgui.scan()
     yield from bgui.click(*bgui.at(text))
 
