@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
@@ -22,7 +23,9 @@ from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import DepthSettings, is_depth_recording, read_depth, read_tracked
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 
-Recording = Motion | Tracks | JointRecording | DepthRecording
+TrackedRecording = Motion | Tracks | JointRecording
+"""Joints or markers over time."""
+Recording = TrackedRecording | DepthRecording
 Result = TypeVar("Result")
 
 
@@ -52,7 +55,8 @@ class Read(NamedTuple):
     """Content of a file, and its converted motion."""
 
     recording: Recording
-    moving: Motion | Tracks | DepthRecording
+    moving: Motion | Tracks | None
+    """None for depth, which is read from its files."""
     warnings: tuple[str, ...] = ()
     """Warnings of its reader."""
 
@@ -73,7 +77,7 @@ def read_files(
                 path, file_progress, unit=conversion.unit, depth=conversion.depth
             )
             moving = _attempt_read(
-                path, lambda content=content: convert_recording(content.recording, conversion)
+                path, partial(convert_recording, content.recording, conversion)
             )
             found.append(Read(content.recording, moving, content.warnings))
         except SolveCancelled:
@@ -126,14 +130,21 @@ class _WarningCollector:
         self._progress(fraction, message)
 
 
-def convert_recording(
-    recording: Recording, conversion: Conversion
-) -> Motion | Tracks | DepthRecording:
-    """Convert a recording to a motion or points for the scene; depth is not changed."""
+def convert_recording(recording: Recording, conversion: Conversion) -> Motion | Tracks | None:
+    """Convert a recording to a motion or points for the scene; None for depth."""
     if isinstance(recording, DepthRecording):
-        return recording
+        return None
+    return convert_tracked(recording, conversion)
+
+
+def convert_tracked(recording: TrackedRecording, conversion: Conversion) -> Motion | Tracks:
+    """Convert joints or markers to a motion or points for the scene."""
     moving = _scaled(_joined(recording, conversion.armature), conversion.scale)
-    return moving if conversion.frame_rate is None else resample(moving, conversion.frame_rate)
+    if conversion.frame_rate is None:
+        return moving
+    if isinstance(moving, Motion):
+        return resample(moving, conversion.frame_rate)
+    return resample(moving, conversion.frame_rate)
 
 
 def in_one_tree(recording: JointRecording) -> bool:
@@ -148,7 +159,7 @@ def connected_joints(recording: JointRecording) -> list[int]:
     return [joint for joint, parent in enumerate(parents) if parent >= 0 or joint in parents]
 
 
-def _joined(recording: Recording, armature: bool) -> Motion | Tracks:
+def _joined(recording: TrackedRecording, armature: bool) -> Motion | Tracks:
     """Convert a camera's joints to a motion for an armature, otherwise to points."""
     if not isinstance(recording, JointRecording):
         return recording
