@@ -3,8 +3,7 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from solvers.motion import angular_velocities, linear_velocities
-from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
+from solvers.motion import linear_velocities
 
 
 def test_exact_for_constant_acceleration_inside():
@@ -35,25 +34,3 @@ def test_a_lone_frame_between_gaps_has_no_velocity():
 
 def test_one_frame_stands_still():
     assert_allclose(linear_velocities(np.ones((1, 2, 3)), 30.0), 0.0)
-    assert_allclose(angular_velocities(np.tile([1.0, 0, 0, 0], (1, 2, 1)), 30.0), 0.0)
-
-
-def test_steady_turning_is_measured_in_the_outer_frame(rng):
-    omega = np.array([0.3, -1.2, 2.0])
-    start = quaternion_from_rotation_vector(rng.normal(size=3))
-    turned = multiply(
-        quaternion_from_rotation_vector(np.arange(30)[:, None] / 60.0 * omega), start
-    )
-
-    velocities = angular_velocities(turned[:, None], 60.0)
-
-    assert_allclose(velocities[:, 0], np.tile(omega, (30, 1)), atol=1e-12)
-
-
-def test_signs_of_quaternions_do_not_matter(rng):
-    rotations = quaternion_from_rotation_vector(rng.normal(scale=0.2, size=(12, 3, 3)))
-    signs = rng.choice([-1.0, 1.0], size=(12, 3, 1))
-
-    assert_allclose(
-        angular_velocities(signs * rotations, 30.0), angular_velocities(rotations, 30.0)
-    )
