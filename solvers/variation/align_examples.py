@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from ..motion import Motion, forward_kinematics, warp
-from .motion_curves import headings_from_motion
+from .curves import headings_from_motion
 
 Array = NDArray[np.float64]
 

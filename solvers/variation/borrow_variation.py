@@ -9,10 +9,8 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..errors import InvalidMotionError
 from ..motion import Motion
-from .curve_sampling import sample_curves
+from .curves import HEIGHT_COLUMN, partition_joints, sample_curves
 from .learn_variation import learn_variation_model
-from .motion_curves import HEIGHT_COLUMN
-from .partitions import partition_joints
 from .variation_model import VariationModel
 
 Array = NDArray[np.float64]
