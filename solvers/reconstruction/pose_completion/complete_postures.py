@@ -1,5 +1,6 @@
 """Complete poses from a pose library where joints are missing."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -7,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
-from ...motion.humanoid import HIPS, NormalizedPostures, rates_from_directions
+from ...motion.humanoid import HIPS, rates_from_directions
 from ...progress import Progress, within
 from ..joint_rotations import (
     N_TWISTED_LIMBS,
@@ -25,7 +26,6 @@ from ..pose_library import (
     nearest_postures,
 )
 from ..pose_space import EnergyTargets, PostureSpaces, local_pca
-from ..published import search_sequentially
 from .constrain_lengths import constrain_lengths
 from .cross_validation import SynthesisErrors, cross_validate_limbs
 from .probable_posture import probable_postures
@@ -35,7 +35,7 @@ from .residual_smoother import (
     measurement_deviation,
     smooth_residuals,
 )
-from .settings import PostureMethod, PostureSettings
+from .settings import PostureSettings
 
 Array = NDArray[np.float64]
 
@@ -55,17 +55,28 @@ CORRECTION_ROUNDS = 2
 
 
 class CompletedPostures(NamedTuple):
-    """Poses, shape (n_frames, 20, 3), the confidence of each joint, and limb twists."""
+    """Poses, shape (n_frames, 20, 3), the confidence of each joint, and how they were found."""
 
     postures: Array
     confidence: Array
     twists: LimbTwists | None
     """None if the library has no twists."""
+    method: str = "most probable postures"
 
 
 @dataclass(frozen=True, eq=False)
-class _ObservedTake:
-    """Observations of a take: joints relative to the observed hips, and their reliability."""
+class ObservedTake:
+    """Observations of a take.
+
+    Attributes
+    ----------
+    postures : shape (n_frames, 20, 3), meters
+        Relative to the observed hips.
+    trust : shape (n_frames, 20)
+        Reliability, 0 where a joint is missing.
+    frame_rate : float, hertz
+    lengths : shape (20,), meters
+    """
 
     postures: Array
     trust: Array
@@ -73,31 +84,19 @@ class _ObservedTake:
     lengths: Array
 
 
-def complete_postures(
-    observed: NormalizedPostures,
-    trust: Array,
-    frame_rate: float,
-    lengths: Array,
-    library: PostureLibrary,
-    settings: PostureSettings,
-    progress: Progress,
-) -> CompletedPostures:
-    """Complete the poses of a take from a library.
+Completer = Callable[
+    [ObservedTake, PostureLibrary, PostureSettings, Progress], CompletedPostures
+]
+"""Function that completes the poses of a take from a library."""
+Chooser = Callable[[PostureSpaces, EnergyTargets, Array | None], Array]
+"""Function from pose spaces, targets and the last two poses to poses."""
 
-    Parameters
-    ----------
-    observed : Normalised
-    trust : shape (n_frames, 20)
-        0 where a joint is missing.
-    frame_rate : float, hertz
-    lengths : shape (20,), meters
-    library : PostureLibrary
-    settings : PostureSettings
-    progress : Progress
-    """
-    take = _ObservedTake(observed.postures, trust, frame_rate, lengths)
-    if settings.method is PostureMethod.PUBLISHED:
-        return _search_as_published(take, library, settings, progress)
+
+def complete_postures(
+    take: ObservedTake, library: PostureLibrary, settings: PostureSettings, progress: Progress
+) -> CompletedPostures:
+    """Complete the poses of a take with the most probable poses of a library."""
+    trust, frame_rate, lengths = take.trust, take.frame_rate, take.lengths
     body = _fit_library_to_actor(take, library, settings)
     index = index_postures(body, library.groups)
     errors = _measure_errors(take, body, index, settings)
@@ -107,7 +106,7 @@ def complete_postures(
     targets, given = take.postures, _ramp_reliability(take, settings)
     for number in range(rounds):
         part = within(progress, number / rounds, (number + 1) / rounds)
-        chosen, twists = _synthesize(
+        chosen, twists = synthesize(
             replace(take, postures=targets, trust=given), body, index, settings, part
         )
         residuals = take.postures - offset - chosen.values
@@ -122,29 +121,13 @@ def complete_postures(
     uncertainty = np.hypot(
         settings.noise, spread_ratio * np.hypot(chosen.spread, MODEL_ERROR_M)
     )
-    confidence = 1.0 / (1.0 + (uncertainty / HALF_CONFIDENCE_M) ** 2)
+    confidence = confidence_from_deviation(uncertainty)
     postures = constrain_lengths(corrected.values + errors.offset, lengths, trust, confidence)
     return CompletedPostures(postures + offset, confidence, twists)
 
 
-def _search_as_published(
-    take: _ObservedTake, library: PostureLibrary, settings: PostureSettings, progress: Progress
-) -> CompletedPostures:
-    """Search each frame's pose starting from the frame before, without further steps."""
-    body = replace(
-        build_body_postures(library.directions, library.changes, take.lengths),
-        twists=library.twists,
-    )
-    causal_settings = replace(settings, causal=True, pace=0.0, smoothing=0.0)
-    index = index_postures(body, library.groups)
-    chosen, twists = _synthesize(take, body, index, causal_settings, progress)
-    uncertainty = np.hypot(chosen.spread, MODEL_ERROR_M)
-    confidence = 1.0 / (1.0 + (uncertainty / HALF_CONFIDENCE_M) ** 2)
-    return CompletedPostures(chosen.values, confidence, twists and replace(twists, alone=True))
-
-
 def _fit_library_to_actor(
-    take: _ObservedTake, library: PostureLibrary, settings: PostureSettings
+    take: ObservedTake, library: PostureLibrary, settings: PostureSettings
 ) -> BodyPostures:
     """Fit the library to the actor's size and to the tracker's definition of joints."""
     directions, changes, lengths = library.directions, library.changes, take.lengths
@@ -169,14 +152,14 @@ def _fit_library_to_actor(
     return replace(body, twists=library.twists)
 
 
-def _speeds(take: _ObservedTake, settings: PostureSettings) -> Array:
+def _speeds(take: ObservedTake, settings: PostureSettings) -> Array:
     """Return the velocities of bones; NaN if causal, since they need later frames."""
     speeds = rates_from_directions(take.postures, take.frame_rate)
     return np.full_like(speeds, np.nan) if settings.causal else speeds
 
 
 def _measure_errors(
-    take: _ObservedTake, body: BodyPostures, index: PostureIndex, settings: PostureSettings
+    take: ObservedTake, body: BodyPostures, index: PostureIndex, settings: PostureSettings
 ) -> SynthesisErrors:
     """Estimate the errors of unobserved limbs by cross-validation."""
     speeds = _speeds(take, settings)
@@ -191,7 +174,7 @@ def _measure_errors(
     return cross_validate_limbs(take.postures, take.trust, synthesize)
 
 
-def _ramp_reliability(take: _ObservedTake, settings: PostureSettings) -> Array:
+def _ramp_reliability(take: ObservedTake, settings: PostureSettings) -> Array:
     """Ramp reliability down before and up after a dropout; only up in causal mode."""
     trust = take.trust
     n_ramp = round(RAMP_S * take.frame_rate)
@@ -208,14 +191,15 @@ def _ramp_reliability(take: _ObservedTake, settings: PostureSettings) -> Array:
     return ramped
 
 
-def _synthesize(
-    take: _ObservedTake,
+def synthesize(
+    take: ObservedTake,
     body: BodyPostures,
     index: PostureIndex,
     settings: PostureSettings,
     progress: Progress,
+    choose: Chooser | None = None,
 ) -> tuple[Estimates, LimbTwists | None]:
-    """Choose a pose for each frame, and the twist of its limbs.
+    """Choose a pose for each frame, the most probable one by default, and its limbs' twist.
 
     The spread of the result is the standard deviation of each joint in its pose space.
     """
@@ -234,7 +218,7 @@ def _synthesize(
             take.postures[part], take.trust[part], spaces.neighbours, take.lengths
         )
         probable, spread[part] = probable_postures(spaces, targets)
-        values[part] = _choose_postures(spaces, targets, probable, settings, last)
+        values[part] = choose(spaces, targets, last) if choose else probable
         if body.twists is not None:
             twists[part] = mean_twists(
                 body.twists[indices[part]], values[part], spaces.neighbours, take.trust[part]
@@ -247,16 +231,9 @@ def _synthesize(
     return Estimates(values, spread), None if body.twists is None else LimbTwists(twists)
 
 
-def _choose_postures(
-    spaces: PostureSpaces,
-    targets: EnergyTargets,
-    probable: Array,
-    settings: PostureSettings,
-    last: Array | None,
-) -> Array:
-    if settings.method is PostureMethod.PUBLISHED:
-        return search_sequentially(spaces, targets, settings.seed, last)[0]
-    return probable
+def confidence_from_deviation(deviation: Array) -> Array:
+    """Return the confidence of joints from their standard deviations, meters."""
+    return np.asarray(1.0 / (1.0 + (deviation / HALF_CONFIDENCE_M) ** 2))
 
 
 def _hips_offset(
@@ -281,7 +258,7 @@ def _hips_offset(
 def _add_residuals(
     chosen: Estimates,
     observed: Array,
-    take: _ObservedTake,
+    take: ObservedTake,
     size: Array,
     settings: PostureSettings,
 ) -> Estimates:

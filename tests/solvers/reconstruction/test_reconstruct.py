@@ -11,20 +11,17 @@ from solvers.motion import JointRecording, Sensor, forward_kinematics
 from solvers.motion.humanoid import posture_joints
 from solvers.motion.humanoid.posture_heading import rotate_about_vertical
 from solvers.reconstruction import (
-    CorrectionMethod,
-    CorrectionSettings,
-    PostureMethod,
-    PostureSettings,
     ReconstructMethod,
     ReconstructSettings,
     ReliabilityMethod,
     ReliabilitySettings,
-    correct_postures,
     measure_reliability,
     reconstruct,
     reconstruct_postures,
 )
 from solvers.reconstruction.pose_completion import complete_postures
+from solvers.reconstruction.published.shjt13 import search_as_published
+from solvers.reconstruction.published.zh14 import ThreeTermSettings, reconstruct_zh14
 from solvers.reconstruction.reconstruct import shipped_residual_prior
 
 LOST, HIDDEN = kinect_walks.LOST, [5, 6, 7]
@@ -59,19 +56,15 @@ def test_the_published_methods_are_what_their_parts_make(walk):
     signs = measure_reliability(
         walk, settings=ReliabilitySettings(method=ReliabilityMethod.PUBLISHED)
     )
-    search = PostureSettings(method=PostureMethod.PUBLISHED)
-    alone = reconstruct_postures(walk, settings=search, reliability=signs)
+    alone = reconstruct_postures(walk, reliability=signs, complete=search_as_published)
     chosen = ReconstructSettings(method=ReconstructMethod.PUBLISHED_POSTURES)
     whole = reconstruct(walk, settings=chosen)
     np.testing.assert_array_equal(whole.tracks.positions, alone.tracks.positions)
     np.testing.assert_array_equal(whole.motion.rotations, alone.motion.rotations)
     assert "stochastic search" in whole.method
 
-    three_terms = CorrectionSettings(method=CorrectionMethod.PUBLISHED, shift=True)
     v2 = replace(walk, sensor=Sensor.KINECT_V2)
-    alone = correct_postures(
-        v2, shipped_residual_prior(), reliability=signs, settings=three_terms
-    )
+    alone = reconstruct_zh14(v2, shipped_residual_prior(), settings=ThreeTermSettings())
     chosen = ReconstructSettings(method=ReconstructMethod.PUBLISHED_RESIDUALS, shift=True)
     whole = reconstruct(v2, settings=chosen)
     np.testing.assert_array_equal(whole.tracks.positions, alone.tracks.positions)
