@@ -12,6 +12,7 @@ from ...solvers.depth_tracking.body import BodyModel
 from ...solvers.depth_tracking.capturing import Capture, CaptureSettings, unfinished_capture
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched, within
+from ...solvers.signals import find_runs
 from ...solvers.workflows import capture_actor
 from .pose_previews import Glimpses, Onlooker, Place, Show, unseen
 
@@ -118,9 +119,5 @@ def doubts_of(names: tuple[str, ...], doubtful: NDArray[np.bool_]) -> tuple[Doub
     """Return the stretches of frames, the longest first, of flags (n_frames, n_joints)."""
     found = []
     for name, flags in zip(names, doubtful.T, strict=True):
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]])))
-        found += [
-            Doubt(name, int(first), int(stop) - 1)
-            for first, stop in zip(edges[::2], edges[1::2], strict=True)
-        ]
+        found += [Doubt(name, first, stop - 1) for first, stop in find_runs(flags)]
     return tuple(sorted(found, key=lambda doubt: doubt.first - doubt.last))

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ...solvers.depth_scene import Floor, ForegroundMethod, ForegroundSettings
 from ...solvers.depth_tracking.body import CAPSULES, LENGTHS, SEGMENTS, BodyModel, rest_frames
 from ...solvers.errors import InvalidMotionError, MocapAssistError
+from ...solvers.rotations import fit_similarity
 from ..blender.stored_json import parse_stored, store_json
 from ..depth.depth_preview import Shown
 
@@ -101,28 +102,19 @@ def bones_of(armature: bpy.types.Object) -> dict[str, str]:
 def armature_from_motion(armature: bpy.types.Object, body: BodyModel) -> Array:
     """Return the similarity (4, 4) from the space of the motion, metres, to the armature's.
 
-    It is found from the rest pose [1]_, so that transforms may have been applied to it.
+    It is found from the rest pose, so that transforms may have been applied to it.
 
     Raises
     ------
     InvalidMotionError
         The bones at rest are not as far apart as those of the body.
-
-    References
-    ----------
-    .. [1] Umeyama (1991). Least-squares estimation of transformation parameters between two
-       point patterns. IEEE Transactions on Pattern Analysis and Machine Intelligence 13(4).
     """
     bones = bones_of(armature)
     there = np.array([armature.data.bones[bones[name]].head_local for name in SEGMENTS])
     rest = rest_frames(body)[:, :3, 3]
-    middle, centre = there.mean(axis=0), rest.mean(axis=0)
-    U, sizes, V = np.linalg.svd((there - middle).T @ (rest - centre))
-    signs = np.array([1.0, 1.0, np.sign(np.linalg.det(U @ V))])
-    scale = float((sizes * signs).sum() / ((rest - centre) ** 2).sum())
+    rotation, scale, shift = fit_similarity(rest, there)
     matrix = np.eye(4)
-    matrix[:3, :3] = scale * (U * signs) @ V
-    matrix[:3, 3] = middle - matrix[:3, :3] @ centre
+    matrix[:3, :3], matrix[:3, 3] = scale * rotation, shift
     off = np.abs(rest @ matrix[:3, :3].T + matrix[:3, 3] - there).max()
     if off > EVEN * scale:
         raise InvalidMotionError(

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..progress import Progress, unwatched
+from ..signals import smoothstep
 from .contact_state import contacts_from_state
 from .curves import LEG_ROWS, MotionCurves, clamp_softly, motion_from_curves, partition_joints
 from .loops import close_loop, is_closed
@@ -228,8 +229,7 @@ def _clamp_to_range(examples: _ExampleRange, curves: Array) -> Array:
 def _pin_weights(model: VariationModel, settings: VarySettings) -> Array:
     """Return the weight of each sample's deviation, shape (n_samples,): 0 at a pinned pose."""
     free = np.ones(model.n_samples)
-    ramp = np.arange(model.n_samples) / max(PIN_S * model.frame_rate, 1.0)
-    ease = np.clip(ramp, 0.0, 1.0) ** 2 * (3.0 - 2.0 * np.clip(ramp, 0.0, 1.0))
+    ease = smoothstep(np.arange(model.n_samples) / max(PIN_S * model.frame_rate, 1.0))
     if settings.pin_start:
         free = np.minimum(free, ease)
     if settings.pin_end:

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from ...motion.humanoid import HIPS, rates_from_directions
 from ...progress import Progress, within
+from ...signals import smooth_gaussian
 from ..joint_rotations import (
     N_TWISTED_LIMBS,
     BodyPostures,
@@ -227,7 +227,7 @@ def synthesize(
         progress(0.4 + 0.6 * part.stop / len(values), "Synthesizing poses")
     if settings.smoothing and not settings.causal:
         width = settings.smoothing * take.frame_rate
-        values = gaussian_filter1d(values, width, axis=0, mode="nearest")
+        values = smooth_gaussian(values, width)
     return Estimates(values, spread), None if body.twists is None else LimbTwists(twists)
 
 
@@ -249,9 +249,7 @@ def _hips_offset(
     displacement = np.einsum("fi,fik->fk", weight, np.nan_to_num(residuals)) / (1.0 + total)
     displacement *= 1.0 - np.where(np.isfinite(residuals[:, HIPS, :1]), trust[:, [HIPS]], 0.0)
     if settings.smoothing and not settings.causal:
-        displacement = gaussian_filter1d(
-            displacement, settings.smoothing * frame_rate, axis=0, mode="nearest"
-        )
+        displacement = smooth_gaussian(displacement, settings.smoothing * frame_rate)
     return np.asarray(displacement[:, None])
 
 
