@@ -3,9 +3,9 @@
 from collections.abc import Callable
 
 import bpy
-from bpy.app import handlers
 
 from ..drawing.view_drawing import redraw
+from .ends_with_file import ends_with_file
 
 BETWEEN_LOOKS = 0.05  # seconds
 BUSY = "Another solve is running. Wait until it is done, or press Esc in its window."
@@ -68,27 +68,4 @@ def why_busy() -> str:
     return BUSY if _on else ""
 
 
-@handlers.persistent
-def _abandon_all(*_: object) -> None:
-    while _on:
-        _on[-1].abandon(bpy.context)
-
-
-@handlers.persistent
-def _nothing_runs(*_: object) -> None:
-    """A file that was saved while a solve ran says that it still does."""
-    for manager in bpy.data.window_managers:
-        manager.mocap_assist_job.running = False
-
-
-def register() -> None:
-    """End a solve before the file that it works on is replaced."""
-    handlers.load_pre.append(_abandon_all)
-    handlers.load_post.append(_nothing_runs)
-
-
-def unregister() -> None:
-    """End it with the extension, too: Blender forgets the button without a word."""
-    _abandon_all()
-    handlers.load_post.remove(_nothing_runs)
-    handlers.load_pre.remove(_abandon_all)
+register, unregister = ends_with_file(_on, "mocap_assist_job")
