@@ -187,16 +187,9 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
             row.operator(idname, text=text, icon=icon).side = side
 
 
-CLASSES = (MOCAP_UL_bones, MOCAP_OT_find_bones, MOCAP_OT_save_bone_map, MOCAP_OT_load_bone_map)
-
-
-def register() -> None:
-    """Add the list and its buttons."""
-    for each in CLASSES:
-        bpy.utils.register_class(each)
-
-
-def unregister() -> None:
-    """Take them away."""
-    for each in reversed(CLASSES):
-        bpy.utils.unregister_class(each)
+register, unregister = bpy.utils.register_classes_factory((
+    MOCAP_UL_bones,
+    MOCAP_OT_find_bones,
+    MOCAP_OT_save_bone_map,
+    MOCAP_OT_load_bone_map,
+))

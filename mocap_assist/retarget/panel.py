@@ -141,11 +141,4 @@ class MOCAP_OT_tick_action(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def register() -> None:
-    """Add the button of the list of actions."""
-    bpy.utils.register_class(MOCAP_OT_tick_action)
-
-
-def unregister() -> None:
-    """Take it away."""
-    bpy.utils.unregister_class(MOCAP_OT_tick_action)
+register, unregister = bpy.utils.register_classes_factory((MOCAP_OT_tick_action,))

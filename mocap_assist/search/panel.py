@@ -172,11 +172,4 @@ def _draw_chosen(
     column.operator(MARK, icon="ASSET_MANAGER")
 
 
-def register() -> None:
-    """Add the list."""
-    bpy.utils.register_class(MOCAP_UL_matches)
-
-
-def unregister() -> None:
-    """Take it away."""
-    bpy.utils.unregister_class(MOCAP_UL_matches)
+register, unregister = bpy.utils.register_classes_factory((MOCAP_UL_matches,))

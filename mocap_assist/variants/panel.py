@@ -163,11 +163,4 @@ def _draw_variants(column: bpy.types.UILayout, context: bpy.types.Context) -> No
         body.operator(ASSIGN, icon="COMMUNITY")
 
 
-def register() -> None:
-    """Add the list."""
-    bpy.utils.register_class(MOCAP_UL_variants)
-
-
-def unregister() -> None:
-    """Take it away."""
-    bpy.utils.unregister_class(MOCAP_UL_variants)
+register, unregister = bpy.utils.register_classes_factory((MOCAP_UL_variants,))

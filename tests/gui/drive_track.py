@@ -100,7 +100,7 @@ def time_of_a_redraw(armature):
     view = bgui.area().spaces.active.region_3d
     began = perf_counter()
     for _ in range(20):
-        drawing.batch_of(overlay.body_now(armature, 15), view)
+        drawing.batch_of(overlay.body_at(armature, 15), view)
     return (perf_counter() - began) / 20
 
 
