@@ -11,6 +11,7 @@ VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' blender_manifest.toml)
 ZIP := dist/mocap_assist-$(VERSION)-linux_x64.zip
 PYTHON_4.5 := .venv-4.5/bin/python
 PYTHON_5.2 := .venv-5.2/bin/python
+TYPED := build/types/mocap_assist_extension
 NO_PYTHON = no Python $(1) that can make environments was found: not on the PATH, nor in uv's or pyenv's folders
 NO_5.2 := SKIPPED on Blender 5.2: $(call NO_PYTHON,3.13).
 
@@ -34,10 +35,15 @@ test: environments  ## every check and test below, on Blender 4.5 and 5.2, two a
 	@if [ -e .venv-5.2/ready ]; then echo "All is well, on Blender 4.5 and 5.2."; \
 	else echo "$(NO_5.2)"; echo "All is well, on Blender 4.5."; fi
 
-lint: .venv-4.5/ready  ## ruff, and mypy on the solvers
+lint: .venv-4.5/ready $(TYPED)  ## ruff, and mypy on all that ships
 	$(PYTHON_4.5) -m ruff check .
 	$(PYTHON_4.5) -m ruff format --check .
 	$(PYTHON_4.5) -m mypy
+
+# The extension as one package, which is what its parts import each other from.
+$(TYPED):
+	@mkdir -p $(@D)
+	@ln -sfn ../.. $@
 
 test-source-4.5: .venv-4.5/ready  ## the checkout: Python 3.11 and the numpy of Blender 4.5
 	$(AT_MOST) $(PYTHON_4.5) -m pytest
@@ -54,6 +60,10 @@ test-blender-5.2: optional-5.2 zip  ## the installed zip, in Blender 5.2
 	@[ ! -e .venv-5.2/ready ] || { set -x; \
 	    MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_5.2) -m pytest tests/blender; }
 
+.PHONY: test-gui
+test-gui: extension-plain  ## press buttons in a Blender with a window; DRIVERS="clean vary"
+	$(PYTHON_4.5) tests/gui/run_drivers.py --zip dist/mocap_assist-$(VERSION)-plain.zip $(DRIVERS)
+
 # The fuzzer comes as a wheel for Linux; it finds files, and no verdict depends on time.
 SECONDS ?= 60
 .PHONY: fuzz
@@ -66,31 +76,35 @@ kills: .venv-4.5/ready zip  ## kill commands at random moments; ARGUMENTS="--kil
 
 # --- What there is to see ---
 
-.PHONY: demo docs bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth
+.PHONY: demo docs pictures bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth
 demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
 
 docs: .venv-4.5/ready  ## the tables of settings and the pictures in README.md and docs
-	$(PYTHON_4.5) .ci/write_docs.py --pictures
+	PYTHONPATH=. $(PYTHON_4.5) .ci/write_docs.py --pictures
+
+pictures: .venv-4.5/ready  ## the pictures of docs/formats and of Reconstruct, from ../shared/data
+	PYTHONPATH=. $(PYTHON_4.5) .ci/draw_formats.py ../shared/data
+	PYTHONPATH=. $(PYTHON_4.5) .ci/draw_reconstruction.py ../shared/data
 
 # Each writes what is shipped from recordings of ../shared/data; ARGUMENTS="--out FILE" writes
 # elsewhere, and each script says which clips, bodies and licences. The forest takes half an hour.
 .PHONY: forest postures residuals motion-prior failures
 forest: .venv-4.5/ready  ## train the shipped forest that classifies body parts in depth images
-	PYTHONPATH=. $(PYTHON_4.5) .ci/train_forest.py $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.training.train_forest $(ARGUMENTS)
 
 postures: .venv-4.5/ready  ## thin out the shipped library of postures
-	PYTHONPATH=. $(PYTHON_4.5) .ci/train_postures.py $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.training.train_postures $(ARGUMENTS)
 
 residuals: .venv-4.5/ready  ## learn the shipped errors of a Kinect, and how sure they are
-	PYTHONPATH=. $(PYTHON_4.5) .ci/train_residuals.py $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.training.train_residuals $(ARGUMENTS)
 
 motion-prior: .venv-4.5/ready  ## learn the shipped motion prior of the depth tracker
-	PYTHONPATH=. $(PYTHON_4.5) .ci/train_motion_prior.py $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.training.train_motion_prior $(ARGUMENTS)
 
 failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the weights
-	PYTHONPATH=. $(PYTHON_4.5) .ci/learn_failures.py
+	$(PYTHON_4.5) -m tests.training.learn_failures
 
 # Each prints tables; with ARGUMENTS=--docs it rewrites its own part of docs/benchmarks.md, and
 # ARGUMENTS=--help lists the other options.

@@ -1,6 +1,6 @@
 """Draw a real recording of each format for docs/formats: docs/pictures/format_*.png.
 
-    python .ci/draw_formats.py ../shared/data
+    make pictures
 
 What is drawn is what the reader made of the file. Nothing of the recordings is kept.
 """
@@ -10,8 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
+from solvers.motion import JointRecording
+from solvers.pictures import StickFigureSettings, View, draw_stick_figures
+from solvers.recordings import read_recording
+
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
 PICTURES = ROOT / "docs" / "pictures"
 SAMPLES = {
     "bvh": ("mocap/cmu_walk/07_01.bvh", "side"),
@@ -29,7 +32,6 @@ SAMPLES = {
 
 def on_the_floor(recording):
     """Lift the joints of a depth camera, which is at the origin, so that the feet are at 0."""
-    from solvers.motion import JointRecording
 
     if not isinstance(recording, JointRecording):
         return recording
@@ -40,8 +42,6 @@ def on_the_floor(recording):
 
 def main(recordings: Path) -> None:
     """Draw one picture for each page."""
-    from solvers.pictures import StickFigureSettings, View, draw_stick_figures
-    from solvers.recordings import read_recording
 
     for page, (file, view) in SAMPLES.items():
         recording = on_the_floor(read_recording(recordings / file))

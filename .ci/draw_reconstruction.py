@@ -1,6 +1,6 @@
 """Draw real recordings before and after Reconstruct: docs/pictures/reconstruction_*.png.
 
-    python .ci/draw_reconstruction.py ../shared/data
+    make pictures
 
 Prints what was measured of them. Nothing of the recordings is kept.
 """
@@ -11,8 +11,13 @@ from pathlib import Path
 import numpy as np
 from draw_formats import on_the_floor
 
+from solvers.denoising import measure_quality
+from solvers.motion import motion_from_points
+from solvers.pictures import StickFigureSettings, View, draw_stick_figures
+from solvers.recordings import read_recording
+from solvers.workflows import reconstruct_recording
+
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
 PICTURES = ROOT / "docs" / "pictures"
 SAMPLES = {
     "irds": ("irds/215_18_5_8_1_stand.txt", range(8, 36), "front"),
@@ -24,11 +29,6 @@ SAMPLES = {
 
 def main(recordings: Path) -> None:
     """Draw one picture for each."""
-    from solvers.denoising import measure_quality
-    from solvers.motion import motion_from_points
-    from solvers.pictures import StickFigureSettings, View, draw_stick_figures
-    from solvers.recordings import read_recording
-    from solvers.workflows import reconstruct_recording
 
     settings = {"n_figures": 8, "height": 150}
     for name, (file, frames, view) in SAMPLES.items():

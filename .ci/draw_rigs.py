@@ -1,6 +1,6 @@
 """Draw what Retarget makes of a clip on rigs of several families, as Blender evaluates them.
 
-    python .ci/draw_rigs.py CLIP.bvh OUTPUT_FOLDER
+    PYTHONPATH=.:tests/fixtures python .ci/draw_rigs.py CLIP.bvh OUTPUT_FOLDER
 
 Above the recording, below the rig, at the same moments. Of Rigify's rig the bones are drawn
 that its deform bones follow, after all constraints.
@@ -143,7 +143,6 @@ def make_armature(bpy: ModuleType, name: str, skeleton: Any) -> Any:
 
 
 if __name__ == "__main__":
-    sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "fixtures")]
     main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve())
     sys.stdout.flush()
     os._exit(0)  # Blender may hang at its end

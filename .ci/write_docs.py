@@ -1,7 +1,7 @@
 """Write into the documents what they quote from the code, so that it cannot go stale.
 
-    python .ci/write_docs.py               tables of settings and of buttons, in docs
-    python .ci/write_docs.py --pictures    and the pictures in docs/pictures
+    PYTHONPATH=. python .ci/write_docs.py    tables of settings and of buttons, in docs
+    make docs                                and the pictures in docs/pictures
 
 A table of settings stands between `<!-- settings solvers.denoising.DenoiseSettings -->` and
 `<!-- end -->`, the table of buttons between `<!-- buttons -->` and `<!-- end -->`.
@@ -16,12 +16,21 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from solvers.denoising import denoise, plant_feet
+from solvers.pictures import (
+    CurveSettings,
+    StickFigureSettings,
+    View,
+    draw_curves,
+    draw_stick_figures,
+)
+from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
+from solvers.settings import label_of
+
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 PICTURES = ROOT / "docs" / "pictures"
 ENDLESS = 1e6
-label_of = import_module("solvers.settings").label_of
 SETTINGS = re.compile(r"(<!-- settings ([\w.]+)\.(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 BUTTONS = re.compile(r"(<!-- buttons -->\n).*?(<!-- end -->)", re.DOTALL)
 NOT_BUTTONS = {"import_job"}
@@ -127,15 +136,6 @@ def _unit(described: Any) -> str:
 
 def draw_pictures() -> None:
     """Clean the sample without Blender and draw it before and after."""
-    from solvers.denoising import denoise, plant_feet
-    from solvers.pictures import (
-        CurveSettings,
-        StickFigureSettings,
-        View,
-        draw_curves,
-        draw_stick_figures,
-    )
-    from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 
     walk = walking_gait(GaitSettings(duration=8.0, frame_rate=30.0))
     wrong = CorruptionSettings(jitter=3.0, spikes=0.004, root_jitter=0.004)

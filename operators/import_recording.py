@@ -39,4 +39,5 @@ class MOCAP_OT_import_recording(FilesOperator, bpy.types.Operator):
             context.window_manager.fileselect_add(self)
             return {"RUNNING_MODAL"}
         self.note = preview(context, chosen_paths(self))
-        return context.window_manager.invoke_props_dialog(self, width=WIDTH)
+        asked: set[str] = context.window_manager.invoke_props_dialog(self, width=WIDTH)
+        return asked

@@ -25,9 +25,11 @@ class MOCAP_OT_show_depth(bpy.types.Operator):
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        mesh = selected_preview(context).data
+        preview = selected_preview(context)
+        if preview is None:
+            return {"CANCELLED"}
         try:
-            message = show_on_request(mesh, context.scene.frame_current_final)
+            message = show_on_request(preview.data, context.scene.frame_current_final)
         except MocapAssistError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

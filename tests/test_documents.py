@@ -39,7 +39,7 @@ def write_docs():
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=name_of)
 def test_tables_of_settings_say_what_the_code_says(document, write_docs):
-    """After a change: `python .ci/write_docs.py`."""
+    """After a change: `make docs`."""
     text = document.read_text(encoding="utf-8")
 
     assert write_docs.renewed(text) == text

@@ -41,7 +41,7 @@ def write_action(
     action, slot
     """
     action, slot = compat.new_action(name, armature)
-    bag = compat.channelbag(action, slot, ensure=True)
+    bag = compat.ensure_channelbag(action, slot)
     for bone_name, channels in keys.items():
         bone = armature.pose.bones[bone_name]
         if channels.rotations is not None:

@@ -28,12 +28,14 @@ def read_contacts(
     None where the action has no such keys for all of these frames: they were not cleaned yet.
     """
     curves = animated_curves(action, slot)
-    keyed = [curves.get((_path(name), 0)) for name in PROPERTIES]
-    for channel in keyed:
-        times = np.empty(0) if channel is None else channel.keys[:, 0]
-        if not len(times) or times[0] > frames[0] or times[-1] < frames[-1]:
+    standing = []
+    for channel in [curves.get((_path(name), 0)) for name in PROPERTIES]:
+        if channel is None or not len(times := channel.keys[:, 0]):
             return None
-    return np.stack([channel.values(frames) > 0.5 for channel in keyed], axis=1)
+        if times[0] > frames[0] or times[-1] < frames[-1]:
+            return None
+        standing.append(channel.values(frames) > 0.5)
+    return np.stack(standing, axis=1)
 
 
 def animators_contacts(source: Source, frames: NDArray[np.float64]) -> Flags | None:
@@ -59,7 +61,7 @@ def write_contacts(
     Keys that were `detected` have the type GENERATED, and the action remembers them: until one
     of them is edited they are nobody's decision, and are detected anew next time.
     """
-    bag = compat.channelbag(action, slot)
+    bag = compat.ensure_channelbag(action, slot)
     detected &= _untouched(action, slot) or not any(_contact_keys(action, slot))
     for name, standing in zip(PROPERTIES, contacts.T, strict=True):
         _declare(armature, name, int(standing[0]))
@@ -115,7 +117,7 @@ def _declare(armature: bpy.types.Object, name: str, value: int) -> None:
 
 def _untouched(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> bool:
     """Whether the contact keys are as they were detected."""
-    return action.get(DETECTED) == _digest(action, slot)
+    return bool(action.get(DETECTED) == _digest(action, slot))
 
 
 def _digest(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> str:

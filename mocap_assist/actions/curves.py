@@ -81,7 +81,7 @@ class Channel:
         times, values = self.keys.T
         indices = np.searchsorted(times, frames - ON_FRAME).clip(max=len(times) - 1)
         between = np.abs(times[indices] - frames) > ON_FRAME
-        found = values[indices]
+        found: Array = values[indices]
         found[between] = self._evaluated(frames[between])
         return found
 
@@ -185,7 +185,7 @@ def _rebuild(
 
 
 def _chosen(
-    points: bpy.types.FCurveKeyframePoints, times: NDArray[np.generic], frames: Array
+    points: bpy.types.FCurveKeyframePoints, times: NDArray[Any], frames: Array
 ) -> NDArray[np.bool_]:
     """Tell which of the frames have a key that is selected, shape (n_frames,)."""
     selected = _column(points, SELECTED[0])[:, 0]
@@ -197,7 +197,7 @@ def _chosen(
 
 
 def _neighbours(
-    times: NDArray[np.generic], first: int, last: int
+    times: NDArray[Any], first: int, last: int
 ) -> tuple[float | None, float | None]:
     """Return the frames of the keys before `first` and after `last`, if they exist."""
     before = float(times[first - 1]) if first else None
@@ -207,7 +207,7 @@ def _neighbours(
 
 def _column(
     points: bpy.types.FCurveKeyframePoints, name: str, *, blank: bool = False
-) -> NDArray[np.generic]:
+) -> NDArray[Any]:
     """Return one property of all keys, or room for it: shape (n_keys, width)."""
     width = KEY[name][0]
     column = np.empty(width * len(points), _kind(name))

@@ -70,7 +70,7 @@ def write_tracks(
     for point, empty in enumerate(empties):
         progress(point / len(empties), "Writing keys")
         slot = action.slots.new("OBJECT", fitting_name(tracks.names[point]))
-        bag = compat.channelbag(action, slot, ensure=True)
+        bag = compat.ensure_channelbag(action, slot)
         positions = tracks.positions[:, point] / metres
         write_channels(bag, "location", "Location", frames, positions)
         compat.assign(empty, action, slot)

@@ -155,4 +155,5 @@ def _spacing(times: Array) -> float:
 def _selected_keys(channel: Channel) -> Array:
     selected = np.empty(len(channel.keys), bool)
     channel.curve.keyframe_points.foreach_get("select_control_point", selected)
-    return channel.keys[selected, 0]
+    times: Array = channel.keys[selected, 0]
+    return times

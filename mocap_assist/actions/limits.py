@@ -52,7 +52,7 @@ def _limiting(bone: bpy.types.PoseBone) -> Iterator[bpy.types.LimitRotationConst
 
 def _order(constraint: bpy.types.LimitRotationConstraint, bone: bpy.types.PoseBone) -> str:
     """Return the Euler order, about moving axes: the reverse of Blender's name for it."""
-    order = constraint.euler_order
+    order: str = constraint.euler_order
     if order == "AUTO":
         order = bone.rotation_mode if len(bone.rotation_mode) == 3 else "XYZ"
     return order[::-1]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
-from ...solvers.motion import Tracks
+from ...solvers.motion import Motion, Tracks
 from ..blender.block_references import BlockReference
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, should_yield
@@ -20,7 +20,7 @@ from .armature_write import copy_of, same_slot
 from .bone_channels import Curves, animated_curves, curves_of, gaps_of, sampled
 from .curves import write_values
 from .frames import FrameRange, Grid, key_grid, range_bounds
-from .markers import PATH, markers_of, played_by, point_names
+from .markers import PATH, markers_of, point_names, source_of
 from .sensor_notes import CONFIDENCE
 
 Array = NDArray[np.float64]
@@ -49,9 +49,10 @@ class MarkerTake:
         """What is to be solved."""
         return (self.tracks,)
 
-    def with_recordings(self, recordings: tuple[Tracks, ...]) -> "MarkerTake":
+    def with_recordings(self, recordings: tuple[Motion | Tracks, ...]) -> "MarkerTake":
         """Return the take with its tracks replaced."""
-        return replace(self, tracks=recordings[0])
+        (tracks,) = (each for each in recordings if isinstance(each, Tracks))
+        return replace(self, tracks=tracks)
 
 
 @Sliced
@@ -173,7 +174,7 @@ def write_markers(
 
 
 def _source(marker: bpy.types.Object, recorded: bool) -> Source:
-    played = played_by(marker)
+    played = source_of(marker)
     raw = history.raw_of(*played) if recorded else None
     return raw or played
 

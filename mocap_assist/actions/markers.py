@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...solvers.errors import InvalidMotionError
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
@@ -42,6 +43,14 @@ def is_marker(each: bpy.types.Object) -> bool:
 def played_by(marker: bpy.types.Object) -> Source | None:
     """Return the result or action that a marker plays."""
     return history.played_result(marker) or assigned_to(marker)
+
+
+def source_of(marker: bpy.types.Object) -> Source:
+    """Return what a marker plays; raise InvalidMotionError where it plays nothing."""
+    played = played_by(marker)
+    if played is None:
+        raise InvalidMotionError(f"{marker.name} plays no action. Assign one to it.")
+    return played
 
 
 def assigned_to(marker: bpy.types.Object) -> Source | None:

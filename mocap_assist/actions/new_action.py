@@ -44,7 +44,7 @@ def write_motion(
     action, slot
     """
     action, slot = compat.new_action(armature.name, armature)
-    bag = compat.channelbag(action, slot, ensure=True)
+    bag = compat.ensure_channelbag(action, slot)
     rig = read_rig(armature)
     owners = tuple(rig.bones.index(bone) if bone else -1 for bone in bones)
     n_frames = motion.n_frames

@@ -42,7 +42,7 @@ def write_reliability(
     term: Term = Term.COMBINED,
 ) -> None:
     """Key the property on each bone of which something is known, linear between changes."""
-    bag = compat.channelbag(action, slot, ensure=True)
+    bag = compat.ensure_channelbag(action, slot)
     for bone, values in reliability.items():
         if bone not in armature.pose.bones or not np.isfinite(values).all():
             continue

@@ -1,6 +1,7 @@
 """Sensor confidence of joints and markers: custom properties, keyed where they change."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import bpy
 import numpy as np
@@ -25,7 +26,7 @@ def sensor_values(recording: Motion | Tracks | JointRecording) -> dict[str, dict
         return {}
     state = recording.tracking_state if isinstance(recording, JointRecording) else None
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording
-    states = {CONFIDENCE: tracks.confidence, STATE: state}
+    states: dict[str, NDArray[Any] | None] = {CONFIDENCE: tracks.confidence, STATE: state}
     return {
         name: {kind: values[:, point] for kind, values in states.items() if values is not None}
         for point, name in enumerate(tracks.names)

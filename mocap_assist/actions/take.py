@@ -75,13 +75,13 @@ class ArmatureTake:
 
     def with_recordings(self, recordings: tuple[Motion | Tracks, ...]) -> "ArmatureTake":
         """Return the take with its motions replaced."""
-        n_parts = len(self.parts)
+        motions = [each for each in recordings if isinstance(each, Motion)]
         parts = tuple(
             replace(part, motion=motion)
-            for part, motion in zip(self.parts, recordings[:n_parts], strict=True)
+            for part, motion in zip(self.parts, motions, strict=True)
         )
-        offsets = recordings[n_parts] if self.offsets is not None else None
-        return replace(self, parts=parts, offsets=offsets)
+        offsets = [each for each in recordings if isinstance(each, Tracks)]
+        return replace(self, parts=parts, offsets=None if self.offsets is None else offsets[0])
 
     def bone_rotations(self) -> dict[int, Array]:
         """Return the pose-bone rotation, shape (n_frames, 4), of every bone in a part."""

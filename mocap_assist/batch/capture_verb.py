@@ -15,7 +15,13 @@ from ...solvers.settings import Settings
 from ..importing.choices import ImportChoices
 from ..importing.depth_folders import depth_recordings_in, is_take
 from ..importing.importing import import_files
-from ..track.tracking import TrackBundle, read_tracking, selected_preview, write_tracked
+from ..track.tracking import (
+    TrackBundle,
+    WatchChoices,
+    read_tracking,
+    selected_preview,
+    write_tracked,
+)
 from .pictures import draw_result
 from .saving import report_figures, save, target_file
 from .solving import solve_in_subprocess
@@ -47,10 +53,12 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
         A recording could not be tracked, or the file could not be saved.
     """
     target = target_file(arguments)
-    settings = TrackBundle(**{
+    given: dict[str, Settings] = {
         name: settings_from_arguments(arguments, each)
         for name, each in button_settings().items()
-    })
+    }
+    given["watching"] = WatchChoices()
+    settings = TrackBundle._make(given[name] for name in TrackBundle._fields)
     made, messages, failed = [], [], []
     takes = [path for path in arguments.files if is_take(path)]
     others = [path for path in arguments.files if path not in takes]

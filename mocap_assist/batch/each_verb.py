@@ -212,7 +212,7 @@ def _perform(task: Task, stopped: Event) -> FinishedTask:
     remove_picture(task)
     with ScratchFolder() as scratch:
         figures = scratch.path / "figures"
-        ended = run_child(_command(task, figures), task.target, stopped)
+        ended = run_child(_command(task, figures), _made_by(task), stopped)
         if ended is None:
             return FinishedTask(task, None, f"{task.source}: Interrupted.")
         if ended.status == 0:
@@ -225,13 +225,20 @@ def _perform(task: Task, stopped: Event) -> FinishedTask:
     return FinishedTask(task, None, sentence if named else f"{task.source}: {sentence}")
 
 
+def _made_by(task: Task) -> Path:
+    """Return the .blend file of a task; each of `each` has one."""
+    if task.target is None:
+        raise ValueError(f"the task of {task.source} writes nothing")
+    return task.target
+
+
 def _command(task: Task, figures: Path) -> list[str]:
     arguments, source = task.arguments, str(real_path(task.source))
     verb, *options = arguments.words
     imports = verb in IMPORT_VERBS
     opened = bpy.data.filepath if imports else source
     words = [OPTION, verb, *([source] if imports else []), *options, "--json", str(figures)]
-    words += ["--output", str(real_path(task.target))]
+    words += ["--output", str(real_path(_made_by(task)))]
     if arguments.report:
         words += ["--picture", str(real_path(picture_file(task)))]
     if bpy.app.binary_path:

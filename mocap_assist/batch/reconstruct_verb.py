@@ -11,7 +11,7 @@ from ...solvers.progress import Progress
 from ..blender.name_lists import join_names
 from ..reconstruct.choices import Postures, ReconstructBundle
 from ..reconstruct.reconstructing import read_reconstructing, write_reconstructed
-from ..runtime.selection import played_result
+from ..runtime.selection import played_source
 from ..scene import history
 from .solving import solve_in_subprocess
 
@@ -57,5 +57,5 @@ def perform_reconstruct(
         read_reconstructing(scene, armature, settings), arguments, progress
     )
     sentence = write_reconstructed(scene, armature, settings, rebuilt)
-    action, _ = played_result(armature)
+    action, _ = played_source(armature)
     return sentence, {"action": action.name} | history.history(action)[-1]

@@ -20,7 +20,7 @@ from ..check.checking import read_checking, show_checked
 from ..check.choices import CheckSettings
 from ..clean.choices import CleanSettings, Prior
 from ..clean.cleaning import read_cleaning, write_cleaned
-from ..runtime.selection import played_result, played_source
+from ..runtime.selection import played_source
 from ..scene import history
 from .library_verbs import FIND_HELP, add_find_options, check_find, perform_find
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct
@@ -100,7 +100,7 @@ def _clean(
         settings = settings._replace(choices=replace(settings.choices, prior=Prior.LIBRARY))
     cleaned = solve_in_subprocess(read_cleaning(scene, armature, settings), arguments, progress)
     sentence = write_cleaned(scene, armature, settings, cleaned)
-    action, _ = played_result(armature)
+    action, _ = played_source(armature)
     return sentence, {"action": action.name} | history.history(action)[-1]
 
 
@@ -171,9 +171,7 @@ def _convert(
 
 def _bundle(arguments: argparse.Namespace, bundle: type[Bundle]) -> Bundle:
     classes = get_type_hints(bundle)
-    return bundle(**{
-        name: settings_from_arguments(arguments, each) for name, each in classes.items()
-    })
+    return bundle._make(settings_from_arguments(arguments, each) for each in classes.values())
 
 
 VERBS = {

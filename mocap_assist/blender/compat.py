@@ -12,9 +12,7 @@ TARGETS = {"OBJECT", "UNSPECIFIED"}  # the second comes from files of Blender 4.
 
 def is_selected(bone: bpy.types.PoseBone) -> bool:
     """Whether a pose bone is selected; Blender 5.0 moved the flag to the pose."""
-    if bpy.app.version < (5, 0):
-        return bone.bone.select
-    return bone.select
+    return bool((bone.bone if bpy.app.version < (5, 0) else bone).select)
 
 
 def select_bone(bone: bpy.types.PoseBone, selected: bool = True) -> None:
@@ -33,15 +31,20 @@ def find_slot(action: bpy.types.Action, identifier: str) -> bpy.types.ActionSlot
 
 
 def channelbag(
-    action: bpy.types.Action, slot: bpy.types.ActionSlot, ensure: bool = False
+    action: bpy.types.Action, slot: bpy.types.ActionSlot
 ) -> bpy.types.ActionChannelbag | None:
-    """Return the channelbag of a slot; without `ensure`, None if it has none."""
-    if ensure:
-        layer = action.layers[0] if action.layers else action.layers.new("Layer")
-        strip = layer.strips[0] if layer.strips else layer.strips.new(type="KEYFRAME")
-        return strip.channelbag(slot, ensure=True)
+    """Return the channelbag of a slot; None if it has none."""
     bags = (strip.channelbag(slot) for layer in action.layers for strip in layer.strips)
     return next((bag for bag in bags if bag is not None), None)
+
+
+def ensure_channelbag(
+    action: bpy.types.Action, slot: bpy.types.ActionSlot
+) -> bpy.types.ActionChannelbag:
+    """Return what holds the F-Curves of one slot; add it where there is none."""
+    layer = action.layers[0] if action.layers else action.layers.new("Layer")
+    strip = layer.strips[0] if layer.strips else layer.strips.new(type="KEYFRAME")
+    return strip.channelbag(slot, ensure=True)
 
 
 def assign(
@@ -58,7 +61,7 @@ def new_action(name: str, animated: bpy.types.ID) -> Source:
     action = bpy.data.actions.new(name)
     action.use_fake_user = True
     slot = action.slots.new(animated.id_type, animated.name)
-    channelbag(action, slot, ensure=True)
+    ensure_channelbag(action, slot)
     return action, slot
 
 

@@ -43,6 +43,23 @@ def file_to_write(path: str, ending: str) -> Path:
     return chosen.with_suffix(ending)
 
 
+class ChoosesFolder:
+    """Mix-in of operators for which the animator first chooses a folder."""
+
+    directory: path_property(FOLDER, HIDDEN)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Open the file browser, which executes the operator."""
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+
+class ChoosesFiles(ChoosesFolder):
+    """Mix-in of operators for which the animator first chooses files; see `chosen_files`."""
+
+    files: bpy.props.CollectionProperty(type=bpy.types.OperatorFileListElement, options=HIDDEN)
+
+
 def chosen_files(operator: Any) -> list[Path]:
     """Return the files that a file browser has set in `directory` and `files`."""
     folder = absolute(operator.directory)

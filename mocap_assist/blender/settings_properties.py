@@ -29,7 +29,7 @@ def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
     described = {item.name: item for each in classes.values() for item in fields(each)}
 
     def settings(self: Any) -> Bundle:
-        return bundle(**{name: _settings_of(self, each) for name, each in classes.items()})
+        return bundle._make(_settings_of(self, each) for each in classes.values())
 
     def decorate(cls: Class) -> Class:
         # Otherwise Blender restores the values of the last press, and they look as if the
@@ -37,8 +37,9 @@ def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
         options = {"SKIP_SAVE"} if issubclass(cls, bpy.types.Operator) else set()
         properties = {name: _property(item, options) for name, item in described.items()}
         cls.__annotations__ = properties | get_annotations(cls)
-        cls.settings = settings
-        cls.setting_names = tuple(described)
+        decorated: Any = cls
+        decorated.settings = settings
+        decorated.setting_names = tuple(described)
         return cls
 
     return decorate
@@ -53,19 +54,18 @@ def _settings_of(properties: Any, settings_class: type[Settings]) -> Settings:
 
 def _property(item: "Field[Any]", options: set[str]) -> Any:
     described: Described = item.metadata["described"]
-    kind = type(item.default)
-    shown = {
+    default: Any = item.default
+    kind = type(default)
+    shown: dict[str, Any] = {
         "name": label_of(item),
         "description": described.help,
-        "default": item.default,
+        "default": default,
         "options": {"ANIMATABLE"} | options,
     }
     if issubclass(kind, Choice):
         choices = [(each.name, each.label, each.help, index)
                    for index, each in enumerate(kind)]  # fmt: skip
-        return bpy.props.EnumProperty(
-            **shown | {"items": choices, "default": item.default.name}
-        )
+        return bpy.props.EnumProperty(**shown | {"items": choices, "default": default.name})
     if kind is bool:
         return bpy.props.BoolProperty(**shown)
     if kind is str:

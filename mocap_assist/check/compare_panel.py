@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..blender.mixins import PanelMixin
 from ..panels.drawing import exists
 from ..panels.preferred import preferences
 from ..runtime.selection import played_result, selected_subject
@@ -10,7 +11,7 @@ from ..scene import history
 REVERT = "mocap_assist.revert_to_raw"
 
 
-class ComparePanel:
+class ComparePanel(PanelMixin):
     """The overlay's switch, and Revert."""
 
     bl_label = "Compare"
@@ -39,9 +40,10 @@ def _draw_colors(column: bpy.types.UILayout) -> None:
 
 def _draw_actions(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     played = played_result(selected_subject(context))
-    if played is None:
+    recorded = played and history.raw_of(played[0])
+    if not (played and recorded):
         return
-    raw, _ = history.raw_of(played[0])
+    raw, _ = recorded
     column = layout.column(align=True)
     column.label(text=played[0].name, icon="ACTION", translate=False)
     made_from = bpy.app.translations.pgettext_iface("Made from {raw}").format(raw=raw.name)

@@ -1,8 +1,11 @@
 """Panel: quality figures of the action, and the list of issues."""
 
+from typing import Any
+
 import bpy
 
 from ...solvers.errors import InvalidMotionError
+from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_job, draw_sentence, exists, is_wide
 from ..panels.figures import figure_rows, frames_text
 from ..runtime.selection import played_result, played_source, selected_subject
@@ -24,7 +27,15 @@ class MOCAP_UL_issues(bpy.types.UIList):
     """Worst issues; a click jumps to the issue."""
 
     def draw_item(
-        self, context, layout, data, item, icon, active_data, active_property, index
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        data: object,
+        item: Any,
+        icon: int,
+        active_data: object,
+        active_property: str,
+        index: int,
     ) -> None:
         row = layout.split(factor=0.55)
         frames = frames_text(item.start, item.stop)
@@ -35,7 +46,7 @@ class MOCAP_UL_issues(bpy.types.UIList):
         _jump(row, index, frames, "NONE")
 
 
-class CheckPanel:
+class CheckPanel(PanelMixin):
     """Figures before and after, and the worst issues."""
 
     bl_label = "Check"
@@ -91,7 +102,7 @@ def _draw_issues(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
 def is_stale(checked: str, subject: bpy.types.Object) -> bool:
     """Whether the subject plays another action than the one that was checked."""
     try:
-        return played_source(subject)[0].name != checked
+        return bool(played_source(subject)[0].name != checked)
     except InvalidMotionError:
         return True
 

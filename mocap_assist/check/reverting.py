@@ -3,6 +3,7 @@
 import bpy
 
 from ..blender import compat
+from ..blender.compat import Source
 from ..runtime.selection import animated_objects, played_result, selected_subject
 from ..scene import history
 
@@ -21,17 +22,20 @@ def why_not_revert(context: bpy.types.Context) -> str:
 
 def revert(subject: bpy.types.Object) -> str:
     """Assign the recorded action to an armature, or to each of the markers below an object."""
-    result, _ = played_result(subject)
-    raw, _ = history.raw_of(result)
+    message = ""
     for player in animated_objects(subject):
-        if played := history.played_result(player):
-            _revert(player, *played)
-    return f"{subject.name} plays {raw.name} again; {result.name} is kept."
+        played = history.played_result(player)
+        raw = played and history.raw_of(*played)
+        if played and raw:
+            _revert(player, raw)
+            message = message or (
+                f"{subject.name} plays {raw[0].name} again; {played[0].name} is kept."
+            )
+    return message
 
 
-def _revert(player: bpy.types.Object, result: bpy.types.Action, slot: object) -> None:
+def _revert(player: bpy.types.Object, raw: Source) -> None:
     """Assign the recorded action and slot; remove NLA tracks of its results."""
-    raw = history.raw_of(result, slot)
     tracks = player.animation_data.nla_tracks
     for track in list(tracks):
         sources = [

@@ -6,7 +6,13 @@ from typing import Any, ClassVar
 import bpy
 
 from ..blender.name_lists import SEPARATOR, join_names, split_names
-from ..blender.path_properties import FOLDER, HIDDEN, absolute, chosen_files, path_property
+from ..blender.path_properties import (
+    HIDDEN,
+    ChoosesFiles,
+    ChoosesFolder,
+    absolute,
+    chosen_files,
+)
 from ..runtime.selection import selected_armature
 from ..scene import history
 
@@ -128,7 +134,7 @@ class MOCAP_OT_remove_example(bpy.types.Operator):
         return _set_examples(context, self.group, kept)
 
 
-class MOCAP_OT_add_example_files(bpy.types.Operator):
+class MOCAP_OT_add_example_files(ChoosesFiles, bpy.types.Operator):
     bl_idname = ADD_FILES
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Recordings or .blend Files..."
@@ -136,55 +142,32 @@ class MOCAP_OT_add_example_files(bpy.types.Operator):
         "Add clean recordings, or all actions of .blend files that contain their rig"
     )
 
-    directory: path_property(FOLDER, HIDDEN)
-    files: bpy.props.CollectionProperty(type=bpy.types.OperatorFileListElement, options=HIDDEN)
     filter_glob: bpy.props.StringProperty(default=RECORDINGS, options=HIDDEN)
     group: _group()
-
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         chosen = map(str, chosen_files(self))
         return _set_examples(context, self.group, [*_examples(context, self.group), *chosen])
 
 
-class MOCAP_OT_add_example_folder(bpy.types.Operator):
+class MOCAP_OT_add_example_folder(ChoosesFolder, bpy.types.Operator):
     bl_idname = ADD_FOLDER
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Folder on Disk..."
     bl_description = "Add all clean recordings in a folder, of any rig"
 
-    directory: path_property(FOLDER, HIDDEN)
     group: _group()
-
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         folder = str(absolute(self.directory))
         return _set_examples(context, self.group, [*_examples(context, self.group), folder])
 
 
-CLASSES = (
+register, unregister = bpy.utils.register_classes_factory((
     MOCAP_MT_examples,
     MOCAP_MT_posture_examples,
     MOCAP_OT_add_example,
     MOCAP_OT_remove_example,
     MOCAP_OT_add_example_files,
     MOCAP_OT_add_example_folder,
-)
-
-
-def register() -> None:
-    """Add the list's menu and buttons."""
-    for each in CLASSES:
-        bpy.utils.register_class(each)
-
-
-def unregister() -> None:
-    """Take them away."""
-    for each in reversed(CLASSES):
-        bpy.utils.unregister_class(each)
+))

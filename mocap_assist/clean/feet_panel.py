@@ -5,6 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ..actions.contacts import PROPERTIES
+from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists
 from ..runtime.selection import selected_armature
 
@@ -13,7 +14,7 @@ SIDES = ("Left Foot Contact", "Right Foot Contact")
 HINT = "Key 1 while the foot is planted, 0 while it moves, then press Plant Feet."
 
 
-class FeetPanel:
+class FeetPanel(PanelMixin):
     """The keyed contacts, and the button that plants the feet by them."""
 
     bl_label = "Feet"

@@ -3,6 +3,7 @@
 import bpy
 
 from ...solvers.denoising import DenoiseSettings, PlantSettings
+from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_job, draw_sentence, exists, folded
 from ..runtime.selection import selected_subject, why_not_clean
 from .choices import Prior
@@ -13,7 +14,7 @@ OF_JOINTS = {"joint_limits"}
 MAIN = ("strength", "frame_range", "joint_limits", "result_as")
 
 
-class CleanPanel:
+class CleanPanel(PanelMixin):
     """Settings of Clean, and its button."""
 
     bl_label = "Clean"

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...solvers.denoising import Quality
 from ..scene import history
@@ -47,7 +48,7 @@ def figures(quality: Quality) -> dict[str, Any]:
     return {name: value for name, value in every.items() if isinstance(value, (int, float))}
 
 
-def _count(flags: np.ndarray) -> int:
+def _count(flags: NDArray[np.bool_]) -> int:
     """Count the stretches of True along the frames, over all joints."""
     starts = np.diff(flags.astype(np.int8), axis=0, prepend=0) > 0
     return int(starts.sum())

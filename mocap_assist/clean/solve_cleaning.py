@@ -187,14 +187,15 @@ def clean(
         finish.present or solution.recordings,
         estimates,
     )
-    for limits in (finish.limits, solution.limits):
-        body = body if limits is None else clamp_to_limits(body, limits)
-    planted = _planted(body, finish, within(progress, 0.8, 0.9))
-    moved = finish.chosen
-    if planted is not None:
-        eased = toward(body, planted.motion, finish.ease[:, None])
-        moved |= differing(body, eased)
-        body = eased
+    moved, planted = finish.chosen, None
+    if isinstance(body, Motion):
+        for limits in (finish.limits, solution.limits):
+            body = body if limits is None else clamp_to_limits(body, limits)
+        planted = _planted(body, finish, within(progress, 0.8, 0.9))
+        if planted is not None:
+            eased = toward(body, planted.motion, finish.ease[:, None])
+            moved |= differing(body, eased)
+            body = eased
     contacts = None if planted is None else planted.contacts
     before, after = (
         measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.05))
@@ -203,9 +204,9 @@ def clean(
     return Cleaned((body, *other_trees), moved, solution, planted, before, after)
 
 
-def _planted(body: Motion | Tracks, finish: Finish, progress: Progress) -> Planted | None:
+def _planted(body: Motion, finish: Finish, progress: Progress) -> Planted | None:
     """Plant the feet of what has legs, if the legs were chosen at all."""
-    if finish.planting is None or isinstance(body, Tracks):
+    if finish.planting is None:
         return None
     legs = find_legs(body.skeleton)
     joints = {body.skeleton.names[joint] for leg in legs for joint in (leg.hip, leg.knee)}
@@ -220,18 +221,20 @@ def _mixed(
     """Blend from the recording to the estimate; gaps take the estimate alone."""
     chosen = np.array([name in finish.chosen for name in names_of(raw)])
     weight = finish.strength * finish.ease[:, None] * chosen
-    if isinstance(raw, Tracks):
-        start = np.where(chosen[:, None], raw.positions, present.positions)
-        observed = np.isfinite(start).all(axis=-1, keepdims=True)
-        start = np.where(observed, start, clean.positions)
-        return clean.with_positions(start + weight[..., None] * (clean.positions - start))
-    rotations = np.where(chosen[:, None], raw.rotations, present.rotations)
-    root_positions = raw.root_positions if chosen[0] else present.root_positions
-    start = clean.with_poses(
-        _fill_missing(rotations, clean.rotations),
-        _fill_missing(root_positions, clean.root_positions),
-    )
-    return toward(start, clean, weight)
+    match raw, present, clean:
+        case Tracks(), Tracks(), Tracks():
+            start = np.where(chosen[:, None], raw.positions, present.positions)
+            start = _fill_missing(start, clean.positions)
+            return clean.with_positions(start + weight[..., None] * (clean.positions - start))
+        case Motion(), Motion(), Motion():
+            rotations = np.where(chosen[:, None], raw.rotations, present.rotations)
+            root_positions = raw.root_positions if chosen[0] else present.root_positions
+            poses = clean.with_poses(
+                _fill_missing(rotations, clean.rotations),
+                _fill_missing(root_positions, clean.root_positions),
+            )
+            return toward(poses, clean, weight)
+    raise TypeError(f"{type(raw)}, {type(present)} and {type(clean)} cannot be blended")
 
 
 def toward(start: Motion, stop: Motion, weight: Array) -> Motion:

@@ -82,7 +82,7 @@ class Shown:
 
     def image_at(self, frame: float, n_frames: int) -> int:
         """Return the index of the image at a scene frame, clamped to the recording."""
-        return round(np.clip((frame - self.start) / self.step, 0, n_frames - 1))
+        return round(float(np.clip((frame - self.start) / self.step, 0, n_frames - 1)))
 
     def frame(self, image: int) -> float:
         """Return the scene frame of an image."""
@@ -229,10 +229,8 @@ def _hide(mesh: bpy.types.Mesh, problem: str) -> None:
         return
     mesh[PROBLEM] = problem
     logger.warning("%s: %s", mesh.name, problem)
-    if _observed_attribute(mesh) is not None:
-        _observed_attribute(mesh).data.foreach_set(
-            "value", np.zeros(len(mesh.vertices), dtype=bool)
-        )
+    if (observed := _observed_attribute(mesh)) is not None:
+        observed.data.foreach_set("value", np.zeros(len(mesh.vertices), dtype=bool))
         mesh.update()
 
 

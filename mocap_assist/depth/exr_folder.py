@@ -7,7 +7,7 @@ an archive in the extension's own folder, which is read like any other recording
 import hashlib
 import shutil
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import bpy
@@ -83,13 +83,15 @@ def as_archive(
     with write_atomically(archive) as part, zipfile.ZipFile(part, "w", packed) as made:
         with made.open("depth.npy", "w", force_zip64=True) as file:
             header = {"descr": "<f4", "fortran_order": False, "shape": shape}
-            np.lib.format.write_array_header_1_0(file, header)
+            # numpy does not say of what type it is
+            write_header: Callable[..., None] = np.lib.format.write_array_header_1_0
+            write_header(file, header)
             for number, depth in enumerate(_pictures(files, shape[1:])):
                 file.write(depth.astype("<f4").tobytes())
                 progress(number / len(files), "Reading")
         for name, number in numbers.items():
             with made.open(f"{name}.npy", "w") as file:
-                np.lib.format.write_array(file, np.array(float(number)))
+                np.save(file, np.array(float(number)))
     return archive
 
 

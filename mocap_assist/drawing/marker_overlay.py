@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..actions.bone_channels import animated_curves, curves_of, gaps_of, sampled
-from ..actions.markers import PATH, markers_of, played_by
+from ..actions.markers import PATH, markers_of, source_of
 from ..blender.compat import Source
 from ..scene import history
 from ..scene.units import unit_of
@@ -60,8 +60,9 @@ class Trails:
         trails = np.stack([nearby[:-1], nearby[1:]], axis=2).reshape(-1, 2, 3)
         arms = size * np.stack([-np.eye(3), np.eye(3)], axis=1)
         crosses = (nearby[row - first][:, None, None] + arms).reshape(-1, 2, 3)
-        lines = np.concatenate([crosses, trails])
-        return lines[np.isfinite(lines).all(axis=(1, 2))]
+        lines: Array = np.concatenate([crosses, trails])
+        observed: NDArray[np.bool_] = np.isfinite(lines).all(axis=(1, 2))
+        return lines[observed]
 
 
 class Played(NamedTuple):
@@ -84,7 +85,7 @@ def raw_and_clean(holder: bpy.types.Object) -> tuple[Played, Played]:
     raw: list[tuple[bpy.types.Object, Source]] = []
     clean: list[tuple[bpy.types.Object, Source]] = []
     for marker in markers_of(holder):
-        played = played_by(marker)
+        played = source_of(marker)
         recorded = history.raw_of(*played)
         raw.append((marker, recorded or played))
         result = played if recorded else _same_slot(newest.get(played[0]), played)

@@ -47,8 +47,12 @@ class Figures:
         row = min(max(round(frame) - self.start, 0), len(self.heads) - 1)
         heads, tails = self.heads[row], self.tails[row]
         joins = np.array(self.joins, dtype=np.intp).reshape(-1, 2)
-        lines = np.concatenate([np.stack([heads, tails], axis=1), heads[joins]])
-        return lines[np.isfinite(lines).all(axis=(1, 2))]
+        lines: NDArray[np.float32] = np.concatenate([
+            np.stack([heads, tails], axis=1),
+            heads[joins],
+        ])
+        known: NDArray[np.bool_] = np.isfinite(lines).all(axis=(1, 2))
+        return lines[known]
 
 
 def read_figures(
@@ -75,8 +79,11 @@ def read_figures(
         if rig.parents[bone] in row and not rig.connected[bone]
     )
     names = tuple(rig.bones[bone] for bone in keyed)
-    single = (each[:, keyed].astype(np.float32) for each in (heads, tails))
-    return Figures(frames.start, names, *single, joins)
+    return Figures(frames.start, names, _single(heads, keyed), _single(tails, keyed), joins)
+
+
+def _single(points: Array, bones: list[int]) -> NDArray[np.float32]:
+    return points[:, bones].astype(np.float32)
 
 
 def raw_and_clean(armature: bpy.types.Object) -> tuple[Source | None, Source | None]:

@@ -8,6 +8,7 @@ import gpu
 import numpy as np
 from bpy.app import handlers
 from mathutils import Matrix
+from numpy.typing import NDArray
 
 from ..actions.markers import holder_of
 from . import marker_overlay, overlay
@@ -68,7 +69,9 @@ def _draw_figures(
             draw_lines(lines, armature.matrix_world, color, width)
 
 
-def draw_lines(lines: np.ndarray, matrix: Any, color: Color, width: float) -> None:
+def draw_lines(
+    lines: NDArray[np.floating[Any]], matrix: Any, color: Color, width: float
+) -> None:
     """Draw lines of shape (n_lines, 2, 3) in the space of `matrix`, in front of all objects."""
     from gpu_extras.batch import batch_for_shader
 

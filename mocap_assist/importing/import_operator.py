@@ -1,11 +1,12 @@
 """What the two operators of Import have in common, and how the second one waits."""
 
-from typing import Any, ClassVar
+from typing import Any
 
 import bpy
 from bpy.props import CollectionProperty, StringProperty
 
 from ...solvers.errors import MocapAssistError
+from ..blender.mixins import SettingsMixin
 from ..blender.path_properties import FILE, FOLDER, HIDDEN, path_property
 from ..panels.drawing import draw_lines
 from ..runtime.watch import why_busy
@@ -16,11 +17,8 @@ from .importing import chosen_paths, import_files
 WIDTH = 400  # of the dialog, pixels at scale 1
 
 
-class FilesOperator:
+class FilesOperator(SettingsMixin):
     """Mix in before bpy.types.Operator: files to import, how, and the import itself."""
-
-    setting_names: ClassVar[tuple[str, ...]]
-    """Supplied by the decorator `settings_from`, as is the method `settings`."""
 
     directory: path_property(FOLDER, HIDDEN)
     files: CollectionProperty(type=bpy.types.OperatorFileListElement, options=HIDDEN)

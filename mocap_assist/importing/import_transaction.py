@@ -156,7 +156,7 @@ class ImportTransaction:
             set_scene_rate(context.scene, recording.frame_rate)
         if choices.update_scene_duration:
             extend_duration(context.scene, made.last_frame)
-        rate = f"{recording.n_frames} frames at {recording.frame_rate:g} Hz"
+        rate = f"{recording.n_frames} frames at {recording.frame_rate:.5g} Hz"
         return made.top, f"{made.top.name}: {made.what}, {rate}."
 
 

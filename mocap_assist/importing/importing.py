@@ -65,7 +65,7 @@ def preview(context: bpy.types.Context, paths: list[Path]) -> str:
         return str(error)
     except OSError as error:
         return f"{path} cannot be read ({error.strerror})."
-    frames = f"{recording.n_frames} frames at {recording.frame_rate:g} Hz"
+    frames = f"{recording.n_frames} frames at {recording.frame_rate:.5g} Hz"
     return ". ".join([f"{path.name}: {frames}; {plays}", *warnings])
 
 

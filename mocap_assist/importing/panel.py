@@ -4,6 +4,7 @@ from pathlib import PurePath
 
 import bpy
 
+from ..blender.mixins import PanelMixin
 from ..depth.depth_preview import NOT_ALLOWED, problem_of
 from ..panels.drawing import draw_job, draw_sentence, exists
 from ..scene.origin import origin_of
@@ -12,7 +13,7 @@ from .import_menu import IMPORT
 SHOW = "mocap_assist.show_depth"
 
 
-class ImportPanel:
+class ImportPanel(PanelMixin):
     """The button Import, and the origin of what is selected."""
 
     bl_label = "Import"

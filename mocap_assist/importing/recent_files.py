@@ -49,6 +49,8 @@ def state_of(path: Path) -> State:
 
 
 def _size(recording: Recording) -> int:
+    if isinstance(recording, DepthRecording):
+        return 0  # never kept
     if isinstance(recording, Motion):
         return recording.rotations.size
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording

@@ -19,7 +19,7 @@ from ..jobs.in_blender import BackgroundBlender
 from ..scene.scene_rate import FrameRate, scene_rate, timing
 from ..scene.units import unit_of
 from .choices import ImportChoices, Target
-from .solve_reading import Conversion, Recording, connected_joints, convert_recording
+from .solve_reading import Conversion, TrackedRecording, connected_joints, convert_tracked
 
 Array = NDArray[np.float64]
 MAX_NAMED = 3  # joints that a sentence lists
@@ -66,7 +66,7 @@ def conversion_from_choices(context: bpy.types.Context, choices: ImportChoices) 
 def make_objects(
     context: bpy.types.Context,
     name: str,
-    recording: Recording,
+    recording: TrackedRecording,
     choices: ImportChoices,
     *,
     moving: Motion | Tracks | None = None,
@@ -74,12 +74,12 @@ def make_objects(
 ) -> CreatedObjects:
     """Add the animated objects of a recording; the scene's settings are not changed.
 
-    `moving` is the result of `convert_recording`, if it exists already.
+    `moving` is the result of `convert_tracked`, if it exists already.
     """
     scene = context.scene
     samples = timing(scene, choices.frame_rate, recording.frame_rate, choices.frame_start)
     if moving is None:
-        moving = convert_recording(recording, conversion_from_choices(context, choices))
+        moving = convert_tracked(recording, conversion_from_choices(context, choices))
     resampled = choices.frame_rate is FrameRate.RESAMPLE
     frames = (samples._replace(step=1.0) if resampled else samples).frames(moving.n_frames)
     sensor_samples = SensorSamples(samples.frames(recording.n_frames), sensor_values(recording))
@@ -89,15 +89,16 @@ def make_objects(
     else:
         made = _make_empties(context, name, moving, frames, sensor_samples, progress)
     what = made.what
-    needs_armature = choices.target is Target.ARMATURE and isinstance(recording, JointRecording)
-    if needs_armature and not isinstance(moving, Motion):
+    if choices.target is not Target.ARMATURE or not isinstance(recording, JointRecording):
+        pass
+    elif not isinstance(moving, Motion):
         what += ", since the parents of the joints are unknown"
-    elif needs_armature and (n_loose := recording.n_joints - len(connected_joints(recording))):
+    elif n_loose := recording.n_joints - len(connected_joints(recording)):
         what += f", without {n_loose} points that have no joint"
     return made._replace(what=what + _never_seen(recording, made.top.type == "ARMATURE"))
 
 
-def _never_seen(recording: Recording, in_armature: bool) -> str:
+def _never_seen(recording: TrackedRecording, in_armature: bool) -> str:
     """Name the joints or markers that were left out or added."""
     if isinstance(recording, Motion):
         return ""

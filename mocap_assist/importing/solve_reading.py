@@ -23,7 +23,9 @@ from ...solvers.recordings import DepthSettings, is_depth_recording, read_depth,
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 from ..jobs.in_blender import BackgroundBlender, is_scene_file, read_blends
 
-Recording = Motion | Tracks | JointRecording | DepthRecording
+TrackedRecording = Motion | Tracks | JointRecording
+"""Joints or markers over time."""
+Recording = TrackedRecording | DepthRecording
 Result = TypeVar("Result")
 
 
@@ -57,7 +59,8 @@ class Read(NamedTuple):
     """Content of a file or take, and its converted motion."""
 
     content: ReadRecording
-    moving: Motion | Tracks | DepthRecording
+    moving: Motion | Tracks | None
+    """None for depth, which is read from its files."""
 
 
 def read_files(
@@ -152,14 +155,21 @@ class _WarningCollector:
         self._progress(fraction, message)
 
 
-def convert_recording(
-    recording: Recording, conversion: Conversion
-) -> Motion | Tracks | DepthRecording:
-    """Convert a recording to a motion or points for the scene; depth is not changed."""
+def convert_recording(recording: Recording, conversion: Conversion) -> Motion | Tracks | None:
+    """Convert a recording to a motion or points for the scene; None for depth."""
     if isinstance(recording, DepthRecording):
-        return recording
+        return None
+    return convert_tracked(recording, conversion)
+
+
+def convert_tracked(recording: TrackedRecording, conversion: Conversion) -> Motion | Tracks:
+    """Convert joints or markers to a motion or points for the scene."""
     moving = _scaled(_joined(recording, conversion.armature), conversion.scale)
-    return moving if conversion.frame_rate is None else resample(moving, conversion.frame_rate)
+    if conversion.frame_rate is None:
+        return moving
+    if isinstance(moving, Motion):
+        return resample(moving, conversion.frame_rate)
+    return resample(moving, conversion.frame_rate)
 
 
 def in_one_tree(recording: JointRecording) -> bool:
@@ -174,7 +184,7 @@ def connected_joints(recording: JointRecording) -> list[int]:
     return [joint for joint, parent in enumerate(parents) if parent >= 0 or joint in parents]
 
 
-def _joined(recording: Recording, armature: bool) -> Motion | Tracks:
+def _joined(recording: TrackedRecording, armature: bool) -> Motion | Tracks:
     """Convert a camera's joints to a motion for an armature, otherwise to points."""
     if not isinstance(recording, JointRecording):
         return recording

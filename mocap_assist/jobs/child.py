@@ -28,16 +28,16 @@ def main(folder: Path, extension: str) -> int:
     try:
         write_outcome(folder, protocol, outcome_of(folder, protocol))
     except MemoryError:
-        return protocol.Ending.OUT_OF_MEMORY
+        return int(protocol.Ending.OUT_OF_MEMORY)
     except OSError as error:
         if error.errno in protocol.DISK_FULL:
-            return protocol.Ending.DISK_FULL
+            return int(protocol.Ending.DISK_FULL)
         traceback.print_exc()
-        return protocol.Ending.FAILED
+        return int(protocol.Ending.FAILED)
     except BaseException:  # SystemExit too: Blender may hang at a regular exit
         traceback.print_exc()
-        return protocol.Ending.FAILED
-    return protocol.Ending.ANSWERED
+        return int(protocol.Ending.FAILED)
+    return int(protocol.Ending.ANSWERED)
 
 
 def outcome_of(folder: Path, protocol: ModuleType) -> Any:

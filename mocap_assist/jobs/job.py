@@ -62,7 +62,8 @@ def run(
     if not isinstance(solve, ShortSolve):
         return run_in_subprocess(solve, progress, program)
     with _convert_memory_errors():
-        return solve(progress=progress)
+        result: Result = solve(progress=progress)
+    return result
 
 
 def run_in_subprocess(

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 
 import bpy
-from bpy.app import handlers
 
 from ..drawing.view_drawing import redraw
 from ..jobs.job import Job
+from ..runtime.ends_with_file import ends_with_file
 from .solve_indexing import Indexed
 
 RUNNING = "The library is being built. Wait until it is done, or press Esc."
@@ -71,27 +71,4 @@ def message_of(indexed: Indexed) -> str:
     return f"The library has {clips}: {', '.join(parts) or 'nothing to do'}."
 
 
-@handlers.persistent
-def _abandon_all(*_: object) -> None:
-    while _on:
-        _on[-1].abandon(bpy.context)
-
-
-@handlers.persistent
-def _reset_running(*_: object) -> None:
-    """Reset the state that a file saved during a run still holds."""
-    for manager in bpy.data.window_managers:
-        manager.mocap_assist_indexing.running = False
-
-
-def register() -> None:
-    """End it before another file is loaded."""
-    handlers.load_pre.append(_abandon_all)
-    handlers.load_post.append(_reset_running)
-
-
-def unregister() -> None:
-    """End it with the extension, too."""
-    _abandon_all()
-    handlers.load_post.remove(_reset_running)
-    handlers.load_pre.remove(_abandon_all)
+register, unregister = ends_with_file(_on, "mocap_assist_indexing")

@@ -45,8 +45,7 @@ def read_files(
             found.append(BlendRead((), (sentence,)))
             continue
         read = attempt(path, _read_file, path, assets_only, items, rig)
-        failed = isinstance(read, Failure)
-        found.append(BlendRead((), (read.sentence,)) if failed else read)
+        found.append(BlendRead((), (read.sentence,)) if isinstance(read, Failure) else read)
     return found
 
 
@@ -101,7 +100,7 @@ def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> 
     actions = actions_of(assets_only)
     lack_rig = rig and any(map(_lacks_rig, actions))
     refused = _bring_armatures(rig) if lack_rig else []
-    clips = []
+    clips: list[BlendClip] = []
     for action in actions:
         if _lacks_rig(action):
             where = f"the file, nor in {rig}," if rig else "the file"

@@ -2,11 +2,11 @@
 
 import logging
 from functools import partial
-from typing import Any, ClassVar
 
 import bpy
 
 from ...solvers.errors import MocapAssistError, SolveCancelled
+from ..blender.mixins import SettingsMixin
 from ..jobs.job import run
 from ..runtime.solver_operator import in_background
 from .background import Indexing, message_of, why_indexing
@@ -20,15 +20,12 @@ MOST_NAMED = 3
 """Files of no use that are told of in the window; the log has all."""
 
 
-class WaitingIndex:
+class WaitingIndex(SettingsMixin):
     """Mix in before bpy.types.Operator.
 
     The window stays free meanwhile: nothing of the scene is read or written. Only Esc is taken,
     and ends it.
     """
-
-    setting_names: ClassVar[tuple[str, ...]]
-    """Supplied by the decorator `settings_from`, as is the method `settings`."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -92,8 +89,7 @@ class WaitingIndex:
             self._indexing.abandon(context)
 
     def _solve(self) -> "partial[Indexed]":
-        settings: Any = self.settings()
-        return partial(index_sources, index_problem(settings.choices))
+        return partial(index_sources, index_problem(self.settings().choices))
 
     def _stop_looking(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)

@@ -15,7 +15,6 @@ from ..drawing.view_control import rotate_views, zoom_views
 from ..search.performing import page, search_with, show_library
 
 STARTED = "Perform what you search for, then clap."
-VIEWS = (Gesture.ZOOM, Gesture.TURN)
 
 _performed: list[JointRecording] = []
 

@@ -5,16 +5,17 @@ from typing import ClassVar
 import bpy
 
 from ...solvers.errors import MocapAssistError
+from ..blender.mixins import OperatorMixin
 from ..panels.preferred import preferred
 from . import listening
 
 NO_WINDOW = "Listening needs Blender's window."
 
 
-class ListenButton:
+class ListenButton(OperatorMixin):
     """Mix in before bpy.types.Operator: pressed once it listens, and again it stops."""
 
-    bl_options: ClassVar = set()  # changes only views and the list of matches
+    bl_options: ClassVar = set[str]()  # changes only views and the list of matches
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists
 from ..panels.preferred import preferences
 from .listening import current
@@ -9,7 +10,7 @@ from .listening import current
 LISTEN = "mocap_assist.listen"
 
 
-class PerformPanel:
+class PerformPanel(PanelMixin):
     """The button Listen, the port, and what is heard."""
 
     bl_label = "Perform"

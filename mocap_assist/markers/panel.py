@@ -7,6 +7,7 @@ import bpy
 
 from ...solvers.markers import SolveSettings
 from ...solvers.workflows import MarkerMotionSettings
+from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_job, draw_sentence, exists
 from ..runtime.selection import selected_subject
 from .solving import why_not_solve
@@ -14,7 +15,7 @@ from .solving import why_not_solve
 SOLVE = "mocap_assist.solve_skeleton"
 
 
-class MarkersPanel:
+class MarkersPanel(PanelMixin):
     """Settings of Make Skeleton, and its button."""
 
     bl_label = "Markers"

@@ -21,8 +21,5 @@ def preferred(name: str) -> Any:
     ours = preferences()
     if ours is not None:
         return getattr(ours, name)
-    return _class().__annotations__[name].keywords["default"]
-
-
-def _class() -> type[bpy.types.AddonPreferences]:
-    return bpy.types.AddonPreferences.bl_rna_get_subclass_py("MOCAP_AP_preferences")
+    described = bpy.types.AddonPreferences.bl_rna_get_subclass_py("MOCAP_AP_preferences")
+    return described.__annotations__[name].keywords["default"]

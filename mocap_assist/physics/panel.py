@@ -6,13 +6,14 @@ from typing import ClassVar
 import bpy
 
 from ...solvers.physics import Ground, SimulateSettings
+from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_job, draw_sentence, exists
 from ..runtime.selection import why_not_change
 
 SIMULATE = "mocap_assist.simulate"
 
 
-class PhysicsPanel:
+class PhysicsPanel(PanelMixin):
     """Settings of Physics, and its button."""
 
     bl_label = "Simulate"

@@ -54,11 +54,10 @@ def write_simulated(
     read = yield from read_take.steps(armature, scene, source=played_source(armature))
     scene, armature = here.find()
     played = played_source(armature)
-    body, *other_trees = read.recordings
-    take = take_of(body, settings.simulating)
+    take = take_of(read.parts[0].motion, settings.simulating)
     check_unchanged(armature, solved_digest, take)
     redo.remember(take, result.simulated)
-    read = read.with_recordings((result.body, *other_trees))
+    read = read.with_recordings((result.body, *read.recordings[1:]))
     action, slot = write_take(armature, played, read, result.moved, {}, suffix=SUFFIX)
     history.record(action, played, _entry(settings, result))
     put_to_use(armature, action, slot, Output.ACTION)

@@ -6,6 +6,7 @@ import bpy
 
 from ...solvers.denoising import PlantSettings
 from ...solvers.reconstruction import ReconstructSettings
+from ..blender.mixins import PanelMixin
 from ..clean.example_list import RECONSTRUCT, draw_examples
 from ..drawing.confidence_switch import draw_confidence_switch
 from ..panels.drawing import draw_job, draw_sentence, exists, folded
@@ -15,7 +16,7 @@ from .reconstructing import why_not_reconstruct
 BUTTON = "mocap_assist.reconstruct"
 
 
-class ReconstructPanel:
+class ReconstructPanel(PanelMixin):
     """Settings of Reconstruct, its button, and the switch of the confidence colors."""
 
     bl_label = "Reconstruct"

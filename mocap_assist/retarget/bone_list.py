@@ -7,8 +7,9 @@ from typing import ClassVar
 
 import bpy
 
-from ...solvers.errors import MocapAssistError
+from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.motion import read_humanoid_map, write_humanoid_map
+from ..blender.mixins import OperatorMixin
 from ..blender.path_properties import absolute, path_property
 from ..runtime.selection import selected_armature, why_not_retarget
 from .bone_map import SIDES, BoneMaps, find_maps, list_maps, listed_maps
@@ -53,7 +54,7 @@ def listed_armature(
     return armature if armature is not None and armature.type == "ARMATURE" else None
 
 
-class _BoneButton:
+class _BoneButton(OperatorMixin):
     """A button that fills the list."""
 
     bl_options: ClassVar = {"INTERNAL", "UNDO"}
@@ -77,6 +78,17 @@ class _BoneButton:
         return {"FINISHED"}
 
 
+def _both_armatures(
+    context: bpy.types.Context,
+) -> tuple[bpy.types.Object, bpy.types.Object]:
+    """Return the source and the target; raise InvalidMotionError where one is missing."""
+    source = selected_armature(context)
+    if source is None:
+        raise InvalidMotionError("Select an animated armature.")
+    name = context.scene.mocap_assist.retarget.target
+    return source, target_called(context.scene, name, source)
+
+
 class MOCAP_OT_find_bones(_BoneButton, bpy.types.Operator):
     bl_idname = FIND
     bl_label = "Find Bones"
@@ -88,8 +100,7 @@ class MOCAP_OT_find_bones(_BoneButton, bpy.types.Operator):
     def find(self, context: bpy.types.Context) -> None:
         """Fill the list anew."""
         found = context.scene.mocap_assist
-        source = selected_armature(context)
-        target = target_called(context.scene, found.retarget.target, source)
+        source, target = _both_armatures(context)
         list_maps(found.bone_map, source, target, find_maps(source, target))
 
 
@@ -137,8 +148,7 @@ class MOCAP_OT_load_bone_map(_PresetButton, bpy.types.Operator):
     def load(self, context: bpy.types.Context) -> None:
         """Put the preset into the list, which is filled first if it was of other armatures."""
         found = context.scene.mocap_assist
-        source = selected_armature(context)
-        target = target_called(context.scene, found.retarget.target, source)
+        source, target = _both_armatures(context)
         loaded = read_humanoid_map(absolute(self.filepath))
         listed = found.bone_map
         same = (listed.source, listed.target) == (source.name, target.name)
@@ -177,16 +187,9 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
             row.operator(idname, text=text, icon=icon).side = side
 
 
-CLASSES = (MOCAP_UL_bones, MOCAP_OT_find_bones, MOCAP_OT_save_bone_map, MOCAP_OT_load_bone_map)
-
-
-def register() -> None:
-    """Add the list and its buttons."""
-    for each in CLASSES:
-        bpy.utils.register_class(each)
-
-
-def unregister() -> None:
-    """Take them away."""
-    for each in reversed(CLASSES):
-        bpy.utils.unregister_class(each)
+register, unregister = bpy.utils.register_classes_factory((
+    MOCAP_UL_bones,
+    MOCAP_OT_find_bones,
+    MOCAP_OT_save_bone_map,
+    MOCAP_OT_load_bone_map,
+))

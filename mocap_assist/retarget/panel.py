@@ -6,6 +6,7 @@ import bpy
 
 from ...solvers.errors import MocapAssistError
 from ...solvers.retargeting import RetargetSettings, RootMotion
+from ..blender.mixins import PanelMixin
 from ..blender.name_lists import SEPARATOR, join_names, split_names
 from ..panels.drawing import draw_job, draw_sentence, exists, folded
 from ..rigs.rigify import is_rigify
@@ -21,7 +22,7 @@ MAIN = ("root_motion", "keep_feet", "keep_hands")
 MAX_LISTED = 30
 
 
-class RetargetPanel:
+class RetargetPanel(PanelMixin):
     """Who makes the motion, which motions, how, and the button."""
 
     bl_label = "Retarget"
@@ -140,11 +141,4 @@ class MOCAP_OT_tick_action(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def register() -> None:
-    """Add the button of the list of actions."""
-    bpy.utils.register_class(MOCAP_OT_tick_action)
-
-
-def unregister() -> None:
-    """Take it away."""
-    bpy.utils.unregister_class(MOCAP_OT_tick_action)
+register, unregister = bpy.utils.register_classes_factory((MOCAP_OT_tick_action,))

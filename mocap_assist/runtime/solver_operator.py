@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import bpy
 
 from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
+from ..blender.mixins import SettingsMixin
 from ..blender.time_slices import Work
 from ..jobs.job import Job, ShortSolve, run
 from .redo import fingerprint
@@ -27,7 +28,7 @@ def in_background() -> bool:
     return bool(bpy.app.background)
 
 
-class SolverOperator:
+class SolverOperator(SettingsMixin):
     """Mix in before bpy.types.Operator and name the functions that read and write.
 
     Both run in Blender, and `Sliced` ones take turns with its window. The solve that
@@ -40,8 +41,6 @@ class SolverOperator:
     bl_options: ClassVar = {"REGISTER", "UNDO"}
     settings_group: ClassVar[str]
     """Property of `scene.mocap_assist` with the settings of the sidebar."""
-    setting_names: ClassVar[tuple[str, ...]]
-    """Supplied by the decorator `settings_from`, as is the method `settings`."""
     selected: ClassVar[Callable[..., bpy.types.Object | None]] = selected_subject
     """Return the subject of the button from the context."""
     why_not: ClassVar[Callable[[bpy.types.Context], str]]

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 
 import bpy
-from bpy.app import handlers
 
 from ..drawing.view_drawing import redraw
+from .ends_with_file import ends_with_file
 
 TIMER_INTERVAL_S = 0.05
 BUSY = "Another solve is running. Wait until it is done, or press Esc in its window."
@@ -68,27 +68,4 @@ def why_busy() -> str:
     return BUSY if _on else ""
 
 
-@handlers.persistent
-def _abandon_all(*_: object) -> None:
-    while _on:
-        _on[-1].abandon(bpy.context)
-
-
-@handlers.persistent
-def _reset_running(*_: object) -> None:
-    """Reset the state that a file saved during a solve still holds."""
-    for manager in bpy.data.window_managers:
-        manager.mocap_assist_job.running = False
-
-
-def register() -> None:
-    """End a solve before the file that it works on is replaced."""
-    handlers.load_pre.append(_abandon_all)
-    handlers.load_post.append(_reset_running)
-
-
-def unregister() -> None:
-    """End the solve with the extension: Blender drops the operator without notice."""
-    _abandon_all()
-    handlers.load_post.remove(_reset_running)
-    handlers.load_pre.remove(_abandon_all)
+register, unregister = ends_with_file(_on, "mocap_assist_job")

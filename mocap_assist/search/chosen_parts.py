@@ -2,6 +2,7 @@
 
 from collections.abc import Collection
 from dataclasses import replace
+from typing import Any
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Skeleton, find_humanoid_map
@@ -34,7 +35,8 @@ def parts_of_bones(
             "The selected bones are not known to be part of trunk, arms or legs. Select others,"
             " or choose the parts themselves."
         )
-    return replace(settings, **{name: name in parts for name in ("trunk", *LIMBS)})
+    chosen: dict[str, Any] = {name: name in parts for name in ("trunk", *LIMBS)}
+    return replace(settings, **chosen)
 
 
 def _part(role: str) -> str:

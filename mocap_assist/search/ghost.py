@@ -30,8 +30,9 @@ def ghost_lines(stage: Stage, found: Found, query_frame: float) -> Array:
     heading = np.array([stage.headings[row]])
     body = resize_postures(posture[None], stage.lengths)
     joints = rotate_about_vertical(body, heading)[0] + stage.positions[row]
-    lines = joints[BONES]
-    return lines[np.isfinite(lines).all(axis=(1, 2))]
+    lines: Array = joints[BONES]
+    observed: NDArray[np.bool_] = np.isfinite(lines).all(axis=(1, 2))
+    return lines[observed]
 
 
 def clip_frame(found: Found, query_frame: float) -> float:

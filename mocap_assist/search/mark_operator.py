@@ -5,9 +5,10 @@ from collections.abc import Callable
 import bpy
 
 from ...solvers.errors import MocapAssistError
+from ..blender.mixins import OperatorMixin
 
 
-class MarkOperator:
+class MarkOperator(OperatorMixin):
     """Mix in before an operator that defines `mark`."""
 
     tags: bpy.props.StringProperty(
@@ -24,7 +25,8 @@ class MarkOperator:
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for tags and catalog."""
-        return context.window_manager.invoke_props_dialog(self)
+        asked: set[str] = context.window_manager.invoke_props_dialog(self)
+        return asked
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Mark assets, and report the result or the error."""

@@ -1,10 +1,11 @@
 """Panel: a library of clips, what in it is like the action, and what to do with that."""
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import bpy
 
 from ...solvers.retrieval import FindSettings
+from ..blender.mixins import PanelMixin
 from ..library.auto_update_list import choices_are_kept
 from ..panels.drawing import draw_job, draw_sentence, exists, folded, is_wide
 from ..panels.figures import frames_text
@@ -29,7 +30,15 @@ class MOCAP_UL_matches(bpy.types.UIList):
     """Clips that are like the query, the best first."""
 
     def draw_item(
-        self, context, layout, data, item, icon, active_data, active_property, index
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        data: object,
+        item: Any,
+        icon: int,
+        active_data: object,
+        active_property: str,
+        index: int,
     ) -> None:
         search = searches.listed(context)
         row = layout.row()
@@ -44,7 +53,7 @@ class MOCAP_UL_matches(bpy.types.UIList):
             texts.label(text=frames_text(item.start, item.stop), translate=False)
 
 
-class LibraryPanel:
+class LibraryPanel(PanelMixin):
     """The library, the search, and its matches."""
 
     bl_label = "Library"
@@ -147,10 +156,11 @@ def _draw_chosen(
     load = context.scene.mocap_assist.load
     column.prop(load, "part")
     column.prop(load, "at_query", text="Place at Query")
-    row = column.row(align=True)
+    block = column.column(align=True)
+    row = block.row(align=True)
     row.operator(LOAD, text="Append", icon="ACTION").result_as = "ACTION"
     row.operator(LOAD, text="Add to NLA", icon="NLA").result_as = "NLA_TRACK"
-    row.operator(LINK, text="Link", icon="LINKED")
+    block.operator(LINK, text="Link", icon="LINKED")
     column.label(text="Use Best Matches in:")
     row = column.row(align=True)
     row.operator(LEARN, text="Clean", icon="BRUSH_DATA").group = "clean"
@@ -162,11 +172,4 @@ def _draw_chosen(
     column.operator(MARK, icon="ASSET_MANAGER")
 
 
-def register() -> None:
-    """Add the list."""
-    bpy.utils.register_class(MOCAP_UL_matches)
-
-
-def unregister() -> None:
-    """Take it away."""
-    bpy.utils.unregister_class(MOCAP_UL_matches)
+register, unregister = bpy.utils.register_classes_factory((MOCAP_UL_matches,))

@@ -124,7 +124,7 @@ def _shown(match: Match, number: int, library: ClipLibrary) -> Found:
     first = min(int(match.frames.start * per_frame), postures.n_frames - 1)
     stop = int(np.ceil(match.frames.stop * per_frame))
     part = postures.positions[first : max(stop, first + 1)].astype(np.float32)
-    return Found(entry, match, part, postures.frame_rate, thumbnail(part))
+    return Found(entry, match, part, postures.frame_rate, thumbnail(part.astype(np.float64)))
 
 
 def stage_of(query: Recording) -> Stage:

@@ -6,7 +6,13 @@ from typing import ClassVar
 import bpy
 
 from ..blender.name_lists import split_names
-from ..blender.path_properties import FOLDER, HIDDEN, absolute, chosen_files, path_property
+from ..blender.path_properties import (
+    HIDDEN,
+    ChoosesFiles,
+    ChoosesFolder,
+    absolute,
+    chosen_files,
+)
 from ..clean.example_list import CHANGES_A_LIST
 from ..library.auto_update_list import change_sources
 from ..library.sources import asset_folders
@@ -41,35 +47,23 @@ def _add(context: bpy.types.Context, chosen: list[str]) -> set[str]:
     return {"FINISHED"}
 
 
-class MOCAP_OT_add_source_folder(bpy.types.Operator):
+class MOCAP_OT_add_source_folder(ChoosesFolder, bpy.types.Operator):
     bl_idname = ADD_FOLDER
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Add Folder"
     bl_description = "Add a folder with all recordings and .blend files in it and below"
 
-    directory: path_property(FOLDER, HIDDEN)
-
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
-
     def execute(self, context: bpy.types.Context) -> set[str]:
         return _add(context, [str(absolute(self.directory))])
 
 
-class MOCAP_OT_add_source_files(bpy.types.Operator):
+class MOCAP_OT_add_source_files(ChoosesFiles, bpy.types.Operator):
     bl_idname = ADD_FILES
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Add Files"
     bl_description = "Add recordings, or .blend files with actions"
 
-    directory: path_property(FOLDER, HIDDEN)
-    files: bpy.props.CollectionProperty(type=bpy.types.OperatorFileListElement, options=HIDDEN)
     filter_glob: bpy.props.StringProperty(default=FILES, options=HIDDEN)
-
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         return _add(context, [str(path) for path in chosen_files(self)])
@@ -92,16 +86,8 @@ class MOCAP_OT_remove_source(bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (MOCAP_OT_add_source_folder, MOCAP_OT_add_source_files, MOCAP_OT_remove_source)
-
-
-def register() -> None:
-    """Add the list's buttons."""
-    for each in CLASSES:
-        bpy.utils.register_class(each)
-
-
-def unregister() -> None:
-    """Take them away."""
-    for each in reversed(CLASSES):
-        bpy.utils.unregister_class(each)
+register, unregister = bpy.utils.register_classes_factory((
+    MOCAP_OT_add_source_folder,
+    MOCAP_OT_add_source_files,
+    MOCAP_OT_remove_source,
+))

@@ -28,7 +28,7 @@ def body_at(armature: bpy.types.Object | None, frame: float) -> Solid | None:
 
     None for other armatures, and if its bones no longer match the body.
     """
-    if not is_tracked(armature):
+    if armature is None or not is_tracked(armature):
         return None
     try:
         body = TrackedBody.read(armature).body

@@ -5,6 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ...solvers.depth_scene import ForegroundMethod
+from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_job, draw_sentence, exists
 from .retracking import why_not_retrack
 from .tracked_body import is_tracked
@@ -16,7 +17,7 @@ CUT = ("nearest", "farthest")
 SHOWN = ("backward", "refine", "smoothing", "recorded", "plant_feet", "watch", "keep_on_esc")
 
 
-class TrackPanel:
+class TrackPanel(PanelMixin):
     """Settings of Track, and its button."""
 
     bl_label = "Track"

@@ -12,6 +12,7 @@ from ...solvers.depth_tracking.body import BodyModel
 from ...solvers.depth_tracking.capturing import Capture, CaptureSettings, unfinished_capture
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched, within
+from ...solvers.signals import find_runs
 from ...solvers.workflows import capture_actor
 from .pose_previews import (
     FloorPreview,
@@ -126,9 +127,7 @@ def low_confidence_ranges(
     """Return the intervals of flags (n_frames, n_joints), the longest first."""
     ranges = []
     for name, flags in zip(names, mask.T, strict=True):
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]])))
         ranges += [
-            LowConfidenceRange(name, int(first), int(stop) - 1)
-            for first, stop in zip(edges[::2], edges[1::2], strict=True)
+            LowConfidenceRange(name, first, stop - 1) for first, stop in find_runs(flags)
         ]
     return tuple(sorted(ranges, key=lambda interval: interval.first - interval.last))

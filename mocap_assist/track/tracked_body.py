@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ...solvers.depth_scene import Floor, ForegroundMethod, ForegroundSettings
 from ...solvers.depth_tracking.body import CAPSULES, LENGTHS, SEGMENTS, BodyModel, rest_frames
 from ...solvers.errors import InvalidMotionError, MocapAssistError
+from ...solvers.rotations import fit_similarity
 from ..blender.stored_json import parse_stored, store_json
 from ..depth.depth_preview import Shown
 
@@ -101,28 +102,19 @@ def bones_of(armature: bpy.types.Object) -> dict[str, str]:
 def armature_from_motion(armature: bpy.types.Object, body: BodyModel) -> Array:
     """Return the transform (4, 4) from the motion's space, in meters, to the armature's.
 
-    It is estimated from the rest pose [1]_ and includes applied transforms.
+    It is estimated from the rest pose and includes applied transforms.
 
     Raises
     ------
     InvalidMotionError
         The bones at rest do not have the proportions of the body.
-
-    References
-    ----------
-    .. [1] Umeyama (1991). Least-squares estimation of transformation parameters between two
-       point patterns. IEEE Transactions on Pattern Analysis and Machine Intelligence 13(4).
     """
     bones = bones_of(armature)
     heads = np.array([armature.data.bones[bones[name]].head_local for name in SEGMENTS])
     rest = rest_frames(body)[:, :3, 3]
-    head_mean, rest_mean = heads.mean(axis=0), rest.mean(axis=0)
-    U, sizes, V = np.linalg.svd((heads - head_mean).T @ (rest - rest_mean))
-    signs = np.array([1.0, 1.0, np.sign(np.linalg.det(U @ V))])
-    scale = float((sizes * signs).sum() / ((rest - rest_mean) ** 2).sum())
+    rotation, scale, shift = fit_similarity(rest, heads)
     matrix = np.eye(4)
-    matrix[:3, :3] = scale * (U * signs) @ V
-    matrix[:3, 3] = head_mean - matrix[:3, :3] @ rest_mean
+    matrix[:3, :3], matrix[:3, 3] = scale * rotation, shift
     off = np.abs(rest @ matrix[:3, :3].T + matrix[:3, 3] - heads).max()
     if off > REST_TOLERANCE_M * scale:
         raise InvalidMotionError(

@@ -23,7 +23,7 @@ def write_residual(
     if not observed.any():
         return
     frames, residual = frames[observed], residual[observed]
-    bag = compat.channelbag(*source, ensure=True)
+    bag = compat.ensure_channelbag(*source)
     if curve := bag.fcurves.find(_PATH):
         write_values(curve, frames, residual)
         return
@@ -45,7 +45,7 @@ def update_reliability(
 
     Bones without a reliability curve in the action are left out.
     """
-    bag = compat.channelbag(*source, ensure=True)
+    bag = compat.ensure_channelbag(*source)
     reliability = {}
     for bone, values in changed.items():
         curve = bag.fcurves.find(reliability_path(bone))

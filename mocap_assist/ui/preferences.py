@@ -143,6 +143,8 @@ class MOCAP_OT_reset_preferences(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         ours = preferences()
+        if ours is None:
+            return {"CANCELLED"}
         for name in MOCAP_AP_preferences.__annotations__:
             ours.property_unset(name)
         _move_panels(ours, context)

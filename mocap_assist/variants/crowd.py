@@ -15,6 +15,8 @@ from . import listing
 from .choices import CrowdBundle, CrowdChoices
 from .tags import is_variant
 
+NO_ARMATURE = "The armature of the variants was deleted. Press Vary again."
+
 
 class Member(NamedTuple):
     """Variant and placement of one armature of a crowd."""
@@ -128,7 +130,7 @@ def why_not_stack(context: bpy.types.Context) -> str:
         return reason
     armature = listing.armature_of(context.scene)
     if armature is None:
-        return "The armature of the variants was deleted. Press Vary again."
+        return NO_ARMATURE
     try:
         check_writable(armature)
     except InvalidMotionError as error:
@@ -140,6 +142,8 @@ def stack(context: bpy.types.Context) -> str:
     """Put the variants on NLA tracks of their armature in sequence; return a message."""
     scene = context.scene
     armature, actions = listing.armature_of(scene), listing.chosen(scene)
+    if armature is None:
+        raise InvalidMotionError(NO_ARMATURE)
     sources = [listing.source_for(armature, action) for action in actions]
     _clear(armature, set(actions))
     frame = scene.frame_current

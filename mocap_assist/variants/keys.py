@@ -27,7 +27,7 @@ class Held(NamedTuple):
     """A channel that no variant changes, and its value at the example's first frame."""
 
     path: str
-    index: int
+    array_index: int
     group: str
     value: float
 
@@ -110,7 +110,7 @@ def _once_if_still(rotations: Array) -> Array:
 
 def hold_others(action: bpy.types.Action, slot: bpy.types.ActionSlot, stage: Stage) -> None:
     """Add one key for each channel of the example that the action lacks."""
-    bag = compat.channelbag(action, slot, ensure=True)
+    bag = compat.ensure_channelbag(action, slot)
     there = {curve.data_path for curve in bag.fcurves}
     start = stage.take.frames[:1]
     for path, index, group, value in stage.held:

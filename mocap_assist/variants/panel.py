@@ -1,12 +1,13 @@
 """Panel: many new actions of a few, and what to do with them."""
 
 from dataclasses import fields
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import bpy
 
 from ...solvers.denoising import PlantSettings
 from ...solvers.variation import VarySettings
+from ..blender.mixins import PanelMixin
 from ..blender.name_lists import split_names
 from ..panels.drawing import draw_job, draw_sentence, exists
 from ..retarget.panel import TICK
@@ -25,9 +26,9 @@ VARY, KEEP, SHEET, STACK, MARK, ASSIGN = (
 )  # fmt: skip
 USE = "mocap_assist.use_matches"
 MAIN = ("amount", "timing", "length")
-PARTS = (("trunk",), ("left_arm", "right_arm"), ("left_leg", "right_leg"))
+PARTS = ("trunk", "left_arm", "right_arm", "left_leg", "right_leg")
 OTHERS = ("pin_start", "pin_end")
-SHOWN_APART = {"seed", *MAIN, *OTHERS, *(name for row in PARTS for name in row)}
+SHOWN_APART = {"seed", *MAIN, *OTHERS, *PARTS}
 CROWD = ("delay", "spread", "turn", "crowd_seed")
 MAX_LISTED = 30
 MIN_ROWS, MAX_ROWS = 3, 7  # rows of the list
@@ -38,7 +39,15 @@ class MOCAP_UL_variants(bpy.types.UIList):
     """Variants, each with a picture and a tick."""
 
     def draw_item(
-        self, context, layout, data, item, icon, active_data, active_property, index
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        data: object,
+        item: Any,
+        icon: int,
+        active_data: object,
+        active_property: str,
+        index: int,
     ) -> None:
         row = layout.row()
         if item.action is None:
@@ -46,11 +55,11 @@ class MOCAP_UL_variants(bpy.types.UIList):
             return
         row.template_icon(picture_of(item.action), scale=ROW)
         row.label(text=short_name(item.action), translate=False)
-        icon = "SOLO_ON" if item.picked else "SOLO_OFF"
-        row.prop(item, "picked", text="", icon=icon, emboss=False)
+        star = "SOLO_ON" if item.picked else "SOLO_OFF"
+        row.prop(item, "picked", text="", icon=star, emboss=False)
 
 
-class VaryPanel:
+class VaryPanel(PanelMixin):
     """Of what, how strongly and how many, the button, and the variants."""
 
     bl_label = "Vary"
@@ -105,10 +114,8 @@ def _draw_settings(column: bpy.types.UILayout, vary: bpy.types.PropertyGroup) ->
         column.prop(vary, name, slider=name != "length")
     parts = column.column(align=True)
     parts.use_property_split = False
-    for names in PARTS:
-        row = parts.row(align=True)
-        for name in names:
-            row.prop(vary, name, slider=True)
+    for name in PARTS:
+        parts.prop(vary, name, slider=True)
     column.prop(vary, "plant_feet")
     _draw_folded(column, vary)
 
@@ -156,11 +163,4 @@ def _draw_variants(column: bpy.types.UILayout, context: bpy.types.Context) -> No
         body.operator(ASSIGN, icon="COMMUNITY")
 
 
-def register() -> None:
-    """Add the list."""
-    bpy.utils.register_class(MOCAP_UL_variants)
-
-
-def unregister() -> None:
-    """Take it away."""
-    bpy.utils.unregister_class(MOCAP_UL_variants)
+register, unregister = bpy.utils.register_classes_factory((MOCAP_UL_variants,))

@@ -40,11 +40,11 @@ from .forest_training import (
     load_skinned_body,
     train_pixel_forest,
 )
-from .terms import LOU12, WZC12, TrackerSettings
+from .published import WZC12, track_pose_lou12
+from .terms import TrackerSettings
 from .tracking import TrackedMotion, track_pose
 
 __all__ = [
-    "LOU12",
     "WZC12",
     "BodyModel",
     "CalibrationSettings",
@@ -73,5 +73,6 @@ __all__ = [
     "refine_body",
     "retrack",
     "track_pose",
+    "track_pose_lou12",
     "train_pixel_forest",
 ]

@@ -5,15 +5,9 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-SIDED = (
-    "SHO", "UPA", "ELB", "FRM", "WRA", "WRB", "FIN",
-    "THI", "KNE", "TIB", "ANK", "HEE", "TOE", "MT5",
-)  # fmt: skip
 TRUNK = ("C7", "T10", "CLAV", "STRN", "RBAK")
 HEAD = ("LFHD", "RFHD", "LBHD", "RBHD")
 PELVIS = ("LASI", "RASI", "LPSI", "RPSI", "SACR")
-LANDMARKS = (*PELVIS, *TRUNK, *HEAD, *(side + landmark for side in "LR" for landmark in SIDED))
-"""Anatomical landmarks of markers, by their Plug-in-Gait names."""
 
 _BOTH = ("THI", "KNE", "TIB", "ANK", "HEE", "TOE")
 _ARMS = ("SHO", "UPA", "ELB", "FRM", "WRA", "WRB", "FIN")

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..signals import find_runs
 from .distances import Distances
 
 Array = NDArray[np.float64]
@@ -135,8 +136,7 @@ def most_likely_swap(
     swapped = FRAME_WEIGHT * _evidence(positions, pair, distances)
     labels = _viterbi(stay, change + SWITCH_COST, swapped)
     best: PairSwap | None = None
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], labels, [0]])))
-    for start, stop in zip(edges[::2], edges[1::2], strict=True):
+    for start, stop in find_runs(labels > 0):
         if not np.isfinite(positions[start:stop, pair]).all(axis=-1).any():
             continue
         gain = -float(swapped[start:stop].sum())
@@ -144,7 +144,7 @@ def most_likely_swap(
             if 0 < edge < len(labels):
                 gain += float(stay[edge] - change[edge] - SWITCH_COST)
         if best is None or gain > best.gain:
-            best = PairSwap(gain, first, second, int(start), int(stop))
+            best = PairSwap(gain, first, second, start, stop)
     return best
 
 

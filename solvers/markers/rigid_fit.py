@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..rotations import nearest_rotations
+
 Array = NDArray[np.float64]
 N_REWEIGHTINGS = 8
 CAUCHY_FACTOR, MIN_CAUCHY_SCALE_M = 3.0, 0.004
@@ -60,8 +62,6 @@ def _weighted(template: Array, positions: Array, weights: Array) -> tuple[Array,
     arms = positions - center[:, None]
     shape = template - origin[:, None]
     spread = np.einsum("fp,fpi,fpj->fij", weights, arms, shape)
-    left, _, right = np.linalg.svd(spread)
-    left[:, :, 2] *= np.linalg.det(left @ right)[:, None]
-    rotations = left @ right
+    rotations, _ = nearest_rotations(spread)
     translations = center - np.einsum("fij,fj->fi", rotations, origin)
     return rotations, np.where(total[:, None] > 0.0, translations, np.nan)

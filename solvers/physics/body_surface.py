@@ -2,10 +2,11 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, grey_opening, median_filter
+from scipy.ndimage import grey_opening, median_filter
 
 from ..motion import Motion, forward_kinematics
 from ..rotations import rotate
+from ..signals import smooth_gaussian
 from .body import PhysicsBody
 
 Array = NDArray[np.float64]
@@ -76,9 +77,7 @@ def height_correction(heights: Array, frame_rate: float, size: float) -> Array:
     sink = median_filter(depth, size=window, mode="nearest")
     hover = grey_opening(np.maximum(heights, 0.0), size=window, mode="nearest")
     hover = np.where(hover > MAX_HOVER_M * size, 0.0, hover)
-    return np.asarray(
-        gaussian_filter1d(sink - hover, ERROR_WINDOW_S / 4 * frame_rate, mode="nearest")
-    )
+    return smooth_gaussian(sink - hover, ERROR_WINDOW_S / 4 * frame_rate)
 
 
 def detect_touching_feet(body: PhysicsBody, motion: Motion, ground: float) -> NDArray[np.bool_]:

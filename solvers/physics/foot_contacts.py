@@ -2,10 +2,10 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from ..motion import Motion, forward_kinematics, reach
 from ..motion.humanoid import UP
+from ..signals import smooth_gaussian
 from .body import PhysicsBody
 from .body_surface import SIDES, find_leg_chain, lowest_points, select_foot_ends
 
@@ -53,9 +53,7 @@ def place_feet_on_ground(
             corrections = _foot_corrections(
                 heights, slow_weights[:, column], stance_weights[:, column]
             )
-            corrections = gaussian_filter1d(
-                corrections, SMOOTHING_S * motion.frame_rate, mode="nearest"
-            )
+            corrections = smooth_gaussian(corrections, SMOOTHING_S * motion.frame_rate)
             goal = positions[:, chain[-1]] + body.size * corrections[:, None] * UP
             result = reach(result, chain, goal)
     return result

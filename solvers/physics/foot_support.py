@@ -2,9 +2,9 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from ..motion import HumanoidMap, Motion, detect_contacts
+from ..signals import smooth_gaussian
 from .body import PhysicsBody
 from .body_surface import SIDES, lowest_points, measure_sole_speeds, select_foot_ends
 
@@ -124,6 +124,4 @@ def sum_foot_loads(body: PhysicsBody, loads: Array) -> Array:
 
 
 def _smooth(values: Array, frame_rate: float) -> Array:
-    return np.asarray(
-        gaussian_filter1d(values, SMOOTHING_S * frame_rate, axis=0, mode="nearest")
-    )
+    return smooth_gaussian(values, SMOOTHING_S * frame_rate)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
 from ..motion import WorldPoses
-from ..signals import FADE_TIME_CONSTANTS
+from ..signals import FADE_TIME_CONSTANTS, second_difference_bands
 
 Array = NDArray[np.float64]
 PELVIS_WEIGHT = 10.0
@@ -58,9 +58,8 @@ def solve_pelvis_offset(
     n_frames = len(poses.positions)
     bands = np.zeros((N_BANDS + 1, 3 * n_frames))
     right_side = np.zeros((n_frames, 3))
-    _add_curvature_penalty(
-        bands, PELVIS_WEIGHT * (SMOOTHING_S / FADE_TIME_CONSTANTS * frame_rate) ** 4
-    )
+    curvature_weight = PELVIS_WEIGHT * (SMOOTHING_S / FADE_TIME_CONSTANTS * frame_rate) ** 4
+    bands[::3] = curvature_weight * np.repeat(second_difference_bands(n_frames), 3, axis=1)
     bands[N_BANDS] += PELVIS_WEIGHT
     for leg in legs:
         hip, knee, ankle = (poses.positions[:, joint] for joint in leg.chain)
@@ -75,16 +74,6 @@ def solve_pelvis_offset(
                 entries = weight * directions[:, row] * directions[:, column]
                 bands[N_BANDS + row - column, column::3] += entries
     return np.asarray(solveh_banded(bands, right_side.ravel())).reshape(n_frames, 3)
-
-
-def _add_curvature_penalty(bands: Array, weight: float) -> None:
-    """Add the squares of second differences over time, for each of three components."""
-    n_values = bands.shape[1]
-    for index, factor in enumerate((1.0, 4.0, 1.0)):
-        bands[N_BANDS, 3 * index : n_values - N_BANDS + 3 * index] += weight * factor
-    bands[N_BANDS - 3, 3 : n_values - 3] -= 2.0 * weight
-    bands[N_BANDS - 3, 6:] -= 2.0 * weight
-    bands[N_BANDS - 6, 6:] += weight
 
 
 def _knee_leverage(thigh: Array, shin: Array, size: float) -> Array:

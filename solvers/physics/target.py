@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt, gaussian_filter1d
+from scipy.ndimage import distance_transform_edt
 
 from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..rotations import inverse, multiply, normalize, slerp, unroll
-from ..signals import fill_gaps, fill_rotation_gaps
+from ..signals import fill_gaps, fill_rotation_gaps, smooth_gaussian
 
 Array = NDArray[np.float64]
 SPLINE_VARIANCE = 1.0 / 3.0
@@ -120,7 +120,7 @@ def smooth_target(
     pad = min(int(TRUNCATION_STD * np.sqrt(max(variance, 0.0))) + 1, n_frames - 1)
     padded = np.pad(channels, ((pad, pad), (0, 0)), mode="reflect", reflect_type="odd")
     if variance > 0.0:
-        padded = gaussian_filter1d(padded, np.sqrt(variance), axis=0, mode="nearest")
+        padded = smooth_gaussian(padded, np.sqrt(variance))
     smooth = padded[pad : pad + n_frames]
     if n_frames == 1:
         return TargetCurve(np.repeat(smooth, 3, axis=0), 1.0 / frame_rate)

@@ -22,7 +22,7 @@ True
 """
 
 from .joint_rotations import Reconstruction
-from .pose_completion import PostureMethod, PostureSettings, reconstruct_postures
+from .pose_completion import PostureSettings, reconstruct_postures
 from .pose_library import (
     PostureLibrary,
     PostureLibrarySettings,
@@ -52,7 +52,6 @@ __all__ = [
     "CorrectionSettings",
     "PostureLibrary",
     "PostureLibrarySettings",
-    "PostureMethod",
     "PostureSettings",
     "ReconstructMethod",
     "ReconstructSettings",

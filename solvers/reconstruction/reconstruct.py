@@ -13,15 +13,14 @@ from ..settings import Choice, Settings, setting
 from ..signals import fill_gaps, smooth_gaussian
 from .joint_rotations import Reconstruction
 from .pose_completion import (
-    PostureMethod,
     PostureSettings,
     blend_short_gaps,
     complete_joints,
     reconstruct_postures,
 )
 from .pose_library import PostureLibrary
+from .published import ThreeTermSettings, reconstruct_shjt13, reconstruct_zh14
 from .reliability import (
-    ReliabilityMethod,
     ReliabilitySettings,
     fix_left_right_swaps,
     measure_reliability,
@@ -106,11 +105,6 @@ class ReconstructSettings(Settings):
 
 
 DEFAULT_SETTINGS = ReconstructSettings()
-PUBLISHED_METHODS = (
-    ReconstructMethod.PUBLISHED_POSTURES,
-    ReconstructMethod.PUBLISHED_RESIDUALS,
-)
-RESIDUAL_METHODS = (ReconstructMethod.RESIDUALS, ReconstructMethod.PUBLISHED_RESIDUALS)
 
 
 def reconstruct(
@@ -153,15 +147,28 @@ def reconstruct(
     SolveCancelled
         Raised by `progress`.
     """
-    if not (settings.causal or settings.method in PUBLISHED_METHODS):
+    is_known_sensor = prior is not None or recording.sensor is Sensor.KINECT_V2
+    if settings.method is ReconstructMethod.PUBLISHED_POSTURES:
+        return reconstruct_shjt13(
+            recording, postures, settings=_posture_settings(settings), progress=progress
+        )
+    if settings.method is ReconstructMethod.PUBLISHED_RESIDUALS:
+        terms = ThreeTermSettings(
+            causal=settings.causal,
+            shift=settings.shift and is_known_sensor,
+            change=is_known_sensor,
+        )
+        return reconstruct_zh14(
+            recording, prior or shipped_residual_prior(), settings=terms, progress=progress
+        )
+    if not settings.causal:
         recording = fix_left_right_swaps(recording)
     reliability = measure_reliability(
         recording,
-        settings=_reliability_settings(settings),
+        settings=ReliabilitySettings(causal=settings.causal, inferred=settings.inferred),
         progress=within(progress, 0.0, 0.1),
     )
-    is_known_sensor = prior is not None or recording.sensor is Sensor.KINECT_V2
-    if settings.method in RESIDUAL_METHODS:
+    if settings.method is ReconstructMethod.RESIDUALS:
         return correct_postures(
             recording,
             prior or shipped_residual_prior(),
@@ -169,7 +176,7 @@ def reconstruct(
             settings=_correction_settings(settings, is_known_sensor),
             progress=within(progress, 0.1, 1.0),
         )
-    if settings.method is not ReconstructMethod.BOTH:
+    if settings.method is ReconstructMethod.POSTURES:
         return reconstruct_postures(
             recording,
             postures,
@@ -249,19 +256,8 @@ def _blend_tracks(tracks: Tracks, rebuilt: Tracks, replacement: Array) -> Tracks
     return tracks.with_positions(weight * rebuilt.positions + (1.0 - weight) * completed)
 
 
-def _reliability_settings(settings: ReconstructSettings) -> ReliabilitySettings:
-    if settings.method in PUBLISHED_METHODS:
-        return ReliabilitySettings(method=ReliabilityMethod.PUBLISHED, causal=settings.causal)
-    return ReliabilitySettings(causal=settings.causal, inferred=settings.inferred)
-
-
 def _posture_settings(settings: ReconstructSettings) -> PostureSettings:
-    published = settings.method in PUBLISHED_METHODS
-    return PostureSettings(
-        method=PostureMethod.PUBLISHED if published else PostureMethod.PROBABLE,
-        causal=settings.causal,
-        n_neighbours=settings.n_neighbours,
-    )
+    return PostureSettings(causal=settings.causal, n_neighbours=settings.n_neighbours)
 
 
 def _correction_settings(
@@ -269,8 +265,6 @@ def _correction_settings(
 ) -> CorrectionSettings:
     """Return the settings of the correction; errors of an unknown sensor are not subtracted."""
     method = CorrectionMethod.CAUSAL if settings.causal else CorrectionMethod.WHOLE_TAKE
-    if settings.method in PUBLISHED_METHODS:
-        method = CorrectionMethod.PUBLISHED
     defaults = CorrectionSettings()
     return CorrectionSettings(
         method=method,

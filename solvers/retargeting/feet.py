@@ -6,6 +6,7 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ..motion import WorldPoses, world_poses
 from ..rotations import IDENTITY, rotate
+from ..signals import smoothstep
 from .body import SIDES
 from .hand_distance import distance_to_reach
 from .leg_lengths import Leg, level_ankles
@@ -177,5 +178,4 @@ def _standing_weight(directions: Array) -> Array:
     """Return 1 for standing legs, 0 for lying ones, with a smooth transition, (n_frames,)."""
     length = np.maximum(np.linalg.norm(directions, axis=1), 1e-9)
     lying, standing = np.cos(LYING_LEG_RAD), np.cos(STANDING_LEG_RAD)
-    fraction = np.clip((directions[:, 2] / length - lying) / (standing - lying), 0.0, 1.0)
-    return np.asarray(fraction * fraction * (3.0 - 2.0 * fraction))
+    return smoothstep(directions[:, 2] / length, lying, standing)

@@ -5,6 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..signals import smoothstep
+
 Array = NDArray[np.float64]
 
 MEETING_FRACTION, INDEPENDENT_FRACTION = 0.15, 0.4
@@ -41,10 +43,7 @@ def match_meeting_hands(arms: Arms, separation: Array) -> Array:
         independent positions; nearer to the shoulders if the arms are too short.
     """
     distance = np.linalg.norm(separation, axis=1) / arms.lengths.mean()
-    weight = np.clip(
-        (INDEPENDENT_FRACTION - distance) / (INDEPENDENT_FRACTION - MEETING_FRACTION), 0.0, 1.0
-    )
-    weight = (weight * weight * (3.0 - 2.0 * weight))[:, None]
+    weight = smoothstep(distance, INDEPENDENT_FRACTION, MEETING_FRACTION)[:, None]
     left, right = arms.hands
     correction = 0.5 * weight * (separation - (left - right))
     hands = np.stack([left + correction, right - correction])

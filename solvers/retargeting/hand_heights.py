@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, maximum_filter1d, uniform_filter1d
+from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
+from ..signals import smooth_gaussian, smoothstep
 from .placement import Placement
 
 Array = NDArray[np.float64]
@@ -65,9 +66,7 @@ def pull_to_ground(
         legs. The lower and slower it is, the more the position does, within the arm's reach.
     """
     height = source_hand[:, 2] - ground.floors[0]
-    height_weight = _falling_smoothstep(
-        height / ground.leg, LOW_WRIST_FRACTION, HIGH_WRIST_FRACTION
-    )
+    height_weight = smoothstep(height / ground.leg, HIGH_WRIST_FRACTION, LOW_WRIST_FRACTION)
     if not height_weight.any():
         return hand
     velocity = (
@@ -76,19 +75,17 @@ def pull_to_ground(
         else 0.0 * source_hand
     )
     speed = np.linalg.norm(velocity, axis=1)
-    speed = gaussian_filter1d(speed, SPEED_SMOOTHING_S * ground.frame_rate, mode="nearest")
-    support_weight = _falling_smoothstep(
-        height / ground.leg, *SUPPORT_HEIGHT_FRACTIONS
-    ) * _falling_smoothstep(speed / ground.leg, SUPPORT_SPEED, PASSING_SPEED)
+    speed = smooth_gaussian(speed, SPEED_SMOOTHING_S * ground.frame_rate)
+    support_weight = smoothstep(
+        height / ground.leg, *reversed(SUPPORT_HEIGHT_FRACTIONS)
+    ) * smoothstep(speed / ground.leg, PASSING_SPEED, SUPPORT_SPEED)
     target = ground.placement.points(source_hand)
     target[:, 2] = ground.floors[1] + ground.placement.rise * height
-    support_weight *= _falling_smoothstep(
-        np.linalg.norm(target - shoulder, axis=1) / length, EASE_EXTENSION_FRACTION, 1.0
+    support_weight *= smoothstep(
+        np.linalg.norm(target - shoulder, axis=1) / length, 1.0, EASE_EXTENSION_FRACTION
     )
     weights = np.stack([support_weight, support_weight, height_weight], axis=1)
-    shift = gaussian_filter1d(
-        weights * (target - hand), SHIFT_SMOOTHING_S * ground.frame_rate, axis=0, mode="nearest"
-    )
+    shift = smooth_gaussian(weights * (target - hand), SHIFT_SMOOTHING_S * ground.frame_rate)
     return np.asarray(hand + shift)
 
 
@@ -132,9 +129,3 @@ def _envelope(lift: Array, frame_rate: float) -> Array:
     window = 2 * round(LIFT_EASE_S * frame_rate) + 1
     envelope = maximum_filter1d(lift, window, mode="nearest")
     return np.asarray(uniform_filter1d(envelope, window, mode="nearest"))
-
-
-def _falling_smoothstep(values: Array, start: float, stop: float) -> Array:
-    """Return 1 up to `start`, 0 from `stop`, and a smooth transition between them."""
-    fraction = np.clip((stop - values) / (stop - start), 0.0, 1.0)
-    return np.asarray(fraction * fraction * (3.0 - 2.0 * fraction))

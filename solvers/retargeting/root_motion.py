@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from ..motion import HumanoidMap, Motion, t_pose_alignment
 from ..rotations import IDENTITY, inverse, multiply, rotate, twist_about
+from ..signals import smooth_gaussian
 from .body import hips_of, hold_gaps
 
 Array = NDArray[np.float64]
@@ -141,5 +141,5 @@ def _smoothed(values: Array, sigma: float) -> Array:
     before = 2.0 * values[0] - values[width:0:-1]
     after = 2.0 * values[-1] - values[-2 : -width - 2 : -1]
     padded = np.concatenate([before, values, after])
-    smoothed = gaussian_filter1d(padded, sigma, axis=0, mode="nearest")
+    smoothed = smooth_gaussian(padded, sigma)
     return np.asarray(smoothed[width : width + len(values)])

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ..motion import WorldPoses
 from ..rotations import IDENTITY, inverse, multiply, rotate, rotation_between
+from ..signals import smoothstep
 from .body import Body
 from .placement import Placement, leg_length, rests_on_ground
 from .standing_feet import foot_bone
@@ -104,7 +105,7 @@ def sole_above_ground(
     height = height + foot_vector[:, 2]
     required = _lift_from_depth(height + lift - rest[ball, 2] + allowed.ball, tolerance)
     length = max(float(np.linalg.norm(rest[ball] - rest[foot])), tolerance)
-    steep_weight = _smoothstep(-foot_vector[:, 2] / length, MIN_SLOPE_SINE, MAX_SLOPE_SINE)
+    steep_weight = smoothstep(-foot_vector[:, 2] / length, MIN_SLOPE_SINE, MAX_SLOPE_SINE)
     lift = smooth_envelope(lift + steep_weight * required, frame_rate)
     rotation = _lifting_rotations(
         foot_vector, _lift_from_depth(height + lift - rest[ball, 2] + allowed.ball, tolerance)
@@ -148,7 +149,7 @@ def _heel(body: Body, world: WorldPoses, foot: int) -> Array:
         body.rest[foot, 2]
         * (
             HEEL_OFFSET_FRACTION
-            + (1.0 - HEEL_OFFSET_FRACTION) * _smoothstep(upright, 0.0, STANDING_COSINE)
+            + (1.0 - HEEL_OFFSET_FRACTION) * smoothstep(upright, 0.0, STANDING_COSINE)
         )
     )
 
@@ -173,9 +174,3 @@ def _lifting_rotations(foot_vector: Array, lift: Array) -> Array:
     )
     after = np.concatenate([horizontal[:, None] * direction, height[:, None]], axis=1)
     return np.where((lift > 0.0)[:, None], rotation_between(foot_vector, after), IDENTITY)
-
-
-def _smoothstep(values: Array, start: float, stop: float) -> Array:
-    """Return 0 up to `start`, 1 from `stop`, and a smooth transition, shape (n_frames,)."""
-    fraction = np.clip((values - start) / (stop - start), 0.0, 1.0)
-    return np.asarray(fraction * fraction * (3.0 - 2.0 * fraction))

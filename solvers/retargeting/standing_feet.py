@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from ..motion import Skeleton, WorldPoses
 from ..rotations import (
@@ -15,6 +14,7 @@ from ..rotations import (
     rotate,
     rotation_vector_from_quaternion,
 )
+from ..signals import smooth_gaussian
 from .body import SIDES, Body
 from .placement import leg_length, rests_on_ground
 
@@ -136,8 +136,6 @@ def _angular_speed(rotations: Array, frame_rate: float) -> Array:
     if len(rotations) < 2:
         return np.zeros(len(rotations))
     steps = rotation_vector_from_quaternion(multiply(rotations[1:], inverse(rotations[:-1])))
-    steps = gaussian_filter1d(
-        steps * frame_rate, SPEED_SMOOTHING_S * frame_rate, axis=0, mode="nearest"
-    )
+    steps = smooth_gaussian(steps * frame_rate, SPEED_SMOOTHING_S * frame_rate)
     speeds = np.linalg.norm(steps, axis=1)
     return np.asarray(np.maximum(np.append(speeds, 0.0), np.append(0.0, speeds)))

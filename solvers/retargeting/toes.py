@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ..rotations import quaternion_from_rotation_vector, rotate
+from ..signals import smoothstep
 
 Array = NDArray[np.float64]
 
@@ -42,10 +43,8 @@ def lift_toes(rest: Array, feet: Array, toes: Array, lift: Array, frame_rate: fl
     across = across / np.linalg.norm(across)
     axis = rotate(feet, across)
     flexion = _angle(axis, rotate(feet, foot), toes) - _angle(across, foot, toe)
-    upward = np.clip(0.5 + 0.5 * rotate(feet, UP)[:, 2] / FACING_COSINE, 0.0, 1.0)
-    limit = (
-        upward * upward * (3.0 - 2.0 * upward) * np.maximum(MAX_TOE_FLEXION_RAD - flexion, 0.0)
-    )
+    upward = smoothstep(0.5 + 0.5 * rotate(feet, UP)[:, 2] / FACING_COSINE)
+    limit = upward * np.maximum(MAX_TOE_FLEXION_RAD - flexion, 0.0)
     angle = smooth_envelope(
         np.where(lift > 0.0, _lift_angle(axis, toes, lift), 0.0), frame_rate
     )

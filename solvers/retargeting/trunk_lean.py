@@ -12,6 +12,7 @@ from ..rotations import (
     rotation_between,
     rotation_vector_from_quaternion,
 )
+from ..signals import smoothstep
 from .body import Body
 
 Array = NDArray[np.float64]
@@ -86,10 +87,7 @@ def _bend_weight(hips: Array, vector: Array, rest: Array) -> Array:
     """
     length = np.linalg.norm(vector, axis=1) * np.linalg.norm(rest)
     straight = (rotate(inverse(hips), vector) @ rest) / np.maximum(length, 1e-9)
-    fraction = np.clip(
-        (straight - STRAIGHT_COSINE) / (BENT_COSINE - STRAIGHT_COSINE), 0.0, 1.0
-    )[:, None]
-    return np.asarray(fraction * fraction * (3.0 - 2.0 * fraction))
+    return smoothstep(straight, STRAIGHT_COSINE, BENT_COSINE)[:, None]
 
 
 def _target_vector(

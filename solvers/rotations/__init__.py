@@ -21,18 +21,20 @@ from .representations import (
     unroll,
     unwrap_euler,
 )
-from .rigid_fit import fit_rotations
+from .rigid_fit import fit_rotations, fit_similarity, nearest_rotations
 
 __all__ = [
     "IDENTITY",
     "angle_between",
     "euler_from_quaternion",
     "fit_rotations",
+    "fit_similarity",
     "inverse",
     "matrix_from_quaternion",
     "mean_rotation",
     "multiply",
     "multiply_components",
+    "nearest_rotations",
     "normalize",
     "quaternion_from_euler",
     "quaternion_from_matrix",

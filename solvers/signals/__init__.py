@@ -10,7 +10,9 @@ from .noise import (
     remove_outliers,
     shrink_noise,
 )
+from .second_differences import second_difference_bands
 from .smooth_correction import FADE_TIME_CONSTANTS, smooth_correction
+from .smoothstep import smoothstep
 from .spikes import find_runs, fit_lowess
 
 __all__ = [
@@ -24,7 +26,9 @@ __all__ = [
     "find_runs",
     "fit_lowess",
     "remove_outliers",
+    "second_difference_bands",
     "shrink_noise",
     "smooth_correction",
     "smooth_gaussian",
+    "smoothstep",
 ]

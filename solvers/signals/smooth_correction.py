@@ -4,6 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from .second_differences import second_difference_bands
+
 Array = NDArray[np.float64]
 
 FADE_TIME_CONSTANTS = np.pi * np.sqrt(2.0)
@@ -63,17 +65,11 @@ def smooth_correction(
     for component in range(n_components):
         hold_weight = (hold * frame_rate) ** 2 * held[:, component]
         pull_weight = PULL_WEIGHT * pulled[:, component]
-        # Rows of the upper banded form: second, first and main diagonal.
-        bands = np.zeros((3, n_frames))
-        bands[2] = 1.0 + pull_weight
+        bands = stiffness * second_difference_bands(n_frames)
+        bands[2] += 1.0 + pull_weight
         bands[2, :-1] += hold_weight
         bands[2, 1:] += hold_weight
         bands[1, 1:] -= hold_weight
-        for diagonal, (left, right) in enumerate(((0, 2), (1, 1), (2, 0))):
-            bands[2, left : n_frames - right] += stiffness * (1.0, 4.0, 1.0)[diagonal]
-        bands[1, 1:-1] -= 2.0 * stiffness
-        bands[1, 2:] -= 2.0 * stiffness
-        bands[0, 2:] += stiffness
         force = (
             hold_weight * np.where(held[:, component] > 0, speed[:, component], 0) / frame_rate
         )

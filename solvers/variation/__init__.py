@@ -9,10 +9,10 @@
 """
 
 from .borrow_variation import borrow_variation
+from .curves import Partition
 from .learn_variation import learn_variation_model
 from .loops import extract_middle_cycle, repeat_loop, resample_loop
 from .measure_variation import measure_variation
-from .partitions import Partition
 from .synthesize import Variant, draw_variants, synthesize
 from .variation_model import VariationModel, load_variation_model
 from .vary_settings import Method, VarySettings

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from ..motion import Motion, forward_kinematics, warp
-from .motion_curves import headings_from_motion
+from ..signals import smooth_gaussian
+from .curves import headings_from_motion
 
 Array = NDArray[np.float64]
 
@@ -124,9 +124,7 @@ def _smooth_times(
     if n_center < 3:
         return np.linspace(0.0, n_example - 1.0, n_center)
     mean_speed = (n_example - 1.0) / (n_center - 1.0)
-    deviations = gaussian_filter1d(
-        raw - mean_speed * frames, SMOOTHING_S * frame_rate, mode="nearest"
-    )
+    deviations = smooth_gaussian(raw - mean_speed * frames, SMOOTHING_S * frame_rate)
     speeds = np.clip(
         np.diff(deviations) + mean_speed,
         MIN_RELATIVE_SPEED * mean_speed,

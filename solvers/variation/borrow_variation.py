@@ -5,14 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from ..errors import InvalidMotionError
 from ..motion import Motion
-from .curve_sampling import sample_curves
+from ..signals import smooth_gaussian
+from .curves import HEIGHT_COLUMN, partition_joints, sample_curves
 from .learn_variation import learn_variation_model
-from .motion_curves import HEIGHT_COLUMN
-from .partitions import partition_joints
 from .variation_model import VariationModel
 
 Array = NDArray[np.float64]
@@ -123,7 +121,7 @@ def _generic_deviations(model: VariationModel) -> tuple[Array, Array, Array]:
         for _ in range(2)
     )
     offset = rng.normal(size=(N_PAIRS, n_joints, 3))
-    smooth = gaussian_filter1d(curve, SMOOTHING_S * model.frame_rate, axis=0, mode="nearest")
+    smooth = smooth_gaussian(curve, SMOOTHING_S * model.frame_rate)
     centered, velocity = (
         smooth - smooth.mean(axis=0),
         np.gradient(smooth, 1.0 / model.frame_rate, axis=0),

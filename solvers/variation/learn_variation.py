@@ -13,19 +13,20 @@ from ..progress import Progress, unwatched, within
 from ..rotations import inverse, mean_rotation, multiply, rotation_vector_from_quaternion
 from .align_examples import Alignment, align_examples
 from .contact_state import measure_contact_state
-from .curve_sampling import sample_curves, sample_linearly
-from .loops import detect_loop
-from .mixing_kernel import MixingKernel
-from .motion_curves import (
+from .curves import (
     HEIGHT_COLUMN,
     MAX_FRAME_ROTATION_RAD,
     MotionCurves,
     curves_from_motion,
     headings_from_motion,
     remove_heading,
+    sample_curves,
+    sample_linearly,
 )
+from .loops import detect_loop
+from .mixing_kernel import MixingKernel
 from .moving_references import REFERENCE_SMOOTHING_S, split_moving_references
-from .stepwise_model import learn_stepwise
+from .published import learn_stepwise
 from .variation_model import VariationModel
 from .vary_settings import DEFAULT_SETTINGS, Method, VarySettings
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..motion import Motion, resample
 from ..rotations import inverse, multiply, rotate
 from .align_examples import positions_in_body_frame
-from .motion_curves import HEIGHT_COLUMN, MotionCurves
+from .curves import HEIGHT_COLUMN, MotionCurves
 
 Array = NDArray[np.float64]
 

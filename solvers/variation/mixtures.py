@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
-from .curve_sampling import sample_curves
-from .partitions import LEG_ROWS, Partition, partition_joints
+from .curves import LEG_ROWS, ROOT_ROW, partition_joints, sample_curves
 from .variation_model import VariationModel
 
 Array = NDArray[np.float64]
@@ -35,8 +34,6 @@ DRAW_RATE_HZ = 30.0
 MAX_DRAWN_SAMPLES = 2000
 """Maximum count of drawn samples; in clips of more than a minute weights change more slowly."""
 JITTER = 1e-9
-ROOT_ROW = len(Partition)
-"""Row of the weights of the root and the time warp, after those of the partitions."""
 
 
 def draw_mixing_weights(

@@ -20,8 +20,7 @@ from ..rotations import (
     rotation_vector_from_quaternion,
     unroll,
 )
-from .curve_sampling import sample_curves
-from .motion_curves import MAX_FRAME_ROTATION_RAD, unwrap_rotation_vectors
+from .curves import MAX_FRAME_ROTATION_RAD, sample_curves, unwrap_rotation_vectors
 
 Array = NDArray[np.float64]
 

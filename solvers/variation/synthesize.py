@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..progress import Progress, unwatched
+from ..signals import smoothstep
 from .contact_state import contacts_from_state
+from .curves import LEG_ROWS, MotionCurves, clamp_softly, motion_from_curves, partition_joints
 from .loops import close_loop, is_closed
 from .mixtures import draw_mixing_weights, mix_deviations
-from .motion_curves import MotionCurves, motion_from_curves
-from .partitions import LEG_ROWS, partition_joints
-from .soft_clamp import clamp_softly
-from .stepwise_draw import draw_stepwise_deviations
+from .published import draw_stepwise_deviations
 from .time_warp import apply_time_warp
 from .variation_model import VariationModel
 from .vary_settings import DEFAULT_SETTINGS, Method, VarySettings
@@ -70,7 +69,7 @@ def draw_variants(
 
     A variant deviates from the mean of the examples, in common time. `settings.method` decides
     how its curves are drawn: as a mixture of the examples' deviations (`mixtures`), or frame by
-    frame (`stepwise_draw`). The time-warp rate is drawn likewise.
+    frame (`published`). The time-warp rate is drawn likewise.
 
     Parameters
     ----------
@@ -125,15 +124,10 @@ def _draw_deviations(
 ) -> tuple[Array, Array, Array, Array]:
     """Return deviations of n variants: joints, root, log warp rates and contact state."""
     weights = draw_mixing_weights(model, n_variants, rng)
-    joints, root, log_warp_rates, contact_state = mix_deviations(model, weights)
-    if method is not Method.MIXTURE and model.stepwise:
-        deviations = draw_stepwise_deviations(
-            model.stepwise, weights, model.skeleton.n_joints, rng
-        )
-        if model.stepwise.published:
-            return *deviations, log_warp_rates, np.full_like(contact_state, np.nan)
-        return joints + deviations[0], root + deviations[1], log_warp_rates, contact_state
-    return joints, root, log_warp_rates, contact_state
+    mixed = mix_deviations(model, weights)
+    if method is Method.MIXTURE or model.stepwise is None:
+        return mixed
+    return draw_stepwise_deviations(model.stepwise, mixed, weights, rng)
 
 
 class _ExampleRange(NamedTuple):
@@ -235,8 +229,7 @@ def _clamp_to_range(examples: _ExampleRange, curves: Array) -> Array:
 def _pin_weights(model: VariationModel, settings: VarySettings) -> Array:
     """Return the weight of each sample's deviation, shape (n_samples,): 0 at a pinned pose."""
     free = np.ones(model.n_samples)
-    ramp = np.arange(model.n_samples) / max(PIN_S * model.frame_rate, 1.0)
-    ease = np.clip(ramp, 0.0, 1.0) ** 2 * (3.0 - 2.0 * np.clip(ramp, 0.0, 1.0))
+    ease = smoothstep(np.arange(model.n_samples) / max(PIN_S * model.frame_rate, 1.0))
     if settings.pin_start:
         free = np.minimum(free, ease)
     if settings.pin_end:

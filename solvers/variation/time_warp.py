@@ -5,8 +5,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from ..rotations import normalize, unroll
-from .curve_sampling import sample_curves, sample_linearly
-from .motion_curves import HEIGHT_COLUMN, MotionCurves
+from .curves import HEIGHT_COLUMN, MotionCurves, sample_curves, sample_linearly
 
 Array = NDArray[np.float64]
 

@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 from ..archives import ArchiveLayout
 from ..motion import Skeleton
 from ..npz_members import integers, numbers, words
+from .curves import N_ROOT_CHANNELS
 from .mixing_kernel import MixingKernel
-from .motion_curves import N_ROOT_CHANNELS
-from .stepwise_model import StepwiseModel, learn_stepwise
-from .stepwise_process import N_PACKED, Hyperparameters
+from .published import STEPWISE_MEMBER, StepwiseModel, pack_stepwise, restore_stepwise
 
 Array = NDArray[np.float64]
 
@@ -33,7 +32,7 @@ LAYOUT = ArchiveLayout(
         "carrier": numbers("moments", "joints", 4, or_empty=True),
         "warning": words(),
         "numbers": numbers(5),
-        "stepwise": numbers("stacks", "triples", N_PACKED, or_empty=True),
+        "stepwise": STEPWISE_MEMBER,
     },
     holds="a damaged variation model",
     remedy="Learn it again.",
@@ -108,7 +107,7 @@ class VariationModel:
             "numbers": np.array([
                 self.frame_rate, self.kernel.scale, self.kernel.bias, self.center, self.loops,
             ]),
-            "stepwise": _pack_hyperparameters(self.stepwise),
+            "stepwise": pack_stepwise(self.stepwise),
         })  # fmt: skip
 
 
@@ -129,12 +128,8 @@ def load_variation_model(path: Path | str) -> VariationModel:
     names, parents = arrays["names"].tolist(), arrays["parents"].tolist()
     try:
         skeleton = Skeleton(tuple(names), tuple(parents), arrays["offsets"])
-        hyperparameters = _unpack_hyperparameters(arrays["stepwise"])
-        data = skeleton, arrays["joints"], arrays["root"], frame_rate
-        stepwise = (
-            learn_stepwise(*data, len(hyperparameters) > 1, hyperparameters)
-            if hyperparameters
-            else None
+        stepwise = restore_stepwise(
+            arrays["stepwise"], skeleton, arrays["joints"], arrays["root"], frame_rate
         )
     except (ValueError, IndexError) as error:
         raise LAYOUT.damaged(path, str(error).removesuffix(".")) from None
@@ -144,15 +139,3 @@ def load_variation_model(path: Path | str) -> VariationModel:
         arrays["haste"], arrays["footing"], moving_references, MixingKernel(scale, bias),
         int(center), bool(loops), str(arrays["warning"]), stepwise,
     )  # fmt: skip
-
-
-def _pack_hyperparameters(stepwise: StepwiseModel | None) -> Array:
-    """Return all hyperparameters, shape (n_stacks, n_triples, 18); all else follows."""
-    stacks = stepwise.hyperparameters if stepwise else ()
-    return np.array([[each.to_vector() for each in stack] for stack in stacks])
-
-
-def _unpack_hyperparameters(to_vector: Array) -> tuple[tuple[Hyperparameters, ...], ...]:
-    return tuple(
-        tuple(Hyperparameters.from_vector(each) for each in stack) for stack in to_vector
-    )

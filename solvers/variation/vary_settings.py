@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..settings import Choice, Settings, setting
-from .partitions import Partition
+from .curves import Partition
 
 Array = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ class Method(Choice):
         "Draw frame by frame with a latent factor model of each joint",
         "Coregionalized",
     )
-    """Draw frame by frame from a latent factor model of each joint (`stepwise_draw`)."""
+    """Draw frame by frame from a latent factor model of each joint (`published`)."""
     PUBLISHED = "published", "Draw frame by frame as published by Zhou (2014)", "Zhou 2014"
     """Draw frame by frame, as written in [ZH14, chapter 4]."""
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from ..denoising.feet import SIDES, Leg, find_legs
 from ..motion import Motion, WorldPoses, forward_kinematics
 from ..rotations import IDENTITY, inverse, multiply, rotate, rotation_between, slerp
+from ..signals import smooth_gaussian
 
 Array = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ def flatten_toes(motion: Motion, reliability: Array, contacts: NDArray[np.bool_]
         target = _flat_foot(motion, poses, leg, foot, standing & (weight == 0.0))
         has_target = np.isfinite(target).all(axis=-1)
         blend = np.where(has_target, weight * standing, 0.0)
-        blend = gaussian_filter1d(blend, BLEND_S * motion.frame_rate, mode="nearest")
+        blend = smooth_gaussian(blend, BLEND_S * motion.frame_rate)
         swing = rotation_between(foot, np.where(has_target[:, None], target, foot))
         rotation = slerp(np.broadcast_to(IDENTITY, swing.shape), swing, blend)
         parent = poses.rotations[:, motion.skeleton.parents[leg.ankle]]
@@ -81,9 +81,7 @@ def _flat_foot(
         local = np.median(rotate(inverse(shin[reliable]), foot[reliable]), axis=0)
         drop = float(np.clip(np.median(-foot[reliable, 2]), 0.0, 0.7 * length))
     heading = rotate(shin, local)[:, :2]
-    heading = gaussian_filter1d(
-        heading, HEADING_SMOOTHING_S * motion.frame_rate, axis=0, mode="nearest"
-    )
+    heading = smooth_gaussian(heading, HEADING_SMOOTHING_S * motion.frame_rate)
     size = np.linalg.norm(heading, axis=-1, keepdims=True)
     heading = np.where(
         size > MIN_LEVEL_FRACTION * length, heading / np.maximum(size, 1e-9), np.nan

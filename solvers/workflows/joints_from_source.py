@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from ..motion import JointRecording, Motion, Tracks, forward_kinematics, motion_from_points
 from ..motion.humanoid import fill_missing_hips
+from ..rotations import fit_similarity
 
 Array = NDArray[np.float64]
 MAX_DISTANCE_M = 0.002
@@ -62,7 +63,7 @@ def _fit(source: Array, target: Array) -> tuple[Array, float, Array] | None:
     observed = np.isfinite(source).all(axis=-1)
     if (observed != np.isfinite(target).all(axis=-1)).any() or observed.sum() < MIN_SAMPLES:
         return None
-    axes, scale, shift = _similarity(source[observed], target[observed])
+    axes, scale, shift = fit_similarity(source[observed], target[observed])
     moved = scale * source[observed] @ axes.T + shift
     return (
         None
@@ -89,17 +90,3 @@ def _transformed_segment(
         None if state is None else state[segment][:, columns],
         recording.sensor,
     )
-
-
-def _similarity(source: Array, target: Array) -> tuple[Array, float, Array]:
-    """Return rotation, scale and translation that map points, shape (n, 3), closest to others.
-
-    Umeyama (1991), doi:10.1109/34.88573.
-    """
-    centroids = source.mean(axis=0), target.mean(axis=0)
-    first, second = source - centroids[0], target - centroids[1]
-    left, sizes, right = np.linalg.svd(second.T @ first)
-    signs = np.array([1.0, 1.0, np.sign(np.linalg.det(left) * np.linalg.det(right))])
-    axes = (left * signs) @ right
-    scale = float((sizes * signs).sum() / max((first**2).sum(), np.finfo(float).tiny))
-    return axes, scale, centroids[1] - scale * axes @ centroids[0]

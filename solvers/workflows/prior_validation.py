@@ -10,6 +10,7 @@ from ..denoising import FilterBases, denoise
 from ..motion import Motion
 from ..progress import Progress, within
 from ..rotations import angle_between
+from ..signals import find_runs
 
 Flags = NDArray[np.bool_]
 
@@ -70,7 +71,7 @@ def _trials(recording: Motion) -> Iterator[_Trial]:
     if not length:
         return
     observed = recording.observed[:, joints].all(axis=1)
-    runs = sorted(_runs(observed), key=lambda run: run[0] - run[1])
+    runs = sorted(find_runs(observed), key=lambda run: run[0] - run[1])
     context = round(CONTEXT_S * recording.frame_rate)
     for start, stop in runs[:MAX_TRIALS]:
         n_hidden = min(length, int(MAX_HIDDEN_FRACTION * (stop - start)))
@@ -89,15 +90,9 @@ def _longest_gap(missing: Flags, min_length: float) -> tuple[NDArray[np.intp], i
     """Return the joints of the longest gap and its length in frames; 0 if it is too short."""
     longest, middle = 0, 0
     for joint in np.flatnonzero(missing.any(axis=0) & ~missing.all(axis=0)):
-        for start, stop in _runs(missing[:, joint]):
+        for start, stop in find_runs(missing[:, joint]):
             if stop - start > longest:
                 longest, middle = stop - start, (start + stop) // 2
     if longest < min_length:
         return np.zeros(0, dtype=np.intp), 0
     return np.flatnonzero(missing[middle] & ~missing.all(axis=0)), longest
-
-
-def _runs(flags: Flags) -> list[tuple[int, int]]:
-    """Return the first frame and the frame after the last of each run of set flags."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
-    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))

@@ -2,12 +2,13 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, maximum_filter1d, minimum_filter1d
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from ..denoising.feet import SIDES, Leg, find_legs
 from ..motion import Motion, forward_kinematics
 from ..motion.skeletons import ReachSettings, reach
 from ..rotations import inverse, multiply, rotation_between
+from ..signals import smooth_gaussian
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -59,14 +60,12 @@ def _corrections(displacement: Array, still: Flags, frame_rate: float) -> Array:
 
     The displacement is low-pass filtered; camera noise in it would make the foot slide.
     """
-    displacement = gaussian_filter1d(
-        displacement, SMOOTHING_S * frame_rate, axis=0, mode="nearest"
-    )
+    displacement = smooth_gaussian(displacement, SMOOTHING_S * frame_rate)
     size = np.linalg.norm(displacement, axis=-1)
     fraction = np.where(still, np.minimum(1.0, MAX_OFFSET_M / np.maximum(size, 1e-9)), 1.0)
     width = SMOOTHING_S * frame_rate
     fraction = minimum_filter1d(fraction, 2 * round(width) + 1, mode="nearest")
-    fraction = gaussian_filter1d(fraction, width, mode="nearest")
+    fraction = smooth_gaussian(fraction, width)
     return np.asarray((fraction - 1.0)[:, None] * displacement)
 
 

@@ -18,6 +18,7 @@ from ..motion.humanoid import (
     posture_joint_indices,
     posture_positions,
 )
+from ..signals import find_runs
 
 MIN_GAP_S = 1.0
 """Minimum duration of a gap of all joints that is reported, seconds."""
@@ -115,19 +116,14 @@ def check_size(recording: JointRecording) -> None:
 
 def gap_remarks(recording: JointRecording) -> list[str]:
     """Report the longest gap of all joints, if it is long."""
-    untracked = ~recording.tracks.visible.any(axis=1)
-    edges = np.flatnonzero(
-        np.diff(np.concatenate([[False], untracked, [False]]).astype(np.int8))
-    )
-    starts, stops = edges[::2], edges[1::2]
-    if not len(starts):
+    gaps = find_runs(~recording.tracks.visible.any(axis=1))
+    if not gaps:
         return []
-    longest = int(np.argmax(stops - starts))
-    seconds = (stops - starts)[longest] / recording.frame_rate
+    start, stop = max(gaps, key=lambda gap: gap[1] - gap[0])
+    seconds, start_s = (stop - start) / recording.frame_rate, start / recording.frame_rate
     if seconds < MIN_GAP_S:
         return []
-    start = starts[longest] / recording.frame_rate
     return [
-        f"Nothing was tracked for {seconds:.1f} s from {start:.1f} s on; the motion there is an"
-        " estimate."
+        f"Nothing was tracked for {seconds:.1f} s from {start_s:.1f} s on; the motion there is"
+        " an estimate."
     ]

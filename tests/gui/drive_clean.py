@@ -1,8 +1,6 @@
 """Use the extension as an animator does, in a Blender with a window, and take pictures.
 
-    make extension-plain
-    BG_DEBS="python3-scipy python3-pil" bash ../shared/tools/blender-gui.sh run \
-        dist/mocap_assist-0.1.0-plain.zip tests/gui/drive_clean.py build/gui/clean.png
+    make test-gui DRIVERS=clean
 
 Runs inside that Blender; `bgui` comes with the tool and moves a real pointer. Not a test of
 pytest's: pictures are for eyes. What can be asserted is.
@@ -17,6 +15,7 @@ from urllib.parse import unquote, urlparse
 
 import bgui
 import bpy
+from stage import empty_scene
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
 SECONDS = 8.0  # of the take
@@ -62,8 +61,7 @@ def lose_arm(armature):
 
 def set_the_stage():
     """Leave the armature alone in the scene, seen from the front, in Pose Mode."""
-    for each in list(bpy.data.objects):
-        bpy.data.objects.remove(each)
+    empty_scene()
     armature = import_noisy_walk()
     lose_arm(armature)
     armature.data.display_type = "STICK"

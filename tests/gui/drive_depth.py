@@ -1,9 +1,6 @@
 """Bring a recording of depth into a Blender with a window, play it, and take pictures.
 
-    make extension-plain
-    BG_DEBS="python3-scipy python3-pil" BG_FILES="walk.npz" \
-        bash ../shared/tools/blender-gui.sh run dist/mocap_assist-0.1.0-plain.zip \
-        tests/gui/drive_depth.py build/gui/depth.png
+    make test-gui DRIVERS=depth
 
 Runs inside that Blender; `bgui` comes with the tool. The recording, such as one of
 `../shared/data/depth/truth`, is copied beside this script.
@@ -14,17 +11,11 @@ from pathlib import Path
 
 import bgui
 import bpy
+from stage import empty_scene, settle
 
 FOLDER = Path(__file__).parent
 WALK = FOLDER / "walk.npz"
 UNTIL_DONE = 600  # tenths of a second
-
-
-def settle():
-    """Wait until everything is drawn."""
-    for _ in range(3):
-        bgui.redraw()
-        yield 0.5
 
 
 def look_at(center, distance, rotation):
@@ -54,8 +45,7 @@ def bring_in():
 
 def steps():
     # A walk seen from beside the camera, at three moments, and while it plays.
-    for each in list(bpy.data.objects):
-        bpy.data.objects.remove(each)
+    empty_scene()
     yield from bgui.open_sidebar("Mocap")
     yield from bring_in()
     made = bpy.context.object

@@ -2,10 +2,7 @@
 
 A long recording is cancelled while it is read, and the file browser brings one in.
 
-    make extension-plain
-    BG_DEBS="python3-scipy python3-pil" BG_FILES="walk.bvh joints.txt markers.trc" \
-        bash ../shared/tools/blender-gui.sh run dist/mocap_assist-0.1.0-plain.zip \
-        tests/gui/drive_import.py build/gui/import.png
+    make test-gui DRIVERS=import
 
 Runs inside that Blender; `bgui` comes with the tool and moves a real pointer. The three files,
 named on the command line, are copied beside this script.
@@ -15,6 +12,7 @@ from pathlib import Path
 
 import bgui
 import bpy
+from stage import empty_scene, settle
 
 FOLDER = Path(__file__).parent
 WALK, JOINTS, MARKERS = (FOLDER / name for name in ("walk.bvh", "joints.txt", "markers.trc"))
@@ -22,13 +20,6 @@ LONG = FOLDER / "long.bvh"
 LENGTHS = 100  # of the walk, in the long recording
 IMPORT = "mocap_assist.import_recording"
 UNTIL_DONE = 600  # tenths of a second
-
-
-def settle():
-    """Wait until everything is drawn."""
-    for _ in range(3):
-        bgui.redraw()
-        yield 0.5
 
 
 def look_at(center, distance):
@@ -150,8 +141,7 @@ def joints_after_a_dialog():
 
 def steps():
     # The dialog after a drop, joints and markers in the scene, and the file browser.
-    for each in list(bpy.data.objects):
-        bpy.data.objects.remove(each)
+    empty_scene()
     make_long()
     yield from bgui.open_sidebar("Mocap")
     yield from joints_after_a_dialog()

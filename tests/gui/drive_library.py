@@ -1,9 +1,6 @@
 """Index clips and find similar ones in a Blender with a window, as an animator does.
 
-    make extension-plain
-    BG_DEBS="python3-scipy python3-pil" BG_FILES="clips" \
-        bash ../shared/tools/blender-gui.sh run dist/mocap_assist-0.1.0-plain.zip \
-        tests/gui/drive_library.py build/gui/library/library.png
+    make test-gui DRIVERS=library
 
 Runs inside that Blender; `bgui` comes with the tool. The folder `clips` holds recordings, and
 is copied beside this script; what is like the last of them is looked for. The first is also
@@ -14,33 +11,12 @@ from pathlib import Path
 
 import bgui
 import bpy
+from stage import empty_scene, settle, unfold_alone
 
 FOLDER = Path(__file__).parent
 CLIPS = FOLDER / "clips"
 LIBRARY = FOLDER / "clips.library"
-OTHERS = (
-    "import", "reconstruct", "clean", "check", "compare", "feet", "physics", "markers",
-    "retarget", "perform",
-)  # fmt: skip
 UNTIL_DONE = 900  # tenths of a second
-
-
-def settle(times=4):
-    """Wait until everything is drawn."""
-    for _ in range(times):
-        bgui.redraw()
-        yield 0.4
-
-
-def empty_scene():
-    for each in list(bpy.data.objects):
-        bpy.data.objects.remove(each)
-    for name in OTHERS:
-        bpy.utils.unregister_class(getattr(bpy.types, f"MOCAP_PT_{name}"))
-    panel = bpy.types.MOCAP_PT_library
-    bpy.utils.unregister_class(panel)
-    panel.bl_options = set()
-    bpy.utils.register_class(panel)
 
 
 def bring(path):
@@ -148,6 +124,7 @@ def use(armature):
 
 def steps():
     empty_scene()
+    unfold_alone("library")
     paths = sorted(CLIPS.glob("*.bvh"))
     other = bring(paths[0])
     write_blend(CLIPS / "shot.blend")

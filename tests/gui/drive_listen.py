@@ -1,8 +1,6 @@
 """Press Listen in a Blender with a window, and let the made actor give commands; take pictures.
 
-    make extension-plain
-    BG_DEBS="python3-scipy python3-pil" bash ../shared/tools/blender-gui.sh run \
-        dist/mocap_assist-0.1.0-plain.zip tests/gui/drive_listen.py build/gui/listen.png
+    make test-gui DRIVERS=listen
 
 Runs inside that Blender; `bgui` comes with the tool and moves a real pointer. The actor's
 frames go over a real socket, each at its time.
@@ -13,27 +11,13 @@ import time
 from importlib import import_module
 
 import bgui
-import bpy
+from stage import empty_scene, unfold_alone
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
-OTHERS = (
-    "import", "reconstruct", "clean", "check", "compare", "feet", "physics", "markers",
-    "retarget",
-)  # fmt: skip
 
 
 def load(name):
     return import_module(f"{PACKAGE}.{name}")
-
-
-def unfold_perform_alone():
-    """Take the other panels away, and unfold this one, before the tab is first drawn."""
-    for name in OTHERS:
-        bpy.utils.unregister_class(getattr(bpy.types, f"MOCAP_PT_{name}"))
-    panel = bpy.types.MOCAP_PT_perform
-    bpy.utils.unregister_class(panel)
-    panel.bl_options = set()
-    bpy.utils.register_class(panel)
 
 
 def perform(*gestures):
@@ -50,9 +34,8 @@ def perform(*gestures):
 
 
 def steps():
-    for each in list(bpy.data.objects):
-        bpy.data.objects.remove(each)
-    unfold_perform_alone()
+    empty_scene()
+    unfold_alone("perform")
     yield from bgui.open_sidebar("Mocap")
     view = bgui.area().spaces.active.region_3d
     view.view_location, view.view_distance = (0.0, 0.0, 0.9), 5.0

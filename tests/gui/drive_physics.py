@@ -1,9 +1,6 @@
 """Press Physics in a Blender with a window, as an animator does; take pictures.
 
-    make extension-plain
-    BG_DEBS="python3-scipy python3-pil" BG_FILES=walk.bvh \
-        bash ../shared/tools/blender-gui.sh run dist/mocap_assist-0.1.0-plain.zip \
-        tests/gui/drive_physics.py build/gui/physics/physics.png
+    make test-gui DRIVERS=physics
 
 Runs inside that Blender; `bgui` comes with the tool. The take, of a skeleton, is copied beside
 this script as walk.bvh. The plain zip brings no MuJoCo: where Blender has none, the button says
@@ -15,33 +12,16 @@ from pathlib import Path
 
 import bgui
 import bpy
+from stage import empty_scene, settle, unfold_alone
 
 FOLDER = Path(__file__).parent
 TAKE = FOLDER / "walk.bvh"
 HAS_ENGINE = find_spec("mujoco") is not None
 
 
-def settle():
-    """Wait until everything is drawn."""
-    for _ in range(3):
-        bgui.redraw()
-        yield 0.5
-
-
-def unfold_physics_alone():
-    """Take the other panels away, and unfold this one, before the tab is first drawn."""
-    for name in ("import", "reconstruct", "clean", "check", "compare", "feet", "retarget"):
-        bpy.utils.unregister_class(getattr(bpy.types, f"MOCAP_PT_{name}"))
-    panel = bpy.types.MOCAP_PT_physics
-    bpy.utils.unregister_class(panel)
-    panel.bl_options = set()
-    bpy.utils.register_class(panel)
-
-
 def steps():
-    for each in list(bpy.data.objects):
-        bpy.data.objects.remove(each)
-    unfold_physics_alone()
+    empty_scene()
+    unfold_alone("physics")
     yield from bgui.open_sidebar("Mocap")
     view = bgui.area().spaces.active
     view.overlay.show_relationship_lines = False

@@ -1,9 +1,6 @@
 """Reconstruct a Kinect take in a Blender with a window, as an animator does; take pictures.
 
-    make extension-plain
-    BG_DEBS="python3-scipy python3-pil" BG_FILES=kinect.txt \
-        bash ../shared/tools/blender-gui.sh run dist/mocap_assist-0.1.0-plain.zip \
-        tests/gui/drive_reconstruct.py build/gui/reconstruct.png
+    make test-gui DRIVERS=reconstruct
 
 Runs inside that Blender; `bgui` comes with the tool. The take, of any depth camera, is copied
 beside this script as kinect.txt.
@@ -13,26 +10,10 @@ from pathlib import Path
 
 import bgui
 import bpy
+from stage import empty_scene, settle, unfold_alone
 
 FOLDER = Path(__file__).parent
 TAKE = next(iter(sorted(FOLDER.glob("kinect*"))))
-
-
-def settle():
-    """Wait until everything is drawn."""
-    for _ in range(3):
-        bgui.redraw()
-        yield 0.5
-
-
-def unfold_reconstruct_alone():
-    """Take the other panels away, and unfold this one, before the tab is first drawn."""
-    for name in ("import", "clean", "check", "compare", "feet", "physics", "retarget"):
-        bpy.utils.unregister_class(getattr(bpy.types, f"MOCAP_PT_{name}"))
-    panel = bpy.types.MOCAP_PT_reconstruct
-    bpy.utils.unregister_class(panel)
-    panel.bl_options = set()
-    bpy.utils.register_class(panel)
 
 
 def most_mixed(armature):
@@ -79,13 +60,12 @@ def choices(armature):
 
 
 def steps():
-    for each in list(bpy.data.objects):
-        bpy.data.objects.remove(each)
+    empty_scene()
     with bgui.override("WINDOW"):
         bpy.ops.mocap_assist.import_recording(
             directory=str(FOLDER), files=[{"name": TAKE.name}], frame_rate="UPDATE"
         )
-    unfold_reconstruct_alone()
+    unfold_alone("reconstruct")
     yield from bgui.open_sidebar("Mocap")
     armature = bpy.context.object
     look_at(armature)

@@ -1,8 +1,6 @@
 """Retarget as an animator does, in a Blender with a window, and take pictures.
 
-    make extension-plain
-    BG_DEBS="python3-scipy python3-pil" bash ../shared/tools/blender-gui.sh run \
-        dist/mocap_assist-0.1.0-plain.zip tests/gui/drive_retarget.py build/gui/retarget.png
+    make test-gui DRIVERS=retarget
 
 As in drive_clean.py.
 """
@@ -13,16 +11,15 @@ from pathlib import Path
 
 import bgui
 import bpy
+from stage import empty_scene, unfold_alone
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
 SECONDS = 120.0  # of the walk: more than is solved at once
-OTHERS = ("import", "clean", "check", "compare", "feet")
 
 
 def set_the_stage():
     """A walk, and a larger figure beside it; only the panel Retarget is shown."""
-    for each in list(bpy.data.objects):
-        bpy.data.objects.remove(each)
+    empty_scene()
     samples = import_module(f"{PACKAGE}.solvers.samples")
     write_bvh = import_module(f"{PACKAGE}.solvers.recordings").write_bvh
     path = Path(tempfile.mkdtemp()) / "walk.bvh"
@@ -36,12 +33,7 @@ def set_the_stage():
     bpy.context.scene.collection.objects.link(hero)
     hero.location, hero.scale = (1.5, 0.0, 0.0), (1.3, 1.3, 1.3)
     bpy.context.view_layer.update()
-    for name in OTHERS:
-        bpy.utils.unregister_class(getattr(bpy.types, f"MOCAP_PT_{name}"))
-    panel = bpy.types.MOCAP_PT_retarget
-    bpy.utils.unregister_class(panel)
-    panel.bl_options = set()
-    bpy.utils.register_class(panel)
+    unfold_alone("retarget")
     return source, hero
 
 

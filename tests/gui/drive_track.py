@@ -3,10 +3,7 @@
 Points of depth, the panel, the body over the points while it solves and afterwards, undo, a
 frame posed by hand, Track from Here, and Esc that keeps what is tracked.
 
-    make extension-plain
-    BG_DEBS="python3-scipy python3-pil" BG_FILES="walk.npz" \
-        bash ../shared/tools/blender-gui.sh run dist/mocap_assist-0.1.0-plain.zip \
-        tests/gui/drive_track.py build/gui/track/track.png
+    make test-gui DRIVERS=track
 
 Runs inside that Blender; `bgui` comes with the tool. The recording, such as the first 30 frames
 of one of `../shared/data/depth/truth`, is copied beside this script.
@@ -19,38 +16,24 @@ from time import perf_counter
 import bgui
 import bpy
 from mathutils import Quaternion
+from stage import empty_scene, settle, unfold_alone
 
 FOLDER = Path(__file__).parent
 WALK = FOLDER / "walk.npz"
 UNTIL_DONE = 6000  # tenths of a second
 SIDE = (0.70, 0.66, 0.18, 0.20)
-OTHERS = ("reconstruct", "clean", "compare", "feet", "physics", "retarget", "library", "vary",
-          "perform")  # fmt: skip
 ARM, WRONG, CORRECTED = "rightUpperArm", range(8, 24), 15
 AWAY = Quaternion((0.0, 1.0, 0.0), 1.1)
-WATCHED = {"Trying": "1-looking.png", "Tracking": "1-tracking.png", "Judging": "1-last.png"}
+WATCHED = {"Trying": "1-looking.png", "Tracking": "1-tracking.png", "Measuring": "1-last.png"}
 MOST = 0.03
 """Seconds that a redraw may take."""
 
 
-def settle():
-    """Wait until everything is drawn."""
-    for _ in range(3):
-        bgui.redraw()
-        yield 0.5
-
-
 def prepare():
     """An empty scene with points of depth, and the panel Track alone."""
-    for each in list(bpy.data.objects):
-        bpy.data.objects.remove(each)
+    empty_scene()
     bpy.context.scene.render.fps = 30
-    for name in OTHERS:
-        bpy.utils.unregister_class(getattr(bpy.types, f"MOCAP_PT_{name}"))
-    panel = bpy.types.MOCAP_PT_track
-    bpy.utils.unregister_class(panel)
-    panel.bl_options = set()
-    bpy.utils.register_class(panel)
+    unfold_alone("track")
     yield from bgui.open_sidebar("Mocap")
     assert bpy.ops.mocap_assist.import_recording(filepath=str(WALK)) == {"FINISHED"}
     view = bgui.area().spaces.active.region_3d
@@ -79,6 +62,7 @@ def press(name, shots, stop=lambda job: False):
         if not job.running or stop(job):
             break
     assert len(frames) > 3, f"the scene went along to {sorted(frames)} alone"
+    assert not shots, f"these words were not told: {list(shots)}"
 
 
 def undo_and_redo(points):
@@ -116,7 +100,7 @@ def time_of_a_redraw(armature):
     view = bgui.area().spaces.active.region_3d
     began = perf_counter()
     for _ in range(20):
-        drawing.batch_of(overlay.body_now(armature, 15), view)
+        drawing.batch_of(overlay.body_at(armature, 15), view)
     return (perf_counter() - began) / 20
 
 

@@ -1,9 +1,6 @@
 """Press Vary in a Blender with a window, as an animator does; take pictures.
 
-    make extension-plain
-    BG_DEBS="python3-scipy python3-pil" BG_FILES="kicks" \
-        bash ../shared/tools/blender-gui.sh run dist/mocap_assist-0.1.0-plain.zip \
-        tests/gui/drive_vary.py build/gui/vary/vary.png
+    make test-gui DRIVERS=vary
 
 Runs inside that Blender; `bgui` comes with the tool. The folder `kicks` holds recordings of one
 behaviour of one actor, and is copied beside this script. At last 200 variants are made, and the
@@ -15,37 +12,16 @@ from time import monotonic
 
 import bgui
 import bpy
+from stage import empty_scene, settle, unfold_alone
 
 FOLDER = Path(__file__).parent
 KICKS = FOLDER / "kicks"
-OTHERS = (
-    "import", "reconstruct", "clean", "check", "compare", "feet", "physics", "markers",
-    "retarget", "library", "perform",
-)  # fmt: skip
 UNTIL_DONE = 2400  # looks
 LOOKS_AFTER = 10
 N_CROWD, N_MANY = 8, 200
 WHEEL_UP, WHEEL_DOWN = 4, 5
 TOP = (1152, 872)
 """Of the panel: scrolled from there, no list comes under the mouse, which it would scroll."""
-
-
-def settle(times=4):
-    """Wait until everything is drawn."""
-    for _ in range(times):
-        bgui.redraw()
-        yield 0.4
-
-
-def empty_scene():
-    for each in list(bpy.data.objects):
-        bpy.data.objects.remove(each)
-    for name in OTHERS:
-        bpy.utils.unregister_class(getattr(bpy.types, f"MOCAP_PT_{name}"))
-    panel = bpy.types.MOCAP_PT_vary
-    bpy.utils.unregister_class(panel)
-    panel.bl_options = set()
-    bpy.utils.register_class(panel)
 
 
 def bring():
@@ -72,6 +48,8 @@ def look_at(armature, distance):
 
 
 def press(text):
+    bgui.move(500, 500)  # else a slow scan begins with the button that was pressed last
+    yield 0.5
     yield from bgui.scan()
     yield from bgui.click(*bgui.at(text))
 
@@ -192,6 +170,7 @@ def many():
 
 def steps():
     empty_scene()
+    unfold_alone("vary")
     armature = bring()
     look_at(armature, 4.5)
     bgui.area().spaces.active.show_region_ui = True
@@ -204,4 +183,4 @@ def steps():
     yield from many()
 
 
-bgui.run(steps, timeout=560)
+bgui.run(steps, timeout=1200)

@@ -5,6 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...rotations import nearest_rotations
+
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
@@ -146,8 +148,6 @@ def fit_rigid_frames(positions: Array, weights: Array) -> tuple[Array, Array]:
     shape = offsets[len(offsets) // 2]
     for _ in range(N_FITS):
         spread = np.einsum("p,fpi,pj->fij", weights, offsets, shape)
-        left, _, right = np.linalg.svd(spread)
-        left[:, :, 2] *= np.linalg.det(left @ right)[:, None]
-        rotations = left @ right
+        rotations, _ = nearest_rotations(spread)
         shape = np.einsum("fij,fpi->pj", rotations, offsets) / len(offsets)
     return rotations, origins

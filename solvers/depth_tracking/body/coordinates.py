@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .tables import SEGMENTS, SIDES
+from .tables import SEGMENTS
 
 Array = NDArray[np.float64]
 
@@ -78,21 +78,3 @@ for _index, _row in enumerate(_ROWS):
 
 LOWER_LIMITS = np.array([*[-np.inf] * N_ROOT, *(row.lower for row in _ROWS)])
 UPPER_LIMITS = np.array([*[np.inf] * N_ROOT, *(row.upper for row in _ROWS)])
-
-
-def mirrored_coordinates() -> tuple[NDArray[np.intp], Array]:
-    """Return the source index and sign of each coordinate of the mirrored pose.
-
-    The mirror plane is x = 0 of the camera.
-    """
-    opposite = dict(zip(SIDES, reversed(SIDES), strict=True))
-    order, signs = [], []
-    for name in COORDINATES:
-        side = next((side for side in SIDES if name.startswith(side)), None)
-        mirrored = name if side is None else opposite[side] + name.removeprefix(side)
-        order.append(COORDINATES.index(mirrored))
-        is_mirrored_axis = side is None and (name[-1] in "YZ" or name in {"yaw", "roll"})
-        signs.append(
-            -1.0 if name == "rootX" or (is_mirrored_axis and name[:4] != "root") else 1.0
-        )
-    return np.array(order), np.array(signs)

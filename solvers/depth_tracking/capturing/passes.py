@@ -123,8 +123,7 @@ class TrackingContext:
         weights[:6] = 0.0
         prior = NextPose(detection.pose, weights, detection.pose)
         observation = observe(self.depth, frame, self.tracker.picture_width)
-        pose, quality, _ = track_frame(self.body, prior, observation, self.tracker)
-        return pose, quality
+        return track_frame(self.body, prior, observation, self.tracker)
 
 
 def track_with_restarts(
@@ -154,15 +153,13 @@ def track_with_restarts(
     scores = np.full(actor.depth.n_frames, np.nan)
     policy = _RestartPolicy(actor.recovery)
     trajectory: list[Array] = [] if start is None else [start]
-    restarts, previous = [], None
+    restarts = []
     for done, frame in enumerate(frames):
         observation = observe(actor.depth, frame, actor.tracker.picture_width)
         score, quality = np.nan, quality_without_actor()
         if trajectory and not observation.empty:
             prior = next_pose_prior(trajectory[-2:], actor.tracker, actor.motion_prior)
-            pose, quality, previous = track_frame(
-                actor.body, prior, observation, actor.tracker, previous
-            )
+            pose, quality = track_frame(actor.body, prior, observation, actor.tracker)
             score = quality.score
         elif trajectory:
             pose = trajectory[-1]
@@ -174,7 +171,7 @@ def track_with_restarts(
                 )
                 if trajectory:
                     restarts.append(frame)
-                pose, quality, trajectory, previous = unwrapped, detected[1], [], None
+                pose, quality, trajectory = unwrapped, detected[1], []
                 score = quality.score
                 policy.reset()
         if trajectory or np.isfinite(score):

@@ -11,6 +11,7 @@ from ...errors import InvalidMotionError
 from ...motion import Motion, Tracks
 from ...progress import Progress, unwatched, within
 from ...rotations import IDENTITY, inverse, multiply, slerp
+from ...signals import smoothstep
 from ..body import JOINTS, N_SEGMENTS, BodyModel, body_motion, motion_frames, pose_from_frames
 from ..forest import load_pixel_forest
 from ..terms import DEFAULT_TRACKER, TrackerSettings
@@ -229,7 +230,7 @@ def _blend_motion(old: Motion, new: Motion, first: int, frame: int, n_blend: int
         _ramp_weight(frames - first, frame - first, n_blend, first > 0),
         _ramp_weight(stop - 1 - frames, stop - 1 - frame, n_blend, stop < old.n_frames),
     )
-    proximity = _smoothstep(1.0 - np.abs(frames - frame) / (n_blend + 1.0))
+    proximity = smoothstep(1.0 - np.abs(frames - frame) / (n_blend + 1.0))
     fitted = new.rotations[frame - first, :N_SEGMENTS]
     residual_rotation = multiply(inverse(fitted), old.rotations[frame, :N_SEGMENTS])
     rotated = multiply(
@@ -251,10 +252,4 @@ def _ramp_weight(from_end: Array, length: int, n_blend: int, joins: bool) -> Arr
     """Return the weight of the new path: small at its end if it joins the previous motion."""
     if not joins:
         return np.ones(len(from_end))
-    return _smoothstep((from_end + 1.0) / (min(n_blend, length) + 1.0))
-
-
-def _smoothstep(fraction: Array) -> Array:
-    fraction = np.clip(fraction, 0.0, 1.0)
-    smooth: Array = fraction * fraction * (3.0 - 2.0 * fraction)
-    return smooth
+    return smoothstep((from_end + 1.0) / (min(n_blend, length) + 1.0))

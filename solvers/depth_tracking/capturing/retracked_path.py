@@ -90,13 +90,11 @@ def track_from_correction(
     progress : Progress
     """
     n_required = max(_MIN_AGREEING_FRAMES, round(settings.blend * actor.depth.frame_rate))
-    trajectory, cumulative_gains, n_agreeing, memory = [start], [0.0], 0, None
+    trajectory, cumulative_gains, n_agreeing = [start], [0.0], 0
     for done, frame in enumerate(frames, start=1):
         observation = observe(actor.depth, frame, actor.tracker.picture_width)
         prior = next_pose_prior(trajectory[-2:], actor.tracker, actor.motion_prior)
-        pose, quality, memory = track_frame(
-            actor.body, prior, observation, actor.tracker, memory
-        )
+        pose, quality = track_frame(actor.body, prior, observation, actor.tracker)
         previous = previous_pose(frame)
         gain = quality.score - measure_fit(actor, previous, frame).score + _SCORE_TOLERANCE
         trajectory.append(pose)

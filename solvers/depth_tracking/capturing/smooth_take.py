@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from ...signals import second_difference_bands
 from ..body import N_COORDINATES
 
 Array = NDArray[np.float64]
@@ -44,22 +45,8 @@ def smooth_take(
             bands[below, first + columns] = matrix[columns + below, columns]
     bands[0] += _MIN_WEIGHT
     right_side += _MIN_WEIGHT * poses
-    diagonal, first_band, second_band = _second_differences(n_frames)
-    bands[0] += np.outer(diagonal, stiffness).ravel()
-    bands[_FIRST_BAND] += np.outer(first_band, stiffness).ravel()
-    bands[_SECOND_BAND] += np.outer(second_band, stiffness).ravel()
+    upper = second_difference_bands(n_frames)
+    for band, lag in ((0, 0), (_FIRST_BAND, 1), (_SECOND_BAND, 2)):
+        bands[band] += np.outer(np.roll(upper[2 - lag], -lag), stiffness).ravel()
     solution: Array = solveh_banded(bands, right_side.ravel(), lower=True)
     return solution.reshape(n_frames, N_COORDINATES)
-
-
-def _second_differences(n_frames: int) -> tuple[Array, Array, Array]:
-    """Return the bands of D'D, D taking second differences: diagonal, first and second."""
-    diagonal, first, second = np.zeros(n_frames), np.zeros(n_frames), np.zeros(n_frames)
-    if n_frames >= 3:
-        diagonal[:-2] += 1.0
-        diagonal[1:-1] += 4.0
-        diagonal[2:] += 1.0
-        first[:-2] -= 2.0
-        first[1:-1] -= 2.0
-        second[:-2] += 1.0
-    return diagonal, first, second

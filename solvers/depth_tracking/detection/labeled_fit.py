@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from ...rotations import nearest_rotations
 from ..body import (
     CAPSULE_SEGMENTS,
     COORDINATES,
@@ -47,12 +48,7 @@ TRUNK_PARTS = ("hips", "spine", "chest", "neck", "head", "Shoulder", "UpperArm")
 
 
 def first_pose(body: BodyModel, parts: FoundParts) -> Array:
-    """Return the pose (36,) at rest, aligned to the trunk parts by the Kabsch algorithm [1]_.
-
-    References
-    ----------
-    .. [1] Kabsch (1976). A solution for the best rotation to relate two sets of vectors.
-    """
+    """Return the pose (36,) at rest, aligned to the trunk parts by least squares."""
     trunk = np.array([part.endswith(TRUNK_PARTS) for part in PARTS])
     observed = np.flatnonzero(trunk & (parts.weights > 0.0))
     if len(observed) < 4:
@@ -64,11 +60,10 @@ def first_pose(body: BodyModel, parts: FoundParts) -> Array:
         parts.weights[observed] / parts.weights[observed].sum(),
     )
     start, stop = weights @ rest, weights @ targets
-    left, _, right = np.linalg.svd(
+    inverse_rotation, _ = nearest_rotations(
         (rest - start).T @ ((targets - stop) * weights[:, np.newaxis])
     )
-    determinant_sign = np.sign(np.linalg.det(left @ right))
-    rotation = (left * [1.0, 1.0, determinant_sign] @ right).T
+    rotation = inverse_rotation.T
     pose[:3] = stop - rotation @ start
     for name, angle in zip(("yaw", "roll", "pitch"), _root_angles(rotation), strict=True):
         pose[COORDINATES.index(name)] = angle

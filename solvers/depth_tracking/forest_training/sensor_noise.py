@@ -43,9 +43,6 @@ class SensorNoiseSettings(Settings):
     )  # fmt: skip
 
 
-NO_NOISE = SensorNoiseSettings(
-    jitter=0.0, disparity=0.0, step=0.0, baseline=0.0, edge_holes=0.0, holes=0.0
-)
 EDGE_STEP_M = 0.05
 """Depth step between neighbors at an occlusion."""
 

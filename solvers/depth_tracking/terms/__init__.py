@@ -5,19 +5,15 @@ from .depth_image import depth_image_term
 from .free_space import off_actor_term
 from .hypothesis import Hypothesis, capsule_offsets, render_hypothesis
 from .likelihood import REFERENCE_AREA_M2, likelihood_rows, pixel_area
-from .observation import Observation, observe
+from .observation import Observation, observe, subsampling_step
 from .pixel_groups import group_pixels
-from .surface import PreviousFrame
-from .tracker_settings import DEFAULT_TRACKER, LOU12, WZC12, TrackerSettings
+from .tracker_settings import DEFAULT_TRACKER, TrackerSettings
 
 __all__ = [
     "DEFAULT_TRACKER",
-    "LOU12",
     "REFERENCE_AREA_M2",
-    "WZC12",
     "Hypothesis",
     "Observation",
-    "PreviousFrame",
     "TrackerSettings",
     "capsule_offsets",
     "closest_surface_term",
@@ -28,4 +24,5 @@ __all__ = [
     "off_actor_term",
     "pixel_area",
     "render_hypothesis",
+    "subsampling_step",
 ]

@@ -5,15 +5,12 @@ from collections.abc import Callable
 from ..body import SurfaceRows, concatenate_rows
 from .closest_surface import closest_surface_term
 from .depth_image import depth_image_term
-from .edges import edge_term
 from .extra_depth import extra_depth_term
 from .free_space import off_actor_term, too_near_term
 from .hypothesis import Hypothesis
 from .observation import Observation
-from .overlap import separation_term
 from .pixel_groups import group_pixels
 from .silhouette import silhouette_term
-from .surface import PreviousFrame, surface_term
 from .tracker_settings import TrackerSettings
 
 POINT_STEP = 2
@@ -26,7 +23,6 @@ def likelihood_rows(
     hypothesis: Hypothesis,
     observation: Observation,
     settings: TrackerSettings,
-    memory: PreviousFrame | None = None,
 ) -> SurfaceRows:
     """Return the rows of all terms with a positive weight.
 
@@ -35,8 +31,6 @@ def likelihood_rows(
     hypothesis : Hypothesis
     observation : Observation
     settings : TrackerSettings
-    memory : PreviousFrame, optional
-        The previous frame, for the colors of `surface_term`.
     """
     groups = group_pixels(hypothesis, observation, settings.limit)
     area = pixel_area(observation) / REFERENCE_AREA_M2
@@ -49,15 +43,10 @@ def likelihood_rows(
         (settings.closest_weight,
          lambda w: closest_surface_term(
              hypothesis, observation.points[::POINT_STEP], POINT_STEP * w, scale)),
-        (settings.surface_weight, lambda w: surface_term(*both, memory, w)),
-        (settings.edge_weight, lambda w: edge_term(*both, w)),
         (settings.off_actor_weight, lambda w: off_actor_term(*both, groups, w, scale)),
         (settings.too_near_weight, lambda w: too_near_term(*both, groups, w, scale)),
     )  # fmt: skip
-    rows = [term(area * weight) for weight, term in terms if weight > 0.0]
-    if settings.apart_weight > 0.0:
-        rows.append(separation_term(hypothesis, settings.apart_weight))
-    return concatenate_rows(rows)
+    return concatenate_rows([term(area * weight) for weight, term in terms if weight > 0.0])
 
 
 def pixel_area(observation: Observation) -> float:

@@ -1,6 +1,5 @@
 """The observed actor in one frame, at one resolution."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -11,7 +10,6 @@ from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
 from ...depth_scene import Camera, DepthRecording
-from .depth_edges import edge_pixels
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
@@ -28,19 +26,10 @@ class Observation:
     ----------
     camera : Camera
     depth : shape (height, width), meters
-    read_color : callable, or None
-        Returns the colors of the pixels, as in `color`. Only terms that compare colors read
-        them, so other terms do not depend on damaged or slow color files.
     """
 
     camera: Camera
     depth: Array
-    read_color: Callable[[], Array | None] | None = None
-
-    @cached_property
-    def color(self) -> Array | None:
-        """Colors of the pixels, shape (height, width, 3), 0 to 255; None where unknown."""
-        return None if self.read_color is None else self.read_color()
 
     @cached_property
     def flat(self) -> Array:
@@ -89,19 +78,6 @@ class Observation:
         pixels: Integers = (rows.astype(np.intp) * self.camera.width + columns).ravel()
         return pixels
 
-    @cached_property
-    def intensities(self) -> Array:
-        """Brightness of all pixels, 0 to 255, shape (height * width,); NaN without color."""
-        if self.color is None:
-            return np.full(self.flat.shape, np.nan)
-        gray: Array = self.color.mean(axis=2).ravel()
-        return gray
-
-    @cached_property
-    def edges(self) -> Integers:
-        """Pixels of the actor at depth edges, shape (n,)."""
-        return edge_pixels(self.depth, self.nearest_pixel)
-
     def points_at(self, pixels: Integers) -> Array:
         """Return the observed points (n, 3), meters, at pixels (n,)."""
         rays = rays_through_pixels(self.camera, pixels)
@@ -111,22 +87,18 @@ class Observation:
         """Return every `step`-th column and row."""
         if step == 1:
             return self
-
-        def read_color() -> Array | None:
-            return None if self.color is None else self.color[::step, ::step]
-
-        return Observation(self.camera.every(step), self.depth[::step, ::step], read_color)
+        return Observation(self.camera.every(step), self.depth[::step, ::step])
 
 
 def observe(depth: DepthRecording, frame: int, picture_width: int) -> Observation:
     """Return the observation of a frame, subsampled to about `picture_width` columns."""
+    full = Observation(depth.camera, depth.frame(frame).astype(np.float64))
+    return full.every(subsampling_step(depth.camera, picture_width))
 
-    def read_color() -> Array | None:
-        color = depth.color(frame)
-        return None if color is None else color.astype(np.float64)
 
-    full = Observation(depth.camera, depth.frame(frame).astype(np.float64), read_color)
-    return full.every(max(1, round(depth.camera.width / picture_width)))
+def subsampling_step(camera: Camera, picture_width: int) -> int:
+    """Return the step in columns and rows that leaves about `picture_width` columns."""
+    return max(1, round(camera.width / picture_width))
 
 
 def rays_through_pixels(camera: Camera, pixels: Integers) -> Array:

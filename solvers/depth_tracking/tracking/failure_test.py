@@ -39,7 +39,7 @@ def failure_features(quality: FitQuality) -> Array:
 def failure_probability(quality: FitQuality) -> float:
     """Return the probability that the mean joint error of a pose exceeds 10 cm.
 
-    A logistic regression; `.ci/learn_failures.py` fits the weights, with ground truth.
+    A logistic regression; `tests/training/learn_failures.py` fits the weights, with truth.
     """
     odds = float(failure_features(quality) @ LEARNED_WEIGHTS) + LEARNED_BIAS
     return float(1.0 / (1.0 + np.exp(-odds)))

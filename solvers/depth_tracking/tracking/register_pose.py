@@ -10,6 +10,7 @@ from ..body import (
     N_COORDINATES,
     BodyModel,
     PoseEquations,
+    SurfaceRows,
     equations_in_coordinates,
     joint_limits,
     natural_stance,
@@ -21,7 +22,6 @@ from ..terms import (
     DEFAULT_TRACKER,
     Hypothesis,
     Observation,
-    PreviousFrame,
     TrackerSettings,
     likelihood_rows,
     render_hypothesis,
@@ -29,6 +29,7 @@ from ..terms import (
 
 Array = NDArray[np.float64]
 Prior = Callable[[Array], PoseEquations]
+Likelihood = Callable[[Hypothesis, Observation, TrackerSettings], SurfaceRows]
 
 _MIN_STEP = 1e-3
 """A shorter step, radians or meters, ends the search."""
@@ -66,7 +67,7 @@ def register_pose(
     observation: Observation,
     prior: Prior,
     settings: TrackerSettings = DEFAULT_TRACKER,
-    memory: PreviousFrame | None = None,
+    likelihood: Likelihood = likelihood_rows,
 ) -> Registered:
     """Return the most probable pose near `pose`.
 
@@ -84,8 +85,8 @@ def register_pose(
     prior : callable
         Maps a pose to its prior equations.
     settings : TrackerSettings
-    memory : PreviousFrame, optional
-        The previous frame with its colors.
+    likelihood : callable
+        Returns the weighted rows of the image terms of a hypothesis.
 
     References
     ----------
@@ -95,9 +96,9 @@ def register_pose(
     coarse = min(settings.coarse_iterations, settings.iterations - 1)
     half = observation.every(2)
     if coarse and not half.empty:
-        objective = _Objective(body, half, prior, settings, memory)
+        objective = _Objective(body, half, prior, settings, likelihood)
         pose = _descend(objective, pose, coarse).pose
-    objective = _Objective(body, observation, prior, settings, memory)
+    objective = _Objective(body, observation, prior, settings, likelihood)
     registered = _descend(objective, pose, settings.iterations - coarse)
     return replace(registered, iterations=registered.iterations + coarse)
 
@@ -110,12 +111,12 @@ class _Objective:
     observation: Observation
     prior: Prior
     settings: TrackerSettings
-    memory: PreviousFrame | None
+    likelihood: Likelihood
 
     def evaluate(self, pose: Array) -> Registered:
         """Return the equations of likelihood, prior and joint limits at a pose."""
         hypothesis = render_hypothesis(self.body, pose, self.observation.camera)
-        rows = likelihood_rows(hypothesis, self.observation, self.settings, self.memory)
+        rows = self.likelihood(hypothesis, self.observation, self.settings)
         equations = [
             equations_in_coordinates([segment_equations(rows)], hypothesis.twists),
             self.prior(pose),

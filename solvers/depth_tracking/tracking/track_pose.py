@@ -23,9 +23,9 @@ from ..body import (
     stay_near,
     sum_equations,
 )
-from ..terms import DEFAULT_TRACKER, Observation, PreviousFrame, TrackerSettings, observe
+from ..terms import DEFAULT_TRACKER, Observation, TrackerSettings, likelihood_rows, observe
 from .fit_quality import FitQuality, fit_quality, quality_without_actor
-from .register_pose import register_pose
+from .register_pose import Likelihood, register_pose
 
 Array = NDArray[np.float64]
 
@@ -91,18 +91,23 @@ def track_pose(
     SolveCancelled
         Raised by `progress`.
     """
-    pose = np.asarray(initial_pose, dtype=np.float64)
-    if pose.shape != (N_COORDINATES,) or not np.isfinite(pose).all():
-        raise InvalidMotionError(f"A pose needs {N_COORDINATES} finite coordinates.")
-    poses, qualities, memory = [pose], [], None
+    poses, qualities = [checked_pose(initial_pose)], []
     for frame in range(depth.n_frames):
         observation = observe(depth, frame, settings.picture_width)
         prior = next_pose_prior(poses[1:] or poses, settings, motion_prior)
-        pose, quality, memory = track_frame(body, prior, observation, settings, memory)
+        pose, quality = track_frame(body, prior, observation, settings)
         poses.append(pose)
         qualities.append(quality)
         progress((frame + 1) / depth.n_frames, "Tracking")
     return assemble_motion(body, np.array(poses[1:]), qualities, depth.frame_rate)
+
+
+def checked_pose(pose: Array) -> Array:
+    """Return a pose (36,) in float64; refuse a wrong shape and NaN."""
+    pose = np.asarray(pose, dtype=np.float64)
+    if pose.shape != (N_COORDINATES,) or not np.isfinite(pose).all():
+        raise InvalidMotionError(f"A pose needs {N_COORDINATES} finite coordinates.")
+    return pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,18 +156,17 @@ def track_frame(
     prior: NextPose,
     observation: Observation,
     settings: TrackerSettings,
-    memory: PreviousFrame | None = None,
-) -> tuple[Array, FitQuality, PreviousFrame | None]:
+    likelihood: Likelihood = likelihood_rows,
+) -> tuple[Array, FitQuality]:
     """Track one frame, starting near the expected pose.
 
-    Returns the pose (36,), its fit quality, and the data that the next frame needs.
+    Returns the pose (36,) and its fit quality.
     """
     if observation.empty:
-        return prior.expected, quality_without_actor(), None
+        return prior.expected, quality_without_actor()
     start = prior.expected if settings.start_ahead else prior.last
-    registered = register_pose(body, start, observation, prior, settings, memory)
-    quality = fit_quality(body, registered, observation, settings.limit)
-    return registered.pose, quality, PreviousFrame(registered.hypothesis.frames, observation)
+    registered = register_pose(body, start, observation, prior, settings, likelihood)
+    return registered.pose, fit_quality(body, registered, observation, settings.limit)
 
 
 def assemble_motion(

@@ -4,10 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, label
+from scipy.ndimage import label
 
 from ...errors import InvalidMotionError
 from ...settings import Settings, setting
+from ...signals import smooth_gaussian
 from ..skeletons import Motion, Skeleton, forward_kinematics, linear_velocities
 from .roles import HumanoidMap, find_humanoid_map
 
@@ -176,8 +177,8 @@ def _smoothed(positions: NDArray[np.float64], sigma: float) -> NDArray[np.float6
     if sigma <= 0.0:
         return positions
     observed = np.isfinite(positions)
-    total = gaussian_filter1d(np.where(observed, positions, 0.0), sigma, axis=0, mode="nearest")
-    weight = gaussian_filter1d(observed.astype(float), sigma, axis=0, mode="nearest")
+    total = smooth_gaussian(np.where(observed, positions, 0.0), sigma)
+    weight = smooth_gaussian(observed.astype(float), sigma)
     return np.asarray(np.where(observed, total / np.maximum(weight, 1e-12), np.nan))
 
 

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...rotations import inverse, multiply, quaternion_from_rotation_vector, rotate
+from ...signals import smoothstep
 from ..skeletons import Skeleton
 
 Array = NDArray[np.float64]
@@ -36,8 +37,8 @@ def with_palms_down(alignment: Array, skeleton: Skeleton, joints: dict[str, int]
     if left is None or right is None:
         return alignment
     difference = (right - left + np.pi) % (2.0 * np.pi) - np.pi
-    fraction = _smoothstep(min(abs(left), abs(right)), MIN_PALM_ROLL_RAD, MAX_PALM_ROLL_RAD)
-    fraction *= 1.0 - _smoothstep(abs(difference), *PALM_ROLL_DIFFERENCE_RAD)
+    fraction = smoothstep(min(abs(left), abs(right)), MIN_PALM_ROLL_RAD, MAX_PALM_ROLL_RAD)
+    fraction *= 1.0 - smoothstep(abs(difference), *PALM_ROLL_DIFFERENCE_RAD)
     if fraction == 0.0:
         return alignment
     result, roll = alignment.copy(), fraction * (left + 0.5 * difference)
@@ -66,9 +67,3 @@ def _roll(
     rest = skeleton.rest_positions
     backwards = rotate(inverse(alignment[hand]), rest[other] - rest[index])
     return float(np.arctan2(backwards[2], backwards[1]))
-
-
-def _smoothstep(value: float, start: float, stop: float) -> float:
-    """Return 0 up to `start`, 1 from `stop`, and a smooth transition between them."""
-    fraction = float(np.clip((value - start) / (stop - start), 0.0, 1.0))
-    return fraction * fraction * (3.0 - 2.0 * fraction)

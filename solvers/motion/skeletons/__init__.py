@@ -2,7 +2,7 @@
 
 from .depth_sensors import SENSOR_JOINTS, UI_PRMD, Sensor, joint_parents, rest_direction
 from .frame_rate import check_frame_rate
-from .joint_limits import ROTATION_VECTOR, JointLimits, load_joint_limits
+from .joint_limits import ROTATION_VECTOR, JointLimits
 from .joint_recording import INFERRED, TRACKED, JointRecording
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
 from .limb_ik import ReachSettings, reach
@@ -12,7 +12,7 @@ from .resampling import resample
 from .shot_boundaries import describe_shots, find_shot_boundaries, is_short_shot, shot_ranges
 from .skeleton import Skeleton
 from .tracks import Tracks
-from .velocities import angular_velocities, linear_velocities
+from .velocities import linear_velocities
 from .warping import Alignment, warp
 
 __all__ = [
@@ -33,7 +33,6 @@ __all__ = [
     "Skeleton",
     "Tracks",
     "WorldPoses",
-    "angular_velocities",
     "check_frame_rate",
     "describe_shots",
     "find_shot_boundaries",
@@ -41,7 +40,6 @@ __all__ = [
     "is_short_shot",
     "joint_parents",
     "linear_velocities",
-    "load_joint_limits",
     "local_rotations",
     "reach",
     "resample",

@@ -1,32 +1,14 @@
 """Limits of joint rotations, as boxes of angles."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...archives import ArchiveLayout
 from ...errors import InvalidMotionError
-from ...npz_members import flags, numbers, words
 
 Array = NDArray[np.float64]
 
-LAYOUT = ArchiveLayout(
-    "joint limits",
-    1,
-    {
-        "names": words("limits"),
-        "by_role": flags("limits"),
-        "left": numbers("limits", 4),
-        "right": numbers("limits", 4),
-        "orders": words("limits"),
-        "lower": numbers("limits", 3, finite=False),
-        "upper": numbers("limits", 3, finite=False),
-    },
-    holds="damaged joint limits",
-    remedy="Learn them again.",
-)
 ROTATION_VECTOR = ""
 EULER_ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 
@@ -89,37 +71,3 @@ class JointLimits:
             raise InvalidMotionError(
                 f"The lower limit must not exceed the upper one: {', '.join(names)}."
             )
-
-    def save(self, path: Path | str) -> None:
-        """Write to an archive that `load_joint_limits` reads."""
-        arrays = {
-            name: getattr(self, name) for name in ("by_role", "left", "right", "lower", "upper")
-        }
-        text = {
-            "names": np.array(self.names, dtype=str),
-            "orders": np.array(self.orders, dtype=str),
-        }
-        LAYOUT.write(path, {**arrays, **text})
-
-
-def load_joint_limits(path: Path | str) -> JointLimits:
-    """Read joint limits from an archive that `JointLimits.save` wrote.
-
-    Raises
-    ------
-    InvalidFileError
-        The file is missing, damaged, or not an archive of joint limits.
-    """
-    saved = LAYOUT.read(path)
-    try:
-        return JointLimits(
-            names=tuple(saved["names"].tolist()),
-            by_role=saved["by_role"],
-            left=saved["left"],
-            right=saved["right"],
-            orders=tuple(saved["orders"].tolist()),
-            lower=saved["lower"],
-            upper=saved["upper"],
-        )
-    except InvalidMotionError as error:
-        raise LAYOUT.damaged(path, str(error).removesuffix(".")) from None

@@ -14,6 +14,7 @@ from ...rotations import (
     rotation_between,
 )
 from ...settings import Settings, setting
+from ...signals import smoothstep
 from .kinematics import WorldPoses, forward_kinematics
 from .motion import Motion
 from .skeleton import Skeleton
@@ -153,12 +154,7 @@ def _hinge_rotation(
         np.einsum("fi,fi->f", np.cross(level, normal), along),
         np.einsum("fi,fi->f", level, normal),
     )
-    reliability = np.clip(
-        (before - MIN_PLANE_FLEXION_RAD) / (RELIABLE_PLANE_FLEXION_RAD - MIN_PLANE_FLEXION_RAD),
-        0.0,
-        1.0,
-    )
-    reliability = reliability * reliability * (3.0 - 2.0 * reliability)
+    reliability = smoothstep(before, MIN_PLANE_FLEXION_RAD, RELIABLE_PLANE_FLEXION_RAD)
     fraction = np.minimum(before / np.maximum(after, 1e-12), 1.0) ** 2
     roll = (reliability + (1.0 - reliability) * fraction) * roll_angle
     new_normal = rotate(quaternion_from_rotation_vector(roll[:, None] * along), level)

@@ -14,6 +14,7 @@ from ...motion.humanoid import (
     SPINE,
     positions_from_directions,
 )
+from ...rotations import nearest_rotations
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -134,9 +135,7 @@ def bone_axis_corrections(
         covariance = np.einsum(
             "f,fi,fj->ij", weight[is_known], observed_local[is_known], library_local[is_known]
         )
-        u, _, v = np.linalg.svd(covariance + HALF_WEIGHT_COUNT * np.eye(3))
-        flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ v))])
-        corrections[bone] = u @ flip @ v
+        corrections[bone], _ = nearest_rotations(covariance + HALF_WEIGHT_COUNT * np.eye(3))
     return corrections
 
 

@@ -1,13 +1,24 @@
 """Missing joints completed from a library of poses, weighted by reliability."""
 
 from .bridge_gaps import blend_short_gaps
+from .complete_postures import (
+    MODEL_ERROR_M,
+    CompletedPostures,
+    ObservedTake,
+    confidence_from_deviation,
+    synthesize,
+)
 from .reconstruct_postures import complete_joints, reconstruct_postures
-from .settings import PostureMethod, PostureSettings
+from .settings import PostureSettings
 
 __all__ = [
-    "PostureMethod",
+    "MODEL_ERROR_M",
+    "CompletedPostures",
+    "ObservedTake",
     "PostureSettings",
     "blend_short_gaps",
     "complete_joints",
+    "confidence_from_deviation",
     "reconstruct_postures",
+    "synthesize",
 ]

@@ -1,14 +1,15 @@
 """Complete poses from a pose library where joints are missing."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
-from ...motion.humanoid import HIPS, NormalizedPostures, rates_from_directions
+from ...motion.humanoid import HIPS, rates_from_directions
 from ...progress import Progress, within
+from ...signals import smooth_gaussian
 from ..joint_rotations import (
     N_TWISTED_LIMBS,
     BodyPostures,
@@ -25,7 +26,6 @@ from ..pose_library import (
     nearest_postures,
 )
 from ..pose_space import EnergyTargets, PostureSpaces, local_pca
-from ..published import search_sequentially
 from .constrain_lengths import constrain_lengths
 from .cross_validation import SynthesisErrors, cross_validate_limbs
 from .probable_posture import probable_postures
@@ -35,7 +35,7 @@ from .residual_smoother import (
     measurement_deviation,
     smooth_residuals,
 )
-from .settings import PostureMethod, PostureSettings
+from .settings import PostureSettings
 
 Array = NDArray[np.float64]
 
@@ -55,17 +55,28 @@ CORRECTION_ROUNDS = 2
 
 
 class CompletedPostures(NamedTuple):
-    """Poses, shape (n_frames, 20, 3), the confidence of each joint, and limb twists."""
+    """Poses, shape (n_frames, 20, 3), the confidence of each joint, and how they were found."""
 
     postures: Array
     confidence: Array
     twists: LimbTwists | None
     """None if the library has no twists."""
+    method: str = "most probable postures"
 
 
 @dataclass(frozen=True, eq=False)
-class _ObservedTake:
-    """Observations of a take: joints relative to the observed hips, and their reliability."""
+class ObservedTake:
+    """Observations of a take.
+
+    Attributes
+    ----------
+    postures : shape (n_frames, 20, 3), meters
+        Relative to the observed hips.
+    reliability : shape (n_frames, 20)
+        0 where a joint is missing.
+    frame_rate : float, hertz
+    lengths : shape (20,), meters
+    """
 
     postures: Array
     reliability: Array
@@ -73,31 +84,19 @@ class _ObservedTake:
     lengths: Array
 
 
-def complete_postures(
-    observed: NormalizedPostures,
-    reliability: Array,
-    frame_rate: float,
-    lengths: Array,
-    library: PostureLibrary,
-    settings: PostureSettings,
-    progress: Progress,
-) -> CompletedPostures:
-    """Complete the poses of a take from a library.
+Completer = Callable[
+    [ObservedTake, PostureLibrary, PostureSettings, Progress], CompletedPostures
+]
+"""Function that completes the poses of a take from a library."""
+Chooser = Callable[[PostureSpaces, EnergyTargets, Array | None], Array]
+"""Function from pose spaces, targets and the last two poses to poses."""
 
-    Parameters
-    ----------
-    observed : Normalised
-    reliability : shape (n_frames, 20)
-        0 where a joint is missing.
-    frame_rate : float, hertz
-    lengths : shape (20,), meters
-    library : PostureLibrary
-    settings : PostureSettings
-    progress : Progress
-    """
-    take = _ObservedTake(observed.postures, reliability, frame_rate, lengths)
-    if settings.method is PostureMethod.PUBLISHED:
-        return _search_as_published(take, library, settings, progress)
+
+def complete_postures(
+    take: ObservedTake, library: PostureLibrary, settings: PostureSettings, progress: Progress
+) -> CompletedPostures:
+    """Complete the poses of a take with the most probable poses of a library."""
+    reliability, frame_rate, lengths = take.reliability, take.frame_rate, take.lengths
     body = _fit_library_to_actor(take, library, settings)
     index = index_postures(body, library.groups)
     errors = _measure_errors(take, body, index, settings)
@@ -107,7 +106,7 @@ def complete_postures(
     targets, given = take.postures, _ramp_reliability(take, settings)
     for number in range(rounds):
         part = within(progress, number / rounds, (number + 1) / rounds)
-        chosen, twists = _synthesize(
+        chosen, twists = synthesize(
             replace(take, postures=targets, reliability=given), body, index, settings, part
         )
         residuals = take.postures - offset - chosen.values
@@ -120,32 +119,14 @@ def complete_postures(
             given = np.maximum(given, reused)
     spread_ratio = corrected.spread / errors.size
     spread = spread_ratio * np.hypot(chosen.spread, MODEL_ERROR_M)
-    uncertainty = np.hypot(settings.noise, spread)
-    confidence = 1.0 / (1.0 + (uncertainty / HALF_CONFIDENCE_M) ** 2)
+    confidence = confidence_from_deviation(np.hypot(settings.noise, spread))
     postures = corrected.values + errors.offset
     postures = constrain_lengths(postures, lengths, reliability, confidence)
     return CompletedPostures(postures + offset, confidence, twists)
 
 
-def _search_as_published(
-    take: _ObservedTake, library: PostureLibrary, settings: PostureSettings, progress: Progress
-) -> CompletedPostures:
-    """Search each frame's pose starting from the frame before, without further steps."""
-    body = replace(
-        build_body_postures(library.directions, library.changes, take.lengths),
-        twists=library.twists,
-    )
-    causal_settings = replace(settings, causal=True, pace=0.0, smoothing=0.0)
-    index = index_postures(body, library.groups)
-    chosen, twists = _synthesize(take, body, index, causal_settings, progress)
-    uncertainty = np.hypot(chosen.spread, MODEL_ERROR_M)
-    confidence = 1.0 / (1.0 + (uncertainty / HALF_CONFIDENCE_M) ** 2)
-    twists = twists and replace(twists, ignore_flexion=True)
-    return CompletedPostures(chosen.values, confidence, twists)
-
-
 def _fit_library_to_actor(
-    take: _ObservedTake, library: PostureLibrary, settings: PostureSettings
+    take: ObservedTake, library: PostureLibrary, settings: PostureSettings
 ) -> BodyPostures:
     """Fit the library to the actor's size and to the tracker's definition of joints."""
     directions, changes, lengths = library.directions, library.changes, take.lengths
@@ -170,14 +151,14 @@ def _fit_library_to_actor(
     return replace(body, twists=library.twists)
 
 
-def _speeds(take: _ObservedTake, settings: PostureSettings) -> Array:
+def _speeds(take: ObservedTake, settings: PostureSettings) -> Array:
     """Return the velocities of bones; NaN if causal, since they need later frames."""
     speeds = rates_from_directions(take.postures, take.frame_rate)
     return np.full_like(speeds, np.nan) if settings.causal else speeds
 
 
 def _measure_errors(
-    take: _ObservedTake, body: BodyPostures, index: PostureIndex, settings: PostureSettings
+    take: ObservedTake, body: BodyPostures, index: PostureIndex, settings: PostureSettings
 ) -> SynthesisErrors:
     """Estimate the errors of unobserved limbs by cross-validation."""
     speeds = _speeds(take, settings)
@@ -193,7 +174,7 @@ def _measure_errors(
     return cross_validate_limbs(take.postures, take.reliability, synthesize)
 
 
-def _ramp_reliability(take: _ObservedTake, settings: PostureSettings) -> Array:
+def _ramp_reliability(take: ObservedTake, settings: PostureSettings) -> Array:
     """Ramp reliability down before and up after a dropout; only up in causal mode."""
     reliability = take.reliability
     n_ramp = round(RAMP_S * take.frame_rate)
@@ -210,14 +191,15 @@ def _ramp_reliability(take: _ObservedTake, settings: PostureSettings) -> Array:
     return ramped
 
 
-def _synthesize(
-    take: _ObservedTake,
+def synthesize(
+    take: ObservedTake,
     body: BodyPostures,
     index: PostureIndex,
     settings: PostureSettings,
     progress: Progress,
+    choose: Chooser | None = None,
 ) -> tuple[Estimates, LimbTwists | None]:
-    """Choose a pose for each frame, and the twist of its limbs.
+    """Choose a pose for each frame, the most probable one by default, and its limbs' twist.
 
     The spread of the result is the standard deviation of each joint in its pose space.
     """
@@ -235,7 +217,7 @@ def _synthesize(
         reliability, near = take.reliability[part], spaces.neighbors
         targets = EnergyTargets(take.postures[part], reliability, near, take.lengths)
         probable, spread[part] = probable_postures(spaces, targets)
-        values[part] = _choose_postures(spaces, targets, probable, settings, last)
+        values[part] = choose(spaces, targets, last) if choose else probable
         if body.twists is not None:
             similar = body.twists[indices[part]]
             twists[part] = mean_twists(similar, values[part], near, reliability)
@@ -243,20 +225,13 @@ def _synthesize(
         progress(0.4 + 0.6 * part.stop / len(values), "Synthesizing poses")
     if settings.smoothing and not settings.causal:
         width = settings.smoothing * take.frame_rate
-        values = gaussian_filter1d(values, width, axis=0, mode="nearest")
+        values = smooth_gaussian(values, width)
     return Estimates(values, spread), None if body.twists is None else LimbTwists(twists)
 
 
-def _choose_postures(
-    spaces: PostureSpaces,
-    targets: EnergyTargets,
-    probable: Array,
-    settings: PostureSettings,
-    last: Array | None,
-) -> Array:
-    if settings.method is PostureMethod.PUBLISHED:
-        return search_sequentially(spaces, targets, settings.seed, last)[0]
-    return probable
+def confidence_from_deviation(deviation: Array) -> Array:
+    """Return the confidence of joints from their standard deviations, meters."""
+    return np.asarray(1.0 / (1.0 + (deviation / HALF_CONFIDENCE_M) ** 2))
 
 
 def _hips_offset(
@@ -273,16 +248,14 @@ def _hips_offset(
     is_observed = np.isfinite(residuals[:, HIPS, :1])
     displacement *= 1.0 - np.where(is_observed, reliability[:, [HIPS]], 0.0)
     if settings.smoothing and not settings.causal:
-        displacement = gaussian_filter1d(
-            displacement, settings.smoothing * frame_rate, axis=0, mode="nearest"
-        )
+        displacement = smooth_gaussian(displacement, settings.smoothing * frame_rate)
     return np.asarray(displacement[:, None])
 
 
 def _add_residuals(
     chosen: Estimates,
     observed: Array,
-    take: _ObservedTake,
+    take: ObservedTake,
     size: Array,
     settings: PostureSettings,
 ) -> Estimates:

@@ -24,8 +24,8 @@ from ..joint_rotations import (
 )
 from ..pose_library import PostureLibrary, load_posture_library
 from ..reliability import Reliability, measure_reliability, posture_reliability
-from .complete_postures import complete_postures
-from .settings import DEFAULT_SETTINGS, PostureMethod, PostureSettings
+from .complete_postures import Completer, ObservedTake, complete_postures
+from .settings import DEFAULT_SETTINGS, PostureSettings
 
 Array = NDArray[np.float64]
 
@@ -48,6 +48,7 @@ def reconstruct_postures(
     *,
     settings: PostureSettings = DEFAULT_SETTINGS,
     reliability: Reliability | None = None,
+    complete: Completer = complete_postures,
     progress: Progress = unwatched,
 ) -> Reconstruction:
     """Reconstruct unreliable and missing joints from a library of clean poses [1]_.
@@ -67,6 +68,8 @@ def reconstruct_postures(
     settings : PostureSettings
     reliability : Reliability, optional
         Computed by `measure_reliability` by default.
+    complete : callable
+        Completes the poses; by default with the most probable ones.
     progress : Progress
 
     Returns
@@ -91,7 +94,12 @@ def reconstruct_postures(
     if reliability is None:
         reliability = measure_reliability(recording, progress=within(progress, 0.0, 0.1))
     rebuilt = complete_joints(
-        recording, postures, reliability.combined, settings, within(progress, 0.1, 0.9)
+        recording,
+        postures,
+        reliability.combined,
+        settings,
+        within(progress, 0.1, 0.9),
+        complete,
     )
     motion = motion_from_positions(
         rebuilt.tracks, recording.parents, reliability.combined, twists=rebuilt.twists
@@ -108,6 +116,7 @@ def complete_joints(
     combined: Array,
     settings: PostureSettings,
     progress: Progress,
+    complete: Completer = complete_postures,
 ) -> CompletedJoints:
     """Complete unreliable and missing joints: `reconstruct_postures` without a motion.
 
@@ -121,14 +130,15 @@ def complete_joints(
     rate = recording.frame_rate
     body = normalize_postures(positions, rate, reliability, ahead=not settings.causal)
     lengths = estimate_bone_lengths(body.postures, reliability)
-    completed = complete_postures(body, reliability, rate, lengths, library, settings, progress)
+    take = ObservedTake(body.postures, reliability, rate, lengths)
+    completed = complete(take, library, settings, progress)
     tracks = recording.tracks
     world_positions = body.to_world(completed.postures)
     joints = positions_from_postures(
         tracks.names, tracks.positions, combined, positions, world_positions
     )
     confidence = completed.confidence[:, find_anchors(tracks.names)]
-    description = _describe_method(settings, library)
+    description = _describe_method(completed.method, settings, library)
     return CompletedJoints(
         tracks.with_positions(joints), confidence, description, completed.twists
     )
@@ -168,14 +178,10 @@ def _max_joints(observed: NDArray[np.bool_]) -> int:
     return int(observed.sum(axis=1).max(initial=0))
 
 
-def _describe_method(settings: PostureSettings, library: PostureLibrary) -> str:
-    methods = {
-        PostureMethod.PROBABLE: "most probable postures",
-        PostureMethod.PUBLISHED: "postures by stochastic search",
-    }
+def _describe_method(method: str, settings: PostureSettings, library: PostureLibrary) -> str:
     causality = ", causal" if settings.causal else ""
     source = f" ({library.trained_on})" if library.trained_on else ""
     return (
-        f"{methods[settings.method]} among {settings.n_neighbours} neighbors of"
+        f"{method} among {settings.n_neighbours} neighbors of"
         f" {library.n_postures}{source}{causality}"
     )

@@ -2,30 +2,13 @@
 
 from dataclasses import dataclass
 
-from ...settings import Choice, Settings, setting
-
-
-class PostureMethod(Choice):
-    """Method that chooses a pose in the space of its neighbors."""
-
-    PROBABLE = "probable", "Choose the most probable pose of a normal distribution"
-    """The most probable pose, if the neighbors are samples of a normal distribution."""
-    PUBLISHED = (
-        "published",
-        "Search frame by frame as published by Shum et al. (2013)",
-        "Shum et al. 2013",
-    )
-    """The pose of least energy by the stochastic search of [SHJT13], frame by frame. Nothing
-    else is done: `smoothing`, `memory`, `pace` and `rounds` have no effect."""
+from ...settings import Settings, setting
 
 
 @dataclass(frozen=True, kw_only=True)
 class PostureSettings(Settings):
     """Settings of `reconstruct_postures`."""
 
-    method: PostureMethod = setting(
-        PostureMethod.PROBABLE, "How the best pose is chosen among similar ones"
-    )
     causal: bool = setting(False, "Use only earlier frames, as in a live system; less smooth")
     n_neighbours: int = setting(
         30, "Number of library poses that each pose is made of; more vary more",
@@ -54,10 +37,6 @@ class PostureSettings(Settings):
     rounds: int = setting(
         2, "Number of searches for similar poses, each with the previous result",
         minimum=1, maximum=10, advanced=True,
-    )  # fmt: skip
-    seed: int = setting(
-        0, "Random seed of the published method", minimum=0, maximum=2**31 - 1,
-        advanced=True,
     )  # fmt: skip
 
 

@@ -1,7 +1,11 @@
-"""Pose synthesis as published: a stochastic search, frame by frame."""
+"""Reconstruction as published: [SHJT13] for missing joints, [ZH14] for sensor errors."""
 
-from .posture_search import search_sequentially
+from .shjt13 import reconstruct_shjt13, search_as_published
+from .zh14 import ThreeTermSettings, reconstruct_zh14
 
 __all__ = [
-    "search_sequentially",
+    "ThreeTermSettings",
+    "reconstruct_shjt13",
+    "reconstruct_zh14",
+    "search_as_published",
 ]

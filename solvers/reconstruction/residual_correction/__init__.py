@@ -1,20 +1,32 @@
 """Gaussian processes that predict a sensor's errors, and the correction of its poses."""
 
-from .correct_postures import CorrectionMethod, CorrectionSettings, correct_postures
+from .correct_postures import (
+    CorrectedPostures,
+    CorrectionMethod,
+    CorrectionSettings,
+    assemble_correction,
+    correct_postures,
+    mean_offset,
+)
+from .inputs import smooth_postures
 from .kernel import squared_distances
 from .learn_confidence import calibrate_confidence
 from .learn_residual_prior import ResidualMethod, ResidualPriorSettings, learn_residual_prior
 from .prior import ResidualPrior, load_residual_prior
 
 __all__ = [
+    "CorrectedPostures",
     "CorrectionMethod",
     "CorrectionSettings",
     "ResidualMethod",
     "ResidualPrior",
     "ResidualPriorSettings",
+    "assemble_correction",
     "calibrate_confidence",
     "correct_postures",
     "learn_residual_prior",
     "load_residual_prior",
+    "mean_offset",
+    "smooth_postures",
     "squared_distances",
 ]

@@ -1,6 +1,7 @@
 """Subtract a sensor's errors from a recording with a residual prior [ZH14, chapter 5]."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +10,6 @@ from ...motion import JointRecording
 from ...motion.humanoid import posture_positions
 from ...progress import Progress, unwatched, within
 from ...settings import Choice, Settings, setting
-from ...signals import fill_gaps
 from ..joint_rotations import (
     LimbTwists,
     Reconstruction,
@@ -25,26 +25,18 @@ from .smooth_trajectories import filter_trajectories, smooth_trajectories
 
 Array = NDArray[np.float64]
 
-CM_PER_M = 100.0
-"""[ZH14] gives no unit for its weights; with meters the temporal term would vanish."""
 MIN_WEIGHT = 0.02
 """Weight of an unreliable joint, so that gaps are interpolated smoothly."""
-REFERENCE_RATE_HZ = 30.0
 CONFIDENCE_DISTANCE_M = 0.05
 """Confidence is the probability that a joint is within this distance (m) of its true position.
 """
 
 
 class CorrectionMethod(Choice):
-    """Method that combines offsets, smoothness and reliability."""
+    """Frames from which each frame is smoothed."""
 
     WHOLE_TAKE = "whole take", "Smooth over the frames before and after each frame"
     CAUSAL = "causal", "Smooth over the frames before each frame only"
-    PUBLISHED = (
-        "published",
-        "Weight three terms frame by frame, as Zhou et al. (2014)",
-        "Zhou et al. 2014",
-    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,18 +58,6 @@ class CorrectionSettings(Settings):
         0.9, "How much of the pose-dependent offset to apply; 1 relies fully on the prior",
         minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
-    spatial: float = setting(
-        0.6, "Weight of the predicted offsets; published method only",
-        minimum=0.0, maximum=10.0, advanced=True,
-    )  # fmt: skip
-    temporal: float = setting(
-        0.2, "Weight of constant velocities; published method only",
-        minimum=0.0, maximum=10.0, advanced=True,
-    )  # fmt: skip
-    trust: float = setting(
-        0.2, "Weight of staying at reliable observations; published method only",
-        minimum=0.0, maximum=10.0, advanced=True,
-    )  # fmt: skip
 
 
 def correct_postures(
@@ -91,11 +71,9 @@ def correct_postures(
 ) -> Reconstruction:
     """Correct the sensor's errors in joint positions with a residual prior.
 
-    The published method minimizes E = w_S E_S + w_T E_T + w_R E_R (eq. 5.1, 5.4, 5.5, 5.6)
-    frame by frame in closed form, since all terms are quadratic and diagonal. The default takes
-    the mean offset of the take and a fraction of its change. Over the complete take, it
-    minimizes the distance to the corrected positions, weighted by reliability, and the
-    accelerations.
+    The mean offset of the take and a fraction of its change are subtracted. Over the complete
+    take, the distance to the corrected positions, weighted by reliability, and the
+    accelerations are minimized.
 
     Parameters
     ----------
@@ -132,11 +110,42 @@ def correct_postures(
     )
     weights = posture_reliability(recording, reliability.combined)
     progress(0.4, "Correcting")
-    corrected, prediction, variances = predict_positions(recording, prior, weights, settings)
+    corrected = CorrectedPostures(
+        *predict_positions(recording, prior, weights, settings),
+        shift=settings.shift,
+        uses_prior=settings.change > 0.0 or settings.shift,
+        method=settings.method.value,
+    )
     progress(0.9, "Correcting")
-    uses_prior = settings.change > 0.0 or settings.shift
-    coverage = prediction.coverage if uses_prior else 0.0
-    probability = prior.confidence(variances, CONFIDENCE_DISTANCE_M, constant=settings.shift)
+    result = assemble_correction(recording, prior, reliability, corrected, twists)
+    progress(1.0, "Corrected")
+    return result
+
+
+class CorrectedPostures(NamedTuple):
+    """Corrected posture joints, the prediction of the prior, and its variances."""
+
+    positions: Array
+    prediction: Prediction
+    variances: Array
+    shift: bool
+    uses_prior: bool
+    method: str
+
+
+def assemble_correction(
+    recording: JointRecording,
+    prior: ResidualPrior,
+    reliability: Reliability,
+    corrected: CorrectedPostures,
+    twists: LimbTwists | None = None,
+) -> Reconstruction:
+    """Return all joints of a recording, their confidence and their motion."""
+    weights = posture_reliability(recording, reliability.combined)
+    coverage = corrected.prediction.coverage if corrected.uses_prior else 0.0
+    probability = prior.confidence(
+        corrected.variances, CONFIDENCE_DISTANCE_M, constant=corrected.shift
+    )
     confidence = coverage * probability + (1.0 - coverage) * weights
     tracks = recording.tracks
     joints = positions_from_postures(
@@ -144,7 +153,7 @@ def correct_postures(
         tracks.positions,
         reliability.combined,
         posture_positions(recording),
-        corrected,
+        corrected.positions,
     )
     joints[:, ~tracks.visible.any(axis=0)] = np.nan
     confidence = confidence[:, find_anchors(tracks.names)]
@@ -152,9 +161,8 @@ def correct_postures(
     motion = motion_from_positions(
         rebuilt, recording.parents, reliability.combined, twists=twists
     )
-    progress(1.0, "Corrected")
-    method = f"smoothed ({settings.method.value})"
-    if uses_prior:
+    method = f"smoothed ({corrected.method})"
+    if corrected.uses_prior:
         method += f" with a residual prior of {prior.source}"
     return Reconstruction(rebuilt, motion, reliability, confidence, method, twists)
 
@@ -168,14 +176,11 @@ def predict_positions(
     """Return corrected posture joints, the prediction of the prior, and its variances."""
     causal = settings.method is CorrectionMethod.CAUSAL
     smooth = smooth_postures(recording, float(prior.calm), weights, ahead=not causal)
-    prediction = prior.predict(smooth, ahead=settings.method is CorrectionMethod.WHOLE_TAKE)
+    prediction = prior.predict(smooth, ahead=not causal)
     predicted = smooth.positions + smooth.rotate_to_world(
         _offsets(prediction, weights, settings)
     )
     variances = prediction.variances + prior.constant_variances(constant=settings.shift)
-    if settings.method is CorrectionMethod.PUBLISHED:
-        positions = _frame_by_frame(recording, predicted, variances, weights, settings)
-        return positions, prediction, variances
     smoother = filter_trajectories if causal else smooth_trajectories
     frames = settings.smoothing * recording.frame_rate
     return smoother(predicted, np.maximum(weights, MIN_WEIGHT), frames), prediction, variances
@@ -186,37 +191,14 @@ def _offsets(prediction: Prediction, weights: Array, settings: CorrectionSetting
 
     Only a fraction of the change is applied, less in takes unlike the training data.
     """
-    joint_weights = np.maximum(weights, MIN_WEIGHT)[..., None]
-    mean = (joint_weights * prediction.offsets).sum(axis=0) / joint_weights.sum(axis=0)
+    mean = mean_offset(prediction, weights)
     constant = mean if settings.shift else np.zeros_like(mean)
-    if settings.method is CorrectionMethod.PUBLISHED and settings.change > 0.0:
-        return np.asarray(prediction.offsets + (constant - mean))
     fraction = settings.change * prediction.coverage.mean(axis=0)
     return np.asarray(constant + fraction[:, None] * (prediction.offsets - mean))
 
 
-def _frame_by_frame(
-    recording: JointRecording,
-    predicted: Array,
-    variances: Array,
-    weights: Array,
-    settings: CorrectionSettings,
-) -> Array:
-    """Minimize eq. 5.6 of [ZH14] in each frame, given the frames 1/30 and 1/15 s before."""
-    observed = fill_gaps(posture_positions(recording)) * CM_PER_M
-    offsets = predicted * CM_PER_M - observed
-    spatial = settings.spatial / (2.0 * variances * CM_PER_M**2)
-    measured = settings.trust * weights**2
-    result = observed.copy()
-    step = max(round(recording.frame_rate / REFERENCE_RATE_HZ), 1)
-    for frame in range(len(observed)):
-        temporal = settings.temporal if frame >= 2 * step else 0.0
-        total = spatial[frame] + measured[frame] + temporal
-        weighted_sum = spatial[frame][:, None] * offsets[frame]
-        if frame >= 2 * step:
-            extrapolated = (
-                2.0 * result[frame - step] - result[frame - 2 * step] - observed[frame]
-            )
-            weighted_sum = weighted_sum + temporal * extrapolated
-        result[frame] = observed[frame] + weighted_sum / np.maximum(total, 1e-12)[:, None]
-    return result / CM_PER_M
+def mean_offset(prediction: Prediction, weights: Array) -> Array:
+    """Return the mean offset of each joint over the take, shape (20, 3)."""
+    joint_weights = np.maximum(weights, MIN_WEIGHT)[..., None]
+    mean = (joint_weights * prediction.offsets).sum(axis=0) / joint_weights.sum(axis=0)
+    return np.asarray(mean)

@@ -18,7 +18,6 @@ from scipy.optimize import minimize
 Array = NDArray[np.float64]
 Real = TypeVar("Real", NDArray[np.float64], NDArray[np.float32])
 
-LOCAL, WHOLE = 0, 1
 MIN_VARIANCE_RATIO, MAX_VARIANCE_RATIO = 1e-4, 10.0
 """Bounds of each variance, relative to the variance of the errors."""
 MIN_LENGTH_RATIO, MAX_LENGTH_RATIO = 0.3, 10.0

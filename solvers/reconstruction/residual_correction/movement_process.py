@@ -14,10 +14,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, uniform_filter1d
+from scipy.ndimage import uniform_filter1d
 
 from ...motion.humanoid import N_JOINTS, mirror_postures
 from ...npz_members import flags, integers, numbers
+from ...signals import smooth_gaussian
 from .kernel import squared_distances
 
 Array = NDArray[np.float64]
@@ -171,7 +172,7 @@ def movement_parts(features: Array, frame_rate: float) -> Array:
     frames = np.arange(n)
     counts = uniform_filter1d(np.ones(n), window, mode="constant")[:, None, None]
     mean = uniform_filter1d(features, window, axis=0, mode="constant") / counts
-    smooth = gaussian_filter1d(features, SPEED_SMOOTHING_S * frame_rate, axis=0, mode="nearest")
+    smooth = smooth_gaussian(features, SPEED_SMOOTHING_S * frame_rate)
     speed = np.gradient(smooth, 1.0 / frame_rate, axis=0) if n > 1 else 0.0 * features
     before = features[np.maximum(frames - away, 0)]
     after = features[np.minimum(frames + away, n - 1)]

@@ -4,6 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from ...signals import second_difference_bands
+
 Array = NDArray[np.float64]
 
 
@@ -24,7 +26,7 @@ def smooth_trajectories(positions: Array, weights: Array, frames: float) -> Arra
     n = len(positions)
     if n < 3 or frames <= 0.0:
         return positions.copy()
-    bands = frames**4 * _second_differences(n)
+    bands = frames**4 * second_difference_bands(n)
     result = positions.copy()
     for joint in np.flatnonzero(np.isfinite(positions).all(axis=(0, 2))):
         matrix = bands.copy()
@@ -70,17 +72,3 @@ def filter_trajectories(positions: Array, weights: Array, frames: float) -> Arra
         position_variance = position_variance - gain * position_variance**2
         result[frame] = position
     return result
-
-
-def _second_differences(n: int) -> Array:
-    """Return the bands of D'D in LAPACK's layout; D takes second differences of n frames."""
-    bands = np.zeros((3, n))
-    if n <= 5:
-        differences = np.diff(np.eye(n), 2, axis=0)
-        for lag in range(3):
-            bands[2 - lag, lag:] = np.diagonal(differences.T @ differences, lag)
-        return bands
-    bands[0, 2:] = 1.0
-    bands[1, 1:] = [-2.0, *[-4.0] * (n - 3), -2.0]
-    bands[2] = [1.0, 5.0, *[6.0] * (n - 4), 5.0, 1.0]
-    return bands

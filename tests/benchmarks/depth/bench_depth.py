@@ -16,12 +16,9 @@ from threadpoolctl import threadpool_limits
 from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.refine_body import refine_body
-from solvers.depth_tracking.terms.tracker_settings import (
-    DEFAULT_TRACKER,
-    LOU12,
-    WZC12,
-    TrackerSettings,
-)
+from solvers.depth_tracking.published.lou12 import track_pose_lou12
+from solvers.depth_tracking.published.wzc12 import WZC12
+from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, TrackerSettings
 from solvers.depth_tracking.tracking.track_pose import track_pose
 
 from ..peers.icp_trackers import articulated_icp, ray_constrained_icp
@@ -72,7 +69,6 @@ WITHOUT = {
     "no prediction": {"trust": 0.0},
     "no smoothness": {"turn_weight": 0.0, "shift_weight": 0.0},
     "no natural stance": {"natural_weight": 0.0},
-    "limbs also repel each other": {"apart_weight": 20000.0},
     "no joint limits": {"limit_weight": 0.0},
     "no occlusion handling": {"limit": 1.0},
     "not robust": {"robust_scale": 10.0},
@@ -126,10 +122,13 @@ def peer(track: Callable[..., np.ndarray], one: Sequence, body: BodyModel) -> np
 def lou12(one: Sequence, body: BodyModel) -> np.ndarray:
     """Return joints as [LOU12] finds them, with painted bodies and motions of other actors."""
     painted = colored(one.name)
-    tracked = track_pose(
-        painted.depth, body, one.first_pose(body), others_motions(), settings=LOU12
-    )
+    tracked = track_pose_lou12(painted.depth, body, one.first_pose(body), others_motions())
     return tracked.joints.positions
+
+
+def lou12_from_depth(one: Sequence, body: BodyModel) -> np.ndarray:
+    """Return joints as [LOU12] finds them from depth alone."""
+    return track_pose_lou12(one.depth, body, one.first_pose(body)).joints.positions
 
 
 def measured(track: Track, one: Sequence, body: BodyModel) -> tuple[Errors, float]:
@@ -147,7 +146,7 @@ def trackers() -> list[str]:
         "WZC12 preset": partial(ours, WZC12),
         "WZC12 terms, damped, with limits": partial(ours, DAMPED_WZC12),
         "LOU12 preset, color and clips": lou12,
-        "LOU12 preset, no color, no clips": partial(ours, LOU12),
+        "LOU12 preset, no color, no clips": lou12_from_depth,
         "articulated ICP": partial(peer, articulated_icp),
         "ray-constrained ICP": partial(peer, ray_constrained_icp),
     }

@@ -9,12 +9,9 @@ from numpy.typing import NDArray
 
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import BodyModel
+from solvers.depth_tracking.published.wzc12 import WZC12
 from solvers.depth_tracking.terms.observation import observe
-from solvers.depth_tracking.terms.tracker_settings import (
-    DEFAULT_TRACKER,
-    WZC12,
-    TrackerSettings,
-)
+from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, TrackerSettings
 from solvers.depth_tracking.tracking.failure_test import (
     PUBLISHED_MAX_RESIDUAL_M,
     PUBLISHED_MIN_OVERLAP,
@@ -66,12 +63,12 @@ RESIDUAL_UNIT = 0.1
 def _tracked(
     one: Sequence, body: BodyModel, settings: TrackerSettings, step: int
 ) -> Iterable[tuple[Array, float]]:
-    poses, memory = [one.first_pose(body)], None
+    poses = [one.first_pose(body)]
     for frame in range(0, one.depth.n_frames, step):
         observation = observe(one.depth, frame, settings.picture_width)
         prior = next_pose_prior(poses[1:] or poses, settings)
         with np.errstate(all="ignore"):
-            pose, quality, memory = track_frame(body, prior, observation, settings, memory)
+            pose, quality = track_frame(body, prior, observation, settings)
         poses.append(pose)
         found = joint_positions(body, segment_frames(body, pose))
         error = float(np.linalg.norm(found - one.joints[frame], axis=1).mean())

@@ -9,21 +9,18 @@ from numpy.typing import NDArray
 from solvers.motion.humanoid.posture_heading import normalize_postures, rotate_about_vertical
 from solvers.motion.humanoid.posture_joints import N_JOINTS, posture_positions
 from solvers.reconstruction import (
-    CorrectionMethod,
-    CorrectionSettings,
-    PostureMethod,
-    PostureSettings,
     Reconstruction,
     ReconstructMethod,
     ReconstructSettings,
     ReliabilityMethod,
     ReliabilitySettings,
     ResidualMethod,
-    correct_postures,
     measure_reliability,
     reconstruct,
     reconstruct_postures,
 )
+from solvers.reconstruction.published.shjt13 import search_as_published
+from solvers.reconstruction.published.zh14 import ThreeTermSettings, reconstruct_zh14
 from solvers.reconstruction.residual_correction.correct_postures import smooth_trajectories
 from solvers.reconstruction.residual_correction.inputs import smooth_postures
 
@@ -53,7 +50,7 @@ SMOOTHING = 0.05
 THINNED = 5
 """Every so manieth frame is an example, 6 a second as for our prior."""
 SIGNS_PUBLISHED = ReliabilitySettings(method=ReliabilityMethod.PUBLISHED)
-TERMS_PUBLISHED = CorrectionSettings(method=CorrectionMethod.PUBLISHED)
+TERMS_PUBLISHED = ThreeTermSettings()
 
 
 def raw(pair: Pair, subject: str) -> Array:
@@ -138,30 +135,27 @@ def _calmed(positions: Array, pair: Pair) -> Array:
     return smooth_trajectories(positions, ones, SMOOTHING * pair.kinect.frame_rate)
 
 
-def by_postures(
-    pair: Pair, subject: str, *, method: PostureMethod, others_too: bool = True
-) -> Reconstruction:
-    """[SHJT13]: a library of postures alone."""
-    published = method is PostureMethod.PUBLISHED
+def by_postures(pair: Pair, subject: str, *, others_too: bool = True) -> Reconstruction:
+    """A library of postures alone."""
+    return reconstruct_postures(pair.kinect, posture_library(subject, others_too))
+
+
+def by_published_postures(pair: Pair, subject: str) -> Reconstruction:
+    """[SHJT13]: a library of postures alone, searched frame by frame."""
     return reconstruct_postures(
         pair.kinect,
-        posture_library(subject, others_too),
-        settings=PostureSettings(method=method),
-        reliability=measure_reliability(pair.kinect, settings=SIGNS_PUBLISHED)
-        if published
-        else None,
+        posture_library(subject),
+        reliability=measure_reliability(pair.kinect, settings=SIGNS_PUBLISHED),
+        complete=search_as_published,
     )
 
 
 def by_published_residuals(
-    pair: Pair, subject: str, settings: CorrectionSettings = TERMS_PUBLISHED
+    pair: Pair, subject: str, settings: ThreeTermSettings = TERMS_PUBLISHED
 ) -> Reconstruction:
     """[ZH14]: Gaussian processes joint by joint, and three terms frame by frame."""
-    return correct_postures(
-        pair.kinect,
-        residual_prior(subject, ResidualMethod.PUBLISHED),
-        reliability=measure_reliability(pair.kinect, settings=SIGNS_PUBLISHED),
-        settings=settings,
+    return reconstruct_zh14(
+        pair.kinect, residual_prior(subject, ResidualMethod.PUBLISHED), settings=settings
     )
 
 
@@ -211,11 +205,9 @@ METHODS: dict[str, Method] = {
     "Gaussian process, scikit-learn": partial(regressed, posture_regression.gaussian_process),
     "PCA projection": partial(from_examples, posture_regression.principal_projection),
     "kNN mean, true postures": partial(from_examples, posture_regression.nearest_mean),
-    "[SHJT13] postures, as published": joints(by_postures, method=PostureMethod.PUBLISHED),
-    "postures": joints(by_postures, method=PostureMethod.PROBABLE),
-    "postures, of CMU alone": joints(
-        by_postures, method=PostureMethod.PROBABLE, others_too=False
-    ),
+    "[SHJT13] postures, as published": joints(by_published_postures),
+    "postures": joints(by_postures),
+    "postures, of CMU alone": joints(by_postures, others_too=False),
     "[ZH14] residuals, as published": joints(by_published_residuals),
     "residuals": joints(by_reconstruct, method=ReconstructMethod.RESIDUALS),
     "ours (both)": joints(by_reconstruct, method=ReconstructMethod.BOTH),

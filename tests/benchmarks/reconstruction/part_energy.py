@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from solvers.motion.humanoid.body_size import estimate_bone_lengths, segment_lengths
 from solvers.motion.humanoid.bone_directions import rates_from_directions
 from solvers.motion.humanoid.posture_heading import NormalizedPostures, normalize_postures
-from solvers.reconstruction import PostureMethod, ReconstructMethod
+from solvers.reconstruction import ReconstructMethod
 from solvers.reconstruction.joint_rotations.library_body import build_body_postures
 from solvers.reconstruction.pose_library.neighbors import (
     PostureQuery,
@@ -25,7 +25,7 @@ from ..shared.tables import number, table
 from .kinect_damage import Damaged, hidden, lost
 from .kinect_errors import compared, jerk
 from .kinect_folds import SUBJECTS, posture_library, seen_of, takes_of, truth_of
-from .kinect_methods import Method, by_postures, by_reconstruct, joints
+from .kinect_methods import Method, by_postures, by_published_postures, by_reconstruct, joints
 from .part_losses import REPETITIONS, bridged_by, error
 
 Array = NDArray[np.float64]
@@ -48,8 +48,8 @@ EVERY = 10
 SECONDS = "1 s"
 CLASSES: dict[str, Method] = {
     "raw, gaps bridged by lines": lambda pair, subject: bridged_by(linear, pair, subject),
-    "[SHJT13] postures, as published": joints(by_postures, method=PostureMethod.PUBLISHED),
-    "postures": joints(by_postures, method=PostureMethod.PROBABLE),
+    "[SHJT13] postures, as published": joints(by_published_postures),
+    "postures": joints(by_postures),
     "ours (both)": joints(by_reconstruct, method=ReconstructMethod.BOTH),
 }
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.motion.humanoid.posture_heading import normalize_postures
-from solvers.reconstruction import PostureMethod, ReconstructMethod
+from solvers.reconstruction import ReconstructMethod
 from solvers.reconstruction.residual_correction.inputs import SmoothedPostures, smooth_postures
 
 from ..peers.gap_fillers import cubic, linear, pchip
@@ -26,6 +26,7 @@ from .kinect_methods import (
     THINNED,
     Method,
     by_postures,
+    by_published_postures,
     by_reconstruct,
     filtered,
     joints,
@@ -133,11 +134,9 @@ FILLED: dict[str, Method] = {
     "kNN mean": partial(by_example, nearest_mean),
 }
 OURS: dict[str, Method] = {
-    "[SHJT13] postures, as published": joints(by_postures, method=PostureMethod.PUBLISHED),
-    "postures": joints(by_postures, method=PostureMethod.PROBABLE),
-    "postures, of CMU alone": joints(
-        by_postures, method=PostureMethod.PROBABLE, others_too=False
-    ),
+    "[SHJT13] postures, as published": joints(by_published_postures),
+    "postures": joints(by_postures),
+    "postures, of CMU alone": joints(by_postures, others_too=False),
     "residuals": joints(by_reconstruct, method=ReconstructMethod.RESIDUALS),
     "ours (both)": joints(by_reconstruct, method=ReconstructMethod.BOTH),
     "ours (both), CMU alone": joints(

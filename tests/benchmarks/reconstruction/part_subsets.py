@@ -4,13 +4,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.motion.humanoid.posture_joints import N_JOINTS, POSTURE_JOINTS
-from solvers.reconstruction import PostureMethod, ReconstructMethod
+from solvers.reconstruction import ReconstructMethod
 
 from ..shared.tables import table
 from .kinect_damage import without
 from .kinect_errors import apart_free, compared
 from .kinect_folds import SUBJECTS, takes_of, truth_of
-from .kinect_methods import Method, by_postures, by_reconstruct, joints
+from .kinect_methods import Method, by_postures, by_published_postures, by_reconstruct, joints
 from .part_losses import REPETITIONS
 
 Array = NDArray[np.float64]
@@ -29,11 +29,9 @@ PARTS = {
 EVERY = 5
 """One of so many exercises."""
 METHODS: dict[str, Method] = {
-    "[SHJT13] postures, as published": joints(by_postures, method=PostureMethod.PUBLISHED),
-    "postures": joints(by_postures, method=PostureMethod.PROBABLE),
-    "postures, of CMU alone": joints(
-        by_postures, method=PostureMethod.PROBABLE, others_too=False
-    ),
+    "[SHJT13] postures, as published": joints(by_published_postures),
+    "postures": joints(by_postures),
+    "postures, of CMU alone": joints(by_postures, others_too=False),
     "ours (both)": joints(by_reconstruct, method=ReconstructMethod.BOTH),
 }
 

@@ -15,8 +15,6 @@ from solvers.motion.humanoid.posture_joints import (
     posture_positions,
 )
 from solvers.reconstruction import (
-    CorrectionMethod,
-    CorrectionSettings,
     PostureSettings,
     Reconstruction,
     ReconstructMethod,
@@ -24,6 +22,7 @@ from solvers.reconstruction import (
     measure_reliability,
     reconstruct_postures,
 )
+from solvers.reconstruction.published.zh14 import ThreeTermSettings
 
 from ..shared.tables import number, table
 from .kinect_damage import shaken, swapped
@@ -84,9 +83,7 @@ def terms(n_repetitions: int) -> list[str]:
 
 
 def _published(spatial: float, temporal: float, trust: float) -> Method:
-    settings = CorrectionSettings(
-        method=CorrectionMethod.PUBLISHED, spatial=spatial, temporal=temporal, trust=trust
-    )
+    settings = ThreeTermSettings(spatial=spatial, temporal=temporal, trust=trust)
     return joints(by_published_residuals, settings=settings)
 
 

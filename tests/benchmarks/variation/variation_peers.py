@@ -12,7 +12,7 @@ from scipy.spatial.distance import cdist
 from solvers.motion import Motion, resample
 from solvers.rotations.representations import mean_rotation
 from solvers.variation import Partition
-from solvers.variation.motion_curves import (
+from solvers.variation.curves.motion_curves import (
     N_ROOT_CHANNELS,
     MotionCurves,
     curves_from_motion,
@@ -20,7 +20,7 @@ from solvers.variation.motion_curves import (
     motion_from_curves,
     remove_heading,
 )
-from solvers.variation.partitions import partition_joints
+from solvers.variation.curves.partitions import partition_joints
 
 RATE = 30.0
 OCTAVES = ((1.0, 1.0), (2.0, 0.5), (4.0, 0.25))

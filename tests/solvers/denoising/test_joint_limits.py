@@ -6,8 +6,8 @@ from numpy.testing import assert_allclose
 
 from solvers.denoising.limits.clamp_to_limits import clamp_to_limits, limit_excess
 from solvers.denoising.limits.learn_limits import JointLimitsSettings, learn_joint_limits
-from solvers.errors import InvalidFileError, InvalidMotionError, InvalidSettingError
-from solvers.motion import JointLimits, Motion, Skeleton, find_humanoid_map, load_joint_limits
+from solvers.errors import InvalidMotionError, InvalidSettingError
+from solvers.motion import JointLimits, Motion, Skeleton, find_humanoid_map
 from solvers.motion.humanoid.canonical import canonical_rotations, from_canonical
 from solvers.rotations.representations import (
     IDENTITY,
@@ -218,23 +218,6 @@ def test_clamped_motions_are_within_their_limits(walk, rng):
 
     assert np.degrees(limit_excess(noisy, limits).max()) > 20.0
     assert np.degrees(limit_excess(clamped, limits).max()) < 3.0 + 1e-9
-
-
-def test_limits_are_unchanged_after_saving_and_loading(walk, tmp_path):
-    limits = learn_joint_limits([walk])
-    limits.save(tmp_path / "walk.limits.npz")
-
-    loaded = load_joint_limits(tmp_path / "walk.limits.npz")
-
-    assert (loaded.names, loaded.orders) == (limits.names, limits.orders)
-    for name in ("by_role", "left", "right", "lower", "upper"):
-        assert (getattr(loaded, name) == getattr(limits, name)).all()
-
-
-def test_file_without_limits_is_refused(tmp_path):
-    (tmp_path / "notes.npz").write_text("not an archive")
-    with pytest.raises(InvalidFileError, match="not a readable archive"):
-        load_joint_limits(tmp_path / "notes.npz")
 
 
 def test_an_empty_range_is_refused_by_name():

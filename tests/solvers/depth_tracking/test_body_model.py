@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solvers.depth_tracking.body.coordinates import COORDINATES, mirrored_coordinates
+from solvers.depth_tracking.body.coordinates import COORDINATES
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import BodyModel, default_body, load_body_model
 from solvers.depth_tracking.body.tables import CAPSULES, JOINTS, LENGTHS, PARENTS, SEGMENTS
@@ -60,22 +60,6 @@ def test_joint_distances_equal_the_lengths(rng):
         assert_allclose(np.linalg.norm(distances), body.length(length), atol=1e-12)
     hips = joint(body, pose, "leftUpperLeg") - joint(body, pose, "rightUpperLeg")
     assert_allclose(np.linalg.norm(hips), 2 * body.length("hipWidth"), atol=1e-12)
-
-
-def test_mirrored_coordinates_mirror_the_joints(rng):
-    body, pose = default_body(), rng.normal(scale=0.4, size=36)
-    order, signs = mirrored_coordinates()
-    sides = {"left": "right", "right": "left"}
-    names = [
-        next((n.replace(a, b, 1) for a, b in sides.items() if n.startswith(a)), n)
-        for n in JOINTS
-    ]
-
-    mirrored = joint_positions(body, segment_frames(body, pose[order] * signs))
-
-    joints = joint_positions(body, segment_frames(body, pose))
-    expected = joints[[JOINTS.index(name) for name in names]] * [-1.0, 1.0, 1.0]
-    assert_allclose(mirrored, expected, atol=1e-12)
 
 
 def test_symmetric_takes_the_mean_of_both_sides():

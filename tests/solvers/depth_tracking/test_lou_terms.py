@@ -22,16 +22,19 @@ from solvers.depth_tracking.body.normal_equations import (
     solve_step,
 )
 from solvers.depth_tracking.capturing.capture import CaptureSettings, capture
-from solvers.depth_tracking.terms.depth_edges import canny, edge_pixels
-from solvers.depth_tracking.terms.edges import edge_term
-from solvers.depth_tracking.terms.hypothesis import render_hypothesis
-from solvers.depth_tracking.terms.observation import Observation
-from solvers.depth_tracking.terms.surface import (
+from solvers.depth_tracking.published.depth_edges import canny, edge_pixels
+from solvers.depth_tracking.published.edges import edge_term
+from solvers.depth_tracking.published.lou12 import track_pose_lou12
+from solvers.depth_tracking.published.surface import (
+    ColoredFrame,
     PreviousFrame,
     previous_intensities,
     surface_term,
 )
-from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, LOU12, WZC12
+from solvers.depth_tracking.published.wzc12 import WZC12
+from solvers.depth_tracking.terms.hypothesis import render_hypothesis
+from solvers.depth_tracking.terms.observation import Observation
+from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER
 from solvers.depth_tracking.tracking.track_pose import track_pose
 from solvers.errors import InvalidFileError, InvalidMotionError
 
@@ -68,14 +71,23 @@ def test_edges_of_an_actor_are_its_pixels_near_the_silhouette():
     assert_array_equal(edge_pixels(np.zeros((10, 10))), [])
 
 
-@pytest.mark.parametrize("term", [surface_term, edge_term])
+def surface_rows(hypothesis, observation):
+    no_color = np.full(observation.flat.shape, np.nan)
+    return surface_term(hypothesis, ColoredFrame(observation, no_color), None, 1.0)
+
+
+def edge_rows(hypothesis, observation):
+    edges = edge_pixels(observation.depth, observation.nearest_pixel)
+    return edge_term(hypothesis, observation, edges, 1.0)
+
+
+@pytest.mark.parametrize("term", [surface_rows, edge_rows])
 def test_step_of_each_term_reduces_the_pose_error(term):
     start = NATURAL.copy()
     start[:2] += (0.03, -0.02)
     hypothesis = render_hypothesis(BODY, start, CAMERA)
-    extra = (None,) if term is surface_term else ()
 
-    equations = term(hypothesis, observed(NATURAL), *extra, 1.0)
+    equations = term(hypothesis, observed(NATURAL))
     change = solve_step(
         equations_in_coordinates([segment_equations(equations)], hypothesis.twists),
         np.full(36, 0.5),
@@ -86,11 +98,8 @@ def test_step_of_each_term_reduces_the_pose_error(term):
 
 def test_true_pose_stays_unchanged():
     hypothesis, observation = render_hypothesis(BODY, NATURAL, CAMERA), observed(NATURAL)
-    for equations in (
-        surface_term(hypothesis, observation, None, 1.0),
-        edge_term(hypothesis, observation, 1.0),
-    ):
-        assert_allclose(equations.residuals, 0.0, atol=1e-9)
+    for term in (surface_rows, edge_rows):
+        assert_allclose(term(hypothesis, observation).residuals, 0.0, atol=1e-9)
 
 
 def striped(pose):
@@ -98,10 +107,10 @@ def striped(pose):
     hypothesis = render_hypothesis(BODY, pose, CAMERA)
     frame = hypothesis.frames[hypothesis.segments]
     local = np.einsum("nji,nj->ni", frame[:, :3, :3], hypothesis.points - frame[:, :3, 3])
-    color = np.zeros((120 * 160, 3))
-    color[hypothesis.image.pixels] = 127.0 + 120.0 * np.sin(40.0 * local[:, 1:2])
+    intensities = np.zeros(120 * 160)
+    intensities[hypothesis.image.pixels] = 127.0 + 120.0 * np.sin(40.0 * local[:, 1])
     depth = hypothesis.image.depth_image()
-    return hypothesis, Observation(CAMERA, depth, lambda: color.reshape(120, 160, 3))
+    return hypothesis, ColoredFrame(Observation(CAMERA, depth), intensities)
 
 
 def test_previous_intensities_move_with_the_surface():
@@ -139,7 +148,7 @@ def test_published_tracker_follows_a_slow_actor():
     truth = waving(6)
     prior = motion_prior_from_poses([waving(60)])
 
-    tracked = track_pose(recorded(truth), BODY, truth[0], prior, settings=LOU12)
+    tracked = track_pose_lou12(recorded(truth), BODY, truth[0], prior)
 
     assert np.abs(tracked.joints.positions[0] - tracked.joints.positions[-1]).max() > 0.03
     assert tracked.residual.max() < 0.03
@@ -222,10 +231,9 @@ def test_colors_are_read_only_if_a_term_uses_them():
     depth = replace(recorded(truth), read_color=read_color)
 
     found = capture(depth, BODY, settings=CaptureSettings())
-    for settings in (DEFAULT_TRACKER, WZC12, replace(LOU12, surface_weight=0.0)):
+    for settings in (DEFAULT_TRACKER, WZC12):
         track_pose(depth, BODY, truth[0], settings=settings)
 
     assert (found.motion.n_frames, requested) == (4, [])
     with pytest.raises(InvalidFileError, match=r"rgb/4\.png"):
-        track_pose(depth, BODY, truth[0], settings=LOU12)
-    assert requested == [0]  # It is remembered for frame 1.
+        track_pose_lou12(depth, BODY, truth[0])

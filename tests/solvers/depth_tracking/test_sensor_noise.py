@@ -8,10 +8,13 @@ from solvers.depth_scene.camera import Camera
 from solvers.depth_tracking.forest_training.render_mesh import NO_PART, RenderedMesh
 from solvers.depth_tracking.forest_training.sensor_noise import (
     DISPARITY_STEPS_M,
-    NO_NOISE,
+    SensorNoiseSettings,
     add_sensor_noise,
 )
 
+NO_NOISE = SensorNoiseSettings(
+    jitter=0.0, disparity=0.0, step=0.0, baseline=0.0, edge_holes=0.0, holes=0.0
+)
 CAMERA = Camera(280.0, 280.0, 79.5, 59.5, 160, 120)
 
 

@@ -6,16 +6,18 @@ from drawn_bodies import CAMERA, NATURAL, observed, recorded, waving
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_scene.recording import DepthRecording
-from solvers.depth_tracking.body.coordinates import LOWER_LIMITS, UPPER_LIMITS
+from solvers.depth_tracking.body.coordinates import COORDINATES, LOWER_LIMITS, UPPER_LIMITS
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import default_body
-from solvers.depth_tracking.body.pose_priors import joint_limits, predict_pose, stay_near
-from solvers.depth_tracking.body.tables import JOINTS
-from solvers.depth_tracking.terms.tracker_settings import (
-    DEFAULT_TRACKER,
-    WZC12,
-    TrackerSettings,
+from solvers.depth_tracking.body.pose_priors import (
+    joint_limits,
+    natural_stance,
+    predict_pose,
+    stay_near,
 )
+from solvers.depth_tracking.body.tables import JOINTS
+from solvers.depth_tracking.published.wzc12 import WZC12
+from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, TrackerSettings
 from solvers.depth_tracking.tracking.register_pose import register_pose
 from solvers.depth_tracking.tracking.track_pose import track_pose
 from solvers.errors import InvalidMotionError, SolveCancelled
@@ -198,3 +200,12 @@ def test_pose_without_terms_is_the_predicted_one():
     tracked = track_pose(recorded(truth), BODY, truth[0], settings=nothing)
 
     assert_allclose(tracked.poses, np.tile(truth[0], (2, 1)), atol=1e-9)
+
+
+def test_natural_stance_weighs_the_trunk_more_than_limbs():
+    asked = natural_stance(np.ones(36), 2.0, 5.0)
+    assert_allclose(asked.vector[:6], 0.0)
+    trunk, limb = (COORDINATES.index(name) for name in ("lowerBackZ", "leftFemurX"))
+    assert asked.vector[trunk] < asked.vector[limb] < 0.0
+    assert asked.vector[COORDINATES.index("rightAnkle")] == -5.0
+    assert_allclose(asked.cost, 0.5 * np.trace(asked.matrix))

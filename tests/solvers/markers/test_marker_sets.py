@@ -3,7 +3,7 @@
 import pytest
 
 from solvers.markers import find_marker_set
-from solvers.markers.marker_sets import LANDMARKS, SETS
+from solvers.markers.marker_sets import SETS
 from solvers.recordings.joint_files.ui_prmd import MARKERS
 
 
@@ -12,7 +12,6 @@ def test_find_marker_set_identifies_each_complete_set(title):
     found = find_marker_set(list(SETS[title]))
 
     assert (found.name, found.score, found.missing_landmarks()) == (title, 1.0, ())
-    assert set(found.markers) <= set(LANDMARKS)
 
 
 def test_sets_have_their_documented_sizes():

@@ -3,8 +3,7 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from solvers.motion import angular_velocities, linear_velocities
-from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
+from solvers.motion import linear_velocities
 
 
 def test_velocities_are_exact_for_constant_acceleration():
@@ -35,25 +34,3 @@ def test_single_frame_between_gaps_has_no_velocity():
 
 def test_single_frame_has_velocity_zero():
     assert_allclose(linear_velocities(np.ones((1, 2, 3)), 30.0), 0.0)
-    assert_allclose(angular_velocities(np.tile([1.0, 0, 0, 0], (1, 2, 1)), 30.0), 0.0)
-
-
-def test_constant_angular_velocity_is_in_the_parent_frame(rng):
-    omega = np.array([0.3, -1.2, 2.0])
-    start = quaternion_from_rotation_vector(rng.normal(size=3))
-    rotated = multiply(
-        quaternion_from_rotation_vector(np.arange(30)[:, None] / 60.0 * omega), start
-    )
-
-    velocities = angular_velocities(rotated[:, None], 60.0)
-
-    assert_allclose(velocities[:, 0], np.tile(omega, (30, 1)), atol=1e-12)
-
-
-def test_angular_velocity_ignores_quaternion_signs(rng):
-    rotations = quaternion_from_rotation_vector(rng.normal(scale=0.2, size=(12, 3, 3)))
-    signs = rng.choice([-1.0, 1.0], size=(12, 3, 1))
-
-    assert_allclose(
-        angular_velocities(signs * rotations, 30.0), angular_velocities(rotations, 30.0)
-    )

@@ -18,8 +18,12 @@ from solvers.reconstruction import (
     correct_postures,
     learn_residual_prior,
 )
+from solvers.reconstruction.published.zh14 import (
+    ThreeTermSettings,
+    minimize_terms,
+    reconstruct_zh14,
+)
 from solvers.reconstruction.residual_correction.confidence import probability_within
-from solvers.reconstruction.residual_correction.correct_postures import _frame_by_frame
 from solvers.reconstruction.residual_correction.smooth_trajectories import (
     filter_trajectories,
     smooth_trajectories,
@@ -140,6 +144,7 @@ def test_correct_postures_accepts_short_takes(prior, n_frames):
     for method in CorrectionMethod:
         result = correct_postures(given_, prior, settings=CorrectionSettings(method=method))
         assert np.isfinite(result.tracks.positions).all()
+    assert np.isfinite(reconstruct_zh14(given_, prior).tracks.positions).all()
 
 
 def test_smoothing_solves_the_least_squares_problem(rng):
@@ -175,8 +180,9 @@ def test_published_method_minimizes_the_published_energy(rng):
     foretold = positions + rng.normal(scale=0.03, size=positions.shape)
     variances = rng.uniform(1e-4, 1e-3, size=(3, 20))
     reliability = rng.uniform(size=(3, 20))
-    settings = CorrectionSettings(method=CorrectionMethod.PUBLISHED)
-    found = _frame_by_frame(recording(positions), foretold, variances, reliability, settings)
+    found = minimize_terms(
+        recording(positions), foretold, variances, reliability, ThreeTermSettings()
+    )
 
     def energy(offset: np.ndarray) -> float:
         y = offset * 100.0
@@ -232,8 +238,7 @@ def test_published_prior_uses_neighbors_only():
     kernel = published.kernel(KNEE)
     assert kernel.shared[1] < 1e-3 * kernel.shared[0]
     given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
-    settings = CorrectionSettings(method=CorrectionMethod.PUBLISHED)
-    result = correct_postures(given_, published, settings=settings)
+    result = reconstruct_zh14(given_, published)
     assert error(result.tracks.positions, truth(1.3)) < 0.6 * error(
         given_.tracks.positions, truth(1.3)
     )

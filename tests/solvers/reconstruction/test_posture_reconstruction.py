@@ -15,9 +15,11 @@ from solvers.reconstruction.joint_rotations.other_joints import (
     find_anchors,
     positions_from_postures,
 )
+from solvers.reconstruction.pose_completion.complete_postures import complete_postures
 from solvers.reconstruction.pose_completion.reconstruct_postures import reconstruct_postures
-from solvers.reconstruction.pose_completion.settings import PostureMethod, PostureSettings
+from solvers.reconstruction.pose_completion.settings import PostureSettings
 from solvers.reconstruction.pose_library.posture_library import build_posture_library
+from solvers.reconstruction.published.shjt13 import search_as_published
 from solvers.reconstruction.reliability.scores import Reliability
 from solvers.recordings import read_bvh, read_recording
 from solvers.samples import GaitSettings, walking_gait
@@ -35,12 +37,12 @@ def known_reliability(reliability):
     return Reliability(reliability, reliability, reliability, reliability)
 
 
-def reconstructed(positions, library, **settings):
+def reconstructed(positions, library, complete=complete_postures, **settings):
     """Reconstruct with reliability 0 for missing (NaN) and 1 for observed joints."""
     reliability = np.isfinite(positions).all(axis=-1).astype(float)
     return reconstruct_postures(
         recorded(positions), library, settings=PostureSettings(**settings),
-        reliability=known_reliability(reliability),
+        reliability=known_reliability(reliability), complete=complete,
     )  # fmt: skip
 
 
@@ -84,7 +86,7 @@ def test_missing_leg_walks_on_and_observed_joints_stay(walk, walk_without_leg, l
 
 
 @pytest.mark.parametrize(
-    "settings", [{"method": method} for method in PostureMethod] + [{"causal": True}], ids=str
+    "settings", [{}, {"complete": search_as_published}, {"causal": True}], ids=str
 )
 def test_every_method_fills_every_frame_plausibly(walk, walk_without_leg, library, settings):
     result = reconstructed(walk_without_leg, library, **settings)

@@ -13,20 +13,17 @@ from solvers.motion import JointRecording, Sensor, forward_kinematics
 from solvers.motion.humanoid import posture_joints
 from solvers.motion.humanoid.posture_heading import rotate_about_vertical
 from solvers.reconstruction import (
-    CorrectionMethod,
-    CorrectionSettings,
-    PostureMethod,
-    PostureSettings,
     ReconstructMethod,
     ReconstructSettings,
     ReliabilityMethod,
     ReliabilitySettings,
-    correct_postures,
     measure_reliability,
     reconstruct,
     reconstruct_postures,
 )
 from solvers.reconstruction.pose_completion import complete_postures
+from solvers.reconstruction.published.shjt13 import search_as_published
+from solvers.reconstruction.published.zh14 import ThreeTermSettings, reconstruct_zh14
 from solvers.reconstruction.reconstruct import shipped_residual_prior
 
 LOST, HIDDEN = kinect_walks.LOST, [5, 6, 7]
@@ -61,19 +58,15 @@ def test_published_methods_equal_their_separate_verbs(walk):
     signs = measure_reliability(
         walk, settings=ReliabilitySettings(method=ReliabilityMethod.PUBLISHED)
     )
-    search = PostureSettings(method=PostureMethod.PUBLISHED)
-    separate = reconstruct_postures(walk, settings=search, reliability=signs)
+    separate = reconstruct_postures(walk, reliability=signs, complete=search_as_published)
     chosen = ReconstructSettings(method=ReconstructMethod.PUBLISHED_POSTURES)
     complete = reconstruct(walk, settings=chosen)
     np.testing.assert_array_equal(complete.tracks.positions, separate.tracks.positions)
     np.testing.assert_array_equal(complete.motion.rotations, separate.motion.rotations)
     assert "stochastic search" in complete.method
 
-    three_terms = CorrectionSettings(method=CorrectionMethod.PUBLISHED, shift=True)
     v2 = replace(walk, sensor=Sensor.KINECT_V2)
-    separate = correct_postures(
-        v2, shipped_residual_prior(), reliability=signs, settings=three_terms
-    )
+    separate = reconstruct_zh14(v2, shipped_residual_prior(), settings=ThreeTermSettings())
     chosen = ReconstructSettings(method=ReconstructMethod.PUBLISHED_RESIDUALS, shift=True)
     complete = reconstruct(v2, settings=chosen)
     np.testing.assert_array_equal(complete.tracks.positions, separate.tracks.positions)

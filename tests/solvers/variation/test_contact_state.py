@@ -21,8 +21,8 @@ from solvers.variation.contact_state import (
     contacts_from_state,
     measure_contact_state,
 )
-from solvers.variation.mixtures import ROOT_ROW, mix_deviations
-from solvers.variation.partitions import LEG_ROWS
+from solvers.variation.curves.partitions import LEG_ROWS, ROOT_ROW
+from solvers.variation.mixtures import mix_deviations
 
 
 def test_contact_state_is_signed_time_to_nearest_change(walks):

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline
 
-from solvers.variation.curve_sampling import sample_curves
+from solvers.variation.curves.curve_sampling import sample_curves
 
 
 @pytest.mark.parametrize("n_frames", [2, 3, 8, 100])

@@ -15,7 +15,7 @@ from solvers.variation import (
     measure_variation,
 )
 from solvers.variation.align_examples import positions_in_body_frame
-from solvers.variation.motion_curves import headings_from_motion
+from solvers.variation.curves.motion_curves import headings_from_motion
 
 EVERY = [Method.MIXTURE, Method.COREGIONALISED]
 

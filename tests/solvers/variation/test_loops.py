@@ -18,18 +18,18 @@ from solvers.variation import (
     learn_variation_model,
 )
 from solvers.variation.align_examples import positions_in_body_frame
+from solvers.variation.curves.motion_curves import (
+    MotionCurves,
+    curves_from_motion,
+    headings_from_motion,
+    motion_from_curves,
+)
 from solvers.variation.loops import (
     close_loop,
     detect_loop,
     extract_middle_cycle,
     repeat_loop,
     resample_loop,
-)
-from solvers.variation.motion_curves import (
-    MotionCurves,
-    curves_from_motion,
-    headings_from_motion,
-    motion_from_curves,
 )
 from solvers.workflows.vary_motions import plant_variant
 

@@ -5,8 +5,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.variation import learn_variation_model
+from solvers.variation.curves.partitions import ROOT_ROW
 from solvers.variation.mixing_kernel import MixingKernel
-from solvers.variation.mixtures import ROOT_ROW, draw_mixing_weights, mix_deviations
+from solvers.variation.mixtures import draw_mixing_weights, mix_deviations
 
 
 def test_all_examples_have_equal_weight_on_average(model, rng):

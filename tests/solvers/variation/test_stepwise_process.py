@@ -6,14 +6,14 @@ from numpy.testing import assert_allclose
 from scipy.optimize import approx_fprime
 from scipy.spatial.distance import cdist
 
-from solvers.variation.stepwise_process import (
+from solvers.variation.published.process import (
     JITTER,
     Hyperparameters,
     _latent_cost,
     _published_cost,
     learn_hyperparameters,
 )
-from solvers.variation.stepwise_stack import learn_stack
+from solvers.variation.published.stack import learn_stack
 
 
 @pytest.fixture

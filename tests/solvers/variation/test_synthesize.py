@@ -18,8 +18,8 @@ from solvers.variation import (
     synthesize,
 )
 from solvers.variation.align_examples import positions_in_body_frame
-from solvers.variation.motion_curves import curves_from_motion, headings_from_motion
-from solvers.variation.partitions import partition_joints
+from solvers.variation.curves.motion_curves import curves_from_motion, headings_from_motion
+from solvers.variation.curves.partitions import partition_joints
 from solvers.variation.synthesize import RANGE_MARGIN
 
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...depth_scene import DepthRecording
 from ..body import CAPSULE_SEGMENTS, Integers, SurfaceRows, rows_toward_targets
-from .hypothesis import Hypothesis
-from .observation import Observation
+from ..terms import Hypothesis, Observation, subsampling_step
 
 Array = NDArray[np.float64]
 
@@ -20,6 +20,32 @@ COLOR_WEIGHT_M = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
+class ColoredFrame:
+    """The observed actor, with colors.
+
+    Attributes
+    ----------
+    observation : Observation
+    intensities : shape (height * width,)
+        Brightness of all pixels, 0 to 255; NaN without color.
+    """
+
+    observation: Observation
+    intensities: Array
+
+
+def read_intensities(depth: DepthRecording, frame: int, picture_width: int) -> Array:
+    """Return the brightness (n,) of the pixels that `observe` keeps; NaN without color."""
+    step = subsampling_step(depth.camera, picture_width)
+    color = depth.color(frame)
+    if color is None:
+        camera = depth.camera.every(step)
+        return np.full(camera.width * camera.height, np.nan)
+    gray: Array = color[::step, ::step].astype(np.float64).mean(axis=2).ravel()
+    return gray
+
+
+@dataclass(frozen=True, eq=False)
 class PreviousFrame:
     """The previous frame: segment transforms and colors.
 
@@ -27,17 +53,16 @@ class PreviousFrame:
     ----------
     frames : shape (17, 4, 4)
         camera_from_segment of each segment.
-    observation : Observation
-        With colors.
+    colored : ColoredFrame
     """
 
     frames: Array
-    observation: Observation
+    colored: ColoredFrame
 
 
 def surface_term(
     hypothesis: Hypothesis,
-    observation: Observation,
+    colored: ColoredFrame,
     previous: PreviousFrame | None,
     weight: float,
 ) -> SurfaceRows:
@@ -51,7 +76,7 @@ def surface_term(
     Parameters
     ----------
     hypothesis : Hypothesis
-    observation : Observation
+    colored : ColoredFrame
     previous : PreviousFrame or None
     weight : float, per square meter
 
@@ -60,7 +85,7 @@ def surface_term(
     .. [LOU12] Lou (2012). Acquiring 3D full-body motion from noisy and ambiguous input. PhD
        dissertation, Texas A&M University, section 3.4.1.
     """
-    camera = observation.camera
+    observation, camera = colored.observation, colored.observation.camera
     scale = camera.width / 320.0
     rows, columns = np.divmod(hypothesis.image.pixels, camera.width)
     step = max(1, round(GRID_STEP_PX * scale))
@@ -72,9 +97,10 @@ def surface_term(
     offsets = observation.points_at(pixels.ravel()).reshape(*pixels.shape, 3)
     offsets -= points[:, np.newaxis]
     costs = np.sqrt(np.einsum("nki,nki->nk", offsets, offsets))
-    if previous is not None and previous.observation.color is not None:
-        costs += COLOR_WEIGHT_M * _color_differences(hypothesis, chosen, pixels, observation,
-                                                   previous)  # fmt: skip
+    if previous is not None:
+        costs += COLOR_WEIGHT_M * _color_differences(
+            hypothesis, chosen, colored.intensities[pixels], previous
+        )
     costs[observation.flat[pixels] == 0.0] = np.inf
     best = costs.argmin(axis=1)
     each = np.arange(len(chosen))
@@ -102,13 +128,11 @@ def window_pixels(
 def _color_differences(
     hypothesis: Hypothesis,
     chosen: Integers,
-    pixels: Integers,
-    observation: Observation,
+    current: Array,
     previous: PreviousFrame,
 ) -> Array:
     """Return the intensity differences (n, k) to the previous frame; 0 if unknown."""
     previous_values = previous_intensities(hypothesis, chosen, previous)
-    current = observation.intensities[pixels]
     differences: Array = np.abs(current - previous_values[:, np.newaxis])
     return np.nan_to_num(differences)
 
@@ -125,9 +149,10 @@ def previous_intensities(
     before = (
         np.einsum("nij,nj->ni", previous_frames[:, :3, :3], local) + previous_frames[:, :3, 3]
     )
-    camera = previous.observation.camera
+    observation = previous.colored.observation
+    camera = observation.camera
     columns, rows = np.nan_to_num(np.rint(camera.project(before)), nan=-1.0).astype(int).T
     inside = (columns >= 0) & (rows >= 0) & (columns < camera.width) & (rows < camera.height)
     pixels = np.where(inside, rows * camera.width + columns, 0)
-    visible = inside & (previous.observation.flat[pixels] > 0.0)
-    return np.where(visible, previous.observation.intensities[pixels], np.nan)
+    visible = inside & (observation.flat[pixels] > 0.0)
+    return np.where(visible, previous.colored.intensities[pixels], np.nan)

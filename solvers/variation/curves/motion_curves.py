@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import Motion, Skeleton
-from ..motion.humanoid import normalize_postures, postures_from_motion
-from ..rotations import (
+from ...motion import Motion, Skeleton
+from ...motion.humanoid import normalize_postures, postures_from_motion
+from ...rotations import (
     inverse,
     multiply,
     quaternion_from_rotation_vector,

@@ -10,8 +10,9 @@ import argparse
 from pathlib import Path
 
 from solvers.reconstruction.pose_library.posture_library import SHIPPED_LIBRARY
-from tests.benchmarks.reconstruction.kinect_pairs import read_pairs
-from tests.benchmarks.reconstruction.posture_sources import (
+
+from ..benchmarks.reconstruction.kinect_pairs import read_pairs
+from ..benchmarks.reconstruction.posture_sources import (
     cmu_library,
     exercise_library,
     joined,

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_solve, solve_triangular
 from scipy.spatial.distance import cdist
 
-from ..progress import Progress, unwatched
-from .stepwise_process import (
+from ...progress import Progress, unwatched
+from .process import (
     JITTER,
     N_CHANNELS,
     Hyperparameters,

@@ -3,10 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..body import NO_ROWS, SurfaceRows, rows_toward_targets
+from ..body import NO_ROWS, Integers, SurfaceRows, rows_toward_targets
+from ..terms import Hypothesis, Observation
 from .depth_edges import edge_pixels
-from .hypothesis import Hypothesis
-from .observation import Observation
 
 Array = NDArray[np.float64]
 
@@ -14,7 +13,9 @@ WINDOW_RADIUS_PX = 10
 """Half size of the search window at 320 columns: 21 x 21 pixels."""
 
 
-def edge_term(hypothesis: Hypothesis, observation: Observation, weight: float) -> SurfaceRows:
+def edge_term(
+    hypothesis: Hypothesis, observation: Observation, observed_pixels: Integers, weight: float
+) -> SurfaceRows:
     """Return the rows of the edge term of [LOU12]_, eq. 3.8 and 3.9.
 
     Canny edges of both images are back-projected to points. Each observed edge point pulls
@@ -24,6 +25,8 @@ def edge_term(hypothesis: Hypothesis, observation: Observation, weight: float) -
     ----------
     hypothesis : Hypothesis
     observation : Observation
+    observed_pixels : shape (n,)
+        Its `edge_pixels`.
     weight : float, per square meter
 
     References
@@ -33,7 +36,6 @@ def edge_term(hypothesis: Hypothesis, observation: Observation, weight: float) -
     """
     width = observation.camera.width
     reach = max(1, round(WINDOW_RADIUS_PX * width / 320.0))
-    observed_pixels = observation.edges
     rendered = hypothesis.index_image[edge_pixels(hypothesis.image.depth_image())]
     if not (len(observed_pixels) and len(rendered)):
         return NO_ROWS

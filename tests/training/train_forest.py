@@ -19,7 +19,8 @@ from solvers.depth_tracking.forest_training.train_forest import (
     PixelForestSettings,
     train_pixel_forest,
 )
-from tests.benchmarks.depth.forest_sources import WORDS, all_bodies, taught_motions
+
+from ..benchmarks.depth.forest_sources import WORDS, all_bodies, taught_motions
 
 SETTINGS = PixelForestSettings(
     n_trees=4, n_pictures=12_000, n_pixels=120, levels=18, n_candidates=100, least_pixels=50

@@ -11,7 +11,8 @@ from pathlib import Path
 
 from solvers.depth_tracking.body.learn_motion_prior import learn_motion_prior
 from solvers.depth_tracking.body.motion_prior import SHIPPED
-from tests.benchmarks.depth.forest_sources import cmu_motions, exercises
+
+from ..benchmarks.depth.forest_sources import cmu_motions, exercises
 
 HOPPER = "49"
 """The actor of hops in depth/truth; the walkers there are kept out as well."""

@@ -11,10 +11,9 @@ within the examples' range at that time and is pulled a little towards their mix
 import numpy as np
 from numpy.typing import NDArray
 
-from .mixtures import ROOT_ROW
-from .soft_clamp import clamp_softly
-from .stepwise_features import ROOT_TRIPLE, compute_step_features, curves_from_states
-from .stepwise_model import StepwiseModel
+from ..curves import ROOT_ROW, clamp_softly
+from .features import ROOT_TRIPLE, compute_step_features, curves_from_states
+from .model import StepwiseModel
 
 Array = NDArray[np.float64]
 
@@ -26,35 +25,38 @@ PULL_FRACTION = 0.2
 
 
 def draw_stepwise_deviations(
-    model: StepwiseModel, weights: Array, n_joints: int, rng: np.random.Generator
-) -> tuple[Array, Array]:
-    """Draw deviations of joints and root.
+    model: StepwiseModel,
+    mixture: tuple[Array, Array, Array, Array],
+    weights: Array,
+    rng: np.random.Generator,
+) -> tuple[Array, Array, Array, Array]:
+    """Draw deviations of joints, root, log warp rates and contact state.
 
-    As published, they are from the mean of the examples. Otherwise they are from the mixture
-    with the same weights, which also determines the motion between the steps.
+    As published, joints and root deviate from the mean of the examples, and contacts are
+    unknown. Otherwise they deviate from the mixture, which also determines the motion between
+    the steps.
 
     Parameters
     ----------
     model : StepwiseModel
+    mixture : four arrays
+        The deviations of mixtures: see `mix_deviations`.
     weights : shape (6, n_variants, n_samples, n_examples)
-        Of examples in mixtures: see `draw_mixing_weights`.
-    n_joints : int
+        Of examples in these mixtures.
     rng : numpy.random.Generator
-
-    Returns
-    -------
-    joints : shape (n_variants, n_samples, n_joints, 3), radians
-    root : shape (n_variants, n_samples, 4)
     """
+    joints, root, log_warp_rates, contact_state = mixture
     n_samples, n_steps = weights.shape[2], model.states.shape[1]
     mean = model.states.mean(axis=0)
     if model.published:
-        deviations = _draw_published(model, weights.shape[1], rng) - mean
-    else:
-        at_steps = _weights_at_steps(model, weights, n_steps)
-        mixed = np.einsum("gvsn,nsgk->vsgk", at_steps, model.states - mean)
-        deviations = _draw_coregionalized(model, at_steps, mean + mixed, rng) - mean - mixed
-    return curves_from_states(model.body, deviations, n_joints, n_samples)
+        states = _draw_published(model, weights.shape[1], rng) - mean
+        drawn = curves_from_states(model.body, states, joints.shape[2], n_samples)
+        return *drawn, log_warp_rates, np.full_like(contact_state, np.nan)
+    at_steps = _weights_at_steps(model, weights, n_steps)
+    mixed = np.einsum("gvsn,nsgk->vsgk", at_steps, model.states - mean)
+    states = _draw_coregionalized(model, at_steps, mean + mixed, rng) - mean - mixed
+    more_joints, more_root = curves_from_states(model.body, states, joints.shape[2], n_samples)
+    return joints + more_joints, root + more_root, log_warp_rates, contact_state
 
 
 def _draw_published(model: StepwiseModel, n: int, rng: np.random.Generator) -> Array:

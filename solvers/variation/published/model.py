@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import Skeleton
-from ..progress import Progress, unwatched, within
-from .stepwise_features import (
+from ...motion import Skeleton
+from ...progress import Progress, unwatched, within
+from .features import (
     N_CONTEXT,
     STEP_RATE_HZ,
     TIME_WEIGHT,
@@ -19,8 +19,8 @@ from .stepwise_features import (
     select_feature_columns,
     states_from_curves,
 )
-from .stepwise_process import Hyperparameters
-from .stepwise_stack import ProcessStack, learn_stack
+from .process import Hyperparameters
+from .stack import ProcessStack, learn_stack
 
 Array = NDArray[np.float64]
 

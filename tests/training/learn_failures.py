@@ -7,8 +7,9 @@ are known.
 """
 
 from solvers.depth_tracking.tracking.failure_test import FEATURES
-from tests.benchmarks.depth.depth_tuning import TAKES, tuning_sequence
-from tests.benchmarks.depth.failures import WRONG, judged, learned
+
+from ..benchmarks.depth.depth_tuning import TAKES, tuning_sequence
+from ..benchmarks.depth.failures import WRONG, judged, learned
 
 
 def main() -> None:

@@ -10,10 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import Skeleton
-from .curve_sampling import sample_curves
-from .motion_curves import HEIGHT_COLUMN
-from .partitions import partition_joints
+from ...motion import Skeleton
+from ..curves import HEIGHT_COLUMN, partition_joints, sample_curves
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

@@ -5,7 +5,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import Skeleton, find_humanoid_map
+from ...motion import Skeleton, find_humanoid_map
 
 
 class Partition(Enum):
@@ -20,6 +20,8 @@ class Partition(Enum):
 
 LEG_ROWS = [list(Partition).index(leg) for leg in (Partition.LEFT_LEG, Partition.RIGHT_LEG)]
 """Rows of the left and the right leg."""
+ROOT_ROW = len(Partition)
+"""Row of weights of the root and the time warp, after those of the partitions."""
 
 FIRST_ROLES = {
     Partition.LEFT_ARM: ("leftShoulder", "leftUpperArm"),

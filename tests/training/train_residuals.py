@@ -21,7 +21,8 @@ from solvers.reconstruction import (
 )
 from solvers.reconstruction.reconstruct import SHIPPED_PRIOR
 from solvers.reconstruction.residual_correction.learn_confidence import calibrate_confidence
-from tests.benchmarks.reconstruction.kinect_pairs import read_pairs
+
+from ..benchmarks.reconstruction.kinect_pairs import read_pairs
 
 SETTINGS = ResidualPriorSettings(local_points=30, whole_points=60)
 WORDS = "UI-PRMD: ten exercises by five actors, Kinect v2 against markers"

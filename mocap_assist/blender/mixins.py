@@ -1,0 +1,38 @@
+"""What Blender's base classes give to the classes of ours that are mixed in before them."""
+
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+
+class OperatorMixin:
+    """Mixed in before bpy.types.Operator."""
+
+    if TYPE_CHECKING:
+        bl_idname: str
+        layout: bpy.types.UILayout
+        properties: bpy.types.OperatorProperties
+
+        @classmethod
+        def poll_message_set(cls, message: str) -> None:
+            """Show why the button is gray."""
+
+        def report(self, kind: set[str], message: str) -> None:
+            """Show a message in the status bar."""
+
+
+class SettingsMixin(OperatorMixin):
+    """An operator that the decorator `settings_from` gives a property for each setting."""
+
+    if TYPE_CHECKING:
+        setting_names: tuple[str, ...]
+
+        def settings(self) -> Any:
+            """Return the bundle with the checked values of the properties."""
+
+
+class PanelMixin:
+    """Mixed in before bpy.types.Panel."""
+
+    if TYPE_CHECKING:
+        layout: bpy.types.UILayout

@@ -1,0 +1,120 @@
+"""Track a body as published in [LOU12]."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...depth_scene import DepthRecording
+from ...progress import Progress, unwatched
+from ..body import (
+    BodyModel,
+    Integers,
+    MotionPrior,
+    SurfaceRows,
+    concatenate_rows,
+    segment_frames,
+)
+from ..terms import (
+    REFERENCE_AREA_M2,
+    Hypothesis,
+    Observation,
+    TrackerSettings,
+    observe,
+    pixel_area,
+)
+from ..tracking import (
+    TrackedMotion,
+    assemble_motion,
+    checked_pose,
+    next_pose_prior,
+    track_frame,
+)
+from .depth_edges import edge_pixels
+from .edges import edge_term
+from .surface import ColoredFrame, PreviousFrame, read_intensities, surface_term
+from .wzc12 import NO_ANKLES
+
+Array = NDArray[np.float64]
+
+PER_DEGREE = (180.0 / np.pi) ** 2
+"""Squared degrees in a squared radian."""
+SURFACE_WEIGHT, EDGE_WEIGHT = 4.0, 40.0
+"""Weights of the terms, per square meter."""
+LOU12 = TrackerSettings(
+    picture_width=320, iterations=10, coarse_iterations=0,
+    closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
+    depth_weight=0.0, extra_weight=0.0, silhouette_weight=0.0,
+    similar_weight=0.001 * PER_DEGREE,
+    shift_weight=1e-5, turn_weight=1e-5 * PER_DEGREE, trust=0.0,
+    limit_weight=0.0, natural_weight=0.0, ankle_weight=NO_ANKLES, damping=1e-6,
+    longest_step=10.0, accept_only_better=False,
+)  # fmt: skip
+"""Weights of [LOU12] sections 3.4 to 3.6: surface 1, edges 10, motion prior 0.001, smoothness
+0.00001 (a pixel of 320 columns covers about a quarter of the reference area).
+
+The paper gives no units. Angles are interpreted in degrees, as in its training motions. With
+weights per square radian, prior and smoothness have no effect, and tracking fails within a
+second."""
+
+
+def track_pose_lou12(
+    depth: DepthRecording,
+    body: BodyModel,
+    initial_pose: Array,
+    motion_prior: MotionPrior | None = None,
+    *,
+    progress: Progress = unwatched,
+) -> TrackedMotion:
+    """Track a body with the surface and edge terms of [LOU12]_, sections 3.4 to 3.6.
+
+    Parameters, result and errors are those of `track_pose`, which loses the actor less often.
+    Colors of the recording, if any, are compared from frame to frame.
+
+    Parameters
+    ----------
+    depth : DepthRecording
+    body : BodyModel
+    initial_pose : shape (36,)
+    motion_prior : MotionPrior, optional
+    progress : Progress
+
+    References
+    ----------
+    .. [LOU12] Lou (2012). Acquiring 3D full-body motion from noisy and ambiguous input. PhD
+       dissertation, Texas A&M University.
+    """
+    poses, qualities, previous = [checked_pose(initial_pose)], [], None
+    for frame in range(depth.n_frames):
+        observation = observe(depth, frame, LOU12.picture_width)
+        prior = next_pose_prior(poses[1:] or poses, LOU12, motion_prior)
+        colored = ColoredFrame(observation, read_intensities(depth, frame, LOU12.picture_width))
+        edges = edge_pixels(observation.depth, observation.nearest_pixel)
+        likelihood = _Likelihood(colored, edges, previous)
+        pose, quality = track_frame(body, prior, observation, LOU12, likelihood)
+        previous = (
+            None if observation.empty else PreviousFrame(segment_frames(body, pose), colored)
+        )
+        poses.append(pose)
+        qualities.append(quality)
+        progress((frame + 1) / depth.n_frames, "Tracking")
+    return assemble_motion(body, np.array(poses[1:]), qualities, depth.frame_rate)
+
+
+@dataclass(frozen=True, eq=False)
+class _Likelihood:
+    """The image terms of one frame."""
+
+    colored: ColoredFrame
+    edges: Integers
+    previous: PreviousFrame | None
+
+    def __call__(
+        self, hypothesis: Hypothesis, observation: Observation, settings: TrackerSettings
+    ) -> SurfaceRows:
+        """Return the rows of both terms."""
+        area = pixel_area(observation) / REFERENCE_AREA_M2
+        return concatenate_rows([
+            surface_term(hypothesis, self.colored, self.previous, area * SURFACE_WEIGHT),
+            edge_term(hypothesis, observation, self.edges, area * EDGE_WEIGHT),
+        ])

@@ -1,0 +1,30 @@
+"""What the drivers have in common. Runs in the Blender with a window, as they do."""
+
+import bgui
+import bpy
+
+PANELS = "MOCAP_PT_"
+
+
+def empty_scene():
+    for each in list(bpy.data.objects):
+        bpy.data.objects.remove(each)
+
+
+def unfold_alone(name):
+    """Hide all other panels, and unfold this one, before the tab is first drawn."""
+    for each in [other for other in dir(bpy.types) if other.startswith(PANELS)]:
+        panel = getattr(bpy.types, each)
+        bpy.utils.unregister_class(panel)
+        if each == f"{PANELS}{name}":
+            panel.bl_options = set()
+        else:
+            panel.poll = classmethod(lambda cls, context: False)
+        bpy.utils.register_class(panel)
+
+
+def settle(times=3):
+    """Wait until everything is drawn."""
+    for _ in range(times):
+        bgui.redraw()
+        yield 0.5
