@@ -1,0 +1,153 @@
+"""Tables of what was measured, for the terminal and for docs/sensitivity.md."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from .constants import ROOT, Constant
+from .evaluate import Outcome
+
+DOCUMENT = ROOT / "docs" / "sensitivity.md"
+MOVES_PERCENT = 0.5
+"""Change of any one error of a family, percent, above which a constant moves it."""
+TINY = 1e-9
+MARK = "<!-- below: make sensitivity ARGUMENTS=--docs -->"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One constant and what its family measured with half and with twice of it."""
+
+    constant: Constant
+    baseline: Outcome
+    half: Outcome
+    twice: Outcome
+
+    @property
+    def changes(self) -> tuple[float, float]:
+        """Change of the geometric mean of all errors, percent; NaN where it failed."""
+        return self._mean(self.half), self._mean(self.twice)
+
+    @property
+    def most_moved(self) -> tuple[str, float]:
+        """Name and change, percent, of the error that changed most."""
+        found = [
+            (name, change)
+            for outcome in (self.half, self.twice)
+            for name, change in self._each(outcome).items()
+        ]
+        return max(found, key=lambda pair: abs(pair[1]), default=("", 0.0))
+
+    @property
+    def moves(self) -> bool:
+        """Whether any error changes by more than MOVES_PERCENT."""
+        return abs(self.most_moved[1]) > MOVES_PERCENT
+
+    @property
+    def failures(self) -> dict[str, str]:
+        """What went wrong, by factor."""
+        found = {"x0.5": self.half.failure, "x2": self.twice.failure}
+        return {
+            factor: failure
+            for factor, failure in found.items()
+            if failure and failure != "no smaller whole number"
+        }
+
+    @property
+    def cpu_change(self) -> float:
+        """Largest change of the time, percent."""
+        times = [each.cpu_s for each in (self.half, self.twice) if not each.failure]
+        changes = [100.0 * (each / self.baseline.cpu_s - 1.0) for each in times]
+        return max(changes, key=abs, default=0.0)
+
+    def _each(self, outcome: Outcome) -> dict[str, float]:
+        return {
+            name: 100.0 * ((figure + TINY) / (self.baseline.figures[name] + TINY) - 1.0)
+            for name, figure in outcome.figures.items()
+        }
+
+    def _mean(self, outcome: Outcome) -> float:
+        changes = self._each(outcome).values()
+        if not changes:
+            return math.nan
+        logarithms = [math.log(max(1.0 + change / 100.0, TINY)) for change in changes]
+        return 100.0 * math.expm1(sum(logarithms) / len(logarithms))
+
+
+def family_text(family: str, rows: Sequence[Row]) -> str:
+    """Return the section of one family in Markdown."""
+    if not rows:
+        return f"## {_title(family)}\n\nNot measured yet.\n"
+    moving = sorted((row for row in rows if row.moves), key=_size, reverse=True)
+    still = [row for row in rows if not row.moves and not row.failures]
+    errors = len(rows[0].baseline.figures)
+    lines = [
+        f"## {_title(family)}",
+        "",
+        f"{len(rows)} constants, {errors} errors; {len(moving)} move one.",
+        "",
+        "| constant | value | unit | x0.5 | x2 | most moved |",
+        "|---|---|---|---|---|---|",
+        *(_line(row) for row in moving),
+        "",
+        f"Move none ({len(still)}): {_listed(still)}.",
+    ]
+    failed = [row for row in rows if row.failures]
+    if failed:
+        lines += ["", "Failed:", "", *(_failure(row) for row in failed)]
+    return "\n".join(lines) + "\n"
+
+
+def write_docs(families: Mapping[str, Sequence[Row]]) -> None:
+    """Write what follows the introduction of the page, which is written by hand."""
+    sections = [family_text(family, rows) for family, rows in families.items()]
+    introduction = DOCUMENT.read_text(encoding="utf-8").partition(MARK)[0]
+    DOCUMENT.write_text(introduction + "\n".join([MARK, "", *sections]), encoding="utf-8")
+
+
+def percent(change: float) -> str:
+    """Write a change with its sign; nothing where the constant could not be scaled."""
+    if math.isnan(change):
+        return "-"
+    return f"{change:+.1f} %" if abs(change) >= 0.05 else "0"
+
+
+def _line(row: Row) -> str:
+    name, change = row.most_moved
+    half, twice = (percent(each) for each in row.changes)
+    return (
+        f"| `{_short(row.constant)}` | {_number(row.constant.value)} | {row.constant.unit} "
+        f"| {half} | {twice} | {name} {percent(change)} |"
+    )
+
+
+def _failure(row: Row) -> str:
+    what = "; ".join(f"{factor}: {failure}" for factor, failure in row.failures.items())
+    return f"- `{_short(row.constant)}`: {what}"
+
+
+def _listed(rows: Sequence[Row]) -> str:
+    by_module: dict[str, list[str]] = {}
+    for row in rows:
+        module, _, name = _short(row.constant).rpartition(".")
+        by_module.setdefault(module, []).append(f"`{name}`")
+    parts = [f"{module} {', '.join(names)}" for module, names in by_module.items()]
+    return "; ".join(parts) or "none"
+
+
+def _size(row: Row) -> float:
+    return max((abs(each) for each in row.changes if not math.isnan(each)), default=0.0)
+
+
+def _short(constant: Constant) -> str:
+    module = constant.key.rpartition(".")[0].rpartition("/")[2]
+    return f"{module}.{constant.name}"
+
+
+def _number(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _title(family: str) -> str:
+    return family.replace("_", " ").capitalize()
