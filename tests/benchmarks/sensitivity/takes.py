@@ -4,6 +4,7 @@ Walks of the CMU subjects for development, HDM05 actor bd, and takes of `cmu_var
 which no benchmark reads.
 """
 
+import re
 import tarfile
 from collections.abc import Sequence
 from functools import cache
@@ -12,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.motion import Motion, Tracks, forward_kinematics
+from solvers.motion import Motion, Skeleton, Tracks, forward_kinematics
 from solvers.recordings import read_acclaim, read_bvh
 from solvers.rotations.representations import (
     angle_between,
@@ -26,6 +27,9 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 BUILD = Path(__file__).resolve().parents[3] / "build" / "sensitivity"
 WALKS = frozenset(clips.QUICK_DEV)
+ROUGH = (
+    "hips|root|hipjoint|leg|femur|tibia|back|spine|thorax|arm|humerus|radius|shoulder|clavicle"
+)
 ARCHIVE = clips.DATA / "mocap" / "cmu_variety.tar.xz"
 
 
@@ -59,6 +63,19 @@ def variety(name: str) -> Motion:
         motion = read_bvh(paths[0], scale=clips.CMU_METRES)
         return motion.slice(1, motion.n_frames)
     return read_acclaim(paths[0])
+
+
+def pruned(motion: Motion) -> Motion:
+    """Leave out head, hands and toes: half as many joints, an eighth of the time."""
+    skeleton = motion.skeleton
+    kept = [
+        joint for joint, name in enumerate(skeleton.names) if re.search(ROUGH, name.lower())
+    ]
+    new = {joint: index for index, joint in enumerate(kept)}
+    parents = tuple(new.get(skeleton.parents[joint], -1) for joint in kept)
+    names = tuple(skeleton.names[joint] for joint in kept)
+    rough = Skeleton(names, parents, skeleton.offsets[kept])
+    return Motion(rough, motion.rotations[:, kept], motion.root_positions, motion.frame_rate)
 
 
 def thrown_off(motion: Motion, joints: Sequence[str], rng: np.random.Generator) -> Motion:

@@ -19,6 +19,7 @@ from ..takes import (
     joint_tracks,
     missed_or_false,
     point_error,
+    pruned,
     root_error,
     thrown_off,
     variety,
@@ -41,11 +42,11 @@ class Case(NamedTuple):
 
 def prepare() -> dict[str, object]:
     """Corrupt the takes."""
-    short, other = walk("07_03").slice(20, 76), walk("26_01").slice(60, 120)
-    kick = hdm05("kickLFront1Reps")
-    squat = hdm05("squat1Reps")
-    punch = variety("02_05").slice(700, 820)
-    fine = walk("07_11", 2).slice(20, 90)
+    short, other = pruned(walk("07_03")).slice(20, 76), pruned(walk("26_01")).slice(60, 120)
+    kick = pruned(hdm05("kickLFront1Reps"))
+    squat = pruned(hdm05("squat1Reps"))
+    punch = pruned(variety("02_05")).slice(700, 820)
+    fine = pruned(walk("07_11", 2)).slice(20, 90)
     cases = {
         "walk, 3 deg, spikes": Case(short, _noisy(short, 3.0, 0.15), True, limits=True),
         "squat, clean": Case(squat, squat),
@@ -57,7 +58,7 @@ def prepare() -> dict[str, object]:
     }
     return {
         "cases": cases,
-        "examples": tuple(walk(name) for name in EXAMPLES),
+        "examples": tuple(pruned(walk(name)) for name in EXAMPLES),
         "points": _points(),
     }
 
@@ -112,7 +113,7 @@ def _swapped(motion: Motion) -> Motion:
 
 def _points() -> tuple[Tracks, Tracks]:
     """A walk's joints as points at 60 Hz: 5 mm of noise, spikes of 10 to 30 cm, short gaps."""
-    truth = joint_tracks(walk("10_04", 2).slice(50, 170))
+    truth = joint_tracks(pruned(walk("10_04", 2)).slice(50, 170))
     rng = np.random.default_rng(5)
     shape = truth.positions.shape
     positions = truth.positions + rng.normal(scale=0.005, size=shape)

@@ -1,0 +1,96 @@
+"""Variants: how near each is to examples that were kept aside, how far, how smooth."""
+
+import numpy as np
+
+from solvers.denoising import learn_joint_limits, limit_excess
+from solvers.motion import JointLimits, Motion, detect_contacts
+from solvers.rotations.representations import (
+    inverse,
+    multiply,
+    rotation_vector_from_quaternion,
+)
+from solvers.variation import (
+    Method,
+    VarySettings,
+    borrow_variation,
+    draw_variants,
+    learn_variation_model,
+    measure_variation,
+    repeat_loop,
+)
+
+from ..takes import Array, hdm05, walk
+
+N_VARIANTS = 4
+
+
+def prepare() -> dict[str, object]:
+    """Take squats and kicks of one actor, and cycles of a walk."""
+    sets = {
+        "squat": [hdm05("squat1Reps", number) for number in (1, 2, 3, 4)],
+        "kick": [hdm05("kickLFront1Reps", number) for number in (1, 3, 5)],
+        "sneak": [hdm05("sneak2StepsLStart", number) for number in (1, 2, 3)],
+    }
+    limits = {name: learn_joint_limits(examples) for name, examples in sets.items()}
+    cycle = walk("07_03").slice(12, 12 + 34)
+    return {"sets": sets, "limits": limits, "cycle": cycle}
+
+
+def measure(
+    sets: dict[str, list[Motion]], limits: dict[str, JointLimits], cycle: Motion
+) -> dict[str, float]:
+    """Ratios to the examples: variation, jerk, and time in contact; excess beyond limits."""
+    figures = {}
+    for name, examples in sets.items():
+        methods = (
+            (Method.MIXTURE, Method.COREGIONALISED) if name == "squat" else (Method.MIXTURE,)
+        )
+        for method in methods:
+            settings = VarySettings(method=method, seed=5)
+            model = learn_variation_model(examples, settings=settings)
+            variants = draw_variants(model, N_VARIANTS, settings=settings)
+            motions = [each.motion for each in variants]
+            found = _figures(motions, examples, limits[name])
+            figures |= {f"{name}, {method.value}: {key}": what for key, what in found.items()}
+    borrowed = draw_variants(borrow_variation(sets["kick"][0]), N_VARIANTS)
+    found = _figures([each.motion for each in borrowed], sets["kick"], limits["kick"])
+    figures |= {f"borrowed: {key}": what for key, what in found.items()}
+    model = learn_variation_model([cycle])
+    loop = draw_variants(model, 1)[0].motion
+    figures["loop: seam"] = 0.01 + _seam(repeat_loop(loop, 2), loop.n_frames)
+    return figures
+
+
+def _figures(
+    variants: list[Motion], examples: list[Motion], limits: JointLimits
+) -> dict[str, float]:
+    excess = [float(np.degrees(limit_excess(each, limits)).mean()) for each in variants]
+    lengths = [[each.n_frames for each in motions] for motions in (variants, examples)]
+    return {
+        "variation": measure_variation(variants) / measure_variation(examples),
+        "jerk": _jerk(variants) / _jerk(examples),
+        "in contact": _in_contact(variants) / _in_contact(examples),
+        "spread of lengths": (1.0 + np.std(lengths[0])) / (1.0 + np.std(lengths[1])),
+        "beyond limits deg": 0.01 + float(np.mean(excess)),
+    }
+
+
+def _velocities(motion: Motion) -> Array:
+    steps = multiply(inverse(motion.rotations[:-1]), motion.rotations[1:])
+    return np.asarray(rotation_vector_from_quaternion(steps) * motion.frame_rate)
+
+
+def _jerk(motions: list[Motion]) -> float:
+    return float(
+        np.mean([np.abs(np.diff(_velocities(each), n=2, axis=0)).mean() for each in motions])
+    )
+
+
+def _in_contact(motions: list[Motion]) -> float:
+    return 0.01 + float(np.mean([detect_contacts(each).mean() for each in motions]))
+
+
+def _seam(twice: Motion, n_frames: int) -> float:
+    """Largest step of the velocity at the seam, relative to that elsewhere."""
+    steps = np.abs(np.diff(_velocities(twice), axis=0)).mean(axis=(1, 2))
+    return float(steps[n_frames - 3 : n_frames + 1].max() / np.median(steps))
