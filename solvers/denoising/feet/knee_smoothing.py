@@ -18,7 +18,6 @@ KNEE_WINDOW_S = 0.08
 """Seconds to either side over which the knee flexion is fitted with a parabola."""
 RELIEF_RAMP_S = 0.03
 """Seconds over which the correction sets in."""
-MAX_PITCH = np.radians(6.0)
 MAX_ROOT_OFFSET_M = 0.004
 """Meters by which the root may move: enough for jitter, not for motion."""
 MIN_LEVER_M = 0.03
@@ -81,7 +80,6 @@ def _pitch_foot(
         across /= np.maximum(np.linalg.norm(across, axis=1), 1e-9)[:, None]
         lever = np.einsum("fi,fi->f", np.cross(across, -to_ball), along)
         angle = heel_free * (target_distance - distance) * lever / (lever**2 + MIN_LEVER_M**2)
-        angle = MAX_PITCH * np.tanh(angle / MAX_PITCH)
         pitch = quaternion_from_rotation_vector(angle[:, None] * across)
         trajectory = replace(
             trajectory,
