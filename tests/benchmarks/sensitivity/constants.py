@@ -21,12 +21,12 @@ FAMILIES: dict[str, tuple[str, ...]] = {
         "solvers/denoising/denoise.py",
         "solvers/denoising/observed_samples.py",
         "solvers/denoising/channels",
-        "solvers/denoising/limits",
         "solvers/denoising/posterior",
         "solvers/denoising/prior",
         "solvers/denoising/published.py",
         "solvers/signals",
     ),
+    "limits": ("solvers/denoising/limits",),
     "quality": ("solvers/denoising/quality",),
     "feet": ("solvers/denoising/feet",),
     "marker_gaps": ("solvers/denoising/marker_gaps",),
@@ -50,7 +50,9 @@ UNITS_BY_WORDS = {
     r"meters per second": "m/s", r"radians per second": "rad/s", r"\bframes?\b": "frames",
     r"degrees or centimeters": "deg or cm", r"square meters": "m2", r"\bmeters?\b": "m",
     r"\bseconds?\b": "s", r"\bdegrees?\b": "deg", r"hertz": "Hz", r"\bpixels?\b": "px",
-    r"fraction": "fraction", r"standard deviations": "std. dev.", r"relative|ratio": "ratio",
+    r"radians": "rad", r"percentiles": "%", r"probability": "probability",
+    r"severity": "severity", r"time constants": "time const.", r"fraction": "fraction",
+    r"standard deviations": "std. dev.", r"relative|ratio": "ratio",
     r"number of|iterations|rounds": "count", r"weight": "weight",
 }  # fmt: skip
 
@@ -84,11 +86,11 @@ class Constant:
             if self.name.endswith(suffix):
                 return unit
         found = [
-            (match.start(), unit)
-            for words, unit in UNITS_BY_WORDS.items()
+            (match.start(), order, unit)
+            for order, (words, unit) in enumerate(UNITS_BY_WORDS.items())
             if (match := re.search(words, self.text, re.IGNORECASE))
         ]
-        return min(found)[1] if found else "count" if isinstance(self.value, int) else "-"
+        return min(found)[2] if found else "count" if isinstance(self.value, int) else "-"
 
 
 @cache

@@ -12,6 +12,8 @@ DOCUMENT = ROOT / "docs" / "sensitivity.md"
 MOVES_PERCENT = 0.5
 """Change of any one error of a family, percent, above which a constant moves it."""
 TINY = 1e-9
+MOST_PERCENT = 100.0
+"""An error that rises by more counts as this in the mean."""
 MARK = "<!-- below: make sensitivity ARGUMENTS=--docs -->"
 
 
@@ -26,7 +28,7 @@ class Row:
 
     @property
     def changes(self) -> tuple[float, float]:
-        """Change of the geometric mean of all errors, percent; NaN where it failed."""
+        """Mean change of all errors, percent; NaN where it failed."""
         return self._mean(self.half), self._mean(self.twice)
 
     @property
@@ -68,11 +70,8 @@ class Row:
         }
 
     def _mean(self, outcome: Outcome) -> float:
-        changes = self._each(outcome).values()
-        if not changes:
-            return math.nan
-        logarithms = [math.log(max(1.0 + change / 100.0, TINY)) for change in changes]
-        return 100.0 * math.expm1(sum(logarithms) / len(logarithms))
+        changes = [min(change, MOST_PERCENT) for change in self._each(outcome).values()]
+        return sum(changes) / len(changes) if changes else math.nan
 
 
 def family_text(family: str, rows: Sequence[Row]) -> str:
