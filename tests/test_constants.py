@@ -11,7 +11,7 @@ import pytest
 from tests.benchmarks.sensitivity.constants import FAMILIES, Constant, constants_of
 
 NOT_YET = {
-    "denoising", "marker_gaps", "reconstruction", "retargeting", "markers", "physics",
+    "marker_gaps", "reconstruction", "retargeting", "markers", "physics",
     "retrieval", "variation", "depth_tracking",
 }  # fmt: skip
 """Families whose constants have no source yet."""

@@ -11,6 +11,9 @@ REASONS: dict[str, tuple[str, ...]] = {
         "denoising/marker_gaps/gap_boundaries.MEDIAN_NORM",
         "denoising/denoise.HALF_CONFIDENCE_DEVIATION",
         "denoising/feet/foot_trajectory.ADULT_LEG_M",
+        "denoising/quality/bone_drift.*_PERCENTILE",
+        "denoising/quality/worst_issues.SEVERE_EXCESS",
+        "signals/smooth_correction.FADE_TIME_CONSTANTS",
         "*.GRAVITY*",
     ),
     "bounds memory, not the result": (
@@ -33,6 +36,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "denoising/quality/worst_issues.CUT_SEVERITY",
         "denoising/quality/worst_issues.LONG_GAP_S",
     ),
+    "shape of a stored array": ("denoising/prior/filter_bases.N_REFERENCE",),
     "name of a version of a file": ("*.VERSION", "*.FORMAT*"),
 }
 

@@ -5,8 +5,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from .constants import ROOT, Constant
+from .constants import ROOT, Constant, constants_of
 from .evaluate import Outcome
+from .not_tuning import reason
 
 DOCUMENT = ROOT / "docs" / "sensitivity.md"
 MOVES_PERCENT = 0.5
@@ -81,10 +82,12 @@ def family_text(family: str, rows: Sequence[Row]) -> str:
     moving = sorted((row for row in rows if row.moves), key=_size, reverse=True)
     still = [row for row in rows if not row.moves and not row.failures]
     errors = len(rows[0].baseline.figures)
+    n_varied = sum(not reason(each.key) for each in constants_of(family))
+    unmeasured = f", {len(rows)} of them measured" if len(rows) < n_varied else ""
     lines = [
         f"## {_title(family)}",
         "",
-        f"{len(rows)} constants, {errors} errors; {len(moving)} move one.",
+        f"{n_varied} constants{unmeasured}, {errors} errors; {len(moving)} constants move one.",
         "",
         "| constant | value | unit | x0.5 | x2 | most moved |",
         "|---|---|---|---|---|---|",
