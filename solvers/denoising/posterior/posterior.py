@@ -50,10 +50,9 @@ hand: x0.5 and x2 move no error; it bounds the run time."""
 MAX_LEVERAGE = 0.98
 """Largest fraction of its own weight in an estimate that a sample is corrected for. Chosen by
 hand: x0.5 and x2 move no error; it guards a division."""
-MAX_PRIOR_DEVIATIONS, MAX_RANGE_FRACTION = 4.0, 0.5
-"""Limit of an estimate beyond the observed range: in standard deviations of the prior, or as a
-fraction of that range. Chosen by hand: x0.5 and x2 move no error; they guard long gaps against
-runaway estimates."""
+MAX_PRIOR_DEVIATIONS = 4.0
+"""Limit of an estimate beyond the observed range, in standard deviations of the prior. Chosen
+by hand: x0.5 and x2 move no error; it guards long gaps against runaway estimates."""
 NOISE_BOUNDS = (0.5, 1.1)
 """Range of the estimated noise, relative to the first estimate. Chosen by hand: x0.5 costs
 8.2 %, x2 costs 3.8 %."""
@@ -247,9 +246,7 @@ def _bounds(start: Array, prior: WindowPrior) -> tuple[Array, Array]:
     """Return the lower and upper bound of each channel's estimate, shape (n_channels,)."""
     low = np.minimum(start.min(axis=0), prior.mean)
     high = np.maximum(start.max(axis=0), prior.mean)
-    margin = np.maximum(
-        MAX_RANGE_FRACTION * (high - low), MAX_PRIOR_DEVIATIONS * prior.deviation
-    )
+    margin = MAX_PRIOR_DEVIATIONS * prior.deviation
     return low - margin, high + margin
 
 
