@@ -36,6 +36,7 @@ FAMILIES: dict[str, tuple[str, ...]] = {
     "physics": ("solvers/physics",),
     "retrieval": ("solvers/retrieval", "solvers/gestures"),
     "variation": ("solvers/variation",),
+    "stepwise_variation": ("solvers/variation",),
     "depth_tracking": ("solvers/depth_tracking", "solvers/depth_scene"),
 }
 """The modules whose constants each metric varies. Left out as a whole: recordings,
@@ -96,7 +97,19 @@ class Constant:
 @cache
 def constants_of(family: str) -> tuple[Constant, ...]:
     """Return all constants of a family, in the order of its modules."""
-    return tuple(each for path in FAMILIES[family] for each in _below(ROOT / path))
+    return tuple(
+        each
+        for path in FAMILIES[family]
+        for each in _below(ROOT / path)
+        if _belongs(Path(each.path), family)
+    )
+
+
+def _belongs(path: Path, family: str) -> bool:
+    """Whether a module is of the family; the two of variation share a folder."""
+    if "variation" not in family:
+        return True
+    return path.name.startswith("stepwise") == family.startswith("stepwise")
 
 
 def _below(path: Path) -> Iterator[Constant]:
@@ -135,16 +148,22 @@ def assigned_values(node: ast.stmt) -> dict[str, ast.expr]:
 def scaled(value: Any, factor: float) -> Any:
     """Scale a value: a whole number stays one of at least 1; tuples item by item.
 
-    What lies between 0.9 and 1 is a fraction of a whole: its distance from 1 is scaled.
+    What became equal in a tuple is kept once. What lies between 0.9 and 1 is a fraction of a
+    whole: its distance from 1 is scaled.
     """
     if isinstance(value, tuple):
-        items = tuple(scaled(item, factor) for item in value)
-        return tuple(dict.fromkeys(items)) if isinstance(value[0], int) else items
+        return tuple(dict.fromkeys(_scaled_item(item, factor) for item in value))
     if isinstance(value, int):
         return max(1, round(value * factor))
     if 0.9 <= value < 1.0:
         return 1.0 - (1.0 - value) * factor
     return value * factor
+
+
+def _scaled_item(item: Any, factor: float) -> Any:
+    if isinstance(item, tuple):
+        return tuple(_scaled_item(each, factor) for each in item)
+    return scaled(item, factor)
 
 
 def _numbers(node: ast.stmt) -> Iterator[tuple[str, Any]]:

@@ -10,7 +10,6 @@ from solvers.rotations.representations import (
     rotation_vector_from_quaternion,
 )
 from solvers.variation import (
-    Method,
     VarySettings,
     borrow_variation,
     draw_variants,
@@ -42,18 +41,12 @@ def measure(
     """Ratios to the examples: variation, jerk, and time in contact; excess beyond limits."""
     figures = {}
     for name, examples in sets.items():
-        methods = (
-            (Method.MIXTURE, Method.COREGIONALISED) if name == "squat" else (Method.MIXTURE,)
-        )
-        for method in methods:
-            settings = VarySettings(method=method, seed=5)
-            model = learn_variation_model(examples, settings=settings)
-            variants = draw_variants(model, N_VARIANTS, settings=settings)
-            motions = [each.motion for each in variants]
-            found = _figures(motions, examples, limits[name])
-            figures |= {f"{name}, {method.value}: {key}": what for key, what in found.items()}
+        model = learn_variation_model(examples)
+        variants = draw_variants(model, N_VARIANTS, settings=VarySettings(seed=5))
+        found = variant_figures([each.motion for each in variants], examples, limits[name])
+        figures |= {f"{name}: {key}": what for key, what in found.items()}
     borrowed = draw_variants(borrow_variation(sets["kick"][0]), N_VARIANTS)
-    found = _figures([each.motion for each in borrowed], sets["kick"], limits["kick"])
+    found = variant_figures([each.motion for each in borrowed], sets["kick"], limits["kick"])
     figures |= {f"borrowed: {key}": what for key, what in found.items()}
     model = learn_variation_model([cycle])
     loop = draw_variants(model, 1)[0].motion
@@ -61,9 +54,10 @@ def measure(
     return figures
 
 
-def _figures(
+def variant_figures(
     variants: list[Motion], examples: list[Motion], limits: JointLimits
 ) -> dict[str, float]:
+    """Ratios of the variants to the examples, and degrees beyond limits."""
     excess = [float(np.degrees(limit_excess(each, limits)).mean()) for each in variants]
     lengths = [[each.n_frames for each in motions] for motions in (variants, examples)]
     return {
