@@ -12,7 +12,7 @@ from tests.benchmarks.sensitivity.constants import FAMILIES, Constant, constants
 
 NOT_YET = {
     "reconstruction", "retargeting", "markers", "physics",
-    "retrieval", "variation", "stepwise_variation", "depth_tracking",
+    "retrieval", "stepwise_variation", "depth_tracking",
 }  # fmt: skip
 """Families whose constants have no source yet."""
 SOURCE = re.compile(

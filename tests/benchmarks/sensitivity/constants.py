@@ -43,9 +43,9 @@ FAMILIES: dict[str, tuple[str, ...]] = {
 command_line, pictures, processes, samples and rotations (formats, limits against hostile files,
 display, synthetic data, exact formulas), and workflows, which have no metric yet."""
 UNITS_BY_SUFFIX = {
-    "_S": "s", "_M": "m", "_CM": "cm", "_MM": "mm", "_DEG": "deg", "_HZ": "Hz", "_PX": "px",
-    "_KG": "kg", "_FRAMES": "frames", "_FRACTION": "fraction", "_SHARE": "fraction",
-    "_RATIO": "ratio", "_FACTOR": "factor", "_SIGMAS": "std. dev.",
+    "_S": "s", "_M": "m", "_CM": "cm", "_MM": "mm", "_DEG": "deg", "_RAD": "rad",
+    "_HZ": "Hz", "_PX": "px", "_KG": "kg", "_FRAMES": "frames", "_FRACTION": "fraction",
+    "_SHARE": "fraction", "_RATIO": "ratio", "_FACTOR": "factor", "_SIGMAS": "std. dev.",
 }  # fmt: skip
 UNITS_BY_WORDS = {
     r"meters per second": "m/s", r"radians per second": "rad/s", r"\bframes?\b": "frames",
@@ -54,6 +54,7 @@ UNITS_BY_WORDS = {
     r"radians": "rad", r"percentiles": "%", r"probability": "probability",
     r"severity": "severity", r"time constants": "time const.", r"fraction": "fraction",
     r"standard deviations": "std. dev.", r"relative|ratio": "ratio",
+    r"\bfactors?\b": "factor", r"logarithm": "log",
     r"number of|iterations|rounds": "count", r"weight": "weight",
 }  # fmt: skip
 

@@ -8,6 +8,7 @@ settings all see the scaled value.
 
 import ast
 import importlib
+import math
 import multiprocessing
 import pickle
 import sys
@@ -88,6 +89,8 @@ def _measure(family: str, inputs: bytes, constant: Constant | None, factor: floa
     data = pickle.loads(inputs)
     started = time.process_time()
     figures = metric.measure(**data)
+    if not all(math.isfinite(figure) for figure in figures.values()):
+        return Outcome(failure="an error is not finite")
     return Outcome(dict(figures), time.process_time() - started)
 
 

@@ -28,6 +28,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "denoising/posterior/channel_groups.MAX_CONSTANT_RANGE",
         "denoising/posterior/smoothness.MIN_POWER",
         "denoising/prior/filter_bases.MIN_ANY_DEVIATION",
+        "variation/mixtures.JITTER",
         "denoising/marker_gaps/*.MIN_SQUARED_ERROR",
         "denoising/marker_gaps/gap_boundaries.MIN_NOISE_M",
     ),
@@ -36,7 +37,13 @@ REASONS: dict[str, tuple[str, ...]] = {
         "denoising/quality/worst_issues.CUT_SEVERITY",
         "denoising/quality/worst_issues.LONG_GAP_S",
     ),
-    "shape of a stored array": ("denoising/prior/filter_bases.N_REFERENCE",),
+    "guards against damaged files": ("variation/variation_model.*_FRAME_RATE_HZ",),
+    "shape of an array": (
+        "denoising/prior/filter_bases.N_REFERENCE",
+        "variation/motion_curves.*_COLUMN*",
+        "variation/motion_curves.N_*",
+        "variation/contact_state.N_*",
+    ),
     "name of a version of a file": ("*.VERSION", "*.FORMAT*"),
 }
 

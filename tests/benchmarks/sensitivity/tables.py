@@ -97,13 +97,16 @@ def family_text(family: str, rows: Sequence[Row]) -> str:
     ]
     failed = [row for row in rows if row.failures]
     if failed:
-        lines += ["", "Failed:", "", *(_failure(row) for row in failed)]
+        lines += ["", f"Failed: {'; '.join(map(_failure, failed))}."]
     return "\n".join(lines) + "\n"
 
 
 def write_docs(families: Mapping[str, Sequence[Row]]) -> None:
     """Write what follows the introduction of the page, which is written by hand."""
-    sections = [family_text(family, rows) for family, rows in families.items()]
+    sections = [family_text(family, rows) for family, rows in families.items() if rows]
+    missing = [_title(family) for family, rows in families.items() if not rows]
+    if missing:
+        sections.append(f"Not measured yet: {', '.join(missing)}.\n")
     introduction = DOCUMENT.read_text(encoding="utf-8").partition(MARK)[0]
     DOCUMENT.write_text(introduction + "\n".join([MARK, "", *sections]), encoding="utf-8")
 
@@ -126,7 +129,7 @@ def _line(row: Row) -> str:
 
 def _failure(row: Row) -> str:
     what = "; ".join(f"{factor}: {failure}" for factor, failure in row.failures.items())
-    return f"- `{_short(row.constant)}`: {what}"
+    return f"`{_short(row.constant)}` ({what})"
 
 
 def _listed(rows: Sequence[Row]) -> str:

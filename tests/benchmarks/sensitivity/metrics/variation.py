@@ -38,7 +38,7 @@ def prepare() -> dict[str, object]:
 def measure(
     sets: dict[str, list[Motion]], limits: dict[str, JointLimits], cycle: Motion
 ) -> dict[str, float]:
-    """Ratios to the examples: variation, jerk, and time in contact; excess beyond limits."""
+    """Compare variation, jerk, contacts and lengths with the examples; excess beyond limits."""
     figures = {}
     for name, examples in sets.items():
         model = learn_variation_model(examples)
@@ -57,16 +57,21 @@ def measure(
 def variant_figures(
     variants: list[Motion], examples: list[Motion], limits: JointLimits
 ) -> dict[str, float]:
-    """Ratios of the variants to the examples, and degrees beyond limits."""
+    """Return how far ratios of variants to examples are from 1, and degrees beyond limits."""
     excess = [float(np.degrees(limit_excess(each, limits)).mean()) for each in variants]
-    lengths = [[each.n_frames for each in motions] for motions in (variants, examples)]
+    spreads = [1.0 + np.std([each.n_frames for each in one]) for one in (variants, examples)]
     return {
-        "variation": measure_variation(variants) / measure_variation(examples),
-        "jerk": _jerk(variants) / _jerk(examples),
-        "in contact": _in_contact(variants) / _in_contact(examples),
-        "spread of lengths": (1.0 + np.std(lengths[0])) / (1.0 + np.std(lengths[1])),
-        "beyond limits deg": 0.01 + float(np.mean(excess)),
+        "variation": _off(measure_variation(variants), measure_variation(examples)),
+        "jerk": _off(_jerk(variants), _jerk(examples)),
+        "in contact": _off(_in_contact(variants), _in_contact(examples)),
+        "spread of lengths": _off(*spreads),
+        "beyond limits deg": 0.05 + float(np.mean(excess)),
     }
+
+
+def _off(one: float, other: float) -> float:
+    """Return the distance of a ratio from 1 in both directions; a tenth is added to all."""
+    return 0.1 + abs(float(np.log(one / other)))
 
 
 def _velocities(motion: Motion) -> Array:
