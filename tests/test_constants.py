@@ -11,7 +11,7 @@ import pytest
 from tests.benchmarks.sensitivity.constants import FAMILIES, Constant, constants_of
 
 NOT_YET = {
-    "reconstruction", "retargeting", "markers", "physics",
+    "reconstruction", "retargeting", "markers",
     "retrieval", "stepwise_variation", "depth_tracking",
 }  # fmt: skip
 """Families whose constants have no source yet."""

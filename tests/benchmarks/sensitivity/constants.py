@@ -46,12 +46,13 @@ UNITS_BY_SUFFIX = {
     "_S": "s", "_M": "m", "_CM": "cm", "_MM": "mm", "_DEG": "deg", "_RAD": "rad",
     "_HZ": "Hz", "_PX": "px", "_KG": "kg", "_FRAMES": "frames", "_FRACTION": "fraction",
     "_SHARE": "fraction", "_RATIO": "ratio", "_FACTOR": "factor", "_SIGMAS": "std. dev.",
+    "_NM": "N m", "_KG_M3": "kg/m3",
 }  # fmt: skip
 UNITS_BY_WORDS = {
     r"meters per second": "m/s", r"radians per second": "rad/s", r"\bframes?\b": "frames",
     r"degrees or centimeters": "deg or cm", r"square meters": "m2", r"\bmeters?\b": "m",
     r"\bseconds?\b": "s", r"\bdegrees?\b": "deg", r"hertz": "Hz", r"\bpixels?\b": "px",
-    r"radians": "rad", r"percentiles": "%", r"probability": "probability",
+    r"radians": "rad", r"percentiles?\b": "%", r"probability": "probability",
     r"severity": "severity", r"time constants": "time const.", r"fraction": "fraction",
     r"standard deviations": "std. dev.", r"relative|ratio": "ratio",
     r"\bfactors?\b": "factor", r"logarithm": "log",

@@ -39,6 +39,7 @@ REASONS: dict[str, tuple[str, ...]] = {
     ),
     "guards against damaged files": ("variation/variation_model.*_FRAME_RATE_HZ",),
     "shape of an array": (
+        "physics/*.N_BANDS",
         "denoising/prior/filter_bases.N_REFERENCE",
         "variation/motion_curves.*_COLUMN*",
         "variation/motion_curves.N_*",

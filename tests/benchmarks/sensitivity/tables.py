@@ -13,6 +13,8 @@ DOCUMENT = ROOT / "docs" / "sensitivity.md"
 MOVES_PERCENT = 0.5
 """Change of any one error of a family, percent, above which a constant moves it."""
 TINY = 1e-9
+SHOWN_PERCENT = 0.1
+"""Change of the mean, percent, from which a constant has a row of its own."""
 MOST_PERCENT = 100.0
 """An error that rises by more counts as this in the mean."""
 MARK = "<!-- below: make sensitivity ARGUMENTS=--docs -->"
@@ -80,6 +82,8 @@ def family_text(family: str, rows: Sequence[Row]) -> str:
     if not rows:
         return f"## {_title(family)}\n\nNot measured yet.\n"
     moving = sorted((row for row in rows if row.moves), key=_size, reverse=True)
+    shown = [row for row in moving if _size(row) >= SHOWN_PERCENT]
+    hardly = [row for row in moving if _size(row) < SHOWN_PERCENT]
     still = [row for row in rows if not row.moves and not row.failures]
     errors = len(rows[0].baseline.figures)
     n_varied = sum(not reason(each.key) for each in constants_of(family))
@@ -91,9 +95,10 @@ def family_text(family: str, rows: Sequence[Row]) -> str:
         "",
         "| constant | value | unit | x0.5 | x2 | most moved |",
         "|---|---|---|---|---|---|",
-        *(_line(row) for row in moving),
+        *(_line(row) for row in shown),
         "",
-        f"Move none ({len(still)}): {_listed(still)}.",
+        f"Move one error, but the mean by less than {SHOWN_PERCENT:g} % ({len(hardly)}):"
+        f" {_listed(hardly)}. Move none ({len(still)}): {_listed(still)}.",
     ]
     failed = [row for row in rows if row.failures]
     if failed:
