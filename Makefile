@@ -76,7 +76,7 @@ kills: .venv-4.5/ready zip  ## kill commands at random moments; ARGUMENTS="--kil
 
 # --- What there is to see ---
 
-.PHONY: demo docs pictures bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth
+.PHONY: demo docs pictures bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth sensitivity
 demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
@@ -149,6 +149,9 @@ bench-gestures: .venv-4.5/ready  ## measure detected, missed and false gestures
 
 bench-retarget-rig: .venv-4.5/ready  ## measure Retarget in Blender against baking controls
 	$(PYTHON_4.5) -m tests.benchmarks.retarget.bench_retarget_rig $(ARGUMENTS)
+
+sensitivity: .venv-4.5/ready  ## halve and double each tuned constant; ARGUMENTS="--family feet"
+	nice $(PYTHON_4.5) -m tests.benchmarks.sensitivity.run_sensitivity $(ARGUMENTS)
 
 # --- The extension ---
 

@@ -22,9 +22,11 @@ from .published import filter_as_published
 Array = NDArray[np.float64]
 
 MIN_OUTLIER_ERROR = 2.0
-"""Degrees or centimeters: a sample closer to the estimate is not reported as an outlier."""
+"""Degrees or centimeters: a sample closer to the estimate is not reported as an outlier. Chosen
+by hand: x0.5 costs nothing, x2 gains 1.3 %."""
 HALF_CONFIDENCE_DEVIATION = 5.0
-"""Standard deviation, degrees or centimeters, at which confidence is one half."""
+"""Standard deviation, degrees or centimeters, at which confidence is one half. By definition of
+the confidence."""
 
 
 class Method(Choice):

@@ -12,16 +12,21 @@ from .prior import FilterBases, FilterBasesSettings, LagProducts, find_leading_e
 Array = NDArray[np.float64]
 
 KEPT_ENERGY = 0.99
+"""Fraction of the movement that the patterns hold. From [LC10]."""
 WELSCH_SCALE_DEG = 3.0
-"""p of the Welsch estimator, degrees."""
+"""p of the Welsch estimator, degrees. From [LC10]."""
 PATTERN_WEIGHT = 0.1
-"""lambda of eq. 2.10."""
+"""Weight lambda of eq. 2.10. From [LC10]."""
 UNOBSERVED_DEVIATION = 30.0
-"""Standard deviation reported for missing samples and outliers: the method has none."""
+"""Standard deviation, degrees or centimeters, reported for missing samples and outliers: the
+method of [LC10] has none. Chosen by hand."""
 N_REWEIGHTS = 3
+"""Reweightings of the samples per round."""
 MAX_ITERATIONS = 20
+"""Rounds after which the alternation ends."""
 MAX_RELATIVE_CHANGE = 1e-3
-"""Relative change of the cost below which the alternation ends."""
+"""Relative change of the cost below which the alternation ends. Chosen by hand: [LC10] names
+none."""
 
 
 def filter_as_published(

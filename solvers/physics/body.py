@@ -28,19 +28,23 @@ from .tables import (
 Array = NDArray[np.float64]
 LEG_ROLES = {side + part for side in ("left", "right") for part in ("UpperLeg", "LowerLeg")}
 MIN_MASS_KG = 0.05
-"""Mass of a joint without a segment, for legs of 0.9 m."""
+"""Mass of a joint without a segment, for legs of 0.9 m. Chosen by hand: x0.5 costs nothing, x2
+costs 1.1 %."""
 
 MAX_STILL_RAD = 1e-3
-"""Radians: a joint without a role that rotates less is part of the one above."""
+"""Radians: a joint without a role that rotates less is part of the one above. Chosen by hand:
+x0.5 and x2 move no error."""
 
 MIN_SIZE, MAX_SIZE = 0.05, 20.0
-"""Bounds of the size of a body: leg length over 0.9 m."""
+"""Bounds of the size of a body: leg length relative to 0.9 m. Chosen by hand: x0.5 and x2 move
+no error."""
 
 MIN_FRAME_RATE_HZ = 5.0
-"""Minimum frame rate."""
+"""Minimum frame rate. Chosen by hand: x0.5 and x2 move no error."""
 
 MIN_LENGTH_M = 0.01
-"""Meters, for legs of 0.9 m: a shorter segment is a sphere."""
+"""Meters, for legs of 0.9 m: a shorter segment is a sphere. Chosen by hand: x0.5 and x2 move no
+error."""
 
 
 class JointFrame(NamedTuple):

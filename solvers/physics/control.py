@@ -13,19 +13,24 @@ from .world import GRAVITY, World
 Array = NDArray[np.float64]
 BASE = slice(0, 6)
 MAX_CORRECTION_G, MAX_ANGULAR_CORRECTION = 1.0, 30.0
-"""Maximum acceleration of the base that corrects an error, in g and in 1/s^2."""
+"""Maximum acceleration of the base that corrects an error, in g and in 1/s^2. Chosen by hand:
+first, x0.5 gains 5.1 %, x2 gains 8.5 %; second, x0.5 gains 4.6 %, x2 gains 5.2 %."""
 
 N_ITERATIONS = 8
+"""Chosen by hand: x0.5 costs 0.7 %, x2 gains 0.2 %."""
 REGULARIZATION = 1e-3
 """Tikhonov regularization of contact forces, relative to their mean, so that neighbors share
-the load."""
+the load. Chosen by hand: x0.5 gains 4.0 %, x2 gains 1.3 %."""
 
 ARM_REGULARIZATION = 100.0
-"""Factor on the regularization for arms and head: legs carry the body where they can."""
+"""Factor on the regularization for arms and head: legs carry the body where they can. Chosen by
+hand: x0.5 and x2 move no error."""
 
 HELP_LEVER_M = 1.0
+"""Chosen by hand: x0.5 costs 6.5 %, x2 costs 2.1 %."""
 TORQUE_LEVER_M = 1.0
-"""Meters, for legs of 0.9 m: weighs torques on the base against forces."""
+"""Meters, for legs of 0.9 m: weighs torques on the base against forces. Chosen by hand: x0.5
+gains 1.0 %, x2 costs 29.1 %."""
 
 
 @dataclass(frozen=True, eq=False)

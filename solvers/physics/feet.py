@@ -19,20 +19,28 @@ from .body import Capsule, PhysicsBody
 
 Array = NDArray[np.float64]
 MIN_CONTACT_S = 0.5
-"""Minimum total contact in seconds of a take that stands on the ground, and is not in
-mid-leap."""
+"""Minimum total contact in seconds of a take that stands on the ground, and is not in mid-leap.
+Chosen by hand: x0.5 and x2 move no error."""
 STANCE_PERCENTILE = 25.0
-"""Percentile of the heights of a foot in contact at which it stands flat."""
+"""Percentile of the heights of a foot in contact at which it stands flat. Chosen by hand: x0.5
+costs 1.4 %, x2 costs 0.1 %."""
 
 ANKLE_HEIGHTS_M, BALL_HEIGHTS_M = (0.075, 0.03, 0.14), (0.02, 0.008, 0.05)
 """Height of a standing foot's joints above the sole, for legs of 0.9 m: default, minimum,
-maximum."""
+maximum. Chosen by hand: first, x0.5 costs 5.1 %, x2 costs 16.3 %; second, x0.5 costs 0.2 %, x2
+costs 3.1 %."""
 
 HEEL_OFFSET_M = 0.04
+"""Chosen by hand: x0.5 gains 1.7 %, x2 costs 2.5 %."""
 FOOT_LENGTH_M, TOE_LENGTH_M = 0.14, 0.05
+"""Chosen by hand: first, x0.5 and x2 move no error; second, x0.5 costs 3.6 %, x2 costs
+6.5 %."""
 HEEL_HALF_WIDTH_M, BALL_HALF_WIDTH_M = 0.015, 0.03
+"""Chosen by hand: first, x0.5 gains 0.1 %, x2 costs 4.3 %; second, x0.5 gains 1.2 %, x2 costs
+2.8 %."""
 HEEL_RADIUS_M, BALL_RADIUS_M, TOE_RADIUS_M = 0.03, 0.02, 0.012
-"""Meters, for legs of 0.9 m."""
+"""Meters, for legs of 0.9 m. Chosen by hand: first, x0.5 costs 3.6 %, x2 costs 2.6 %; second,
+x0.5 costs 0.1 %, x2 costs 0.1 %; third, x0.5 gains 0.1 %, x2 gains 0.3 %."""
 
 
 def has_feet(humanoid: HumanoidMap) -> bool:

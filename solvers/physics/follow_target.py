@@ -15,19 +15,24 @@ from .world import World
 Array = NDArray[np.float64]
 MAX_MEAN_DISTANCE_M, MAX_DISTANCE_S = 0.35, 0.2
 """A body is lost if the mean distance of its joints from their targets exceeds this, for legs
-of 0.9 m, for longer than these seconds. Briefly, the target itself may be wrong."""
+of 0.9 m, for longer than these seconds. Briefly, the target itself may be wrong. Chosen by
+hand: x0.5 and x2 move no error."""
 
 LOST_DISTANCE_M = 1.0
-"""Meters, for legs of 0.9 m: a body farther from its target is lost at once."""
+"""Meters, for legs of 0.9 m: a body farther from its target is lost at once. Chosen by hand:
+x0.5 and x2 move no error."""
 
 MAX_SPEED = 1e4
-"""Meters or radians per second: beyond this, the simulation is unstable."""
+"""Meters or radians per second: beyond this, the simulation is unstable. Chosen by hand: x0.5
+and x2 move no error."""
 
 DRIFT_DISTANCE_M = 0.15
-"""Meters, for legs of 0.9 m: frames just before a loss count as lost from this distance on."""
+"""Meters, for legs of 0.9 m: frames just before a loss count as lost from this distance on.
+Chosen by hand: x0.5 and x2 move no error."""
 
 START_CLEARANCE_M = 0.001
-"""Meters above the ground at which a body starts, so that rounding does not decide contact."""
+"""Meters above the ground at which a body starts, so that rounding does not decide contact.
+Chosen by hand: x0.5 gains 0.1 %, x2 costs 0.1 %."""
 
 
 @dataclass(frozen=True, eq=False)

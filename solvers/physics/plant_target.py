@@ -22,16 +22,19 @@ from .pelvis_offset import LegGoal, solve_pelvis_offset
 
 Array = NDArray[np.float64]
 MIN_FRAMES = 4
-"""Minimum frames in which a foot can stand."""
+"""Minimum frames in which a foot can stand. Chosen by hand: x0.5 and x2 move no error."""
 
 BLEND_S = 0.3
-"""Seconds over which a released foot blends to its own motion."""
+"""Seconds over which a released foot blends to its own motion. Chosen by hand: x0.5 costs
+0.9 %, x2 costs 0.6 %."""
 
 MAX_TURN_RATE_RAD_S = 0.6
-"""Radians per second: a foot that rotates faster on the ground does so on purpose."""
+"""Radians per second: a foot that rotates faster on the ground does so on purpose. Chosen by
+hand: x0.5 costs 1.5 %, x2 gains 1.0 %."""
 
 REACH_SOFTNESS = 0.01
-"""Fraction of a leg's length kept in reserve, so that knees do not snap straight."""
+"""Fraction of a leg's length kept in reserve, so that knees do not snap straight. Chosen by
+hand: x0.5 and x2 move no error."""
 
 
 class FootPlan(NamedTuple):

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from ..motion import Motion, forward_kinematics
 
 MAX_GROUND_DIFFERENCE_M = 0.25
-"""Maximum distance, for legs of 0.9 m, between the feet's ground and the given one."""
+"""Maximum distance, for legs of 0.9 m, between the feet's ground and the given one. Chosen by
+hand: x0.5 and x2 move no error."""
 
 
 def mean_distance(motion: Motion, other: Motion, joints: Sequence[int]) -> float:

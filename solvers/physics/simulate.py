@@ -27,10 +27,12 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 DEFAULT_SETTINGS = SimulateSettings()
 MIN_SECONDS_PER_LOSS = 1.0
-"""Seconds of a take per loss of the body; with more frequent losses the result is the input."""
+"""Seconds of a take per loss of the body; with more frequent losses the result is the input.
+Chosen by hand: x0.5 and x2 move no error."""
 
 MAX_LOST_FRACTION = 0.3
-"""Fraction of frames that the body may fail to follow, likewise."""
+"""Fraction of frames that the body may fail to follow, likewise. Chosen by hand: x0.5 and x2
+move no error."""
 
 
 @dataclass(frozen=True, eq=False)

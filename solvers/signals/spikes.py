@@ -11,8 +11,10 @@ from .noise import MAD_TO_SIGMA, estimate_noise
 Array = NDArray[np.float64]
 
 N_REFITS = 8
+"""Refits after which the reweighting ends. Chosen by hand: x0.5 gains 0.5 %, x2 gains 0.4 %."""
 MAX_WEIGHT_CHANGE = 0.02
-"""Change of the weights below which the iteration has converged."""
+"""Change of the weights below which the iteration has converged. Chosen by hand: x0.5 costs
+nothing, x2 gains 0.2 %."""
 TUKEY_SIGMAS = 4.685
 """Standard deviations beyond which a residual has no weight (95 % efficiency)."""
 

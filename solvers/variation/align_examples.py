@@ -13,16 +13,22 @@ from .curves import headings_from_motion
 Array = NDArray[np.float64]
 
 ALIGNMENT_RATE_HZ = 20.0
-"""Frame rate at which examples are aligned."""
+"""Frame rate at which examples are aligned. Chosen by hand: x0.5 gains 0.9 %, x2 gains
+1.5 %."""
 MAX_ALIGNED_FRAMES = 1500
-"""Maximum frames of an example for alignment; longer examples are sampled more coarsely."""
+"""Maximum frames of an example for alignment; longer examples are sampled more coarsely. Chosen
+by hand: x0.5 and x2 move no error; it bounds the run time of long examples."""
 SMOOTHING_S = 0.2
 """Standard deviation in seconds of the Gaussian that smooths the alignment: the steps of a
-warping path are no change of speed by the actor."""
+warping path are no change of speed by the actor. Chosen by hand: x0.5 costs 2.9 %, x2 costs
+2.2 %."""
 MIN_RELATIVE_SPEED, MAX_RELATIVE_SPEED = 0.4, 2.5
-"""Bounds of the speed at which the time of one example passes in that of another."""
+"""Bounds of the speed, relative to its own, at which the time of one example passes in that of
+another. Chosen by hand: first, x0.5 costs nothing, x2 costs nothing; second, x0.5 costs 0.3 %,
+x2 costs nothing."""
 WARP_WINDOW = 0.3
-"""Fraction of the clip by which the time of an example may run ahead of another's."""
+"""Fraction of the clip by which the time of an example may run ahead of another's. Chosen by
+hand: x0.5 gains 0.5 %, x2 costs nothing."""
 
 
 @dataclass(frozen=True, eq=False)

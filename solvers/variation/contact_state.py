@@ -15,7 +15,8 @@ from ..motion.humanoid import detect_contacts
 Array = NDArray[np.float64]
 
 MAX_CONTACT_TIME_S = 0.25
-"""Seconds; the distance to a contact change saturates here."""
+"""Seconds; the distance to a contact change saturates here. Chosen by hand: x0.5 and x2 move no
+error."""
 N_FEET = 2
 
 

@@ -22,11 +22,14 @@ from .vary_settings import DEFAULT_SETTINGS, Method, VarySettings
 Array = NDArray[np.float64]
 
 RANGE_MARGIN = 0.15
-"""Fraction of a channel's range in the examples by which a variant may exceed it."""
+"""Fraction of a channel's range in the examples by which a variant may exceed it. Chosen by
+hand: x0.5 costs 1.4 %, x2 costs 0.8 %."""
 PIN_S = 0.4
-"""Seconds over which a variant leaves or reaches a pinned pose."""
+"""Seconds over which a variant leaves or reaches a pinned pose. Chosen by hand: x0.5 and x2
+move no error."""
 MAX_BATCH_VALUES = 20_000_000
-"""Maximum count of values in the curves of the variants that are drawn together."""
+"""Maximum count of values in the curves of the variants that are drawn together. Chosen by
+hand: x0.5 and x2 move no error."""
 
 
 class Variant(NamedTuple):

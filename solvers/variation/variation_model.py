@@ -16,7 +16,7 @@ from .published import STEPWISE_MEMBER, StepwiseModel, pack_stepwise, restore_st
 Array = NDArray[np.float64]
 
 MIN_FRAME_RATE_HZ, MAX_FRAME_RATE_HZ = 1e-3, 1e6
-"""Bounds of a plausible frame rate."""
+"""Bounds of a plausible frame rate. They guard against damaged files."""
 LAYOUT = ArchiveLayout(
     "a variation model",
     2,

@@ -11,7 +11,8 @@ from .travel_path import TravelPath
 Array = NDArray[np.float64]
 
 CENTIMETERS = 100.0
-"""Lengths are in centimeters and angles in degrees: for limbs these are of similar size."""
+"""Lengths are in centimeters and angles in degrees: for limbs these are of similar size.
+Centimeters per meter, by definition."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,9 +16,11 @@ from .encode import encode
 Array = NDArray[np.float64]
 
 BLOCK_S = 60.0
-"""Seconds encoded at a time. The few windows across two blocks are skipped."""
+"""Seconds encoded at a time. The few windows across two blocks are skipped. It bounds the
+memory."""
 MULTIPLE_TOLERANCE = 0.02
-"""Relative difference up to which a frame rate counts as a multiple of another."""
+"""Relative difference up to which a frame rate counts as a multiple of another. Chosen by hand:
+x0.5 and x2 move no error; it guards frame rates that are rounded in files."""
 
 
 class ExampleChannels:

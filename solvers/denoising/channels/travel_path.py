@@ -12,13 +12,17 @@ from ...signals import fill_channel_gaps, remove_outliers
 Array = NDArray[np.float64]
 
 SMOOTHING_S = 0.5
-"""Standard deviation of the kernel that removes the gait from the path, seconds."""
+"""Standard deviation of the kernel that removes the gait from the path, seconds. Chosen by
+hand: x0.5 gains 0.2 %, x2 costs nothing."""
 SPIKE_HALF_WIDTH_S = 0.15
-"""Half width of the neighborhood in which a spike of the path is detected, seconds."""
+"""Half width of the neighborhood in which a spike of the path is detected, seconds. Chosen by
+hand: x0.5 costs 0.1 %, x2 costs nothing."""
 SPIKE_TOLERANCE = 3.5
-"""Robust standard deviations of the neighborhood beyond which a sample is a spike."""
+"""Robust standard deviations of the neighborhood beyond which a sample is a spike. Chosen by
+hand: x0.5 costs 0.1 %, x2 costs nothing."""
 GAP_WEIGHT = 1e-3
-"""Weight of a frame that was not observed, relative to one that was."""
+"""Weight of a frame that was not observed, relative to one that was. Chosen by hand: x0.5 and
+x2 move no error; it guards a singular system, from x0.01 to x100."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,18 +22,22 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 ADULT_LEG_M = 0.9
+"""Meters, by definition: the leg for which the lengths of this family are given."""
 MAX_LEVEL_SPREAD_M = 0.007
-"""Meters: the floor is not level if its contacts typically differ by more."""
+"""Meters: the floor is not level if its contacts typically differ by more. Chosen by hand: x0.5
+gains 0.6 %, x2 costs 1.4 %."""
 MAX_FLOOR_DISTANCE_M = 0.03
-"""Meters, for a leg of 0.9 m: a foot planted farther above or below stands on something
-else."""
+"""Meters, for a leg of 0.9 m: a foot planted farther above or below stands on something else.
+Chosen by hand: x0.5 gains 0.3 %, x2 costs nothing."""
 MIN_LIFT_M = 0.01
-"""Meters, for a leg of 0.9 m: a planted sole this far above its contact height may rise."""
+"""Meters, for a leg of 0.9 m: a planted sole this far above its contact height may rise. Chosen
+by hand: x0.5 gains 1.2 %, x2 costs 1.1 %."""
 MAX_SOLE_SPEED = 1.0
-"""Meters per second, for a leg of 0.9 m, above which a loaded sole no longer follows its
-ankle."""
+"""Meters per second, for a leg of 0.9 m, above which a loaded sole no longer follows its ankle.
+Chosen by hand: x0.5 costs 2.3 %, x2 costs 0.7 %."""
 MAX_FLAT_RATE = 0.6
-"""Radians per second: a foot that rotates faster is rolling, not resting."""
+"""Radians per second: a foot that rotates faster is rolling, not resting. Chosen by hand: x0.5
+costs 6.5 %, x2 gains 5.0 %."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,15 +15,19 @@ Array = NDArray[np.float64]
 
 UP = np.array([0.0, 0.0, 1.0])
 KNEE_WINDOW_S = 0.08
-"""Seconds to either side over which the knee flexion is fitted with a parabola."""
+"""Seconds to either side over which the knee flexion is fitted with a parabola. Chosen by hand:
+x0.5 costs 3.6 %, x2 costs 0.1 %."""
 RELIEF_RAMP_S = 0.03
-"""Seconds over which the correction sets in."""
-MAX_PITCH = np.radians(6.0)
+"""Seconds over which the correction sets in. Chosen by hand: x0.5 costs 0.1 %, x2 costs
+nothing."""
 MAX_ROOT_OFFSET_M = 0.004
-"""Meters by which the root may move: enough for jitter, not for motion."""
+"""Meters by which the root may move: enough for jitter, not for motion. Chosen by hand: x0.5
+costs 0.3 %, x2 gains 0.1 %."""
 MIN_LEVER_M = 0.03
-"""Meters: with a shorter lever, pitching the foot hardly lengthens the leg."""
+"""Meters: with a shorter lever, pitching the foot hardly lengthens the leg. Chosen by hand:
+x0.5 costs nothing, x2 costs 0.2 %."""
 N_ROUNDS = 2
+"""Damped Newton steps toward the pitch. Chosen by hand: x0.5 costs 0.7 %, x2 gains 0.3 %."""
 
 
 def smooth_knees(
@@ -81,7 +85,6 @@ def _pitch_foot(
         across /= np.maximum(np.linalg.norm(across, axis=1), 1e-9)[:, None]
         lever = np.einsum("fi,fi->f", np.cross(across, -to_ball), along)
         angle = heel_free * (target_distance - distance) * lever / (lever**2 + MIN_LEVER_M**2)
-        angle = MAX_PITCH * np.tanh(angle / MAX_PITCH)
         pitch = quaternion_from_rotation_vector(angle[:, None] * across)
         trajectory = replace(
             trajectory,

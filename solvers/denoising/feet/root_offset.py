@@ -11,10 +11,9 @@ from .foot_trajectory import FootTrajectory
 
 Array = NDArray[np.float64]
 
-N_ROUNDS = 30
-MAX_MISSING_REACH_M = 5e-4
 BLEND_FACTOR = 2.0
-"""The body is heavier than a foot: its offset fades over this many times the blend."""
+"""The body is heavier than a foot: its offset fades over this many times the blend. Chosen by
+hand: x0.5 costs 0.2 %, x2 costs 0.3 %."""
 
 
 def compute_root_offset(
@@ -28,9 +27,8 @@ def compute_root_offset(
 ) -> Array:
     """Return a smooth root offset, (n_frames, 3), that lets the legs reach their targets.
 
-    Each round finds the frames in contact where a leg is still too short, and adds the missing
-    distance along the leg to the goals. The smoothest curve joins all goals so far (the method
-    of multipliers on `smooth_correction`).
+    The goals are the frames in contact where a leg is too short: the missing distance along
+    the leg, of the leg that misses more. The smoothest curve joins them (`smooth_correction`).
 
     Parameters
     ----------
@@ -44,28 +42,22 @@ def compute_root_offset(
         Time over which a foot's correction fades.
     """
     n_frames = len(poses.positions)
-    offset, goal = np.zeros((n_frames, 3)), np.zeros((n_frames, 3))
+    goal = np.zeros((n_frames, 3))
+    for trajectory in trajectories:
+        missing = _missing_reach(skeleton, poses, trajectory, softness)
+        larger = np.linalg.norm(missing, axis=1) > np.linalg.norm(goal, axis=1)
+        goal = np.where(larger[:, None], missing, goal)
+    goal_weight = np.repeat(goal.any(axis=1)[:, None], 3, axis=1).astype(np.float64)
     no_velocity = np.zeros((n_frames - 1, 3)), np.zeros(n_frames - 1)
-    for _ in range(N_ROUNDS):
-        missing = np.zeros((n_frames, 3))
-        for trajectory in trajectories:
-            leg_missing = _missing_reach(skeleton, poses, trajectory, offset, softness)
-            missing = np.where(np.abs(leg_missing) > np.abs(missing), leg_missing, missing)
-        if np.linalg.norm(missing, axis=1).max() < MAX_MISSING_REACH_M:
-            break
-        goal = np.where(missing.any(axis=1)[:, None], offset + missing, goal)
-        goal_weight = np.repeat(goal.any(axis=1)[:, None], 3, axis=1).astype(np.float64)
-        offset = smooth_correction(
-            *no_velocity, frame_rate, BLEND_FACTOR * blend, goal=goal, pulled=goal_weight
-        )
-    return offset
+    return smooth_correction(
+        *no_velocity, frame_rate, BLEND_FACTOR * blend, goal=goal, pulled=goal_weight
+    )
 
 
 def _missing_reach(
     skeleton: Skeleton,
     poses: WorldPoses,
     trajectory: FootTrajectory,
-    offset: Array,
     softness: float,
 ) -> Array:
     """Return the displacement by which the root must approach the foot, (n_frames, 3)."""
@@ -74,7 +66,7 @@ def _missing_reach(
     usable_length = np.maximum(
         (1.0 - softness) * leg_length, np.linalg.norm(ankle - hip, axis=1)
     )
-    to_ankle = trajectory.ankle - hip - offset
+    to_ankle = trajectory.ankle - hip
     distance = np.linalg.norm(to_ankle, axis=1)
     leg_missing = np.where(trajectory.contact, np.maximum(distance - usable_length, 0.0), 0.0)
     return np.asarray(to_ankle * (leg_missing / np.maximum(distance, 1e-9))[:, None])

@@ -11,16 +11,21 @@ from .legs import Leg
 Array = NDArray[np.float64]
 
 HEEL_FRACTION = 0.2
-"""Distance of the heel behind the ankle, relative to the distance from ankle to ball."""
+"""Distance of the heel behind the ankle, relative to the distance from ankle to ball. Chosen by
+hand: x0.5 gains 0.7 %, x2 costs 2.9 %."""
 LOAD_FALLOFF_M = 0.007
-"""Meters, for a leg of 0.9 m: a point this far above the lowest carries 1/e of its load."""
+"""Meters, for a leg of 0.9 m: a point this far above the lowest carries 1/e of its load. Chosen
+by hand: x0.5 gains 0.7 %, x2 costs 2.4 %."""
 TIP_HEIGHT_M = 0.012
 """Meters, for a leg of 0.9 m, between ball and tip when both carry the same load. Captured toes
-jitter, and a jittering tip should not carry a resting foot."""
+jitter, and a jittering tip should not carry a resting foot. Chosen by hand: x0.5 costs 2.4 %,
+x2 gains 1.0 %."""
 MAX_REST_SPEED = 0.15
-"""Meters per second below which the entire foot rests on the floor."""
+"""Meters per second below which the entire foot rests on the floor. Chosen by hand: x0.5 costs
+0.5 %, x2 gains 0.3 %."""
 SMOOTHING_S = 0.03
-"""Seconds over which speeds and heights are smoothed before they are compared."""
+"""Seconds over which speeds and heights are smoothed before they are compared. Chosen by hand:
+x0.5 costs 2.6 %, x2 gains 2.7 %."""
 
 
 def sole_points(skeleton: Skeleton, poses: WorldPoses, leg: Leg) -> Array:

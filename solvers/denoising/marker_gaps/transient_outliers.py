@@ -7,13 +7,17 @@ from scipy.ndimage import median_filter
 Array = NDArray[np.float64]
 
 COMPARED_FRAMES = (1, 2)
-"""Distances in frames, to both sides, at which a point is compared."""
+"""Distances in frames, to both sides, at which a point is compared. Chosen by hand: x0.5 gains
+0.1 %, x2 costs 7.9 %."""
 NEIGHBORHOOD_FRAMES = 8
-"""Half width in frames of the neighborhood that defines the typical distance."""
+"""Half width in frames of the neighborhood that defines the typical distance. Chosen by hand:
+x0.5 and x2 move no error."""
 MIN_SPIKE_RATIO = 6.0
-"""Minimum distance of a spike, relative to the typical distance."""
+"""Minimum distance of a spike, relative to the typical distance. Chosen by hand: x0.5 and x2
+move no error; the minimum in meters decides on these takes."""
 MIN_SPIKE_M = 0.02
-"""Meters: a shorter distance is no spike."""
+"""Meters: a shorter distance is no spike. Chosen by hand: x0.5 costs 5.0 %, x2 costs
+nothing."""
 
 
 def find_transient_outliers(positions: Array) -> NDArray[np.bool_]:

@@ -23,15 +23,26 @@ from .windows import Windows
 Array = NDArray[np.float64]
 
 MAX_GROUP_CHANNELS = 96
-"""Channels solved together; rigs with more are split between joints."""
+"""Channels solved together; rigs with more are split between joints. Chosen by hand: x0.5 gains
+0.2 %, x2 costs nothing; it bounds the run time."""
 MAX_CONSTANT_RANGE = 1e-7
+"""Degrees or centimeters over which a channel that stands still varies. Guards against rounding
+errors."""
 SPIKE_HALF_WIDTH = 4
+"""Frames to either side among which a spike of the first guess is found. Chosen by hand: x0.5
+gains 2.0 %, x2 gains 2.1 %."""
 SPIKE_TOLERANCE = 3.5
+"""Robust standard deviations of those frames beyond which a sample is a spike. Chosen by hand:
+x0.5 gains 0.3 %, x2 gains 1.0 %."""
 FIRST_GUESS_EFFICIENCY = 0.2
-"""Of the median of overlapping differences, relative to a standard deviation."""
+"""Of the median of overlapping differences, relative to a standard deviation. Chosen by hand:
+x0.5 gains 0.2 %, x2 costs 0.9 %."""
 MIN_NOISE = 0.01
+"""Smallest noise, degrees or centimeters. Chosen by hand: x0.5 costs nothing, x2 costs
+0.1 %."""
 POOR_FIT_FRACTION = 0.2
-"""Fraction of plain smoothness above which the examples are reported to fit badly."""
+"""Fraction of plain smoothness above which the examples are reported to fit badly. Chosen by
+hand: x0.5 and x2 move no error; it only decides a sentence."""
 
 
 class RoughTake(NamedTuple):

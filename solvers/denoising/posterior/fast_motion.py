@@ -7,19 +7,28 @@ from scipy.ndimage import uniform_filter1d
 Array = NDArray[np.float64]
 
 INLIER_THRESHOLD = 0.5
+"""Probability of being an inlier below which a sample counts as an outlier. Chosen by hand:
+x0.5 costs nothing, x2 costs 41.1 %."""
 LOW_NOISE = 0.5
-"""Noise, degrees or centimeters, below which single samples are reliable."""
+"""Noise, degrees or centimeters, below which single samples are reliable. Chosen by hand: x0.5
+and x2 move no error; x0.01 costs 68 % on a clean squat."""
 LOW_OUTLIER_RATE = 0.02
-"""Fraction of outliers up to which adjacent ones rarely form a gradual deviation by chance."""
+"""Fraction of outliers up to which adjacent ones rarely form a gradual deviation by chance.
+Chosen by hand: x0.5 costs 5.6 %, x2 costs nothing."""
 MAX_EDGE_FRACTION = 0.75
-"""Maximum first and last step of a motion, relative to its height; a spike has larger ones."""
+"""Maximum first and last step of a motion, relative to its height; a spike has larger ones.
+Chosen by hand: x0.5 costs 5.6 %, x2 costs 16.7 %."""
 MAX_STEP_FRACTION = 0.5
-"""Maximum step within a motion, relative to its range from lowest to highest sample."""
+"""Maximum step within a motion, relative to its range from lowest to highest sample. Chosen by
+hand: x0.5 costs nothing, x2 costs 1.3 %."""
 MIN_MOTION_FRAMES, MIN_MOTION_FRACTION = 3, 0.15
-"""Frames, and fraction of a window, beyond which noise cannot give a spike gradual slopes."""
+"""Frames, and fraction of a window, beyond which noise cannot give a spike gradual slopes.
+Chosen by hand: x0.5 and x2 move no error; they matter where noise is high and outliers are
+many."""
 MIN_OUTLIER_FRACTION, MIN_LASTING_FRAMES = 0.6, 15
 """Fraction of the observed samples around a frame that cannot all be errors. It is measured
-over a window, but at least this many frames."""
+over a window, but at least this many frames. Chosen by hand: first, x0.5 costs 13.6 %, x2 costs
+nothing; second, x0.5 and x2 move no error."""
 
 
 def find_fast_motion(

@@ -8,11 +8,14 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 MAX_OUTLIER_PROBABILITY = 0.9
-"""Largest prior probability of being an outlier, whatever the joint's other channels."""
+"""Largest prior probability of being an outlier, whatever the joint's other channels. Chosen by
+hand: x0.5 and x2 move no error; it guards against a certain outlier."""
 MIN_OUTLIER_PROBABILITY = 1e-4
-"""Prior probability of being an outlier that every sample has."""
+"""Prior probability of being an outlier that every sample has. Chosen by hand: x0.5 and x2 move
+no error; it guards against a prior of zero, also at a hundredth of it."""
 MIN_OUTLIER_FRACTION = 0.01
-"""Fraction of a take that must be outliers to show whether joints are wrong as a unit."""
+"""Fraction of a take that must be outliers to show whether joints are wrong as a unit. Chosen
+by hand: x0.5 costs nothing, x2 costs nothing."""
 
 
 @dataclass(frozen=True, eq=False)

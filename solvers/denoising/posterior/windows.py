@@ -11,14 +11,18 @@ from scipy.fft import dct, idct
 Array = NDArray[np.float64]
 
 N_OVERLAPS = 6
-"""Number of windows that start within the length of one."""
+"""Number of windows that start within the length of one. Chosen by hand: x0.5 costs 0.4 %, x2
+gains 1.9 %."""
 N_FEW_OVERLAPS = 4
-"""The same for preliminary estimates and for long takes."""
+"""The same for preliminary estimates and for long takes. Chosen by hand: x0.5 costs 2.0 %, x2
+gains 2.7 %."""
 LONG_TAKE_FRAMES = 20_000
-"""Frames above which windows overlap less."""
+"""Frames above which windows overlap less. Chosen by hand: x0.5 and x2 move no error; it bounds
+the run time of long takes."""
 
 LONG_GAP_FRACTION = 0.2
-"""Fraction of a window above which a gap is solved exactly. Shorter gaps converge quickly."""
+"""Fraction of a window above which a gap is solved exactly. Shorter gaps converge quickly.
+Chosen by hand: x0.5 costs 0.2 %, x2 costs 0.3 %."""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ Array = NDArray[np.float64]
 MAX_CLIP_ENDS = 64
 """Number of clips whose first and last frames are stored before they are summed."""
 N_FIRST_EIGENVECTORS = 160
-"""Number of eigenvectors requested first; doubled until they contain enough energy."""
+"""Number of eigenvectors requested first; doubled until they contain enough energy. Chosen by
+hand: x0.5 and x2 move no error; it bounds the run time."""
 
 
 class LagProducts:

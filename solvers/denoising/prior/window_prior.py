@@ -13,9 +13,10 @@ Array = NDArray[np.float64]
 
 SLOW_FRACTION = 0.6
 """Fraction of the coefficients, slowest first, with a joint covariance; faster ones are
-independent."""
+independent. Chosen by hand: x0.5 costs nothing, x2 fails."""
 FAST_VARIANCE_FLOOR = 1e-4
-"""Variance, relative to a channel's own, added to every fast coefficient."""
+"""Variance, relative to a channel's own, added to every fast coefficient. Chosen by hand: x0.5
+costs 0.2 %, x2 gains 0.2 %."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,11 +14,13 @@ from .joint_signals import Signal
 from .measure import Quality, measure_quality
 
 LONG_GAP_S = 0.25
-"""Seconds that an animator can still bridge by eye: severity 1."""
+"""Seconds that an animator can still bridge by eye: severity 1, by definition."""
 CUT_SEVERITY = 10.0
-"""Joined recordings should be split before any other edit."""
+"""Severity of a cut, chosen by hand: joined recordings should be split before any other
+edit."""
 SEVERE_EXCESS = np.radians(10.0)
-"""Angle beyond a joint limit with severity 1; a fifth of it is not reported."""
+"""Radians beyond a joint limit with severity 1, by definition; a fifth of it is not
+reported."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,8 @@ from scipy.sparse import csr_matrix
 Array = NDArray[np.float64]
 
 N_PADDING = 12
-"""Frames by which curves are extrapolated at either end, to hide boundary effects."""
+"""Frames by which curves are extrapolated at either end, to hide boundary effects. Chosen by
+hand: x0.5 and x2 move no error."""
 
 
 def sample_linearly(curves: Array, times: Array) -> Array:

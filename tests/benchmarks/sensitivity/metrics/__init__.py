@@ -1,0 +1,1 @@
+"""One metric per family: `prepare` makes inputs, `measure` returns errors, lower is better."""

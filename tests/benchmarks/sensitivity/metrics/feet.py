@@ -1,0 +1,74 @@
+"""Planting feet: slide, knees, what is moved, and the error of the ankles in contact."""
+
+import numpy as np
+
+from solvers.denoising import plant_feet
+from solvers.denoising.feet.legs import find_legs
+from solvers.motion import Motion, detect_contacts, forward_kinematics
+from solvers.rotations.representations import IDENTITY, angle_between
+from solvers.samples import CorruptionSettings, corrupt
+
+from ..takes import Array, Flags, hdm05, variety, walk
+
+SKATING = 0.15
+"""Part of the way that the body travels too far."""
+
+
+def prepare() -> dict[str, object]:
+    """Make feet slide: a swaying root, travel too long, noise, and none of these."""
+    plain = walk("07_11", 1)
+    swaying, skating = walk("10_04", 2), walk("32_01", 2)
+    place = skating.root_positions.copy()
+    place[:, :2] += SKATING * (place[:, :2] - place[0, :2])
+    noisy, kick = walk("07_03"), hdm05("kickLFront1Reps", 2)
+    punch = variety("02_05").slice(600, 900)
+    dance = variety("salsa_01").slice(300, 500)
+    sway = CorruptionSettings(jitter=0.0, root_sway=0.03)
+    pairs = {
+        "walk 120 Hz": (plain, plain),
+        "sway 60 Hz": (swaying, corrupt(swaying, sway)),
+        "skating 60 Hz": (skating, skating.with_poses(root_positions=place)),
+        "noise 30 Hz": (noisy, corrupt(noisy, CorruptionSettings(jitter=1, root_jitter=0.003))),
+        "kick 30 Hz": (kick, corrupt(kick, sway)),
+        "punch 120 Hz": (punch, corrupt(punch, sway)),
+        "dance 60 Hz": (dance, corrupt(dance, sway)),
+    }
+    return {
+        "takes": {
+            name: (capture, given, detect_contacts(capture), detect_contacts(given))
+            for name, (capture, given) in pairs.items()
+        }
+    }
+
+
+def measure(takes: dict[str, tuple[Motion, Motion, Flags, Flags]]) -> dict[str, float]:
+    """Plant the feet; in contact as in the capture, slide and error of the ankles."""
+    figures = {}
+    for name, (capture, given, truly, contacts) in takes.items():
+        legs = find_legs(given.skeleton)
+        planted = plant_feet(given, contacts).motion
+        after, before, wanted = (_feet(each, legs) for each in (planted, given, capture))
+        speed = np.linalg.norm(np.diff(after[..., :2], axis=0), axis=-1).min(axis=-1)
+        both = truly[1:] & truly[:-1]
+        figures[f"{name}: slide cm/s"] = 100.0 * float(speed[both].mean()) * given.frame_rate
+        figures[f"{name}: knee 1000 deg/s2"] = _knees(planted, legs)
+        figures[f"{name}: moved cm"] = _distance(after, before)
+        if "skating" not in name:
+            figures[f"{name}: error cm"] = _distance(after, wanted, truly)
+    return figures
+
+
+def _feet(motion: Motion, legs: tuple) -> Array:
+    joints = np.array([[leg.ankle, leg.toe or leg.ankle] for leg in legs])
+    return forward_kinematics(motion).positions[:, joints]
+
+
+def _knees(motion: Motion, legs: tuple) -> float:
+    bends = [angle_between(motion.rotations[:, leg.knee], IDENTITY) for leg in legs]
+    change = np.abs(np.diff(np.degrees(bends), n=2, axis=1))
+    return float(change.mean() * motion.frame_rate**2 / 1000.0)
+
+
+def _distance(a: Array, b: Array, where: Flags | None = None) -> float:
+    distance = np.linalg.norm(a[:, :, 0] - b[:, :, 0], axis=-1)
+    return float(100.0 * (distance if where is None else distance[where]).mean())

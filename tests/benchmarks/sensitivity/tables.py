@@ -1,0 +1,163 @@
+"""Tables of what was measured, for the terminal and for docs/sensitivity.md."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from .constants import ROOT, Constant, constants_of
+from .evaluate import Outcome
+from .not_tuning import reason
+
+DOCUMENT = ROOT / "docs" / "sensitivity.md"
+MOVES_PERCENT = 0.5
+"""Change of any one error of a family, percent, above which a constant moves it."""
+TINY = 1e-9
+SHOWN_PERCENT = 0.1
+"""Change of the mean, percent, from which a constant has a row of its own."""
+MOST_PERCENT = 100.0
+"""An error that rises by more counts as this in the mean."""
+MARK = "<!-- below: make sensitivity ARGUMENTS=--docs -->"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One constant and what its family measured with half and with twice of it."""
+
+    constant: Constant
+    baseline: Outcome
+    half: Outcome
+    twice: Outcome
+
+    @property
+    def changes(self) -> tuple[float, float]:
+        """Mean change of all errors, percent; NaN where it failed."""
+        return self._mean(self.half), self._mean(self.twice)
+
+    @property
+    def most_moved(self) -> tuple[str, float]:
+        """Name and change, percent, of the error that changed most."""
+        found = [
+            (name, change)
+            for outcome in (self.half, self.twice)
+            for name, change in self._each(outcome).items()
+        ]
+        return max(found, key=lambda pair: abs(pair[1]), default=("", 0.0))
+
+    @property
+    def moves(self) -> bool:
+        """Whether any error changes by more than MOVES_PERCENT."""
+        return abs(self.most_moved[1]) > MOVES_PERCENT
+
+    @property
+    def failures(self) -> dict[str, str]:
+        """What went wrong, by factor."""
+        found = {"x0.5": self.half.failure, "x2": self.twice.failure}
+        return {
+            factor: failure
+            for factor, failure in found.items()
+            if failure and failure != "no smaller whole number"
+        }
+
+    @property
+    def cpu_change(self) -> float:
+        """Largest change of the time, percent."""
+        times = [each.cpu_s for each in (self.half, self.twice) if not each.failure]
+        changes = [100.0 * (each / self.baseline.cpu_s - 1.0) for each in times]
+        return max(changes, key=abs, default=0.0)
+
+    def _each(self, outcome: Outcome) -> dict[str, float]:
+        return {
+            name: 100.0 * ((figure + TINY) / (self.baseline.figures[name] + TINY) - 1.0)
+            for name, figure in outcome.figures.items()
+        }
+
+    def _mean(self, outcome: Outcome) -> float:
+        changes = [min(change, MOST_PERCENT) for change in self._each(outcome).values()]
+        return sum(changes) / len(changes) if changes else math.nan
+
+
+def family_text(family: str, rows: Sequence[Row]) -> str:
+    """Return the section of one family in Markdown."""
+    if not rows:
+        return f"## {_title(family)}\n\nNot measured yet.\n"
+    moving = sorted((row for row in rows if row.moves), key=_size, reverse=True)
+    shown = [row for row in moving if _size(row) >= SHOWN_PERCENT]
+    hardly = [row for row in moving if _size(row) < SHOWN_PERCENT]
+    still = [row for row in rows if not row.moves and not row.failures]
+    errors = len(rows[0].baseline.figures)
+    n_varied = sum(not reason(each.key) for each in constants_of(family))
+    unmeasured = f", {len(rows)} of them measured" if len(rows) < n_varied else ""
+    lines = [
+        f"## {_title(family)}",
+        "",
+        f"{n_varied} constants{unmeasured}, {errors} errors; {len(moving)} constants move one.",
+        "",
+        "| constant | value | unit | x0.5 | x2 | most moved |",
+        "|---|---|---|---|---|---|",
+        *(_line(row) for row in shown),
+        "",
+        f"Move one error, but the mean by less than {SHOWN_PERCENT:g} % ({len(hardly)}):"
+        f" {_listed(hardly)}. Move none ({len(still)}): {_listed(still)}.",
+    ]
+    failed = [row for row in rows if row.failures]
+    if failed:
+        lines += ["", f"Failed: {'; '.join(map(_failure, failed))}."]
+    return "\n".join(lines) + "\n"
+
+
+def write_docs(families: Mapping[str, Sequence[Row]]) -> None:
+    """Write what follows the introduction of the page, which is written by hand."""
+    sections = [family_text(family, rows) for family, rows in families.items() if rows]
+    missing = [_title(family) for family, rows in families.items() if not rows]
+    if missing:
+        sections.append(f"Not measured yet: {', '.join(missing)}.\n")
+    introduction = DOCUMENT.read_text(encoding="utf-8").partition(MARK)[0]
+    DOCUMENT.write_text(introduction + "\n".join([MARK, "", *sections]), encoding="utf-8")
+
+
+def percent(change: float) -> str:
+    """Write a change with its sign; nothing where the constant could not be scaled."""
+    if math.isnan(change):
+        return "-"
+    return f"{change:+.1f} %" if abs(change) >= 0.05 else "0"
+
+
+def _line(row: Row) -> str:
+    name, change = row.most_moved
+    half, twice = (percent(each) for each in row.changes)
+    return (
+        f"| `{_short(row.constant)}` | {_number(row.constant.value)} | {row.constant.unit} "
+        f"| {half} | {twice} | {name} {percent(change)} |"
+    )
+
+
+def _failure(row: Row) -> str:
+    what = "; ".join(f"{factor}: {failure}" for factor, failure in row.failures.items())
+    return f"`{_short(row.constant)}` ({what})"
+
+
+def _listed(rows: Sequence[Row]) -> str:
+    by_module: dict[str, list[str]] = {}
+    for row in rows:
+        module, _, name = _short(row.constant).rpartition(".")
+        by_module.setdefault(module, []).append(f"`{name}`")
+    parts = [f"{module} {', '.join(names)}" for module, names in by_module.items()]
+    return "; ".join(parts) or "none"
+
+
+def _size(row: Row) -> float:
+    return max((abs(each) for each in row.changes if not math.isnan(each)), default=0.0)
+
+
+def _short(constant: Constant) -> str:
+    module = constant.key.rpartition(".")[0].rpartition("/")[2]
+    return f"{module}.{constant.name}"
+
+
+def _number(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _title(family: str) -> str:
+    return family.replace("_", " ").capitalize()
