@@ -76,7 +76,7 @@ kills: .venv-4.5/ready zip  ## kill commands at random moments; ARGUMENTS="--kil
 
 # --- What there is to see ---
 
-.PHONY: demo docs pictures bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth sensitivity
+.PHONY: demo docs pictures bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-import-corpus bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth sensitivity
 demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
@@ -122,6 +122,9 @@ bench-scene: .venv-4.5/ready  ## measure reading and writing of actions of 120 b
 
 bench-import: .venv-4.5/ready  ## measure the import time of recordings of five minutes
 	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_import $(ARGUMENTS)
+
+bench-import-corpus: .venv-4.5/ready  ## read every recording of other makers, and compare with its truth
+	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_import_corpus $(ARGUMENTS)
 
 bench-reliability: .venv-4.5/ready  ## measure the detection of joint errors of a Kinect
 	$(PYTHON_4.5) -m tests.benchmarks.reconstruction.bench_reliability $(ARGUMENTS)

@@ -24,6 +24,7 @@ from .stored_bytes import (
 from .text import (
     BYTE_ORDER_MARK,
     ROWS_AT_ONCE,
+    decode_text,
     parse_rows,
     read_bytes,
     read_number,
@@ -60,6 +61,7 @@ __all__ = [
     "UniqueNames",
     "array_from_json",
     "check_folder_access",
+    "decode_text",
     "files_below",
     "index_matroska",
     "is_c3d",

@@ -18,6 +18,14 @@ BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 MISSING = {b"nan", b"-nan", b"inf", b"-inf", b"null", b"none", b"-"}
 
 
+def decode_text(line: bytes) -> str:
+    """Decode a line of UTF-8 or, failing that, of Latin-1, which any bytes are."""
+    try:
+        return line.decode()
+    except UnicodeDecodeError:
+        return line.decode("latin-1")
+
+
 def map_bytes(path: Path | str) -> bytes | mmap.mmap:
     """Return the file as memory-mapped bytes.
 

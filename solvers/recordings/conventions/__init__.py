@@ -24,6 +24,7 @@ from .body_unit import describe_guessed_unit
 from .points import (
     METERS,
     guess_unit_of_points,
+    is_upside_down,
     meters_from_unit_name,
     point_names,
     points_z_up,
@@ -53,6 +54,7 @@ __all__ = [
     "from_kinect_space",
     "guess_unit",
     "guess_unit_of_points",
+    "is_upside_down",
     "joint_recording",
     "judge_up_axis",
     "longest_bone_path",

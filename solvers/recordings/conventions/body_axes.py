@@ -44,6 +44,8 @@ SOLE_M = 0.02
 """Height of a toe joint above the sole."""
 FLOOR_PERCENTILE = 5.0
 """Of the heights of the lower foot, that is on the floor: some frames sink in or are wrong."""
+CLEAR_STANDING = 0.7
+"""Evidence of motion and floor, each, from which a rest pose with another axis is no doubt."""
 MIN_REST_STANDING = 0.7
 """Evidence from which the rest pose has an axis of its own."""
 MIN_SPREAD_FRACTION = 0.03
@@ -100,7 +102,8 @@ def judge_up_axis(motion: Motion) -> UpAxis:
     return UpAxis(
         best,
         rest_best if in_rest[rest_best] > MIN_REST_STANDING else best,
-        totals[best] - totals[second] >= CLEAR_LEAD,
+        totals[best] - totals[second] >= CLEAR_LEAD
+        or min(standing[best], floor[best]) >= CLEAR_STANDING,
     )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..containers import UniqueNames, printable
-from .axes import z_up_from_y_up
+from .axes import MIN_BODY_JOINTS, z_up_from_y_up
 
 METERS = {
     "mm": 0.001, "millimeter": 0.001, "millimetre": 0.001, "cm": 0.01, "centimeter": 0.01,
@@ -53,6 +53,17 @@ def points_z_up(points: NDArray[np.float64], up: str) -> NDArray[np.float64]:
     if up[-1] == "Y":
         points = z_up_from_y_up(points)
     return points * (1.0, -1.0, -1.0) if up[0] == "-" else points
+
+
+def is_upside_down(points: NDArray[np.float64], up: str) -> bool:
+    """Return whether a stated axis, such as `-Z`, would hang points, in meters, below zero."""
+    if up[:1] != "-" or up[-1:] not in {"X", "Y", "Z"} or points.shape[1] < MIN_BODY_JOINTS:
+        return False
+    along = points[..., "XYZ".index(up[-1])]
+    return bool(
+        np.nanpercentile(along, 2) > -FLOOR_TOLERANCE_M
+        and np.nanpercentile(along, 98) > FLOOR_TOLERANCE_M
+    )
 
 
 def _looks_y_up(points: NDArray[np.float64]) -> bool:

@@ -12,6 +12,7 @@ from ..containers import C3dFile
 from ..conventions import (
     check_scale,
     guess_unit_of_points,
+    is_upside_down,
     meters_from_unit_name,
     point_names,
     points_z_up,
@@ -76,6 +77,9 @@ def read_c3d(
     points *= _unit(file, points) if scale is None else scale
     screen = file.texts("POINT:Y_SCREEN")
     up = screen[0].strip().upper() if screen else ""
+    if is_upside_down(points, up):
+        progress(0.8, f"Y_SCREEN says {up}, which hangs the actor below the floor; not used")
+        up = f"+{up[-1]}"
     tracks = Tracks(names, points_z_up(points, up), file.frame_rate)
     progress(1.0, "Reading")
     return tracks

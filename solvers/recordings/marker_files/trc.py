@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ...motion import Tracks
 from ...progress import Progress, unwatched, within
-from ..containers import ROWS_AT_ONCE, LineReader, read_number, shown
+from ..containers import ROWS_AT_ONCE, LineReader, decode_text, read_number, shown
 from ..conventions import (
     MIN_BODY_JOINTS,
     ConstantRate,
@@ -25,7 +25,8 @@ from ..conventions import (
 MAX_HEADER_LINES = 30
 """Maximum length of the header."""
 TITLE_OF_TIMES = r'(?i)[\s"]*frame\s*#?"?\s*"?(time\w*)?[ "]*\t?'
-TITLE = rb'[\s"]*[A-Za-z]'
+COMMA_TITLE = r'(?i)"?frame\s*#?"?,'
+TITLE = rb'[\s",]*[A-Za-z]'
 """Start of the line of axis titles, X1, Y1, Z1 and so on."""
 FULL_TURN = 2.0 * np.pi
 MAX_VALUE = 1e12
@@ -44,6 +45,7 @@ class _Header(NamedTuple):
     up: str
     labels: list[str]
     n_lines: int
+    separator: bytes
 
 
 def read_trc(
@@ -89,7 +91,7 @@ def read_trc(
     reader = LineReader(path)
     header = _read_header(reader.peek(MAX_HEADER_LINES), path)
     reader.take(header.n_lines)
-    rows = _read_rows(reader, path, within(progress, 0.0, 0.8))
+    rows = _read_rows(reader, header.separator, path, within(progress, 0.0, 0.8))
     frames, times, points = _columns_from_rows(rows, len(header.labels), path)
     points[(points == 0.0).all(axis=-1) | ~np.isfinite(points).all(axis=-1)] = np.nan
     if np.isnan(points).all():
@@ -105,7 +107,10 @@ def read_trc(
 
 def _read_header(lines: list[bytes], path: Path | str) -> _Header:
     """Read the header up to the names, which are in the line that begins with `Frame#`."""
-    texts = [_decode(line) for line in lines]
+    texts = [decode_text(line) for line in lines]
+    commas = any(re.match(COMMA_TITLE, text) for text in texts)
+    if commas:
+        texts = [text.rstrip(",").replace(",", "\t") for text in texts]
     name_line = next(
         (index for index, text in enumerate(texts) if re.match(r'(?i)[\s"]*frame', text)), None
     )
@@ -129,14 +134,8 @@ def _read_header(lines: list[bytes], path: Path | str) -> _Header:
         up=up[1].upper() if up else "",
         labels=_labels(texts[name_line]),
         n_lines=name_line + 1,
+        separator=b"," if commas else b"\t",
     )
-
-
-def _decode(line: bytes) -> str:
-    try:
-        return line.decode()
-    except UnicodeDecodeError:
-        return line.decode("latin-1")
 
 
 def _cells(text: str) -> list[str]:
@@ -185,16 +184,18 @@ class _Rows(NamedTuple):
             row[:length] = self.numbers[stop - length : stop][: len(row)]
 
 
-def _read_rows(reader: LineReader, path: Path | str, progress: Progress) -> list[_Rows]:
+def _read_rows(
+    reader: LineReader, separator: bytes, path: Path | str, progress: Progress
+) -> list[_Rows]:
     """Return the numbers of each frame up to its last nonblank cell; blank cells are NaN."""
     blocks: list[_Rows] = []
     for block in reader.rest():
         for part in block.parts(ROWS_AT_ONCE):
             rows: list[NDArray[np.float64]] = []
             for number, line in enumerate(part.lines, start=part.first):
-                filled = line.rstrip()
+                filled = line.rstrip() if separator == b"\t" else line.rstrip(b", \t\r\n")
                 if filled and (blocks or rows or not re.match(TITLE, filled)):
-                    rows.append(_read_row(filled, f"{path}, line {number}"))
+                    rows.append(_read_row(filled, separator, f"{path}, line {number}"))
             if rows:
                 lengths = np.array([len(row) for row in rows])
                 blocks.append(_Rows(np.concatenate(rows), lengths))
@@ -204,8 +205,8 @@ def _read_rows(reader: LineReader, path: Path | str, progress: Progress) -> list
     return blocks
 
 
-def _read_row(line: bytes, location: str) -> NDArray[np.float64]:
-    cells = line.split(b"\t") if b"\t" in line else line.split()
+def _read_row(line: bytes, separator: bytes, location: str) -> NDArray[np.float64]:
+    cells = line.split(separator) if separator in line else line.split()
     try:
         row = np.array([float(cell) if cell else np.nan for cell in cells])
     except ValueError:  # Spaces, or other notations of numbers or missing values.
