@@ -75,7 +75,7 @@ def test_actors_turn_sit_and_cross_their_arms_as_said():
     hands = crossed["leftHand"][25:] - crossed["rightHand"][25:]
     shoulders = crossed["leftUpperArm"][25:] - crossed["rightUpperArm"][25:]
     assert (np.einsum("fa,fa->f", hands, shoulders) < 0.0).all()
-    turned = joints("walk, turned 360")
+    turned = joints("walk, rotated by 360")
     across = turned["leftUpperLeg"] - turned["rightUpperLeg"]
     angle = np.unwrap(np.arctan2(across[:, 2], across[:, 0]))
     assert abs(angle[-1] - angle[0]) > np.radians(330.0)

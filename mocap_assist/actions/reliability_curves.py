@@ -19,7 +19,7 @@ class Term(Enum):
     """What reliability is made of; the value is the custom property of a bone, 0 to 1."""
 
     COMBINED = "mocap_reliability"
-    BEHAVIOUR = "mocap_reliability_behaviour"
+    BEHAVIOR = "mocap_reliability_behaviour"
     KINEMATICS = "mocap_reliability_kinematics"
     TRACKING = "mocap_reliability_tracking"
 

@@ -16,7 +16,7 @@ WIDTH_FACTOR = 2.0
 """Line width relative to the comparison overlay, so that bones do not hide the lines."""
 TERMS = (
     (Term.COMBINED, "Combined", "Overall probability that each joint is right"),
-    (Term.BEHAVIOUR, "Movement", "Red joints vibrate in a way that no limb does"),
+    (Term.BEHAVIOR, "Movement", "Red joints vibrate in a way that no limb does"),
     (
         Term.KINEMATICS,
         "Lengths",

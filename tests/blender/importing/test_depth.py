@@ -146,7 +146,7 @@ def test_a_plain_folder_needs_unit_and_focal_length(tmp_path, depth, blank):
         save_png(tmp_path / "plain" / f"{number:03}.png", picture)
     path = str(tmp_path / "plain")
 
-    with pytest.raises(RuntimeError, match=r"give its scale .* and the camera's focal lengths"):
+    with pytest.raises(RuntimeError, match=r"set its scale .* and the camera's focal lengths"):
         blank.ops.mocap_assist.import_recording(filepath=path)
     assert not blank.data.objects
     assert not blank.data.node_groups

@@ -68,7 +68,7 @@ def test_a_preview_that_was_tampered_with_shows_nothing(archive, bring, blank, c
 
     blank.context.scene.frame_set(3)
 
-    assert "shows no recording" in mesh["mocap_assist_depth_problem"]
+    assert "shows no depth recording" in mesh["mocap_assist_depth_problem"]
 
 
 @pytest.mark.parametrize("number", ["1e999", "-1e999", "1" + 400 * "0"])
@@ -79,7 +79,7 @@ def test_a_number_beyond_all_numbers_shows_nothing(archive, bring, blank, number
 
     blank.context.scene.frame_set(3)
 
-    assert "shows no recording" in mesh["mocap_assist_depth_problem"]
+    assert "shows no depth recording" in mesh["mocap_assist_depth_problem"]
 
 
 def test_the_steepest_step_shows_an_end_of_the_recording(archive, bring, blank, capsys):

@@ -81,7 +81,9 @@ def test_a_match_is_appended_with_it(alone, find, index, blend_file, newcomer, b
     with pytest.raises(RuntimeError, match="name a file with its rig"):
         blank.ops.mocap_assist.load_match()
     library.rig_file = str(alone.parent / "gone.blend")
-    with pytest.raises(RuntimeError, match=r"There is no file .*gone.blend"):
+    with pytest.raises(
+        RuntimeError, match=r"The file of the rig, .*gone\.blend, does not exist"
+    ):
         blank.ops.mocap_assist.load_match()
 
     library.rig_file = str(blend_file)

@@ -145,5 +145,5 @@ def test_a_library_or_rig_in_a_closed_folder_is_refused(load, index, clip_files,
     refused = load("solvers.errors").InvalidFileError
     with pytest.raises(refused, match=r"my\.clips cannot be kept there: Permission denied\."):
         index(clip_files, library=closed / "my.clips")
-    with pytest.raises(refused, match=r"There is no file .*rig\.blend"):
+    with pytest.raises(refused, match=r"The file of the rig, .*rig\.blend, does not exist"):
         index(clip_files, rig=closed / "rig.blend")

@@ -5,7 +5,7 @@ import pytest
 from kinect_walks import LOST
 
 INSIDE = LOST.start + 15
-TERMS = {"COMBINED", "BEHAVIOUR", "KINEMATICS", "TRACKING"}
+TERMS = {"COMBINED", "BEHAVIOR", "KINEMATICS", "TRACKING"}
 
 
 @pytest.fixture
@@ -41,7 +41,7 @@ def test_each_sign_says_its_own_of_the_hidden_hand(walk, reconstruct, curves):
     assert trust("TRACKING", INSIDE) == pytest.approx(0.5)
     assert trust("TRACKING", 10) == 1.0
     inside = range(LOST.start + 3, LOST.stop - 3)
-    assert np.mean([trust("BEHAVIOUR", frame) for frame in inside]) < 0.7
+    assert np.mean([trust("BEHAVIOR", frame) for frame in inside]) < 0.7
     assert np.mean([trust("KINEMATICS", frame) for frame in inside]) < 0.8
     assert np.mean([trust("KINEMATICS", frame) for frame in range(1, LOST.start - 3)]) > 0.85
 
