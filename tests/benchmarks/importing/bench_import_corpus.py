@@ -82,7 +82,9 @@ TRUTH = {
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks_importing.md")
+    parser.add_argument(
+        "--docs", action="store_true", help="rewrite docs/benchmarks_importing.md"
+    )
     arguments = parser.parse_args()
     started = perf_counter()
     load_checkout()
