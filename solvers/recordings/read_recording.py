@@ -37,12 +37,15 @@ from .joint_files import (
 )
 from .marker_files import read_c3d, read_trc
 from .numpy_files import read_npy
+from .refused_files import REFUSALS
 from .skeleton_files import (
     is_kimodo,
+    is_mvnx,
     is_smpl,
     read_acclaim,
     read_bvh,
     read_kimodo,
+    read_mvnx,
     read_smpl,
 )
 
@@ -66,6 +69,8 @@ class Format(NamedTuple):
     read: Reader
     has_skeleton: bool = False
     """Whether it contains the motion of a skeleton; otherwise points."""
+    is_refused: bool = False
+    """Whether it is recognized only for a better sentence."""
 
 
 def _is_bvh(head: bytes) -> bool:
@@ -77,63 +82,18 @@ def _is_acclaim(head: bytes) -> bool:
     return re.match(rb"(?i):(FULLY-SPECIFIED|DEGREES|RADIANS)|1\s+root\s", text) is not None
 
 
-def _is_acclaim_skeleton(head: bytes) -> bool:
-    text = re.sub(rb"(?m)^\s*#.*$", b"", head).lstrip()
-    return re.match(rb"(?i):(version|name|units|root)\b", text) is not None
-
-
 def _is_trc(head: bytes) -> bool:
     """Detect TRC; some programs omit the first line, or write it in lower case."""
     return re.match(rb"(?i)[\s\"]*(PathFileType|DataRate\W+CameraRate)\b", head) is not None
 
 
-def _is_pickle(head: bytes) -> bool:
-    """Detect pickles, also those in the archives of PyTorch and joblib."""
-    in_archive = head[:4] == b"PK\x03\x04" and b"data.pkl" in head[:128]
-    return in_archive or (head[:1] == b"\x80" and head[1:2] in b"\x02\x03\x04\x05")
-
-
-def _refuse_pickle(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Motion:
-    raise InvalidFileError(
-        f"{path} is a pickle, which is never opened here: it may run any program. Convert it"
-        " to .npz where it was made (docs/formats/smpl.md has the lines)."
-    )
-
-
-SCENE_MAGIC = (b"Kaydara FBX Binary", b"; FBX", b"glTF", b"PXR-USDC", b"#usda")
-
-
-def _is_scene_file(head: bytes) -> bool:
-    return head.startswith(SCENE_MAGIC) or b"<COLLADA" in head[:512]
-
-
-def _refuse_scene_file(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Motion:
-    raise InvalidFileError(
-        f"{path} is read by Blender's own importers. Import it in Blender, or run blender"
-        " --background --command mocap_assist import."
-    )
-
-
-def _refuse_skeleton(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Motion:
-    raise InvalidFileError(
-        f"{path} is a skeleton without motion. Choose its .amc file instead."
-    )
-
-
 FORMATS = (
     Format("BVH", _is_bvh, read_bvh, has_skeleton=True),
     Format("Acclaim AMC", _is_acclaim, read_acclaim, has_skeleton=True),
-    Format("Acclaim ASF", _is_acclaim_skeleton, _refuse_skeleton, has_skeleton=True),
-    Format("FBX, glTF or USD", _is_scene_file, _refuse_scene_file, has_skeleton=True),
-    Format("pickle", _is_pickle, _refuse_pickle, has_skeleton=True),
+    *(Format(each.name, each.fits, each.read, is_refused=True) for each in REFUSALS),
     Format("SMPL parameters", is_smpl, read_smpl, has_skeleton=True),
     Format("Kimodo", is_kimodo, read_kimodo, has_skeleton=True),
+    Format("Xsens MVNX", is_mvnx, read_mvnx, has_skeleton=True),
     Format("C3D", is_c3d, read_c3d),
     Format("TRC", _is_trc, read_trc),
     Format("IRDS", is_irds, read_irds),
@@ -148,8 +108,6 @@ FORMATS = (
     Format("joint JSON", is_joint_json, read_joint_json),
 )
 """Supported formats; add a line here for a new one."""
-REFUSED = (_refuse_skeleton, _refuse_scene_file, _refuse_pickle)
-"""Readers of what is recognized, but is no recording."""
 
 
 def read_recording(
@@ -216,7 +174,7 @@ def read_tracked(
         )
     if Path(path).is_dir():
         raise InvalidFileError(f"{path} is a folder without depth images. Choose a file in it.")
-    names = ", ".join(each.name for each in FORMATS if each.read not in REFUSED)
+    names = ", ".join(each.name for each in FORMATS if not each.is_refused)
     raise InvalidFileError(
         f"{path} is of no known format ({names}). Export it as one of these first."
     )
@@ -257,7 +215,7 @@ def recordings_in(folder: Path) -> list[Path]:
 def may_contain_motion(path: Path) -> bool:
     """Whether a file is a recording by its first bytes, or cannot be opened."""
     format_ = attempt(path, detect_format, path)
-    return format_ is not None and getattr(format_, "read", None) not in REFUSED
+    return format_ is not None and not getattr(format_, "is_refused", False)
 
 
 def depth_takes_in(

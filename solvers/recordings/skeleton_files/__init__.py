@@ -5,6 +5,7 @@ from .acclaim_limits import read_acclaim_limits
 from .bvh import read_bvh
 from .bvh_writing import write_bvh
 from .kimodo import is_kimodo, read_kimodo
+from .mvnx import is_mvnx, read_mvnx
 from .smpl import NAMES_OF_BODY, is_motion_x, is_smpl, read_motion_x, read_smpl
 
 __all__ = [
@@ -12,12 +13,14 @@ __all__ = [
     "find_skeleton",
     "is_kimodo",
     "is_motion_x",
+    "is_mvnx",
     "is_smpl",
     "read_acclaim",
     "read_acclaim_limits",
     "read_bvh",
     "read_kimodo",
     "read_motion_x",
+    "read_mvnx",
     "read_smpl",
     "write_bvh",
 ]

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
-from ...motion import Motion, Skeleton
+from ...motion import Motion
 from ...progress import Progress, unwatched
-from ...rotations import inverse, multiply, quaternion_from_matrix, rotate
+from ...rotations import quaternion_from_matrix
 from ..containers import read_archive_members
 from ..conventions import (
     DEFAULT_FRAME_RATE,
@@ -17,6 +17,7 @@ from ..conventions import (
     stand_upright,
     z_up_from_y_up,
 )
+from .world_poses import motion_from_world_poses
 
 Array = NDArray[np.float64]
 
@@ -38,8 +39,6 @@ JOINTS: tuple[tuple[str, str], ...] = (
 """Names and parents of the 30 joints, in the order of the archives, which name none."""
 MEMBERS = ("posed_joints", "global_rot_mats", "fps")
 NAMES = frozenset({"posed_joints", "global_rot_mats", "local_rot_mats", "foot_contacts"})
-MAX_OFFSET_ERROR_M = 0.02
-"""Standard deviation of a bone over time, above which joints and rotations do not agree."""
 
 
 def is_kimodo(head: bytes) -> bool:
@@ -89,28 +88,19 @@ def read_kimodo(
     names = tuple(name for name, _ in JOINTS)
     parents = np.array([names.index(parent) if parent else -1 for _, parent in JOINTS])
     finite = np.isfinite(joints).all(axis=(1, 2)) & np.isfinite(matrices).all(axis=(1, 2, 3))
-    world = np.full((*joints.shape[:2], 4), np.nan)
-    world[finite] = quaternion_from_matrix(matrices[finite])
-    above = world[:, np.maximum(parents, 0)]
-    bones = rotate(inverse(above), joints - joints[:, np.maximum(parents, 0)])
-    if not finite.any() or np.nanstd(bones, axis=0).max() > MAX_OFFSET_ERROR_M:
-        raise InvalidFileError(
-            f"The joints and rotations of {path} do not agree. Export it as BVH."
-        )
-    offsets = np.nanmean(bones, axis=0)
-    offsets[0] = np.nanmean(joints[:, 0], axis=0)
-    local = multiply(inverse(above), world)
-    local[:, 0] = world[:, 0]
+    rotations = np.full((*joints.shape[:2], 4), np.nan)
+    rotations[finite] = quaternion_from_matrix(matrices[finite])
     rate = arrays.get("fps")
     if rate is None:
         progress(0.5, f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
-    unit = 1.0 if scale is None else scale
-    motion = Motion(
-        Skeleton(
-            names, tuple(int(parent) for parent in parents), z_up_from_y_up(unit * offsets)
-        ),
-        rotations_z_up_from_y_up(local),
-        z_up_from_y_up(unit * joints[:, 0]),
-        DEFAULT_FRAME_RATE if rate is None or rate.size != 1 else float(rate.ravel()[0]),
-    )
+    try:
+        motion = motion_from_world_poses(
+            names,
+            parents.tolist(),
+            z_up_from_y_up(joints * (1.0 if scale is None else scale)),
+            rotations_z_up_from_y_up(rotations),
+            DEFAULT_FRAME_RATE if rate is None or rate.size != 1 else float(rate.ravel()[0]),
+        )
+    except InvalidFileError as error:
+        raise InvalidFileError(f"{path}: {error}. Export it as BVH.") from None
     return stand_upright(motion, progress)

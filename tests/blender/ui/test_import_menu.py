@@ -5,8 +5,8 @@ import pytest
 IMPORT = "mocap_assist.import_recording"
 EXTENSIONS = {
     ".bvh", ".amc", ".asf", ".c3d", ".trc", ".skeleton", ".csv", ".json", ".txt", ".npy",
-    ".npz", ".mkv", ".mat", ".fbx", ".glb", ".gltf", ".vrm", ".vrma", ".usd", ".usda", ".usdc",
-    ".usdz", ".dae",
+    ".npz", ".mkv", ".mat", ".mvnx", ".fbx", ".glb", ".gltf", ".vrm", ".vrma", ".usd", ".usda",
+    ".usdc", ".usdz", ".dae",
 }  # fmt: skip
 
 

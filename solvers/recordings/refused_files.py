@@ -1,0 +1,84 @@
+"""Files that are recognized but are no recordings, each with a sentence that names a way."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple, Never
+
+from ..errors import InvalidFileError
+from ..progress import Progress, unwatched
+
+SCENE_MAGIC = (b"Kaydara FBX Binary", b"; FBX", b"glTF", b"PXR-USDC", b"#usda")
+
+
+class Refusal(NamedTuple):
+    """A kind of file that is not read."""
+
+    name: str
+    fits: Callable[[bytes], bool]
+    """Detection from the first bytes."""
+    sentence: str
+    """Follows the path."""
+
+    def read(
+        self, path: Path | str, /, *, scale: float | None = None, progress: Progress = unwatched
+    ) -> Never:
+        """Raise InvalidFileError with the sentence."""
+        raise InvalidFileError(f"{path} {self.sentence}")
+
+
+def _is_acclaim_skeleton(head: bytes) -> bool:
+    text = re.sub(rb"(?m)^\s*#.*$", b"", head).lstrip()
+    return re.match(rb"(?i):(version|name|units|root)\b", text) is not None
+
+
+def _is_scene_file(head: bytes) -> bool:
+    return head.startswith(SCENE_MAGIC) or b"<COLLADA" in head[:512]
+
+
+def _is_flat(head: bytes) -> bool:
+    """Detect the keypoints of OpenPose and its kin, which lie in a picture."""
+    return b'"pose_keypoints_2d"' in head
+
+
+def _is_opensim(head: bytes) -> bool:
+    return b"endheader" in head and b"inDegrees" in head
+
+
+def _is_pickle(head: bytes) -> bool:
+    """Detect pickles, also those in the archives of PyTorch and joblib."""
+    in_archive = head[:4] == b"PK\x03\x04" and b"data.pkl" in head[:128]
+    return in_archive or (head[:1] == b"\x80" and head[1:2] in b"\x02\x03\x04\x05")
+
+
+REFUSALS = (
+    Refusal(
+        "Acclaim ASF",
+        _is_acclaim_skeleton,
+        "is a skeleton without motion. Choose its .amc file instead.",
+    ),
+    Refusal(
+        "FBX, glTF or USD",
+        _is_scene_file,
+        "is read by Blender's own importers. Import it in Blender, or run blender --background"
+        " --command mocap_assist import.",
+    ),
+    Refusal(
+        "2D keypoints",
+        _is_flat,
+        "holds the keypoints of a picture, without depth. Import the triangulated TRC of"
+        " Pose2Sim, or the 3D output of your tracker.",
+    ),
+    Refusal(
+        "OpenSim motion",
+        _is_opensim,
+        "holds the joint angles of OpenSim, which need its model. Import the TRC of the same"
+        " take.",
+    ),
+    Refusal(
+        "pickle",
+        _is_pickle,
+        "is a pickle, which is never opened here: it may run any program. Convert it to .npz"
+        " where it was made (docs/formats/smpl.md has the lines).",
+    ),
+)

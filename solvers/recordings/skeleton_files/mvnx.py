@@ -1,0 +1,168 @@
+"""Read the XML files of Xsens MVN: segments with positions and orientations."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree.ElementTree import Element, ParseError, iterparse
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError
+from ...files import open_regular
+from ...motion import Motion
+from ...progress import Progress, unwatched
+from ..conventions import check_scale, common_rate
+from .world_poses import motion_from_world_poses
+
+Array = NDArray[np.float64]
+
+PARENTS = {
+    "Pelvis": "", "L5": "Pelvis", "L3": "L5", "T12": "L3", "T8": "T12", "Neck": "T8",
+    "Head": "Neck",
+    **{
+        f"{side}{part}": above if above in {"T8", "Pelvis"} else f"{side}{above}"
+        for side in ("Right", "Left")
+        for part, above in (
+            ("Shoulder", "T8"), ("UpperArm", "Shoulder"), ("ForeArm", "UpperArm"),
+            ("Hand", "ForeArm"), ("UpperLeg", "Pelvis"), ("LowerLeg", "UpperLeg"),
+            ("Foot", "LowerLeg"), ("Toe", "Foot"),
+        )
+    },
+}  # fmt: skip
+"""The segments of a body with their parents."""
+NORMAL = {"normal", ""}
+"""Types of frames that belong to the take; others are calibration poses."""
+DEFAULT_RATE_HZ = 60.0
+HEAD_BYTES = 65_536
+DECLARATION = re.compile(rb"<!--.*?-->|<!(DOCTYPE|ENTITY)", re.DOTALL)
+
+
+def is_mvnx(head: bytes) -> bool:
+    """Return whether a file is of MVN, from its first bytes."""
+    return re.search(rb"<mvnx[\s>]", head) is not None
+
+
+def read_mvnx(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Motion:
+    """Read a take of Xsens MVN (`.mvnx`), in meters, Z up.
+
+    Frames of the types identity, tpose and tpose-isb, which come first, are left out. Bones
+    are the mean of the segments' origins seen from their parents.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, meters per unit of the file, or None
+        None: 1.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, declares entities, or has no positions and orientations
+        of the segments of a body.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    _refuse_declarations(path)
+    names: list[str] = []
+    rate, frames = DEFAULT_RATE_HZ, list[tuple[Array, Array]]()
+    try:
+        for element in _elements(path):
+            tag = element.tag.rpartition("}")[2]
+            if tag == "segment":
+                names.append(element.get("label", ""))
+            elif tag == "frame" and element.get("type", "") in NORMAL:
+                frames.append(_frame(element))
+                if len(frames) % 100 == 0:
+                    progress(0.5, "Reading")
+            elif tag == "subject":
+                rate = common_rate(float(element.get("frameRate", rate)))
+    except (ParseError, ValueError, LookupError):
+        raise InvalidFileError(f"{path} is damaged or cut short. Export it again.") from None
+    except FileNotFoundError:
+        raise InvalidFileError(f"There is no file {path}.") from None
+    return _motion(path, names, frames, rate, 1.0 if scale is None else scale)
+
+
+def _motion(
+    path: Path | str,
+    names: list[str],
+    frames: list[tuple[Array, Array]],
+    rate: float,
+    scale: float,
+) -> Motion:
+    known = [index for index, name in enumerate(names) if name in PARENTS]
+    kept = sorted(known, key=lambda index: list(PARENTS).index(names[index]))
+    ordered = [names[index] for index in kept]
+    sizes = {(len(positions), len(rotations)) for positions, rotations in frames}
+    if ordered[:1] != ["Pelvis"] or sizes != {(3 * len(names), 4 * len(names))}:
+        raise InvalidFileError(
+            f"{path} has no positions and orientations of the segments of a body. Export it"
+            " from MVN with both."
+        )
+    positions = scale * np.array([each for each, _ in frames]).reshape(len(frames), -1, 3)
+    rotations = np.array([each for _, each in frames]).reshape(len(frames), -1, 4)
+    parents = [_parent(ordered, name) for name in ordered]
+    try:
+        return motion_from_world_poses(
+            ordered, parents, _turned(positions[:, kept]), _turned(rotations[:, kept]), rate
+        )
+    except InvalidFileError as error:
+        raise InvalidFileError(f"{path}: {error}. Export it again.") from None
+
+
+def _parent(names: list[str], name: str) -> int:
+    """Return the index of the nearest segment above that the file has; -1 for the root."""
+    while (name := PARENTS[name]) and name not in names:
+        pass
+    return names.index(name) if name else -1
+
+
+def _turned(values: Array) -> Array:
+    """Turn positions x y z, or quaternions w x y z, by a quarter from +X to -Y."""
+    front, left = values[..., -3], values[..., -2]
+    return np.asarray(
+        np.concatenate(
+            [values[..., :-3], left[..., None], -front[..., None], values[..., -1:]], axis=-1
+        )
+    )
+
+
+def _frame(element: Element) -> tuple[Array, Array]:
+    """Return the numbers of positions and orientations of a frame."""
+    found = {child.tag.rpartition("}")[2]: child.text or "" for child in element}
+    positions, rotations = (
+        np.array(found[name].split(), dtype=float) for name in ("position", "orientation")
+    )
+    return positions, rotations
+
+
+def _elements(path: Path | str) -> Iterator[Element]:
+    """Yield elements when they end, and forget frames after."""
+    with open_regular(path) as file:
+        for _, element in iterparse(file, events=("end",)):
+            yield element
+            if element.tag.endswith(("}frame", "}segment")) or element.tag in {
+                "frame",
+                "segment",
+            }:
+                element.clear()
+
+
+def _refuse_declarations(path: Path | str) -> None:
+    """Raise InvalidFileError where XML would expand entities, which may grow without end."""
+    try:
+        with open_regular(path) as file:
+            head = file.read(HEAD_BYTES)
+    except FileNotFoundError:
+        raise InvalidFileError(f"There is no file {path}.") from None
+    if any(match[1] for match in DECLARATION.finditer(head)):
+        raise InvalidFileError(
+            f"{path} declares a document type, which is not read. Export it from MVN without."
+        )
