@@ -67,6 +67,11 @@ class ImportChoices(Settings):
         maximum=1e6,
         label="Scale",
     )
+    place_on_floor: bool = setting(
+        False,
+        "Move the take up or down so that the lowest foot stands on the floor",
+        label="Place on Floor",
+    )
     rotate_mode: Rotation = setting(
         Rotation.QUATERNION, "Rotation mode of the bones", label="Rotation"
     )

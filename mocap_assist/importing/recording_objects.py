@@ -59,6 +59,7 @@ def conversion_from_choices(context: bpy.types.Context, choices: ImportChoices) 
         scene_rate(context.scene) if resampled else None,
         choices.unit.metres,
         choices.depth,
+        choices.place_on_floor,
         BackgroundBlender(str(bpy.app.binary_path)),
     )
 

@@ -20,6 +20,7 @@ from ...solvers.motion import (
 from ...solvers.motion.humanoid import fill_missing_hips
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import DepthSettings, is_depth_recording, read_depth, read_tracked
+from ...solvers.recordings.conventions import put_on_floor
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 from ..jobs.in_blender import BackgroundBlender, is_scene_file, read_blends
 
@@ -41,6 +42,8 @@ class Conversion(NamedTuple):
     """Meters per unit of the files; None reads it from the file or estimates it."""
     depth: DepthSettings = DEFAULT_DEPTH_SETTINGS
     """Interpretation of depth images."""
+    place_on_floor: bool = False
+    """Whether the lowest foot is put at height 0."""
     blender: BackgroundBlender = BackgroundBlender("")
     """The Blender whose importers read FBX, glTF and USD."""
 
@@ -165,6 +168,8 @@ def convert_recording(recording: Recording, conversion: Conversion) -> Motion | 
 def convert_tracked(recording: TrackedRecording, conversion: Conversion) -> Motion | Tracks:
     """Convert joints or markers to a motion or points for the scene."""
     moving = _scaled(_joined(recording, conversion.armature), conversion.scale)
+    if conversion.place_on_floor and isinstance(moving, Motion):
+        moving = put_on_floor(moving)
     if conversion.frame_rate is None:
         return moving
     if isinstance(moving, Motion):

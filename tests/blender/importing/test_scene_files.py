@@ -104,3 +104,21 @@ def test_odd_samplers_do_not_stop_a_file(bring, tmp_path):
 
     assert not armatures
     assert "take.gltf" in message
+
+
+def test_the_lowest_foot_is_placed_on_the_floor(blank, recordings, load):
+    """Hips of this dancer are at the origin, and the feet 85 cm below."""
+    path = recordings / "corpus/bvh/olympe_ballet/ballet.bvh"
+
+    heights = []
+    for placed in (False, True):
+        blank.ops.mocap_assist.import_recording(filepath=str(path), place_on_floor=placed)
+        armature, scene = blank.context.object, blank.context.scene
+        lowest = []
+        for frame in range(1, 1000, 50):
+            scene.frame_set(frame)
+            lowest += [min((armature.matrix_world @ b.head).z for b in armature.pose.bones)]
+        heights.append(np.percentile(lowest, 5))
+
+    assert heights[0] < -0.7
+    assert heights[1] == pytest.approx(0.02, abs=0.03)
