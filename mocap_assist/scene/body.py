@@ -14,7 +14,7 @@ def body_root(rig: Rig, travels: Sequence[bool]) -> int:
     Candidates are the parentless bone with the most bones below it and all bones whose keyed
     location changes. Of them the deepest is taken that still carries both feet and the head:
     Unreal's pelvis rather than its root, but never the spine of a take in which every bone
-    has location keys. Where no body is recognised, the lowest tip stands for the feet, and
+    has location keys. Where no body is recognized, the lowest tip stands for the feet, and
     half of all bones have to be carried.
     """
     trees = {bone: set(rig.subtree(bone)) for bone in range(len(rig.bones))}
@@ -35,7 +35,7 @@ def body_root(rig: Rig, travels: Sequence[bool]) -> int:
 
 
 def _ends_of_body(rig: Rig, top: int) -> set[int]:
-    """Return feet and head, or nothing where they are not all recognised."""
+    """Return feet and head, or nothing where they are not all recognized."""
     bones = rig.subtree(top)
     index = {bone: number for number, bone in enumerate(bones)}
     parents = tuple(index.get(rig.parents[bone], -1) for bone in bones)

@@ -130,7 +130,7 @@ def _shown(match: Match, number: int, library: ClipLibrary) -> Found:
 def stage_of(query: Recording) -> Stage:
     """Return the position of a recording and the proportions of its actor.
 
-    Raises InvalidMotionError where no body is recognised in it.
+    Raises InvalidMotionError where no body is recognized in it.
     """
     tracks = query.tracks if isinstance(query, JointRecording) else query
     if isinstance(tracks, Motion):

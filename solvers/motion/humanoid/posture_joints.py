@@ -74,7 +74,7 @@ def posture_positions(recording: JointRecording | Tracks) -> Array:
     indices = posture_joint_indices(tracks.names)
     if "hips" not in indices or len(indices) < 2:
         raise InvalidMotionError(
-            "No body was recognised in the names of the joints"
+            "No body was recognized in the names of the joints"
             f" ({', '.join(tracks.names[:4])} ...); they must be those of a Kinect, or"
             " humanoid roles, and hips must be among them."
         )

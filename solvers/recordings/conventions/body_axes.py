@@ -69,7 +69,7 @@ def judge_up_axis(motion: Motion) -> UpAxis:
     and these above the feet in most frames; the same in the rest pose; whether the lowest
     joint is near zero; and whether the actor travels at right angles to the axis. Only joints
     with a humanoid role count, so that roots, props and stale offsets have no say. Where no
-    body is recognised, Y is up unless all joints are stretched out flat.
+    body is recognized, Y is up unless all joints are stretched out flat.
 
     Parameters
     ----------

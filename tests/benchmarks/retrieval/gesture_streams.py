@@ -70,7 +70,7 @@ def read_utd(path: Path) -> Stream:
 
 
 def ours(stream: Stream, settings: GestureSettings) -> tuple[GestureEvent, ...]:
-    """Return what our recogniser tells."""
+    """Return what our recognizer tells."""
     return recognize_gestures(stream.times, stream.positions, stream.confidence, settings)
 
 

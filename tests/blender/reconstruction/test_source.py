@@ -20,7 +20,7 @@ def found(load, blank):
 
 
 @pytest.mark.parametrize("fps", [24, 30, 60])
-def test_an_imported_take_is_recognised_where_it_stands(walk_file, bring, found, blank, fps):
+def test_an_imported_take_is_recognized_where_it_stands(walk_file, bring, found, blank, fps):
     armature = bring(walk_file)
     blank.context.scene.render.fps = fps
     armature.location, armature.rotation_euler.z, armature.scale = (2, 1, 0.9), 0.5, (1.1,) * 3

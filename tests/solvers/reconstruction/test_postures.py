@@ -38,7 +38,7 @@ def test_every_kinect_tracks_all_posture_joints(sensor):
 
 def test_posture_positions_raise_for_names_without_a_body():
     tracks = Tracks(("LFHD", "RFHD"), np.zeros((3, 2, 3)), 30.0)
-    with pytest.raises(InvalidMotionError, match="No body was recognised"):
+    with pytest.raises(InvalidMotionError, match="No body was recognized"):
         posture_positions(tracks)
 
 

@@ -111,5 +111,5 @@ def test_motions_points_and_sensors_are_read(recordings):
 
 def test_clip_without_a_body_is_refused():
     points = Tracks(("a", "b"), np.zeros((3, 2, 3)), 30.0)
-    with pytest.raises(InvalidMotionError, match="No body was recognised"):
+    with pytest.raises(InvalidMotionError, match="No body was recognized"):
         clip_postures(points)

@@ -68,7 +68,7 @@ def test_ntu_selects_the_longest_observed_body_in_any_order(write):
     assert recording.n_frames == 6
 
 
-def test_ntu_recognised_when_it_begins_with_empty_frames(write):
+def test_ntu_recognized_when_it_begins_with_empty_frames(write):
     recording = read_recording(write(ntu([{}, {}, {ONE: moving(1, 25)[0]}])))
 
     assert recording.tracks.visible.sum() == 25
