@@ -98,9 +98,11 @@ def test_a_fault_of_a_reader_keeps_no_other_file_out(load, walks, monkeypatch, f
     monkeypatch.setattr(reading, "read_tracked", fail)
     paths = [walks / name for name in ("first.bvh", "cut.bvh", "second.bvh")]
 
-    first, refusal, second = reading.read_files(paths, reading.Conversion(True, 1.0, None))
+    (first,), refusal, (second,) = reading.read_files(
+        paths, reading.Conversion(True, 1.0, None)
+    )
 
-    assert first.recording.n_frames == second.recording.n_frames == 317
+    assert first.content.recording.n_frames == second.content.recording.n_frames == 317
     assert isinstance(refusal, load("solvers.errors").InvalidFileError)
     assert str(walks / "cut.bvh") in str(refusal)
     if not isinstance(fault, MemoryError):

@@ -127,7 +127,7 @@ def test_the_redo_panel_need_not_read_again(press, window, load, walks, monkeypa
     def fail(*_, **__):
         raise AssertionError("It was read again.")
 
-    monkeypatch.setattr(load("mocap_assist.importing.recent_files"), "read_file", fail)
+    monkeypatch.setattr(load("mocap_assist.importing.recent_files"), "read_takes", fail)
     operator.execute(blank.context)
 
     assert len(blank.data.objects) == 2
@@ -222,5 +222,5 @@ def test_the_dialog_does_not_wait_for_a_large_file(load, walks, monkeypatch, bla
     large = importing.preview(blank.context, [walks / "first.bvh"])
 
     assert small == "first.bvh: 317 frames at 120 Hz; the scene plays at 24 FPS"
-    assert large == "first.bvh: 0 MB; the scene plays at 24 FPS"
+    assert large == "first.bvh: 0.2 MB; the scene plays at 24 FPS"
     assert "cannot be read" in importing.preview(blank.context, [walks / "gone.bvh"])
