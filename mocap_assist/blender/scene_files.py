@@ -1,8 +1,10 @@
 """Open files that Blender itself can read: scenes, and the exports of other programs."""
 
 import struct
+from collections import Counter
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 import addon_utils
 import bpy
@@ -16,8 +18,13 @@ COMMON_RATES = (15.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 20
 MIN_RATE_HZ = 12.0
 """Below it, keys are sparse: no sampled motion, but one that was set by hand."""
 RATE_OF_SPARSE_KEYS_HZ = 30.0
+MAX_RATE_HZ = 10_000.0
 RATE_TOLERANCE = 0.01
 MAX_JSON_BYTES = 1 << 28
+USD_OPTIONS = {
+    "import_meshes": False, "import_cameras": False, "import_materials": False,
+    "import_textures_mode": "IMPORT_NONE",
+}  # fmt: skip
 GLB_MAGIC = 0x46546C67
 GLB_JSON = 0x4E4F534A
 
@@ -41,7 +48,7 @@ def open_scene_file(path: str) -> None:
     if suffix == ".dae":
         return _open_collada(path)
     if suffix in {".usd", ".usda", ".usdc", ".usdz"}:
-        return _run(path, bpy.ops.wm.usd_import, import_meshes=False, import_cameras=False)
+        return _run(path, bpy.ops.wm.usd_import, **USD_OPTIONS)
     return _open_gltf(path)
 
 
@@ -67,6 +74,7 @@ def _open_gltf(path: str) -> None:
     """Import glTF, GLB, VRM or VRMA; times become frames at the rate of the file's keys."""
     addon_utils.enable("io_scene_gltf2")
     content = _gltf_content(path)
+    _refuse_other_files(path, content)
     render = bpy.context.scene.render
     render.fps, render.fps_base = _as_fps(_gltf_rate(content))
     _run(path, bpy.ops.import_scene.gltf, disable_bone_shape=True, import_shading="NORMALS")
@@ -97,6 +105,24 @@ def _gltf_content(path: str) -> dict[str, Any]:
     return content
 
 
+def _refuse_other_files(path: str, content: dict[str, Any]) -> None:
+    """Raise InvalidFileError where a file wants another read that is not in its folder.
+
+    It is a stranger's: it may name devices, pipes, private files or those of a server.
+    """
+    folder = Path(path).resolve().parent
+    for part in (*_list(content.get("buffers")), *_list(content.get("images"))):
+        uri = _dict(part).get("uri")
+        if uri is None or (isinstance(uri, str) and uri.startswith("data:")):
+            continue
+        named = folder / unquote(str(uri)).replace("\\", "/")
+        if not (named.resolve().is_relative_to(folder) and named.is_file()):
+            raise InvalidFileError(
+                f"{path} needs {str(uri)[:80]}, which is not a file in its folder. Export it as"
+                " one .glb file."
+            )
+
+
 def _gltf_rate(content: dict[str, Any]) -> float:
     """Return the rate of most keys in hertz, from the numbers and times of the samplers."""
     accessors = _list(content.get("accessors"))
@@ -108,7 +134,7 @@ def _gltf_rate(content: dict[str, Any]) -> float:
                 rates += _key_rate(_dict(accessors[index]))
     if not rates:
         return RATE_OF_SPARSE_KEYS_HZ
-    rate = max(set(rates), key=rates.count)
+    rate = Counter(rates).most_common(1)[0][0]
     nearest = min(COMMON_RATES, key=lambda common: abs(common - rate))
     if abs(nearest - rate) <= RATE_TOLERANCE * nearest:
         return nearest
@@ -118,11 +144,14 @@ def _gltf_rate(content: dict[str, Any]) -> float:
 def _key_rate(accessor: dict[str, Any]) -> list[float]:
     """Return the rate of evenly spaced keys, or nothing where the file does not say it."""
     count, first, last = (accessor.get(name) for name in ("count", "min", "max"))
+    if not isinstance(count, int):
+        return []
     try:
         duration = float(_list(last)[0]) - float(_list(first)[0])
-        return [round((int(count) - 1) / duration, 3)] if duration > 0.0 and count else []
+        rate = (count - 1) / duration if duration > 0.0 else 0.0
     except (IndexError, TypeError, ValueError, OverflowError):
         return []
+    return [round(rate, 3)] if 0.0 < rate < MAX_RATE_HZ else []
 
 
 def _list(value: Any) -> list[Any]:

@@ -38,7 +38,8 @@ def _is_scene_file(head: bytes) -> bool:
 
 def _is_flat(head: bytes) -> bool:
     """Detect the keypoints of OpenPose and its kin, which lie in a picture."""
-    return b'"pose_keypoints_2d"' in head
+    has_depth = re.search(rb'"pose_keypoints_3d"\s*:\s*\[\s*[-\d]', head)
+    return b'"pose_keypoints_2d"' in head and not has_depth
 
 
 def _is_opensim(head: bytes) -> bool:

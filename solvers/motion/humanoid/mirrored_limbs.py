@@ -19,6 +19,11 @@ MAX_DIFFERENCE_FRACTION = 0.02
 MAX_BRANCHES = 8
 """Children of a joint that are compared, the longest first; a hand has five fingers."""
 MAX_LIMB_JOINTS = 24
+MAX_PAIRS_OF_BRANCH = 6
+MAX_PAIRS = 16
+"""Pairs that are returned, the longest; hair and skirts would make hundreds."""
+MAX_COMPARED_BONES = 20_000
+"""Comparisons of two bones, after which a rig is too large to be searched further."""
 
 
 class MirroredLimbs(NamedTuple):
@@ -43,16 +48,20 @@ def find_mirrored_limbs(skeleton: Skeleton) -> list[MirroredLimbs]:
     Only lengths are compared, so that neither the rest pose nor its axes matter. Where one
     branch goes on, such as to a prop in one hand, the pair ends before.
     """
-    tree = _Tree.of(skeleton)
+    tree, budget = _Tree.of(skeleton), [MAX_COMPARED_BONES]
     shortest = max(MIN_LIMB_FRACTION * tree.longest_path, 1e-9)
     pairs = []
     for branch, children in enumerate(tree.branches):
         long = [child for child in children if tree.reach[child] > shortest]
-        for one, other in combinations(long, 2):
-            limbs = tree.follow(one, other, MAX_LIMB_JOINTS)
-            if tree.lengths[limbs[0]].sum() > shortest:
-                pairs.append(MirroredLimbs(branch, limbs))
-    return pairs
+        limbs = [
+            tree.follow(one, other, MAX_LIMB_JOINTS, budget)
+            for one, other in combinations(long, 2)
+        ]
+        long_limbs = [pair for pair in limbs if tree.lengths[pair[0]].sum() > shortest]
+        long_limbs.sort(key=lambda pair: -tree.lengths[pair[0]].sum())
+        pairs += [MirroredLimbs(branch, pair) for pair in long_limbs[:MAX_PAIRS_OF_BRANCH]]
+    pairs.sort(key=lambda pair: -tree.lengths[pair.limbs[0]].sum())
+    return sorted(pairs[:MAX_PAIRS], key=lambda pair: pair.branch)
 
 
 class _Tree(NamedTuple):
@@ -83,14 +92,24 @@ class _Tree(NamedTuple):
         ]
         return cls(lengths, reach, branches, longest)
 
-    def follow(self, one: int, other: int, n_joints: int) -> tuple[list[int], list[int]]:
-        """Return the longest paths from two joints down whose bones are equally long."""
+    def follow(
+        self, one: int, other: int, n_joints: int, budget: list[int]
+    ) -> tuple[list[int], list[int]]:
+        """Return the longest paths from two joints down whose bones are equally long.
+
+        Each comparison takes one from the budget; without any left, paths end.
+        """
+        budget[0] -= 1
         pair = self.lengths[[one, other]]
         tolerance = MAX_DIFFERENCE_FRACTION * self.longest_path
-        if not n_joints or np.ptp(pair) > max(MAX_DIFFERENCE * pair.max(), tolerance):
+        if (
+            budget[0] < 0
+            or not n_joints
+            or np.ptp(pair) > max(MAX_DIFFERENCE * pair.max(), tolerance)
+        ):
             return [], []
         below = (
-            self.follow(first, second, n_joints - 1)
+            self.follow(first, second, n_joints - 1, budget)
             for first in self.branches[one]
             for second in self.branches[other]
         )

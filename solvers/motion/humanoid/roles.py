@@ -134,7 +134,24 @@ def _best_names(skeleton: Skeleton) -> HumanoidMap:
     best = max(scored, key=lambda found: (found.score, len(found.joints)), default=None)
     if best is None:
         return HumanoidMap({}, 0.0)
-    return replace(best, joints=with_fingers(skeleton.names, best.joints))
+    joints = with_fingers(skeleton.names, best.joints)
+    below = {
+        side: {skeleton.names[joint] for joint in skeleton.subtree(skeleton.index(hand))}
+        for side in ("left", "right")
+        if (hand := best.joints.get(f"{side}Hand"))
+    }
+    return replace(
+        best,
+        joints={
+            role: joint
+            for role, joint in joints.items()
+            if role in best.joints or joint in below.get(_side(role), ())
+        },
+    )
+
+
+def _side(role: str) -> str:
+    return "left" if role.startswith("left") else "right"
 
 
 def _score_names(skeleton: Skeleton, joints: Mapping[str, str]) -> HumanoidMap:

@@ -30,6 +30,10 @@ LEG_PATH_FRACTION = 0.6
 """Of the height, from the hip joint along the bones to the tip of the foot."""
 HEIGHT_FACTORS = np.exp(np.linspace(-0.4, 0.4, 17))
 """Heights that are tried, relative to the one that the legs suggest."""
+ROUGH_FACTORS = HEIGHT_FACTORS[2::6]
+"""Heights that are tried first, of all pairs of limbs."""
+N_REFINED = 8
+"""Matches whose height is then refined."""
 MAX_OTHER_LIMB_FRACTION = 0.6
 """Length, relative to the legs, above which a third pair of limbs is no skirt or hair."""
 MAX_HUMAN_ANGLE_DEG = 60.0
@@ -59,14 +63,18 @@ def roles_by_structure(skeleton: Skeleton) -> tuple[dict[str, str], float]:
     dict of role to joint name, and float; empty and 0.0 without two legs.
     """
     pairs = find_mirrored_limbs(skeleton)
-    matches = [
-        _match(skeleton, legs, arms)
+    rough = [
+        _match(skeleton, legs, arms, ROUGH_FACTORS)
         for legs, arms in product(pairs, (*pairs, None))
         if arms is None or _are_apart(skeleton, legs, arms)
     ]
-    if not matches:
+    if not rough:
         return {}, 0.0
-    match = min(matches, key=lambda match: match.misfit)
+    rough.sort(key=lambda match: match.misfit)
+    match = min(
+        (_match(skeleton, each.legs, each.arms, HEIGHT_FACTORS) for each in rough[:N_REFINED]),
+        key=lambda match: match.misfit,
+    )
     roles = _Body(skeleton, match).roles()
     n_others = _count_other_limbs(skeleton, match, pairs)
     return (
@@ -81,10 +89,12 @@ def _are_apart(skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs) -> 
     return legs.branch != arms.branch and not shared.any()
 
 
-def _match(skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs | None) -> _Match:
+def _match(
+    skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs | None, factors: Array
+) -> _Match:
     """Return these legs and arms with the height that fits them best."""
     guess = np.mean([path_length(skeleton, leg) for leg in legs.limbs]) / LEG_PATH_FRACTION
-    heights = np.maximum(guess, 1e-9) * HEIGHT_FACTORS
+    heights = np.maximum(guess, 1e-9) * factors
     misfits = [_misfit(skeleton, legs, arms, height) for height in heights]
     best = int(np.argmin(misfits))
     return _Match(legs, arms, float(heights[best]), misfits[best])

@@ -136,7 +136,10 @@ def put_on_floor(motion: Motion) -> Motion:
 
 def describe_guessed_axis(axis: UpAxisName) -> str:
     """Say which axis is taken for up where the evidence disagrees."""
-    return f"{axis} is taken for up, but the evidence disagrees; set Up if the actor lies"
+    return (
+        f"{axis} is taken for up, but the take does not show it clearly; rotate the armature if"
+        " it is on its side"
+    )
 
 
 def rotate_to_z_up(motion: Motion, axis: UpAxisName, rest_axis: UpAxisName) -> Motion:

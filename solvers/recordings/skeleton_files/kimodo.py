@@ -75,7 +75,7 @@ def read_kimodo(
     check_scale(scale)
     arrays = read_archive_members(path, MEMBERS)
     joints, matrices = (arrays.get(name) for name in MEMBERS[:2])
-    if joints is None or matrices is None or not len(joints):
+    if joints is None or matrices is None or joints.ndim != 3 or not len(joints):
         raise InvalidFileError(
             f"{path} has no posed_joints and global_rot_mats. Save both from Kimodo."
         )

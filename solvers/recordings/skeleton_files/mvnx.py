@@ -138,7 +138,8 @@ def _frame(element: Element) -> tuple[Array, Array]:
     """Return the numbers of positions and orientations of a frame."""
     found = {child.tag.rpartition("}")[2]: child.text or "" for child in element}
     positions, rotations = (
-        np.array(found[name].split(), dtype=float) for name in ("position", "orientation")
+        np.array(found.get(name, "").split(), dtype=float)
+        for name in ("position", "orientation")
     )
     return positions, rotations
 

@@ -19,6 +19,7 @@ from ..conventions import (
     stand_upright,
     z_up_from_y_up,
 )
+from .kimodo import read_kimodo
 from .smpl_body import BODY, FINGERS, STATURE_M, smpl_joints
 
 Array = NDArray[np.float64]
@@ -48,6 +49,10 @@ FIRST_HAND = {52: 22, 55: 25}
 """Index of the first finger joint, by the number of joints: SMPL-H and SMPL-X."""
 FIRST_MEMBER = 30
 """Byte of a ZIP archive at which the name of its first member begins."""
+N_NUMBERS = {66, 69, 72, 156, 165, 168}
+"""Numbers of a pose: 22 joints, SMPL's 23 and 24, SMPL-H's 52, SMPL-X's 55, and with a jaw."""
+N_BODY_POSE = {63, 69}
+"""Numbers of a pose without its root: SMPL-X and SMPL-H, and SMPL with its hands."""
 MAX_HEIGHT_M = 10.0
 MOTION_X_COLUMNS = 322
 MOTION_X_POSITION = slice(309, 312)
@@ -110,7 +115,9 @@ def read_smpl(
     check_scale(scale)
     if not 0.0 < height < MAX_HEIGHT_M:
         raise InvalidSettingError(f"height is {height:g} m; it must be above 0 and below 10.")
-    arrays = read_archive_members(path, READ)
+    arrays = read_archive_members(path, (*READ, "posed_joints"))
+    if "posed_joints" in arrays and not {*ROTATIONS, *ROOT} & arrays.keys():
+        return read_kimodo(path, scale=scale, progress=progress)
     vectors = _rotation_vectors(path, arrays)
     n_frames = len(vectors)
     hands = vectors.shape[1] > N_BODY
@@ -173,11 +180,21 @@ def _rotation_vectors(path: Path | str, arrays: dict[str, Array]) -> Array:
             f"{path} has no rotations of an SMPL body: neither poses nor root_orient and"
             " pose_body. Save the parameters of one person, with their names."
         )
+    if poses.ndim > 2 and (poses.ndim != 3 or poses.shape[2] != 3):
+        raise InvalidFileError(
+            f"{path} has poses of shape {poses.shape}: rotation matrices or several people."
+            " Save the rotation vectors of one person."
+        )
+    if poses[0].size not in N_NUMBERS:
+        raise InvalidFileError(
+            f"{path} has {poses[0].size} numbers in each pose, which no SMPL body has. Save"
+            " rotation vectors of three numbers for each joint."
+        )
     vectors = poses.reshape(len(poses), -1, 3)
     vectors = np.where(np.isfinite(vectors).all(axis=(1, 2), keepdims=True), vectors, np.nan)
     body, first = vectors[:, :N_BODY], FIRST_HAND.get(vectors.shape[1])
     fingers = vectors[:, first:] if first else vectors[:, :0]
-    if fingers.size and np.ptp(fingers, axis=0).max() > 0.0:
+    if np.nan_to_num(fingers).any():
         return np.concatenate([body, fingers], axis=1)
     return body
 
@@ -185,12 +202,16 @@ def _rotation_vectors(path: Path | str, arrays: dict[str, Array]) -> Array:
 def _joined_parts(arrays: dict[str, Array]) -> Array | None:
     """Return root, body and hands side by side, as SMPL-H has them; None without a body."""
     root, body = _member(arrays, ROOT), _member(arrays, BODY_POSE)
-    if root is None or body is None or not len(root) or len(root) != len(body):
+    if root is None or body is None or min(root.ndim, body.ndim) < 2 or not len(root):
         return None
     n_frames = len(root)
-    parts = [root.reshape(n_frames, -1)[:, :3], body.reshape(n_frames, -1)[:, : 3 * N_BODY - 3]]
+    root = root.reshape(n_frames, -1)
+    if len(body) != n_frames or root.shape[1] != 3 or body[0].size not in N_BODY_POSE:
+        return None
+    parts = [root, body.reshape(n_frames, -1)[:, : 3 * N_BODY - 3]]
     hands = [_member(arrays, names) for names in (HANDS, LEFT_HAND, RIGHT_HAND)]
-    found = [hand for hand in hands if hand is not None and len(hand) == n_frames]
+    found = [each for each in hands if each is not None and each.ndim > 1]
+    found = [hand for hand in found if len(hand) == n_frames]
     found = [hand.reshape(n_frames, -1) for hand in found]
     if sum(hand.shape[1] for hand in found) == 2 * N_HAND:
         parts += found

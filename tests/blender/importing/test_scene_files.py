@@ -122,3 +122,19 @@ def test_the_lowest_foot_is_placed_on_the_floor(blank, recordings, load):
 
     assert heights[0] < -0.7
     assert heights[1] == pytest.approx(0.02, abs=0.03)
+
+
+@pytest.mark.parametrize("kind", ["buffers", "images"])
+@pytest.mark.parametrize(
+    "uri", ["../secret.bin", "/dev/zero", "..%2Fsecret.bin", "//server/share/x", "gone.bin"]
+)
+def test_a_file_that_wants_others_read_is_refused(bring, tmp_path, kind, uri):
+    (tmp_path / "secret.bin").write_bytes(bytes(64))
+    (tmp_path / "in").mkdir()
+    content = {"asset": {"version": "2.0"}, kind: [{"uri": uri, "byteLength": 64}]}
+    (tmp_path / "in" / "take.gltf").write_text(json.dumps(content))
+
+    armatures, message = bring(tmp_path / "in" / "take.gltf")
+
+    assert not armatures
+    assert "is not a file in its folder" in message

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from rigs import FAMILIES, Joint, joints_of, skeleton_from
 
-from solvers.motion import find_humanoid_map
+from solvers.motion import Skeleton, find_humanoid_map
 from solvers.motion.humanoid.roles import MIN_NAME_SCORE
 
 
@@ -118,3 +118,41 @@ def test_structure_alone_is_right_in_any_axes(family, turn):
         role: name for role, name in expected(joints).items() if "eg" in role or "rm" in role
     }
     assert {role: found.joints.get(role) for role in limbs} == limbs
+
+
+def test_toes_are_no_fingers():
+    """Character Creator names its toes after fingers, and the legs come first."""
+    joints = joints_of("Character Creator")
+    foot = next(joint for joint in joints if joint.role == "leftToes")
+    hand = next(joint for joint in joints if joint.role == "leftHand")
+    for number in (1, 2, 3):
+        toe = f"CC_Base_L_IndexToe{number}"
+        finger = f"CC_Base_L_Index{number}"
+        step = np.array((0.03, 0.0, 0.0)) * number
+        joints.append(Joint(toe, foot.name, "", foot.position + step))
+        joints.append(Joint(finger, hand.name, "", hand.position + step))
+    ordered = shuffled(joints, seed=3)
+
+    found = find_humanoid_map(skeleton_from(ordered))
+
+    assert found.joint("leftIndexProximal") in {None, "CC_Base_L_Index1"}
+    assert not any("IndexToe" in name for name in found.joints.values())
+
+
+def test_many_equal_limbs_do_not_take_long():
+    """An octopus of 585 joints is searched within its budget, and is no person."""
+    parents, offsets = [-1], [np.zeros(3)]
+    level = [0]
+    for _ in range(3):
+        above, level = level, []
+        for joint in above:
+            for number in range(8):
+                level.append(len(parents))
+                parents.append(joint)
+                angle = number * np.pi / 4
+                offsets.append(np.array((np.cos(angle), np.sin(angle), -0.2)))
+    names = tuple(f"j{number}" for number in range(len(parents)))
+
+    found = find_humanoid_map(Skeleton(names, tuple(parents), np.array(offsets)))
+
+    assert found.score < MIN_NAME_SCORE

@@ -132,6 +132,12 @@ def test_scaled_positions_of_aist(tmp_path):
         {"poses": np.zeros((F, 66)), "trans": np.zeros((F - 1, 3))},
         {"poses": np.zeros((0, 66)), "trans": np.zeros((0, 3))},
         {"poses": np.zeros(66)},
+        {"poses": np.tile(np.eye(3), (F, 24, 1, 1)), "trans": np.zeros((F, 3))},
+        {"poses": np.zeros((F, 144)), "trans": np.zeros((F, 3))},
+        {"poses": np.zeros((2, F, 72)), "trans": np.zeros((2, F, 3))},
+        {"global_orient": np.zeros((F, 1, 3, 3)), "body_pose": np.zeros((F, 23, 3, 3))},
+        {"root_orient": np.array(1.0), "pose_body": np.zeros((F, 63))},
+        {"posed_joints": np.array(1.0), "global_rot_mats": np.array(1.0)},
         {"trans": np.zeros((F, 3)), "poses": np.array([None], dtype=object)},
     ],
 )
@@ -208,3 +214,22 @@ def test_unknown_rest_axes_are_kept_with_the_rotations(tmp_path):
     assert rest[NAMES.index("head"), 2] > rest[0, 2] + 0.4
     down = rotate(motion.rotations[:, 0], np.array([0.0, 0.0, -1.0]))
     assert (down[:, 2] < -0.9).all()
+
+
+def test_one_damaged_frame_does_not_cost_the_hands(tmp_path):
+    vectors = poses(n_joints=52)
+    vectors[:, 30, 2] = 0.3
+    vectors[3] = np.nan
+    path = save(tmp_path / "h.npz", poses=vectors.reshape(F, -1), trans=np.zeros((F, 3)))
+
+    motion = read_recording(path)
+
+    assert motion.skeleton.n_joints == 52
+    assert np.isnan(motion.rotations[3]).any()
+
+
+def test_kimodo_is_known_whatever_comes_first(recordings, tmp_path):
+    with np.load(recordings / "corpus/smpl/kimodo_soma_npz/05_root_path.npz") as archive:
+        path = save(tmp_path / "k.npz", fps=25.0, **archive)
+
+    assert read_recording(path).frame_rate == 25.0
