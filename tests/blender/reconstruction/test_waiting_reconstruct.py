@@ -6,7 +6,7 @@ from modal_events import event, nothing_is_left, wait
 
 @pytest.fixture
 def press_reconstruct(make_button, window, load):
-    """Press Reconstruct; return the button, which waits."""
+    """Press Reconstruct; return the button, which has read the take and waits."""
     choices = load("mocap_assist.reconstruct.choices")
 
     def press():
@@ -17,6 +17,7 @@ def press_reconstruct(make_button, window, load):
         )
         button = make_button("reconstruct", settings)
         assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
+        assert wait(button, window, until=lambda: hasattr(button, "_job")) is None
         return button
 
     return press
