@@ -1,10 +1,10 @@
 """Open files that Blender itself can read: scenes, and the exports of other programs."""
 
+import re
 import struct
 from collections import Counter
 from pathlib import Path
 from typing import Any
-from urllib.parse import unquote
 
 import addon_utils
 import bpy
@@ -115,12 +115,20 @@ def _refuse_other_files(path: str, content: dict[str, Any]) -> None:
         uri = _dict(part).get("uri")
         if uri is None or (isinstance(uri, str) and uri.startswith("data:")):
             continue
-        named = folder / unquote(str(uri)).replace("\\", "/")
+        named = folder / _unquoted(str(uri)).replace("\\", "/")
         if not (named.resolve().is_relative_to(folder) and named.is_file()):
             raise InvalidFileError(
                 f"{path} needs {str(uri)[:80]}, which is not a file in its folder. Export it as"
                 " one .glb file."
             )
+
+
+def _unquoted(uri: str) -> str:
+    """Return a path with its percent signs decoded, as the importer will read it."""
+    content = re.sub(
+        rb"%([0-9A-Fa-f]{2})", lambda match: bytes([int(match[1], 16)]), uri.encode()
+    )
+    return content.decode("utf-8", "replace")
 
 
 def _gltf_rate(content: dict[str, Any]) -> float:
