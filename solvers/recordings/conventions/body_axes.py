@@ -62,7 +62,7 @@ class UpAxis(NamedTuple):
     """Whether the evidence agrees."""
 
 
-def judge_up_axis(motion: Motion) -> UpAxis:
+def judge_up_axis(motion: Motion, expected: Mapping[UpAxisName, float] | None = None) -> UpAxis:
     """Return the axis along which the actor stands.
 
     Four kinds of evidence are weighed against each other: whether the head is above the hips
@@ -75,6 +75,9 @@ def judge_up_axis(motion: Motion) -> UpAxis:
     ----------
     motion : Motion
         Read as if Y were up.
+    expected : mapping of axis to evidence, or None
+        Evidence of a format whose rest pose is known to have Y up: only these axes are
+        possible, and the rest pose has no vote. None: any axis, Y and Z rather.
     """
     step = max(1, motion.n_frames // N_SAMPLED_FRAMES)
     positions = world_poses(
@@ -86,7 +89,9 @@ def judge_up_axis(motion: Motion) -> UpAxis:
     if body is None or not len(positions):
         return _judge_by_extent(motion.skeleton, positions)
     rest = motion.skeleton.rest_positions[None]
-    in_rest = _standing(rest, body) if _is_unfolded(rest[0], body) else dict.fromkeys(AXES, 0.0)
+    in_rest = dict.fromkeys(AXES, 0.0)
+    if expected is None and _is_unfolded(rest[0], body):
+        in_rest = _standing(rest, body)
     standing = _standing(positions, body)
     floor, travel = _floor(positions, body), _travel(positions, body)
     totals = {
@@ -94,25 +99,29 @@ def judge_up_axis(motion: Motion) -> UpAxis:
         + REST_WEIGHT * in_rest[axis]
         + FLOOR_WEIGHT * floor[axis]
         + TRAVEL_WEIGHT * travel[axis]
-        + EXPECTED.get(axis, 0.0)
-        for axis in AXES
+        + (expected or EXPECTED).get(axis, 0.0)
+        for axis in expected or AXES
     }
-    best, second = sorted(AXES, key=lambda axis: totals[axis], reverse=True)[:2]
+    best, second = sorted(totals, key=lambda axis: totals[axis], reverse=True)[:2]
     rest_best = max(AXES, key=lambda axis: in_rest[axis])
     return UpAxis(
         best,
-        rest_best if in_rest[rest_best] > MIN_REST_STANDING else best,
+        "Y" if expected else rest_best if in_rest[rest_best] > MIN_REST_STANDING else best,
         totals[best] - totals[second] >= CLEAR_LEAD
         or min(standing[best], floor[best]) >= CLEAR_STANDING,
     )
 
 
-def stand_upright(motion: Motion, progress: Progress = unwatched) -> Motion:
+def stand_upright(
+    motion: Motion,
+    progress: Progress = unwatched,
+    expected: Mapping[UpAxisName, float] | None = None,
+) -> Motion:
     """Turn a motion that was read with Y up so that the actor stands (`judge_up_axis`).
 
     `progress` is given a message where the evidence disagrees.
     """
-    judged = judge_up_axis(motion)
+    judged = judge_up_axis(motion, expected)
     if not judged.is_clear:
         progress(1.0, describe_guessed_axis(judged.axis))
     return rotate_to_z_up(motion, judged.axis, judged.rest_axis)

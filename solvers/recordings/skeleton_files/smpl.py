@@ -12,6 +12,7 @@ from ...rotations import quaternion_from_rotation_vector
 from ..containers import read_archive_members
 from ..conventions import (
     DEFAULT_FRAME_RATE,
+    UpAxisName,
     check_scale,
     common_rate,
     put_on_floor,
@@ -54,6 +55,10 @@ N_NUMBERS = {66, 69, 72, 156, 165, 168}
 N_BODY_POSE = {63, 69}
 """Numbers of a pose without its root: SMPL-X and SMPL-H, and SMPL with its hands."""
 MAX_HEIGHT_M = 10.0
+AMASS_UP: dict[UpAxisName, float] = {"Z": 0.8, "Y": 0.0}
+VIDEO_UP: dict[UpAxisName, float] = {"Y": 0.1, "Z": 0.05, "-Y": 0.0}
+"""Evidence of the format for each axis (`judge_up_axis`): AMASS has Z up, video models mostly Y
+and, in the camera's axes, -Y."""
 MOTION_X_COLUMNS = 322
 MOTION_X_POSITION = slice(309, 312)
 """Columns of the position, after root, body, hands, jaw, expression and shape of the face."""
@@ -139,7 +144,9 @@ def read_smpl(
         z_up_from_y_up(positions * unit),
         rate,
     )
-    return put_on_floor(stand_upright(motion, progress))
+    is_amass = not {"mocap_frame_rate", "mocap_framerate"}.isdisjoint(arrays)
+    up = AMASS_UP if is_amass else VIDEO_UP
+    return put_on_floor(stand_upright(motion, progress, up))
 
 
 def is_motion_x(shape: tuple[int, ...]) -> bool:
@@ -161,7 +168,7 @@ def read_motion_x(columns: Array, scale: float | None, progress: Progress) -> Mo
         z_up_from_y_up(columns[:, MOTION_X_POSITION] * (1.0 if scale is None else scale)),
         DEFAULT_FRAME_RATE,
     )
-    return put_on_floor(stand_upright(motion, progress))
+    return put_on_floor(stand_upright(motion, progress, VIDEO_UP))
 
 
 def _rotation_vectors(path: Path | str, arrays: dict[str, Array]) -> Array:

@@ -233,3 +233,22 @@ def test_kimodo_is_known_whatever_comes_first(recordings, tmp_path):
         path = save(tmp_path / "k.npz", fps=25.0, **archive)
 
     assert read_recording(path).frame_rate == 25.0
+
+
+@pytest.mark.parametrize(
+    ("root", "lies"), [((0.0, 0.0, 0.0), True), ((0.0, np.pi, 0.0), False)]
+)
+def test_a_lying_actor_of_amass_never_passes_in_silence(tmp_path, root, lies):
+    """On the back, or face down with the feet below the floor, which looks like standing."""
+    path = save(
+        tmp_path / "lie.npz", poses=poses(root=root).reshape(F, -1), mocap_framerate=60.0,
+        trans=np.tile((0.0, 0.0, 0.1), (F, 1)),
+    )  # fmt: skip
+    said = []
+
+    motion = read_recording(path, progress=lambda _, message="": said.append(message))
+
+    places = joint_positions(motion)
+    rises = np.abs((places["head"] - places["pelvis"])[:, 2]).max()
+    assert (rises < 0.3) == lies
+    assert any("is taken for up" in message for message in said)
