@@ -16,7 +16,7 @@ MAY_IMPORT = {
     "operators": {"mocap_assist", "solvers"},
 }
 SHARED_ROOMS = {
-    "archives", "depth_scene", "errors", "faults", "files", "json_text", "motion",
+    "archives", "arrays", "depth_scene", "errors", "faults", "files", "json_text", "motion",
     "npz_members", "progress", "rotations", "settings", "signals",
 }  # fmt: skip
 FAMILIES = [

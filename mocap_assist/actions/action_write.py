@@ -4,16 +4,14 @@ from collections.abc import Mapping
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene.controls import BoneKeys
 from .bone_channels import bone_path
 from .curves import CONSTANT, deselect, write_first
 from .rotation_modes import channels_from_quaternions, rotation_property
-
-Array = NDArray[np.float64]
 
 
 def write_action(

@@ -2,14 +2,13 @@
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion import Skeleton
 from ..blender.data_names import fitting_name
 from ..scene.rig import END
 from ..scene.scene_objects import add_object, in_object_mode
 
-Array = NDArray[np.float64]
 SHORT = 1e-3  # of the body's extent: a bone that short has no direction to speak of
 STUB = 0.05  # fraction of the body's extent: length of a bone without a direction
 LAST = 0.4  # of its parent's length: length of a bone whose tail was never captured

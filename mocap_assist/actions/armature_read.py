@@ -2,8 +2,8 @@
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Tracks
 from ...solvers.rotations import multiply, rotate
@@ -19,8 +19,6 @@ from .bone_channels import animated_curves, bone_path, read_bone, read_space
 from .curves import Channel
 from .frames import FrameRange, Grid, key_grid, range_bounds
 from .take import ArmatureTake, BoneChannels, part_of
-
-Array = NDArray[np.float64]
 
 
 @Sliced

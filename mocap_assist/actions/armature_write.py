@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.settings import Choice
 from ..blender import compat
@@ -23,7 +24,6 @@ from .curves import Channel, write_values
 from .rotation_modes import channels_from_quaternions
 from .take import ArmatureTake
 
-Array = NDArray[np.float64]
 KeyTypes = Mapping[str, NDArray[np.uint8]]
 SUFFIX = ".clean"
 NUMBERED = re.compile(r"\.(clean|physics|reconstructed|retracked)(\.\d{3,})?$")

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.rotations import multiply, rotate
 from ..blender import compat
 from ..scene.rig import Placement, placement_of
@@ -14,7 +15,6 @@ from .gaps import unobserved
 from .rotation_modes import quaternions_from_channels, rotation_property
 from .take import BoneChannels
 
-Array = NDArray[np.float64]
 Curves = Mapping[tuple[str, int], Channel]
 
 

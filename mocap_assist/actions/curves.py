@@ -7,10 +7,9 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from .curve_modifiers import Written, keep_outside
-
-Array = NDArray[np.float64]
 
 CONSTANT, LINEAR = 0, 1  # Blender's numbers for interpolation
 MEASURED, GENERATED = 0, 5  # and for its key types KEYFRAME and GENERATED

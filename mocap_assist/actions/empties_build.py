@@ -1,9 +1,8 @@
 """Make empties that move as recorded points do: one action for all, a slot for each."""
 
 import bpy
-import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion import Tracks
 from ...solvers.progress import Progress, unwatched
 from ..blender import compat
@@ -11,7 +10,6 @@ from ..blender.data_names import fitting_name
 from ..scene.scene_objects import add_object, add_quietly, in_object_mode
 from .new_action import write_channels
 
-Array = NDArray[np.float64]
 POINT = "mocap_assist_point"
 """Custom property of an empty: the name of its point, which Blender may have to change."""
 SIZE = 0.015  # meters: radius of the sphere that shows a marker

@@ -5,13 +5,12 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.settings import Choice
 from .curves import ON_FRAME, Channel
 
-Array = NDArray[np.float64]
 WIDEST_STEP = (
     2.5  # frames between keys up to which a take counts as recorded, not keyed by hand
 )

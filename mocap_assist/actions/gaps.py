@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...solvers.arrays import Array
+
 WIDEST_STEP = 2.5  # a median distance of keys, in frames, above which an animator set them
 WIDEST_HOLE = 1.5  # distances between neighbours, in median ones, that are no gap
 

@@ -5,11 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ..blender.compat import Source
 from .bone_channels import Curves, animated_curves
 from .curves import ON_FRAME
 
-Array = NDArray[np.float64]
 Keys = Mapping[tuple[str, int], NDArray[np.float32]]
 N_ADJACENT = 16
 """Keys on both sides of a gap that show how densely a bone was recorded."""

@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Motion, Tracks
 from ..blender.block_references import BlockReference
@@ -22,8 +23,6 @@ from .curves import write_values
 from .frames import FrameRange, Grid, key_grid, range_bounds
 from .markers import PATH, markers_of, point_names, source_of
 from .sensor_notes import CONFIDENCE
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,8 +2,8 @@
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
 from ..blender import compat
@@ -14,7 +14,6 @@ from .curves import write_first
 from .rotation_modes import channels_from_quaternions, rotation_property
 from .take import Part, basis_rotations, root_locations
 
-Array = NDArray[np.float64]
 STILL = (1.0, 0.0, 0.0, 0.0)
 
 

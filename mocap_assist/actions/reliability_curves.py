@@ -5,14 +5,12 @@ from enum import Enum
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ..blender import compat
 from ..blender.compat import Source
 from .bone_channels import bone_path
 from .curves import write_first
-
-Array = NDArray[np.float64]
 
 
 class Term(Enum):

@@ -1,8 +1,8 @@
 """A bone's rotation channels, in any of Blender's modes, as quaternions w x y z, and back."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.rotations import (
     IDENTITY,
     euler_from_quaternion,
@@ -12,7 +12,6 @@ from ...solvers.rotations import (
     unwrap_euler,
 )
 
-Array = NDArray[np.float64]
 PROPERTIES = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 MIN_SINE = 1e-9
 

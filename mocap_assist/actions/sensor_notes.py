@@ -7,12 +7,12 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion import JointRecording, Motion, Tracks
 from ..blender import compat
 from .bone_channels import bone_path
 from .curves import CONSTANT, write_first
 
-Array = NDArray[np.float64]
 CONFIDENCE = "mocap_confidence"
 """Custom property of a bone or an empty: the sensor's confidence, 0 to 1."""
 STATE = "mocap_tracking_state"

@@ -3,15 +3,13 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion import Motion, Skeleton, Tracks
 from ...solvers.rotations import inverse, multiply, rotate
 from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene.rig import Placement, Rig
 from .frames import Grid
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

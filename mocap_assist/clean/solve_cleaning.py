@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.denoising import (
     Denoised,
     DenoiseSettings,
@@ -34,7 +35,6 @@ from ...solvers.recordings import read_motion_or_tracks
 from ...solvers.rotations import angle_between, slerp
 from ..library.solve_prior import LibraryPrior
 
-Array = NDArray[np.float64]
 Recordings = tuple[Motion | Tracks, ...]
 
 MIN_CHANGE = 1e-6  # radians or meters; smaller changes by planting are ignored

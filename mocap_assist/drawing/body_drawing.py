@@ -6,9 +6,9 @@ import gpu
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.depth_tracking.body import BodySurface
 
-Array = NDArray[np.float64]
 EDGE_BRIGHTNESS = 0.45
 """Brightness of a surface seen edge-on, as a fraction of one that faces the eye."""
 MIN_NORMAL_LENGTH = 1e-30

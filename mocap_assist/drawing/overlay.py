@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.rotations import inverse, multiply, rotate
 from ..actions.bone_channels import read_bone
 from ..actions.key_store import Keys, curves_near, read_keys
@@ -15,8 +16,6 @@ from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
 from ..scene.rig import Rig, read_rig
-
-Array = NDArray[np.float64]
 
 BLOCK_POSES = 2**13
 """Bone poses that are computed at once; more would delay the drawing."""

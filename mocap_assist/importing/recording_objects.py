@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.motion.humanoid import fill_missing_hips
@@ -21,7 +21,6 @@ from ..scene.units import unit_of
 from .choices import ImportChoices, Target
 from .solve_reading import Conversion, TrackedRecording, connected_joints, convert_tracked
 
-Array = NDArray[np.float64]
 MAX_NAMED = 3  # joints that a sentence lists
 
 

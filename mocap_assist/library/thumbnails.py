@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion.humanoid import PARENTS, POSTURE_JOINTS
 from ...solvers.pictures import SERIES, Canvas, View, lighten_color, project_to_view
 
-Array = NDArray[np.float64]
 Pixels = NDArray[np.uint8]
 
 SIZE = 128

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.denoising import Planted, PlantSettings, Quality, measure_quality
 from ...solvers.errors import MocapAssistError
 from ...solvers.motion import JointRecording, Motion
@@ -27,8 +28,6 @@ from ...solvers.workflows import (
 )
 from ..clean.solve_cleaning import Examples, toward
 from ..library.solve_prior import LibraryPrior
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

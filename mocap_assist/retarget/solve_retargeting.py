@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import HumanoidMap, Motion, Skeleton, forward_kinematics
 from ...solvers.motion.humanoid import normalize_postures, postures_from_motion
@@ -14,8 +15,6 @@ from ...solvers.progress import Progress, unwatched, within
 from ...solvers.retargeting import RetargetSettings, RootMotion, ground_path, retarget
 from ...solvers.rotations import IDENTITY, inverse, multiply, rotate
 from ..scene.controls import BoneKeys, Carried, TargetRig, keys_of
-
-Array = NDArray[np.float64]
 
 
 class Start(NamedTuple):

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion import Motion, Skeleton
 from ...solvers.motion.skeletons import world_poses
 from ...solvers.progress import Progress, unwatched, within
@@ -24,7 +25,6 @@ from ..actions.rotation_modes import (
     rotation_property,
 )
 
-Array = NDArray[np.float64]
 MOVES = 1e-6  # radians
 FINEST = 0.1
 """Radians for each metre of tolerance that angles between keys may always be off."""

@@ -8,8 +8,8 @@ from itertools import pairwise
 import bpy
 import numpy as np
 from mathutils import Matrix
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion import HUMANOID_ROLES, HumanoidMap, Motion, Skeleton
 from ...solvers.rotations import IDENTITY, inverse, multiply, quaternion_from_matrix, rotate
 from ..actions.animated_values import values_kept
@@ -20,8 +20,6 @@ from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene.rig import placement_of
 from .rigify import original_of
-
-Array = NDArray[np.float64]
 
 ABOVE = {
     "spine": "hips", "chest": "spine", "upperChest": "chest", "neck": "upperChest",

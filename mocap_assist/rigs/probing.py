@@ -6,9 +6,8 @@ from contextlib import contextmanager
 import bpy
 import numpy as np
 from mathutils import Euler, Matrix
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...solvers.arrays import Array
 
 N_POSES = 3
 LARGEST_TURN = 0.35  # radians

@@ -4,12 +4,11 @@ import re
 from collections.abc import Collection, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion import roles_by_name
 from .control_plan import Limbs, Plan, RigPlan
 
-Array = NDArray[np.float64]
 SIDES = {"left": "L", "right": "R"}
 LIMB_CONTROLS = {"Arm": ("upper_arm", "hand", "Hand"), "Leg": ("thigh", "foot", "Foot")}
 SPINE = re.compile(r"spine_fk\.\d+$")

@@ -4,8 +4,8 @@ from collections.abc import Collection, Mapping
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import HumanoidMap, Skeleton, find_humanoid_map
 from ...solvers.motion.humanoid import ESSENTIAL_ROLES
@@ -18,7 +18,6 @@ from .control_plan import ROOT, Limbs, Plan, RigPlan, plain_plan, role_above
 from .probing import find_carriers, location_axes
 from .rigify import is_rigify, rigify_plan, rigify_roles
 
-Array = NDArray[np.float64]
 ROOT_NAMES = ("root", "Root", "c_traj", "c_pos", "master", "Armature", "reference")
 SIDES = ("left", "right")
 

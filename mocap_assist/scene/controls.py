@@ -10,12 +10,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion import HumanoidMap, Skeleton, WorldPoses
 from ...solvers.rotations import inverse, multiply, rotate
 
-Array = NDArray[np.float64]
 NO_CONTROL = -1
 STRAIGHT, BENT = 0.001, 0.005
 """Distance of a hinge from the line of its limb, as a fraction of the limb's length. Below the

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 from mathutils import Matrix
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.rotations import inverse, multiply, quaternion_from_matrix, rotate
 
-Array = NDArray[np.float64]
 EVEN = 1e-3
 MAX_COORDINATE = 1e12
 """Units of the scene; Blender keeps 3.4e38 where infinity is set."""

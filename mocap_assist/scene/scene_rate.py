@@ -5,11 +5,10 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.settings import Choice
 
-Array = NDArray[np.float64]
 SAME = 1e-6  # relative difference of rates that is only rounding
 
 

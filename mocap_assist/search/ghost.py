@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion.humanoid import PARENTS, resize_postures, rotate_about_vertical
 from .solve_finding import Found, Stage
 
-Array = NDArray[np.float64]
 BONES = np.array([(parent, joint) for joint, parent in enumerate(PARENTS) if parent >= 0])
 
 

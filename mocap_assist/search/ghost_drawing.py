@@ -3,11 +3,12 @@
 import bpy
 from mathutils import Matrix
 
+from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ..drawing.overlay_drawing import Color, draw_lines
 from ..drawing.view_drawing import ViewDrawing, redraw
 from . import searches
-from .ghost import Array, ghost_lines
+from .ghost import ghost_lines
 
 COLOR: Color = (0.45, 0.95, 0.55, 0.95)
 WIDTH = 4.0

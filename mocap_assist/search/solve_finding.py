@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.motion.humanoid import (
     estimate_bone_lengths,
@@ -25,7 +26,6 @@ from ...solvers.retrieval import (
 from ..library.solve_prior import Own, own_clips
 from ..library.thumbnails import Pixels, thumbnail
 
-Array = NDArray[np.float64]
 Recording = Motion | Tracks | JointRecording
 
 MAX_MATCHES = 48

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.depth_tracking.body import CAPSULE_SEGMENTS, capsule_surface, segment_frames
 from ...solvers.depth_tracking.tracking import PosePreview
 from ..depth.depth_preview import Shown, shown_by
@@ -15,8 +15,6 @@ from ..drawing.body_drawing import Solid, draw_solid, solid
 from ..drawing.confidence_colors import color_from_reliability
 from ..drawing.view_drawing import ViewDrawing
 from .pose_previews import PosePreviewReceiver
-
-Array = NDArray[np.float64]
 
 OPACITY = 0.9
 MAX_TIME_FRACTION = 0.3

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.depth_tracking import Retracked, RetrackSettings
 from ...solvers.depth_tracking.body import JOINTS, SEGMENTS, scene_from_camera
 from ...solvers.errors import InvalidMotionError, MocapAssistError
@@ -27,8 +27,6 @@ from .tracked_checks import check_in_time
 from .tracked_curves import update_reliability, write_residual
 from .tracked_take import TrackedTake, read_tracked_take
 from .tracking import WatchChoices
-
-Array = NDArray[np.float64]
 
 OPERATION = "retrack"
 SUFFIX = ".retracked"

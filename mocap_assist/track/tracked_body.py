@@ -6,16 +6,14 @@ from functools import lru_cache
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.depth_scene import Floor, ForegroundMethod, ForegroundSettings
 from ...solvers.depth_tracking.body import CAPSULES, LENGTHS, SEGMENTS, BodyModel, rest_frames
 from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.rotations import fit_similarity
 from ..blender.stored_json import parse_stored, store_json
 from ..depth.depth_preview import Shown
-
-Array = NDArray[np.float64]
 
 KEY = "mocap_assist_tracked"
 """Custom property of an armature's data: body and recording, as JSON."""

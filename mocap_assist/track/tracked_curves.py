@@ -2,14 +2,12 @@
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ..actions.curves import write_first, write_values
 from ..actions.reliability_curves import reliability_path, write_reliability
 from ..blender import compat
 from ..blender.compat import Source
-
-Array = NDArray[np.float64]
 
 RESIDUAL = "mocap_residual"
 """Keyed custom property of the armature: distance of body and points in meters."""

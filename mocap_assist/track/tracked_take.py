@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import bpy
 import numpy as np
 from mathutils import Matrix
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.depth_tracking.body import JOINTS, SEGMENTS, body_skeleton
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Motion
@@ -21,8 +21,6 @@ from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene.rig import Placement, Rig, placement_of, read_rig
 from .tracked_body import TrackedBody, armature_from_motion, bones_of
 from .tracked_checks import check_keyed, check_posed
-
-Array = NDArray[np.float64]
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 MAX_OFF_GRID = 0.05

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.motion import Motion
 from ..actions.bone_channels import animated_curves
 from ..actions.curves import CONSTANT, deselect, write_first
@@ -18,7 +18,6 @@ from ..blender.compat import Source
 from ..scene.controls import BoneKeys
 from ..scene.rig import Placement
 
-Array = NDArray[np.float64]
 STILL = 1e-6
 BONE = re.compile(r'pose\.bones\["(.+?)"\]')
 

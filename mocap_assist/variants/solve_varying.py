@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Array
 from ...solvers.denoising import PlantSettings
 from ...solvers.motion import HUMANOID_ROLES, HumanoidMap, Motion, resample
 from ...solvers.motion.humanoid import normalize_postures, postures_from_motion
@@ -20,7 +20,6 @@ from ..library.thumbnails import Pixels, thumbnail
 from ..retarget.solve_retargeting import Clip, Retargeted, RetargetProblem, retarget_clips
 from ..scene.controls import TargetRig
 
-Array = NDArray[np.float64]
 ALIKE = "Variants are nearly identical: add source actions or raise Amount."
 SHEET = StickFigureSettings(n_figures=10, height=140)
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import JointLimits, Motion, Tracks
 from ..motion.skeletons import describe_shots, find_shot_boundaries, is_short_shot, shot_ranges
@@ -18,8 +19,6 @@ from .observed_samples import max_per_joint, observed_mask, restore_observed
 from .posterior import Estimate, estimate_in_groups
 from .prior import FilterBases
 from .published import filter_as_published
-
-Array = NDArray[np.float64]
 
 MIN_OUTLIER_ERROR = 2.0
 """Degrees or centimeters: a sample closer to the estimate is not reported as an outlier. Chosen

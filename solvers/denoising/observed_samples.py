@@ -3,10 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import Motion, Tracks
 from .channels import Channels
-
-Array = NDArray[np.float64]
 
 
 def observed_mask(recording: Motion | Tracks) -> NDArray[np.bool_]:

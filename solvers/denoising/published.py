@@ -1,15 +1,13 @@
 """The filter of Lou and Chai (2010), unchanged, as a baseline."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..progress import Progress
 from ..signals import fill_channel_gaps, remove_outliers
 from .channels import Channels
 from .posterior import Estimate
 from .prior import FilterBases, FilterBasesSettings, LagProducts, find_leading_eigenpairs
-
-Array = NDArray[np.float64]
 
 KEPT_ENERGY = 0.99
 """Fraction of the movement that the patterns hold. From [LC10]."""

@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

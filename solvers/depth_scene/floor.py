@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
 from .recording import DepthRecording
-
-Array = NDArray[np.float64]
 
 LEVEL_UP = np.array([0.0, -1.0, 0.0])
 """Up direction in the frame of a level camera."""

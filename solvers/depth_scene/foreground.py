@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..progress import Progress, unwatched
 from ..settings import Choice, Settings, setting
@@ -14,8 +15,6 @@ from .bodies import Bodies, find_bodies
 from .camera import Camera
 from .floor import Floor
 from .recording import DepthImage, DepthRecording
-
-Array = NDArray[np.float64]
 
 MAX_BACKGROUND_FRAMES = 60
 MIN_NOISE_M, NOISE_FACTOR = 0.01, 4.0

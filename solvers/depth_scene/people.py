@@ -6,9 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from .bodies import Bodies
-
-Array = NDArray[np.float64]
 
 MAX_SPEED_M_S = 4.0
 """Maximum speed of a body's center."""

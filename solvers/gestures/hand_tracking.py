@@ -4,12 +4,10 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion.humanoid import POSTURE_JOINTS
 from .settings import GestureSettings
-
-Array = NDArray[np.float64]
 
 RIGHT = tuple(
     POSTURE_JOINTS.index(f"right{part}") for part in ("UpperArm", "LowerArm", "Hand", "HandEnd")

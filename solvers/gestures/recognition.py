@@ -5,15 +5,13 @@ from enum import Enum
 from math import inf
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .events import Gesture, GestureEvent
 from .hand_tracking import HandEstimator, Hands
 from .settings import GestureSettings
 from .still_gestures import HandUp, Turn, Zoom
 from .stroke_gestures import Clap, Wave
-
-Array = NDArray[np.float64]
 
 MAX_BREAK_S = 0.5
 """Seconds without a frame, or without hands, after which all gestures are reset."""

@@ -3,14 +3,11 @@
 from math import atan2, exp, pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .events import Gesture, GestureEvent
 from .hand_tracking import Hands
 from .settings import GestureSettings
-
-Array = NDArray[np.float64]
-
 
 LOWERED_HEIGHT = 0.0
 """Height of the right wrist above its shoulder below which the hand counts as lowered."""

@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from .body_tables import JointPrior, MarkerPrior
-
-Array = NDArray[np.float64]
 
 
 class Poses(NamedTuple):

@@ -3,8 +3,8 @@
 from collections.abc import Collection, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .body import Body, local_rotations
 from .body_tables import (
     CENTRE,
@@ -21,7 +21,6 @@ from .initial_poses import bone_frames
 from .joint_centers import JointCenters
 from .vectors import median
 
-Array = NDArray[np.float64]
 TOES_END_M, HAND_END_M, HEAD_END_M = 0.06, 0.17, 0.17
 """Distances from the last joint to the end site in an adult body."""
 TOE_ABOVE_SOLE_M = 0.02

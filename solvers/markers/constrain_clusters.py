@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import Tracks
 from ..progress import Progress, unwatched
 from .rigid_clusters import Cluster
 from .rigid_fit import fit_rigid_transform, transform_shape
 
-Array = NDArray[np.float64]
 MIN_THICKNESS_M = 0.004
 """Minimum rms distance of markers from their common line to determine the pose of a shape."""
 

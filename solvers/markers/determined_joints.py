@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from .body import Body, Poses
 from .fit_poses import compute_residuals
 
-Array = NDArray[np.float64]
 FRAMES_PER_BLOCK = 256
 MAX_ROTATION_STD_RAD = 0.8
 """Standard deviation above which a joint's rotation is undetermined."""

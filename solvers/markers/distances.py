@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..arrays import Array
+
 MAX_NEIGHBORS = 6
 MIN_SPREAD_M = 0.004
 """Lower bound of the spread of a distance."""

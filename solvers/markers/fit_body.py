@@ -3,13 +3,12 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..progress import Progress, unwatched
 from .body import Body, Poses, WorldBody
 from .fit_poses import apply_step, compute_residuals, cost_of
 
-Array = NDArray[np.float64]
 N_INDEPENDENT_FRAMES = 10.0
 """Effective number of independent frames of a take: skin motion correlates with the pose."""
 MAX_STEPS = 25

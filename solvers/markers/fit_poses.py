@@ -3,14 +3,13 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..progress import Progress, unwatched
 from ..rotations import quaternion_from_matrix, rotation_vector_from_quaternion
 from .body import Body, Poses, WorldBody
 from .vectors import matrix_from_rotation_vector, skew_matrices
 
-Array = NDArray[np.float64]
 FRAMES_PER_BLOCK = 256
 CAUCHY_SCALE = 3.0
 """Scale of the Cauchy weight, in standard deviations of a marker's noise."""

@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..rotations import (
     matrix_from_quaternion,
     quaternion_from_matrix,
@@ -15,7 +15,6 @@ from .body_tables import SIDES
 from .joint_centers import JointCenters
 from .vectors import frame, median, swing_frames, unit
 
-Array = NDArray[np.float64]
 MIN_FOOT_M = 0.05
 """Minimum distance between heel and toe markers."""
 MAX_SLOPE_SINE = 0.4

@@ -7,13 +7,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from .body_tables import SIDES
 from .vectors import frame, perpendicular, swing_frames, unit
 
-Array = NDArray[np.float64]
 PositionsByJoint = dict[str, Array]
 
 MILLIMETRE = 0.001

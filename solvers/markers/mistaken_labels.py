@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from .distances import Distances, nan_median
 from .pair_swaps import PairSwap
 
-Array = NDArray[np.float64]
 MIN_BAD_MISFIT, MAX_GOOD_MISFIT = 4.0, 1.0
 """Median misfit above which a label is wrong, and below which it is correct."""
 MIN_NEIGHBORS = 3

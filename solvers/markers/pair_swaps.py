@@ -5,10 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..signals import find_runs
 from .distances import Distances
 
-Array = NDArray[np.float64]
 MAX_JUMP_EVIDENCE, FORBIDDEN_COST = 10.0, 1e9
 """Maximum evidence of one jump, and cost of a swap where a pair moves smoothly."""
 SWITCH_COST = 3.0

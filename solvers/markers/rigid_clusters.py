@@ -3,17 +3,16 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
+from ..arrays import Array
 from ..motion import Tracks
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
 from .distances import nan_median
 from .rigid_fit import fit_rigid_transform
 
-Array = NDArray[np.float64]
 UNLINKED_M = 1.0
 """Linkage distance of pairs that are never observed together."""
 N_ITERATIONS = 4

@@ -1,11 +1,10 @@
 """Fit a rigid shape to points in every frame."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..rotations import nearest_rotations
 
-Array = NDArray[np.float64]
 N_REWEIGHTINGS = 8
 CAUCHY_FACTOR, MIN_CAUCHY_SCALE_M = 3.0, 0.004
 """Scale of the Cauchy weights: a multiple of the median residual, and a lower bound."""

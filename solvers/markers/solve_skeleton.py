@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import Motion, Skeleton, Tracks
 from ..progress import Progress, unwatched, within
@@ -19,7 +20,6 @@ from .fit_poses import fit_poses
 from .joint_centers import joint_centers
 from .marker_sets import PELVIS, MarkerSet, find_marker_set
 
-Array = NDArray[np.float64]
 MIN_MARKER_FRACTION = 0.95
 """Fraction of the largest number of markers that a frame needs for the fit of the body."""
 MAX_ERROR_FACTOR, MIN_REFIT_ERROR_M = 3.0, 0.02

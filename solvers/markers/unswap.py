@@ -2,9 +2,7 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..arrays import Array
 from ..motion import Tracks
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
@@ -12,7 +10,6 @@ from .distances import Distances, learn_distances
 from .mistaken_labels import find_mistaken_labels
 from .pair_swaps import PairSwap, find_candidate_pairs, most_likely_swap
 
-Array = NDArray[np.float64]
 MAX_SWAPS = 500
 N_PASSES = 3
 

@@ -3,9 +3,8 @@
 import warnings
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..arrays import Array
 
 
 def unit(vectors: Array) -> Array:

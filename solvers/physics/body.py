@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import HumanoidMap, Motion, Skeleton, leg_length, t_pose_alignment
 from ..motion.humanoid import HUMAN_LEG_LENGTH_M
@@ -25,7 +25,6 @@ from .tables import (
     role_without_side,
 )
 
-Array = NDArray[np.float64]
 LEG_ROLES = {side + part for side in ("left", "right") for part in ("UpperLeg", "LowerLeg")}
 MIN_MASS_KG = 0.05
 """Mass of a joint without a segment, for legs of 0.9 m. Chosen by hand: x0.5 costs nothing, x2

@@ -4,12 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import grey_opening, median_filter
 
+from ..arrays import Array
 from ..motion import Motion, forward_kinematics
 from ..rotations import rotate
 from ..signals import smooth_gaussian
 from .body import PhysicsBody
 
-Array = NDArray[np.float64]
 SIDES = ("left", "right")
 LEG = ("UpperLeg", "LowerLeg", "Foot")
 MAX_CONTACT_M = 0.005

@@ -1,11 +1,9 @@
 """Sum the ground's forces on the parts of a simulated body."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .world import World
-
-Array = NDArray[np.float64]
 
 
 def add_loads(world: World, loads: Array, factor: float) -> None:

@@ -4,13 +4,12 @@ from dataclasses import dataclass
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .body import PhysicsBody
 from .target import BodyStates
 from .world import GRAVITY, World
 
-Array = NDArray[np.float64]
 BASE = slice(0, 6)
 MAX_CORRECTION_G, MAX_ANGULAR_CORRECTION = 1.0, 30.0
 """Maximum acceleration of the base that corrects an error, in g and in 1/s^2. Chosen by hand:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import (
     HumanoidMap,
     Motion,
@@ -17,7 +18,6 @@ from ..motion.humanoid import FORWARD, UP
 from ..rotations import inverse, rotate
 from .body import Capsule, PhysicsBody
 
-Array = NDArray[np.float64]
 MIN_CONTACT_S = 0.5
 """Minimum total contact in seconds of a take that stands on the ground, and is not in mid-leap.
 Chosen by hand: x0.5 and x2 move no error."""

@@ -7,12 +7,12 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from .contact_loads import add_loads
 from .control import Controller, apply_control
 from .target import BodyStates, TargetCurve
 from .world import World
 
-Array = NDArray[np.float64]
 MAX_MEAN_DISTANCE_M, MAX_DISTANCE_S = 0.35, 0.2
 """A body is lost if the mean distance of its joints from their targets exceeds this, for legs
 of 0.9 m, for longer than these seconds. Briefly, the target itself may be wrong. Chosen by

@@ -1,15 +1,14 @@
 """Place the feet of a target on the ground in stance, and above it in swing."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import Motion, forward_kinematics, reach
 from ..motion.humanoid import UP
 from ..signals import smooth_gaussian
 from .body import PhysicsBody
 from .body_surface import SIDES, find_leg_chain, lowest_points, select_foot_ends
 
-Array = NDArray[np.float64]
 MIN_SWING_CLEARANCE_M = 0.01
 """Minimum height of a swinging foot above the ground in meters, for legs of 0.9 m. Chosen by
 hand: x0.5 costs 6.4 %, x2 costs 3.0 %."""

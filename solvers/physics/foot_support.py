@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import HumanoidMap, Motion, detect_contacts
 from ..signals import smooth_gaussian
 from .body import PhysicsBody
 from .body_surface import SIDES, lowest_points, measure_sole_speeds, select_foot_ends
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 SMOOTHING_S = 0.02
 """Standard deviation in seconds of the Gaussian that smooths loads, heights and speeds. Chosen

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from ..arrays import Array
 from ..motion import WorldPoses
 from ..signals import FADE_TIME_CONSTANTS, second_difference_bands
 
-Array = NDArray[np.float64]
 PELVIS_WEIGHT = 10.0
 """Cost of a pelvis displacement relative to a knee displacement. Chosen by hand: x0.5 and x2
 move no error."""

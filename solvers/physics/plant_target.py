@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import Motion, ReachSettings, WorldPoses, forward_kinematics, reach
 from ..motion.humanoid import UP
 from ..rotations import (
@@ -20,7 +20,6 @@ from .body_surface import SIDES, find_leg_chain, lowest_points, select_foot_ends
 from .foot_support import distribute_load
 from .pelvis_offset import LegGoal, solve_pelvis_offset
 
-Array = NDArray[np.float64]
 MIN_FRAMES = 4
 """Minimum frames in which a foot can stand. Chosen by hand: x0.5 and x2 move no error."""
 

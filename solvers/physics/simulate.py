@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import HumanoidMap, Motion, find_humanoid_map
 from ..progress import Progress, unwatched, within
 from .body import PhysicsBody, build_physics_body, check_size
@@ -23,7 +24,6 @@ from .simulate_segment import (
 )
 from .target import blend_motions, fade_around, fill_motion_gaps
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 DEFAULT_SETTINGS = SimulateSettings()
 MIN_SECONDS_PER_LOSS = 1.0

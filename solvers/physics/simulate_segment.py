@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import Motion, forward_kinematics
 from ..motion.humanoid import UP
 from ..progress import Progress, within
@@ -32,7 +33,6 @@ from .plant_target import plant_target_feet
 from .target import blend_motions, fade_around, smooth_target
 from .world import build_world
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 MAX_STEP_S = 1.0 / 239.0
 """Maximum time step. It gives 30, 60 and 120 frames a second the same steps of 1/240 s. Chosen

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..rotations import inverse, multiply, normalize, slerp, unroll
 from ..signals import fill_gaps, fill_rotation_gaps, smooth_gaussian
 
-Array = NDArray[np.float64]
 SPLINE_VARIANCE = 1.0 / 3.0
 """Variance of the uniform cubic B-spline as a filter, in squared frames. Chosen by hand: x0.5
 costs 0.4 %, x2 costs 7.4 %."""

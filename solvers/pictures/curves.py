@@ -5,16 +5,15 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..rotations import inverse, mean_rotation, multiply, rotation_vector_from_quaternion
 from ..settings import Settings, setting
 from .canvas import FAINT, GRID, INK, SHADE, Canvas, series_colors
 from .picture import Picture
-
-Array = NDArray[np.float64]
 
 TOP, BOTTOM, LEFT, RIGHT, GAP = 64.0, 40.0, 64.0, 20.0, 30.0
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Skeleton, Tracks, forward_kinematics
 from ..rotations import rotate
@@ -14,7 +15,6 @@ from ..settings import Choice, Settings, setting
 from .canvas import FAINT, INK, Canvas, Color, lighten_color, series_colors
 from .picture import Picture
 
-Array = NDArray[np.float64]
 Recording = Motion | Tracks | JointRecording
 
 TOP, BOTTOM, MARGIN = 44.0, 34.0, 16.0

@@ -5,8 +5,8 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import JointRecording, Sensor, Tracks
 from ..progress import Progress, unwatched, within
 from ..settings import Choice, Settings, setting
@@ -32,8 +32,6 @@ from .residual_correction import (
     correct_postures,
     load_residual_prior,
 )
-
-Array = NDArray[np.float64]
 
 SHIPPED_PRIOR = Path(__file__).parent / "residual_correction" / "residuals.npz"
 

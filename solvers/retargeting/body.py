@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import HumanoidMap, Motion, Skeleton, t_pose_alignment
 from .map_checks import check_feet, check_roles
 
-Array = NDArray[np.float64]
 SIDES = ("left", "right")
 FEET = ("leftFoot", "rightFoot", "leftToes", "rightToes")
 

@@ -5,11 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import Skeleton
 from ..motion.skeletons import WorldPoses
 from ..rotations import rotate
-
-Array = NDArray[np.float64]
 
 MIN_POINT_DISTANCE_M = 0.05
 """Minimum distance from a joint without children to the points that show its rotation."""

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
+from ..arrays import Array
 from ..motion import WorldPoses, world_poses
 from ..rotations import IDENTITY, rotate
 from ..signals import smoothstep
@@ -16,7 +17,6 @@ from .planting import planting_shift
 from .soles import allowed_depths, sole_above_ground, with_sole
 from .standing_feet import foot_bone
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 MAX_DROP_FRACTION = 0.15

@@ -3,11 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..signals import smoothstep
-
-Array = NDArray[np.float64]
 
 MEETING_FRACTION, INDEPENDENT_FRACTION = 0.15, 0.4
 """Distances of both hands, as fractions of the arm length: below the first they meet, above the

@@ -3,13 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
+from ..arrays import Array
 from ..signals import smooth_gaussian, smoothstep
 from .placement import Placement
-
-Array = NDArray[np.float64]
 
 LOW_WRIST_FRACTION, HIGH_WRIST_FRACTION = 0.2, 0.4
 """Heights of the wrist, as fractions of the leg length. Below the first, the height above

@@ -3,16 +3,14 @@
 from itertools import repeat
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import world_poses
 from .body import SIDES
 from .hand_distance import Arms, match_meeting_hands
 from .hand_heights import Ground, ease_into_extension, keep_above_ground, pull_to_ground
 from .limbs import Transfer, limb_pairs, reach_with_limb
 from .placement import leg_length
-
-Array = NDArray[np.float64]
 
 
 def place_hands(transfer: Transfer, rotations: Array, root_positions: Array) -> Array:

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
-Array = NDArray[np.float64]
+from ..arrays import Array
+
 Frames = NDArray[np.intp]
 
 SLOPE_WEIGHT = 1e-3

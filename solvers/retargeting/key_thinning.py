@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import Motion, forward_kinematics
 from ..motion.skeletons import world_poses
 from ..progress import Progress
@@ -13,7 +14,6 @@ from .error_points import find_error_points
 from .key_curves import KeyCurve, fit_curve
 from .rotation_channels import RotationChannels
 
-Array = NDArray[np.float64]
 Frames = NDArray[np.intp]
 NewKey = tuple[int, int]
 """A joint, and the frame of a new key."""

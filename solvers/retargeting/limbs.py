@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import Motion, ReachSettings, Skeleton, WorldPoses, reach
 from .body import SIDES, Body
 from .placement import Placement
 from .standing_feet import Stance
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Limb = tuple[int, int, int]
 

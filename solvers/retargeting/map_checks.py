@@ -3,13 +3,12 @@
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import Skeleton
 from ..rotations import angle_between
 
-Array = NDArray[np.float64]
 Joints = dict[str, int]
 SIDES = ("left", "right")
 MIN_BACKWARD_ANGLE_RAD = np.radians(135.0)

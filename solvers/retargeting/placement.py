@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from .body import SIDES, Body
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 UP = np.array([0.0, 0.0, 1.0])

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..signals import smooth_correction
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Foot = tuple[Array, Array]
 """Ankle and ball, each of shape (n_frames, 3), meters."""

@@ -5,12 +5,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import WorldPoses
 from ..rotations import IDENTITY, inverse, multiply, slerp
 from .body import Body
 from .trunk_lean import leaning_swings
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 TRUNK = ("spine", "chest", "upperChest")

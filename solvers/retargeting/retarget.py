@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import (
     HumanoidMap,
@@ -27,7 +28,6 @@ from .pose_transfer import transfer_pose
 from .root_motion import in_place, on_root_bone
 from .standing_feet import find_stances, with_level_soles
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 

@@ -3,14 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import HumanoidMap, Motion, t_pose_alignment
 from ..rotations import IDENTITY, inverse, multiply, rotate, twist_about
 from ..signals import smooth_gaussian
 from .body import hips_of, hold_gaps
-
-Array = NDArray[np.float64]
 
 UP = np.array([0.0, 0.0, 1.0])
 TRUNCATION_SIGMAS = 4.0

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..rotations import (
     IDENTITY,
@@ -17,7 +17,6 @@ from ..rotations import (
     unwrap_euler,
 )
 
-Array = NDArray[np.float64]
 ORDERS = ("", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 
 

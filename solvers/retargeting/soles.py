@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import WorldPoses
 from ..rotations import IDENTITY, inverse, multiply, rotate, rotation_between
 from ..signals import smoothstep
@@ -12,8 +12,6 @@ from .body import Body
 from .placement import Placement, leg_length, rests_on_ground
 from .standing_feet import foot_bone
 from .toes import lift_toes, smooth_envelope
-
-Array = NDArray[np.float64]
 
 DEPTH_TOLERANCE_FRACTION = 0.002
 """Approximate depth below the ground that is allowed, in leg lengths."""

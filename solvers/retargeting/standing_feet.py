@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import Skeleton, WorldPoses
 from ..rotations import (
     inverse,
@@ -18,7 +19,6 @@ from ..signals import smooth_gaussian
 from .body import SIDES, Body
 from .placement import leg_length, rests_on_ground
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 SPEED_SMOOTHING_S = 0.05

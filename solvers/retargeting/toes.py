@@ -1,13 +1,11 @@
 """Lift toes by extension about the axis across the foot, within a limit."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
+from ..arrays import Array
 from ..rotations import quaternion_from_rotation_vector, rotate
 from ..signals import smoothstep
-
-Array = NDArray[np.float64]
 
 MAX_TOE_FLEXION_RAD = np.radians(32.0)
 """Maximum extension of toes beyond the rest pose to lift their tips."""

@@ -1,8 +1,8 @@
 """Match the lean of the trunk to the source's for different positions of the spine joints."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import WorldPoses
 from ..rotations import (
     inverse,
@@ -14,8 +14,6 @@ from ..rotations import (
 )
 from ..signals import smoothstep
 from .body import Body
-
-Array = NDArray[np.float64]
 
 CHEST_FRACTION = 0.5
 """Fraction of the swing that is applied to the chest, which otherwise matches the source's."""

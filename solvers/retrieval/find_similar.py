@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import JointRecording, Tracks
 from ..progress import Progress, unwatched, within
 from .index import RATE, ClipEntry, Match, Vocabulary
@@ -24,7 +25,6 @@ from .search import (
     rank_clips,
 )
 
-Array = NDArray[np.float64]
 Frames = NDArray[np.intp]
 
 SCORE_DECAY = 2.0

@@ -7,10 +7,8 @@ several times faster on one array per component than on interleaved components.
 from collections.abc import Iterable
 from typing import TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
+from ..arrays import Array
 
-Array = NDArray[np.float64]
 Components: TypeAlias = Iterable[Array]
 
 

@@ -5,9 +5,10 @@ module.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
+from ..arrays import Array
 from .quaternion_algebra import (
     Components,
     cross_components,
@@ -15,7 +16,6 @@ from .quaternion_algebra import (
     rotate_components,
 )
 
-Array = NDArray[np.float64]
 IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
 SMALL_ANGLE_RAD = 1e-6
 GIMBAL_LOCK_COSINE = 1e-7

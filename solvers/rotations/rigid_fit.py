@@ -1,11 +1,10 @@
 """Fit rotations and similarities between sets of vectors by least squares."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .representations import quaternion_from_matrix
 
-Array = NDArray[np.float64]
 MIN_SINGULAR_RATIO = 1e-4
 """Ratio of the second to the first singular value below which the rotation is undetermined."""
 

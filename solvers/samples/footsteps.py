@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BPoly
 
+from ..arrays import Array
 from ..rotations import multiply, quaternion_from_rotation_vector, rotate
 from .walker import ANKLE_HEIGHT_M
-
-Array = NDArray[np.float64]
 
 TOE_OFF = 0.62
 """Phase of toe-off: the stance phase of walking takes 60 to 63 %."""

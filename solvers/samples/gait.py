@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidSettingError
 from ..motion import Motion, Skeleton, local_rotations
 from ..rotations import (
@@ -25,8 +25,6 @@ from ..settings import Settings, setting
 from .footsteps import MID_STANCE
 from .walk_plan import WalkPlan, plan_walk
 from .walker import walker_skeleton
-
-Array = NDArray[np.float64]
 
 MAX_STEP_M = 0.85
 """Meters: the legs of the sample's skeleton reach no farther."""

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidSettingError
 from ..motion import SENSOR_JOINTS, JointRecording, Sensor, Tracks
 from ..settings import Settings, setting
 
-Array = NDArray[np.float64]
 Position = tuple[float, float, float]
 
 ARM_LENGTHS_M = (0.28, 0.25)

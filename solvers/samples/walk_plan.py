@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from ..arrays import Array
 from .footsteps import MID_STANCE, FootPath, plan_foot_path
 from .walker import ANKLE_HEIGHT_M
-
-Array = NDArray[np.float64]
 
 N_MARGIN_STEPS = 5
 """Steps before the first and after the last frame, so that every curve is defined at both

@@ -1,10 +1,9 @@
 """Smooth values over time with a Gaussian filter, zero-phase or causal."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import convolve1d, gaussian_filter1d
 
-Array = NDArray[np.float64]
+from ..arrays import Array
 
 TRUNCATION_SIGMAS = 4.0
 """Standard deviations at which the causal Gaussian is truncated."""

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..rotations import IDENTITY, slerp
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 

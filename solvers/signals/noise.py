@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-Array = NDArray[np.float64]
+from ..arrays import Array
 
 MAD_TO_SIGMA = 1.4826
 """Ratio of the standard deviation of a Gaussian to its median absolute deviation. By

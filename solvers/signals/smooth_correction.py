@@ -1,12 +1,10 @@
 """Correct a curve as smoothly as possible so that it has a given velocity in some frames."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from ..arrays import Array
 from .second_differences import second_difference_bands
-
-Array = NDArray[np.float64]
 
 FADE_TIME_CONSTANTS = np.pi * np.sqrt(2.0)
 """Time constants after which a free correction has faded to exp(-pi), 4 %. By definition of the

@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import correlate1d
 
+from ..arrays import Array
 from .noise import MAD_TO_SIGMA, estimate_noise
-
-Array = NDArray[np.float64]
 
 N_REFITS = 8
 """Refits after which the reweighting ends. Chosen by hand: x0.5 gains 0.5 %, x2 gains 0.4 %."""

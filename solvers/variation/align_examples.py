@@ -4,13 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import Motion, forward_kinematics, warp
 from ..signals import smooth_gaussian
 from .curves import headings_from_motion
-
-Array = NDArray[np.float64]
 
 ALIGNMENT_RATE_HZ = 20.0
 """Frame rate at which examples are aligned. Chosen by hand: x0.5 gains 0.9 %, x2 gains

@@ -6,14 +6,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..signals import smooth_gaussian
 from .curves import HEIGHT_COLUMN, partition_joints, sample_curves
 from .learn_variation import learn_variation_model
 from .variation_model import VariationModel
-
-Array = NDArray[np.float64]
 
 N_PAIRS = 5
 """Pairs of synthetic examples; the two of a pair deviate in opposite directions. Chosen by

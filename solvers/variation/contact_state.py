@@ -8,11 +8,10 @@ foot stands from 1.0 s on, another from 1.2 s on: their equal mixture stands fro
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..motion.humanoid import detect_contacts
-
-Array = NDArray[np.float64]
 
 MAX_CONTACT_TIME_S = 0.25
 """Seconds; the distance to a contact change saturates here. Chosen by hand: x0.5 and x2 move no

@@ -5,8 +5,8 @@ from dataclasses import replace
 from itertools import count
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import Motion, resample
 from ..progress import Progress, unwatched, within
@@ -29,8 +29,6 @@ from .moving_references import REFERENCE_SMOOTHING_S, split_moving_references
 from .published import learn_stepwise
 from .variation_model import VariationModel
 from .vary_settings import DEFAULT_SETTINGS, Method, VarySettings
-
-Array = NDArray[np.float64]
 
 MAX_DISTANCE_RATIO = 2.0
 """Distance to the other examples, relative to the median, beyond which an example is reported

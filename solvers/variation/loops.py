@@ -7,14 +7,12 @@ actor's own frame; position and heading may advance.
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import Motion, resample
 from ..rotations import inverse, multiply, rotate
 from .align_examples import positions_in_body_frame
 from .curves import HEIGHT_COLUMN, MotionCurves
-
-Array = NDArray[np.float64]
 
 MIN_LOOP_FRAMES = 8
 """Minimum frames of a cyclic clip. Chosen by hand: x0.5 and x2 move no error."""

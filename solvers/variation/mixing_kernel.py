@@ -16,9 +16,8 @@ the most likely weights change within .1 s; such variants jerk and resemble no e
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..arrays import Array
 
 
 @dataclass(frozen=True)

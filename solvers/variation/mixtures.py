@@ -7,13 +7,11 @@ example to another stays between them and does not exaggerate what both share.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
+from ..arrays import Array
 from .curves import LEG_ROWS, ROOT_ROW, partition_joints, sample_curves
 from .variation_model import VariationModel
-
-Array = NDArray[np.float64]
 
 BOOTSTRAP_VARIANCE = 0.9
 """Fraction of the weights' variance in the bootstrap, for many examples. Of n examples it is

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
+from ..arrays import Array
 from ..rotations import (
     IDENTITY,
     inverse,
@@ -21,8 +22,6 @@ from ..rotations import (
     unroll,
 )
 from .curves import MAX_FRAME_ROTATION_RAD, sample_curves, unwrap_rotation_vectors
-
-Array = NDArray[np.float64]
 
 MAX_REFERENCE_ANGLE_RAD = 2.0
 """Angle from the fixed reference, in radians, beyond which a joint gets a moving reference.

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..progress import Progress, unwatched
@@ -18,8 +19,6 @@ from .published import draw_stepwise_deviations
 from .time_warp import apply_time_warp
 from .variation_model import VariationModel
 from .vary_settings import DEFAULT_SETTINGS, Method, VarySettings
-
-Array = NDArray[np.float64]
 
 RANGE_MARGIN = 0.15
 """Fraction of a channel's range in the examples by which a variant may exceed it. Chosen by

@@ -1,13 +1,11 @@
 """Convert the common time of the examples to the frames of a variant."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from ..arrays import Array
 from ..rotations import normalize, unroll
 from .curves import HEIGHT_COLUMN, MotionCurves, sample_curves, sample_linearly
-
-Array = NDArray[np.float64]
 
 
 def apply_time_warp(curves: MotionCurves, durations: Array) -> MotionCurves:

@@ -4,16 +4,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..archives import ArchiveLayout
+from ..arrays import Array
 from ..motion import Skeleton
 from ..npz_members import integers, numbers, words
 from .curves import N_ROOT_CHANNELS
 from .mixing_kernel import MixingKernel
 from .published import STEPWISE_MEMBER, StepwiseModel, pack_stepwise, restore_stepwise
-
-Array = NDArray[np.float64]
 
 MIN_FRAME_RATE_HZ, MAX_FRAME_RATE_HZ = 1e-3, 1e6
 """Bounds of a plausible frame rate. They guard against damaged files."""

@@ -3,12 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..settings import Choice, Settings, setting
 from .curves import Partition
-
-Array = NDArray[np.float64]
 
 
 class Method(Choice):

@@ -3,12 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..denoising.feet import SIDES, Leg, find_legs
 from ..motion import Motion, WorldPoses, forward_kinematics
 from ..rotations import IDENTITY, inverse, multiply, rotate, rotation_between, slerp
 from ..signals import smooth_gaussian
-
-Array = NDArray[np.float64]
 
 MAX_CORRECTED_RELIABILITY, MAX_MISSING_RELIABILITY = 0.8, 0.5
 """Reliability below which toes are flattened partly, and below which completely. Joints that a

@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import JointRecording, Motion, Tracks, forward_kinematics, motion_from_points
 from ..motion.humanoid import fill_missing_hips
 from ..rotations import fit_similarity
 
-Array = NDArray[np.float64]
 MAX_DISTANCE_M = 0.002
 """Maximum distance in meters between matching joints, due to the rounding of keys."""
 MIN_SAMPLES = 3

@@ -5,15 +5,13 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InvalidFileError
 from ..gestures import Gesture, GestureEvent, GestureRecognizer, GestureSettings, Mode
 from ..motion import JointRecording
 from ..motion.humanoid import POSTURE_JOINTS, posture_joint_indices
 from ..recordings.live import LiveFrame, StreamCounts, StreamReader, recording_from_frames
-
-Array = NDArray[np.float64]
 
 GESTURE_SETTINGS = GestureSettings()
 MIN_PERFORMANCE_S = 0.5

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..motion import (
     HumanoidMap,
     JointRecording,
@@ -35,7 +36,6 @@ from .changed_joints import find_changed_joints
 from .joints_from_source import joints_from_source
 from .standard_joints import KINECT_V1, check_size, check_tracked, gap_remarks
 
-Array = NDArray[np.float64]
 RECONSTRUCT_SETTINGS = ReconstructSettings()
 LENGTH_TOLERANCE = 1e-6
 """Deviation of a length term from 0 or 1 that counts as rounding."""

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from .travel_path import TravelPath
-
-Array = NDArray[np.float64]
 
 CENTIMETERS = 100.0
 """Lengths are in centimeters and angles in degrees: for limbs these are of similar size.

@@ -2,15 +2,11 @@
 
 from collections.abc import Mapping
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...arrays import Array
 from ...motion import Motion, Tracks
 from .channels import Channels
 from .motion_channels import decode_motion, encode_motion
 from .track_channels import decode_tracks, encode_tracks
-
-Array = NDArray[np.float64]
 
 
 def encode(

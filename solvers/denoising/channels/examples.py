@@ -4,16 +4,14 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from ...arrays import Array
 from ...motion import Motion, Tracks
 from ...motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
 from ...progress import Progress
 from ...signals import fill_channel_gaps
 from .encode import encode
-
-Array = NDArray[np.float64]
 
 BLOCK_S = 60.0
 """Seconds encoded at a time. The few windows across two blocks are skipped. It bounds the

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import Motion, Skeleton, find_humanoid_map, t_pose_alignment
 from ...rotations import (
     IDENTITY,
@@ -19,8 +19,6 @@ from ...rotations import (
 )
 from .channels import CENTIMETERS, Channels
 from .travel_path import TravelPath, fit_travel_path
-
-Array = NDArray[np.float64]
 
 ROOT_POSITION = "place"
 """Key of the root position relative to its path: sideways, forward, above the ground."""

@@ -3,14 +3,12 @@
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import Tracks
 from ...signals import fill_channel_gaps
 from .channels import CENTIMETERS, Channels
 from .travel_path import TravelPath, fit_travel_path, rotate_on_ground
-
-Array = NDArray[np.float64]
 
 N_FITS = 4
 """Alternating fits of the body's mean shape and its position in every frame. Chosen by hand:

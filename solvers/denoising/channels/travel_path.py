@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import correlate1d
 
+from ...arrays import Array
 from ...rotations import quaternion_from_rotation_vector
 from ...signals import fill_channel_gaps, remove_outliers
-
-Array = NDArray[np.float64]
 
 SMOOTHING_S = 0.5
 """Standard deviation of the kernel that removes the gait from the path, seconds. Chosen by

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
+from ...arrays import Array
 from ...motion import Motion, Skeleton, WorldPoses
 from ...rotations import (
     inverse,
@@ -18,7 +19,6 @@ from ...signals import find_runs, smooth_correction
 from .legs import Leg
 from .sole import SMOOTHING_S, estimate_loads, measure_standing_heights, sole_points
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 ADULT_LEG_M = 0.9

@@ -4,14 +4,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
+from ...arrays import Array
 from ...motion import WorldPoses
 from ...rotations import multiply, quaternion_from_rotation_vector, rotate
 from .foot_trajectory import FootTrajectory
-
-Array = NDArray[np.float64]
 
 UP = np.array([0.0, 0.0, 1.0])
 KNEE_WINDOW_S = 0.08

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Motion, WorldPoses, forward_kinematics
 from ...motion.humanoid import HumanoidMap, detect_contacts, find_humanoid_map
@@ -24,7 +25,6 @@ from .knee_smoothing import smooth_knees
 from .legs import SIDES, Leg, find_legs
 from .root_offset import compute_root_offset
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 

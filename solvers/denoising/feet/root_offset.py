@@ -3,13 +3,11 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import Skeleton, WorldPoses
 from ...signals import smooth_correction
 from .foot_trajectory import FootTrajectory
-
-Array = NDArray[np.float64]
 
 BLEND_FACTOR = 2.0
 """The body is heavier than a foot: its offset fades over this many times the blend. Chosen by

@@ -4,11 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
+from ...arrays import Array
 from ...motion import Skeleton, WorldPoses
 from ...rotations import rotate
 from .legs import Leg
-
-Array = NDArray[np.float64]
 
 HEEL_FRACTION = 0.2
 """Distance of the heel behind the ankle, relative to the distance from ankle to ball. Chosen by

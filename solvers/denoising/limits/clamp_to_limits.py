@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidSettingError
 from ...motion import Motion, Skeleton
 from ...motion.humanoid import HumanoidMap, find_humanoid_map, t_pose_alignment
@@ -18,8 +18,6 @@ from ...rotations import (
     quaternion_from_rotation_vector,
     rotation_vector_from_quaternion,
 )
-
-Array = NDArray[np.float64]
 
 DEFAULT_SOFTNESS = np.radians(5.0)
 """Radians beyond a limit that a rotation approaches, however far it was beyond. Chosen by hand:

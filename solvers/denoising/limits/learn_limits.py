@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Motion
 from ...motion.humanoid import HumanoidMap, canonical_rotations, find_humanoid_map
@@ -20,7 +20,6 @@ from ...rotations import (
 )
 from ...settings import Settings, setting
 
-Array = NDArray[np.float64]
 Key = tuple[bool, str]
 """Whether it is a humanoid role, and the name of the role or joint."""
 

@@ -3,10 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 INDEPENDENT_FRACTION = 0.3
 """Fraction of each estimate's error variance, added as independent of all others. Chosen by

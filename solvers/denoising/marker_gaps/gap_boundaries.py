@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...signals import DIFFERENCE_GAIN, DIFFERENCE_ORDER, find_runs
 from .predict_marker import Prediction
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 MAX_TRAINING_FRAMES, MIN_TRAINING_FRAMES = 400, 100

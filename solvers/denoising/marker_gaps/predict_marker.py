@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotri
 
+from ...arrays import Array
 from .blend_estimates import blend_weights
 from .reference_markers import MIN_DEVIATION_M, ReferenceMarkers, fit_rigid_frames
-
-Array = NDArray[np.float64]
 
 VARIANTS = ((3, 8), (3, 16), (8, 24), (3, 5), (5, 12))
 """Numbers of reference markers that span the frame, and that describe the pose. Chosen by hand:

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...rotations import nearest_rotations
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 MAX_REFERENCES = 24

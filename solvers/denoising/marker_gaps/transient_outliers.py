@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 COMPARED_FRAMES = (1, 2)
 """Distances in frames, to both sides, at which a point is compared. Chosen by hand: x0.5 gains

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...progress import Progress, within
 from ...signals import estimate_noise, fill_channel_gaps, remove_outliers, shrink_noise
 from ..channels import Channels
@@ -19,8 +20,6 @@ from .prior_selection import (
     select_prior,
 )
 from .windows import Windows
-
-Array = NDArray[np.float64]
 
 MAX_GROUP_CHANNELS = 96
 """Channels solved together; rigs with more are split between joints. Chosen by hand: x0.5 gains

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 INLIER_THRESHOLD = 0.5
 """Probability of being an inlier below which a sample counts as an outlier. Chosen by hand:

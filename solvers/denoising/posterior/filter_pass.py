@@ -3,12 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from .filters import Filter
 from .windows import Windows
-
-Array = NDArray[np.float64]
 
 MAX_BLOCK_WINDOWS = 512
 """Windows processed at a time: this bounds the memory, however long the take."""

@@ -4,14 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotri
 
+from ...arrays import Array
 from .covariance import WindowCovariance
 from .gap_patterns import GapPattern, GapSolution
 from .windows import Windows
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

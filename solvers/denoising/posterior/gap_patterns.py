@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from .windows import Windows
-
-Array = NDArray[np.float64]
 
 MAX_MATRIX_ENTRIES = 40_000_000
 """Entries of one matrix per gap pattern, over all patterns; two such matrices are stored and a

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 MAX_OUTLIER_PROBABILITY = 0.9
 """Largest prior probability of being an outlier, whatever the joint's other channels. Chosen by

@@ -9,7 +9,7 @@ are among the examples, and is uncertain for other actors.
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 KERNEL_WIDTH = 4.0
 """Root mean square difference of two mean poses, degrees or centimeters per channel, at which

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...progress import Progress, unwatched
 from ...signals import shrink_noise
 from ..prior import WindowPrior
@@ -17,8 +17,6 @@ from .gap_patterns import find_gap_patterns, find_long_gaps
 from .joint_outliers import JointOutlierPrior
 from .smoothness import fit_smoothness
 from .windows import Windows
-
-Array = NDArray[np.float64]
 
 OUTLIER_DENSITY = 1.0 / 120.0
 """Density of an outlier's error, per degree or centimeter: uniform within +-60. Chosen by hand:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...progress import Progress
 from ..prior import FilterBases, SmoothPrior, WindowPrior, build_smooth_prior, mix_priors
 from .filters import compute_gains
@@ -12,8 +13,6 @@ from .mean_pose import estimate_mean_pose
 from .posterior import estimate_channels
 from .smoothness import build_smooth_kernels
 from .windows import Windows
-
-Array = NDArray[np.float64]
 
 SMOOTH_FRACTIONS = (0.003, 0.05, 0.3)
 """Weights of the smooth prior in its mixtures with the examples' prior. Chosen by hand: x0.5

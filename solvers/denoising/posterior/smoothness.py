@@ -1,12 +1,10 @@
 """Fit how fast the channels of a take move, from the take itself."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import idct
 
+from ...arrays import Array
 from .windows import Windows
-
-Array = NDArray[np.float64]
 
 CORRELATION_TIMES_S = (0.08, 0.16, 0.32, 0.64, 1.28)
 """Correlation times, seconds, of the smooth movements whose sum is a channel. Chosen by hand:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.fft import dct
 
 from ...archives import ArchiveLayout
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Motion, Tracks
 from ...npz_members import flags, integers, numbers, words
@@ -17,8 +18,6 @@ from ...settings import Settings, setting
 from ..channels import ExampleChannels, Moments
 from .lag_covariance import LagCovariance, find_leading_eigenpairs
 from .window_prior import count_slow_coefficients
-
-Array = NDArray[np.float64]
 
 KEPT_ENERGY = 0.99
 """Fraction of the movement that the stored patterns contain, as in [LC10]. Half and twice the

@@ -1,11 +1,10 @@
 """Compute the covariance of all windows of clips without building the windows."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.sparse.linalg import eigsh
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 MAX_CLIP_ENDS = 64
 """Number of clips whose first and last frames are stored before they are summed."""

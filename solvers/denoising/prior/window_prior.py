@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 SLOW_FRACTION = 0.6
 """Fraction of the coefficients, slowest first, with a joint covariance; faster ones are

@@ -4,14 +4,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse.csgraph import minimum_spanning_tree
 
+from ...arrays import Array
 from ...motion import Tracks
 from ...motion.humanoid import roles_by_name
 from ..feet import SIDES
-
-Array = NDArray[np.float64]
 
 MAX_SAMPLED_FRAMES = 1000
 """Frames used to decide which points are rigidly connected; the drift uses all frames. Chosen

@@ -7,12 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
+from ...arrays import Array
 from ...motion import Motion, Tracks
 from ...progress import Progress
 from ...rotations import unroll
 from ...signals import fit_lowess
-
-Array = NDArray[np.float64]
 
 HALF_WINDOW_S = 0.12
 """Seconds to either side over which the smooth trajectory is fitted. Chosen by hand: x0.5 gains

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import JointLimits, Motion, Tracks, forward_kinematics
 from ...motion.humanoid import HumanoidMap, contacts_of_points, detect_contacts
@@ -21,7 +22,6 @@ from .foot_slide import FootSlide, measure_foot_slide
 from .joint_signals import Signal, SpikeRule, extract_signals
 from .report import quality_report
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 

@@ -5,10 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from .model import BodyModel
 from .tables import CAPSULE_SEGMENTS
-
-Array = NDArray[np.float64]
 
 
 class BodySurface(NamedTuple):

@@ -3,11 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .tables import SEGMENTS
-
-Array = NDArray[np.float64]
 
 
 class CoordinateRow(NamedTuple):

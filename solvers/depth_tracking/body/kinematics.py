@@ -3,11 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from .coordinates import N_COORDINATES, N_ROOT, ROTATION_AXES
 from .model import BodyModel
 from .tables import END_SEGMENTS, PARENTS, SEGMENTS
-
-Array = NDArray[np.float64]
 
 N_SEGMENTS = len(SEGMENTS)
 _PARENT = np.array(PARENTS)

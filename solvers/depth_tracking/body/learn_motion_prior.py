@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Motion, find_humanoid_map, forward_kinematics, resample
 from ...progress import Progress, unwatched, within
@@ -13,8 +13,6 @@ from .motion import SCENE_FROM_CAMERA
 from .motion_prior import MotionPrior, motion_prior_from_poses
 from .pose_from_joints import body_from_joints, pose_from_joints
 from .tables import JOINTS
-
-Array = NDArray[np.float64]
 
 FRAME_RATE_HZ = 30.0
 """Frame rate of the learned poses: that of depth cameras."""

@@ -5,9 +5,9 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...archives import ArchiveLayout
+from ...arrays import Array
 from ...errors import InvalidFileError, InvalidMotionError
 from ...npz_members import numbers, words
 from .tables import (
@@ -20,8 +20,6 @@ from .tables import (
     OFFSETS,
     SIDES,
 )
-
-Array = NDArray[np.float64]
 
 MAX_LENGTH_M = 100.0
 """Maximum length or radius of a body part."""

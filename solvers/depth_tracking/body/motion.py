@@ -1,8 +1,8 @@
 """Poses of a body model as a motion of the scene: Z up, a T-pose at rest, humanoid roles."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import Floor
 from ...motion import Motion, Skeleton
 from ...rotations import (
@@ -15,8 +15,6 @@ from ...rotations import (
 from .kinematics import N_SEGMENTS, matrix_from_rotation_vector, segment_frames
 from .model import BodyModel
 from .tables import END_SEGMENTS, JOINTS, PARENTS, SEGMENTS
-
-Array = NDArray[np.float64]
 
 SCENE_FROM_CAMERA = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """Level camera that looks along +Y: an actor who faces it faces -Y."""

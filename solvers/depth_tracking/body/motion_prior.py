@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ...archives import ArchiveLayout
+from ...arrays import Array
 from ...errors import InvalidFileError, InvalidMotionError
 from ...npz_members import Values, integers, words
 from .coordinates import COORDINATES, N_COORDINATES, N_ROOT
 from .normal_equations import PoseEquations
-
-Array = NDArray[np.float64]
 
 LAYOUT = ArchiveLayout(
     "motion prior",

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from .kinematics import N_SEGMENTS
 from .tables import CAPSULE_SEGMENTS
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from .coordinates import COORDINATES, N_COORDINATES, N_ROOT
 from .kinematics import segment_frames, segment_twists
 from .model import BodyModel
@@ -15,7 +16,6 @@ from .normal_equations import (
 from .pose_priors import joint_limits, stay_near
 from .tables import END_SEGMENTS, JOINTS, SEGMENTS
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
 _CARRIERS = np.array([*range(len(SEGMENTS)), *END_SEGMENTS])

@@ -3,12 +3,10 @@
 import re
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from .coordinates import COORDINATES, LOWER_LIMITS, ROOT, UPPER_LIMITS
 from .normal_equations import PoseEquations
-
-Array = NDArray[np.float64]
 
 _LIMB_PATTERN = re.compile("Humerus|Radius|Femur|Tibia")
 _ANKLE = "Ankle"

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import Camera
 from .model import BodyModel
 from .tables import CAPSULE_SEGMENTS
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
 NO_SEGMENT = -1

@@ -1,8 +1,8 @@
 """Derivatives of the body surface by its lengths and radii."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from .kinematics import N_SEGMENTS
 from .model import BodyModel
 from .normal_equations import Integers, SurfaceRows
@@ -16,8 +16,6 @@ from .tables import (
     PARENTS,
     SIDES,
 )
-
-Array = NDArray[np.float64]
 
 
 def _without_side(name: str) -> str:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import Camera, DepthRecording
 from ...errors import InvalidMotionError
 from ...progress import Progress, unwatched, within
@@ -14,8 +15,6 @@ from ..detection import detect_pose, subsample_image
 from ..forest import PARTS, PixelForest, classify_pixels
 from .refine_body import refine_body
 from .sample_cylinders import Cylinder, CylinderSettings, sample_cylinder
-
-Array = NDArray[np.float64]
 
 MEASURED_PARTS = tuple(
     f"{side}{part}"

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import DepthRecording, Floor
 from ...errors import InvalidMotionError
 from ...motion import Motion, Tracks
@@ -27,7 +28,6 @@ from .find_body import find_body
 from .passes import Pass, RecoverySettings, TrackingContext, track_with_restarts
 from .smooth_pass import smooth_poses
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
 

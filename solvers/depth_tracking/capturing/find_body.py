@@ -1,7 +1,6 @@
 """Estimate the body size of an actor without a reference pose."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...depth_scene import DepthRecording
 from ...errors import InvalidMotionError
@@ -13,8 +12,6 @@ from ..terms import DEFAULT_TRACKER, TrackerSettings
 from ..tracking import PoseCallback, ignore_pose, offset_frames
 from .passes import RecoverySettings, TrackingContext, track_with_restarts
 from .refine_body import refine_body
-
-Array = NDArray[np.float64]
 
 STATURES_M = (1.45, 1.6, 1.75, 1.9)
 N_SIZE_FRAMES, N_STATURE_FRAMES = 12, 3

@@ -5,8 +5,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import DepthRecording
 from ...errors import InvalidMotionError
 from ...progress import Progress
@@ -27,8 +27,6 @@ from ..tracking import (
     quality_without_actor,
     track_frame,
 )
-
-Array = NDArray[np.float64]
 
 _YAW = COORDINATES.index("yaw")
 _N_PREVIOUS_SCORES = 30

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import DepthRecording
 from ...errors import InvalidMotionError
 from ...progress import Progress, unwatched
@@ -36,8 +37,6 @@ from ..terms import (
     pixel_area,
     render_hypothesis,
 )
-
-Array = NDArray[np.float64]
 
 _POSE_DAMPING = 5.0
 _PRIOR_WEIGHT_PIXELS = 100.0

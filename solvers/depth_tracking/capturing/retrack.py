@@ -4,8 +4,8 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import DepthRecording, Floor
 from ...errors import InvalidMotionError
 from ...motion import Motion, Tracks
@@ -20,7 +20,6 @@ from .passes import RecoverySettings, TrackingContext
 from .retracked_path import RetrackSettings, track_from_correction
 from .smooth_pass import measure_fit, smooth_window
 
-Array = NDArray[np.float64]
 DEFAULT_RETRACK = RetrackSettings()
 _N_CONTEXT_FRAMES = 2
 """Frames on both sides that give position and velocity of the previous motion."""

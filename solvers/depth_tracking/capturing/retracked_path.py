@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...progress import Progress
 from ...settings import Settings, setting
 from ..body import joint_positions, segment_frames
@@ -13,8 +13,6 @@ from ..terms import observe
 from ..tracking import FitQuality, PosePreview, next_pose_prior, track_frame
 from .passes import TrackingContext
 from .smooth_pass import measure_fit
-
-Array = NDArray[np.float64]
 
 _MIN_CONFIDENCE = 0.2
 """Minimum confidence of a joint in the comparison, so that occluded joints still count."""

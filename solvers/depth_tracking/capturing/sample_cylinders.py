@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import Camera
 from ...settings import Settings, setting
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 POSITION_STD_M, RADIUS_STD, SHRINK_FACTOR = 0.12, 0.15, 0.65

@@ -3,8 +3,8 @@
 from collections.abc import Collection
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...progress import Progress
 from ..body import (
     N_COORDINATES,
@@ -19,8 +19,6 @@ from ..terms import Observation, likelihood_rows, observe, render_hypothesis
 from ..tracking import FitQuality, PosePreview, Registered, fit_quality, quality_without_actor
 from .passes import TrackingContext
 from .smooth_take import smooth_take
-
-Array = NDArray[np.float64]
 
 REFERENCE_RATE_HZ = 30.0
 """Frame rate of the reference for the smoothing weight."""

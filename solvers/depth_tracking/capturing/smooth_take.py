@@ -3,13 +3,11 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from ...arrays import Array
 from ...signals import second_difference_bands
 from ..body import N_COORDINATES
-
-Array = NDArray[np.float64]
 
 _FIRST_BAND, _SECOND_BAND = N_COORDINATES, 2 * N_COORDINATES
 _MIN_WEIGHT = 1e-6

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import Camera, DepthImage
 from ...errors import InvalidMotionError
 from ...settings import setting
@@ -15,8 +15,6 @@ from ..tracking import register_pose
 from .pose_score import pose_score
 from .pose_trials import trial_poses
 from .robust_parts import FoundParts, RobustPartsSettings, find_parts
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

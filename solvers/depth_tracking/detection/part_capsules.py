@@ -3,10 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..body import CAPSULE_SEGMENTS, CAPSULES, BodyModel
 from ..forest import N_PARTS, PARTS, SPLIT_SEGMENTS
-
-Array = NDArray[np.float64]
 
 
 def _part_spans() -> tuple[NDArray[np.intp], Array]:

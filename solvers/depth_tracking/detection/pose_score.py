@@ -1,13 +1,10 @@
 """Score of a pose, from depth and from the classified parts of the pixels."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..forest import PixelParts
 from ..terms import Hypothesis, Observation
 from .part_capsules import CAPSULE_OF_PART
-
-Array = NDArray[np.float64]
 
 MAX_DEPTH_ERROR_M = 0.1
 """Larger depth errors score 0."""

@@ -5,12 +5,11 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..body import COORDINATES, BodyModel
 from ..forest import MIRRORED_PARTS, PARTS
 from .labeled_fit import first_pose, fit_parts, fit_pixels
 from .robust_parts import FoundParts
-
-Array = NDArray[np.float64]
 
 SWAP_GROUPS = ("Leg", "LegEnd", "Foot"), ("Shoulder", "UpperArm", "LowerArm", "Hand")
 """Name suffixes of parts that are swapped together in a trial."""

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...settings import Settings, setting
 from ..body import BodyModel
 from ..forest import N_PARTS
 from .part_capsules import part_axes, part_radii
 
-Array = NDArray[np.float64]
 MEAN_SURFACE_DEPTH = np.pi / 4.0
 """Mean distance of a cylinder's visible surface in front of its axis, in radii."""
 

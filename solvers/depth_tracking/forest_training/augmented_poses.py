@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import world_poses
 from ...rotations import (
     inverse,
@@ -15,7 +15,6 @@ from ...rotations import (
 )
 from .skinned_body import SkinnedBody
 
-Array = NDArray[np.float64]
 UP = np.array([0.0, 0.0, 1.0])
 LEG_ROLES = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 ARM_ROLES = ("Shoulder", "UpperArm", "LowerArm", "Hand")

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import Camera
 
-Array = NDArray[np.float64]
 NO_PART = 255
 """Label of pixels off the body."""
 MIN_DEPTH_M = 0.05

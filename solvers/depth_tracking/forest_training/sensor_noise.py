@@ -9,7 +9,6 @@ from ...depth_scene import Camera
 from ...settings import Settings, setting
 from .render_mesh import NO_PART, RenderedMesh
 
-Array = NDArray[np.float64]
 DISPARITY_STEPS_M = 351.3
 """Steps of disparity times meters [1]_: a step is z^2 / 351.3, 2.6 cm at 3 m."""
 

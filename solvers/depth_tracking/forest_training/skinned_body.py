@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidFileError, InvalidMotionError
 from ...files import open_regular
 from ...motion import (
@@ -22,8 +23,6 @@ from ...motion import (
 from ...npz_members import READABLE, integers, numbers, read_members, words
 from ...rotations import IDENTITY, matrix_from_quaternion
 from ..forest import PARTS, SPLIT_SEGMENTS, parts_of_joints
-
-Array = NDArray[np.float64]
 
 MEMBERS = {
     "vertices": numbers("vertices", 3),

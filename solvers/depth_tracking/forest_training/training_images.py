@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import Camera
 from ...errors import InvalidMotionError
 from ...motion import Motion, Skeleton, from_canonical
@@ -16,8 +16,6 @@ from .augmented_poses import PoseMixer, remove_heading, select_diverse_poses
 from .render_mesh import RenderedMesh, render_mesh
 from .sensor_noise import SensorNoiseSettings, add_sensor_noise
 from .skinned_body import SkinnedBody
-
-Array = NDArray[np.float64]
 
 CAMERA = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
 """Half the resolution of a Kinect v1."""

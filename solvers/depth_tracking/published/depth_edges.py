@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt, gaussian_filter, label, sobel
 
-Array = NDArray[np.float64]
+from ...arrays import Array
+
 Integers = NDArray[np.intp]
 
 SMOOTHING_PX = 1.0

@@ -1,13 +1,10 @@
 """The edge term of [LOU12]: rendered depth edges match observed ones."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..body import NO_ROWS, Integers, SurfaceRows, rows_toward_targets
 from ..terms import Hypothesis, Observation
 from .depth_edges import edge_pixels
-
-Array = NDArray[np.float64]
 
 WINDOW_RADIUS_PX = 10
 """Half size of the search window at 320 columns: 21 x 21 pixels."""

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import DepthRecording
 from ...progress import Progress, unwatched
 from ..body import (
@@ -34,8 +34,6 @@ from .depth_edges import edge_pixels
 from .edges import edge_term
 from .surface import ColoredFrame, PreviousFrame, read_intensities, surface_term
 from .wzc12 import NO_ANKLES
-
-Array = NDArray[np.float64]
 
 PER_DEGREE = (180.0 / np.pi) ** 2
 """Squared degrees in a squared radian."""

@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import DepthRecording
 from ..body import CAPSULE_SEGMENTS, Integers, SurfaceRows, rows_toward_targets
 from ..terms import Hypothesis, Observation, subsampling_step
-
-Array = NDArray[np.float64]
 
 WINDOW_RADIUS_PX = 7
 """Half size of the search window at 320 columns: 15 x 15 pixels."""

@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..body import CAPSULE_SEGMENTS, SurfaceRows
 from .hypothesis import Hypothesis
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
 _NO_SURFACE, _EPSILON = 1e3, 1e-12

@@ -1,14 +1,12 @@
 """The depth image term: difference of rendered and observed depth per pixel."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..body import SurfaceRows
 from .hypothesis import Hypothesis
 from .observation import Observation
 from .pixel_groups import PixelGroups
-
-Array = NDArray[np.float64]
 
 _MIN_COSINE = 0.25
 """Minimum cosine between normal and ray; the gradient diverges at the outline."""

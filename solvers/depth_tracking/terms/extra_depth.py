@@ -4,12 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ...arrays import Array
 from ..body import NO_ROWS, SurfaceRows, rows_toward_targets
 from .hypothesis import Hypothesis
 from .observation import Observation
 from .pixel_groups import PixelGroups
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
 

@@ -1,14 +1,11 @@
 """Free-space terms: the body stays out of space that the camera observed as empty."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..body import SurfaceRows, rows_toward_targets
 from .hypothesis import Hypothesis
 from .observation import Observation, rays_through_pixels
 from .pixel_groups import PixelGroups
-
-Array = NDArray[np.float64]
 
 _IMAGE_AXES = np.eye(3)[:2]
 

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import Camera
 from ..body import (
     CAPSULE_SEGMENTS,
@@ -17,7 +18,6 @@ from ..body import (
 )
 from .observation import rays_through_pixels
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
 

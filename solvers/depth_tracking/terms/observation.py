@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
+from ...arrays import Array
 from ...depth_scene import Camera, DepthRecording
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
 MIN_AREA_M2 = 0.02

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from .hypothesis import Hypothesis
 from .observation import Observation
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
 

@@ -1,13 +1,11 @@
 """The silhouette image term: difference of the silhouettes of body and actor."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..body import SurfaceRows
 from .hypothesis import Hypothesis
 from .observation import Observation
-
-Array = NDArray[np.float64]
 
 
 def silhouette_term(

@@ -1,12 +1,10 @@
 """Failure test of a tracked pose: learned probability, or the thresholds of the paper."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...settings import Choice
 from .fit_quality import MAX_DEPTH_ERROR_M, FitQuality
-
-Array = NDArray[np.float64]
 
 PUBLISHED_MAX_RESIDUAL_M, PUBLISHED_MIN_OVERLAP = 0.025, 0.9
 """Thresholds of [WZC12] section 5 for residual (above) and overlap (below)."""

@@ -3,13 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..body import END_SEGMENTS, N_SEGMENTS, BodyModel, Integers
 from ..terms import Observation, group_pixels
 from .register_pose import Registered
-
-Array = NDArray[np.float64]
 
 JOINT_SEGMENTS: Integers = np.array([*range(N_SEGMENTS), *END_SEGMENTS])
 """Segment that carries each of `JOINTS`."""

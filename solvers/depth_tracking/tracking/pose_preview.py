@@ -3,13 +3,9 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...arrays import Array
 from ..body import BodyModel
 from .fit_quality import FitQuality
-
-Array = NDArray[np.float64]
 
 
 class PosePreview(NamedTuple):

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..body import (
     N_COORDINATES,
     BodyModel,
@@ -27,7 +27,6 @@ from ..terms import (
     render_hypothesis,
 )
 
-Array = NDArray[np.float64]
 Prior = Callable[[Array], PoseEquations]
 Likelihood = Callable[[Hypothesis, Observation, TrackerSettings], SurfaceRows]
 

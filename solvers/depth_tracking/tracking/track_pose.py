@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import DepthRecording
 from ...errors import InvalidMotionError
 from ...motion import Tracks
@@ -26,8 +26,6 @@ from ..body import (
 from ..terms import DEFAULT_TRACKER, Observation, TrackerSettings, likelihood_rows, observe
 from .fit_quality import FitQuality, fit_quality, quality_without_actor
 from .register_pose import Likelihood, register_pose
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

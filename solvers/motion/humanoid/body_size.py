@@ -1,11 +1,9 @@
 """Estimate the bone lengths of an actor, and resize postures to other lengths."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from .posture_joints import HIPS, N_JOINTS, PARENTS
-
-Array = NDArray[np.float64]
 
 ADULT_BONE_LENGTHS_M = np.array(
     [0.0, 0.28, 0.22, 0.27]

@@ -5,9 +5,9 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from .posture_joints import N_JOINTS, PARENTS, POSTURE_JOINTS
 
-Array = NDArray[np.float64]
 Real = TypeVar("Real", np.float32, np.float64)
 
 MIN_BONE_M = 5e-3

@@ -3,12 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..skeletons import Skeleton
 from .mirrored_limbs import MirroredLimbs
-
-Array = NDArray[np.float64]
 
 # Lengths of the upper and lower limb as fractions of body height (Drillis & Contini 1966, as
 # tabled by Winter 2009, Biomechanics and Motor Control of Human Movement, figure 4.1).

@@ -1,13 +1,11 @@
 """Palm orientation in a rest pose, from the knuckles."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...rotations import inverse, multiply, quaternion_from_rotation_vector, rotate
 from ...signals import smoothstep
 from ..skeletons import Skeleton
-
-Array = NDArray[np.float64]
 
 MIN_PALM_ROLL_RAD, MAX_PALM_ROLL_RAD = np.radians([30.0, 60.0])
 """Roll of the palms from facing down below which they are unchanged, since all knuckles are a

@@ -3,14 +3,13 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...rotations import IDENTITY, fit_rotations, multiply, rotate, rotation_between
 from ..skeletons import Motion, Skeleton, Tracks, local_rotations
 from .points_skeleton import skeleton_from_points
 
-Array = NDArray[np.float64]
 MIN_BONE_M = 1e-3
 """Distance below which two joints define no direction."""
 

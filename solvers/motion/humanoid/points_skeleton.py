@@ -3,13 +3,12 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...rotations import fit_rotations, matrix_from_quaternion
 from ..skeletons import Skeleton, Tracks, rest_direction
 
-Array = NDArray[np.float64]
 N_ITERATIONS = 5
 """Iterations of the Procrustes analysis."""
 

@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
+from ...arrays import Array
 from ...signals import fill_gaps, smooth_gaussian
 from .posture_joints import HIPS, MIRROR_JOINTS, POSTURE_JOINTS
-
-Array = NDArray[np.float64]
 
 LATERAL_JOINTS = tuple(
     tuple(

@@ -8,14 +8,12 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ..skeletons import JointRecording, Motion, Skeleton, Tracks, forward_kinematics
 from .names import roles_by_name
 from .roles import HumanoidMap, find_humanoid_map
-
-Array = NDArray[np.float64]
 
 POSTURE_JOINTS = (
     "hips", "spine", "chest", "head",

@@ -5,8 +5,8 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..skeletons import Skeleton
 from .limb_division import (
     MIN_SPREAD_FRACTION,
@@ -18,8 +18,6 @@ from .limb_division import (
 )
 from .mirrored_limbs import MirroredLimbs, find_mirrored_limbs
 from .names import sides_of_names
-
-Array = NDArray[np.float64]
 
 TRUNK_FRACTION = 0.288
 """Of the height, from hips to shoulders (Winter 2009, figure 4.1); arms branch off lower."""

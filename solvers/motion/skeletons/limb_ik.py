@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...rotations import (
     inverse,
@@ -21,8 +21,6 @@ from .skeleton import Skeleton
 
 MIN_PLANE_FLEXION_RAD, RELIABLE_PLANE_FLEXION_RAD = np.radians([5.0, 25.0])
 """Flexions, radians, from which the pose defines the plane of flexion partly and fully."""
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,11 +6,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...rotations import unroll
 from .motion import Motion
 from .tracks import Tracks
-
-Array = NDArray[np.float64]
 
 N_CONTEXT_FRAMES = 8
 """Frames on each side from which the typical step of each joint is estimated."""

@@ -1,8 +1,8 @@
 """Fit the motion of any rig to target poses."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import (
     HumanoidMap,
@@ -15,7 +15,6 @@ from ...motion.humanoid import CHEST, HIPS, N_JOINTS, POSTURE_JOINTS, postures_f
 from ...rotations import fit_rotations, inverse, multiply, rotate, rotation_between, slerp
 from ...signals import fill_gaps, fill_rotation_gaps
 
-Array = NDArray[np.float64]
 AIMS = {
     f"{side}{part}": f"{side}{end}"
     for side in ("left", "right")

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion.humanoid import (
     CHEST,
     HIPS,
@@ -16,7 +17,6 @@ from ...motion.humanoid import (
 )
 from ...rotations import nearest_rotations
 
-Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 
 HEAD = POSTURE_JOINTS.index("head")

@@ -3,14 +3,12 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from ...arrays import Array
 from ...motion import Skeleton
 from ...rotations import inverse, multiply, quaternion_from_rotation_vector, rotate
 from .limb_angles import Complex, axial_angles, measure_flexion, unit_vectors
-
-Array = NDArray[np.float64]
 
 HINGES = {"Arm": (0.0, -1.0, 0.0), "Leg": (0.0, 1.0, 0.0)}
 """Direction in which an elbow or a knee flexes, in a T-pose that faces -Y."""

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Motion, Skeleton, Tracks, local_rotations, skeleton_from_points
 from ...motion.humanoid import MIN_RELIABILITY, MIN_RELIABLE_FRAMES, posture_positions
@@ -13,8 +13,6 @@ from .clavicles import add_clavicle_joints
 from .reach_ankles import reach_ankles
 from .rotation_solver import MIN_LENGTH_M, RotationSolver
 from .trunk_twist import LimbTwists, hinges_from_twists
-
-Array = NDArray[np.float64]
 
 
 def motion_from_positions(

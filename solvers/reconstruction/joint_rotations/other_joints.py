@@ -5,11 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import joint_parents
 from ...motion.humanoid import N_JOINTS, PARENTS, POSTURE_JOINTS, posture_joint_indices
 from ...rotations import IDENTITY, fit_rotations, inverse, multiply, rotate, rotation_between
-
-Array = NDArray[np.float64]
 
 TRUNK = {
     "chest": (0.0, 0.0, 1.0),

@@ -3,14 +3,12 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import Motion, forward_kinematics
 from ...motion.skeletons import ReachSettings, reach
 from .limb_angles import unit_vectors
 from .limb_twist import Limb, solve_smooth_paths
-
-Array = NDArray[np.float64]
 
 STRAIGHT_FLEXION, BENT_FLEXION = np.radians([20.0, 60.0])
 """Knee flexion (radians) up to which the pelvis is offset, and from which the knee flexes."""

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import Skeleton, roles_by_name
 from ...rotations import IDENTITY, fit_rotations, multiply, rotate, rotation_between, slerp
 from .limb_twist import (
@@ -18,7 +19,6 @@ from .limb_twist import (
 )
 from .reach_ankles import pelvis_offsets
 
-Array = NDArray[np.float64]
 MIN_LENGTH_M = 1e-3
 """Minimum length (m) of bones and offsets that define a direction."""
 FREE_LENGTH_M, AIMED_LENGTH_M = 0.1, 0.2

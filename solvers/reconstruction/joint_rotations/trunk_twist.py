@@ -9,14 +9,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion.humanoid import POSTURE_JOINTS
 from .library_body import bone_frames
 from .limb_angles import MIN_LENGTH, Complex, measure_flexion, unit_vectors
 from .limb_twist import HINGES, HingeAxes
-
-Array = NDArray[np.float64]
 
 MIN_RELIABILITY = 1e-3
 """Minimum weight of a joint, so that distances to neighbors stay distinct."""

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 HALF_WEIGHT_S = 0.12
 """Gap time (s) at which the joint's own path and the library pose have equal weight. The gap

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion.humanoid import HIPS, rates_from_directions
 from ...progress import Progress, within
 from ...signals import smooth_gaussian
@@ -36,8 +37,6 @@ from .residual_smoother import (
     smooth_residuals,
 )
 from .settings import PostureSettings
-
-Array = NDArray[np.float64]
 
 RAMP_S = 0.2
 """Ramp (s) over which a joint's weight falls before and rises after a dropout."""

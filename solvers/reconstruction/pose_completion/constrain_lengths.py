@@ -1,11 +1,9 @@
 """Constrain bone lengths of missing joints, and retain the positions of reliable joints."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion.humanoid import N_JOINTS, PARENTS, segment_lengths
-
-Array = NDArray[np.float64]
 
 N_ROUNDS = 30
 MAX_STIFFNESS_RATIO = 50.0

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion.humanoid import N_JOINTS
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Synthesis = Callable[[Indices, Array], Array]
 """Function from frame indices and joint reliabilities in these frames to postures."""

@@ -1,12 +1,10 @@
 """The most probable pose, given some of its joints and similar library poses."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion.humanoid import N_JOINTS
 from ..pose_space import EnergyTargets, PostureSpaces
-
-Array = NDArray[np.float64]
 
 MODEL_ERROR_M = 0.1
 """Standard deviation (m) of a reliable joint about the space of its neighbors; chosen on

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import JointRecording, Tracks
 from ...motion.humanoid import (
@@ -26,8 +27,6 @@ from ..pose_library import PostureLibrary, load_posture_library
 from ..reliability import Reliability, measure_reliability, posture_reliability
 from .complete_postures import Completer, ObservedTake, complete_postures
 from .settings import DEFAULT_SETTINGS, PostureSettings
-
-Array = NDArray[np.float64]
 
 MIN_JOINTS = 3
 """Minimum number of posture joints observed in one frame."""

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import Motion, Skeleton, find_humanoid_map, forward_kinematics
 from ...motion.humanoid import POSTURE_JOINTS, t_pose_alignment
 from ...rotations import multiply, rotate
@@ -18,8 +18,6 @@ from ..joint_rotations import (
     flexion_weights,
     untwisted_hinges,
 )
-
-Array = NDArray[np.float64]
 
 HALF_WEIGHT_COUNT = 20.0
 """Number of flexed poses of a rig at which its rotations of straight limbs get half weight."""

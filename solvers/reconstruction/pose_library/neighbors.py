@@ -6,11 +6,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...progress import Progress, unwatched
 from ..joint_rotations import BodyPostures
 from ..residual_correction import squared_distances
 
-Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 Indices = NDArray[np.intp]
 

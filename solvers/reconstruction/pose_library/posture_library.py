@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...archives import ArchiveLayout
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Motion, resample
 from ...motion.humanoid import (
@@ -26,8 +27,6 @@ from ..joint_rotations import N_TWISTED_LIMBS, mirror_twists
 from .clip_twists import ClipTwists, combine_clip_twists, read_clip_twists
 from .posture_groups import group_postures
 from .subsample import subsample_postures
-
-Array = NDArray[np.float64]
 
 SHIPPED_LIBRARY = Path(__file__).parent / "postures.npz"
 DIRECTION_STEP = 1.0 / 500.0

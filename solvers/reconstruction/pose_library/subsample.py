@@ -3,10 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion.humanoid import ADULT_BONE_LENGTHS_M, N_JOINTS, positions_from_directions
 from ...progress import Progress, unwatched
-
-Array = NDArray[np.float64]
 
 N_COMPONENTS = 24
 """Number of principal components for distances; they retain all but millimeters."""

@@ -4,11 +4,10 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion.humanoid import N_JOINTS, PARENT_INDICES
 
-Array = NDArray[np.float64]
 N_BONES = N_JOINTS - 1
 
 

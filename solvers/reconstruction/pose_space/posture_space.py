@@ -3,11 +3,9 @@
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion.humanoid import N_JOINTS
-
-Array = NDArray[np.float64]
 
 MIN_VARIANCE_M2 = 1e-8
 """Minimum variance (m²) of a component; weaker components are zero."""

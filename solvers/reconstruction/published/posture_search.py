@@ -1,12 +1,10 @@
 """The pose of least energy by local stochastic search [SHJT13, section VI-E]."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..pose_space import EnergyTargets, PostureSpaces, posture_energy
 from .sequential import choose_sequentially
-
-Array = NDArray[np.float64]
 
 N_STEPS = 20
 N_SAMPLES = 100

@@ -4,11 +4,10 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..pose_space import EnergyTargets, PostureSpaces, posture_energy
 
-Array = NDArray[np.float64]
 Chooser = Callable[[PostureSpaces, EnergyTargets, Array | None, int], Array]
 """Function from the space, targets, previous pose and index of a frame to coordinates."""
 

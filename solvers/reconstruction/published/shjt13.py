@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import JointRecording
 from ...progress import Progress, within
 from ..joint_rotations import Reconstruction, build_body_postures
@@ -21,8 +21,6 @@ from ..pose_library import PostureLibrary, index_postures
 from ..pose_space import EnergyTargets, PostureSpaces
 from ..reliability import ReliabilityMethod, ReliabilitySettings, measure_reliability
 from .posture_search import search_sequentially
-
-Array = NDArray[np.float64]
 
 
 def reconstruct_shjt13(

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import JointRecording
 from ...motion.humanoid import posture_positions
 from ...progress import Progress, unwatched, within
@@ -24,8 +24,6 @@ from ..residual_correction import (
     mean_offset,
     smooth_postures,
 )
-
-Array = NDArray[np.float64]
 
 CM_PER_M = 100.0
 """[ZH14] gives no unit for its weights; with meters the temporal term would vanish."""

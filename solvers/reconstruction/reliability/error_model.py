@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 from scipy.special import ndtr
 
+from ...arrays import Array
 from ...signals import fill_gaps
 from .settings import SENSOR_RATE_HZ
 from .terms import frame_count, vector_lengths, weighted_sum
 from .transient_jumps import find_transient_jumps
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 SMOOTHING_WINDOW_S = 1.0 / 3.0

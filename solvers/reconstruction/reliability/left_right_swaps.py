@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import JointRecording
 from ...motion.humanoid import SIDES, posture_joint_indices
 from .terms import vector_lengths
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Pairs = NDArray[np.intp]
 

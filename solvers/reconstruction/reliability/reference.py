@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion.humanoid import posture_joint_indices
 from .terms import vector_lengths
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 OUT, DOWN = (1.0, 0.0), (0.0, -1.0)

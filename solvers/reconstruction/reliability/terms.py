@@ -7,11 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import convolve1d
 
+from ...arrays import Array
 from ...motion import JointRecording
 from ...motion.skeletons import INFERRED, TRACKED
 from .settings import SENSOR_RATE_HZ, ReliabilitySettings
-
-Array = NDArray[np.float64]
 
 MIN_TRACKED_CONFIDENCE = 0.5
 """Confidence from which on a joint counts as tracked, not inferred."""

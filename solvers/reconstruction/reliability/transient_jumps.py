@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from .terms import vector_lengths
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 MAX_JUMP_S = 0.2

@@ -3,10 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import gammainc, roots_hermitenorm
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 MIN_VARIANCE_M2 = 1e-12
 """Minimum variance (m²); smaller ones carry no information."""

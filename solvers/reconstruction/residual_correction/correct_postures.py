@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import JointRecording
 from ...motion.humanoid import posture_positions
 from ...progress import Progress, unwatched, within
@@ -22,8 +22,6 @@ from .inputs import smooth_postures
 from .prediction import Prediction
 from .prior import ResidualPrior
 from .smooth_trajectories import filter_trajectories, smooth_trajectories
-
-Array = NDArray[np.float64]
 
 MIN_WEIGHT = 0.02
 """Weight of an unreliable joint, so that gaps are interpolated smoothly."""

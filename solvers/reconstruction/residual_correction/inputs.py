@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import JointRecording, Tracks
 from ...motion.humanoid import (
@@ -18,8 +18,6 @@ from ...motion.humanoid import (
     rotate_about_vertical,
 )
 from ...signals import fill_gaps, smooth_gaussian
-
-Array = NDArray[np.float64]
 
 NEIGHBORHOODS = tuple(
     tuple(

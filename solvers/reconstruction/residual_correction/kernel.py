@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import minimize
 
-Array = NDArray[np.float64]
+from ...arrays import Array
+
 Real = TypeVar("Real", NDArray[np.float64], NDArray[np.float32])
 
 MIN_VARIANCE_RATIO, MAX_VARIANCE_RATIO = 1e-4, 10.0

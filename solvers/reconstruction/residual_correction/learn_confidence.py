@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import JointRecording, Tracks
 from ...motion.humanoid import N_JOINTS, posture_positions
@@ -20,7 +20,6 @@ from .learn_residual_prior import (
 )
 from .prior import ResidualPrior
 
-Array = NDArray[np.float64]
 Pair = tuple[JointRecording, Tracks]
 
 DEFAULT_SETTINGS = ResidualPriorSettings()

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
+from ...arrays import Array
 from ...motion.humanoid import MIRROR_JOINTS, mirror_postures
 from .movement_process import (
     PERSONAL_STRENGTHS,
@@ -19,7 +20,6 @@ from .movement_process import (
     project_parts,
 )
 
-Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 N_COMPONENTS = 40

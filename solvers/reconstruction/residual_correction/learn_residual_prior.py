@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import JointRecording, Tracks
 from ...motion.humanoid import (
@@ -24,7 +25,6 @@ from .learn_movement_process import Take, learn_movement_process
 from .prior import ResidualPrior, posture_components
 from .sparse_process import basis_functions, inducing_points, posterior, shared_design
 
-Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 N_COMPONENTS = 15

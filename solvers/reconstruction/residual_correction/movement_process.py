@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
+from ...arrays import Array
 from ...motion.humanoid import N_JOINTS, mirror_postures
 from ...npz_members import flags, integers, numbers
 from ...signals import smooth_gaussian
 from .kernel import squared_distances
 
-Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 
 CONTEXT_S = 0.5

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...archives import ArchiveLayout
+from ...arrays import Array
 from ...motion.humanoid import MIRROR_JOINTS, N_JOINTS, POSTURE_JOINTS, mirror_postures
 from ...npz_members import flags, numbers, words
 from .confidence import IDENTITY_CALIBRATION, Calibration, probability_within
@@ -22,8 +23,6 @@ from .kernel import Kernel, proximity
 from .movement_process import MEMBERS, MovementProcess, movement_from_arrays
 from .prediction import Prediction, interpolate_prediction
 from .sparse_process import basis_functions, cholesky_root, shared_design
-
-Array = NDArray[np.float64]
 
 MOVEMENT_PREFIX = "movement_"
 """Prefix of the movement process's array names in a file."""

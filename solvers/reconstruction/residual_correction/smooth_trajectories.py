@@ -1,12 +1,10 @@
 """Smooth trajectories by penalizing acceleration: over a complete take, or causally."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from ...arrays import Array
 from ...signals import second_difference_bands
-
-Array = NDArray[np.float64]
 
 
 def smooth_trajectories(positions: Array, weights: Array, frames: float) -> Array:

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from scipy.cluster.vq import kmeans2
 from scipy.linalg import solve_triangular
 
+from ...arrays import Array
 from .kernel import Kernel, squared_exponential
-
-Array = NDArray[np.float64]
 
 JITTER = 1e-6
 MEAN_VARIANCE = 1e4

@@ -5,14 +5,13 @@ from dataclasses import replace
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import Motion, Skeleton, find_humanoid_map, world_poses
 from ...progress import Progress, unwatched
 from ...rotations import inverse, multiply, rotate
 from .axes import longest_bone_path, rotation_to_z_up
 
-Array = NDArray[np.float64]
 UpAxisName = Literal["X", "Y", "Z", "-X", "-Y", "-Z"]
 
 N_SAMPLED_FRAMES = 60

@@ -5,14 +5,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...depth_scene import Camera
 from ...errors import InvalidFileError
 from ...files import DAMAGE
 from ...json_text import parse_json
-
-Array = NDArray[np.float64]
 
 DEPTH, COLOR = "CALIBRATION_CameraLocationD0", "CALIBRATION_CameraLocationPV0"
 N_PARAMETERS = 14

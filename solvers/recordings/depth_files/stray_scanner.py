@@ -3,15 +3,13 @@
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidFileError
 from ..containers import read_bytes
 from .layouts import Focal, Layout, list_images
 from .settings import CameraOrientation
 from .stack import MILLIMETER
-
-Array = NDArray[np.float64]
 
 DEFAULT_FRAME_RATE = 60.0
 WIDTHS = ((1920, 1440), (1280, 960), (640, 480), (256, 192))

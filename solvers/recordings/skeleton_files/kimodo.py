@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...motion import Motion
@@ -18,8 +17,6 @@ from ..conventions import (
     z_up_from_y_up,
 )
 from .world_poses import motion_from_world_poses
-
-Array = NDArray[np.float64]
 
 JOINTS: tuple[tuple[str, str], ...] = (
     ("Hips", ""), ("Spine1", "Hips"), ("Spine2", "Spine1"), ("Chest", "Spine2"),

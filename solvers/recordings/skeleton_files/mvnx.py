@@ -6,16 +6,14 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, ParseError, iterparse
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidFileError
 from ...files import open_regular
 from ...motion import Motion
 from ...progress import Progress, unwatched
 from ..conventions import check_scale, common_rate
 from .world_poses import motion_from_world_poses
-
-Array = NDArray[np.float64]
 
 PARENTS = {
     "Pelvis": "", "L5": "Pelvis", "L3": "L5", "T12": "L3", "T8": "T12", "Neck": "T8",

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidFileError, InvalidSettingError
 from ...motion import Motion, Skeleton
 from ...progress import Progress, unwatched
@@ -22,8 +22,6 @@ from ..conventions import (
 )
 from .kimodo import read_kimodo
 from .smpl_body import BODY, FINGERS, STATURE_M, smpl_joints
-
-Array = NDArray[np.float64]
 
 ROTATIONS = ("poses", "smpl_poses", "fullpose")
 ROOT = ("root_orient", "global_orient")

@@ -3,13 +3,11 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import Motion, Skeleton
 from ...rotations import inverse, multiply, rotate
-
-Array = NDArray[np.float64]
 
 MAX_OFFSET_ERROR_M = 0.02
 """Standard deviation of a bone over time, above which positions and rotations disagree."""

@@ -5,11 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...progress import Progress, unwatched
 from ..postures import N_PARTS, ClipPostures, half_precision
 from .vocabulary import N_AXES, Vocabulary
-
-Array = NDArray[np.float64]
 
 RATE = 20.0
 """Hertz at which clips are compared."""

@@ -10,9 +10,9 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.cluster.vq import kmeans2
 
+from ...arrays import Array
 from ..postures import (
     N_COORDINATES,
     N_FEATURES,
@@ -23,8 +23,6 @@ from ..postures import (
     learn_posture_distribution,
     part_features,
 )
-
-Array = NDArray[np.float64]
 
 N_AXES = 8
 N_WORDS = 64

@@ -9,9 +9,8 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion.humanoid import POSTURE_JOINTS
-
-Array = NDArray[np.float64]
 
 
 class BodyPart(Enum):

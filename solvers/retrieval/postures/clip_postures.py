@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import JointRecording, Motion, Tracks, resample
 from ...motion.humanoid import (
@@ -18,7 +19,6 @@ from ...motion.humanoid import (
 )
 from ...signals import fill_gaps
 
-Array = NDArray[np.float64]
 Recording = Motion | Tracks | JointRecording
 
 MAX_BRIDGED_GAP_S = 0.3

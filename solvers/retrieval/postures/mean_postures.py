@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion.humanoid import (
     ADULT_BONE_LENGTHS_M,
     LATERAL_JOINTS,
@@ -15,8 +16,6 @@ from ...motion.humanoid import (
     segment_lengths,
 )
 from .clip_postures import ClipPostures
-
-Array = NDArray[np.float64]
 
 N_COORDINATES = 3 * N_JOINTS
 POSITION_NOISE_M = 0.03

@@ -3,11 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion.humanoid import N_JOINTS
 from .body_parts import JOINTS, N_PARTS, ROOTS
 from .mean_postures import POSITION_NOISE_M, PostureDistribution
-
-Array = NDArray[np.float64]
 
 MIN_OBSERVED_FRACTION = 0.5
 """Fraction of frames with an observed joint above which it counts as known."""

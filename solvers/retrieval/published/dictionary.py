@@ -4,16 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...progress import Progress, unwatched
 from ...settings import Settings, setting
 from ..postures import ClipPostures
 from .observed_signals import observed_signals
 from .sparse_codes import SparseCodes, sparse_codes
-
-Array = NDArray[np.float64]
 
 MIN_ATOM_FRACTION = 0.1
 """Fraction of the length of an atom that must be observed."""

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 
 def observed_signals(positions: Array) -> tuple[Array, NDArray[np.bool_]]:

@@ -7,12 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ...arrays import Array
 from ...settings import Settings, setting
 from ..postures import ClipPostures
 from .dictionary import PostureDictionary
 from .temporal_codes import TemporalCodes, temporal_codes
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidSettingError
-
-Array = NDArray[np.float64]
 
 BATCH = 512
 """Signals per batch; the inner products with the atoms take 1.4 MB."""

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from .sparse_codes import SparseCodes
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

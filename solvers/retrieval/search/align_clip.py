@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...arrays import Array
+
 Path = NDArray[np.intp]
 
 STEP_PENALTY = 1.5

@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..index import Segments, Vocabulary, describe_segments
 from ..postures import ClipPostures, part_coverage, part_reliability
 from .find_settings import FindSettings
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

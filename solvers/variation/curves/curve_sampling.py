@@ -1,11 +1,10 @@
 """Sample curves between frames with cubic B-splines, whose second derivative is continuous."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import spline_filter1d
 from scipy.sparse import csr_matrix
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 N_PADDING = 12
 """Frames by which curves are extrapolated at either end, to hide boundary effects. Chosen by

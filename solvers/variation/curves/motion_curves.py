@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import Motion, Skeleton
 from ...motion.humanoid import normalize_postures, postures_from_motion
 from ...rotations import (
@@ -13,8 +13,6 @@ from ...rotations import (
     quaternion_from_rotation_vector,
     rotation_vector_from_quaternion,
 )
-
-Array = NDArray[np.float64]
 
 N_ROOT_CHANNELS = 4
 """Columns of the root: displacement to the left and backward in the actor's frame, and rotation

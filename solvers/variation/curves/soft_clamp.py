@@ -1,9 +1,8 @@
 """Clamp values softly (smooth saturation)."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 
 def clamp_softly(values: Array, low: Array, high: Array, width: Array) -> Array:

@@ -1,14 +1,12 @@
 """Save a stepwise model with the variation model it belongs to."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import Skeleton
 from ...npz_members import numbers
 from .model import StepwiseModel, learn_stepwise
 from .process import N_PACKED, Hyperparameters
-
-Array = NDArray[np.float64]
 
 STEPWISE_MEMBER = numbers("stacks", "triples", N_PACKED, or_empty=True)
 

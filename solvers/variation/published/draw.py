@@ -9,13 +9,11 @@ within the examples' range at that time and is pulled a little towards their mix
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..curves import ROOT_ROW, clamp_softly
 from .features import ROOT_TRIPLE, compute_step_features, curves_from_states
 from .model import StepwiseModel
-
-Array = NDArray[np.float64]
 
 RANGE_MARGIN = 0.05
 """Fraction of a channel's range over all times by which a variant may exceed, with saturation,

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import Skeleton
 from ..curves import HEIGHT_COLUMN, partition_joints, sample_curves
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 STEP_RATE_HZ = 30.0

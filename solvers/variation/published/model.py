@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...motion import Skeleton
 from ...progress import Progress, unwatched, within
 from .features import (
@@ -21,8 +21,6 @@ from .features import (
 )
 from .process import Hyperparameters
 from .stack import ProcessStack, learn_stack
-
-Array = NDArray[np.float64]
 
 MIN_STEPS = 5
 """Minimum steps of an example."""

@@ -18,12 +18,11 @@ channel by channel, times |det Phi|^-n: exact, and no matrix is larger than n by
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import minimize
 from scipy.spatial.distance import cdist
 
-Array = NDArray[np.float64]
+from ...arrays import Array
 
 N_CHANNELS = 3
 """Number of outputs, of latent processes and of channels."""

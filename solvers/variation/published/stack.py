@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_solve, solve_triangular
 from scipy.spatial.distance import cdist
 
+from ...arrays import Array
 from ...progress import Progress, unwatched
 from .process import (
     JITTER,
@@ -22,7 +23,6 @@ from .process import (
     learn_hyperparameters,
 )
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 N_INDUCING = 150

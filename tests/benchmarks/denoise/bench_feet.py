@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from solvers.arrays import Array
 from solvers.denoising import denoise, learn_filter_bases, plant_feet
 from solvers.denoising.feet.legs import Leg, find_legs
 from solvers.motion import Motion, ReachSettings, detect_contacts, forward_kinematics, reach
@@ -32,7 +33,6 @@ from ..shared import clips
 from ..shared.report import Report
 from ..shared.tables import Scores
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Planter = Callable[[Motion, Flags], Motion]
 

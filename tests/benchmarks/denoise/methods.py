@@ -6,12 +6,13 @@ from functools import lru_cache, partial
 
 import numpy as np
 
+from solvers.arrays import Array
 from solvers.motion import Motion
 
 from ..peers import kalman, smoothers
 from ..peers.blender_graph import CUTOFFS, DEFAULTS, WIDTHS, smooth_in_blender
 from ..peers.lou_chai import filter_by_patterns, learn_patterns
-from ..shared.noise import Array, Channels
+from ..shared.noise import Channels
 from .cases import Case, without_heading
 
 Method = Callable[[Case], Array]

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
+from solvers.arrays import Array
 from solvers.denoising import (
     Denoised,
     DenoiseSettings,
@@ -15,7 +16,6 @@ from solvers.denoising import (
 )
 from solvers.motion import Motion
 
-from ..shared.noise import Array
 from .cases import Case
 
 WINDOW = FilterBasesSettings().window

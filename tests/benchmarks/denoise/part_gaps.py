@@ -6,11 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import Motion
 from solvers.rotations.representations import slerp, unroll
 
 from ..peers import gap_fillers, kalman, smoothers
-from ..shared.noise import METRES_PER_DEGREE, Array, angle_error, seeded
+from ..shared.noise import METRES_PER_DEGREE, angle_error, seeded
 from ..shared.tables import Scores
 from .cases import Case, without_heading
 from .ours import Ours

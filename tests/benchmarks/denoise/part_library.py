@@ -10,6 +10,7 @@ from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from functools import cache, lru_cache
 
+from solvers.arrays import Array
 from solvers.denoising import FilterBases, denoise, learn_filter_bases
 from solvers.motion import Motion
 from solvers.retrieval import Clip, ClipEntry, ClipLibrary, build_clip_library
@@ -20,7 +21,7 @@ from ..shared.noise import angle_error, learn_channels
 from ..shared.tables import Scores
 from .cases import Case, Level
 from .part_classes import SHORT
-from .part_gaps import Array, Filler, Gap, cut, score
+from .part_gaps import Filler, Gap, cut, score
 
 WALK = "walk"
 GOING = (WALK, "jogLeftCircle4StepsRstart", "sneak2StepsLStart", "hopBothLegs1hops")

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.depth_scene.camera import Camera
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.forest.depth_differences import BACKGROUND_MM, MM_PER_M
@@ -25,7 +26,6 @@ from solvers.recordings import read_bvh
 
 from .forest_sources import CMU_METRES, DATA, TRUTH, all_bodies, unseen_motions
 
-Array = NDArray[np.float64]
 SAME_DEPTH = 0.08
 """Metres between both renderings beyond which a pixel's part is not known."""
 CMU_JOINTS = {

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.published.wzc12 import WZC12
@@ -21,7 +22,6 @@ from solvers.depth_tracking.tracking.track_pose import next_pose_prior, track_fr
 
 from .depth_sequences import Sequence
 
-Array = NDArray[np.float64]
 WRONG = 0.1
 """Metres that the joints of a failed pose are off, on average."""
 TRACKERS: dict[str, tuple[TrackerSettings, int]] = {

@@ -5,12 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.depth_scene.camera import Camera
 from solvers.depth_tracking.forest.parts import PARTS
 from solvers.depth_tracking.forest_training.render_mesh import NO_PART, render_mesh
 from solvers.depth_tracking.forest_training.skinned_body import SkinnedBody
-
-Array = NDArray[np.float64]
 
 MATERIALS = np.array([
     [196.0, 148.0, 122.0], [58.0, 42.0, 34.0], [172.0, 44.0, 40.0], [216.0, 206.0, 190.0],

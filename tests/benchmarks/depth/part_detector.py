@@ -13,8 +13,8 @@ from pathlib import Path
 from time import process_time
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.depth_tracking.body.model import BodyModel, default_body
 from solvers.depth_tracking.body.pose_from_joints import body_from_joints
 from solvers.depth_tracking.detection.detect_pose import DetectorSettings, detect_pose
@@ -44,7 +44,6 @@ from .depth_labels import LabelledFrame, truth_frames, unseen_frames
 from .forest_sources import TRUTH, all_bodies, taught_motions
 from .part_detector_kinect import kinect_rows
 
-Array = NDArray[np.float64]
 NEAR = 0.1
 """Metres: a joint found within counts as found."""
 EVERY = 15

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.io import loadmat
 
+from solvers.arrays import Array
 from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.body.tables import CAPSULES, JOINTS
@@ -28,7 +29,6 @@ from solvers.recordings import read_depth
 
 from .forest_sources import DATA
 
-Array = NDArray[np.float64]
 FOLDER = DATA / "depth" / "utd_mhad"
 SUBJECTS = (1, 3, 5, 7)
 N_ACTIONS = 27

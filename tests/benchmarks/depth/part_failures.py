@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.depth_tracking.tracking.failure_test import (
     FEATURES,
     LEARNED_BIAS,
@@ -14,8 +15,6 @@ from solvers.depth_tracking.tracking.failure_test import (
 from ..shared.tables import number, table
 from .depth_sequences import SCORED, sequence
 from .failures import RESIDUAL_UNIT, WRONG, area_under_roc, judged
-
-Array = NDArray[np.float64]
 
 
 def failures() -> list[str]:

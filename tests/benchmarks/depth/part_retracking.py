@@ -3,8 +3,8 @@
 from time import process_time
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.depth_tracking.body.coordinates import COORDINATES
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.motion import body_motion, motion_frames
@@ -15,8 +15,6 @@ from solvers.depth_tracking.capturing.retrack import retrack
 
 from ..shared.tables import Scores
 from .depth_sequences import SCORED, Sequence, sequence
-
-Array = NDArray[np.float64]
 
 LOST, AROUND = 12, 10
 """Frames before and after the corrected one in which arms are spoilt, or are looked at."""

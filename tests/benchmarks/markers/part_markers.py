@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from solvers.arrays import Array
 from solvers.denoising import denoise
 from solvers.motion import Tracks
 from solvers.recordings import read_c3d, read_recording
@@ -12,7 +13,7 @@ from solvers.recordings import read_c3d, read_recording
 from ..peers import gap_fillers, marker_fillers
 from ..peers.model_averaging import model_averaging
 from ..shared import clips
-from ..shared.noise import Array, seeded
+from ..shared.noise import seeded
 from ..shared.tables import Scores
 
 TAKES = ("85_02", "HDM_bd_05-01_01_120")

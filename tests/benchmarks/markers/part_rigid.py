@@ -1,8 +1,8 @@
 """Rigid clusters of real takes: what holding them does to noise, and to lost markers."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.markers import constrain_clusters, find_rigid_clusters
 from solvers.recordings import read_c3d
 
@@ -11,7 +11,6 @@ from ..shared.noise import seeded
 from ..shared.tables import table
 from .part_markers import TAKES, without_copies
 
-Array = NDArray[np.float64]
 NOISE = (0.0, 0.001, 0.003)
 LOST = 2.0
 

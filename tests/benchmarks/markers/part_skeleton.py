@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.markers import find_marker_set, solve_skeleton
 from solvers.markers.joint_centers import joint_centers
 from solvers.motion import Motion, Tracks, find_humanoid_map, forward_kinematics
@@ -15,7 +15,6 @@ from tests.fixtures.marked_bodies import markers_on
 from ..shared import clips
 from ..shared.tables import Scores, table
 
-Array = NDArray[np.float64]
 Solver = Callable[[Tracks], Mapping[str, Array]]
 PARTS = {
     "hip": "UpperLeg", "knee": "LowerLeg", "ankle": "Foot",

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.markers import unswap_markers
 from solvers.motion import Tracks
 from solvers.recordings import read_c3d
@@ -17,7 +17,6 @@ from ..shared.noise import seeded
 from ..shared.tables import table
 from .part_markers import TAKES, without_copies
 
-Array = NDArray[np.float64]
 Untangler = Callable[[Tracks], Array]
 HARD_STEP = 4
 SECONDS_BETWEEN_GAPS = 3.0

@@ -19,15 +19,14 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import Motion, forward_kinematics
 from solvers.retargeting.error_points import find_error_points
 from solvers.rotations.representations import IDENTITY, normalize, unroll
 
 from .blender_graph import _graph_editor, _write
 
-Array = NDArray[np.float64]
 TIMEOUT = 3600.0
 TURNS = np.geomspace(3e-4, 0.1, 14)
 """Margins of quaternions' parts to begin with."""

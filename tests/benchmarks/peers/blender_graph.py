@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from solvers.arrays import Array
+
 WIDTHS = (2, 3, 4, 6, 8, 10, 12, 16)
 """Filter widths of the Gaussian, frames; sigma is a third of it. Blender's default is 6."""
 CUTOFFS = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
+from solvers.arrays import Array
 from solvers.motion import Tracks
 
 from .whole_postures import WholePostures, learn_whole, resampled
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 BATCH = 32

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 from sklearn.cluster import KMeans
 
+from solvers.arrays import Array
 from solvers.motion import Tracks
 
 from .whole_postures import WholePostures, learn_whole, resampled
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 WINDOWS = ((0.0, 1.0), (0.0, 0.5), (0.25, 0.75), (0.5, 1.0))

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
-Array = NDArray[np.float64]
+from solvers.arrays import Array
+
 ENOUGH_SEEN = 2
 
 

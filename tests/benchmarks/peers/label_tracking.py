@@ -1,10 +1,10 @@
 """Keep labels by continuity alone: what most tracking programs begin with."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-Array = NDArray[np.float64]
+from solvers.arrays import Array
+
 FAR = 10.0
 """Metres: the cost of a label that gets no point."""
 

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from solvers.arrays import Array
+
 WINDOW, ENERGY, SCALE, WEIGHT, ITERATIONS, REWEIGHTINGS = 20, 0.99, 3.0, 0.1, 20, 3
 
 

@@ -6,12 +6,12 @@
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
+
+from solvers.arrays import Array
 
 from . import gap_fillers
 from .kalman import Dynamics, smooth
 
-Array = NDArray[np.float64]
 WEIGHT_SCALE = 0.2
 MISSING_WEIGHT = 0.02
 DISTAL = 0.5

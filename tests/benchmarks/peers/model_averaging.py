@@ -11,9 +11,10 @@ takes are clean), and filled markers do not help to fill others.
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
+
 from .marker_fillers import principal_markers
 
-Array = NDArray[np.float64]
 RIGID = 0.05
 """Metres: markers whose distance varies more do not enter the global regression."""
 SPREAD = 0.3

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import Tracks
 
 from .whole_postures import WholePostures, learn_whole, resampled
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 

@@ -1,9 +1,8 @@
 """The filter that live trackers are usually smoothed with."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from solvers.arrays import Array
 
 
 def one_euro(

@@ -6,14 +6,14 @@ Each learns from (n_examples, n_features) and gives back a function of new featu
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from sklearn.ensemble import RandomForestRegressor
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, WhiteKernel
 from sklearn.gaussian_process.kernels import ConstantKernel as Constant
 from sklearn.neighbors import NearestNeighbors
 
-Array = NDArray[np.float64]
+from solvers.arrays import Array
+
 Predict = Callable[[Array], Array]
 
 RIDGE = 10.0

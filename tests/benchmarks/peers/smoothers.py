@@ -3,14 +3,14 @@
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.linalg import cho_solve_banded, cholesky_banded, eigh
 from scipy.ndimage import gaussian_filter1d, median_filter
 from scipy.optimize import minimize_scalar
 from scipy.signal import savgol_filter
 
-Array = NDArray[np.float64]
+from solvers.arrays import Array
+
 HAMPEL_HALF_WIDTH = 4
 HAMPEL_THRESHOLD = 3.5
 

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 from sklearn.cluster import KMeans
 
+from solvers.arrays import Array
 from solvers.motion import Tracks
 
 from .whole_postures import WholePostures, learn_whole
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 String = tuple[int, ...]
 

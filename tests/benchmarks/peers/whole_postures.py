@@ -9,13 +9,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import Tracks
 from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
 from solvers.retrieval.published.observed_signals import observed_signals
-
-Array = NDArray[np.float64]
 
 RIDGE = 1e-4
 """Metres squared; a centimetre of doubt on each coordinate."""

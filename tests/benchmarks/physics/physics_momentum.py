@@ -1,15 +1,13 @@
 """How plausible a motion's momentum is: the force that no ground could have given."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
+from solvers.arrays import Array
 from solvers.motion import Motion, forward_kinematics
 from solvers.physics.body import PhysicsBody
 from solvers.physics.body_surface import measure_clearance
 from solvers.rotations.representations import rotate
-
-Array = NDArray[np.float64]
 
 GRAVITY = np.array([0.0, 0.0, -9.81])
 STEADY = 0.05

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion.humanoid.posture_heading import normalize_postures, rotate_about_vertical
 from solvers.motion.humanoid.posture_joints import (
     N_JOINTS,
@@ -17,7 +18,6 @@ from solvers.motion.humanoid.posture_joints import (
 from .kinect_folds import seen_of
 from .kinect_pairs import Pair
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 LIMBS = {"arm": (4, 5, 6), "leg": (12, 13, 14, 15), "both arms": (4, 5, 6, 8, 9, 10)}

@@ -1,13 +1,11 @@
 """How far joints of postures are off, and how jerky they move."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion.humanoid.posture_joints import N_JOINTS, PARENTS
 
 from .kinect_pairs import Pair
-
-Array = NDArray[np.float64]
 
 ABOVE = np.maximum(PARENTS, 0)
 

@@ -7,9 +7,7 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
+from solvers.arrays import Array
 from solvers.motion.humanoid.posture_joints import posture_positions
 from solvers.reconstruction import (
     PostureLibrary,
@@ -28,7 +26,6 @@ from solvers.reconstruction.residual_correction.learn_confidence import (
 from .kinect_pairs import Pair, read_pairs
 from .posture_sources import cmu_library, exercise_library, joined
 
-Array = NDArray[np.float64]
 KEPT = Path(__file__).resolve().parents[3] / "build" / "reconstruct"
 SUBJECTS = ("s01", "s02", "s03", "s04", "s05")
 PRIORS = {

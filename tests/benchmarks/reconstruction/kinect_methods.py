@@ -6,6 +6,7 @@ from functools import cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion.humanoid.posture_heading import normalize_postures, rotate_about_vertical
 from solvers.motion.humanoid.posture_joints import N_JOINTS, posture_positions
 from solvers.reconstruction import (
@@ -39,7 +40,6 @@ from .kinect_folds import (
 )
 from .kinect_pairs import Pair
 
-Array = NDArray[np.float64]
 Method = Callable[[Pair, str], Array]
 """From a take, and who was left out, to the joints of postures (n_frames, 20, 3)."""
 

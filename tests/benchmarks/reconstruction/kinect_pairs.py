@@ -15,12 +15,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import JointRecording, Tracks
 from solvers.recordings.joint_files.ui_prmd import NAMES, read_ui_prmd_pair
-
-Array = NDArray[np.float64]
 
 FOLDER = Path(__file__).parents[4] / "shared/data/kinect/ui_prmd"
 MISPAIRED = "m03_s01"

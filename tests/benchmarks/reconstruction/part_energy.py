@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion.humanoid.body_size import estimate_bone_lengths, segment_lengths
 from solvers.motion.humanoid.bone_directions import rates_from_directions
 from solvers.motion.humanoid.posture_heading import NormalizedPostures, normalize_postures
@@ -27,8 +27,6 @@ from .kinect_errors import compared, jerk
 from .kinect_folds import SUBJECTS, posture_library, seen_of, takes_of, truth_of
 from .kinect_methods import Method, by_postures, by_published_postures, by_reconstruct, joints
 from .part_losses import REPETITIONS, bridged_by, error
-
-Array = NDArray[np.float64]
 
 PUBLISHED = EnergyWeights()
 VARIANTS = {

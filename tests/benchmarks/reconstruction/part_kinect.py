@@ -7,6 +7,7 @@ from time import process_time
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import JointRecording
 from solvers.reconstruction import (
     CorrectionSettings,
@@ -23,8 +24,6 @@ from .kinect_errors import apart_free, compared, jerk
 from .kinect_folds import SUBJECTS, posture_library, residual_prior, takes_of, truth_of
 from .kinect_methods import METHODS, Method, raw
 from .kinect_pairs import Pair
-
-Array = NDArray[np.float64]
 
 LENGTHS = (3.0, 10.0, 30.0)
 """Seconds."""

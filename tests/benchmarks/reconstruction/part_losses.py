@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import cache, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion.humanoid.posture_heading import normalize_postures
 from solvers.reconstruction import ReconstructMethod
 from solvers.reconstruction.residual_correction.inputs import SmoothedPostures, smooth_postures
@@ -33,8 +33,6 @@ from .kinect_methods import (
     raw,
 )
 from .kinect_pairs import Pair
-
-Array = NDArray[np.float64]
 
 N_NEIGHBOURS, N_COMPONENTS = 30, 20
 NOISE = 0.02

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
+from solvers.arrays import Array
 from solvers.motion import SENSOR_JOINTS, JointRecording, Motion, Sensor, Tracks
 from solvers.motion.humanoid.body_size import estimate_bone_lengths, segment_lengths
 from solvers.motion.humanoid.bone_directions import PARENT_INDICES, rates_from_directions
@@ -40,7 +41,6 @@ from tests.benchmarks.reconstruction.posture_synthesis import solve_sequentially
 from ..shared import clips
 from ..shared.tables import Scores
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Method = Callable[[Array, Flags, PostureLibrary], Array]
 """From true postures, which joints are lost, and a library to estimates."""

@@ -5,8 +5,8 @@ from functools import partial
 from time import process_time
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import JointRecording, Tracks, forward_kinematics
 from solvers.motion.humanoid.body_size import segment_lengths
 from solvers.motion.humanoid.posture_joints import posture_positions
@@ -24,8 +24,6 @@ from ..peers.gap_fillers import linear
 from ..peers.smoothers import gaussian
 from ..shared.clips import DATA
 from ..shared.tables import number, table
-
-Array = NDArray[np.float64]
 
 FILES = {
     "irds": "*_stand.txt",

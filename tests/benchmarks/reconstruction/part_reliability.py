@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import rankdata
 
+from solvers.arrays import Array
 from solvers.motion import JointRecording
 from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
 from solvers.reconstruction.reliability.error_model import (
@@ -21,7 +22,6 @@ from solvers.reconstruction.reliability.reference import parent_distances, refer
 
 from . import kinect_pairs
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 LIMITS = (0.05, 0.10)

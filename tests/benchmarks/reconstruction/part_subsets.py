@@ -1,8 +1,8 @@
 """Table III of [SHJT13] on UI-PRMD: whole postures from a few joints, subject left out."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion.humanoid.posture_joints import N_JOINTS, POSTURE_JOINTS
 from solvers.reconstruction import ReconstructMethod
 
@@ -12,8 +12,6 @@ from .kinect_errors import apart_free, compared
 from .kinect_folds import SUBJECTS, takes_of, truth_of
 from .kinect_methods import Method, by_postures, by_published_postures, by_reconstruct, joints
 from .part_losses import REPETITIONS
-
-Array = NDArray[np.float64]
 
 HANDS, FEET = ("leftHand", "rightHand"), ("leftFoot", "rightFoot")
 PARTS = {

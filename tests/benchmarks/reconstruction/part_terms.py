@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion.humanoid.posture_joints import (
     N_JOINTS,
     POSTURE_JOINTS,
@@ -40,8 +41,6 @@ from .part_energy import classes, energy_weights
 from .part_kinect import WORST, Errors, errors_of
 from .part_losses import Found, errors_table
 from .part_losses import errors_of as damage_errors
-
-Array = NDArray[np.float64]
 
 SPATIAL, TEMPORAL, TRUST = 0.6, 0.2, 0.2
 TERMS = {

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import Motion, forward_kinematics
 from solvers.reconstruction import (
     PostureLibrary,
@@ -29,7 +29,6 @@ from ..shared.tables import number, table
 from .posture_sources import cmu_library, exercise
 from .twist_cases import KINECT, LOST, TRUE, Case, cases
 
-Array = NDArray[np.float64]
 Group = tuple[list[Motion], PostureLibrary]
 """Clips of one rig, and the library that they are rebuilt with."""
 

@@ -3,14 +3,12 @@
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.pictures.canvas import FAINT, INK, Canvas, Color
 from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
 
 from .part_reliability import Pair
-
-Array = NDArray[np.float64]
 
 TAKE = "m02_s02_e01"
 LEFT, TOP, ROW, GAP, WIDTH = 96.0, 40.0, 13.0, 62.0, 900.0

@@ -1,8 +1,8 @@
 """The posture of least energy by Gauss-Newton steps in the natural posture space."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion.humanoid import N_JOINTS, PARENT_INDICES
 from solvers.reconstruction.pose_space import (
     N_BONES,
@@ -12,8 +12,6 @@ from solvers.reconstruction.pose_space import (
     style_distances,
 )
 from solvers.reconstruction.published.sequential import choose_sequentially
-
-Array = NDArray[np.float64]
 
 N_STEPS = 6
 MIN_GAIN = 1e-4

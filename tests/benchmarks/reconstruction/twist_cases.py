@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import JointRecording, Motion, find_humanoid_map, forward_kinematics
 from solvers.motion.humanoid.canonical import t_pose_alignment
 from solvers.motion.humanoid.posture_heading import normalize_postures, rotate_about_vertical
@@ -23,7 +24,6 @@ from solvers.workflows.standard_joints import KINECT_V1
 
 from .kinect_folds import pairs, seen_of, truth_of
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 TRUE, KINECT, LOST = "optical capture", "Kinect errors", "limb missing 1.5 s"

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import (
     HumanoidMap,
     Motion,
@@ -24,7 +25,6 @@ from solvers.motion import (
 )
 from solvers.rotations.representations import inverse, rotate, rotation_between
 
-Array = NDArray[np.float64]
 SIDES = ("left", "right")
 SUNK = 0.01
 """Metres below its height in the rest pose at which the ball of a foot has sunk."""

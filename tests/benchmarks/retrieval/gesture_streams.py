@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.io import loadmat
 
+from solvers.arrays import Array
 from solvers.gestures.events import Gesture, GestureEvent
 from solvers.gestures.recognition import recognize_gestures
 from solvers.gestures.settings import GestureSettings
@@ -17,8 +17,6 @@ from solvers.recordings.live.frames import frames_from_recording
 from solvers.workflows.live_session import pose_from_frame
 
 from ..shared.clips import DATA
-
-Array = NDArray[np.float64]
 
 KINECT, UTD = DATA / "kinect", DATA / "depth" / "utd_mhad"
 ARM, LEG = ("UpperArm", "LowerArm", "Hand", "HandEnd"), ("UpperLeg", "LowerLeg", "Foot", "Toes")

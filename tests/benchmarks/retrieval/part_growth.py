@@ -25,9 +25,9 @@ from tempfile import TemporaryDirectory
 from time import perf_counter, process_time
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import interp1d
 
+from solvers.arrays import Array
 from solvers.motion import Tracks
 from solvers.motion.humanoid.posture_joints import (
     MIRROR_JOINTS,
@@ -57,8 +57,6 @@ from ..shared import clips
 from ..shared.report import DOCS, PICTURES, Report
 from ..shared.tables import table
 from .retrieval_pictures import draw_growth
-
-Array = NDArray[np.float64]
 
 SIZES = (300, 1_000, 3_000, 10_000)
 BATCH = 100

@@ -5,9 +5,9 @@ from collections.abc import Callable
 from time import process_time
 
 import numpy as np
-from numpy.typing import NDArray
 from sklearn.decomposition import sparse_encode
 
+from solvers.arrays import Array
 from solvers.retrieval.postures.clip_postures import clip_postures
 from solvers.retrieval.published.dictionary import DictionarySettings, learn_dictionary
 from solvers.retrieval.published.observed_signals import observed_signals
@@ -15,8 +15,6 @@ from solvers.retrieval.published.sparse_codes import sparse_codes
 
 from ..shared.tables import number, table
 from .retrieval_clips import training_library
-
-Array = NDArray[np.float64]
 
 N_SIGNALS, N_ATOMS = 300, 700
 RATE = 30.0

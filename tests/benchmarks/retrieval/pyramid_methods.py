@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import vstack
 
+from solvers.arrays import Array
 from solvers.motion import Tracks
 from solvers.retrieval.postures.body_parts import JOINTS, ROOTS
 from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
@@ -26,7 +27,6 @@ from solvers.retrieval.published.pyramid_matching import (
     pyramid_kernel,
 )
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 

@@ -9,7 +9,6 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from solvers.motion import JointRecording, Motion, Tracks
 from solvers.motion.humanoid.posture_joints import (
@@ -20,8 +19,6 @@ from solvers.motion.humanoid.posture_joints import (
 from solvers.recordings import read_acclaim, read_recording
 
 from ..shared import clips
-
-Array = NDArray[np.float64]
 
 RATE = 120.0
 WALK = 2.5

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import Tracks
 from solvers.retrieval import Clip, ClipLibrary, FindSettings, build_clip_library
 from solvers.retrieval.index.segments import RATE
@@ -14,7 +15,6 @@ from solvers.retrieval.postures.clip_postures import clip_postures
 from solvers.retrieval.search.describe_query import DescribedQuery, describe_query
 from solvers.retrieval.search.rank_clips import rank_clips
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 

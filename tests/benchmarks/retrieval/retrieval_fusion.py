@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import Tracks
 
 from .retrieval_protocol import Method, Prepared
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 SPREADING = 0.95

@@ -13,12 +13,12 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import Tracks
 
 from .retrieval_clips import LabelledClip
 from .retrieval_damage import Damage
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 TOP = 20

@@ -13,6 +13,7 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.arrays import Array
 from solvers.motion import Motion
 from solvers.rotations.representations import (
     angle_between,
@@ -23,7 +24,6 @@ from solvers.rotations.representations import (
     rotation_vector_from_quaternion,
 )
 
-Array = NDArray[np.float64]
 STILL = 0.3
 METRES_PER_DEGREE = 0.005
 OUTLIERS = (20.0, 60.0)

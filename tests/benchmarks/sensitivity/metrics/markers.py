@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from solvers.arrays import Array
 from solvers.markers import (
     constrain_clusters,
     find_rigid_clusters,
@@ -13,7 +14,7 @@ from solvers.recordings import read_c3d
 from tests.fixtures.marked_bodies import markers_on
 
 from ...shared import clips
-from ..takes import Array, missed_or_false, point_error, variety, walk
+from ..takes import missed_or_false, point_error, variety, walk
 
 JOINTS = ("UpperLeg", "LowerLeg", "Foot", "UpperArm", "LowerArm", "Hand")
 MARKERS = 41

@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from solvers.arrays import Array
 from solvers.denoising import find_worst_issues, learn_joint_limits, measure_quality
 from solvers.motion import JointLimits, Motion, Tracks
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.samples import CorruptionSettings, corrupt
 
-from ..takes import Array, hdm05, joint_tracks, missed_or_false, variety, walk
+from ..takes import hdm05, joint_tracks, missed_or_false, variety, walk
 
 Fault = tuple[str, int, int]
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from solvers.arrays import Array
 from solvers.motion import (
     SENSOR_JOINTS,
     JointRecording,
@@ -19,7 +20,7 @@ from solvers.reconstruction import PostureLibrary, build_posture_library, recons
 from solvers.rotations.representations import angle_between
 
 from ...shared import clips
-from ..takes import Array, hdm05, missed_or_false, point_error, variety, walk
+from ..takes import hdm05, missed_or_false, point_error, variety, walk
 
 LIBRARY = (("squat1Reps", 2), ("grabHighR", 1), ("kickLFront1Reps", 4), ("throwBasketball", 1))
 SENSORS = {

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from solvers.arrays import Array
 from solvers.denoising import learn_joint_limits, limit_excess
 from solvers.motion import JointLimits, Motion, detect_contacts
 from solvers.rotations.representations import (
@@ -18,7 +19,7 @@ from solvers.variation import (
     repeat_loop,
 )
 
-from ..takes import Array, hdm05, walk
+from ..takes import hdm05, walk
 
 N_VARIANTS = 4
 
