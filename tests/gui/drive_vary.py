@@ -183,4 +183,4 @@ def steps():
     yield from many()
 
 
-bgui.run(steps, timeout=1200)
+bgui.run(steps, timeout=3600)
