@@ -14,7 +14,7 @@ from ..actions.limits import read_limits
 from ..actions.take import ArmatureTake
 from ..blender.compat import Source
 from ..blender.time_slices import Steps
-from ..runtime.selection import chosen_bones, played_source
+from ..runtime.selection import played_source
 from ..runtime.subject import Subject
 from ..scene import history
 from .choices import CleanChoices, Limits
@@ -22,7 +22,7 @@ from .solve_cleaning import Cleaned, Recordings, names_of
 
 
 class ArmatureReading(NamedTuple):
-    """An armature, what it plays, and the bones to change."""
+    """An armature and what it plays."""
 
     scene: bpy.types.Scene
     armature: bpy.types.Object
@@ -30,7 +30,6 @@ class ArmatureReading(NamedTuple):
     played: Source
     """Action of the armature: the recorded one, or an earlier result made from it."""
     raw: ArmatureTake
-    chosen: frozenset[str]
 
     @classmethod
     def of(
@@ -42,22 +41,22 @@ class ArmatureReading(NamedTuple):
         recorded = history.cleaned_from(played_source(armature))
         raw = yield from read_take.steps(armature, scene, choices.frame_range, recorded)
         scene, armature = here.find()
-        bones, played = chosen_bones(armature, choices.bones), played_source(armature)
-        return cls(scene, armature, history.cleaned_from(played), played, raw, bones)
+        played = played_source(armature)
+        return cls(scene, armature, history.cleaned_from(played), played, raw)
 
-    def limits(self, choices: CleanChoices) -> JointLimits | None:
+    def limits(self, choices: CleanChoices, chosen: frozenset[str]) -> JointLimits | None:
         """Return the rig's joint limits, if the settings use them."""
         if choices.joint_limits is not Limits.CONSTRAINTS:
             return None
-        return read_limits(self.armature, self.raw, self.chosen)
+        return read_limits(self.armature, self.raw, chosen)
 
     def contacts(self) -> NDArray[np.bool_] | None:
         """Return the contacts of each foot as keyed by the animator."""
         return animators_contacts(self.played, self.raw.frames)
 
-    def present(self) -> Steps[Recordings | None]:
+    def present(self, chosen: frozenset[str]) -> Steps[Recordings | None]:
         """What an earlier result shows of the bones that stay, if it differs from the raw."""
-        everything = len(self.chosen) == len(self.raw.rig.bones)
+        everything = len(chosen) == len(self.raw.rig.bones)
         if everything or self.played == self.recorded:
             return None
         take = yield from read_take.steps(

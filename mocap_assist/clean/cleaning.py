@@ -18,7 +18,7 @@ from ..blender.time_slices import Sliced, Steps
 from ..jobs.job import ShortSolve
 from ..library.prior import library_prior
 from ..runtime import redo
-from ..runtime.selection import Bones
+from ..runtime.selection import Bones, chosen_parts
 from ..runtime.subject import Subject, check_unchanged
 from .armature import ArmatureReading
 from .choices import CleanChoices, CleanSettings, Limits, Prior
@@ -40,15 +40,16 @@ def read_cleaning(
     Returns what is to be solved, which may be pickled.
     """
     choices = settings.choices
+    chosen = chosen_parts(subject, choices.bones)  # what is selected at the press
     examples, found = yield from _read(Subject.of(scene, subject), choices)
     problem = _problem(found.raw, settings, examples)
     plants = choices.plant_feet and isinstance(found.raw, ArmatureTake)
-    limits, contacts = found.limits(choices), found.contacts()
+    limits, contacts = found.limits(choices, chosen), found.contacts()
     finish = Finish(
         strength=settings.denoising.strength,
         ease=ease_of(found.raw.grid),
-        chosen=found.chosen,
-        present=(yield from found.present()),
+        chosen=chosen,
+        present=(yield from found.present(chosen)),
         limits=limits,
         planting=settings.planting if plants else None,
         contacts=contacts,

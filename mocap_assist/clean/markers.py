@@ -10,7 +10,6 @@ from ..actions.armature_write import check_writable, put_to_use
 from ..actions.marker_take import MarkerTake, read_markers, write_markers
 from ..actions.markers import markers_of
 from ..blender.time_slices import Steps
-from ..runtime.selection import chosen_markers
 from ..runtime.subject import Subject
 from ..scene import history
 from .choices import CleanChoices
@@ -18,12 +17,11 @@ from .solve_cleaning import Cleaned, Recordings
 
 
 class MarkerReading(NamedTuple):
-    """Markers below one object, and those of them to change."""
+    """Markers below one object."""
 
     scene: bpy.types.Scene
     holder: bpy.types.Object
     raw: MarkerTake
-    chosen: frozenset[str]
 
     @classmethod
     def of(
@@ -35,17 +33,17 @@ class MarkerReading(NamedTuple):
         here = Subject.of(scene, holder)
         raw = yield from read_markers.steps(holder, scene, choices.frame_range, recorded=True)
         scene, holder = here.find()
-        return cls(scene, holder, raw, chosen_markers(raw, choices.bones))
+        return cls(scene, holder, raw)
 
-    def limits(self, choices: CleanChoices) -> None:
+    def limits(self, choices: CleanChoices, chosen: frozenset[str]) -> None:
         """Markers are no joints."""
 
     def contacts(self) -> None:
         """Nor are they feet."""
 
-    def present(self) -> Steps[Recordings | None]:
+    def present(self, chosen: frozenset[str]) -> Steps[Recordings | None]:
         """What an earlier result shows of the markers that stay."""
-        if len(self.chosen) == self.raw.tracks.n_points:
+        if len(chosen) == self.raw.tracks.n_points:
             return None
         played = yield from read_markers.steps(self.holder, self.scene, grid=self.raw.grid)
         same = played.tracks.names == self.raw.tracks.names

@@ -6,8 +6,7 @@ from ...solvers.errors import InvalidMotionError
 from ...solvers.settings import Choice
 from ..actions.armature_read import action_of
 from ..actions.armature_write import check_writable
-from ..actions.marker_take import MarkerTake
-from ..actions.markers import first_marker_of, holder_of, markers_of
+from ..actions.markers import first_marker_of, holder_of, markers_of, point_names
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
@@ -110,13 +109,16 @@ def chosen_bones(armature: bpy.types.Object, choice: Bones) -> frozenset[str]:
     return selected
 
 
-def chosen_markers(take: MarkerTake, choice: Bones) -> frozenset[str]:
-    """Return the names of the markers to change; raise InvalidMotionError if there are none."""
+def chosen_parts(subject: bpy.types.Object, choice: Bones) -> frozenset[str]:
+    """Return the names of the bones or markers to change; raise InvalidMotionError if none."""
+    if subject.type == "ARMATURE":
+        return chosen_bones(subject, choice)
+    markers = markers_of(subject)
     chosen = frozenset(
         name
-        for name, marker in zip(take.tracks.names, take.markers, strict=True)
+        for name, marker in zip(point_names(markers), markers, strict=True)
         if choice is Bones.ALL or marker.select_get()
     )
-    if not chosen:
+    if markers and not chosen:
         raise InvalidMotionError("No markers are selected. Select some, or clean all of them.")
     return chosen
