@@ -92,7 +92,7 @@ def test_a_file_that_is_opened_meanwhile_only_delays_it(
     while not auto_update._running:
         auto_update.update_libraries()
         for watcher in auto_update._watchers.values():
-            watcher._scan.result(timeout=10)
+            watcher._scan.result(timeout=120)
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
 
     assert look(4) == 1
