@@ -11,8 +11,8 @@ from ...signals import estimate_noise, fill_channel_gaps, remove_outliers, shrin
 from ..channels import Channels
 from ..prior import FilterBases, FilterBasesSettings, WindowPrior
 from .estimate import Estimate
+from .estimate_channels import estimate_channels
 from .joint_outliers import JointOutlierPrior
-from .posterior import estimate_channels
 from .prior_selection import (
     UNKNOWN_DEVIATION,
     build_examples_prior,
