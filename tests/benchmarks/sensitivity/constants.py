@@ -22,7 +22,7 @@ FAMILIES: dict[str, tuple[str, ...]] = {
         "solvers/denoising/observed_samples.py",
         "solvers/denoising/channels",
         "solvers/denoising/posterior",
-        "solvers/denoising/prior",
+        "solvers/denoising/window_priors",
         "solvers/denoising/published.py",
         "solvers/signals/noise.py",
     ),
