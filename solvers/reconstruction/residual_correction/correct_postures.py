@@ -20,7 +20,7 @@ from ..joint_rotations import (
 from ..reliability import Reliability, measure_reliability, posture_reliability
 from .inputs import smooth_postures
 from .prediction import Prediction
-from .prior import ResidualPrior
+from .residual_prior import ResidualPrior
 from .smooth_trajectories import filter_trajectories, smooth_trajectories
 
 MIN_WEIGHT = 0.02

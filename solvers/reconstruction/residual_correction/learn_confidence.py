@@ -18,7 +18,7 @@ from .learn_residual_prior import (
     ResidualPriorSettings,
     learn_residual_prior,
 )
-from .prior import ResidualPrior
+from .residual_prior import ResidualPrior
 
 Pair = tuple[JointRecording, Tracks]
 

@@ -22,7 +22,7 @@ from ...settings import Choice, Settings, setting
 from .inputs import fill_missing, neighborhood_features, smooth_postures
 from .kernel import Kernel, learn_kernel
 from .learn_movement_process import Take, learn_movement_process
-from .prior import ResidualPrior, posture_components
+from .residual_prior import ResidualPrior, posture_components
 from .sparse_process import basis_functions, inducing_points, posterior, shared_design
 
 Numbers = NDArray[np.int64]
