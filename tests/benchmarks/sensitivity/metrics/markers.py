@@ -23,7 +23,7 @@ MARKERS = 41
 
 def prepare() -> dict[str, object]:
     """Put markers on two bodies; exchange labels of a real take, and shake it."""
-    bodies = {"walk": walk("10_04", 2).slice(0, 150), "punch": variety("02_05").slice(600, 900)}
+    bodies = {"walk": walk("10_04", 2).slice(0, 90), "punch": variety("02_05").slice(660, 740)}
     solved = {}
     for name, motion in bodies.items():
         joints = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
@@ -52,10 +52,10 @@ def measure(
     """Distance to the joints, samples still wrong, and noise that the clusters leave."""
     figures = {}
     for name, (given, truth) in solved.items():
-        centres = solve_skeleton(given).joint_centres
+        centers = solve_skeleton(given).joint_centers
         for joint, where in truth.items():
-            if joint.startswith("left") and joint in centres.names:
-                found = centres.positions[:, centres.names.index(joint)]
+            if joint.startswith("left") and joint in centers.names:
+                found = centers.positions[:, centers.names.index(joint)]
                 figures[f"{name}, {joint}: mm"] = point_error(found, where)
     for name, (given, truth) in swaps.items():
         result = unswap_markers(given).tracks.positions
@@ -71,7 +71,7 @@ def measure(
 
 
 def _clean() -> Tracks:
-    tracks = read_c3d(clips.DATA / "mocap" / "05_13.c3d").slice(200, 560)
+    tracks = read_c3d(clips.DATA / "mocap" / "05_13.c3d").slice(200, 440)
     seen = np.flatnonzero(tracks.visible[:, :MARKERS].all(axis=0))
     names = tuple(tracks.names[point] for point in seen)
     return Tracks(names, tracks.positions[:, seen], tracks.frame_rate)
