@@ -23,8 +23,8 @@ from solvers.depth_tracking.body.normal_equations import (
 )
 from solvers.depth_tracking.capturing.capture import CaptureSettings, capture
 from solvers.depth_tracking.published.depth_edges import canny, edge_pixels
+from solvers.depth_tracking.published.edge_tracker import track_pose_by_edges
 from solvers.depth_tracking.published.edges import edge_term
-from solvers.depth_tracking.published.lou12 import track_pose_lou12
 from solvers.depth_tracking.published.surface import (
     ColoredFrame,
     PreviousFrame,
@@ -148,7 +148,7 @@ def test_published_tracker_follows_a_slow_actor():
     truth = waving(6)
     prior = motion_prior_from_poses([waving(60)])
 
-    tracked = track_pose_lou12(recorded(truth), BODY, truth[0], prior)
+    tracked = track_pose_by_edges(recorded(truth), BODY, truth[0], prior)
 
     assert np.abs(tracked.joints.positions[0] - tracked.joints.positions[-1]).max() > 0.03
     assert tracked.residual.max() < 0.03
@@ -236,4 +236,4 @@ def test_colors_are_read_only_if_a_term_uses_them():
 
     assert (found.motion.n_frames, requested) == (4, [])
     with pytest.raises(InvalidFileError, match=r"rgb/4\.png"):
-        track_pose_lou12(depth, BODY, truth[0])
+        track_pose_by_edges(depth, BODY, truth[0])
