@@ -32,8 +32,8 @@ from ..tracking import (
 )
 from .depth_edges import edge_pixels
 from .edges import edge_term
+from .registration_tracker import NO_ANKLES
 from .surface import ColoredFrame, PreviousFrame, read_intensities, surface_term
-from .wzc12 import NO_ANKLES
 
 PER_DEGREE = (180.0 / np.pi) ** 2
 """Squared degrees in a squared radian."""

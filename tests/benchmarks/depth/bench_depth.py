@@ -17,7 +17,7 @@ from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.refine_body import refine_body
 from solvers.depth_tracking.published.edge_tracker import track_pose_by_edges
-from solvers.depth_tracking.published.wzc12 import WZC12
+from solvers.depth_tracking.published.registration_tracker import REGISTRATION_TRACKER
 from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, TrackerSettings
 from solvers.depth_tracking.tracking.track_pose import track_pose
 
@@ -143,8 +143,8 @@ def trackers() -> list[str]:
     """Compare trackers, started from the true first pose, bodies of the true lengths."""
     methods: dict[str, Track] = {
         "ours (default)": partial(ours, DEFAULT_TRACKER),
-        "WZC12 preset": partial(ours, WZC12),
-        "WZC12 terms, damped, with limits": partial(ours, DAMPED_WZC12),
+        "WZC12 preset": partial(ours, REGISTRATION_TRACKER),
+        "WZC12 terms, damped, with limits": partial(ours, DAMPED_REGISTRATION),
         "LOU12 preset, color and clips": edge_tracked,
         "LOU12 preset, no color, no clips": edge_tracked_from_depth,
         "articulated ICP": partial(peer, articulated_icp),
@@ -170,7 +170,7 @@ def trackers() -> list[str]:
     return [scores.markdown(), _single(by_sequence), by_joint.markdown()]
 
 
-DAMPED_WZC12 = replace(
+DAMPED_REGISTRATION = replace(
     DEFAULT_TRACKER, closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
     depth_weight=1000.0, extra_weight=10000.0, silhouette_weight=0.1,
 )  # fmt: skip

@@ -25,13 +25,13 @@ from solvers.depth_tracking.capturing.capture import CaptureSettings, capture
 from solvers.depth_tracking.published.depth_edges import canny, edge_pixels
 from solvers.depth_tracking.published.edge_tracker import track_pose_by_edges
 from solvers.depth_tracking.published.edges import edge_term
+from solvers.depth_tracking.published.registration_tracker import REGISTRATION_TRACKER
 from solvers.depth_tracking.published.surface import (
     ColoredFrame,
     PreviousFrame,
     previous_intensities,
     surface_term,
 )
-from solvers.depth_tracking.published.wzc12 import WZC12
 from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 from solvers.depth_tracking.terms.observation import Observation
 from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER
@@ -231,7 +231,7 @@ def test_colors_are_read_only_if_a_term_uses_them():
     depth = replace(recorded(truth), read_color=read_color)
 
     found = capture(depth, BODY, settings=CaptureSettings())
-    for settings in (DEFAULT_TRACKER, WZC12):
+    for settings in (DEFAULT_TRACKER, REGISTRATION_TRACKER):
         track_pose(depth, BODY, truth[0], settings=settings)
 
     assert (found.motion.n_frames, requested) == (4, [])
