@@ -28,7 +28,7 @@ from ..takes import (
     walk,
 )
 
-FAMILIES = ("Mixamo", "Rigify")
+FAMILIES = ("Mixamo",)
 """Rigs of other proportions and rest poses, besides a child's."""
 TOLERANCE_M = 0.005
 """Of the keys that are left."""
@@ -37,12 +37,10 @@ TOLERANCE_M = 0.005
 def prepare() -> dict[str, object]:
     """Choose short takes in which hands meet, touch the floor, or are high; three rigs."""
     rigs = {name: RIGS[name]() for name in FAMILIES if name in RIGS} | {"child": child()}
-    dance = variety("salsa_01").slice(300, 420)
     motions = {
         "walk": walk("07_11"),
         "deposit": hdm05("depositFloorR", 1).slice(0, 60),
         "kick": hdm05("kickLFront1Reps", 2),
-        "dance": dance,
     }
     still = walk("10_04")
     joined = _joined([walk("10_04"), walk("10_04").slice(70, 138), walk("10_04").slice(10, 60)])
