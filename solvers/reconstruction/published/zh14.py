@@ -28,6 +28,8 @@ from ..residual_correction import (
 CM_PER_M = 100.0
 """[ZH14] gives no unit for its weights; with meters the temporal term would vanish."""
 REFERENCE_RATE_HZ = 30.0
+"""Frame rate in hertz for which the weights are specified. By definition: that of the
+Kinect."""
 
 
 @dataclass(frozen=True, kw_only=True)

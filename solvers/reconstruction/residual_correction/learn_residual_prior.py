@@ -29,9 +29,9 @@ Numbers = NDArray[np.int64]
 
 N_COMPONENTS = 15
 CORRELATION_TIME_S = 2.5
-"""Time (s) after which errors of one take are independent; nearer frames are correlated."""
+"""Time (s) after which errors of one take are independent. Chosen by hand; used in training."""
 MEDIAN_SQUARED_LENGTH = 2.366
-"""Median of the squared length of a normal 3D vector with unit variance per axis."""
+"""Ratio of the median squared length of a normal 3D vector to its variance, by definition."""
 MIN_FRAMES = 20
 """Minimum number of frames with a known joint to learn it."""
 
