@@ -12,7 +12,7 @@ from tests.benchmarks.sensitivity.constants import FAMILIES, Constant, constants
 
 NOT_YET = {
     "retargeting", "markers",
-    "retrieval", "gestures", "stepwise_variation", "depth_tracking",
+    "depth_tracking",
 }  # fmt: skip
 """Families whose constants have no source yet."""
 SOURCE = re.compile(

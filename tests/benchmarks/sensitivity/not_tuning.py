@@ -85,7 +85,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "depth_tracking/body/kinematics._SMALL_ANGLE",
         "depth_tracking/terms/closest_surface._NO_SURFACE",
     ),
-    "printed by the paper whose method it is": ("denoising/published.*", "*/published/*"),
+    "of a published method, which stays as it is": ("denoising/published.*", "*/published/*"),
     "order or weight of a list that is read by people": (
         "denoising/quality/worst_issues.CUT_SEVERITY",
         "denoising/quality/worst_issues.LONG_GAP_S",
