@@ -1,4 +1,4 @@
-"""The filter of Lou and Chai (2010), unchanged, as a baseline."""
+"""The filter of Lou and Chai (2010) as published: a choice of Clean, and its baseline."""
 
 import numpy as np
 

@@ -1,4 +1,8 @@
-"""The trackers as published: presets and terms that the default does not use."""
+"""The trackers of [WZC12] and [LOU12] as published: baselines of `make bench-depth`.
+
+No button offers them. The default tracker shares the code of both and differs where a
+benchmark shows a gain, so what stands here stays as the papers print it.
+"""
 
 from .edge_tracker import track_pose_by_edges
 from .registration_tracker import REGISTRATION_TRACKER

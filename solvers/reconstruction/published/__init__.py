@@ -1,4 +1,8 @@
-"""Reconstruction as published: [SHJT13] for missing joints, [ZH14] for sensor errors."""
+"""Reconstruction as published: [SHJT13] for missing joints, [ZH14] for sensor errors.
+
+Both are methods of `reconstruct` and baselines of `make bench-reconstruct`. They stay as the
+papers print them; the default improves on them next door.
+"""
 
 from .shjt13 import reconstruct_shjt13, search_as_published
 from .zh14 import ThreeTermSettings, reconstruct_zh14
