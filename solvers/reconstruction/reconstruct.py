@@ -19,7 +19,7 @@ from .pose_completion import (
     reconstruct_postures,
 )
 from .pose_library import PostureLibrary
-from .published import ThreeTermSettings, reconstruct_shjt13, reconstruct_zh14
+from .published import ThreeTermSettings, reconstruct_published_postures, reconstruct_zh14
 from .reliability import (
     ReliabilitySettings,
     fix_left_right_swaps,
@@ -150,7 +150,7 @@ def reconstruct(
     """
     is_known_sensor = prior is not None or recording.sensor is Sensor.KINECT_V2
     if settings.method is ReconstructMethod.PUBLISHED_POSTURES:
-        return reconstruct_shjt13(
+        return reconstruct_published_postures(
             recording, postures, settings=_posture_settings(settings), progress=progress
         )
     if settings.method is ReconstructMethod.PUBLISHED_RESIDUALS:

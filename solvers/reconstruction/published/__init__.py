@@ -4,12 +4,12 @@ Both are methods of `reconstruct` and baselines of `make bench-reconstruct`. The
 papers print them; the default improves on them next door.
 """
 
-from .shjt13 import reconstruct_shjt13, search_as_published
+from .posture_reconstruction import reconstruct_published_postures, search_as_published
 from .zh14 import ThreeTermSettings, reconstruct_zh14
 
 __all__ = [
     "ThreeTermSettings",
-    "reconstruct_shjt13",
+    "reconstruct_published_postures",
     "reconstruct_zh14",
     "search_as_published",
 ]

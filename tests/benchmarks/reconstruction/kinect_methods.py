@@ -20,7 +20,7 @@ from solvers.reconstruction import (
     reconstruct,
     reconstruct_postures,
 )
-from solvers.reconstruction.published.shjt13 import search_as_published
+from solvers.reconstruction.published.posture_reconstruction import search_as_published
 from solvers.reconstruction.published.zh14 import ThreeTermSettings, reconstruct_zh14
 from solvers.reconstruction.residual_correction.correct_postures import smooth_trajectories
 from solvers.reconstruction.residual_correction.inputs import smooth_postures

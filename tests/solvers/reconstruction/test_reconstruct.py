@@ -22,7 +22,7 @@ from solvers.reconstruction import (
     reconstruct_postures,
 )
 from solvers.reconstruction.pose_completion import complete_postures
-from solvers.reconstruction.published.shjt13 import search_as_published
+from solvers.reconstruction.published.posture_reconstruction import search_as_published
 from solvers.reconstruction.published.zh14 import ThreeTermSettings, reconstruct_zh14
 from solvers.reconstruction.reconstruct import shipped_residual_prior
 
