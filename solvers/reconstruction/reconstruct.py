@@ -19,7 +19,11 @@ from .pose_completion import (
     reconstruct_postures,
 )
 from .pose_library import PostureLibrary
-from .published import ThreeTermSettings, reconstruct_published_postures, reconstruct_zh14
+from .published import (
+    ThreeTermSettings,
+    reconstruct_published_postures,
+    reconstruct_published_residuals,
+)
 from .reliability import (
     ReliabilitySettings,
     fix_left_right_swaps,
@@ -159,7 +163,7 @@ def reconstruct(
             shift=settings.shift and is_known_sensor,
             change=is_known_sensor,
         )
-        return reconstruct_zh14(
+        return reconstruct_published_residuals(
             recording, prior or shipped_residual_prior(), settings=terms, progress=progress
         )
     if not settings.causal:

@@ -5,11 +5,11 @@ papers print them; the default improves on them next door.
 """
 
 from .posture_reconstruction import reconstruct_published_postures, search_as_published
-from .zh14 import ThreeTermSettings, reconstruct_zh14
+from .residual_reconstruction import ThreeTermSettings, reconstruct_published_residuals
 
 __all__ = [
     "ThreeTermSettings",
     "reconstruct_published_postures",
-    "reconstruct_zh14",
+    "reconstruct_published_residuals",
     "search_as_published",
 ]

@@ -34,7 +34,7 @@ Kinect."""
 
 @dataclass(frozen=True, kw_only=True)
 class ThreeTermSettings(Settings):
-    """Settings of `reconstruct_zh14`."""
+    """Settings of `reconstruct_published_residuals`."""
 
     spatial: float = setting(0.6, "Weight of the predicted offsets", minimum=0.0, maximum=10.0)
     temporal: float = setting(0.2, "Weight of constant velocities", minimum=0.0, maximum=10.0)
@@ -46,7 +46,7 @@ class ThreeTermSettings(Settings):
     change: bool = setting(True, "Apply the pose-dependent offset")
 
 
-def reconstruct_zh14(
+def reconstruct_published_residuals(
     recording: JointRecording,
     prior: ResidualPrior,
     *,
