@@ -31,14 +31,34 @@ FAMILIES: dict[str, tuple[str, ...]] = {
     "feet": ("solvers/denoising/feet", "solvers/signals/smooth_correction.py"),
     "marker_gaps": ("solvers/denoising/marker_gaps",),
     "reconstruction": ("solvers/reconstruction", "solvers/signals/gaussian_smoothing.py"),
-    "retargeting": ("solvers/retargeting", "solvers/motion"),
-    "markers": ("solvers/markers",),
+    "motion": ("solvers/motion",),
+    "retargeting": ("solvers/retargeting",),
+    "markers": (
+        "solvers/markers/body_tables.py",
+        "solvers/markers/build_body.py",
+        "solvers/markers/determined_joints.py",
+        "solvers/markers/fit_body.py",
+        "solvers/markers/fit_poses.py",
+        "solvers/markers/initial_poses.py",
+        "solvers/markers/joint_centers.py",
+        "solvers/markers/solve_skeleton.py",
+    ),
+    "marker_labels": (
+        "solvers/markers/constrain_clusters.py",
+        "solvers/markers/distances.py",
+        "solvers/markers/mistaken_labels.py",
+        "solvers/markers/pair_swaps.py",
+        "solvers/markers/rigid_clusters.py",
+        "solvers/markers/rigid_fit.py",
+        "solvers/markers/unswap.py",
+    ),
     "physics": ("solvers/physics",),
     "retrieval": ("solvers/retrieval",),
     "gestures": ("solvers/gestures",),
     "variation": ("solvers/variation",),
     "stepwise_variation": ("solvers/variation",),
-    "depth_tracking": ("solvers/depth_tracking", "solvers/depth_scene"),
+    "depth_scene": ("solvers/depth_scene",),
+    "depth_tracking": ("solvers/depth_tracking",),
 }
 """The modules whose constants each metric varies. Left out as a whole: recordings,
 command_line, pictures, processes, samples and rotations (formats, limits against hostile files,
@@ -155,11 +175,12 @@ def assigned_values(node: ast.stmt) -> dict[str, ast.expr]:
 def scaled(value: Any, factor: float) -> Any:
     """Scale a value: a whole number stays one of at least 1; tuples item by item.
 
-    What became equal in a tuple is kept once. What lies between 0.9 and 1 is a fraction of a
-    whole: its distance from 1 is scaled.
+    What became equal in a tuple of different items is kept once. What lies between 0.9 and 1
+    is a fraction of a whole: its distance from 1 is scaled.
     """
     if isinstance(value, tuple):
-        return tuple(dict.fromkeys(_scaled_item(item, factor) for item in value))
+        items = tuple(_scaled_item(item, factor) for item in value)
+        return tuple(dict.fromkeys(items)) if len(set(value)) == len(value) else items
     if isinstance(value, int):
         return max(1, round(value * factor))
     if 0.9 <= value < 1.0:
