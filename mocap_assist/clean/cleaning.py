@@ -16,7 +16,7 @@ from ..actions.marker_take import MarkerTake
 from ..actions.take import ArmatureTake
 from ..blender.time_slices import Sliced, Steps
 from ..jobs.job import ShortSolve
-from ..library.prior import library_prior
+from ..library.library_prior import library_prior
 from ..runtime import redo
 from ..runtime.selection import Bones, chosen_parts
 from ..runtime.subject import Subject, check_unchanged

@@ -24,7 +24,7 @@ from ..clean.examples import read_examples
 from ..clean.report import figures
 from ..clean.solve_cleaning import Examples
 from ..jobs.job import ShortSolve
-from ..library.prior import library_prior
+from ..library.library_prior import library_prior
 from ..runtime import redo
 from ..runtime.selection import played_source, selected_armature, why_not_clean
 from ..runtime.subject import Subject, check_unchanged

@@ -13,7 +13,7 @@ from ..actions.frames import FrameRange, Grid
 from ..actions.marker_take import read_markers
 from ..blender.time_slices import Sliced, Steps
 from ..library.choices import FindBundle
-from ..library.prior import own_origins
+from ..library.library_prior import own_origins
 from ..library.sources import library_path
 from ..runtime.selection import Bones, chosen_bones, played_source, why_not_read
 from ..runtime.subject import Subject, check_unchanged

@@ -16,7 +16,6 @@ True
 from .denoise import Denoised, DenoiseSettings, Method, denoise
 from .feet import Planted, PlantSettings, plant_feet
 from .limits import JointLimitsSettings, clamp_to_limits, learn_joint_limits, limit_excess
-from .prior import FilterBases, FilterBasesSettings, learn_filter_bases, load_filter_bases
 from .quality import (
     Issue,
     IssueSettings,
@@ -25,6 +24,12 @@ from .quality import (
     compare_quality,
     find_worst_issues,
     measure_quality,
+)
+from .window_priors import (
+    FilterBases,
+    FilterBasesSettings,
+    learn_filter_bases,
+    load_filter_bases,
 )
 
 __all__ = [

@@ -17,8 +17,8 @@ from .limits import clamp_to_limits, find_impossible_rotations
 from .marker_gaps import FilledMarkers, fill_markers
 from .observed_samples import max_per_joint, observed_mask, restore_observed
 from .posterior import Estimate, estimate_in_groups
-from .prior import FilterBases
 from .published import filter_as_published
+from .window_priors import FilterBases
 
 MIN_OUTLIER_ERROR = 2.0
 """Degrees or centimeters: a sample closer to the estimate is not reported as an outlier. Chosen

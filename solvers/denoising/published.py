@@ -1,4 +1,4 @@
-"""The filter of Lou and Chai (2010), unchanged, as a baseline."""
+"""The filter of Lou and Chai (2010) as published: a choice of Clean, and its baseline."""
 
 import numpy as np
 
@@ -7,7 +7,12 @@ from ..progress import Progress
 from ..signals import fill_channel_gaps, remove_outliers
 from .channels import Channels
 from .posterior import Estimate
-from .prior import FilterBases, FilterBasesSettings, LagProducts, find_leading_eigenpairs
+from .window_priors import (
+    FilterBases,
+    FilterBasesSettings,
+    LagProducts,
+    find_leading_eigenpairs,
+)
 
 KEPT_ENERGY = 0.99
 """Fraction of the movement that the patterns hold. From [LC10]."""

@@ -40,12 +40,12 @@ from .forest_training import (
     load_skinned_body,
     train_pixel_forest,
 )
-from .published import WZC12, track_pose_lou12
+from .published import REGISTRATION_TRACKER, track_pose_by_edges
 from .terms import TrackerSettings
 from .tracking import TrackedMotion, track_pose
 
 __all__ = [
-    "WZC12",
+    "REGISTRATION_TRACKER",
     "BodyModel",
     "CalibrationSettings",
     "Capture",
@@ -73,6 +73,6 @@ __all__ = [
     "refine_body",
     "retrack",
     "track_pose",
-    "track_pose_lou12",
+    "track_pose_by_edges",
     "train_pixel_forest",
 ]

@@ -22,9 +22,11 @@ MEDIAN_SAMPLES = 3
 N_LENGTHS = 60
 """Frames whose median gives the arm length."""
 HEADING_TIME_S = 0.3
-"""Time constant in seconds at which the actor's heading follows the shoulders."""
+"""Time constant in seconds at which the actor's heading follows the shoulders. Chosen by hand:
+x0.5 and x2 move no error."""
 MIN_ARM_M = 0.1
-"""Minimum arm length in meters; shorter arms are tracking errors."""
+"""Minimum arm length in meters; shorter arms are tracking errors. Chosen by hand: x0.5 and x2
+move no error."""
 
 
 @dataclass(frozen=True, eq=False)

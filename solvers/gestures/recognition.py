@@ -14,7 +14,8 @@ from .still_gestures import HandUp, Turn, Zoom
 from .stroke_gestures import Clap, Wave
 
 MAX_BREAK_S = 0.5
-"""Seconds without a frame, or without hands, after which all gestures are reset."""
+"""Seconds without a frame, or without hands, after which all gestures are reset. Chosen by
+hand: x0.5 and x2 move no error."""
 DEFAULT_SETTINGS = GestureSettings()
 
 

@@ -9,9 +9,12 @@ from typing import NamedTuple
 from .marker_sets import HEAD, PELVIS, TRUNK
 
 LOOSE_M, FIRM_M, TIGHT_M = 0.03, 0.012, 0.006
-"""Standard deviations of a joint's or marker's offset from its mean."""
+"""Standard deviations, in meters, of a joint's or marker's offset from its mean. Chosen by
+hand: first, x0.5 gains 2.7 %, x2 gains 0.7 %; second, x0.5 gains 6.7 %, x2 costs 8.1 %; third,
+x0.5 costs 3.4 %, x2 gains 6.6 %."""
 FREE_M = 1.0
-"""Standard deviation of an offset that only the markers determine."""
+"""Standard deviation of an offset that only the markers determine. Chosen by hand: x0.5 and x2
+move no error."""
 Triple = tuple[float, float, float]
 NO_PRIOR: Triple = (0.0, 0.0, 0.0)
 
@@ -45,6 +48,8 @@ class MarkerPrior(NamedTuple):
 
 
 TRUNK_FLEXION_RAD: Triple = (0.4, 0.4, 0.4)
+"""Standard deviation of the rotation of a trunk joint, radians. Chosen by hand: x0.5 gains
+0.3 %, x2 gains 0.8 %."""
 CENTRE = (
     JointPrior("hips", ""),
     JointPrior("spine", "hips", (0.0, TIGHT_M, TIGHT_M), TRUNK_FLEXION_RAD),

@@ -9,10 +9,13 @@ from .fit_poses import compute_residuals
 
 FRAMES_PER_BLOCK = 256
 MAX_ROTATION_STD_RAD = 0.8
-"""Standard deviation above which a joint's rotation is undetermined."""
+"""Standard deviation above which a joint's rotation is undetermined. Chosen by hand: x0.5 costs
+nothing, x2 gains 15.7 %."""
 MAX_POSITION_STD_M = 0.05
-"""Standard deviation above which the position of the hips is undetermined."""
+"""Standard deviation above which the position of the hips is undetermined. Chosen by hand: x0.5
+and x2 move no error."""
 REGULARIZATION = 1e-9
+"""Weight that is added to the diagonal of the normal equations. It guards a factorization."""
 
 
 def find_determined_joints(body: Body, observed: Array, poses: Poses) -> NDArray[np.bool_]:

@@ -12,13 +12,18 @@ from .vectors import matrix_from_rotation_vector, skew_matrices
 
 FRAMES_PER_BLOCK = 256
 CAUCHY_SCALE = 3.0
-"""Scale of the Cauchy weight, in standard deviations of a marker's noise."""
+"""Scale of the Cauchy weight, in standard deviations of a marker's noise. Chosen by hand: x0.5
+gains 0.5 %, x2 costs 0.8 %."""
 DAMPING = 1e-3
+"""Initial weight of Levenberg-Marquardt damping. Chosen by hand: x0.5 and x2 move no error."""
 MIN_DAMPING, MAX_DAMPING = 1e-6, 1e6
+"""Bounds of the weight of the damping. They guard the search."""
 MAX_STEP_RAD = 0.5
-"""Radians."""
+"""Radians: maximum rotation of a joint in one step. Chosen by hand: x0.5 gains 3.9 %, x2 costs
+nothing."""
 MIN_COST_GAIN = 1e-4
-"""Relative gain of the cost below which the iteration ends."""
+"""Relative gain of the cost below which the iteration ends. Chosen by hand: x0.5 and x2 move no
+error."""
 
 
 class Residuals(NamedTuple):

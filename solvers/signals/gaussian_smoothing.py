@@ -6,7 +6,8 @@ from scipy.ndimage import convolve1d, gaussian_filter1d
 from ..arrays import Array
 
 TRUNCATION_SIGMAS = 4.0
-"""Standard deviations at which the causal Gaussian is truncated."""
+"""Standard deviations at which the causal Gaussian is truncated. Chosen by hand: x0.5 and x2
+move no error."""
 
 
 def smooth_gaussian(values: Array, frames: float, *, ahead: bool = True) -> Array:

@@ -9,10 +9,10 @@ from ...arrays import Array
 from ...progress import Progress, within
 from ...signals import estimate_noise, fill_channel_gaps, remove_outliers, shrink_noise
 from ..channels import Channels
-from ..prior import FilterBases, FilterBasesSettings, WindowPrior
+from ..window_priors import FilterBases, FilterBasesSettings, WindowPrior
 from .estimate import Estimate
+from .estimate_channels import estimate_channels
 from .joint_outliers import JointOutlierPrior
-from .posterior import estimate_channels
 from .prior_selection import (
     UNKNOWN_DEVIATION,
     build_examples_prior,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ..prior import WindowPrior
+from ..window_priors import WindowPrior
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,10 +7,16 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...progress import Progress
-from ..prior import FilterBases, SmoothPrior, WindowPrior, build_smooth_prior, mix_priors
+from ..window_priors import (
+    FilterBases,
+    SmoothPrior,
+    WindowPrior,
+    build_smooth_prior,
+    mix_priors,
+)
+from .estimate_channels import estimate_channels
 from .filters import compute_gains
 from .mean_pose import estimate_mean_pose
-from .posterior import estimate_channels
 from .smoothness import build_smooth_kernels
 from .windows import Windows
 

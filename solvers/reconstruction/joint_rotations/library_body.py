@@ -27,7 +27,8 @@ ARMS, LEGS, SHINS, TOES = (
 CORRECTED_BONES = (SPINE, CHEST, HEAD, *ARMS, *LEGS, *TOES)
 """Bones whose directions differ between trackers in the same pose."""
 HALF_WEIGHT_COUNT = 20.0
-"""Number of observations at which a measured correction gets half its weight."""
+"""Number of observations at which a measured correction gets half its weight. Chosen by hand:
+x0.5 and x2 move no error."""
 
 
 @dataclass(frozen=True, eq=False)

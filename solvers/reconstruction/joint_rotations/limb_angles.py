@@ -8,6 +8,7 @@ from ...arrays import Array
 Complex = NDArray[np.complex128]
 
 MIN_LENGTH = 1e-9
+"""Length in meters below which a vector has no direction. It guards divisions."""
 
 
 def unit_vectors(vectors: Array, fill: float = 0.0) -> Array:

@@ -13,12 +13,14 @@ from .limb_twist import Limb, solve_smooth_paths
 STRAIGHT_FLEXION, BENT_FLEXION = np.radians([20.0, 60.0])
 """Knee flexion (radians) up to which the pelvis is offset, and from which the knee flexes."""
 REST_WEIGHT = 0.1
-"""Weight of zero pelvis offset; a straight and reliable leg has weight 1."""
+"""Weight of zero pelvis offset; a straight and reliable leg has weight 1. Chosen by hand: x0.5
+costs 0.2 %, x2 gains 0.1 %."""
 SMOOTHING_S = 0.1
-"""Time (s) over which the pelvis offset is smoothed."""
+"""Time (s) over which the pelvis offset is smoothed. Chosen by hand: x0.5 and x2 change the
+mean by less than 0.1 %."""
 SLACK_M = 0.008
 """Distance (m) by which the ankle of a straight leg may miss its target, to avoid knee jitter.
-"""
+Chosen by hand: x0.5 and x2 change the mean by less than 0.1 %."""
 
 
 def pelvis_offsets(

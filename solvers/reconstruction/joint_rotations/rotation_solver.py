@@ -20,13 +20,15 @@ from .limb_twist import (
 from .reach_ankles import pelvis_offsets
 
 MIN_LENGTH_M = 1e-3
-"""Minimum length (m) of bones and offsets that define a direction."""
+"""Minimum length (m) of bones and offsets that define a direction. Chosen by hand: x0.5 and x2
+move no error."""
 FREE_LENGTH_M, AIMED_LENGTH_M = 0.1, 0.2
 """Bone lengths (m) between which aiming fades in. Shorter bones keep their observed direction;
-longer ones point at the observed position of the child."""
+longer ones point at the observed position of the child. Chosen by hand: x0.5 of the first costs
+0.2 %, x2 of the second 0.1 %; otherwise both are equal, which fails."""
 GRANDCHILD_WEIGHT = 0.3
 """Weight of a child of zero length for its parent; the child also points by its own rotation.
-"""
+Chosen by hand: x0.5 costs 0.1 %, x2 gains 0.2 %."""
 LIMBS = {
     f"{side}{upper}": (f"{side}{lower}", f"{side}{end}")
     for side in ("left", "right")

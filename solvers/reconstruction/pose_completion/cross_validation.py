@@ -17,9 +17,15 @@ LIMBS = ((4, 5, 6, 7), (8, 9, 10, 11), (12, 13, 14, 15), (16, 17, 18, 19), (3,))
 """Arms, legs and head, as indices into `POSTURE_JOINTS`."""
 MAX_FRAMES = 60
 MIN_RELIABILITY = 0.5
+"""Reliability above which a joint is compared. Chosen by hand: x0.5 costs 0.1 %, x2 costs
+0.3 %."""
 HALF_WEIGHT_FRAMES = 6.0
-"""Number of frames at which a measured offset gets half its weight."""
+"""Number of frames at which a measured offset gets half its weight. Chosen by hand: x0.5 and x2
+change the mean by less than 0.1 %."""
 DEFAULT_ERROR_M, MIN_ERROR_M, MAX_ERROR_M = 0.1, 0.03, 0.25
+"""Meters: expected error of a joint without observations, and bounds of a measured one. Chosen
+by hand: first, x0.5 costs nothing, x2 costs 0.2 %; second, x0.5 and x2 change the mean by less
+than 0.1 %; third, x0.5 and x2 move no error."""
 
 
 class SynthesisErrors(NamedTuple):

@@ -7,7 +7,7 @@ import numpy as np
 from ...arrays import Array
 
 MIN_RELIABILITY = 0.05
-"""Joints below this reliability count as missing."""
+"""Joints below this reliability count as missing. Chosen by hand: x0.5 and x2 move no error."""
 
 
 class Estimates(NamedTuple):

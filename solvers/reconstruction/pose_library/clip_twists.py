@@ -20,7 +20,8 @@ from ..joint_rotations import (
 )
 
 HALF_WEIGHT_COUNT = 20.0
-"""Number of flexed poses of a rig at which its rotations of straight limbs get half weight."""
+"""Number of flexed poses of a rig at which its rotations of straight limbs get half weight.
+Chosen by hand: x0.5 and x2 move no error."""
 
 
 class ClipTwists(NamedTuple):

@@ -8,7 +8,7 @@ from ...arrays import Array
 from ...motion.humanoid import N_JOINTS
 
 MIN_VARIANCE_M2 = 1e-8
-"""Minimum variance (m²) of a component; weaker components are zero."""
+"""Minimum variance (m²) of a component; weaker components are zero. It guards a division."""
 
 
 @dataclass(frozen=True, eq=False)

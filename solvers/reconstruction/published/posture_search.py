@@ -9,9 +9,11 @@ from .sequential import choose_sequentially
 N_STEPS = 20
 N_SAMPLES = 100
 INITIAL_WIDTH = 0.5
-"""Standard deviation of the first samples, relative to that of the neighbors."""
+"""Standard deviation of the first samples, relative to that of the neighbors. Chosen by hand,
+as the paper does not specify it."""
 WIDTH_DECAY = 0.85
-"""Factor of the width after each step. The paper does not specify the sample spread."""
+"""Factor of the width after each step. The paper does not specify the sample spread. Chosen by
+hand."""
 
 
 def search_postures(

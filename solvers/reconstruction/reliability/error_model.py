@@ -21,16 +21,22 @@ from .transient_jumps import find_transient_jumps
 Flags = NDArray[np.bool_]
 
 SMOOTHING_WINDOW_S = 1.0 / 3.0
-"""Window (s) of the polynomial that smooths the path."""
+"""Window (s) of the polynomial that smooths the path. Chosen by hand: x0.5 gains 0.5 %, x2
+costs 2.9 %."""
 DEGREE = 4
 DEVIATION_WINDOW_S = 0.4
-"""Window (s) over which deviations from the smoothed path are averaged."""
+"""Window (s) over which deviations from the smoothed path are averaged. Chosen by hand: x0.5
+gains 3.0 %, x2 costs 6.2 %."""
 LENGTH_WINDOW_S = 0.2
-"""Window (s) over which length errors are averaged."""
+"""Window (s) over which length errors are averaged. Chosen by hand: x0.5 costs nothing, x2
+gains 0.1 %."""
 ONE_CENTIMETER = 0.01
+"""Meters, added to errors before the logarithm is taken. Chosen by hand: x0.5 costs 1.4 %, x2
+costs 0.8 %."""
 JUMP_DEVIATION_M = 0.05
 """Deviation (m) of a transient jump in averages, however far the joint jumped. Adjacent frames
-are wrong more often than others, but mostly right."""
+are wrong more often than others, but mostly right. Chosen by hand: x0.5 gains 0.4 %, x2 costs
+4.6 %."""
 
 
 @dataclass(frozen=True)

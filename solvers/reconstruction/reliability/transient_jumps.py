@@ -9,17 +9,22 @@ from .terms import vector_lengths
 Flags = NDArray[np.bool_]
 
 MAX_JUMP_S = 0.2
-"""Maximum duration (s) of a transient jump."""
+"""Maximum duration (s) of a transient jump. Chosen by hand: x0.5 costs 20.9 %, x2 gains
+6.2 %."""
 MIN_JUMP_M = 0.05
-"""Minimum step (m) of a jump at any frame rate."""
+"""Minimum step (m) of a jump at any frame rate. Chosen by hand: x0.5 and x2 move no error."""
 MIN_ACCELERATION = 100.0
-"""Minimum acceleration (m/s²) of a jump, to reach its speed within one frame."""
+"""Minimum acceleration (m/s²) of a jump, to reach its speed within one frame. Chosen by hand:
+x0.5 costs nothing, x2 costs 0.6 %."""
 MIN_STEP_RATIO = 3.0
-"""Minimum ratio of a jump to the steps before and after it."""
+"""Minimum ratio of a jump to the steps before and after it. Chosen by hand: x0.5 gains 0.4 %,
+x2 costs 2.2 %."""
 CONTEXT_S = 0.1
-"""Duration (s) of the steps before and after. A joint that jumps more often vibrates."""
+"""Duration (s) of the steps before and after. A joint that jumps more often vibrates. Chosen by
+hand: x0.5 costs nothing, x2 costs 0.6 %."""
 MAX_RETURN_RATIO = 0.5
-"""Maximum distance between start and return position, as a fraction of the jump."""
+"""Maximum distance between start and return position, as a fraction of the jump. Chosen by
+hand: x0.5 costs 5.9 %, x2 gains 6.8 %."""
 
 
 def find_transient_jumps(positions: Array, frame_rate: float) -> Flags:

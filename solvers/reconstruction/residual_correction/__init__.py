@@ -12,7 +12,7 @@ from .inputs import smooth_postures
 from .kernel import squared_distances
 from .learn_confidence import calibrate_confidence
 from .learn_residual_prior import ResidualMethod, ResidualPriorSettings, learn_residual_prior
-from .prior import ResidualPrior, load_residual_prior
+from .residual_prior import ResidualPrior, load_residual_prior
 
 __all__ = [
     "CorrectedPostures",

@@ -8,7 +8,7 @@ from scipy.special import gammainc, roots_hermitenorm
 from ...arrays import Array
 
 MIN_VARIANCE_M2 = 1e-12
-"""Minimum variance (m²); smaller ones carry no information."""
+"""Minimum variance (m²); smaller ones carry no information. It guards a division."""
 NODES, _WEIGHTS = roots_hermitenorm(7)
 NODE_WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 

@@ -20,9 +20,11 @@ from ...arrays import Array
 Real = TypeVar("Real", NDArray[np.float64], NDArray[np.float32])
 
 MIN_VARIANCE_RATIO, MAX_VARIANCE_RATIO = 1e-4, 10.0
-"""Bounds of each variance, relative to the variance of the errors."""
+"""Bounds of each variance, relative to the variance of the errors. They guard the search for a
+maximum of the likelihood."""
 MIN_LENGTH_RATIO, MAX_LENGTH_RATIO = 0.3, 10.0
-"""Bounds of each length, relative to the spread of the examples."""
+"""Bounds of each length, relative to the spread of the examples. They guard the search for a
+maximum of the likelihood."""
 MAX_ITERATIONS = 40
 
 

@@ -18,7 +18,7 @@ from .learn_residual_prior import (
     ResidualPriorSettings,
     learn_residual_prior,
 )
-from .prior import ResidualPrior
+from .residual_prior import ResidualPrior
 
 Pair = tuple[JointRecording, Tracks]
 
@@ -29,7 +29,8 @@ MIN_ACTORS = 3
 MIN_POINTS = 3
 """Minimum number of joints of actors for the fit of a line."""
 MIN_ERROR_M = 1e-4
-"""Minimum median error (m); smaller ones carry no information."""
+"""Minimum median error (m); smaller ones carry no information. It guards a logarithm in
+training."""
 
 
 def calibrate_confidence(

@@ -24,9 +24,11 @@ Numbers = NDArray[np.int64]
 
 N_COMPONENTS = 40
 TAKE_VARIANCE, ACTOR_VARIANCE, MEAN_VARIANCE = 0.2, 1.9, 70.0
-"""Variances of the constant errors of a take, an actor, and all, relative to the noise."""
+"""Variances of the constant errors of a take, an actor, and all, relative to the noise. Chosen
+by hand; used in training only, so that no sweep varies it."""
 MIN_KNOWN_FRACTION = 0.5
-"""Minimum fraction of examples with a known joint for its prediction."""
+"""Minimum fraction of examples with a known joint for its prediction. Chosen by hand; used in
+training only, so that no sweep varies it."""
 MIN_EXAMPLES = 20
 """Minimum number of examples for a movement process."""
 

@@ -22,16 +22,16 @@ from ...settings import Choice, Settings, setting
 from .inputs import fill_missing, neighborhood_features, smooth_postures
 from .kernel import Kernel, learn_kernel
 from .learn_movement_process import Take, learn_movement_process
-from .prior import ResidualPrior, posture_components
+from .residual_prior import ResidualPrior, posture_components
 from .sparse_process import basis_functions, inducing_points, posterior, shared_design
 
 Numbers = NDArray[np.int64]
 
 N_COMPONENTS = 15
 CORRELATION_TIME_S = 2.5
-"""Time (s) after which errors of one take are independent; nearer frames are correlated."""
+"""Time (s) after which errors of one take are independent. Chosen by hand; used in training."""
 MEDIAN_SQUARED_LENGTH = 2.366
-"""Median of the squared length of a normal 3D vector with unit variance per axis."""
+"""Ratio of the median squared length of a normal 3D vector to its variance, by definition."""
 MIN_FRAMES = 20
 """Minimum number of frames with a known joint to learn it."""
 

@@ -11,22 +11,27 @@ from ..postures import N_PARTS, ClipPostures, half_precision
 from .vocabulary import N_AXES, Vocabulary
 
 RATE = 20.0
-"""Hertz at which clips are compared."""
+"""Hertz at which clips are compared. Chosen by hand: x0.5 gains 0.4 %, x2 costs 1.6 %."""
 LONG_CLIP_S = 4.0
-"""Seconds; longer clips are also indexed in segments."""
+"""Seconds; longer clips are also indexed in segments. Chosen by hand: x0.5 and x2 move no
+error."""
 MIN_SEGMENT_S = 2.0
-"""Seconds; other segments are two, four ... times as long."""
+"""Seconds; other segments are two, four ... times as long. Chosen by hand: x0.5 and x2 move no
+error."""
 MAX_SEGMENT_FRACTION = 0.7
-"""Maximum length of a segment, relative to the clip."""
+"""Maximum length of a segment, relative to the clip. Chosen by hand: x0.5 and x2 move no
+error."""
 N_CUBES = 3
 N_STEPS = 16
 """Time samples of a segment for dynamic time warping."""
 MAX_FRAMES = 1200
 """Frames of a segment for its histogram, evenly spaced."""
 MEAN_POSTURE_WEIGHT = 0.8
-"""Default weight of the mean posture of a segment, relative to the deviation from it."""
+"""Default weight of the mean posture of a segment, relative to the deviation from it. Chosen by
+hand: x0.5 gains 0.8 %, x2 fails."""
 HISTOGRAM_SCALE = 255.0
-"""Stored integer of a histogram value of 1."""
+"""Integer that is stored for a histogram value of 1, a ratio. By definition of an unsigned
+byte."""
 
 
 @dataclass(frozen=True, eq=False)

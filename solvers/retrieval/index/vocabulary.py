@@ -30,11 +30,13 @@ FRAMES_PER_WORD = 4
 N_NEAREST = 3
 """Words with a nonzero weight in one frame."""
 JITTER_M = 1e-6
-"""Meters of random noise that separates equal frames: k-means needs distinct points."""
+"""Meters of random noise that separates equal frames: k-means needs distinct points. It guards
+a search for clusters."""
 MIN_SPREAD_M2 = 1e-6
-"""Squared meters."""
+"""Squared meters. It guards a division."""
 MAX_VALUE = 1e12
-"""Limit of all learned numbers; squared meters and frame counts stay far below."""
+"""Limit of all learned numbers; squared meters and frame counts stay far below. It guards
+against damaged files."""
 MAX_TRAINING_FRAMES = 12000
 """Training frames; more are slower and not better."""
 RELEARNING_RATIO = 4

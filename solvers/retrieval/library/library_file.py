@@ -29,7 +29,8 @@ APPLICATION = 0x4D434C42
 """Application id of our SQLite files ("MCLB")."""
 VERSION = 1
 LOCK_TIMEOUT_S = 120.0
-"""Seconds to wait for a write of another process."""
+"""Seconds to wait for a write of another process. A guard against a process that ended while it
+wrote."""
 BLOCK_COLUMNS = ("clips", "frames", "histograms", "summaries", "starts", "spans", "weights")
 
 

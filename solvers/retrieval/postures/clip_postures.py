@@ -22,7 +22,8 @@ from ...signals import fill_gaps
 Recording = Motion | Tracks | JointRecording
 
 MAX_BRIDGED_GAP_S = 0.3
-"""Seconds; shorter gaps are interpolated linearly."""
+"""Seconds; shorter gaps are interpolated linearly. Chosen by hand: x0.5 and x2 move no
+error."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,13 +19,16 @@ from .clip_postures import ClipPostures
 
 N_COORDINATES = 3 * N_JOINTS
 POSITION_NOISE_M = 0.03
-"""Standard deviation of a joint position in meters, in addition to the covariance."""
+"""Standard deviation of a joint position in meters, in addition to the covariance. Chosen by
+hand: x0.5 and x2 move no error."""
 MAX_LENGTH_RATIO = 1.4
-"""Maximum ratio by which a path past missing joints is scaled up or down."""
+"""Maximum ratio by which a path past missing joints is scaled up or down. Chosen by hand: x0.5
+costs 1.7 %, x2 costs nothing."""
 MIN_PATH_M = 0.01
-"""Minimum length of such a path in meters."""
+"""Minimum length of such a path in meters. Chosen by hand: x0.5 and x2 move no error."""
 MIN_OBSERVED_FRACTION = 0.9
-"""Fraction of frames with an observed joint above which it helps to find the heading."""
+"""Fraction of frames with an observed joint above which it helps to find the heading. Chosen by
+hand: x0.5 and x2 move no error."""
 MIN_HEADING_JOINTS = 3
 """Minimum number of such joints for the estimation of a heading."""
 N_HEADING_FRAMES = 24
@@ -34,9 +37,11 @@ NEAR_ANGLES = np.radians(np.arange(-75.0, 76.0, 5.0))
 ALL_ANGLES = np.radians(np.arange(-180.0, 180.0, 5.0))
 """Candidate headings if the heading is roughly known, and if it is unknown."""
 HEADING_ERROR_RAD = np.radians(20.0)
-"""Standard deviation of the heading error of a body with missing joints."""
+"""Standard deviation of the heading error of a body with missing joints. Chosen by hand: x0.5
+and x2 move no error."""
 HEADING_NOISE_M = 0.03
-"""Standard deviation of a joint position in meters, for the estimation of the heading."""
+"""Standard deviation of a joint position in meters, for the estimation of the heading. Chosen
+by hand: x0.5 and x2 move no error."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,12 @@ from .body_parts import JOINTS, N_PARTS, ROOTS
 from .mean_postures import POSITION_NOISE_M, PostureDistribution
 
 MIN_OBSERVED_FRACTION = 0.5
-"""Fraction of frames with an observed joint above which it counts as known."""
+"""Fraction of frames with an observed joint above which it counts as known. Chosen by hand:
+x0.5 and x2 move no error."""
 MIN_RELIABILITY = 0.02
+"""Lower bound of the reliability of a part. Chosen by hand: x0.5 and x2 move no error."""
 MIN_VARIANCE_M2 = 1e-9
+"""Minimum variance that is divided by. It guards a division."""
 
 
 def part_reliability(observed: NDArray[np.bool_], distribution: PostureDistribution) -> Array:

@@ -14,7 +14,8 @@ from .observed_signals import observed_signals
 from .sparse_codes import SparseCodes, sparse_codes
 
 MIN_ATOM_FRACTION = 0.1
-"""Fraction of the length of an atom that must be observed."""
+"""Fraction of the length of an atom that must be observed. Chosen by hand; the paper has no
+gaps."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,7 +11,8 @@ from ...errors import InvalidSettingError
 BATCH = 512
 """Signals per batch; the inner products with the atoms take 1.4 MB."""
 REORTHOGONALIZE_BELOW = 1e-3
-"""Residual length of an atom below which it is orthogonalized twice."""
+"""Length of the residual of an atom, as a fraction, below which it is orthogonalized twice. It
+guards against rounding errors."""
 MIN_RESIDUAL_FRACTION = 1e-10
 """Residual length of a signal or atom, as a fraction, below which it is rounding error."""
 

@@ -17,9 +17,10 @@ from .model import StepwiseModel
 
 RANGE_MARGIN = 0.05
 """Fraction of a channel's range over all times by which a variant may exceed, with saturation,
-the range of the examples at the same time."""
+the range of the examples at the same time. Chosen by hand, as the paper gives no value."""
 PULL_FRACTION = 0.2
-"""Fraction of the distance to the mixture of examples that each step is pulled back."""
+"""Fraction of the distance to the mixture of examples that each step is pulled back. Chosen by
+hand, as the paper gives no value."""
 
 
 def draw_stepwise_deviations(

@@ -31,10 +31,13 @@ N_PACKED = 3 * N_CHANNELS + N_CHANNELS * N_CHANNELS
 MAX_ITERATIONS = 40
 LOG_LENGTH_BOUNDS, LOG_BIAS_BOUNDS, LOG_NOISE_BOUNDS = (-1.5, 4.0), (-4.0, 3.0), (-9.0, 0.0)
 """Bounds of logarithms: of lengths relative to the typical distance of examples, of biases and
-of noises."""
+of noises. They guard the search for a maximum of the likelihood."""
 MAX_MIXING = 20.0
-"""Bound of mixing weights, relative to the standard deviation of the outputs."""
+"""Bound of mixing weights, relative to the standard deviation of the outputs. It guards the
+same search."""
 JITTER = 1e-6
+"""Fraction of the variance that is added to the diagonal of a covariance. It guards a
+factorization."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,6 +29,8 @@ N_INDUCING = 150
 N_LEARNING = 120
 """Number of examples that hyperparameters are learned from."""
 MIN_STD = 1e-6
+"""Minimum of the standard deviations by which features and outputs are divided. It guards a
+division."""
 JITTER_STEPS = (0.0, 1e-12, 1e-10, 1e-8)
 """Fractions of the mean diagonal to add to it, tried in this order."""
 BATCH_SIZE = 500

@@ -16,14 +16,15 @@ from threadpoolctl import threadpool_limits
 from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.refine_body import refine_body
-from solvers.depth_tracking.published.lou12 import track_pose_lou12
-from solvers.depth_tracking.published.wzc12 import WZC12
+from solvers.depth_tracking.published.edge_tracker import track_pose_by_edges
+from solvers.depth_tracking.published.registration_tracker import REGISTRATION_TRACKER
 from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, TrackerSettings
 from solvers.depth_tracking.tracking.track_pose import track_pose
 
 from ..peers.icp_trackers import articulated_icp, ray_constrained_icp
 from ..shared.report import DOCS, PICTURES, Report
 from ..shared.tables import Scores
+from .colored_sequences import colored, others_motions
 from .depth_more import more_sequence
 from .depth_sequences import (
     SCORED,
@@ -38,7 +39,6 @@ from .depth_sequences import (
 from .depth_takes import SUBJECTS
 from .depth_tuning import TAKES as TUNED_ON
 from .depth_tuning import tuning_sequence
-from .lou_sequences import colored, others_motions
 from .part_depth_capture import FPS, captures, more, more_ways, ways
 from .part_depth_kinect import kinect
 from .part_depth_memory import LENGTHS, memory
@@ -119,16 +119,16 @@ def peer(track: Callable[..., np.ndarray], one: Sequence, body: BodyModel) -> np
     return track(one.depth, body, one.first_pose(body))
 
 
-def lou12(one: Sequence, body: BodyModel) -> np.ndarray:
+def edge_tracked(one: Sequence, body: BodyModel) -> np.ndarray:
     """Return joints as [LOU12] finds them, with painted bodies and motions of other actors."""
     painted = colored(one.name)
-    tracked = track_pose_lou12(painted.depth, body, one.first_pose(body), others_motions())
+    tracked = track_pose_by_edges(painted.depth, body, one.first_pose(body), others_motions())
     return tracked.joints.positions
 
 
-def lou12_from_depth(one: Sequence, body: BodyModel) -> np.ndarray:
+def edge_tracked_from_depth(one: Sequence, body: BodyModel) -> np.ndarray:
     """Return joints as [LOU12] finds them from depth alone."""
-    return track_pose_lou12(one.depth, body, one.first_pose(body)).joints.positions
+    return track_pose_by_edges(one.depth, body, one.first_pose(body)).joints.positions
 
 
 def measured(track: Track, one: Sequence, body: BodyModel) -> tuple[Errors, float]:
@@ -143,10 +143,10 @@ def trackers() -> list[str]:
     """Compare trackers, started from the true first pose, bodies of the true lengths."""
     methods: dict[str, Track] = {
         "ours (default)": partial(ours, DEFAULT_TRACKER),
-        "WZC12 preset": partial(ours, WZC12),
-        "WZC12 terms, damped, with limits": partial(ours, DAMPED_WZC12),
-        "LOU12 preset, color and clips": lou12,
-        "LOU12 preset, no color, no clips": lou12_from_depth,
+        "WZC12 preset": partial(ours, REGISTRATION_TRACKER),
+        "WZC12 terms, damped, with limits": partial(ours, DAMPED_REGISTRATION),
+        "LOU12 preset, color and clips": edge_tracked,
+        "LOU12 preset, no color, no clips": edge_tracked_from_depth,
         "articulated ICP": partial(peer, articulated_icp),
         "ray-constrained ICP": partial(peer, ray_constrained_icp),
     }
@@ -170,7 +170,7 @@ def trackers() -> list[str]:
     return [scores.markdown(), _single(by_sequence), by_joint.markdown()]
 
 
-DAMPED_WZC12 = replace(
+DAMPED_REGISTRATION = replace(
     DEFAULT_TRACKER, closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
     depth_weight=1000.0, extra_weight=10000.0, silhouette_weight=0.1,
 )  # fmt: skip

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from solvers.arrays import Array
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import BodyModel
-from solvers.depth_tracking.published.wzc12 import WZC12
+from solvers.depth_tracking.published.registration_tracker import REGISTRATION_TRACKER
 from solvers.depth_tracking.terms.observation import observe
 from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, TrackerSettings
 from solvers.depth_tracking.tracking.failure_test import (
@@ -28,7 +28,7 @@ TRACKERS: dict[str, tuple[TrackerSettings, int]] = {
     "ours": (DEFAULT_TRACKER, 1),
     "ours, every third frame": (DEFAULT_TRACKER, 3),
     "ours, no prediction": (replace(DEFAULT_TRACKER, trust=0.0), 2),
-    "WZC12 preset": (WZC12, 1),
+    "WZC12 preset": (REGISTRATION_TRACKER, 1),
 }
 """Settings, and every how manieth frame is looked at: some of them fail often."""
 

@@ -20,8 +20,11 @@ from solvers.reconstruction import (
     reconstruct,
     reconstruct_postures,
 )
-from solvers.reconstruction.published.shjt13 import search_as_published
-from solvers.reconstruction.published.zh14 import ThreeTermSettings, reconstruct_zh14
+from solvers.reconstruction.published.posture_reconstruction import search_as_published
+from solvers.reconstruction.published.residual_reconstruction import (
+    ThreeTermSettings,
+    reconstruct_published_residuals,
+)
 from solvers.reconstruction.residual_correction.correct_postures import smooth_trajectories
 from solvers.reconstruction.residual_correction.inputs import smooth_postures
 
@@ -154,7 +157,7 @@ def by_published_residuals(
     pair: Pair, subject: str, settings: ThreeTermSettings = TERMS_PUBLISHED
 ) -> Reconstruction:
     """[ZH14]: Gaussian processes joint by joint, and three terms frame by frame."""
-    return reconstruct_zh14(
+    return reconstruct_published_residuals(
         pair.kinect, residual_prior(subject, ResidualMethod.PUBLISHED), settings=settings
     )
 

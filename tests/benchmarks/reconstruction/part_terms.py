@@ -23,7 +23,7 @@ from solvers.reconstruction import (
     measure_reliability,
     reconstruct_postures,
 )
-from solvers.reconstruction.published.zh14 import ThreeTermSettings
+from solvers.reconstruction.published.residual_reconstruction import ThreeTermSettings
 
 from ..shared.tables import number, table
 from .kinect_damage import shaken, swapped

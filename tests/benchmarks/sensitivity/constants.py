@@ -22,7 +22,7 @@ FAMILIES: dict[str, tuple[str, ...]] = {
         "solvers/denoising/observed_samples.py",
         "solvers/denoising/channels",
         "solvers/denoising/posterior",
-        "solvers/denoising/prior",
+        "solvers/denoising/window_priors",
         "solvers/denoising/published.py",
         "solvers/signals/noise.py",
     ),
@@ -31,18 +31,41 @@ FAMILIES: dict[str, tuple[str, ...]] = {
     "feet": ("solvers/denoising/feet", "solvers/signals/smooth_correction.py"),
     "marker_gaps": ("solvers/denoising/marker_gaps",),
     "reconstruction": ("solvers/reconstruction", "solvers/signals/gaussian_smoothing.py"),
-    "retargeting": ("solvers/retargeting", "solvers/motion"),
-    "markers": ("solvers/markers",),
+    "motion": ("solvers/motion",),
+    "retargeting": ("solvers/retargeting",),
+    "markers": (
+        "solvers/markers/body_tables.py",
+        "solvers/markers/build_body.py",
+        "solvers/markers/determined_joints.py",
+        "solvers/markers/fit_body.py",
+        "solvers/markers/fit_poses.py",
+        "solvers/markers/initial_poses.py",
+        "solvers/markers/joint_centers.py",
+        "solvers/markers/solve_skeleton.py",
+    ),
+    "marker_labels": (
+        "solvers/markers/constrain_clusters.py",
+        "solvers/markers/distances.py",
+        "solvers/markers/mistaken_labels.py",
+        "solvers/markers/pair_swaps.py",
+        "solvers/markers/rigid_clusters.py",
+        "solvers/markers/rigid_fit.py",
+        "solvers/markers/unswap.py",
+    ),
     "physics": ("solvers/physics",),
-    "retrieval": ("solvers/retrieval", "solvers/gestures"),
+    "retrieval": ("solvers/retrieval",),
+    "gestures": ("solvers/gestures",),
     "variation": ("solvers/variation",),
     "stepwise_variation": ("solvers/variation",),
-    "depth_tracking": ("solvers/depth_tracking", "solvers/depth_scene"),
+    "depth_scene": ("solvers/depth_scene",),
+    "depth_tracking": ("solvers/depth_tracking",),
 }
 """The modules whose constants each metric varies. Left out as a whole: recordings,
 command_line, pictures, processes, samples and rotations (formats, limits against hostile files,
 display, synthetic data, exact formulas), and workflows, which have no metric yet."""
 UNITS_BY_SUFFIX = {
+    "_M_S": "m/s", "_RAD_S": "rad/s", "_M2": "m2", "_DB": "dB", "_COSINE": "cosine",
+    "_SINE": "sine", "_RELIABILITY": "0 to 1", "_CONFIDENCE": "0 to 1",
     "_S": "s", "_M": "m", "_CM": "cm", "_MM": "mm", "_DEG": "deg", "_RAD": "rad",
     "_HZ": "Hz", "_PX": "px", "_KG": "kg", "_FRAMES": "frames", "_FRACTION": "fraction",
     "_SHARE": "fraction", "_RATIO": "ratio", "_FACTOR": "factor", "_SIGMAS": "std. dev.",
@@ -52,7 +75,9 @@ UNITS_BY_WORDS = {
     r"meters per second": "m/s", r"radians per second": "rad/s", r"\bframes?\b": "frames",
     r"degrees or centimeters": "deg or cm", r"square meters": "m2", r"\bmeters?\b": "m",
     r"\bseconds?\b": "s", r"\bdegrees?\b": "deg", r"hertz": "Hz", r"\bpixels?\b": "px",
-    r"radians": "rad", r"percentiles?\b": "%", r"probability": "probability",
+    r"radians": "rad", r"(arm|leg) lengths?": "ratio", r"decibels": "dB",
+    r"cosine": "cosine", r"\bsine\b": "sine",
+    r"percentiles?\b": "%", r"probability": "probability",
     r"severity": "severity", r"time constants": "time const.", r"fraction": "fraction",
     r"standard deviations": "std. dev.", r"relative|ratio": "ratio",
     r"\bfactors?\b": "factor", r"logarithm": "log",
@@ -150,11 +175,12 @@ def assigned_values(node: ast.stmt) -> dict[str, ast.expr]:
 def scaled(value: Any, factor: float) -> Any:
     """Scale a value: a whole number stays one of at least 1; tuples item by item.
 
-    What became equal in a tuple is kept once. What lies between 0.9 and 1 is a fraction of a
-    whole: its distance from 1 is scaled.
+    What became equal in a tuple of different items is kept once. What lies between 0.9 and 1
+    is a fraction of a whole: its distance from 1 is scaled.
     """
     if isinstance(value, tuple):
-        return tuple(dict.fromkeys(_scaled_item(item, factor) for item in value))
+        items = tuple(_scaled_item(item, factor) for item in value)
+        return tuple(dict.fromkeys(items)) if len(set(value)) == len(value) else items
     if isinstance(value, int):
         return max(1, round(value * factor))
     if 0.9 <= value < 1.0:

@@ -17,6 +17,7 @@ SHOWN_PERCENT = 0.1
 """Change of the mean, percent, from which a constant has a row of its own."""
 MOST_PERCENT = 100.0
 """An error that rises by more counts as this in the mean."""
+NOT_MEASURED = "Not measured yet: "
 MARK = "<!-- below: make sensitivity ARGUMENTS=--docs -->"
 
 
@@ -107,12 +108,23 @@ def family_text(family: str, rows: Sequence[Row]) -> str:
 
 
 def write_docs(families: Mapping[str, Sequence[Row]]) -> None:
-    """Write what follows the introduction of the page, which is written by hand."""
-    sections = [family_text(family, rows) for family, rows in families.items() if rows]
-    missing = [_title(family) for family, rows in families.items() if not rows]
+    """Write the sections of the families that were measured here; the others stay as they are.
+
+    The introduction is written by hand.
+    """
+    introduction, _, tables = DOCUMENT.read_text(encoding="utf-8").partition(MARK)
+    old = {f"## {part.partition(chr(10))[0]}": part for part in tables.split("\n## ")[1:]}
+    sections, missing = [], []
+    for family, rows in families.items():
+        title = f"## {_title(family)}"
+        if rows:
+            sections.append(family_text(family, rows))
+        elif title in old:
+            sections.append(f"## {old[title].partition(NOT_MEASURED)[0].strip()}\n")
+        else:
+            missing.append(_title(family))
     if missing:
-        sections.append(f"Not measured yet: {', '.join(missing)}.\n")
-    introduction = DOCUMENT.read_text(encoding="utf-8").partition(MARK)[0]
+        sections.append(f"{NOT_MEASURED}{', '.join(missing)}.\n")
     DOCUMENT.write_text(introduction + "\n".join([MARK, "", *sections]), encoding="utf-8")
 
 

@@ -8,7 +8,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.testing import assert_allclose
 
 from solvers.denoising import learn_filter_bases
-from solvers.denoising.prior.lag_covariance import (
+from solvers.denoising.window_priors.lag_covariance import (
     MAX_CLIP_ENDS,
     LagProducts,
     find_leading_eigenpairs,

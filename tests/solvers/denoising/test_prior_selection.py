@@ -15,7 +15,7 @@ from solvers.denoising.posterior.prior_selection import (
 )
 from solvers.denoising.posterior.smoothness import CORRELATION_TIMES_S, build_smooth_kernels
 from solvers.denoising.posterior.windows import Windows
-from solvers.denoising.prior.window_prior import (
+from solvers.denoising.window_priors.window_prior import (
     SmoothPrior,
     WindowPrior,
     build_smooth_prior,

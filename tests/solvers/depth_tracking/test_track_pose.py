@@ -16,7 +16,7 @@ from solvers.depth_tracking.body.pose_priors import (
     stay_near,
 )
 from solvers.depth_tracking.body.tables import JOINTS
-from solvers.depth_tracking.published.wzc12 import WZC12
+from solvers.depth_tracking.published.registration_tracker import REGISTRATION_TRACKER
 from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, TrackerSettings
 from solvers.depth_tracking.tracking.register_pose import register_pose
 from solvers.depth_tracking.tracking.track_pose import track_pose
@@ -66,7 +66,9 @@ def test_cost_decreases_if_only_improvements_are_accepted(rng):
     assert costs[-1] < 0.2 * costs[0]
 
 
-@pytest.mark.parametrize(("settings", "worst"), [(DEFAULT_TRACKER, 0.02), (WZC12, 0.08)])
+@pytest.mark.parametrize(
+    ("settings", "worst"), [(DEFAULT_TRACKER, 0.02), (REGISTRATION_TRACKER, 0.08)]
+)
 def test_track_pose_follows_a_waving_actor(settings, worst):
     truth = waving(30)
 

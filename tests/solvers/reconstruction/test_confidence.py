@@ -19,7 +19,7 @@ from solvers.reconstruction.residual_correction.learn_confidence import (
     fit_calibration,
     with_calibration,
 )
-from solvers.reconstruction.residual_correction.prior import LAYOUT
+from solvers.reconstruction.residual_correction.residual_prior import LAYOUT
 
 ACTORS = ("anna", "anna", "bob", "carla")
 

@@ -18,10 +18,10 @@ from solvers.reconstruction import (
     correct_postures,
     learn_residual_prior,
 )
-from solvers.reconstruction.published.zh14 import (
+from solvers.reconstruction.published.residual_reconstruction import (
     ThreeTermSettings,
     minimize_terms,
-    reconstruct_zh14,
+    reconstruct_published_residuals,
 )
 from solvers.reconstruction.residual_correction.confidence import probability_within
 from solvers.reconstruction.residual_correction.smooth_trajectories import (
@@ -144,7 +144,7 @@ def test_correct_postures_accepts_short_takes(prior, n_frames):
     for method in CorrectionMethod:
         result = correct_postures(given_, prior, settings=CorrectionSettings(method=method))
         assert np.isfinite(result.tracks.positions).all()
-    assert np.isfinite(reconstruct_zh14(given_, prior).tracks.positions).all()
+    assert np.isfinite(reconstruct_published_residuals(given_, prior).tracks.positions).all()
 
 
 def test_smoothing_solves_the_least_squares_problem(rng):
@@ -238,7 +238,7 @@ def test_published_prior_uses_neighbors_only():
     kernel = published.kernel(KNEE)
     assert kernel.shared[1] < 1e-3 * kernel.shared[0]
     given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
-    result = reconstruct_zh14(given_, published)
+    result = reconstruct_published_residuals(given_, published)
     assert error(result.tracks.positions, truth(1.3)) < 0.6 * error(
         given_.tracks.positions, truth(1.3)
     )

@@ -19,7 +19,7 @@ from solvers.reconstruction.pose_completion.complete_postures import complete_po
 from solvers.reconstruction.pose_completion.reconstruct_postures import reconstruct_postures
 from solvers.reconstruction.pose_completion.settings import PostureSettings
 from solvers.reconstruction.pose_library.posture_library import build_posture_library
-from solvers.reconstruction.published.shjt13 import search_as_published
+from solvers.reconstruction.published.posture_reconstruction import search_as_published
 from solvers.reconstruction.reliability.scores import Reliability
 from solvers.recordings import read_bvh, read_recording
 from solvers.samples import GaitSettings, walking_gait

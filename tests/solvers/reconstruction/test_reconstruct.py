@@ -22,8 +22,11 @@ from solvers.reconstruction import (
     reconstruct_postures,
 )
 from solvers.reconstruction.pose_completion import complete_postures
-from solvers.reconstruction.published.shjt13 import search_as_published
-from solvers.reconstruction.published.zh14 import ThreeTermSettings, reconstruct_zh14
+from solvers.reconstruction.published.posture_reconstruction import search_as_published
+from solvers.reconstruction.published.residual_reconstruction import (
+    ThreeTermSettings,
+    reconstruct_published_residuals,
+)
 from solvers.reconstruction.reconstruct import shipped_residual_prior
 
 LOST, HIDDEN = kinect_walks.LOST, [5, 6, 7]
@@ -66,7 +69,9 @@ def test_published_methods_equal_their_separate_verbs(walk):
     assert "stochastic search" in complete.method
 
     v2 = replace(walk, sensor=Sensor.KINECT_V2)
-    separate = reconstruct_zh14(v2, shipped_residual_prior(), settings=ThreeTermSettings())
+    separate = reconstruct_published_residuals(
+        v2, shipped_residual_prior(), settings=ThreeTermSettings()
+    )
     chosen = ReconstructSettings(method=ReconstructMethod.PUBLISHED_RESIDUALS, shift=True)
     complete = reconstruct(v2, settings=chosen)
     np.testing.assert_array_equal(complete.tracks.positions, separate.tracks.positions)

@@ -1,12 +1,10 @@
-"""Similar clips of damaged queries of eight classes, and gestures of a camera's joints."""
+"""Similar clips of damaged queries of eight classes."""
 
 import numpy as np
 
-from solvers.gestures import GestureSettings
-from solvers.gestures.recognition import recognize_gestures
 from solvers.motion import Motion
 from solvers.retrieval import Clip, build_clip_library, find_similar
-from solvers.samples import CorruptionSettings, PerformanceSettings, corrupt, perform_gestures
+from solvers.samples import CorruptionSettings, corrupt
 
 from ..takes import hdm05, joint_tracks, walk
 
@@ -15,10 +13,6 @@ CLASSES = (
     "kickLFront1Reps", "squat1Reps", "throwBasketball", "rotateArmsBothBackward1Reps",
 )  # fmt: skip
 N_CLIPS = 3
-ACTS = (
-    "rest", "hand up", "rest", "wave right", "rest", "wave left", "rest", "clap", "rest",
-    "zoom in", "rest", "turn", "rest", "zoom out", "clap", "rest",
-)  # fmt: skip
 
 
 def prepare() -> dict[str, object]:
@@ -37,15 +31,14 @@ def prepare() -> dict[str, object]:
     for name in ("10_04", "07_03", "32_01"):
         clips.append((f"walk {name}", walk(name)))
     queries.append(("walk", walk("26_01").slice(0, 90)))
-    return {"clips": clips, "queries": queries, "streams": _streams()}
+    return {"clips": clips, "queries": queries}
 
 
 def measure(
     clips: list[tuple[str, Motion]],
     queries: list[tuple[str, Motion]],
-    streams: list[tuple],
 ) -> dict[str, float]:
-    """Mean rank and score of the clips of the query's class; gestures missed or false."""
+    """Mean rank and score of the clips of the query's class."""
     library = build_clip_library([Clip(name, motion) for name, motion in clips])
     ranks, margins, best, frames = [], [], [], []
     for label, query in queries:
@@ -58,29 +51,9 @@ def measure(
         margins.append(1.0 + scores[~hits].mean() - scores[hits].mean() if hits.any() else 2.0)
         best.append(0.0 if order and order[0] else 1.0)
         frames.append(len(matches[0].frames))
-    figures = {
+    return {
         "mean rank": float(np.mean(ranks)),
         "margin of scores": float(np.mean(margins)),
         "first is wrong": 1.0 + sum(best),
         "frames of the best": float(np.mean(frames)),
     }
-    wrong = 0
-    for times, positions, confidence, wanted in streams:
-        events = recognize_gestures(times, positions, confidence, GestureSettings())
-        found = sorted((event.gesture.name, round(event.time)) for event in events)
-        wrong += len(set(found) ^ set(wanted))
-    figures["gestures: changed"] = 1.0 + wrong
-    return figures
-
-
-def _streams() -> list[tuple]:
-    """Gestures at known times, with noise and occlusion; what is recognized now is wanted."""
-    found = []
-    for seed in range(3):
-        settings = PerformanceSettings(seed=seed, noise=0.003 + 0.002 * seed)
-        performance = perform_gestures(ACTS, settings)
-        given = performance.times, performance.positions, performance.confidence
-        events = recognize_gestures(*given, GestureSettings())
-        wanted = sorted((event.gesture.name, round(event.time)) for event in events)
-        found.append((*given, wanted))
-    return found

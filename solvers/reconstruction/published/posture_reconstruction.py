@@ -23,7 +23,7 @@ from ..reliability import ReliabilityMethod, ReliabilitySettings, measure_reliab
 from .posture_search import search_sequentially
 
 
-def reconstruct_shjt13(
+def reconstruct_published_postures(
     recording: JointRecording,
     postures: PostureLibrary | None,
     *,

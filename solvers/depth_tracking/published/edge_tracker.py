@@ -32,14 +32,14 @@ from ..tracking import (
 )
 from .depth_edges import edge_pixels
 from .edges import edge_term
+from .registration_tracker import NO_ANKLES
 from .surface import ColoredFrame, PreviousFrame, read_intensities, surface_term
-from .wzc12 import NO_ANKLES
 
 PER_DEGREE = (180.0 / np.pi) ** 2
 """Squared degrees in a squared radian."""
 SURFACE_WEIGHT, EDGE_WEIGHT = 4.0, 40.0
 """Weights of the terms, per square meter."""
-LOU12 = TrackerSettings(
+EDGE_TRACKER = TrackerSettings(
     picture_width=320, iterations=10, coarse_iterations=0,
     closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
     depth_weight=0.0, extra_weight=0.0, silhouette_weight=0.0,
@@ -56,7 +56,7 @@ weights per square radian, prior and smoothness have no effect, and tracking fai
 second."""
 
 
-def track_pose_lou12(
+def track_pose_by_edges(
     depth: DepthRecording,
     body: BodyModel,
     initial_pose: Array,
@@ -84,12 +84,13 @@ def track_pose_lou12(
     """
     poses, qualities, previous = [checked_pose(initial_pose)], [], None
     for frame in range(depth.n_frames):
-        observation = observe(depth, frame, LOU12.picture_width)
-        prior = next_pose_prior(poses[1:] or poses, LOU12, motion_prior)
-        colored = ColoredFrame(observation, read_intensities(depth, frame, LOU12.picture_width))
+        observation = observe(depth, frame, EDGE_TRACKER.picture_width)
+        prior = next_pose_prior(poses[1:] or poses, EDGE_TRACKER, motion_prior)
+        intensities = read_intensities(depth, frame, EDGE_TRACKER.picture_width)
+        colored = ColoredFrame(observation, intensities)
         edges = edge_pixels(observation.depth, observation.nearest_pixel)
         likelihood = _Likelihood(colored, edges, previous)
-        pose, quality = track_frame(body, prior, observation, LOU12, likelihood)
+        pose, quality = track_frame(body, prior, observation, EDGE_TRACKER, likelihood)
         previous = (
             None if observation.empty else PreviousFrame(segment_frames(body, pose), colored)
         )

@@ -23,15 +23,15 @@ from solvers.depth_tracking.body.normal_equations import (
 )
 from solvers.depth_tracking.capturing.capture import CaptureSettings, capture
 from solvers.depth_tracking.published.depth_edges import canny, edge_pixels
+from solvers.depth_tracking.published.edge_tracker import track_pose_by_edges
 from solvers.depth_tracking.published.edges import edge_term
-from solvers.depth_tracking.published.lou12 import track_pose_lou12
+from solvers.depth_tracking.published.registration_tracker import REGISTRATION_TRACKER
 from solvers.depth_tracking.published.surface import (
     ColoredFrame,
     PreviousFrame,
     previous_intensities,
     surface_term,
 )
-from solvers.depth_tracking.published.wzc12 import WZC12
 from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 from solvers.depth_tracking.terms.observation import Observation
 from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER
@@ -148,7 +148,7 @@ def test_published_tracker_follows_a_slow_actor():
     truth = waving(6)
     prior = motion_prior_from_poses([waving(60)])
 
-    tracked = track_pose_lou12(recorded(truth), BODY, truth[0], prior)
+    tracked = track_pose_by_edges(recorded(truth), BODY, truth[0], prior)
 
     assert np.abs(tracked.joints.positions[0] - tracked.joints.positions[-1]).max() > 0.03
     assert tracked.residual.max() < 0.03
@@ -231,9 +231,9 @@ def test_colors_are_read_only_if_a_term_uses_them():
     depth = replace(recorded(truth), read_color=read_color)
 
     found = capture(depth, BODY, settings=CaptureSettings())
-    for settings in (DEFAULT_TRACKER, WZC12):
+    for settings in (DEFAULT_TRACKER, REGISTRATION_TRACKER):
         track_pose(depth, BODY, truth[0], settings=settings)
 
     assert (found.motion.n_frames, requested) == (4, [])
     with pytest.raises(InvalidFileError, match=r"rgb/4\.png"):
-        track_pose_lou12(depth, BODY, truth[0])
+        track_pose_by_edges(depth, BODY, truth[0])

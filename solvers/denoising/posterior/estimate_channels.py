@@ -7,7 +7,7 @@ import numpy as np
 from ...arrays import Array
 from ...progress import Progress, unwatched
 from ...signals import shrink_noise
-from ..prior import WindowPrior
+from ..window_priors import WindowPrior
 from .covariance import adapt_covariance, covariance_from_prior
 from .estimate import Estimate
 from .fast_motion import find_fast_motion

@@ -28,11 +28,13 @@ from ..residual_correction import (
 CM_PER_M = 100.0
 """[ZH14] gives no unit for its weights; with meters the temporal term would vanish."""
 REFERENCE_RATE_HZ = 30.0
+"""Frame rate in hertz for which the weights are specified. By definition: that of the
+Kinect."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ThreeTermSettings(Settings):
-    """Settings of `reconstruct_zh14`."""
+    """Settings of `reconstruct_published_residuals`."""
 
     spatial: float = setting(0.6, "Weight of the predicted offsets", minimum=0.0, maximum=10.0)
     temporal: float = setting(0.2, "Weight of constant velocities", minimum=0.0, maximum=10.0)
@@ -44,7 +46,7 @@ class ThreeTermSettings(Settings):
     change: bool = setting(True, "Apply the pose-dependent offset")
 
 
-def reconstruct_zh14(
+def reconstruct_published_residuals(
     recording: JointRecording,
     prior: ResidualPrior,
     *,

@@ -48,13 +48,16 @@ LAYOUT = ArchiveLayout(
     remedy="Learn it again.",
 )
 MOVEMENT_FRACTION = 0.6
-"""Fraction of the movement process in a prediction; the rest comes from joints and poses."""
+"""Fraction of the movement process in a prediction; the rest comes from joints and poses.
+Chosen by hand: x0.5 and x2 change the mean by less than 0.1 %."""
 PREDICTION_RATE_HZ = 15.0
-"""Rate (Hz) of predictions. Errors change slowly, so frames in between are interpolated."""
+"""Rate (Hz) of predictions. Errors change slowly, so frames in between are interpolated. Chosen
+by hand: x0.5 and x2 move no error."""
 
 LOCAL_COVERAGE_M, POSTURE_COVERAGE_M = (0.15, 0.1), (0.35, 0.15)
 """Feature distance (m) from the nearest inducing point up to which poses count as covered, and
-the fall-off beyond. Actors outside the training set are almost always covered."""
+the fall-off beyond. Actors outside the training set are almost always covered. Chosen by hand:
+x0.5 and x2 change the mean by less than 0.1 %."""
 
 
 @dataclass(frozen=True, eq=False)

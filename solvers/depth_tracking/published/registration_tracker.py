@@ -5,7 +5,7 @@ from ..terms import TrackerSettings
 NO_ANKLES = 1e6
 """`ankle_weight` that locks the ankles."""
 
-WZC12 = TrackerSettings(
+REGISTRATION_TRACKER = TrackerSettings(
     iterations=5, coarse_iterations=0, limit=0.08,
     closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
     depth_weight=4.0, extra_weight=4.0 / 0.29**2, silhouette_weight=4.0 / 100.0**2,
