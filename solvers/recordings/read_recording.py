@@ -35,7 +35,16 @@ from .joint_files import (
     read_ntu_skeleton,
     read_ui_prmd,
 )
-from .marker_files import read_c3d, read_trc
+from .marker_files import (
+    is_motive_csv,
+    is_qualisys_tsv,
+    is_vicon_csv,
+    read_c3d,
+    read_motive_csv,
+    read_qualisys_tsv,
+    read_trc,
+    read_vicon_csv,
+)
 from .numpy_files import read_npy
 from .refused_files import REFUSALS
 from .skeleton_files import (
@@ -96,6 +105,9 @@ FORMATS = (
     Format("Xsens MVNX", is_mvnx, read_mvnx, has_skeleton=True),
     Format("C3D", is_c3d, read_c3d),
     Format("TRC", _is_trc, read_trc),
+    Format("OptiTrack CSV", is_motive_csv, read_motive_csv),
+    Format("Qualisys TSV", is_qualisys_tsv, read_qualisys_tsv),
+    Format("Vicon CSV", is_vicon_csv, read_vicon_csv),
     Format("IRDS", is_irds, read_irds),
     Format("Kinect v2 CSV", is_kinect_csv, read_kinect_csv),
     Format("Azure Kinect CSV", is_azure_csv, read_azure_csv),

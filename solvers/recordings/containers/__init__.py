@@ -1,6 +1,7 @@
 """Read container formats and tables: C3D, Matroska, MATLAB, NumPy, JSON and text."""
 
 from .c3d_file import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS, C3dFile, is_c3d
+from .delimited import find_separator, split_cells, stream_cells
 from .folder_scan import check_folder_access, files_below, is_folder
 from .growing_table import GrowingTable
 from .json_members import array_from_json, json_members
@@ -63,6 +64,7 @@ __all__ = [
     "check_folder_access",
     "decode_text",
     "files_below",
+    "find_separator",
     "index_matroska",
     "is_c3d",
     "is_folder",
@@ -86,5 +88,7 @@ __all__ = [
     "read_rows",
     "shown",
     "spaces_from_commas",
+    "split_cells",
+    "stream_cells",
     "stream_rows",
 ]

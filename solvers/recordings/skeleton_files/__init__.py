@@ -6,6 +6,7 @@ from .bvh import read_bvh
 from .bvh_writing import write_bvh
 from .kimodo import is_kimodo, read_kimodo
 from .mvnx import is_mvnx, read_mvnx
+from .segments import recording_from_segments
 from .smpl import NAMES_OF_BODY, is_motion_x, is_smpl, read_motion_x, read_smpl
 
 __all__ = [
@@ -22,5 +23,6 @@ __all__ = [
     "read_motion_x",
     "read_mvnx",
     "read_smpl",
+    "recording_from_segments",
     "write_bvh",
 ]
