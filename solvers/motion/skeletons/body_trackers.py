@@ -50,13 +50,15 @@ ZED_38 = (
 ZED_BODIES = {len(names): names for names in (ZED_18, ZED_34, ZED_38)}
 """Names of the joints in the order of the SDK, by their number."""
 
-NUITRACK = {
-    "HEAD": "Head", "NECK": "Neck", "TORSO": "SpineNavel", "WAIST": "Pelvis",
-    **{f"{side.upper()}_{joint.upper()}": f"{name}{side}" for side in _SIDES
-       for joint, name in (
-           ("Collar", "Clavicle"), ("Shoulder", "Shoulder"), ("Elbow", "Elbow"),
-           ("Wrist", "Wrist"), ("Hand", "Hand"), ("Fingertip", "HandTip"), ("Hip", "Hip"),
-           ("Knee", "Knee"), ("Ankle", "Ankle"), ("Foot", "Foot"),
-       )},
+_ARM = {
+    "COLLAR": "Clavicle", "SHOULDER": "Shoulder", "ELBOW": "Elbow", "WRIST": "Wrist",
+    "HAND": "Hand", "FINGERTIP": "HandTip",
 }  # fmt: skip
+_LEG = {"HIP": "Hip", "KNEE": "Knee", "ANKLE": "Ankle", "FOOT": "Foot"}
+NUITRACK = {"HEAD": "Head", "NECK": "Neck", "TORSO": "SpineNavel", "WAIST": "Pelvis"} | {
+    f"{side.upper()}_{joint}": f"{name}{side}"
+    for limb in (_ARM, _LEG)
+    for side in _SIDES
+    for joint, name in limb.items()
+}
 """Our names of Nuitrack's joints, in the order of its numbers, which begin with 1."""

@@ -1,8 +1,9 @@
 """Read tables whose cells are separated by tabs, semicolons or commas."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from .text import ROWS_AT_ONCE, parse_rows
 
 SEPARATORS = (b"\t", b";", b",")
 QUOTED = re.compile(rb'"([^"]*)"')
+NO_CONVERTERS: Mapping[int, Callable[[bytes], bytes]] = MappingProxyType({})
 INSIDE_QUOTES = b"\0"
 """Replaces separators inside quotes while a line is split."""
 
@@ -43,6 +45,7 @@ def stream_cells(
     *,
     is_end: Callable[[bytes], bool] = lambda line: False,
     keep_blank: bool = False,
+    converters: Mapping[int, Callable[[bytes], bytes]] = NO_CONVERTERS,
 ) -> NDArray[np.float64]:
     """Read the numbers of each remaining line, up to a line that ends the table.
 
@@ -62,6 +65,8 @@ def stream_cells(
         Returns whether a line begins another part of the file.
     keep_blank : bool
         Whether a line of blank cells is a row of NaN; otherwise it is skipped.
+    converters : mapping of column to callable
+        Returns the number for a cell that is a word; blank for NaN.
 
     Returns
     -------
@@ -81,7 +86,7 @@ def stream_cells(
                 ended = is_end(line)
                 if ended:
                     break
-                spaced = _spaced(line, separator, width, f"{path}, line {number}")
+                spaced = _spaced(line, separator, width, converters, f"{path}, line {number}")
                 is_row = spaced or (keep_blank and separator in line)
                 lines.append(spaced or b"nan " * width if is_row else b"")
             numbers = range(part.first, part.first + len(lines))
@@ -92,7 +97,13 @@ def stream_cells(
     return table.rows()
 
 
-def _spaced(line: bytes, separator: bytes, width: int, location: str) -> bytes:
+def _spaced(
+    line: bytes,
+    separator: bytes,
+    width: int,
+    converters: Mapping[int, Callable[[bytes], bytes]],
+    location: str,
+) -> bytes:
     """Return the cells of a line separated by spaces, blank ones as `nan`; empty for none."""
     cells = split_cells(line, separator)
     if not any(cells):
@@ -102,5 +113,8 @@ def _spaced(line: bytes, separator: bytes, width: int, location: str) -> bytes:
             f"{location}: {len(cells)} cells instead of {width}. The file is damaged, or has"
             " decimal commas; export it again with decimal points."
         )
+    for column, convert in converters.items():
+        if column < len(cells):
+            cells[column] = convert(cells[column])
     words = [cell.replace(b",", b".") or b"nan" for cell in cells[:width]]
     return b" ".join(words + [b"nan"] * (width - len(words)))
