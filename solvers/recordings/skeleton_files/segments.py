@@ -23,11 +23,12 @@ from ..conventions import (
     z_up_from_y_up,
 )
 from .segment_trees import tree_of_segments
-from .world_poses import motion_from_world_poses
+from .world_poses import body_extent, motion_from_world_poses
 
 POINTS_ONLY = "The origins of the segments come in as points, without their rotations"
-MAX_JOINT_DRIFT_M = 0.005
-"""Standard deviation of an origin seen from the segment above, from which it is at no joint."""
+MAX_JOINT_DRIFT = 0.003
+"""Standard deviation of an origin seen from the segment above, relative to the size of the
+body, from which it is at no joint."""
 JOINT_HEIGHT = 0.3
 """Place of that joint on the way to the origin, where the motion leaves it open."""
 MIN_SINGULAR = 0.05
@@ -96,6 +97,7 @@ def _at_joints(positions: Array, rotations: Array, parents: Sequence[int]) -> Ar
        centre of rotation of ball joints. J. Biomechanics 39(15).
     """
     moved = positions.copy()
+    max_drift = MAX_JOINT_DRIFT * body_extent(positions)
     for joint, parent in enumerate(parents):
         if parent < 0:
             continue
@@ -103,7 +105,7 @@ def _at_joints(positions: Array, rotations: Array, parents: Sequence[int]) -> Ar
         complete = np.isfinite(between).all(axis=1)
         complete &= np.isfinite(rotations[:, [parent, joint]]).all(axis=(1, 2))
         carried = rotate(inverse(rotations[complete, parent]), between[complete])
-        if not len(carried) or carried.std(axis=0).max() < MAX_JOINT_DRIFT_M:
+        if not len(carried) or carried.std(axis=0).max() < max_drift:
             continue
         own = matrix_from_quaternion(rotations[complete, joint])
         above = matrix_from_quaternion(rotations[complete, parent])
