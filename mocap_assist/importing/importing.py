@@ -23,7 +23,7 @@ QUICKLY_READ = 2_000_000  # bytes
 EXTENSIONS = (
     *sorted(SCENE_SUFFIXES),
     ".bvh", ".amc", ".asf", ".c3d", ".trc", ".skeleton", ".csv", ".json", ".txt", ".npy",
-    ".npz", ".mkv", ".mat", ".mvnx",
+    ".npz", ".mkv", ".mat", ".mvnx", ".tsv", ".vrma",
 )  # fmt: skip
 """What files of a format known here may be called; what they hold decides."""
 PICTURES = (".png", ".exr")

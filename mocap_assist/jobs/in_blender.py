@@ -21,7 +21,6 @@ SCENE_SUFFIXES = frozenset({
     ".glb",
     ".gltf",
     ".vrm",
-    ".vrma",
     ".usd",
     ".usda",
     ".usdc",

@@ -11,7 +11,14 @@ from ..faults import attempt
 from ..files import open_regular, unreadable
 from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, unwatched
-from .containers import BYTE_ORDER_MARK, check_folder_access, files_below, is_c3d, is_folder
+from .containers import (
+    BYTE_ORDER_MARK,
+    check_folder_access,
+    files_below,
+    is_c3d,
+    is_folder,
+    json_length,
+)
 from .conventions import check_scale
 from .depth_files import DepthSettings, detect_depth_format, is_depth_folder, read_depth
 from .joint_files import (
@@ -21,35 +28,58 @@ from .joint_files import (
     is_joint_csv,
     is_joint_json,
     is_kinect_csv,
+    is_mediapipe_csv,
+    is_mediapipe_json,
     is_msr_action3d,
     is_npy,
     is_ntu_skeleton,
+    is_nuitrack_csv,
+    is_nuitrack_json,
     is_ui_prmd,
+    is_zed_json,
     read_azure_csv,
     read_azure_json,
     read_irds,
     read_joint_csv,
     read_joint_json,
     read_kinect_csv,
+    read_mediapipe_csv,
+    read_mediapipe_json,
     read_msr_action3d,
     read_ntu_skeleton,
+    read_nuitrack_csv,
+    read_nuitrack_json,
     read_ui_prmd,
+    read_zed_json,
 )
-from .marker_files import read_c3d, read_trc
+from .marker_files import (
+    is_motive_csv,
+    is_qualisys_tsv,
+    is_vicon_csv,
+    read_c3d,
+    read_motive_csv,
+    read_qualisys_tsv,
+    read_trc,
+    read_vicon_csv,
+)
 from .numpy_files import read_npy
 from .refused_files import REFUSALS
 from .skeleton_files import (
     is_kimodo,
     is_mvnx,
     is_smpl,
+    is_vrma,
     read_acclaim,
     read_bvh,
     read_kimodo,
     read_mvnx,
     read_smpl,
+    read_vrma,
 )
 
 HEAD = 4096
+MAX_JSON_BYTES = 1 << 22
+"""Of a glTF file, read to see what it holds."""
 
 
 class Reader(Protocol):
@@ -90,12 +120,16 @@ def _is_trc(head: bytes) -> bool:
 FORMATS = (
     Format("BVH", _is_bvh, read_bvh, has_skeleton=True),
     Format("Acclaim AMC", _is_acclaim, read_acclaim, has_skeleton=True),
+    Format("VRM animation", is_vrma, read_vrma, has_skeleton=True),
     *(Format(each.name, each.fits, each.read, is_refused=True) for each in REFUSALS),
     Format("SMPL parameters", is_smpl, read_smpl, has_skeleton=True),
     Format("Kimodo", is_kimodo, read_kimodo, has_skeleton=True),
     Format("Xsens MVNX", is_mvnx, read_mvnx, has_skeleton=True),
     Format("C3D", is_c3d, read_c3d),
     Format("TRC", _is_trc, read_trc),
+    Format("OptiTrack CSV", is_motive_csv, read_motive_csv),
+    Format("Qualisys TSV", is_qualisys_tsv, read_qualisys_tsv),
+    Format("Vicon CSV", is_vicon_csv, read_vicon_csv),
     Format("IRDS", is_irds, read_irds),
     Format("Kinect v2 CSV", is_kinect_csv, read_kinect_csv),
     Format("Azure Kinect CSV", is_azure_csv, read_azure_csv),
@@ -104,8 +138,13 @@ FORMATS = (
     Format("MSR Action3D", is_msr_action3d, read_msr_action3d),
     Format("UI-PRMD", is_ui_prmd, read_ui_prmd),
     Format("freemocap", is_npy, read_npy),
+    Format("ZED JSON", is_zed_json, read_zed_json),
+    Format("Nuitrack CSV", is_nuitrack_csv, read_nuitrack_csv),
+    Format("Nuitrack JSON", is_nuitrack_json, read_nuitrack_json),
+    Format("MediaPipe CSV", is_mediapipe_csv, read_mediapipe_csv),
     Format("joint CSV", is_joint_csv, read_joint_csv),
     Format("joint JSON", is_joint_json, read_joint_json),
+    Format("MediaPipe JSON", is_mediapipe_json, read_mediapipe_json),
 )
 """Supported formats; add a line here for a new one."""
 
@@ -196,6 +235,7 @@ def detect_format(path: Path | str) -> Format | None:
     try:
         with open_regular(path) as file:
             head = file.read(HEAD).removeprefix(BYTE_ORDER_MARK)
+            head += file.read(min(json_length(head), MAX_JSON_BYTES))
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except OSError as error:

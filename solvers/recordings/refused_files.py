@@ -10,6 +10,10 @@ from ..progress import Progress, unwatched
 
 SCENE_MAGIC = (b"Kaydara FBX Binary", b"; FBX", b"glTF", b"PXR-USDC", b"#usda")
 
+COCO = re.compile(rb'"(image_id|category_id|num_keypoints|keypoint_scores|bbox)"')
+DEEPLABCUT = re.compile(rb"scorer,[^\r\n]*\r?\n(individuals,[^\r\n]*\r?\n)?bodyparts,")
+OPENSIM_BODIES = re.compile(rb"#?\s*times?\s*,\s*(\w+)_x\s*,\s*\1_y\s*,\s*\1_z\s*,\s*\1_rotx")
+
 
 class Refusal(NamedTuple):
     """A kind of file that is not read."""
@@ -37,19 +41,29 @@ def _is_scene_file(head: bytes) -> bool:
 
 
 def _is_flat(head: bytes) -> bool:
-    """Detect the keypoints of OpenPose and its kin, which lie in a picture."""
+    """Detect the keypoints of OpenPose, COCO and DeepLabCut, which lie in a picture."""
     has_depth = re.search(rb'"pose_keypoints_3d"\s*:\s*\[\s*[-\d]', head)
-    return b'"pose_keypoints_2d"' in head and not has_depth
+    openpose = b'"pose_keypoints_2d"' in head or re.search(
+        rb'\s*\{\s*"version"\s*:[^{]*"people"\s*:\s*\[\s*\]', head
+    )
+    coco = re.match(rb"\s*[\[{]", head) and (
+        (b'"keypoints"' in head and COCO.search(head))
+        or (b'"annotations"' in head and b'"image_id"' in head)
+        or re.match(rb'\s*\{\s*"(info|images|licenses)"\s*:.*"(license|file_name)"', head, re.S)
+    )
+    return bool((openpose and not has_depth) or coco or DEEPLABCUT.match(head))
 
 
 def _is_opensim(head: bytes) -> bool:
-    return b"endheader" in head and b"inDegrees" in head
+    is_table = b"endheader" in head and (b"inDegrees" in head or b"nColumns" in head)
+    return is_table or OPENSIM_BODIES.match(head) is not None
 
 
 def _is_pickle(head: bytes) -> bool:
-    """Detect pickles, also those in the archives of PyTorch and joblib."""
-    in_archive = head[:4] == b"PK\x03\x04" and b"data.pkl" in head[:128]
-    return in_archive or (head[:1] == b"\x80" and head[1:2] in b"\x02\x03\x04\x05")
+    """Detect pickles, also those in the archives of PyTorch, joblib and NumPy."""
+    in_archive = head[:4] == b"PK\x03\x04" and b"data.pkl" in head[:300]
+    in_array = head[:6] == b"\x93NUMPY" and b"'|O'" in head[:128]
+    return in_archive or in_array or (head[:1] == b"\x80" and head[1:2] in b"\x02\x03\x04\x05")
 
 
 REFUSALS = (
@@ -73,8 +87,7 @@ REFUSALS = (
     Refusal(
         "OpenSim motion",
         _is_opensim,
-        "holds the joint angles of OpenSim, which need its model. Import the TRC of the same"
-        " take.",
+        "holds results of OpenSim, which need its model. Import the TRC of the same take.",
     ),
     Refusal(
         "pickle",

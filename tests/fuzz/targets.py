@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from complete_files import JOINT_FILES, JOINT_TOKENS, RECORDING, SKELETON, TOKENS, WHOLE
 from depth_files import depth_npz, matlab, pictures
+from exports.whole_exports import EXPORT_TOKENS, EXPORTS
 from fuzz_seeds import (
     QUERY,
     clip_library,
@@ -106,6 +107,8 @@ def targets() -> dict[str, Target]:
     )
     for kind, (_, content) in JOINT_FILES.items():
         found[kind.replace(" ", "_")] = Target(content, read_recording, JOINT_TOKENS)
+    for kind, content in EXPORTS.items():
+        found[kind] = Target(content, read_recording, EXPORT_TOKENS)
     depth = {"depth_mat": matlab("depth", DEPTH.transpose(1, 2, 0)), "depth_mkv": k4a(DEPTH)}
     for kind, content in depth.items():
         found[kind] = Target(content, _read_depth, BINARY_TOKENS)

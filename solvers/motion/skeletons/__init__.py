@@ -1,5 +1,6 @@
 """Skeletons, motions and tracks, the data that all families exchange, and kinematics."""
 
+from .body_trackers import NUITRACK, ZED_BODIES
 from .depth_sensors import SENSOR_JOINTS, UI_PRMD, Sensor, joint_parents, rest_direction
 from .frame_rate import check_frame_rate
 from .joint_limits import ROTATION_VECTOR, JointLimits
@@ -20,10 +21,12 @@ __all__ = [
     "COMPUTED_JOINTS",
     "HAND_POINTS",
     "INFERRED",
+    "NUITRACK",
     "ROTATION_VECTOR",
     "SENSOR_JOINTS",
     "TRACKED",
     "UI_PRMD",
+    "ZED_BODIES",
     "Alignment",
     "JointLimits",
     "JointRecording",

@@ -9,6 +9,7 @@ import re
 from collections.abc import Sequence
 from enum import Enum
 
+from .body_trackers import ZED_T_POSE, zed_parents
 from .mediapipe import MEDIAPIPE, MEDIAPIPE_T_POSE
 
 
@@ -19,6 +20,8 @@ class Sensor(Enum):
     KINECT_V2 = "kinect_v2"
     AZURE_KINECT = "azure_kinect"
     MEDIAPIPE = "mediapipe"
+    ZED = "zed"
+    NUITRACK = "nuitrack"
     OTHER = "other"
 
 
@@ -71,6 +74,7 @@ UI_PRMD = {  # Kinect v2, with the joint names of the UI-PRMD data set
     "LUpLeg": "Waist", "LLowLeg": "LUpLeg", "LFoot": "LLowLeg", "LToes": "LFoot",
     "RUpLeg": "Waist", "RLowLeg": "RUpLeg", "RFoot": "RLowLeg", "RToes": "RFoot",
 }  # fmt: skip
+ZED = zed_parents(AZURE_KINECT)
 
 SENSOR_JOINTS = {
     Sensor.KINECT_V1: tuple(KINECT_V1),
@@ -90,7 +94,7 @@ T_POSE = {
     "HandTipLeft": OUT, "LUpArm": OUT, "LForeArm": OUT, "LHand": OUT,
     "ThumbLeft": (0.6, -0.8, 0.0),
     "Nose": (0.0, -1.0, 0.2), "EyeLeft": (0.3, -0.9, 0.5), "EarLeft": (0.8, -0.1, 0.3),
-    **MEDIAPIPE_T_POSE,
+    **MEDIAPIPE_T_POSE, **ZED_T_POSE,
 }  # fmt: skip
 
 
@@ -113,7 +117,7 @@ def joint_parents(names: Sequence[str]) -> tuple[int, ...]:
     out is a child of its nearest ancestor in `names`. In the order of the Kinect v2 a parent
     may come after its children.
     """
-    tables = (KINECT_V2, KINECT_V1, AZURE_KINECT, UI_PRMD, MEDIAPIPE)
+    tables = (KINECT_V2, KINECT_V1, AZURE_KINECT, ZED, UI_PRMD, MEDIAPIPE)
     table = max(tables, key=lambda known: len(known.keys() & set(names)))
     indices = {name: index for index, name in enumerate(names)}
     parents = []

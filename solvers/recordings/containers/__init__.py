@@ -1,7 +1,9 @@
 """Read container formats and tables: C3D, Matroska, MATLAB, NumPy, JSON and text."""
 
 from .c3d_file import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS, C3dFile, is_c3d
+from .delimited import find_separator, split_cells, stream_cells
 from .folder_scan import check_folder_access, files_below, is_folder
+from .glb_file import GlbFile, json_length, vector
 from .growing_table import GrowingTable
 from .json_members import array_from_json, json_members
 from .line_reader import Block, LineReader
@@ -49,6 +51,7 @@ __all__ = [
     "Block",
     "ByteSlice",
     "C3dFile",
+    "GlbFile",
     "GrowingTable",
     "LineReader",
     "MatlabArray",
@@ -63,6 +66,7 @@ __all__ = [
     "check_folder_access",
     "decode_text",
     "files_below",
+    "find_separator",
     "index_matroska",
     "is_c3d",
     "is_folder",
@@ -70,6 +74,7 @@ __all__ = [
     "is_matlab",
     "is_matroska",
     "is_png",
+    "json_length",
     "json_members",
     "matlab_arrays",
     "max_color_size",
@@ -86,5 +91,8 @@ __all__ = [
     "read_rows",
     "shown",
     "spaces_from_commas",
+    "split_cells",
+    "stream_cells",
     "stream_rows",
+    "vector",
 ]

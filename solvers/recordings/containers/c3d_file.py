@@ -91,12 +91,17 @@ class C3dFile:
                 return float(rate)
         raise InvalidFileError(f"{self.path} does not state its frame rate.")
 
+    @property
+    def n_points(self) -> int:
+        """Number of points, of the header."""
+        return int(self._integers(2, 1)[0])
+
     def read_points(self) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """Return coordinates in the file's units, and whether each point was observed.
 
         Shapes (n_frames, n_points, 3) and (n_frames, n_points).
         """
-        n_points = int(self._integers(2, 1)[0])
+        n_points = self.n_points
         if not n_points:
             raise InvalidFileError(f"{self.path} has no points, only other signals or nothing.")
         scale = self._scale()
@@ -183,7 +188,7 @@ class C3dFile:
             raise InvalidFileError(f"{self.path} is cut short: its data are missing.")
         fits = [
             (n_bytes - n_frames * width * (4 * n_points + n_others), n_frames, n_others)
-            for n_frames in self._frame_counts()
+            for n_frames in self.frame_counts()
             for n_others in self._other_counts()
         ]
         fitting = [fit for fit in fits if fit[0] >= 0]
@@ -195,7 +200,7 @@ class C3dFile:
         _, n_frames, n_others = min(fitting)
         return start, n_frames, n_others
 
-    def _frame_counts(self) -> list[int]:
+    def frame_counts(self) -> list[int]:
         """Return all stored numbers of frames; that of the header wraps at 65536."""
         first, last = self._integers(6, 2)
         counts = [float(last) - float(first) + 1.0]

@@ -25,8 +25,10 @@ class Member(NamedTuple):
     """Fraction of the file up to its end."""
 
 
-def json_members(path: Path | str) -> Iterator[Member]:
+def json_members(path: Path | str, *, lists: bool = False) -> Iterator[Member]:
     """Yield the members of the outermost object, lists element by element.
+
+    With `lists`, the outermost value may be a list, whose elements have an empty key.
 
     Raises InvalidFileError if the file is missing or not a JSON object.
     """
@@ -34,7 +36,11 @@ def json_members(path: Path | str) -> Iterator[Member]:
     try:
         text = content.decode("utf-8")
         del content
-        yield from _members(text)
+        start = _skip_space(text, 0)
+        if lists and text[start] == "[":
+            yield from _elements(text, start, "")
+        else:
+            yield from _members(text)
     except (ValueError, RecursionError, IndexError):
         raise InvalidFileError(
             f"{path} is not readable as JSON: it is damaged or cut short. Export it again."

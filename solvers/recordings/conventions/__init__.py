@@ -21,6 +21,7 @@ from .body_axes import (
     stand_upright,
 )
 from .body_unit import describe_guessed_unit
+from .camera_bodies import is_mirrored, stand_along
 from .points import (
     METERS,
     guess_unit_of_points,
@@ -54,6 +55,7 @@ __all__ = [
     "from_kinect_space",
     "guess_unit",
     "guess_unit_of_points",
+    "is_mirrored",
     "is_upside_down",
     "joint_recording",
     "judge_up_axis",
@@ -67,6 +69,7 @@ __all__ = [
     "rotations_y_up_from_z_up",
     "rotations_z_up_from_y_up",
     "stack_body_frames",
+    "stand_along",
     "stand_upright",
     "y_up_from_z_up",
     "z_up_from_y_up",

@@ -44,8 +44,15 @@ def guess_unit_of_points(points: NDArray[np.float64]) -> float:
     return min((0.001, 0.01, 1.0), key=lambda unit: abs(np.log(extent * unit / BODY_EXTENT_M)))
 
 
-def points_z_up(points: NDArray[np.float64], up: str) -> NDArray[np.float64]:
-    """Rotate points so that `up`, such as `+Y`, becomes Z; if it is unknown, estimate it."""
+def points_z_up(
+    points: NDArray[np.float64], up: str = "", default_up: str = ""
+) -> NDArray[np.float64]:
+    """Rotate points so that `up`, such as `+Y`, becomes Z; if it is unknown, estimate it.
+
+    With too few points for a body it is `default_up`, if that is given.
+    """
+    if up[-1:] not in {"X", "Y", "Z"} and points.shape[1] < MIN_BODY_JOINTS:
+        up = default_up
     if up[-1:] not in {"X", "Y", "Z"}:
         up = "+Y" if _looks_y_up(points) else "+Z"
     if up[-1] == "X":

@@ -10,11 +10,12 @@ from ...motion import JointRecording, Sensor, Tracks
 from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
 from ...progress import Progress, unwatched
 from ..containers import NPY_MAGIC, read_array
-from ..conventions import DEFAULT_FRAME_RATE, check_scale, describe_guessed_unit, z_up_from_y_up
+from ..conventions import DEFAULT_FRAME_RATE, check_scale, describe_guessed_unit, stand_along
 
 WITH_HANDS = len(BODY_POINTS) + 2 * len(HAND_POINTS)
 FACES = (0, 468, 478)
 MILLIMETER = 0.001
+NOSE, ANKLES = [0], [BODY_POINTS.index(f"{side}_ankle") for side in ("left", "right")]
 MAX_EXTENT_M = 20.0
 """Maximum extent of a body in units of the file, for the units to be meters."""
 
@@ -76,14 +77,14 @@ def read_freemocap(
     names = _names(points)
     is_body = names[0] == BODY_POINTS[0]
     if is_body:
-        names, points = _with_centers(names, _z_up(points))
+        names, points = with_centers(names, stand_along(points, NOSE, ANKLES))
     unit = _unit(points) if scale is None else scale
     tracks = Tracks(names, points * unit, frame_rate)
     progress(1.0, describe_guessed_unit(unit) if scale is None and is_body else "Reading")
     return JointRecording(tracks, None, Sensor.MEDIAPIPE) if is_body else tracks
 
 
-def _with_centers(
+def with_centers(
     names: tuple[str, ...], points: NDArray[np.float64]
 ) -> tuple[tuple[str, ...], NDArray[np.float64]]:
     """Add the joints in the middle of the body; missing where any of their points is."""
@@ -122,22 +123,6 @@ def _median_distance(one: NDArray[np.float64], other: NDArray[np.float64]) -> fl
         distances = np.linalg.norm(one - other, axis=-1)
     known = distances[np.isfinite(distances)]
     return float(np.median(known)) if len(known) else np.nan
-
-
-def _z_up(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rotate a known body so that its nose is above its ankles, if they are observed."""
-    ankles = [BODY_POINTS.index("left_ankle"), BODY_POINTS.index("right_ankle")]
-    displacements = points[:, :1] - points[:, ankles]
-    known = displacements[np.isfinite(displacements).all(axis=-1)]
-    if not len(known):
-        return points
-    up = np.median(known, axis=0)
-    axis = int(np.argmax(np.abs(up)))
-    if axis == 0:
-        points = np.roll(points, -1, axis=-1)  # x y z -> y z x
-    elif axis == 1:
-        points = z_up_from_y_up(points)
-    return points * (1.0, -1.0, -1.0) if up[axis] < 0.0 else points
 
 
 def _unit(points: NDArray[np.float64]) -> float:

@@ -1,13 +1,22 @@
-"""Read and write optical markers as C3D and TRC."""
+"""Read optical markers, and write them as C3D and TRC."""
 
 from .c3d import read_c3d
 from .c3d_writing import write_c3d
+from .motive_csv import is_motive_csv, read_motive_csv
+from .qualisys_tsv import is_qualisys_tsv, read_qualisys_tsv
 from .trc import read_trc
 from .trc_writing import write_trc
+from .vicon_csv import is_vicon_csv, read_vicon_csv
 
 __all__ = [
+    "is_motive_csv",
+    "is_qualisys_tsv",
+    "is_vicon_csv",
     "read_c3d",
+    "read_motive_csv",
+    "read_qualisys_tsv",
     "read_trc",
+    "read_vicon_csv",
     "write_c3d",
     "write_trc",
 ]

@@ -1,4 +1,4 @@
-"""Read C3D files: marker tracks of optical systems."""
+"""Read C3D files: marker tracks of optical systems, and poses of segments."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
-from ...motion import Tracks
+from ...motion import Motion, Tracks
 from ...progress import Progress, unwatched
 from ..containers import C3dFile
 from ..conventions import (
@@ -17,20 +17,22 @@ from ..conventions import (
     point_names,
     points_z_up,
 )
+from .c3d_rotations import has_rotations, read_c3d_rotations
 
 NON_POSITION_PARAMETERS = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS", "REACTIONS")
 
 
 def read_c3d(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Tracks:
+) -> Motion | Tracks:
     """Read the points of a C3D file, in meters, Z up; missing points are NaN.
 
     A point is missing if its residual is negative or it is exactly at the origin, as some
     programs write it. Joint angles, forces and other results of models that are stored as
     points are dropped. Up is the Y axis of the screen (POINT:Y_SCREEN); without it, up is
     estimated to be Y or Z (`points_z_up`). The heading of the actor is unchanged. Analog
-    signals and events are not read.
+    signals and events are not read. Of a file without points, the poses of segments in its
+    ROTATION group are read (`read_c3d_rotations`).
 
     Parameters
     ----------
@@ -42,7 +44,7 @@ def read_c3d(
 
     Returns
     -------
-    Tracks
+    Tracks, or Motion of the segments of a body
         Names are unique (`LFHD_2`), and without the prefix of the actor (`Anna:LFHD`) if there
         is only one; unnamed points are called `point_<number>`.
 
@@ -58,6 +60,10 @@ def read_c3d(
     check_scale(scale)
     file = C3dFile(path)
     progress(0.1, "Reading")
+    if has_rotations(file):
+        if not file.n_points:
+            return read_c3d_rotations(file, scale, progress)
+        progress(0.1, "The poses of segments in its ROTATION group are left out")
     points, observed = file.read_points()
     progress(0.6, "Reading")
     points[~observed | (points == 0.0).all(axis=-1) | ~np.isfinite(points).all(axis=-1)] = (

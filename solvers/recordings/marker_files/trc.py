@@ -12,15 +12,13 @@ from ...motion import Tracks
 from ...progress import Progress, unwatched, within
 from ..containers import ROWS_AT_ONCE, LineReader, decode_text, read_number, shown
 from ..conventions import (
-    MIN_BODY_JOINTS,
-    ConstantRate,
     check_scale,
-    constant_rate_from_times,
     guess_unit_of_points,
     meters_from_unit_name,
     point_names,
     points_z_up,
 )
+from .marker_rows import MAX_RATE_HZ, MAX_VALUE, MIN_RATE_HZ, at_constant_rate, mark_missing
 
 MAX_HEADER_LINES = 30
 """Maximum length of the header."""
@@ -29,12 +27,8 @@ COMMA_TITLE = r'(?i)"?frame\s*#?"?,'
 TITLE = rb'[\s",]*[A-Za-z]'
 """Start of the line of axis titles, X1, Y1, Z1 and so on."""
 FULL_TURN = 2.0 * np.pi
-MAX_VALUE = 1e12
-"""Maximum plausible measurement; some programs write larger values for missing markers."""
-MIN_RATE_HZ, MAX_RATE_HZ = 1e-3, 1e6
 MAX_BLANK_RATIO = 10
 MAX_UNCHECKED_CELLS = 1_000_000
-MILLISECOND = 0.001
 
 
 class _Header(NamedTuple):
@@ -93,14 +87,11 @@ def read_trc(
     reader.take(header.n_lines)
     rows = _read_rows(reader, header.separator, path, within(progress, 0.0, 0.8))
     frames, times, points = _columns_from_rows(rows, len(header.labels), path)
-    points[(points == 0.0).all(axis=-1) | ~np.isfinite(points).all(axis=-1)] = np.nan
-    if np.isnan(points).all():
-        raise InvalidFileError(f"{path} has no markers that are observed in any frame.")
+    mark_missing(points, path)
     points *= _unit(header, points, path) if scale is None else scale
-    points, rate = _at_constant_rate(points, frames, times, header.rate, path)
+    points, rate = at_constant_rate(points, frames, times, header.rate, path)
     labels = header.labels + [""] * (points.shape[1] - len(header.labels))
-    up = header.up or ("+Y" if len(labels) < MIN_BODY_JOINTS else "")
-    tracks = Tracks(point_names(labels), points_z_up(points, up), rate)
+    tracks = Tracks(point_names(labels), points_z_up(points, header.up, "+Y"), rate)
     progress(1.0, "Reading")
     return tracks
 
@@ -264,33 +255,3 @@ def _unit(header: _Header, points: NDArray[np.float64], path: Path | str) -> flo
             " is above 6.3. Export positions of markers, or give the scale."
         )
     return unit
-
-
-def _at_constant_rate(
-    points: NDArray[np.float64],
-    frames: NDArray[np.float64],
-    times: NDArray[np.float64],
-    stated_rate: float | None,
-    path: Path | str,
-) -> tuple[NDArray[np.float64], float]:
-    """Resample by the times, otherwise by the frame numbers, if either of them increase."""
-    rate = stated_rate
-    if stated_rate is not None and not _increases(times) and _increases(frames):
-        times = frames / stated_rate
-    if _increases(times):
-        if (
-            stated_rate is not None
-            and constant_rate_from_times(MILLISECOND * times, stated_rate) == stated_rate
-        ):
-            times = MILLISECOND * times
-        rate = constant_rate_from_times(times, stated_rate)
-        if rate is None:
-            resampler = ConstantRate(path, times, stated_rate)
-            points, rate = resampler.positions(points), resampler.frame_rate
-    if rate is None or not MIN_RATE_HZ < rate < MAX_RATE_HZ:
-        raise InvalidFileError(f"{path} does not state its frame rate.")
-    return points, rate
-
-
-def _increases(values: NDArray[np.float64]) -> bool:
-    return len(values) > 1 and bool((np.diff(values) > 0.0).all())

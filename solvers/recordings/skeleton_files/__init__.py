@@ -6,7 +6,9 @@ from .bvh import read_bvh
 from .bvh_writing import write_bvh
 from .kimodo import is_kimodo, read_kimodo
 from .mvnx import is_mvnx, read_mvnx
+from .segments import recording_from_segments
 from .smpl import NAMES_OF_BODY, is_motion_x, is_smpl, read_motion_x, read_smpl
+from .vrma import is_vrma, read_vrma
 
 __all__ = [
     "NAMES_OF_BODY",
@@ -15,6 +17,7 @@ __all__ = [
     "is_motion_x",
     "is_mvnx",
     "is_smpl",
+    "is_vrma",
     "read_acclaim",
     "read_acclaim_limits",
     "read_bvh",
@@ -22,5 +25,7 @@ __all__ = [
     "read_motion_x",
     "read_mvnx",
     "read_smpl",
+    "read_vrma",
+    "recording_from_segments",
     "write_bvh",
 ]

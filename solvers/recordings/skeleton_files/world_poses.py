@@ -9,8 +9,9 @@ from ...errors import InvalidFileError
 from ...motion import Motion, Skeleton
 from ...rotations import inverse, multiply, rotate
 
-MAX_OFFSET_ERROR_M = 0.02
-"""Standard deviation of a bone over time, above which positions and rotations disagree."""
+MAX_OFFSET_ERROR = 0.0125
+"""Standard deviation of a bone over time, relative to the size of the body, above which
+positions and rotations disagree: 2 cm of an adult."""
 
 
 def motion_from_world_poses(
@@ -37,7 +38,7 @@ def motion_from_world_poses(
     above = np.maximum(parents, 0)
     complete = np.isfinite(positions).all(axis=(1, 2)) & np.isfinite(rotations).all(axis=(1, 2))
     bones = rotate(inverse(rotations[:, above]), positions - positions[:, above])[complete]
-    if not len(bones) or bones.std(axis=0).max() > MAX_OFFSET_ERROR_M:
+    if not len(bones) or bones.std(axis=0).max() > MAX_OFFSET_ERROR * body_extent(positions):
         raise InvalidFileError("positions and rotations of the joints do not agree")
     offsets = bones.mean(axis=0)
     offsets[0] = positions[complete, 0].mean(axis=0)
@@ -46,3 +47,10 @@ def motion_from_world_poses(
     local[:, 0] = rotations[:, 0]
     skeleton = Skeleton(tuple(names), tuple(int(parent) for parent in parents), offsets)
     return Motion(skeleton, local, positions[:, 0], frame_rate)
+
+
+def body_extent(positions: Array) -> float:
+    """Return the largest side of the box around the joints in most complete frames."""
+    complete = np.isfinite(positions).all(axis=(1, 2))
+    boxes = np.ptp(positions[complete], axis=1).max(axis=-1)
+    return float(np.median(boxes)) if len(boxes) else 0.0

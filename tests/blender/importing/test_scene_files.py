@@ -56,11 +56,18 @@ def test_every_take_of_a_file_comes_in(bring, recordings):
     }
 
 
+def test_a_vrm_animation_comes_in_without_a_skin(bring, recordings):
+    (armature,), _ = bring(recordings / "corpus/vrm/vrma_pixiv/test.vrma")
+
+    assert len(armature.data.bones) >= 51
+    assert "leftUpperArm" in armature.data.bones
+    assert armature.animation_data.action.frame_range[1] >= 90.0
+
+
 @pytest.mark.parametrize(
     ("file", "sentence"),
     [
         ("vrm/example_vrm/Example.vrm", "has a skeleton but no animation"),
-        ("vrm/vrma_pixiv/test.vrma", "has no skeleton"),
         ("fbx/ue4_mannequin/SK_Mannequin.FBX", "has a skeleton but no animation"),
     ],
 )

@@ -6,7 +6,7 @@ IMPORT = "mocap_assist.import_recording"
 EXTENSIONS = {
     ".bvh", ".amc", ".asf", ".c3d", ".trc", ".skeleton", ".csv", ".json", ".txt", ".npy",
     ".npz", ".mkv", ".mat", ".mvnx", ".fbx", ".glb", ".gltf", ".vrm", ".vrma", ".usd", ".usda",
-    ".usdc", ".usdz", ".dae",
+    ".usdc", ".usdz", ".dae", ".tsv",
 }  # fmt: skip
 
 

@@ -4,7 +4,7 @@ import socket
 
 import pytest
 
-from solvers.recordings import read_bvh
+from solvers.recordings import read_bvh, read_recording
 
 
 @pytest.fixture
@@ -17,6 +17,25 @@ def read(tmp_path):
         return read_bvh(path, **options)
 
     return read_text
+
+
+@pytest.fixture
+def read_any(tmp_path):
+    """Read a file of this text or these bytes, whose format its content decides."""
+
+    def read_content(content: str | bytes, **options):
+        path = tmp_path / "take.dat"
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return read_recording(path, **options)
+
+    return read_content
+
+
+@pytest.fixture
+def said():
+    """Return a list, and a progress that collects the messages of a reader in it."""
+    messages: list[str] = []
+    return messages, lambda fraction, message="": messages.append(message)
 
 
 @pytest.fixture

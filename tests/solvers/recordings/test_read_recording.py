@@ -98,7 +98,7 @@ def test_joints_of_a_camera_serve_as_points(recordings):
         (b":version 1.10\n:name VICON\n:units\n", r"skeleton without motion.* \.amc"),
         (
             b"a letter",
-            r"no known format \(BVH, Acclaim AMC, SMPL parameters, Kimodo, ",
+            r"no known format \(BVH, Acclaim AMC, VRM animation, SMPL",
         ),
         (b"Kaydara FBX Binary", "read by Blender's own importers"),
         (b"glTF\2\0\0\0", "read by Blender's own importers"),

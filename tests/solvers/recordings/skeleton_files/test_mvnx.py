@@ -63,15 +63,3 @@ def test_what_is_no_body_is_refused_in_a_sentence(path, tmp_path, old, new, sent
 
     with pytest.raises(InvalidFileError, match=sentence):
         read_recording(tmp_path / "bad.mvnx")
-
-
-@pytest.mark.parametrize(
-    ("file", "sentence"),
-    [
-        ("openpose_json/cam01.0000.json", "keypoints of a picture, without depth"),
-        ("pose2sim/BalancingTrial_LSTM.mot", "OpenSim.* its model"),
-    ],
-)
-def test_files_of_other_labs_are_refused_kindly(recordings, file, sentence):
-    with pytest.raises(InvalidFileError, match=sentence):
-        read_recording(recordings / "corpus/lab" / file)

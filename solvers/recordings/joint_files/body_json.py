@@ -1,0 +1,90 @@
+"""Read the JSON of body trackers whose files hold the joints of several people per frame."""
+
+from collections.abc import Hashable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...arrays import Array
+from ...errors import InvalidFileError
+from ..containers import array_from_json, json_members
+
+MAX_CONFIDENCE = 100.0
+
+
+class Body(NamedTuple):
+    """Joints of one person in one frame."""
+
+    positions: Array
+    """Shape (n_joints, 3)."""
+    confidence: Array
+    """Shape (n_joints,), NaN where the file has none."""
+
+
+class Frame(NamedTuple):
+    """One frame of a file."""
+
+    time: float
+    """In the unit of the file; NaN if it is not stated."""
+    bodies: dict[Hashable, Body]
+    done: float
+    """Fraction of the file up to its end."""
+
+
+def json_frames(path: Path | str, keys: frozenset[str]) -> Iterator[tuple[str, Any, float]]:
+    """Yield key, value and fraction of the file of each object that has one of these keys.
+
+    Frames are elements of a list, or members of the outermost object, by time.
+    """
+    for member in json_members(path, lists=True):
+        if isinstance(member.value, dict) and not keys.isdisjoint(member.value):
+            yield member.key, member.value, member.done
+
+
+def listed(value: Any, location: str) -> list[Any]:
+    """Return a list of objects; raise InvalidFileError for other values."""
+    if value is None:
+        return []
+    if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
+        raise InvalidFileError(
+            f"{location}: a list of bodies is required. The file is damaged; export it again."
+        )
+    return value
+
+
+def number(value: Any, location: str) -> float:
+    """Return a number, which may be a text; NaN for null."""
+    if isinstance(value, str) and value.replace(".", "", 1).isdigit() and len(value) < 30:
+        return float(value)
+    return float(array_from_json(value, (), location))
+
+
+def point(value: Any, location: str) -> Array:
+    """Return x, y, z of a list or of an object with these keys."""
+    if isinstance(value, Mapping):
+        lower = {str(key).lower(): coordinate for key, coordinate in value.items()}
+        value = [lower.get(axis) for axis in "xyz"]
+    return array_from_json(value, (3,), location)
+
+
+def stacked(body: Hashable, frames: list[Frame]) -> tuple[Array, Array | None]:
+    """Return positions and confidence, 0 to 1, of a body; NaN and 0 in frames without it.
+
+    Raises ValueError if it has different joints in different frames.
+    """
+    found = [frame.bodies.get(body) for frame in frames]
+    empty = next(each for each in found if each is not None)
+    gap = Body(np.full_like(empty.positions, np.nan), np.full_like(empty.confidence, np.nan))
+    positions = np.stack([(each or gap).positions for each in found])
+    confidence = np.stack([(each or gap).confidence for each in found])
+    if np.isnan(confidence).all():
+        return positions, None
+    if np.nanmax(confidence) > 1.0:
+        confidence = confidence / MAX_CONFIDENCE
+    return positions, np.clip(np.nan_to_num(confidence), 0.0, 1.0)
+
+
+def name_of_body(body: Mapping[str, Any], keys: tuple[str, ...], count: int) -> str:
+    """Return the identity of a body, or its index in the frame."""
+    return str(next((body[key] for key in keys if key in body), count))

@@ -1,0 +1,144 @@
+"""Read MediaPipe's world landmarks as programs save them: JSON."""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...arrays import Array
+from ...errors import InvalidFileError
+from ...motion import JointRecording
+from ...progress import Progress, unwatched
+from ..containers import array_from_json, json_members
+from ..conventions import check_scale
+from .body_json import number
+from .mediapipe_landmarks import N_POINTS, recording_from_landmarks, seconds
+
+WORLD = ("worldLandmarks", "pose_world_landmarks", "poseWorldLandmarks", "world_landmarks",
+         "keypoints3D")  # fmt: skip
+FLAT = ("landmarks", "pose_landmarks", "poseLandmarks", "landmark")
+WRAPPERS = ("pose", "result", "results", "data")
+HEAD = re.compile(
+    rb'\s*[\[{].*"(' + "|".join((*WORLD, *FLAT)).encode() + rb')"\s*:\s*[\[{]', re.DOTALL
+)
+TIMES = {
+    "timestampMs": 1e-3, "timestamp_ms": 1e-3, "offsetMs": 1e-3, "time_ms": 1e-3,
+    "timestamp": 1.0, "time": 1.0, "ptsSeconds": 1.0, "time_s": 1.0, "seconds": 1.0,
+}  # fmt: skip
+"""Seconds per unit of a time stamp, by its name."""
+RATES = ("fps", "frame_rate", "frameRate", "FPS")
+VISIBILITY = ("visibility", "presence", "score")
+
+
+def is_mediapipe_json(head: bytes) -> bool:
+    """Return whether the first bytes are JSON with landmarks."""
+    return HEAD.match(head) is not None
+
+
+def read_mediapipe_json(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> JointRecording:
+    """Read world landmarks of MediaPipe, in meters, Z up, with visibility as confidence.
+
+    MediaPipe has no file format; programs write its results in similar ways. Read are frames in
+    a list, or as the outermost value, each with 33 `worldLandmarks` (or
+    `pose_world_landmarks`): objects with x, y, z and visibility, or lists. Of several bodies
+    the first one is read. Landmarks of the picture are refused. The hips are always at the
+    origin. Joints in the middle of the body are added (`COMPUTED_JOINTS`).
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, meters per unit of the file, or None
+        None: meters.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or has no world landmarks.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    frames: list[Array] = []
+    times: list[float] = []
+    rate = None
+    for member in json_members(path, lists=True):
+        location = f"{path}, frame {len(frames) + 1}"
+        if member.key in RATES:
+            rate = number(member.value, f"{path}, {member.key}")
+        elif isinstance(member.value, Mapping) or member.key in WORLD:
+            found, time = _landmarks(member.value, location), _time(member.value, location)
+            if found is None and np.isnan(time):
+                continue  # something else, such as a header
+            frames.append(np.full((N_POINTS, 4), np.nan) if found is None else found)
+            times.append(time)
+            progress(0.9 * member.done, "Reading")
+    if not frames:
+        raise InvalidFileError(f"{path} has no frames with landmarks. Export it again.")
+    points = np.stack(frames)
+    stamps = np.array(times)
+    usable = np.isfinite(stamps).sum() > 1
+    visibility = points[..., 3]
+    return recording_from_landmarks(
+        path,
+        points[..., :3],
+        None if np.isnan(visibility).all() else np.clip(np.nan_to_num(visibility), 0.0, 1.0),
+        seconds(stamps) if usable else None,
+        rate if rate is not None and 0.0 < rate < np.inf else None,
+        scale,
+        progress,
+    )
+
+
+def _time(frame: Any, location: str) -> float:
+    """Return the time stamp of a frame in seconds; NaN without one."""
+    if not isinstance(frame, Mapping):
+        return np.nan
+    for key, unit in TIMES.items():
+        if key in frame:
+            return unit * number(frame[key], f"{location}, {key}")
+    return np.nan
+
+
+def _landmarks(frame: Any, location: str) -> Array | None:
+    """Return x, y, z and visibility of the first body, shape (33, 4); None without one."""
+    found = frame
+    if isinstance(frame, Mapping):
+        inner = next(
+            (frame[key] for key in WRAPPERS if isinstance(frame.get(key), Mapping)), {}
+        )
+        found = next(
+            (each[key] for key in (*WORLD, *FLAT) for each in (frame, inner) if each.get(key)),
+            None,
+        )
+    if isinstance(found, Mapping):
+        found = next((found[key] for key in FLAT if key in found), found)
+    if isinstance(found, list) and len(found) and isinstance(found[0], list):
+        deep = found[0] and isinstance(found[0][0], list | Mapping)
+        found = found[0] if deep else found
+    if not found:
+        return None
+    if not isinstance(found, list) or len(found) != N_POINTS:
+        count = len(found) if isinstance(found, list) else 0
+        raise InvalidFileError(
+            f"{location} has {count} landmarks; those of MediaPipe's pose are {N_POINTS}. Save"
+            " all of them."
+        )
+    return np.stack([_point(point, location) for point in found])
+
+
+def _point(point: Any, location: str) -> Array:
+    if isinstance(point, Mapping):
+        confidence = next((point[key] for key in VISIBILITY if key in point), None)
+        values = [*(point.get(axis) for axis in "xyz"), confidence]
+    elif isinstance(point, list) and len(point) in {3, 4}:
+        values = [*point, None][:4]
+    else:
+        values = []
+    return array_from_json(values, (4,), f"{location}, landmark")

@@ -1,0 +1,98 @@
+"""What the readers of MediaPipe's landmarks share: names, axes and the check for flat ones."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ...arrays import Array
+from ...errors import InvalidFileError
+from ...motion import JointRecording, Sensor
+from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS
+from ...progress import Progress
+from ..conventions import DEFAULT_FRAME_RATE, from_azure_space, joint_recording
+
+N_POINTS = len(BODY_POINTS)
+HIPS = [BODY_POINTS.index("left_hip"), BODY_POINTS.index("right_hip")]
+MAX_FRAME_S = 2.0
+"""Typical step between frames above which stamps are milliseconds."""
+MILLISECOND = 1e-3
+MAX_CENTER_FRACTION = 0.2
+"""Distance of the middle of the hips from the origin, relative to the size of the body, up to
+which landmarks are those of the world, whose origin is there."""
+
+
+def seconds(stamps: Array) -> Array:
+    """Return stamps of unstated unit in seconds: they may be milliseconds."""
+    steps = np.diff(stamps[np.isfinite(stamps)])
+    is_long = len(steps) and np.median(steps) > MAX_FRAME_S
+    return np.asarray(MILLISECOND * stamps if is_long else stamps)
+
+
+def is_world(points: Array) -> bool:
+    """Return whether landmarks, shape (n_frames, 33, 3), are in the world, not in a picture."""
+    center = points[:, HIPS].mean(axis=1)
+    size = np.nanmax(np.ptp(points, axis=1), axis=1, initial=0.0)
+    known = np.isfinite(center).all(axis=1) & (size > 0.0)
+    if not known.any():
+        return False
+    away = np.linalg.norm(center[known], axis=1) / size[known]
+    return bool(np.median(away) <= MAX_CENTER_FRACTION)
+
+
+def recording_from_landmarks(
+    path: Path | str,
+    points: Array,
+    visibility: Array | None,
+    times: Array | None,
+    frame_rate: float | None,
+    scale: float | None,
+    progress: Progress,
+) -> JointRecording:
+    """Return the recording of world landmarks: x right, y down, z away from the camera.
+
+    Parameters
+    ----------
+    path : Path or str
+        For error messages.
+    points : shape (n_frames, 33, 3), meters; NaN in frames without a body
+    visibility : shape (n_frames, 33), 0 to 1, or None
+    times : seconds, shape (n_frames,), or None
+    frame_rate : hertz, or None
+    scale : meters per unit of the file, or None
+    progress : Progress
+
+    Raises
+    ------
+    InvalidFileError
+        The landmarks are those of a picture, or none is observed.
+    """
+    if np.isnan(points).all():
+        raise InvalidFileError(f"{path} has {len(points)} frames but no body in any of them.")
+    if not is_world(points):
+        raise InvalidFileError(
+            f"{path} has the landmarks of a picture, without true depth. Save the"
+            " pose_world_landmarks of MediaPipe instead."
+        )
+    if times is None and frame_rate is None:
+        progress(0.9, f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
+    progress(0.9, "MediaPipe keeps the hips at the origin, so the actor does not travel")
+    pairs = [[BODY_POINTS.index(side) for side in sides] for sides in COMPUTED_JOINTS.values()]
+    return joint_recording(
+        path,
+        (*BODY_POINTS, *COMPUTED_JOINTS),
+        _with_means(from_azure_space(points), pairs),
+        Sensor.MEDIAPIPE,
+        confidence=None if visibility is None else _with_means(visibility, pairs),
+        times=times,
+        frame_rate=frame_rate or DEFAULT_FRAME_RATE,
+        nan_only=True,
+        scale=scale,
+        progress=progress,
+    )
+
+
+def _with_means(values: Array, groups: Sequence[Sequence[int]]) -> Array:
+    """Add the mean of each group of points, missing where any of them is."""
+    means = [values[:, group].mean(axis=1) for group in groups]
+    return np.concatenate([values, np.stack(means, axis=1)], axis=1)

@@ -1,0 +1,147 @@
+"""Read the CSV export of Vicon Nexus: the section of trajectories."""
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ...errors import InvalidFileError
+from ...motion import Tracks
+from ...progress import Progress, unwatched, within
+from ..containers import (
+    LineReader,
+    decode_text,
+    find_separator,
+    read_number,
+    split_cells,
+    stream_cells,
+)
+from ..conventions import check_scale, meters_from_unit_name, point_names, points_z_up
+from .marker_rows import at_constant_rate, mark_missing
+
+SECTIONS = (b"trajectories", b"devices", b"model outputs", b"joints", b"segments", b"events")
+"""First cells of the parts of a file, in lower case."""
+BLANK = rb'["\t;, ]*'
+HEAD = re.compile(
+    rb'(?i)["\s]*(?:' + b"|".join(SECTIONS) + rb")" + BLANK
+    + rb'[\r\n]+["\s]*\d+(?:[.,]\d+)?' + BLANK + rb"[\r\n]"
+)  # fmt: skip
+HEADER_LINES = 5
+"""Section, rate, names, axes and units."""
+AXES = ("x", "y", "z")
+MILLIMETER = 0.001
+
+
+class _Header(NamedTuple):
+    """The five lines above the frames of trajectories."""
+
+    rate: float
+    separator: bytes
+    labels: list[str]
+    columns: list[int]
+    """First column of each marker."""
+    units: list[float]
+    """Meters per unit of each marker."""
+    width: int
+
+
+def is_vicon_csv(head: bytes) -> bool:
+    """Return whether a file begins with the name of a section and its rate."""
+    return HEAD.match(head) is not None
+
+
+def read_vicon_csv(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Tracks:
+    """Read the trajectories of a Vicon Nexus CSV, in meters, Z up; missing markers are NaN.
+
+    A marker is missing if one of its cells is blank or not a number, or if it is exactly at
+    the origin. Skipped frame numbers are gaps. Nexus has Z up; eight or more markers of a file
+    with Y up are recognized by the body (`points_z_up`). Other sections are not read.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, meters per unit of the file, or None
+        None: the units in the line above the frames.
+    progress : Progress
+
+    Returns
+    -------
+    Tracks
+        Names are unique, and without the prefix of the actor (`Anna:LFHD`) if there is only
+        one.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or has no trajectories.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    reader = LineReader(path)
+    header = _read_header(reader, path)
+    rows = stream_cells(
+        reader,
+        header.separator,
+        header.width,
+        path,
+        within(progress, 0.0, 0.8),
+        is_end=_begins_section,
+    )
+    if not len(rows):
+        raise InvalidFileError(f"{path} has trajectories but no frames. Export it again.")
+    used = np.array(header.columns)[:, None] + np.arange(3)
+    points = rows[:, used]
+    mark_missing(points, path)
+    points *= np.array(header.units)[:, None] if scale is None else scale
+    points, rate = at_constant_rate(
+        points, rows[:, 0], np.full(len(rows), np.nan), header.rate, path
+    )
+    progress(1.0, "Reading")
+    return Tracks(point_names(header.labels), points_z_up(points, default_up="+Z"), rate)
+
+
+def _begins_section(line: bytes) -> bool:
+    return line[:1].strip(b' "').isalpha() and _first_cell(line) in SECTIONS
+
+
+def _first_cell(line: bytes) -> bytes:
+    return split_cells(line, find_separator(line))[0].lower()
+
+
+def _read_header(reader: LineReader, path: Path | str) -> _Header:
+    """Skip to the trajectories, and read the lines above their frames."""
+    while (line := reader.peek()) and _first_cell(line[0]) != SECTIONS[0]:
+        reader.take()
+    lines = reader.take(HEADER_LINES)
+    if len(lines) < HEADER_LINES:
+        raise InvalidFileError(
+            f"{path} has no trajectories of markers, or ends in their header. Export it from"
+            " Nexus with Trajectories."
+        )
+    separator = find_separator(lines[3])
+    rate, names, axes, units = (split_cells(line, separator) for line in lines[1:])
+    columns = [at for at in range(2, len(axes) - 2) if _is_marker(axes[at : at + 3])]
+    if not columns:
+        raise InvalidFileError(
+            f"{path} has no columns X, Y and Z of a marker. Export it again, with Trajectories."
+        )
+    names += [b""] * (len(axes) - len(names))
+    units += [b""] * (len(axes) - len(units))
+    return _Header(
+        rate=read_number(rate[0], f"{path}, line {reader.n_taken - 3}, rate"),
+        separator=separator,
+        labels=[decode_text(names[at]) for at in columns],
+        columns=columns,
+        units=[meters_from_unit_name(decode_text(units[at])) or MILLIMETER for at in columns],
+        width=len(axes),
+    )
+
+
+def _is_marker(cells: list[bytes]) -> bool:
+    return tuple(decode_text(cell).lower() for cell in cells) == AXES

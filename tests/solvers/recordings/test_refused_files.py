@@ -1,0 +1,84 @@
+"""Files that are no recordings are refused with what would serve, and nothing else is."""
+
+import io
+import json
+import pickle
+import zipfile
+
+import numpy as np
+import pytest
+
+from solvers.errors import InvalidFileError
+
+FLAT = "keypoints of a picture, without depth"
+OPENSIM = "results of OpenSim, which need its model"
+PICKLE = "is a pickle, which is never opened"
+
+
+def torch_file() -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        archive.writestr(
+            "hmr4d_results_of_a_video_with_a_long_name/data.pkl", b"\x80\x02}q\x00."
+        )
+    return buffer.getvalue()
+
+
+def object_array() -> bytes:
+    buffer = io.BytesIO()
+    np.save(buffer, {"pred_rotmat": 1})
+    return buffer.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (json.dumps({"version": 1.3, "people": []}), FLAT),
+        (json.dumps({"version": 1.3, "people": [{"pose_keypoints_2d": [1, 2, 0.5]}]}), FLAT),
+        (json.dumps([{"image_id": "1.jpg", "category_id": 1, "keypoints": [1, 2, 0.9]}]), FLAT),
+        (json.dumps({"annotations": [{"image_id": 1, "num_keypoints": 17}]}), FLAT),
+        (json.dumps({"info": {}, "images": [{"license": 1, "file_name": "a.jpg"}]}), FLAT),
+        (
+            "scorer,DLC,DLC,DLC\nbodyparts,nose,nose,nose\ncoords,x,y\n",
+            FLAT,
+        ),
+        (
+            "Coordinates\nversion=1\nnRows=9\nnColumns=3\ninDegrees=yes\nendheader\n",
+            OPENSIM,
+        ),
+        ("grf\r\nversion=1\r\nnRows=9\r\nnColumns=3\r\nendheader\r\ntime\tFx\r\n", OPENSIM),
+        (
+            "# times, pelvis_x, pelvis_y, pelvis_z, pelvis_rotx\n0,1\n",
+            OPENSIM,
+        ),
+        (pickle.dumps({"smpl_poses": 1}), PICKLE),
+        (pickle.dumps({"smpl_poses": 1}, protocol=2), PICKLE),
+        (torch_file(), PICKLE),
+        (object_array(), PICKLE),
+    ],
+)
+def test_what_would_serve_is_said(read_any, content, sentence):
+    with pytest.raises(InvalidFileError, match=sentence):
+        read_any(content)
+
+
+@pytest.mark.parametrize(
+    "file",
+    [
+        "pose2sim/Demo_MultiPerson_P1_0-100_filt_butterworth.csv",
+        "pose2sim/BalancingTrial_LSTM.mot",
+        "openpose_json/cam01.0000.json",
+    ],
+)
+def test_files_of_labs_are_refused_with_what_would_serve(recordings, read_any, file):
+    content = (recordings / "corpus/lab" / file).read_bytes()
+
+    with pytest.raises(InvalidFileError, match=r"Import the (TRC of|triangulated)"):
+        read_any(content)
+
+
+def test_an_array_of_numbers_is_no_pickle(read_any):
+    buffer = io.BytesIO()
+    np.save(buffer, np.ones((4, 5, 3)))
+
+    assert read_any(buffer.getvalue()).n_frames == 4
