@@ -1,14 +1,14 @@
 """Read and write joints of depth cameras and pose estimators."""
 
-from .azure_csv import is_azure_csv, read_azure_csv
-from .azure_json import is_azure_json, read_azure_json
+from .azure_csv import is_azure_csv, open_azure_csv, read_azure_csv
+from .azure_json import is_azure_json, open_azure_json, read_azure_json
 from .freemocap import is_npy, read_freemocap
-from .irds import is_irds, read_irds
-from .joint_csv import is_joint_csv, read_joint_csv, write_joint_csv
-from .joint_json import is_joint_json, read_joint_json, write_joint_json
+from .irds import is_irds, open_irds, read_irds
+from .joint_csv import is_joint_csv, open_joint_csv, read_joint_csv, write_joint_csv
+from .joint_json import is_joint_json, open_joint_json, read_joint_json, write_joint_json
 from .kinect_csv import is_kinect_csv, read_kinect_csv
 from .msr_action3d import is_msr_action3d, read_msr_action3d
-from .ntu_skeleton import is_ntu_skeleton, read_ntu_skeleton
+from .ntu_skeleton import is_ntu_skeleton, open_ntu_skeleton, read_ntu_skeleton
 from .ui_prmd import is_ui_prmd, read_ui_prmd, read_ui_prmd_pair
 
 __all__ = [
@@ -22,6 +22,12 @@ __all__ = [
     "is_npy",
     "is_ntu_skeleton",
     "is_ui_prmd",
+    "open_azure_csv",
+    "open_azure_json",
+    "open_irds",
+    "open_joint_csv",
+    "open_joint_json",
+    "open_ntu_skeleton",
     "read_azure_csv",
     "read_azure_json",
     "read_freemocap",

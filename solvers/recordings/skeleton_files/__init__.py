@@ -5,8 +5,8 @@ from .acclaim_limits import read_acclaim_limits
 from .bvh import read_bvh
 from .bvh_writing import write_bvh
 from .kimodo import is_kimodo, read_kimodo
-from .mvnx import is_mvnx, read_mvnx
-from .smpl import NAMES_OF_BODY, is_motion_x, is_smpl, read_motion_x, read_smpl
+from .mvnx import is_mvnx, open_mvnx, read_mvnx
+from .smpl import NAMES_OF_BODY, is_motion_x, is_smpl, open_smpl, read_motion_x, read_smpl
 
 __all__ = [
     "NAMES_OF_BODY",
@@ -15,6 +15,8 @@ __all__ = [
     "is_motion_x",
     "is_mvnx",
     "is_smpl",
+    "open_mvnx",
+    "open_smpl",
     "read_acclaim",
     "read_acclaim_limits",
     "read_bvh",
