@@ -6,6 +6,12 @@ READING = "Reading"
 """Default message of readers."""
 
 
+class Remark(str):
+    """A message that the report on a file repeats, such as what a reader left out."""
+
+    __slots__ = ()
+
+
 class Progress(Protocol):
     """Callback that a solver calls repeatedly."""
 
@@ -42,6 +48,17 @@ def collect_messages(progress: Progress, messages: list[str]) -> Progress:
     def report(fraction: float, message: str = "") -> None:
         if fraction >= 1.0 and message not in ("", READING, *messages):
             messages.append(message)
+        progress(fraction, message)
+
+    return report
+
+
+def collect_remarks(progress: Progress, remarks: list[Remark]) -> Progress:
+    """Return a Progress that also collects each `Remark` once."""
+
+    def report(fraction: float, message: str = "") -> None:
+        if isinstance(message, Remark) and message not in remarks:
+            remarks.append(message)
         progress(fraction, message)
 
     return report

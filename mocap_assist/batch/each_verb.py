@@ -89,12 +89,12 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
     folder: Path = arguments.output_folder
     tasks = _tasks(arguments)
     made = OutputRecord(folder)
-    entries = {task.sources: Entry(task, None) for task in tasks}
+    entries = {task.key: Entry(task, None) for task in tasks}
     faults: tuple[str, ...] = ()
     try:
         for finished in _worked(tasks, arguments, made):
             figures = finished.outcome.figures if finished.outcome else None
-            entries[finished.task.sources] = Entry(finished.task, figures, finished.failure)
+            entries[finished.task.key] = Entry(finished.task, figures, finished.failure)
             text = finished.outcome.text if finished.outcome else finished.failure
             sys.stdout.write(escaped(f"{finished.task.source}: {text}") + "\n")
             sys.stdout.flush()

@@ -12,7 +12,7 @@ from ..faults import Failure, attempt
 from ..files import is_missing, real_path, remove_leftovers, write_atomically
 from ..json_text import parse_json
 from ..processes import threads_from, worker_pool
-from ..progress import Progress, unwatched
+from ..progress import Progress, Remark, collect_remarks, unwatched
 from ..version import version
 from .report import FIGURES, PAGE, draw_task, picture_file, remove_picture
 from .screen import Screen
@@ -100,7 +100,10 @@ def _attempt(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Finis
 
 def _perform(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Outcome:
     """Perform a task; figures that cannot be written as JSON count as its failure."""
-    outcome = verb.perform(task, prepared, progress)
+    remarks: list[Remark] = []
+    outcome = verb.perform(task, prepared, collect_remarks(progress, remarks))
+    added = [f"{remark}." for remark in remarks if remark not in outcome.text]
+    outcome = replace(outcome, text="\n".join([outcome.text, *added]))
     json.dumps(outcome.figures, allow_nan=False)
     if getattr(task.arguments, "output_folder", None) is not None:
         remove_picture(task)

@@ -26,7 +26,7 @@ from ..errors import InvalidMotionError, InvalidSettingError
 from ..markers import Swap, unswap_markers
 from ..motion import JointLimits, Motion, Tracks
 from ..progress import Progress, within
-from .files import add_reading_options, read, read_all, write
+from .files import add_reading_options, read, read_all, with_body, write
 from .from_library import add_library_option, check_library, learn_bases
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
@@ -89,7 +89,7 @@ def learn_prior(arguments: argparse.Namespace, progress: Progress) -> LearnedPri
         _check_clip_options(arguments)
         check_library(arguments.library)
         return LearnedPrior(arguments.bases and load_filter_bases(arguments.bases))
-    clips = read_all(arguments.train, arguments, within(progress, 0.0, 0.5))
+    clips = read_all(arguments.train, with_body(arguments, ""), within(progress, 0.0, 0.5))
     bases = learn_filter_bases(clips, settings=settings, progress=within(progress, 0.5, 0.9))
     if not arguments.joint_limits:
         return LearnedPrior(bases)

@@ -12,6 +12,7 @@ from ..motion import Motion, Tracks
 from ..progress import Progress, within
 from ..recordings import (
     detect_format,
+    open_bodies,
     read_motion_or_tracks,
     recordings_in,
     write_bvh,
@@ -42,11 +43,41 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         help="Meters per unit of the input files [default: as stored in the file, or"
         " estimated from the size of the body]",
     )
+    add_body_option(parser)
+
+
+def add_body_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option for files with several bodies."""
+    parser.add_argument(
+        "--body",
+        metavar="WHICH",
+        help="Which body of input files with several: its name or number, several with commas,"
+        " or all [default: the person seen in most frames]",
+    )
+
+
+def bodies_in(path: Path, arguments: argparse.Namespace) -> list[str]:
+    """Return the names of the bodies chosen in a file; one name, or empty, where it has one.
+
+    Of a file that cannot be read it is what was given: the reader reports the reason.
+    """
+    given = arguments.body or ""
+    if not given:
+        return [given]
+    bodies = attempt(path, open_bodies, path)
+    if isinstance(bodies, Failure):
+        return [given]
+    chosen = attempt(path, bodies.choose, given)
+    if isinstance(chosen, Failure) or not bodies.listed:
+        return [given]
+    return [bodies.listed[index].name for index in chosen]
 
 
 def read(path: Path, arguments: argparse.Namespace, progress: Progress) -> Motion | Tracks:
     """Read a recording with the options of `add_reading_options`."""
-    return read_motion_or_tracks(path, scale=arguments.scale, progress=progress)
+    return read_motion_or_tracks(
+        path, scale=arguments.scale, body=arguments.body, progress=progress
+    )
 
 
 def find_recordings(
@@ -95,13 +126,25 @@ def find_recordings(
 def read_all(
     paths: Sequence[Path], arguments: argparse.Namespace, progress: Progress
 ) -> list[Motion | Tracks]:
-    """Read recordings and folders of them with the options of `add_reading_options`."""
-    paths = [path for path, _ in find_recordings(paths)]
-    fraction = 1.0 / len(paths)
-    return [
-        read(path, arguments, within(progress, fraction * number, fraction * (number + 1)))
-        for number, path in enumerate(paths)
+    """Read recordings and folders of them with the options of `add_reading_options`.
+
+    Of a file with several bodies, all that are chosen are read.
+    """
+    chosen = [
+        (path, with_body(arguments, name))
+        for path, _ in find_recordings(paths)
+        for name in bodies_in(path, arguments)
     ]
+    fraction = 1.0 / len(chosen)
+    return [
+        read(path, of_body, within(progress, fraction * number, fraction * (number + 1)))
+        for number, (path, of_body) in enumerate(chosen)
+    ]
+
+
+def with_body(arguments: argparse.Namespace, body: str) -> argparse.Namespace:
+    """Return a copy of the arguments that chooses another body; empty for the default."""
+    return argparse.Namespace(**{**vars(arguments), "body": body or None})
 
 
 def write(recording: Motion | Tracks, path: Path | None, progress: Progress) -> None:

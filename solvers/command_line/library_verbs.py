@@ -12,6 +12,7 @@ from ..progress import Progress, within
 from ..recordings import read_tracked
 from ..retrieval import ClipEntry, FindSettings, Match, find_similar, load_clip_library
 from ..workflows import IndexReport, index_files
+from .files import add_body_option
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
@@ -89,6 +90,7 @@ def add_find_options(parser: argparse.ArgumentParser) -> None:
         help="Meters per unit of the recording [default: as stored in the file, or estimated"
         " from the size of the body]",
     )  # fmt: skip
+    add_body_option(parser)
     arguments_from(parser, FindSettings)
 
 
@@ -97,7 +99,10 @@ def perform_find(task: Task, prepared: None, progress: Progress) -> Outcome:
     arguments = task.arguments
     library_file = task.sources[1]
     query = read_tracked(
-        task.source, scale=arguments.scale, progress=within(progress, 0.0, 0.5)
+        task.source,
+        scale=arguments.scale,
+        body=arguments.body,
+        progress=within(progress, 0.0, 0.5),
     )
     tracks = query.tracks if isinstance(query, JointRecording) else query
     if arguments.frames is not None:

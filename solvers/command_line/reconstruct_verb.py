@@ -24,7 +24,7 @@ from ..workflows import (
     reconstruct_motion,
     reconstruct_recording,
 )
-from .files import JOINTS, add_reading_options, read_all, write
+from .files import JOINTS, add_reading_options, read_all, with_body, write
 from .from_library import add_library_option, check_library, collect_postures
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
@@ -90,7 +90,7 @@ def read_guides(arguments: argparse.Namespace, progress: Progress) -> Guides:
     residuals = None if given is None else load_residual_prior(given)
     if not arguments.train:
         return Guides(library and load_posture_library(library), residuals)
-    clips = read_all(arguments.train, arguments, within(progress, 0.0, 0.7))
+    clips = read_all(arguments.train, with_body(arguments, ""), within(progress, 0.0, 0.7))
     return Guides(
         posture_library_from_clips(clips, progress=within(progress, 0.7, 1.0)), residuals
     )
@@ -100,7 +100,10 @@ def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Out
     """Reconstruct one recording, write it and report rebuilt joints and quality."""
     notes: list[str] = []
     reading = collect_messages(within(progress, 0.0, 0.1), notes)
-    given = read_tracked(task.source, scale=task.arguments.scale, progress=reading)
+    arguments = task.arguments
+    given = read_tracked(
+        task.source, scale=arguments.scale, body=arguments.body, progress=reading
+    )
     guides, messages = _select_guides(given, task, prepared, within(progress, 0.1, 0.3))
     rebuilt = _rebuild(given, task, guides, within(progress, 0.3, 0.8))
     rebuilt = rebuilt._replace(

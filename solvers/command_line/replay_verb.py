@@ -47,7 +47,10 @@ def perform_replay(task: Task, prepared: None, progress: Progress) -> Outcome:
             f"speed is {arguments.speed:g}; it must be above 0 and at most {MAX_SPEED:g}."
         )
     recording = read_tracked(
-        task.source, scale=arguments.scale, progress=within(progress, 0.0, 0.1)
+        task.source,
+        scale=arguments.scale,
+        body=arguments.body,
+        progress=within(progress, 0.0, 0.1),
     )
     joints = _joints(recording)
     if joints.n_joints > MAX_JOINTS:

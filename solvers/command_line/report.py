@@ -79,7 +79,9 @@ def _draw(task: Task) -> None:
     result = read_motion_or_tracks(task.target)
     motions = {"result": result}
     if not is_depth_recording(task.source):
-        given = read_motion_or_tracks(task.source, scale=task.arguments.scale)
+        given = read_motion_or_tracks(
+            task.source, scale=task.arguments.scale, body=task.arguments.body
+        )
         motions = {"given": given, **motions} if given.n_frames == result.n_frames else motions
     picture.parent.mkdir(parents=True, exist_ok=True)
     draw_stick_figures(motions, StickFigureSettings(n_figures=9, height=150)).save(picture)

@@ -15,7 +15,7 @@ from ..motion import (
 )
 from ..progress import Progress, within
 from ..retargeting import RetargetSettings, UnbakeSettings, reduce_keys, retarget
-from .files import add_reading_options, read, write
+from .files import add_reading_options, read, with_body, write
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
@@ -59,7 +59,7 @@ def read_target(arguments: argparse.Namespace, progress: Progress) -> Target:
     InvalidMotionError
         The file has no skeleton.
     """
-    recording = read(arguments.to, arguments, progress)
+    recording = read(arguments.to, with_body(arguments, ""), progress)
     if not isinstance(recording, Motion):
         raise InvalidMotionError(f"{arguments.to} holds points without a skeleton.")
     target = Target(recording.skeleton, _map(recording.skeleton, arguments.target_map))

@@ -119,13 +119,13 @@ def _run_verb(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
         raise InvalidSettingError("A report needs a folder: name it with --output-folder DIR.")
     tasks = tasks_of(verb, arguments)
     record = None if folder is None else OutputRecord(folder)
-    entries = {task.sources: Entry(task, None) for task in tasks}
+    entries = {task.key: Entry(task, None) for task in tasks}
     has_failures = False
     try:
         for finished in _run_tasks(verb, tasks, record, n_jobs, screen):
             figures = finished.outcome.figures if finished.outcome else None
             entry = Entry(finished.task, figures, finished.failure)
-            entries[finished.task.sources] = entry
+            entries[finished.task.key] = entry
             has_failures |= _report(finished, len(tasks) > 1, screen)
     finally:
         if folder is not None and reporting:
@@ -180,6 +180,8 @@ def _report(finished: FinishedTask, one_of_many: bool, screen: Screen) -> bool:
         names: dict[str, Any] = {"input": str(task.source)}
         if len(task.sources) > 1:
             names = {"inputs": [str(source) for source in task.sources]}
+        if getattr(arguments, "body", None):
+            names["body"] = arguments.body
         if task.target is not None:
             names["output"] = str(task.target)
         line = attempt(task.subject, json.dumps, {**names, **figures}, allow_nan=False)

@@ -1,6 +1,7 @@
 """Assign an output to each input, and check both before any work."""
 
 import argparse
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -14,14 +15,19 @@ from .files import (
     LEARNED,
     MOTIONS,
     RECORDED,
+    bodies_in,
     check_name_length,
     check_target,
     find_recordings,
     output_extension,
     unique_targets,
+    with_body,
 )
 from .report import PICTURE
 from .verb import OutputKind, Task, Verb
+
+MAX_NAME_LETTERS = 40
+"""Letters of the name of a body in the name of a file."""
 
 
 def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
@@ -36,7 +42,11 @@ def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
     """
     files: list[Path] = arguments.files
     if verb.makes is OutputKind.WORDS:
-        return [Task((path,), None, arguments) for path, _ in find_recordings(files)]
+        return [
+            Task((path,), None, of_body)
+            for path, _ in find_recordings(files)
+            for of_body, _ in _bodies(path, arguments)
+        ]
     if verb.makes in {OutputKind.LIBRARY, OutputKind.MATCHES}:
         return [_task_with_library(verb.makes, files, arguments)]
     if verb.makes is OutputKind.MANY_FILES:
@@ -84,14 +94,21 @@ def _file_tasks(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
         source, target = files
         _check_overwriting([source], [target])
         check_target(target, _allowed_extensions(verb))
-        return [Task((source,), target, arguments)]
+        return [
+            Task((source,), target.with_stem(target.stem + ending), of_body)
+            for of_body, ending in _bodies(source, arguments)
+        ]
     if folder.exists() and not folder.is_dir():
         raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
-    recordings = find_recordings(files, folder, verb.list_recordings)
-    sources = [path for path, _ in recordings]
+    found = [
+        (path, below.with_stem(below.stem + ending), of_body)
+        for path, below in find_recordings(files, folder, verb.list_recordings)
+        for of_body, ending in _bodies(path, arguments)
+    ]
+    sources = [path for path, _, _ in found]
     extensions = [_extension(verb, path, arguments) for path in sources]
     targets = [
-        folder / path for path in unique_targets([path for _, path in recordings], extensions)
+        folder / path for path in unique_targets([path for _, path, _ in found], extensions)
     ]
     _check_overwriting(sources, targets)
     folder.mkdir(parents=True, exist_ok=True)
@@ -99,11 +116,25 @@ def _file_tasks(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
         Task(
             (source,),
             target,
-            arguments,
+            of_body,
             _prepare_failure(source, target, _allowed_extensions(verb)),
         )
-        for source, target in zip(sources, targets, strict=True)
+        for (source, _, of_body), target in zip(found, targets, strict=True)
     ]
+
+
+def _bodies(
+    source: Path, arguments: argparse.Namespace
+) -> list[tuple[argparse.Namespace, str]]:
+    """Return the arguments for each chosen body of a file, and the ending of its output."""
+    names = bodies_in(source, arguments) if getattr(arguments, "body", None) else []
+    if len(names) < 2:
+        return [(arguments, "")]
+    return [(with_body(arguments, name), f"_{_file_name(name)}") for name in names]
+
+
+def _file_name(name: str) -> str:
+    return re.sub(r"[^\w-]", "_", name)[:MAX_NAME_LETTERS]
 
 
 def _prepare_failure(source: Path, target: Path, extensions: Mapping[str, str]) -> str:

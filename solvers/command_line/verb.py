@@ -40,6 +40,11 @@ class Task(NamedTuple):
         return self.sources[0]
 
     @property
+    def key(self) -> tuple[Any, ...]:
+        """What makes it different from other tasks."""
+        return self.sources, self.target, getattr(self.arguments, "body", None)
+
+    @property
     def subject(self) -> Path:
         """The file that a failure names."""
         return self.sources[0] if len(self.sources) == 1 else self.target or self.sources[0]

@@ -12,6 +12,7 @@
 (30, 30.0)
 """
 
+from .conventions import ALL_BODIES, Bodies, Body
 from .depth_files import (
     CameraOrientation,
     DepthSettings,
@@ -19,6 +20,7 @@ from .depth_files import (
     is_depth_folder,
     read_depth,
 )
+from .folders import depth_takes_in, may_contain_motion, recordings_in
 from .joint_files import (
     read_azure_csv,
     read_azure_json,
@@ -37,19 +39,21 @@ from .joint_files import (
 from .joints import read_joints, write_joints
 from .marker_files import read_c3d, read_trc, write_c3d, write_trc
 from .read_recording import (
-    depth_takes_in,
     detect_format,
     is_depth_recording,
-    may_contain_motion,
+    list_bodies,
+    open_bodies,
     read_motion_or_tracks,
     read_recording,
     read_tracked,
-    recordings_in,
 )
 from .recording_figures import recording_figures
 from .skeleton_files import read_acclaim, read_acclaim_limits, read_bvh, write_bvh
 
 __all__ = [
+    "ALL_BODIES",
+    "Bodies",
+    "Body",
     "CameraOrientation",
     "DepthSettings",
     "depth_takes_in",
@@ -57,7 +61,9 @@ __all__ = [
     "detect_format",
     "is_depth_folder",
     "is_depth_recording",
+    "list_bodies",
     "may_contain_motion",
+    "open_bodies",
     "read_acclaim",
     "read_acclaim_limits",
     "read_azure_csv",

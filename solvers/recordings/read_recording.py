@@ -2,25 +2,25 @@
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import TypeVar
 
 from ..depth_scene import DepthRecording
 from ..errors import InvalidFileError, InvalidMotionError
-from ..faults import attempt
 from ..files import open_regular, unreadable
 from ..motion import JointRecording, Motion, Tracks
-from ..progress import Progress, unwatched
+from ..progress import Progress, unwatched, within
 from .containers import (
     BYTE_ORDER_MARK,
     check_folder_access,
-    files_below,
     is_c3d,
-    is_folder,
     json_length,
 )
-from .conventions import check_scale
-from .depth_files import DepthSettings, detect_depth_format, is_depth_folder, read_depth
+from .conventions import Bodies, Body, check_scale
+from .depth_files import DepthSettings, detect_depth_format, read_depth
+from .format import Format, Tracked
 from .joint_files import (
     is_azure_csv,
     is_azure_json,
@@ -37,6 +37,12 @@ from .joint_files import (
     is_nuitrack_json,
     is_ui_prmd,
     is_zed_json,
+    open_azure_csv,
+    open_azure_json,
+    open_irds,
+    open_joint_csv,
+    open_joint_json,
+    open_ntu_skeleton,
     read_azure_csv,
     read_azure_json,
     read_irds,
@@ -56,6 +62,7 @@ from .marker_files import (
     is_motive_csv,
     is_qualisys_tsv,
     is_vicon_csv,
+    open_c3d,
     read_c3d,
     read_motive_csv,
     read_qualisys_tsv,
@@ -69,6 +76,8 @@ from .skeleton_files import (
     is_mvnx,
     is_smpl,
     is_vrma,
+    open_mvnx,
+    open_smpl,
     read_acclaim,
     read_bvh,
     read_kimodo,
@@ -80,27 +89,11 @@ from .skeleton_files import (
 HEAD = 4096
 MAX_JSON_BYTES = 1 << 22
 """Of a glTF file, read to see what it holds."""
+OPENING_FRACTION = 0.9
+"""Fraction of the time that passes until the bodies are known, in formats with several."""
 
 
-class Reader(Protocol):
-    """Signature of the reader of a format."""
-
-    def __call__(
-        self, path: Path | str, /, *, scale: float | None = None, progress: Progress = unwatched
-    ) -> Motion | Tracks | JointRecording:
-        """Read a file."""
-
-
-class Format(NamedTuple):
-    """A supported format, with its reader and its detection from the first bytes."""
-
-    name: str
-    fits: Callable[[bytes], bool]
-    read: Reader
-    has_skeleton: bool = False
-    """Whether it contains the motion of a skeleton; otherwise points."""
-    is_refused: bool = False
-    """Whether it is recognized only for a better sentence."""
+Result = TypeVar("Result")
 
 
 def _is_bvh(head: bytes) -> bool:
@@ -122,19 +115,19 @@ FORMATS = (
     Format("Acclaim AMC", _is_acclaim, read_acclaim, has_skeleton=True),
     Format("VRM animation", is_vrma, read_vrma, has_skeleton=True),
     *(Format(each.name, each.fits, each.read, is_refused=True) for each in REFUSALS),
-    Format("SMPL parameters", is_smpl, read_smpl, has_skeleton=True),
+    Format("SMPL parameters", is_smpl, read_smpl, has_skeleton=True, open=open_smpl),
     Format("Kimodo", is_kimodo, read_kimodo, has_skeleton=True),
-    Format("Xsens MVNX", is_mvnx, read_mvnx, has_skeleton=True),
-    Format("C3D", is_c3d, read_c3d),
+    Format("Xsens MVNX", is_mvnx, read_mvnx, has_skeleton=True, open=open_mvnx),
+    Format("C3D", is_c3d, read_c3d, open=open_c3d),
     Format("TRC", _is_trc, read_trc),
     Format("OptiTrack CSV", is_motive_csv, read_motive_csv),
     Format("Qualisys TSV", is_qualisys_tsv, read_qualisys_tsv),
     Format("Vicon CSV", is_vicon_csv, read_vicon_csv),
-    Format("IRDS", is_irds, read_irds),
+    Format("IRDS", is_irds, read_irds, open=open_irds),
     Format("Kinect v2 CSV", is_kinect_csv, read_kinect_csv),
-    Format("Azure Kinect CSV", is_azure_csv, read_azure_csv),
-    Format("Azure Kinect JSON", is_azure_json, read_azure_json),
-    Format("NTU RGB+D", is_ntu_skeleton, read_ntu_skeleton),
+    Format("Azure Kinect CSV", is_azure_csv, read_azure_csv, open=open_azure_csv),
+    Format("Azure Kinect JSON", is_azure_json, read_azure_json, open=open_azure_json),
+    Format("NTU RGB+D", is_ntu_skeleton, read_ntu_skeleton, open=open_ntu_skeleton),
     Format("MSR Action3D", is_msr_action3d, read_msr_action3d),
     Format("UI-PRMD", is_ui_prmd, read_ui_prmd),
     Format("freemocap", is_npy, read_npy),
@@ -142,15 +135,19 @@ FORMATS = (
     Format("Nuitrack CSV", is_nuitrack_csv, read_nuitrack_csv),
     Format("Nuitrack JSON", is_nuitrack_json, read_nuitrack_json),
     Format("MediaPipe CSV", is_mediapipe_csv, read_mediapipe_csv),
-    Format("joint CSV", is_joint_csv, read_joint_csv),
-    Format("joint JSON", is_joint_json, read_joint_json),
     Format("MediaPipe JSON", is_mediapipe_json, read_mediapipe_json),
+    Format("joint CSV", is_joint_csv, read_joint_csv, open=open_joint_csv),
+    Format("joint JSON", is_joint_json, read_joint_json, open=open_joint_json),
 )
 """Supported formats; add a line here for a new one."""
 
 
 def read_recording(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> Motion | Tracks | JointRecording | DepthRecording:
     """Read a recording of any supported format, detected from the content.
 
@@ -161,6 +158,9 @@ def read_recording(
         images (docs/formats).
     scale : float, meters per unit of the file, or None
         None: the default of the format.
+    body : str, optional
+        Name or number of one of several bodies (`list_bodies`); by default the person in most
+        frames. A message to `progress` names the others.
     progress : Progress
 
     Returns
@@ -174,13 +174,24 @@ def read_recording(
     ------
     InvalidFileError
         The file is missing, damaged, or of an unsupported format.
+    InvalidSettingError
+        The scale is not positive, or there is no such body.
     SolveCancelled
         Raised by `progress`.
     """
     check_scale(scale)
     if is_depth_recording(path):
         return read_depth(path, DepthSettings(scale=scale or 0.0), progress=progress)
-    return read_tracked(path, scale=scale, progress=progress)
+    return read_tracked(path, scale=scale, body=body, progress=progress)
+
+
+def list_bodies(path: Path | str, *, progress: Progress = unwatched) -> tuple[Body, ...]:
+    """Return the bodies to choose from in a recording; empty where there is no choice.
+
+    False detections are left out. Raises InvalidFileError as `read_tracked` does.
+    """
+    bodies = open_bodies(path, progress=progress)
+    return tuple(bodies.listed[each] for each in bodies.offered)
 
 
 def is_depth_recording(path: Path | str) -> bool:
@@ -192,8 +203,12 @@ def is_depth_recording(path: Path | str) -> bool:
 
 
 def read_tracked(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Motion | Tracks | JointRecording:
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
+) -> Tracked:
     """Read a recording as `read_recording` does, without depth images.
 
     Raises
@@ -201,20 +216,56 @@ def read_tracked(
     InvalidFileError
         Also for a depth recording, which has no tracked motion yet.
     """
+    bodies = open_bodies(path, scale=scale, progress=within(progress, 0.0, OPENING_FRACTION))
+    start = OPENING_FRACTION if bodies.listed else 0.0
+    return bodies.read_one(body, within(progress, start, 1.0))
+
+
+def open_bodies(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[Tracked]:
+    """List the bodies of a recording, of which each can then be read.
+
+    Raises
+    ------
+    InvalidFileError
+        As `read_tracked`. Of a format with one body, damage is found when that is read.
+    """
     format_ = detect_format(path)
-    if format_ is not None:
-        try:
-            return format_.read(path, scale=scale, progress=progress)
-        except InvalidMotionError as error:  # valid format, but not a valid recording
-            raise InvalidFileError(f"{path}: {error}") from None
+    if format_ is None:
+        raise _unknown_format(path)
+    if format_.open is None:
+        read = partial(format_.read, path, scale=scale)
+        return Bodies(str(path), (), lambda _, progress: _valid(path, read, progress))
+    bodies = _valid(path, partial(format_.open, path, scale=scale), progress)
+    together = bodies.read_together
+    return replace(
+        bodies,
+        read=lambda index, progress: _valid(path, partial(bodies.read, index), progress),
+        read_together=together and partial(_valid, path, together),
+    )
+
+
+def _valid(path: Path | str, read: Callable[..., Result], progress: Progress) -> Result:
+    """Read; a valid format that holds no valid recording is an invalid file too."""
+    try:
+        return read(progress=progress)
+    except InvalidMotionError as error:
+        raise InvalidFileError(f"{path}: {error}") from None
+
+
+def _unknown_format(path: Path | str) -> InvalidFileError:
+    """Return why a file or folder of no known format has no motion."""
     if detect_depth_format(path) is not None:
-        raise InvalidFileError(
+        return InvalidFileError(
             f"{path} has depth images but no motion yet. Track the actor in it first."
         )
     if Path(path).is_dir():
-        raise InvalidFileError(f"{path} is a folder without depth images. Choose a file in it.")
+        return InvalidFileError(
+            f"{path} is a folder without depth images. Choose a file in it."
+        )
     names = ", ".join(each.name for each in FORMATS if not each.is_refused)
-    raise InvalidFileError(
+    return InvalidFileError(
         f"{path} is of no known format ({names}). Export it as one of these first."
     )
 
@@ -243,45 +294,13 @@ def detect_format(path: Path | str) -> Format | None:
     return next((format_ for format_ in FORMATS if format_.fits(head)), None)
 
 
-def recordings_in(folder: Path) -> list[Path]:
-    """Return the recordings in a folder and its subfolders, sorted by name.
-
-    Skip hidden files and folders, and skeletons without motion. Include files and folders that
-    cannot be opened: the reader reports the reason.
-    """
-    return [path for path in files_below(folder) if may_contain_motion(path)]
-
-
-def may_contain_motion(path: Path) -> bool:
-    """Whether a file is a recording by its first bytes, or cannot be opened."""
-    format_ = attempt(path, detect_format, path)
-    return format_ is not None and not getattr(format_, "is_refused", False)
-
-
-def depth_takes_in(
-    folder: Path, is_take: Callable[[Path], bool] = is_depth_folder
-) -> list[Path]:
-    """Return the depth recordings in a folder and below, by name; or the folder itself.
-
-    A folder of images is one recording and is not searched. Skip hidden files and folders, and
-    links to folders. Include files and folders that cannot be opened: the reader reports the
-    reason.
-
-    Parameters
-    ----------
-    folder : Path
-    is_take : callable
-        Returns whether a folder is one recording.
-    """
-    paths = files_below(folder, is_take)
-    return [
-        path for path in paths if is_folder(path) or attempt(path, is_depth_recording, path)
-    ]
-
-
 def read_motion_or_tracks(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> Motion | Tracks:
     """Read a recording as `read_tracked` does; return the joints of a camera as points."""
-    recording = read_tracked(path, scale=scale, progress=progress)
+    recording = read_tracked(path, scale=scale, body=body, progress=progress)
     return recording.tracks if isinstance(recording, JointRecording) else recording

@@ -12,7 +12,15 @@ from .axes import (
     y_up_from_z_up,
     z_up_from_y_up,
 )
-from .bodies import longest_observed_body, stack_body_frames
+from .bodies import (
+    ALL_BODIES,
+    Bodies,
+    Body,
+    bodies_of_frames,
+    observed_body,
+    recorded_seconds,
+    stack_body_frames,
+)
 from .body_axes import (
     UpAxisName,
     judge_up_axis,
@@ -31,6 +39,7 @@ from .points import (
     points_z_up,
 )
 from .sensor_axes import from_azure_space, from_kinect_space
+from .subjects import bodies_of_joints, bodies_of_markers
 from .time_stamps import (
     DEFAULT_FRAME_RATE,
     ConstantRate,
@@ -40,13 +49,19 @@ from .time_stamps import (
 from .tracked_joints import joint_recording
 
 __all__ = [
+    "ALL_BODIES",
     "CENTIMETER",
     "DEFAULT_FRAME_RATE",
     "METERS",
     "MIN_BODY_JOINTS",
     "PLAUSIBLE_REACH_M",
+    "Bodies",
+    "Body",
     "ConstantRate",
     "UpAxisName",
+    "bodies_of_frames",
+    "bodies_of_joints",
+    "bodies_of_markers",
     "check_scale",
     "common_rate",
     "constant_rate_from_times",
@@ -60,11 +75,12 @@ __all__ = [
     "joint_recording",
     "judge_up_axis",
     "longest_bone_path",
-    "longest_observed_body",
     "meters_from_unit_name",
+    "observed_body",
     "point_names",
     "points_z_up",
     "put_on_floor",
+    "recorded_seconds",
     "rotate_to_z_up",
     "rotations_y_up_from_z_up",
     "rotations_z_up_from_y_up",

@@ -1,6 +1,7 @@
 """Read tables of Azure Kinect joints: a line per joint, or a line per frame."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,23 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched, within
-from ..containers import GrowingTable, LineReader, read_number, spaces_from_commas, stream_rows
-from ..conventions import DEFAULT_FRAME_RATE, check_scale, from_azure_space, joint_recording
+from ..containers import (
+    GrowingTable,
+    LineReader,
+    printable,
+    read_number,
+    spaces_from_commas,
+    stream_rows,
+)
+from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    Bodies,
+    Body,
+    check_scale,
+    from_azure_space,
+    joint_recording,
+    observed_body,
+)
 
 NAMES = SENSOR_JOINTS[Sensor.AZURE_KINECT]
 MILLIMETER = 0.001
@@ -43,15 +59,16 @@ def read_azure_csv(
     *,
     scale: float | None = None,
     frame_rate: float = DEFAULT_FRAME_RATE,
+    body: str | None = None,
     progress: Progress = unwatched,
 ) -> JointRecording:
     """Read a table of Azure Kinect joints, in meters, Z up; joints not tracked are NaN.
 
     Two layouts are supported. A line per joint has the header `Body ID, Joint #, x, y, z, x, y,
     z, w, Confidence Level`: a new frame of a body begins when its joint numbers restart, and
-    the body in most frames is used. A line per frame has the header `PELVIS.x, PELVIS.y, ...`.
-    Neither has times, so `frame_rate` is used. Orientations are not read. Medium and high
-    confidence are state 2, low (predicted) is 1, none is 0.
+    a new frame of the recording when a body comes again. A line per frame has the header
+    `PELVIS.x, PELVIS.y, ...`. Neither has times, so `frame_rate` is used. Orientations are not
+    read. Medium and high confidence are state 2, low (predicted) is 1, none is 0.
 
     Parameters
     ----------
@@ -59,6 +76,8 @@ def read_azure_csv(
     scale : float, meters per unit of the file, or None
         None: millimeters.
     frame_rate : float, hertz
+    body : str, optional
+        Id or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Returns
@@ -76,43 +95,84 @@ def read_azure_csv(
     SolveCancelled
         Raised by `progress`.
     """
+    reading = within(progress, 0.0, 0.9)
+    bodies = open_azure_csv(path, scale=scale, frame_rate=frame_rate, progress=reading)
+    return bodies.read_one(body, within(progress, 0.9, 1.0))
+
+
+def open_azure_csv(
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    frame_rate: float = DEFAULT_FRAME_RATE,
+    progress: Progress = unwatched,
+) -> Bodies[JointRecording]:
+    """List the bodies of a table that `read_azure_csv` reads."""
     check_scale(scale)
     reader = LineReader(path)
     headings = [line for line in reader.peek(4) if line.strip()]  # "\r\r\n" leaves blank ones
-    per_joint = PER_JOINT.match(b"\n".join(headings[:2]))
-    read = _read_joint_lines if per_joint else _read_frame_lines
-    names, values = read(reader, path, within(progress, 0.0, 0.9))
-    states = values[..., 3].astype(np.int8) if values.shape[-1] > 3 else None
-    return joint_recording(
-        path,
-        names,
-        from_azure_space(values[..., :3]),
-        Sensor.AZURE_KINECT,
-        states=states,
-        frame_rate=frame_rate,
-        scale=scale,
-        default_unit=MILLIMETER,
-        progress=progress,
-    )
+    names = NAMES
+    if PER_JOINT.match(b"\n".join(headings[:2])):
+        listed, values_of = _read_joint_lines(reader, path, frame_rate, progress)
+    else:
+        names, values = _read_frame_lines(reader, path, progress)
+        n_frames = len(values)
+        only = observed_body("1", np.arange(n_frames), n_frames, n_frames / frame_rate)
+        listed, values_of = (only,), lambda index: values
+
+    def read(index: int, progress: Progress) -> JointRecording:
+        values = values_of(index)
+        states = values[..., 3].astype(np.int8) if values.shape[-1] > 3 else None
+        return joint_recording(
+            path,
+            names,
+            from_azure_space(values[..., :3]),
+            Sensor.AZURE_KINECT,
+            states=states,
+            frame_rate=frame_rate,
+            scale=scale,
+            default_unit=MILLIMETER,
+            progress=progress,
+        )
+
+    return Bodies(str(path), listed, read)
 
 
 def _read_joint_lines(
-    reader: LineReader, path: Path | str, progress: Progress
-) -> tuple[tuple[str, ...], NDArray[np.float64]]:
-    """Return the joints' names, and x y z state, shape (n_frames, n_joints, 4)."""
+    reader: LineReader, path: Path | str, frame_rate: float, progress: Progress
+) -> tuple[tuple[Body, ...], Callable[[int], NDArray[np.float64]]]:
+    """Return the bodies, and x y z state of one, shape (n_frames, n_joints, 4)."""
     bodies: dict[bytes, _Body] = {}
+    frame, seen = 0, set[bytes]()
     for block in reader.rest():
         for count, line in enumerate(block.lines, start=block.first):
             words = line.split(b",")
-            body = words[0].strip()
-            if not body[:1].isdigit():
+            key = words[0].strip()
+            if not key[:1].isdigit():
                 continue  # header or blank line
             joint, values = _joint(words, f"{path}, line {count}")
-            bodies.setdefault(body, _Body()).add_joint(joint, values)
+            body = bodies.setdefault(key, _Body())
+            if body.begins_frame(joint):
+                if key in seen:
+                    frame += 1
+                    seen.clear()
+                seen.add(key)
+            body.add_joint(joint, values, frame)
         progress(block.stop, "Reading")
     if not bodies:
         raise InvalidFileError(f"{path} has a header but no joints.")
-    return NAMES, max(bodies.values(), key=lambda body: body.n_frames).frames()
+    n_frames, found = frame + 1, list(bodies.values())
+    for body in found:
+        body.end_frame()
+    return tuple(
+        observed_body(
+            printable(key.decode("latin-1")),
+            np.array(body.frames),
+            n_frames,
+            n_frames / frame_rate,
+        )
+        for key, body in bodies.items()
+    ), lambda index: found[index].values(n_frames)
 
 
 class _Body:
@@ -122,23 +182,30 @@ class _Body:
         self._table = GrowingTable(4 * len(NAMES))
         self._frame = NOT_OBSERVED.copy()
         self._last = len(NAMES)
-        self.n_frames = 0
+        self.frames: list[int] = []
+        """Frames of the recording in which it is observed."""
 
-    def add_joint(self, joint: int, values: list[float]) -> None:
-        """Add x, y, z and state of a joint; a new frame begins when joint numbers restart."""
-        if joint <= self._last:
-            self._end_frame()
-            self.n_frames += 1
+    def begins_frame(self, joint: int) -> bool:
+        """Return whether a new frame begins with this joint: the joint numbers restart."""
+        return joint <= self._last
+
+    def add_joint(self, joint: int, values: list[float], frame: int) -> None:
+        """Add x, y, z and state of a joint in a frame of the recording."""
+        if self.begins_frame(joint):
+            self.end_frame()
+            self.frames.append(frame)
         self._frame[joint] = values
         self._last = joint
 
-    def frames(self) -> NDArray[np.float64]:
-        """Return all frames, shape (n_frames, n_joints, 4)."""
-        self._end_frame()
-        return self._table.rows().reshape(-1, len(NAMES), 4)
+    def values(self, n_frames: int) -> NDArray[np.float64]:
+        """Return all frames of the recording, shape (n_frames, n_joints, 4)."""
+        values = np.tile(NOT_OBSERVED, (n_frames, 1, 1))
+        values[self.frames] = self._table.rows().reshape(-1, len(NAMES), 4)
+        return values
 
-    def _end_frame(self) -> None:
-        if self.n_frames:
+    def end_frame(self) -> None:
+        """Keep the joints of the present frame."""
+        if self.frames:
             self._table.add(self._frame.reshape(1, -1))
             self._frame[:] = NOT_OBSERVED
 

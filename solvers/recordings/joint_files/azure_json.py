@@ -1,7 +1,6 @@
 """Read the JSON that the Azure Kinect body tracking sample `offline_processor` writes."""
 
 import re
-from collections.abc import Hashable
 from pathlib import Path
 from typing import Any
 
@@ -10,20 +9,23 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
-from ...progress import Progress, unwatched
+from ...progress import Progress, unwatched, within
 from ..containers import UniqueNames, array_from_json, json_members, printable
 from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    Bodies,
+    bodies_of_frames,
     check_scale,
     from_azure_space,
     joint_recording,
-    longest_observed_body,
+    recorded_seconds,
     stack_body_frames,
 )
 from .azure_csv import MILLIMETER, azure_joint
 
 MICROSECOND = 1e-6
 HEAD = re.compile(rb'\s*\{\s*"(?:[^"]*"[^{}]*")?(k4abt_sdk_version|bone_list|joint_names)"')
-Bodies = dict[Hashable, NDArray[np.float64]]
+Frame = dict[str, NDArray[np.float64]]
 
 
 def is_azure_json(head: bytes) -> bool:
@@ -32,21 +34,26 @@ def is_azure_json(head: bytes) -> bool:
 
 
 def read_azure_json(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> JointRecording:
     """Read `offline_processor` JSON [1]_, in meters, Z up.
 
-    Of several bodies the one in most frames is used, or the first one of a tie; bodies are
-    identified by their id, in any order. Frames are resampled to a constant rate by their time
-    stamps (30 Hz without them); missing frames, and frames without that body, are gaps.
-    Orientations are not read. The format has no confidence, so there is no tracking state:
-    joints that the tracker only predicted look like all others.
+    Bodies are identified by their id, in any order. Frames are resampled to a constant rate by
+    their time stamps (30 Hz without them); missing frames, and frames without that body, are
+    gaps. Orientations are not read. The format has no confidence, so there is no tracking
+    state: joints that the tracker only predicted look like all others.
 
     Parameters
     ----------
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: millimeters.
+    body : str, optional
+        Id or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Returns
@@ -68,8 +75,16 @@ def read_azure_json(
     ----------
     .. [1] Microsoft, Azure-Kinect-Samples, body-tracking-samples/offline_processor.
     """
+    bodies = open_azure_json(path, scale=scale, progress=within(progress, 0.0, 0.9))
+    return bodies.read_one(body, within(progress, 0.9, 1.0))
+
+
+def open_azure_json(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """List the bodies of a file that `read_azure_json` reads."""
     check_scale(scale)
-    frames: list[Bodies] = []
+    frames: list[Frame] = []
     times: list[float] = []
     given = UniqueNames()
     names: list[str] = []
@@ -79,7 +94,7 @@ def read_azure_json(
             time, bodies = _read_frame(member.value, location)
             frames.append(bodies)
             times.append(time)
-            progress(0.9 * member.done, "Reading")
+            progress(member.done, "Reading")
         elif member.key == "joint_names":
             names.append(given.give(printable(azure_joint(str(member.value)))))
     if not any(frames):
@@ -91,28 +106,36 @@ def read_azure_json(
             f"{path}: not every body has a position for each of the {len(joints)} joints. The"
             " file is damaged; export it again."
         )
-    positions = stack_body_frames(longest_observed_body(frames), frames)
-    return joint_recording(
-        path,
-        joints,
-        from_azure_space(positions),
-        Sensor.AZURE_KINECT,
-        times=None if np.isnan(times).all() else MICROSECOND * np.array(times),
-        scale=scale,
-        default_unit=MILLIMETER,
-        progress=progress,
+    stamps = None if np.isnan(times).all() else MICROSECOND * np.array(times)
+    untimed = len(frames) / DEFAULT_FRAME_RATE
+    keys, listed = bodies_of_frames(
+        frames, untimed if stamps is None else recorded_seconds(stamps)
     )
 
+    def read(index: int, progress: Progress) -> JointRecording:
+        return joint_recording(
+            path,
+            joints,
+            from_azure_space(stack_body_frames(keys[index], frames)),
+            Sensor.AZURE_KINECT,
+            times=stamps,
+            scale=scale,
+            default_unit=MILLIMETER,
+            progress=progress,
+        )
 
-def _read_frame(frame: Any, location: str) -> tuple[float, Bodies]:
+    return Bodies(str(path), listed, read)
+
+
+def _read_frame(frame: Any, location: str) -> tuple[float, Frame]:
     """Return the time stamp, or NaN, and the joint positions of each body."""
     listed = frame.get("bodies", []) if isinstance(frame, dict) else None
     if not isinstance(listed, list) or not all(isinstance(body, dict) for body in listed):
         raise InvalidFileError(
             f"{location}: a list of bodies is required. The file is damaged; export it again."
         )
-    bodies: Bodies = {}
-    for count, body in enumerate(listed):
+    bodies: Frame = {}
+    for count, body in enumerate(listed, start=1):
         positions = array_from_json(
             body.get("joint_positions"), (-1, 3), f"{location}, joint_positions"
         )

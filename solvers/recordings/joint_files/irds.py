@@ -1,7 +1,6 @@
 """Read joint recordings of the IntelliRehabDS: Kinect v2 joints as text."""
 
 import re
-from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,9 +9,17 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
-from ...progress import Progress, unwatched
-from ..containers import read_bytes, read_number, shown
-from ..conventions import check_scale, from_kinect_space, joint_recording
+from ...progress import Progress, unwatched, within
+from ..containers import printable, read_bytes, read_number, shown
+from ..conventions import (
+    Bodies,
+    bodies_of_frames,
+    check_scale,
+    from_kinect_space,
+    joint_recording,
+    recorded_seconds,
+    stack_body_frames,
+)
 
 STATES = {b"NotTracked": 0, b"Inferred": 1, b"Tracked": 2}
 HEAD = re.compile(
@@ -23,13 +30,13 @@ NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
 JOINT_INDICES = {name.encode(): index for index, name in enumerate(NAMES)}
 
 
-class Frame(NamedTuple):
-    """One line of the file."""
+class Line(NamedTuple):
+    """One line of the file: a body at a time."""
 
-    body: bytes
+    body: str
     time: float
-    positions: NDArray[np.float64]
-    states: NDArray[np.int8]
+    joints: NDArray[np.float64]
+    """x, y, z and state, shape (n_joints, 4)."""
 
 
 def is_irds(head: bytes) -> bool:
@@ -38,20 +45,25 @@ def is_irds(head: bytes) -> bool:
 
 
 def read_irds(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> JointRecording:
     """Read IRDS text [1]_, in meters, Z up; joints that were not tracked are NaN.
 
     One line per frame: number, body, milliseconds, then `(joint,state,x,y,z,u,v)` for each
     joint; the pixel coordinates u, v are not read. Frames are resampled to a constant rate by
-    their time stamps; missing frames are gaps. Of several bodies the one in most frames is
-    used.
+    their time stamps; missing frames, and frames without the body, are gaps.
 
     Parameters
     ----------
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: meters.
+    body : str, optional
+        Name or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Returns
@@ -73,36 +85,62 @@ def read_irds(
     .. [1] Miron, Sadawi, Ismail, Hussain, Grosan (2021). IntelliRehabDS (IRDS): a dataset of
        physical rehabilitation movements. Data 6(5). doi:10.3390/data6050046
     """
+    bodies = open_irds(path, scale=scale, progress=within(progress, 0.0, 0.9))
+    return bodies.read_one(body, within(progress, 0.9, 1.0))
+
+
+def open_irds(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """List the bodies of a file that `read_irds` reads."""
     check_scale(scale)
-    frames = []
+    observed: list[Line] = []
     lines = read_bytes(path).splitlines()
     for count, line in enumerate(lines, start=1):
         if b"(" in line:
-            frames.append(_frame(line, f"{path}, line {count}"))
+            observed.append(_line(line, f"{path}, line {count}"))
         elif count > 1 and line.strip():
             raise InvalidFileError(
                 f"{path}, line {count}: there are no joints. The file is damaged or cut short;"
                 " delete that line."
             )
-        progress(0.9 * count / len(lines), "Reading")
-    if not frames:
+        progress(count / len(lines), "Reading")
+    if not observed:
         raise InvalidFileError(f"{path} is not an IRDS recording: no line has joints.")
-    ((longest, _),) = Counter(frame.body for frame in frames).most_common(1)
-    frames = [frame for frame in frames if frame.body == longest]
-    positions = np.stack([frame.positions for frame in frames])
-    return joint_recording(
-        path,
-        NAMES,
-        from_kinect_space(positions),
-        Sensor.KINECT_V2,
-        states=np.stack([frame.states for frame in frames]),
-        times=MILLISECOND * np.array([frame.time for frame in frames]),
-        scale=scale,
-        progress=progress,
-    )
+    times, frames = _frames(observed)
+    keys, bodies = bodies_of_frames(frames, recorded_seconds(times))
+
+    def read(index: int, progress: Progress) -> JointRecording:
+        joints = stack_body_frames(keys[index], frames)
+        return joint_recording(
+            path,
+            NAMES,
+            from_kinect_space(joints[..., :3]),
+            Sensor.KINECT_V2,
+            states=np.nan_to_num(joints[..., 3]).astype(np.int8),
+            times=times,
+            scale=scale,
+            progress=progress,
+        )
+
+    return Bodies(str(path), bodies, read)
 
 
-def _frame(line: bytes, location: str) -> Frame:
+def _frames(
+    lines: list[Line],
+) -> tuple[NDArray[np.float64], list[dict[str, NDArray[np.float64]]]]:
+    """Return times in seconds and the joints of each body then; a body twice makes two."""
+    times: list[float] = []
+    frames: list[dict[str, NDArray[np.float64]]] = []
+    for line in lines:
+        if not frames or line.time != times[-1] or line.body in frames[-1]:
+            times.append(line.time)
+            frames.append({})
+        frames[-1][line.body] = line.joints
+    return MILLISECOND * np.array(times), frames
+
+
+def _line(line: bytes, location: str) -> Line:
     head, *joints = line.rstrip().split(b"(")
     fields = [word.strip() for word in head.split(b",")]
     if len(fields) != 4 or len(joints) != len(NAMES) or not joints[-1].endswith(b")"):
@@ -110,8 +148,8 @@ def _frame(line: bytes, location: str) -> Frame:
             f"{location}: number, body, time and {len(NAMES)} joints are required. The file is"
             " damaged or cut short; delete that line."
         )
-    positions = np.full((len(NAMES), 3), np.nan)
-    states = np.zeros(len(NAMES), dtype=np.int8)
+    values = np.full((len(NAMES), 4), np.nan)
+    values[:, 3] = 0.0
     for joint in joints:
         name, *words = (word.strip() for word in joint.split(b")")[0].split(b","))
         if name not in JOINT_INDICES or len(words) < 4 or words[0] not in STATES:
@@ -120,6 +158,9 @@ def _frame(line: bytes, location: str) -> Frame:
                 " joint of a Kinect v2 with state and position. The file is damaged; delete"
                 " that line."
             )
-        states[JOINT_INDICES[name]] = STATES[words[0]]
-        positions[JOINT_INDICES[name]] = [read_number(word, location) for word in words[1:4]]
-    return Frame(fields[1], read_number(fields[2], location), positions, states)
+        values[JOINT_INDICES[name]] = [
+            *(read_number(word, location) for word in words[1:4]),
+            STATES[words[0]],
+        ]
+    body = printable(fields[1].decode("latin-1"))
+    return Line(body, read_number(fields[2], location), values)

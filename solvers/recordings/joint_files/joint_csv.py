@@ -15,7 +15,7 @@ from ...files import write_atomically
 from ...motion import JointRecording
 from ...progress import Progress, unwatched, within
 from ..containers import LineReader, shown, spaces_from_commas, stream_rows
-from ..conventions import check_scale
+from ..conventions import Bodies, bodies_of_joints, check_scale
 from .joint_header import FORMAT, VERSION, build_recording, check_names, parse_header
 
 TIME = "time"
@@ -40,7 +40,11 @@ def is_joint_csv(head: bytes) -> bool:
 
 
 def read_joint_csv(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> JointRecording:
     """Read our own table of joints, in meters, Z up; missing values are NaN.
 
@@ -48,13 +52,16 @@ def read_joint_csv(
     first two words are required. The second line names the columns `time`, `<joint>.x`, `.y`,
     `.z`, and optionally `.state` (2, 1, 0) and `.confidence` (0 to 1). Each further line is a
     frame; missing values are empty. Without a frame rate each frame has its time in seconds,
-    and is resampled to a constant rate; gaps stay gaps.
+    and is resampled to a constant rate; gaps stay gaps. Joints of several bodies are called
+    `<body>:<joint>`.
 
     Parameters
     ----------
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: the unit of the file.
+    body : str, optional
+        Name or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Returns
@@ -70,6 +77,14 @@ def read_joint_csv(
     SolveCancelled
         Raised by `progress`.
     """
+    bodies = open_joint_csv(path, scale=scale, progress=within(progress, 0.0, 0.9))
+    return bodies.read_one(body, within(progress, 0.9, 1.0))
+
+
+def open_joint_csv(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """List the bodies of a file that `read_joint_csv` reads."""
     check_scale(scale)
     reader = LineReader(path)
     head = reader.take(2)
@@ -83,7 +98,7 @@ def read_joint_csv(
             f"{path} has no times: its first line has no frame_rate, and there is no column"
             f" {TIME}. Add one of them."
         )
-    return build_recording(
+    recording = build_recording(
         path,
         _joint_names(columns),
         header,
@@ -94,6 +109,7 @@ def read_joint_csv(
         scale=scale,
         progress=progress,
     )
+    return bodies_of_joints(path, recording)
 
 
 def write_joint_csv(

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ...files import write_atomically
 from ...motion import JointRecording
-from ...progress import Progress, unwatched
+from ...progress import Progress, unwatched, within
 from ..containers import array_from_json, json_members, shown
-from ..conventions import check_scale
+from ..conventions import Bodies, bodies_of_joints, check_scale
 from .joint_header import FORMAT, VERSION, build_recording, check_names, parse_header
 
 HEAD = re.compile(rb'\s*\{[^{}\[\]]*"format"\s*:\s*"' + FORMAT.encode() + rb'"')
@@ -36,7 +36,11 @@ def is_joint_json(head: bytes) -> bool:
 
 
 def read_joint_json(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> JointRecording:
     """Read our own JSON of joints, in meters, Z up; missing values are NaN.
 
@@ -44,13 +48,16 @@ def read_joint_json(
     ("z"), `sensor` ("other"), `joints` (names), `frames`; each frame an object with
     `positions`, one [x, y, z] or null per joint, and optionally `states` (2, 1, 0),
     `confidence` (0 to 1) and `time` (seconds). Without a frame rate, frames are resampled to a
-    constant rate by their times; gaps stay gaps.
+    constant rate by their times; gaps stay gaps. Joints of several bodies are called
+    `<body>:<joint>`.
 
     Parameters
     ----------
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: the unit of the file.
+    body : str, optional
+        Name or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Returns
@@ -66,6 +73,14 @@ def read_joint_json(
     SolveCancelled
         Raised by `progress`.
     """
+    bodies = open_joint_json(path, scale=scale, progress=within(progress, 0.0, 0.9))
+    return bodies.read_one(body, within(progress, 0.9, 1.0))
+
+
+def open_joint_json(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """List the bodies of a file that `read_joint_json` reads."""
     check_scale(scale)
     fields: dict[str, Any] = {}
     names: list[str] = []
@@ -87,7 +102,7 @@ def read_joint_json(
             " of them."
         )
     positions = np.stack([frame.positions for frame in frames])
-    return build_recording(
+    recording = build_recording(
         path,
         names,
         header,
@@ -98,6 +113,7 @@ def read_joint_json(
         scale=scale,
         progress=progress,
     )
+    return bodies_of_joints(path, recording)
 
 
 def write_joint_json(

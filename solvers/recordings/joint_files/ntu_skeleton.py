@@ -4,16 +4,19 @@ import re
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched, within
 from ..containers import read_bytes, read_rows
 from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    Bodies,
+    bodies_of_frames,
     check_scale,
     from_kinect_space,
     joint_recording,
-    longest_observed_body,
     stack_body_frames,
 )
 from .kinect_csv import checked_states
@@ -36,20 +39,26 @@ def is_ntu_skeleton(head: bytes) -> bool:
 
 
 def read_ntu_skeleton(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> JointRecording:
     """Read an NTU RGB+D `.skeleton` file [1]_, in meters, Z up; joints not tracked are NaN.
 
-    Of several bodies the one in most frames is used, or the first one of a tie; bodies are
-    identified by their id, in any order. Frames without it are gaps. A body that returns under
-    another id counts as two. Image coordinates, orientations, hand states and lean are not
-    read. The files have no times; the Kinect v2 records 30 frames per second.
+    Bodies are identified by their id, in any order, and numbered as they appear. Frames
+    without the body are gaps. A body that returns under another id counts as two. Image
+    coordinates, orientations, hand states and lean are not read. The files have no times; the
+    Kinect v2 records 30 frames per second.
 
     Parameters
     ----------
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: meters.
+    body : str, optional
+        Name or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Returns
@@ -71,36 +80,59 @@ def read_ntu_skeleton(
     .. [1] Shahroudy, Liu, Ng, Wang (2016). NTU RGB+D: a large scale dataset for 3D human
        activity analysis. CVPR. doi:10.1109/CVPR.2016.115
     """
+    bodies = open_ntu_skeleton(path, scale=scale, progress=within(progress, 0.0, 0.5))
+    return bodies.read_one(body, within(progress, 0.5, 1.0))
+
+
+def open_ntu_skeleton(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """List the bodies of a file that `read_ntu_skeleton` reads."""
     check_scale(scale)
     lines = read_bytes(path).splitlines()
     line_indices = [index for index, line in enumerate(lines) if line.strip()]
     frames = _find_bodies(lines, line_indices, path)
     if not any(frames):
         raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
-    body = longest_observed_body(frames)
+    keys, bodies = bodies_of_frames(
+        frames, len(frames) / DEFAULT_FRAME_RATE, lambda number, key: str(number)
+    )
+
+    def read(index: int, progress: Progress) -> JointRecording:
+        joints = _read_body(lines, frames, keys[index], path, within(progress, 0.0, 0.9))
+        return joint_recording(
+            path,
+            NAMES,
+            from_kinect_space(joints[..., :3]),
+            Sensor.KINECT_V2,
+            states=checked_states(joints[..., 3], path),
+            scale=scale,
+            progress=progress,
+        )
+
+    progress(1.0, "Reading")
+    return Bodies(str(path), bodies, read)
+
+
+def _read_body(
+    lines: list[bytes], frames: Frames, body: bytes, path: Path | str, progress: Progress
+) -> NDArray[np.float64]:
+    """Return x, y, z and state of the joints of a body, shape (n_frames, n_joints, 4)."""
     used = [index for frame in frames for index in frame.get(body, ())]
     rows = read_rows(
         [lines[index] for index in used],
         JOINT_WORDS,
         path,
         [index + 1 for index in used],
-        within(progress, 0.0, 0.9),
+        progress,
     ).reshape(-1, len(NAMES), JOINT_WORDS)
     tracked = iter(np.concatenate([rows[..., :3], rows[..., -1:]], axis=-1))
     joints = stack_body_frames(
-        body, [{body: next(tracked)} if body in f else {} for f in frames]
+        body, [{body: next(tracked)} if body in frame else {} for frame in frames]
     )
     missing = np.isnan(joints).all(axis=(1, 2))
     joints[missing, :, 3] = 0.0
-    return joint_recording(
-        path,
-        NAMES,
-        from_kinect_space(joints[..., :3]),
-        Sensor.KINECT_V2,
-        states=checked_states(joints[..., 3], path),
-        scale=scale,
-        progress=progress,
-    )
+    return joints
 
 
 def _find_bodies(lines: list[bytes], line_indices: list[int], path: Path | str) -> Frames:

@@ -1,6 +1,6 @@
 """Read optical markers, and write them as C3D and TRC."""
 
-from .c3d import read_c3d
+from .c3d import open_c3d, read_c3d
 from .c3d_writing import write_c3d
 from .motive_csv import is_motive_csv, read_motive_csv
 from .qualisys_tsv import is_qualisys_tsv, read_qualisys_tsv
@@ -12,6 +12,7 @@ __all__ = [
     "is_motive_csv",
     "is_qualisys_tsv",
     "is_vicon_csv",
+    "open_c3d",
     "read_c3d",
     "read_motive_csv",
     "read_qualisys_tsv",

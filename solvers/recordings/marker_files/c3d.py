@@ -10,6 +10,8 @@ from ...motion import Motion, Tracks
 from ...progress import Progress, unwatched
 from ..containers import C3dFile
 from ..conventions import (
+    Bodies,
+    bodies_of_markers,
     check_scale,
     guess_unit_of_points,
     is_upside_down,
@@ -23,7 +25,11 @@ NON_POSITION_PARAMETERS = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS", "
 
 
 def read_c3d(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> Motion | Tracks:
     """Read the points of a C3D file, in meters, Z up; missing points are NaN.
 
@@ -40,13 +46,16 @@ def read_c3d(
     scale : float, meters per unit of the file, or None
         None: POINT:UNITS or, without it, the unit of meters, centimeters and millimeters that
         gives a person's size.
+    body : str, optional
+        Name or number of a subject (`Bodies.choose`); by default the person in most frames, or
+        all markers of one person and its props.
     progress : Progress
 
     Returns
     -------
     Tracks, or Motion of the segments of a body
         Names are unique (`LFHD_2`), and without the prefix of the actor (`Anna:LFHD`) if there
-        is only one; unnamed points are called `point_<number>`.
+        is only one, or one is read; unnamed points are called `point_<number>`.
 
     Raises
     ------
@@ -57,12 +66,21 @@ def read_c3d(
     SolveCancelled
         Raised by `progress`.
     """
+    bodies = open_c3d(path, scale=scale, progress=progress)
+    return bodies.read_one(body, progress)
+
+
+def open_c3d(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[Motion | Tracks]:
+    """List the subjects of a file that `read_c3d` reads."""
     check_scale(scale)
     file = C3dFile(path)
     progress(0.1, "Reading")
     if has_rotations(file):
         if not file.n_points:
-            return read_c3d_rotations(file, scale, progress)
+            recording = read_c3d_rotations(file, scale, progress)
+            return Bodies(str(path), (), lambda *_: recording)
         progress(0.1, "The poses of segments in its ROTATION group are left out")
     points, observed = file.read_points()
     progress(0.6, "Reading")
@@ -79,16 +97,16 @@ def read_c3d(
     points = points[:, columns]
     if not points.size or np.isnan(points).all():
         raise InvalidFileError(f"{path} has no points that are observed in any frame.")
-    names = point_names([labels[index] for index in columns])
+    used = [labels[index] for index in columns]
     points *= _unit(file, points) if scale is None else scale
     screen = file.texts("POINT:Y_SCREEN")
     up = screen[0].strip().upper() if screen else ""
     if is_upside_down(points, up):
         progress(0.8, f"Y_SCREEN says {up}, which hangs the actor below the floor; not used")
         up = f"+{up[-1]}"
-    tracks = Tracks(names, points_z_up(points, up), file.frame_rate)
+    tracks = Tracks(point_names(used), points_z_up(points, up), file.frame_rate)
     progress(1.0, "Reading")
-    return tracks
+    return bodies_of_markers(path, tracks, used)
 
 
 def _labels(file: C3dFile, n_points: int) -> list[str]:

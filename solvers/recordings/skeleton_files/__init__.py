@@ -5,9 +5,9 @@ from .acclaim_limits import read_acclaim_limits
 from .bvh import read_bvh
 from .bvh_writing import write_bvh
 from .kimodo import is_kimodo, read_kimodo
-from .mvnx import is_mvnx, read_mvnx
+from .mvnx import is_mvnx, open_mvnx, read_mvnx
 from .segments import recording_from_segments
-from .smpl import NAMES_OF_BODY, is_motion_x, is_smpl, read_motion_x, read_smpl
+from .smpl import NAMES_OF_BODY, is_motion_x, is_smpl, open_smpl, read_motion_x, read_smpl
 from .vrma import is_vrma, read_vrma
 
 __all__ = [
@@ -18,6 +18,8 @@ __all__ = [
     "is_mvnx",
     "is_smpl",
     "is_vrma",
+    "open_mvnx",
+    "open_smpl",
     "read_acclaim",
     "read_acclaim_limits",
     "read_bvh",

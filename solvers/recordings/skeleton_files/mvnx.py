@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 from xml.etree.ElementTree import Element, ParseError, iterparse
 
 import numpy as np
@@ -12,7 +13,8 @@ from ...errors import InvalidFileError
 from ...files import open_regular
 from ...motion import Motion
 from ...progress import Progress, unwatched
-from ..conventions import check_scale, common_rate
+from ..containers import UniqueNames, printable
+from ..conventions import Bodies, check_scale, common_rate, observed_body
 from .world_poses import motion_from_world_poses
 
 PARENTS = {
@@ -41,8 +43,22 @@ def is_mvnx(head: bytes) -> bool:
     return re.search(rb"<mvnx[\s>]", head) is not None
 
 
+class Subject(NamedTuple):
+    """An actor as in the file."""
+
+    label: str
+    rate: float
+    segments: list[str]
+    frames: list[tuple[Array, Array]]
+    """Numbers of positions and orientations."""
+
+
 def read_mvnx(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> Motion:
     """Read a take of Xsens MVN (`.mvnx`), in meters, Z up.
 
@@ -54,6 +70,8 @@ def read_mvnx(
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: 1.
+    body : str, optional
+        Label or number of one of several subjects (`Bodies.choose`).
     progress : Progress
 
     Raises
@@ -66,10 +84,41 @@ def read_mvnx(
     SolveCancelled
         Raised by `progress`.
     """
+    bodies = open_mvnx(path, scale=scale, progress=progress)
+    return bodies.read_one(body, progress)
+
+
+def open_mvnx(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[Motion]:
+    """List the subjects of a file that `read_mvnx` reads."""
     check_scale(scale)
     _refuse_declarations(path)
+    subjects = _subjects(path, progress)
+    n_frames = max(len(subject.frames) for subject in subjects)
+    names = UniqueNames()
+    listed = tuple(
+        observed_body(
+            names.give(printable(subject.label) or str(number)),
+            np.arange(len(subject.frames)),
+            max(n_frames, 1),
+            n_frames / subject.rate,
+        )
+        for number, subject in enumerate(subjects, start=1)
+    )
+    unit = 1.0 if scale is None else scale
+
+    def read(index: int, progress: Progress) -> Motion:
+        return _motion(path, subjects[index], unit)
+
+    return Bodies(str(path), listed, read)
+
+
+def _subjects(path: Path | str, progress: Progress) -> list[Subject]:
+    """Return all subjects; one without frames if there is none."""
+    subjects: list[Subject] = []
     names: list[str] = []
-    rate, frames = DEFAULT_RATE_HZ, list[tuple[Array, Array]]()
+    frames: list[tuple[Array, Array]] = []
     try:
         for element in _elements(path):
             tag = element.tag.rpartition("}")[2]
@@ -80,21 +129,18 @@ def read_mvnx(
                 if len(frames) % 100 == 0:
                     progress(0.5, "Reading")
             elif tag == "subject":
-                rate = common_rate(float(element.get("frameRate", rate)))
+                rate = common_rate(float(element.get("frameRate", DEFAULT_RATE_HZ)))
+                subjects.append(Subject(element.get("label", ""), rate, names, frames))
+                names, frames = [], []
     except (ParseError, ValueError, LookupError):
         raise InvalidFileError(f"{path} is damaged or cut short. Export it again.") from None
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
-    return _motion(path, names, frames, rate, 1.0 if scale is None else scale)
+    return subjects or [Subject("", DEFAULT_RATE_HZ, names, frames)]
 
 
-def _motion(
-    path: Path | str,
-    names: list[str],
-    frames: list[tuple[Array, Array]],
-    rate: float,
-    scale: float,
-) -> Motion:
+def _motion(path: Path | str, subject: Subject, scale: float) -> Motion:
+    names, frames = subject.segments, subject.frames
     known = [index for index, name in enumerate(names) if name in PARENTS]
     kept = sorted(known, key=lambda index: list(PARENTS).index(names[index]))
     ordered = [names[index] for index in kept]
@@ -109,7 +155,11 @@ def _motion(
     parents = [_parent(ordered, name) for name in ordered]
     try:
         return motion_from_world_poses(
-            ordered, parents, _turned(positions[:, kept]), _turned(rotations[:, kept]), rate
+            ordered,
+            parents,
+            _turned(positions[:, kept]),
+            _turned(rotations[:, kept]),
+            subject.rate,
         )
     except InvalidFileError as error:
         raise InvalidFileError(f"{path}: {error}. Export it again.") from None

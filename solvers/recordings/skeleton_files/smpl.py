@@ -12,9 +12,11 @@ from ...rotations import quaternion_from_rotation_vector
 from ..containers import read_archive_members
 from ..conventions import (
     DEFAULT_FRAME_RATE,
+    Bodies,
     UpAxisName,
     check_scale,
     common_rate,
+    observed_body,
     put_on_floor,
     rotations_z_up_from_y_up,
     stand_upright,
@@ -22,6 +24,7 @@ from ..conventions import (
 )
 from .kimodo import read_kimodo
 from .smpl_body import BODY, FINGERS, STATURE_M, smpl_joints
+from .smpl_people import split_people
 
 ROTATIONS = ("poses", "smpl_poses", "fullpose")
 ROOT = ("root_orient", "global_orient")
@@ -52,6 +55,7 @@ N_NUMBERS = {66, 69, 72, 156, 165, 168}
 """Numbers of a pose: 22 joints, SMPL's 23 and 24, SMPL-H's 52, SMPL-X's 55, and with a jaw."""
 N_BODY_POSE = {63, 69}
 """Numbers of a pose without its root: SMPL-X and SMPL-H, and SMPL with its hands."""
+SIZES = dict.fromkeys(ROTATIONS, N_NUMBERS) | dict.fromkeys(BODY_POSE, N_BODY_POSE)
 MAX_HEIGHT_M = 10.0
 AMASS_UP: dict[UpAxisName, float] = {"Z": 0.8, "Y": 0.0}
 VIDEO_UP: dict[UpAxisName, float] = {"Y": 0.1, "Z": 0.05, "-Y": 0.0}
@@ -76,6 +80,7 @@ def read_smpl(
     *,
     scale: float | None = None,
     height: float = STATURE_M,
+    body: str | None = None,
     progress: Progress = unwatched,
 ) -> Motion:
     """Read the pose parameters of an SMPL, SMPL-H or SMPL-X body from an `.npz` archive.
@@ -85,7 +90,8 @@ def read_smpl(
     `body_pose`, `transl`). Rotations are exact. Bone lengths depend on a licensed model that
     is neither read nor needed: they are those of an adult, scaled to `height`. The height
     above the floor depends on them too, so the feet are put on the floor. Which way is up is
-    judged by the body (`judge_up_axis`): AMASS has Z up, most video models Y.
+    judged by the body (`judge_up_axis`): AMASS has Z up, most video models Y. Poses with an
+    axis too many are those of several people (`split_people`).
 
     Parameters
     ----------
@@ -94,6 +100,8 @@ def read_smpl(
         None: 1, or 1 / `smpl_scaling` where the file has it (AIST++).
     height : float, meters
         Stature of the actor.
+    body : str, optional
+        Number of one of several people (`Bodies.choose`).
     progress : Progress
 
     Returns
@@ -115,13 +123,53 @@ def read_smpl(
     .. [1] Mahmood, Ghorbani, Troje, Pons-Moll, Black (2019). AMASS: Archive of motion capture
        as surface shapes. ICCV.
     """
+    bodies = open_smpl(path, scale=scale, height=height, progress=progress)
+    return bodies.read_one(body, progress)
+
+
+def open_smpl(
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    height: float = STATURE_M,
+    progress: Progress = unwatched,
+) -> Bodies[Motion]:
+    """List the people of a file that `read_smpl` reads."""
     check_scale(scale)
     if not 0.0 < height < MAX_HEIGHT_M:
         raise InvalidSettingError(f"height is {height:g} m; it must be above 0 and below 10.")
     arrays = read_archive_members(path, (*READ, "posed_joints"))
     if "posed_joints" in arrays and not {*ROTATIONS, *ROOT} & arrays.keys():
-        return read_kimodo(path, scale=scale, progress=progress)
-    vectors = _rotation_vectors(path, arrays)
+        motion = read_kimodo(path, scale=scale, progress=progress)
+        n_frames = motion.n_frames
+        only = observed_body("1", np.arange(n_frames), n_frames, n_frames / motion.frame_rate)
+        return Bodies(str(path), (only,), lambda index, progress: motion)
+    people = split_people(arrays, SIZES)
+    vectors = [_rotation_vectors(path, person) for person in people]
+    rate = _rate(arrays, unwatched)
+    listed = tuple(
+        observed_body(
+            str(number), np.flatnonzero(np.isfinite(each).all(axis=(1, 2))), len(each),
+            len(each) / rate,
+        )
+        for number, each in enumerate(vectors, start=1)
+    )  # fmt: skip
+
+    def read(index: int, progress: Progress) -> Motion:
+        return _motion(path, people[index], vectors[index], scale, height, progress)
+
+    return Bodies(str(path), listed, read)
+
+
+def _motion(
+    path: Path | str,
+    arrays: dict[str, Array],
+    vectors: Array,
+    scale: float | None,
+    height: float,
+    progress: Progress,
+) -> Motion:
+    """Return the motion of one person from axes times angles."""
     n_frames = len(vectors)
     hands = vectors.shape[1] > N_BODY
     positions = _member(arrays, POSITIONS)
@@ -187,8 +235,8 @@ def _rotation_vectors(path: Path | str, arrays: dict[str, Array]) -> Array:
         )
     if poses.ndim > 2 and (poses.ndim != 3 or poses.shape[2] != 3):
         raise InvalidFileError(
-            f"{path} has poses of shape {poses.shape}: rotation matrices or several people."
-            " Save the rotation vectors of one person."
+            f"{path} has poses of shape {poses.shape}: rotation matrices, perhaps. Save"
+            " rotation vectors of three numbers for each joint."
         )
     if poses[0].size not in N_NUMBERS:
         raise InvalidFileError(

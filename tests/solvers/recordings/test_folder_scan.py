@@ -77,7 +77,8 @@ def test_the_others_are_found_when_looking_at_one_file_fails(takes, monkeypatch,
             raise error
         return detect_format(path)
 
-    monkeypatch.setattr(sys.modules["solvers.recordings.read_recording"], "detect_format", fail)
+    for module in ("folders", "read_recording"):
+        monkeypatch.setattr(sys.modules[f"solvers.recordings.{module}"], "detect_format", fail)
 
     assert names(recordings_in(takes), takes) == ["leg.bvh", "more/twin.bvh", "more/twin.npz"]
     assert names(depth_takes_in(takes), takes) == ["more/twin.bvh", "more/twin.npz", "room.npz"]

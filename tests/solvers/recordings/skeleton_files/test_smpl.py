@@ -134,7 +134,7 @@ def test_scaled_positions_of_aist(tmp_path):
         {"poses": np.zeros(66)},
         {"poses": np.tile(np.eye(3), (F, 24, 1, 1)), "trans": np.zeros((F, 3))},
         {"poses": np.zeros((F, 144)), "trans": np.zeros((F, 3))},
-        {"poses": np.zeros((2, F, 72)), "trans": np.zeros((2, F, 3))},
+        {"poses": np.zeros((2, F, 72)), "trans": np.zeros((3, F, 3))},
         {"global_orient": np.zeros((F, 1, 3, 3)), "body_pose": np.zeros((F, 23, 3, 3))},
         {"root_orient": np.array(1.0), "pose_body": np.zeros((F, 63))},
         {"posed_joints": np.array(1.0), "global_rot_mats": np.array(1.0)},

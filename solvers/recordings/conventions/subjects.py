@@ -1,0 +1,143 @@
+"""Split named points into subjects: persons and props whose names begin the labels."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...motion import JointRecording, Tracks
+from ...progress import Progress
+from .axes import MIN_BODY_JOINTS
+from .bodies import Bodies, observed_body
+from .points import point_names
+
+Recording = TypeVar("Recording", Tracks, JointRecording)
+SEPARATOR = ":"
+UNLABELED = "unlabeled"
+"""Name of the points of no subject, if others have one."""
+MIN_PERSON_MARKERS = 12
+"""Minimum markers of a person; the smallest common sets, of legs alone, have 15. Clusters on
+single segments, boxes and balls have fewer."""
+MAX_RIGID_CHANGE_M = 0.02
+"""Maximum change of nine in ten distances between markers of a rigid prop, meters. In Vicon's
+example the largest change is 0.07 cm for a box and 60 cm for the person who holds it."""
+MAX_COMPARED = 500
+"""Frames that are compared to find props."""
+MAX_PAIRED = 50
+"""Markers of a subject whose distances are compared."""
+
+
+class Subject(NamedTuple):
+    """Points of one person or prop."""
+
+    name: str
+    columns: list[int]
+    names: tuple[str, ...]
+    """Of its points, without its own name."""
+
+
+def split_subjects(labels: Sequence[str]) -> list[Subject]:
+    """Return the subjects that begin labels, such as Anna in `Anna:LFHD`; or one of all points.
+
+    Points of no subject come last.
+    """
+    found: dict[str, list[int]] = {}
+    for column, label in enumerate(labels):
+        found.setdefault(label.rpartition(SEPARATOR)[0], []).append(column)
+    unlabeled = found.pop("", [])
+    if len(found) < 2:
+        return [Subject("1", list(range(len(labels))), point_names(labels))]
+    subjects = [
+        Subject(name, columns, point_names([labels[each] for each in columns]))
+        for name, columns in found.items()
+    ]
+    if unlabeled:
+        names = point_names([labels[each] for each in unlabeled])
+        subjects.append(Subject(UNLABELED, unlabeled, names))
+    return subjects
+
+
+def bodies_of_markers(path: object, tracks: Tracks, labels: Sequence[str]) -> Bodies[Tracks]:
+    """Return the subjects of labeled markers; where only one is a person, all are together."""
+
+    def is_person(subject: Subject) -> bool:
+        if subject.name == UNLABELED or len(subject.columns) < MIN_PERSON_MARKERS:
+            return False
+        return not _is_rigid(tracks.positions[:, subject.columns])
+
+    return _bodies(path, tracks, tracks, split_subjects(labels), is_person, _marker_columns)
+
+
+def bodies_of_joints(path: object, recording: JointRecording) -> Bodies[JointRecording]:
+    """Return the subjects of named joints; where only one is a person, all are together."""
+
+    def is_person(subject: Subject) -> bool:
+        return subject.name != UNLABELED and len(subject.columns) >= MIN_BODY_JOINTS
+
+    tracks = recording.tracks
+    subjects = split_subjects(tracks.names)
+    return _bodies(path, recording, tracks, subjects, is_person, _joint_columns)
+
+
+def _bodies(
+    path: object,
+    recording: Recording,
+    tracks: Tracks,
+    subjects: list[Subject],
+    is_person: Callable[[Subject], bool],
+    select: Callable[[Recording, Subject], Recording],
+) -> Bodies[Recording]:
+    duration_s = tracks.n_frames / tracks.frame_rate
+    visible = tracks.visible
+    listed = tuple(
+        observed_body(
+            subject.name,
+            np.flatnonzero(visible[:, subject.columns].any(axis=1)),
+            tracks.n_frames,
+            duration_s,
+            is_person=len(subjects) == 1 or is_person(subject),
+        )
+        for subject in subjects
+    )
+
+    def read(index: int, progress: Progress) -> Recording:
+        return recording if len(subjects) == 1 else select(recording, subjects[index])
+
+    return Bodies(str(path), listed, read, lambda progress: recording)
+
+
+def _marker_columns(tracks: Tracks, subject: Subject) -> Tracks:
+    columns, confidence = subject.columns, tracks.confidence
+    return Tracks(
+        subject.names,
+        tracks.positions[:, columns],
+        tracks.frame_rate,
+        None if confidence is None else confidence[:, columns],
+    )
+
+
+def _joint_columns(recording: JointRecording, subject: Subject) -> JointRecording:
+    states = recording.tracking_state
+    return JointRecording(
+        _marker_columns(recording.tracks, subject),
+        None if states is None else states[:, subject.columns],
+        recording.sensor,
+    )
+
+
+def _is_rigid(points: NDArray[np.float64]) -> bool:
+    """Return whether points move, but never relative to each other; (n_frames, n_points, 3)."""
+    points = points[:: max(1, len(points) // MAX_COMPARED)]
+    observed = points[:, np.isfinite(points).all(axis=-1).any(axis=0)][:, :MAX_PAIRED]
+    if observed.shape[1] < 2:
+        return False
+    moved = np.nanmax(observed, axis=0) - np.nanmin(observed, axis=0)
+    one, other = np.triu_indices(observed.shape[1], 1)
+    distances = np.linalg.norm(observed[:, one] - observed[:, other], axis=-1)
+    seen = np.isfinite(distances).any(axis=0)
+    if not seen.any():
+        return False
+    low, high = np.nanquantile(distances[:, seen], [0.05, 0.95], axis=0)
+    is_still = float(moved.max()) < MAX_RIGID_CHANGE_M
+    return not is_still and float(np.quantile(high - low, 0.9)) < MAX_RIGID_CHANGE_M

@@ -1,0 +1,89 @@
+"""The option --body: one of several people, or a result for each."""
+
+import json
+
+import numpy as np
+import pytest
+from joint_files import moving, ntu
+
+from solvers.command_line.run import run
+from solvers.command_line.verbs import VERBS
+from solvers.recordings import read_recording
+
+
+def main(words):
+    return run(VERBS, words, "solvers")
+
+
+@pytest.fixture
+def crowd(tmp_path):
+    """Anna is in all of 60 frames, Ben in the last 40, a ghost in one."""
+    anna, ben = moving(60, 25, 1), moving(60, 25, 500)
+    frames = [{"7": each} for each in anna]
+    for index in range(20, 60):
+        frames[index]["8"] = ben[index]
+    frames[30]["9"] = ben[0]
+    path = tmp_path / "crowd.skeleton"
+    path.write_text(ntu(frames))
+    return path
+
+
+def test_convert_reads_the_best_seen_and_says_so(crowd, tmp_path, capsys):
+    assert main(["convert", str(crowd), str(tmp_path / "out.trc")]) == 0
+
+    said = capsys.readouterr().out
+    assert "Body 1 of 2. Left out: 2 (1.3 s, 67 % of the frames)" in said
+    assert "--body" in said
+    assert read_recording(tmp_path / "out.trc").visible[0].any()
+
+
+def test_convert_writes_a_file_for_each_body(crowd, tmp_path, capsys):
+    assert main(["convert", str(crowd), str(tmp_path / "out.trc"), "--body", "all"]) == 0
+
+    one, two = (read_recording(tmp_path / f"out_{body}.trc") for body in (1, 2))
+    assert not (tmp_path / "out.trc").exists() and not (tmp_path / "out_3.trc").exists()
+    assert one.visible[0].any() and not two.visible[0].any()
+    assert one.n_frames == two.n_frames == 60
+    assert "false detection: 3" in capsys.readouterr().out
+
+
+def test_one_body_keeps_the_name_of_the_target(crowd, tmp_path):
+    assert main(["convert", str(crowd), str(tmp_path / "out.trc"), "--body", "2"]) == 0
+
+    expected = read_recording(crowd, body="2").tracks.positions
+    np.testing.assert_allclose(
+        read_recording(tmp_path / "out.trc").positions, expected, atol=1e-4
+    )
+
+
+def test_figures_of_every_body(crowd, capsys):
+    assert main(["quality", str(crowd), "--body", "all", "--json"]) == 0
+
+    lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [line["body"] for line in lines] == ["1", "2"]
+    assert lines[1]["missing_share"] == pytest.approx(1 / 3)
+
+
+def test_batch_resumes_and_reports_every_body(crowd, tmp_path, capsys):
+    folder = tmp_path / "out"
+    words = ["convert", str(crowd), "--output-folder", str(folder), "--body", "all", "--report"]
+
+    assert main(words) == 0
+    assert main(words) == 0
+
+    assert capsys.readouterr().out.count("Already made.") == 2
+    files = [
+        entry["output"] for entry in json.loads((folder / "report.json").read_text())["files"]
+    ]
+    assert [file.rpartition("/")[2] for file in files] == ["crowd_1.trc", "crowd_2.trc"]
+
+
+@pytest.mark.parametrize("verb", ["convert", "quality"])
+def test_unknown_body_is_one_sentence(crowd, tmp_path, capsys, verb):
+    target = [str(tmp_path / "out.trc")] if verb == "convert" else []
+
+    assert main([verb, str(crowd), *target, "--body", "Ben"]) == 2
+
+    said = capsys.readouterr().err.strip()
+    assert said.endswith("3 (0.0 s, 2 % of the frames).") and "\n" not in said
+    assert not (tmp_path / "out.trc").exists()
