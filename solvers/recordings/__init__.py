@@ -36,6 +36,7 @@ from .joint_files import (
 )
 from .joints import read_joints, write_joints
 from .marker_files import read_c3d, read_trc, write_c3d, write_trc
+from .read_as import read_as, settle
 from .read_recording import (
     depth_takes_in,
     detect_format,
@@ -46,12 +47,26 @@ from .read_recording import (
     read_tracked,
     recordings_in,
 )
+from .reading_settings import (
+    DEFAULT_READING,
+    Axis,
+    Floor,
+    FloorSettings,
+    ReadingSettings,
+    Unit,
+)
 from .recording_figures import recording_figures
 from .skeleton_files import read_acclaim, read_acclaim_limits, read_bvh, write_bvh
 
 __all__ = [
+    "DEFAULT_READING",
+    "Axis",
     "CameraOrientation",
     "DepthSettings",
+    "Floor",
+    "FloorSettings",
+    "ReadingSettings",
+    "Unit",
     "depth_takes_in",
     "detect_depth_format",
     "detect_format",
@@ -60,6 +75,7 @@ __all__ = [
     "may_contain_motion",
     "read_acclaim",
     "read_acclaim_limits",
+    "read_as",
     "read_azure_csv",
     "read_azure_json",
     "read_bvh",
@@ -81,6 +97,7 @@ __all__ = [
     "read_ui_prmd_pair",
     "recording_figures",
     "recordings_in",
+    "settle",
     "write_bvh",
     "write_c3d",
     "write_joint_csv",

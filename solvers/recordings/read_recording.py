@@ -71,6 +71,8 @@ class Format(NamedTuple):
     """Whether it contains the motion of a skeleton; otherwise points."""
     is_refused: bool = False
     """Whether it is recognized only for a better sentence."""
+    lacks_bones: bool = False
+    """Whether it may hold the rotations of a body without lengths (`smpl_body`)."""
 
 
 def _is_bvh(head: bytes) -> bool:
@@ -91,7 +93,7 @@ FORMATS = (
     Format("BVH", _is_bvh, read_bvh, has_skeleton=True),
     Format("Acclaim AMC", _is_acclaim, read_acclaim, has_skeleton=True),
     *(Format(each.name, each.fits, each.read, is_refused=True) for each in REFUSALS),
-    Format("SMPL parameters", is_smpl, read_smpl, has_skeleton=True),
+    Format("SMPL parameters", is_smpl, read_smpl, has_skeleton=True, lacks_bones=True),
     Format("Kimodo", is_kimodo, read_kimodo, has_skeleton=True),
     Format("Xsens MVNX", is_mvnx, read_mvnx, has_skeleton=True),
     Format("C3D", is_c3d, read_c3d),
@@ -103,7 +105,7 @@ FORMATS = (
     Format("NTU RGB+D", is_ntu_skeleton, read_ntu_skeleton),
     Format("MSR Action3D", is_msr_action3d, read_msr_action3d),
     Format("UI-PRMD", is_ui_prmd, read_ui_prmd),
-    Format("freemocap", is_npy, read_npy),
+    Format("freemocap", is_npy, read_npy, lacks_bones=True),
     Format("joint CSV", is_joint_csv, read_joint_csv),
     Format("joint JSON", is_joint_json, read_joint_json),
 )
@@ -162,7 +164,13 @@ def read_tracked(
     InvalidFileError
         Also for a depth recording, which has no tracked motion yet.
     """
-    format_ = detect_format(path)
+    return read_format(path, detect_format(path), scale, progress)
+
+
+def read_format(
+    path: Path | str, format_: Format | None, scale: float | None, progress: Progress
+) -> Motion | Tracks | JointRecording:
+    """Read a file of a detected format as `read_tracked` does; refuse None."""
     if format_ is not None:
         try:
             return format_.read(path, scale=scale, progress=progress)

@@ -1,6 +1,7 @@
 """Skeletons, motions and tracks, the data that all families exchange, and kinematics."""
 
 from .depth_sensors import SENSOR_JOINTS, UI_PRMD, Sensor, joint_parents, rest_direction
+from .file_conventions import AxisName, FileConventions, unit_name
 from .frame_rate import check_frame_rate
 from .joint_limits import ROTATION_VECTOR, JointLimits
 from .joint_recording import INFERRED, TRACKED, JointRecording
@@ -25,6 +26,8 @@ __all__ = [
     "TRACKED",
     "UI_PRMD",
     "Alignment",
+    "AxisName",
+    "FileConventions",
     "JointLimits",
     "JointRecording",
     "Motion",
@@ -45,6 +48,7 @@ __all__ = [
     "resample",
     "rest_direction",
     "shot_ranges",
+    "unit_name",
     "warp",
     "world_poses",
 ]

@@ -1,5 +1,6 @@
 """Read freemocap's arrays of points, shape (n_frames, n_points, 3)."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,15 @@ from ...motion import JointRecording, Sensor, Tracks
 from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
 from ...progress import Progress, unwatched
 from ..containers import NPY_MAGIC, read_array
-from ..conventions import DEFAULT_FRAME_RATE, check_scale, describe_guessed_unit, z_up_from_y_up
+from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    MIN_BODY_JOINTS,
+    axes_of_points,
+    check_scale,
+    describe_guessed_unit,
+    judge_axes_of_points,
+    points_z_up,
+)
 
 WITH_HANDS = len(BODY_POINTS) + 2 * len(HAND_POINTS)
 FACES = (0, 468, 478)
@@ -38,8 +47,8 @@ def read_freemocap(
     so the hand closer to the left wrist is the left one. The joints in the middle of the body,
     which MediaPipe lacks, are added (`COMPUTED_JOINTS`). Other arrays are points called
     `point_<number>`. The unit is millimeters, unless the extent is that of a body in meters. Up
-    of a known body is the direction from its ankles to its nose; of other points it is Z. The
-    heading of the actor is otherwise unchanged.
+    of a known body is the direction from its ankles to its nose; of other points it is Y or Z,
+    by their extent, and Z of fewer than eight. The heading of the actor is otherwise unchanged.
 
     Parameters
     ----------
@@ -75,10 +84,17 @@ def read_freemocap(
     progress(0.5, "Reading")
     names = _names(points)
     is_body = names[0] == BODY_POINTS[0]
-    if is_body:
-        names, points = _with_centers(names, _z_up(points))
     unit = _unit(points) if scale is None else scale
-    tracks = Tracks(names, points * unit, frame_rate)
+    if is_body:
+        axes = axes_of_points(_up_axis(points), unit)
+    else:
+        up = "" if points.shape[1] >= MIN_BODY_JOINTS else "Z"
+        axes = judge_axes_of_points(points * unit, up, unit)
+    points = points_z_up(points, axes.up)
+    if is_body:
+        names, points = _with_centers(names, points)
+    noted = replace(axes, has_floor=not is_body)
+    tracks = Tracks(names, points * unit, frame_rate, conventions=noted)
     progress(1.0, describe_guessed_unit(unit) if scale is None and is_body else "Reading")
     return JointRecording(tracks, None, Sensor.MEDIAPIPE) if is_body else tracks
 
@@ -124,20 +140,16 @@ def _median_distance(one: NDArray[np.float64], other: NDArray[np.float64]) -> fl
     return float(np.median(known)) if len(known) else np.nan
 
 
-def _z_up(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rotate a known body so that its nose is above its ankles, if they are observed."""
+def _up_axis(points: NDArray[np.float64]) -> str:
+    """Return the axis of a known body from its ankles to its nose; Z if they are not seen."""
     ankles = [BODY_POINTS.index("left_ankle"), BODY_POINTS.index("right_ankle")]
     displacements = points[:, :1] - points[:, ankles]
     known = displacements[np.isfinite(displacements).all(axis=-1)]
     if not len(known):
-        return points
+        return "Z"
     up = np.median(known, axis=0)
     axis = int(np.argmax(np.abs(up)))
-    if axis == 0:
-        points = np.roll(points, -1, axis=-1)  # x y z -> y z x
-    elif axis == 1:
-        points = z_up_from_y_up(points)
-    return points * (1.0, -1.0, -1.0) if up[axis] < 0.0 else points
+    return ("-" if up[axis] < 0.0 else "") + "XYZ"[axis]
 
 
 def _unit(points: NDArray[np.float64]) -> float:

@@ -13,6 +13,7 @@ from ..conventions import (
     check_scale,
     guess_unit_of_points,
     is_upside_down,
+    judge_axes_of_points,
     meters_from_unit_name,
     point_names,
     points_z_up,
@@ -74,13 +75,15 @@ def read_c3d(
     if not points.size or np.isnan(points).all():
         raise InvalidFileError(f"{path} has no points that are observed in any frame.")
     names = point_names([labels[index] for index in columns])
-    points *= _unit(file, points) if scale is None else scale
+    unit = _unit(file, points) if scale is None else scale
+    points *= unit
     screen = file.texts("POINT:Y_SCREEN")
     up = screen[0].strip().upper() if screen else ""
     if is_upside_down(points, up):
         progress(0.8, f"Y_SCREEN says {up}, which hangs the actor below the floor; not used")
         up = f"+{up[-1]}"
-    tracks = Tracks(names, points_z_up(points, up), file.frame_rate)
+    axes = judge_axes_of_points(points, up, unit)
+    tracks = Tracks(names, points_z_up(points, axes.up), file.frame_rate, conventions=axes)
     progress(1.0, "Reading")
     return tracks
 

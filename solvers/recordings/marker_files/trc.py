@@ -17,6 +17,7 @@ from ..conventions import (
     check_scale,
     constant_rate_from_times,
     guess_unit_of_points,
+    judge_axes_of_points,
     meters_from_unit_name,
     point_names,
     points_z_up,
@@ -96,11 +97,14 @@ def read_trc(
     points[(points == 0.0).all(axis=-1) | ~np.isfinite(points).all(axis=-1)] = np.nan
     if np.isnan(points).all():
         raise InvalidFileError(f"{path} has no markers that are observed in any frame.")
-    points *= _unit(header, points, path) if scale is None else scale
+    unit = _unit(header, points, path) if scale is None else scale
+    points *= unit
     points, rate = _at_constant_rate(points, frames, times, header.rate, path)
     labels = header.labels + [""] * (points.shape[1] - len(header.labels))
     up = header.up or ("+Y" if len(labels) < MIN_BODY_JOINTS else "")
-    tracks = Tracks(point_names(labels), points_z_up(points, up), rate)
+    axes = judge_axes_of_points(points, up, unit)
+    positions = points_z_up(points, axes.up)
+    tracks = Tracks(point_names(labels), positions, rate, conventions=axes)
     progress(1.0, "Reading")
     return tracks
 

@@ -7,9 +7,11 @@ from .bvh_writing import write_bvh
 from .kimodo import is_kimodo, read_kimodo
 from .mvnx import is_mvnx, read_mvnx
 from .smpl import NAMES_OF_BODY, is_motion_x, is_smpl, read_motion_x, read_smpl
+from .smpl_body import STATURE_M
 
 __all__ = [
     "NAMES_OF_BODY",
+    "STATURE_M",
     "find_skeleton",
     "is_kimodo",
     "is_motion_x",

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import Element, ParseError, iterparse
 
@@ -12,7 +13,7 @@ from ...errors import InvalidFileError
 from ...files import open_regular
 from ...motion import Motion
 from ...progress import Progress, unwatched
-from ..conventions import check_scale, common_rate
+from ..conventions import check_scale, common_rate, file_conventions
 from .world_poses import motion_from_world_poses
 
 PARENTS = {
@@ -108,11 +109,12 @@ def _motion(
     rotations = np.array([each for _, each in frames]).reshape(len(frames), -1, 4)
     parents = [_parent(ordered, name) for name in ordered]
     try:
-        return motion_from_world_poses(
+        motion = motion_from_world_poses(
             ordered, parents, _turned(positions[:, kept]), _turned(rotations[:, kept]), rate
         )
     except InvalidFileError as error:
         raise InvalidFileError(f"{path}: {error}. Export it again.") from None
+    return replace(motion, conventions=file_conventions("Z", "X", scale))
 
 
 def _parent(names: list[str], name: str) -> int:

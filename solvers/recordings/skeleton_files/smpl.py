@@ -1,5 +1,6 @@
 """Read the parameter files of SMPL bodies: AMASS, SMPL-X and what video models write."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from ..conventions import (
     UpAxisName,
     check_scale,
     common_rate,
+    file_conventions,
     put_on_floor,
     rotations_z_up_from_y_up,
     stand_upright,
@@ -76,6 +78,7 @@ def read_smpl(
     *,
     scale: float | None = None,
     height: float = STATURE_M,
+    on_floor: bool = True,
     progress: Progress = unwatched,
 ) -> Motion:
     """Read the pose parameters of an SMPL, SMPL-H or SMPL-X body from an `.npz` archive.
@@ -94,6 +97,8 @@ def read_smpl(
         None: 1, or 1 / `smpl_scaling` where the file has it (AIST++).
     height : float, meters
         Stature of the actor.
+    on_floor : bool
+        Whether the feet are put on the floor.
     progress : Progress
 
     Returns
@@ -141,10 +146,12 @@ def read_smpl(
         rotations,
         z_up_from_y_up(positions * unit),
         rate,
+        replace(file_conventions("Y", unit=unit), has_floor=False),
     )
     is_amass = not {"mocap_frame_rate", "mocap_framerate"}.isdisjoint(arrays)
     up = AMASS_UP if is_amass else VIDEO_UP
-    return put_on_floor(stand_upright(motion, progress, up))
+    standing = stand_upright(motion, progress, up)
+    return put_on_floor(standing) if on_floor else standing
 
 
 def is_motion_x(shape: tuple[int, ...]) -> bool:
@@ -152,21 +159,26 @@ def is_motion_x(shape: tuple[int, ...]) -> bool:
     return len(shape) == 2 and shape[0] > 0 and shape[1] == MOTION_X_COLUMNS
 
 
-def read_motion_x(columns: Array, scale: float | None, progress: Progress) -> Motion:
+def read_motion_x(
+    columns: Array, scale: float | None, height: float, on_floor: bool, progress: Progress
+) -> Motion:
     """Return the motion of a Motion-X array, shape (n_frames, 322): SMPL-X at 30 Hz.
 
     Its columns are the rotations of root, body and hands, face and shape, which are left out,
     and the position.
     """
     vectors = columns[:, : 3 * (N_BODY + 2 * N_HAND // 3)].reshape(len(columns), -1, 3)
-    names, parents, offsets = smpl_joints(hands=True)
+    names, parents, offsets = smpl_joints(hands=True, height=height)
+    unit = 1.0 if scale is None else scale
     motion = Motion(
         Skeleton(names, parents, z_up_from_y_up(offsets)),
         rotations_z_up_from_y_up(quaternion_from_rotation_vector(vectors)),
-        z_up_from_y_up(columns[:, MOTION_X_POSITION] * (1.0 if scale is None else scale)),
+        z_up_from_y_up(columns[:, MOTION_X_POSITION] * unit),
         DEFAULT_FRAME_RATE,
+        replace(file_conventions("Y", unit=unit), has_floor=False),
     )
-    return put_on_floor(stand_upright(motion, progress, VIDEO_UP))
+    standing = stand_upright(motion, progress, VIDEO_UP)
+    return put_on_floor(standing) if on_floor else standing
 
 
 def _rotation_vectors(path: Path | str, arrays: dict[str, Array]) -> Array:
