@@ -8,18 +8,21 @@ from pathlib import Path
 from ..errors import InvalidFileError
 from ..faults import Failure, attempt
 from ..files import real_path
-from ..motion import Motion, Tracks
+from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, within
 from ..recordings import (
+    Floor,
+    ReadingSettings,
     detect_format,
     open_bodies,
-    read_motion_or_tracks,
+    read_as,
     recordings_in,
     write_bvh,
     write_c3d,
     write_trc,
 )
 from ..recordings.containers import is_folder, shown
+from .options import arguments_from, settings_from_arguments
 
 MOTIONS = ".bvh"
 POINTS = {".c3d": write_c3d, ".trc": write_trc}
@@ -40,10 +43,11 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         "--scale",
         type=float,
         metavar="X",
-        help="Meters per unit of the input files [default: as stored in the file, or"
-        " estimated from the size of the body]",
+        help="Meters per unit of the input files, instead of --unit [default: as stored in the"
+        " file, or estimated from the size of the body]",
     )
     add_body_option(parser)
+    arguments_from(parser, ReadingSettings)
 
 
 def add_body_option(parser: argparse.ArgumentParser) -> None:
@@ -73,10 +77,31 @@ def bodies_in(path: Path, arguments: argparse.Namespace) -> list[str]:
     return [bodies.listed[index].name for index in chosen]
 
 
-def read(path: Path, arguments: argparse.Namespace, progress: Progress) -> Motion | Tracks:
+def read(
+    path: Path,
+    arguments: argparse.Namespace,
+    progress: Progress,
+    floor: Floor = Floor.NEVER,
+) -> Motion | Tracks:
+    """Read a recording as `read_recorded` does; return the joints of a camera as points."""
+    recording = read_recorded(path, arguments, progress, floor)
+    return recording.tracks if isinstance(recording, JointRecording) else recording
+
+
+def read_recorded(
+    path: Path,
+    arguments: argparse.Namespace,
+    progress: Progress,
+    floor: Floor = Floor.NEVER,
+) -> Motion | Tracks | JointRecording:
     """Read a recording with the options of `add_reading_options`."""
-    return read_motion_or_tracks(
-        path, scale=arguments.scale, body=arguments.body, progress=progress
+    return read_as(
+        path,
+        settings_from_arguments(arguments, ReadingSettings),
+        scale=arguments.scale,
+        body=arguments.body,
+        floor=floor,
+        progress=progress,
     )
 
 

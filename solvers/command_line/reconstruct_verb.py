@@ -17,14 +17,14 @@ from ..reconstruction import (
     load_posture_library,
     load_residual_prior,
 )
-from ..recordings import read_tracked, write_joint_csv
+from ..recordings import write_joint_csv
 from ..workflows import (
     plant_feet_if_possible,
     posture_library_from_clips,
     reconstruct_motion,
     reconstruct_recording,
 )
-from .files import JOINTS, add_reading_options, read_all, with_body, write
+from .files import JOINTS, add_reading_options, read_all, read_recorded, with_body, write
 from .from_library import add_library_option, check_library, collect_postures
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
@@ -100,10 +100,7 @@ def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Out
     """Reconstruct one recording, write it and report rebuilt joints and quality."""
     notes: list[str] = []
     reading = collect_messages(within(progress, 0.0, 0.1), notes)
-    arguments = task.arguments
-    given = read_tracked(
-        task.source, scale=arguments.scale, body=arguments.body, progress=reading
-    )
+    given = read_recorded(task.source, task.arguments, reading)
     guides, messages = _select_guides(given, task, prepared, within(progress, 0.1, 0.3))
     rebuilt = _rebuild(given, task, guides, within(progress, 0.3, 0.8))
     rebuilt = rebuilt._replace(

@@ -11,9 +11,8 @@ from ..errors import InvalidMotionError, InvalidSettingError
 from ..motion import SENSOR_JOINTS, JointRecording, Motion, Sensor, Tracks
 from ..motion.humanoid import postures_from_motion
 from ..progress import Progress, within
-from ..recordings import read_tracked
 from ..recordings.live import MAX_JOINTS, PORT, LiveFrame, encode_frame, frames_from_recording
-from .files import add_reading_options
+from .files import add_reading_options, read_recorded
 from .verb import Outcome, Task
 
 LOOPBACK = "127.0.0.1"
@@ -46,12 +45,7 @@ def perform_replay(task: Task, prepared: None, progress: Progress) -> Outcome:
         raise InvalidSettingError(
             f"speed is {arguments.speed:g}; it must be above 0 and at most {MAX_SPEED:g}."
         )
-    recording = read_tracked(
-        task.source,
-        scale=arguments.scale,
-        body=arguments.body,
-        progress=within(progress, 0.0, 0.1),
-    )
+    recording = read_recorded(task.source, arguments, within(progress, 0.0, 0.1))
     joints = _joints(recording)
     if joints.n_joints > MAX_JOINTS:
         raise InvalidMotionError(

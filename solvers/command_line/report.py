@@ -10,7 +10,9 @@ from typing import Any, NamedTuple
 from ..faults import Failure, attempt
 from ..files import write_atomically
 from ..pictures import StickFigureSettings, draw_stick_figures
+from ..progress import unwatched
 from ..recordings import is_depth_recording, read_motion_or_tracks
+from .files import read
 from .verb import Task
 
 PAGE, FIGURES, PICTURES = "report.html", "report.json", Path("report")
@@ -79,9 +81,7 @@ def _draw(task: Task) -> None:
     result = read_motion_or_tracks(task.target)
     motions = {"result": result}
     if not is_depth_recording(task.source):
-        given = read_motion_or_tracks(
-            task.source, scale=task.arguments.scale, body=task.arguments.body
-        )
+        given = read(task.source, task.arguments, unwatched)
         motions = {"given": given, **motions} if given.n_frames == result.n_frames else motions
     picture.parent.mkdir(parents=True, exist_ok=True)
     draw_stick_figures(motions, StickFigureSettings(n_figures=9, height=150)).save(picture)

@@ -11,7 +11,7 @@ from ..denoising import (
     measure_quality,
 )
 from ..progress import Progress, collect_messages, within
-from ..recordings import depth_takes_in
+from ..recordings import FloorSettings, depth_takes_in
 from .capture_verb import add_capture_options, perform_capture, read_body
 from .convert import convert
 from .denoise_verb import add_denoise_options, learn_prior, perform_denoise
@@ -74,10 +74,16 @@ def _quality(task: Task, prepared: None, progress: Progress) -> Outcome:
     return Outcome(quality.report(), quality.figures())
 
 
+def _convert_options(parser: argparse.ArgumentParser) -> None:
+    add_reading_options(parser)
+    arguments_from(parser, FloorSettings)
+
+
 def _convert(task: Task, prepared: None, progress: Progress) -> Outcome:
     messages: list[str] = []
     reading = collect_messages(within(progress, 0.0, 0.7), messages)
-    recording = read(task.source, task.arguments, reading)
+    floor = settings_from_arguments(task.arguments, FloorSettings).place_on_floor
+    recording = read(task.source, task.arguments, reading, floor)
     outcome = convert(recording, task.target, within(progress, 0.7, 1.0))
     return replace(
         outcome, text=" ".join([outcome.text, *(f"{message}." for message in messages)])
@@ -163,7 +169,7 @@ VERBS = {
     ),
     "convert": Verb(
         "Write recordings of any known format as BVH, or points as C3D or TRC.",
-        add_reading_options,
+        _convert_options,
         _convert,
     ),
     "retarget": Verb(

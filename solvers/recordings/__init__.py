@@ -21,6 +21,7 @@ from .depth_files import (
     read_depth,
 )
 from .folders import depth_takes_in, may_contain_motion, recordings_in
+from .formats import detect_format
 from .joint_files import (
     read_azure_csv,
     read_azure_json,
@@ -38,8 +39,8 @@ from .joint_files import (
 )
 from .joints import read_joints, write_joints
 from .marker_files import read_c3d, read_trc, write_c3d, write_trc
+from .read_as import read_as, settle
 from .read_recording import (
-    detect_format,
     is_depth_recording,
     list_bodies,
     open_bodies,
@@ -47,15 +48,29 @@ from .read_recording import (
     read_recording,
     read_tracked,
 )
+from .reading_settings import (
+    DEFAULT_READING,
+    Axis,
+    Floor,
+    FloorSettings,
+    ReadingSettings,
+    Unit,
+)
 from .recording_figures import recording_figures
 from .skeleton_files import read_acclaim, read_acclaim_limits, read_bvh, write_bvh
 
 __all__ = [
     "ALL_BODIES",
+    "DEFAULT_READING",
+    "Axis",
     "Bodies",
     "Body",
     "CameraOrientation",
     "DepthSettings",
+    "Floor",
+    "FloorSettings",
+    "ReadingSettings",
+    "Unit",
     "depth_takes_in",
     "detect_depth_format",
     "detect_format",
@@ -66,6 +81,7 @@ __all__ = [
     "open_bodies",
     "read_acclaim",
     "read_acclaim_limits",
+    "read_as",
     "read_azure_csv",
     "read_azure_json",
     "read_bvh",
@@ -87,6 +103,7 @@ __all__ = [
     "read_ui_prmd_pair",
     "recording_figures",
     "recordings_in",
+    "settle",
     "write_bvh",
     "write_c3d",
     "write_joint_csv",

@@ -6,7 +6,8 @@ from pathlib import Path
 from ..faults import attempt
 from .containers import files_below, is_folder
 from .depth_files import is_depth_folder
-from .read_recording import detect_format, is_depth_recording
+from .formats import detect_format
+from .read_recording import is_depth_recording
 
 
 def recordings_in(folder: Path) -> list[Path]:

@@ -39,5 +39,7 @@ class Format(NamedTuple):
     """Whether it contains the motion of a skeleton; otherwise points."""
     is_refused: bool = False
     """Whether it is recognized only for a better sentence."""
+    lacks_bones: bool = False
+    """Whether it may hold the rotations of a body without lengths (`smpl_body`)."""
     open: BodiesReader | None = None
     """Of a format that may hold several bodies."""

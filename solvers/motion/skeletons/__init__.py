@@ -2,6 +2,7 @@
 
 from .body_trackers import NUITRACK, ZED_BODIES
 from .depth_sensors import SENSOR_JOINTS, UI_PRMD, Sensor, joint_parents, rest_direction
+from .file_conventions import AxisName, FileConventions, unit_name
 from .frame_rate import check_frame_rate
 from .joint_limits import ROTATION_VECTOR, JointLimits
 from .joint_recording import INFERRED, TRACKED, JointRecording
@@ -28,6 +29,8 @@ __all__ = [
     "UI_PRMD",
     "ZED_BODIES",
     "Alignment",
+    "AxisName",
+    "FileConventions",
     "JointLimits",
     "JointRecording",
     "Motion",
@@ -48,6 +51,7 @@ __all__ = [
     "resample",
     "rest_direction",
     "shot_ranges",
+    "unit_name",
     "warp",
     "world_poses",
 ]

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
+from .file_conventions import FileConventions
 from .frame_rate import check_frame_rate
 from .skeleton import MAX_DISTANCE_M, Skeleton
 
@@ -29,12 +30,15 @@ class Motion:
     root_positions : float array, shape (n_frames, 3), meters, world space, Z up
     frame_rate : float, hertz
         Frame i is at time i / frame_rate.
+    conventions : FileConventions or None
+        How the file was interpreted that it was read from.
     """
 
     skeleton: Skeleton
     rotations: NDArray[np.float64]
     root_positions: NDArray[np.float64]
     frame_rate: float
+    conventions: FileConventions | None = None
 
     def __post_init__(self) -> None:
         rotations = np.array(self.rotations, dtype=np.float64)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
+from .file_conventions import FileConventions
 from .frame_rate import check_frame_rate
 from .skeleton import MAX_DISTANCE_M
 
@@ -22,12 +23,15 @@ class Tracks:
     frame_rate : float, hertz
     confidence : float array, shape (n_frames, n_points), 0 to 1, or None
         Confidence of the sensor in each point.
+    conventions : FileConventions or None
+        How the file was interpreted that they were read from.
     """
 
     names: tuple[str, ...]
     positions: NDArray[np.float64]
     frame_rate: float
     confidence: NDArray[np.float64] | None = None
+    conventions: FileConventions | None = None
 
     def __post_init__(self) -> None:
         positions = np.array(self.positions, dtype=np.float64)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidSettingError
-from ...progress import Progress, Remark
+from ...progress import READING, Progress, Remark
 from ..containers import shown
 
 Recording = TypeVar("Recording", covariant=True)
@@ -138,15 +138,17 @@ class Bodies(Generic[Recording]):
         """
         if self.are_together(wanted):
             assert self.read_together is not None
-            return self.read_together(progress)
+            recording = self.read_together(progress)
+            progress(1.0, READING)
+            return recording
         chosen = self.choose(wanted)
         if len(chosen) > 1:
             raise InvalidSettingError(
                 f"{self.path} has {len(chosen)} bodies; only one can be read here. Name it."
             )
         recording = self.read(chosen[0], progress)
-        if sentence := self.describe_others(chosen if not wanted else self.offered):
-            progress(1.0, Remark(sentence))
+        sentence = self.describe_others(chosen if not wanted else self.offered)
+        progress(1.0, Remark(sentence) if sentence else READING)
         return recording
 
     def are_together(self, wanted: str | None) -> bool:

@@ -2,17 +2,24 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ...arrays import Array
-from ...motion import Motion, Skeleton, find_humanoid_map, world_poses
+from ...motion import (
+    AxisName,
+    FileConventions,
+    Motion,
+    Skeleton,
+    find_humanoid_map,
+    world_poses,
+)
 from ...progress import Progress, unwatched
-from ...rotations import inverse, multiply, rotate
 from .axes import longest_bone_path, rotation_to_z_up
+from .file_axes import FORWARD, turn_motion
 
-UpAxisName = Literal["X", "Y", "Z", "-X", "-Y", "-Z"]
+UpAxisName = AxisName
 
 N_SAMPLED_FRAMES = 60
 AXES: dict[UpAxisName, Array] = {
@@ -31,20 +38,19 @@ FLOOR_WEIGHT = 0.3
 """Evidence of the floor: the lowest joint is near zero, 0 to 1."""
 TRAVEL_WEIGHT = 0.5
 """Evidence of the path: people travel along the ground, 0 to 1."""
-EXPECTED: dict[UpAxisName, float] = {"Y": 0.1, "Z": 0.05}
-"""Evidence of the format: BVH has Y up, and some programs write Z up."""
+EXPECTED: dict[UpAxisName, float] = {"Y": 0.1, "Z": 0.05, "-X": -0.2, "-Y": -0.2, "-Z": -0.2}
+"""Evidence of the format: BVH has Y up, some programs write Z up, and a body that is upside
+down stands on its hands rather."""
 MIN_TRAVEL_FRACTION = 1.0
 """Travel, relative to the height of the body, from which it is evidence."""
 MAX_FLOOR_FRACTION = 0.4
 """Distance of the lowest joint from zero, relative to the height, that is no evidence."""
 CLEAR_LEAD = 0.5
 """Lead over the next axis below which the report says that the evidence disagrees."""
-SOLE_M = 0.02
-"""Height of a toe joint above the sole."""
-FLOOR_PERCENTILE = 5.0
-"""Of the heights of the lower foot, that is on the floor: some frames sink in or are wrong."""
 CLEAR_STANDING = 0.7
 """Evidence of motion and floor, each, from which a rest pose with another axis is no doubt."""
+CLEAR_FLOOR_LEAD = 0.3
+"""Lead of the evidence of the floor for that: who lies at the origin is near zero both ways."""
 MIN_REST_STANDING = 0.7
 """Evidence from which the rest pose has an axis of its own."""
 MIN_SPREAD_FRACTION = 0.03
@@ -59,6 +65,8 @@ class UpAxis(NamedTuple):
     """The same of the rest pose, which may differ."""
     is_clear: bool
     """Whether the evidence agrees."""
+    confidence: float = 1.0
+    """From 0.5, where two axes are equally likely, to 1 with a clear lead over the next."""
 
 
 def judge_up_axis(motion: Motion, expected: Mapping[UpAxisName, float] | None = None) -> UpAxis:
@@ -91,6 +99,41 @@ def judge_up_axis(motion: Motion, expected: Mapping[UpAxisName, float] | None = 
     in_rest = dict.fromkeys(AXES, 0.0)
     if expected is None and _is_unfolded(rest[0], body):
         in_rest = _standing(rest, body)
+    judged = _weigh(positions, body, in_rest, expected)
+    rest_best = max(AXES, key=lambda axis: in_rest[axis])
+    if expected:
+        return judged._replace(rest_axis="Y")
+    stands = in_rest[rest_best] > MIN_REST_STANDING
+    return judged._replace(rest_axis=rest_best) if stands else judged
+
+
+def judge_up_of_joints(
+    positions: Array, roles: Mapping[str, int], expected: Mapping[UpAxisName, float]
+) -> UpAxis:
+    """Return the axis along which joints stand that were read with Y up.
+
+    Parameters
+    ----------
+    positions : shape (n_frames, n_joints, 3); NaN where missing
+    roles : index of each humanoid role
+    expected : evidence of the format for each axis that is possible
+    """
+    observed = positions[np.isfinite(positions).all(axis=(1, 2))]
+    step = max(1, len(observed) // N_SAMPLED_FRAMES)
+    body = _Body.from_roles(roles)
+    if body is None or not len(observed):
+        best = max(expected, key=lambda axis: expected[axis])
+        return UpAxis(best, best, is_clear=True)
+    return _weigh(observed[::step], body, dict.fromkeys(AXES, 0.0), expected)
+
+
+def _weigh(
+    positions: Array,
+    body: "_Body",
+    in_rest: Mapping[UpAxisName, float],
+    expected: Mapping[UpAxisName, float] | None,
+) -> UpAxis:
+    """Weigh the evidence; the rest pose gets the axis of the motion."""
     standing = _standing(positions, body)
     floor, travel = _floor(positions, body), _travel(positions, body)
     totals = {
@@ -102,13 +145,12 @@ def judge_up_axis(motion: Motion, expected: Mapping[UpAxisName, float] | None = 
         for axis in expected or AXES
     }
     best, second = sorted(totals, key=lambda axis: totals[axis], reverse=True)[:2]
-    rest_best = max(AXES, key=lambda axis: in_rest[axis])
-    return UpAxis(
-        best,
-        "Y" if expected else rest_best if in_rest[rest_best] > MIN_REST_STANDING else best,
-        totals[best] - totals[second] >= CLEAR_LEAD
-        or min(standing[best], floor[best]) >= CLEAR_STANDING,
-    )
+    lead = (totals[best] - totals[second]) / CLEAR_LEAD
+    on_floor = floor[best] - floor[second] >= CLEAR_FLOOR_LEAD
+    stands = min(standing[best], floor[best]) if on_floor else 0.0
+    is_clear = lead >= 1.0 or stands >= CLEAR_STANDING
+    confidence = 1.0 if is_clear else float(np.clip(max(lead, stands), 0.0, 0.99))
+    return UpAxis(best, best, is_clear, 0.5 + 0.5 * confidence)
 
 
 def stand_upright(
@@ -118,35 +160,28 @@ def stand_upright(
 ) -> Motion:
     """Turn a motion that was read with Y up so that the actor stands (`judge_up_axis`).
 
-    `progress` is given a message where the evidence disagrees.
+    What was judged is noted in its conventions. `progress` is given a message where the
+    evidence disagrees.
     """
     judged = judge_up_axis(motion, expected)
     if not judged.is_clear:
         progress(1.0, describe_guessed_axis(judged.axis))
-    return rotate_to_z_up(motion, judged.axis, judged.rest_axis)
-
-
-def put_on_floor(motion: Motion) -> Motion:
-    """Move a motion up or down so that its feet are on the floor where they are lowest.
-
-    The lowest joint of the feet is then `SOLE_M` above the floor in all but a few frames.
-    """
-    roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    feet = [joint for role, joint in roles.items() if role.endswith(("Foot", "Toes"))]
-    positions = world_poses(motion.skeleton, motion.rotations, motion.root_positions).positions
-    heights = positions[:, feet, 2].min(axis=1, initial=np.inf)
-    observed = heights[np.isfinite(heights)]
-    if not len(observed):
-        return motion
-    lift = SOLE_M - float(np.percentile(observed, FLOOR_PERCENTILE))
-    return replace(motion, root_positions=motion.root_positions + np.array([0.0, 0.0, lift]))
+    noted = replace(
+        motion.conventions or FileConventions(),
+        up=judged.axis,
+        forward=FORWARD[judged.axis],
+        rest_up=judged.rest_axis,
+        confidence=judged.confidence,
+    )
+    turned = rotate_to_z_up(motion, judged.axis, judged.rest_axis)
+    return replace(turned, conventions=noted)
 
 
 def describe_guessed_axis(axis: UpAxisName) -> str:
     """Say which axis is taken for up where the evidence disagrees."""
     return (
-        f"{axis} is taken for up, but the take does not show it clearly; rotate the armature if"
-        " it is on its side"
+        f"{axis} is taken for up, but the take does not show it clearly; set Up if the actor is"
+        " on the side"
     )
 
 
@@ -161,13 +196,7 @@ def rotate_to_z_up(motion: Motion, axis: UpAxisName, rest_axis: UpAxisName) -> M
     """
     if axis == rest_axis == "Y":
         return motion
-    turn, rest_turn = rotation_to_z_up(axis), rotation_to_z_up(rest_axis)
-    skeleton = replace(motion.skeleton, offsets=rotate(rest_turn, motion.skeleton.offsets))
-    rotations = multiply(multiply(rest_turn, motion.rotations), inverse(rest_turn))
-    if axis != rest_axis:
-        root = multiply(multiply(turn, motion.rotations[:, 0]), inverse(rest_turn))
-        rotations[:, 0] = root
-    return Motion(skeleton, rotations, rotate(turn, motion.root_positions), motion.frame_rate)
+    return turn_motion(motion, rotation_to_z_up(axis), rotation_to_z_up(rest_axis))
 
 
 class _Body(NamedTuple):

@@ -1,12 +1,20 @@
-"""Estimate the unit of joints whose file does not state it, from the size of the body."""
+"""Judge units by the size of the body, and ask where that size is odd."""
 
 from dataclasses import replace
 
 import numpy as np
 
 from ...errors import InvalidMotionError
-from ...motion import JointRecording
+from ...motion import (
+    FileConventions,
+    JointRecording,
+    Motion,
+    Tracks,
+    find_humanoid_map,
+    unit_name,
+)
 from ...motion.humanoid import (
+    ADULT_STATURE_M,
     MAX_BODY_SCALE,
     MIN_BODY_SCALE,
     estimate_body_scale,
@@ -14,13 +22,17 @@ from ...motion.humanoid import (
 )
 from ...progress import Progress
 
-UNIT_NAMES = {1.0: "meters", 0.01: "centimeters", 0.001: "millimeters"}
+UNITS = (1.0, 0.01, 0.001)
+ODD_STATURE_M = (0.8, 2.6)
+"""From a small child to the tallest of people; outside, the report asks."""
+HEAD_TO_ANKLE = 0.886
+"""Path along the bones from the head to an ankle, relative to the stature (`smpl_body`)."""
 
 
 def convert_to_body_unit(
     recording: JointRecording, unit: float, progress: Progress
 ) -> JointRecording:
-    """Convert a recording to the unit of `UNIT_NAMES` that gives a human body.
+    """Convert a recording to the unit of `UNITS` that gives a human body.
 
     It is unchanged if its unit already does, if no unit does, or if no body is recognized.
 
@@ -37,18 +49,64 @@ def convert_to_body_unit(
         return recording
     if MIN_BODY_SCALE <= size <= MAX_BODY_SCALE or not size > 0.0:
         return recording
-    nearest_unit = min(UNIT_NAMES, key=lambda other: abs(np.log(size * other / unit)))
+    nearest_unit = min(UNITS, key=lambda other: abs(np.log(size * other / unit)))
     factor = nearest_unit / unit
     if not MIN_BODY_SCALE <= size * factor <= MAX_BODY_SCALE:
         return recording
     progress(1.0, describe_guessed_unit(nearest_unit))
     tracks = recording.tracks
-    return replace(recording, tracks=tracks.with_positions(factor * tracks.positions))
+    noted = replace(tracks.conventions or FileConventions(), unit=nearest_unit)
+    larger = replace(tracks, positions=factor * tracks.positions, conventions=noted)
+    return recording.with_tracks(larger)
 
 
 def describe_guessed_unit(unit: float) -> str:
     """Return a message that states the estimated unit of length, and why."""
     return (
-        f"Lengths are interpreted as {UNIT_NAMES[unit]}, by the size of the body; give the unit"
+        f"Lengths are interpreted as {unit_name(unit)}, by the size of the body; give the unit"
         " if that is wrong"
     )
+
+
+def stature(recording: Motion | Tracks | JointRecording) -> float | None:
+    """Return the height of the actor who stands upright, meters, whatever the pose.
+
+    It follows from the bones; None where no body is recognized.
+    """
+    if isinstance(recording, Motion):
+        return _stature_of_skeleton(recording)
+    if isinstance(recording, Tracks):
+        return None
+    try:
+        size = estimate_body_scale(posture_positions(recording))
+    except InvalidMotionError:  # no hips
+        return None
+    return size * ADULT_STATURE_M if size > 0.0 else None
+
+
+def question_of_size(recording: Motion | Tracks | JointRecording) -> str:
+    """Ask whether an actor of an odd size is right; nothing where the size is a person's."""
+    tall = stature(recording)
+    if tall is None or ODD_STATURE_M[0] <= tall <= ODD_STATURE_M[1]:
+        return ""
+    return f"The actor is {tall:.2g} m tall; set Unit or Scale if this is not right"
+
+
+def _stature_of_skeleton(motion: Motion) -> float | None:
+    skeleton = motion.skeleton
+    roles = find_humanoid_map(skeleton).indices(skeleton)
+    ankle = next((roles[each] for each in ("leftFoot", "rightFoot") if each in roles), None)
+    if ankle is None or "head" not in roles:
+        return None
+    lengths = np.linalg.norm(skeleton.offsets, axis=1)
+    above = [_to_root(skeleton.parents, joint) for joint in (roles["head"], ankle)]
+    path = set(above[0]) ^ set(above[1])  # without what both have in common
+    return float(lengths[list(path)].sum()) / HEAD_TO_ANKLE
+
+
+def _to_root(parents: tuple[int, ...], joint: int) -> list[int]:
+    chain = []
+    while joint >= 0:
+        chain.append(joint)
+        joint = parents[joint]
+    return chain

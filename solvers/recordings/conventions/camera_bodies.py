@@ -1,39 +1,38 @@
 """Put bodies of cameras upright whose files do not state their axes."""
 
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 
 from ...arrays import Array
-from .axes import z_up_from_y_up
+from ...motion import AxisName
+from .points import points_z_up
 
 MIN_MIRRORED_FRACTION = 0.8
 """Fraction of the frames in which left and right are exchanged, of mirrored axes."""
 
 
-def stand_along(points: Array, high: Sequence[int], low: Sequence[int]) -> Array:
-    """Rotate points so that some of them are above others, by quarter turns.
+def up_along(points: Array, high: Sequence[int], low: Sequence[int]) -> AxisName:
+    """Return the axis along which some points are above others; Z if none are observed.
 
     Parameters
     ----------
     points : shape (n_frames, n_points, 3)
     high, low : indices of points, such as of the head and of both ankles
-
-    Returns
-    -------
-    The points, unchanged if none of them are observed together.
     """
     displacements = points[:, high].mean(axis=1)[:, None] - points[:, low]
     known = displacements[np.isfinite(displacements).all(axis=-1)]
     if not len(known):
-        return points
+        return "Z"
     up = np.median(known, axis=0)
     axis = int(np.argmax(np.abs(up)))
-    if axis == 0:
-        points = np.roll(points, -1, axis=-1)  # x y z -> y z x
-    elif axis == 1:
-        points = z_up_from_y_up(points)
-    return np.asarray(points * (1.0, -1.0, -1.0)) if up[axis] < 0.0 else points
+    return cast(AxisName, ("-" if up[axis] < 0.0 else "") + "XYZ"[axis])
+
+
+def stand_along(points: Array, high: Sequence[int], low: Sequence[int]) -> Array:
+    """Rotate points by quarter turns so that some are above others (`up_along`)."""
+    return points_z_up(points, up_along(points, high, low))
 
 
 def is_mirrored(points: Array, left: int, right: int, back: int, front: int) -> bool:

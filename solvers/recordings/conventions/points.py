@@ -1,12 +1,16 @@
 """Standardize names, units and the up axis of point files."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...motion import AxisName, FileConventions
 from ..containers import UniqueNames, printable
 from .axes import MIN_BODY_JOINTS, z_up_from_y_up
+from .file_axes import FORWARD
 
 METERS = {
     "mm": 0.001, "millimeter": 0.001, "millimetre": 0.001, "cm": 0.01, "centimeter": 0.01,
@@ -14,6 +18,11 @@ METERS = {
     "inch": 0.0254, "inches": 0.0254, "ft": 0.3048, "foot": 0.3048, "feet": 0.3048,
 }  # fmt: skip
 """Meters per unit, by its name without the plural s."""
+ROLLED_FORWARD: dict[AxisName, AxisName] = {"X": "-Z", "-X": "Z"}
+"""Axis that becomes -Y where points are rotated cyclically."""
+GUESSED = 0.9
+"""Confidence in an up axis that is judged from the extent of markers: right in all of the test
+files that state theirs, but they are few."""
 BODY_EXTENT_M = 1.5
 FLOOR_TOLERANCE_M = 0.15
 
@@ -42,6 +51,28 @@ def guess_unit_of_points(points: NDArray[np.float64]) -> float:
     if extent == 0.0:
         return METERS["mm"]
     return min((0.001, 0.01, 1.0), key=lambda unit: abs(np.log(extent * unit / BODY_EXTENT_M)))
+
+
+def judge_axes_of_points(
+    points: NDArray[np.float64], up: str, unit: float, default_up: str = ""
+) -> FileConventions:
+    """Return the axes by which `points_z_up` rotates points, in meters, that state `up`.
+
+    If it is unknown, it is estimated; with too few points for a body it is `default_up`, if
+    that is given.
+    """
+    if up[-1:] not in {"X", "Y", "Z"} and points.shape[1] < MIN_BODY_JOINTS:
+        up = default_up
+    if up[-1:] in {"X", "Y", "Z"}:
+        return axes_of_points(up, unit)
+    guessed = axes_of_points("Y" if _looks_y_up(points) else "Z", unit)
+    return replace(guessed, confidence=GUESSED)
+
+
+def axes_of_points(up: str, unit: float = 1.0) -> FileConventions:
+    """Return the axes by which `points_z_up` rotates points with a known axis, such as `+y`."""
+    axis = cast(AxisName, ("-" if up[0] == "-" else "") + up[-1].upper())
+    return FileConventions(axis, ROLLED_FORWARD.get(axis, FORWARD[axis]), unit)
 
 
 def points_z_up(

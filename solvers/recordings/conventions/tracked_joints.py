@@ -1,16 +1,23 @@
 """Build a joint recording: mark gaps, resample to a constant rate, and check the unit."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
-from ...motion import JointRecording, Sensor, Tracks
+from ...motion import AxisName, FileConventions, JointRecording, Sensor, Tracks
 from ...progress import Progress
 from .body_unit import convert_to_body_unit
 from .time_stamps import DEFAULT_FRAME_RATE, ConstantRate
+
+SENSOR_AXES: dict[Sensor, tuple[AxisName, AxisName]] = {
+    Sensor.KINECT_V1: ("Y", "-Z"), Sensor.KINECT_V2: ("Y", "-Z"),
+    Sensor.AZURE_KINECT: ("-Y", "-Z"),
+}  # fmt: skip
+"""Axes of each camera's space that are up, and toward the camera (`sensor_axes`)."""
 
 
 def joint_recording(
@@ -26,6 +33,7 @@ def joint_recording(
     nan_only: bool = False,
     scale: float | None,
     default_unit: float = 1.0,
+    conventions: FileConventions | None = None,
     progress: Progress,
 ) -> JointRecording:
     """Build a recording from the contents of a file.
@@ -52,6 +60,8 @@ def joint_recording(
         None: the default unit, or the unit that gives a human body if the default does not.
     default_unit : float, meters
         Default unit of the format.
+    conventions : FileConventions or None
+        How the axes were interpreted. None: as the sensor has them.
     progress : Progress
         Receives a message on resampling, and on the unit if it was estimated.
 
@@ -82,6 +92,8 @@ def joint_recording(
     progress(1.0, "Reading" if times is None else f"Resampled to {frame_rate:.4g} Hz")
     unit = default_unit if scale is None else scale
     positions *= unit  # a copy of the argument
-    tracks = Tracks(tuple(names), positions, frame_rate, confidence)
+    axes = conventions or FileConventions(*SENSOR_AXES.get(sensor, ("Z", "-Y")))
+    noted = replace(axes, unit=unit, has_floor=False)
+    tracks = Tracks(tuple(names), positions, frame_rate, confidence, noted)
     recording = JointRecording(tracks, states, sensor)
     return recording if scale is not None else convert_to_body_unit(recording, unit, progress)

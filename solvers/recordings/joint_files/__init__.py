@@ -14,11 +14,13 @@ from .ntu_skeleton import is_ntu_skeleton, open_ntu_skeleton, read_ntu_skeleton
 from .nuitrack import (
     is_nuitrack_csv,
     is_nuitrack_json,
+    open_nuitrack_csv,
+    open_nuitrack_json,
     read_nuitrack_csv,
     read_nuitrack_json,
 )
 from .ui_prmd import is_ui_prmd, read_ui_prmd, read_ui_prmd_pair
-from .zed_json import is_zed_json, read_zed_json
+from .zed_json import is_zed_json, open_zed_json, read_zed_json
 
 __all__ = [
     "is_azure_csv",
@@ -42,6 +44,9 @@ __all__ = [
     "open_joint_csv",
     "open_joint_json",
     "open_ntu_skeleton",
+    "open_nuitrack_csv",
+    "open_nuitrack_json",
+    "open_zed_json",
     "read_azure_csv",
     "read_azure_json",
     "read_freemocap",

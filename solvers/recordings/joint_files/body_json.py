@@ -1,6 +1,6 @@
 """Read the JSON of body trackers whose files hold the joints of several people per frame."""
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -8,7 +8,10 @@ import numpy as np
 
 from ...arrays import Array
 from ...errors import InvalidFileError
+from ...motion import JointRecording
+from ...progress import Progress
 from ..containers import array_from_json, json_members
+from ..conventions import DEFAULT_FRAME_RATE, Bodies, bodies_of_frames, recorded_seconds
 
 MAX_CONFIDENCE = 100.0
 
@@ -27,7 +30,7 @@ class Frame(NamedTuple):
 
     time: float
     """In the unit of the file; NaN if it is not stated."""
-    bodies: dict[Hashable, Body]
+    bodies: dict[str, Body]
     done: float
     """Fraction of the file up to its end."""
 
@@ -40,6 +43,41 @@ def json_frames(path: Path | str, keys: frozenset[str]) -> Iterator[tuple[str, A
     for member in json_members(path, lists=True):
         if isinstance(member.value, dict) and not keys.isdisjoint(member.value):
             yield member.key, member.value, member.done
+
+
+def open_frames(
+    path: Path | str,
+    frames: list[Frame],
+    second: float,
+    read: Callable[[str, Array | None, Progress], JointRecording],
+) -> Bodies[JointRecording]:
+    """List the bodies of the frames of a file.
+
+    Parameters
+    ----------
+    path : Path or str
+    frames : list of Frame
+    second : float
+        Seconds per unit of the time stamps.
+    read : callable
+        Returns the recording of a body, by its identity and the times in seconds, which are
+        None where the file has none.
+
+    Raises
+    ------
+    InvalidFileError
+        No frame has a body.
+    """
+    found = [frame.bodies for frame in frames]
+    if not any(found):
+        raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
+    stamps = second * np.array([frame.time for frame in frames])
+    times = None if np.isnan(stamps).all() else stamps
+    duration = len(frames) / DEFAULT_FRAME_RATE if times is None else recorded_seconds(stamps)
+    identities, people = bodies_of_frames(found, duration)
+    return Bodies(
+        str(path), people, lambda index, progress: read(identities[index], times, progress)
+    )
 
 
 def listed(value: Any, location: str) -> list[Any]:
@@ -68,7 +106,7 @@ def point(value: Any, location: str) -> Array:
     return array_from_json(value, (3,), location)
 
 
-def stacked(body: Hashable, frames: list[Frame]) -> tuple[Array, Array | None]:
+def stacked(body: str, frames: list[Frame]) -> tuple[Array, Array | None]:
     """Return positions and confidence, 0 to 1, of a body; NaN and 0 in frames without it.
 
     Raises ValueError if it has different joints in different frames.

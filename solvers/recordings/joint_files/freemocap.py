@@ -1,5 +1,6 @@
 """Read freemocap's arrays of points, shape (n_frames, n_points, 3)."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,15 @@ from ...motion import JointRecording, Sensor, Tracks
 from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
 from ...progress import Progress, unwatched
 from ..containers import NPY_MAGIC, read_array
-from ..conventions import DEFAULT_FRAME_RATE, check_scale, describe_guessed_unit, stand_along
+from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    axes_of_points,
+    check_scale,
+    describe_guessed_unit,
+    judge_axes_of_points,
+    points_z_up,
+    up_along,
+)
 
 WITH_HANDS = len(BODY_POINTS) + 2 * len(HAND_POINTS)
 FACES = (0, 468, 478)
@@ -39,8 +48,8 @@ def read_freemocap(
     so the hand closer to the left wrist is the left one. The joints in the middle of the body,
     which MediaPipe lacks, are added (`COMPUTED_JOINTS`). Other arrays are points called
     `point_<number>`. The unit is millimeters, unless the extent is that of a body in meters. Up
-    of a known body is the direction from its ankles to its nose; of other points it is Z. The
-    heading of the actor is otherwise unchanged.
+    of a known body is the direction from its ankles to its nose; of other points it is Y or Z,
+    by their extent, and Z of fewer than eight. The heading of the actor is otherwise unchanged.
 
     Parameters
     ----------
@@ -76,10 +85,16 @@ def read_freemocap(
     progress(0.5, "Reading")
     names = _names(points)
     is_body = names[0] == BODY_POINTS[0]
-    if is_body:
-        names, points = with_centers(names, stand_along(points, NOSE, ANKLES))
     unit = _unit(points) if scale is None else scale
-    tracks = Tracks(names, points * unit, frame_rate)
+    if is_body:
+        axes = axes_of_points(up_along(points, NOSE, ANKLES), unit)
+    else:
+        axes = judge_axes_of_points(points * unit, "", unit, "Z")
+    points = points_z_up(points, axes.up)
+    if is_body:
+        names, points = with_centers(names, points)
+    noted = replace(axes, has_floor=not is_body)
+    tracks = Tracks(names, points * unit, frame_rate, conventions=noted)
     progress(1.0, describe_guessed_unit(unit) if scale is None and is_body else "Reading")
     return JointRecording(tracks, None, Sensor.MEDIAPIPE) if is_body else tracks
 

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError, InvalidMotionError
-from ...motion import JointRecording, Sensor
+from ...motion import FileConventions, JointRecording, Sensor
 from ...progress import Progress
 from ..containers import shown
-from ..conventions import METERS, joint_recording, z_up_from_y_up
+from ..conventions import METERS, axes_of_points, joint_recording, points_z_up
 from .kinect_csv import checked_states
 
 FORMAT = "mocap-assist-joints"
@@ -33,13 +33,10 @@ class JointHeader:
     up: str
     sensor: Sensor
 
-    def z_up(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Rotate points so that the up axis becomes Z: about X or, for X, cyclically."""
-        if self.up[-1] == "x":
-            points = np.roll(points, -1, axis=-1)  # x y z -> y z x
-        if self.up[-1] == "y":
-            points = z_up_from_y_up(points)
-        return points * (1.0, -1.0, -1.0) if self.up[0] == "-" else points
+    @property
+    def conventions(self) -> FileConventions:
+        """Axes of the file."""
+        return axes_of_points(self.up)
 
 
 def parse_header(fields: Mapping[str, Any], location: str) -> JointHeader:
@@ -100,7 +97,7 @@ def build_recording(
     return joint_recording(
         path,
         names,
-        header.z_up(positions),
+        points_z_up(positions, header.conventions.up),
         header.sensor,
         states=None if states is None else checked_states(np.nan_to_num(states), path),
         confidence=confidence,
@@ -108,6 +105,7 @@ def build_recording(
         frame_rate=header.frame_rate or 1.0,
         nan_only=True,
         scale=header.unit if scale is None else scale,
+        conventions=header.conventions,
         progress=progress,
     )
 

@@ -13,8 +13,25 @@ from ...motion import JointRecording, Sensor
 from ...motion.skeletons import NUITRACK
 from ...progress import Progress, unwatched, within
 from ..containers import LineReader, decode_text, find_separator, split_cells, stream_cells
-from ..conventions import check_scale, joint_recording, longest_observed_body
-from .body_json import Body, Frame, json_frames, listed, name_of_body, number, point, stacked
+from ..conventions import (
+    DEFAULT_FRAME_RATE,
+    Bodies,
+    check_scale,
+    joint_recording,
+    observed_body,
+    recorded_seconds,
+)
+from .body_json import (
+    Body,
+    Frame,
+    json_frames,
+    listed,
+    name_of_body,
+    number,
+    open_frames,
+    point,
+    stacked,
+)
 
 CSV_HEAD = re.compile(rb"(?i)[^\r\n]*\bJOINT_WAIST\.x\b")
 JSON_HEAD = re.compile(
@@ -41,11 +58,15 @@ def is_nuitrack_json(head: bytes) -> bool:
 
 
 def read_nuitrack_csv(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> JointRecording:
     """Read the CSV of Nuitrack's recorder [1]_, in meters, Z up; missing joints are NaN.
 
-    Of several users the one in most lines is used. Frames are resampled to a constant rate by
+    Frames are resampled to a constant rate by
     their time stamps; repeated stamps are skipped. Both collars are one point, which becomes
     the joint between the shoulders. Joints are called as those of the Azure Kinect.
 
@@ -54,6 +75,8 @@ def read_nuitrack_csv(
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: meters, unless these do not give a human body.
+    body : str, optional
+        Id or number (`Bodies.choose`); by default the user in most frames.
     progress : Progress
 
     Raises
@@ -69,6 +92,14 @@ def read_nuitrack_csv(
     ----------
     .. [1] 3DiVi, nuitrack-sdk, doc/CSV_Recorder.md.
     """
+    bodies = open_nuitrack_csv(path, scale=scale, progress=within(progress, 0.0, 0.9))
+    return bodies.read_one(body, within(progress, 0.9, 1.0))
+
+
+def open_nuitrack_csv(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """List the users of a file that `read_nuitrack_csv` reads."""
     check_scale(scale)
     reader = LineReader(path)
     reader.skip_blank_lines()
@@ -76,9 +107,7 @@ def read_nuitrack_csv(
     separator = find_separator(heading)
     titles = [decode_text(cell).upper() for cell in split_cells(heading, separator)]
     serial = {titles.index("SERIAL"): lambda cell: b""} if "SERIAL" in titles else {}
-    rows = stream_cells(
-        reader, separator, len(titles), path, within(progress, 0.0, 0.9), converters=serial
-    )
+    rows = stream_cells(reader, separator, len(titles), path, progress, converters=serial)
     columns = {
         name: [titles.index(f"JOINT_{joint}.{axis}") for axis in "XYZ"]
         for joint, name in NUITRACK.items()
@@ -87,17 +116,38 @@ def read_nuitrack_csv(
     if not columns or not len(rows):
         raise InvalidFileError(f"{path} has no joints, only a header. Export it again.")
     users = rows[:, titles.index("ID")] if "ID" in titles else np.zeros(len(rows))
-    known, counts = np.unique(users[np.isfinite(users)], return_counts=True)
+    known = np.unique(users[np.isfinite(users)])
     if not len(known):
         raise InvalidFileError(f"{path} has no user in any frame. Export it again.")
-    rows = rows[users == known[counts.argmax()]]
     times = MICROSECOND * rows[:, titles.index("TIMESTAMP")] if "TIMESTAMP" in titles else None
-    positions = rows[:, list(columns.values())]
-    return _recording(path, list(columns), positions, None, times, scale, 1.0, progress)
+    instants = np.arange(len(rows)) if times is None else times
+    n_frames = len(np.unique(instants))
+    duration = n_frames / DEFAULT_FRAME_RATE if times is None else recorded_seconds(times)
+    people = tuple(
+        observed_body(
+            f"{user:g}",
+            np.searchsorted(np.unique(instants), instants[users == user]),
+            n_frames,
+            duration,
+        )
+        for user in known
+    )
+
+    def read(index: int, progress: Progress) -> JointRecording:
+        mine = users == known[index]
+        positions = rows[mine][:, list(columns.values())]
+        stamps = None if times is None else times[mine]
+        return _recording(path, list(columns), positions, None, stamps, scale, 1.0, progress)
+
+    return Bodies(str(path), people, read)
 
 
 def read_nuitrack_json(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> JointRecording:
     """Read skeletons that a program of Nuitrack's interface saved as JSON.
 
@@ -108,30 +158,32 @@ def read_nuitrack_json(
     Parameters, results and errors are those of `read_nuitrack_csv`; without `scale` lengths
     are millimeters, unless these do not give a human body.
     """
+    bodies = open_nuitrack_json(path, scale=scale, progress=within(progress, 0.0, 0.9))
+    return bodies.read_one(body, within(progress, 0.9, 1.0))
+
+
+def open_nuitrack_json(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """List the bodies of a file that `read_nuitrack_json` reads."""
     check_scale(scale)
-    frames = []
+    frames: list[Frame] = []
     for _, value, done in json_frames(path, KEYS):
         frames.append(_read_frame(value, done, f"{path}, frame {len(frames) + 1}"))
-        progress(0.9 * done, "Reading")
-    bodies = [frame.bodies for frame in frames]
-    if not any(bodies):
-        raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
-    positions, confidence = stacked(longest_observed_body(bodies), frames)
-    times = MICROSECOND * np.array([frame.time for frame in frames])
-    return _recording(
-        path,
-        list(NUITRACK.values()),
-        positions,
-        confidence,
-        None if np.isnan(times).all() else times,
-        scale,
-        MILLIMETER,
-        progress,
-    )
+        progress(done, "Reading")
+
+    def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
+        positions, confidence = stacked(body, frames)
+        names = list(NUITRACK.values())
+        return _recording(
+            path, names, positions, confidence, times, scale, MILLIMETER, progress
+        )
+
+    return open_frames(path, frames, MICROSECOND, read)
 
 
 def _read_frame(value: Mapping[str, Any], done: float, location: str) -> Frame:
-    bodies = {}
+    bodies: dict[str, Body] = {}
     for count, body in enumerate(listed(_first(value, tuple(KEYS)), location)):
         joints = _first(body, ("joints", "Joints"))
         found = _read_joints(body if joints is None else joints, location)

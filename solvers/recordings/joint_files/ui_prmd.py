@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import InvalidFileError
-from ...motion import JointRecording, Sensor, Tracks
+from ...motion import FileConventions, JointRecording, Sensor, Tracks
 from ...motion.skeletons import UI_PRMD
 from ...progress import Progress, unwatched, within
 from ..containers import read_archive
@@ -88,6 +88,7 @@ def read_ui_prmd_pair(
         Sensor.KINECT_V2,
         frame_rate=float(frame_rate),
         scale=meters,
+        conventions=FileConventions(),
         progress=within(progress, 0.0, 0.9),
     )
     missing = (markers == 0.0).all(axis=-1) | ~np.isfinite(markers).all(axis=-1)

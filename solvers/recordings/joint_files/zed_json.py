@@ -10,16 +10,25 @@ from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Sensor
 from ...motion.skeletons import ZED_BODIES
-from ...progress import Progress, unwatched
+from ...progress import Progress, unwatched, within
 from ..containers import array_from_json
 from ..conventions import (
+    Bodies,
     check_scale,
     is_mirrored,
     joint_recording,
-    longest_observed_body,
     stand_along,
 )
-from .body_json import Body, Frame, json_frames, listed, name_of_body, number, stacked
+from .body_json import (
+    Body,
+    Frame,
+    json_frames,
+    listed,
+    name_of_body,
+    number,
+    open_frames,
+    stacked,
+)
 
 HEAD = re.compile(rb'\s*[\[{].*"(body_list|is_tracked)"\s*:', re.DOTALL)
 KEYS = frozenset({"body_list", "is_tracked"})
@@ -35,14 +44,18 @@ def is_zed_json(head: bytes) -> bool:
 
 
 def read_zed_json(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> JointRecording:
     """Read bodies of the ZED SDK [1]_ with 18, 34 or 38 joints, in meters, Z up.
 
-    Of several bodies the one in most frames is used; bodies are identified by their id. Frames
-    are resampled to a constant rate by their time stamps. The file states neither axes nor
-    unit: up is the direction from the ankles to the head, left-handed axes are recognized by
-    the sides of the body, and the unit by its size. Confidence is that of the keypoints.
+    Bodies are identified by their id. Frames are resampled to a constant rate by their time
+    stamps. The file states neither axes nor unit: up is the direction from the ankles to the
+    head, left-handed axes are recognized by the sides of the body, and the unit by its size.
+    Confidence is that of the keypoints.
     Joints are called as those of the Azure Kinect; pelvis and head are added where the format
     has none, as the means of hips and of ears.
 
@@ -51,6 +64,8 @@ def read_zed_json(
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: meters, unless these do not give a human body.
+    body : str, optional
+        Id or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Raises
@@ -66,16 +81,37 @@ def read_zed_json(
     ----------
     .. [1] Stereolabs, zed-sdk, body tracking/export/JSON export.
     """
+    bodies = open_zed_json(path, scale=scale, progress=within(progress, 0.0, 0.9))
+    return bodies.read_one(body, within(progress, 0.9, 1.0))
+
+
+def open_zed_json(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """List the bodies of a file that `read_zed_json` reads."""
     check_scale(scale)
-    frames = []
+    frames: list[Frame] = []
     for key, value, done in json_frames(path, KEYS):
         frames.append(_read_frame(key, value, done, f"{path}, frame {len(frames) + 1}"))
-        progress(0.9 * done, "Reading")
-    bodies = [frame.bodies for frame in frames]
-    if not any(bodies):
-        raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
-    body = longest_observed_body(bodies)
-    n_joints = {len(found[body].positions) for found in bodies if body in found}
+        progress(done, "Reading")
+    return open_frames(
+        path, frames, NANOSECOND, lambda *found: _recording(path, frames, scale, *found)
+    )
+
+
+def _recording(
+    path: Path | str,
+    frames: list[Frame],
+    scale: float | None,
+    body: str,
+    times: Array | None,
+    progress: Progress,
+) -> JointRecording:
+    n_joints = {
+        len(found[body].positions)
+        for found in (frame.bodies for frame in frames)
+        if body in found
+    }
     if len(n_joints) != 1 or not n_joints <= ZED_BODIES.keys():
         raise InvalidFileError(
             f"{path} has bodies of {', '.join(map(str, sorted(n_joints)))} joints; those of 18,"
@@ -89,15 +125,14 @@ def read_zed_json(
     left, right = (names.index(f"Shoulder{side}") for side in SIDES)
     if is_mirrored(positions, left, right, names.index("Neck"), names.index("Nose")):
         positions = positions * (1.0, -1.0, 1.0)
-        progress(0.9, "The axes of the file are left-handed; the body is mirrored back")
-    times = NANOSECOND * np.array([frame.time for frame in frames])
+        progress(0.0, "The axes of the file are left-handed; the body is mirrored back")
     return joint_recording(
         path,
         names,
         positions,
         Sensor.ZED,
         confidence=confidence,
-        times=None if np.isnan(times).all() else times,
+        times=times,
         scale=scale,
         progress=progress,
     )
@@ -121,7 +156,7 @@ def _with_means(
 
 
 def _read_frame(key: str, value: dict[str, Any], done: float, location: str) -> Frame:
-    bodies = {}
+    bodies: dict[str, Body] = {}
     for count, body in enumerate(listed(value.get("body_list"), location)):
         if not body.get("keypoint"):
             continue

@@ -15,6 +15,7 @@ from ..conventions import (
     check_scale,
     guess_unit_of_points,
     is_upside_down,
+    judge_axes_of_points,
     meters_from_unit_name,
     point_names,
     points_z_up,
@@ -80,7 +81,7 @@ def open_c3d(
     if has_rotations(file):
         if not file.n_points:
             recording = read_c3d_rotations(file, scale, progress)
-            return Bodies(str(path), (), lambda *_: recording)
+            return Bodies(str(path), (), lambda index, progress: recording)
         progress(0.1, "The poses of segments in its ROTATION group are left out")
     points, observed = file.read_points()
     progress(0.6, "Reading")
@@ -98,13 +99,16 @@ def open_c3d(
     if not points.size or np.isnan(points).all():
         raise InvalidFileError(f"{path} has no points that are observed in any frame.")
     used = [labels[index] for index in columns]
-    points *= _unit(file, points) if scale is None else scale
+    unit = _unit(file, points) if scale is None else scale
+    points *= unit
     screen = file.texts("POINT:Y_SCREEN")
     up = screen[0].strip().upper() if screen else ""
     if is_upside_down(points, up):
         progress(0.8, f"Y_SCREEN says {up}, which hangs the actor below the floor; not used")
         up = f"+{up[-1]}"
-    tracks = Tracks(point_names(used), points_z_up(points, up), file.frame_rate)
+    axes = judge_axes_of_points(points, up, unit)
+    positions = points_z_up(points, axes.up)
+    tracks = Tracks(point_names(used), positions, file.frame_rate, conventions=axes)
     progress(1.0, "Reading")
     return bodies_of_markers(path, tracks, used)
 

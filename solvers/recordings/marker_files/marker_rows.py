@@ -12,7 +12,7 @@ MILLISECOND = 0.001
 MAX_VALUE = 1e12
 """Maximum plausible measurement; some programs write larger values for missing markers."""
 MIN_RISING_FRACTION = 0.8
-"""Fraction of steps between stamps that go up, from which the stamps are used."""
+"""Fraction of stamps that are later than all before, from which the stamps are used."""
 MIN_RATE_HZ, MAX_RATE_HZ = 1e-3, 1e6
 
 
@@ -92,5 +92,7 @@ def _counts(
 
 
 def _rises(values: NDArray[np.float64]) -> float:
-    """Return the fraction of steps that go up; 0 for less than two values."""
-    return float((np.diff(values) > 0.0).mean()) if len(values) > 1 else 0.0
+    """Return the fraction of values above all before; 0 for less than two values."""
+    if len(values) < 2:
+        return 0.0
+    return float((values[1:] > np.fmax.accumulate(values)[:-1]).mean())

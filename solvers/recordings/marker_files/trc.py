@@ -14,6 +14,7 @@ from ..containers import ROWS_AT_ONCE, LineReader, decode_text, read_number, sho
 from ..conventions import (
     check_scale,
     guess_unit_of_points,
+    judge_axes_of_points,
     meters_from_unit_name,
     point_names,
     points_z_up,
@@ -88,10 +89,13 @@ def read_trc(
     rows = _read_rows(reader, header.separator, path, within(progress, 0.0, 0.8))
     frames, times, points = _columns_from_rows(rows, len(header.labels), path)
     mark_missing(points, path)
-    points *= _unit(header, points, path) if scale is None else scale
+    unit = _unit(header, points, path) if scale is None else scale
+    points *= unit
     points, rate = at_constant_rate(points, frames, times, header.rate, path)
     labels = header.labels + [""] * (points.shape[1] - len(header.labels))
-    tracks = Tracks(point_names(labels), points_z_up(points, header.up, "+Y"), rate)
+    axes = judge_axes_of_points(points, header.up, unit, "+Y")
+    positions = points_z_up(points, axes.up)
+    tracks = Tracks(point_names(labels), positions, rate, conventions=axes)
     progress(1.0, "Reading")
     return tracks
 

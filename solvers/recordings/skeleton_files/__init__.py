@@ -5,13 +5,16 @@ from .acclaim_limits import read_acclaim_limits
 from .bvh import read_bvh
 from .bvh_writing import write_bvh
 from .kimodo import is_kimodo, read_kimodo
+from .motion_x import is_motion_x, read_motion_x
 from .mvnx import is_mvnx, open_mvnx, read_mvnx
 from .segments import recording_from_segments
-from .smpl import NAMES_OF_BODY, is_motion_x, is_smpl, open_smpl, read_motion_x, read_smpl
+from .smpl import NAMES_OF_BODY, is_smpl, open_smpl, read_smpl
+from .smpl_body import STATURE_M
 from .vrma import is_vrma, read_vrma
 
 __all__ = [
     "NAMES_OF_BODY",
+    "STATURE_M",
     "find_skeleton",
     "is_kimodo",
     "is_motion_x",

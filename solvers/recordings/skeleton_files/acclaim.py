@@ -14,7 +14,12 @@ from ...motion import Motion, Skeleton
 from ...progress import Progress, unwatched, within
 from ...rotations import inverse, multiply, quaternion_from_euler
 from ..containers import Block, LineReader, parse_rows, shown
-from ..conventions import check_scale, rotations_z_up_from_y_up, z_up_from_y_up
+from ..conventions import (
+    check_scale,
+    file_conventions,
+    rotations_z_up_from_y_up,
+    z_up_from_y_up,
+)
 from .acclaim_skeleton import AcclaimBone, AcclaimSkeleton, read_acclaim_skeleton
 
 LINES_OF_HEAD = 100
@@ -209,7 +214,8 @@ def _build_motion(
                 root_positions[:, axis] = columns.get(f"t{letter}", root_positions[:, axis])
         progress((joint + 1) / len(skeleton.bones), "Reading")
     rest = Skeleton(names, parents, scale * z_up_from_y_up(offsets))
-    return Motion(rest, rotations, scale * z_up_from_y_up(root_positions), frame_rate)
+    positions = scale * z_up_from_y_up(root_positions)
+    return Motion(rest, rotations, positions, frame_rate, file_conventions("Y", unit=scale))
 
 
 def _joints(

@@ -1,6 +1,7 @@
 """Convert the channels of a BVH file to the motion of rigid bones."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -11,9 +12,14 @@ from ...motion import Motion, Skeleton
 from ...progress import Progress
 from ...rotations import inverse, multiply, quaternion_from_euler, rotate, rotation_between
 from ..conventions import (
+    CENTIMETER,
+    PLAUSIBLE_REACH_M,
     UpAxisName,
+    describe_guessed_unit,
+    file_conventions,
     guess_unit,
-    rotate_to_z_up,
+    longest_bone_path,
+    reinterpreted,
     rotations_z_up_from_y_up,
     stand_upright,
     z_up_from_y_up,
@@ -21,6 +27,8 @@ from ..conventions import (
 from .bvh_hierarchy import BvhJoint
 
 FRAMES_AT_ONCE = 2000
+MIN_REACH_M = 0.5
+"""Of a small child, from hand to foot: a file in centimeters or in other units then."""
 
 
 class BvhPoses(NamedTuple):
@@ -32,6 +40,8 @@ class BvhPoses(NamedTuple):
     """Local quaternions in our axes, shape (n_frames, n_joints, 4)."""
     root: NDArray[np.float64]
     """Positions of the root in our axes, shape (n_frames, 3)."""
+    offset_added: bool = False
+    """Whether position channels were added to the OFFSET."""
 
 
 class BvhChannels:
@@ -70,7 +80,7 @@ class BvhChannels:
             root = root + rotate(rotation, z_up_from_y_up(displacement))
             rotation = multiply(rotation, rotations[:, joint])
         self._rotate_towards_only_children(rotations, offsets)
-        return BvhPoses(offsets, rotations, root)
+        return BvhPoses(offsets, rotations, root, self.offset_added)
 
     @cached_property
     def offset_added(self) -> bool:
@@ -195,11 +205,15 @@ def motion_from_poses(
     parents = tuple(joint.parent for joint in joints)
     if scale is None:
         scale = guess_unit(parents, poses.offsets)
+        reach = CENTIMETER * longest_bone_path(parents, poses.offsets)
+        if scale != CENTIMETER and MIN_REACH_M < reach < PLAUSIBLE_REACH_M[0]:
+            progress(1.0, describe_guessed_unit(scale))
     names = tuple(joint.name for joint in joints)
     skeleton = Skeleton(names, parents, scale * z_up_from_y_up(poses.offsets))
-    motion = Motion(skeleton, poses.rotations, scale * poses.root, frame_rate)
+    noted = replace(file_conventions("Y", unit=scale), offset_added=poses.offset_added)
+    motion = Motion(skeleton, poses.rotations, scale * poses.root, frame_rate, noted)
     if up is not None:
-        return rotate_to_z_up(motion, up, up)
+        return reinterpreted(motion, up, None)
     return stand_upright(motion, progress)
 
 

@@ -1,5 +1,6 @@
 """Read the archives of Kimodo: joints and world rotations of the SOMA skeleton."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from ..containers import read_archive_members
 from ..conventions import (
     DEFAULT_FRAME_RATE,
     check_scale,
+    file_conventions,
     rotations_z_up_from_y_up,
     stand_upright,
     z_up_from_y_up,
@@ -100,4 +102,6 @@ def read_kimodo(
         )
     except InvalidFileError as error:
         raise InvalidFileError(f"{path}: {error}. Export it as BVH.") from None
-    return stand_upright(motion, progress)
+    unit = 1.0 if scale is None else scale
+    noted = replace(file_conventions("Y", unit=unit), has_floor=False)
+    return stand_upright(replace(motion, conventions=noted), progress)

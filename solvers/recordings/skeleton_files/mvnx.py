@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree.ElementTree import Element, ParseError, iterparse
@@ -14,7 +15,7 @@ from ...files import open_regular
 from ...motion import Motion
 from ...progress import Progress, unwatched
 from ..containers import UniqueNames, printable
-from ..conventions import Bodies, check_scale, common_rate, observed_body
+from ..conventions import Bodies, check_scale, common_rate, file_conventions, observed_body
 from .world_poses import motion_from_world_poses
 
 PARENTS = {
@@ -154,7 +155,7 @@ def _motion(path: Path | str, subject: Subject, scale: float) -> Motion:
     rotations = np.array([each for _, each in frames]).reshape(len(frames), -1, 4)
     parents = [_parent(ordered, name) for name in ordered]
     try:
-        return motion_from_world_poses(
+        motion = motion_from_world_poses(
             ordered,
             parents,
             _turned(positions[:, kept]),
@@ -163,6 +164,7 @@ def _motion(path: Path | str, subject: Subject, scale: float) -> Motion:
         )
     except InvalidFileError as error:
         raise InvalidFileError(f"{path}: {error}. Export it again.") from None
+    return replace(motion, conventions=file_conventions("Z", "X", scale))
 
 
 def _parent(names: list[str], name: str) -> int:

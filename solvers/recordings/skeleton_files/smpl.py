@@ -1,5 +1,6 @@
 """Read the parameter files of SMPL bodies: AMASS, SMPL-X and what video models write."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from ..conventions import (
     UpAxisName,
     check_scale,
     common_rate,
+    file_conventions,
     observed_body,
     put_on_floor,
     rotations_z_up_from_y_up,
@@ -61,9 +63,6 @@ AMASS_UP: dict[UpAxisName, float] = {"Z": 0.8, "Y": 0.0}
 VIDEO_UP: dict[UpAxisName, float] = {"Y": 0.1, "Z": 0.05, "-Y": 0.0}
 """Evidence of the format for each axis (`judge_up_axis`): AMASS has Z up, video models mostly Y
 and, in the camera's axes, -Y."""
-MOTION_X_COLUMNS = 322
-MOTION_X_POSITION = slice(309, 312)
-"""Columns of the position, after root, body, hands, jaw, expression and shape of the face."""
 
 
 def is_smpl(head: bytes) -> bool:
@@ -81,6 +80,7 @@ def read_smpl(
     scale: float | None = None,
     height: float = STATURE_M,
     body: str | None = None,
+    on_floor: bool = True,
     progress: Progress = unwatched,
 ) -> Motion:
     """Read the pose parameters of an SMPL, SMPL-H or SMPL-X body from an `.npz` archive.
@@ -102,6 +102,8 @@ def read_smpl(
         Stature of the actor.
     body : str, optional
         Number of one of several people (`Bodies.choose`).
+    on_floor : bool
+        Whether the feet are put on the floor.
     progress : Progress
 
     Returns
@@ -123,7 +125,7 @@ def read_smpl(
     .. [1] Mahmood, Ghorbani, Troje, Pons-Moll, Black (2019). AMASS: Archive of motion capture
        as surface shapes. ICCV.
     """
-    bodies = open_smpl(path, scale=scale, height=height, progress=progress)
+    bodies = open_smpl(path, scale=scale, height=height, on_floor=on_floor, progress=progress)
     return bodies.read_one(body, progress)
 
 
@@ -132,6 +134,7 @@ def open_smpl(
     *,
     scale: float | None = None,
     height: float = STATURE_M,
+    on_floor: bool = True,
     progress: Progress = unwatched,
 ) -> Bodies[Motion]:
     """List the people of a file that `read_smpl` reads."""
@@ -156,7 +159,8 @@ def open_smpl(
     )  # fmt: skip
 
     def read(index: int, progress: Progress) -> Motion:
-        return _motion(path, people[index], vectors[index], scale, height, progress)
+        motion = _motion(path, people[index], vectors[index], scale, height, progress)
+        return put_on_floor(motion) if on_floor else motion
 
     return Bodies(str(path), listed, read)
 
@@ -189,32 +193,10 @@ def _motion(
         rotations,
         z_up_from_y_up(positions * unit),
         rate,
+        replace(file_conventions("Y", unit=unit), has_floor=False),
     )
     is_amass = not {"mocap_frame_rate", "mocap_framerate"}.isdisjoint(arrays)
-    up = AMASS_UP if is_amass else VIDEO_UP
-    return put_on_floor(stand_upright(motion, progress, up))
-
-
-def is_motion_x(shape: tuple[int, ...]) -> bool:
-    """Return whether an array has the columns of Motion-X."""
-    return len(shape) == 2 and shape[0] > 0 and shape[1] == MOTION_X_COLUMNS
-
-
-def read_motion_x(columns: Array, scale: float | None, progress: Progress) -> Motion:
-    """Return the motion of a Motion-X array, shape (n_frames, 322): SMPL-X at 30 Hz.
-
-    Its columns are the rotations of root, body and hands, face and shape, which are left out,
-    and the position.
-    """
-    vectors = columns[:, : 3 * (N_BODY + 2 * N_HAND // 3)].reshape(len(columns), -1, 3)
-    names, parents, offsets = smpl_joints(hands=True)
-    motion = Motion(
-        Skeleton(names, parents, z_up_from_y_up(offsets)),
-        rotations_z_up_from_y_up(quaternion_from_rotation_vector(vectors)),
-        z_up_from_y_up(columns[:, MOTION_X_POSITION] * (1.0 if scale is None else scale)),
-        DEFAULT_FRAME_RATE,
-    )
-    return put_on_floor(stand_upright(motion, progress, VIDEO_UP))
+    return stand_upright(motion, progress, AMASS_UP if is_amass else VIDEO_UP)
 
 
 def _rotation_vectors(path: Path | str, arrays: dict[str, Array]) -> Array:

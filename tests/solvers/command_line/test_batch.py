@@ -73,7 +73,7 @@ def test_several_at_a_time_give_the_same_files(start, leg_file, twin_file, tmp_p
     )
 
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.count("120 frames at 60 Hz, 4 joints.") == 2
+    assert done.stdout.count("120 frames at 60 Hz, 4 joints; ") == 2
     for name in ("leg.bvh", "twin.bvh"):
         assert (tmp_path / "out" / name).read_bytes() == leg_file.read_bytes()
 

@@ -15,11 +15,13 @@ from solvers.recordings import read_bvh, read_c3d, read_trc, write_bvh, write_c3
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
+AXES = "Y is up, Z is forward, lengths are in centimeters"
+
 
 def test_convert_writes_the_same_motion(call, leg_file, tmp_path):
     status, printed, _ = call("convert", leg_file, tmp_path / "copy.bvh")
 
-    assert (status, printed) == (0, "120 frames at 60 Hz, 4 joints.\n")
+    assert (status, printed) == (0, f"120 frames at 60 Hz, 4 joints; {AXES}.\n")
     assert (tmp_path / "copy.bvh").read_bytes() == leg_file.read_bytes()
 
 

@@ -1,0 +1,50 @@
+"""Axes and unit of the file that a recording was read from."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+AxisName = Literal["X", "Y", "Z", "-X", "-Y", "-Z"]
+"""An axis of a file, with its sign."""
+UNIT_NAMES = {
+    1.0: "meters", 0.1: "decimeters", 0.01: "centimeters", 0.001: "millimeters",
+    0.0254: "inches", 0.3048: "feet",
+}  # fmt: skip
+CERTAIN = 0.995
+"""Confidence above which a sentence does not mention it."""
+
+
+@dataclass(frozen=True)
+class FileConventions:
+    """How the numbers of a file were interpreted; stated by it, or judged from the body."""
+
+    up: AxisName = "Z"
+    """Axis of the file that became +Z."""
+    forward: AxisName = "-Y"
+    """Axis of the file that became -Y, where actors face."""
+    unit: float = 1.0
+    """Meters per unit of the file."""
+    rest_up: AxisName | None = None
+    """Axis of the rest pose that became +Z; None where that of the motion did."""
+    offset_added: bool = False
+    """Whether the position channels of a BVH file were added to the offsets."""
+    confidence: float = 1.0
+    """In the up axis, 0 to 1; 1 where the file states it."""
+    has_floor: bool = True
+    """Whether height 0 is a measured floor: not with depth cameras and video models."""
+
+    def sentence(self) -> str:
+        """Return what was judged, for a report: without a period."""
+        sure = f" ({self.confidence:.0%} sure)" if self.confidence < CERTAIN else ""
+        added = ", positions added to offsets" if self.offset_added else ""
+        rest = (
+            f", {self.rest_up} in the rest pose" if self.rest_up not in {None, self.up} else ""
+        )
+        return (
+            f"{self.up} is up{rest}{sure}, {self.forward} is forward, lengths are in"
+            f" {unit_name(self.unit)}{added}"
+        )
+
+
+def unit_name(unit: float) -> str:
+    """Return the name of a unit of length in the plural, or its length in meters."""
+    return UNIT_NAMES.get(unit, f"units of {unit:.4g} m")

@@ -1,0 +1,131 @@
+"""Put a take on the floor where the file has none."""
+
+from dataclasses import replace
+from typing import TypeVar, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array
+from ...motion import (
+    JointRecording,
+    Motion,
+    Tracks,
+    find_humanoid_map,
+    roles_by_name,
+    world_poses,
+)
+from .body_unit import stature
+from .file_axes import conventions_of
+
+Recording = TypeVar("Recording", bound=Motion | Tracks | JointRecording)
+
+SOLE_M = {"Toes": 0.02, "Foot": 0.07, "Hand": 0.03, "LowerLeg": 0.05, "hips": 0.1, "head": 0.1}
+"""Height of a joint above what it stands or lies on, by the end of its role."""
+OTHER_SOLE_M = 0.06
+FLOOR_PERCENTILE = 5.0
+"""Of the heights while the body rests on something: some frames sink in or are wrong."""
+REST_S = 0.1
+"""Time for which a body that stands or lies on something neither rises nor falls."""
+MAX_REST_SPEED = 0.25
+"""Speed of rising or falling, m/s, below which a body rests on something; noise is less."""
+MIN_BELOW_FRACTION = 0.3
+"""Depth of the feet below height 0, relative to the stature, of a take without a floor."""
+MAX_HIPS_FRACTION = 0.15
+"""Height of the hips, relative to the stature, of a take whose origin is the hips."""
+NO_FLOOR = (
+    ("torso_7", "l_toes", "r_toes"),
+    ("left_collar", "right_collar", "spine3", "left_foot"),
+)
+"""Joints of mocopi, and of SMPL, in BVH files: nothing of the room was measured."""
+
+
+def put_on_floor(recording: Recording) -> Recording:
+    """Move a take up or down so that the lowest level that the body rests on is height 0.
+
+    A body rests where its lowest joint neither rises nor falls: feet that stand, hands of a
+    handstand, the back of who lies. So a jump is no floor, and neither are single wrong frames.
+    """
+    lift = -floor_level(recording)
+    if isinstance(recording, Motion):
+        shifted = recording.root_positions + np.array([0.0, 0.0, lift])
+        return replace(recording, root_positions=shifted)
+    if isinstance(recording, JointRecording):
+        return cast(Recording, recording.with_tracks(_lifted(recording.tracks, lift)))
+    return cast(Recording, _lifted(recording, lift))
+
+
+def floor_level(recording: Motion | Tracks | JointRecording) -> float:
+    """Return the lowest height that the body rests on; 0 if nothing is observed."""
+    points, soles = _points(recording)
+    heights = np.where(np.isfinite(points[..., 2]), points[..., 2] - soles, np.inf)
+    lowest = heights.min(axis=1, initial=np.inf)
+    lowest = lowest[np.isfinite(lowest)]
+    if not len(lowest):
+        return 0.0
+    resting = lowest[_rests(lowest, recording.frame_rate)]
+    return float(np.percentile(resting if len(resting) else lowest, FLOOR_PERCENTILE))
+
+
+def lacks_floor(recording: Motion | Tracks | JointRecording) -> bool:
+    """Whether height 0 is not a measured floor.
+
+    So it is with depth cameras and video models, and where the hips are the origin and the
+    feet hang below.
+    """
+    if not conventions_of(recording).has_floor or isinstance(recording, JointRecording):
+        return True
+    if isinstance(recording, Tracks):
+        return False
+    names = {name.lower() for name in recording.skeleton.names}
+    if any(names.issuperset(family) for family in NO_FLOOR):
+        return True
+    hips = find_humanoid_map(recording.skeleton).indices(recording.skeleton).get("hips")
+    tall = stature(recording)
+    if hips is None or tall is None:
+        return False
+    height = _points(recording, [hips])[0][:, 0, 2]
+    typical = float(np.nanmedian(height)) if np.isfinite(height).any() else np.inf
+    return (
+        abs(typical) < MAX_HIPS_FRACTION * tall
+        and floor_level(recording) < -MIN_BELOW_FRACTION * tall
+    )
+
+
+def _lifted(tracks: Tracks, lift: float) -> Tracks:
+    return tracks.with_positions(tracks.positions + np.array([0.0, 0.0, lift]))
+
+
+def _points(
+    recording: Motion | Tracks | JointRecording, joints: list[int] | None = None
+) -> tuple[Array, Array]:
+    """Return the joints of the body, (n_frames, n, 3), and how high each is above its sole."""
+    if isinstance(recording, Motion):
+        roles = find_humanoid_map(recording.skeleton).indices(recording.skeleton)
+        points = world_poses(
+            recording.skeleton, recording.rotations, recording.root_positions
+        ).positions
+    else:
+        tracks = recording.tracks if isinstance(recording, JointRecording) else recording
+        points = tracks.positions
+        named = roles_by_name(tracks.names) if isinstance(recording, JointRecording) else {}
+        roles = {role: tracks.names.index(name) for role, name in named.items()}
+    if joints is not None or not roles:
+        chosen = joints if joints is not None else list(range(points.shape[1]))
+        return points[:, chosen], np.zeros(len(chosen))
+    soles = [
+        next((sole for end, sole in SOLE_M.items() if role.endswith(end)), OTHER_SOLE_M)
+        for role in roles
+    ]
+    return points[:, list(roles.values())], np.array(soles)
+
+
+def _rests(lowest: Array, frame_rate: float) -> NDArray[np.bool_]:
+    """Return whether the lowest joint neither rises nor falls around each frame."""
+    width = max(1, round(REST_S * frame_rate))
+    if len(lowest) <= width:
+        return np.ones(len(lowest), dtype=np.bool_)
+    speeds = np.abs(lowest[width:] - lowest[:-width]) * frame_rate / width
+    rests = np.zeros(len(lowest), dtype=np.bool_)
+    rests[width // 2 : width // 2 + len(speeds)] = speeds < MAX_REST_SPEED
+    return rests

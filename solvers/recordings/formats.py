@@ -1,0 +1,162 @@
+"""The supported formats, and which of them a file has."""
+
+import re
+from pathlib import Path
+
+from ..errors import InvalidFileError
+from ..files import open_regular, unreadable
+from .containers import (
+    BYTE_ORDER_MARK,
+    check_folder_access,
+    is_c3d,
+    json_length,
+)
+from .format import Format
+from .joint_files import (
+    is_azure_csv,
+    is_azure_json,
+    is_irds,
+    is_joint_csv,
+    is_joint_json,
+    is_kinect_csv,
+    is_mediapipe_csv,
+    is_mediapipe_json,
+    is_msr_action3d,
+    is_npy,
+    is_ntu_skeleton,
+    is_nuitrack_csv,
+    is_nuitrack_json,
+    is_ui_prmd,
+    is_zed_json,
+    open_azure_csv,
+    open_azure_json,
+    open_irds,
+    open_joint_csv,
+    open_joint_json,
+    open_ntu_skeleton,
+    open_nuitrack_csv,
+    open_nuitrack_json,
+    open_zed_json,
+    read_azure_csv,
+    read_azure_json,
+    read_irds,
+    read_joint_csv,
+    read_joint_json,
+    read_kinect_csv,
+    read_mediapipe_csv,
+    read_mediapipe_json,
+    read_msr_action3d,
+    read_ntu_skeleton,
+    read_nuitrack_csv,
+    read_nuitrack_json,
+    read_ui_prmd,
+    read_zed_json,
+)
+from .marker_files import (
+    is_motive_csv,
+    is_qualisys_tsv,
+    is_vicon_csv,
+    open_c3d,
+    read_c3d,
+    read_motive_csv,
+    read_qualisys_tsv,
+    read_trc,
+    read_vicon_csv,
+)
+from .numpy_files import read_npy
+from .refused_files import REFUSALS
+from .skeleton_files import (
+    is_kimodo,
+    is_mvnx,
+    is_smpl,
+    is_vrma,
+    open_mvnx,
+    open_smpl,
+    read_acclaim,
+    read_bvh,
+    read_kimodo,
+    read_mvnx,
+    read_smpl,
+    read_vrma,
+)
+
+HEAD = 4096
+MAX_JSON_BYTES = 1 << 22
+"""Of a glTF file, read to see what it holds."""
+
+
+def _is_bvh(head: bytes) -> bool:
+    return head.lstrip()[:9].upper() == b"HIERARCHY"
+
+
+def _is_acclaim(head: bytes) -> bool:
+    text = re.sub(rb"(?m)^\s*#.*$", b"", head).lstrip()
+    return re.match(rb"(?i):(FULLY-SPECIFIED|DEGREES|RADIANS)|1\s+root\s", text) is not None
+
+
+def _is_trc(head: bytes) -> bool:
+    """Detect TRC; some programs omit the first line, or write it in lower case."""
+    return re.match(rb"(?i)[\s\"]*(PathFileType|DataRate\W+CameraRate)\b", head) is not None
+
+
+FORMATS = (
+    Format("BVH", _is_bvh, read_bvh, has_skeleton=True),
+    Format("Acclaim AMC", _is_acclaim, read_acclaim, has_skeleton=True),
+    Format("VRM animation", is_vrma, read_vrma, has_skeleton=True),
+    *(Format(each.name, each.fits, each.read, is_refused=True) for each in REFUSALS),
+    Format(
+        "SMPL parameters",
+        is_smpl,
+        read_smpl,
+        has_skeleton=True,
+        open=open_smpl,
+        lacks_bones=True,
+    ),
+    Format("Kimodo", is_kimodo, read_kimodo, has_skeleton=True),
+    Format("Xsens MVNX", is_mvnx, read_mvnx, has_skeleton=True, open=open_mvnx),
+    Format("C3D", is_c3d, read_c3d, open=open_c3d),
+    Format("TRC", _is_trc, read_trc),
+    Format("OptiTrack CSV", is_motive_csv, read_motive_csv),
+    Format("Qualisys TSV", is_qualisys_tsv, read_qualisys_tsv),
+    Format("Vicon CSV", is_vicon_csv, read_vicon_csv),
+    Format("IRDS", is_irds, read_irds, open=open_irds),
+    Format("Kinect v2 CSV", is_kinect_csv, read_kinect_csv),
+    Format("Azure Kinect CSV", is_azure_csv, read_azure_csv, open=open_azure_csv),
+    Format("Azure Kinect JSON", is_azure_json, read_azure_json, open=open_azure_json),
+    Format("NTU RGB+D", is_ntu_skeleton, read_ntu_skeleton, open=open_ntu_skeleton),
+    Format("MSR Action3D", is_msr_action3d, read_msr_action3d),
+    Format("UI-PRMD", is_ui_prmd, read_ui_prmd),
+    Format("freemocap", is_npy, read_npy, lacks_bones=True),
+    Format("ZED JSON", is_zed_json, read_zed_json, open=open_zed_json),
+    Format("Nuitrack CSV", is_nuitrack_csv, read_nuitrack_csv, open=open_nuitrack_csv),
+    Format("Nuitrack JSON", is_nuitrack_json, read_nuitrack_json, open=open_nuitrack_json),
+    Format("MediaPipe CSV", is_mediapipe_csv, read_mediapipe_csv),
+    Format("MediaPipe JSON", is_mediapipe_json, read_mediapipe_json),
+    Format("joint CSV", is_joint_csv, read_joint_csv, open=open_joint_csv),
+    Format("joint JSON", is_joint_json, read_joint_json, open=open_joint_json),
+)
+"""Supported formats; add a line here for a new one."""
+
+
+def detect_format(path: Path | str) -> Format | None:
+    """Detect the format of a file from its first bytes; None if it is not supported.
+
+    For depth images see `detect_depth_format`.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing or unreadable.
+    """
+    if Path(path).is_dir():
+        check_folder_access(Path(path))
+        return None
+    try:
+        with open_regular(path) as file:
+            head = file.read(HEAD).removeprefix(BYTE_ORDER_MARK)
+            head += file.read(min(json_length(head), MAX_JSON_BYTES))
+    except FileNotFoundError:
+        raise InvalidFileError(f"There is no file {path}.") from None
+    except OSError as error:
+        raise unreadable(path, error) from None
+    return next((format_ for format_ in FORMATS if format_.fits(head)), None)

@@ -1,0 +1,107 @@
+"""Settings for what a file may not say about itself: axes, unit, floor, height of the actor."""
+
+from dataclasses import dataclass
+
+from ..motion import AxisName
+from ..settings import Choice, Settings, setting
+from .skeleton_files import STATURE_M
+
+
+class Axis(Choice):
+    """An axis of a file."""
+
+    AUTO = "auto", "Judge the axis from the file and from the body in it", "Auto"
+    X = "x", "The file's +X axis", "X"
+    Y = "y", "The file's +Y axis", "Y"
+    Z = "z", "The file's +Z axis", "Z"
+    MINUS_X = "-x", "The file's -X axis", "-X"
+    MINUS_Y = "-y", "The file's -Y axis", "-Y"
+    MINUS_Z = "-z", "The file's -Z axis", "-Z"
+
+    @property
+    def axis(self) -> AxisName | None:
+        """The axis of the file; None judges it."""
+        return AXES.get(self)
+
+    @classmethod
+    def of(cls, axis: AxisName) -> "Axis":
+        """Return the choice that means an axis."""
+        return next(each for each in cls if each.axis == axis)
+
+
+AXES: dict[Axis, AxisName] = {
+    Axis.X: "X", Axis.Y: "Y", Axis.Z: "Z", Axis.MINUS_X: "-X", Axis.MINUS_Y: "-Y",
+    Axis.MINUS_Z: "-Z",
+}  # fmt: skip
+
+
+class Unit(Choice):
+    """What the lengths of files are measured in."""
+
+    GUESS = "guess", "Read the unit from the file, or estimate it from the body size", "Auto"
+    METRES = "metres", "Lengths in the files are in meters", "Meters"
+    CENTIMETRES = "centimetres", "Lengths in the files are in centimeters", "Centimeters"
+    MILLIMETRES = "millimetres", "Lengths in the files are in millimeters", "Millimeters"
+    INCHES = "inches", "Lengths in the files are in inches", "Inches"
+
+    @property
+    def metres(self) -> float | None:
+        """Meters in one of these; None for what the file says, or its reader guesses."""
+        return METRES.get(self)
+
+
+METRES = {
+    Unit.METRES: 1.0, Unit.CENTIMETRES: 0.01, Unit.MILLIMETRES: 0.001, Unit.INCHES: 0.0254,
+}  # fmt: skip
+
+
+class Floor(Choice):
+    """Whether a take is moved up or down onto the floor."""
+
+    AUTO = (
+        "auto",
+        "Where the floor was not measured: depth cameras, video models, hips at the origin",
+        "Auto",
+    )
+    ALWAYS = "always", "Put the lowest level that the body rests on at height 0", "On"
+    NEVER = "never", "Keep the heights of the file", "Off"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReadingSettings(Settings):
+    """What a file may not say about itself."""
+
+    up: Axis = setting(
+        Axis.AUTO,
+        "Axis of the file that points up; set it if the actor lies on the floor",
+        label="Up",
+    )
+    forward: Axis = setting(
+        Axis.AUTO,
+        "Axis of the file along which the actor faces; it becomes -Y, the front view",
+        label="Forward",
+    )
+    unit: Unit = setting(
+        Unit.GUESS, "Length unit of the files; the import message says what Auto found"
+    )
+    height: float = setting(
+        STATURE_M,
+        "Stature of the actor for SMPL files, which have no bone lengths; more is taller",
+        unit="m",
+        minimum=0.1,
+        maximum=9.0,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class FloorSettings(Settings):
+    """Where a take stands."""
+
+    place_on_floor: Floor = setting(
+        Floor.AUTO,
+        "Move the take so that the lowest level the actor stands on is height 0",
+        label="Place on Floor",
+    )
+
+
+DEFAULT_READING = ReadingSettings()
