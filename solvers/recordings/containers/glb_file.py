@@ -3,15 +3,16 @@
 The format is described at https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html.
 """
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...errors import InvalidFileError
+from ...json_text import parse_json
 from .text import map_bytes
 
 MAGIC, JSON_CHUNK, BINARY_CHUNK = b"glTF", 0x4E4F534A, 0x004E4942
@@ -51,8 +52,8 @@ class GlbFile:
         if not 0 < length <= min(MAX_JSON_BYTES, len(content) - start):
             raise self.damaged()
         try:
-            self.json = json.loads(content[start : start + length])
-        except (ValueError, RecursionError):
+            self.json = parse_json(content[start : start + length])
+        except ValueError:
             raise self.damaged() from None
         if not isinstance(self.json, dict):
             raise self.damaged()
@@ -104,10 +105,10 @@ class GlbFile:
         first = start + offset
         if not count or first + (count - 1) * stride + width > len(self._binary):
             raise self.damaged()
-        rows = np.ndarray(
-            (count, size), "<" + kind, self._binary, first, (stride, width // size)
-        )
-        values = rows.astype(np.float64)
+        strides = (stride, width // size)
+        rows: NDArray[Any] = np.ndarray((count, size), "<" + kind, self._binary, first, strides)
+        with np.errstate(invalid="ignore"):  # Damaged floats may be signaling NaN.
+            values = rows.astype(np.float64)
         if kind == "f4":
             return values
         return np.asarray(np.maximum(values / np.iinfo(kind).max, -1.0))

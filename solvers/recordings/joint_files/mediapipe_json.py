@@ -110,7 +110,7 @@ def _landmarks(frame: Any, location: str) -> Array | None:
     """Return x, y, z and visibility of the first body, shape (33, 4); None without one."""
     found = frame
     if isinstance(frame, Mapping):
-        inner = next(
+        inner: Mapping[str, Any] = next(
             (frame[key] for key in WRAPPERS if isinstance(frame.get(key), Mapping)), {}
         )
         found = next(

@@ -1,7 +1,7 @@
 """Read skeletons of Nuitrack: the CSV of its recorder, and JSON of its interface."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -109,7 +109,7 @@ def read_nuitrack_json(
     are millimeters, unless these do not give a human body.
     """
     check_scale(scale)
-    frames = []
+    frames: list[Frame] = []
     for _, value, done in json_frames(path, KEYS):
         frames.append(_read_frame(value, done, f"{path}, frame {len(frames) + 1}"))
         progress(0.9 * done, "Reading")
@@ -131,7 +131,7 @@ def read_nuitrack_json(
 
 
 def _read_frame(value: Mapping[str, Any], done: float, location: str) -> Frame:
-    bodies = {}
+    bodies: dict[Hashable, Body] = {}
     for count, body in enumerate(listed(_first(value, tuple(KEYS)), location)):
         joints = _first(body, ("joints", "Joints"))
         found = _read_joints(body if joints is None else joints, location)

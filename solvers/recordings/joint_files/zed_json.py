@@ -1,6 +1,7 @@
 """Read the JSON that the body tracking samples of the ZED SDK write."""
 
 import re
+from collections.abc import Hashable
 from pathlib import Path
 from typing import Any
 
@@ -67,7 +68,7 @@ def read_zed_json(
     .. [1] Stereolabs, zed-sdk, body tracking/export/JSON export.
     """
     check_scale(scale)
-    frames = []
+    frames: list[Frame] = []
     for key, value, done in json_frames(path, KEYS):
         frames.append(_read_frame(key, value, done, f"{path}, frame {len(frames) + 1}"))
         progress(0.9 * done, "Reading")
@@ -121,7 +122,7 @@ def _with_means(
 
 
 def _read_frame(key: str, value: dict[str, Any], done: float, location: str) -> Frame:
-    bodies = {}
+    bodies: dict[Hashable, Body] = {}
     for count, body in enumerate(listed(value.get("body_list"), location)):
         if not body.get("keypoint"):
             continue

@@ -137,11 +137,12 @@ def _nodes(file: GlbFile) -> list[_Node]:
     for animation in file.items("animations")[:1]:
         for channel in _objects(animation.get("channels")):
             target = channel.get("target")
-            node = target.get("node") if isinstance(target, dict) else None
-            kind = target.get("path") if isinstance(target, dict) else None
-            if isinstance(node, int) and 0 <= node < len(keys) and kind in _SIZES:
+            if not isinstance(target, dict):
+                continue
+            index, kind = target.get("node"), target.get("path")
+            if isinstance(index, int) and 0 <= index < len(keys) and kind in _SIZES:
                 samplers = _objects(animation.get("samplers"))
-                keys[node][kind] = _channel(file, samplers, channel.get("sampler"), kind)
+                keys[index][kind] = _channel(file, samplers, channel.get("sampler"), kind)
     return [
         _Node(
             parents[index],
