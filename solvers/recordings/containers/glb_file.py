@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...errors import InvalidFileError
@@ -52,7 +53,7 @@ class GlbFile:
             raise self.damaged()
         try:
             self.json = parse_json(content[start : start + length])
-        except (ValueError, RecursionError):
+        except ValueError:
             raise self.damaged() from None
         if not isinstance(self.json, dict):
             raise self.damaged()
@@ -104,10 +105,10 @@ class GlbFile:
         first = start + offset
         if not count or first + (count - 1) * stride + width > len(self._binary):
             raise self.damaged()
-        rows: np.ndarray[Any, Any] = np.ndarray(
-            (count, size), "<" + kind, self._binary, first, (stride, width // size)
-        )
-        values: Array = rows.astype(np.float64)
+        strides = (stride, width // size)
+        rows: NDArray[Any] = np.ndarray((count, size), "<" + kind, self._binary, first, strides)
+        with np.errstate(invalid="ignore"):  # Damaged floats may be signaling NaN.
+            values: Array = rows.astype(np.float64)
         if kind == "f4":
             return values
         return np.asarray(np.maximum(values / np.iinfo(kind).max, -1.0))

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ...arrays import Array
-from ...errors import InvalidFileError
+from ...errors import InvalidFileError, InvalidMotionError
 from ...motion import Motion, Skeleton, Tracks, find_humanoid_map
 from ...progress import Progress, unwatched
 from ...rotations import (
@@ -65,6 +65,11 @@ def recording_from_segments(
         Empty for the root. None: by the names (`tree_of_segments`).
     default_up : str
         Axis of the file that is up where no body shows it.
+
+    Raises
+    ------
+    InvalidMotionError
+        No segment is observed in any frame.
     """
     tree = tree_of_segments(names) if parents is None else _sorted_tree(parents)
     if len(tree) >= MIN_BODY_JOINTS:
@@ -82,6 +87,8 @@ def recording_from_segments(
             return face_forward(stand_upright(motion, progress))
     else:
         progress(1.0, POINTS_ONLY)
+    if not np.isfinite(positions).all(axis=-1).any():
+        raise InvalidMotionError("No segment is observed in any frame. Export it again.")
     return Tracks(tuple(names), points_z_up(positions, default_up=default_up), frame_rate)
 
 

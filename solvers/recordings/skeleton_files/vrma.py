@@ -137,8 +137,9 @@ def _nodes(file: GlbFile) -> list[_Node]:
     for animation in file.items("animations")[:1]:
         for channel in _objects(animation.get("channels")):
             target = channel.get("target")
-            moved = target.get("node") if isinstance(target, dict) else None
-            kind = target.get("path") if isinstance(target, dict) else None
+            if not isinstance(target, dict):
+                continue
+            moved, kind = target.get("node"), target.get("path")
             if isinstance(moved, int) and 0 <= moved < len(keys) and kind in _SIZES:
                 samplers = _objects(animation.get("samplers"))
                 keys[moved][kind] = _channel(file, samplers, channel.get("sampler"), kind)
