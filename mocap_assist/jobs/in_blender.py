@@ -66,6 +66,8 @@ class BlendClip:
     """Name of the action, and of the slot if several slots animate armatures."""
     motion: Motion
     tags: tuple[str, ...] = ()
+    armature: str = ""
+    """Name of the armature."""
 
 
 @dataclass(frozen=True, eq=False)
