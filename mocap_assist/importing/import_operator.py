@@ -65,11 +65,11 @@ class FilesOperator(SettingsMixin):
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
+        if bodies_to_choose(chosen_paths(self)):
+            self.layout.column().prop(self, "body_choice", expand=True)
         for name in type(self).setting_names:
             if name != "body":
                 self.layout.prop(self, name)
-        if bodies_to_choose(chosen_paths(self)):
-            self.layout.prop(self, "body_choice", expand=True)
         if self.note:
             draw_lines(self.layout, self.note, WIDTH)
 

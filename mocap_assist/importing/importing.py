@@ -7,8 +7,9 @@ import bpy
 from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.faults import Failure, attempt
 from ...solvers.progress import Progress, unwatched, within
+from ...solvers.recordings import SCENE_SUFFIXES
 from ..blender.path_properties import absolute, chosen_files
-from ..jobs.in_blender import SCENE_SUFFIXES, is_scene_file
+from ..jobs.in_blender import is_scene_file
 from ..scene.scene_rate import scene_rate
 from .choices import ImportChoices
 from .depth_folders import is_take, readable, take_of

@@ -48,10 +48,12 @@ from .read_recording import (
     read_tracked,
 )
 from .recording_figures import recording_figures
+from .refused_files import SCENE_SUFFIXES
 from .skeleton_files import read_acclaim, read_acclaim_limits, read_bvh, write_bvh
 
 __all__ = [
     "ALL_BODIES",
+    "SCENE_SUFFIXES",
     "Bodies",
     "Body",
     "CameraOrientation",

@@ -10,6 +10,20 @@ from ..progress import Progress, unwatched
 
 SCENE_MAGIC = (b"Kaydara FBX Binary", b"; FBX", b"glTF", b"PXR-USDC", b"#usda")
 
+SCENE_SUFFIXES = frozenset({
+    ".fbx",
+    ".glb",
+    ".gltf",
+    ".vrm",
+    ".vrma",
+    ".usd",
+    ".usda",
+    ".usdc",
+    ".usdz",
+    ".dae",
+})
+"""Files of other programs, which only Blender's own importers read."""
+
 
 class Refusal(NamedTuple):
     """A kind of file that is not read."""
