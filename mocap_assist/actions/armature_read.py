@@ -28,6 +28,7 @@ def read_take(
     choice: FrameRange = FrameRange.ACTION,
     source: Source | None = None,
     grid: Grid | None = None,
+    root: str = "",
 ) -> Steps[ArmatureTake]:
     """Read an action, by default the armature's own, through its F-Curves in bulk.
 
@@ -42,6 +43,8 @@ def read_take(
         Others that fit the armature.
     grid : Grid
         Frames to read instead of those of the keys within `choice`.
+    root : str
+        Bone that the body begins with; empty judges it by the bones that travel.
 
     Returns
     -------
@@ -79,10 +82,11 @@ def read_take(
             f"All keys of {armature.name} are NaN: nothing was captured. Import the take again."
         )
     space = read_space(keyed.armature, keyed.curves, grid.frames)
-    root = body_root(rig, [each.travels for each in channels])
-    space = space.in_unit(metres_per_unit(keyed.scene, rig, root, space.scale))
+    travels = [each.travels for each in channels]
+    top = rig.bones.index(root) if root in rig.bones else body_root(rig, travels)
+    space = space.in_unit(metres_per_unit(keyed.scene, rig, top, space.scale))
     rate = keyed.scene.render.fps / keyed.scene.render.fps_base / grid.step
-    return (yield from _assembled(rig, root, grid, tuple(channels), space, rate))
+    return (yield from _assembled(rig, top, grid, tuple(channels), space, rate))
 
 
 def _is_captured(bone: BoneChannels) -> bool:

@@ -12,6 +12,22 @@ def plays(armature: bpy.types.Object, action: bpy.types.Action) -> bool:
     return animation is not None and animation.action == action
 
 
+def plays_slot(
+    armature: bpy.types.Object, action: bpy.types.Action, slot: bpy.types.ActionSlot
+) -> bool:
+    """Whether the armature plays this slot of the action now, or in one of its strips."""
+    animation = armature.animation_data
+    if animation is None:
+        return False
+    strips = [strip for track in animation.nla_tracks for strip in track.strips]
+    played = [(animation.action, animation.action_slot)]
+    played += [(strip.action, strip.action_slot) for strip in strips]
+    return any(
+        its_action == action and its_slot is not None and its_slot.handle == slot.handle
+        for its_action, its_slot in played
+    )
+
+
 def fits(
     armature: bpy.types.Object, action: bpy.types.Action, slot: bpy.types.ActionSlot
 ) -> bool:

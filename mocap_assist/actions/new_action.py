@@ -24,6 +24,7 @@ def write_motion(
     frames: Array,
     metres: float,
     *,
+    name: str = "",
     progress: Progress = unwatched,
 ) -> Source:
     """Assign a new action with the motion to an armature.
@@ -36,13 +37,14 @@ def write_motion(
         Where it was not observed there are no keys. A joint that never turns has none at all.
     frames : shape (n_frames,), scene frames
     metres : length of one of the scene's units
+    name : of the action; by default that of the armature
     progress : Progress
 
     Returns
     -------
     action, slot
     """
-    action, slot = compat.new_action(armature.name, armature)
+    action, slot = compat.new_action(name or armature.name, armature)
     bag = compat.ensure_channelbag(action, slot)
     rig = read_rig(armature)
     owners = tuple(rig.bones.index(bone) if bone else -1 for bone in bones)

@@ -60,6 +60,11 @@ class ImportChoices(Settings):
         Unit.GUESS,
         "Length unit of the files; the import message says what Auto found",
     )
+    body: str = setting(
+        "",
+        "Which body of a file with several: name, number or all; empty is the one seen most",
+        label="Body",
+    )
     global_scale: float = setting(
         1.0,
         "Scale the recording by this value; 1 leaves it in meters",

@@ -116,7 +116,7 @@ class ImportJob:
         if isinstance(found, MocapAssistError):
             self.transaction.refuse(path, found)
             return
-        remember(path, state, [take.content for take in found], self._wanted.unit)
+        remember(path, state, [take.content for take in found], self._wanted)
         for content, moving in found:
             self.transaction.add(context, path, content, moving=moving)
 

@@ -3,13 +3,14 @@
 from typing import Any
 
 import bpy
-from bpy.props import CollectionProperty, StringProperty
+from bpy.props import CollectionProperty, EnumProperty, StringProperty
 
 from ...solvers.errors import MocapAssistError
 from ..blender.mixins import SettingsMixin
 from ..blender.path_properties import FILE, FOLDER, HIDDEN, path_property
 from ..panels.drawing import draw_lines
 from ..runtime.watch import why_busy
+from .body_choice import bodies_to_choose, body_items, number_of, text_of
 from .import_job import ImportJob
 from .import_transaction import Imported
 from .importing import chosen_paths, import_files
@@ -24,6 +25,14 @@ class FilesOperator(SettingsMixin):
     files: CollectionProperty(type=bpy.types.OperatorFileListElement, options=HIDDEN)
     filepath: path_property(FILE, HIDDEN)
     note: StringProperty(options=HIDDEN)
+    body_choice: EnumProperty(
+        name="Body",
+        description="Which body of the file to import",
+        items=lambda self, context: body_items(chosen_paths(self)),
+        get=lambda self: number_of(self.body, chosen_paths(self)),
+        set=lambda self, number: setattr(self, "body", text_of(number, chosen_paths(self))),
+        options=HIDDEN,
+    )
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -56,8 +65,11 @@ class FilesOperator(SettingsMixin):
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
+        if bodies_to_choose(chosen_paths(self)):
+            self.layout.column().prop(self, "body_choice", expand=True)
         for name in type(self).setting_names:
-            self.layout.prop(self, name)
+            if name != "body":
+                self.layout.prop(self, name)
         if self.note:
             draw_lines(self.layout, self.note, WIDTH)
 

@@ -19,7 +19,7 @@ from ..scene.scene_rate import FrameRate, extend_duration, set_scene_rate
 from ..scene.scene_state import SceneState
 from .choices import ImportChoices
 from .depth_objects import make_preview
-from .recording_objects import make_objects
+from .recording_objects import add_takes, make_objects
 from .solve_reading import ReadRecording, in_one_tree
 
 logger = logging.getLogger(__name__)
@@ -141,7 +141,7 @@ class ImportTransaction:
         progress: Progress,
     ) -> tuple[bpy.types.Object, str]:
         choices, recording = self._choices, content.recording
-        name = f"{path.stem} {content.take}".strip()
+        name = f"{path.stem} {content.body}".strip()
         if self._tops and choices.frame_rate is FrameRate.UPDATE:  # the first has set the rate
             choices = replace(choices, frame_rate=FrameRate.SCALE)
         if isinstance(recording, DepthRecording):
@@ -150,8 +150,10 @@ class ImportTransaction:
             made = make_objects(
                 context, name, recording, choices, moving=moving, progress=progress
             )
+        if content.others:
+            made = add_takes(context, made, path, content, choices)
         for owner in filter(None, (made.top, made.action)):
-            note_origin(owner, origin_of_file(path, recording))
+            note_origin(owner, origin_of_file(path, recording, content.body))
         if choices.frame_rate is FrameRate.UPDATE:
             set_scene_rate(context.scene, recording.frame_rate)
         if choices.update_scene_duration:
@@ -161,7 +163,7 @@ class ImportTransaction:
 
 
 def _figures(content: ReadRecording) -> dict[str, Any]:
-    recording, warnings, _ = content
+    recording, warnings = content.recording, content.warnings
     figures = recording_figures(recording)
     never_observed = figures.pop("never_seen", [])
     texts = [

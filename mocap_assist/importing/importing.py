@@ -7,8 +7,9 @@ import bpy
 from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.faults import Failure, attempt
 from ...solvers.progress import Progress, unwatched, within
+from ...solvers.recordings import SCENE_SUFFIXES
 from ..blender.path_properties import absolute, chosen_files
-from ..jobs.in_blender import SCENE_SUFFIXES, is_scene_file
+from ..jobs.in_blender import is_scene_file
 from ..scene.scene_rate import scene_rate
 from .choices import ImportChoices
 from .depth_folders import is_take, readable, take_of
@@ -60,13 +61,14 @@ def preview(context: bpy.types.Context, paths: list[Path]) -> str:
         size = path.stat().st_size
         if size > QUICKLY_READ or is_scene_file(path):
             return f"{path.name}: {size / 1e6:.1f} MB; {plays}"
-        ((recording, warnings, _),) = read_again(path, Conversion())
+        (content,) = read_again(path, Conversion())
     except MocapAssistError as error:
         return str(error)
     except OSError as error:
         return f"{path} cannot be read ({error.strerror})."
+    recording = content.recording
     frames = f"{recording.n_frames} frames at {recording.frame_rate:.5g} Hz"
-    return ". ".join([f"{path.name}: {frames}; {plays}", *warnings])
+    return ". ".join([f"{path.name}: {frames}; {plays}", *content.warnings])
 
 
 def import_files(

@@ -1,5 +1,6 @@
 """Recordings as objects of the scene: armatures for joints, empties for markers."""
 
+from pathlib import Path
 from typing import NamedTuple
 
 import bpy
@@ -15,11 +16,20 @@ from ..actions.empties_build import build_empties, write_tracks
 from ..actions.new_action import write_motion
 from ..actions.sensor_notes import sensor_values, write_sensor_values
 from ..blender import compat
+from ..blender.data_names import fitting_name
 from ..jobs.in_blender import BackgroundBlender
+from ..scene.origin import note_origin, origin_of_file
 from ..scene.scene_rate import FrameRate, scene_rate, timing
 from ..scene.units import unit_of
 from .choices import ImportChoices, Target
-from .solve_reading import Conversion, TrackedRecording, connected_joints, convert_tracked
+from .solve_reading import (
+    Conversion,
+    ReadRecording,
+    TrackedRecording,
+    connected_joints,
+    convert_takes,
+    convert_tracked,
+)
 
 MAX_NAMED = 3  # joints that a sentence lists
 
@@ -47,6 +57,8 @@ class CreatedObjects(NamedTuple):
     last_frame: float
     what: str
     """Description for messages."""
+    bones: tuple[str, ...] = ()
+    """Of an armature, the bone of each joint, or nothing."""
 
 
 def conversion_from_choices(context: bpy.types.Context, choices: ImportChoices) -> Conversion:
@@ -58,6 +70,7 @@ def conversion_from_choices(context: bpy.types.Context, choices: ImportChoices) 
         scene_rate(context.scene) if resampled else None,
         choices.unit.metres,
         choices.depth,
+        choices.body,
         choices.place_on_floor,
         BackgroundBlender(str(bpy.app.binary_path)),
     )
@@ -143,7 +156,41 @@ def _make_armature(
         if bone:
             write_sensor_values(bag, armature.pose.bones[bone], *sensor_samples.of(joint))
     what = f"an armature of {len(armature.data.bones)} bones"
-    return CreatedObjects(armature, action, float(frames[-1]), what)
+    return CreatedObjects(armature, action, float(frames[-1]), what, bones)
+
+
+def add_takes(
+    context: bpy.types.Context,
+    made: CreatedObjects,
+    path: Path,
+    content: ReadRecording,
+    choices: ImportChoices,
+) -> CreatedObjects:
+    """Add an action for each further take of an armature; the first one stays assigned.
+
+    Actions are called like their takes.
+    """
+    assert made.action is not None
+    scene, metres = context.scene, unit_of(context.scene)
+    made.action.name = fitting_name(content.take)
+    slot, last, names = made.top.animation_data.action_slot, made.last_frame, [content.take]
+    for take in convert_takes(content.others, conversion_from_choices(context, choices)):
+        rate = take.motion.frame_rate
+        samples = timing(scene, choices.frame_rate, rate, choices.frame_start)
+        if choices.frame_rate is FrameRate.UPDATE:  # the scene gets the rate of the first take
+            samples = samples._replace(step=content.recording.frame_rate / rate)
+        frames = samples.frames(take.motion.n_frames)
+        action, _ = write_motion(
+            made.top, made.bones, take.motion, frames, metres, name=fitting_name(take.name)
+        )
+        note_origin(action, origin_of_file(path, take.motion, content.body))
+        names.append(take.name)
+        last = max(last, float(frames[-1]))
+    compat.assign(made.top, made.action, slot)
+    more = len(names) - MAX_NAMED
+    listed = ", ".join(names[:MAX_NAMED]) + f" and {more} more" * (more > 0)
+    what = f"{made.what}, {len(names)} takes as actions ({listed})"
+    return made._replace(last_frame=last, what=what)
 
 
 def _make_empties(

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from ...solvers.depth_scene import DepthRecording
-from ...solvers.errors import InvalidFileError, MocapAssistError, SolveCancelled
+from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.faults import Failure, attempt
 from ...solvers.motion import (
     JointRecording,
@@ -18,11 +18,18 @@ from ...solvers.motion import (
     resample,
 )
 from ...solvers.motion.humanoid import fill_missing_hips
-from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings import DepthSettings, is_depth_recording, read_depth, read_tracked
+from ...solvers.progress import Progress, Remark, unwatched
+from ...solvers.recordings import (
+    Body,
+    DepthSettings,
+    is_depth_recording,
+    open_bodies,
+    read_depth,
+)
 from ...solvers.recordings.conventions import put_on_floor
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 from ..jobs.in_blender import BackgroundBlender, is_scene_file, read_blends
+from .solve_bodies import Take, bodies_of_scene, choice_in_scene
 
 TrackedRecording = Motion | Tracks | JointRecording
 """Joints or markers over time."""
@@ -42,6 +49,8 @@ class Conversion(NamedTuple):
     """Meters per unit of the files; None reads it from the file or estimates it."""
     depth: DepthSettings = DEFAULT_DEPTH_SETTINGS
     """Interpretation of depth images."""
+    body: str = ""
+    """Bodies to read of a file with several; empty for the default (`Bodies.choose`)."""
     place_on_floor: bool = False
     """Whether the lowest foot is put at height 0."""
     blender: BackgroundBlender = BackgroundBlender("")
@@ -49,17 +58,23 @@ class Conversion(NamedTuple):
 
 
 class ReadRecording(NamedTuple):
-    """Content of a file, or of one of its takes."""
+    """Content of a file, or one of its bodies."""
 
     recording: Recording
     warnings: tuple[str, ...] = ()
     """Warnings of its reader."""
     take: str = ""
-    """Name of the take in a file with several."""
+    """Name of the recording in a file with several takes."""
+    body: str = ""
+    """Name in a file with several bodies."""
+    others: tuple[Take, ...] = ()
+    """Further takes of the same skeleton."""
+    bodies: tuple[Body, ...] = ()
+    """Bodies to choose from in its file."""
 
 
 class Read(NamedTuple):
-    """Content of a file or take, and its converted motion."""
+    """Content of a file or body, and its converted motion."""
 
     content: ReadRecording
     moving: Motion | Tracks | None
@@ -69,7 +84,7 @@ class Read(NamedTuple):
 def read_files(
     paths: Sequence[Path], conversion: Conversion, *, progress: Progress = unwatched
 ) -> list[list[Read] | MocapAssistError]:
-    """Return the takes of each file, or the error that prevents its import."""
+    """Return the bodies of each file, or the error that prevents its import."""
     found: list[list[Read] | MocapAssistError] = []
     for path in paths:
 
@@ -92,50 +107,68 @@ def _convert(path: Path, content: ReadRecording, conversion: Conversion) -> Read
     return Read(content, moving)
 
 
+def convert_takes(takes: Sequence[Take], conversion: Conversion) -> tuple[Take, ...]:
+    """Convert the further takes of a skeleton for the scene."""
+    return tuple(
+        replace(take, motion=motion)
+        for take in takes
+        if isinstance(motion := convert_tracked(take.motion, conversion), Motion)
+    )
+
+
 def read_takes(
     path: Path, conversion: Conversion, progress: Progress = unwatched
 ) -> list[ReadRecording]:
-    """Return the takes of a file: several perhaps of FBX, glTF and USD, else one.
+    """Return the chosen bodies of a file; of FBX, glTF and USD each with all its takes.
 
     Every failure becomes a MocapAssistError, so that other files are still read.
     """
     if not is_scene_file(path):
-        return [read_file(path, progress, unit=conversion.unit, depth=conversion.depth)]
+        return _read_bodies(path, conversion, progress)
     (found,) = _attempt_read(
         path, lambda: read_blends(conversion.blender, [str(path)], progress=progress)
     )
-    if not found.clips:
-        raise InvalidFileError(
-            found.refused[0] if found.refused else f"{path} has no animation of a skeleton."
+    bodies = bodies_of_scene(str(path), found)
+    offered = tuple(bodies.listed[each] for each in bodies.offered)
+    chosen = choice_in_scene(conversion.body, bodies)
+    contents: list[ReadRecording] = []
+    for index in chosen:
+        first, *others = bodies.read(index, unwatched)
+        take = first.name if others else ""
+        name = bodies.listed[index].name if len(bodies.listed) > 1 else ""
+        warnings = () if contents else found.refused
+        contents.append(
+            ReadRecording(first.motion, warnings, take, name, tuple(others), offered)
         )
-    several = len(found.clips) > 1
+    return contents
+
+
+def _read_bodies(path: Path, conversion: Conversion, progress: Progress) -> list[ReadRecording]:
+    """Return the chosen bodies of a file that is read without Blender."""
+    listener = _WarningCollector(progress)
+
+    def read() -> tuple[list[tuple[str, Recording]], tuple[Body, ...]]:
+        if is_depth_recording(path):
+            return [("", read_depth(path, conversion.depth, progress=listener))], ()
+        bodies = open_bodies(path, scale=conversion.unit, progress=listener)
+        offered = tuple(bodies.listed[each] for each in bodies.offered)
+        return [*bodies.read_chosen(conversion.body, listener)], offered
+
+    found, offered = _attempt_read(path, read)
     return [
-        ReadRecording(clip.motion, found.refused, clip.item if several else "")
-        for clip in found.clips
+        ReadRecording(
+            recording,
+            tuple(listener.warnings) if number == 0 else (),
+            body=name if len(found) > 1 or conversion.body else "",
+            bodies=offered,
+        )
+        for number, (name, recording) in enumerate(found)
     ]
 
 
-def read_file(
-    path: Path,
-    progress: Progress = unwatched,
-    *,
-    unit: float | None = None,
-    depth: DepthSettings = DEFAULT_DEPTH_SETTINGS,
-) -> ReadRecording:
-    """Read a file or folder like `read_recording`, and keep the warnings of its reader.
-
-    `unit` is meters per unit of the file, `depth` the interpretation of depth images. Every
-    failure becomes a MocapAssistError, so that other files are still read.
-    """
-    listener = _WarningCollector(progress)
-
-    def read() -> Recording:
-        if is_depth_recording(path):
-            return read_depth(path, depth, progress=listener)
-        return read_tracked(path, scale=unit, progress=listener)
-
-    recording = _attempt_read(path, read)
-    return ReadRecording(recording, tuple(listener.warnings))
+def read_file(path: Path, body: str = "") -> ReadRecording:
+    """Read one body of a file or folder like `read_recording`."""
+    return _read_bodies(path, Conversion(body=body), unwatched)[0]
 
 
 def _attempt_read(path: Path, read: Callable[[], Result]) -> Result:
@@ -154,7 +187,8 @@ class _WarningCollector:
 
     def __call__(self, fraction: float, message: str = "") -> None:
         if message not in {"", "Reading", *self.warnings}:
-            self.warnings.append(message)
+            first = 0 if isinstance(message, Remark) else len(self.warnings)
+            self.warnings.insert(first, message)
         self._progress(fraction, message)
 
 

@@ -11,23 +11,12 @@ from ...solvers.errors import InvalidFileError
 from ...solvers.faults import attempt
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
+from ...solvers.recordings import SCENE_SUFFIXES
 from .job import EXTENSION, isolated_command, run
 
 BLEND_CHILD = Path(__file__).with_name("blend_child.py")
 READER = "mocap_assist.library.blend_clips"
 BLEND = ".blend"
-SCENE_SUFFIXES = frozenset({
-    ".fbx",
-    ".glb",
-    ".gltf",
-    ".vrm",
-    ".usd",
-    ".usda",
-    ".usdc",
-    ".usdz",
-    ".dae",
-})
-"""Files of other programs that Blender's own importers read."""
 
 
 def is_scene_file(path: Path | str) -> bool:
@@ -65,6 +54,8 @@ class BlendClip:
     """Name of the action, and of the slot if several slots animate armatures."""
     motion: Motion
     tags: tuple[str, ...] = ()
+    armature: str = ""
+    """Name of the armature."""
 
 
 @dataclass(frozen=True, eq=False)

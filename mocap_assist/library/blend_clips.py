@@ -1,6 +1,7 @@
 """Read armature actions out of .blend, FBX, glTF and USD files, in a background Blender."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
@@ -10,7 +11,7 @@ from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
 from ...solvers.workflows import path_fault
 from ..actions.armature_read import read_take
-from ..actions.fitting import fitting_slots, plays
+from ..actions.fitting import fitting_slots, plays, plays_slot
 from ..blender import compat
 from ..blender.compat import Source
 from ..blender.scene_files import open_scene_file
@@ -67,23 +68,35 @@ def item_of(source: Source, n_slots: int) -> str:
 def sources_of(action: bpy.types.Action) -> dict[str, tuple[bpy.types.Object, Source]]:
     """Return the slots of an action that move armatures, each with its armature, by item.
 
-    An armature that plays the action comes first, then the one that it was made for.
+    Of several armatures with these bones it is the one that plays the slot, then the one that
+    it was made for or is called after.
     """
     armatures = [each for each in bpy.data.objects if each.type == "ARMATURE"]
+    fitting = {each: fitting_slots(each, action) for each in armatures}
     made_for = history.given_to(action)
-    ranked = sorted(
-        armatures, key=lambda each: (not plays(each, action), each.name != made_for)
-    )
-    found: dict[int, tuple[bpy.types.Object, Source]] = {}
-    for armature in ranked:
-        for slot in fitting_slots(armature, action):
-            found.setdefault(slot.handle, (armature, (action, slot)))
-    return {item_of(source, len(found)): (each, source) for each, source in found.values()}
+    found = []
+    for slot in action.slots:
+        ranked = sorted(
+            (each for each in armatures if slot in fitting[each]),
+            key=lambda each, slot=slot: (  # type: ignore[misc]
+                not plays_slot(each, action, slot),
+                each.name != made_for,
+                each.name != slot.name_display,
+                not plays(each, action),
+            ),
+        )
+        found += [(ranked[0], (action, slot))] if ranked else []
+    return {item_of(source, len(found)): (each, source) for each, source in found}
 
 
-def read_source(scene: bpy.types.Scene, armature: bpy.types.Object, source: Source) -> Motion:
-    """Return how the body moves; that of a control rig as its constraints show it."""
-    take = read_take(armature, scene, source=source)
+def read_source(
+    scene: bpy.types.Scene, armature: bpy.types.Object, source: Source, root: str = ""
+) -> Motion:
+    """Return how the body moves; that of a control rig as its constraints show it.
+
+    `root` is the bone that the body begins with, if it is known.
+    """
+    take = read_take(armature, scene, source=source, root=root)
     bones = armature.data.bones
     if is_rigify(bones) and armature.name in scene.objects:
         body = body_bones(find_roles(armature), bones)
@@ -112,7 +125,33 @@ def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> 
         found = _read_action(path, action, items)
         clips += found.clips
         refused += found.refused
+    if is_scene_file(path):
+        clips = _with_one_root(clips)
     return BlendRead(tuple(clips), tuple(refused))
+
+
+def _with_one_root(clips: list[BlendClip]) -> list[BlendClip]:
+    """Read takes again whose body begins lower down than in another take of its armature.
+
+    Where the body begins is judged by how bones travel, which differs from take to take.
+    """
+    largest: dict[str, Motion] = {}
+    for clip in clips:
+        known = largest.setdefault(clip.armature, clip.motion)
+        if clip.motion.skeleton.n_joints > known.skeleton.n_joints:
+            largest[clip.armature] = clip.motion
+    sources = {
+        item: found for action in bpy.data.actions for item, found in sources_of(action).items()
+    }
+    same = []
+    for clip in clips:
+        root = largest[clip.armature].skeleton.names[0]
+        if clip.motion.skeleton.names[0] != root:
+            armature, source = sources[clip.item]
+            motion = read_source(bpy.context.scene, armature, source, root)
+            clip = replace(clip, motion=motion)
+        same.append(clip)
+    return same
 
 
 def _without_motion(path: str) -> str:
@@ -142,7 +181,7 @@ def _read_action(path: str, action: bpy.types.Action, items: Sequence[str]) -> B
         if isinstance(motion, Failure):
             refused.append(motion.sentence)
         else:
-            clips.append(BlendClip(item, motion, tags))
+            clips.append(BlendClip(item, motion, tags, armature.name))
     return BlendRead(tuple(clips), tuple(refused))
 
 

@@ -159,10 +159,11 @@ def _problem(
     )
 
 
-def _source_of(action: bpy.types.Action) -> tuple[str, int] | None:
-    """Return the file that an action was imported from, and its date; None if it is gone."""
-    path = str(origin_of(action).get("file", ""))
-    return _dated(path) if absolute(path).is_file() else None
+def _source_of(action: bpy.types.Action) -> tuple[str, int, str] | None:
+    """Return the file of an action, its date, and its body there; None if it is gone."""
+    origin = origin_of(action)
+    path, body = (str(origin.get(name, "")) for name in ("file", "body"))
+    return (*_dated(path), body) if absolute(path).is_file() else None
 
 
 def _dated(file: str) -> tuple[str, int]:

@@ -37,8 +37,8 @@ class RebuildProblem:
     body: Motion
     tracking_state: NDArray[np.int8] | None
     """Tracking state of each joint, shape (n_frames, n_joints)."""
-    source: tuple[str, int] | None
-    """The file that the take was imported from, if it is there, and its date."""
+    source: tuple[str, int, str] | None
+    """The file that the take was imported from, if it is there, its date, and the body."""
     settings: ReconstructSettings
     examples: Examples | None
     """Clips of natural postures; None for those that are shipped, or of a file."""
@@ -105,8 +105,9 @@ def _source(problem: RebuildProblem) -> JointRecording | None:
     """Return the recording of a take, if its file is still there and readable."""
     if problem.source is None:
         return None
+    path, _, body = problem.source
     try:
-        recording = read_tracked(problem.source[0])
+        recording = read_tracked(path, body=body)
     except MocapAssistError:
         return None
     return recording if isinstance(recording, JointRecording) else None

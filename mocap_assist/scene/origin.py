@@ -12,6 +12,7 @@ from ..blender.stored_json import load_json, store_json
 ORIGIN = "mocap_assist_recording"
 NOTED: dict[str, Any] = {
     "file": str, "kind": str, "frame_rate": int | float, "n_frames": int, "sensor": str,
+    "body": str,
 }  # fmt: skip
 """Keys of a note, and the types of valid values."""
 
@@ -22,7 +23,7 @@ def note_origin(made: bpy.types.ID, origin: dict[str, Any]) -> None:
 
 
 def origin_of_file(
-    path: Path, recording: Motion | Tracks | JointRecording | DepthRecording
+    path: Path, recording: Motion | Tracks | JointRecording | DepthRecording, body: str = ""
 ) -> dict[str, Any]:
     """Return what is to be noted about a recording that was read from a file."""
     origin = {
@@ -33,6 +34,8 @@ def origin_of_file(
     }
     if isinstance(recording, JointRecording):
         origin["sensor"] = recording.sensor.value
+    if body:
+        origin["body"] = body
     return origin
 
 

@@ -30,6 +30,7 @@ def add_index_options(parser: argparse.ArgumentParser) -> None:
         "--remove-missing", action="store_true",
         help="Remove clips from the library whose files were in these folders and are gone",
     )  # fmt: skip
+    add_body_option(parser)
 
 
 def perform_index(task: Task, prepared: None, progress: Progress) -> Outcome:
@@ -40,6 +41,7 @@ def perform_index(task: Task, prepared: None, progress: Progress) -> Outcome:
         task.target,
         task.sources,
         tags=arguments.tag,
+        body=arguments.body,
         jobs=arguments.jobs,
         n_threads=threads_from(arguments),
         remove_missing=arguments.remove_missing,

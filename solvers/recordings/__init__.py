@@ -57,11 +57,13 @@ from .reading_settings import (
     Unit,
 )
 from .recording_figures import recording_figures
+from .refused_files import SCENE_SUFFIXES
 from .skeleton_files import read_acclaim, read_acclaim_limits, read_bvh, write_bvh
 
 __all__ = [
     "ALL_BODIES",
     "DEFAULT_READING",
+    "SCENE_SUFFIXES",
     "Axis",
     "Bodies",
     "Body",

@@ -1,12 +1,13 @@
 """Collect the source files of a library and the names of their clips."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..errors import InvalidFileError
+from ..faults import Failure, attempt
 from ..files import is_missing, real_path
-from ..recordings import recordings_in
+from ..recordings import SCENE_SUFFIXES, open_bodies, recordings_in
 from ..recordings.containers import is_folder
 from ..recordings.skeleton_files import find_skeleton
 from ..retrieval import Origin
@@ -23,10 +24,13 @@ class ClipSource:
         Absolute.
     parts : tuple of str
         The requested folder, the folders below it, and the file's name.
+    body : str
+        Name of one of several bodies in the file; empty for the default.
     """
 
     path: Path
     parts: tuple[str, ...]
+    body: str = ""
 
     def origin(self) -> Origin:
         """Return the origin with the current size and date of the file.
@@ -41,7 +45,7 @@ class ClipSource:
         """
         found = [path.stat() for path in (self.path, *_skeletons(self.path))]
         size = sum(each.st_size for each in found)
-        return Origin(str(self.path), "", size, max(each.st_mtime_ns for each in found))
+        return Origin(str(self.path), self.body, size, max(each.st_mtime_ns for each in found))
 
     def fault(self) -> str:
         """Return why its name cannot be the name of a clip; empty if it can."""
@@ -54,7 +58,8 @@ class ClipSource:
     def names(self) -> Iterable[str]:
         """Yield candidate names for the clip, the shortest first."""
         *folders, file = self.parts
-        stem = Path(file).stem
+        ending = f" {self.body}" if self.body else ""
+        stem, file = Path(file).stem + ending, file + ending
         inside = folders[1:]
         yield "/".join([*inside, stem])
         yield "/".join([*inside, file])
@@ -83,8 +88,18 @@ def _skeletons(path: Path) -> list[Path]:
         return []
 
 
-def clip_sources(files_or_folders: Sequence[Path | str]) -> list[ClipSource]:
+def is_action(origin: Origin) -> bool:
+    """Whether a clip is an action of a file that only Blender reads."""
+    suffix = Path(origin.path).suffix.lower()
+    return bool(origin.item) and (suffix == ".blend" or suffix in SCENE_SUFFIXES)
+
+
+def clip_sources(
+    files_or_folders: Sequence[Path | str], body: str | None = None
+) -> list[ClipSource]:
     """Return every file once, with the recordings in and below each folder.
+
+    Of a file with several bodies, each that `body` chooses (`Bodies.choose`).
 
     Raises
     ------
@@ -102,4 +117,15 @@ def clip_sources(files_or_folders: Sequence[Path | str]) -> list[ClipSource]:
             below = path.relative_to(root.parent if is_single else root).parts
             parts = (root.parent.name if is_single else root.name, *below)
             found.setdefault(path, ClipSource(path, parts))
-    return list(found.values())
+    return [each for source in found.values() for each in _of_bodies(source, body)]
+
+
+def _of_bodies(source: ClipSource, body: str | None) -> list[ClipSource]:
+    """Return a source for each chosen body of its file; the reader reports what is wrong."""
+    bodies = attempt(source.path, open_bodies, source.path) if body else None
+    if bodies is None or isinstance(bodies, Failure) or not bodies.offered:
+        return [source]
+    chosen = attempt(source.path, bodies.choose, body)
+    if isinstance(chosen, Failure):
+        return [replace(source, body=str(body))]
+    return [replace(source, body=bodies.listed[each].name) for each in chosen]

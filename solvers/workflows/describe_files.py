@@ -65,7 +65,7 @@ def describe_file(request: ClipRequest) -> FileDescription:
 
 
 def _describe(request: ClipRequest) -> DescribedClip:
-    recording = read_tracked(request.origin.path)
+    recording = read_tracked(request.origin.path, body=request.origin.item)
     return describe_clip(Clip(request.name, recording, request.tags, request.origin))
 
 

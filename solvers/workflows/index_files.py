@@ -1,7 +1,7 @@
 """Build a library from files and folders of recordings, and keep it up to date."""
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..errors import InvalidMotionError
@@ -10,7 +10,7 @@ from ..progress import Progress, unwatched
 from ..retrieval import ClipEntry, ClipLibrary, DescribedClip, Origin, open_clip_library
 from ..retrieval.index import find_tags_fault
 from ..version import version
-from .clip_sources import ClipSource, clip_sources
+from .clip_sources import ClipSource, clip_sources, is_action
 from .describe_files import ClipRequest, FileDescription, describe_files
 
 MAX_BATCH_CLIPS = 100
@@ -48,6 +48,7 @@ def index_files(
     files_or_folders: Sequence[Path | str],
     *,
     tags: Sequence[str] = (),
+    body: str | None = None,
     jobs: int = 1,
     n_threads: int = 1,
     remove_missing: bool = False,
@@ -68,6 +69,9 @@ def index_files(
         Recordings of any known format, or folders that are searched recursively.
     tags : sequence of str
         Tags to add to those that the clips have.
+    body : str, optional
+        Bodies of files with several, each a clip (`Bodies.choose`); by default the one in most
+        frames.
     jobs : int
         Number of files to read in parallel, each in a process of its own.
     n_threads : int
@@ -87,7 +91,7 @@ def index_files(
     SolveCancelled
         Raised by `progress`.
     """
-    sources = clip_sources(files_or_folders)
+    sources = clip_sources(files_or_folders, body)
     if fault := find_tags_fault(tuple(tags)):
         raise InvalidMotionError(fault)
     with open_clip_library(library_path) as library:
@@ -105,13 +109,17 @@ def index_files(
         return indexing.report()
 
 
+Key = tuple[str, str]
+"""Path of a file, and body there."""
+
+
 class _Indexing:
     """An indexing run: the library and the changes so far."""
 
     def __init__(self, library: ClipLibrary, tags: tuple[str, ...]) -> None:
         self._library, self._tags = library, tags
-        self._known = dict(_clips_by_path(library))
-        self._sources: dict[str, ClipSource] = {}
+        self._known = dict(_clips_by_key(library))
+        self._sources: dict[Key, ClipSource] = {}
         self._batch: list[DescribedClip] = []
         self._added, self._changed = list[str](), list[str]()
         self._unchanged, self._removed = list[str](), list[str]()
@@ -122,7 +130,7 @@ class _Indexing:
     def to_read(self, sources: Sequence[ClipSource]) -> list[ClipRequest]:
         """Return the files that are new or changed, with their preferred clip names."""
         files = []
-        for source in sources:
+        for source in self._as_indexed(sources):
             try:
                 origin = source.origin()
             except OSError as error:
@@ -132,15 +140,34 @@ class _Indexing:
                 self._refused.append((str(source.path), sentence))
                 continue
             name, tags = next(iter(source.names())), self._tags
-            if str(source.path) in self._known:
-                _, known = self._known[str(source.path)]
+            if _key(origin) in self._known:
+                _, known = self._known[_key(origin)]
                 name, tags = known.name, tuple(dict.fromkeys(known.tags + tags))
                 if known.origin == origin and known.tags == tags:
                     self._unchanged.append(name)
                     continue
-            self._sources[origin.path] = source
+            self._sources[_key(origin)] = source
             files.append(ClipRequest(name, origin, tags))
         return files
+
+    def _as_indexed(self, sources: Sequence[ClipSource]) -> Iterator[ClipSource]:
+        """Yield sources; of files whose bodies were indexed one by one, each of these again.
+
+        A clip of the default body gives way to clips of named ones.
+        """
+        bodies: dict[str, list[str]] = {}
+        for path, body in self._known:
+            bodies.setdefault(path, []).append(body)
+        for source in sources:
+            known = [body for body in bodies.get(str(source.path), []) if body]
+            if source.body and (str(source.path), "") in self._known:
+                number, _ = self._known.pop((str(source.path), ""))
+                self._removed += self._library.discard([number])
+            yield from (
+                [replace(source, body=body) for body in known]
+                if known and not source.body
+                else [source]
+            )
 
     def take(self, description: FileDescription) -> None:
         """Add a clip to the batch, or record why there is none."""
@@ -149,8 +176,8 @@ class _Indexing:
             self._refused.append((request.origin.path, description.sentence))
             if description.is_permanent:
                 self._new_refusals.append((request.origin, description.sentence))
-            if request.origin.path in self._known:
-                self._removed += self._library.discard([self._known[request.origin.path][0]])
+            if _key(request.origin) in self._known:
+                self._removed += self._library.discard([self._known[_key(request.origin)][0]])
             return
         self._batch.append(description.clip)
         n_frames = sum(clip.postures.n_frames for clip in self._batch)
@@ -161,7 +188,8 @@ class _Indexing:
         """Write the batch; names are chosen while no other process can write."""
         names = self._library.add_described(self._batch, free_name=self._free_name)
         for clip, name in zip(self._batch, names, strict=True):
-            known = clip.entry.origin is not None and clip.entry.origin.path in self._known
+            origin = clip.entry.origin
+            known = origin is not None and _key(origin) in self._known
             (self._changed if known else self._added).append(name)
         if self._new_refusals:
             self._library.remember_refused(version(), self._new_refusals)
@@ -171,7 +199,7 @@ class _Indexing:
         """Remove clips whose files were in these folders and are gone."""
         self._removed += self._library.discard([
             number
-            for path, (number, _) in self._known.items()
+            for (path, _), (number, _) in self._known.items()
             if any(Path(path).is_relative_to(one) for one in folders) and is_missing(path)
         ])  # fmt: skip
 
@@ -184,12 +212,16 @@ class _Indexing:
 
     def _free_name(self, entry: ClipEntry, taken: Collection[str]) -> str:
         assert entry.origin is not None
-        names = self._sources[entry.origin.path].names()
+        names = self._sources[_key(entry.origin)].names()
         return next(name for name in names if name not in taken)
 
 
-def _clips_by_path(library: ClipLibrary) -> Iterator[tuple[str, tuple[int, ClipEntry]]]:
-    """Yield the path, number and entry of each clip that spans its complete file."""
+def _key(origin: Origin) -> Key:
+    return origin.path, origin.item
+
+
+def _clips_by_key(library: ClipLibrary) -> Iterator[tuple[Key, tuple[int, ClipEntry]]]:
+    """Yield path and body, number and entry of each clip of a file that is read here."""
     for number, entry in library.numbered().items():
-        if entry.origin is not None and not entry.origin.item:
-            yield entry.origin.path, (number, entry)
+        if entry.origin is not None and not is_action(entry.origin):
+            yield _key(entry.origin), (number, entry)

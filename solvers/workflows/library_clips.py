@@ -9,6 +9,7 @@ from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, unwatched, within
 from ..recordings import read_tracked
 from ..retrieval import ClipEntry, ClipLibrary, FindSettings, Match, find_similar
+from .clip_sources import is_action
 
 Recording = Motion | Tracks | JointRecording
 Fetch = Callable[[ClipEntry], Recording]
@@ -66,9 +67,9 @@ def read_origin(entry: ClipEntry) -> Recording:
         The file is gone, or no longer a recording.
     """
     origin = entry.origin
-    if origin is None or origin.item:
+    if origin is None or is_action(origin):
         raise MocapAssistError(f"{entry.name} came from no file that can be read here.")
-    return read_tracked(Path(origin.path))
+    return read_tracked(Path(origin.path), body=origin.item)
 
 
 def library_clips(

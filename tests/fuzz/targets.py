@@ -19,12 +19,14 @@ from exports.whole_exports import EXPORT_TOKENS, EXPORTS
 from fuzz_seeds import (
     QUERY,
     clip_library,
+    crowds,
     depth_folders,
     journal_of,
     live_frame,
     png,
     raw_depth,
     scene_json,
+    smpl_crowd,
 )
 from learned_files import LEARNED, npz
 from mkv_files import k4a
@@ -34,7 +36,8 @@ from solvers.depth_scene.recording import DepthRecording
 from solvers.errors import MocapAssistError
 from solvers.json_text import parse_json
 from solvers.motion import read_humanoid_map
-from solvers.recordings import DepthSettings, read_depth, read_recording
+from solvers.progress import unwatched
+from solvers.recordings import DepthSettings, open_bodies, read_depth, read_recording
 from solvers.recordings.containers.png_header import read_png_header
 from solvers.recordings.depth_files.folder import is_depth_folder
 from solvers.recordings.live.frames import decode_frame
@@ -109,6 +112,9 @@ def targets() -> dict[str, Target]:
         found[kind.replace(" ", "_")] = Target(content, read_recording, JOINT_TOKENS)
     for kind, content in EXPORTS.items():
         found[kind] = Target(content, read_recording, EXPORT_TOKENS)
+    for kind, content in crowds().items():
+        found[f"crowd_{kind}"] = Target(content, _read_bodies, JOINT_TOKENS)
+    found["crowd_smpl"] = Target(smpl_crowd(), _read_bodies, BINARY_TOKENS, is_archive=True)
     depth = {"depth_mat": matlab("depth", DEPTH.transpose(1, 2, 0)), "depth_mkv": k4a(DEPTH)}
     for kind, content in depth.items():
         found[kind] = Target(content, _read_depth, BINARY_TOKENS)
@@ -178,6 +184,13 @@ def packed(members: dict[str, bytes]) -> bytes:
         for name, content in members.items():
             file.writestr(name, content)
     return buffer.getvalue()
+
+
+def _read_bodies(path: Path) -> None:
+    bodies = open_bodies(path)
+    for index in bodies.choose("all")[:3]:
+        bodies.read(index, unwatched)
+    read_recording(path)
 
 
 def _read_depth(path: Path) -> DepthRecording:

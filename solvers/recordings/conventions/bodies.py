@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidSettingError
-from ...progress import READING, Progress, Remark
+from ...progress import READING, Progress, Remark, within
 from ..containers import shown
 
 Recording = TypeVar("Recording", covariant=True)
@@ -136,22 +136,42 @@ class Bodies(Generic[Recording]):
 
         Raises InvalidSettingError if there is no such body, or several are chosen.
         """
-        if self.are_together(wanted):
-            assert self.read_together is not None
-            recording = self.read_together(progress)
-            progress(1.0, READING)
-            return recording
-        chosen = self.choose(wanted)
-        if len(chosen) > 1:
+        if not self.is_together(wanted) and len(self.choose(wanted)) > 1:
             raise InvalidSettingError(
-                f"{self.path} has {len(chosen)} bodies; only one can be read here. Name it."
+                f"{self.path} has {len(self.choose(wanted))} bodies; only one can be read here."
+                " Name it."
             )
-        recording = self.read(chosen[0], progress)
-        sentence = self.describe_others(chosen if not wanted else self.offered)
-        progress(1.0, Remark(sentence) if sentence else READING)
+        ((_, recording),) = self.read_chosen(wanted, progress)
         return recording
 
-    def are_together(self, wanted: str | None) -> bool:
+    def read_chosen(
+        self, wanted: str | None, progress: Progress
+    ) -> list[tuple[str, Recording]]:
+        """Read the chosen bodies; report which others there are.
+
+        Returns
+        -------
+        list of (str, recording)
+            Each with its name; the name is empty where there is no choice.
+        """
+        if self.is_together(wanted):
+            assert self.read_together is not None
+            found = [("", self.read_together(progress))]
+            progress(1.0, READING)
+            return found
+        chosen = self.choose(wanted)
+        if sentence := self.describe_others(self.offered if wanted else chosen):
+            progress(0.0, Remark(sentence))
+        is_named = len(self.listed) > 1 and (wanted or self.offered)
+        found = []
+        for count, index in enumerate(chosen):
+            part = within(progress, count / len(chosen), (count + 1) / len(chosen))
+            name = self.listed[index].name if is_named else ""
+            found.append((name, self.read(index, part)))
+        progress(1.0, READING)
+        return found
+
+    def is_together(self, wanted: str | None) -> bool:
         """Whether everything is one recording, as nothing is to be chosen."""
         return not wanted and self.read_together is not None and not self.offered
 

@@ -20,7 +20,8 @@ class Origin:
     path: str
     """Absolute path of the file."""
     item: str = ""
-    """Name of the action in a .blend file; empty where the file holds one clip."""
+    """Name of the action in a file that Blender reads, or of one of several bodies; empty where
+    the file holds one clip."""
     size: int = 0
     """Size of the file in bytes when it was indexed."""
     modified: int = 0

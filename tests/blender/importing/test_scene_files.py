@@ -47,13 +47,16 @@ def test_takes_come_in_standing_in_true_size(bring, recordings, blank, file, loa
     assert roles.has("hips", "head", "leftFoot", "rightHand")
 
 
-def test_every_take_of_a_file_comes_in(bring, recordings):
+def test_takes_of_one_skeleton_are_actions_of_one_armature(bring, recordings, blank):
     armatures, _ = bring(recordings / "corpus/glb/mixamo_blender/walking.glb")
 
-    assert {each.animation_data.action.name for each in armatures} == {
-        "walking Idle",
-        "walking Walk",
-    }
+    (armature,) = armatures
+    assert armature.name == "walking"
+    assert armature.animation_data.action.name == "Idle"
+    assert [each.name for each in blank.data.actions] == ["Idle", "Walk"]
+    assert all(each.use_fake_user for each in blank.data.actions)
+    ends = [each.frame_range[1] for each in blank.data.actions]
+    assert ends == pytest.approx([24.2, 24.2])  # 30 samples of 30 Hz at 24 frames per second
 
 
 def test_a_vrm_animation_comes_in_without_a_skin(bring, recordings):

@@ -87,3 +87,29 @@ def test_unknown_body_is_one_sentence(crowd, tmp_path, capsys, verb):
     said = capsys.readouterr().err.strip()
     assert said.endswith("3 (0.0 s, 2 % of the frames).") and "\n" not in said
     assert not (tmp_path / "out.trc").exists()
+
+
+def test_each_body_becomes_a_clip(recordings, tmp_path, capsys):
+    """Who indexes again without the option keeps the clips of the bodies."""
+    takes = [recordings / "kinect" / "irds" / f"215_18_{name}_stand.txt" for name in
+             ("5_3_1", "5_8_1")]  # fmt: skip
+    lines = [path.read_text().splitlines() for path in takes]
+    merged = ["Version0.1"]
+    for number, pair in enumerate(zip(*(each[1:] for each in lines), strict=False)):
+        for body, line in enumerate(pair, start=7):
+            _, _, _, joints = line.split(",", 3)
+            merged.append(f"{number},{body},{33 * number},{joints}")
+    (tmp_path / "duo.txt").write_text("\n".join(merged))
+    library = str(tmp_path / "a.clips")
+
+    assert main(["index", library, str(tmp_path / "duo.txt")]) == 0
+    assert main(["index", library, str(tmp_path / "duo.txt"), "--body", "all", "--json"]) == 0
+    first = json.loads(capsys.readouterr().out.splitlines()[-1])
+    assert main(["index", library, str(tmp_path / "duo.txt"), "--json"]) == 0
+    again = json.loads(capsys.readouterr().out.splitlines()[-1])
+
+    assert (first["added"], first["removed"]) == (["duo 7", "duo 8"], ["duo"])
+    assert again["unchanged"] == ["duo 7", "duo 8"] and again["n_clips"] == 2
+    words = ["find", str(tmp_path / "duo.txt"), library, "--body", "8", "--json"]
+    assert main(words) == 0
+    assert json.loads(capsys.readouterr().out)["matches"][0]["clip"] == "duo 8"

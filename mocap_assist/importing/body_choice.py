@@ -1,0 +1,53 @@
+"""The choice of a body in the import dialog, for files that hold several."""
+
+from pathlib import Path
+
+from ...solvers.recordings import ALL_BODIES, Body
+from .recent_files import bodies_of
+
+Item = tuple[str, str, str, str, int]
+BEST = ("best", "Best Seen", "Import the person seen in most frames", "NONE", 0)
+EVERY = ("all", "All", "Import every body as an armature of its own", "NONE", 1)
+FIRST = 2
+"""Number of the item of the first body."""
+_items: dict[tuple[Body, ...], list[Item]] = {}
+"""Blender does not keep the texts of items, so they must live here."""
+
+
+def bodies_to_choose(paths: list[Path]) -> tuple[Body, ...]:
+    """Return the bodies of the first file with several.
+
+    Known are files that were read lately, as the dialog reads small ones.
+    """
+    return next(filter(None, map(bodies_of, paths)), ())
+
+
+def body_items(paths: list[Path]) -> list[Item]:
+    """Return the items of the choice; of several files no single bodies."""
+    offered = bodies_to_choose(paths) if len(paths) == 1 else ()
+    if offered not in _items:
+        _items[offered] = [
+            BEST,
+            EVERY,
+            *(
+                (f"body{number}", body.summary, "Import only this one", "NONE", number)
+                for number, body in enumerate(offered, start=FIRST)
+            ),
+        ]
+    return _items[offered]
+
+
+def number_of(text: str, paths: list[Path]) -> int:
+    """Return the number of the item that means this text; the best seen for others."""
+    if text.strip().lower() == ALL_BODIES:
+        return EVERY[-1]
+    names = [body.name for body in bodies_to_choose(paths)] if len(paths) == 1 else []
+    return FIRST + names.index(text) if text in names else BEST[-1]
+
+
+def text_of(number: int, paths: list[Path]) -> str:
+    """Return the text that an item means."""
+    bodies = bodies_to_choose(paths)
+    if number == EVERY[-1]:
+        return ALL_BODIES
+    return bodies[number - FIRST].name if FIRST <= number < FIRST + len(bodies) else ""

@@ -1,0 +1,88 @@
+"""Read the chosen bodies of a file, and all takes of each, for the button Import."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...solvers.errors import InvalidFileError
+from ...solvers.motion import Motion, Skeleton
+from ...solvers.recordings import ALL_BODIES, Bodies, Body
+from ...solvers.recordings.conventions import MIN_BODY_JOINTS, observed_body
+from ..jobs.in_blender import BlendClip, BlendRead
+
+SAME_OFFSET_M = 1e-4
+"""Offsets of two takes of one skeleton differ by rounding only."""
+
+
+@dataclass(frozen=True, eq=False)
+class Take:
+    """One of several actions of a skeleton."""
+
+    name: str
+    motion: Motion
+
+
+def bodies_of_scene(path: str, found: BlendRead) -> Bodies[tuple[Take, ...]]:
+    """Return the armatures of a file that Blender has read, each with its takes.
+
+    Raises InvalidFileError if there is none.
+    """
+    if not found.clips:
+        raise InvalidFileError(
+            found.refused[0] if found.refused else f"{path} has no animation of a skeleton."
+        )
+    groups = _grouped(found.clips)
+    longest = max(clip.motion.n_frames for group in groups for clip in group)
+    listed = tuple(_body(name, group, longest) for name, group in _named(groups))
+    takes = [tuple(Take(clip.item, clip.motion) for clip in group) for group in groups]
+    return Bodies(path, listed, lambda index, progress: takes[index])
+
+
+def choice_in_scene(wanted: str, bodies: Bodies[tuple[Take, ...]]) -> list[int]:
+    """Return the indices of the wanted armatures: all, unless another is named."""
+    if wanted.strip().lower() in {"", ALL_BODIES}:
+        return list(range(len(bodies.listed)))
+    return bodies.choose(wanted)
+
+
+def _grouped(clips: Sequence[BlendClip]) -> list[list[BlendClip]]:
+    """Put together the clips of each armature and skeleton."""
+    groups: list[list[BlendClip]] = []
+    for clip in clips:
+        for group in groups:
+            first = group[0]
+            if first.armature == clip.armature and _is_same(
+                first.motion.skeleton, clip.motion.skeleton
+            ):
+                group.append(clip)
+                break
+        else:
+            groups.append([clip])
+    return groups
+
+
+def _is_same(one: Skeleton, other: Skeleton) -> bool:
+    return one.same_joints(other) and np.allclose(
+        one.offsets, other.offsets, rtol=0.0, atol=SAME_OFFSET_M
+    )
+
+
+def _named(groups: list[list[BlendClip]]) -> list[tuple[str, list[BlendClip]]]:
+    """Name groups after their armatures; of one armature, also after the first take."""
+    armatures = [group[0].armature for group in groups]
+    return [
+        (armature if armatures.count(armature) == 1 else f"{armature} {group[0].item}", group)
+        for armature, group in zip(armatures, groups, strict=True)
+    ]
+
+
+def _body(name: str, group: list[BlendClip], longest: int) -> Body:
+    motion = max((clip.motion for clip in group), key=lambda each: each.n_frames)
+    return observed_body(
+        name,
+        np.arange(motion.n_frames),
+        longest,
+        longest / motion.frame_rate,
+        is_person=motion.skeleton.n_joints >= MIN_BODY_JOINTS,
+    )
