@@ -4,9 +4,12 @@ from pathlib import Path
 
 import bpy
 
+from ...solvers.depth_scene import DepthRecording
 from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.faults import Failure, attempt
 from ...solvers.progress import Progress, unwatched, within
+from ...solvers.recordings import Floor
+from ...solvers.recordings.conventions import conventions_of
 from ..blender.path_properties import absolute, chosen_files
 from ..jobs.in_blender import SCENE_SUFFIXES, is_scene_file
 from ..scene.scene_rate import scene_rate
@@ -60,12 +63,14 @@ def preview(context: bpy.types.Context, paths: list[Path]) -> str:
         size = path.stat().st_size
         if size > QUICKLY_READ or is_scene_file(path):
             return f"{path.name}: {size / 1e6:.1f} MB; {plays}"
-        ((recording, warnings, _),) = read_again(path, Conversion())
+        ((recording, warnings, _),) = read_again(path, Conversion(floor=Floor.AUTO))
     except MocapAssistError as error:
         return str(error)
     except OSError as error:
         return f"{path} cannot be read ({error.strerror})."
     frames = f"{recording.n_frames} frames at {recording.frame_rate:.5g} Hz"
+    if not isinstance(recording, DepthRecording):
+        warnings = (conventions_of(recording).sentence(), *warnings)
     return ". ".join([f"{path.name}: {frames}; {plays}", *warnings])
 
 

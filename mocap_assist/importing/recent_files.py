@@ -6,13 +6,15 @@ from ...solvers.depth_scene import DepthRecording
 from ...solvers.errors import InvalidFileError
 from ...solvers.motion import JointRecording, Motion
 from ...solvers.progress import Progress, unwatched
+from ...solvers.recordings import Floor, ReadingSettings
 from ...solvers.recordings.skeleton_files import find_skeleton
 from .solve_reading import Conversion, ReadRecording, Recording, read_takes
 
 MOST = 20_000_000  # numbers that are kept
 
 State = tuple[tuple[str, int, int], ...]
-_read: dict[tuple[State, float | None], list[ReadRecording]] = {}
+Reading = tuple[ReadingSettings, Floor]
+_read: dict[tuple[State, Reading], list[ReadRecording]] = {}
 
 
 def read_again(
@@ -22,18 +24,23 @@ def read_again(
 
     Recordings of depth are opened anew: little is read for that.
     """
-    state, unit = state_of(path), conversion.unit
-    takes = _read.pop((state, unit), None) or read_takes(path, conversion, progress)
-    remember(path, state, takes, unit)
+    state, reading = state_of(path), reading_of(conversion)
+    takes = _read.pop((state, reading), None) or read_takes(path, conversion, progress)
+    remember(path, state, takes, reading)
     return takes
 
 
-def remember(path: Path, state: State, takes: list[ReadRecording], unit: float | None) -> None:
-    """Keep what was read from a file in this state and unit, unless it has changed since."""
+def reading_of(conversion: Conversion) -> Reading:
+    """Return what a file is read by, of all that is done to it."""
+    return conversion.reading, conversion.floor
+
+
+def remember(path: Path, state: State, takes: list[ReadRecording], reading: Reading) -> None:
+    """Keep what was read from a file in this state, unless it has changed since."""
     if any(isinstance(take.recording, DepthRecording) for take in takes):
         return
     if state and state == state_of(path):
-        _read[state, unit] = takes
+        _read[state, reading] = takes
     while sum(_size(take.recording) for takes in _read.values() for take in takes) > MOST:
         _read.pop(next(iter(_read)))
 

@@ -56,7 +56,7 @@ def conversion_from_choices(context: bpy.types.Context, choices: ImportChoices) 
         choices.target is Target.ARMATURE,
         choices.global_scale,
         scene_rate(context.scene) if resampled else None,
-        choices.unit.metres,
+        choices.reading,
         choices.depth,
         choices.place_on_floor,
         BackgroundBlender(str(bpy.app.binary_path)),

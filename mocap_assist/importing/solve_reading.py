@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar, cast
 
 from ...solvers.depth_scene import DepthRecording
 from ...solvers.errors import InvalidFileError, MocapAssistError, SolveCancelled
@@ -19,8 +19,21 @@ from ...solvers.motion import (
 )
 from ...solvers.motion.humanoid import fill_missing_hips
 from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings import DepthSettings, is_depth_recording, read_depth, read_tracked
-from ...solvers.recordings.conventions import put_on_floor
+from ...solvers.recordings import (
+    DEFAULT_READING,
+    DepthSettings,
+    Floor,
+    ReadingSettings,
+    is_depth_recording,
+    read_as,
+    read_depth,
+    settle,
+)
+from ...solvers.recordings.conventions import (
+    conventions_of,
+    question_of_size,
+    with_conventions,
+)
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 from ..jobs.in_blender import BackgroundBlender, is_scene_file, read_blends
 
@@ -28,6 +41,7 @@ TrackedRecording = Motion | Tracks | JointRecording
 """Joints or markers over time."""
 Recording = TrackedRecording | DepthRecording
 Result = TypeVar("Result")
+Moving = TypeVar("Moving", bound=Motion | Tracks)
 
 
 class Conversion(NamedTuple):
@@ -38,12 +52,12 @@ class Conversion(NamedTuple):
     scale: float = 1.0
     frame_rate: float | None = None
     """Frames per second to resample to; None leaves each recording its own."""
-    unit: float | None = None
-    """Meters per unit of the files; None reads it from the file or estimates it."""
+    reading: ReadingSettings = DEFAULT_READING
+    """What the files may not say about themselves."""
     depth: DepthSettings = DEFAULT_DEPTH_SETTINGS
     """Interpretation of depth images."""
-    place_on_floor: bool = False
-    """Whether the lowest foot is put at height 0."""
+    floor: Floor = Floor.NEVER
+    """Whether takes are put on the floor."""
     blender: BackgroundBlender = BackgroundBlender("")
     """The Blender whose importers read FBX, glTF and USD."""
 
@@ -100,7 +114,7 @@ def read_takes(
     Every failure becomes a MocapAssistError, so that other files are still read.
     """
     if not is_scene_file(path):
-        return [read_file(path, progress, unit=conversion.unit, depth=conversion.depth)]
+        return [read_file(path, conversion, progress)]
     (found,) = _attempt_read(
         path, lambda: read_blends(conversion.blender, [str(path)], progress=progress)
     )
@@ -110,29 +124,38 @@ def read_takes(
         )
     several = len(found.clips) > 1
     return [
-        ReadRecording(clip.motion, found.refused, clip.item if several else "")
+        _settled(clip.motion, conversion, found.refused, clip.item if several else "")
         for clip in found.clips
     ]
 
 
+def _settled(
+    motion: Motion, conversion: Conversion, warnings: tuple[str, ...], take: str
+) -> ReadRecording:
+    """Return a take of another program in the unit and axes of the settings."""
+    reading, conventions = conversion.reading, conventions_of(motion)
+    if unit := reading.unit.metres:
+        motion = with_conventions(
+            scaled(motion, unit / conventions.unit), replace(conventions, unit=unit)
+        )
+    motion = settle(motion, reading, conversion.floor)
+    question = question_of_size(motion)
+    return ReadRecording(motion, (*warnings, *[question] * bool(question)), take)
+
+
 def read_file(
-    path: Path,
-    progress: Progress = unwatched,
-    *,
-    unit: float | None = None,
-    depth: DepthSettings = DEFAULT_DEPTH_SETTINGS,
+    path: Path, conversion: Conversion, progress: Progress = unwatched
 ) -> ReadRecording:
     """Read a file or folder like `read_recording`, and keep the warnings of its reader.
 
-    `unit` is meters per unit of the file, `depth` the interpretation of depth images. Every
-    failure becomes a MocapAssistError, so that other files are still read.
+    Every failure becomes a MocapAssistError, so that other files are still read.
     """
     listener = _WarningCollector(progress)
 
     def read() -> Recording:
         if is_depth_recording(path):
-            return read_depth(path, depth, progress=listener)
-        return read_tracked(path, scale=unit, progress=listener)
+            return read_depth(path, conversion.depth, progress=listener)
+        return read_as(path, conversion.reading, floor=conversion.floor, progress=listener)
 
     recording = _attempt_read(path, read)
     return ReadRecording(recording, tuple(listener.warnings))
@@ -167,9 +190,7 @@ def convert_recording(recording: Recording, conversion: Conversion) -> Motion | 
 
 def convert_tracked(recording: TrackedRecording, conversion: Conversion) -> Motion | Tracks:
     """Convert joints or markers to a motion or points for the scene."""
-    moving = _scaled(_joined(recording, conversion.armature), conversion.scale)
-    if conversion.place_on_floor and isinstance(moving, Motion):
-        moving = put_on_floor(moving)
+    moving = scaled(_joined(recording, conversion.armature), conversion.scale)
     if conversion.frame_rate is None:
         return moving
     if isinstance(moving, Motion):
@@ -201,12 +222,13 @@ def _joined(recording: TrackedRecording, armature: bool) -> Motion | Tracks:
     return recording.tracks
 
 
-def _scaled(recording: Motion | Tracks, factor: float) -> Motion | Tracks:
+def scaled(recording: Moving, factor: float) -> Moving:
     """Return the recording with all lengths scaled."""
     if factor == 1.0:
         return recording
     if isinstance(recording, Tracks):
-        return recording.with_positions(factor * recording.positions)
+        return cast(Moving, recording.with_positions(factor * recording.positions))
     skeleton = recording.skeleton
     larger = Skeleton(skeleton.names, skeleton.parents, factor * skeleton.offsets)
-    return replace(recording, skeleton=larger, root_positions=factor * recording.root_positions)
+    positions = factor * recording.root_positions
+    return cast(Moving, replace(recording, skeleton=larger, root_positions=positions))

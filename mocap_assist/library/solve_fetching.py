@@ -126,7 +126,7 @@ def read_origin(origin: Origin, blender: BackgroundBlender) -> Motion:
                 " again."
             )
         return found.clips[0].motion
-    moving = convert_recording(read_file(Path(origin.path)).recording, AS_ARMATURE)
+    moving = convert_recording(read_file(Path(origin.path), AS_ARMATURE).recording, AS_ARMATURE)
     if not isinstance(moving, Motion):
         raise InvalidMotionError(f"{origin.path} holds points without bones.")
     return moving

@@ -1,12 +1,20 @@
 """Read a recording by settings for what its file may not say."""
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, unwatched
-from .conventions import lacks_floor, put_on_floor, question_of_size, reinterpreted
+from .conventions import (
+    conventions_of,
+    lacks_floor,
+    put_on_floor,
+    question_of_size,
+    reinterpreted,
+    with_conventions,
+)
 from .read_recording import detect_format, read_format
 from .reading_settings import DEFAULT_READING, Floor, ReadingSettings
 
@@ -55,6 +63,7 @@ def settle(recording: Recording, settings: ReadingSettings, floor: Floor) -> Rec
     """Return what was read in the axes of the settings, and on the floor where it has none."""
     if settings.up.axis or settings.forward.axis:
         recording = reinterpreted(recording, settings.up.axis, settings.forward.axis)
-    if floor is Floor.ALWAYS or (floor is Floor.AUTO and lacks_floor(recording)):
-        recording = put_on_floor(recording)
-    return recording
+    if floor is Floor.AUTO and lacks_floor(recording):
+        conventions = replace(conventions_of(recording), has_floor=False)
+        recording = put_on_floor(with_conventions(recording, conventions))
+    return put_on_floor(recording) if floor is Floor.ALWAYS else recording

@@ -111,7 +111,7 @@ def test_the_lowest_foot_is_placed_on_the_floor(blank, recordings, load):
     path = recordings / "corpus/bvh/olympe_ballet/ballet.bvh"
 
     heights = []
-    for placed in (False, True):
+    for placed in ("NEVER", "AUTO"):
         blank.ops.mocap_assist.import_recording(filepath=str(path), place_on_floor=placed)
         armature, scene = blank.context.object, blank.context.scene
         lowest = []
