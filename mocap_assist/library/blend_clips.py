@@ -100,7 +100,7 @@ def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> 
     open_scene_file(path)
     if is_scene_file(path):
         if sentence := _without_motion(path):
-            return BlendRead((), (sentence,))
+            return BlendRead((), (sentence,), is_empty=True)
         _mark_invented_tails()
     actions = actions_of(assets_only)
     lack_rig = rig and any(map(_lacks_rig, actions))
@@ -117,7 +117,7 @@ def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> 
         found = _read_action(path, action, items)
         clips += found.clips
         refused += found.refused
-    return BlendRead(tuple(clips), tuple(refused))
+    return BlendRead(tuple(clips), tuple(refused), is_empty=not (clips or refused))
 
 
 def _without_motion(path: str) -> str:
