@@ -3,9 +3,8 @@
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
-from ...solvers.faults import attempt
+from ...solvers.faults import Failure, attempt
 from ...solvers.recordings import detect_format
-from ...solvers.recordings.read_recording import Format
 from ..jobs.in_blender import is_scene_file
 from .depth_folders import is_take
 
@@ -43,8 +42,10 @@ def _kinds(path: Path) -> set[str]:
     if is_take(path):
         return {DEPTH}
     found = attempt(path, detect_format, path)
-    if not isinstance(found, Format):
-        return {DEPTH} if found is None else set()
+    if found is None:
+        return {DEPTH}
+    if isinstance(found, Failure):
+        return set()
     if found.lacks_bones:
         return {SMPL, JOINTS} if path.suffix.lower() == ".npy" else {SMPL}
     if found.has_skeleton:

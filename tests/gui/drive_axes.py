@@ -60,6 +60,7 @@ def steps():
     yield from until_done()
     armature = bpy.context.object
     assert armature is not None and armature.type == "ARMATURE", armature
+    bpy.context.scene.frame_set(20)
     tall = head_height(armature)
     assert tall > 1.0, tall
     yield from settle()
