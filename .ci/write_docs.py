@@ -36,7 +36,7 @@ BUTTONS = re.compile(r"(<!-- buttons -->\n).*?(<!-- end -->)", re.DOTALL)
 NOT_BUTTONS = {"import_job"}
 """Operators that another operator starts: no user sees them."""
 PAGES = {
-    "importing": "import_recording show_depth",
+    "importing": "import_recording change_axes show_depth",
     "tracking": "track_depth retrack",
     "reconstruction": "reconstruct",
     "cleaning": "denoise learn_patterns plant_feet measure_quality jump_to_issue revert_to_raw",

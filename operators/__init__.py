@@ -3,6 +3,7 @@
 import bpy
 
 from .assign_variants import MOCAP_OT_assign_variants
+from .change_axes import MOCAP_OT_change_axes
 from .denoise import MOCAP_OT_denoise
 from .draw_variants import MOCAP_OT_draw_variants
 from .find_similar import MOCAP_OT_find_similar
@@ -37,6 +38,7 @@ from .vary import MOCAP_OT_vary
 OPERATORS = (
     MOCAP_OT_import_recording,
     MOCAP_OT_import_job,
+    MOCAP_OT_change_axes,
     MOCAP_OT_show_depth,
     MOCAP_OT_track_depth,
     MOCAP_OT_retrack,

@@ -8,6 +8,7 @@ from bpy.props import StringProperty
 from ..mocap_assist.blender.path_properties import HIDDEN
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.importing.choices import ImportSettings
+from ..mocap_assist.importing.file_kinds import kinds_of
 from ..mocap_assist.importing.import_operator import WIDTH, FilesOperator
 from ..mocap_assist.importing.importing import FILTER, chosen_paths, preview
 from ..mocap_assist.runtime.solver_operator import in_background
@@ -38,6 +39,9 @@ class MOCAP_OT_import_recording(FilesOperator, bpy.types.Operator):
         if not chosen_paths(self):
             context.window_manager.fileselect_add(self)
             return {"RUNNING_MODAL"}
-        self.note = preview(context, chosen_paths(self))
-        asked: set[str] = context.window_manager.invoke_props_dialog(self, width=WIDTH)
+        paths = chosen_paths(self)
+        self.note, self.kinds = preview(context, paths), kinds_of(paths)
+        asked: set[str] = context.window_manager.invoke_props_dialog(
+            self, width=WIDTH, confirm_text="Import"
+        )
         return asked

@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from ...solvers.settings import Settings
+
 
 class OperatorMixin:
     """Mixed in before bpy.types.Operator."""
@@ -29,6 +31,9 @@ class SettingsMixin(OperatorMixin):
 
         def settings(self) -> Any:
             """Return the bundle with the checked values of the properties."""
+
+        def set_properties(self, *values: Settings) -> None:
+            """Give the properties the values of some settings."""
 
 
 class PanelMixin:

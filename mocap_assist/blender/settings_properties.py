@@ -31,6 +31,12 @@ def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
     def settings(self: Any) -> Bundle:
         return bundle._make(_settings_of(self, each) for each in classes.values())
 
+    def set_properties(self: Any, *values: Settings) -> None:
+        for each in values:
+            for item in fields(each):
+                value = getattr(each, item.name)
+                setattr(self, item.name, value.name if isinstance(value, Enum) else value)
+
     def decorate(cls: Class) -> Class:
         # Otherwise Blender restores the values of the last press, and they look as if the
         # caller had set them.
@@ -39,6 +45,7 @@ def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
         cls.__annotations__ = properties | get_annotations(cls)
         decorated: Any = cls
         decorated.settings = settings
+        decorated.set_properties = set_properties
         decorated.setting_names = tuple(described)
         return cls
 

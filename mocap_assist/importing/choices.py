@@ -1,10 +1,15 @@
 """What an animator chooses for Import; the words are those of Blender's BVH importer."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
-from ...solvers.recordings import CameraOrientation, DepthSettings
-from ...solvers.settings import Choice, Settings, setting
+from ...solvers.recordings import (
+    CameraOrientation,
+    DepthSettings,
+    FloorSettings,
+    ReadingSettings,
+)
+from ...solvers.settings import Choice, setting
 from ..scene.scene_rate import FrameRate
 
 
@@ -31,34 +36,13 @@ class Rotation(Choice):
     ZYX = "euler (ZYX)", "Rotate bones by Euler angles in ZYX order", "ZYX Euler"
 
 
-class Unit(Choice):
-    """What the lengths of files are measured in."""
-
-    GUESS = "guess", "Read the unit from the file, or estimate it from the body size", "Auto"
-    METRES = "metres", "Lengths in the files are in meters", "Meters"
-    CENTIMETRES = "centimetres", "Lengths in the files are in centimeters", "Centimeters"
-    MILLIMETRES = "millimetres", "Lengths in the files are in millimeters", "Millimeters"
-
-    @property
-    def metres(self) -> float | None:
-        """Meters in one of these; None for what the file says, or its reader guesses."""
-        return METRES.get(self)
-
-
-METRES = {Unit.METRES: 1.0, Unit.CENTIMETRES: 0.01, Unit.MILLIMETRES: 0.001}
-
-
 @dataclass(frozen=True, kw_only=True)
-class ImportChoices(Settings):
+class ImportChoices(FloorSettings, ReadingSettings):
     """How recordings come into the scene."""
 
     target: Target = setting(
         Target.ARMATURE,
         "What the joints of a depth camera become; markers always become empties",
-    )
-    unit: Unit = setting(
-        Unit.GUESS,
-        "Length unit of the files; the import message says what Auto found",
     )
     body: str = setting(
         "",
@@ -71,11 +55,6 @@ class ImportChoices(Settings):
         minimum=1e-4,
         maximum=1e6,
         label="Scale",
-    )
-    place_on_floor: bool = setting(
-        False,
-        "Move the take up or down so that the lowest foot stands on the floor",
-        label="Place on Floor",
     )
     rotate_mode: Rotation = setting(
         Rotation.QUATERNION, "Rotation mode of the bones", label="Rotation"
@@ -134,6 +113,12 @@ class ImportChoices(Settings):
         False,
         "The depth pictures are mirrored: the actor's right hand is on the right",
     )
+
+    @property
+    def reading(self) -> ReadingSettings:
+        """What the files may not say about themselves."""
+        names = [item.name for item in fields(ReadingSettings)]
+        return ReadingSettings(**{name: getattr(self, name) for name in names})
 
     @property
     def depth(self) -> DepthSettings:

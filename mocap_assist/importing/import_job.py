@@ -14,7 +14,7 @@ from ..runtime.watch import Watch
 from .choices import ImportChoices
 from .depth_folders import readable
 from .import_transaction import READING_FRACTION, ImportTransaction
-from .recent_files import State, remember, state_of
+from .recent_files import State, reading_of, remember, state_of
 from .recording_objects import conversion_from_choices
 from .solve_reading import Read, read_files
 
@@ -116,7 +116,7 @@ class ImportJob:
         if isinstance(found, MocapAssistError):
             self.transaction.refuse(path, found)
             return
-        remember(path, state, [take.content for take in found], self._wanted)
+        remember(path, state, [take.content for take in found], reading_of(self._wanted))
         for content, moving in found:
             self.transaction.add(context, path, content, moving=moving)
 

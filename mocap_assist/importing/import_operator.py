@@ -11,6 +11,7 @@ from ..blender.path_properties import FILE, FOLDER, HIDDEN, path_property
 from ..panels.drawing import draw_lines
 from ..runtime.watch import why_busy
 from .body_choice import bodies_to_choose, body_items, number_of, text_of
+from .file_kinds import DEPTH, FOR_KINDS, MOVING, fitting, kinds_of
 from .import_job import ImportJob
 from .import_transaction import Imported
 from .importing import chosen_paths, import_files
@@ -33,6 +34,7 @@ class FilesOperator(SettingsMixin):
         set=lambda self, number: setattr(self, "body", text_of(number, chosen_paths(self))),
         options=HIDDEN,
     )
+    kinds: StringProperty(options=HIDDEN)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -43,6 +45,7 @@ class FilesOperator(SettingsMixin):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Import while a script, or the redo panel, waits."""
         paths, choices = chosen_paths(self), self.settings().choices
+        self.kinds = kinds_of(paths)
         return self.end(import_files(context, paths, choices))
 
     def end(self, imported: Imported) -> set[str]:
@@ -59,6 +62,7 @@ class FilesOperator(SettingsMixin):
             "directory": self.directory,
             "files": files,
             "filepath": self.filepath,
+            "kinds": self.kinds,
             **settings,
         }
 
@@ -67,11 +71,19 @@ class FilesOperator(SettingsMixin):
         self.layout.use_property_decorate = False
         if bodies_to_choose(chosen_paths(self)):
             self.layout.column().prop(self, "body_choice", expand=True)
-        for name in type(self).setting_names:
-            if name != "body":
-                self.layout.prop(self, name)
         if self.note:
             draw_lines(self.layout, self.note, WIDTH)
+        kinds = self.kinds.split()
+        for_depth = fitting(type(self).setting_names, [DEPTH])
+        for name in fitting(type(self).setting_names, kinds or MOVING):
+            if name != "body":
+                self.layout.prop(self, name)
+        if not kinds:  # in the file browser, where nothing is chosen yet
+            header, body = self.layout.panel("mocap_assist_depth", default_closed=True)
+            header.label(text="Depth Camera")
+            for name in for_depth if body else ():
+                if name in FOR_KINDS:
+                    body.prop(self, name)
 
 
 class WaitingImport(FilesOperator):

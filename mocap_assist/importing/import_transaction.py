@@ -1,7 +1,7 @@
 """Add recordings to the scene one by one, and remove them again on failure."""
 
 import logging
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,6 +13,7 @@ from ...solvers.faults import Failure, attempt
 from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import recording_figures
+from ...solvers.recordings.conventions import conventions_of
 from ..scene.origin import note_origin, origin_of_file
 from ..scene.scene_objects import Numbers, choose, in_object_mode, remove, undo_on_error
 from ..scene.scene_rate import FrameRate, extend_duration, set_scene_rate
@@ -153,13 +154,17 @@ class ImportTransaction:
         if content.others:
             made = add_takes(context, made, path, content, choices)
         for owner in filter(None, (made.top, made.action)):
-            note_origin(owner, origin_of_file(path, recording, content.body))
+            origin = origin_of_file(path, recording, choices.global_scale, content.body)
+            note_origin(owner, origin)
         if choices.frame_rate is FrameRate.UPDATE:
             set_scene_rate(context.scene, recording.frame_rate)
         if choices.update_scene_duration:
             extend_duration(context.scene, made.last_frame)
         rate = f"{recording.n_frames} frames at {recording.frame_rate:.5g} Hz"
-        return made.top, f"{made.top.name}: {made.what}, {rate}."
+        sentences = [f"{made.top.name}: {made.what}, {rate}."]
+        if not isinstance(recording, DepthRecording):
+            sentences.append(f"{conventions_of(recording).sentence()}.")
+        return made.top, " ".join(sentences)
 
 
 def _figures(content: ReadRecording) -> dict[str, Any]:
@@ -172,4 +177,6 @@ def _figures(content: ReadRecording) -> dict[str, Any]:
     ]
     if isinstance(recording, JointRecording) and not in_one_tree(recording):
         texts.append("The parents of the joints are unknown")
+    if not isinstance(recording, DepthRecording):
+        figures |= {"conventions": asdict(conventions_of(recording))}
     return {**figures, "warnings": ". ".join(texts)}

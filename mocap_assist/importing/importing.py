@@ -4,10 +4,12 @@ from pathlib import Path
 
 import bpy
 
+from ...solvers.depth_scene import DepthRecording
 from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.faults import Failure, attempt
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.recordings import SCENE_SUFFIXES
+from ...solvers.recordings import SCENE_SUFFIXES, Floor
+from ...solvers.recordings.conventions import conventions_of
 from ..blender.path_properties import absolute, chosen_files
 from ..jobs.in_blender import is_scene_file
 from ..scene.scene_rate import scene_rate
@@ -61,14 +63,17 @@ def preview(context: bpy.types.Context, paths: list[Path]) -> str:
         size = path.stat().st_size
         if size > QUICKLY_READ or is_scene_file(path):
             return f"{path.name}: {size / 1e6:.1f} MB; {plays}"
-        (content,) = read_again(path, Conversion())
+        content = read_again(path, Conversion(floor=Floor.AUTO))[0]
     except MocapAssistError as error:
         return str(error)
     except OSError as error:
         return f"{path} cannot be read ({error.strerror})."
     recording = content.recording
     frames = f"{recording.n_frames} frames at {recording.frame_rate:.5g} Hz"
-    return ". ".join([f"{path.name}: {frames}; {plays}", *content.warnings])
+    warnings = content.warnings
+    if not isinstance(recording, DepthRecording):
+        warnings = (conventions_of(recording).sentence(), *warnings)
+    return ". ".join([f"{path.name}: {frames}; {plays}", *warnings])
 
 
 def import_files(

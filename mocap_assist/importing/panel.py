@@ -7,9 +7,10 @@ import bpy
 from ..blender.mixins import PanelMixin
 from ..depth.depth_preview import NOT_ALLOWED, problem_of
 from ..panels.drawing import draw_job, draw_sentence, exists
-from ..scene.origin import origin_of
+from ..scene.origin import noted_conventions, origin_of
 from .import_menu import IMPORT
 
+CHANGE = "mocap_assist.change_axes"
 SHOW = "mocap_assist.show_depth"
 
 
@@ -33,6 +34,10 @@ class ImportPanel(PanelMixin):
             name = PurePath(str(origin.get("file", ""))).name
             column.label(text=name, icon="FILE", translate=False)
             column.label(text=_figures(origin), icon="BLANK1", translate=False)
+            if conventions := noted_conventions(origin):
+                draw_sentence(column, context, f"{conventions.sentence()}.", icon="BLANK1")
+            if conventions and exists(CHANGE):
+                layout.operator(CHANGE, icon="ORIENTATION_GLOBAL")
             if problem := problem_of(active):
                 draw_sentence(column, context, problem, icon="ERROR")
                 if problem == NOT_ALLOWED:

@@ -6,14 +6,15 @@ from ...solvers.depth_scene import DepthRecording
 from ...solvers.errors import InvalidFileError
 from ...solvers.motion import JointRecording, Motion
 from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings import Body
+from ...solvers.recordings import Body, Floor, ReadingSettings
 from ...solvers.recordings.skeleton_files import find_skeleton
 from .solve_reading import Conversion, ReadRecording, read_takes
 
 MOST = 20_000_000  # numbers that are kept
 
 State = tuple[tuple[str, int, int], ...]
-_read: dict[tuple[State, float | None, str], list[ReadRecording]] = {}
+Reading = tuple[ReadingSettings, Floor, str]
+_read: dict[tuple[State, Reading], list[ReadRecording]] = {}
 
 
 def read_again(
@@ -23,28 +24,30 @@ def read_again(
 
     Recordings of depth are opened anew: little is read for that.
     """
-    state = state_of(path)
-    key = state, conversion.unit, conversion.body
-    takes = _read.pop(key, None) or read_takes(path, conversion, progress)
-    remember(path, state, takes, conversion)
+    state, reading = state_of(path), reading_of(conversion)
+    takes = _read.pop((state, reading), None) or read_takes(path, conversion, progress)
+    remember(path, state, takes, reading)
     return takes
 
 
 def bodies_of(path: Path) -> tuple[Body, ...]:
     """Return the bodies to choose from in a file that was read last; else nothing."""
     state = state_of(path)
-    known = [takes for (its_state, _, _), takes in _read.items() if its_state == state]
+    known = [takes for (its_state, _), takes in _read.items() if its_state == state]
     return known[-1][0].bodies if state and known else ()
 
 
-def remember(
-    path: Path, state: State, takes: list[ReadRecording], conversion: Conversion
-) -> None:
+def reading_of(conversion: Conversion) -> Reading:
+    """Return what a file is read by, of all that is done to it."""
+    return conversion.reading, conversion.floor, conversion.body
+
+
+def remember(path: Path, state: State, takes: list[ReadRecording], reading: Reading) -> None:
     """Keep what was read from a file in this state, unless it has changed since."""
     if any(isinstance(take.recording, DepthRecording) for take in takes):
         return
     if state and state == state_of(path):
-        _read[state, conversion.unit, conversion.body] = takes
+        _read[state, reading] = takes
     while sum(_size(take) for takes in _read.values() for take in takes) > MOST:
         _read.pop(next(iter(_read)))
 

@@ -68,10 +68,10 @@ def conversion_from_choices(context: bpy.types.Context, choices: ImportChoices) 
         choices.target is Target.ARMATURE,
         choices.global_scale,
         scene_rate(context.scene) if resampled else None,
-        choices.unit.metres,
+        choices.reading,
         choices.depth,
-        choices.body,
         choices.place_on_floor,
+        choices.body,
         BackgroundBlender(str(bpy.app.binary_path)),
     )
 
@@ -183,7 +183,8 @@ def add_takes(
         action, _ = write_motion(
             made.top, made.bones, take.motion, frames, metres, name=fitting_name(take.name)
         )
-        note_origin(action, origin_of_file(path, take.motion, content.body))
+        scale, body = choices.global_scale, content.body
+        note_origin(action, origin_of_file(path, take.motion, scale, body))
         names.append(take.name)
         last = max(last, float(frames[-1]))
     compat.assign(made.top, made.action, slot)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar, cast
 
 from ...solvers.depth_scene import DepthRecording
 from ...solvers.errors import MocapAssistError, SolveCancelled
@@ -20,13 +20,21 @@ from ...solvers.motion import (
 from ...solvers.motion.humanoid import fill_missing_hips
 from ...solvers.progress import Progress, Remark, unwatched
 from ...solvers.recordings import (
+    DEFAULT_READING,
     Body,
     DepthSettings,
+    Floor,
+    ReadingSettings,
     is_depth_recording,
-    open_bodies,
+    open_as,
     read_depth,
+    settle,
 )
-from ...solvers.recordings.conventions import put_on_floor
+from ...solvers.recordings.conventions import (
+    conventions_of,
+    question_of_size,
+    with_conventions,
+)
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 from ..jobs.in_blender import BackgroundBlender, is_scene_file, read_blends
 from .solve_bodies import Take, bodies_of_scene, choice_in_scene
@@ -35,6 +43,7 @@ TrackedRecording = Motion | Tracks | JointRecording
 """Joints or markers over time."""
 Recording = TrackedRecording | DepthRecording
 Result = TypeVar("Result")
+Moving = TypeVar("Moving", bound=Motion | Tracks)
 
 
 class Conversion(NamedTuple):
@@ -45,14 +54,14 @@ class Conversion(NamedTuple):
     scale: float = 1.0
     frame_rate: float | None = None
     """Frames per second to resample to; None leaves each recording its own."""
-    unit: float | None = None
-    """Meters per unit of the files; None reads it from the file or estimates it."""
+    reading: ReadingSettings = DEFAULT_READING
+    """What the files may not say about themselves."""
     depth: DepthSettings = DEFAULT_DEPTH_SETTINGS
     """Interpretation of depth images."""
+    floor: Floor = Floor.NEVER
+    """Whether takes are put on the floor."""
     body: str = ""
     """Bodies to read of a file with several; empty for the default (`Bodies.choose`)."""
-    place_on_floor: bool = False
-    """Whether the lowest foot is put at height 0."""
     blender: BackgroundBlender = BackgroundBlender("")
     """The Blender whose importers read FBX, glTF and USD."""
 
@@ -133,10 +142,15 @@ def read_takes(
     chosen = choice_in_scene(conversion.body, bodies)
     contents: list[ReadRecording] = []
     for index in chosen:
-        first, *others = bodies.read(index, unwatched)
+        first, *others = (
+            replace(take, motion=_settled(take.motion, conversion))
+            for take in bodies.read(index, unwatched)
+        )
         take = first.name if others else ""
         name = bodies.listed[index].name if len(bodies.listed) > 1 else ""
         warnings = () if contents else found.refused
+        if question := question_of_size(first.motion):
+            warnings = (*warnings, question)
         contents.append(
             ReadRecording(first.motion, warnings, take, name, tuple(others), offered)
         )
@@ -150,7 +164,7 @@ def _read_bodies(path: Path, conversion: Conversion, progress: Progress) -> list
     def read() -> tuple[list[tuple[str, Recording]], tuple[Body, ...]]:
         if is_depth_recording(path):
             return [("", read_depth(path, conversion.depth, progress=listener))], ()
-        bodies = open_bodies(path, scale=conversion.unit, progress=listener)
+        bodies = open_as(path, conversion.reading, floor=conversion.floor, progress=listener)
         offered = tuple(bodies.listed[each] for each in bodies.offered)
         return [*bodies.read_chosen(conversion.body, listener)], offered
 
@@ -166,9 +180,19 @@ def _read_bodies(path: Path, conversion: Conversion, progress: Progress) -> list
     ]
 
 
-def read_file(path: Path, body: str = "") -> ReadRecording:
+def read_file(path: Path, conversion: Conversion) -> ReadRecording:
     """Read one body of a file or folder like `read_recording`."""
-    return _read_bodies(path, Conversion(body=body), unwatched)[0]
+    return _read_bodies(path, conversion, unwatched)[0]
+
+
+def _settled(motion: Motion, conversion: Conversion) -> Motion:
+    """Return a take of another program in the unit and axes of the settings."""
+    reading, conventions = conversion.reading, conventions_of(motion)
+    if unit := reading.unit.metres:
+        motion = with_conventions(
+            scaled(motion, unit / conventions.unit), replace(conventions, unit=unit)
+        )
+    return settle(motion, reading, conversion.floor)
 
 
 def _attempt_read(path: Path, read: Callable[[], Result]) -> Result:
@@ -201,9 +225,7 @@ def convert_recording(recording: Recording, conversion: Conversion) -> Motion | 
 
 def convert_tracked(recording: TrackedRecording, conversion: Conversion) -> Motion | Tracks:
     """Convert joints or markers to a motion or points for the scene."""
-    moving = _scaled(_joined(recording, conversion.armature), conversion.scale)
-    if conversion.place_on_floor and isinstance(moving, Motion):
-        moving = put_on_floor(moving)
+    moving = scaled(_joined(recording, conversion.armature), conversion.scale)
     if conversion.frame_rate is None:
         return moving
     if isinstance(moving, Motion):
@@ -235,12 +257,13 @@ def _joined(recording: TrackedRecording, armature: bool) -> Motion | Tracks:
     return recording.tracks
 
 
-def _scaled(recording: Motion | Tracks, factor: float) -> Motion | Tracks:
+def scaled(recording: Moving, factor: float) -> Moving:
     """Return the recording with all lengths scaled."""
     if factor == 1.0:
         return recording
     if isinstance(recording, Tracks):
-        return recording.with_positions(factor * recording.positions)
+        return cast(Moving, recording.with_positions(factor * recording.positions))
     skeleton = recording.skeleton
     larger = Skeleton(skeleton.names, skeleton.parents, factor * skeleton.offsets)
-    return replace(recording, skeleton=larger, root_positions=factor * recording.root_positions)
+    positions = factor * recording.root_positions
+    return cast(Moving, replace(recording, skeleton=larger, root_positions=positions))

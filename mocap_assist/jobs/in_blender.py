@@ -65,6 +65,8 @@ class BlendRead:
     clips: tuple[BlendClip, ...]
     refused: tuple[str, ...] = ()
     """A message for each unreadable action, or for the file."""
+    is_empty: bool = False
+    """Whether the file has no motion at all, so that it need not be read again."""
 
 
 def read_blends(

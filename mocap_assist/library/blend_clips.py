@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 from ...solvers.faults import Failure, attempt
 from ...solvers.motion import Motion
@@ -15,6 +16,7 @@ from ..actions.fitting import fitting_slots, plays, plays_slot
 from ..blender import compat
 from ..blender.compat import Source
 from ..blender.scene_files import open_scene_file
+from ..blender.stated_conventions import stated_conventions
 from ..jobs.in_blender import BlendClip, BlendRead, is_scene_file
 from ..rigs.evaluated_body import body_bones, with_body_shown
 from ..rigs.rigify import is_rigify
@@ -23,6 +25,8 @@ from ..scene import history
 from ..scene.rig import END
 from .catalogs import NONE, catalog_file, read_catalogs
 
+ROUNDING = 1e-3
+"""Relative error of lengths that were stored in 32 bits."""
 NAME_ONE = "name a file with its rig, or index the file that has both."
 
 
@@ -108,7 +112,7 @@ def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> 
     open_scene_file(path)
     if is_scene_file(path):
         if sentence := _without_motion(path):
-            return BlendRead((), (sentence,))
+            return BlendRead((), (sentence,), is_empty=True)
         _mark_invented_tails()
     actions = actions_of(assets_only)
     lack_rig = rig and any(map(_lacks_rig, actions))
@@ -125,12 +129,13 @@ def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> 
         found = _read_action(path, action, items)
         clips += found.clips
         refused += found.refused
+    is_empty = not (clips or refused)
     if is_scene_file(path):
-        clips = _with_one_root(clips)
-    return BlendRead(tuple(clips), tuple(refused))
+        clips = _with_one_root(path, clips)
+    return BlendRead(tuple(clips), tuple(refused), is_empty=is_empty)
 
 
-def _with_one_root(clips: list[BlendClip]) -> list[BlendClip]:
+def _with_one_root(path: str, clips: list[BlendClip]) -> list[BlendClip]:
     """Read takes again whose body begins lower down than in another take of its armature.
 
     Where the body begins is judged by how bones travel, which differs from take to take.
@@ -149,7 +154,7 @@ def _with_one_root(clips: list[BlendClip]) -> list[BlendClip]:
         if clip.motion.skeleton.names[0] != root:
             armature, source = sources[clip.item]
             motion = read_source(bpy.context.scene, armature, source, root)
-            clip = replace(clip, motion=motion)
+            clip = replace(clip, motion=_with_conventions(path, armature, motion))
         same.append(clip)
     return same
 
@@ -181,8 +186,33 @@ def _read_action(path: str, action: bpy.types.Action, items: Sequence[str]) -> B
         if isinstance(motion, Failure):
             refused.append(motion.sentence)
         else:
+            motion = _with_conventions(path, armature, motion)
             clips.append(BlendClip(item, motion, tags, armature.name))
     return BlendRead(tuple(clips), tuple(refused))
+
+
+def _with_conventions(path: str, armature: bpy.types.Object, motion: Motion) -> Motion:
+    """Note the axes and unit of a file of another program, as they were interpreted."""
+    if not is_scene_file(path):
+        return motion
+    stated = stated_conventions(path)
+    ratio = _unit_ratio(armature, motion)
+    return replace(motion, conventions=replace(stated, unit=stated.unit * ratio))
+
+
+def _unit_ratio(armature: bpy.types.Object, motion: Motion) -> float:
+    """Return meters of a motion per Blender unit: not 1 where the stated unit was absurd."""
+    bones, skeleton = armature.data.bones, motion.skeleton
+    scale = armature.matrix_world.median_scale
+    ratios = []
+    for joint, parent in enumerate(skeleton.parents):
+        pair = skeleton.names[joint], skeleton.names[parent]
+        if parent >= 0 and all(name in bones for name in pair):
+            one, other = (bones[name].head_local for name in pair)
+            if length := scale * (one - other).length:
+                ratios.append(float(np.linalg.norm(skeleton.offsets[joint])) / length)
+    ratio = float(np.median(ratios)) if ratios else 1.0
+    return 1.0 if abs(ratio - 1.0) < ROUNDING or not ratio > 0.0 else ratio
 
 
 def _bring_armatures(path: str) -> list[str]:

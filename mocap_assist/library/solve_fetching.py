@@ -126,7 +126,8 @@ def read_origin(origin: Origin, blender: BackgroundBlender) -> Motion:
                 " again."
             )
         return found.clips[0].motion
-    moving = convert_recording(read_file(Path(origin.path), origin.item).recording, AS_ARMATURE)
+    wanted = AS_ARMATURE._replace(body=origin.item)
+    moving = convert_recording(read_file(Path(origin.path), wanted).recording, AS_ARMATURE)
     if not isinstance(moving, Motion):
         raise InvalidMotionError(f"{origin.path} holds points without bones.")
     return moving

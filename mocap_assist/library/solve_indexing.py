@@ -20,6 +20,7 @@ from ...solvers.retrieval import (
     open_clip_library,
 )
 from ...solvers.retrieval.library import refuse_other_suffix
+from ...solvers.version import version
 from ...solvers.workflows import index_files
 from ..jobs.in_blender import (
     BackgroundBlender,
@@ -161,7 +162,14 @@ class _Indexing:
     ) -> None:
         """Read the .blend files that are new or have changed, and replace their clips."""
         changed = []
+        empty = {wanted: self._library.refused(_reader(wanted)) for wanted in (False, True)}
         for blend in blends:
+            origin = attempt(blend.path, self._origin, blend)
+            known_empty = empty[blend.assets_only]
+            if not isinstance(origin, Failure) and origin in known_empty:
+                sentence = known_empty[origin]
+                self._refused += [sentence] * bool(sentence)
+                continue
             known = attempt(blend.path, self._known, blend)
             if isinstance(known, Failure):
                 self._refused.append(known.sentence)
@@ -214,6 +222,11 @@ class _Indexing:
         """Replace the clips of a file by its current ones."""
         before = list(self._entries(blend))
         self._refused += read.refused
+        if read.is_empty:
+            sentence = " ".join(read.refused)
+            self._library.remember_refused(
+                _reader(blend.assets_only), [(self._origin(blend), sentence)]
+            )
         described = []
         for clip in read.clips:
             found = attempt(f"{blend.path}, {clip.item}", self._describe, blend, clip)
@@ -224,6 +237,9 @@ class _Indexing:
         self.added += len(self._library.add_described(described))
         self.removed += len(self._library.discard(before))  # but for those just replaced
 
+    def _origin(self, blend: _Blend) -> Origin:
+        return Origin(str(blend.path), "", *blend.state)
+
     def _describe(self, blend: _Blend, clip: BlendClip) -> DescribedClip:
         return describe_clip(self._clip(blend, clip))
 
@@ -231,6 +247,11 @@ class _Indexing:
         tags = tuple(dict.fromkeys([*self._tags, *clip.tags]))
         origin = Origin(str(blend.path), clip.item, *blend.state)
         return Clip(f"{blend.name}/{clip.item}", clip.motion, tags, origin)
+
+
+def _reader(assets_only: bool) -> str:
+    """Return the name under which a library keeps the files in which Blender found nothing."""
+    return f"{version()} in Blender{', assets only' * assets_only}"
 
 
 def _refusal(name: str, error: ProcessDied | OutOfMemoryError) -> str:

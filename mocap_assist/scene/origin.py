@@ -1,18 +1,21 @@
 """Where a recording came from, kept on what was made of it."""
 
+from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import bpy
 
 from ...solvers.depth_scene import DepthRecording
-from ...solvers.motion import JointRecording, Motion, Tracks
+from ...solvers.motion import AxisName, FileConventions, JointRecording, Motion, Tracks
+from ...solvers.recordings.conventions import conventions_of
 from ..blender.stored_json import load_json, store_json
 
 ORIGIN = "mocap_assist_recording"
 NOTED: dict[str, Any] = {
     "file": str, "kind": str, "frame_rate": int | float, "n_frames": int, "sensor": str,
-    "body": str,
+    "body": str, "up": str, "forward": str, "unit": int | float, "rest_up": str,
+    "offset_added": bool, "confidence": int | float, "has_floor": bool, "scale": int | float,
 }  # fmt: skip
 """Keys of a note, and the types of valid values."""
 
@@ -23,9 +26,12 @@ def note_origin(made: bpy.types.ID, origin: dict[str, Any]) -> None:
 
 
 def origin_of_file(
-    path: Path, recording: Motion | Tracks | JointRecording | DepthRecording, body: str = ""
+    path: Path,
+    recording: Motion | Tracks | JointRecording | DepthRecording,
+    scale: float = 1.0,
+    body: str = "",
 ) -> dict[str, Any]:
-    """Return what is to be noted about a recording that was read from a file."""
+    """Return what is to be noted about a recording that was read from a file, and scaled."""
     origin = {
         "file": str(path),
         "kind": type(recording).__name__,
@@ -36,7 +42,18 @@ def origin_of_file(
         origin["sensor"] = recording.sensor.value
     if body:
         origin["body"] = body
+    if not isinstance(recording, DepthRecording):
+        origin |= asdict(conventions_of(recording)) | {"scale": scale}
     return origin
+
+
+def noted_conventions(origin: dict[str, Any]) -> FileConventions | None:
+    """Return the axes and unit of a note; None if it has none, or they make no sense."""
+    names = [item.name for item in fields(FileConventions)]
+    noted = FileConventions(**{name: origin[name] for name in names if name in origin})
+    known = {noted.up, noted.forward, noted.rest_up or noted.up} <= {*get_args(AxisName)}
+    is_valid = known and noted.up[-1] != noted.forward[-1] and noted.unit > 0.0
+    return noted if is_valid and {"up", "forward", "unit"} <= origin.keys() else None
 
 
 def origin_of(made: bpy.types.ID) -> dict[str, Any]:

@@ -8,6 +8,7 @@ MANUAL = Path(__file__).with_name("manual.html")
 """Location of the manual, which needs no network."""
 CHAPTERS = {
     "bpy.ops.mocap_assist.import_*": "import",
+    "bpy.ops.mocap_assist.change_axes*": "import",
     "bpy.ops.mocap_assist.show_depth*": "import",
     "bpy.ops.mocap_assist.denoise*": "clean",
     "bpy.ops.mocap_assist.learn_patterns*": "clean",

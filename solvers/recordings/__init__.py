@@ -39,7 +39,7 @@ from .joint_files import (
 )
 from .joints import read_joints, write_joints
 from .marker_files import read_c3d, read_trc, write_c3d, write_trc
-from .read_as import read_as, settle
+from .read_as import open_as, read_as, settle
 from .read_recording import (
     is_depth_recording,
     list_bodies,
@@ -80,6 +80,7 @@ __all__ = [
     "is_depth_recording",
     "list_bodies",
     "may_contain_motion",
+    "open_as",
     "open_bodies",
     "read_acclaim",
     "read_acclaim_limits",

@@ -1,14 +1,24 @@
 """Read a recording by settings for what its file may not say."""
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 from ..motion import JointRecording, Motion, Tracks
-from ..progress import Progress, unwatched
-from .conventions import lacks_floor, put_on_floor, question_of_size, reinterpreted
+from ..progress import Progress, unwatched, within
+from .conventions import (
+    Bodies,
+    conventions_of,
+    lacks_floor,
+    put_on_floor,
+    question_of_size,
+    reinterpreted,
+    with_conventions,
+)
+from .format import Tracked
 from .formats import detect_format
-from .read_recording import read_format
+from .read_recording import OPENING_FRACTION, open_format
 from .reading_settings import DEFAULT_READING, Floor, ReadingSettings
 
 Recording = TypeVar("Recording", bound=Motion | Tracks | JointRecording)
@@ -22,7 +32,7 @@ def read_as(
     body: str | None = None,
     floor: Floor = Floor.NEVER,
     progress: Progress = unwatched,
-) -> Motion | Tracks | JointRecording:
+) -> Tracked:
     """Read a recording as `read_tracked` does, by settings for what the file may not say.
 
     What was judged is in the `conventions` of the motion or tracks. `progress` receives a
@@ -40,7 +50,21 @@ def read_as(
         Whether the take is moved onto the floor.
     progress : Progress
     """
-    scale = settings.unit.metres if scale is None else scale
+    opening = within(progress, 0.0, OPENING_FRACTION)
+    bodies = open_as(path, settings, scale=scale, floor=floor, progress=opening)
+    start = OPENING_FRACTION if bodies.listed else 0.0
+    return bodies.read_one(body, within(progress, start, 1.0))
+
+
+def open_as(
+    path: Path | str,
+    settings: ReadingSettings = DEFAULT_READING,
+    *,
+    scale: float | None = None,
+    floor: Floor = Floor.NEVER,
+    progress: Progress = unwatched,
+) -> Bodies[Tracked]:
+    """List the bodies of a recording, each of which is read as `read_as` does."""
     format_ = detect_format(path)
     if format_ is not None and format_.lacks_bones:
         about: dict[str, Any] = {
@@ -51,17 +75,28 @@ def read_as(
             read=partial(format_.read, **about),
             open=format_.open and partial(format_.open, **about),
         )
-    recording = read_format(path, format_, scale=scale, body=body, progress=progress)
-    recording = settle(recording, settings, floor)
-    if question := question_of_size(recording):
-        progress(1.0, question)
-    return recording
+    unit = settings.unit.metres if scale is None else scale
+    bodies = open_format(path, format_, unit, progress)
+
+    def settled(recording: Tracked, progress: Progress) -> Tracked:
+        recording = settle(recording, settings, floor)
+        if question := question_of_size(recording):
+            progress(1.0, question)
+        return recording
+
+    together = bodies.read_together
+    return replace(
+        bodies,
+        read=lambda index, progress: settled(bodies.read(index, progress), progress),
+        read_together=together and (lambda progress: settled(together(progress), progress)),
+    )
 
 
 def settle(recording: Recording, settings: ReadingSettings, floor: Floor) -> Recording:
     """Return what was read in the axes of the settings, and on the floor where it has none."""
     if settings.up.axis or settings.forward.axis:
         recording = reinterpreted(recording, settings.up.axis, settings.forward.axis)
-    if floor is Floor.ALWAYS or (floor is Floor.AUTO and lacks_floor(recording)):
-        recording = put_on_floor(recording)
-    return recording
+    if floor is Floor.AUTO and lacks_floor(recording):
+        conventions = replace(conventions_of(recording), has_floor=False)
+        recording = put_on_floor(with_conventions(recording, conventions))
+    return put_on_floor(recording) if floor is Floor.ALWAYS else recording

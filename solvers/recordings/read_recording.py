@@ -95,20 +95,7 @@ def read_tracked(
     InvalidFileError
         Also for a depth recording, which has no tracked motion yet.
     """
-    return read_format(path, detect_format(path), scale=scale, body=body, progress=progress)
-
-
-def read_format(
-    path: Path | str,
-    format_: Format | None,
-    *,
-    scale: float | None = None,
-    body: str | None = None,
-    progress: Progress = unwatched,
-) -> Tracked:
-    """Read a file of a detected format as `read_tracked` does; refuse None."""
-    opening = within(progress, 0.0, OPENING_FRACTION)
-    bodies = _open_format(path, format_, scale, opening)
+    bodies = open_bodies(path, scale=scale, progress=within(progress, 0.0, OPENING_FRACTION))
     start = OPENING_FRACTION if bodies.listed else 0.0
     return bodies.read_one(body, within(progress, start, 1.0))
 
@@ -123,12 +110,13 @@ def open_bodies(
     InvalidFileError
         As `read_tracked`. Of a format with one body, damage is found when that is read.
     """
-    return _open_format(path, detect_format(path), scale, progress)
+    return open_format(path, detect_format(path), scale, progress)
 
 
-def _open_format(
+def open_format(
     path: Path | str, format_: Format | None, scale: float | None, progress: Progress
 ) -> Bodies[Tracked]:
+    """List the bodies of a file of a detected format as `open_bodies` does; refuse None."""
     if format_ is None:
         raise _unknown_format(path)
     if format_.open is None:

@@ -24,6 +24,10 @@ PICTURES = ROOT / "build" / "gui"
 PACKAGES = "python3-scipy python3-pil"
 """Of the tool's Debian: what the plain zip lacks."""
 RECORDINGS = {
+    "axes": {
+        "walk.bvh": "mocap/cmu_walk/07_01.bvh",
+        "joints.txt": "kinect/irds/215_18_0_5_1_stand.txt",
+    },
     "clean": {},
     "depth": {"walk.npz": "depth/truth/walk_front.npz"},
     "import": {

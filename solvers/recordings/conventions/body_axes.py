@@ -31,6 +31,8 @@ AXES: dict[UpAxisName, Array] = {
 
 STANDING_WEIGHT = 1.0
 """Evidence of the motion: head above hips above feet in most frames, -1 to 1."""
+MIN_STANDING = -0.5
+"""Evidence of a body that is upside down: who stands on the hands is rarer than who lies."""
 REST_WEIGHT = 0.8
 """The same in the rest pose: files are exported with it standing, but not always turned as the
 motion is."""
@@ -249,7 +251,9 @@ def _standing(positions: Array, body: _Body) -> dict[UpAxisName, float]:
         for part in (trunk, legs)
     ]
     along = np.median(np.mean(directions, axis=0), axis=0)
-    return {axis: float(along @ direction) for axis, direction in AXES.items()}
+    return {
+        axis: max(MIN_STANDING, float(along @ direction)) for axis, direction in AXES.items()
+    }
 
 
 def _floor(positions: Array, body: _Body) -> dict[UpAxisName, float]:

@@ -80,16 +80,17 @@ def lacks_floor(recording: Motion | Tracks | JointRecording) -> bool:
     names = {name.lower() for name in recording.skeleton.names}
     if any(names.issuperset(family) for family in NO_FLOOR):
         return True
-    hips = find_humanoid_map(recording.skeleton).indices(recording.skeleton).get("hips")
+    roles = find_humanoid_map(recording.skeleton).indices(recording.skeleton)
     tall = stature(recording)
-    if hips is None or tall is None:
+    if "hips" not in roles or tall is None:
         return False
-    height = _points(recording, [hips])[0][:, 0, 2]
-    typical = float(np.nanmedian(height)) if np.isfinite(height).any() else np.inf
-    return (
-        abs(typical) < MAX_HIPS_FRACTION * tall
-        and floor_level(recording) < -MIN_BELOW_FRACTION * tall
-    )
+    heights = _points(recording, [roles["hips"], roles["head"]])[0][..., 2]
+    observed = heights[np.isfinite(heights).all(axis=1)]
+    if not len(observed):
+        return False
+    hips, head = np.median(observed, axis=0)
+    stands = abs(hips) < MAX_HIPS_FRACTION * tall and head - hips > MIN_BELOW_FRACTION * tall
+    return bool(stands and floor_level(recording) < -MIN_BELOW_FRACTION * tall)
 
 
 def _lifted(tracks: Tracks, lift: float) -> Tracks:

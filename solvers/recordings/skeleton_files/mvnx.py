@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree.ElementTree import Element, ParseError, iterparse
+from xml.parsers.expat import ExpatError, ParserCreate
 
 import numpy as np
 
@@ -35,8 +36,7 @@ PARENTS = {
 NORMAL = {"normal", ""}
 """Types of frames that belong to the take; others are calibration poses."""
 DEFAULT_RATE_HZ = 60.0
-HEAD_BYTES = 65_536
-DECLARATION = re.compile(rb"<!--.*?-->|<!(DOCTYPE|ENTITY)", re.DOTALL)
+BLOCK_BYTES = 65_536
 
 
 def is_mvnx(head: bytes) -> bool:
@@ -207,13 +207,23 @@ def _elements(path: Path | str) -> Iterator[Element]:
 
 
 def _refuse_declarations(path: Path | str) -> None:
-    """Raise InvalidFileError where XML would expand entities, which may grow without end."""
+    """Raise InvalidFileError where XML would expand entities, which may grow without end.
+
+    All that stands before the first element is parsed: a declaration can stand nowhere else.
+    """
+    found: list[str] = []
+    parser = ParserCreate()
+    parser.StartDoctypeDeclHandler = lambda *_: found.append("declaration")
+    parser.StartElementHandler = lambda *_: found.append("element")
     try:
         with open_regular(path) as file:
-            head = file.read(HEAD_BYTES)
+            while not found and (block := file.read(BLOCK_BYTES)):
+                parser.Parse(block)
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
-    if any(match[1] for match in DECLARATION.finditer(head)):
+    except ExpatError:
+        pass  # the reader reports it
+    if "declaration" in found[:1]:
         raise InvalidFileError(
             f"{path} declares a document type, which is not read. Export it from MVN without."
         )

@@ -65,7 +65,7 @@ def test_the_dialog_says_what_was_guessed(load, silent, blank):
 def test_a_window_tells_it_and_reads_in_the_unit_that_was_chosen(
     press, window, walks, silent, load, blank
 ):
-    units = load("mocap_assist.importing.choices").Unit
+    units = load("solvers.recordings").Unit
     for unit, told in ((units.GUESS, 1), (units.METRES, 0)):
         operator = press(silent.name, unit=unit)
         assert wait(operator, window) == {"FINISHED"}

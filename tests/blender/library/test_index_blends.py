@@ -114,6 +114,24 @@ def test_actions_without_a_rig_or_a_body(blank, index, entries, blend_file):
     assert "walk_0" in said and "no armature" in said
 
 
+def test_a_file_without_motion_is_not_opened_again(index, blank, tmp_path, monkeypatch, load):
+    blank.ops.mesh.primitive_cube_add()
+    meshes = tmp_path / "meshes"
+    meshes.mkdir()
+    blank.ops.wm.save_as_mainfile(filepath=str(meshes / "cube.blend"), copy=True)
+    blank.ops.export_scene.gltf(filepath=str(meshes / "cube.glb"))
+    first = index(meshes)
+    indexing = load("mocap_assist.library.solve_indexing")
+    read = []
+    monkeypatch.setattr(indexing, "read_blends", lambda *a, **k: read.append(a[1]) or [])
+
+    again = index(meshes)
+
+    assert not read
+    assert again.refused == first.refused
+    assert "cube.glb has no skeleton" in again.refused[0]
+
+
 def test_same_names_in_two_folders_are_kept_apart(index, entries, blend_file, tmp_path):
     other = tmp_path / "other"
     other.mkdir()

@@ -65,4 +65,7 @@ def test_the_panel_tells_where_the_selected_take_came_from(blank, draw, load, tm
 
     blank.ops.mocap_assist.import_recording(filepath=str(tmp_path / "stroll.bvh"))
 
-    assert draw("MOCAP_PT_import") == [IMPORT, "stroll.bvh", "25 frames, 25 Hz"]
+    first, *rest = draw("MOCAP_PT_import")
+    assert [first, *rest[:2]] == [IMPORT, "stroll.bvh", "25 frames, 25 Hz"]
+    assert " ".join(rest[2:-1]) == "Y is up, Z is forward, lengths are in centimeters."
+    assert rest[-1] == "mocap_assist.change_axes"

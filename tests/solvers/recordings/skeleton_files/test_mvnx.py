@@ -51,6 +51,7 @@ def test_a_file_cut_short_is_refused(path, tmp_path, end):
     ("old", "new", "sentence"),
     [
         ("<mvnx ", "<!DOCTYPE x [<!ENTITY a 'aaaa'>]><mvnx ", "declares a document type"),
+        ("<mvnx ", f"<!-- <mvnx {70_000 * 'x'} --><!DOCTYPE x []><mvnx ", "a document type"),
         ('type="normal"', 'type="tpose"', "no positions and orientations"),
         ("<orientation>", "<orientation>x ", "damaged"),
         ("position>", "place>", "no positions and orientations"),

@@ -1,0 +1,53 @@
+"""What kinds of recordings were chosen, so that Import shows only what fits them."""
+
+from collections.abc import Collection, Iterable
+from pathlib import Path
+
+from ...solvers.faults import Failure, attempt
+from ...solvers.recordings import detect_format
+from ..jobs.in_blender import is_scene_file
+from .depth_folders import is_take
+
+DEPTH, SKELETON, JOINTS, MARKERS, SMPL = "depth", "skeleton", "joints", "markers", "smpl"
+MOVING = {SKELETON, JOINTS, MARKERS, SMPL}
+MARKER_FORMATS = {"C3D", "TRC", "OptiTrack CSV", "Qualisys TSV", "Vicon CSV"}
+MAX_LOOKED_AT = 50
+"""Files of which the first bytes are read, so that the dialog comes at once."""
+FOR_KINDS: dict[str, set[str]] = {
+    "target": {JOINTS},
+    "up": MOVING, "forward": MOVING, "place_on_floor": MOVING,
+    "height": {SMPL},
+    "rotate_mode": {SKELETON, JOINTS, SMPL},
+    "focal_length": {DEPTH}, "focal_length_y": {DEPTH}, "center_x": {DEPTH},
+    "center_y": {DEPTH}, "held": {DEPTH}, "mirrored": {DEPTH},
+}  # fmt: skip
+"""Kinds of recordings that a setting means something for; others are for all."""
+
+
+def kinds_of(paths: Iterable[Path]) -> str:
+    """Return the kinds of recordings, separated by spaces."""
+    return " ".join(
+        sorted({kind for path in [*paths][:MAX_LOOKED_AT] for kind in _kinds(path)})
+    )
+
+
+def fitting(names: Iterable[str], kinds: Collection[str]) -> list[str]:
+    """Return the settings that mean something for these kinds; all if no kind is known."""
+    return [name for name in names if not kinds or FOR_KINDS.get(name, {*kinds}) & {*kinds}]
+
+
+def _kinds(path: Path) -> set[str]:
+    if is_scene_file(path):
+        return {SKELETON}
+    if is_take(path):
+        return {DEPTH}
+    found = attempt(path, detect_format, path)
+    if found is None:
+        return {DEPTH}
+    if isinstance(found, Failure):
+        return set()
+    if found.lacks_bones:
+        return {SMPL, JOINTS} if path.suffix.lower() == ".npy" else {SMPL}
+    if found.has_skeleton:
+        return {SKELETON}
+    return {MARKERS} if found.name in MARKER_FORMATS else {JOINTS}

@@ -1,0 +1,81 @@
+"""Import a walk and joints in their dialogs, change the up axis, and take pictures.
+
+    make test-gui DRIVERS=axes
+
+Runs inside a Blender with a window; `bgui` comes with the tool and moves a real pointer.
+"""
+
+from pathlib import Path
+
+import bgui
+import bpy
+from stage import empty_scene, settle
+
+FOLDER = Path(__file__).parent
+WALK, JOINTS = FOLDER / "walk.bvh", FOLDER / "joints.txt"
+CHANGE = "mocap_assist.change_axes"
+UNTIL_DONE = 600  # tenths of a second
+
+
+def drop(path):
+    """Open the dialog that Blender shows where a file is dropped."""
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.import_recording(
+            "INVOKE_DEFAULT", directory=str(FOLDER), files=[{"name": path.name}]
+        )
+
+
+def until_done():
+    for _ in range(UNTIL_DONE):
+        yield 0.1
+        if not bpy.context.window_manager.mocap_assist_job.running:
+            return
+    raise AssertionError("The import did not end.")
+
+
+def head_height(armature):
+    bones = [bone for bone in armature.pose.bones if bone.name.lower() == "head"]
+    return (armature.matrix_world @ bones[0].head).z
+
+
+def look_at_joints():
+    """Open the dialog for joints of a camera, and close it."""
+    bgui.move(500, 500)
+    drop(JOINTS)
+    yield 1.5
+    bgui.shot("1-joints-dialog.png")
+    yield from bgui.key("Escape")
+    yield 0.5
+
+
+def steps():
+    empty_scene()
+    yield from bgui.open_sidebar("Mocap")
+    yield from look_at_joints()
+    drop(WALK)
+    yield 1.5
+    bgui.shot("2-walk-dialog.png")
+    yield from bgui.key("Return")
+    yield 0.5
+    yield from until_done()
+    armature = bpy.context.object
+    assert armature is not None and armature.type == "ARMATURE", armature
+    bpy.context.scene.frame_set(20)
+    tall = head_height(armature)
+    assert tall > 1.0, tall
+    yield from settle()
+    bgui.shot("3-imported.png")
+    yield from bgui.scan()
+    yield from bgui.click(*bgui.at(CHANGE))
+    yield 1.5
+    bgui.shot("4-change-dialog.png")
+    yield from bgui.key("Escape")
+    yield 0.5
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.change_axes(up="Z", global_scale=2.0)
+    yield from settle()
+    assert abs(head_height(armature)) < tall, head_height(armature)
+    bgui.shot("5-changed.png")
+
+
+bgui.run(steps, timeout=300)

@@ -1,0 +1,249 @@
+"""Made-up takes that fool a judge of axes, size and floor: none may be wrong in silence."""
+
+import numpy as np
+import pytest
+
+from solvers.motion import FileConventions, Motion, Skeleton, world_poses
+from solvers.recordings import Axis, Floor, ReadingSettings, Unit, read_as, write_bvh
+from solvers.recordings.conventions import conventions_of, floor_level, stature
+from solvers.recordings.skeleton_files.smpl_body import smpl_joints
+from solvers.rotations import multiply, quaternion_from_euler
+
+F, RATE = 120, 30.0
+NAMES, PARENTS, Y_UP_OFFSETS = smpl_joints(hands=False)
+OFFSETS = Y_UP_OFFSETS @ np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])
+"""Z up, facing -Y."""
+
+
+def body(height: float = 1.75, *, root=(1.0, 0.0, 0.0, 0.0), hips=None) -> Motion:
+    """Return a take on the spot of somebody whose left arm rises; standing unless turned."""
+    rotations = np.zeros((F, len(NAMES), 4))
+    rotations[..., 0] = 1.0
+    rising = np.zeros((F, 3))
+    rising[:, 1] = -np.linspace(0.0, 1.0, F)
+    rotations[:, NAMES.index("left_shoulder")] = quaternion_from_euler(rising, "XYZ")
+    rotations[:, 0] = root
+    size = height / 1.75
+    if hips is None:
+        hips = (0.3, 0.2, 0.96 * size)
+    positions = np.broadcast_to(np.array(hips, dtype=float), (F, 3))
+    return Motion(Skeleton(NAMES, PARENTS, size * OFFSETS), rotations, positions, RATE)
+
+
+def turn(degrees: float) -> np.ndarray:
+    """Return a rotation about X."""
+    return quaternion_from_euler(np.radians([[degrees, 0.0, 0.0]]), "XYZ")
+
+
+def read(motion: Motion, path, **settings):
+    """Write a take as BVH in centimeters and read it; return it and what was said."""
+    write_bvh(motion, path)
+    said: list[str] = []
+    floor = settings.pop("floor", Floor.NEVER)
+    motion = read_as(
+        path,
+        ReadingSettings(**settings),
+        floor=floor,
+        progress=lambda _, message="": said.append(message),
+    )
+    return motion, " ".join(said)
+
+
+def places(motion) -> dict[str, np.ndarray]:
+    positions = world_poses(motion.skeleton, motion.rotations, motion.root_positions).positions
+    return {name: positions[:, k] for k, name in enumerate(motion.skeleton.names)}
+
+
+def is_standing(motion) -> bool:
+    found = places(motion)
+    return bool(((found["head"] - found["pelvis"])[:, 2] > 0.2 * stature(motion)).all())
+
+
+@pytest.mark.parametrize(("height", "asks"), [(0.9, False), (1.75, False), (2.3, False)])
+def test_people_of_all_sizes_are_no_question(tmp_path, height, asks):
+    motion, said = read(body(height), tmp_path / "a.bvh")
+
+    assert stature(motion) == pytest.approx(height, rel=0.02)
+    assert ("m tall" in said) == asks
+    assert is_standing(motion)
+
+
+@pytest.mark.parametrize("height", [3.8, 4.0])
+def test_a_giant_is_a_question(tmp_path, height):
+    motion, said = read(body(height), tmp_path / "a.bvh")
+
+    assert stature(motion) == pytest.approx(height, rel=0.02)
+    assert f"The actor is {height:.2g} m tall; set Unit or Scale if this is not right" in said
+
+
+def test_a_doll_is_a_question_once_its_unit_is_given(tmp_path):
+    motion, said = read(body(0.2), tmp_path / "a.bvh", unit=Unit.CENTIMETRES)
+
+    assert stature(motion) == pytest.approx(0.2, rel=0.02)
+    assert "The actor is 0.2 m tall" in said
+
+
+def test_a_small_child_or_an_adult_in_inches_is_said(tmp_path):
+    _, said = read(body(0.75), tmp_path / "a.bvh")
+
+    assert "Lengths are interpreted as inches, by the size of the body" in said
+
+
+@pytest.mark.parametrize("hips", [(0.0, 0.0, 0.1), (2.0, 3.0, 0.1)])
+@pytest.mark.parametrize("degrees", [90.0, -90.0])
+def test_who_lies_all_the_time_lies_or_is_a_question(tmp_path, hips, degrees):
+    motion, said = read(body(root=turn(degrees), hips=hips), tmp_path / "a.bvh")
+
+    lies = np.ptp(np.stack(list(places(motion).values()))[..., 2]) < 1.0
+    assert lies or "is taken for up, but the take does not show it clearly" in said
+
+
+def test_a_handstand_stays_one(tmp_path):
+    motion, said = read(body(root=turn(180.0), hips=(0.0, 0.0, 1.2)), tmp_path / "a.bvh")
+
+    found = places(motion)
+    assert ((found["head"] - found["pelvis"])[:, 2] < -0.4).all()
+    assert "does not show it clearly" in said
+
+
+def test_a_handstand_is_put_on_its_hands(tmp_path):
+    """Arms beside the head: the hands are lowest, and the feet are no floor."""
+    upside_down = body(root=turn(180.0), hips=(0.0, 0.0, 3.0))
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        rotations = quaternion_from_euler(np.radians([[0.0, -90.0 * sign, 0.0]]), "XYZ")
+        upside_down.rotations[:, NAMES.index(f"{side}_shoulder")] = rotations
+    motion, _ = read(upside_down, tmp_path / "a.bvh", floor=Floor.ALWAYS, up=Axis.Y)
+
+    wrist = places(motion)["left_wrist"][:, 2]
+    assert wrist.min() == pytest.approx(0.03, abs=0.02)
+
+
+def test_a_first_frame_far_above_the_take_is_no_floor(tmp_path):
+    take = body()
+    take.root_positions[0] += (0.0, 0.0, 5.0)
+    take.rotations[0, 1:] = (1.0, 0.0, 0.0, 0.0)
+
+    motion, _ = read(take, tmp_path / "a.bvh", floor=Floor.ALWAYS)
+
+    assert places(motion)["left_foot"][1:, 2] == pytest.approx(0.02, abs=0.02)
+    assert is_standing(motion)
+
+
+def test_a_jump_is_no_floor():
+    """Three jumps: the level is that of the landings, and a glitch below is none."""
+    take = body()
+    time = np.arange(F) / RATE
+    flying = np.maximum(0.0, 0.5 * np.sin(2.0 * np.pi * 0.75 * time))
+    level = floor_level(take)
+    take.root_positions[:, 2] += flying
+    take.root_positions[60, 2] -= 0.8
+
+    assert floor_level(take) == pytest.approx(level, abs=0.02)
+
+
+def test_a_platform_stays_where_it_is(tmp_path):
+    """Somebody who stands on a table of a measured room."""
+    take = body(hips=(0.0, 0.0, 0.96 + 0.7))
+    renamed = Skeleton(tuple(f"b_{name}" for name in NAMES), PARENTS, take.skeleton.offsets)
+    take = Motion(renamed, take.rotations, take.root_positions, RATE)
+
+    motion, _ = read(take, tmp_path / "a.bvh", floor=Floor.AUTO)
+
+    assert motion.root_positions[0, 2] == pytest.approx(1.66, abs=0.01)
+
+
+def test_hips_at_the_origin_are_put_on_the_floor(tmp_path):
+    motion, _ = read(body(hips=(0.0, 0.0, 0.0)), tmp_path / "a.bvh", floor=Floor.AUTO)
+
+    assert places(motion)["left_foot"][:, 2] == pytest.approx(0.02, abs=0.03)
+    assert not conventions_of(motion).has_floor
+
+
+def test_a_wrapper_root_has_no_say(tmp_path):
+    """A root that stays at the origin above hips that walk away and up a hill."""
+    path = np.linspace((0.0, 0.0, 0.96), (9.0, -6.0, 1.4), F)
+    take = body()
+    above = Skeleton(
+        ("Root", *NAMES), (-1, *(parent + 1 for parent in PARENTS)),
+        np.concatenate([np.zeros((1, 3)), OFFSETS]),
+    )  # fmt: skip
+    rotations = np.concatenate([np.tile([1.0, 0, 0, 0], (F, 1, 1)), take.rotations], axis=1)
+    write_bvh(Motion(above, rotations, path, RATE), tmp_path / "a.bvh")
+    text = (tmp_path / "a.bvh").read_text()
+    motion = read_as(tmp_path / "a.bvh")
+
+    assert "Root" in text
+    assert is_standing(motion)
+    assert conventions_of(motion).up == "Y"
+
+
+@pytest.mark.parametrize("up", ["Y", "Z", "-Y"])
+def test_joints_in_an_array_stand_whatever_is_up(tmp_path, up):
+    joints = np.stack(list(places(body()).values()), axis=1)
+    axes = {"Z": joints, "Y": joints[..., [0, 2, 1]] * (1, 1, -1), "-Y": None}
+    axes["-Y"] = axes["Y"] * (1, -1, -1)
+    np.save(tmp_path / "a.npy", axes[up])
+
+    recording = read_as(tmp_path / "a.npy")
+
+    heights = recording.tracks.positions[..., 2]
+    head, foot = NAMES.index("head"), NAMES.index("left_foot")
+    assert (heights[:, head] - heights[:, foot] > 1.0).all()
+    assert conventions_of(recording).up == up
+
+
+def test_unnamed_points_with_y_up_stand(tmp_path):
+    joints = np.stack(list(places(body()).values()), axis=1)[:, :17]
+    np.save(tmp_path / "a.npy", joints[..., [0, 2, 1]] * (1, 1, -1))
+
+    points = read_as(tmp_path / "a.npy")
+
+    assert np.ptp(points.positions[0, :, 2]) > 1.3
+    assert conventions_of(points).sentence().startswith("Y is up (90% sure)")
+
+
+@pytest.mark.parametrize("axis", [Axis.X, Axis.Z, Axis.MINUS_Y])
+def test_axes_that_are_given_are_taken_for_every_kind(tmp_path, axis):
+    """Turning what was judged gives what reading with those axes gives."""
+    motion, _ = read(body(), tmp_path / "a.bvh", up=axis)
+
+    assert conventions_of(motion).up == axis.axis
+    assert conventions_of(motion).confidence == 1.0
+    up = {"X": 0, "Y": 1, "Z": 2}[axis.axis[-1]]
+    sign = -1.0 if axis.axis[0] == "-" else 1.0
+    plain, _ = read(body(), tmp_path / "b.bvh")
+    x, y, z = np.moveaxis(places(plain)["head"], -1, 0)
+    in_file = np.stack([x, z, -y], axis=-1)
+    assert places(motion)["head"][:, 2] == pytest.approx(sign * in_file[:, up], abs=1e-3)
+
+
+def test_bones_along_one_axis_at_rest_stand(tmp_path):
+    """Limbs whose rest pose runs along X, as some exporters write it."""
+    take = body(hips=(0.0, 0.0, 0.96))
+    offsets, rotations = OFFSETS.copy(), take.rotations.copy()
+    children = [[c for c, p in enumerate(PARENTS) if p == j] for j in range(len(NAMES))]
+    swings = {}
+    for joint, below in enumerate(children):
+        if len(below) == 1 and joint:
+            bone = OFFSETS[below[0]]
+            offsets[below[0]] = (np.linalg.norm(bone), 0.0, 0.0)
+            swings[joint] = _between((1.0, 0.0, 0.0), bone / np.linalg.norm(bone))
+    for joint, parent in enumerate(PARENTS):
+        own = swings.get(joint, np.array([1.0, 0, 0, 0]))
+        above = swings.get(parent, np.array([1.0, 0, 0, 0])) * (1, -1, -1, -1)
+        rotations[:, joint] = multiply(multiply(above, rotations[:, joint]), own)
+    motion = Motion(Skeleton(NAMES, PARENTS, offsets), rotations, take.root_positions, RATE)
+
+    found, _ = read(motion, tmp_path / "a.bvh")
+
+    assert is_standing(found)
+    assert conventions_of(found) == FileConventions(
+        "Y", "Z", 0.01, conventions_of(found).rest_up
+    )
+
+
+def _between(one, other) -> np.ndarray:
+    half = np.concatenate([[1.0 + np.dot(one, other)], np.cross(one, other)])
+    if half[0] < 1e-9:
+        return np.array([0.0, 0.0, 0.0, 1.0])
+    return half / np.linalg.norm(half)
