@@ -11,6 +11,7 @@ from ..arrays import Array
 from ..errors import InvalidMotionError
 from ..progress import Progress, unwatched
 from ..settings import Choice, Settings, setting
+from ..signals import MAD_TO_SIGMA
 from .bodies import Bodies, find_bodies
 from .camera import Camera
 from .floor import Floor
@@ -19,8 +20,6 @@ from .recording import DepthImage, DepthRecording
 MAX_BACKGROUND_FRAMES = 60
 MIN_NOISE_M, NOISE_FACTOR = 0.01, 4.0
 """Minimum sensor noise, and the multiple of the noise that counts as significant."""
-STD_FROM_MAD = 1.4826
-"""Standard deviation divided by median absolute deviation, for Gaussian noise."""
 NOISE_WINDOW_M = 0.5
 """Readings within this distance of the background depth count as its noise."""
 BACKGROUND_QUANTILE = 0.9
@@ -148,7 +147,7 @@ def _background_depth(
     depth = _nan_quantile(readings, quantile)
     near = np.where(np.abs(readings - depth) < NOISE_WINDOW_M, readings, np.nan)
     deviations = np.abs(near - _nan_quantile(near, 0.5))
-    spread = STD_FROM_MAD * _nan_quantile(deviations, 0.5)
+    spread = MAD_TO_SIGMA * _nan_quantile(deviations, 0.5)
     return Background(np.nan_to_num(depth), np.nan_to_num(spread))
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
+from ..signals import MAD_TO_SIGMA
 
 MAX_NEIGHBORS = 6
 MIN_SPREAD_M = 0.004
@@ -16,8 +17,6 @@ RIGID_SPREAD_M = 0.02
 MAX_FRAMES = 400
 MIN_FRAMES = 30
 MAX_MISFIT = 8.0
-MAD_TO_SIGMA = 1.4826
-"""Standard deviations in a median absolute deviation of a normal distribution."""
 
 
 @dataclass(frozen=True, eq=False)

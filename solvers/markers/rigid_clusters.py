@@ -10,6 +10,7 @@ from ..arrays import Array
 from ..motion import Tracks
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
+from ..signals import MAD_TO_SIGMA
 from .distances import nan_median
 from .rigid_fit import fit_rigid_transform
 
@@ -21,8 +22,6 @@ MIN_OBSERVED_FRACTION = 0.2
 SPREAD_PERCENTILES = (2.0, 50.0, 98.0)
 PERCENTILES_TO_SIGMA = 4.107
 """Standard deviations between the outer two of these percentiles of a normal distribution."""
-MAD_TO_SIGMA = 1.4826
-"""Standard deviations in a median absolute deviation."""
 MIN_TAKE_SPREAD_M = 0.01
 """Minimum median spread of all distances in a take for clusters to be detectable."""
 
