@@ -8,6 +8,7 @@ import numpy as np
 
 from ..skeletons import Skeleton
 from .limb_division import MIN_SPREAD_FRACTION
+from .structure import MAX_HUMAN_ANGLE_DEG
 
 LIMBS = (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand"))
 SIDES = ("left", "right")
@@ -21,8 +22,6 @@ MAX_SIDE_RATIO = 1.6
 """Between both sides' bones."""
 MIN_BONE_FRACTION = 0.05
 """Of a limb, below which a joint between two others is a helper."""
-MAX_HUMAN_ANGLE_DEG = 60.0
-"""Between trunk and legs in the rest pose of a person, who stands; animals stand at 90."""
 
 SKIPPED_JOINT = 0.5
 NO_SPINE = 0.7
