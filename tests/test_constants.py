@@ -17,7 +17,7 @@ from tests.benchmarks.sensitivity.constants import (
     constants_of,
 )
 
-NOT_YET = {"motion", "depth_tracking"}
+NOT_YET = {"depth_tracking"}
 """Families whose constants have no source yet."""
 SOURCE = re.compile(
     r"\[[A-Z]\w*\d\d|doi:|eq\. |\bet al\.|by hand|make sensitivity|sweep|by definition|guard"
