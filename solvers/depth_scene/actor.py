@@ -26,15 +26,20 @@ from .recording import DepthRecording
 
 DEFAULT_FOREGROUND = ForegroundSettings()
 SAMPLES_PER_SECOND, MAX_SAMPLES = 6.0, 12_000
+"""Frames a second, in hertz, from which the scene is learned, and their maximum number. Chosen
+by hand: x0.5 and x2 move no error."""
 COARSE_WIDTH = 160
 MAX_BODY_COVERAGE, MIN_BODY_FRACTION = 0.5, 0.75
-"""An image is actor-only if less of it has depth, and more of that belongs to one body."""
+"""Fractions: an image is actor-only if less of it has depth, and more of that belongs to one
+body. Chosen by hand: x0.5 and x2 move no error."""
 MIN_MOVING_FRACTION = 0.1
-"""A body with fewer pixels in front of the room counts as furniture."""
+"""A body with fewer pixels in front of the room counts as furniture. Chosen by hand: x0.5 and
+x2 move no error."""
 STATURE_RANGE_M = (0.6, 2.6)
-"""Plausible height of an actor whose feet are visible."""
+"""Plausible height of an actor whose feet are visible. It guards against wrong units."""
 MIN_CROPPED_FRACTION = 0.05
-"""Minimum fraction of the actor in the lowest image row if the feet are outside the image."""
+"""Minimum fraction of the actor in the lowest image row if the feet are outside the image.
+Chosen by hand: x0.5 and x2 move no error."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,14 +15,17 @@ Depth = NDArray[np.floating[Any]]
 Points = NDArray[np.float64]
 
 MAX_STEP_M, MAX_STEP_PER_M2 = 0.05, 0.005
-"""Maximum depth step between pixels of one surface: meters, and growth with squared depth."""
+"""Maximum depth step between pixels of one surface: meters, and growth with squared depth.
+Chosen by hand: first, x0.5 costs 2.8 %, x2 gains 2.6 %; second, x0.5 costs 1.3 %, x2 gains
+2.1 %."""
 MAX_COMPONENT_DISTANCE_M = 0.5
-"""A small component, such as a hand held forward, belongs to a body within this distance."""
+"""A small component, such as a hand held forward, belongs to a body within this distance.
+Chosen by hand: x0.5 and x2 move no error."""
 MAX_LIMB_FRACTION, MAX_LIMB_GAP_M = 0.4, 0.3
-"""A component counts as a limb of a body, such as an occluded leg, up to this fraction of
-its area and this gap."""
+"""A component counts as a limb of a body, such as an occluded leg, up to this fraction of its
+area and this gap. Chosen by hand: x0.5 and x2 move no error."""
 MIN_COMPONENT_M2 = 1e-3
-"""Smaller components count as noise."""
+"""Smaller components count as noise. Chosen by hand: x0.5 gains 2.4 %, x2 costs 0.9 %."""
 MAX_FULL_PIXELS, COARSE_WIDTH = 20_000, 200
 """Above this many pixels, the image is subsampled to about this width."""
 POINT_STEP = 12

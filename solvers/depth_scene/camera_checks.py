@@ -5,11 +5,14 @@ import numpy as np
 from .camera import Camera
 
 MAX_LOG_ASPECT = 0.06
-"""Maximum relative difference of the focal lengths: pixels of real cameras are square."""
+"""Maximum relative difference of the focal lengths: pixels of real cameras are square. It
+guards against a wrong calibration."""
 MAX_CENTER_OFFSET = 0.2
-"""Maximum distance from principal point to image center, as a fraction of the image size."""
+"""Maximum distance from principal point to image center, as a fraction of the image size. It
+guards against a wrong calibration."""
 FIELD_OF_VIEW_RANGE_DEG = (38.0, 130.0)
-"""Along the longer side: Kinects see 57 and 70, Azure Kinects 65 to 120."""
+"""Along the longer side: Kinects see 57 and 70, Azure Kinects 65 to 120. It guards against a
+wrong calibration."""
 
 
 def field_of_view(camera: Camera) -> float:

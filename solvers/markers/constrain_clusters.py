@@ -14,7 +14,8 @@ from .rigid_clusters import Cluster
 from .rigid_fit import fit_rigid_transform, transform_shape
 
 MIN_THICKNESS_M = 0.004
-"""Minimum rms distance of markers from their common line to determine the pose of a shape."""
+"""Minimum rms distance of markers from their common line to determine the pose of a shape.
+Chosen by hand: x0.5 and x2 move no error."""
 
 
 @dataclass(frozen=True, eq=False)

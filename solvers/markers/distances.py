@@ -7,17 +7,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
+from ..signals import MAD_TO_SIGMA
 
 MAX_NEIGHBORS = 6
 MIN_SPREAD_M = 0.004
-"""Lower bound of the spread of a distance."""
+"""Lower bound of the spread of a distance. Chosen by hand: x0.5 and x2 move no error."""
 RIGID_SPREAD_M = 0.02
-"""Maximum spread of a distance that identifies a marker by itself."""
+"""Maximum spread of a distance that identifies a marker by itself. Chosen by hand: x0.5 and x2
+move no error."""
 MAX_FRAMES = 400
 MIN_FRAMES = 30
 MAX_MISFIT = 8.0
-MAD_TO_SIGMA = 1.4826
-"""Standard deviations in a median absolute deviation of a normal distribution."""
+"""Maximum squared error of one distance, relative to its spread, over two: it limits outliers.
+Chosen by hand: x0.5 costs 27.3 %, x2 costs nothing."""
 
 
 @dataclass(frozen=True, eq=False)

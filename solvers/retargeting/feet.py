@@ -20,9 +20,11 @@ from .standing_feet import foot_bone
 Flags = NDArray[np.bool_]
 
 MAX_DROP_FRACTION = 0.15
-"""Maximum pelvis drop for feet to reach, as a fraction of the leg length."""
+"""Maximum pelvis drop for feet to reach, as a fraction of the leg length. Chosen by hand: x0.5
+and x2 move no error."""
 DROP_EASE_S = 0.15
-"""Seconds over which the pelvis drop eases in and out."""
+"""Seconds over which the pelvis drop eases in and out. Chosen by hand: x0.5 costs nothing, x2
+gains 0.1 %."""
 STANDING_LEG_RAD, LYING_LEG_RAD = np.radians([50.0, 70.0])
 """Angles of a leg from vertical: full pelvis drop up to the first, none from the second."""
 UP = np.array([0.0, 0.0, 1.0])

@@ -11,22 +11,30 @@ from .placement import Placement
 
 LOW_WRIST_FRACTION, HIGH_WRIST_FRACTION = 0.2, 0.4
 """Heights of the wrist, as fractions of the leg length. Below the first, the height above
-ground is the source's, scaled by the legs; above the second, the ground has no influence."""
+ground is the source's, scaled by the legs; above the second, the ground has no influence.
+Chosen by hand: first, x0.5 costs 0.1 %, x2 gains 3.1 %; second, x0.5 gains 4.6 %, x2 gains
+0.3 %."""
 SUPPORT_HEIGHT_FRACTIONS = (0.12, 0.18)
-"""The same heights for hands that support themselves on the ground."""
+"""The same heights, as fractions of the leg length, for hands that support themselves on the
+ground. Chosen by hand: x0.5 costs nothing, x2 gains 0.1 %."""
 SUPPORT_SPEED, PASSING_SPEED = 0.25, 1.0
 """Speeds in leg lengths per second: low hands slower than the first support themselves on the
-ground; hands faster than the second only pass."""
+ground; hands faster than the second only pass. Chosen by hand: x0.5 and x2 move no error."""
 SPEED_SMOOTHING_S = 0.1
-"""Standard deviation of the Gaussian that smooths the speed."""
+"""Standard deviation of the Gaussian that smooths the speed. Chosen by hand: x0.5 and x2 move
+no error."""
 SHIFT_SMOOTHING_S = 0.07
-"""Standard deviation of the Gaussian that smooths the displacement of the hands."""
+"""Standard deviation of the Gaussian that smooths the displacement of the hands. Chosen by
+hand: x0.5 costs 4.2 %, x2 costs nothing."""
 LIFT_EASE_S = 0.07
-"""Seconds over which the lift of hands off the ground eases in and out."""
+"""Seconds over which the lift of hands off the ground eases in and out. Chosen by hand: x0.5
+costs 0.2 %, x2 costs nothing."""
 EASE_EXTENSION_FRACTION = 0.9
-"""Fraction of its length from which an arm eases into full extension."""
+"""Fraction of its length from which an arm eases into full extension. Chosen by hand: x0.5 and
+x2 move no error."""
 ROUNDING_FRACTION = 0.05
-"""Height over which a hand is decelerated above its minimum height, in leg lengths."""
+"""Height over which a hand is decelerated above its minimum height, in leg lengths. Chosen by
+hand: x0.5 and x2 move no error."""
 
 
 class Ground(NamedTuple):

@@ -19,10 +19,13 @@ NewKey = tuple[int, int]
 """A joint, and the frame of a new key."""
 
 MIN_CHANGE = 1e-7
-"""Change, in radians or meters, below which a joint or the root needs only one key."""
+"""Change, in radians or meters, below which a joint or the root needs only one key. It absorbs
+rounding."""
 INITIAL_TOLERANCE_FACTOR = 3.0
-"""Initial error of each joint alone, as a multiple of the tolerance."""
+"""Initial error of each joint alone, as a multiple of the tolerance. Chosen by hand: x0.5 costs
+0.1 %, x2 costs nothing."""
 ROUNDING = 1e-12
+"""Radians or meters: a smaller change of a fitted curve is none. It absorbs rounding."""
 N_SAMPLED_POSES = 100
 """Number of poses in which the distance of joints to their points is measured."""
 ROOT = -1

@@ -12,6 +12,8 @@ from ..rotations import angle_between
 Joints = dict[str, int]
 SIDES = ("left", "right")
 MIN_BACKWARD_ANGLE_RAD = np.radians(135.0)
+"""Angle in radians between feet and hips from which the feet point backward. Chosen by hand:
+halfway between square and opposite."""
 LIMBS = {
     "Leg": ("UpperLeg", "LowerLeg", "Foot"),
     "Arm": ("UpperArm", "LowerArm", "Hand"),

@@ -11,10 +11,13 @@ Foot = tuple[Array, Array]
 """Ankle and ball, each of shape (n_frames, 3), meters."""
 
 BLEND_S = 0.3
-"""Seconds in which the correction of a planted foot fades."""
+"""Seconds in which the correction of a planted foot fades. Chosen by hand: x0.5 costs 0.8 %, x2
+costs 2.3 %."""
 SELECTION_POWER = 8.0
-"""Power of the speed ratio that selects ankle or ball as the standing point."""
+"""Power of the speed ratio that selects ankle or ball as the standing point. Chosen by hand:
+x0.5 gains 0.2 %, x2 costs nothing."""
 MIN_STEP_M = 1e-9
+"""Minimum length of a step in meters. It guards a division."""
 
 
 def planting_shift(

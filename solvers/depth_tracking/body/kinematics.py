@@ -11,6 +11,7 @@ from .tables import END_SEGMENTS, PARENTS, SEGMENTS
 N_SEGMENTS = len(SEGMENTS)
 _PARENT = np.array(PARENTS)
 _SMALL_ANGLE = 1e-4
+"""Radians below which a series replaces the quotient. It guards a division."""
 _CROSS_FLAT = np.zeros((3, 9))
 """v @ _CROSS_FLAT is the matrix [v]x, flat: [v]x @ u = v x u."""
 for _i, _j, _k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):

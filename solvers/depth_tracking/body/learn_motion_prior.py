@@ -15,7 +15,7 @@ from .pose_from_joints import body_from_joints, pose_from_joints
 from .tables import JOINTS
 
 FRAME_RATE_HZ = 30.0
-"""Frame rate of the learned poses: that of depth cameras."""
+"""Frame rate of the learned poses: that of depth cameras. By definition."""
 _REQUIRED_ROLES = ("hips", "leftUpperLeg", "rightUpperLeg", "leftUpperArm", "rightUpperArm")
 _ITERATIONS, _FIRST_ITERATIONS = 8, 40
 """Solver iterations from the previous pose, and in the first frame."""

@@ -22,7 +22,7 @@ from .tables import (
 )
 
 MAX_LENGTH_M = 100.0
-"""Maximum length or radius of a body part."""
+"""Maximum length or radius of a body part. It guards against damaged files."""
 LAYOUT = ArchiveLayout(
     "body model",
     1,

@@ -21,9 +21,14 @@ Integers = NDArray[np.intp]
 _CARRIERS = np.array([*range(len(SEGMENTS)), *END_SEGMENTS])
 _YAW = COORDINATES.index("yaw")
 _REST_WEIGHT = 1e-3
+"""Weight per square radian of the rest pose. Chosen by hand; no sweep yet."""
 _LIMIT_WEIGHT = 1.0
+"""Weight per square radian beyond the joint limits. Chosen by hand; no sweep yet."""
 _MAX_STEP = 0.5
+"""Maximum change of a coordinate in one step, radians or meters. Chosen by hand; no sweep
+yet."""
 _FRAME_WEIGHT = 100.0
+"""Weight per square meter of a joint's distance. Chosen by hand; no sweep yet."""
 _ROTATION_POINTS = 0.05 * np.array([*np.eye(3), *-np.eye(3)])
 """Points of a segment, meters, that constrain its rotation; larger offsets weigh more."""
 

@@ -14,8 +14,9 @@ Integers = NDArray[np.intp]
 
 NO_SEGMENT = -1
 _MIN_DEPTH_M = 0.05
-"""Nearer surfaces are not rendered."""
+"""Nearer surfaces are not rendered. It guards a division."""
 _EPSILON = 1e-12
+"""Square meters below which two directions are parallel. It guards a division."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,15 +24,18 @@ MEASURED_PARTS = tuple(
 """Limbs with cylinder fits; the trunk is too short and wide for them."""
 PARENT_LIMBS = {"LowerArm": "UpperArm", "Hand": "LowerArm", "LowerLeg": "UpperLeg"}
 MIN_RADIUS_RATIO, MAX_RADIUS_RATIO = 0.6, 1.7
-"""Range of radii relative to the default."""
+"""Range of radii relative to the default. Chosen by hand; no sweep yet."""
 PARENT_PARTS = {"UpperArm": "chest", "UpperLeg": "hips"}
 TRUNK = ("hips", "spine", "chest")
 MIN_QUALITY = 0.25
-"""Cylinders below this quality are ignored."""
+"""Quality, a fraction of fitting points, below which cylinders are ignored. Chosen by hand;
+no sweep yet."""
 MIN_LIMBS = 4
 MAX_PIXELS = 6000
 STATURE_RANGE_M = 1.2, 2.2
+"""Range of statures in meters, of adults and large children. Chosen by hand; no sweep yet."""
 STATURE_STEP_M = 0.15
+"""Meters between the statures that are tried. Chosen by hand; no sweep yet."""
 TESTED_STATURES_M = tuple(1.3 + STATURE_STEP_M * step for step in range(6))
 """Statures tested by the detector."""
 

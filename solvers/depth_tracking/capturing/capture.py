@@ -62,7 +62,8 @@ class CaptureSettings(RecoverySettings):
 
 DEFAULT_CAPTURE = CaptureSettings()
 _SCORE_WEIGHT, _MOVEMENT_SCALE_M = 40.0, 0.04
-"""A score lower by 0.025 costs as much as a mean joint movement of 4 cm in one frame."""
+"""A score lower by 0.025 costs as much as a mean joint movement of 4 cm in one frame. Chosen by
+hand: first, x0.5 and x2 move no error; second, x0.5 costs 4.7 %, x2 costs nothing."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,6 +14,7 @@ from .passes import RecoverySettings, TrackingContext, track_with_restarts
 from .refine_body import refine_body
 
 STATURES_M = (1.45, 1.6, 1.75, 1.9)
+"""Statures in meters that are tried. Chosen by hand; no sweep yet."""
 N_SIZE_FRAMES, N_STATURE_FRAMES = 12, 3
 """Number of frames compared by visible surface, and of frames used to test statures."""
 CLIP_FRAMES = 90

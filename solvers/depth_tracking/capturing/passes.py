@@ -31,7 +31,8 @@ from ..tracking import (
 _YAW = COORDINATES.index("yaw")
 _N_PREVIOUS_SCORES = 30
 _DETECTION_WEIGHT = 1.0
-"""Weak weight that keeps the refinement near the detected pose."""
+"""Weak weight that keeps the refinement near the detected pose. Chosen by hand: x0.5 costs
+nothing, x2 costs 17.6 %."""
 
 
 @dataclass(frozen=True, kw_only=True)

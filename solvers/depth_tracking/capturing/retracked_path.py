@@ -15,11 +15,13 @@ from .passes import TrackingContext
 from .smooth_pass import measure_fit
 
 _MIN_CONFIDENCE = 0.2
-"""Minimum confidence of a joint in the comparison, so that occluded joints still count."""
+"""Minimum confidence of a joint in the comparison, so that occluded joints still count. Chosen
+by hand; no sweep yet."""
 _MIN_AGREEING_FRAMES = 4
 """Minimum number of consecutive frames where both motions agree."""
 _SCORE_TOLERANCE = 0.015
-"""Score tolerance: the new path may fit worse than the previous motion by this much."""
+"""Fraction by which the score of the new path may be lower than that of the previous motion.
+Chosen by hand; no sweep yet."""
 
 
 @dataclass(frozen=True, kw_only=True)

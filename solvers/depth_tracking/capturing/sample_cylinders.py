@@ -12,8 +12,8 @@ from ...settings import Settings, setting
 Mask = NDArray[np.bool_]
 
 POSITION_STD_M, RADIUS_STD, SHRINK_FACTOR = 0.12, 0.15, 0.65
-"""Standard deviations of the first perturbations (position; relative radius), and the factor
-by which each round shrinks them."""
+"""Standard deviations of the first perturbations (position; relative radius), and the factor by
+which each round shrinks them. Chosen by hand; no sweep yet."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,6 +11,7 @@ from ..body import N_COORDINATES
 
 _FIRST_BAND, _SECOND_BAND = N_COORDINATES, 2 * N_COORDINATES
 _MIN_WEIGHT = 1e-6
+"""Weight per square radian of a pose without observations. It guards a factorization."""
 
 
 def smooth_take(

@@ -198,5 +198,5 @@ def _refine_candidate(
 
 
 START_WEIGHT = 2.0
-"""Weight per square radian: as much as a few pixels."""
+"""Weight per square radian: as much as a few pixels. Chosen by hand; no sweep yet."""
 _START_WEIGHTS = np.array([0.0] * N_ROOT + [START_WEIGHT] * (N_COORDINATES - N_ROOT))

@@ -34,15 +34,20 @@ Integers = NDArray[np.intp]
 EquationList = list[SegmentEquations]
 
 LIMIT_WEIGHT = 1.0
+"""Weight per square radian beyond the joint limits. Chosen by hand; no sweep yet."""
 REST_WEIGHT = 2e-3
-"""Weight per square radian; a fully observed part weighs 1 per square meter."""
+"""Weight per square radian; a fully observed part weighs 1 per square meter. Chosen by hand; no
+sweep yet."""
 MAX_RESIDUAL_M = 0.08
-"""Pixels farther from the surface of their part have a limited pull."""
+"""Pixels farther from the surface of their part have a limited pull. Chosen by hand; no sweep
+yet."""
 SURFACE_STD_M = 0.06
-"""Standard deviation of pixels from the surface of their part."""
+"""Standard deviation of pixels from the surface of their part. Chosen by hand; no sweep yet."""
 MIN_PROBABILITY = 0.02
-"""Minimum probability of a part."""
+"""Minimum probability of a part. Chosen by hand; no sweep yet."""
 MAX_STEP = 0.5
+"""Maximum change of a coordinate in one step, radians or meters. Chosen by hand; no sweep
+yet."""
 TRUNK_PARTS = ("hips", "spine", "chest", "neck", "head", "Shoulder", "UpperArm")
 """Parts that determine position and heading; all parts if fewer than four are observed."""
 

@@ -16,7 +16,8 @@ SWAP_GROUPS = ("Leg", "LegEnd", "Foot"), ("Shoulder", "UpperArm", "LowerArm", "H
 HEADING_OFFSETS = (0.0, np.pi / 3.0, -np.pi / 3.0, np.pi)
 """Heading offsets from the detected heading, radians."""
 STRIDES = (0.35, -0.35)
-"""Forward rotation of the left thigh and backward rotation of the right one, radians."""
+"""Forward rotation of the left thigh and backward rotation of the right one, radians. Chosen by
+hand; no sweep yet."""
 UNSIDED_ROUNDS = 3
 
 

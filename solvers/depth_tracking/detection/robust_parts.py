@@ -12,7 +12,8 @@ from ..forest import N_PARTS
 from .part_capsules import part_axes, part_radii
 
 MEAN_SURFACE_DEPTH = np.pi / 4.0
-"""Mean distance of a cylinder's visible surface in front of its axis, in radii."""
+"""Mean distance of a cylinder's visible surface in front of its axis, relative to the radius.
+By definition: pi / 4."""
 
 
 @dataclass(frozen=True, kw_only=True)

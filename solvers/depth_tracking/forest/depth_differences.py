@@ -16,6 +16,7 @@ DepthImage = NDArray[np.float32]
 BACKGROUND_MM = 10_000
 """Depth of pixels without reading."""
 MM_PER_M = 1000.0
+"""Millimeters in a meter, by definition."""
 
 
 class PixelFeatures(NamedTuple):

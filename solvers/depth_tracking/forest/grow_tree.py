@@ -15,6 +15,7 @@ Floats = NDArray[np.float32]
 Nodes = NDArray[np.int32]
 
 CM_PER_M = 100.0
+"""Centimeters in a meter, by definition."""
 _POSITIVE_THRESHOLDS = (15, 30, 50, 80, 120, 180, 260, 380, 550, 1000)
 THRESHOLDS_MM = np.array(
     [*(-edge for edge in reversed(_POSITIVE_THRESHOLDS)), 0, *_POSITIVE_THRESHOLDS],

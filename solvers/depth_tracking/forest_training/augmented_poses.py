@@ -19,7 +19,8 @@ UP = np.array([0.0, 0.0, 1.0])
 LEG_ROLES = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 ARM_ROLES = ("Shoulder", "UpperArm", "LowerArm", "Hand")
 MAX_ARM_BACK = 0.35
-"""Maximum component of the arm direction backward or across the chest."""
+"""Maximum component, a cosine, of the arm direction backward or across the chest. Chosen by
+hand; used in training only."""
 
 
 def remove_heading(rotations: Array) -> Array:

@@ -11,7 +11,7 @@ from ...depth_scene import Camera
 NO_PART = 255
 """Label of pixels off the body."""
 MIN_DEPTH_M = 0.05
-"""Triangles with a nearer corner are not rendered."""
+"""Triangles with a nearer corner are not rendered. Chosen by hand; used in training only."""
 
 
 class RenderedMesh(NamedTuple):

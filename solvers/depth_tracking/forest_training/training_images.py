@@ -22,11 +22,12 @@ CAMERA = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
 CLOTHED = np.array([0.3 if part.endswith(("Hand", "neck")) else 1.0 for part in PARTS])
 """Relative thickness of clothes (or hair) on each part."""
 FLOOR = 0.12
-"""Maximum height removed with the floor."""
+"""Maximum height in meters removed with the floor. Chosen by hand; used in training only."""
 IMAGES_PER_BODY = 10
 """Number of images per random body."""
 AHEAD = 1.1
-"""Maximum heading offset, radians, for half of the bodies; the others have any heading."""
+"""Maximum heading offset, radians, for half of the bodies; the others have any heading. Chosen
+by hand; used in training only."""
 
 
 @dataclass(frozen=True, kw_only=True)

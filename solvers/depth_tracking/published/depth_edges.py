@@ -9,13 +9,15 @@ from ...arrays import Array
 Integers = NDArray[np.intp]
 
 SMOOTHING_PX = 1.0
-"""Standard deviation, pixels."""
+"""Standard deviation, pixels. Chosen by hand, as the paper gives no value."""
 STRONG_STEP_M, WEAK_STEP_M = 0.10, 0.04
-"""Hysteresis thresholds of the depth step, meters per pixel."""
+"""Hysteresis thresholds of the depth step, meters per pixel. Chosen by hand, as the paper gives
+no value."""
 _BACKGROUND_OFFSET_M = 1.0
-"""Assumed distance of the background behind the actor."""
+"""Assumed distance of the background behind the actor. Chosen by hand, as the paper gives no
+value."""
 _SOBEL_GAIN = 8.0
-"""Response of the Sobel operator to a slope of 1."""
+"""Response of the Sobel operator to a slope of 1, a factor. By definition."""
 
 
 def canny(image: Array, strong: float, weak: float) -> NDArray[np.bool_]:

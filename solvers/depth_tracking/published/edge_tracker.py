@@ -36,9 +36,10 @@ from .registration_tracker import NO_ANKLES
 from .surface import ColoredFrame, PreviousFrame, read_intensities, surface_term
 
 PER_DEGREE = (180.0 / np.pi) ** 2
-"""Squared degrees in a squared radian."""
+"""Squared degrees in a squared radian. By definition."""
 SURFACE_WEIGHT, EDGE_WEIGHT = 4.0, 40.0
-"""Weights of the terms, per square meter."""
+"""Weights of the terms, per square meter. Those of [LOU12], times 4: a pixel covers a quarter
+of the reference area."""
 EDGE_TRACKER = TrackerSettings(
     picture_width=320, iterations=10, coarse_iterations=0,
     closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,

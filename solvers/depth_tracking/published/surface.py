@@ -14,7 +14,7 @@ WINDOW_RADIUS_PX = 7
 GRID_STEP_PX = 4
 """Spacing of the matched points at 320 columns."""
 COLOR_WEIGHT_M = 1e-4
-"""Distance equivalent to an intensity difference of 1 (of 255)."""
+"""Distance equivalent to an intensity difference of 1 (of 255). [LOU12] section 3.4.1."""
 
 
 @dataclass(frozen=True, eq=False)

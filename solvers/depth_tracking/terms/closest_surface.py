@@ -10,6 +10,8 @@ from .hypothesis import Hypothesis
 Integers = NDArray[np.intp]
 
 _NO_SURFACE, _EPSILON = 1e3, 1e-12
+"""Meters: distance of a surface that faces away, and length below which there is no direction.
+It guards a division."""
 
 
 def closest_surface_term(

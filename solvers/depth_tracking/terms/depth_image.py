@@ -9,7 +9,8 @@ from .observation import Observation
 from .pixel_groups import PixelGroups
 
 _MIN_COSINE = 0.25
-"""Minimum cosine between normal and ray; the gradient diverges at the outline."""
+"""Minimum cosine between normal and ray; the gradient diverges at the outline. Chosen by hand;
+no sweep yet."""
 
 
 def depth_image_term(

@@ -16,7 +16,7 @@ from .tracker_settings import TrackerSettings
 POINT_STEP = 2
 """Every n-th observed point enters the closest surface term, with n times the weight."""
 REFERENCE_AREA_M2 = 4e-4
-"""Surface of a pixel for which the weights are specified."""
+"""Surface of a pixel for which the weights are specified. By definition."""
 
 
 def likelihood_rows(

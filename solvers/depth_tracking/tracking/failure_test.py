@@ -7,11 +7,14 @@ from ...settings import Choice
 from .fit_quality import MAX_DEPTH_ERROR_M, FitQuality
 
 PUBLISHED_MAX_RESIDUAL_M, PUBLISHED_MIN_OVERLAP = 0.025, 0.9
-"""Thresholds of [WZC12] section 5 for residual (above) and overlap (below)."""
+"""Meters and fraction: thresholds of [WZC12] section 5 for residual (above) and overlap
+(below)."""
 FEATURES = ("residual", "overlap", "score", "off actor", "too near", "unexplained")
 LEARNED_WEIGHTS = (1.32, -6.22, -6.01, 2.72, 0.59, 5.65)
+"""Weight of each of `FEATURES` in the log-odds that joints are off by more than 10 cm on
+average. Learned by `tests/training/learn_failures.py`, on clips and bodies of its own."""
 LEARNED_BIAS = 5.77
-"""Weights of `FEATURES` in the log-odds that joints are off by more than 10 cm on average."""
+"""The constant term, a weight without a feature. Learned by the same script."""
 
 
 class FailureTest(Choice):

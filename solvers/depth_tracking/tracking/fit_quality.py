@@ -12,12 +12,16 @@ from .register_pose import Registered
 JOINT_SEGMENTS: Integers = np.array([*range(N_SEGMENTS), *END_SEGMENTS])
 """Segment that carries each of `JOINTS`."""
 MAX_DEPTH_ERROR_M = 0.1
-"""A pixel with a larger depth error does not count as fitting."""
+"""A pixel with a larger depth error does not count as fitting. Chosen by hand; no sweep yet."""
 _CONFIDENCE_STD_M = 0.06
-"""Standard deviation of a joint position that halves its confidence."""
+"""Standard deviation of a joint position that halves its confidence. Chosen by hand; no sweep
+yet."""
 _REFERENCE_PIXELS = 8.0
+"""Number of pixels at which the fitting fraction of a part is halved. Chosen by hand; no sweep
+yet."""
 _CORRELATED_PIXELS = 30.0
-"""Number of pixels of a part with correlated errors; it scales the covariance."""
+"""Number of pixels of a part with correlated errors; it scales the covariance. Chosen by hand;
+no sweep yet."""
 
 
 class FitQuality(NamedTuple):

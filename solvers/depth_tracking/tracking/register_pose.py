@@ -31,10 +31,13 @@ Prior = Callable[[Array], PoseEquations]
 Likelihood = Callable[[Hypothesis, Observation, TrackerSettings], SurfaceRows]
 
 _MIN_STEP = 1e-3
-"""A shorter step, radians or meters, ends the search."""
+"""A shorter step, radians or meters, ends the search. Chosen by hand; no sweep yet."""
 _DAMPING_INCREASE, _DAMPING_DECREASE = 5.0, 0.3
+"""Factors of the damping after a step that is refused, and that is accepted. Chosen by hand; no
+sweep yet."""
 _METRES_PER_RADIAN = 0.5
-"""Ratio of the translation limit of the hips to the rotation limit."""
+"""Ratio of the translation limit of the hips to the rotation limit. Chosen by hand; no sweep
+yet."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,9 +11,10 @@ from .posture_joints import N_JOINTS, PARENTS, POSTURE_JOINTS
 Real = TypeVar("Real", np.float32, np.float64)
 
 MIN_BONE_M = 5e-3
-"""Length below which a bone has no direction."""
+"""Length below which a bone has no direction. Chosen by hand: x0.5 and x2 move no error."""
 RATE_WINDOW_S = 0.1
-"""Seconds to each side over which a rate is measured."""
+"""Seconds to each side over which a rate is measured. Chosen by hand: x0.5 and x2 move no
+error."""
 PARENT_INDICES = np.maximum(PARENTS, 0)
 SUBSTITUTES = {"spine": "chest", "chest": "spine", "leftToes": "", "rightToes": ""}
 """Joint whose direction a missing bone takes, if not its parent; empty: forward."""

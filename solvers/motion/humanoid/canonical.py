@@ -38,14 +38,17 @@ LIMB_BONES = {
 """Roles at the start and the end of each bone whose direction the T-pose defines."""
 
 MIN_TILT_GAIN_RAD = np.radians(1.0)
-"""Feet are tilted if that makes them point straighter by more than this."""
+"""Feet are tilted if that makes them point straighter by more than this. Chosen by hand on the
+rigs of `tests/solvers/motion`."""
 
 MAX_STRAIGHT_YAW_RAD = np.radians(8.0)
 """Yaw of hips and shoulders up to which a rest pose faces straight ahead: measured bodies have
-one shoulder in front of the other (4 degrees in HDM05)."""
+one shoulder in front of the other (4 degrees in HDM05). Chosen by hand on the rigs of
+`tests/solvers/motion`."""
 
 MAX_SOLE_SLOPE_SINE = np.sin(np.radians(65.0))
-"""Slope of a foot bone above which the rest pose has pointed toes, not a flat sole."""
+"""Slope of a foot bone above which the rest pose has pointed toes, not a flat sole. Chosen by
+hand on the rigs of `tests/solvers/motion`."""
 
 
 def t_pose_alignment(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.float64]:

@@ -13,19 +13,24 @@ from ..skeletons import Motion, Skeleton, forward_kinematics, linear_velocities
 from .roles import HumanoidMap, find_humanoid_map
 
 HUMAN_LEG_LENGTH_M = 0.9
-"""Leg length, hip to ankle, for which the settings are defined; they scale with the leg."""
+"""Leg length, hip to ankle, for which the settings are defined; they scale with the leg. By
+definition."""
 
 GROUND_PERCENTILE = 5.0
-"""Percentile of the heights of slow frames that is the ground; lower ones are noise."""
+"""Percentile of the heights of slow frames that is the ground; lower ones are noise. Chosen by
+hand: x0.5 and x2 move no error."""
 
 GROUND_WINDOW_S = 1.0
-"""Seconds before and after a frame from which the height of its ground is estimated."""
+"""Seconds before and after a frame from which the height of its ground is estimated. Chosen by
+hand: x0.5 and x2 move no error."""
 
 MAX_GROUND_DRIFT_M = 0.1
-"""Maximum difference between the ground of a frame and that of the complete clip."""
+"""Maximum difference between the ground of a frame and that of the complete clip. Chosen by
+hand: x0.5 and x2 move no error."""
 
 MIN_SLOW_FRACTION = 0.02
-"""Fraction of slow frames from which the ground is estimated from these alone."""
+"""Fraction of slow frames from which the ground is estimated from these alone. Chosen by hand:
+x0.5 and x2 move no error."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,14 +12,18 @@ from .mirrored_limbs import MirroredLimbs
 # tabled by Winter 2009, Biomechanics and Motor Control of Human Movement, figure 4.1).
 ARM_FRACTIONS = (0.186, 0.146)
 LEG_FRACTIONS = (0.245, 0.246)
+"""The same fractions for the legs. Winter 2009, figure 4.1."""
 SHOULDER_FRACTION = 0.129
-"""Distance of the shoulder from the midline; collar bones start nearer to it."""
+"""Distance of the shoulder from the midline, as a fraction of body height (Winter 2009, figure
+4.1); collar bones start nearer to it."""
 MAX_HAND_FRACTION = 0.13
-"""Maximum length from wrist to fingertip (0.108 in the tables, plus a margin)."""
+"""Maximum length from wrist to fingertip (0.108 in Winter 2009, figure 4.1, plus a margin)."""
 MAX_FOOT_FRACTION = 0.18
-"""Maximum length along the bones from ankle to toes (a foot is 0.152 long)."""
+"""Maximum length along the bones from ankle to toes (a foot is 0.152 long in Winter 2009,
+figure 4.1)."""
 MIN_SPREAD_FRACTION = 0.03
-"""Of the height, below which the rest pose is folded up and does not show a direction."""
+"""Of the height, below which the rest pose is folded up and does not show a direction. Chosen
+by hand on the rigs of `tests/solvers/motion`."""
 
 
 def path_length(skeleton: Skeleton, joints: Sequence[int]) -> float:

@@ -9,12 +9,14 @@ from numpy.typing import NDArray
 from ..skeletons import Skeleton
 
 MIN_LIMB_FRACTION = 0.12
-"""Shortest limb, relative to the longest path along the bones; an arm takes 0.25."""
+"""Shortest limb, relative to the longest path along the bones; an arm takes 0.25. Chosen by
+hand on the rigs of `tests/solvers/motion`."""
 MAX_DIFFERENCE = 0.25
-"""Between both sides' bones, relative to the longer: a captured actor's differ by some
-percent."""
+"""Between both sides' bones, relative to the longer: a captured actor's differ by some percent.
+Chosen by hand on the rigs of `tests/solvers/motion`."""
 MAX_DIFFERENCE_FRACTION = 0.02
-"""The same for short bones, relative to the longest path along the bones."""
+"""The same for short bones, relative to the longest path along the bones. Chosen by hand on the
+rigs of `tests/solvers/motion`."""
 
 MAX_BRANCHES = 8
 """Children of a joint that are compared, the longest first; a hand has five fingers."""

@@ -11,7 +11,8 @@ from ..skeletons import Motion, Skeleton, Tracks, local_rotations
 from .points_skeleton import skeleton_from_points
 
 MIN_BONE_M = 1e-3
-"""Distance below which two joints define no direction."""
+"""Distance below which two joints define no direction. Chosen by hand: x0.5 and x2 move no
+error."""
 
 
 def motion_from_points(

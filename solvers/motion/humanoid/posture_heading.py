@@ -19,14 +19,17 @@ LATERAL_JOINTS = tuple(
 """Left and right joints of hips and shoulders, and the joint between them if one is missing."""
 HEADING_SMOOTHING_S = 0.1
 """Standard deviation of the Gaussian that smooths the heading, so that jitter does not rotate
-the body."""
+the body. Chosen by hand: x0.5 and x2 move no error."""
 MIN_LATERAL_M = 0.02
-"""Horizontal distance of left and right joint below which there is no heading."""
+"""Horizontal distance of left and right joint below which there is no heading. Chosen by hand:
+x0.5 and x2 move no error."""
 
 REVERSAL_WINDOW_S = 1.0
-"""Window over which opposite headings are compared with the mean, to detect swaps."""
+"""Window over which opposite headings are compared with the mean, to detect swaps. Chosen by
+hand: x0.5 and x2 move no error."""
 MIN_AGREEMENT = 0.3
-"""Length of the mean of unit vectors above which they agree: 0 is random, 1 identical."""
+"""Length of the mean of unit vectors, a ratio, above which they agree: 0 is random, 1
+identical. Chosen by hand: x0.5 and x2 move no error."""
 
 
 @dataclass(frozen=True, eq=False)

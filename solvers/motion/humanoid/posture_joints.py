@@ -36,7 +36,8 @@ BETWEEN_SHOULDERS = ("SpineShoulder", "Chest", "SpineChest", "ShoulderCenter")
 HAND_ENDS = ("HandLeft", "HandRight")
 SIDES = ("left", "right")
 MAX_HAND_END_M = 0.13
-"""Maximum distance of the end of a hand from the wrist."""
+"""Maximum distance of the end of a hand from the wrist. It guards against hands without a palm;
+a hand is 0.108 of the height (Winter 2009)."""
 
 
 def posture_joint_indices(names: Sequence[str]) -> dict[str, int]:

@@ -33,12 +33,17 @@ BODY_ROLES = (
 """All roles but the fingers."""
 
 MIN_NAME_SCORE = 0.7
-"""Score from which the roles by name are used; structure only fills what they leave empty."""
+"""Score, as a fraction, from which the roles by name are used; structure only fills what they
+leave empty. Chosen by hand on the rigs of `tests/solvers/motion`."""
 MIN_MATCH = 0.5
-"""Roles that a table must match, relative to the table that matches most."""
+"""Roles that a table must match, relative to the table that matches most. Chosen by hand on the
+rigs of `tests/solvers/motion`."""
 MAX_STRUCTURE_SCORE = 0.8
+"""Maximum score, as a fraction, of roles that are found by structure. Chosen by hand on the
+rigs of `tests/solvers/motion`."""
 MIN_AGREEMENT = 0.9
-"""Of the roles that names and structure both assign, so that structure may fill others."""
+"""Fraction, of the roles that names and structure both assign, so that structure may fill
+others. Chosen by hand on the rigs of `tests/solvers/motion`."""
 
 
 @dataclass(frozen=True)

@@ -22,10 +22,14 @@ from .names import sides_of_names
 TRUNK_FRACTION = 0.288
 """Of the height, from hips to shoulders (Winter 2009, figure 4.1); arms branch off lower."""
 TRUNK_WEIGHT = 0.25
+"""Weight of the trunk's length in the misfit of a body. Chosen by hand on the rigs of
+`tests/solvers/motion`."""
 ROOT_AT_CHEST = 0.5
-"""Misfit of a body whose legs hang on its chest: more often, legs were taken for arms."""
+"""Added to the misfit, the logarithm of a length, of a body whose legs hang on its chest: more
+often, legs were taken for arms. Chosen by hand on the rigs of `tests/solvers/motion`."""
 LEG_PATH_FRACTION = 0.6
-"""Of the height, from the hip joint along the bones to the tip of the foot."""
+"""Of the height, from the hip joint along the bones to the tip of the foot. Chosen by hand on
+the rigs of `tests/solvers/motion`."""
 HEIGHT_FACTORS = np.exp(np.linspace(-0.4, 0.4, 17))
 """Heights that are tried, relative to the one that the legs suggest."""
 ROUGH_FACTORS = HEIGHT_FACTORS[2::6]
@@ -33,9 +37,11 @@ ROUGH_FACTORS = HEIGHT_FACTORS[2::6]
 N_REFINED = 8
 """Matches whose height is then refined."""
 MAX_OTHER_LIMB_FRACTION = 0.6
-"""Length, relative to the legs, above which a third pair of limbs is no skirt or hair."""
+"""Length, relative to the legs, above which a third pair of limbs is no skirt or hair. Chosen
+by hand on the rigs of `tests/solvers/motion`."""
 MAX_HUMAN_ANGLE_DEG = 60.0
-"""Between trunk and legs in the rest pose of a person, who stands; animals stand at 90."""
+"""Between trunk and legs in the rest pose of a person, who stands; animals stand at 90. Chosen
+by hand on the rigs of `tests/solvers/motion`."""
 
 
 class _Match(NamedTuple):

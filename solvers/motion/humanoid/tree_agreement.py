@@ -8,6 +8,7 @@ import numpy as np
 
 from ..skeletons import Skeleton
 from .limb_division import MIN_SPREAD_FRACTION
+from .structure import MAX_HUMAN_ANGLE_DEG
 
 LIMBS = (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand"))
 SIDES = ("left", "right")
@@ -16,19 +17,26 @@ NO_LETTERS = re.compile(r"[\W\d_]+")
 
 MAX_BONE_RATIO = 3.0
 """Between upper and lower limb; people have 1.0 (legs) and 1.3 (arms), and 2.2 was seen in a
-captured skeleton whose wrists were set too high."""
+captured skeleton whose wrists were set too high. Chosen by hand on the rigs of
+`tests/solvers/motion`."""
 MAX_SIDE_RATIO = 1.6
-"""Between both sides' bones."""
+"""Between both sides' bones. Chosen by hand on the rigs of `tests/solvers/motion`."""
 MIN_BONE_FRACTION = 0.05
-"""Of a limb, below which a joint between two others is a helper."""
-MAX_HUMAN_ANGLE_DEG = 60.0
-"""Between trunk and legs in the rest pose of a person, who stands; animals stand at 90."""
+"""Of a limb, below which a joint between two others is a helper. Chosen by hand on the rigs of
+`tests/solvers/motion`."""
 
 SKIPPED_JOINT = 0.5
+"""Factor of the score of a map that leaves a joint of a limb out. Chosen by hand on the rigs of
+`tests/solvers/motion`."""
 NO_SPINE = 0.7
+"""Factor of the score of a map without a spine. Chosen by hand on the rigs of
+`tests/solvers/motion`."""
 ODD_LENGTHS = 0.6
+"""Factor of the score of a map whose bones differ too much in length. Chosen by hand on the
+rigs of `tests/solvers/motion`."""
 NOT_STANDING = 0.5
-"""Factors of the score of a map that the tree contradicts in one way."""
+"""Factor of the score of a map whose legs do not stand below the trunk. Chosen by hand on the
+rigs of `tests/solvers/motion`."""
 
 
 def tree_agreement(skeleton: Skeleton, joints: Mapping[str, str]) -> float:

@@ -3,10 +3,11 @@
 from ...errors import InvalidMotionError
 
 MIN_FRAME_RATE_HZ = 0.01
-"""One frame in 100 s: slower than any time lapse of a moving body."""
+"""One frame in 100 s: slower than any time lapse of a moving body. It guards against damaged
+files."""
 MAX_FRAME_RATE_HZ = 10_000.0
 """Faster than any motion capture. Filter windows last seconds, so a wrong rate above it would
-need gigabytes."""
+need gigabytes. It guards against damaged files."""
 
 
 def check_frame_rate(frame_rate: float) -> None:

@@ -11,8 +11,11 @@ from .frame_rate import check_frame_rate
 from .skeleton import MAX_DISTANCE_M, Skeleton
 
 UNIT_TOLERANCE = 1e-3
+"""Maximum deviation of a squared norm from 1, as a ratio, of what is a rotation. It guards
+against damaged files."""
 ROUNDING = 1e-14
-"""Norms this near to 1 are not normalized, so that unchanged rotations stay identical bits."""
+"""Ratio to 1: norms this near to it are not normalized, so that unchanged rotations stay
+identical bits. It absorbs rounding."""
 
 FRAMES_AT_ONCE = 2000
 

@@ -14,10 +14,12 @@ from .motion import Motion
 from .tracks import Tracks
 
 STOPBAND_DB = 60.0
-"""Attenuation of frequencies above the new Nyquist frequency, decibels."""
+"""Attenuation of frequencies above the new Nyquist frequency, decibels. Chosen by hand: x0.5
+and x2 move no error."""
 
 PASSBAND = 0.7
-"""Edge of the passband, as a fraction of the new Nyquist frequency."""
+"""Edge of the passband, as a fraction of the new Nyquist frequency. Chosen by hand: x0.5 costs
+2.0 %, x2 fails."""
 
 MAX_VALUES_PER_BLOCK = 4_000_000
 """Limits the memory: two hours of a skeleton have thirty times as many values."""

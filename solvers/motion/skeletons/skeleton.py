@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from ...errors import InvalidMotionError
 
 MAX_DISTANCE_M = 1e9
-"""No capture is larger: a larger value has a wrong unit, and its square may overflow."""
+"""No capture is larger: a larger value has a wrong unit, and its square may overflow. It guards
+against damaged files."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,6 +14,7 @@ from ...motion import (
 from ...motion.humanoid import CHEST, HIPS, N_JOINTS, POSTURE_JOINTS, postures_from_motion
 from ...rotations import fit_rotations, inverse, multiply, rotate, rotation_between, slerp
 from ...signals import fill_gaps, fill_rotation_gaps
+from .rotation_solver import MIN_LENGTH_M
 
 AIMS = {
     f"{side}{part}": f"{side}{end}"
@@ -28,8 +29,6 @@ PELVIS = tuple(
     POSTURE_JOINTS.index(role) for role in ("leftUpperLeg", "rightUpperLeg", "spine")
 )
 TRUNK = tuple(POSTURE_JOINTS.index(role) for role in ("leftUpperArm", "rightUpperArm", "head"))
-MIN_LENGTH_M = 1e-3
-"""Minimum length (m) that defines a direction. Chosen by hand: x0.5 and x2 move no error."""
 
 
 def fit_motion_to_postures(

@@ -4,14 +4,12 @@ import numpy as np
 
 from ...arrays import Array
 from ...motion.humanoid import N_JOINTS
-from ..pose_space import EnergyTargets, PostureSpaces
+from ..pose_space import MIN_VARIANCE_M2, EnergyTargets, PostureSpaces
 
 MODEL_ERROR_M = 0.1
 """Standard deviation (m) of a reliable joint about the space of its neighbors; chosen on
 development clips. It is large because few neighbors underestimate the variance. Chosen by hand:
 x0.5 and x2 change the mean by less than 0.1 %."""
-MIN_VARIANCE_M2 = 1e-8
-"""Minimum variance of a component of the pose space. It guards a division."""
 
 
 def probable_postures(spaces: PostureSpaces, targets: EnergyTargets) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...motion.humanoid import posture_joint_indices
+from ...motion.humanoid import MIN_RELIABILITY, posture_joint_indices
 from .terms import vector_lengths
 
 Flags = NDArray[np.bool_]
@@ -19,9 +19,6 @@ MAX_ANGLE_DEG = 30.0
 x0.5 costs nothing, x2 costs 0.9 %."""
 MIN_FRAMES = 5
 """Minimum number of frames for a length."""
-MIN_RELIABILITY = 0.6
-"""Joints above this reliability determine the lengths. Chosen by hand: x0.5 and x2 move no
-error."""
 
 
 def parent_distances(positions: Array, parents: NDArray[np.intp]) -> Array:

@@ -64,8 +64,8 @@ FAMILIES: dict[str, tuple[str, ...]] = {
 command_line, pictures, processes, samples and rotations (formats, limits against hostile files,
 display, synthetic data, exact formulas), and workflows, which have no metric yet."""
 UNITS_BY_SUFFIX = {
-    "_M_S": "m/s", "_RAD_S": "rad/s", "_M2": "m2", "_DB": "dB", "_COSINE": "cosine",
-    "_SINE": "sine", "_RELIABILITY": "0 to 1", "_CONFIDENCE": "0 to 1",
+    "_M_S": "m/s", "_RAD_S": "rad/s", "_PER_M2": "1/m", "_M2": "m2", "_DB": "dB",
+    "_COSINE": "cosine", "_SINE": "sine", "_RELIABILITY": "0 to 1", "_CONFIDENCE": "0 to 1",
     "_S": "s", "_M": "m", "_CM": "cm", "_MM": "mm", "_DEG": "deg", "_RAD": "rad",
     "_HZ": "Hz", "_PX": "px", "_KG": "kg", "_FRAMES": "frames", "_FRACTION": "fraction",
     "_SHARE": "fraction", "_RATIO": "ratio", "_FACTOR": "factor", "_SIGMAS": "std. dev.",

@@ -16,7 +16,6 @@ REASONS: dict[str, tuple[str, ...]] = {
         "signals/smooth_correction.FADE_TIME_CONSTANTS",
         "*.GRAVITY*",
         "*.MAD_TO_SIGMA",
-        "*.STD_FROM_MAD",
         "*.CM_PER_M",
         "*.MM_PER_M",
         "markers/rigid_clusters.SPREAD_PERCENTILES",
