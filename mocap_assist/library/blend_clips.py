@@ -6,9 +6,9 @@ from pathlib import Path
 import bpy
 
 from ...solvers.faults import Failure, attempt
+from ...solvers.files import path_fault
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
-from ...solvers.workflows import path_fault
 from ..actions.armature_read import read_take
 from ..actions.fitting import fitting_slots, plays
 from ..blender import compat
