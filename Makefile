@@ -76,7 +76,7 @@ kills: .venv-4.5/ready zip  ## kill commands at random moments; ARGUMENTS="--kil
 
 # --- What there is to see ---
 
-.PHONY: demo docs pictures bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-import-corpus bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth sensitivity
+.PHONY: demo docs pictures pictures-origins bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-import-corpus bench-video bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth sensitivity
 demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
@@ -87,6 +87,9 @@ docs: .venv-4.5/ready  ## the tables of settings and the pictures in README.md a
 pictures: .venv-4.5/ready  ## the pictures of docs/formats and of Reconstruct, from ../shared/data
 	PYTHONPATH=. $(PYTHON_4.5) .ci/draw_formats.py ../shared/data
 	PYTHONPATH=. $(PYTHON_4.5) .ci/draw_reconstruction.py ../shared/data
+
+pictures-origins: .venv-4.5/ready  ## takes of many makers, imported, cleaned, on Rigify: build/origins
+	PYTHONPATH=.:.ci $(PYTHON_4.5) .ci/draw_origins.py ../shared/data build/origins $(TAKES)
 
 # Each writes what is shipped from recordings of ../shared/data; ARGUMENTS="--out FILE" writes
 # elsewhere, and each script says which clips, bodies and licences. The forest takes half an hour.
@@ -125,6 +128,9 @@ bench-import: .venv-4.5/ready  ## measure the import time of recordings of five 
 
 bench-import-corpus: .venv-4.5/ready  ## read every recording of other makers, and compare with its truth
 	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_import_corpus $(ARGUMENTS)
+
+bench-video: .venv-4.5/ready  ## measure Clean, Plant Feet and Physics on takes of video models
+	$(PYTHON_4.5) -m tests.benchmarks.video.bench_video $(ARGUMENTS)
 
 bench-reliability: .venv-4.5/ready  ## measure the detection of joint errors of a Kinect
 	$(PYTHON_4.5) -m tests.benchmarks.reconstruction.bench_reliability $(ARGUMENTS)

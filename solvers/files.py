@@ -57,6 +57,15 @@ def is_missing(path: Path | str) -> bool:
     return False
 
 
+def path_fault(path: Path | str) -> str:
+    """Return why a library cannot store a path; empty if it can."""
+    try:
+        str(path).encode("utf-8")
+    except UnicodeEncodeError:  # Linux file names may have any bytes.
+        return f"{str(path)!r} is not valid UTF-8; rename the file or its folder."
+    return ""
+
+
 def open_regular(path: Path | str) -> BinaryIO:
     """Open a regular file for reading.
 

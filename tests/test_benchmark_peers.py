@@ -35,6 +35,17 @@ def test_gcv_spline_over_gaps_is_scipys(rng):
     assert_allclose(ours[:, 0], theirs, atol=1e-5)
 
 
+def test_butterworth_halves_the_power_at_its_cutoff():
+    time = np.arange(600) / 120.0
+    wave = np.sin(2 * np.pi * 6.0 * time)[:, None]
+
+    filtered = smoothers.butterworth(wave, 120.0)
+
+    middle = slice(200, 400)
+    assert_allclose(filtered[middle].std() / wave[middle].std(), np.sqrt(0.5), atol=0.01)
+    assert np.abs(np.correlate(filtered[:, 0], wave[:, 0], "full")).argmax() == len(time) - 1
+
+
 def test_kalman_smoother_is_the_posterior_mean(rng):
     """On a short take the posterior of a chain is one dense linear system."""
     training = [np.cumsum(rng.normal(size=(80, 3)), axis=0) for _ in range(3)]

@@ -15,8 +15,14 @@ DOCUMENTS = [
     *sorted(ROOT.glob("*.md")),
     *sorted((ROOT / "docs").rglob("*.md")),
 ]
-DOORS = [ROOT / "README.md", *sorted((ROOT / "docs" / "start").glob("*.md"))]
+DOORS = [
+    ROOT / "README.md",
+    *sorted((ROOT / "docs" / "start").glob("*.md")),
+    *sorted((ROOT / "docs" / "origins").glob("*.md")),
+]
 """What a newcomer reads first: what is bold in them is the label of a button."""
+ORIGINS = [page for page in DOORS if page.parent.name == "origins" and page.name != "README.md"]
+"""A page for each maker of recordings."""
 GUIDES = [ROOT / "CONTRIBUTING.md", ROOT / "docs" / "architecture.md"]
 """What names files of the code: after a move they are renamed here, too."""
 COMMAND = re.compile(r"^ *python -m solvers ([\w-]+)(.*)$", re.MULTILINE)
@@ -100,6 +106,17 @@ def test_buttons_in_bold_exist(document, write_docs):
     labels = {label for label, _ in write_docs.buttons().values()}
 
     assert set(re.findall(r"\*\*(.+?)\*\*", text)) <= labels
+
+
+@pytest.mark.parametrize("page", ORIGINS, ids=name_of)
+def test_pages_of_origins_have_three_steps_and_are_listed(page):
+    text = page.read_text(encoding="utf-8")
+    steps = re.findall(r"^(\d)\. ", text, re.MULTILINE)
+    lists = [ROOT / "docs" / "origins" / "README.md", ROOT / "docs" / "README.md"]
+
+    assert steps == ["1", "2", "3"]
+    assert "Known faults:" in text
+    assert all(f"{page.name})" in each.read_text(encoding="utf-8") for each in lists)
 
 
 def test_the_readme_is_short():

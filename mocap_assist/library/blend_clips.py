@@ -8,9 +8,9 @@ import bpy
 import numpy as np
 
 from ...solvers.faults import Failure, attempt
+from ...solvers.files import path_fault
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
-from ...solvers.workflows import path_fault
 from ..actions.armature_read import read_take
 from ..actions.fitting import fitting_slots, plays, plays_slot
 from ..blender import compat

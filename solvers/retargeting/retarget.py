@@ -16,6 +16,7 @@ from ..motion import (
     forward_kinematics,
     world_poses,
 )
+from ..motion.humanoid import with_standing_rest
 from ..progress import Progress, unwatched
 from ..rotations import IDENTITY
 from ..settings import Choice, Settings, setting
@@ -134,6 +135,7 @@ def retarget(
        Goswami, Badler (2000). Real-time inverse kinematics techniques for anthropomorphic
        limbs. Graphical Models 62(5). doi:10.1006/gmod.2000.0528
     """
+    motion = with_standing_rest(motion, source_map)
     source = find_body(motion.skeleton, source_map, "source's")
     target = find_body(target_skeleton, target_map, "target's")
     if settings.root_motion is RootMotion.ROOT_BONE and target.joints["hips"] == 0:

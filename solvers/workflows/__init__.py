@@ -2,7 +2,6 @@
 
 from .capture_recording import CapturedMotion, capture_actor, capture_recording
 from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
-from .clip_sources import path_fault
 from .index_files import IndexReport, index_files
 from .live_session import LiveSession
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
@@ -35,7 +34,6 @@ __all__ = [
     "clean_from_library",
     "index_files",
     "motion_from_markers",
-    "path_fault",
     "plant_feet_if_possible",
     "posture_library_from_clips",
     "postures_from_library",

@@ -6,12 +6,12 @@ from pathlib import Path
 
 from ..errors import InvalidFileError
 from ..faults import Failure, attempt
-from ..files import is_missing, real_path
+from ..files import is_missing, path_fault, real_path
 from ..recordings import SCENE_SUFFIXES, open_bodies, recordings_in
 from ..recordings.containers import is_folder
 from ..recordings.skeleton_files import find_skeleton
 from ..retrieval import Origin
-from ..retrieval.index import find_text_fault, is_utf_8
+from ..retrieval.index import find_text_fault
 
 
 @dataclass(frozen=True)
@@ -69,13 +69,6 @@ class ClipSource:
         while True:
             yield "/".join([*folders, f"{file} ({number})"])
             number += 1
-
-
-def path_fault(path: Path | str) -> str:
-    """Return why a library cannot store a path; empty if it can."""
-    if is_utf_8(str(path)):
-        return ""
-    return f"{str(path)!r} is not valid UTF-8; rename the file or its folder."
 
 
 def _skeletons(path: Path) -> list[Path]:

@@ -54,6 +54,7 @@ from .posture_joints import (
 )
 from .presets import read_humanoid_map, write_humanoid_map
 from .roles import ESSENTIAL_ROLES, HUMANOID_ROLES, HumanoidMap, find_humanoid_map
+from .standing_rest import with_standing_rest
 
 __all__ = [
     "ADULT_BONE_LENGTHS_M",
@@ -109,5 +110,6 @@ __all__ = [
     "skeleton_from_points",
     "t_pose_alignment",
     "transfer_motion",
+    "with_standing_rest",
     "write_humanoid_map",
 ]

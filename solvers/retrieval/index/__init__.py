@@ -1,6 +1,6 @@
 """Index clips by codewords of their segments, and compare them."""
 
-from .clip import Clip, ClipEntry, Match, Origin, find_tags_fault, find_text_fault, is_utf_8
+from .clip import Clip, ClipEntry, Match, Origin, find_tags_fault, find_text_fault
 from .describe_clip import DescribedClip, describe_clip
 from .index_block import IndexBlock, block_arrays, block_from_arrays, build_block, merge_blocks
 from .reranking import pairwise_warping_costs, rerank_by_neighbors
@@ -48,7 +48,6 @@ __all__ = [
     "find_tags_fault",
     "find_text_fault",
     "frame_distances",
-    "is_utf_8",
     "learn_vocabulary",
     "merge_blocks",
     "pairwise_warping_costs",

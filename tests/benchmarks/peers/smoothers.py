@@ -7,7 +7,7 @@ from scipy.interpolate import CubicSpline
 from scipy.linalg import cho_solve_banded, cholesky_banded, eigh
 from scipy.ndimage import gaussian_filter1d, median_filter
 from scipy.optimize import minimize_scalar
-from scipy.signal import savgol_filter
+from scipy.signal import butter, filtfilt, savgol_filter
 
 from solvers.arrays import Array
 
@@ -29,6 +29,17 @@ def savitzky_golay(noisy: Array, frame_rate: float, length: int, order: int = 3)
     """Least-squares polynomial in a moving window."""
     length = min(length, len(noisy) - 1 + len(noisy) % 2)
     return np.asarray(savgol_filter(noisy, length, min(order, length - 1), axis=0))
+
+
+def butterworth(noisy: Array, frame_rate: float, cutoff: float = 6.0) -> Array:
+    """Low-pass filter of gait analysis: second order, forwards and backwards, so without lag.
+
+    The cut-off, hertz, is that of both passes together (Winter 2009, section 2.2.4.4).
+    """
+    single_pass = cutoff / (np.sqrt(2.0) - 1.0) ** 0.25
+    numerator, denominator = butter(2, min(single_pass, 0.49 * frame_rate), fs=frame_rate)
+    padding = min(3 * len(denominator), len(noisy) - 1)
+    return np.asarray(filtfilt(numerator, denominator, noisy, axis=0, padlen=padding))
 
 
 def hampel(noisy: Array, frame_rate: float) -> Array:

@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.timeout(300)
+pytestmark = pytest.mark.timeout(900)
 MAX_ANGLE_DEG = 15.0
 """Mean angle between bones of source and rig in world space; a wrong bone is off by 30 or more.
 Rigs keep the rest angle of spine and feet, and hands are placed by length."""
+FOOT = ("foot", "toe")
+MAX_FOOT_HEIGHT_M = 0.12
+"""Height of the lowest joint of the rig's feet in the frame in which it is lowest."""
 LIMBS = {
     "UpperArm": ("LowerArm", "upper_arm", "forearm"), "LowerArm": ("Hand", "forearm", "hand"),
     "UpperLeg": ("LowerLeg", "thigh", "shin"), "LowerLeg": ("Foot", "shin", "foot"),
@@ -80,6 +83,8 @@ def test_the_rig_does_what_the_take_does(take, blank, hero, give, poses, load):
     angle = np.degrees(np.arccos(np.clip((trunk * spine).sum(axis=1), -1.0, 1.0)))
     assert angle.mean() < MAX_ANGLE_DEG, angle.mean()
     assert np.median(trunk[0, 2]) > 0.8  # it stands
+    lowest = min(ours[f"DEF-{part}.{side}"][:, 2, 3].min() for part in FOOT for side in "LR")
+    assert -0.05 < lowest < MAX_FOOT_HEIGHT_M, lowest
 
 
 def direction(found, start, end):

@@ -1,0 +1,110 @@
+"""Give a motion a rest pose in which the body stands, if its file has another."""
+
+import numpy as np
+
+from ...arrays import Array
+from ...rotations import IDENTITY, inverse, multiply, quaternion_from_matrix, rotate
+from ..skeletons import Motion, Skeleton, WorldPoses, forward_kinematics
+from .roles import HumanoidMap
+
+LEG_BONES = tuple(
+    (f"{side}{upper}", f"{side}{lower}")
+    for side in ("left", "right")
+    for upper, lower in (("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot"))
+)
+FOOT_BONES = tuple((f"{side}Foot", f"{side}Toes") for side in ("left", "right"))
+FRAME_ROLES = ("hips", "leftUpperLeg", "rightUpperLeg")
+MIN_AREA_M2 = 1e-6
+"""Trunk times width of the hips above which a pose shows where the body faces."""
+TOPS = ("neck", "head", "chest", "spine")
+
+
+def with_standing_rest(motion: Motion, humanoid: HumanoidMap) -> Motion:
+    """Return the same motion with a standing rest pose, if a leg points up in its rest pose.
+
+    Files of some data sets have rest poses that no body can take: each bone lies along an axis
+    of its joint, so that one leg points down and the other up. The axial rotation of a limb
+    relative to the T-pose, and the height of the ankles, cannot be read from such a pose. The
+    rest pose is then that of the frame with the straightest legs and feet, upright and facing
+    -Y, with the hips at the origin. The positions of all joints over time stay the same.
+
+    Parameters
+    ----------
+    motion : Motion
+        Gaps stay gaps in the same joints.
+    humanoid : HumanoidMap
+        A body without hips, legs or neck keeps its rest pose.
+    """
+    joints = humanoid.indices(motion.skeleton)
+    top = next((joints[role] for role in TOPS if role in joints), None)
+    legs, feet = (
+        [(joints[a], joints[b]) for a, b in bones if a in joints and b in joints]
+        for bones in (LEG_BONES, FOOT_BONES)
+    )
+    if top is None or not legs or not joints.keys() >= set(FRAME_ROLES):
+        return motion
+    hips, left, right = (joints[role] for role in FRAME_ROLES)
+    rest = motion.skeleton.rest_positions[None]
+    if _smallest_cosine(rest, legs, rest[:, hips] - rest[:, top])[0] > 0.0:
+        return motion
+    poses = forward_kinematics(motion)
+    positions = poses.positions
+    down = positions[:, hips] - positions[:, top]
+    forward = np.cross(down, positions[:, left] - positions[:, right])
+    straight = np.minimum(
+        _smallest_cosine(positions, legs, down), _smallest_cosine(positions, feet, forward)
+    )
+    usable = np.isfinite(poses.rotations).all(axis=(1, 2)) & np.isfinite(straight)
+    usable &= np.linalg.norm(forward, axis=1) > MIN_AREA_M2
+    if not usable.any():
+        return motion
+    frame = int(np.argmax(np.where(usable, straight, -np.inf)))
+    standing = positions[frame]
+    upright = _upright_from(standing[top] - standing[hips], standing[left] - standing[right])
+    return _with_rest(motion, poses, frame, upright, hips)
+
+
+def _smallest_cosine(positions: Array, bones: list[tuple[int, int]], direction: Array) -> Array:
+    """Return the cosine between a direction and the bone farthest from it, (n_frames,).
+
+    Parameters
+    ----------
+    positions : shape (n_frames, n_joints, 3), meters
+    bones : list of (start, end)
+        Without any, the result is 1.
+    direction : shape (n_frames, 3)
+    """
+    smallest = np.ones(len(positions))
+    for start, end in bones:
+        bone = positions[:, end] - positions[:, start]
+        length = np.linalg.norm(bone, axis=1) * np.linalg.norm(direction, axis=1)
+        smallest = np.minimum(smallest, (bone * direction).sum(axis=1) / (length + 1e-9))
+    return smallest
+
+
+def _upright_from(up: Array, left: Array) -> Array:
+    """Return the rotation from a body, given by two directions, to one that faces -Y."""
+    up = up / np.linalg.norm(up)
+    left = left - (left @ up) * up
+    left = left / np.linalg.norm(left)
+    return quaternion_from_matrix(np.stack([left, np.cross(up, left), up]))
+
+
+def _with_rest(
+    motion: Motion, poses: WorldPoses, frame: int, upright: Array, hips: int
+) -> Motion:
+    """Return the motion with a frame's pose, turned by a rotation, as its rest pose."""
+    skeleton = motion.skeleton
+    positions = rotate(upright, poses.positions[frame] - poses.positions[frame, hips])
+    parents = list(skeleton.parents)
+    offsets = positions - np.where(np.array(parents)[:, None] < 0, 0.0, positions[parents])
+    # From the old rest pose to the new one, in the world.
+    turns = multiply(upright, poses.rotations[frame])
+    parent_turns = np.concatenate([IDENTITY[None], turns[parents[1:]]])
+    rotations = multiply(multiply(parent_turns, motion.rotations), inverse(turns))
+    return Motion(
+        Skeleton(skeleton.names, skeleton.parents, offsets),
+        rotations,
+        motion.root_positions,
+        motion.frame_rate,
+    )

@@ -1,0 +1,1 @@
+"""Takes of video models: made with their typical faults, and real ones."""

@@ -1,0 +1,105 @@
+"""A rest pose that no body can take must not spoil what is judged from it."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.motion import Motion, Skeleton, find_humanoid_map, forward_kinematics
+from solvers.motion.humanoid import with_standing_rest
+from solvers.retargeting import retarget
+from solvers.rotations import (
+    IDENTITY,
+    inverse,
+    multiply,
+    quaternion_from_rotation_vector,
+    rotate,
+)
+from solvers.samples import GaitSettings, walking_gait
+
+WALK = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
+HUMANOID = find_humanoid_map(WALK.skeleton)
+INDICES = HUMANOID.indices(WALK.skeleton)
+
+
+def with_bones_along_axes(motion: Motion) -> Motion:
+    """Return the same motion; in the rest pose the left leg points up, and the arms back."""
+    skeleton = motion.skeleton
+    turns = np.tile(IDENTITY, (skeleton.n_joints, 1))
+    for role, vector in {
+        "leftUpperLeg": (0.0, np.pi, 0.0), "leftUpperArm": (0.0, 0.0, 1.6),
+        "rightUpperArm": (0.5, 0.0, 1.2), "leftFoot": (1.2, 0.3, 0.0),
+    }.items():  # fmt: skip
+        turn = quaternion_from_rotation_vector(np.array(vector))
+        below = skeleton.subtree(INDICES[role])
+        turns[below] = multiply(turn, turns[below])
+    parents = list(skeleton.parents)
+    parent_turns = np.concatenate([IDENTITY[None], turns[parents[1:]]])
+    rotations = multiply(multiply(parent_turns, motion.rotations), inverse(turns))
+    offsets = rotate(parent_turns, skeleton.offsets)
+    odd = Skeleton(skeleton.names, skeleton.parents, offsets)
+    return Motion(odd, rotations, motion.root_positions, motion.frame_rate)
+
+
+ODD = with_bones_along_axes(WALK)
+
+
+def test_the_odd_rest_pose_shows_the_same_motion():
+    """The test's own premise."""
+    assert_allclose(
+        forward_kinematics(ODD).positions, forward_kinematics(WALK).positions, atol=1e-9
+    )
+
+
+def test_joints_stay_where_they_are():
+    stood = with_standing_rest(ODD, HUMANOID)
+
+    assert_allclose(
+        forward_kinematics(stood).positions, forward_kinematics(WALK).positions, atol=1e-9
+    )
+
+
+def test_the_new_rest_pose_stands_and_faces_the_front():
+    rest = with_standing_rest(ODD, HUMANOID).skeleton.rest_positions
+
+    roles = ("leftFoot", "rightFoot", "head")
+    left, right, head = (rest[INDICES[role]] - rest[INDICES["hips"]] for role in roles)
+    assert max(left[2], right[2]) < -0.7
+    assert head[2] > 0.4
+    assert left[0] > right[0]
+    toes = rest[INDICES["leftToes"]] - rest[INDICES["leftFoot"]]
+    assert toes[1] < -0.05
+
+
+def test_a_body_that_rests_standing_is_left_as_it_is():
+    assert with_standing_rest(WALK, HUMANOID) is WALK
+
+
+def test_gaps_stay_in_the_same_joints():
+    rotations = ODD.rotations.copy()
+    rotations[5:9, INDICES["leftLowerArm"]] = np.nan
+    gapped = ODD.with_poses(rotations)
+
+    stood = with_standing_rest(gapped, HUMANOID)
+
+    assert np.array_equal(np.isnan(stood.rotations), np.isnan(rotations))
+
+
+def test_a_body_never_observed_is_left_as_it_is():
+    unseen = ODD.with_poses(np.full_like(ODD.rotations, np.nan))
+
+    assert with_standing_rest(unseen, HUMANOID) is unseen
+
+
+@pytest.mark.parametrize("role", ["leftFoot", "rightFoot", "leftHand", "head", "hips"])
+def test_retargeting_does_not_depend_on_the_rest_pose(role):
+    """The Bandai-Namco set: hips came out 0.8 m too low, and collars hung down."""
+    expected = retarget(WALK, HUMANOID, WALK.skeleton, HUMANOID)
+
+    found = retarget(ODD, HUMANOID, WALK.skeleton, HUMANOID)
+
+    distance = np.linalg.norm(
+        forward_kinematics(found).positions[:, INDICES[role]]
+        - forward_kinematics(expected).positions[:, INDICES[role]],
+        axis=-1,
+    )
+    assert distance.max() < 0.06
