@@ -16,7 +16,7 @@ from tests.benchmarks.depth.depth_more import (
     before_camera,
     body_of,
     more_sequence,
-    place,
+    view_center,
 )
 
 CAMERA = Camera(150.0, 120.0, 70.0, 65.5, 160, 120)
@@ -92,4 +92,4 @@ def test_a_sequence_has_its_joints_inside_of_what_is_seen(monkeypatch, tmp_path)
     behind = sequence.joints[10, :, 2] - surface
     inside = (surface > 0.0) & (behind > -0.03)
     assert inside.mean() > 0.85
-    assert place(TAKES["seated, side"])[2] == pytest.approx(np.median(surface), abs=0.5)
+    assert view_center(TAKES["seated, side"])[2] == pytest.approx(np.median(surface), abs=0.5)

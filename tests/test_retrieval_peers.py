@@ -10,9 +10,9 @@ from solvers.motion import Tracks, warp
 from solvers.motion.humanoid.posture_joints import HIPS, POSTURE_JOINTS
 from tests.benchmarks.peers.clip_alignment import warped_totals
 from tests.benchmarks.peers.clip_statistics import Covariances
+from tests.benchmarks.peers.complete_postures import learn_complete_postures, resampled
 from tests.benchmarks.peers.motion_volumes import volume
-from tests.benchmarks.peers.string_matching import shared
-from tests.benchmarks.peers.whole_postures import learn_whole, resampled
+from tests.benchmarks.peers.string_matching import common_fraction
 from tests.benchmarks.retrieval.pyramid_methods import BODY, PARTS, only
 from tests.benchmarks.retrieval.retrieval_clips import LabelledClip
 from tests.benchmarks.retrieval.retrieval_damage import DAMAGES
@@ -124,9 +124,9 @@ def test_warped_totals_are_those_of_warp(rng):
 
 
 def test_longest_common_piece():
-    assert shared((1, 2, 3, 4), (9, 2, 3, 8)) == 0.5
-    assert shared((1, 2), (3, 4)) == 0.0
-    assert shared((1, 2, 3), (1, 2, 3)) == 1.0
+    assert common_fraction((1, 2, 3, 4), (9, 2, 3, 8)) == 0.5
+    assert common_fraction((1, 2), (3, 4)) == 0.0
+    assert common_fraction((1, 2, 3), (1, 2, 3)) == 1.0
 
 
 def test_volumes_are_distances(rng):
@@ -161,7 +161,7 @@ def test_lost_joints_are_put_where_the_others_say(rng):
     clips = [replace(clip, positions=clip.positions.copy()) for clip in clips]
     for clip in clips:
         clip.positions[:, 6:8] = clip.positions[:, [5]] + [[0.2, 0.0, 0.0], [0.3, 0.0, 0.0]]
-    whole, frames = learn_whole(clips, 30.0)
+    whole, frames = learn_complete_postures(clips, 30.0)
     damaged = clips[0].positions.copy()
     damaged[:, 6:8] = np.nan
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bad_sensor import KNEE, QUICK, pair, recording, seen_by_a_bad_sensor, truth
+from bad_sensor import KNEE, QUICK, pair, recording, simulate_bad_sensor, truth
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError, InvalidMotionError
@@ -130,7 +130,7 @@ def test_calibration_from_held_out_actors_is_saved_in_the_file(prior, pairs, tmp
 
     assert_allclose(again.calibration, calibrated.calibration)
     assert (calibrated.calibration[:, 2] > 0.0).all()
-    take = recording(seen_by_a_bad_sensor(truth(1.3)))
+    take = recording(simulate_bad_sensor(truth(1.3)))
     before, after = (correct_postures(take, each) for each in (prior, again))
     assert_allclose(after.tracks.positions, before.tracks.positions)
     knee = [each.confidence[:, KNEE].mean() for each in (before, after)]

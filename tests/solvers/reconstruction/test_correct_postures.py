@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bad_sensor import HAND, KNEE, NAMES, QUICK, pair, recording, seen_by_a_bad_sensor, truth
+from bad_sensor import HAND, KNEE, NAMES, QUICK, pair, recording, simulate_bad_sensor, truth
 from scipy.optimize import minimize
 
 from solvers.errors import InvalidMotionError
@@ -43,7 +43,7 @@ def error(positions: np.ndarray, true: np.ndarray, joint: int = KNEE) -> float:
 
 def test_sensor_error_is_subtracted_from_a_new_walk(prior):
     true = truth(1.3)
-    given_ = recording(seen_by_a_bad_sensor(true))
+    given_ = recording(simulate_bad_sensor(true))
     before = error(given_.tracks.positions, true)
     after = error(correct_postures(given_, prior).tracks.positions, true)
     assert before > 0.06
@@ -51,7 +51,7 @@ def test_sensor_error_is_subtracted_from_a_new_walk(prior):
 
 
 def test_without_shift_joints_keep_their_mean_position(prior):
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    given_ = recording(simulate_bad_sensor(truth(1.3)))
     moved = correct_postures(given_, prior, settings=CorrectionSettings(shift=False))
     mean = (moved.tracks.positions - given_.tracks.positions)[:, KNEE].mean(axis=0)
     assert np.abs(mean).max() < 0.01
@@ -60,7 +60,7 @@ def test_without_shift_joints_keep_their_mean_position(prior):
 
 
 def test_prior_ignores_heading_and_position(prior):
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    given_ = recording(simulate_bad_sensor(truth(1.3)))
     angles = np.full(given_.n_frames, 2.0)
     turned_ = recording(
         rotate_about_vertical(given_.tracks.positions, angles) + np.array([4.0, 1.0, 0.0])
@@ -73,7 +73,7 @@ def test_prior_ignores_heading_and_position(prior):
 
 
 def test_prior_predicts_nothing_far_from_its_training_data(prior):
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    given_ = recording(simulate_bad_sensor(truth(1.3)))
     upside_down = given_.tracks.positions.copy()
     upside_down[:, 1:] = upside_down[:, :1] + (upside_down[:, 1:] - upside_down[:, :1]) * (
         1.0,
@@ -99,7 +99,7 @@ def test_prior_predicts_nothing_far_from_its_training_data(prior):
 
 
 def test_joint_never_observed_does_not_affect_others(prior):
-    positions = seen_by_a_bad_sensor(truth(1.3))
+    positions = simulate_bad_sensor(truth(1.3))
     positions[:, HAND] = np.nan
     result = correct_postures(recording(positions), prior)
     assert np.isnan(result.tracks.positions[:, HAND]).all()
@@ -119,7 +119,7 @@ def test_joint_without_training_data_changes_nothing():
         observed, true = pair(truth(speed))
         takes.append((recording(blind(observed.tracks.positions)), true))
     handless = learn_residual_prior(takes, settings=QUICK)
-    observed = seen_by_a_bad_sensor(truth(1.3))
+    observed = simulate_bad_sensor(truth(1.3))
 
     with_ends, without = (
         correct_postures(recording(one), handless) for one in (observed, blind(observed))
@@ -132,7 +132,7 @@ def test_joint_without_training_data_changes_nothing():
 
 
 def test_gaps_are_bridged(prior):
-    positions = seen_by_a_bad_sensor(truth(1.3))
+    positions = simulate_bad_sensor(truth(1.3))
     positions[40:46, KNEE] = np.nan
     result = correct_postures(recording(positions), prior)
     assert error(result.tracks.positions[40:46], truth(1.3)[40:46]) < 0.05
@@ -140,7 +140,7 @@ def test_gaps_are_bridged(prior):
 
 @pytest.mark.parametrize("n_frames", [1, 2, 3, 5, 6])
 def test_correct_postures_accepts_short_takes(prior, n_frames):
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3))[:n_frames])
+    given_ = recording(simulate_bad_sensor(truth(1.3))[:n_frames])
     for method in CorrectionMethod:
         result = correct_postures(given_, prior, settings=CorrectionSettings(method=method))
         assert np.isfinite(result.tracks.positions).all()
@@ -215,7 +215,7 @@ def test_actor_labels_separate_actor_specific_errors():
     ]
     labeled = learn_residual_prior(takes, actors=[*"aaaa", "b"], settings=QUICK)
     untold = learn_residual_prior(takes, settings=QUICK)
-    given_ = recording(seen_by_a_bad_sensor(truth(1.5), 0.05))
+    given_ = recording(simulate_bad_sensor(truth(1.5), 0.05))
     sideways = [
         (correct_postures(given_, one).tracks.positions - given_.tracks.positions)[:, KNEE, 0]
         for one in (labeled, untold)
@@ -237,7 +237,7 @@ def test_published_prior_uses_neighbors_only():
     )
     kernel = published.kernel(KNEE)
     assert kernel.shared[1] < 1e-3 * kernel.shared[0]
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    given_ = recording(simulate_bad_sensor(truth(1.3)))
     result = reconstruct_zh14(given_, published)
     assert error(result.tracks.positions, truth(1.3)) < 0.6 * error(
         given_.tracks.positions, truth(1.3)
@@ -254,7 +254,7 @@ def test_mirror_setting_shares_errors_of_left_and_right_limbs():
         takes.append((observed, true.with_positions(unobserved)))
     both_sides = learn_residual_prior(takes, settings=replace(QUICK, mirror=True))
     assert "rightLowerLeg" not in both_sides.joints
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    given_ = recording(simulate_bad_sensor(truth(1.3)))
     image = recording(mirror_postures(given_.tracks.positions))
     here = correct_postures(given_, both_sides).tracks.positions
     mirrored = correct_postures(image, both_sides).tracks.positions

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bad_sensor import KNEE, QUICK, pair, recording, seen_by_a_bad_sensor, truth
+from bad_sensor import KNEE, QUICK, pair, recording, simulate_bad_sensor, truth
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError
@@ -160,7 +160,7 @@ def prior():
 
 def test_interpolation_between_predictions_is_accurate(prior):
     """Interpolate linearly between every second frame; the knee's error has cusps."""
-    smoothed = smooth_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 1 / 30)
+    smoothed = smooth_postures(recording(simulate_bad_sensor(truth(1.3))), 1 / 30)
     few = prior.predict(smoothed)
     all_frames = prior.predict(replace(smoothed, frame_rate=10.0))
     still = replace(prior, movement=None)
@@ -176,7 +176,7 @@ def test_interpolation_between_predictions_is_accurate(prior):
 
 def test_causal_prediction_ignores_later_frames(prior):
     """Predictions of the first second do not depend on later frames."""
-    smoothed = smooth_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 0.0)
+    smoothed = smooth_postures(recording(simulate_bad_sensor(truth(1.3))), 0.0)
     cut = replace(smoothed, features=smoothed.features[:30])
 
     complete, begun = (prior.predict(one, ahead=False).offsets for one in (smoothed, cut))
