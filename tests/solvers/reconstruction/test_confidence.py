@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bad_sensor import KNEE, QUICK, pair, recording, simulate_bad_sensor, truth
+from bad_sensor import KNEE, SMALL_PRIOR, pair, recording, simulate_bad_sensor, truth
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError, InvalidMotionError
@@ -33,7 +33,7 @@ def pairs():
 
 @pytest.fixture(scope="module")
 def prior(pairs):
-    return learn_residual_prior(pairs, actors=ACTORS, settings=QUICK)
+    return learn_residual_prior(pairs, actors=ACTORS, settings=SMALL_PRIOR)
 
 
 def test_probability_integrates_over_an_unknown_variance(rng):
@@ -124,7 +124,7 @@ def test_confidence_is_calibrated_for_new_actors_at_any_error_size(rng):
 
 
 def test_calibration_from_held_out_actors_is_saved_in_the_file(prior, pairs, tmp_path):
-    calibrated = calibrate_confidence(prior, pairs, ACTORS, settings=QUICK)
+    calibrated = calibrate_confidence(prior, pairs, ACTORS, settings=SMALL_PRIOR)
     calibrated.save(tmp_path / "prior.npz")
     again = load_residual_prior(tmp_path / "prior.npz")
 
@@ -158,7 +158,7 @@ def test_load_raises_for_an_invalid_calibration(prior, tmp_path):
 
 def test_calibrate_confidence_raises_for_two_actors(prior, pairs):
     with pytest.raises(InvalidMotionError, match="needs 3; there are 2"):
-        calibrate_confidence(prior, pairs, ("anna", "anna", "bob", "bob"), settings=QUICK)
+        calibrate_confidence(prior, pairs, ("anna", "anna", "bob", "bob"), settings=SMALL_PRIOR)
 
 
 def test_calibration_without_measurements_is_the_identity(prior):

@@ -4,7 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bad_sensor import HAND, KNEE, NAMES, QUICK, pair, recording, simulate_bad_sensor, truth
+from bad_sensor import (
+    HAND,
+    KNEE,
+    NAMES,
+    SMALL_PRIOR,
+    pair,
+    recording,
+    simulate_bad_sensor,
+    truth,
+)
 from scipy.optimize import minimize
 
 from solvers.errors import InvalidMotionError
@@ -33,7 +42,7 @@ from solvers.reconstruction.residual_correction.smooth_trajectories import (
 @pytest.fixture(scope="module")
 def prior():
     return learn_residual_prior(
-        [pair(truth(speed)) for speed in (0.9, 1.1, 1.45, 1.6)], settings=QUICK
+        [pair(truth(speed)) for speed in (0.9, 1.1, 1.45, 1.6)], settings=SMALL_PRIOR
     )
 
 
@@ -118,7 +127,7 @@ def test_joint_without_training_data_changes_nothing():
     for speed in (0.9, 1.1, 1.45, 1.6):
         observed, true = pair(truth(speed))
         takes.append((recording(blind(observed.tracks.positions)), true))
-    handless = learn_residual_prior(takes, settings=QUICK)
+    handless = learn_residual_prior(takes, settings=SMALL_PRIOR)
     observed = simulate_bad_sensor(truth(1.3))
 
     with_ends, without = (
@@ -213,8 +222,8 @@ def test_actor_labels_separate_actor_specific_errors():
     takes = [pair(truth(speed), 0.10) for speed in (1.0, 1.2, 1.4, 1.6)] + [
         pair(truth(1.3), 0.0)
     ]
-    labeled = learn_residual_prior(takes, actors=[*"aaaa", "b"], settings=QUICK)
-    untold = learn_residual_prior(takes, settings=QUICK)
+    labeled = learn_residual_prior(takes, actors=[*"aaaa", "b"], settings=SMALL_PRIOR)
+    untold = learn_residual_prior(takes, settings=SMALL_PRIOR)
     given_ = recording(simulate_bad_sensor(truth(1.5), 0.05))
     sideways = [
         (correct_postures(given_, one).tracks.positions - given_.tracks.positions)[:, KNEE, 0]
@@ -225,7 +234,7 @@ def test_actor_labels_separate_actor_specific_errors():
 
 def test_learn_residual_prior_repeats_for_the_same_pairs(prior):
     again = learn_residual_prior(
-        [pair(truth(speed)) for speed in (0.9, 1.1, 1.45, 1.6)], settings=QUICK
+        [pair(truth(speed)) for speed in (0.9, 1.1, 1.45, 1.6)], settings=SMALL_PRIOR
     )
     np.testing.assert_array_equal(prior.means, again.means)
 
@@ -233,7 +242,7 @@ def test_learn_residual_prior_repeats_for_the_same_pairs(prior):
 def test_published_prior_uses_neighbors_only():
     published = learn_residual_prior(
         [pair(truth(speed)) for speed in (0.9, 1.6)],
-        settings=replace(QUICK, method=ResidualMethod.PUBLISHED, calm=0.0),
+        settings=replace(SMALL_PRIOR, method=ResidualMethod.PUBLISHED, calm=0.0),
     )
     kernel = published.kernel(KNEE)
     assert kernel.shared[1] < 1e-3 * kernel.shared[0]
@@ -252,7 +261,7 @@ def test_mirror_setting_shares_errors_of_left_and_right_limbs():
         unobserved = true.positions.copy()
         unobserved[:, [MIRROR_JOINTS[joint] for joint in (KNEE, KNEE + 1, KNEE + 2)]] = np.nan
         takes.append((observed, true.with_positions(unobserved)))
-    both_sides = learn_residual_prior(takes, settings=replace(QUICK, mirror=True))
+    both_sides = learn_residual_prior(takes, settings=replace(SMALL_PRIOR, mirror=True))
     assert "rightLowerLeg" not in both_sides.joints
     given_ = recording(simulate_bad_sensor(truth(1.3)))
     image = recording(mirror_postures(given_.tracks.positions))
@@ -273,4 +282,4 @@ def test_learn_residual_prior_raises_for_mismatched_pairs():
         learn_residual_prior([(observed, true)], actors=["a", "b"])
     unobserved = Tracks(NAMES, np.full((90, 20, 3), np.nan), 30.0)
     with pytest.raises(InvalidMotionError, match="No joint is known in both"):
-        learn_residual_prior([(observed, unobserved)], settings=QUICK)
+        learn_residual_prior([(observed, unobserved)], settings=SMALL_PRIOR)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bad_sensor import KNEE, QUICK, pair, recording, simulate_bad_sensor, truth
+from bad_sensor import KNEE, SMALL_PRIOR, pair, recording, simulate_bad_sensor, truth
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError
@@ -155,7 +155,9 @@ def test_short_takes_and_blocks_of_frames(process, n_frames):
 
 @pytest.fixture(scope="module")
 def prior():
-    return learn_residual_prior([pair(truth(speed)) for speed in (0.9, 1.6)], settings=QUICK)
+    return learn_residual_prior(
+        [pair(truth(speed)) for speed in (0.9, 1.6)], settings=SMALL_PRIOR
+    )
 
 
 def test_interpolation_between_predictions_is_accurate(prior):

@@ -26,7 +26,7 @@ from solvers.reconstruction.published.shjt13 import search_as_published
 from solvers.reconstruction.published.zh14 import ThreeTermSettings, reconstruct_zh14
 from solvers.reconstruction.reconstruct import shipped_residual_prior
 
-LOST, HIDDEN = kinect_walks.LOST, [5, 6, 7]
+LOST, HIDDEN = kinect_walks.OCCLUDED_FRAMES, [5, 6, 7]
 OURS = (ReconstructMethod.BOTH, ReconstructMethod.POSTURES, ReconstructMethod.RESIDUALS)
 SEEN = [joint for joint in range(20) if joint not in HIDDEN]
 
