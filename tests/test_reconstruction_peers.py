@@ -33,7 +33,7 @@ def standing(n_frames: int = 40) -> np.ndarray:
     return np.tile(np.array([pose[name] for name in POSTURE_JOINTS], float), (n_frames, 1, 1))
 
 
-def test_hand_behind_the_trunk_is_hidden_and_one_beside_it_is_not():
+def test_hand_behind_the_trunk_is_hidden_and_one_next_to_it_is_visible():
     positions = standing()
     positions[:, RIGHT_HAND] = (0.0, 0.3, 1.2)
 
@@ -43,7 +43,7 @@ def test_hand_behind_the_trunk_is_hidden_and_one_beside_it_is_not():
     assert not where[:, LEFT_HAND].any()
 
 
-def test_hand_before_the_trunk_is_seen_from_the_front_but_not_from_behind():
+def test_hand_in_front_of_the_trunk_is_hidden_from_behind_only():
     positions = standing()
     positions[:, RIGHT_HAND] = (0.0, -0.3, 1.2)
 
@@ -51,7 +51,7 @@ def test_hand_before_the_trunk_is_seen_from_the_front_but_not_from_behind():
     assert occluded(positions, 30.0, np.pi)[:, RIGHT_HAND].all()
 
 
-def test_what_is_hidden_turns_with_the_actor():
+def test_occlusion_is_equivariant_to_heading():
     positions = standing()
     positions[:, RIGHT_HAND] = (0.0, 0.3, 1.2)
     rotated = positions[..., [1, 0, 2]] * (-1.0, 1.0, 1.0) + (3.0, -2.0, 0.0)
@@ -59,7 +59,7 @@ def test_what_is_hidden_turns_with_the_actor():
     assert_allclose(occluded(rotated, 30.0, 0.0), occluded(positions, 30.0, 0.0))
 
 
-def test_damage_takes_out_or_exchanges_what_it_says():
+def test_damage_removes_or_swaps_the_stated_joints():
     pair = recorded(standing())
     where = np.zeros((40, 20), bool)
     where[5:9, LEFT_HAND] = True
@@ -77,7 +77,7 @@ def test_damage_takes_out_or_exchanges_what_it_says():
     )
 
 
-def test_one_euro_keeps_rest_and_lets_fast_moves_pass():
+def test_one_euro_smooths_rest_and_passes_fast_motion():
     still = np.full((30, 2), 0.7)
     step = np.repeat([[0.0], [1.0]], 15, axis=0)
 
@@ -87,7 +87,7 @@ def test_one_euro_keeps_rest_and_lets_fast_moves_pass():
     assert fast > 0.8
 
 
-def test_errors_are_with_and_without_the_usual_offset():
+def test_errors_include_and_exclude_the_constant_offset():
     truth = standing(4)
     made = truth + np.array([0.03, 0.0, 0.0])
     made[0, LEFT_HAND, 2] += 0.04
@@ -100,7 +100,7 @@ def test_errors_are_with_and_without_the_usual_offset():
     assert_allclose(free[:, LEFT_HAND], [0.03, 0.01, 0.01, 0.01])
 
 
-def test_regressions_find_a_linear_law(rng):
+def test_regressions_recover_a_linear_law(rng):
     pytest.importorskip("sklearn")
     from tests.benchmarks.peers import posture_regression as regressions
 
@@ -120,7 +120,7 @@ def test_only_forces_within_friction_can_come_from_the_ground():
     assert_allclose(outside_cone(forces), [0, 0, np.sqrt(0.5), 1, np.sqrt(2), 5])
 
 
-def test_who_falls_needs_no_force_and_who_hovers_needs_all_of_it():
+def test_falling_body_needs_no_force_and_hovering_body_its_weight():
     motion = walking_gait(GaitSettings(duration=1.0, frame_rate=100.0))
     body = build_physics_body(motion, find_humanoid_map(motion.skeleton))
     still = np.tile(motion.rotations[:1], (100, 1, 1))

@@ -133,7 +133,7 @@ def names_of(tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 
 @pytest.mark.parametrize("retired", RETIRED_IN_TEXTS)
-def test_texts_for_users_do_without(retired):
+def test_texts_for_users_have_no_retired_word(retired):
     pattern = re.compile(rf"(?<![\w-]){re.escape(retired)}(?![\w-])", re.IGNORECASE)
     places = [place for place, text in texts() if pattern.search(text)]
 
@@ -141,13 +141,13 @@ def test_texts_for_users_do_without(retired):
 
 
 @pytest.mark.parametrize("retired", RETIRED_IN_NAMES)
-def test_names_do_without(retired):
+def test_names_have_no_retired_word(retired):
     place = names().get(retired)
 
     assert place is None, f"instead of {retired!r} write: {RETIRED_IN_NAMES[retired]}"
 
 
-def test_texts_and_names_are_found():
+def test_texts_and_names_are_collected():
     """What the other tests look through is there at all."""
     assert any("Clean" in text for place, text in texts() if place.startswith("operators"))
     assert {"denoise", "skeleton", "settings"} <= set(names())

@@ -79,11 +79,11 @@ def test_calibration_recovers_slope_and_spread_of_held_out_actors(rng):
 def test_larger_errors_of_all_actors_widen_the_spread_at_equal_level():
     log_variances = np.linspace(-8.0, -6.0, 50)
 
-    kept = fit_calibration(
+    fitted = fit_calibration(
         np.stack([log_variances, log_variances + 0.7], axis=-1), keep_level=True
     )
 
-    assert kept == pytest.approx((0.0, 1.0, 0.7))
+    assert fitted == pytest.approx((0.0, 1.0, 0.7))
 
 
 def test_without_constant_offset_the_level_is_learned():
@@ -100,11 +100,11 @@ def test_confidence_is_calibrated_for_new_actors_at_any_error_size(rng):
     """The expected fraction of errors lies within the distance; without calibration it is
     smaller.
     """
-    known, new = (np.exp(0.5 * 1.2 * rng.normal(size=n)) for n in (60, 400))
+    training, new = (np.exp(0.5 * 1.2 * rng.normal(size=n)) for n in (60, 400))
     variances = np.exp(rng.normal(-7.6, 0.4, size=20))
     points = [
         np.stack([np.log(variances), np.log(variances) + 2.0 * np.log(each)], axis=-1)
-        for each in known
+        for each in training
     ]
     errors = (
         rng.normal(size=(400, 20, 50, 3)) * (new[:, None] * np.sqrt(variances))[..., None, None]

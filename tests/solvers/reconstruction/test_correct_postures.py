@@ -1,4 +1,4 @@
-"""Learn residual priors from simulated sensors with known errors, and apply them."""
+"""Learn residual priors from simulated sensors with constructed errors, and apply them."""
 
 from dataclasses import replace
 
@@ -71,11 +71,11 @@ def test_without_shift_joints_keep_their_mean_position(prior):
 def test_prior_ignores_heading_and_position(prior):
     given_ = recording(simulate_bad_sensor(truth(1.3)))
     angles = np.full(given_.n_frames, 2.0)
-    turned_ = recording(
+    rotated = recording(
         rotate_about_vertical(given_.tracks.positions, angles) + np.array([4.0, 1.0, 0.0])
     )
     here = correct_postures(given_, prior).tracks.positions
-    moved = correct_postures(turned_, prior).tracks.positions
+    moved = correct_postures(rotated, prior).tracks.positions
     np.testing.assert_allclose(
         rotate_about_vertical(here, angles) + np.array([4.0, 1.0, 0.0]), moved, atol=1e-4
     )
@@ -134,9 +134,9 @@ def test_joint_without_training_data_changes_nothing():
         correct_postures(recording(one), handless) for one in (observed, blind(observed))
     )
 
-    shared = [joint for joint in range(20) if joint not in ends]
+    common = [joint for joint in range(20) if joint not in ends]
     np.testing.assert_allclose(
-        with_ends.confidence[:, shared], without.confidence[:, shared], atol=0.02
+        with_ends.confidence[:, common], without.confidence[:, common], atol=0.02
     )
 
 
@@ -186,16 +186,16 @@ def test_filter_ends_where_the_smoother_of_past_frames_ends(rng):
 def test_published_method_minimizes_the_published_energy(rng):
     """Minimize eq. 5.6 of [ZH14] numerically in the third frame."""
     positions = truth(1.3)[:3] + rng.normal(scale=0.02, size=(3, 20, 3))
-    foretold = positions + rng.normal(scale=0.03, size=positions.shape)
+    predicted = positions + rng.normal(scale=0.03, size=positions.shape)
     variances = rng.uniform(1e-4, 1e-3, size=(3, 20))
     reliability = rng.uniform(size=(3, 20))
     found = minimize_terms(
-        recording(positions), foretold, variances, reliability, ThreeTermSettings()
+        recording(positions), predicted, variances, reliability, ThreeTermSettings()
     )
 
     def energy(offset: np.ndarray) -> float:
         y = offset * 100.0
-        spatial = ((y - 100.0 * (foretold - positions)[2, KNEE]) ** 2).sum()
+        spatial = ((y - 100.0 * (predicted - positions)[2, KNEE]) ** 2).sum()
         smooth = 100.0 * (2.0 * found[1, KNEE] - found[0, KNEE] - positions[2, KNEE])
         return float(
             0.6 * spatial / (2.0 * 1e4 * variances[2, KNEE])
@@ -223,11 +223,11 @@ def test_actor_labels_separate_actor_specific_errors():
         pair(truth(1.3), 0.0)
     ]
     labeled = learn_residual_prior(takes, actors=[*"aaaa", "b"], settings=SMALL_PRIOR)
-    untold = learn_residual_prior(takes, settings=SMALL_PRIOR)
+    unlabeled = learn_residual_prior(takes, settings=SMALL_PRIOR)
     given_ = recording(simulate_bad_sensor(truth(1.5), 0.05))
     sideways = [
         (correct_postures(given_, one).tracks.positions - given_.tracks.positions)[:, KNEE, 0]
-        for one in (labeled, untold)
+        for one in (labeled, unlabeled)
     ]
     assert abs(sideways[0].mean() + 0.05) < abs(sideways[1].mean() + 0.05)
 

@@ -78,10 +78,12 @@ def test_distances_of_clips_equal_the_plain_algorithm(at_once, monkeypatch):
 def test_only_small_libraries_cache_clip_distances(monkeypatch):
     index = SearchIndex([(block(range(6)), np.ones(6, bool))])
     segments = np.array([5, 1, 2])
-    kept = index.pairwise_distances(segments)
+    distances = index.pairwise_distances(segments)
     steps = weight_mean_posture(index.steps(segments), MEAN_POSTURE_WEIGHT)
     # Nothing is from itself but what single numbers leave of it.
-    assert_allclose(kept, likes.pairwise_warping_costs(steps.reshape(3, 16, 40)), atol=2e-3)
+    assert_allclose(
+        distances, likes.pairwise_warping_costs(steps.reshape(3, 16, 40)), atol=2e-3
+    )
     monkeypatch.setattr(search_index, "MAX_PAIRWISE_SEGMENTS", 5)
     assert index.pairwise_distances(segments) is None
 
@@ -105,8 +107,8 @@ def test_clips_are_reranked_by_their_nearest_neighbors():
                 1.0 + likes.RECIPROCAL_WEIGHT * (one in nearest[other])
                 for other in nearest[one]
             ]
-            heard = np.average(before[nearest[one]], weights=voices)
-            result[one] = (before[one] + BELIEVED * heard) / (1.0 + BELIEVED)
+            neighbor_mean = np.average(before[nearest[one]], weights=voices)
+            result[one] = (before[one] + BELIEVED * neighbor_mean) / (1.0 + BELIEVED)
     expected = np.minimum(result, BLAMED * distances)
     assert_allclose(likes.rerank_by_neighbors(distances, between, 3), expected, rtol=1e-5)
 

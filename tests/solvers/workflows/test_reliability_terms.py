@@ -1,4 +1,4 @@
-"""Why a joint of an armature was trusted or not: three signs, and which tell nothing."""
+"""Why a joint of an armature is reliable or not: three terms, and which are missing."""
 
 from dataclasses import replace
 
