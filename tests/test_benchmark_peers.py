@@ -165,7 +165,7 @@ def test_corrupted_case_keeps_joints_without_motion(swinging_leg, rng):
     channels = learn_channels([swinging_leg])
     noisy = corrupt(channels.values(swinging_leg), 2.0, 0.0, rng)
 
-    spoilt = channels.motion(noisy, swinging_leg)
+    corrupted = channels.motion(noisy, swinging_leg)
 
-    assert isinstance(spoilt, Motion)
-    assert_allclose(spoilt.rotations[:, 3], swinging_leg.rotations[:, 3], atol=1e-12)
+    assert isinstance(corrupted, Motion)
+    assert_allclose(corrupted.rotations[:, 3], swinging_leg.rotations[:, 3], atol=1e-12)

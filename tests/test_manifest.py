@@ -66,11 +66,11 @@ def test_tags_are_those_of_the_extensions_platform():
 
 
 def test_manifest_license_matches_the_license_file():
-    licence = (ROOT / "LICENSE").read_text(encoding="utf-8")
+    license_text = (ROOT / "LICENSE").read_text(encoding="utf-8")
 
     assert MANIFEST["license"] == ["SPDX:GPL-3.0-or-later"]
-    assert licence.lstrip().startswith("GNU GENERAL PUBLIC LICENSE\n")
-    assert "Version 3, 29 June 2007" in licence
+    assert license_text.lstrip().startswith("GNU GENERAL PUBLIC LICENSE\n")
+    assert "Version 3, 29 June 2007" in license_text
 
 
 def requirements(path: Path) -> dict[str, str]:

@@ -228,7 +228,7 @@ def roles_of_tall() -> HumanoidMap:
     return find_humanoid_map(tall())
 
 
-def spoilt(name: str) -> Motion:
+def damaged(name: str) -> Motion:
     missing = {} if VERBS[name].complete_input else MISSING_FRAMES
     return corrupt(walk_of_few_joints(WALK), WRONG, missing=missing)
 

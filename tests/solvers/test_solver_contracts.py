@@ -21,7 +21,7 @@ from solvers.rotations.representations import (
     quaternion_from_rotation_vector,
 )
 from solvers.samples import GaitSettings
-from tests.solvers.contract_verbs import VERBS, clean, points_of, spoilt, walk_of_few_joints
+from tests.solvers.contract_verbs import VERBS, clean, damaged, points_of, walk_of_few_joints
 
 ROTATION_RAD, SHIFT = np.radians(100.0), np.array([2.0, -5.0, 0.0])
 
@@ -36,7 +36,7 @@ every_verb_that_returns_a_motion = pytest.mark.parametrize(
 
 @every_verb
 def test_solver_does_not_change_or_alias_its_input(name):
-    motion = spoilt(name)
+    motion = damaged(name)
     rotations, positions = motion.rotations.copy(), motion.root_positions.copy()
 
     result = VERBS[name].call(motion, unwatched)
@@ -61,7 +61,7 @@ def test_solver_repeats_its_result(name):
 def test_solver_progress_rises_from_0_to_1(name):
     fractions = []
 
-    VERBS[name].call(spoilt(name), lambda fraction, message="": fractions.append(fraction))
+    VERBS[name].call(damaged(name), lambda fraction, message="": fractions.append(fraction))
 
     assert fractions[-1] == pytest.approx(1.0)
     assert fractions[0] >= 0.0 and (np.diff(fractions) >= -1e-12).all()
@@ -78,7 +78,7 @@ def test_solver_stops_when_cancelled(name, report):
             raise SolveCancelled
 
     with pytest.raises(SolveCancelled):
-        VERBS[name].call(spoilt(name), cancel)
+        VERBS[name].call(damaged(name), cancel)
     assert len(fractions) == report + 1
 
 
@@ -86,7 +86,7 @@ def test_solver_stops_when_cancelled(name, report):
 def test_solver_is_equivariant_to_translation_and_rotation(name):
     verb, here = VERBS[name], default_result(name)
 
-    there = verb.call(carried(spoilt(name)), unwatched)
+    there = verb.call(carried(damaged(name)), unwatched)
 
     for one, other in zip(
         values_in(verb.figures(here)), values_in(verb.figures(there)), strict=True
@@ -128,7 +128,7 @@ def default_result(name: str) -> Any:
 
 
 def new_result(name: str) -> Any:
-    return VERBS[name].call(spoilt(name), unwatched)
+    return VERBS[name].call(damaged(name), unwatched)
 
 
 def jitter(recording: Motion | Tracks) -> float:

@@ -114,15 +114,15 @@ def _captured(
     return off.figures() | {
         "restarts": float(len(found.restarts)),
         "flagged %": 100.0 * found.low_confidence.mean(),
-        "cm where not flagged": _where_sure(found, off.offset_taken),
+        "cm where not flagged": _confident_only(found, off.offset_taken),
         "% off in length": length_error(found.body, one.body),
         FPS: speed,
     }
 
 
-def _where_sure(found: Capture, off: np.ndarray) -> float:
-    sure = off[~found.low_confidence]
-    return 100.0 * float(sure.mean()) if len(sure) else float("nan")
+def _confident_only(found: Capture, off: np.ndarray) -> float:
+    confident = off[~found.low_confidence]
+    return 100.0 * float(confident.mean()) if len(confident) else float("nan")
 
 
 def _measured(

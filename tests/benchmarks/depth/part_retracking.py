@@ -1,4 +1,4 @@
-"""What one frame that is corrected by hand mends: of spoilt arms, and of a real capture."""
+"""Effect of one frame corrected by hand: on wrong arms, and on a real capture."""
 
 from time import process_time
 
@@ -17,7 +17,7 @@ from ..shared.tables import Scores
 from .depth_sequences import SCORED, Sequence, sequence
 
 N_WRONG, AROUND = 12, 10
-"""Frames before and after the corrected one in which arms are spoilt, or are looked at."""
+"""Frames before and after the corrected one with wrong arms, or in the score."""
 STIFF = {"HumerusX": 1.2, "HumerusZ": 0.1, "Radius": 0.1}
 """Coordinates of arms that point stiffly forward."""
 ARMS = [JOINTS.index(f"{side}{name}") for side in ("left", "right")
@@ -36,12 +36,12 @@ def retracking() -> list[str]:
                          )[AROUND:-AROUND].argmax()) + AROUND  # fmt: skip
         _correct(scores, name, one, poses, worst, "where the capture is worst")
         middle = one.depth.n_frames // 2
-        spoilt = poses.copy()
+        corrupted = poses.copy()
         stretch = slice(middle - N_WRONG, middle + N_WRONG + 1)
         for side in ("left", "right"):
             for coordinate, value in STIFF.items():
-                spoilt[stretch, COORDINATES.index(f"{side}{coordinate}")] = value
-        _correct(scores, name, one, spoilt, middle, "arms missing for 25 frames")
+                corrupted[stretch, COORDINATES.index(f"{side}{coordinate}")] = value
+        _correct(scores, name, one, corrupted, middle, "arms missing for 25 frames")
     return [scores.markdown()]
 
 

@@ -1,4 +1,4 @@
-"""Labels exchanged in clean optical takes: how many are put right, and how many spoilt."""
+"""Labels swapped in clean optical takes: how many are corrected, and how many worsened."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

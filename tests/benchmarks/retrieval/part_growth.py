@@ -68,10 +68,10 @@ ROTATION_NOISE, POSITION_NOISE, QUERY_NOISE = np.radians(6.0), 0.005, 0.01
 metres; and of added jitter in queries, metres."""
 SHOWN = {
     "hours": "hours", "add_s": "to add all, s", "file_mb": "file, MB", "open_ms": "to open, ms",
-    "ask_ms": "describe, ms", "find_ms": "search, ms", "search_mb": "memory, MB",
+    "describe_ms": "describe, ms", "find_ms": "search, ms", "search_mb": "memory, MB",
     "first": "found first", "in_ten": "in the first ten", "kin": "of its kind in ten",
 }  # fmt: skip
-DRAWN = ("search_mb", "open_ms", "find_ms", "ask_ms")
+DRAWN = ("search_mb", "open_ms", "find_ms", "describe_ms")
 PICTURE = PICTURES / "retrieval_growth.png"
 
 
@@ -90,7 +90,7 @@ class Row:
     open_ms: float
     search_mb: float
     """Peak memory of the process that searches."""
-    ask_ms: float
+    describe_ms: float
     """Median: describing the query."""
     find_ms: float
     """Median: all the rest."""
@@ -137,7 +137,7 @@ def varied(number: int) -> ClipPostures:
     speed = np.exp(rng.uniform(np.log(SLOWEST), np.log(FASTEST)))
     last = original.n_frames - 1.0
     moments = np.arange(0.0, last + 1e-9, speed)
-    positions, course = (
+    positions, root_velocity = (
         interp1d(np.arange(last + 1.0), values, axis=0)(moments)
         for values in (original.positions, original.root_velocity)
     )
@@ -145,8 +145,8 @@ def varied(number: int) -> ClipPostures:
     posed += POSITION_NOISE * rng.normal(size=posed.shape)
     if rng.integers(2):
         posed = posed[:, MIRROR_JOINTS] * (-1.0, 1.0, 1.0)
-        course = course * (-1.0, 1.0, 1.0, -1.0)
-    return ClipPostures(posed, speed * course, RATE)
+        root_velocity = root_velocity * (-1.0, 1.0, 1.0, -1.0)
+    return ClipPostures(posed, speed * root_velocity, RATE)
 
 
 def rotate_bones(positions: Array, vectors: Array) -> Array:
@@ -162,7 +162,7 @@ def rotate_bones(positions: Array, vectors: Array) -> Array:
     return result
 
 
-def asking(number: int) -> Tracks:
+def query_tracks(number: int) -> Tracks:
     """Return what is searched with: a clip of the library, shaken and at another speed."""
     rng = np.random.default_rng([number, 1])
     clip = varied(number)
@@ -188,7 +188,7 @@ _ORIGINALS: list[ClipPostures] = []
 
 
 def search(path: Path, n_queries: int) -> dict[str, float]:
-    """Open a library, ask it for some of its clips, and tell what came of it."""
+    """Open a library, search for some of its clips, and return the figures."""
     began = process_time()
     library = load_clip_library(path)
     entries = library.entries
@@ -197,11 +197,13 @@ def search(path: Path, n_queries: int) -> dict[str, float]:
     rng = np.random.default_rng(len(entries))
     numbers = rng.permutation(len(entries))[:n_queries]
     answers = [_search(library, int(number)) for number in numbers]
-    ask, find, first, in_ten, kin = (np.array(column) for column in zip(*answers, strict=True))
+    describe, find, first, in_ten, kin = (
+        np.array(column) for column in zip(*answers, strict=True)
+    )
     return {
         "open_ms": 1000.0 * opened,
         "search_mb": _peak(),
-        "ask_ms": 1000.0 * float(np.median(ask)),
+        "describe_ms": 1000.0 * float(np.median(describe)),
         "find_ms": 1000.0 * float(np.median(find)),
         "first": float(first.mean()),
         "in_ten": float(in_ten.mean()),
@@ -210,7 +212,7 @@ def search(path: Path, n_queries: int) -> dict[str, float]:
 
 
 def _search(library: ClipLibrary, number: int) -> tuple[float, float, bool, bool, float]:
-    query = asking(number)
+    query = query_tracks(number)
     vocabulary = library.vocabulary
     assert vocabulary is not None
     began = process_time()

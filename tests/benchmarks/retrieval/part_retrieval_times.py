@@ -15,7 +15,7 @@ from .retrieval_default import Default
 
 REPEATS = 10
 EVERY = 4
-"""Of the clips, that many-th asks."""
+"""Every so many-th clip is a query."""
 N_MATCHES = 20
 RATES = (120.0, 30.0)
 
@@ -50,11 +50,11 @@ def time_searches() -> str:
     )
 
 
-def _shortest(ask: Callable[[], object]) -> float:
+def _shortest(describe: Callable[[], object]) -> float:
     times = []
     for _ in range(REPEATS):
         started = process_time()
-        ask()
+        describe()
         times.append(process_time() - started)
     return 1e3 * min(times)
 

@@ -1,4 +1,4 @@
-"""What is spoilt and scored: joint-angle channels of a motion, their noise and their errors.
+"""Corrupted and scored channels: joint angles of a motion, their noise and their errors.
 
 Channels are, in degrees: the heading of the root; the rotation vector of the root without its
 heading; the rotation vector of every other joint; each about the mean rotation of the training

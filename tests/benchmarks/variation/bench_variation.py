@@ -99,7 +99,7 @@ def _figures(
     variants, seconds, learning = _timed(method_parts, judge.examples)
     drawn = [one.motion for one in variants]
     planted = [plant_variant(one).motion for one in variants[:N_PLANTED]]
-    figures = judge.figures(drawn) | judge.footing_of(drawn[:N_PLANTED], planted)
+    figures = judge.figures(drawn) | judge.contacts_of(drawn[:N_PLANTED], planted)
     return figures | {SECONDS: seconds, LEARNING: learning}
 
 

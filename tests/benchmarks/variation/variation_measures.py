@@ -40,18 +40,18 @@ class Judge:
         self.jerk = float(np.mean([_jerk(one) for one in examples]))
         self.limits = learn_joint_limits(examples)
         self.spectrum = _spectrum(examples)
-        self.footing = footing_figures(examples)
+        self.contacts = contact_figures(examples)
 
-    def footing_of(
+    def contacts_of(
         self, drawn: Sequence[Motion], planted: Sequence[Motion]
     ) -> dict[str, float]:
         """Return figures of feet: of the examples, of variants as drawn and as finished."""
-        slides, stands = zip(*map(footing_figures, (drawn, planted)), strict=True)
+        slides, stands = zip(*map(contact_figures, (drawn, planted)), strict=True)
         return {
-            "slide of examples": self.footing[0],
+            "slide of examples": self.contacts[0],
             "slide drawn": slides[0],
             "slide": slides[1],
-            "stands of examples %": 100.0 * self.footing[1],
+            "stands of examples %": 100.0 * self.contacts[1],
             "stands %": 100.0 * stands[1],
             "jerk finished": float(np.mean([_jerk(one) for one in planted])) / self.jerk,
         }
@@ -139,7 +139,7 @@ def _spectral_overlap(one: np.ndarray, other: np.ndarray) -> float:
     return float((weights * overlap).sum() / weights.sum())
 
 
-def footing_figures(motions: Sequence[Motion]) -> tuple[float, float]:
+def contact_figures(motions: Sequence[Motion]) -> tuple[float, float]:
     """Return how fast feet in contact slide, cm/s, and in which part of the time they stand.
 
     As Check says (`measure_quality`): the same measure for examples and variants.

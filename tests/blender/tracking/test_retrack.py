@@ -68,8 +68,8 @@ def test_unkeyed_pose_corrects_the_frames_around_it(tracked, blank, load):
     action = tracked.animation_data.action
     assert action is not raw and action.name == raw.name + ".retracked"
     assert keys(raw, load, slot) == before
-    mended = hands(blank, tracked)
-    off = np.linalg.norm(mended - right, axis=-1)
+    corrected = hands(blank, tracked)
+    off = np.linalg.norm(corrected - right, axis=-1)
     assert np.linalg.norm(wrong - right, axis=-1)[[4, 6, 9]].min() > 0.2
     assert off[7] < 0.01
     assert off[3:12].mean() < 0.05

@@ -102,6 +102,6 @@ def test_settings_raise_for_a_fraction_above_one():
 
 
 def noise(corrupted, clean):
-    """Rotation vectors from the clean to the spoilt pose, degrees."""
+    """Rotation vectors from the clean to the corrupted pose, degrees."""
     error = multiply(inverse(clean.rotations), corrupted.rotations)
     return np.degrees(rotation_vector_from_quaternion(error))
