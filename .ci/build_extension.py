@@ -90,10 +90,11 @@ def fetch(wheels: Sequence[Wheel]) -> None:
         subprocess.run(
             [*command, *(f"{wheel.name}=={wheel.version}" for wheel in group)], check=True
         )
-    lost = [wheel.file for wheel in wheels if not (WHEELS / wheel.file).is_file()]
-    if lost:
+    not_downloaded = [wheel.file for wheel in wheels if not (WHEELS / wheel.file).is_file()]
+    if not_downloaded:
         sys.exit(
-            f"The package index has other files than the manifest names: {', '.join(lost)}."
+            "The package index has other files than the manifest names: "
+            f"{', '.join(not_downloaded)}."
         )
 
 

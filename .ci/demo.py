@@ -4,7 +4,7 @@
         python .ci/demo.py OUTPUT_FOLDER [CLIP.bvh]
 
 Without a clip it is the built-in sample: a walk, spoilt with jitter, spikes and an arm that is
-missing for two seconds; there the error against the truth is known. Leaves demo.blend and
+missing for two seconds; there the true error can be measured. Leaves demo.blend and
 before_after.png in the folder, and prints the figures.
 """
 
@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
-LOST_ARM, LOST_FROM, LOST_TO = "RightArm", 3.0, 5.0
+MISSING_ARM, MISSING_FROM, MISSING_TO = "RightArm", 3.0, 5.0
 # The extension's own libraries come first only from Blender's second start on.
 INSTALL = """
 import os, sys
@@ -124,17 +124,17 @@ def import_clip(bpy: Any, path: Path) -> Any:
 
 
 def lose_arm(armature: Any) -> None:
-    """Remove the keys of one arm for two seconds, as a sensor does that no longer sees it."""
+    """Remove the keys of one arm for two seconds, as under occlusion."""
     action, slot = armature.animation_data.action, armature.animation_data.action_slot
-    lost = armature.pose.bones[LOST_ARM]
-    names = {lost.name, *(bone.name for bone in lost.children_recursive)}
+    hidden = armature.pose.bones[MISSING_ARM]
+    names = {hidden.name, *(bone.name for bone in hidden.children_recursive)}
     rate = 30.0
     for curve in action.layers[0].strips[0].channelbag(slot).fcurves:
         if not any(f'bones["{name}"]' in curve.data_path for name in names):
             continue
         start = curve.keyframe_points[0].co.x
         for key in reversed(curve.keyframe_points):
-            if LOST_FROM <= (key.co.x - start) / rate < LOST_TO:
+            if MISSING_FROM <= (key.co.x - start) / rate < MISSING_TO:
                 curve.keyframe_points.remove(key, fast=True)
         curve.update()
 
@@ -148,7 +148,7 @@ def body(bpy: Any, armature: Any) -> Any:
 
 
 def figures(raw: Any, clean: Any, truth: Any) -> list[tuple[str, str, str]]:
-    """Return rows of name, before, after: the quality, and the error where it is known."""
+    """Return rows of name, before, after: the quality, and the true error."""
     denoising = installed("solvers.denoising")
     contacts = installed("solvers.motion").detect_contacts(clean)
     before, after = (
@@ -157,24 +157,24 @@ def figures(raw: Any, clean: Any, truth: Any) -> list[tuple[str, str, str]]:
     lines = denoising.compare_quality(before, after).splitlines()
     rows = [tuple(re.split(r" {2,}", line)) for line in lines]
     if truth is not None:
-        seen = raw.observed
+        observed = raw.observed
         rows += [
             (
                 "error against the truth (deg)",
-                f"{angle_error(raw, truth, seen):.2f}",
-                f"{angle_error(clean, truth, seen):.2f}",
+                f"{angle_error(raw, truth, observed):.2f}",
+                f"{angle_error(clean, truth, observed):.2f}",
             ),
             (
-                "error where the arm was lost (deg)",
+                "error where the arm was missing (deg)",
                 "-",
-                f"{angle_error(clean, truth, ~seen):.2f}",
+                f"{angle_error(clean, truth, ~observed):.2f}",
             ),
         ]
     return rows
 
 
 def angle_error(motion: Any, truth: Any, where: Any) -> float:
-    """Mean angle between local rotations, degrees, of the joints that turn."""
+    """Mean angle between local rotations, degrees, of the joints that rotate."""
     rotations = installed("solvers.rotations.representations")
     names = [name for name in truth.skeleton.names if not name.endswith("_end")]
     mine = [motion.skeleton.index(name) for name in names]

@@ -2,7 +2,7 @@
 
     make pictures
 
-What is drawn is what the reader made of the file. Nothing of the recordings is kept.
+Draws what the reader made of the file. Nothing of the recordings is stored.
 """
 
 import sys
@@ -27,7 +27,7 @@ SAMPLES = {
     "azure_csv": ("kinect/azure/joints_sync_1.csv", "front"),
     "ui_prmd": ("kinect/ui_prmd/m01_s01_e01.npz", "front"),
 }
-"""By page: a file within the folder of recordings, and from where it is seen."""
+"""By page: a file in the folder of recordings, and the direction of view."""
 
 
 def on_the_floor(recording):
@@ -35,9 +35,11 @@ def on_the_floor(recording):
 
     if not isinstance(recording, JointRecording):
         return recording
-    places = recording.tracks.positions
-    lowest = np.quantile(places[recording.tracks.visible][:, 2], 0.01)
-    return recording.with_tracks(recording.tracks.with_positions(places - (0.0, 0.0, lowest)))
+    positions = recording.tracks.positions
+    lowest = np.quantile(positions[recording.tracks.visible][:, 2], 0.01)
+    return recording.with_tracks(
+        recording.tracks.with_positions(positions - (0.0, 0.0, lowest))
+    )
 
 
 def main(recordings: Path) -> None:

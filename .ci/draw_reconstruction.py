@@ -2,7 +2,7 @@
 
     make pictures
 
-Prints what was measured of them. Nothing of the recordings is kept.
+Prints their measurements. Nothing of the recordings is stored.
 """
 
 import sys
@@ -24,7 +24,7 @@ SAMPLES = {
     "kimore": ("kimore/JointPositionExercise1.csv", range(0, 505), "front"),
     "msr_action3d": ("msr_action3d/a05_s02_e03_skeleton3D.txt", range(10, 40), "front"),
 }
-"""By page: a file within the folder of recordings, the frames, and from where they are seen."""
+"""By page: a file within the folder of recordings, the frames, and the direction of view."""
 
 
 def main(recordings: Path) -> None:
@@ -48,8 +48,8 @@ def main(recordings: Path) -> None:
         )
         parents = np.array(recording.parents)
         bones = np.flatnonzero(parents >= 0)
-        places = recording.tracks.positions
-        lengths = np.linalg.norm(places[:, bones] - places[:, parents[bones]], axis=-1)
+        positions = recording.tracks.positions
+        lengths = np.linalg.norm(positions[:, bones] - positions[:, parents[bones]], axis=-1)
         spread = 1000.0 * float(np.nanmean(np.nanstd(lengths, axis=0)))
         slide = result.planted
         feet = f"{slide.slide_before:.3f} -> {slide.slide_after:.3f}" if slide else "-"

@@ -69,26 +69,26 @@ def draw(bpy: ModuleType, extension: str, source: Any, target: Any, path: Path) 
     )
     problem = retargeting.read_retarget(bpy.context.scene, source, chosen).args[0]
     theirs, skeleton = problem.clips[0].motion, problem.target.skeleton
-    turns = np.tile([1.0, 0.0, 0.0, 0.0], (theirs.n_frames, skeleton.n_joints, 1))
-    places = np.zeros((theirs.n_frames, 3))
+    rotations = np.tile([1.0, 0.0, 0.0, 0.0], (theirs.n_frames, skeleton.n_joints, 1))
+    positions = np.zeros((theirs.n_frames, 3))
     for frame in range(theirs.n_frames):
         bpy.context.scene.frame_set(frame + 1)
         for joint, name in enumerate(skeleton.names):
             bone = target.pose.bones.get(name)
             if bone is None:
-                turns[frame, joint] = turns[frame, skeleton.parents[joint]]
+                rotations[frame, joint] = rotations[frame, skeleton.parents[joint]]
                 continue
             moved = (
                 target.matrix_world
                 @ bone.matrix
                 @ (target.matrix_world @ bone.bone.matrix_local).inverted()
             )
-            turns[frame, joint] = quaternion_from_matrix(
+            rotations[frame, joint] = quaternion_from_matrix(
                 np.array(moved.to_quaternion().to_matrix())
             )
             if joint == 0:
-                places[frame] = np.array(target.matrix_world @ bone.head)
-    ours = Motion(skeleton, local_rotations(skeleton, turns), places, theirs.frame_rate)
+                positions[frame] = np.array(target.matrix_world @ bone.head)
+    ours = Motion(skeleton, local_rotations(skeleton, rotations), positions, theirs.frame_rate)
     settings = StickFigureSettings(n_figures=FIGURES)
     pictures = [
         draw_stick_figures({label: motion}, settings)
@@ -127,7 +127,7 @@ def make_unreal(bpy: ModuleType) -> Any:
 
 
 def make_armature(bpy: ModuleType, name: str, skeleton: Any) -> Any:
-    """Make an armature whose bones all point the same odd way."""
+    """Make an armature whose bones all point in the same unusual direction."""
     armature = bpy.data.objects.new(name, bpy.data.armatures.new(name))
     bpy.context.scene.collection.objects.link(armature)
     bpy.context.view_layer.objects.active = armature

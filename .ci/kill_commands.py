@@ -5,7 +5,7 @@
 
 Each command runs with `--jobs 2`, gets SIGKILL at a random moment, and is run again. Looked for
 are processes that go on, half-written files, and results that differ from those of a run that
-nobody has killed. Needs Linux; `each` needs Blender as a Python module.
+was not killed. Needs Linux; `each` needs Blender as a Python module.
 """
 
 import argparse
@@ -96,35 +96,39 @@ def main() -> None:
     rng = random.Random(options.seed)
     tallies: dict[str, Tally] = {}
     with tempfile.TemporaryDirectory(prefix="kills-") as folder:
-        place = Path(folder)
-        (place / "scratch").mkdir()
-        os.environ["TMPDIR"] = str(place / "scratch")
-        write_takes(place / "takes")
+        work_folder = Path(folder)
+        (work_folder / "scratch").mkdir()
+        os.environ["TMPDIR"] = str(work_folder / "scratch")
+        write_takes(work_folder / "takes")
         n_of = Counter(VERBS[number % len(VERBS)] for number in range(options.kills))
-        commands = {name: solver_command(name, place / "takes") for name in n_of}
+        commands = {name: solver_command(name, work_folder / "takes") for name in n_of}
         if options.each:
-            install(options.zip, place)
-            commands["each"], n_of["each"] = each_command(place / "takes"), options.each
+            install(options.zip, work_folder)
+            commands["each"], n_of["each"] = each_command(work_folder / "takes"), options.each
         for name, command in commands.items():
-            tallies[name] = killed_often(command, place / name, n_of[name], rng)
+            tallies[name] = killed_often(command, work_folder / name, n_of[name], rng)
             print(name, tallies[name], flush=True)
-        left = [path.name for path in (place / "scratch").glob("mocap_assist_*")]
+        left = [path.name for path in (work_folder / "scratch").glob("mocap_assist_*")]
     print(f"left among the temporary files: {left or 'nothing'}")
-    lost = sum(each.n_orphans + each.n_half + each.n_different for each in tallies.values())
-    print(f"{sum(each.kills for each in tallies.values())} kills, {lost} losses")
-    sys.exit(bool(lost or left))
+    n_losses = sum(each.n_orphans + each.n_half + each.n_different for each in tallies.values())
+    print(f"{sum(each.kills for each in tallies.values())} kills, {n_losses} losses")
+    sys.exit(bool(n_losses or left))
 
 
-def killed_often(command: Command, place: Path, n_kills: int, rng: random.Random) -> Tally:
+def killed_often(
+    command: Command, work_folder: Path, n_kills: int, rng: random.Random
+) -> Tally:
     """Run a command to its end, then kill it that often and take it up again."""
     tally = Tally()
-    (place / "whole").mkdir(parents=True)
+    (work_folder / "complete").mkdir(parents=True)
     began = monotonic()
-    subprocess.run(command.start(place / "whole"), check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        command.start(work_folder / "complete"), check=True, stdout=subprocess.DEVNULL
+    )
     duration = monotonic() - began
-    expected = command.contents(place / "whole")
+    expected = command.contents(work_folder / "complete")
     for number in range(n_kills):
-        folder = place / str(number)
+        folder = work_folder / str(number)
         folder.mkdir()
         kill_one(command, folder, rng.uniform(0.1, 1.0) * duration, tally)
         check_made(command, folder, expected, tally)
@@ -187,7 +191,7 @@ def solver_command(name: str, takes: Path) -> Command:
 
 
 def bytes_in(folder: Path) -> dict[str, str]:
-    """Return all takes and pictures; notes and the report must be whole."""
+    """Return all takes and pictures; notes and the report must be complete."""
     for notes in folder.glob("*.json"):
         json.loads(notes.read_text(encoding="utf-8"))
     for page in folder.glob("*.html"):
@@ -236,13 +240,13 @@ def curves_in(folder: Path) -> dict[str, str]:
     return found
 
 
-def install(zipped: Path, place: Path) -> None:
+def install(zipped: Path, work_folder: Path) -> None:
     """Install the extension into a Blender of its own."""
-    os.environ["BLENDER_USER_RESOURCES"] = str(place / "resources")
-    (place / "resources").mkdir()
+    os.environ["BLENDER_USER_RESOURCES"] = str(work_folder / "resources")
+    (work_folder / "resources").mkdir()
     subprocess.run(
         [sys.executable, "-c", INSTALL, str(zipped.resolve())],
-        check=True, stdout=subprocess.DEVNULL, cwd=place,
+        check=True, stdout=subprocess.DEVNULL, cwd=work_folder,
     )  # fmt: skip
 
 

@@ -62,11 +62,11 @@ def renewed(text: str) -> str:
 
 def buttons_table() -> str:
     """Return a Markdown table of all buttons: label, identifier, tooltip and page."""
-    known = buttons()
+    texts = buttons()
     rows = ["| button | operator | what it does | page |", "|---|---|---|---|"]
     for page, names in PAGES.items():
         for name in names.split():
-            label, tooltip = known[name]
+            label, tooltip = texts[name]
             rows.append(
                 f"| **{label}** | `mocap_assist.{name}` | {tooltip}. | [{page}.md]({page}.md) |"
             )

@@ -1,4 +1,4 @@
-"""What every test may ask for."""
+"""Fixtures of all tests."""
 
 import sys
 from pathlib import Path
@@ -72,5 +72,5 @@ def swinging_leg(leg) -> Motion:
     vectors[:, 0, 0] = 0.5 * np.sin(2 * np.pi * time)
     vectors[:, 1, 0] = -0.4 * (1 + np.cos(2 * np.pi * time))
     vectors[:, 2, 0] = 0.2 * np.sin(2 * np.pi * time + 1)
-    place = np.stack([0 * time, -time, 0.9 + 0.02 * np.cos(4 * np.pi * time)], axis=-1)
-    return Motion(leg, quaternion_from_rotation_vector(vectors), place, 60.0)
+    root_positions = np.stack([0 * time, -time, 0.9 + 0.02 * np.cos(4 * np.pi * time)], axis=-1)
+    return Motion(leg, quaternion_from_rotation_vector(vectors), root_positions, 60.0)

@@ -15,7 +15,7 @@ MAY_IMPORT = {
     "mocap_assist": {"solvers"},
     "operators": {"mocap_assist", "solvers"},
 }
-SHARED_ROOMS = {
+COMMON_PACKAGES = {
     "archives", "arrays", "depth_scene", "errors", "faults", "files", "json_text", "motion",
     "npz_members", "progress", "rotations", "settings", "signals",
 }  # fmt: skip
@@ -72,7 +72,7 @@ def test_solvers_are_free_of_blender():
         assert not {name for _, name in imports(module)} & BLENDER, module
 
 
-def test_what_a_job_needs_is_free_of_blender():
+def test_modules_of_a_job_are_free_of_blender():
     """A solve runs in a bare Python; so do all modules that one of them imports."""
     jobs = [*modules("mocap_assist/jobs"), *(ROOT / "mocap_assist").rglob("solve_*.py")]
     seen = set[Path]()
@@ -87,7 +87,7 @@ def test_what_a_job_needs_is_free_of_blender():
 
 
 @pytest.mark.parametrize("layer", MAY_IMPORT)
-def test_layers_only_look_down(layer):
+def test_layers_import_only_lower_layers(layer):
     for module in modules(layer):
         depth = len(module.relative_to(ROOT).parts)
         above = {name for dots, name in imports(module) if dots == depth}
@@ -97,14 +97,14 @@ def test_layers_only_look_down(layer):
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_families_meet_only_in_shared_rooms(family):
+def test_families_import_only_common_packages(family):
     for module in modules(f"solvers/{family}"):
         depth = len(module.relative_to(ROOT / "solvers").parts)
         above = {name for dots, name in imports(module) if dots == depth}
-        assert above <= SHARED_ROOMS, module
+        assert above <= COMMON_PACKAGES, module
 
 
-def test_packages_of_solvers_are_used_by_their_faces():
+def test_packages_of_solvers_are_imported_by_their_init():
     """From outside, names come from a package's `__init__`, not from a module in it."""
     for module in [each for layer in MAY_IMPORT for each in modules(layer)]:
         for path in imported_paths(module):
@@ -132,14 +132,14 @@ def test_no_folder_holds_too_many_files(layer):
         assert n_files <= MOST_FILES, f"{home} has {n_files} modules"
 
 
-def test_no_file_is_too_long_to_read():
+def test_no_file_is_longer_than_the_limit():
     for layer in (*MAY_IMPORT, "tests"):
         for module in modules(layer):
             n_lines = len(module.read_text(encoding="utf-8").splitlines())
             assert n_lines <= LONGEST_FILE, f"{module} has {n_lines} lines"
 
 
-def test_json_of_others_is_parsed_in_one_place():
+def test_foreign_json_is_parsed_by_one_function():
     """`parse_json` refuses what is nested too deeply."""
     for layer in MAY_IMPORT:
         for module in modules(layer):

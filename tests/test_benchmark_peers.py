@@ -13,7 +13,7 @@ from tests.benchmarks.shared.noise import corrupt, learn_channels
 from tests.benchmarks.shared.tables import Scores
 
 
-def test_gcv_spline_is_scipys(rng):
+def test_gcv_spline_equals_scipys(rng):
     noisy = np.cumsum(rng.normal(size=(50, 2)), axis=0)
     frames = np.arange(50.0)
 
@@ -23,15 +23,15 @@ def test_gcv_spline_is_scipys(rng):
     assert_allclose(ours, np.transpose(theirs), atol=1e-6)
 
 
-def test_gcv_spline_over_gaps_is_scipys(rng):
+def test_gcv_spline_over_gaps_equals_scipys(rng):
     gapped = np.cumsum(rng.normal(size=(50, 1)), axis=0)
     gapped[20:27] = np.nan
-    seen = np.flatnonzero(np.isfinite(gapped[:, 0]))
+    observed = np.flatnonzero(np.isfinite(gapped[:, 0]))
 
     ours = smoothers.gcv_spline_over_gaps(gapped, 30.0)
 
     # SciPy bounds the search by the number of samples, as we do.
-    theirs = make_smoothing_spline(seen.astype(float), gapped[seen, 0])(np.arange(50.0))
+    theirs = make_smoothing_spline(observed.astype(float), gapped[observed, 0])(np.arange(50.0))
     assert_allclose(ours[:, 0], theirs, atol=1e-5)
 
 
@@ -58,7 +58,7 @@ def test_kalman_smoother_is_the_posterior_mean(rng):
     assert_allclose(smooth, dense_posterior_mean(dynamics, measured), atol=1e-6)
 
 
-def test_single_channel_kalman_is_the_general_one(rng):
+def test_single_channel_kalman_equals_the_general_one(rng):
     measured = np.cumsum(rng.normal(size=(40, 1)), axis=0)
     measured[10:14] = np.nan
     F = np.array([[1.0, 1.0], [0.0, 1.0]])
@@ -85,8 +85,8 @@ def test_marker_fillers_rebuild_a_swinging_box(fill, rng):
     """Twelve points of one rigid body: all but interpolation must see that it is one."""
     corners = rng.uniform(-0.2, 0.2, size=(12, 3))
     angle = 0.6 * np.sin(np.arange(300) / 11.0)
-    turns = quaternion_from_rotation_vector(angle[:, None] * (0.3, 1.0, 0.2))
-    truth = np.array([corners @ matrix.T for matrix in matrices(turns)])
+    rotations = quaternion_from_rotation_vector(angle[:, None] * (0.3, 1.0, 0.2))
+    truth = np.array([corners @ matrix.T for matrix in matrices(rotations)])
     gapped = truth.copy()
     gapped[100:160, 4] = np.nan
 
@@ -105,11 +105,11 @@ def test_soft_impute_completes_a_matrix_of_rank_two(rng):
 
     filled = gap_fillers.soft_impute(gapped, 30.0, 0.003)
 
-    lost = np.isnan(gapped)
-    assert np.abs(filled - truth)[lost].mean() < 0.2 * np.abs(truth)[lost].mean()
+    missing = np.isnan(gapped)
+    assert np.abs(filled - truth)[missing].mean() < 0.2 * np.abs(truth)[missing].mean()
 
 
-def test_channels_and_back(swinging_leg):
+def test_channels_restore_the_motion(swinging_leg):
     channels = learn_channels([swinging_leg])
     values = channels.values(swinging_leg)
 
@@ -119,7 +119,7 @@ def test_channels_and_back(swinging_leg):
     assert channels.joints.tolist() == [True, True, True, False]
 
 
-def test_noise_is_as_loud_as_it_says(rng):
+def test_noise_has_the_stated_deviation(rng):
     clean = np.zeros((500, 40))
 
     noisy = corrupt(clean, 3.0, 0.25, rng)
@@ -129,7 +129,7 @@ def test_noise_is_as_loud_as_it_says(rng):
     assert np.abs(noisy).mean() == pytest.approx(expected, rel=0.02)
 
 
-def test_paired_difference_is_taken_clip_by_clip():
+def test_paired_difference_is_computed_per_clip():
     scores = Scores("title", "unit")
     for clip, ours, other in (("a", 1.0, 3.0), ("b", 5.0, 7.0)):
         scores.add("ours", "x", clip, ours)
@@ -139,8 +139,8 @@ def test_paired_difference_is_taken_clip_by_clip():
     assert "+2.00 ± 0.00" in scores.markdown()
 
 
-def matrices(turns):
-    w, x, y, z = turns.T
+def matrices(rotations):
+    w, x, y, z = rotations.T
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
         [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
@@ -172,11 +172,11 @@ def dense_posterior_mean(dynamics, measured):
     return solution.reshape(n_frames, n)
 
 
-def test_motion_of_a_case_keeps_still_joints(swinging_leg, rng):
+def test_corrupted_case_keeps_joints_without_motion(swinging_leg, rng):
     channels = learn_channels([swinging_leg])
     noisy = corrupt(channels.values(swinging_leg), 2.0, 0.0, rng)
 
-    spoilt = channels.motion(noisy, swinging_leg)
+    corrupted = channels.motion(noisy, swinging_leg)
 
-    assert isinstance(spoilt, Motion)
-    assert_allclose(spoilt.rotations[:, 3], swinging_leg.rotations[:, 3], atol=1e-12)
+    assert isinstance(corrupted, Motion)
+    assert_allclose(corrupted.rotations[:, 3], swinging_leg.rotations[:, 3], atol=1e-12)

@@ -18,7 +18,7 @@ DEMO = Path(__file__).parents[1] / ".ci" / "demo.py"
         (["out"], "MOCAP_ASSIST_ZIP must name the extension's zip; see `make demo`."),
     ],
 )
-def test_says_why_it_cannot_start(arguments, sentence, tmp_path):
+def test_demo_reports_why_it_cannot_start(arguments, sentence, tmp_path):
     environment = {**os.environ, "MOCAP_ASSIST_ZIP": str(tmp_path / "none.zip")}
     command = [sys.executable, str(DEMO), *arguments]
 

@@ -16,18 +16,18 @@ from tests.benchmarks.depth.depth_more import (
     before_camera,
     body_of,
     more_sequence,
-    place,
+    view_center,
 )
 
 CAMERA = Camera(150.0, 120.0, 70.0, 65.5, 160, 120)
-"""Pixels that are not square, and an axis beside the middle."""
+"""Pixels that are not square, and a principal point off the center."""
 BLENDER = pytest.mark.skipif(
     importlib.util.find_spec("bpy") is None, reason="there is no Blender here (module bpy)"
 )
 
 
 @BLENDER
-def test_blender_skins_and_renders_the_same_pictures():
+def test_blender_renders_the_same_depth_images():
     body = box_person()
     names = body.skeleton.names
     angles = np.random.default_rng(3).normal(0.0, 0.4, (3, len(names), 3))
@@ -48,7 +48,7 @@ def test_blender_skins_and_renders_the_same_pictures():
     assert moved.covered > 0.02 and np.quantile(moved.millimetres, 0.99) > 5.0
 
 
-def test_differences_are_of_pixels_that_both_see():
+def test_differences_compare_pixels_of_both_images():
     ours, others = np.zeros((2, 1, 4, 4))
     ours[0, 1, :3], others[0, 1, 1:] = 2.0, 2.005
 
@@ -59,14 +59,14 @@ def test_differences_are_of_pixels_that_both_see():
 
 
 @pytest.mark.usefixtures("recordings")
-def test_actors_turn_sit_and_cross_their_arms_as_said():
+def test_actors_rotate_sit_and_cross_arms_as_described():
     def joints(name):
         body = body_of(name)
-        motion, turns = before_camera(body, TAKES[name])
-        places = body.humanoid.indices(body.skeleton)
-        poses = zip(motion.rotations, motion.root_positions, turns, strict=True)
-        seen = [body.pose(pose, root)[1] @ turn for pose, root, turn in poses]
-        return {role: np.array(seen)[:, joint] for role, joint in places.items()}
+        motion, rotations = before_camera(body, TAKES[name])
+        indices = body.humanoid.indices(body.skeleton)
+        poses = zip(motion.rotations, motion.root_positions, rotations, strict=True)
+        positions = [body.pose(pose, root)[1] @ rotation for pose, root, rotation in poses]
+        return {role: np.array(positions)[:, joint] for role, joint in indices.items()}
 
     sitting = joints("seated")
     thigh = sitting["leftLowerLeg"] - sitting["leftUpperLeg"]
@@ -75,14 +75,14 @@ def test_actors_turn_sit_and_cross_their_arms_as_said():
     hands = crossed["leftHand"][25:] - crossed["rightHand"][25:]
     shoulders = crossed["leftUpperArm"][25:] - crossed["rightUpperArm"][25:]
     assert (np.einsum("fa,fa->f", hands, shoulders) < 0.0).all()
-    turned = joints("walk, rotated by 360")
-    across = turned["leftUpperLeg"] - turned["rightUpperLeg"]
+    rotated = joints("walk, rotated by 360")
+    across = rotated["leftUpperLeg"] - rotated["rightUpperLeg"]
     angle = np.unwrap(np.arctan2(across[:, 2], across[:, 0]))
     assert abs(angle[-1] - angle[0]) > np.radians(330.0)
 
 
 @pytest.mark.usefixtures("recordings")
-def test_a_sequence_has_its_joints_inside_of_what_is_seen(monkeypatch, tmp_path):
+def test_joints_of_a_sequence_are_inside_the_visible_body(monkeypatch, tmp_path):
     monkeypatch.setattr("tests.benchmarks.depth.depth_more.BUILD", tmp_path)
     sequence = more_sequence.__wrapped__("seated, side")
 
@@ -92,4 +92,4 @@ def test_a_sequence_has_its_joints_inside_of_what_is_seen(monkeypatch, tmp_path)
     behind = sequence.joints[10, :, 2] - surface
     inside = (surface > 0.0) & (behind > -0.03)
     assert inside.mean() > 0.85
-    assert place(TAKES["seated, side"])[2] == pytest.approx(np.median(surface), abs=0.5)
+    assert view_center(TAKES["seated, side"])[2] == pytest.approx(np.median(surface), abs=0.5)

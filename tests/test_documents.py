@@ -44,7 +44,7 @@ def write_docs():
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=name_of)
-def test_tables_of_settings_say_what_the_code_says(document, write_docs):
+def test_tables_of_settings_match_the_code(document, write_docs):
     """After a change: `make docs`."""
     text = document.read_text(encoding="utf-8")
 
@@ -52,15 +52,17 @@ def test_tables_of_settings_say_what_the_code_says(document, write_docs):
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=name_of)
-def test_links_lead_somewhere(document):
+def test_links_have_targets(document):
     links = LINK.findall(document.read_text(encoding="utf-8"))
 
-    lost = [link for link in links if ":" not in link and not (document.parent / link).exists()]
-    assert not lost
+    missing = [
+        link for link in links if ":" not in link and not (document.parent / link).exists()
+    ]
+    assert not missing
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=name_of)
-def test_links_into_pages_meet_a_heading(document):
+def test_links_into_pages_point_to_a_heading(document):
     for link, anchor in ANCHOR.findall(document.read_text(encoding="utf-8")):
         page = (document.parent / link) if link else document
         headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
@@ -153,6 +155,6 @@ def test_options_in_the_documents_exist(capsys):
         for verb, words in COMMAND.findall(text):
             with pytest.raises(SystemExit):
                 run(VERBS, [verb, "--help"], "solvers")
-            known = set(re.findall(r"--[a-z-]+", capsys.readouterr().out))
+            options = set(re.findall(r"--[a-z-]+", capsys.readouterr().out))
             shown = set(re.findall(r"--[a-z-]+", words.partition("#")[0]))
-            assert shown <= known, f"{name_of(document)}: {verb} {words}"
+            assert shown <= options, f"{name_of(document)}: {verb} {words}"

@@ -45,20 +45,20 @@ def shipped(tmp_path_factory) -> ZipFile:
         yield archive
 
 
-def test_holds_what_is_shipped_and_nothing_else(shipped):
+def test_zip_has_the_shipped_files_only(shipped):
     found = {name.split("/")[0] for name in shipped.namelist()}
 
     assert found <= SHIPPED
     assert found >= {"blender_manifest.toml", "__init__.py", "LICENSE"} | OURS
 
 
-def test_holds_no_litter(shipped):
+def test_zip_has_no_temporary_files(shipped):
     litter = ("__pycache__", ".pyc", ".blend1", ".DS_Store", "~")
 
     assert not [name for name in shipped.namelist() if any(bad in name for bad in litter)]
 
 
-def test_holds_every_module(shipped):
+def test_zip_has_every_module(shipped):
     for package in OURS:
         ours = {path.relative_to(ROOT).as_posix() for path in (ROOT / package).rglob("*.py")}
         assert ours <= set(shipped.namelist())
@@ -71,7 +71,7 @@ def test_every_folder_of_modules_is_a_package(shipped):
     assert {f"{folder}/__init__.py" for folder in folders} <= names
 
 
-def test_version_is_the_manifests(shipped):
+def test_zip_version_equals_the_manifest(shipped):
     manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
     inside = tomllib.loads(shipped.read("blender_manifest.toml").decode())
 
@@ -79,7 +79,7 @@ def test_version_is_the_manifests(shipped):
     assert f"mocap_assist-{manifest['version']}-" in Path(shipped.filename).name
 
 
-def test_imports_only_what_blender_or_a_wheel_brings(shipped):
+def test_zip_imports_only_blender_and_wheels(shipped):
     """Otherwise it works on the developer's machine alone."""
     manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
     wheels = {Path(wheel).name.split("-")[0] for wheel in manifest["wheels"]}
@@ -88,10 +88,12 @@ def test_imports_only_what_blender_or_a_wheel_brings(shipped):
     )
 
     for name, tree in modules(shipped):
-        assert absolute_imports(tree) <= allowed, f"{name} imports what nobody brings"
+        assert absolute_imports(tree) <= allowed, (
+            f"{name} imports a library that is not shipped"
+        )
 
 
-def test_sockets_are_on_loopback_only_and_the_manifest_tells_of_them(shipped):
+def test_sockets_are_on_loopback_only_and_in_the_manifest(shipped):
     manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
     assert "this machine" in manifest["permissions"]["network"]
     for name, tree in modules(shipped):
@@ -107,7 +109,7 @@ def test_sockets_are_on_loopback_only_and_the_manifest_tells_of_them(shipped):
             assert all(call.startswith("(LOOPBACK, ") for call in calls), (name, calls)
 
 
-def test_leaves_the_import_path_and_the_network_alone(shipped):
+def test_zip_does_not_change_the_import_path_or_use_the_network(shipped):
     """Both are against the rules of Blender's extensions platform; the live stream of joints
     stays on the machine, and the manifest says so."""
     for name, tree in modules(shipped):

@@ -23,7 +23,7 @@ PYTHONS = ["cp311", "cp313"]
 TAGS = {"Animation", "Import-Export", "Pipeline", "Rigging", "Tracking"}
 
 
-def test_every_library_comes_for_every_platform_and_python():
+def test_every_library_has_wheels_for_every_platform_and_python():
     libraries = {tuple(wheel.split("-")[:2]) for wheel in WHEELS}
 
     assert set(MANIFEST["platforms"]) == set(PLATFORMS)
@@ -33,7 +33,7 @@ def test_every_library_comes_for_every_platform_and_python():
         assert len(fitting) == 1, f"{name} on {platform}, {python}: {fitting}"
 
 
-def test_names_no_wheel_in_vain():
+def test_every_wheel_fits_a_shipped_platform():
     patterns = [PURE, *(f"{py}-{py}-{end}" for py, end in product(PYTHONS, PLATFORMS.values()))]
 
     for wheel in WHEELS:
@@ -42,7 +42,7 @@ def test_names_no_wheel_in_vain():
 
 
 @pytest.mark.parametrize("blender", ["4.5", "5.2"])
-def test_tests_run_with_the_libraries_that_are_shipped(blender):
+def test_tests_use_the_shipped_library_versions(blender):
     pins = requirements(ROOT / ".ci" / f"requirements-{blender}.txt")
 
     for name, version in {tuple(wheel.split("-")[:2]) for wheel in WHEELS}:
@@ -50,27 +50,27 @@ def test_tests_run_with_the_libraries_that_are_shipped(blender):
 
 
 @pytest.mark.parametrize("blender", ["4.5", "5.2"])
-def test_environments_are_pinned_to_the_last_package(blender):
+def test_environments_pin_every_package(blender):
     assert all(requirements(ROOT / ".ci" / f"requirements-{blender}.txt").values())
 
 
-def test_changelog_tells_of_this_version():
+def test_changelog_has_this_version():
     changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     versions = re.findall(r"^## \[(\d\S*)\]", changelog, flags=re.MULTILINE)
 
     assert versions[0] == MANIFEST["version"]
 
 
-def test_tags_are_the_platforms():
+def test_tags_are_those_of_the_extensions_platform():
     assert set(MANIFEST["tags"]) <= TAGS
 
 
-def test_licence_is_the_one_beside_it():
-    licence = (ROOT / "LICENSE").read_text(encoding="utf-8")
+def test_manifest_license_matches_the_license_file():
+    license_text = (ROOT / "LICENSE").read_text(encoding="utf-8")
 
     assert MANIFEST["license"] == ["SPDX:GPL-3.0-or-later"]
-    assert licence.lstrip().startswith("GNU GENERAL PUBLIC LICENSE\n")
-    assert "Version 3, 29 June 2007" in licence
+    assert license_text.lstrip().startswith("GNU GENERAL PUBLIC LICENSE\n")
+    assert "Version 3, 29 June 2007" in license_text
 
 
 def requirements(path: Path) -> dict[str, str]:

@@ -12,7 +12,7 @@ from tests.benchmarks.peers.one_euro import one_euro
 from tests.benchmarks.physics.physics_momentum import impossible_force, outside_cone
 from tests.benchmarks.reconstruction.kinect_damage import Damaged, occluded, swapped, without
 from tests.benchmarks.reconstruction.kinect_errors import compared
-from tests.benchmarks.reconstruction.kinect_folds import seen_of
+from tests.benchmarks.reconstruction.kinect_folds import observed_postures
 from tests.benchmarks.reconstruction.kinect_pairs import Pair
 
 LEFT_HAND, RIGHT_HAND = (POSTURE_JOINTS.index(f"{side}Hand") for side in ("left", "right"))
@@ -33,7 +33,7 @@ def standing(n_frames: int = 40) -> np.ndarray:
     return np.tile(np.array([pose[name] for name in POSTURE_JOINTS], float), (n_frames, 1, 1))
 
 
-def test_hand_behind_the_trunk_is_hidden_and_one_beside_it_is_not():
+def test_hand_behind_the_trunk_is_hidden_and_one_next_to_it_is_visible():
     positions = standing()
     positions[:, RIGHT_HAND] = (0.0, 0.3, 1.2)
 
@@ -43,7 +43,7 @@ def test_hand_behind_the_trunk_is_hidden_and_one_beside_it_is_not():
     assert not where[:, LEFT_HAND].any()
 
 
-def test_hand_before_the_trunk_is_seen_from_the_front_but_not_from_behind():
+def test_hand_in_front_of_the_trunk_is_hidden_from_behind_only():
     positions = standing()
     positions[:, RIGHT_HAND] = (0.0, -0.3, 1.2)
 
@@ -51,41 +51,43 @@ def test_hand_before_the_trunk_is_seen_from_the_front_but_not_from_behind():
     assert occluded(positions, 30.0, np.pi)[:, RIGHT_HAND].all()
 
 
-def test_what_is_hidden_turns_with_the_actor():
+def test_occlusion_is_equivariant_to_heading():
     positions = standing()
     positions[:, RIGHT_HAND] = (0.0, 0.3, 1.2)
-    turned = positions[..., [1, 0, 2]] * (-1.0, 1.0, 1.0) + (3.0, -2.0, 0.0)
+    rotated = positions[..., [1, 0, 2]] * (-1.0, 1.0, 1.0) + (3.0, -2.0, 0.0)
 
-    assert_allclose(occluded(turned, 30.0, 0.0), occluded(positions, 30.0, 0.0))
+    assert_allclose(occluded(rotated, 30.0, 0.0), occluded(positions, 30.0, 0.0))
 
 
-def test_damage_takes_out_or_exchanges_what_it_says():
+def test_damage_removes_or_swaps_the_stated_joints():
     pair = recorded(standing())
     where = np.zeros((40, 20), bool)
     where[5:9, LEFT_HAND] = True
 
-    gone = seen_of(without(pair, where))
+    damaged = observed_postures(without(pair, where))
     arms: Damaged = next(swapped(pair, np.random.default_rng(0)))
 
-    told = np.isfinite(seen_of(pair)).all(axis=(0, 2))
-    assert (np.isnan(gone).all(axis=-1) == where)[:, told].all()
+    is_observed = np.isfinite(observed_postures(pair)).all(axis=(0, 2))
+    assert (np.isnan(damaged).all(axis=-1) == where)[:, is_observed].all()
     rows = arms.where.any(axis=1)
     assert rows.sum() == 15
-    assert_allclose(seen_of(arms.pair)[rows, LEFT_HAND], standing()[rows, RIGHT_HAND])
-    assert_allclose(seen_of(arms.pair)[~rows][:, told], standing()[~rows][:, told])
+    assert_allclose(observed_postures(arms.pair)[rows, LEFT_HAND], standing()[rows, RIGHT_HAND])
+    assert_allclose(
+        observed_postures(arms.pair)[~rows][:, is_observed], standing()[~rows][:, is_observed]
+    )
 
 
-def test_one_euro_keeps_rest_and_lets_fast_moves_pass():
+def test_one_euro_smooths_rest_and_passes_fast_motion():
     still = np.full((30, 2), 0.7)
     step = np.repeat([[0.0], [1.0]], 15, axis=0)
 
     assert_allclose(one_euro(still, 30.0, 1.0, 0.0), still)
-    slow, fast = (one_euro(step, 30.0, 0.5, haste)[16, 0] for haste in (0.0, 5.0))
+    slow, fast = (one_euro(step, 30.0, 0.5, speed_gain)[16, 0] for speed_gain in (0.0, 5.0))
     assert_allclose(slow, 1.0 - (1.0 - 1.0 / (1.0 + 30.0 / np.pi)) ** 2)
     assert fast > 0.8
 
 
-def test_errors_are_with_and_without_the_usual_offset():
+def test_errors_include_and_exclude_the_constant_offset():
     truth = standing(4)
     made = truth + np.array([0.03, 0.0, 0.0])
     made[0, LEFT_HAND, 2] += 0.04
@@ -98,7 +100,7 @@ def test_errors_are_with_and_without_the_usual_offset():
     assert_allclose(free[:, LEFT_HAND], [0.03, 0.01, 0.01, 0.01])
 
 
-def test_regressions_find_a_linear_law(rng):
+def test_regressions_recover_a_linear_law(rng):
     pytest.importorskip("sklearn")
     from tests.benchmarks.peers import posture_regression as regressions
 
@@ -108,8 +110,8 @@ def test_regressions_find_a_linear_law(rng):
     for learn in (regressions.ridge, regressions.gaussian_process):
         found = learn(features[:300], offsets[:300])(features[300:])
         assert np.abs(found - offsets[300:]).mean() < 0.1
-    usual = regressions.constant(features, offsets)(features[:5])
-    assert_allclose(usual, np.tile(offsets.mean(axis=0), (5, 1)))
+    constant_offset = regressions.constant(features, offsets)(features[:5])
+    assert_allclose(constant_offset, np.tile(offsets.mean(axis=0), (5, 1)))
     assert_allclose(regressions.nearest_mean(np.ones((40, 3)))(features[:4]), 1.0)
 
 
@@ -118,7 +120,7 @@ def test_only_forces_within_friction_can_come_from_the_ground():
     assert_allclose(outside_cone(forces), [0, 0, np.sqrt(0.5), 1, np.sqrt(2), 5])
 
 
-def test_who_falls_needs_no_force_and_who_hovers_needs_all_of_it():
+def test_falling_body_needs_no_force_and_hovering_body_its_weight():
     motion = walking_gait(GaitSettings(duration=1.0, frame_rate=100.0))
     body = build_physics_body(motion, find_humanoid_map(motion.skeleton))
     still = np.tile(motion.rotations[:1], (100, 1, 1))

@@ -18,50 +18,52 @@ def grown(by: float, sunk: float = 0.0, rotations=None) -> Motion:
     """The walk of a body of another size, so much lower than it should be."""
     body = WALK.skeleton
     larger = Skeleton(body.names, body.parents, by * body.offsets)
-    places = by * WALK.root_positions - (0.0, 0.0, sunk)
-    turns = WALK.rotations if rotations is None else rotations
-    return Motion(larger, turns, places, WALK.frame_rate)
+    positions = by * WALK.root_positions - (0.0, 0.0, sunk)
+    rotations_ = WALK.rotations if rotations is None else rotations
+    return Motion(larger, rotations_, positions, WALK.frame_rate)
 
 
-def test_the_same_body_of_another_size_is_off_by_nothing():
+def test_scaled_body_has_no_error():
     given = acted(grown(1.3), ROLES)
 
-    seen, reached = seen_figures(SOURCE, given), ik_figures(SOURCE, given)
+    figures, reached = seen_figures(SOURCE, given), ik_figures(SOURCE, given)
 
     ratios = {"knee acceleration", "elbow acceleration"}
-    assert [seen[name] for name in ratios] == pytest.approx([1.0, 1.0])
-    assert max(figure for name, figure in seen.items() if name not in ratios) < 1e-4
+    assert [figures[name] for name in ratios] == pytest.approx([1.0, 1.0])
+    assert max(figure for name, figure in figures.items() if name not in ratios) < 1e-4
     slides = reached.pop("slide of source cm/s"), reached.pop("slide cm/s")
     assert slides[0] == pytest.approx(slides[1])
     assert max(reached.values()) < 1e-6
 
 
-def test_a_body_in_the_ground_is_seen_though_its_limbs_reach():
+def test_sunken_body_is_measured_although_its_limbs_reach():
     given = acted(grown(1.0, sunk=0.3), ROLES)
     lowest = 100.0 * SOURCE.poses.positions[..., 2].min()
 
-    seen, reached = seen_figures(SOURCE, given), ik_figures(SOURCE, given)
+    figures, reached = seen_figures(SOURCE, given), ik_figures(SOURCE, given)
 
     assert reached["IK: foot cm"] == pytest.approx(0.0, abs=1e-9)
-    assert seen["hand cm"] == pytest.approx(30.0) and seen["head cm"] == pytest.approx(30.0)
-    assert seen["path at most"] == pytest.approx(0.0, abs=1e-9)
-    assert seen["below floor cm"] == pytest.approx(30.0 - max(lowest, 0.0), abs=1.0)
+    assert figures["hand cm"] == pytest.approx(30.0) and figures["head cm"] == pytest.approx(
+        30.0
+    )
+    assert figures["path at most"] == pytest.approx(0.0, abs=1e-9)
+    assert figures["below floor cm"] == pytest.approx(30.0 - max(lowest, 0.0), abs=1.0)
 
 
-def test_a_trunk_that_leans_is_seen():
+def test_leaning_trunk_is_measured():
     """By less than the ten degrees of the spine, which begins above the hips."""
     spine = ROLES.indices(WALK.skeleton)["spine"]
     rotations = WALK.rotations.copy()
     lean = quaternion_from_rotation_vector([np.radians(10.0), 0.0, 0.0])
     rotations[:, spine] = multiply(rotations[:, spine], lean)
 
-    seen = seen_figures(SOURCE, acted(grown(1.0, rotations=rotations), ROLES))
+    figures = seen_figures(SOURCE, acted(grown(1.0, rotations=rotations), ROLES))
 
-    assert 5.0 < seen["trunk at most"] <= 10.1
-    assert seen["head cm"] > 2.0
+    assert 5.0 < figures["trunk at most"] <= 10.1
+    assert figures["head cm"] > 2.0
 
 
-def test_a_longer_take_has_no_jumps():
+def test_extended_take_has_no_jumps():
     longer = to_and_fro(WALK, 500)
 
     step = np.abs(np.diff(WALK.root_positions, axis=0)).max()

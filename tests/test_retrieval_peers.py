@@ -10,9 +10,9 @@ from solvers.motion import Tracks, warp
 from solvers.motion.humanoid.posture_joints import HIPS, POSTURE_JOINTS
 from tests.benchmarks.peers.clip_alignment import warped_totals
 from tests.benchmarks.peers.clip_statistics import Covariances
+from tests.benchmarks.peers.complete_postures import learn_complete_postures, resampled
 from tests.benchmarks.peers.motion_volumes import volume
-from tests.benchmarks.peers.string_matching import shared
-from tests.benchmarks.peers.whole_postures import learn_whole, resampled
+from tests.benchmarks.peers.string_matching import common_fraction
 from tests.benchmarks.retrieval.pyramid_methods import BODY, PARTS, only
 from tests.benchmarks.retrieval.retrieval_clips import LabelledClip
 from tests.benchmarks.retrieval.retrieval_damage import DAMAGES
@@ -25,7 +25,7 @@ LARGE = {PUBLISHED, CUBES, RANKED}
 
 
 def moving(rng, n_frames=90, speed=1.0):
-    """Someone who stands and waves every joint in ways of his own."""
+    """An actor who stands and moves every joint by random waves."""
     time = np.arange(n_frames) / 120.0
     rest = np.zeros((20, 3))
     rest[:, 2] = [1.0, 1.2, 1.4, 1.7] + 2 * [1.4] * 4 + 2 * [1.0, 0.6, 0.1, 0.05]
@@ -37,10 +37,10 @@ def moving(rng, n_frames=90, speed=1.0):
 
 
 class ByNumber:
-    """A method whose distances are known."""
+    """A method with fixed distances."""
 
     def __init__(self, distances):
-        self.known = distances
+        self.fixed_distances = distances
 
     def prepare(self, clips):
         return self
@@ -49,23 +49,23 @@ class ByNumber:
         return 0
 
     def distances(self, query, allowed):
-        return np.array(self.known, dtype=float)
+        return np.array(self.fixed_distances, dtype=float)
 
 
 def labelled(rng, labels, actors=None):
     actors = actors or ["a"] * len(labels)
     return [
-        LabelledClip(str(place), label, actor, moving(rng))
-        for place, (label, actor) in enumerate(zip(labels, actors, strict=True))
+        LabelledClip(str(index), label, actor, moving(rng))
+        for index, (label, actor) in enumerate(zip(labels, actors, strict=True))
     ]
 
 
-def test_precision_of_a_known_order(rng):
+def test_precision_equals_that_of_a_hand_computed_order(rng):
     """Right, wrong, right, wrong: average precision (1 + 2/3) / 2; one of the first two."""
     library = labelled(rng, ["x", "y", "x", "y", "x"])
-    asked = list(queries(library, library[4:], DAMAGES["clean"]))
+    requested = list(queries(library, library[4:], DAMAGES["clean"]))
 
-    (found,) = answer(ByNumber([1, 2, 3, 4, 0]), library, asked)
+    (found,) = answer(ByNumber([1, 2, 3, 4, 0]), library, requested)
 
     assert_allclose(found.precision, 5 / 6)
     assert_allclose(found.true_positives, 0.5)
@@ -73,13 +73,13 @@ def test_precision_of_a_known_order(rng):
     assert_allclose(found.curve[[0, 10, 11, 20]], [1.0, 1.0, 2 / 3, 2 / 3])
 
 
-def test_who_may_answer(rng):
+def test_queries_exclude_their_own_clip_and_actor(rng):
     library = labelled(rng, ["x", "x", "x", "y"], ["a", "a", "b", "c"])
 
     alone = list(queries(library, library, DAMAGES["clean"]))
     others = list(queries(library, library, DAMAGES["clean"], other_actors=True))
 
-    # y has no like, and is not asked for.
+    # y has no other clip of its class, and is no query.
     assert [each.allowed.tolist() for each in alone] == [
         [False, True, True, True], [True, False, True, True], [True, True, False, True],
     ]  # fmt: skip
@@ -87,20 +87,20 @@ def test_who_may_answer(rng):
 
 
 @pytest.mark.parametrize(
-    ("kind", "lost"), [("joints missing", 0.3), ("missing at random", 0.3)]
+    ("kind", "missing"), [("joints missing", 0.3), ("missing at random", 0.3)]
 )
-def test_damage_removes_the_stated_fraction(rng, kind, lost):
+def test_damage_removes_the_stated_fraction(rng, kind, missing):
     tracks = moving(rng)
     damaged = DAMAGES[kind](tracks, rng)
 
-    assert abs(1.0 - damaged.visible.mean() - lost) < 0.03
+    assert abs(1.0 - damaged.visible.mean() - missing) < 0.03
     assert tracks.visible.all()
     if kind == "joints missing":
         assert damaged.visible[:, HIPS].all()
         assert set(damaged.visible.mean(axis=0)) == {0.0, 1.0}
 
 
-def test_faster_is_shorter_and_the_same_way(rng):
+def test_faster_clip_is_shorter_on_the_same_path(rng):
     tracks = moving(rng)
 
     fast = DAMAGES["1.4x speed"](tracks, rng)
@@ -110,7 +110,7 @@ def test_faster_is_shorter_and_the_same_way(rng):
     assert_allclose(fast.positions[50], tracks.positions[70], atol=1e-4)
 
 
-def test_warped_totals_are_those_of_warp(rng):
+def test_warped_totals_equal_those_of_warp(rng):
     """All clips at once against the solver that the product uses for one pair."""
     query, lengths = rng.normal(size=(13, 3)), np.array([5, 13, 20])
     padded = rng.normal(size=(3, 20, 3))
@@ -123,13 +123,13 @@ def test_warped_totals_are_those_of_warp(rng):
     assert_allclose(totals, wanted)
 
 
-def test_longest_common_piece():
-    assert shared((1, 2, 3, 4), (9, 2, 3, 8)) == 0.5
-    assert shared((1, 2), (3, 4)) == 0.0
-    assert shared((1, 2, 3), (1, 2, 3)) == 1.0
+def test_common_fraction_is_the_longest_common_substring():
+    assert common_fraction((1, 2, 3, 4), (9, 2, 3, 8)) == 0.5
+    assert common_fraction((1, 2), (3, 4)) == 0.0
+    assert common_fraction((1, 2, 3), (1, 2, 3)) == 1.0
 
 
-def test_volumes_are_distances(rng):
+def test_volume_has_the_distances_of_joints(rng):
     frames = rng.normal(size=(12, 60))
 
     cube = volume(frames, 12)
@@ -144,7 +144,7 @@ def test_resampling_keeps_ends_and_lines():
     assert_allclose(resampled(line[:1], 3), np.zeros((3, 2)))
 
 
-def test_covariances_are_numpys(rng):
+def test_covariances_equal_numpys(rng):
     frames = rng.normal(size=(40, 60))
 
     row = Covariances().descriptor(frames)
@@ -155,32 +155,32 @@ def test_covariances_are_numpys(rng):
     assert_allclose(row[: len(upper)][~diagonal], np.sqrt(2.0) * upper[~diagonal])
 
 
-def test_lost_joints_are_put_where_the_others_say(rng):
+def test_missing_joints_are_predicted_from_the_others(rng):
     """Hands go where elbows go, in this library."""
     clips = [moving(rng) for _ in range(6)]
     clips = [replace(clip, positions=clip.positions.copy()) for clip in clips]
     for clip in clips:
         clip.positions[:, 6:8] = clip.positions[:, [5]] + [[0.2, 0.0, 0.0], [0.3, 0.0, 0.0]]
-    whole, frames = learn_whole(clips, 30.0)
+    complete, frames = learn_complete_postures(clips, 30.0)
     damaged = clips[0].positions.copy()
     damaged[:, 6:8] = np.nan
 
-    made = whole(Tracks(POSTURE_JOINTS, damaged, 120.0))
+    made = complete(Tracks(POSTURE_JOINTS, damaged, 120.0))
 
     assert np.abs(made - frames[0]).max() < 0.03
     assert np.isnan(damaged[0, 6]).all()
 
 
-def test_manifold_ranking_goes_along_the_chain(rng):
+def test_manifold_ranking_follows_the_chain(rng):
     """Points on a ring that nearly closes: the end is near by air and far along it."""
     angles = np.linspace(0.0, 1.9 * np.pi, 40)
     points = np.column_stack([np.cos(angles), np.sin(angles)])
-    apart = np.linalg.norm(points[:, None] - points, axis=-1)
+    distances = np.linalg.norm(points[:, None] - points, axis=-1)
 
-    told = manifold_ranking(apart, apart[0], 2)
+    ranking = manifold_ranking(distances, distances[0], 2)
 
-    assert told[10] > told[20] > told[39]
-    assert apart[0, 39] < apart[0, 10]
+    assert ranking[10] > ranking[20] > ranking[39]
+    assert distances[0, 39] < distances[0, 10]
 
 
 def test_fused_distances_are_sums_of_standard_scores(rng):
@@ -188,15 +188,15 @@ def test_fused_distances_are_sums_of_standard_scores(rng):
     fused = Fused((one, other)).prepare([])
     allowed = np.array([True, True, True, False])
 
-    apart = fused.distances(fused.describe(None), allowed)
+    distances = fused.distances(fused.describe(None), allowed)
 
     scores = [
         (np.array(each) - np.mean(each)) / np.std(each) for each in ([1, 2, 3], [40, 20, 60])
     ]
-    assert_allclose(apart[:3], np.sum(scores, axis=0))
+    assert_allclose(distances[:3], np.sum(scores, axis=0))
 
 
-def test_parts_are_told_alone(rng):
+def test_pyramid_parts_are_relative_to_their_root(rng):
     from solvers.retrieval.postures.clip_postures import clip_postures
 
     postures = clip_postures(moving(rng))
@@ -211,13 +211,13 @@ def test_parts_are_told_alone(rng):
 
 
 @pytest.mark.parametrize("name", [name for name in METHODS if name not in LARGE])
-def test_every_method_finds_a_clip_that_is_there(name):
-    """Eight people who move in ways of their own."""
+def test_every_method_ranks_the_query_clip_first(name):
+    """Eight actors with different random motions."""
     seeds = [np.random.default_rng(seed) for seed in range(8)]
     clips = [moving(each, 240, speed) for each, speed in zip(seeds, [1, 2] * 4, strict=True)]
 
     prepared = METHODS[name].prepare(clips)
-    apart = prepared.distances(prepared.describe(clips[3]), np.ones(8, dtype=bool))
+    distances = prepared.distances(prepared.describe(clips[3]), np.ones(8, dtype=bool))
 
-    assert apart.shape == (8,)
-    assert np.argmin(apart) == 3
+    assert distances.shape == (8,)
+    assert np.argmin(distances) == 3

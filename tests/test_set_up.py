@@ -68,23 +68,23 @@ WORKING = [
 ]
 
 
-@pytest.mark.parametrize("place", WORKING)
-def test_python_is_found_wherever_it_is(machine, place):
-    machine.add(place)
+@pytest.mark.parametrize("path", WORKING)
+def test_python_is_found_in_every_usual_folder(machine, path):
+    machine.add(path)
 
     assert machine.find_python() == sys.executable
     assert machine.find_python("3.99") is None
 
 
 @pytest.mark.parametrize(
-    ("variable", "place"),
+    ("variable", "path"),
     [
         ("UV_PYTHON_INSTALL_DIR", f"cpython-{HERE}.9-linux-x86_64-gnu/bin/python{HERE}"),
         ("PYENV_ROOT", f"versions/{HERE}.2/bin/python{HERE}"),
     ],
 )
-def test_python_is_found_where_the_environment_says(machine, variable, place):
-    machine.add(f"elsewhere/{place}")
+def test_python_is_found_by_environment_variable(machine, variable, path):
+    machine.add(f"elsewhere/{path}")
     assert machine.find_python() is None
 
     machine.environment[variable] = str(machine.home / "elsewhere")
@@ -92,7 +92,7 @@ def test_python_is_found_where_the_environment_says(machine, variable, place):
     assert machine.find_python() == sys.executable
 
 
-def test_uv_is_asked_for_its_python(machine):
+def test_python_of_uv_is_found(machine):
     machine.add("opt/py")
     machine.add("tools/uv", f'[ "$*" = "python find {HERE}" ] && echo {machine.home}/opt/py')
 
@@ -106,7 +106,7 @@ def test_uv_is_asked_for_its_python(machine):
         "exit 1  # as a Debian Python without ensurepip does",
     ],
 )
-def test_a_python_that_does_not_work_is_passed_over(machine, broken):
+def test_broken_python_is_skipped(machine, broken):
     machine.add(f"tools/python{HERE}", broken)
     assert machine.find_python() is None
 
@@ -115,7 +115,7 @@ def test_a_python_that_does_not_work_is_passed_over(machine, broken):
     assert machine.find_python() == sys.executable
 
 
-def test_without_python_311_it_stops_and_says_what_to_install(machine):
+def test_set_up_stops_without_python_311(machine):
     done = machine.run("make", "libraries")
 
     assert done.returncode
@@ -125,7 +125,7 @@ def test_without_python_311_it_stops_and_says_what_to_install(machine):
     )
 
 
-def test_without_python_313_it_says_what_is_skipped_and_goes_on(machine, tmp_path):
+def test_set_up_continues_without_python_313(machine, tmp_path):
     shutil.copytree(ROOT / ".ci", tmp_path / "fresh" / ".ci")
     for name in ("Makefile", "blender_manifest.toml"):
         shutil.copy(ROOT / name, tmp_path / "fresh")
@@ -166,14 +166,14 @@ def test_missing_libraries_are_named_with_the_command(check_libraries):
     )
 
 
-def test_nothing_is_said_where_nothing_is_missing(check_libraries):
+def test_set_up_prints_nothing_when_nothing_is_missing(check_libraries):
     check_libraries.there = set(check_libraries.PACKAGES)
 
     check_libraries.main()
 
 
 @pytest.mark.parametrize("helps", [True, False])
-def test_the_build_machine_installs_what_is_missing(check_libraries, monkeypatch, helps):
+def test_build_machine_installs_missing_libraries(check_libraries, monkeypatch, helps):
     commands = []
 
     def run(command, **options):
@@ -193,7 +193,7 @@ def test_the_build_machine_installs_what_is_missing(check_libraries, monkeypatch
     assert commands == ["apt-get update", "apt-get install -y libx11-6 libgl1"]
 
 
-def test_nothing_is_installed_without_the_right_to(check_libraries, monkeypatch):
+def test_nothing_is_installed_without_permission(check_libraries, monkeypatch):
     monkeypatch.setattr(sys, "argv", ["check_libraries.py", "--install"])
     monkeypatch.setattr(check_libraries.os, "geteuid", lambda: 1000, raising=False)
 
@@ -201,7 +201,7 @@ def test_nothing_is_installed_without_the_right_to(check_libraries, monkeypatch)
         check_libraries.main()
 
 
-def test_libraries_are_looked_for_where_programs_find_them():
+def test_libraries_are_searched_in_the_loader_paths():
     spec = spec_from_file_location("check_libraries", ROOT / ".ci" / "check_libraries.py")
     module = module_from_spec(spec)
     spec.loader.exec_module(module)

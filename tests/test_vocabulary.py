@@ -14,6 +14,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 CODE = ("operators", "mocap_assist", "solvers")
+TESTS = ("tests", ".ci")
 RETIRED_IN_TEXTS = {
     "albeit": "although",
     "amiss": "wrong",
@@ -49,22 +50,43 @@ RETIRED_IN_TEXTS = {
 docs, the manual, and every text of the code that is no docstring: labels, tooltips, help,
 messages and errors. A phrase of several words is one entry."""
 RETIRED_IN_NAMES = {
+    "calmed": "smoothed",
     "colour": "color",
     "colours": "colors",
     "companion": "reference marker",
+    "doubt": "low confidence",
+    "doubtful": "low confidence",
+    "doubts": "low confidence, error scores",
+    "exchanges": "left-right swaps",
+    "footing": "contact state",
+    "foresight": "prediction",
+    "foretell": "predict",
     "foretells": "predicts",
+    "foretold": "predicted",
     "girdle": "clavicle",
+    "haste": "time-warp rate, speed gain",
     "lest": "until, unless",
+    "licence": "license",
+    "likeness": "similarity",
+    "likes": "neighbors",
+    "loud": "weight",
     "mended": "corrected, repaired",
     "neighbour": "neighbor",
+    "nobody": "empty, no person",
+    "onlooker": "observer",
     "reckon": "compute",
+    "somebody": "user, actor, any",
     "spoilt": "corrupted, damaged",
+    "steadied": "smoothed",
     "surer": "confidence",
+    "trusted": "reliable",
+    "unsure": "low confidence, uncertain",
+    "ways": "directions, methods",
     "whither": "target, heading",
     "whoever": "user, actor",
 }
-"""What no module, class, function, argument, attribute or variable of the code is called any
-more, as a word of its name, and what is used instead."""
+"""What no module, class, function, argument, attribute or variable of the code and its tests is
+called any more, as a word of its name, and what is used instead."""
 WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
 
 
@@ -85,7 +107,7 @@ def texts() -> tuple[tuple[str, str], ...]:
     ]
     strings = [
         (f"{module.relative_to(ROOT)}:{node.lineno}", node.value)
-        for module, tree in modules()
+        for module, tree in modules(CODE)
         for node in strings_of(tree)
     ]
     return *lines, *strings
@@ -93,21 +115,21 @@ def texts() -> tuple[tuple[str, str], ...]:
 
 @cache
 def names() -> dict[str, str]:
-    """Each word of a name in the code, and one place where it stands."""
+    """Each word of a name in the code and its tests, and one position where it stands."""
     found: dict[str, str] = {}
-    for module, tree in modules():
+    for module, tree in modules(CODE + TESTS):
         path = module.relative_to(ROOT)
         for part in path.with_suffix("").parts:
             found |= {word.lower(): f"{path}" for word in WORD.findall(part)}
         for line, name in names_of(tree):
-            place = f"{path}:{line} {name}"
-            found |= {word.lower(): place for word in WORD.findall(name)}
+            where = f"{path}:{line} {name}"
+            found |= {word.lower(): where for word in WORD.findall(name)}
     return found
 
 
 @cache
-def modules() -> tuple[tuple[Path, ast.Module], ...]:
-    paths = [path for folder in CODE for path in sorted((ROOT / folder).rglob("*.py"))]
+def modules(folders: tuple[str, ...]) -> tuple[tuple[Path, ast.Module], ...]:
+    paths = [path for folder in folders for path in sorted((ROOT / folder).rglob("*.py"))]
     return tuple((path, ast.parse(path.read_text(encoding="utf-8"))) for path in paths)
 
 
@@ -133,24 +155,28 @@ def names_of(tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 
 @pytest.mark.parametrize("retired", RETIRED_IN_TEXTS)
-def test_texts_for_users_do_without(retired):
+def test_texts_for_users_have_no_retired_word(retired):
     pattern = re.compile(rf"(?<![\w-]){re.escape(retired)}(?![\w-])", re.IGNORECASE)
-    places = [place for place, text in texts() if pattern.search(text)]
+    positions = [where for where, text in texts() if pattern.search(text)]
 
-    assert not places, f"instead of {retired!r} write: {RETIRED_IN_TEXTS[retired]}"
+    assert not positions, (
+        f"instead of {retired!r} write: {RETIRED_IN_TEXTS[retired]}; see {positions}"
+    )
 
 
 @pytest.mark.parametrize("retired", RETIRED_IN_NAMES)
-def test_names_do_without(retired):
-    place = names().get(retired)
+def test_names_have_no_retired_word(retired):
+    position = names().get(retired)
 
-    assert place is None, f"instead of {retired!r} write: {RETIRED_IN_NAMES[retired]}"
+    assert position is None, (
+        f"{position}: instead of {retired!r} write: {RETIRED_IN_NAMES[retired]}"
+    )
 
 
-def test_texts_and_names_are_found():
+def test_texts_and_names_are_collected():
     """What the other tests look through is there at all."""
-    assert any("Clean" in text for place, text in texts() if place.startswith("operators"))
-    assert {"denoise", "skeleton", "settings"} <= set(names())
+    assert any("Clean" in text for where, text in texts() if where.startswith("operators"))
+    assert {"denoise", "skeleton", "settings", "fixtures"} <= set(names())
     assert [node.value for node in strings_of(ast.parse('"""Doc."""\nx = "text"'))] == ["text"]
     named = {name for _, name in names_of(ast.parse("def f(a): b.c = d"))}
     assert named == {"f", "a", "b", "c", "d"}

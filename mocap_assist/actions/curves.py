@@ -158,9 +158,9 @@ def write_values(
     if len(replaced) == len(frames) and (np.abs(replaced - frames) <= ON_FRAME).all():
         all_new = last - first == len(times)
         for name, rows in new.items():
-            whole = old if name == "co" else _column(points, name, blank=all_new)
-            whole[first:last] = rows
-            points.foreach_set(name, whole.ravel())
+            column = old if name == "co" else _column(points, name, blank=all_new)
+            column[first:last] = rows
+            points.foreach_set(name, column.ravel())
     else:
         chosen = _chosen(points, times, frames)
         _rebuild(points, first, last, new | dict.fromkeys(SELECTED, chosen[:, None]))
@@ -179,8 +179,8 @@ def _rebuild(
     for name, (width, default) in KEY.items():
         rows = np.empty((n_new, width), _kind(name))
         rows[:] = new.get(name, default)
-        whole = np.concatenate([kept[name][:first], rows, kept[name][last:]])
-        points.foreach_set(name, whole.ravel())
+        column = np.concatenate([kept[name][:first], rows, kept[name][last:]])
+        points.foreach_set(name, column.ravel())
 
 
 def _chosen(

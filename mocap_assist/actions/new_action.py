@@ -67,21 +67,21 @@ def write_motion(
 def _write_rotations(
     bag: bpy.types.ActionChannelbag, bone: bpy.types.PoseBone, frames: Array, rotations: Array
 ) -> None:
-    seen = np.isfinite(rotations).all(axis=-1)
-    if not seen.any():
+    observed = np.isfinite(rotations).all(axis=-1)
+    if not observed.any():
         return
     name, _ = rotation_property(bone.rotation_mode)
     present = np.array([getattr(bone, name)], dtype=np.float64)
-    values = channels_from_quaternions(rotations[seen], bone.rotation_mode, present)
-    write_channels(bag, bone_path(bone.name, name), bone.name, frames[seen], values)
+    values = channels_from_quaternions(rotations[observed], bone.rotation_mode, present)
+    write_channels(bag, bone_path(bone.name, name), bone.name, frames[observed], values)
 
 
 def write_channels(
     bag: bpy.types.ActionChannelbag, path: str, group: str, frames: Array, values: Array
 ) -> None:
     """Write F-Curves for all channels of a property, (n_frames, n); no keys where it is NaN."""
-    seen = np.isfinite(values).all(axis=-1)
-    if not seen.any():
+    observed = np.isfinite(values).all(axis=-1)
+    if not observed.any():
         return
-    for index, column in enumerate(values[seen].T):
-        write_first(compat.new_curve(bag, path, index, group), frames[seen], column)
+    for index, column in enumerate(values[observed].T):
+        write_first(compat.new_curve(bag, path, index, group), frames[observed], column)

@@ -122,14 +122,16 @@ def _tasks(arguments: argparse.Namespace) -> list[Task]:
         pairs = _blends(arguments.files, folder)
     else:
         pairs = find_recordings(arguments.files, folder, list_recordings)
-    targets = unique_targets([place for _, place in pairs], [BLEND] * len(pairs))
+    targets = unique_targets(
+        [relative_path for _, relative_path in pairs], [BLEND] * len(pairs)
+    )
     tasks = []
-    for (source, _), place in zip(pairs, targets, strict=True):
+    for (source, _), relative_path in zip(pairs, targets, strict=True):
         if list_recordings is None and not is_folder(source) and source.suffix.lower() != BLEND:
             raise InvalidSettingError(
                 f"{source} is not a .blend file; only import and capture read others."
             )
-        target = arguments.output_folder / place
+        target = arguments.output_folder / relative_path
         if real_path(target) == real_path(source):
             raise InvalidSettingError(f"{source} would be written over; choose another folder.")
         tasks.append(Task((source,), target, arguments, _refusal(source, target)))

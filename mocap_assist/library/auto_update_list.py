@@ -84,7 +84,7 @@ def _without(library: str) -> list[Any]:
 def _stored(problem: IndexProblem) -> dict[str, Any]:
     return {
         "library": problem.library,
-        "places": [[place.path, place.assets_only] for place in problem.sources],
+        "places": [[source.path, source.assets_only] for source in problem.sources],
         "tags": list(problem.tags),
         "rig": problem.blender.rig,
     }

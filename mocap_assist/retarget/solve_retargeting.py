@@ -114,13 +114,11 @@ def _started(motion: Motion, roles: HumanoidMap, start: Start) -> Motion:
     """Return the motion with a rigid transform, so that it begins at `start`."""
     body = normalize_postures(postures_from_motion(motion, roles), motion.frame_rate)
     half = 0.5 * (start.heading - body.headings[0])
-    turn = np.array([np.cos(half), 0.0, 0.0, np.sin(half)])
+    yaw = np.array([np.cos(half), 0.0, 0.0, np.sin(half)])
     first = body.hip_positions[0] * (1.0, 1.0, 0.0)
     rotations = np.array(motion.rotations)
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
-    root_positions = rotate(turn, motion.root_positions - first) + np.append(
-        start.position, 0.0
-    )
+    rotations[:, 0] = multiply(yaw, rotations[:, 0])
+    root_positions = rotate(yaw, motion.root_positions - first) + np.append(start.position, 0.0)
     return motion.with_poses(rotations, root_positions)
 
 

@@ -157,7 +157,7 @@ def _bone_curve(rotations: Array, shape: BoneShape, curve: KeyCurve, finest: flo
         columns = np.argsort(["XYZ".index(axis) for axis in shape.mode[::-1]])
         return KeyCurve(curve.frames, curve.values[:, columns], curve.slopes[:, columns])
     channels = channels_from_quaternions(basis, shape.mode, near)
-    allowed = max(float(_apart(curve, basis, QUATERNION).max()), finest)
+    allowed = max(float(_curve_errors(curve, basis, QUATERNION).max()), finest)
     return _refined(channels, curve.frames, basis, shape.mode, allowed)
 
 
@@ -167,7 +167,7 @@ def _refined(
     """Add keys where interpolated axis-angles deviate too far from quaternions."""
     while True:
         curve = fit_curve(channels, frames)
-        off = _apart(curve, basis, mode)
+        off = _curve_errors(curve, basis, mode)
         worse = np.setdiff1d(np.flatnonzero(off > allowed), frames)
         if len(frames) < MIN_KEYS or not len(worse):
             return curve
@@ -179,7 +179,7 @@ def _refined(
         frames = np.union1d(frames, worst).astype(np.intp)
 
 
-def _apart(curve: KeyCurve, rotations: Array, mode: str) -> Array:
+def _curve_errors(curve: KeyCurve, rotations: Array, mode: str) -> Array:
     """Return the angle between a curve and the rotations at each frame, radians."""
     played = quaternions_from_channels(curve.at(np.arange(len(rotations))), mode)
     return np.asarray(angle_between(played, rotations))

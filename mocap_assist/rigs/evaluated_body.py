@@ -68,7 +68,7 @@ def with_body_shown(
     ordered = [role for role in HUMANOID_ROLES if role in body.joints]
     names = tuple(body.joints[role] for role in ordered)
     index = [rig.bones.index(name) for name in names]
-    rotations, places = yield from _shown(scene, armature, names, take, source)
+    rotations, root_positions = yield from _shown(scene, armature, names, take, source)
     upright = multiply(rest.rotations[0], rig.rest_rotations[index])
     world = multiply(rotations, inverse(upright))
     parents = tuple(_parent(role, ordered) for role in ordered)
@@ -78,7 +78,7 @@ def with_body_shown(
              for up in parents]  # fmt: skip
     local = multiply(inverse(np.stack(above, axis=1)), world)
     skeleton = Skeleton(names, parents, offsets)
-    motion = Motion(skeleton, local, places, take.parts[0].motion.frame_rate)
+    motion = Motion(skeleton, local, root_positions, take.parts[0].motion.frame_rate)
     shown = replace(take.parts[0], motion=motion, bones=tuple(index))
     return replace(take, parts=(shown, *take.parts[1:]))
 
@@ -103,8 +103,8 @@ def _shown(
         scene, armature, source = (each.find() for each in lasting)
         with values_kept(armature, source), _played(scene, armature, source):
             for frame in take.frames[len(rotations) :]:
-                turns, position = _pose_at(scene, armature, names, frame)
-                rotations.append(turns)
+                pose_rotations, position = _pose_at(scene, armature, names, frame)
+                rotations.append(pose_rotations)
                 positions.append(take.rest.scale * position)
                 if should_yield():
                     break
@@ -117,11 +117,11 @@ def _pose_at(
     """Return world rotations of bones at a frame, and the first one's head at scale 1."""
     scene.frame_set(int(np.floor(frame)), subframe=float(frame - np.floor(frame)))
     shown = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    turn, _, scale = placement_of(shown.matrix_world, armature.name)
+    rotation, _, scale = placement_of(shown.matrix_world, armature.name)
     pose = np.array([shown.pose.bones[name].matrix for name in names])
     linear = pose[:, :3, :3] / np.linalg.norm(pose[:, :3, :3], axis=1, keepdims=True)
     head = np.array(shown.matrix_world @ Matrix(pose[0]).translation)
-    return multiply(turn, quaternion_from_matrix(linear)), head / scale
+    return multiply(rotation, quaternion_from_matrix(linear)), head / scale
 
 
 @contextmanager

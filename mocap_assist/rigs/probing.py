@@ -10,10 +10,10 @@ from mathutils import Euler, Matrix
 from ...solvers.arrays import Array
 
 N_POSES = 3
-LARGEST_TURN = 0.35  # radians
+MAX_ROTATION_RAD = 0.35  # radians
 LARGEST_SHIFT = 0.03  # of the rig's height
-SAME_TURN = 2e-3  # difference between entries of rotation matrices
-SAME_PLACE = 2e-3  # of the rig's height
+MAX_ROTATION_DIFFERENCE = 2e-3  # difference between entries of rotation matrices
+MAX_POSITION_DIFFERENCE = 2e-3  # of the rig's height
 Switches = Mapping[tuple[str, str], float]
 
 
@@ -41,12 +41,12 @@ def find_carriers(
     movers = [name for name, moves in controls if moves]
     with _copied(scene, armature, switches) as (copy, depsgraph):
         height = max(max(bone.tail_local.length for bone in copy.data.bones), 1e-9)
-        seen = [
-            _seen(scene, copy, depsgraph, names, movers, seed, height)
+        probes = [
+            _carried_and_moved(scene, copy, depsgraph, names, movers, seed, height)
             for seed in range(N_POSES)
         ]
-    carried = {name: np.stack([space[name] for space, _ in seen]) for name in names}
-    moved = {name: np.stack([delta[name] for _, delta in seen]) for name in names}
+    carried = {name: np.stack([space[name] for space, _ in probes]) for name in names}
+    moved = {name: np.stack([delta[name] for _, delta in probes]) for name in names}
     moved[""] = np.tile(np.eye(4), (N_POSES, 1, 1))
     return {
         name: _same(carried[name], moved, name, height if name in movers else np.inf)
@@ -57,11 +57,11 @@ def find_carriers(
 def _same(carried: Array, moved: Mapping[str, Array], name: str, height: float) -> str | None:
     """Return whose movement it is; places count only where the height is finite."""
     for other, movement in moved.items():
-        apart = np.abs(carried - movement)
+        difference = np.abs(carried - movement)
         if (
             other != name
-            and apart[:, :3, :3].max() < SAME_TURN
-            and apart[:, :3, 3].max() < SAME_PLACE * height
+            and difference[:, :3, :3].max() < MAX_ROTATION_DIFFERENCE
+            and difference[:, :3, 3].max() < MAX_POSITION_DIFFERENCE * height
         ):
             return other
     return None
@@ -92,7 +92,7 @@ def _copied(
         bpy.data.objects.remove(copy)
 
 
-def _seen(
+def _carried_and_moved(
     scene: bpy.types.Scene,
     copy: bpy.types.Object,
     depsgraph: bpy.types.Depsgraph,
@@ -104,20 +104,22 @@ def _seen(
     """Return how each control's carrier has moved from rest, and how it has itself."""
     rng = np.random.default_rng(seed)
     for name in names:
-        turn = Euler(rng.uniform(-LARGEST_TURN, LARGEST_TURN, 3)).to_matrix().to_4x4()
+        rotation = (
+            Euler(rng.uniform(-MAX_ROTATION_RAD, MAX_ROTATION_RAD, 3)).to_matrix().to_4x4()
+        )
         if name in movers:
-            turn.translation = rng.uniform(-1.0, 1.0, 3) * LARGEST_SHIFT * height
-        copy.pose.bones[name].matrix_basis = turn
+            rotation.translation = rng.uniform(-1.0, 1.0, 3) * LARGEST_SHIFT * height
+        copy.pose.bones[name].matrix_basis = rotation
     scene.view_layers[0].update()
     posed = copy.evaluated_get(depsgraph).pose.bones
     carried, moved = {}, {}
     for name in names:
         bone = posed[name]
         back = bone.bone.matrix_local.inverted()
-        turn = bone.matrix_basis.to_3x3().to_4x4()
+        rotation = bone.matrix_basis.to_3x3().to_4x4()
         shift = location_axes(bone.bone) @ bone.location
         moved[name] = np.array(bone.matrix @ back)
-        space = bone.matrix @ turn.inverted() @ back @ Matrix.Translation(-shift)
+        space = bone.matrix @ rotation.inverted() @ back @ Matrix.Translation(-shift)
         carried[name] = np.array(space)
     return carried, moved
 

@@ -14,7 +14,7 @@ LIMB_CONTROLS = {"Arm": ("upper_arm", "hand", "Hand"), "Leg": ("thigh", "foot", 
 SPINE = re.compile(r"spine_fk\.\d+$")
 SPINE_ROLES = ("spine", "chest", "upperChest")
 HELPERS = ("DEF-", "ORG-", "MCH-", "VIS_", "WGT-")
-SAME_PLACE = 1e-4  # of the rig's unit
+MAX_HEAD_DISTANCE = 1e-4  # of the rig's unit
 IK_PARENT_ROOT = 1
 """Of the properties IK_parent and pole_parent: 0 is no parent, 1 the root."""
 
@@ -95,7 +95,7 @@ def _torso(control: str, roles: Mapping[str, str], heads: Mapping[str, Array]) -
     lower = [
         role
         for role, bone in spine.items()
-        if np.linalg.norm(heads[bone] - heads[original_of(bone, heads)]) > SAME_PLACE
+        if np.linalg.norm(heads[bone] - heads[original_of(bone, heads)]) > MAX_HEAD_DISTANCE
     ]
     upper = [role for role in spine if role not in lower]
     if not (lower and upper and "spine_fk" in heads):

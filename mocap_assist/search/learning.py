@@ -9,7 +9,7 @@ from ..blender.name_lists import SEPARATOR, join_names
 from ..clean.choices import Prior
 from ..reconstruct.choices import Postures
 from . import searches
-from .linking import fits_somebody, is_action, take_action
+from .linking import fits_any_armature, is_action, take_action
 from .solve_finding import Found
 
 CLEAN, RECONSTRUCT = "clean", "reconstruct"
@@ -48,4 +48,4 @@ def _example(context: bpy.types.Context, found: Found) -> str:
         action = take_action(found, link=True)
     except MocapAssistError:
         return ""
-    return action.name if fits_somebody(context.scene, action) else ""
+    return action.name if fits_any_armature(context.scene, action) else ""

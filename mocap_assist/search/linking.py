@@ -76,7 +76,7 @@ def take_action(found: Found, link: bool) -> bpy.types.Action:
     return action
 
 
-def fits_somebody(scene: bpy.types.Scene, source: bpy.types.Action) -> bool:
+def fits_any_armature(scene: bpy.types.Scene, source: bpy.types.Action) -> bool:
     """Whether any armature of the scene has the bones of an action."""
     return any(
         each.type == "ARMATURE" and fitting_slots(each, source) for each in scene.objects

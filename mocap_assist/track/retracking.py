@@ -177,7 +177,9 @@ def _find_low_confidence(
 ) -> tuple[LowConfidenceRange, ...]:
     if not confidence:
         return ()
-    flags = np.stack(list(confidence.values()), axis=1) < scene.mocap_assist.track.doubtful
+    flags = (
+        np.stack(list(confidence.values()), axis=1) < scene.mocap_assist.track.low_confidence
+    )
     return low_confidence_ranges(tuple(confidence), flags)
 
 

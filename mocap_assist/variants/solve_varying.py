@@ -20,7 +20,7 @@ from ..library.thumbnails import Pixels, thumbnail
 from ..retarget.solve_retargeting import Clip, Retargeted, RetargetProblem, retarget_clips
 from ..scene.controls import TargetRig
 
-ALIKE = "Variants are nearly identical: add source actions or raise Amount."
+SIMILAR_VARIANTS = "Variants are nearly identical: add source actions or raise Amount."
 SHEET = StickFigureSettings(n_figures=10, height=140)
 
 
@@ -83,7 +83,7 @@ def vary(problem: VaryProblem, *, progress: Progress = unwatched) -> Varied:
         finer = motion.frame_rate > problem.frame_rate
         motions.append(resample_variant(aligned, problem.frame_rate) if finer else aligned)
         pictures.append(thumbnail(normalized.postures))
-    remarks = (*made.remarks, ALIKE) if are_alike(motions) else made.remarks
+    remarks = (*made.remarks, SIMILAR_VARIANTS) if are_similar(motions) else made.remarks
     keys = _keyed(motions, problem.controls, within(progress, 0.9, 1.0))
     return Varied(tuple(motions), tuple(pictures), remarks, keys)
 
@@ -101,7 +101,7 @@ def _keyed(
     return retarget_clips(problem, progress=progress)
 
 
-def are_alike(motions: Sequence[Motion]) -> bool:
+def are_similar(motions: Sequence[Motion]) -> bool:
     """Whether there are several motions, and no two of them differ."""
     first, *others = motions
     return bool(others) and all(

@@ -77,7 +77,7 @@ def follow_target(
     """
     n_frames = target.n_frames
     coordinates = np.empty((n_frames, world.model.nq))
-    support, distances, lost_frames = np.zeros(n_frames), np.zeros(n_frames), []
+    support, distances, reset_frames = np.zeros(n_frames), np.zeros(n_frames), []
     loads = np.zeros((n_frames, n_ends))
     n_far = 0
     for frame in range(n_frames):
@@ -94,24 +94,24 @@ def follow_target(
         ):
             n_far = 0
             _reset_to_target(engine, world, states)
-            lost_frames += [frame] if frame else []
+            reset_frames += [frame] if frame else []
         coordinates[frame] = world.data.qpos
         if frame < n_frames - 1:
             support[frame] = np.mean(
                 _simulate_frame(engine, world, control, states, loads[frame])
             )
     support[-1], loads[-1] = support[max(n_frames - 2, 0)], loads[max(n_frames - 2, 0)]
-    followed = _followed_frames(distances, lost_frames, DRIFT_DISTANCE_M * control.size)
-    return SimulatedTrajectory(coordinates, support, loads, followed, len(lost_frames))
+    followed = _followed_frames(distances, reset_frames, DRIFT_DISTANCE_M * control.size)
+    return SimulatedTrajectory(coordinates, support, loads, followed, len(reset_frames))
 
 
 def _followed_frames(
-    distances: Array, lost_frames: list[int], max_distance: float
+    distances: Array, reset_frames: list[int], max_distance: float
 ) -> NDArray[np.bool_]:
     """Return False for the frames of a loss, and for those just before with a large
     distance."""
     followed = np.ones(len(distances), dtype=np.bool_)
-    for frame in lost_frames:
+    for frame in reset_frames:
         followed[frame] = False
         while frame > 0 and not distances[frame - 1] <= max_distance:
             frame -= 1

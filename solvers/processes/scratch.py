@@ -39,9 +39,9 @@ class ScratchFolder:
 
     def __init__(self) -> None:
         try:
-            place = Path(gettempdir())
-            _clear_once(place)
-            self.path, lock = _new_folder(place)
+            parent = Path(gettempdir())
+            _clear_once(parent)
+            self.path, lock = _new_folder(parent)
         except OSError as error:
             where = f" in {Path(error.filename).parent}" if error.filename else ""
             raise InvalidFileError(
@@ -68,9 +68,9 @@ class ScratchFolder:
         self.remove()
 
 
-def clear_abandoned(place: Path) -> None:
-    """Remove scratch folders and locks of this user in `place` whose owners have ended."""
-    for path in place.glob(f"{PREFIX}*{LOCK}"):
+def clear_abandoned(parent: Path) -> None:
+    """Remove scratch folders and locks of this user in `parent` whose owners have ended."""
+    for path in parent.glob(f"{PREFIX}*{LOCK}"):
         with suppress(OSError):
             if _is_own(path) and (lock := try_lock(path, create=False)) is not None:
                 _remove(path.with_suffix(""), lock)
@@ -90,15 +90,15 @@ def lock_for_work_on(target: Path) -> Path:
 
 
 @cache
-def _clear_once(place: Path) -> None:
-    clear_abandoned(place)
+def _clear_once(parent: Path) -> None:
+    clear_abandoned(parent)
 
 
-def _new_folder(place: Path) -> tuple[Path, FileLock]:
+def _new_folder(parent: Path) -> tuple[Path, FileLock]:
     """Make a folder, locked before it exists, so that nobody finds it without its owner."""
     lock = None
     while lock is None:  # another process that clears may hold a new one for a moment
-        folder = place / f"{PREFIX}{token_hex(NAME_BYTES)}"
+        folder = parent / f"{PREFIX}{token_hex(NAME_BYTES)}"
         lock = try_lock(_lock_of(folder))
     try:
         folder.mkdir(mode=0o700)

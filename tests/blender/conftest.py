@@ -42,7 +42,7 @@ IN_ONE_BLENDER = {
     "importing/test_to_the_rig.py": (4, 5),
     "importing/test_units.py": (5, 2),
     "importing/test_waiting_import.py": (5, 2),
-    "library/test_actions_alone.py": (4, 5),
+    "library/test_actions_without_rig.py": (4, 5),
     "library/test_bad_input.py": (4, 5),
     "library/test_find.py": (5, 2),
     "library/test_index_at_once.py": (4, 5),
@@ -54,7 +54,7 @@ IN_ONE_BLENDER = {
     "library/test_load.py": (4, 5),
     "library/test_performing.py": (4, 5),
     "library/test_use_matches.py": (4, 5),
-    "library/test_uses.py": (5, 2),
+    "library/test_match_uses.py": (5, 2),
     "operators/test_clean_guides.py": (5, 2),
     "operators/test_clean_large.py": (5, 2),
     "operators/test_command.py": (5, 2),
@@ -64,7 +64,7 @@ IN_ONE_BLENDER = {
     "operators/test_physics.py": (4, 5),
     "reconstruction/test_blend_examples.py": (4, 5),
     "reconstruction/test_confidence_colors.py": (4, 5),
-    "reconstruction/test_own_models.py": (4, 5),
+    "reconstruction/test_custom_models.py": (4, 5),
     "reconstruction/test_source.py": (5, 2),
     "reconstruction/test_then_clean.py": (5, 2),
     "reconstruction/test_reliability_terms.py": (4, 5),
@@ -75,7 +75,7 @@ IN_ONE_BLENDER = {
     "tracking/test_capture_command.py": (5, 2),
     "tracking/test_other_scenes.py": (4, 5),
     "tracking/test_retrack.py": (4, 5),
-    "tracking/test_watch.py": (5, 2),
+    "tracking/test_live_preview.py": (5, 2),
     "variation/test_vary_rigify.py": (5, 2),
 }
 """Long tests, each file of which runs in one of the two Blenders; the others run in both."""
@@ -98,8 +98,8 @@ os._exit(0)
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("filterwarnings", "always")
-    for known in NOT_OURS:
-        config.addinivalue_line("filterwarnings", f"ignore:{known}")
+    for warning in NOT_OURS:
+        config.addinivalue_line("filterwarnings", f"ignore:{warning}")
     zipped = Path(os.environ.get("MOCAP_ASSIST_ZIP", "")).resolve()
     if not zipped.is_file():
         pytest.exit(

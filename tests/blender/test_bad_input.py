@@ -56,7 +56,7 @@ def values_of(keys, bone, name):
 
 
 @pytest.mark.parametrize("n_frames", [1, 2, 3])
-def test_a_handful_of_frames_keeps_its_keys(make_armature, animate, press, n_frames):
+def test_a_few_frames_keep_their_keys(make_armature, animate, press, n_frames):
     armature = make_armature(ARM, mode="XYZ")
     animate(armature, frames=range(1, n_frames + 1))
 
@@ -67,7 +67,7 @@ def test_a_handful_of_frames_keeps_its_keys(make_armature, animate, press, n_fra
     }.items()
 
 
-def test_a_single_bone(make_armature, animate, press):
+def test_single_bone_is_cleaned(make_armature, animate, press):
     armature = make_armature({"Hips": BONES["Hips"]})
     animate(armature)
 
@@ -77,7 +77,7 @@ def test_a_single_bone(make_armature, animate, press):
 
 
 @pytest.mark.parametrize("mode", ["QUATERNION", "XYZ"])
-def test_keys_that_are_no_numbers_become_numbers(make_armature, animate, press, spoil, mode):
+def test_nan_keys_become_finite(make_armature, animate, press, spoil, mode):
     armature = make_armature(ARM, mode=mode)
     action = animate(armature)
     path = "rotation_quaternion" if mode == "QUATERNION" else "rotation_euler"
@@ -89,7 +89,7 @@ def test_keys_that_are_no_numbers_become_numbers(make_armature, animate, press, 
     press(armature)
 
 
-def test_quaternions_of_any_length_and_sign_are_turns(make_armature, animate, press, spoil):
+def test_quaternions_of_any_length_and_sign_are_accepted(make_armature, animate, press, spoil):
     armature = make_armature(ARM)
     action = animate(armature)
     plain = press(armature)[1]
@@ -106,14 +106,14 @@ def test_quaternions_of_any_length_and_sign_are_turns(make_armature, animate, pr
         assert np.abs(dots).min() > np.cos(np.radians(0.5))
 
 
-def test_quaternions_of_length_zero_do_no_harm(make_armature, animate, press, spoil):
+def test_zero_quaternions_are_accepted(make_armature, animate, press, spoil):
     armature = make_armature(ARM)
     spoil(animate(armature), '"Spine"].rotation_quaternion', lambda t, y, n: 0 * y)
 
     press(armature)
 
 
-def test_angles_that_jump_by_whole_turns_do_not_stir_the_pose(
+def test_jumps_of_360_degrees_do_not_change_the_pose(
     make_armature, animate, press, spoil, poses
 ):
     armature = make_armature(ARM, mode="XYZ")
@@ -129,7 +129,7 @@ def test_angles_that_jump_by_whole_turns_do_not_stir_the_pose(
 
 
 @pytest.mark.parametrize("size", [1e6, 1e30])
-def test_a_place_far_away_is_cleaned_or_refused(
+def test_distant_position_is_cleaned_or_refused(
     make_armature, animate, press, spoil, blank, size
 ):
     armature = make_armature(ARM)
@@ -195,7 +195,7 @@ def test_hidden_bones_and_locked_channels_are_cleaned_like_others(
         assert rough[1] < 0.7 * rough[0]
 
 
-def test_names_that_need_escaping(make_armature, animate, press, blank):
+def test_names_that_need_escaping_are_accepted(make_armature, animate, press, blank):
     bones = {name: (None, (n, 0, 0), (n, 0, 1), False) for n, name in enumerate(AWKWARD)}
     armature = make_armature(bones, mode="XYZ")
     escaped = [blank.utils.escape_identifier(bone.name) for bone in armature.pose.bones]
@@ -215,7 +215,7 @@ def test_names_that_need_escaping(make_armature, animate, press, blank):
         )
 
 
-def test_an_action_of_places_only(make_armature, animate, press):
+def test_action_without_rotations_is_cleaned(make_armature, animate, press):
     armature = make_armature(ARM)
     action = animate(armature)
     curves = action.layers[0].strips[0].channelbags[0].fcurves
@@ -227,7 +227,7 @@ def test_an_action_of_places_only(make_armature, animate, press):
     assert raw.keys() == after.keys()
 
 
-def test_a_slot_of_another_actor_is_not_taken_for_ones_own(make_armature, animate, blank):
+def test_slot_of_another_actor_is_ignored(make_armature, animate, blank):
     armature = make_armature(ARM)
     action = animate(armature)
     other = make_armature(ARM, name="Other")
@@ -241,9 +241,7 @@ def test_a_slot_of_another_actor_is_not_taken_for_ones_own(make_armature, animat
     assert len(blank.data.actions) == 1
 
 
-def test_examples_of_a_rig_that_shares_nothing_leave_the_take_to_itself(
-    make_armature, animate, press, blank
-):
+def test_examples_of_an_unrelated_rig_are_ignored(make_armature, animate, press, blank):
     strange = {"p": (None, (0, 0, 0), (0, 0, 1), False), "q": ("p", (0, 0, 1), (0, 0, 2), True)}
     animate(make_armature(strange, name="Strange")).name = "rehearsal"
     armature = make_armature(ARM)
@@ -255,7 +253,7 @@ def test_examples_of_a_rig_that_shares_nothing_leave_the_take_to_itself(
         assert "Traceback" not in str(error)
 
 
-def test_checking_bad_takes_never_fails(make_armature, animate, spoil, blank):
+def test_check_accepts_bad_takes(make_armature, animate, spoil, blank):
     armature = make_armature(ARM)
     action = animate(armature, frames=[1, 2])
     assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}

@@ -23,16 +23,18 @@ def walk(blank, recordings):
     return blank.context.object
 
 
-def test_cleaning_brings_a_noisy_walk_nearer_to_the_truth(walk, blank, load, rng):
+def test_cleaned_walk_is_nearer_to_the_truth(walk, blank, load, rng):
     reading = load("mocap_assist.actions.armature_read")
     writing = load("mocap_assist.actions.armature_write")
-    turns = load("solvers.rotations.representations")
+    representations = load("solvers.rotations.representations")
     scene = blank.context.scene
     truth = reading.read_take(walk, scene)
     motion = truth.parts[0].motion
     shaken = rng.normal(scale=np.radians(3.0), size=(motion.n_frames, motion.n_joints, 3))
-    noise = turns.quaternion_from_rotation_vector(shaken)
-    noisy = truth.with_recordings((motion.with_poses(turns.multiply(motion.rotations, noise)),))
+    noise = representations.quaternion_from_rotation_vector(shaken)
+    noisy = truth.with_recordings((
+        motion.with_poses(representations.multiply(motion.rotations, noise)),
+    ))
     bones = set(truth.rig.bones)
     raw, slot = writing.write_take(walk, reading.action_of(walk), noisy, bones, {})
     raw.name = "walk"
@@ -41,7 +43,7 @@ def test_cleaning_brings_a_noisy_walk_nearer_to_the_truth(walk, blank, load, rng
     assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
 
     def error(take):
-        angles = turns.angle_between(take.parts[0].motion.rotations, motion.rotations)
+        angles = representations.angle_between(take.parts[0].motion.rotations, motion.rotations)
         return float(angles[:, : len(bones)].mean())
 
     assert walk.animation_data.action.name == "walk.clean"

@@ -7,11 +7,11 @@ import addon_utils
 import pytest
 
 
-def test_switched_on_at_the_start(extension):
+def test_extension_is_enabled_at_startup(extension):
     assert addon_utils.check(extension.__name__) == (True, True)
 
 
-def test_breaks_no_policy(extension):
+def test_extension_violates_no_policy(extension):
     assert not addon_utils._extensions_warnings_get()
 
 
@@ -31,7 +31,7 @@ def test_every_module_imports(extension, load):
             load(".".join(module.parts))
 
 
-def test_can_be_switched_off_and_on_again(extension, blank):
+def test_extension_can_be_disabled_and_enabled(extension, blank):
     addon_utils.disable(extension.__name__)
     assert addon_utils.check(extension.__name__) == (True, False)
 

@@ -23,12 +23,12 @@ def job(load):
 def problem(load, rng):
     """A leg that shakes, of so many frames."""
     motion = load("solvers.motion")
-    turns = load("solvers.rotations.representations")
+    representations = load("solvers.rotations.representations")
     skeleton = motion.Skeleton(("hip", "knee"), (-1, 0), np.array([[0, 0, 0.9], [0, 0, -0.4]]))
 
     def make(n_frames):
         vectors = rng.normal(scale=0.1, size=(n_frames, 2, 3))
-        rotations = turns.quaternion_from_rotation_vector(vectors)
+        rotations = representations.quaternion_from_rotation_vector(vectors)
         return motion.Motion(skeleton, rotations, np.zeros((n_frames, 3)), 30.0)
 
     return make
@@ -44,7 +44,7 @@ def folders():
     return set(Path(tempfile.gettempdir()).glob("mocap_assist_*"))
 
 
-def test_the_answer_is_that_of_this_process(job, load, problem):
+def test_job_result_equals_that_of_this_process(job, load, problem):
     solve = partial(load("solvers.denoising").denoise, problem(60))
 
     found = job(solve).result().recording
@@ -52,7 +52,7 @@ def test_the_answer_is_that_of_this_process(job, load, problem):
     np.testing.assert_allclose(found.rotations, solve().recording.rotations, atol=1e-9)
 
 
-def test_cancelling_ends_it_at_once_and_leaves_nothing(job, load, problem):
+def test_cancel_ends_the_job_and_removes_its_files(job, load, problem):
     before = folders()
     running = job(partial(load("solvers.denoising").denoise, problem(20_000)))
     while running.progress() == (0.0, "Starting") and not running.done():
@@ -66,7 +66,7 @@ def test_cancelling_ends_it_at_once_and_leaves_nothing(job, load, problem):
     assert folders() == before
 
 
-def test_what_the_solver_raises_is_raised_here_with_its_traceback(job, load, problem):
+def test_solver_error_is_raised_with_its_traceback(job, load, problem):
     motion = problem(10)
     contacts = np.zeros((3, 2), bool)
     solve = partial(load("solvers.denoising.feet.plant_feet").plant_feet, motion, contacts)
@@ -77,7 +77,7 @@ def test_what_the_solver_raises_is_raised_here_with_its_traceback(job, load, pro
     assert "plant_feet" in "".join(caught.value.__notes__)
 
 
-def test_a_process_that_dies_is_mourned_in_a_sentence(job, load, problem):
+def test_crashed_process_is_reported_in_one_sentence(job, load, problem):
     before = folders()
     running = job(partial(load("solvers.denoising").denoise, problem(20_000)))
 
@@ -90,7 +90,7 @@ def test_a_process_that_dies_is_mourned_in_a_sentence(job, load, problem):
     assert folders() == before
 
 
-def test_the_log_separates_output_from_progress(load, tmp_path):
+def test_log_separates_output_from_progress(load, tmp_path):
     protocol = load("mocap_assist.jobs.protocol")
     lines = ["@0.1000 Reading", "ImportError: no such module", "@0.2500 Filtering 1 of 2", ""]
     (tmp_path / protocol.LOG).write_text("\n".join(lines))
@@ -109,13 +109,13 @@ class Expression:
         return eval, (self.text,)
 
 
-def test_the_child_looks_for_modules_where_blender_does_and_nowhere_else(job):
-    asked = (
+def test_child_imports_from_blenders_paths_only(job):
+    expression = (
         "lambda progress: (lambda sys: (sys.flags.no_user_site, sys.flags.safe_path,"
         " sys.path))(__import__('sys'))"
     )
 
-    no_user_site, safe_path, path = job(Expression(asked)).result()
+    no_user_site, safe_path, path = job(Expression(expression)).result()
 
     assert (no_user_site, safe_path) == (1, True)
     here = [Path(each) for each in sys.path if each]
@@ -144,7 +144,7 @@ time.sleep(100)
 """
 
 
-def test_the_child_ends_when_blender_is_killed(job, extension, tmp_path):
+def test_child_ends_when_blender_is_killed(job, extension, tmp_path):
     """Even in the middle of a step that reports no progress."""
     folder = Path(extension.__file__).parent
     script = WAITING.format(

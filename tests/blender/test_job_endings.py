@@ -79,7 +79,7 @@ def test_process_ends_with_status_0_after_an_error_of_the_solver(module, program
     assert "Traceback" in caught.value.__notes__[0]
 
 
-def test_result_is_fetched_and_the_process_ended_when_it_hangs_after_its_answer(module):
+def test_hanging_process_is_ended_after_its_result_is_read(module):
     job = module.Job(Expression("None"), (sys.executable, "-c", ANSWER_AND_HANG))
     while not job.done():
         pass
@@ -90,7 +90,7 @@ def test_result_is_fetched_and_the_process_ended_when_it_hangs_after_its_answer(
 
 
 @pytest.mark.parametrize("call", ["Job", "run", "ShortSolve"])
-def test_lack_of_memory_is_one_sentence(module, load, call):
+def test_out_of_memory_is_one_sentence(module, load, call):
     solve = Expression("lambda progress: b'.' * (1 << 62)")
     calls = {
         "Job": lambda: module.Job(solve).result(),

@@ -55,7 +55,7 @@ def rig():
         ("ORG-", "ORG-spine", "ORG-thigh.L", {"ORG-pelvis.L", "ORG-heel.02.L"}),
     ],
 )
-def test_roles_of_a_generated_rig(rig, load, kind, hips, thigh, idle):
+def test_generated_rig_gets_its_roles(rig, load, kind, hips, thigh, idle):
     names = names_of(rig, kind)
     found = load("solvers.motion").roles_by_name(names)
 
@@ -64,12 +64,12 @@ def test_roles_of_a_generated_rig(rig, load, kind, hips, thigh, idle):
     assert idle <= set(names) and not idle & set(found.values())
 
 
-def test_spine_controls_turn_what_their_roles_say(rig, load):
-    """The lower ones of Rigify's spine controls turn the pelvis: they have no role."""
+def test_spine_controls_rotate_the_bones_of_their_roles(rig, load):
+    """The lower ones of Rigify's spine controls rotate the pelvis: they have no role."""
     import bpy
 
     found = load("solvers.motion").roles_by_name(names_of(rig, "controls"))
-    turned = {}
+    angles = {}
     for role in ("spine", "chest", "hips"):
         control = rig.pose.bones[found[role]]
         control.rotation_mode = "QUATERNION"
@@ -78,15 +78,15 @@ def test_spine_controls_turn_what_their_roles_say(rig, load):
         control.rotation_quaternion = (0.96, 0.28, 0.0, 0.0)
         bpy.context.view_layer.update()
         after = rig.pose.bones["DEF-spine"].matrix
-        turned[role] = (after.to_3x3() @ before.to_3x3().inverted()).to_quaternion().angle
+        angles[role] = (after.to_3x3() @ before.to_3x3().inverted()).to_quaternion().angle
         control.rotation_quaternion = (1.0, 0.0, 0.0, 0.0)
     bpy.context.view_layer.update()
 
-    assert turned["spine"] < 1e-4 and turned["chest"] < 1e-4
-    assert turned["hips"] == pytest.approx(2 * np.arcsin(0.28), abs=0.01)
+    assert angles["spine"] < 1e-4 and angles["chest"] < 1e-4
+    assert angles["hips"] == pytest.approx(2 * np.arcsin(0.28), abs=0.01)
 
 
-def test_a_walk_reaches_the_controls(rig, load):
+def test_controls_follow_a_retargeted_walk(rig, load):
     """On the tree of the torso: feet on the scaled path, and no flips."""
     motion, retargeting, samples = (
         load(f"solvers.{name}") for name in ("motion", "retargeting", "samples")
@@ -101,27 +101,27 @@ def test_a_walk_reaches_the_controls(rig, load):
     growth = motion.leg_length(skeleton, target_map) / motion.leg_length(
         walk.skeleton, source_map
     )
-    seen, got = (motion.forward_kinematics(each) for each in (walk, given))
+    source, retargeted = (motion.forward_kinematics(each) for each in (walk, given))
     theirs, ours = source_map.indices(walk.skeleton), target_map.indices(skeleton)
     for side in ("left", "right"):
-        path = seen.positions[:, theirs[f"{side}Foot"]]
-        found = got.positions[:, ours[f"{side}Foot"]]
+        path = source.positions[:, theirs[f"{side}Foot"]]
+        found = retargeted.positions[:, ours[f"{side}Foot"]]
         error = (found - found[0]) - growth * (path - path[0])
         # The foot is longer: its ankle goes along where it rolls over its planted ball.
         assert np.linalg.norm(error, axis=1).max() < 0.04
     for role in set(theirs) & set(ours):
-        turns = [
+        angles = [
             np.abs(
                 (poses.rotations[1:, joints[role]] * poses.rotations[:-1, joints[role]]).sum(-1)
             )
-            for poses, joints in ((seen, theirs), (got, ours))
+            for poses, joints in ((source, theirs), (retargeted, ours))
         ]
-        more = 2 * (np.arccos(turns[1].clip(0, 1)) - np.arccos(turns[0].clip(0, 1)))
+        more = 2 * (np.arccos(angles[1].clip(0, 1)) - np.arccos(angles[0].clip(0, 1)))
         assert np.degrees(more.max()) < 5.0, role
 
 
-def test_blender_itself_puts_the_deform_bones_there(rig, load):
-    """Controls posed as retargeted; Blender evaluates all constraints; DEF- bones are asked."""
+def test_deform_bones_follow_in_blender(rig, load):
+    """Compare DEF- bones after Blender has evaluated the constraints of retargeted controls."""
     import bpy
 
     motion, retargeting, samples = (
@@ -143,7 +143,7 @@ def test_blender_itself_puts_the_deform_bones_there(rig, load):
             assert error < 0.002, (frame, role)
 
 
-def test_blender_draws_the_curves_that_unbaking_promises(blank, load):
+def test_blender_curves_equal_the_unbaked_ones(blank, load):
     """Keys and handles written as they are; F-Curves evaluated by Blender itself."""
     retargeting, samples = load("solvers.retargeting"), load("solvers.samples")
     walk = samples.walking_gait(samples.GaitSettings(duration=2.0, frame_rate=30.0))
@@ -158,12 +158,12 @@ def test_blender_draws_the_curves_that_unbaking_promises(blank, load):
     for channel in range(4):
         fcurve = drawn.new(data_path="rotation_quaternion", index=channel)
         fcurve.keyframe_points.add(len(curve.frames))
-        for place, key in enumerate(fcurve.keyframe_points):
+        for index, key in enumerate(fcurve.keyframe_points):
             key.interpolation = "BEZIER"
             key.handle_left_type = key.handle_right_type = "FREE"
-            key.co = curve.frames[place], curve.values[place, channel]
-            key.handle_left = frames[place, 0], values[place, 0, channel]
-            key.handle_right = frames[place, 1], values[place, 1, channel]
+            key.co = curve.frames[index], curve.values[index, channel]
+            key.handle_left = frames[index, 0], values[index, 0, channel]
+            key.handle_right = frames[index, 1], values[index, 1, channel]
         fcurve.update()
     holder.animation_data_create().action = action
 
@@ -174,7 +174,7 @@ def test_blender_draws_the_curves_that_unbaking_promises(blank, load):
 
 
 def follow_the_chest(rig):
-    """FK limbs, and neck and head that turn with the chest: nothing but parents counts."""
+    """FK limbs, and neck and head that rotate with the chest: only parents matter."""
     for bone in rig.pose.bones:
         for name in ("IK_FK", "neck_follow", "head_follow"):
             if name in bone:
@@ -190,8 +190,8 @@ def pose(rig, skeleton, motion, frame, controls):
         bone, joint = rig.pose.bones[name], skeleton.names.index(name)
         rest = bone.bone.matrix_local.to_quaternion()
         bone.rotation_mode = "QUATERNION"
-        turn = Quaternion(motion.rotations[frame, joint])
-        bone.rotation_quaternion = rest.inverted() @ turn @ rest
+        rotation = Quaternion(motion.rotations[frame, joint])
+        bone.rotation_quaternion = rest.inverted() @ rotation @ rest
         if joint == 0:
             shift = Vector(motion.root_positions[frame]) - bone.bone.head_local
             bone.location = rest.inverted() @ shift
@@ -212,9 +212,9 @@ def skeleton_of(rig, names, motion):
         return 0 if above[name] is None else 1 + depth(above[name])
 
     ordered = sorted(names, key=depth)
-    place = {name: index for index, name in enumerate(ordered)}
+    index_of = {name: index for index, name in enumerate(ordered)}
     heads = np.array([rig.data.bones[name].head_local for name in ordered])
-    parents = [-1, *(place[above[name]] for name in ordered[1:])]
+    parents = [-1, *(index_of[above[name]] for name in ordered[1:])]
     offsets = heads - np.concatenate([np.zeros((1, 3)), heads[parents[1:]]])
     return motion.Skeleton(tuple(ordered), tuple(parents), offsets)
 

@@ -30,7 +30,7 @@ def dish(load, flavors):
             0.1, "More is saltier", unit="g", minimum=0.0, maximum=9.0
         )
         angle: float = settings.setting(0.3, "Wider", unit="rad", minimum=0.0, maximum=math.pi)
-        share: float = settings.setting(0.25, "Share", minimum=0.0, maximum=1.0)
+        fraction: float = settings.setting(0.25, "Fraction", minimum=0.0, maximum=1.0)
         wait: float = settings.setting(1.0, "Longer", unit="s", minimum=0.0)
         eggs: int = settings.setting(3, "Eggs", minimum=1, maximum=12)
         hot: bool = settings.setting(True, "Heat it")
@@ -54,12 +54,12 @@ def dish(load, flavors):
     bpy.utils.unregister_class(DISH_PG_test)
 
 
-def test_defaults_come_back_exactly(dish):
+def test_defaults_are_restored_exactly(dish):
     group, recipe = dish
     assert group.settings().recipe == recipe()
 
 
-def test_values_come_back_as_they_were_set(dish, flavors):
+def test_values_are_restored_as_set(dish, flavors):
     group, recipe = dish
     group.salt, group.angle, group.eggs, group.hot = 0.7, math.pi, 12, False
     group.taste, group.name = "SWEET", "stew"
@@ -68,7 +68,7 @@ def test_values_come_back_as_they_were_set(dish, flavors):
     assert group.settings().recipe == recipe(taste=flavors.SWEET, name="stew", **expected)
 
 
-def test_what_is_out_of_range_is_held_at_the_limit(dish):
+def test_value_out_of_range_is_clamped(dish):
     group, _ = dish
     group.salt, group.angle, group.eggs = 100.0, 7.0, 0
 
@@ -87,31 +87,31 @@ def store():
     return store
 
 
-def test_what_a_file_has_out_of_range_is_held_at_the_limit(dish, store, flavors):
+def test_stored_value_out_of_range_is_clamped(dish, store, flavors):
     group, _ = dish
     store(group, "eggs", -5)
     store(group, "salt", -math.inf)
-    store(group, "share", math.nan)
+    store(group, "fraction", math.nan)
     store(group, "wait", math.inf)
     store(group, "taste", 77)
 
     held = group.settings().recipe
-    assert (held.salt, held.share, held.eggs) == (0.0, 0.25, 1)
+    assert (held.salt, held.fraction, held.eggs) == (0.0, 0.25, 1)
     assert (held.wait, held.taste) == (math.inf, flavors.BITTER)
 
     store(group, "eggs", 10**8)
     assert group.settings().recipe.eggs == 12
 
 
-def test_units_are_shown_where_blender_knows_them(dish):
+def test_units_that_blender_has_are_shown(dish):
     shown = dish[0].bl_rna.properties
-    subtypes = [shown[name].subtype for name in ("salt", "angle", "share", "wait")]
+    subtypes = [shown[name].subtype for name in ("salt", "angle", "fraction", "wait")]
 
     assert subtypes == ["NONE", "ANGLE", "FACTOR", "TIME_ABSOLUTE"]
     assert shown["salt"].description == "More is saltier (g)"
 
 
-def test_choices_are_shown_with_label_and_help(dish):
+def test_choices_have_label_and_help(dish):
     shown = dish[0].bl_rna.properties["taste"].enum_items
 
     assert [(each.identifier, each.name, each.description) for each in shown] == [
@@ -137,7 +137,7 @@ def test_every_button_offers_every_setting_with_a_tooltip(load):
                 assert not tooltip.endswith("."), item.name
 
 
-def test_every_path_may_begin_with_the_folder_of_the_file(extension):
+def test_every_path_can_be_relative_to_the_file(extension):
     """Otherwise Blender warns when one is set, at a moment of its own choosing."""
     owners = [
         each.bl_rna

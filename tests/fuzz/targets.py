@@ -1,6 +1,6 @@
 """Fuzzing targets: every reader and loader, with a small complete seed file.
 
-The files are made by tests/fixtures; of ../shared/data/formats smaller ones join them.
+The files are made by tests/fixtures; of ../shared/data/formats smaller ones are added.
 """
 
 import io
@@ -67,7 +67,7 @@ class Target(NamedTuple):
     tokens: list[bytes]
     name: str = "take"
     """Of the file; a reader may look at its ending."""
-    beside: tuple[tuple[str, bytes], ...] = ()
+    required_files: tuple[tuple[str, bytes], ...] = ()
     """Other files that the reader needs, by name."""
     is_archive: bool = False
     """Whether it is a zip, whose members are damaged before they are packed."""
@@ -77,7 +77,7 @@ class Target(NamedTuple):
 
 def read_target(target: Target, content: bytes, folder: Path) -> None:
     """Read the content as the target's file: it is read or refused in one sentence."""
-    for name, other in target.beside:
+    for name, other in target.required_files:
         (folder / name).write_bytes(other)
     path = folder / target.name
     path.write_bytes(content)

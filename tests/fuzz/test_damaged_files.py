@@ -15,9 +15,9 @@ TARGETS = targets()
 
 
 @pytest.mark.parametrize("name", TARGETS)
-def test_an_undamaged_file_is_read(name, tmp_path):
+def test_undamaged_file_is_read(name, tmp_path):
     target = TARGETS[name]
-    for other, content in target.beside:
+    for other, content in target.required_files:
         (tmp_path / other).write_bytes(content)
     (tmp_path / target.name).write_bytes(target.seed)
 
@@ -25,7 +25,7 @@ def test_an_undamaged_file_is_read(name, tmp_path):
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
-def test_a_file_that_was_found_is_read_or_refused(path, tmp_path):
+def test_recorded_fuzz_file_is_read_or_refused(path, tmp_path):
     read_target(TARGETS[path.parent.name], path.read_bytes(), tmp_path)
 
 

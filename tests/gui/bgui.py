@@ -135,8 +135,8 @@ def scan(step=6, columns=(0.5,)):
     """Find the buttons of the open tab: Blender cannot tell where they are, so try."""
     sidebar = region()
     found.clear()
-    for share in columns:
-        column, last = sidebar.x + int((sidebar.width - TABS) * share), None
+    for fraction in columns:
+        column, last = sidebar.x + int((sidebar.width - TABS) * fraction), None
         rows = []
         for row in range(sidebar.y + sidebar.height - 5, sidebar.y + 5, -step):
             move(column, row)

@@ -19,7 +19,7 @@ from stage import empty_scene
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
 SECONDS = 8.0  # of the take
-LOST = ("RightArm", range(120, 180))
+MISSING = ("RightArm", range(120, 180))
 ROW = 23  # pixels from one row of a panel to the next
 EDITORS = {"FCURVES": "GRAPH_EDITOR", "DOPESHEET": "DOPESHEET_EDITOR"}
 UNTIL_DONE = 600  # half seconds
@@ -49,18 +49,18 @@ def import_noisy_walk():
 def lose_arm(armature):
     """Remove the keys of one arm for two seconds."""
     action, slot = armature.animation_data.action, armature.animation_data.action_slot
-    bone = armature.pose.bones[LOST[0]]
+    bone = armature.pose.bones[MISSING[0]]
     names = [bone.name, *(each.name for each in bone.children_recursive)]
     for curve in action.layers[0].strips[0].channelbag(slot).fcurves:
         if any(f'bones["{name}"]' in curve.data_path for name in names):
             for key in reversed(curve.keyframe_points):
-                if round(key.co.x) in LOST[1]:
+                if round(key.co.x) in MISSING[1]:
                     curve.keyframe_points.remove(key, fast=True)
             curve.update()
 
 
 def set_the_stage():
-    """Leave the armature alone in the scene, seen from the front, in Pose Mode."""
+    """Leave only the armature in the scene, in front view, in Pose Mode."""
     empty_scene()
     armature = import_noisy_walk()
     lose_arm(armature)
@@ -72,7 +72,7 @@ def set_the_stage():
 
 
 def look_at_figure():
-    """Turn the view to the figure at the present frame."""
+    """Rotate the view to the figure at the current frame."""
     view = bgui.area().spaces.active.region_3d
     hips = bpy.context.object.pose.bones[0]
     view.view_location = bpy.context.object.matrix_world @ hips.head

@@ -3,7 +3,7 @@
     make test-gui DRIVERS=depth
 
 Runs inside that Blender; `bgui` comes with the tool. The recording, such as one of
-`../shared/data/depth/truth`, is copied beside this script.
+`../shared/data/depth/truth`, is copied next to this script.
 """
 
 import time
@@ -44,7 +44,7 @@ def bring_in():
 
 
 def steps():
-    # A walk seen from beside the camera, at three moments, and while it plays.
+    # A walk seen from next to the camera, at three frames, and while it plays.
     empty_scene()
     yield from bgui.open_sidebar("Mocap")
     yield from bring_in()

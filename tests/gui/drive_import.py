@@ -5,7 +5,7 @@ A long recording is cancelled while it is read, and the file browser brings one 
     make test-gui DRIVERS=import
 
 Runs inside that Blender; `bgui` comes with the tool and moves a real pointer. The three files,
-named on the command line, are copied beside this script.
+named on the command line, are copied next to this script.
 """
 
 from pathlib import Path

@@ -3,7 +3,7 @@
     make test-gui DRIVERS=library
 
 Runs inside that Blender; `bgui` comes with the tool. The folder `clips` holds recordings, and
-is copied beside this script; what is like the last of them is looked for. The first is also
+is copied next to this script; clips similar to the last of them are searched. The first is also
 written as a .blend file, so that another Blender has to read that.
 """
 
@@ -110,7 +110,7 @@ def use(armature):
     matches().active = 1
     yield from settle()
     bgui.shot("5-ghost.png")
-    bpy.context.preferences.view.ui_scale = 0.7  # then all of the panel is seen at once
+    bpy.context.preferences.view.ui_scale = 0.7  # then all of the panel is visible
     yield from settle()
     bgui.shot("6-uses.png")
     job = bpy.context.window_manager.mocap_assist_job

@@ -46,7 +46,7 @@ def steps():
     yield from bgui.click(*bgui.at("mocap_assist.listen"))
     assert listening.current() is not None
     yield 0.5
-    bgui.shot("2-nobody.png")
+    bgui.shot("2-no-actor.png")
     yield from perform("hand up", "wave right")
     assert "No search yet" in listening.current().message
     bgui.shot("3-wave.png")

@@ -3,7 +3,7 @@
     make test-gui DRIVERS=marker_overlay
 
 Runs inside that Blender; `bgui` comes with the tool. The take, best with noise and gaps, is
-copied beside this script.
+copied next to this script.
 """
 
 from pathlib import Path

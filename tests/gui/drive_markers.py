@@ -3,7 +3,7 @@
     make test-gui DRIVERS=markers
 
 Runs inside that Blender; `bgui` comes with the tool. The take, with Plug-in-Gait or CMU
-markers, is copied beside this script.
+markers, is copied next to this script.
 """
 
 from pathlib import Path

@@ -2,7 +2,7 @@
 
     make test-gui DRIVERS=physics
 
-Runs inside that Blender; `bgui` comes with the tool. The take, of a skeleton, is copied beside
+Runs inside that Blender; `bgui` comes with the tool. The take, of a skeleton, is copied next to
 this script as walk.bvh. The plain zip brings no MuJoCo: where Blender has none, the button says
 so in one sentence, and that is what the pictures show.
 """

@@ -3,7 +3,7 @@
     make test-gui DRIVERS=reconstruct
 
 Runs inside that Blender; `bgui` comes with the tool. The take, of any depth camera, is copied
-beside this script as kinect.txt.
+next to this script as kinect.txt.
 """
 
 from pathlib import Path
@@ -17,7 +17,7 @@ TAKE = next(iter(sorted(FOLDER.glob("kinect*"))))
 
 
 def most_mixed(armature):
-    """Return the frame at which joints are trusted most differently."""
+    """Return the frame with the largest differences of reliability."""
     action = armature.animation_data.action
     curves = [
         curve for curve in action.layers[0].strips[0].channelbags[0].fcurves
@@ -25,14 +25,14 @@ def most_mixed(armature):
     ]  # fmt: skip
 
     def spread(frame):
-        trust = sorted(curve.evaluate(frame) for curve in curves)
-        return trust[len(trust) // 2] - trust[1]
+        reliability = sorted(curve.evaluate(frame) for curve in curves)
+        return reliability[len(reliability) // 2] - reliability[1]
 
     return max(range(*map(int, action.frame_range)), key=spread)
 
 
 def look_at(armature):
-    """Turn the view, a little from the side, to where an armature is."""
+    """Rotate the view to an armature, a little from the side."""
     view = bgui.area().spaces.active
     view.overlay.show_relationship_lines = False
     view.region_3d.view_location = armature.pose.bones[0].head
@@ -41,7 +41,7 @@ def look_at(armature):
 
 
 def choices(armature):
-    """Show the signs of trust, and where postures may come from."""
+    """Show the reliability terms, and the sources of postures."""
     manager, settings = bpy.context.window_manager, bpy.context.scene.mocap_assist.reconstruct
     manager.mocap_assist_heat_term = "TRACKING"
     yield from settle()
@@ -81,7 +81,7 @@ def steps():
     bpy.context.window_manager.mocap_assist_heat = True
     bpy.context.scene.frame_set(most_mixed(armature))
     yield from settle()
-    bgui.shot("2-trust.png")
+    bgui.shot("2-reliability.png")
     yield from choices(armature)
 
 

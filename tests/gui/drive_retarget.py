@@ -18,7 +18,7 @@ SECONDS = 120.0  # of the walk: more than is solved at once
 
 
 def set_the_stage():
-    """A walk, and a larger figure beside it; only the panel Retarget is shown."""
+    """A walk, and a larger figure next to it; only the panel Retarget is shown."""
     empty_scene()
     samples = import_module(f"{PACKAGE}.solvers.samples")
     write_bvh = import_module(f"{PACKAGE}.solvers.recordings").write_bvh
@@ -55,8 +55,8 @@ def running():
 
 def look_at(*armatures):
     view = bgui.area().spaces.active.region_3d
-    places = [each.matrix_world @ each.pose.bones[0].head for each in armatures]
-    view.view_location = sum(places[1:], places[0]) / len(places)
+    positions = [each.matrix_world @ each.pose.bones[0].head for each in armatures]
+    view.view_location = sum(positions[1:], positions[0]) / len(positions)
     view.view_rotation = (0.76, 0.6, 0.15, 0.2)
     view.view_distance = 6.0
 

@@ -6,7 +6,7 @@ frame posed by hand, Track from Here, and Esc that keeps what is tracked.
     make test-gui DRIVERS=track
 
 Runs inside that Blender; `bgui` comes with the tool. The recording, such as the first 30 frames
-of one of `../shared/data/depth/truth`, is copied beside this script.
+of one of `../shared/data/depth/truth`, is copied next to this script.
 """
 
 import importlib
@@ -44,7 +44,7 @@ def prepare():
 def press(name, shots, stop=lambda job: False):
     """Press a button of the panel and wait until it has ended, or is to be stopped.
 
-    Pictures are taken when a word is told for the first time, late while it is tracking.
+    Pictures are taken when a status text first appears, and late during tracking.
     """
     with bgui.override("WINDOW"):
         bpy.ops.ed.undo_push(message="Before")
@@ -62,7 +62,7 @@ def press(name, shots, stop=lambda job: False):
         if not job.running or stop(job):
             break
     assert len(frames) > 3, f"the scene went along to {sorted(frames)} alone"
-    assert not shots, f"these words were not told: {list(shots)}"
+    assert not shots, f"these status texts did not appear: {list(shots)}"
 
 
 def undo_and_redo(points):
@@ -77,7 +77,7 @@ def undo_and_redo(points):
 
 
 def key_wrongly(armature):
-    """Turn an arm away in some frames, as if it had been lost."""
+    """Rotate an arm away in some frames, as after a tracking failure."""
     bone = armature.pose.bones[ARM]
     for frame in WRONG:
         bpy.context.scene.frame_set(frame)
@@ -93,7 +93,7 @@ def look(number, name, frames):
 
 
 def time_of_a_redraw(armature):
-    """Return what the body costs, apart from what the graphics card does with it."""
+    """Return the time to build the body, without that of the graphics card."""
     package = "bl_ext.user_default.mocap_assist.mocap_assist"
     overlay = importlib.import_module(f"{package}.track.body_overlay")
     drawing = importlib.import_module(f"{package}.drawing.body_drawing")

@@ -3,8 +3,8 @@
     make test-gui DRIVERS=vary
 
 Runs inside that Blender; `bgui` comes with the tool. The folder `kicks` holds recordings of one
-behaviour of one actor, and is copied beside this script. At last 200 variants are made, and the
-longest time is told for which the window did not answer meanwhile.
+behavior of one actor, and is copied next to this script. At last 200 variants are made, and the
+longest time for which the window did not respond is printed.
 """
 
 from pathlib import Path
@@ -107,8 +107,8 @@ def make(armature):
 def pick(armature):
     variants = bpy.context.scene.mocap_assist.variants
     variants.active = 3
-    for place in range(1, 6):
-        variants.rows[place].picked = True
+    for index in range(1, 6):
+        variants.rows[index].picked = True
     assert armature.animation_data.action == variants.rows[3].action
     yield from scroll(WHEEL_DOWN)
     yield from settle()
@@ -117,10 +117,10 @@ def pick(armature):
 
 def crowd(armature):
     members = [armature]
-    for place in range(1, N_CROWD):
+    for index in range(1, N_CROWD):
         member = armature.copy()
         member.animation_data_clear()
-        member.location = (1.5 * (place % 4), 1.8 * (place // 4), 0.0)
+        member.location = (1.5 * (index % 4), 1.8 * (index // 4), 0.0)
         bpy.context.scene.collection.objects.link(member)
         members.append(member)
     for member in members:

@@ -54,7 +54,7 @@ def run(zip_path: Path, driver: Path, given: list[Path], picture: Path) -> tuple
 
 @contextmanager
 def screen() -> Iterator[str]:
-    """Start an X server for a screen that nobody sees; yield its display."""
+    """Start an X server with a virtual screen; yield its display."""
     reading, writing = os.pipe()
     command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24"]
     server = subprocess.Popen(

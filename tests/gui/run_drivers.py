@@ -54,7 +54,7 @@ RECORDINGS = {
         )
     },
 }  # fmt: skip
-"""For each driver, the files that lie beside it, and which of ../shared/data they are."""
+"""For each driver, the files copied next to it, and their sources in ../shared/data."""
 FIRST_FRAMES = {"track": 30}
 """Of a recording of depth: tracking a frame takes a second."""
 
@@ -107,10 +107,10 @@ def passes(name: str, zip_path: Path) -> bool:
 
 
 def lay_out(name: str, folder: Path) -> list[Path]:
-    """Copy what a driver needs into `folder`, and return all that lies beside it."""
+    """Copy what a driver needs into `folder`, and return all files there."""
     folder.mkdir(parents=True)
-    for place, source in RECORDINGS[name].items():
-        path = folder / place
+    for copy_name, source in RECORDINGS[name].items():
+        path = folder / copy_name
         path.parent.mkdir(parents=True, exist_ok=True)
         if name in FIRST_FRAMES:
             _cut(SHARED / "data" / source, path, FIRST_FRAMES[name])
@@ -122,9 +122,9 @@ def lay_out(name: str, folder: Path) -> list[Path]:
 def _cut(source: Path, path: Path, n_frames: int) -> None:
     """Copy the first frames of a recording of depth."""
     with np.load(source) as arrays:
-        kept = {name: arrays[name] for name in arrays.files}
+        content = {name: arrays[name] for name in arrays.files}
     np.savez_compressed(
-        path, **kept | {name: kept[name][:n_frames] for name in ("depth", "joints")}
+        path, **content | {name: content[name][:n_frames] for name in ("depth", "joints")}
     )
 
 

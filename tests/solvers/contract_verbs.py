@@ -57,8 +57,8 @@ class Verb:
     recording: Callable[[Any], Motion | Tracks | None] = lambda result: None
     """What moves with the input and is the same motion at any frame rate."""
     figures: Callable[[Any], Any] = lambda result: ()
-    """What stays as it is when the input is moved and turned."""
-    whole_input: bool = False
+    """What stays unchanged when the input is moved and rotated."""
+    complete_input: bool = False
     """It wants a motion without gaps."""
     reports: bool = True
     """It takes `progress`."""
@@ -120,7 +120,7 @@ VERBS = {
         lambda motion, progress: plant_feet(motion, progress=progress),
         recording=lambda result: result.motion,
         figures=lambda result: (result.contacts, result.slide_before),
-        whole_input=True,
+        complete_input=True,
         any_rate=True,
     ),
     "simulate": Verb(
@@ -147,7 +147,7 @@ VERBS = {
     ),
     "reduce_keys": Verb(
         lambda motion, progress: reduce_keys(motion, 0.01, progress=progress),
-        whole_input=True,
+        complete_input=True,
     ),
     "unswap_markers": Verb(
         lambda motion, progress: unswap_markers(marked(motion), progress=progress),
@@ -185,24 +185,24 @@ VERBS = {
     "detect_contacts": Verb(
         lambda motion, progress: detect_contacts(motion),
         figures=lambda result: result,
-        whole_input=True,
+        complete_input=True,
         reports=False,
     ),
 }
 WALK = GaitSettings(duration=2.0, frame_rate=30.0)
 WRONG = CorruptionSettings(jitter=2.0, spikes=0.003, root_jitter=0.003)
-LOST = {"LeftForeArm": range(20, 40)}
+MISSING_FRAMES = {"LeftForeArm": range(20, 40)}
 LEG = ("UpLeg", "Leg", "Foot", "ToeBase", "ToeBase_end")
 JOINTS = {"Hips", "Spine", "Spine2", "Head", "LeftArm", "LeftForeArm"} | {
     side + part for side in ("Left", "Right") for part in LEG
 }
-"""Enough of a body for every verb, and quick."""
+"""A small body that every verb accepts."""
 
 
 LEG_MARKERS = frozenset(
-    side + spot
+    side + marker
     for side in "LR"
-    for spot in ("FWT", "BWT", "THI", "KNE", "SHN", "ANK", "HEE", "TOE", "MT5")
+    for marker in ("FWT", "BWT", "THI", "KNE", "SHN", "ANK", "HEE", "TOE", "MT5")
 )
 
 
@@ -228,8 +228,8 @@ def roles_of_tall() -> HumanoidMap:
     return find_humanoid_map(tall())
 
 
-def spoilt(name: str) -> Motion:
-    missing = {} if VERBS[name].whole_input else LOST
+def damaged(name: str) -> Motion:
+    missing = {} if VERBS[name].complete_input else MISSING_FRAMES
     return corrupt(walk_of_few_joints(WALK), WRONG, missing=missing)
 
 
@@ -237,7 +237,7 @@ def clean(name: str, frame_rate: float) -> Motion:
     walk = walk_of_few_joints(GaitSettings(duration=2.0, frame_rate=frame_rate))
     gap = (
         {}
-        if VERBS[name].whole_input
+        if VERBS[name].complete_input
         else {"LeftArm": range(round(frame_rate), round(1.4 * frame_rate))}
     )
     return corrupt(walk, CorruptionSettings(jitter=0.0), missing=gap)
@@ -251,7 +251,7 @@ def walk_of_few_joints(settings: GaitSettings) -> Motion:
 
 
 def marked(motion: Motion) -> Tracks:
-    """Markers on pelvis and legs; the left knee's is lost for a while, and feet are swapped."""
+    """Markers on pelvis and legs; one of the left knee has a gap, and feet are swapped."""
     tracks = markers_on(motion, keep=LEG_MARKERS)
     positions = tracks.positions.copy()
     frames = slice(motion.n_frames // 2, motion.n_frames // 2 + motion.n_frames // 6)

@@ -61,14 +61,14 @@ def refused(tmp_path):
 
 
 @pytest.mark.parametrize("kind", LEARNED)
-def test_what_was_saved_is_loaded(kind, tmp_path):
+def test_saved_archive_is_loaded(kind, tmp_path):
     (tmp_path / "whole.npz").write_bytes(npz(LEARNED[kind].arrays))
 
     LEARNED[kind].load(tmp_path / "whole.npz")
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
-def test_shipped_models_come_out_as_numpy_reads_them(path):
+def test_shipped_models_equal_those_read_by_numpy(path):
     layouts = {
         str(one.arrays["kind"]): one for one in LEARNED.values() if one.version is not None
     }
@@ -90,7 +90,7 @@ def test_shipped_models_come_out_as_numpy_reads_them(path):
     ["text", np.nan, np.inf, [1, 2], 99, -1, True, 1.5, np.array({"a": 1}, object), None],
     ids=repr,
 )
-def test_another_version_of_whatever_type_is_said_as_such(refused, kind, version):
+def test_other_versions_are_reported_for_any_stored_type(refused, kind, version):
     arrays = dict(LEARNED[kind].arrays)
     del arrays["version"]
     if version is not None:
@@ -100,7 +100,7 @@ def test_another_version_of_whatever_type_is_said_as_such(refused, kind, version
 
 
 @pytest.mark.parametrize(("kind", "name", "change"), CHANGES)
-def test_a_member_of_another_shape_or_kind_is_refused(refused, kind, name, change):
+def test_member_of_another_shape_or_type_is_refused(refused, kind, name, change):
     arrays = dict(LEARNED[kind].arrays)
     array = arrays[name]
     if change == "missing":
@@ -118,7 +118,7 @@ def test_a_member_of_another_shape_or_kind_is_refused(refused, kind, name, chang
 
 
 @pytest.mark.parametrize(("kind", "name", "number"), ODD_NUMBERS)
-def test_a_number_that_cannot_be_is_refused_or_does_no_harm(tmp_path, kind, name, number):
+def test_invalid_number_is_refused_or_harmless(tmp_path, kind, name, number):
     arrays, path = dict(LEARNED[kind].arrays), tmp_path / "odd.npz"
     array = arrays[name]
     wide = array.astype(np.float64 if array.dtype.kind == "f" else np.int64)
@@ -143,7 +143,7 @@ def test_a_number_that_cannot_be_is_refused_or_does_no_harm(tmp_path, kind, name
         ("skinned body", "triangles"), ("skinned body", "parents"), ("body", "radii"),
     ],
 )  # fmt: skip
-def test_numbers_that_were_accepted_without_a_word_are_refused(refused, kind, name):
+def test_formerly_accepted_invalid_numbers_are_refused(refused, kind, name):
     arrays = dict(LEARNED[kind].arrays)
     kinds = arrays[name].dtype.kind
     arrays[name] = np.full(arrays[name].shape, np.nan if kinds == "f" else -1000)
@@ -152,7 +152,7 @@ def test_numbers_that_were_accepted_without_a_word_are_refused(refused, kind, na
 
 
 @pytest.mark.parametrize(("kind", "name"), OF_EACH)
-def test_sizes_that_are_announced_take_no_memory(refused, kind, name):
+def test_declared_sizes_allocate_no_memory(refused, kind, name):
     arrays = LEARNED[kind].arrays
     content = npz(arrays)
     dtype = np.lib.format.dtype_to_descr(arrays[name].dtype)
@@ -178,7 +178,7 @@ def test_an_archive_that_unpacks_to_too_much_is_refused(refused, kind, name):
     refused(kind, replaced(npz(LEARNED[kind].arrays), name, bomb))
 
 
-def test_the_total_is_bounded_where_all_shapes_fit(tmp_path):
+def test_total_size_is_limited(tmp_path):
     n = BOUND.always // 32
     np.savez_compressed(tmp_path / "big.npz", kind="tests", version=4, a=np.zeros((n, 3)),
                         b=np.zeros(n, int))  # fmt: skip
@@ -191,7 +191,7 @@ def test_the_total_is_bounded_where_all_shapes_fit(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["other", "d"])
-def test_members_that_nobody_wants_are_not_unpacked(tmp_path, name):
+def test_unused_members_are_not_unpacked(tmp_path, name):
     path = tmp_path / "with more.npz"
     content = npz({"kind": "tests", "version": 4, **GOOD, name: np.zeros(3)})
     path.write_bytes(replaced(content, name, bytes(100_000_000)))
@@ -205,14 +205,14 @@ def test_members_that_nobody_wants_are_not_unpacked(tmp_path, name):
 
 
 @pytest.mark.parametrize("version", [b"\1\0", b"\2\0", b"\3\0"])
-def test_a_header_longer_than_any_is_not_read(refused, version):
+def test_too_long_header_is_not_read(refused, version):
     length = struct.pack("<H" if version == b"\1\0" else "<I", 60_000)
     header = b"\x93NUMPY" + version + length + bytes(60_000)
 
     refused("bases", replaced(npz(LEARNED["bases"].arrays), "mean", header))
 
 
-def test_other_ways_to_pack_are_refused(refused):
+def test_other_compression_methods_are_refused(refused):
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_BZIP2) as archive:
         for name, array in LEARNED["bases"].arrays.items():
@@ -223,7 +223,7 @@ def test_other_ways_to_pack_are_refused(refused):
 
 
 @pytest.mark.parametrize("kind", LEARNED)
-def test_pipes_folders_and_missing_files_are_said_as_such(kind, tmp_path):
+def test_pipes_folders_and_missing_files_are_reported(kind, tmp_path):
     os.mkfifo(tmp_path / "pipe")
 
     for path in (tmp_path / "pipe", tmp_path, tmp_path / "gone.npz"):
@@ -241,7 +241,7 @@ def test_pipes_folders_and_missing_files_are_said_as_such(kind, tmp_path):
     ],
     ids=["empty", "text", "another archive", "kind is no word"],
 )
-def test_a_file_of_another_program_is_not_written_over(tmp_path, content):
+def test_file_of_another_program_is_not_overwritten(tmp_path, content):
     path = tmp_path / "precious.npz"
     path.write_bytes(content)
 
@@ -252,7 +252,7 @@ def test_a_file_of_another_program_is_not_written_over(tmp_path, content):
     assert [each.name for each in tmp_path.iterdir()] == ["precious.npz"]
 
 
-def test_an_archive_of_ours_is_written_over(tmp_path):
+def test_own_archive_is_overwritten(tmp_path):
     (tmp_path / "own.npz").write_bytes(npz(LEARNED["body"].arrays))
 
     LAYOUT.write(tmp_path / "own.npz", GOOD)

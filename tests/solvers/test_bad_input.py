@@ -1,4 +1,4 @@
-"""Takes of which nothing, or nearly nothing, was seen."""
+"""Takes with no, or almost no, observed samples."""
 
 import numpy as np
 import pytest
@@ -18,17 +18,17 @@ def test_nothing_observed_is_refused(swinging_leg):
             denoise(recording)
 
 
-def test_examples_without_movement_teach_nothing_and_say_so():
-    """A whole body: so many channels without movement once stopped the eigenvalue solver."""
+def test_examples_without_movement_are_refused():
+    """A complete body: so many channels without movement once stopped the eigenvalue solver."""
     walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
     blind = walk.with_poses(walk.rotations * np.nan, walk.root_positions * np.nan)
     frozen = walk.with_poses(
         np.repeat(walk.rotations[:1], 30, axis=0),
         np.repeat(walk.root_positions[:1], 30, axis=0),
     )
-    unseen = Tracks(("a", "b"), np.full((60, 2, 3), np.nan), 60.0)
+    unobserved = Tracks(("a", "b"), np.full((60, 2, 3), np.nan), 60.0)
 
-    for example in (blind, frozen, unseen):
+    for example in (blind, frozen, unobserved):
         with pytest.raises(InvalidMotionError, match="moves; choose clips with movement"):
             learn_filter_bases([example])
     with pytest.raises(InvalidMotionError, match="No example is as long as the window"):

@@ -65,7 +65,7 @@ def test_a_fault_is_located_in_our_code_when_a_library_raised_it():
 
 
 @pytest.mark.parametrize("error", [SolveCancelled(), KeyboardInterrupt(), SystemExit()])
-def test_attempt_lets_pass_what_ends_the_whole_work(error):
+def test_attempt_propagates_cancellation_and_exit(error):
     with pytest.raises(type(error)):
         attempt(SUBJECT, failing(error))
 

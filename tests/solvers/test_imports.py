@@ -9,7 +9,7 @@ SLOW = ("scipy.signal", "scipy.stats", "mujoco", "PIL", "matplotlib", "sklearn")
 
 
 @pytest.mark.parametrize("name", ["workflows", "command_line"])
-def test_nothing_slow_is_imported_before_it_is_needed(name):
+def test_slow_libraries_are_imported_on_demand(name):
     code = f"import sys, solvers.{name}; print(*sys.modules)"
     run = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True

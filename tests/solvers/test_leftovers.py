@@ -20,7 +20,7 @@ with write_atomically(sys.argv[1]) as part:
 
 
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT])
-def test_full_disk_is_reported_as_such(tmp_path, number):
+def test_full_disk_is_reported(tmp_path, number):
     with (
         pytest.raises(InvalidFileError, match="written: the disk is full"),
         write_atomically(tmp_path / "a.bvh"),
@@ -28,7 +28,7 @@ def test_full_disk_is_reported_as_such(tmp_path, number):
         raise OSError(number, os.strerror(number))
 
 
-def test_what_a_killed_writer_left_goes_and_what_is_there_stays(tmp_path):
+def test_remains_of_a_killed_writer_are_deleted_and_files_stay(tmp_path):
     target = (
         tmp_path / "walk [1] of a very long name that is cut, because some are too long.bvh"
     )
@@ -58,7 +58,7 @@ def test_a_writer_that_fails_leaves_nothing(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_file_is_on_the_disk_when_it_takes_its_name(tmp_path, monkeypatch):
+def test_file_is_synced_before_it_gets_its_name(tmp_path, monkeypatch):
     target, done = tmp_path / "out.txt", []
     monkeypatch.setattr(
         "os.fsync", lambda descriptor: done.append(os.fstat(descriptor).st_size)

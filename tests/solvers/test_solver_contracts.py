@@ -21,9 +21,9 @@ from solvers.rotations.representations import (
     quaternion_from_rotation_vector,
 )
 from solvers.samples import GaitSettings
-from tests.solvers.contract_verbs import VERBS, clean, points_of, spoilt, walk_of_few_joints
+from tests.solvers.contract_verbs import VERBS, clean, damaged, points_of, walk_of_few_joints
 
-QUARTER_TURN, SHIFT = np.radians(100.0), np.array([2.0, -5.0, 0.0])
+ROTATION_RAD, SHIFT = np.radians(100.0), np.array([2.0, -5.0, 0.0])
 
 every_verb = pytest.mark.parametrize("name", VERBS)
 every_verb_that_reports = pytest.mark.parametrize(
@@ -35,22 +35,22 @@ every_verb_that_returns_a_motion = pytest.mark.parametrize(
 
 
 @every_verb
-def test_leaves_its_input_unchanged_and_shares_no_memory_with_it(name):
-    motion = spoilt(name)
-    rotations, places = motion.rotations.copy(), motion.root_positions.copy()
+def test_solver_does_not_change_or_alias_its_input(name):
+    motion = damaged(name)
+    rotations, positions = motion.rotations.copy(), motion.root_positions.copy()
 
     result = VERBS[name].call(motion, unwatched)
 
     assert np.array_equal(motion.rotations, rotations, equal_nan=True)
-    assert np.array_equal(motion.root_positions, places, equal_nan=True)
+    assert np.array_equal(motion.root_positions, positions, equal_nan=True)
     for value in values_in(result):
         for array in (motion.rotations, motion.root_positions):
             assert not (isinstance(value, np.ndarray) and np.shares_memory(value, array))
 
 
 @every_verb
-def test_gives_the_same_result_again(name):
-    first, again = values_in(usual_result(name)), values_in(new_result(name))
+def test_solver_repeats_its_result(name):
+    first, again = values_in(default_result(name)), values_in(new_result(name))
 
     assert len(first) == len(again) > 0
     for one, other in zip(first, again, strict=True):
@@ -58,35 +58,35 @@ def test_gives_the_same_result_again(name):
 
 
 @every_verb_that_reports
-def test_its_progress_rises_from_0_to_1(name):
-    told = []
+def test_solver_progress_rises_from_0_to_1(name):
+    fractions = []
 
-    VERBS[name].call(spoilt(name), lambda fraction, message="": told.append(fraction))
+    VERBS[name].call(damaged(name), lambda fraction, message="": fractions.append(fraction))
 
-    assert told[-1] == pytest.approx(1.0)
-    assert told[0] >= 0.0 and (np.diff(told) >= -1e-12).all()
+    assert fractions[-1] == pytest.approx(1.0)
+    assert fractions[0] >= 0.0 and (np.diff(fractions) >= -1e-12).all()
 
 
 @every_verb_that_reports
 @pytest.mark.parametrize("report", [0])
-def test_stops_at_the_report_at_which_it_is_cancelled(name, report):
-    told = []
+def test_solver_stops_when_cancelled(name, report):
+    fractions = []
 
     def cancel(fraction: float, message: str = "") -> None:
-        told.append(fraction)
-        if len(told) > report:
+        fractions.append(fraction)
+        if len(fractions) > report:
             raise SolveCancelled
 
     with pytest.raises(SolveCancelled):
-        VERBS[name].call(spoilt(name), cancel)
-    assert len(told) == report + 1
+        VERBS[name].call(damaged(name), cancel)
+    assert len(fractions) == report + 1
 
 
 @every_verb
-def test_moves_and_turns_with_its_input(name):
-    verb, here = VERBS[name], usual_result(name)
+def test_solver_is_equivariant_to_translation_and_rotation(name):
+    verb, here = VERBS[name], default_result(name)
 
-    there = verb.call(carried(spoilt(name)), unwatched)
+    there = verb.call(carried(damaged(name)), unwatched)
 
     for one, other in zip(
         values_in(verb.figures(here)), values_in(verb.figures(there)), strict=True
@@ -100,8 +100,8 @@ def test_moves_and_turns_with_its_input(name):
 
 
 @every_verb_that_returns_a_motion
-def test_gives_the_same_motion_at_60_and_120_hertz(name):
-    """A gap is filled in the same way, and what is clean stays, whatever the sampling."""
+def test_solver_gives_the_same_motion_at_60_and_120_hertz(name):
+    """A gap is filled equally, and clean samples stay, at any frame rate."""
     verb = VERBS[name]
     slow, fast = (
         verb.recording(verb.call(clean(name, rate), unwatched)) for rate in (60.0, 120.0)
@@ -111,9 +111,9 @@ def test_gives_the_same_motion_at_60_and_120_hertz(name):
 
 
 @every_verb_that_returns_a_motion
-def test_does_not_make_a_clean_take_shake(name):
-    """At 120 Hz, where a filter that treats neighbouring frames apart would show; white noise
-    of a tenth of a millimetre is allowed, whose third differences come to 770 m/s^3.
+def test_solver_does_not_add_jitter_to_a_clean_take(name):
+    """At 120 Hz, where a filter that treats neighboring frames separately would show; white
+    noise of a tenth of a millimetre is allowed, whose third differences come to 770 m/s^3.
     """
     walk = walk_of_few_joints(GaitSettings(duration=2.0, frame_rate=120.0))
 
@@ -123,12 +123,12 @@ def test_does_not_make_a_clean_take_shake(name):
 
 
 @cache
-def usual_result(name: str) -> Any:
+def default_result(name: str) -> Any:
     return new_result(name)
 
 
 def new_result(name: str) -> Any:
-    return VERBS[name].call(spoilt(name), unwatched)
+    return VERBS[name].call(damaged(name), unwatched)
 
 
 def jitter(recording: Motion | Tracks) -> float:
@@ -138,13 +138,13 @@ def jitter(recording: Motion | Tracks) -> float:
 
 def carried(recording: Motion | Tracks) -> Motion | Tracks:
     """The same recording elsewhere on the floor, facing another way."""
-    turn = quaternion_from_rotation_vector([0.0, 0.0, QUARTER_TURN])
-    cosine, sine = np.cos(QUARTER_TURN), np.sin(QUARTER_TURN)
+    rotation = quaternion_from_rotation_vector([0.0, 0.0, ROTATION_RAD])
+    cosine, sine = np.cos(ROTATION_RAD), np.sin(ROTATION_RAD)
     matrix = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
     if isinstance(recording, Tracks):
         return recording.with_positions(recording.positions @ matrix.T + SHIFT)
     rotations = recording.rotations.copy()
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    rotations[:, 0] = multiply(rotation, rotations[:, 0])
     return recording.with_poses(rotations, recording.root_positions @ matrix.T + SHIFT)
 
 
@@ -162,8 +162,8 @@ def every_second(recording: Motion | Tracks) -> Motion | Tracks:
 def assert_same(one: Motion | Tracks, other: Motion | Tracks, degrees: float, metres: float):
     """Mean over frames of the worst joint within `degrees`, or the worst point in `metres`."""
     if isinstance(one, Tracks):
-        apart = np.linalg.norm(one.positions - other.positions, axis=-1)
-        assert np.nanmean(apart, axis=0).max() < metres
+        distances = np.linalg.norm(one.positions - other.positions, axis=-1)
+        assert np.nanmean(distances, axis=0).max() < metres
         return
     angles = np.degrees(angle_between(one.rotations, other.rotations))
     assert np.nanmean(angles, axis=0).max() < degrees

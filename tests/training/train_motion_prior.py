@@ -15,7 +15,7 @@ from solvers.depth_tracking.body.motion_prior import SHIPPED
 from ..benchmarks.depth.forest_sources import cmu_motions, exercises
 
 HOPPER = "49"
-"""The actor of hops in depth/truth; the walkers there are kept out as well."""
+"""The actor of hops in depth/truth; the walkers there are held out as well."""
 ONCE = ("s01_e01", "s03_e01", "s06_e01")
 """Actors and repetitions of the exercises of UI-PRMD."""
 WORDS = (

@@ -31,7 +31,7 @@ WORDS = "UI-PRMD: ten exercises by five actors, Kinect v2 against markers"
 def main() -> None:
     """Learn from all takes and save, by default where it is shipped, in single precision.
 
-    Its confidence is learned by leaving out each actor in turn.
+    Its confidence is learned by leaving out one actor after another.
     """
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -45,17 +45,17 @@ def main() -> None:
     if given.confidence:
         prior = load_residual_prior(SHIPPED_PRIOR)
     else:
-        prior = learn_residual_prior(pairs, actors=actors, settings=SETTINGS, progress=told)
-    prior = calibrate_confidence(prior, pairs, actors, progress=told)
+        prior = learn_residual_prior(pairs, actors=actors, settings=SETTINGS, progress=show)
+    prior = calibrate_confidence(prior, pairs, actors, progress=show)
     given.out.parent.mkdir(exist_ok=True)
     small(prior).save(given.out)
     print(f"{len(prior.joints)} joints, {given.out.stat().st_size} bytes: {given.out}")
     print(f"shift, slope and spread: {prior.calibration.tolist()}")
 
 
-def told(share: float, words: str = "") -> None:
+def show(fraction: float, words: str = "") -> None:
     """Print how far it is."""
-    print(f"{share:4.0%} {words}", flush=True)
+    print(f"{fraction:4.0%} {words}", flush=True)
 
 
 def small(prior: ResidualPrior) -> ResidualPrior:

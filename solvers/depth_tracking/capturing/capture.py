@@ -54,7 +54,7 @@ class CaptureSettings(RecoverySettings):
         "Pull poses toward recorded walks, exercises and dances; turn off for fast motion",
         label="Use Motion Prior",
     )  # fmt: skip
-    doubtful: float = setting(
+    low_confidence: float = setting(
         0.3, "Flag joints with a confidence below this; higher flags more",
         minimum=0.0, maximum=1.0, label="Min Confidence",
     )  # fmt: skip
@@ -218,7 +218,7 @@ def assemble_capture(
     confidence = tracked.joints.confidence
     low_confidence = np.zeros(tracked.joints.positions.shape[:2], dtype=bool)
     if confidence is not None:
-        low_confidence = confidence < settings.doubtful
+        low_confidence = confidence < settings.low_confidence
     return Capture(
         body_motion(body, tracked.poses, tracked.joints.frame_rate, floor),
         tracked.joints, tracked.residual, tracked.coverage, restarts, body, tracked.poses,

@@ -129,10 +129,10 @@ class PoseMixer:
         forward, aside = rng.uniform(-0.4, 1.9), rng.uniform(-0.2, 0.8)
         lift = quaternion_from_rotation_vector([-forward, 0.0, 0.0])
         spread = quaternion_from_rotation_vector([0.0, -sign * aside, 0.0])
-        turn = quaternion_from_rotation_vector([0.0, 0.0, sign * rng.uniform(-0.3, 0.6)])
+        yaw = quaternion_from_rotation_vector([0.0, 0.0, sign * rng.uniform(-0.3, 0.6)])
         knee = quaternion_from_rotation_vector([rng.uniform(0.0, 2.2), 0.0, 0.0])
         for role, rotation in (
-            ("UpperLeg", multiply(multiply(spread, lift), turn)),
+            ("UpperLeg", multiply(multiply(spread, lift), yaw)),
             ("LowerLeg", knee),
         ):
             if f"{side}{role}" in joints:

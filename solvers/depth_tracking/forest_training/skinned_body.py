@@ -116,8 +116,8 @@ class SkinnedBody:
         Linear blend skinning moves each vertex by the weighted mean of its joint transforms.
         `rotations` are local, shape (n_joints, 4); `root` is the root position, meters.
         """
-        turns, positions = world_poses(self.skeleton, rotations, root)
-        matrices = matrix_from_quaternion(turns)
+        orientations, positions = world_poses(self.skeleton, rotations, root)
+        matrices = matrix_from_quaternion(orientations)
         shifts = positions - np.einsum("jab,jb->ja", matrices, self.skeleton.rest_positions)
         moves = np.concatenate([matrices, shifts[:, :, None]], axis=2).reshape(-1, 12)
         blended = (self.weights @ moves).reshape(-1, 3, 4)

@@ -70,7 +70,7 @@ def roles_by_structure(skeleton: Skeleton) -> tuple[dict[str, str], float]:
     rough = [
         _match(skeleton, legs, arms, ROUGH_FACTORS)
         for legs, arms in product(pairs, (*pairs, None))
-        if arms is None or _are_apart(skeleton, legs, arms)
+        if arms is None or _are_separate(skeleton, legs, arms)
     ]
     if not rough:
         return {}, 0.0
@@ -87,7 +87,7 @@ def roles_by_structure(skeleton: Skeleton) -> tuple[dict[str, str], float]:
     )
 
 
-def _are_apart(skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs) -> bool:
+def _are_separate(skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs) -> bool:
     """Whether two pairs of limbs share no joint and start from different joints."""
     shared = legs.joints(skeleton) & arms.joints(skeleton)
     return legs.branch != arms.branch and not shared.any()

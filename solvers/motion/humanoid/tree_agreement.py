@@ -79,8 +79,8 @@ def stands_upright(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
     hips = positions[roles["hips"]]
     legs, trunk = hips - positions[feet].mean(axis=0), positions[chest] - hips
     height = float(np.linalg.norm(legs) + np.linalg.norm(trunk))
-    apart = np.linalg.norm(positions[feet[0]] - positions[feet[1]]) / 2
-    if apart < MIN_SPREAD_FRACTION * height or np.linalg.norm(trunk) < 0.1 * height:
+    half_distance = np.linalg.norm(positions[feet[0]] - positions[feet[1]]) / 2
+    if half_distance < MIN_SPREAD_FRACTION * height or np.linalg.norm(trunk) < 0.1 * height:
         return True  # folded: all bones have one direction
     cosine = legs @ trunk / max(np.linalg.norm(legs) * np.linalg.norm(trunk), 1e-12)
     return bool(cosine > np.cos(np.radians(MAX_HUMAN_ANGLE_DEG)))

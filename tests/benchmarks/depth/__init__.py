@@ -1,1 +1,1 @@
-"""The depth tracker, its terms, detector and body, beside other trackers."""
+"""Compare the depth tracker, its terms, detector and body with other trackers."""

@@ -1,4 +1,4 @@
-"""The depth tracker against known joints: terms, peers, wrong bodies, noise, resolution.
+"""The depth tracker against true joints: terms, peers, wrong bodies, noise, resolution.
 
 make bench-depth                    # some five minutes
 make bench-depth ARGUMENTS=--docs   # into docs/benchmarks_depth.md
@@ -39,7 +39,7 @@ from .depth_sequences import (
 from .depth_takes import SUBJECTS
 from .depth_tuning import TAKES as TUNED_ON
 from .depth_tuning import tuning_sequence
-from .part_depth_capture import FPS, captures, more, more_ways, ways
+from .part_depth_capture import FPS, capture_modes, captures, more, more_capture_modes
 from .part_depth_kinect import kinect
 from .part_depth_memory import LENGTHS, memory
 from .part_depth_recorded import recorded
@@ -56,7 +56,7 @@ HARD = ("walk_side", "walk_diagonal")
 HARDER = (
     "run in a circle", "kick, side", "throw", "crossed arms, side", "seated, side",
 )  # fmt: skip
-"""Of `depth_more`, the same. The walk that turns round would drown all: it is lost anyway."""
+"""Of `depth_more`, the same, without the walk that rotates: every tracker fails on it."""
 LEAST = 50.0
 """Per cent at which the bars of a picture begin."""
 WITHOUT = {
@@ -91,8 +91,8 @@ def main() -> None:
         raise SystemExit(f"There are no recordings in {TRUTH}.")
     report = Report(chosen.docs, DOCS / "benchmarks_depth.md")
     parts = {
-        "trackers": trackers, "captures": captures, "more": more, "ways": ways,
-        "more-ways": more_ways,
+        "trackers": trackers, "captures": captures, "more": more, "modes": capture_modes,
+        "more-modes": more_capture_modes,
         "terms": terms, "bodies": bodies, "noise": noise, "resolution": resolution,
         "kinect": partial(kinect, chosen.subjects), "renderers": renderers,
         "memory": partial(memory, chosen.frames), "detector": detector,
@@ -211,8 +211,8 @@ def bodies() -> list[str]:
             "true lengths, mean radii": true,
             "radii 15 % thinner": BodyModel(true.lengths, 0.85 * true.radii),
             "radii 15 % thicker": BodyModel(true.lengths, 1.15 * true.radii),
-            "mean body": one.usual,
-            "mean body 5 % too tall": one.usual.scaled(1.05),
+            "mean body": one.typical_body,
+            "mean body 5 % too tall": one.typical_body.scaled(1.05),
         }
         for label in ("mean body", "mean body 5 % too tall"):
             cases[f"{label}, refined"] = _refined(one, cases[label])

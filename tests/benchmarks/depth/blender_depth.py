@@ -17,24 +17,31 @@ SCRIPT = Path(__file__).with_name("render_in_blender.py")
 
 
 class Difference(NamedTuple):
-    """How far two pictures of depth are apart."""
+    """Differences between two depth images."""
 
     millimetres: np.ndarray
     """Absolute difference of each pixel that both see."""
     covered: float
-    """Share of the pixels of either that only one sees."""
+    """Fraction of the pixels of either image that only one has."""
 
 
 def blender_depth(
-    body: SkinnedBody, motion: Motion, turns: np.ndarray, place: np.ndarray, camera: Camera
+    body: SkinnedBody,
+    motion: Motion,
+    rotations: np.ndarray,
+    position: np.ndarray,
+    camera: Camera,
 ) -> np.ndarray:
-    """Return pictures (n_frames, height, width), metres, 0: nothing; points @ turn + place."""
+    """Return pictures (n_frames, height, width), metres, 0: nothing.
+
+    Points are seen at points @ rotation + position.
+    """
     skeleton = body.skeleton
     scene = {
         "vertices": body.vertices, "triangles": body.triangles, "weights": body.weights,
         "names": np.array(skeleton.names), "parents": np.array(skeleton.parents),
         "heads": skeleton.rest_positions, "rotations": motion.rotations,
-        "roots": motion.root_positions, "turns": turns, "place": place,
+        "roots": motion.root_positions, "view_rotations": rotations, "view_position": position,
         "camera": np.array(
             [camera.fx, camera.fy, camera.cx, camera.cy, camera.width, camera.height]
         ),
@@ -49,19 +56,25 @@ def blender_depth(
 
 
 def our_depth(
-    body: SkinnedBody, motion: Motion, turns: np.ndarray, place: np.ndarray, camera: Camera
+    body: SkinnedBody,
+    motion: Motion,
+    rotations: np.ndarray,
+    position: np.ndarray,
+    camera: Camera,
 ) -> np.ndarray:
     """Return the same pictures by our skinning and z-buffer."""
     pictures = []
-    for pose, root, turn in zip(motion.rotations, motion.root_positions, turns, strict=True):
-        vertices = body.pose(pose, root)[0] @ turn + place
-        seen = render_mesh(vertices, body.triangles, body.vertex_parts, camera)
-        pictures.append(seen.depth)
+    for pose, root, rotation in zip(
+        motion.rotations, motion.root_positions, rotations, strict=True
+    ):
+        vertices = body.pose(pose, root)[0] @ rotation + position
+        rendered = render_mesh(vertices, body.triangles, body.vertex_parts, camera)
+        pictures.append(rendered.depth)
     return np.array(pictures)
 
 
 def difference(ours: np.ndarray, others: np.ndarray) -> Difference:
     """Compare pictures of one size."""
     both, either = (ours > 0.0) & (others > 0.0), (ours > 0.0) | (others > 0.0)
-    apart = 1000.0 * np.abs(ours - others)[both]
-    return Difference(apart, 1.0 - both.sum() / either.sum())
+    millimetres = 1000.0 * np.abs(ours - others)[both]
+    return Difference(millimetres, 1.0 - both.sum() / either.sum())

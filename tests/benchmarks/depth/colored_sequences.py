@@ -29,13 +29,13 @@ def colored(name: str) -> Sequence:
     materials, rng = vertex_materials(body), np.random.default_rng(5)
     pictures = []
     for frame, vertices in laid:
-        seen = colored_picture(body, materials, vertices, one.depth.camera, rng)
-        unknown = (seen.depth == 0.0) & (one.depth.frame(frame) > 0.0)
+        rendered = colored_picture(body, materials, vertices, one.depth.camera, rng)
+        unknown = (rendered.depth == 0.0) & (one.depth.frame(frame) > 0.0)
         rows, columns = distance_transform_edt(
-            seen.depth == 0.0, return_distances=False, return_indices=True
+            rendered.depth == 0.0, return_distances=False, return_indices=True
         )
-        seen.color[unknown] = seen.color[rows[unknown], columns[unknown]]
-        pictures.append(seen.color)
+        rendered.color[unknown] = rendered.color[rows[unknown], columns[unknown]]
+        pictures.append(rendered.color)
     depth = replace(one.depth, read_color=lambda frame: pictures[frame])
     return replace(one, depth=depth)
 

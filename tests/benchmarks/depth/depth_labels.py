@@ -1,4 +1,4 @@
-"""Frames of depth/truth with the part that each pixel sees, and pictures of unseen clips.
+"""Frames of depth/truth with the part that each pixel sees, and images of held-out clips.
 
 The takes were rendered by other code from bodies and clips that we have, so that the same
 bodies in the same poses, laid over the true joints, tell the parts.
@@ -24,10 +24,10 @@ from solvers.depth_tracking.forest_training.training_images import (
 )
 from solvers.recordings import read_bvh
 
-from .forest_sources import CMU_METRES, DATA, TRUTH, all_bodies, unseen_motions
+from .forest_sources import CMU_METRES, DATA, TRUTH, all_bodies, held_out_motions
 
 SAME_DEPTH = 0.08
-"""Metres between both renderings beyond which a pixel's part is not known."""
+"""Difference of both renderings in metres above which a pixel has no label."""
 CMU_JOINTS = {
     "hips": "Hips", "spine": "LowerBack", "chest": "Spine", "neck": "Neck", "head": "Head",
     "UpperArm": "Arm", "LowerArm": "ForeArm", "Hand": "Hand",
@@ -44,9 +44,9 @@ class LabelledFrame(NamedTuple):
     camera: Camera
     depth: NDArray[np.float32]
     labels: NDArray[np.uint8]
-    """Place in `PARTS`, or `NOTHING` where it is not known."""
+    """Index in `PARTS`, or `NOTHING` where the part is unknown."""
     joints: Array
-    """The `JOINTS` of the body model; NaN where the truth has none alike."""
+    """The `JOINTS` of the body model; NaN where the truth has no such joint."""
 
 
 def truth_frames(take: str, every: int = 1, step: int = 2) -> Iterator[LabelledFrame]:
@@ -60,9 +60,9 @@ def truth_frames(take: str, every: int = 1, step: int = 2) -> Iterator[LabelledF
     for frame, vertices in laid:
         depth = (truth["depth"][frame, ::step, ::step] / MM_PER_M).astype(np.float32)
         joints = truth["joints"][frame].astype(float)
-        seen = render_mesh(vertices, body.triangles, body.vertex_parts, camera)
-        same = (seen.depth > 0.0) & (np.abs(seen.depth - depth) < SAME_DEPTH)
-        labels = np.where(same, seen.labels, np.uint8(NO_PART))
+        rendered = render_mesh(vertices, body.triangles, body.vertex_parts, camera)
+        same = (rendered.depth > 0.0) & (np.abs(rendered.depth - depth) < SAME_DEPTH)
+        labels = np.where(same, rendered.labels, np.uint8(NO_PART))
         yield LabelledFrame(
             take, frame, camera, depth, labels, _ours(truth["joint_names"].tolist(), joints)
         )
@@ -78,19 +78,19 @@ def truth_bodies(take: str, every: int = 1) -> tuple[SkinnedBody, Iterator[tuple
 
     def laid() -> Iterator[tuple[int, Array]]:
         for frame in range(0, len(truth), every):
-            vertices, places = body.pose(poses[first + 4 * frame], np.zeros(3))
-            turn, shift = _laid_over(places, truth[frame])
-            yield frame, vertices @ turn + shift
+            vertices, joints = body.pose(poses[first + 4 * frame], np.zeros(3))
+            rotation, shift = _laid_over(joints, truth[frame])
+            yield frame, vertices @ rotation + shift
 
     return body, laid()
 
 
-def unseen_frames(n_blocks: int = 30, loose: float = 0.0) -> Iterator[LabelledFrame]:
+def held_out_frames(n_blocks: int = 30, loose: float = 0.0) -> Iterator[LabelledFrame]:
     """Yield pictures of HDM05's actors, whom no forest here has learned from."""
     settings = TrainingImagesSettings(loose=loose, nearest=2.0, farthest=4.0)
-    source = image_source(unseen_motions(), all_bodies(), settings, 5)
-    seen = draw_images(source, range(n_blocks))
-    for number, (picture, labels) in enumerate(zip(*seen, strict=True)):
+    source = image_source(held_out_motions(), all_bodies(), settings, 5)
+    rendered = draw_images(source, range(n_blocks))
+    for number, (picture, labels) in enumerate(zip(*rendered, strict=True)):
         inner = picture[1:-1, 1:-1]
         depth = (np.where(inner == BACKGROUND_MM, 0, inner) / MM_PER_M).astype(np.float32)
         unknown = np.full((len(JOINTS), 3), np.nan)
@@ -99,17 +99,17 @@ def unseen_frames(n_blocks: int = 30, loose: float = 0.0) -> Iterator[LabelledFr
 
 def _ours(names: list[str], joints: Array) -> Array:
     found = np.full((len(JOINTS), 3), np.nan)
-    for place, joint in enumerate(JOINTS):
+    for index, joint in enumerate(JOINTS):
         side = next((side for side in ("left", "right") if joint.startswith(side)), "")
         name = side.capitalize() + CMU_JOINTS.get(joint.removeprefix(side), "-")
         if name in names:
-            found[place] = joints[names.index(name)]
+            found[index] = joints[names.index(name)]
     return found
 
 
 def _laid_over(points: Array, onto: Array) -> tuple[Array, Array]:
-    """Return turn and shift of points @ turn + shift, the best rigid way onto others."""
+    """Return rotation and shift of the rigid fit to other points: points @ rotation + shift."""
     start, stop = points.mean(axis=0), onto.mean(axis=0)
     left, _, right = np.linalg.svd((points - start).T @ (onto - stop))
-    turn = left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right
-    return turn, stop - start @ turn
+    rotation = left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right
+    return rotation, stop - start @ rotation

@@ -1,9 +1,9 @@
-"""More depth sequences with known joints: other bodies, views and movements than depth/truth.
+"""More depth sequences with true joints: other bodies, views and movements than depth/truth.
 
-Drawn by our renderer with our noise when they are first asked for, and kept in build/. Nothing
+Rendered by us, with our noise, on first use, and cached in build/. Nothing
 was learned from these clips, nor tuned on them: the forest knows no clip of HDM05 and none of
 the walkers 07 and 35; weights were chosen on other takes (the first of a kind of each actor).
-Nobody of HDM05 crosses his arms or sits on a chair: there, arms and legs are brought to it.
+No actor of HDM05 crosses the arms or sits on a chair: there, limbs are moved by IK.
 """
 
 from dataclasses import replace
@@ -44,16 +44,16 @@ class Take(NamedTuple):
 
     clip: str
     yaw: float = 0.0
-    """Degrees that the actor is turned away from the camera in the middle, to the left."""
+    """Heading of the actor relative to the camera in the middle frame, degrees to the left."""
     first: int = 0
     """Frame at 30 Hz."""
     n_frames: int = 80
     distance: float = 3.0
-    """Metres from the camera to the middle of the way."""
+    """Distance from the camera to the middle of the path, metres."""
     tilt: float = 0.0
     """Degrees that the camera looks down, from as much higher."""
     spin: float = 0.0
-    """Degrees per second that the actor turns besides."""
+    """Added rotation of the actor, degrees per second."""
     crossed: bool = False
     seated: bool = False
 
@@ -85,30 +85,34 @@ TAKES = {
 
 @cache
 def more_sequence(name: str) -> Sequence:
-    """Return one of `TAKES`, drawn where it is not kept from another run."""
+    """Return one of `TAKES`, from the cache or rendered now."""
     key = sha1(repr((TAKES[name], SHAPES, KINECT)).encode()).hexdigest()[:8]
-    kept = f"{name} {key}"
-    if not (BUILD / f"{kept}.npz").exists():
+    file_name = f"{name} {key}"
+    if not (BUILD / f"{file_name}.npz").exists():
         BUILD.mkdir(parents=True, exist_ok=True)
-        np.savez_compressed(BUILD / f"{kept}.npz", **_drawn(name))
-    drawn = sequence(kept, BUILD)
+        np.savez_compressed(BUILD / f"{file_name}.npz", **_render(name))
+    drawn = sequence(file_name, BUILD)
     return Sequence(name, drawn.depth, drawn.joints)
 
 
 def posed(body: SkinnedBody, take: Take) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return vertices and joints of each picture in the camera's frame, metres."""
-    motion, turns = before_camera(body, take)
+    motion, rotations = before_camera(body, take)
     found = []
-    for pose, root, turn in zip(motion.rotations, motion.root_positions, turns, strict=True):
-        vertices, joints = (points @ turn + place(take) for points in body.pose(pose, root))
+    for pose, root, rotation in zip(
+        motion.rotations, motion.root_positions, rotations, strict=True
+    ):
+        vertices, joints = (
+            points @ rotation + view_center(take) for points in body.pose(pose, root)
+        )
         found.append((vertices, joints))
     return found
 
 
 def before_camera(body: SkinnedBody, take: Take) -> tuple[Motion, np.ndarray]:
-    """Return the motion about its middle, and the turns (n_frames, 3, 3).
+    """Return the motion about its middle, and the rotations (n_frames, 3, 3).
 
-    A point of the world is seen at point @ turn + place(take).
+    A point of the world is at point @ rotation + view_center(take) in the camera frame.
     """
     motion = _moved(body, take)
     tilt = np.radians(take.tilt)
@@ -117,30 +121,30 @@ def before_camera(body: SkinnedBody, take: Take) -> tuple[Motion, np.ndarray]:
         [0.0, np.sin(tilt), np.cos(tilt)],
         [0.0, -np.cos(tilt), np.sin(tilt)],
     ])  # fmt: skip
-    turns = np.array([_turn(heading) @ down for heading in _headings(motion, take)])
+    rotations = np.array([_yaw_matrix(heading) @ down for heading in _headings(motion, take)])
     middle = motion.root_positions.mean(axis=0)
-    return replace(motion, root_positions=motion.root_positions - middle), turns
+    return replace(motion, root_positions=motion.root_positions - middle), rotations
 
 
-def place(take: Take) -> np.ndarray:
-    """Return where the middle of the way is before the camera."""
+def view_center(take: Take) -> np.ndarray:
+    """Return the position of the middle of the path in the camera frame."""
     return np.array([0.0, 0.05, take.distance])
 
 
 def body_of(name: str) -> SkinnedBody:
-    """Return the body of a take: between and beside the four of data/body."""
+    """Return the body of a take: a random blend of the four of data/body."""
     rng = np.random.default_rng((7, list(TAKES).index(name)))
     return vary_body(all_bodies(), rng, SHAPES)
 
 
-def _drawn(name: str) -> dict[str, object]:
+def _render(name: str) -> dict[str, object]:
     body, rng = body_of(name), np.random.default_rng((8, list(TAKES).index(name)))
     pictures, joints = [], []
-    for vertices, places in posed(body, TAKES[name]):
+    for vertices, true_joints in posed(body, TAKES[name]):
         exact = render_mesh(vertices, body.triangles, body.vertex_parts, KINECT)
-        seen = add_sensor_noise(exact, KINECT, rng)
-        pictures.append((1000.0 * seen.depth).round().astype(np.uint16))
-        joints.append(places)
+        noisy = add_sensor_noise(exact, KINECT, rng)
+        pictures.append((1000.0 * noisy.depth).round().astype(np.uint16))
+        joints.append(true_joints)
     return {
         "depth": np.array(pictures), "joints": np.array(joints), "frame_rate": RATE,
         "joint_names": np.array(body.skeleton.names),
@@ -162,24 +166,24 @@ def _moved(body: SkinnedBody, take: Take) -> Motion:
     return _crossed(body, motion) if take.crossed else motion
 
 
-def _leg(skeleton: Skeleton, places: dict[str, int]) -> float:
-    bones = [places["leftLowerLeg"], places["leftFoot"]]
+def _leg(skeleton: Skeleton, indices: dict[str, int]) -> float:
+    bones = [indices["leftLowerLeg"], indices["leftFoot"]]
     return float(np.linalg.norm(skeleton.offsets[bones], axis=1).sum())
 
 
 def _seated(body: SkinnedBody, motion: Motion) -> Motion:
     """Sit down: the pelvis on a chair all the time, feet on the floor before it."""
-    places = body.humanoid.indices(body.skeleton)
-    ahead = _ahead(motion, places)
+    indices = body.humanoid.indices(body.skeleton)
+    ahead = _ahead(motion, indices)
     low = motion.root_positions.copy()
     joints = forward_kinematics(motion).positions
-    feet = {side: joints[:, places[f"{side}Foot"]] for side in ("left", "right")}
+    feet = {side: joints[:, indices[f"{side}Foot"]] for side in ("left", "right")}
     floor = min(foot[:, 2].min() for foot in feet.values())
-    low[:, 2] += floor + SEAT - joints[:, places["hips"], 2]
+    low[:, 2] += floor + SEAT - joints[:, indices["hips"], 2]
     sitting = replace(motion, root_positions=low)
     hips = forward_kinematics(sitting).positions
     for side in feet:
-        limb = tuple(places[f"{side}{bone}"] for bone in ("UpperLeg", "LowerLeg", "Foot"))
+        limb = tuple(indices[f"{side}{bone}"] for bone in ("UpperLeg", "LowerLeg", "Foot"))
         target = hips[:, limb[0]] + BEHIND * ahead
         target[:, 2] = floor
         sitting = reach(sitting, limb, target)
@@ -188,29 +192,29 @@ def _seated(body: SkinnedBody, motion: Motion) -> Motion:
 
 def _crossed(body: SkinnedBody, motion: Motion) -> Motion:
     """Cross the arms before the chest, the right one outside."""
-    places = body.humanoid.indices(body.skeleton)
-    ahead = _ahead(motion, places)
-    share = np.clip(np.arange(motion.n_frames) / EASE, 0.0, 1.0)[:, np.newaxis]
+    indices = body.humanoid.indices(body.skeleton)
+    ahead = _ahead(motion, indices)
+    weight = np.clip(np.arange(motion.n_frames) / EASE, 0.0, 1.0)[:, np.newaxis]
     for side, other, out in (("left", "right", 0.14), ("right", "left", 0.2)):
         joints = forward_kinematics(motion).positions
-        limb = tuple(places[f"{side}{bone}"] for bone in ("UpperArm", "LowerArm", "Hand"))
-        across = joints[:, places[f"{other}UpperArm"]] - joints[:, limb[0]]
+        limb = tuple(indices[f"{side}{bone}"] for bone in ("UpperArm", "LowerArm", "Hand"))
+        across = joints[:, indices[f"{other}UpperArm"]] - joints[:, limb[0]]
         target = joints[:, limb[0]] + 0.75 * across + out * ahead - [0.0, 0.0, 0.22]
-        target = (1.0 - share) * joints[:, limb[2]] + share * target
+        target = (1.0 - weight) * joints[:, limb[2]] + weight * target
         motion = reach(motion, limb, target)
     return motion
 
 
-def _ahead(motion: Motion, places: dict[str, int]) -> np.ndarray:
+def _ahead(motion: Motion, indices: dict[str, int]) -> np.ndarray:
     """Return where the body faces in each frame, level, shape (n_frames, 3)."""
     joints = forward_kinematics(motion).positions
-    across = joints[:, places["leftUpperLeg"]] - joints[:, places["rightUpperLeg"]]
+    across = joints[:, indices["leftUpperLeg"]] - joints[:, indices["rightUpperLeg"]]
     ahead = np.stack([across[:, 1], -across[:, 0], 0.0 * across[:, 0]], axis=1)
     return ahead / np.linalg.norm(ahead, axis=1, keepdims=True)
 
 
 def _headings(motion: Motion, take: Take) -> np.ndarray:
-    """Return by how much to turn the world in each frame, radians."""
+    """Return the rotation of the world about the vertical in each frame, radians."""
     left = motion.skeleton.names.index("LeftUpLeg")
     right = motion.skeleton.names.index("RightUpLeg")
     middle = motion.n_frames // 2
@@ -220,7 +224,7 @@ def _headings(motion: Motion, take: Take) -> np.ndarray:
     return still + np.radians(take.spin) * (np.arange(motion.n_frames) - middle) / RATE
 
 
-def _turn(angle: float) -> np.ndarray:
+def _yaw_matrix(angle: float) -> np.ndarray:
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 

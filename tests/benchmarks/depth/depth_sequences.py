@@ -1,4 +1,4 @@
-"""Depth sequences with known joints, and what is measured on them."""
+"""Depth sequences with true joints, and the figures measured on them."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -42,17 +42,17 @@ class Sequence:
 
     @property
     def body(self) -> BodyModel:
-        """Lengths from the true joints, other proportions and radii usual."""
-        usual = default_body()
-        measured = body_from_joints(usual, self.joints)
-        factor = float(np.median(measured.lengths / usual.lengths))
-        return body_from_joints(usual.scaled(factor), self.joints)
+        """Lengths from the true joints; other proportions and radii of the default body."""
+        adult = default_body()
+        measured = body_from_joints(adult, self.joints)
+        factor = float(np.median(measured.lengths / adult.lengths))
+        return body_from_joints(adult.scaled(factor), self.joints)
 
     @property
-    def usual(self) -> BodyModel:
-        """A body of usual proportions of about the right stature: nothing else is known."""
-        usual = default_body()
-        return usual.scaled(float(np.median(self.body.lengths / usual.lengths)))
+    def typical_body(self) -> BodyModel:
+        """The default body scaled to about the right stature."""
+        adult = default_body()
+        return adult.scaled(float(np.median(self.body.lengths / adult.lengths)))
 
     def first_pose(self, body: BodyModel) -> np.ndarray:
         """Return the pose of the first frame from the true joints."""
@@ -68,11 +68,11 @@ def sequence(name: str, folder: Path = TRUTH) -> Sequence:
         names = list(archive["joint_names"])
         joints = archive["joints"].astype(np.float64)
     camera = Camera(*focal, depth.shape[2], depth.shape[1])
-    places = [names.index(CMU_NAMES[role]) for role in JOINTS]
+    indices = [names.index(CMU_NAMES[role]) for role in JOINTS]
     recording = DepthRecording(
         camera, len(depth), rate, lambda i: depth[i].astype(np.float32) / np.float32(1000.0)
     )
-    return Sequence(name, recording, joints[:, places])
+    return Sequence(name, recording, joints[:, indices])
 
 
 def noisier(one: Sequence, sigma: float, seed: int = 0) -> Sequence:

@@ -1,6 +1,6 @@
 """Takes of a real Kinect (UTD-MHAD), and how far a body found in them is off the depth.
 
-`read_depth` turns the mirrored pictures right; so are the joints of the Kinect's SDK here.
+`read_depth` mirrors the images back; the joints of the Kinect SDK are mirrored here too.
 """
 
 from dataclasses import dataclass
@@ -31,10 +31,10 @@ SDK = {
     "leftUpperLeg": 12, "leftLowerLeg": 13, "leftFoot": 14,
     "rightUpperLeg": 16, "rightLowerLeg": 17, "rightFoot": 18,
 }  # fmt: skip
-"""Our joints, and their places in the SDK's skeleton."""
+"""Our joints, and their indices in the SDK's skeleton."""
 OURS = [JOINTS.index(joint) for joint in SDK]
 STABLE = [
-    place for place, joint in enumerate(SDK) if not joint.endswith(("Hand", "LowerArm", "Foot"))
+    index for index, joint in enumerate(SDK) if not joint.endswith(("Hand", "LowerArm", "Foot"))
 ]
 """Of `SDK`: trunk, shoulders, hips and knees."""
 HANDS = [list(SDK).index(joint) for joint in ("leftHand", "rightHand")]
@@ -66,7 +66,7 @@ class KinectTake:
         return np.linalg.norm(off - np.nanmedian(off, axis=0), axis=-1)
 
     def hands_in_air(self, hands: np.ndarray) -> float:
-        """Return the share of hands (n_frames, 2, 3) that are far from all that was seen."""
+        """Return the fraction of hands (n_frames, 2, 3) far from all observed points."""
         sdk_joints = []
         for frame in range(self.depth.n_frames):
             depth = self.depth.frame(frame)

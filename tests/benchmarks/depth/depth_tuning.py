@@ -1,6 +1,6 @@
 """Depth sequences on which the tracker is tuned: other clips than those of depth/truth.
 
-Skinned bodies between and beside the four of data/body, drawn by our own renderer with our own
+Skinned bodies, random blends of the four of data/body, drawn by our own renderer with our own
 noise. No clip of depth/truth is among them, nor any of its walkers.
 """
 
@@ -37,12 +37,12 @@ class Take(NamedTuple):
     first: int
     """First frame of the clip."""
     yaw: float
-    """Degrees that the actor is turned away from the camera in the middle, to its left."""
+    """Heading of the actor relative to the camera in the middle frame, degrees to its left."""
     step: int = 4
     """Frames of the clip per picture: 4 of 120 make 30 per second."""
     n_frames: int = 60
     distance: float = 3.0
-    """Metres to the middle of the way."""
+    """Distance to the middle of the path, metres."""
 
 
 TAKES = {
@@ -66,7 +66,7 @@ TAKES = {
     "arms backward": Take("hdm05/HDM_bd_rotateArmsBothBackward1Reps_001_120.amc", 0, 50.0),
     "deposit": Take("hdm05/HDM_bd_depositFloorR_001_120.amc", 0, -40.0),
 }  # fmt: skip
-"""Walks of six actors from all around, quick legs and arms, turns, crossed shanks, bends."""
+"""Walks of six actors from all around, fast legs and arms, rotations, crossed shanks, bows."""
 
 
 @cache
@@ -79,13 +79,13 @@ def tuning_sequence(name: str, columns: int = 160) -> Sequence:
     materials = vertex_materials(body)
     pictures: list[ColoredPicture] = []
     joints = []
-    places = [body.skeleton.names.index(CMU_NAMES[role]) for role in JOINTS]
+    indices = [body.skeleton.names.index(CMU_NAMES[role]) for role in JOINTS]
     for vertices, bones in posed(body, take):
-        seen = colored_picture(body, materials, vertices, camera, rng)
-        labels = np.zeros(seen.depth.shape, dtype=np.uint8)
-        noisy = add_sensor_noise(RenderedMesh(seen.depth, labels), camera, rng)
-        pictures.append(ColoredPicture(noisy.depth, seen.color))
-        joints.append(bones[places])
+        rendered = colored_picture(body, materials, vertices, camera, rng)
+        labels = np.zeros(rendered.depth.shape, dtype=np.uint8)
+        noisy = add_sensor_noise(RenderedMesh(rendered.depth, labels), camera, rng)
+        pictures.append(ColoredPicture(noisy.depth, rendered.color))
+        joints.append(bones[indices])
     recording = DepthRecording(
         camera, len(pictures), 120.0 / take.step,
         lambda frame: pictures[frame].depth, lambda frame: pictures[frame].color,
@@ -100,12 +100,15 @@ def posed(body: SkinnedBody, take: Take) -> list[tuple[np.ndarray, np.ndarray]]:
     frames = np.arange(take.first, last, take.step)
     rotations = body.rotations_of(motion.slice(take.first, last))[:: take.step]
     roots = motion.root_positions[frames]
-    turn, middle = _before_camera(body, rotations[len(frames) // 2], take.yaw), roots.mean(0)
+    rotation, middle = (
+        _before_camera(body, rotations[len(frames) // 2], take.yaw),
+        roots.mean(0),
+    )
     shift = np.array([0.0, 0.1, take.distance])
     poses = []
     for pose, root in zip(rotations, roots, strict=True):
         vertices, joints = body.pose(pose, root - middle)
-        poses.append((vertices @ turn + shift, joints @ turn + shift))
+        poses.append((vertices @ rotation + shift, joints @ rotation + shift))
     return poses
 
 
@@ -121,7 +124,7 @@ def clip(name: str) -> Motion:
 
 
 def _before_camera(body: SkinnedBody, pose: np.ndarray, yaw: float) -> np.ndarray:
-    """Return the turn (3, 3), points @ turn, that lets the body look this far beside it."""
+    """Return the rotation (3, 3), points @ rotation, that gives the body this heading."""
     _, joints = body.pose(pose, np.zeros(3))
     names = body.skeleton.names
     across = joints[names.index("LeftUpLeg")] - joints[names.index("RightUpLeg")]

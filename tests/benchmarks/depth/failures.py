@@ -45,11 +45,11 @@ class Judged(NamedTuple):
 
 
 def judged(sequences: Iterable[Sequence]) -> Judged:
-    """Track with all `TRACKERS`, with bodies of usual proportions."""
+    """Track with all `TRACKERS`, with scaled default bodies."""
     features, errors = [], []
     for one in sequences:
         for settings, step in TRACKERS.values():
-            for feature, error in _tracked(one, one.usual, settings, step):
+            for feature, error in _tracked(one, one.typical_body, settings, step):
                 features.append(feature)
                 errors.append(error)
     table = np.array(features)
@@ -81,14 +81,14 @@ def learned(features: Array, failed: NDArray[np.bool_], ridge: float = 1e-3) -> 
     Both kinds count the same.
     """
     rows = np.hstack([features, np.ones((len(features), 1))])
-    shares = np.where(failed, 0.5 / failed.mean(), 0.5 / (~failed).mean())
+    class_weights = np.where(failed, 0.5 / failed.mean(), 0.5 / (~failed).mean())
     weights = np.zeros(rows.shape[1])
     resistance = ridge * len(rows) * np.eye(rows.shape[1])
     resistance[-1, -1] = 0.0
     for _ in range(50):
         chance = 1.0 / (1.0 + np.exp(-rows @ weights))
-        slope = rows.T @ (shares * (failed - chance)) - resistance @ weights
-        curve = (rows * (shares * chance * (1.0 - chance))[:, np.newaxis]).T @ rows
+        slope = rows.T @ (class_weights * (failed - chance)) - resistance @ weights
+        curve = (rows * (class_weights * chance * (1.0 - chance))[:, np.newaxis]).T @ rows
         weights += np.linalg.solve(curve + resistance, slope)
     return weights
 

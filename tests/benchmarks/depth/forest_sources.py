@@ -1,4 +1,4 @@
-"""Poses and bodies that the pixel forest that is shipped is trained on, and those kept out.
+"""Poses and bodies that the shipped pixel forest is trained on, and those held out.
 
 The data used in this project was obtained from mocap.cs.cmu.edu. The database was created with
 funding from NSF EIA-0196217. UI-PRMD (Vakanski et al. 2018) is published as ODC-PDDL. The
@@ -31,9 +31,9 @@ TRUTH = {
 }
 """What each take of depth/truth was rendered from: clip, its first frame, body. Found by their
 joints, which agree to a micrometre; every fourth frame was taken."""
-KEPT_OUT = ("05_01", "49_02", "49_03")
-"""Clips nobody learns from, and all of the walkers 07 and 35 besides."""
-KEPT_OUT_WALKERS = ("07", "35")
+HELD_OUT = ("05_01", "49_02", "49_03")
+"""Clips that no model is trained on; all clips of the walkers 07 and 35 too."""
+HELD_OUT_WALKERS = ("07", "35")
 TAUGHT = ("e01", "e06")
 """Repetitions of each exercise of UI-PRMD."""
 WORDS = (
@@ -65,7 +65,7 @@ def cmu_motions(folder: Path = DATA, but: tuple[str, ...] = ()) -> list[Motion]:
     return motions + [read_acclaim(path, mocap / "05.asf") for path in acclaim]
 
 
-def unseen_motions(folder: Path = DATA) -> list[Motion]:
+def held_out_motions(folder: Path = DATA) -> list[Motion]:
     """Return clips of HDM05: other actors, and a licence under which nothing may ship."""
     mocap = folder / "mocap" / "hdm05"
     return [
@@ -80,7 +80,7 @@ def all_bodies(folder: Path = DATA) -> list[SkinnedBody]:
 
 
 def _is_taught(path: Path) -> bool:
-    return path.stem not in KEPT_OUT and not path.stem.startswith(KEPT_OUT_WALKERS)
+    return path.stem not in HELD_OUT and not path.stem.startswith(HELD_OUT_WALKERS)
 
 
 def exercises(folder: Path = DATA, which: tuple[str, ...] = TAUGHT) -> Iterator[Motion]:
@@ -88,8 +88,8 @@ def exercises(folder: Path = DATA, which: tuple[str, ...] = TAUGHT) -> Iterator[
     for pair in read_pairs(folder / "kinect" / "ui_prmd"):
         positions = pair.truth.positions
         if pair.name.endswith(which) and np.isfinite(positions).any(axis=(0, 2)).all():
-            whole = pair.truth.with_positions(fill_gaps(positions))
-            yield motion_from_points(whole, joint_parents(whole.names))
+            complete = pair.truth.with_positions(fill_gaps(positions))
+            yield motion_from_points(complete, joint_parents(complete.names))
 
 
 def _without_t_pose(motion: Motion) -> Motion:

@@ -23,7 +23,7 @@ SHADES = 40
 """Steps of brightness."""
 AMBIENT = 0.45
 LAMP = np.array([0.4, -0.75, -0.55]) / np.linalg.norm([0.4, -0.75, -0.55])
-"""Where the light comes from, in the camera's frame: above, beside and behind the camera."""
+"""Direction to the light, in the camera's frame: above, right of and behind the camera."""
 NOISE = 4.0
 """Standard deviation of a channel, of 255."""
 
@@ -67,16 +67,16 @@ def colored_picture(
     bright = AMBIENT + (1.0 - AMBIENT) * np.maximum(facing, 0.0)
     shades = np.rint(bright * (SHADES - 1)).astype(int)
     labels = (materials * SHADES + shades).astype(np.uint8)
-    seen = render_mesh(vertices, body.triangles, labels, camera)
-    material, shade = np.divmod(seen.labels.astype(int), SHADES)
+    rendered = render_mesh(vertices, body.triangles, labels, camera)
+    material, shade = np.divmod(rendered.labels.astype(int), SHADES)
     color = MATERIALS[material % len(MATERIALS)] * (shade / (SHADES - 1.0))[..., np.newaxis]
-    color[seen.labels == NO_PART] = 0.0
+    color[rendered.labels == NO_PART] = 0.0
     color += NOISE * rng.standard_normal(color.shape)
-    return ColoredPicture(seen.depth, color.clip(0.0, 255.0).astype(np.uint8))
+    return ColoredPicture(rendered.depth, color.clip(0.0, 255.0).astype(np.uint8))
 
 
 def posed_normals(vertices: Array, triangles: NDArray[np.int64]) -> Array:
-    """Return which way is out at each vertex, shape (n, 3)."""
+    """Return the outward normal at each vertex, shape (n, 3)."""
     a, b, c = vertices[triangles.T]
     faces = np.cross(b - a, c - a)
     normals = np.stack([

@@ -35,7 +35,7 @@ Found = tuple[np.ndarray, np.ndarray, int]
 
 
 def captures() -> list[str]:
-    """Capture with nothing given, neither body nor first pose; and forward, body known."""
+    """Capture without a given body or first pose; and forward only, with the true body."""
     title = "Automatic capture"
     scores = Scores(title, "each sequence counts as one clip; no pose is given", "")
     by_sequence = Scores(f"{title}, by sequence", "one each; nothing is given", "")
@@ -55,7 +55,7 @@ def captures() -> list[str]:
 
 def more() -> list[str]:
     """Capture and track the sequences of `depth_more`."""
-    whole = Scores("More sequences, capture", "one each; nothing is given", "")
+    captures_table = Scores("More sequences, capture", "one each; nothing is given", "")
     alone = Scores(
         "More sequences, tracker from the true first pose", "one each; lengths known", ""
     )
@@ -63,27 +63,28 @@ def more() -> list[str]:
     for name in TAKES:
         one = more_sequence(name)
         rows += [
-            (whole, name, each) for each in _captured(one, None, CaptureSettings()).items()
+            (captures_table, name, each)
+            for each in _captured(one, None, CaptureSettings()).items()
         ]
         rows += [(alone, name, each) for each in _measured(_tracker_alone, one).items()]
     for scores, name, (column, figure) in rows:
         scores.add(name, column, name, figure)
     for scores, name, (column, figure) in rows:
         scores.add("all", column, name, figure)
-    return [one.markdown().replace(" ± 0.00", "") for one in (whole, alone)]
+    return [one.markdown().replace(" ± 0.00", "") for one in (captures_table, alone)]
 
 
-def ways() -> list[str]:
+def capture_modes() -> list[str]:
     """Compare the detector alone, the tracker alone, and both, on depth/truth."""
-    return _ways("depth/truth", [sequence(name) for name in SCORED])
+    return _compare_modes("depth/truth", [sequence(name) for name in SCORED])
 
 
-def more_ways() -> list[str]:
+def more_capture_modes() -> list[str]:
     """Compare them on the sequences of `depth_more`."""
-    return _ways("more sequences", [more_sequence(name) for name in TAKES])
+    return _compare_modes("more sequences", [more_sequence(name) for name in TAKES])
 
 
-def _ways(title: str, sequences: list[Sequence]) -> list[str]:
+def _compare_modes(title: str, sequences: list[Sequence]) -> list[str]:
     methods: dict[str, Callable[[Sequence], Found]] = {
         "detector alone, each frame by itself": _detector_alone,
         "detector, refined by the tracker": _detector_refined,
@@ -96,8 +97,8 @@ def _ways(title: str, sequences: list[Sequence]) -> list[str]:
     scores = Scores(f"Detector and tracker, alone and together, {title}", unit, "")
     by_joint = Scores(f"Per cent of each joint within 10 cm, {title}", unit, "")
     for one in sequences:
-        for label, way in methods.items():
-            for column, figure in _measured(way, one, by_joint, label).items():
+        for label, method in methods.items():
+            for column, figure in _measured(method, one, by_joint, label).items():
                 scores.add(label, column, one.name, figure)
     return [scores.markdown(), by_joint.markdown()]
 
@@ -113,26 +114,26 @@ def _captured(
     return off.figures() | {
         "restarts": float(len(found.restarts)),
         "flagged %": 100.0 * found.low_confidence.mean(),
-        "cm where not flagged": _where_sure(found, off.offset_taken),
+        "cm where not flagged": _confident_only(found, off.offset_taken),
         "% off in length": length_error(found.body, one.body),
         FPS: speed,
     }
 
 
-def _where_sure(found: Capture, off: np.ndarray) -> float:
-    sure = off[~found.low_confidence]
-    return 100.0 * float(sure.mean()) if len(sure) else float("nan")
+def _confident_only(found: Capture, off: np.ndarray) -> float:
+    confident = off[~found.low_confidence]
+    return 100.0 * float(confident.mean()) if len(confident) else float("nan")
 
 
 def _measured(
-    way: Callable[[Sequence], Found],
+    method: Callable[[Sequence], Found],
     one: Sequence,
     by_joint: Scores | None = None,
     label: str = "",
 ) -> dict[str, float]:
-    """Return the figures of a way to find the joints; note those of each joint."""
+    """Return the figures of a method; record those of each joint."""
     started = process_time()
-    joints, frames, restarts = way(one)
+    joints, frames, restarts = method(one)
     speed = len(frames) / (process_time() - started)
     off = errors(joints, one.joints[frames])
     if by_joint is not None and label in BY_JOINT:
@@ -162,7 +163,7 @@ def _detector_refined(one: Sequence) -> Found:
 def _refined(actor: TrackingContext, frame: int) -> np.ndarray:
     found = actor.detected(frame)
     if found is None:
-        raise InvalidMotionError(f"Nobody was detected in frame {frame}.")
+        raise InvalidMotionError(f"No person was detected in frame {frame}.")
     return found[0]
 
 

@@ -65,9 +65,9 @@ def _pictures() -> list[str]:
 
 def figures(take: KinectTake, found: Capture) -> dict[str, float]:
     """Return what the table says of one take."""
-    apart = take.distances(found.joints.positions)
-    scores_ = apart[np.isfinite(apart).all(axis=1)]
-    hands = [OURS[place] for place in HANDS]
+    distances = take.distances(found.joints.positions)
+    scores_ = distances[np.isfinite(distances).all(axis=1)]
+    hands = [OURS[index] for index in HANDS]
     return {
         "cm, stable joints": 100.0 * float(scores_[:, STABLE].mean()),
         "% < 10 cm": 100.0 * float((scores_ < NEAR)[:, STABLE].mean()),
@@ -82,7 +82,7 @@ def figures(take: KinectTake, found: Capture) -> dict[str, float]:
 
 
 def drawn(take: KinectTake, found: Capture) -> Image.Image:
-    """Draw some frames of a take beside each other."""
+    """Draw some frames of a take in a row."""
     frames = np.linspace(0, take.depth.n_frames - 1, LOOKED_AT + 2)[1:-1].round().astype(int)
     panels = [overlay(take.depth, found, one, take.joints[one]) for one in frames.tolist()]
     return strip(panels, f"{take.action} {ACTIONS[take.action - 1]}")

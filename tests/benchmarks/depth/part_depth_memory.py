@@ -55,7 +55,7 @@ def _in_its_own_process(n_frames: int) -> dict[str, float]:
 
 
 def _looped(n_frames: int) -> DepthRecording:
-    """Return so many frames of the take, to and fro, read when asked for."""
+    """Return that many frames of the take, forth and back, read on demand."""
     take = sequence(TAKE).depth
     there_and_back = [*range(take.n_frames), *range(take.n_frames - 2, 0, -1)]
 

@@ -40,7 +40,7 @@ from solvers.depth_tracking.forest_training.train_forest import (
 )
 from solvers.depth_tracking.forest_training.training_images import IMAGES_PER_BODY, image_source
 
-from .depth_labels import LabelledFrame, truth_frames, unseen_frames
+from .depth_labels import LabelledFrame, held_out_frames, truth_frames
 from .forest_sources import TRUTH, all_bodies, taught_motions
 from .part_detector_kinect import kinect_rows
 
@@ -55,17 +55,17 @@ def detector() -> list[str]:
     """Return all tables of the detector that is shipped, for `bench_depth`."""
     forest = load_pixel_forest()
     settings = DetectorSettings()
-    usual, true = (
+    default, true = (
         pose_rows(forest, EVERY, settings, calibrated) for calibrated in (False, True)
     )
     tables = {
         f"Parts classified per pixel, at 160 x 120; {forest.trained_on}": accuracy_rows(
             forest, EVERY
         ),
-        "Poses in single frames, body of the usual adult": usual,
+        "Poses in single frames, default adult body": default,
         "Poses in single frames, limbs of true length": true,
         "Against scikit-learn's forest on the same features": peer_rows(EVERY),
-        "Bodies that were not learned from": body_rows(EVERY),
+        "Held-out bodies": body_rows(EVERY),
         "Single frames of a real Kinect, against its SDK": kinect_rows(forest),
     }
     return [f"**{title}**\n\n" + "\n".join(rows) for title, rows in tables.items()]
@@ -79,14 +79,14 @@ def confusion(frames: Iterable[LabelledFrame], forest: PixelForest) -> tuple[Arr
         found = classify_pixels(frame.depth, frame.camera, forest)
         times.append(process_time() - start)
         true = frame.labels[found.rows, found.columns]
-        known = true != NO_PART
-        np.add.at(counts, (true[known], found.labels[known]), 1)
+        labeled = true != NO_PART
+        np.add.at(counts, (true[labeled], found.labels[labeled]), 1)
     return counts, 1e3 * float(np.median(times))
 
 
 def accuracy_rows(forest: PixelForest, every: int) -> list[str]:
     """Return a table of correctly classified pixels by source."""
-    sources = {take: truth_frames(take, every) for take in TRUTH} | {"HDM05": unseen_frames()}
+    sources = {take: truth_frames(take, every) for take in TRUTH} | {"HDM05": held_out_frames()}
     total = np.zeros((N_PARTS, N_PARTS))
     rows = ["| source | pixels right | mean of parts | other side | ms |", "|" + "---|" * 5]
     for name, frames in sources.items():
@@ -95,16 +95,18 @@ def accuracy_rows(forest: PixelForest, every: int) -> list[str]:
         total += counts if name in TRUTH else 0.0
     rows.append(_accuracy_row("depth/truth", total, float("nan")))
     parts = np.diag(total) / np.maximum(total.sum(axis=1), 1.0)
-    by_part = ", ".join(f"{part} {share:.2f}" for part, share in zip(PARTS, parts, strict=True))
+    by_part = ", ".join(
+        f"{part} {accuracy:.2f}" for part, accuracy in zip(PARTS, parts, strict=True)
+    )
     return [*rows, "", f"By part on depth/truth: {by_part}."]
 
 
 def _accuracy_row(name: str, counts: Array, milliseconds: float) -> str:
-    seen = counts.sum(axis=1) > 0
+    present = counts.sum(axis=1) > 0
     right = np.diag(counts)
     sides = np.arange(N_PARTS) != MIRRORED_PARTS
     mirrored = counts[np.arange(N_PARTS), MIRRORED_PARTS][sides].sum()
-    parts = right[seen] / counts.sum(axis=1)[seen]
+    parts = right[present] / counts.sum(axis=1)[present]
     figures = right.sum() / counts.sum(), parts.mean(), mirrored / counts.sum()
     return f"| {name} | " + " | ".join(f"{x:.3f}" for x in figures) + f" | {milliseconds:.1f} |"
 
@@ -114,7 +116,7 @@ def pose_rows(
 ) -> list[str]:
     """Return a table of joints found in single frames.
 
-    The body is the usual adult, or has limbs as long as the true joints are apart.
+    The body is the default adult, or has the limb lengths of the true joints.
     """
     rows = [
         "| take | mean cm | within 10 cm | less offsets, cm | within 10 cm | ms |",
@@ -126,8 +128,8 @@ def pose_rows(
         true = np.stack([frame.joints for frame in frames])
         body = body_from_joints(default_body(), true) if calibrated else default_body()
         found, milliseconds = found_joints(frames, body, forest, settings)
-        apart = (found - true)[:, np.isfinite(true).all(axis=(0, 2))]
-        errors.append((apart, apart - np.median(apart, axis=0)))
+        offsets = (found - true)[:, np.isfinite(true).all(axis=(0, 2))]
+        errors.append((offsets, offsets - np.median(offsets, axis=0)))
         rows.append(_pose_row(take, [errors[-1]], milliseconds))
     return [*rows, _pose_row("all", errors, float("nan"))]
 
@@ -151,10 +153,10 @@ def found_joints(
 def _pose_row(name: str, errors: Sequence[tuple[Array, Array]], milliseconds: float) -> str:
     figures = []
     for kind in range(2):
-        apart = np.concatenate([np.linalg.norm(one[kind], axis=-1) for one in errors])
-        figures += [100.0 * apart.mean(), (apart < NEAR).mean()]
+        distances = np.concatenate([np.linalg.norm(one[kind], axis=-1) for one in errors])
+        figures += [100.0 * distances.mean(), (distances < NEAR).mean()]
     shown = " | ".join(
-        f"{figure:.{1 if place % 2 == 0 else 3}f}" for place, figure in enumerate(figures)
+        f"{figure:.{1 if index % 2 == 0 else 3}f}" for index, figure in enumerate(figures)
     )
     return f"| {name} | {shown} | {milliseconds:.0f} |"
 
@@ -165,8 +167,8 @@ def peer_rows(every: int) -> list[str]:
 
     settings = PixelForestSettings(n_pictures=PEER_PICTURES, n_pixels=PEER_PIXELS)
     source = image_source(taught_motions(), all_bodies(), settings, 0)
-    seen = draw_images(source, range(PEER_PICTURES // IMAGES_PER_BODY))
-    views, parts = draw_pixels(seen, PEER_PIXELS, np.random.default_rng(0))
+    images = draw_images(source, range(PEER_PICTURES // IMAGES_PER_BODY))
+    views, parts = draw_pixels(images, PEER_PIXELS, np.random.default_rng(0))
     features = random_offsets(PEER_FEATURES, settings.reach, np.random.default_rng(1))
     offsets = features.astype(np.float32) / np.float32(100.0)
     table = np.stack(
@@ -176,9 +178,11 @@ def peer_rows(every: int) -> list[str]:
         3, max_depth=18, min_samples_split=40, max_features=100, criterion="entropy",
         random_state=0,
     ).fit(table.astype(np.float32), parts)  # fmt: skip
-    alike = PixelForestSettings(levels=18, n_candidates=100, least_pixels=40)
+    same_settings = PixelForestSettings(levels=18, n_candidates=100, least_pixels=40)
     ours = PixelForest(
-        tuple(grow_tree(views, parts, alike, np.random.default_rng(n)) for n in range(3))
+        tuple(
+            grow_tree(views, parts, same_settings, np.random.default_rng(n)) for n in range(3)
+        )
     )
     right = {"scikit-learn": 0, "ours": 0}
     total = 0
@@ -186,7 +190,7 @@ def peer_rows(every: int) -> list[str]:
         for frame in truth_frames(take, every):
             found = classify_pixels(frame.depth, frame.camera, ours)
             true = frame.labels[found.rows, found.columns]
-            known = true != NO_PART
+            labeled = true != NO_PART
             here = pixel_features(
                 pad_depth_image(frame.depth)[np.newaxis], np.zeros(len(true), dtype=np.intp),
                 found.rows, found.columns, frame.camera,
@@ -195,28 +199,28 @@ def peer_rows(every: int) -> list[str]:
                 [depth_differences(here, one).clip(-1001, 1001) for one in offsets], 1
             )
             labels = peer.predict(values.astype(np.float32))
-            right["ours"] += int((found.labels == true)[known].sum())
-            right["scikit-learn"] += int((labels == true)[known].sum())
-            total += int(known.sum())
+            right["ours"] += int((found.labels == true)[labeled].sum())
+            right["scikit-learn"] += int((labels == true)[labeled].sum())
+            total += int(labeled.sum())
     rows = ["| three trees of the same 90,000 pixels | pixels right |", "|---|---|"]
     return rows + [f"| {name} | {count / total:.3f} |" for name, count in right.items()]
 
 
 def body_rows(every: int) -> list[str]:
-    """Return how small forests tell bodies whose shape they never saw, and those they did.
+    """Return the accuracy of small forests on bodies of new shapes and of trained ones.
 
     Every training body is resized and dressed at random, and mixed with another one.
     """
-    kept_out = ("male_heavy", "female_slim")
+    held_out = ("male_heavy", "female_slim")
     small = PixelForestSettings(n_pictures=PEER_PICTURES, n_pixels=PEER_PIXELS, levels=15)
-    few = [body for body in all_bodies() if body.name not in kept_out]
+    few = [body for body in all_bodies() if body.name not in held_out]
     rows = ["| small forest of | pixels right on the two others |", "|---|---|"]
     for name, bodies in (("four bodies", all_bodies()), ("two bodies", few)):
         forest = train_pixel_forest(taught_motions(), bodies, small)
         counts = sum(
             confusion(truth_frames(take, every), forest)[0]
             for take, (_, _, body) in TRUTH.items()
-            if body in kept_out
+            if body in held_out
         )
         rows.append(f"| {name} | {np.trace(counts) / np.sum(counts):.3f} |")
     return rows
@@ -233,7 +237,7 @@ def main() -> None:
     forest = load_pixel_forest(given.forest)
     print("\n".join(accuracy_rows(forest, given.every)), flush=True)
     for calibrated in (False, True):
-        print(f"\n{'Limbs of true length' if calibrated else 'The usual adult'}\n")
+        print(f"\n{'Limbs of true length' if calibrated else 'The default adult'}\n")
         print(
             "\n".join(pose_rows(forest, given.every, DetectorSettings(), calibrated)),
             flush=True,

@@ -3,7 +3,7 @@
     python -m tests.benchmarks.depth.part_detector_kinect [--forest FILE] [--pictures FOLDER]
 
 That skeleton is a reference, not truth. A depth frame fits the skeleton two frames before it.
-The sensor's pictures are mirrored, and so is its x axis; `read_depth` turns the pictures round.
+The sensor's pictures are mirrored, and so is its x axis; `read_depth` mirrors the images back.
 """
 
 import argparse
@@ -41,7 +41,7 @@ SDK = {
     "rightLowerArm": 9, "rightHand": 10, "leftLowerLeg": 13, "leftFoot": 14,
     "rightLowerLeg": 17, "rightFoot": 18,
 }  # fmt: skip
-"""Joints of the body model and their places in the SDK's skeleton."""
+"""Joints of the body model and their indices in the SDK's skeleton."""
 OURS = [JOINTS.index(joint) for joint in SDK]
 
 
@@ -69,8 +69,8 @@ def kinect_take(action: int, subject: int, body: BodyModel, forest: PixelForest)
     last = min(depth.n_frames, skeleton.shape[2] + LATE) - 1
     frames = np.linspace(LATE, last, FRAMES_PER_TAKE + 2)[1:-1].astype(int).tolist()
     found = [detect_pose(depth.frame(frame), depth.camera, body, forest) for frame in frames]
-    told = skeleton[list(SDK.values())][:, :, [frame - LATE for frame in frames]]
-    reference = np.moveaxis(told, 2, 0) * [-1.0, -1.0, 1.0]
+    sdk_joints = skeleton[list(SDK.values())][:, :, [frame - LATE for frame in frames]]
+    reference = np.moveaxis(sdk_joints, 2, 0) * [-1.0, -1.0, 1.0]
     return KinectTake(action, subject, frames, depth, found, reference)
 
 
@@ -94,27 +94,27 @@ def all_takes(
 
 def distance_rows(takes: list[KinectTake]) -> list[str]:
     """Return tables of distances to the SDK's joints, less a constant offset of each joint."""
-    apart = np.stack([pose.joints[OURS] for take in takes for pose in take.found])
-    apart = apart - np.concatenate([take.reference for take in takes])
+    offsets = np.stack([pose.joints[OURS] for take in takes for pose in take.found])
+    offsets = offsets - np.concatenate([take.reference for take in takes])
     subjects = np.array([take.subject for take in takes for _ in take.found])
     for subject in SUBJECTS:
-        apart[subjects == subject] -= np.median(apart[subjects == subject], axis=0)
-    far = np.linalg.norm(apart, axis=-1)
+        offsets[subjects == subject] -= np.median(offsets[subjects == subject], axis=0)
+    distances = np.linalg.norm(offsets, axis=-1)
     overlap = np.array([pose.overlap for take in takes for pose in take.found])
     rows = ["| joint | mean cm | median cm | within 10 cm |", "|---|---|---|---|"]
-    for place, joint in enumerate([*SDK, "all"]):
-        one = far if joint == "all" else far[:, place]
-        shares = 100 * one.mean(), 100 * np.median(one), (one < NEAR).mean()
-        rows.append(f"| {joint} | {shares[0]:.1f} | {shares[1]:.1f} | {shares[2]:.3f} |")
+    for index, joint in enumerate([*SDK, "all"]):
+        one = distances if joint == "all" else distances[:, index]
+        figures = 100 * one.mean(), 100 * np.median(one), (one < NEAR).mean()
+        rows.append(f"| {joint} | {figures[0]:.1f} | {figures[1]:.1f} | {figures[2]:.3f} |")
     actions = np.array([take.action for take in takes for _ in take.found])
-    worst = sorted(set(actions), key=lambda action: -far[actions == action].mean())[:5]
-    told = ", ".join(
-        f"a{action} {100 * far[actions == action].mean():.1f} cm" for action in worst
+    worst = sorted(set(actions), key=lambda action: -distances[actions == action].mean())[:5]
+    report = ", ".join(
+        f"a{action} {100 * distances[actions == action].mean():.1f} cm" for action in worst
     )
     return [
         *rows,
         "",
-        f"{len(far)} frames; overlap {overlap.mean():.2f}; worst actions: {told}.",
+        f"{len(distances)} frames; overlap {overlap.mean():.2f}; worst actions: {report}.",
     ]
 
 
@@ -126,16 +126,16 @@ def draw(take: KinectTake, body: BodyModel, number: int) -> NDArray[np.uint8]:
         depth > 0, np.clip(255 - 130 * (depth - depth[depth > 0].min()), 60, 255), 0
     )
     pictures = [np.repeat(grey[..., None], 3, axis=2)]
-    told = pictures[0].copy()
-    told[pose.pixels.rows, pose.pixels.columns] = COLORS[pose.pixels.labels]
+    labels = pictures[0].copy()
+    labels[pose.pixels.rows, pose.pixels.columns] = COLORS[pose.pixels.labels]
     picture = render_hypothesis(body, pose.pose, take.depth.camera.every(pose.step)).image
     fitted = pictures[0].copy()
-    spots = np.divmod(picture.pixels, picture.camera.width)
-    fitted[spots] = 0.5 * fitted[spots] + 0.5 * COLORS[_capsule_parts()[picture.capsules]]
+    pixels = np.divmod(picture.pixels, picture.camera.width)
+    fitted[pixels] = 0.5 * fitted[pixels] + 0.5 * COLORS[_capsule_parts()[picture.capsules]]
     middle = int(np.median(pose.pixels.columns))
     half = depth.shape[1] // 5
     left = int(np.clip(middle - half, 0, depth.shape[1] - 2 * half))
-    cut = [one[:, left : left + 2 * half] for one in (*pictures, told, fitted)]
+    cut = [one[:, left : left + 2 * half] for one in (*pictures, labels, fitted)]
     return np.concatenate(cut, axis=0).astype(np.uint8)
 
 

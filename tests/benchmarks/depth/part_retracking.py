@@ -1,4 +1,4 @@
-"""What one frame that is corrected by hand mends: of spoilt arms, and of a real capture."""
+"""Effect of one frame corrected by hand: on wrong arms, and on a real capture."""
 
 from time import process_time
 
@@ -16,8 +16,8 @@ from solvers.depth_tracking.capturing.retrack import retrack
 from ..shared.tables import Scores
 from .depth_sequences import SCORED, Sequence, sequence
 
-LOST, AROUND = 12, 10
-"""Frames before and after the corrected one in which arms are spoilt, or are looked at."""
+N_WRONG, AROUND = 12, 10
+"""Frames before and after the corrected one with wrong arms, or in the score."""
 STIFF = {"HumerusX": 1.2, "HumerusZ": 0.1, "Radius": 0.1}
 """Coordinates of arms that point stiffly forward."""
 ARMS = [JOINTS.index(f"{side}{name}") for side in ("left", "right")
@@ -25,7 +25,7 @@ ARMS = [JOINTS.index(f"{side}{name}") for side in ("left", "right")
 
 
 def retracking() -> list[str]:
-    """Correct one frame by the true joints, of five takes whose body's lengths are known."""
+    """Correct one frame by the true joints, in five takes with the true body lengths."""
     scores = Scores(
         "One frame corrected", "each sequence counts as one clip; cm of elbows and hands", ""
     )
@@ -36,12 +36,12 @@ def retracking() -> list[str]:
                          )[AROUND:-AROUND].argmax()) + AROUND  # fmt: skip
         _correct(scores, name, one, poses, worst, "where the capture is worst")
         middle = one.depth.n_frames // 2
-        spoilt = poses.copy()
-        stretch = slice(middle - LOST, middle + LOST + 1)
+        corrupted = poses.copy()
+        stretch = slice(middle - N_WRONG, middle + N_WRONG + 1)
         for side in ("left", "right"):
             for coordinate, value in STIFF.items():
-                spoilt[stretch, COORDINATES.index(f"{side}{coordinate}")] = value
-        _correct(scores, name, one, spoilt, middle, "arms missing for 25 frames")
+                corrupted[stretch, COORDINATES.index(f"{side}{coordinate}")] = value
+        _correct(scores, name, one, corrupted, middle, "arms missing for 25 frames")
     return [scores.markdown()]
 
 
@@ -69,5 +69,5 @@ def _correct(
 
 def _off(one: Sequence, joints: Array) -> Array:
     """Return how far elbows and hands are off on average, cm, (n_frames,)."""
-    apart = np.linalg.norm(joints - one.joints, axis=-1)[:, ARMS]
-    return np.asarray(100.0 * apart.mean(axis=1))
+    distances = np.linalg.norm(joints - one.joints, axis=-1)[:, ARMS]
+    return np.asarray(100.0 * distances.mean(axis=1))

@@ -21,15 +21,15 @@ def draw_bars(scores: Scores, columns: dict[str, float], path: Path) -> None:
         Which columns to draw, and where the bars of each begin.
     path : Path
     """
-    usual = scores.methods[0]
+    default = scores.methods[0]
     wide = LEFT + len(columns) * (WIDTH + GAP) + RIGHT
     canvas = Canvas(wide, TOP + ROW * len(scores.methods) + 20.0)
     canvas.text(16.0, 20.0, scores.title)
     for row, method in enumerate(scores.methods):
         y = TOP + ROW * (row + 0.5)
         canvas.text(LEFT - 10.0, y, method, INK, "rm")
-    for place, (column, start) in enumerate(columns.items()):
-        left = LEFT + place * (WIDTH + GAP)
+    for index, (column, start) in enumerate(columns.items()):
+        left = LEFT + index * (WIDTH + GAP)
         means = [scores.mean(method, column) - start for method in scores.methods]
         most = min(max(means), CEILING * means[0])
         words = column + (f", from {start:g}" if start else "")
@@ -39,7 +39,7 @@ def draw_bars(scores: Scores, columns: dict[str, float], path: Path) -> None:
         for row, (method, mean) in enumerate(zip(scores.methods, means, strict=True)):
             top = TOP + ROW * row + 3.0
             long = WIDTH * min(max(mean, 0.0) / most, 1.0)
-            color = SERIES[1] if method == usual else SERIES[0]
+            color = SERIES[1] if method == default else SERIES[0]
             canvas.box(left, top, left + max(long, 1.0), top + ROW - 6.0, color)
             canvas.text(left + long + 6.0, top + ROW / 2.0 - 3.0, number(mean + start))
         bottom = TOP + ROW * len(scores.methods)

@@ -107,10 +107,10 @@ def _pose(rig: bpy.types.Object, scene: dict[str, np.ndarray], frame: int) -> No
         bone.rotation_quaternion = scene["rotations"][frame, joint]
         if scene["parents"][joint] < 0:
             bone.location = scene["roots"][frame] - scene["heads"][joint]
-    turn, place = scene["turns"][frame], scene["place"]
+    rotation, position = scene["view_rotations"][frame], scene["view_position"]
     matrix = np.eye(4)
-    matrix[:3, :3] = turn * [1.0, -1.0, -1.0]
-    matrix[:3, 3] = -turn @ place
+    matrix[:3, :3] = rotation * [1.0, -1.0, -1.0]
+    matrix[:3, 3] = -rotation @ position
     bpy.context.scene.camera.matrix_world = Matrix(matrix.tolist())
 
 

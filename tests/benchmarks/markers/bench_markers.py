@@ -1,4 +1,4 @@
-"""Labels, rigid clusters and skeletons from optical markers, side by side with simpler ways.
+"""Labels, rigid clusters and skeletons from optical markers, compared with simpler methods.
 
     python -m tests.benchmarks.markers.bench_markers                  # some minutes
     python -m tests.benchmarks.markers.bench_markers --docs  # into docs/benchmarks_markers.md
@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_limits
 from ..shared.report import DOCS, Report
 from ..shared.tables import Scores
 from .part_rigid import compare_rigid
-from .part_skeleton import against_amc, against_known_bodies
+from .part_skeleton import against_amc, against_simulated_bodies
 from .part_swaps import compare_swaps, false_alarms
 
 DRAWS, HARD_DRAWS = 6, 8
@@ -27,7 +27,10 @@ PARTS: dict[str, Callable[[], Sequence[Scores | str]]] = {
         false_alarms(),
     ],
     "rigid": lambda: [compare_rigid()],
-    "skeleton": lambda: [*against_amc(), *(one.markdown() for one in against_known_bodies())],
+    "skeleton": lambda: [
+        *against_amc(),
+        *(one.markdown() for one in against_simulated_bodies()),
+    ],
 }
 
 

@@ -1,4 +1,4 @@
-"""Optical markers at 120 Hz: one or five lost for half a second or two, in clean takes."""
+"""Optical markers at 120 Hz: one or five missing for half a second or two, in clean takes."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -49,10 +49,10 @@ def compare_markers(fillers: Mapping[str, Filler], draws: int, dev: bool) -> lis
                 continue
             for draw in range(draws):
                 gapped = _cut(tracks, take, n_markers, seconds, draw)
-                lost = np.isnan(gapped).any(axis=2)
+                missing = np.isnan(gapped).any(axis=2)
                 for name, fill in fillers.items():
                     error = fill(gapped, tracks.frame_rate) - tracks.positions
-                    distance = 1000.0 * np.linalg.norm(error, axis=2)[lost].mean()
+                    distance = 1000.0 * np.linalg.norm(error, axis=2)[missing].mean()
                     column = f"{n_markers}, {seconds:g} s"
                     scores.add(name, column, f"{take} {draw}", float(distance))
             print(f"  {take}: {n_markers} markers for {seconds:g} s", flush=True)
@@ -65,22 +65,22 @@ def _scored() -> dict[str, Tracks]:
 
 
 def _development() -> dict[str, Tracks]:
-    """Keep the markers that are seen in all frames, so that the truth is known."""
+    """Select the markers that are observed in all frames, for which the truth is available."""
     takes = {}
     for file, n_markers in DEV_TAKES.items():
         tracks = read_recording(clips.DATA / file)
         assert isinstance(tracks, Tracks)
-        kept = np.flatnonzero(tracks.visible[:, :n_markers].all(axis=0))
-        names = tuple(tracks.names[point] for point in kept)
-        takes[Path(file).stem] = Tracks(names, tracks.positions[:, kept], tracks.frame_rate)
+        complete = np.flatnonzero(tracks.visible[:, :n_markers].all(axis=0))
+        names = tuple(tracks.names[point] for point in complete)
+        takes[Path(file).stem] = Tracks(names, tracks.positions[:, complete], tracks.frame_rate)
     return takes
 
 
 def without_copies(tracks: Tracks) -> Tracks:
     """Leave out *0, *1 and *2 of the HDM05 take: they are copies of three other markers."""
-    kept = [place for place, name in enumerate(tracks.names) if not name.startswith("*")]
-    names = tuple(tracks.names[place] for place in kept)
-    return Tracks(names, tracks.positions[:, kept], tracks.frame_rate)
+    complete = [index for index, name in enumerate(tracks.names) if not name.startswith("*")]
+    names = tuple(tracks.names[index] for index in complete)
+    return Tracks(names, tracks.positions[:, complete], tracks.frame_rate)
 
 
 def _cut(tracks: Tracks, take: str, n_markers: int, seconds: float, draw: int) -> Array:
@@ -94,7 +94,7 @@ def _cut(tracks: Tracks, take: str, n_markers: int, seconds: float, draw: int) -
 
 
 def ours(gapped: Array, frame_rate: float) -> Array:
-    """Denoise without examples; what was seen is trusted."""
+    """Denoise without examples; observed samples count fully."""
     names = tuple(f"marker {number}" for number in range(gapped.shape[1]))
     done = denoise(Tracks(names, gapped, frame_rate)).recording
     assert isinstance(done, Tracks)

@@ -1,4 +1,4 @@
-"""Rigid clusters of real takes: what holding them does to noise, and to lost markers."""
+"""Rigid clusters of real takes: effect of the constraint on noise and on missing markers."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ..shared.tables import table
 from .part_markers import TAKES, without_copies
 
 NOISE = (0.0, 0.001, 0.003)
-LOST = 2.0
+GAP_S = 2.0
 
 
 def compare_rigid() -> str:
@@ -26,16 +26,16 @@ def compare_rigid() -> str:
             given = tracks.with_positions(noisy)
             clusters = [one for one in find_rigid_clusters(given) if len(one.names) > 2]
             members = [tracks.names.index(name) for one in clusters for name in one.names]
-            kept = constrain_clusters(given, clusters).tracks.positions
-            gapped, lost = noisy.copy(), _head(tracks.names)
-            length = round(LOST * tracks.frame_rate)
-            gapped[100 : 100 + length, lost] = np.nan
+            constrained = constrain_clusters(given, clusters).tracks.positions
+            gapped, marker = noisy.copy(), _head(tracks.names)
+            length = round(GAP_S * tracks.frame_rate)
+            gapped[100 : 100 + length, marker] = np.nan
             found = constrain_clusters(tracks.with_positions(gapped), clusters).tracks.positions
             rows[f"{take}, {1000 * noise:g} mm noise"] = [
                 str(len(clusters)),
                 _rms(noisy - tracks.positions, members),
-                _rms(kept - tracks.positions, members),
-                _rms((found - tracks.positions)[100 : 100 + length], [lost]),
+                _rms(constrained - tracks.positions, members),
+                _rms((found - tracks.positions)[100 : 100 + length], [marker]),
             ]
     header = ["take", "clusters of 3 or more", "before", "after", "LFHD missing for 2 s"]
     title = (

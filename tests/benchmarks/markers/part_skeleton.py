@@ -1,4 +1,4 @@
-"""Joint centres solved from markers, against CMU's own skeletons and against known bodies."""
+"""Joint centres solved from markers, against CMU's own skeletons and simulated bodies."""
 
 from collections.abc import Callable, Mapping
 from time import perf_counter
@@ -24,23 +24,29 @@ ACCLAIM = {
     "hip": "femur", "knee": "tibia", "ankle": "foot",
     "shoulder": "humerus", "elbow": "radius", "wrist": "hand",
 }  # fmt: skip
-BESIDE = {"knee": "KNE", "ankle": "ANK", "shoulder": "SHO", "elbow": "ELB", "wrist": "WRA"}
+JOINT_MARKERS = {
+    "knee": "KNE",
+    "ankle": "ANK",
+    "shoulder": "SHO",
+    "elbow": "ELB",
+    "wrist": "WRA",
+}
 SPOILS = {"no noise": (0.0, 0.0), "1 mm": (0.001, 0.0), "1 mm, skin 6 mm": (0.001, 0.006)}
 SCORED = ("06_01", "07_02", "27_01", "29_01", "32_01", "35_01")
 """Walks that no setting was chosen on; those were 05_01, 10_04, 26_01 and 49_02."""
-AMC_TURN = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-"""CMU's C3D and AMC files of one take differ by a quarter turn about the vertical."""
+C3D_FROM_AMC = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+"""CMU's C3D and AMC files of one take differ by a rotation of 90 degrees about the vertical."""
 
 
 def _solved(tracks: Tracks) -> Mapping[str, Array]:
     centres = solve_skeleton(tracks).joint_centers
-    return {name: centres.positions[:, place] for place, name in enumerate(centres.names)}
+    return {name: centres.positions[:, point] for point, name in enumerate(centres.names)}
 
 
 def _regressed(tracks: Tracks) -> Mapping[str, Array]:
     found = find_marker_set(tracks.names).markers
-    place = {name: index for index, name in enumerate(tracks.names)}
-    return joint_centers({s: tracks.positions[:, place[n]] for s, n in found.items()}).positions
+    point = {name: index for index, name in enumerate(tracks.names)}
+    return joint_centers({s: tracks.positions[:, point[n]] for s, n in found.items()}).positions
 
 
 METHODS: dict[str, Solver] = {
@@ -54,7 +60,7 @@ def against_amc() -> list[str]:
     folder = clips.DATA / "mocap"
     dance = read_acclaim(folder / "05_13.amc", folder / "05.asf")
     markers = read_c3d(folder / "05_13.c3d")
-    theirs = forward_kinematics(dance).positions @ AMC_TURN
+    theirs = forward_kinematics(dance).positions @ C3D_FROM_AMC
     true = {
         side + part: theirs[:, dance.skeleton.index(side[0] + ACCLAIM[joint])]
         for side in ("left", "right")
@@ -77,7 +83,7 @@ def against_amc() -> list[str]:
     )
     return [
         title + table(["method", *PARTS, "all", "seconds"], rows) + "\n",
-        wander + table(["", *BESIDE], spread) + "\n",
+        wander + table(["", *JOINT_MARKERS], spread) + "\n",
     ]
 
 
@@ -88,17 +94,17 @@ def _mean(found: Mapping[str, Array], true: Mapping[str, Array], part: str) -> f
 
 def _wander(markers: Tracks, joints: Mapping[str, Array]) -> list[str]:
     cells = []
-    for joint, spot in BESIDE.items():
+    for joint, marker_name in JOINT_MARKERS.items():
         spreads = []
         for letter, side in (("L", "left"), ("R", "right")):
-            marker = markers.positions[:, markers.names.index(letter + spot)]
-            apart = np.linalg.norm(marker - joints[side + PARTS[joint]], axis=1)
-            spreads.append(float(np.nanstd(apart)))
+            marker = markers.positions[:, markers.names.index(letter + marker_name)]
+            distances = np.linalg.norm(marker - joints[side + PARTS[joint]], axis=1)
+            spreads.append(float(np.nanstd(distances)))
         cells.append(f"{100 * np.mean(spreads):.1f}")
     return cells
 
 
-def against_known_bodies() -> list[Scores]:
+def against_simulated_bodies() -> list[Scores]:
     """Return scores on CMU walks to whose bodies markers were attached."""
     all_scores = []
     for spoil, (noise, skin) in SPOILS.items():
@@ -115,7 +121,7 @@ def against_known_bodies() -> list[Scores]:
                     scores.add(name, joint, clip, 10.0 * _mean(found, true, part))
         scores.add_overall()
         all_scores.append(scores)
-        print(f"  Known bodies: {spoil}", flush=True)
+        print(f"  Simulated bodies: {spoil}", flush=True)
     return all_scores
 
 

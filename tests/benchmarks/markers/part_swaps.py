@@ -1,4 +1,4 @@
-"""Labels exchanged in clean optical takes: how many are put right, and how many spoilt."""
+"""Labels swapped in clean optical takes: how many are corrected, and how many worsened."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -42,22 +42,22 @@ class Count:
     wrong: int = 0
     changed: int = 0
     righted: int = 0
-    spoilt: int = 0
-    whole: int = 0
+    swapped: int = 0
+    n_correct: int = 0
     draws: int = 0
 
     def cell(self) -> str:
-        """Return precision, recall and the share of draws that came out without a fault."""
+        """Return precision, recall and the fraction of draws with a correct result."""
         precision = 100.0 * self.righted / self.changed if self.changed else float("nan")
         recall = 100.0 * self.righted / max(self.wrong, 1)
         shown = "-" if np.isnan(precision) else f"{precision:.1f}"
-        return f"{shown} / {recall:.1f} / {100.0 * self.whole / max(self.draws, 1):.0f}"
+        return f"{shown} / {recall:.1f} / {100.0 * self.n_correct / max(self.draws, 1):.0f}"
 
 
 def compare_swaps(draws: int, hard: bool) -> str:
     """Return a table: precision, recall and draws without a fault, by kind of mistake.
 
-    `hard` takes every fourth frame only, and every marker is lost a few times besides.
+    `hard` takes every fourth frame only, and every marker is missing a few times.
     """
     counts = {name: {kind: Count() for kind in MISTAKES} for name in METHODS}
     for take in TAKES:
@@ -67,10 +67,10 @@ def compare_swaps(draws: int, hard: bool) -> str:
             for draw in range(draws):
                 rng = seeded(take, kind, draw)
                 given = _blinking(clean, rng) if hard else clean
-                spoilt, truth = mistake(given, rng)
+                swapped, truth = mistake(given, rng)
                 for name, method in METHODS.items():
-                    result = method(given.with_positions(spoilt))
-                    _add(counts[name][kind], spoilt, truth, result)
+                    result = method(given.with_positions(swapped))
+                    _add(counts[name][kind], swapped, truth, result)
         print(f"  {take}: swaps", flush=True)
     rows = {name: [counts[name][kind].cell() for kind in MISTAKES] for name in METHODS}
     title = (
@@ -83,7 +83,7 @@ def compare_swaps(draws: int, hard: bool) -> str:
 
 
 def _blinking(take: Tracks, rng: np.random.Generator) -> Tracks:
-    """Return the take at a quarter of its rate, each marker lost for a while now and then."""
+    """Return the take at a quarter of its rate, each marker missing for short intervals."""
     positions = take.positions[::HARD_STEP].copy()
     rate = take.frame_rate / HARD_STEP
     n_gaps = round(len(positions) / rate / SECONDS_BETWEEN_GAPS)
@@ -93,15 +93,15 @@ def _blinking(take: Tracks, rng: np.random.Generator) -> Tracks:
     return Tracks(take.names, positions, rate)
 
 
-def _add(count: Count, spoilt: Array, truth: Array, result: Array) -> None:
-    wrong, still, changed = (
+def _add(count: Count, swapped: Array, truth: Array, result: Array) -> None:
+    wrong, remaining, changed = (
         (np.nan_to_num(one) != np.nan_to_num(other)).any(axis=-1)
-        for one, other in ((spoilt, truth), (result, truth), (result, spoilt))
+        for one, other in ((swapped, truth), (result, truth), (result, swapped))
     )
     count.wrong += int(wrong.sum())
     count.changed += int(changed.sum())
-    count.righted += int((wrong & ~still).sum())
-    count.whole += int(not still.any())
+    count.righted += int((wrong & ~remaining).sum())
+    count.n_correct += int(not remaining.any())
     count.draws += 1
 
 
@@ -112,8 +112,8 @@ def _pair(take: Tracks, rng: np.random.Generator) -> list[int]:
     twin = {"L": "R", "R": "L"}.get(name[0], "") + name[1:]
     if twin in take.names and rng.random() < 0.4:
         return [first, take.names.index(twin)]
-    apart = np.linalg.norm(take.positions[::10] - take.positions[::10, [first]], axis=-1)
-    near = np.argsort(np.nanmean(apart, axis=0))[1 : NEAREST + 1]
+    distances = np.linalg.norm(take.positions[::10] - take.positions[::10, [first]], axis=-1)
+    near = np.argsort(np.nanmean(distances, axis=0))[1 : NEAREST + 1]
     return [first, int(rng.choice(near))]
 
 
@@ -125,57 +125,57 @@ def _stretch(take: Tracks, rng: np.random.Generator, seconds: float) -> tuple[in
 
 def _exchanged(seconds: float) -> Callable[[Tracks, np.random.Generator], tuple[Array, Array]]:
     def mistake(take: Tracks, rng: np.random.Generator) -> tuple[Array, Array]:
-        spoilt, pair = take.positions.copy(), _pair(take, rng)
+        swapped, pair = take.positions.copy(), _pair(take, rng)
         start, stop = _stretch(take, rng, seconds)
-        spoilt[start:stop, pair] = spoilt[start:stop, pair[::-1]]
-        return spoilt, take.positions
+        swapped[start:stop, pair] = swapped[start:stop, pair[::-1]]
+        return swapped, take.positions
 
     return mistake
 
 
 def _to_the_end(take: Tracks, rng: np.random.Generator) -> tuple[Array, Array]:
-    spoilt, pair = take.positions.copy(), _pair(take, rng)
+    swapped, pair = take.positions.copy(), _pair(take, rng)
     start = int(rng.integers(take.n_frames // 2 + 1, take.n_frames - 2))
-    spoilt[start:, pair] = spoilt[start:, pair[::-1]]
-    return spoilt, take.positions
+    swapped[start:, pair] = swapped[start:, pair[::-1]]
+    return swapped, take.positions
 
 
 def _several(take: Tracks, rng: np.random.Generator) -> tuple[Array, Array]:
-    spoilt = take.positions.copy()
+    swapped = take.positions.copy()
     for _ in range(5):
         pair = _pair(take, rng)
         start, stop = _stretch(take, rng, float(rng.uniform(0.05, 2.0)))
-        spoilt[start:stop, pair] = spoilt[start:stop, pair[::-1]]
-    return spoilt, take.positions
+        swapped[start:stop, pair] = swapped[start:stop, pair[::-1]]
+    return swapped, take.positions
 
 
 def _three(take: Tracks, rng: np.random.Generator) -> tuple[Array, Array]:
-    spoilt = take.positions.copy()
+    swapped = take.positions.copy()
     three = rng.choice(take.n_points, 3, replace=False)
     start, stop = _stretch(take, rng, 1.0)
-    spoilt[start:stop, three] = spoilt[start:stop, np.roll(three, 1)]
-    return spoilt, take.positions
+    swapped[start:stop, three] = swapped[start:stop, np.roll(three, 1)]
+    return swapped, take.positions
 
 
 def _between_gaps(take: Tracks, rng: np.random.Generator) -> tuple[Array, Array]:
-    """Both are lost for 0.4 s, come back exchanged for 1 s, and are lost once more."""
+    """Both are missing for 0.4 s, return swapped for 1 s, and are missing once more."""
     truth, pair = take.positions.copy(), _pair(take, rng)
     start, stop = _stretch(take, rng, 1.8)
     gap = round(0.4 * take.frame_rate)
     truth[start : start + gap, pair] = truth[stop - gap : stop, pair] = np.nan
-    spoilt = truth.copy()
-    spoilt[start:stop, pair] = spoilt[start:stop, pair[::-1]]
-    return spoilt, truth
+    swapped = truth.copy()
+    swapped[start:stop, pair] = swapped[start:stop, pair[::-1]]
+    return swapped, truth
 
 
-def _taken_for_lost(take: Tracks, rng: np.random.Generator) -> tuple[Array, Array]:
-    """One is lost for 1 s, and another carries its label meanwhile."""
-    truth, (lost, other) = take.positions.copy(), _pair(take, rng)
+def _swapped_with_missing(take: Tracks, rng: np.random.Generator) -> tuple[Array, Array]:
+    """One is missing for 1 s, and another carries its label meanwhile."""
+    truth, (missing, other) = take.positions.copy(), _pair(take, rng)
     start, stop = _stretch(take, rng, 1.0)
-    truth[start:stop, lost] = np.nan
-    spoilt = truth.copy()
-    spoilt[start:stop, [lost, other]] = spoilt[start:stop, [other, lost]]
-    return spoilt, truth
+    truth[start:stop, missing] = np.nan
+    swapped = truth.copy()
+    swapped[start:stop, [missing, other]] = swapped[start:stop, [other, missing]]
+    return swapped, truth
 
 
 MISTAKES = {
@@ -186,7 +186,7 @@ MISTAKES = {
     "five at once": _several,
     "three in turn": _three,
     "between gaps": _between_gaps,
-    "swapped with a missing one": _taken_for_lost,
+    "swapped with a missing one": _swapped_with_missing,
 }
 
 

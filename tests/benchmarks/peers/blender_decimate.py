@@ -1,9 +1,9 @@
 """Blender's own Decimate (Allowed Change), really run in Blender, at a given error of limbs.
 
 `python -m tests.benchmarks.peers.blender_decimate IN.npz OUT.json` is the child process. Every
-channel is an F-Curve of its own. Rotations are decimated with one margin and places with
+channel is an F-Curve of its own. Rotations are decimated with one margin and positions with
 another, as metres and parts of quaternions have no common one; of the pairs that keep every
-joint within what is asked at every frame, the one with the fewest keys is taken, and the margin
+joint within the tolerance at every frame, the one with the fewest keys is taken, and the margin
 of its rotations widened by bisection as far as that holds.
 """
 
@@ -28,10 +28,10 @@ from solvers.rotations.representations import IDENTITY, normalize, unroll
 from .blender_graph import _graph_editor, _write
 
 TIMEOUT = 3600.0
-TURNS = np.geomspace(3e-4, 0.1, 14)
+ROTATION_MARGINS = np.geomspace(3e-4, 0.1, 14)
 """Margins of quaternions' parts to begin with."""
-PLACES = np.geomspace(1e-4, 0.05, 14)
-"""Margins of places, metres."""
+POSITION_MARGINS = np.geomspace(1e-4, 0.05, 14)
+"""Margins of positions, metres."""
 HALVINGS = 4
 
 
@@ -54,7 +54,7 @@ def decimate_in_blender(motion: Motion, tolerances: Sequence[float]) -> list[dic
             parents=np.array(motion.skeleton.parents),
             offsets=motion.skeleton.offsets,
             rotations=motion.rotations,
-            places=motion.root_positions,
+            positions=motion.root_positions,
             frame_rate=motion.frame_rate,
             tolerances=np.array(tolerances),
         )
@@ -80,7 +80,7 @@ def _child(source: str, target: str) -> None:
             tuple(given["names"].tolist()), tuple(given["parents"]), given["offsets"]
         )
         motion = Motion(
-            skeleton, given["rotations"], given["places"], float(given["frame_rate"])
+            skeleton, given["rotations"], given["positions"], float(given["frame_rate"])
         )
         tolerances = given["tolerances"].tolist()
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
@@ -96,45 +96,52 @@ class Search:
         off = np.abs(motion.rotations - IDENTITY).max(axis=(0, 2))
         self._moving = np.flatnonzero(off > 1e-9)
         quaternions = unroll(motion.rotations[:, self._moving])
-        self._turns = quaternions.reshape(motion.n_frames, -1)
+        self._quaternions = quaternions.reshape(motion.n_frames, -1)
         self._points = find_error_points(motion.skeleton)
-        self._seen = self._points.positions(forward_kinematics(motion))
+        self._positions = self._points.positions(forward_kinematics(motion))
 
     def found(self, tolerances: Sequence[float]) -> list[dict[str, float]]:
         """Return keys, error and seconds for each tolerance in metres."""
-        turns = {margin: self._decimated(self._turns, margin) for margin in TURNS}
+        rotation_fits = {
+            margin: self._decimated(self._quaternions, margin) for margin in ROTATION_MARGINS
+        }
         motion = self._motion
-        places = [self._decimated(motion.root_positions, margin) for margin in PLACES]
+        positions = [
+            self._decimated(motion.root_positions, margin) for margin in POSITION_MARGINS
+        ]
         errors = {
-            (margin, number): self._error(turned, placed)
-            for margin, turned in turns.items()
-            for number, placed in enumerate(places)
+            (margin, number): self._error(rotation, position)
+            for margin, rotation in rotation_fits.items()
+            for number, position in enumerate(positions)
         }
         results = []
         for tolerance in tolerances:
             fitting = [pair for pair, error in errors.items() if error <= tolerance]
             margin, number = min(
-                fitting, key=lambda pair: turns[pair[0]].n_keys + places[pair[1]].n_keys
+                fitting,
+                key=lambda pair: rotation_fits[pair[0]].n_keys + positions[pair[1]].n_keys,
             )
-            results.append(self._widened(tolerance, margin, turns[margin], places[number]))
+            results.append(
+                self._widened(tolerance, margin, rotation_fits[margin], positions[number])
+            )
         return results
 
     def _widened(
-        self, tolerance: float, low: float, best: Decimated, placed: Decimated
+        self, tolerance: float, low: float, best: Decimated, position: Decimated
     ) -> dict[str, float]:
         """Return the figures of the widest margin of rotations, from one that holds."""
-        high = low * TURNS[1] / TURNS[0]
+        high = low * ROTATION_MARGINS[1] / ROTATION_MARGINS[0]
         for _ in range(HALVINGS):
             margin = float(np.sqrt(low * high))
-            turned = self._decimated(self._turns, margin)
-            if self._error(turned, placed) <= tolerance:
-                low, best = margin, turned
+            rotation = self._decimated(self._quaternions, margin)
+            if self._error(rotation, position) <= tolerance:
+                low, best = margin, rotation
             else:
                 high = margin
         return {
-            "keys": best.n_keys + placed.n_keys,
-            "error": self._error(best, placed),
-            "seconds": best.seconds + placed.seconds,
+            "keys": best.n_keys + position.n_keys,
+            "error": self._error(best, position),
+            "seconds": best.seconds + position.seconds,
         }
 
     def _decimated(self, take: Array, margin: float) -> Decimated:
@@ -156,13 +163,13 @@ class Search:
         bpy.data.objects.remove(ob)
         return Decimated(after, keys, seconds)
 
-    def _error(self, turned: Decimated, placed: Decimated) -> float:
+    def _error(self, rotation: Decimated, position: Decimated) -> float:
         """Return the greatest distance of any joint at any frame, metres."""
         rotations = self._motion.rotations.copy()
-        rotations[:, self._moving] = normalize(turned.values.reshape(len(rotations), -1, 4))
-        other = self._motion.with_poses(rotations, placed.values)
-        places = self._points.positions(forward_kinematics(other))
-        return float(np.linalg.norm(places - self._seen, axis=-1).max())
+        rotations[:, self._moving] = normalize(rotation.values.reshape(len(rotations), -1, 4))
+        other = self._motion.with_poses(rotations, position.values)
+        positions = self._points.positions(forward_kinematics(other))
+        return float(np.linalg.norm(positions - self._positions, axis=-1).max())
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Blender's own Gaussian and Butterworth graph-editor operators, really run in Blender.
 
 `python -m tests.benchmarks.peers.blender_graph IN.npz OUT.npz` is the child process; it puts
-every channel on an F-curve of its own (so no quaternion is torn apart: kinder to Blender than
+every channel on an F-curve of its own (so no quaternion is split: kinder to Blender than
 an armature would be), at the clip's frame rate, selects all and calls the operators.
 """
 

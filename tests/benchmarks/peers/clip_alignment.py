@@ -10,7 +10,7 @@ from scipy.spatial.distance import cdist
 from solvers.arrays import Array
 from solvers.motion import Tracks
 
-from .whole_postures import WholePostures, learn_whole, resampled
+from .complete_postures import CompletePostures, learn_complete_postures, resampled
 
 Flags = NDArray[np.bool_]
 
@@ -26,19 +26,19 @@ class Resampled:
     frame_rate: float = 30.0
 
     def prepare(self, clips: Sequence[Tracks]) -> "ResampledLibrary":
-        whole, found = learn_whole(clips, self.frame_rate)
+        complete, found = learn_complete_postures(clips, self.frame_rate)
         rows = np.stack([resampled(frames, self.n_frames).ravel() for frames in found])
-        return ResampledLibrary(whole, rows, self.n_frames)
+        return ResampledLibrary(complete, rows, self.n_frames)
 
 
 @dataclass(frozen=True, eq=False)
 class ResampledLibrary:
-    whole: WholePostures
+    complete: CompletePostures
     rows: Array
     n_frames: int
 
     def describe(self, tracks: Tracks) -> Array:
-        return resampled(self.whole(tracks), self.n_frames).ravel()
+        return resampled(self.complete(tracks), self.n_frames).ravel()
 
     def distances(self, query: Array, allowed: Flags) -> Array:
         return np.asarray(cdist(query[None], self.rows)[0])
@@ -55,26 +55,26 @@ class Warped:
     frame_rate: float = 30.0
 
     def prepare(self, clips: Sequence[Tracks]) -> "WarpedLibrary":
-        whole, found = learn_whole(clips, self.frame_rate)
-        axes = np.linalg.eigh(whole.covariance)[1][:, ::-1][:, : self.n_components]
-        short = [(frames - whole.mean) @ axes for frames in found]
+        complete, found = learn_complete_postures(clips, self.frame_rate)
+        axes = np.linalg.eigh(complete.covariance)[1][:, ::-1][:, : self.n_components]
+        short = [(frames - complete.mean) @ axes for frames in found]
         order = np.argsort([len(frames) for frames in short], kind="stable")
         batches = [order[start : start + BATCH] for start in range(0, len(order), BATCH)]
-        padded = [_padded([short[place] for place in batch]) for batch in batches]
+        padded = [_padded([short[index] for index in batch]) for batch in batches]
         lengths = np.array([len(frames) for frames in short])
-        return WarpedLibrary(whole, axes, batches, padded, lengths)
+        return WarpedLibrary(complete, axes, batches, padded, lengths)
 
 
 @dataclass(frozen=True, eq=False)
 class WarpedLibrary:
-    whole: WholePostures
+    complete: CompletePostures
     axes: Array
     batches: list[NDArray[np.intp]]
     padded: list[Array]
     lengths: NDArray[np.intp]
 
     def describe(self, tracks: Tracks) -> Array:
-        return np.asarray((self.whole(tracks) - self.whole.mean) @ self.axes)
+        return np.asarray((self.complete(tracks) - self.complete.mean) @ self.axes)
 
     def distances(self, query: Array, allowed: Flags) -> Array:
         result = np.empty(len(self.lengths))
@@ -94,11 +94,11 @@ def warped_totals(query: Array, padded: Array, lengths: NDArray[np.intp]) -> Arr
     """
     n_clips, longest, n_features = padded.shape
     n = len(query)
-    apart = cdist(query, padded.reshape(-1, n_features)).reshape(n, n_clips, longest)
+    costs = cdist(query, padded.reshape(-1, n_features)).reshape(n, n_clips, longest)
     # Row k of `skewed` is the anti-diagonal i + j = k, at i; outside it is infinite.
     skewed = np.full((n + longest - 1, n, n_clips), np.inf)
     for i in range(n):
-        skewed[i : i + longest, i] = apart[i].T
+        skewed[i : i + longest, i] = costs[i].T
     before, last = np.full((2, n + 1, n_clips), np.inf)
     before[0] = 0.0
     totals = np.empty(n_clips)

@@ -11,12 +11,12 @@ from sklearn.cluster import KMeans
 from solvers.arrays import Array
 from solvers.motion import Tracks
 
-from .whole_postures import WholePostures, learn_whole, resampled
+from .complete_postures import CompletePostures, learn_complete_postures, resampled
 
 Flags = NDArray[np.bool_]
 
 WINDOWS = ((0.0, 1.0), (0.0, 0.5), (0.25, 0.75), (0.5, 1.0))
-"""Two levels of [HTGE13], overlapping, as shares of the clip."""
+"""Two levels of [HTGE13], overlapping, as fractions of the clip."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class Covariances:
     frame_rate: float = 30.0
 
     def prepare(self, clips: Sequence[Tracks]) -> "DescribedLibrary":
-        whole, found = learn_whole(clips, self.frame_rate)
+        complete, found = learn_complete_postures(clips, self.frame_rate)
         rows = np.stack([self.descriptor(frames) for frames in found])
-        return DescribedLibrary(whole, rows, self, "euclidean")
+        return DescribedLibrary(complete, rows, self, "euclidean")
 
     def descriptor(self, frames: Array) -> Array:
         moments = resampled(frames[:, 3:], max(len(frames), 8))
@@ -58,13 +58,13 @@ class BagOfWords:
     frame_rate: float = 30.0
 
     def prepare(self, clips: Sequence[Tracks]) -> "DescribedLibrary":
-        whole, found = learn_whole(clips, self.frame_rate)
+        complete, found = learn_complete_postures(clips, self.frame_rate)
         frames = np.concatenate(found)
         words = KMeans(self.n_words, n_init=1, random_state=0).fit(frames).cluster_centers_
         counts = np.stack([_counts(each, words) for each in found])
         rare = np.log(len(found) / np.maximum((counts > 0.0).sum(axis=0), 1))
         bag = Bag(words, rare)
-        return DescribedLibrary(whole, counts * rare, bag, "cosine")
+        return DescribedLibrary(complete, counts * rare, bag, "cosine")
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,17 +80,17 @@ class Bag:
 class DescribedLibrary:
     """Clips as vectors."""
 
-    whole: WholePostures
+    complete: CompletePostures
     rows: Array
     how: Covariances | Bag
     metric: str
 
     def describe(self, tracks: Tracks) -> Array:
-        return self.how.descriptor(self.whole(tracks))
+        return self.how.descriptor(self.complete(tracks))
 
     def distances(self, query: Array, allowed: Flags) -> Array:
-        apart = cdist(query[None], self.rows, self.metric)[0]
-        return np.where(np.isfinite(apart), apart, np.inf)
+        found = cdist(query[None], self.rows, self.metric)[0]
+        return np.where(np.isfinite(found), found, np.inf)
 
 
 def _counts(frames: Array, words: Array) -> Array:

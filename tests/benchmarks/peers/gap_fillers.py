@@ -1,7 +1,7 @@
-"""Ways to fill gaps: (gapped (n_frames, n_channels), NaN = missing, frame rate) -> no NaN.
+"""Methods to fill gaps: (gapped (n_frames, n_channels), NaN = missing, frame rate) -> no NaN.
 
-Where a channel is never seen, the methods that look at one channel leave NaN: there is nothing
-they could say.
+Where a channel is never observed, the methods that look at one channel leave NaN: there is
+nothing they could say.
 """
 
 from collections.abc import Sequence
@@ -12,23 +12,27 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from solvers.arrays import Array
 
-ENOUGH_SEEN = 2
+MIN_OBSERVED_FRAMES = 2
 
 
 def linear(gapped: Array, frame_rate: float) -> Array:
-    """Straight lines; the last seen value beyond the ends."""
+    """Straight lines; the last observed value beyond the ends."""
     frames = np.arange(len(gapped))
-    return _each(gapped, lambda seen, values: np.interp(frames, seen, values))
+    return _each(gapped, lambda observed, values: np.interp(frames, observed, values))
 
 
 def pchip(gapped: Array, frame_rate: float) -> Array:
     """Monotone cubic pieces, as the MoCap Toolbox fills."""
-    return _each(gapped, lambda seen, values: _inside(gapped, seen, values, PchipInterpolator))
+    return _each(
+        gapped, lambda observed, values: _inside(gapped, observed, values, PchipInterpolator)
+    )
 
 
 def cubic(gapped: Array, frame_rate: float) -> Array:
-    """Cubic spline through everything seen."""
-    return _each(gapped, lambda seen, values: _inside(gapped, seen, values, CubicSpline))
+    """Cubic spline through all observed samples."""
+    return _each(
+        gapped, lambda observed, values: _inside(gapped, observed, values, CubicSpline)
+    )
 
 
 def soft_impute(gapped: Array, frame_rate: float, shrink: float) -> Array:
@@ -37,22 +41,22 @@ def soft_impute(gapped: Array, frame_rate: float, shrink: float) -> Array:
     `shrink` is the last threshold on singular values, as a fraction of the largest; as in the
     paper, it is reached from larger ones.
     """
-    seen = np.isfinite(gapped)
-    mean = np.nanmean(np.where(seen.any(axis=0), gapped, 0.0), axis=0)
-    given = np.where(seen, gapped - mean, 0.0)
-    filled = np.where(seen, given, linear(gapped, frame_rate) - mean)
+    observed = np.isfinite(gapped)
+    mean = np.nanmean(np.where(observed.any(axis=0), gapped, 0.0), axis=0)
+    given = np.where(observed, gapped - mean, 0.0)
+    filled = np.where(observed, given, linear(gapped, frame_rate) - mean)
     filled = np.nan_to_num(filled)
     for level in np.repeat(np.geomspace(0.5, shrink, 15), 5):
         # The right singular vectors from the small Gram matrix: takes are tall.
         squares, V = np.linalg.eigh(filled.T @ filled)
         singular = np.sqrt(np.maximum(squares, 1e-12))
-        kept = np.maximum(1.0 - level * singular[-1] / singular, 0.0)
-        filled = np.where(seen, given, filled @ (V * kept) @ V.T)
-    return np.where(seen, gapped, filled + mean)
+        shrinkage = np.maximum(1.0 - level * singular[-1] / singular, 0.0)
+        filled = np.where(observed, given, filled @ (V * shrinkage) @ V.T)
+    return np.where(observed, gapped, filled + mean)
 
 
 def conditional_pose(gapped: Array, frame_rate: float, training: Sequence[Array]) -> Array:
-    """Expected values of the missing channels of each pose, given its seen ones.
+    """Expected values of the missing channels of each pose, given its observed ones.
 
     A Gaussian over poses, learned from the training clips; time plays no part.
     """
@@ -61,29 +65,29 @@ def conditional_pose(gapped: Array, frame_rate: float, training: Sequence[Array]
     covariance += 1e-2 * np.mean(np.diag(covariance)) * np.eye(len(mean))
     result = gapped.copy()
     patterns, which = np.unique(np.isfinite(gapped), axis=0, return_inverse=True)
-    for number, seen in enumerate(patterns):
-        if seen.all():
+    for number, observed in enumerate(patterns):
+        if observed.all():
             continue
         rows = np.flatnonzero(which.ravel() == number)
-        known = gapped[np.ix_(rows, seen)] - mean[seen]
+        deviations = gapped[np.ix_(rows, observed)] - mean[observed]
         weights = np.linalg.solve(
-            covariance[np.ix_(seen, seen)], covariance[np.ix_(seen, ~seen)]
+            covariance[np.ix_(observed, observed)], covariance[np.ix_(observed, ~observed)]
         )
-        result[np.ix_(rows, ~seen)] = mean[~seen] + known @ weights
+        result[np.ix_(rows, ~observed)] = mean[~observed] + deviations @ weights
     return result
 
 
 def _each(gapped: Array, fill) -> Array:
     result = gapped.copy()
     for channel, values in enumerate(gapped.T):
-        seen = np.flatnonzero(np.isfinite(values))
-        if ENOUGH_SEEN <= len(seen) < len(values):
+        observed = np.flatnonzero(np.isfinite(values))
+        if MIN_OBSERVED_FRAMES <= len(observed) < len(values):
             gaps = ~np.isfinite(values)
-            result[gaps, channel] = fill(seen, values[seen])[gaps]
+            result[gaps, channel] = fill(observed, values[observed])[gaps]
     return result
 
 
-def _inside(gapped: Array, seen: NDArray[np.intp], values: Array, curve) -> Array:
-    """Interpolate between the first and last seen frame; hold the values beyond."""
-    frames = np.clip(np.arange(len(gapped)), seen[0], seen[-1])
-    return np.asarray(curve(seen, values)(frames))
+def _inside(gapped: Array, observed: NDArray[np.intp], values: Array, curve) -> Array:
+    """Interpolate between the first and last observed frame; hold the values beyond."""
+    frames = np.clip(np.arange(len(gapped)), observed[0], observed[-1])
+    return np.asarray(curve(observed, values)(frames))

@@ -27,9 +27,9 @@ from solvers.depth_tracking.terms.observation import Observation, observe, rays_
 
 ITERATIONS = 10
 FARTHEST = 0.2
-"""Metres; pairs farther apart are left out."""
-DAMPING, LIMIT_WEIGHT, TURN_WEIGHT = 0.05, 1.0, 0.02
-TRUST = 0.7
+"""Metres; pairs with a larger distance are left out."""
+DAMPING, LIMIT_WEIGHT, ROTATION_WEIGHT = 0.05, 1.0, 0.02
+PREDICTION_WEIGHT = 0.7
 Pairs = Callable[[Hypothesis, Observation], SurfaceRows]
 
 
@@ -65,13 +65,13 @@ def _closest_points(hypothesis: Hypothesis, observation: Observation) -> Surface
 
 def _with_rays(hypothesis: Hypothesis, observation: Observation) -> SurfaceRows:
     pixels, points = hypothesis.image.pixels, hypothesis.points
-    seen = observation.flat[pixels]
+    depths = observation.flat[pixels]
     nearest = observation.nearest_pixel[pixels]
-    off = seen == 0.0
+    off = depths == 0.0
     targets = points.copy()
     targets[off] = points[off, 2:] * rays_through_pixels(observation.camera, nearest[off])
-    before = ~off & (hypothesis.image.depths < seen)
-    targets[before] = hypothesis.rays[before] * seen[before][:, np.newaxis]
+    before = ~off & (hypothesis.image.depths < depths)
+    targets[before] = hypothesis.rays[before] * depths[before][:, np.newaxis]
     broken = np.flatnonzero(off | before)
     weights = np.full(len(broken), 1.0)
     far = np.linalg.norm(targets[broken] - points[broken], axis=1) > FARTHEST
@@ -88,7 +88,7 @@ def _track(
     poses = [pose]
     for frame in range(depth.n_frames):
         observation = observe(depth, frame, 160)
-        expected = predict_pose(poses[1:] or poses, TRUST)
+        expected = predict_pose(poses[1:] or poses, PREDICTION_WEIGHT)
         poses.append(_registered(body, expected, observation, pairs))
     return joint_positions(body, segment_frames(body, np.array(poses[1:])))
 
@@ -107,7 +107,7 @@ def _registered(
         equations = sum_equations([
             equations_in_coordinates([rows], hypothesis.twists),
             joint_limits(pose, LIMIT_WEIGHT),
-            stay_near(pose, expected, np.full(36, TURN_WEIGHT)),
+            stay_near(pose, expected, np.full(36, ROTATION_WEIGHT)),
         ])
         change = solve_step(equations, np.full(36, DAMPING))
         pose = pose + change * min(1.0, 0.35 / np.abs(change).max())

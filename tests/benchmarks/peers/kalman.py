@@ -34,21 +34,21 @@ def smooth(dynamics: Dynamics, measured: Array) -> Array:
     mean, P, gain = dynamics.start, dynamics.spread, np.zeros((0, 0))
     predicted, filtered = [], []
     for frame, y in enumerate(measured):
-        settled = frame > 1 and _same(P, filtered[-2][1]) and _same_seen(measured, frame)
+        settled = frame > 1 and _same(P, filtered[-2][1]) and _same_pattern(measured, frame)
         if frame:
             mean = F @ mean + dynamics.offset
             P = predicted[-1][1] if settled else F @ P @ F.T + dynamics.Q
         predicted.append((mean, P))
-        seen = np.isfinite(y)
+        observed = np.isfinite(y)
         if settled:
             P = filtered[-1][1]
-        elif seen.any():
-            S = H[seen] @ P @ H[seen].T + dynamics.R[np.ix_(seen, seen)]
-            gain = cho_solve(cho_factor(S), H[seen] @ P).T
-            P = P - gain @ H[seen] @ P
+        elif observed.any():
+            S = H[observed] @ P @ H[observed].T + dynamics.R[np.ix_(observed, observed)]
+            gain = cho_solve(cho_factor(S), H[observed] @ P).T
+            P = P - gain @ H[observed] @ P
             P = 0.5 * (P + P.T)
-        if seen.any():
-            mean = mean + gain @ (y[seen] - H[seen] @ mean)
+        if observed.any():
+            mean = mean + gain @ (y[observed] - H[observed] @ mean)
         filtered.append((mean, P))
     return _backward(F, predicted, filtered)
 
@@ -71,16 +71,16 @@ def _same(P: Array, before: Array) -> bool:
     return P is before or bool(np.abs(P - before).max() < 1e-9 * np.abs(P).max())
 
 
-def _same_seen(measured: Array, frame: int) -> bool:
-    seen = np.isfinite(measured[frame - 2 : frame + 1])
-    return bool((seen == seen[0]).all())
+def _same_pattern(measured: Array, frame: int) -> bool:
+    observed = np.isfinite(measured[frame - 2 : frame + 1])
+    return bool((observed == observed[0]).all())
 
 
 def constant_velocity(noisy: Array, frame_rate: float, agility: float) -> Array:
     """Each channel moves steadily, disturbed by white-noise acceleration.
 
     `agility` is the ratio of disturbance to measurement noise, per frame; larger follows the
-    data closer. All channels with the same missing frames share one recursion.
+    data closer. All channels with the same missing frames use one recursion.
     """
     F = np.array([[1.0, 1.0], [0.0, 1.0]])
     Q = agility**2 * np.array([[1 / 3, 1 / 2], [1 / 2, 1.0]])
@@ -125,27 +125,29 @@ def learn_dynamics(training: Sequence[Array], sigma: float) -> Dynamics:
 
 
 def _each_channel(noisy: Array, F: Array, Q: Array) -> Array:
-    """Smooth all channels; those that are seen in the same frames share gains."""
+    """Smooth all channels; those that are observed in the same frames have the same gains."""
     H = np.eye(1, len(F))
     result = np.empty_like(noisy)
     patterns, which = np.unique(np.isfinite(noisy), axis=1, return_inverse=True)
     for number in range(patterns.shape[1]):
         columns = np.flatnonzero(which.ravel() == number)
-        result[:, columns] = _shared_gains(noisy[:, columns], patterns[:, number], F, Q, H)
+        result[:, columns] = _smooth_pattern(noisy[:, columns], patterns[:, number], F, Q, H)
     return result
 
 
-def _shared_gains(noisy: Array, seen: NDArray[np.bool_], F: Array, Q: Array, H: Array) -> Array:
+def _smooth_pattern(
+    noisy: Array, observed: NDArray[np.bool_], F: Array, Q: Array, H: Array
+) -> Array:
     n = len(F)
     mean = np.zeros((n, noisy.shape[1]))
-    mean[0] = noisy[np.flatnonzero(seen)[0]] if seen.any() else 0.0
+    mean[0] = noisy[np.flatnonzero(observed)[0]] if observed.any() else 0.0
     P = 1e4 * np.eye(n)
     predicted, filtered = [], []
     for frame, y in enumerate(noisy):
         if frame:
             mean, P = F @ mean, F @ P @ F.T + Q
         predicted.append((mean, P))
-        if seen[frame]:
+        if observed[frame]:
             gain = P @ H.T / (H @ P @ H.T + 1.0)
             mean = mean + gain @ (y - H @ mean)
             P = P - gain @ H @ P

@@ -10,15 +10,15 @@ FAR = 10.0
 
 
 def by_continuity(positions: Array) -> Array:
-    """Give each frame's points to the labels whose predicted places are nearest, all at once.
+    """Assign each frame's points to the labels with the nearest predicted positions.
 
-    A place is predicted by constant velocity from the last two frames in which a label had a
+    A position is predicted by constant velocity from the last two frames in which a label had a
     point, and the sum of distances made small (Kuhn's assignment). Whatever a frame's own
-    labels say is not asked.
+    labels say is ignored.
 
     Parameters
     ----------
-    positions : shape (n_frames, n_markers, 3), metres; NaN where not seen
+    positions : shape (n_frames, n_markers, 3), metres; NaN where not observed
     """
     result = positions.copy()
     last, step = positions[0].copy(), np.zeros_like(positions[0])
@@ -27,7 +27,7 @@ def by_continuity(positions: Array) -> Array:
         cost = np.linalg.norm(expected[:, None] - positions[frame][None], axis=-1)
         labels, points = linear_sum_assignment(np.nan_to_num(cost, nan=FAR))
         result[frame, labels] = positions[frame, points]
-        seen = np.isfinite(result[frame]).all(axis=-1)
-        step = np.where(seen[:, None], np.nan_to_num(result[frame] - last), 0.0)
-        last = np.where(seen[:, None], result[frame], last)
+        observed = np.isfinite(result[frame]).all(axis=-1)
+        step = np.where(observed[:, None], np.nan_to_num(result[frame] - last), 0.0)
+        last = np.where(observed[:, None], result[frame], last)
     return result

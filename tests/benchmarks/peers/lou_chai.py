@@ -21,8 +21,8 @@ def learn_patterns(training: Sequence[Array]) -> tuple[Array, Array]:
     size = windows[0].shape[1]
     covariance = sum((each.T @ each for each in windows), np.zeros((size, size)))
     values, vectors = np.linalg.eigh(covariance)
-    share = np.cumsum(values[::-1]) / values.sum()
-    return mean, vectors[:, ::-1][:, : int(np.argmax(share >= ENERGY)) + 1]
+    energy = np.cumsum(values[::-1]) / values.sum()
+    return mean, vectors[:, ::-1][:, : int(np.argmax(energy >= ENERGY)) + 1]
 
 
 def filter_by_patterns(noisy: Array, mean: Array, E: Array) -> Array:
@@ -39,8 +39,8 @@ def filter_by_patterns(noisy: Array, mean: Array, E: Array) -> Array:
     for _ in range(ITERATIONS):
         patterns = (_windows(z) @ E @ E.T).reshape(-1, WINDOW, n_channels)
         total = np.zeros_like(z)
-        for place in range(WINDOW):
-            total[place : place + len(patterns)] += patterns[:, place]
+        for offset in range(WINDOW):
+            total[offset : offset + len(patterns)] += patterns[:, offset]
         for _ in range(REWEIGHTINGS):
             w = np.exp(-(((z - y) / SCALE) ** 2))
             z = (WEIGHT * total + w * y) / (WEIGHT * times + w)

@@ -1,4 +1,4 @@
-"""Published ways to fill gaps of optical markers; PMA-R2 after reading its authors' program.
+"""Published methods to fill gaps of optical markers; PMA-R2 after reading its authors' program.
 
 (gapped (n_frames, n_markers, 3) metres, NaN = missing, frame rate) -> the same without NaN.
 """
@@ -15,8 +15,8 @@ from .kalman import Dynamics, smooth
 WEIGHT_SCALE = 0.2
 MISSING_WEIGHT = 0.02
 DISTAL = 0.5
-KEPT = 0.99
-SUBSPACE_KEPT = 0.9999
+KEPT_ENERGY = 0.99
+SUBSPACE_ENERGY = 0.9999
 AROUND = 1.0
 """Seconds on both sides of a gap that the subspace Kalman smoother sees."""
 
@@ -31,7 +31,7 @@ def each_coordinate(filler: Callable[[Array, float], Array]) -> Callable[[Array,
 
 
 def centred(filler: Callable[[Array, float], Array]) -> Callable[[Array, float], Array]:
-    """Return the filler working relative to the mean of the markers that are never lost."""
+    """Return the filler working relative to the mean of the markers that are never missing."""
 
     def fill(gapped: Array, frame_rate: float) -> Array:
         centre = centre_of(gapped)
@@ -41,9 +41,9 @@ def centred(filler: Callable[[Array, float], Array]) -> Callable[[Array, float],
 
 
 def centre_of(gapped: Array) -> Array:
-    """Mean of the markers that are never lost, shape (n_frames, 1, 3)."""
-    whole = np.isfinite(gapped).all(axis=(0, 2))
-    return np.asarray(gapped[:, whole].mean(axis=1, keepdims=True))
+    """Mean of the markers that are never missing, shape (n_frames, 1, 3)."""
+    complete = np.isfinite(gapped).all(axis=(0, 2))
+    return np.asarray(gapped[:, complete].mean(axis=1, keepdims=True))
 
 
 def soft_impute(gapped: Array, frame_rate: float) -> Array:
@@ -60,19 +60,19 @@ def principal_markers(gapped: Array, frame_rate: float) -> Array:
     there. Works relative to the mean marker; see `centred`.
     """
     filled = gapped.copy()
-    lost = np.isnan(gapped).any(axis=2)
-    for marker in np.flatnonzero(lost.any(axis=0)):
-        apart = np.linalg.norm(gapped - gapped[:, [marker]], axis=2)
-        distance = np.nanmean(apart, axis=0)
-        overlapping = (lost & lost[:, [marker]]).any(axis=0)
-        distal = lost.any(axis=0) & (distance > DISTAL * distance.mean())
+    missing = np.isnan(gapped).any(axis=2)
+    for marker in np.flatnonzero(missing.any(axis=0)):
+        distances = np.linalg.norm(gapped - gapped[:, [marker]], axis=2)
+        distance = np.nanmean(distances, axis=0)
+        overlapping = (missing & missing[:, [marker]]).any(axis=0)
+        distal = missing.any(axis=0) & (distance > DISTAL * distance.mean())
         dropped = (overlapping | distal) & (np.arange(len(distance)) != marker)
         data = np.where(dropped[None, :, None], 0.0, gapped)
-        rows = lost[:, marker]
-        whole = ~np.isnan(data).any(axis=(1, 2))
+        rows = missing[:, marker]
+        complete = ~np.isnan(data).any(axis=(1, 2))
         weights = np.exp(-(distance**2) / (2 * WEIGHT_SCALE**2))
         weights[marker] = MISSING_WEIGHT
-        filled[rows, marker] = _from_components(data[whole], data[rows], marker, weights)
+        filled[rows, marker] = _from_components(data[complete], data[rows], marker, weights)
     return filled
 
 
@@ -85,8 +85,8 @@ def _from_components(training: Array, query: Array, marker: int, weights: Array)
     N0[:, columns] = 0.0
     M0[:, columns] = 0.0
     V, V0 = _components(N), _components(N0)
-    n_kept = max(V[1], V0[1])
-    full, without = V[0][:, :n_kept], V0[0][:, :n_kept]
+    n_components = max(V[1], V0[1])
+    full, without = V[0][:, :n_components], V0[0][:, :n_components]
     estimate = M0 @ without @ (full.T @ without) @ full.T
     return np.asarray(mean[columns] + estimate[:, columns] / weight[columns])
 
@@ -94,8 +94,8 @@ def _from_components(training: Array, query: Array, marker: int, weights: Array)
 def _components(data: Array) -> tuple[Array, int]:
     values, vectors = np.linalg.eigh(data.T @ data)
     singular = np.sqrt(np.maximum(values[::-1], 0.0))
-    share = np.cumsum(singular) / singular.sum()
-    return vectors[:, ::-1], int(np.argmax(share >= KEPT)) + 1
+    energy = np.cumsum(singular) / singular.sum()
+    return vectors[:, ::-1], int(np.argmax(energy >= KEPT_ENERGY)) + 1
 
 
 def subspace_kalman(gapped: Array, frame_rate: float) -> Array:
@@ -104,27 +104,27 @@ def subspace_kalman(gapped: Array, frame_rate: float) -> Array:
     Burke and Lasenby (2016), doi:10.1016/j.jbiomech.2016.04.016.
     """
     filled = gapped.reshape(len(gapped), -1).copy()
-    seen = np.isfinite(filled)
-    whole = filled[seen.all(axis=1)]
-    mean = whole.mean(axis=0)
-    values, vectors = np.linalg.eigh(np.cov(whole.T))
-    n_kept = int(np.argmax(np.cumsum(values[::-1]) >= SUBSPACE_KEPT * values.sum())) + 1
-    V = vectors[:, ::-1][:, :n_kept]
-    scores = (whole - mean) @ V
+    observed = np.isfinite(filled)
+    complete = filled[observed.all(axis=1)]
+    mean = complete.mean(axis=0)
+    values, vectors = np.linalg.eigh(np.cov(complete.T))
+    n_components = int(np.argmax(np.cumsum(values[::-1]) >= SUBSPACE_ENERGY * values.sum())) + 1
+    V = vectors[:, ::-1][:, :n_components]
+    scores = (complete - mean) @ V
     steps = np.diff(scores, axis=0)
-    rest = max(float(values[:-n_kept].mean()), 1e-8)
+    rest = max(float(values[:-n_components].mean()), 1e-8)
     dynamics = Dynamics(
-        np.eye(n_kept),
+        np.eye(n_components),
         np.diag((steps**2).mean(axis=0)),
         V,
         rest * np.eye(len(mean)),
-        np.zeros(n_kept),
-        np.zeros(n_kept),
+        np.zeros(n_components),
+        np.zeros(n_components),
         np.diag(scores.var(axis=0)),
     )
-    rows = np.flatnonzero(~seen.all(axis=1))
+    rows = np.flatnonzero(~observed.all(axis=1))
     margin = round(AROUND * frame_rate)
     part = slice(max(rows[0] - margin, 0), rows[-1] + margin + 1)
     estimate = smooth(dynamics, filled[part] - mean) @ V.T + mean
-    filled[part] = np.where(seen[part], filled[part], estimate)
+    filled[part] = np.where(observed[part], filled[part], estimate)
     return filled.reshape(gapped.shape)

@@ -1,4 +1,4 @@
-"""Model averaging for lost markers (Tits, Tilmanne, Dutoit 2018), after reading its program.
+"""Model averaging for missing markers (Tits, Tilmanne, Dutoit 2018), after reading its program.
 
 "Robust and automatic motion-capture data recovery using soft skeleton constraints and model
 averaging", doi:10.1371/journal.pone.0199744: five estimates of each gap (interpolation,
@@ -19,7 +19,7 @@ RIGID = 0.05
 """Metres: markers whose distance varies more do not enter the global regression."""
 SPREAD = 0.3
 """Of the kernel regression, on standardised predictors."""
-MOST_FRAMES = 1000
+MAX_FRAMES = 1000
 SHELL = (0.01, 0.99)
 """Quantiles of the distances outside which estimates are pulled back."""
 
@@ -27,13 +27,13 @@ SHELL = (0.01, 0.99)
 def model_averaging(gapped: Array, frame_rate: float) -> Array:
     """Fill every gap; works relative to the mean marker (see `marker_fillers.centred`)."""
     filled = gapped.copy()
-    lost = np.isnan(gapped).any(axis=2)
+    missing = np.isnan(gapped).any(axis=2)
     by_components = principal_markers(gapped, frame_rate)
-    for marker in np.flatnonzero(lost.any(axis=0)):
-        gaps = _runs(lost[:, marker])
+    for marker in np.flatnonzero(missing.any(axis=0)):
+        gaps = _runs(missing[:, marker])
         for gap in gaps:
-            whole = slice(max(gap.start - 1, 0), gap.stop + 1)
-            present = ~lost[whole].any(axis=0)
+            with_ends = slice(max(gap.start - 1, 0), gap.stop + 1)
+            present = ~missing[with_ends].any(axis=0)
             present[marker] = False
             filled[gap, marker] = _averaged(gapped, marker, gap, present, by_components)
     return filled
@@ -42,13 +42,13 @@ def model_averaging(gapped: Array, frame_rate: float) -> Array:
 def _averaged(
     gapped: Array, marker: int, gap: slice, present: NDArray[np.bool_], by_components: Array
 ) -> Array:
-    seen = ~np.isnan(gapped).any(axis=(1, 2))
-    learned = np.flatnonzero(seen)[:: max(seen.sum() // MOST_FRAMES, 1)]
-    apart = np.linalg.norm(gapped - gapped[:, [marker]], axis=2)
-    varies = np.where(present, apart[learned].std(axis=0), np.inf)
+    complete = ~np.isnan(gapped).any(axis=(1, 2))
+    learned = np.flatnonzero(complete)[:: max(complete.sum() // MAX_FRAMES, 1)]
+    distances = np.linalg.norm(gapped - gapped[:, [marker]], axis=2)
+    varies = np.where(present, distances[learned].std(axis=0), np.inf)
     nearest = np.argsort(varies)[:3]
-    place, frames = _local_frames(gapped[:, nearest])
-    local = np.einsum("fji,fj->fi", frames, gapped[:, marker] - place)
+    origin, frames = _local_frames(gapped[:, nearest])
+    local = np.einsum("fji,fj->fi", frames, gapped[:, marker] - origin)
     shape = _shape_of(gapped[:, nearest])
     locals_ = [
         np.full_like(local, np.nan),
@@ -58,22 +58,24 @@ def _averaged(
     estimates = []
     for number, each in enumerate(locals_):
         joined = _interpolated(local, gap) if number == 0 else _joined(each, local, gap)
-        estimates.append(place[gap] + np.einsum("fij,fj->fi", frames[gap], joined))
+        estimates.append(origin[gap] + np.einsum("fij,fj->fi", frames[gap], joined))
     rigid = np.flatnonzero(varies < max(RIGID, np.sort(varies)[2] * 1.01))
     others = gapped[:, rigid].reshape(len(gapped), -1)
     linear = _regression(others, gapped[:, marker], learned)
     estimates.append(_joined(linear, gapped[:, marker], gap))
     estimates.append(_joined(by_components[:, marker], gapped[:, marker], gap, outside=False))
     references = gapped[gap][:, nearest]
-    known = apart[learned][:, nearest]
-    return _within_shells(_weighted(np.array(estimates), references, known), references, known)
+    samples = distances[learned][:, nearest]
+    return _within_shells(
+        _weighted(np.array(estimates), references, samples), references, samples
+    )
 
 
-def _weighted(estimates: Array, references: Array, known: Array) -> Array:
+def _weighted(estimates: Array, references: Array, samples: Array) -> Array:
     weights = np.ones(estimates.shape[:2])
-    for place in range(3):
-        distances = np.linalg.norm(estimates - references[:, place], axis=2)
-        weights *= _density(known[:, place], distances)
+    for index in range(3):
+        distances = np.linalg.norm(estimates - references[:, index], axis=2)
+        weights *= _density(samples[:, index], distances)
     weights = np.maximum(weights, 1e-200)
     weights /= weights.sum(axis=0)
     return np.einsum("ef,efi->fi", weights, estimates)
@@ -81,18 +83,18 @@ def _weighted(estimates: Array, references: Array, known: Array) -> Array:
 
 def _density(samples: Array, where: Array) -> Array:
     width = max(1.06 * samples.std() * len(samples) ** -0.2, 1e-5)
-    apart = (where[..., None] - samples) / width
-    return np.asarray(np.exp(-0.5 * apart**2).mean(axis=-1) / width)
+    distances = (where[..., None] - samples) / width
+    return np.asarray(np.exp(-0.5 * distances**2).mean(axis=-1) / width)
 
 
-def _within_shells(estimate: Array, references: Array, known: Array) -> Array:
-    low, high = np.quantile(known, SHELL, axis=0)
+def _within_shells(estimate: Array, references: Array, samples: Array) -> Array:
+    low, high = np.quantile(samples, SHELL, axis=0)
     for _ in range(10):
-        for place in range(3):
-            arm = estimate - references[:, place]
+        for index in range(3):
+            arm = estimate - references[:, index]
             length = np.linalg.norm(arm, axis=1, keepdims=True)
-            wanted = np.clip(length, low[place], high[place])
-            estimate = references[:, place] + arm * wanted / length
+            wanted = np.clip(length, low[index], high[index])
+            estimate = references[:, index] + arm * wanted / length
     return estimate
 
 
@@ -145,8 +147,8 @@ def _shape_of(three: Array) -> Array:
 
 def _interpolated(track: Array, gap: slice) -> Array:
     frames = np.arange(len(track))
-    seen = np.isfinite(track).all(axis=1)
-    columns = [np.interp(frames[gap], frames[seen], column[seen]) for column in track.T]
+    complete = np.isfinite(track).all(axis=1)
+    columns = [np.interp(frames[gap], frames[complete], column[complete]) for column in track.T]
     return np.stack(columns, axis=1)
 
 
@@ -162,10 +164,10 @@ def _joined(estimate: Array, track: Array, gap: slice, outside: bool = True) -> 
         next((miss for miss in order if miss is not None), np.zeros(3))
         for order in (misses, misses[::-1])
     )
-    share = (np.arange(gap.stop - gap.start) + 1.0)[:, None] / (gap.stop - gap.start + 1)
-    return np.asarray(estimate[gap] + (1 - share) * start + share * stop)
+    weight = (np.arange(gap.stop - gap.start) + 1.0)[:, None] / (gap.stop - gap.start + 1)
+    return np.asarray(estimate[gap] + (1 - weight) * start + weight * stop)
 
 
-def _runs(lost: NDArray[np.bool_]) -> list[slice]:
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], lost, [False]]).astype(int)))
+def _runs(missing: NDArray[np.bool_]) -> list[slice]:
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]]).astype(int)))
     return [slice(start, stop) for start, stop in edges.reshape(-1, 2)]

@@ -15,45 +15,45 @@ from numpy.typing import NDArray
 from solvers.arrays import Array
 from solvers.motion import Tracks
 
-from .whole_postures import WholePostures, learn_whole, resampled
+from .complete_postures import CompletePostures, learn_complete_postures, resampled
 
 Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
 class MotionVolumes:
-    n_moments: int = 32
+    n_samples: int = 32
     n_time_modes: int = 8
     n_joint_modes: int = 8
     frame_rate: float = 30.0
 
     def prepare(self, clips: Sequence[Tracks]) -> "VolumeLibrary":
-        whole, found = learn_whole(clips, self.frame_rate)
-        volumes = np.stack([volume(frames, self.n_moments) for frames in found])
+        complete, found = learn_complete_postures(clips, self.frame_rate)
+        volumes = np.stack([volume(frames, self.n_samples) for frames in found])
         times = _modes(np.moveaxis(volumes, 1, 0), self.n_time_modes)
         joints = _modes(np.moveaxis(volumes, 3, 0), self.n_joint_modes)
         cores = np.stack([core(each, times, joints) for each in volumes])
-        return VolumeLibrary(whole, cores, times, joints, self.n_moments)
+        return VolumeLibrary(complete, cores, times, joints, self.n_samples)
 
 
 @dataclass(frozen=True, eq=False)
 class VolumeLibrary:
-    whole: WholePostures
+    complete: CompletePostures
     cores: Array
     times: Array
     joints: Array
-    n_moments: int
+    n_samples: int
 
     def describe(self, tracks: Tracks) -> Array:
-        return core(volume(self.whole(tracks), self.n_moments), self.times, self.joints)
+        return core(volume(self.complete(tracks), self.n_samples), self.times, self.joints)
 
     def distances(self, query: Array, allowed: Flags) -> Array:
         return np.asarray(np.sqrt(((self.cores - query) ** 2).sum(axis=(1, 2, 3))))
 
 
-def volume(frames: Array, n_moments: int) -> Array:
+def volume(frames: Array, n_samples: int) -> Array:
     """Return the self-similarity of each joint, shape (n_moments, n_moments, 20)."""
-    moments = resampled(frames, n_moments).reshape(n_moments, -1, 3)
+    moments = resampled(frames, n_samples).reshape(n_samples, -1, 3)
     return np.asarray(np.linalg.norm(moments[:, None] - moments[None], axis=-1))
 
 

@@ -30,10 +30,10 @@ def constant(features: Array, offsets: Array) -> Predict:
 
 def ridge(features: Array, offsets: Array) -> Predict:
     """Linear regression with ridge."""
-    usual, mean = features.mean(axis=0), offsets.mean(axis=0)
-    X = features - usual
+    center, mean = features.mean(axis=0), offsets.mean(axis=0)
+    X = features - center
     W = np.linalg.solve(X.T @ X + RIDGE * np.eye(X.shape[1]), X.T @ (offsets - mean))
-    return lambda new: mean + (new - usual) @ W
+    return lambda new: mean + (new - center) @ W
 
 
 def random_forest(features: Array, offsets: Array) -> Predict:
@@ -63,13 +63,13 @@ def gaussian_process(features: Array, offsets: Array) -> Predict:
 
 
 def nearest_mean(examples: Array) -> Predict:
-    """Mean of the examples that are nearest to what was seen."""
+    """Mean of the examples nearest to the observed joints."""
     search = NearestNeighbors(n_neighbors=N_NEIGHBOURS).fit(examples)
     return lambda new: examples[search.kneighbors(new, return_distance=False)].mean(axis=1)
 
 
 def principal_projection(examples: Array) -> Predict:
-    """What was seen, projected on the principal components of the examples."""
+    """The observed joints, projected on the principal components of the examples."""
     mean = examples.mean(axis=0)
     axes = np.linalg.svd(examples - mean, full_matrices=False)[2][:N_COMPONENTS]
     return lambda new: mean + (new - mean) @ axes.T @ axes

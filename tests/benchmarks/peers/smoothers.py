@@ -68,13 +68,13 @@ def hampel_gcv_spline(noisy: Array, frame_rate: float) -> Array:
 
 
 def gcv_spline_over_gaps(gapped: Array, frame_rate: float) -> Array:
-    """Smoothing spline through what is seen (NaN = not seen), which also bridges the gaps."""
+    """Smoothing spline through observed samples (NaN = missing), which also bridges gaps."""
     result = gapped.copy()
     patterns, which = np.unique(np.isfinite(gapped), axis=1, return_inverse=True)
     for number in np.flatnonzero(patterns.sum(axis=0) > 3):
-        seen, columns = patterns[:, number], np.flatnonzero(which.ravel() == number)
-        times = np.flatnonzero(seen).astype(float)
-        smooth = _smoothed(gapped[np.ix_(seen, columns)], *demmler_reinsch(tuple(times)))
+        observed, columns = patterns[:, number], np.flatnonzero(which.ravel() == number)
+        times = np.flatnonzero(observed).astype(float)
+        smooth = _smoothed(gapped[np.ix_(observed, columns)], *demmler_reinsch(tuple(times)))
         natural = CubicSpline(times, smooth, bc_type="natural")
         result[:, columns] = natural(np.arange(len(gapped)))
     return result

@@ -3,7 +3,7 @@
 [DGL09] Deng, Gu, Li (2009). Perceptually consistent example-based human motion retrieval. I3D.
 Written from what [ZH14] says of it and from its abstract: the body is a hierarchy of parts, the
 postures of each part are clustered into patterns, a clip becomes one string of patterns for
-each part, and clips whose strings have long pieces in common are alike.
+each part, and clips whose strings have long common substrings are similar.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from sklearn.cluster import KMeans
 from solvers.arrays import Array
 from solvers.motion import Tracks
 
-from .whole_postures import WholePostures, learn_whole
+from .complete_postures import CompletePostures, learn_complete_postures
 
 Flags = NDArray[np.bool_]
 String = tuple[int, ...]
@@ -38,7 +38,7 @@ class StringMatching:
     frame_rate: float = 30.0
 
     def prepare(self, clips: Sequence[Tracks]) -> "StringLibrary":
-        whole, found = learn_whole(clips, self.frame_rate)
+        complete, found = learn_complete_postures(clips, self.frame_rate)
         frames = np.concatenate(found)
         patterns = [
             KMeans(self.n_patterns, n_init=1, random_state=0)
@@ -47,28 +47,28 @@ class StringMatching:
             for joints in PARTS
         ]
         strings = [strings_of(each, patterns) for each in found]
-        return StringLibrary(whole, patterns, strings)
+        return StringLibrary(complete, patterns, strings)
 
 
 @dataclass(frozen=True, eq=False)
 class StringLibrary:
-    whole: WholePostures
+    complete: CompletePostures
     patterns: list[Array]
     strings: list[list[String]]
 
     def describe(self, tracks: Tracks) -> list[String]:
-        return strings_of(self.whole(tracks), self.patterns)
+        return strings_of(self.complete(tracks), self.patterns)
 
     def distances(self, query: list[String], allowed: Flags) -> Array:
         result = np.zeros(len(self.strings))
-        for place in np.flatnonzero(allowed):
-            pairs = zip(query, self.strings[place], PARTS.values(), strict=True)
-            result[place] = -sum(weight * shared(a, b) for a, b, weight in pairs)
+        for index in np.flatnonzero(allowed):
+            pairs = zip(query, self.strings[index], PARTS.values(), strict=True)
+            result[index] = -sum(weight * common_fraction(a, b) for a, b, weight in pairs)
         return result
 
 
 def strings_of(frames: Array, patterns: list[Array]) -> list[String]:
-    """Return the string of each part: its patterns in turn, repetitions once."""
+    """Return the string of each part: its sequence of patterns, repetitions once."""
     strings = []
     for joints, centres in zip(PARTS, patterns, strict=True):
         nearest = cdist(_of(frames, joints), centres).argmin(axis=1)
@@ -76,7 +76,7 @@ def strings_of(frames: Array, patterns: list[Array]) -> list[String]:
     return strings
 
 
-def shared(a: String, b: String) -> float:
+def common_fraction(a: String, b: String) -> float:
     """Return the length of the longest common piece, over the mean length of both."""
     lengths = np.zeros(len(b) + 1, dtype=int)
     second, longest = np.array(b), 0

@@ -8,11 +8,11 @@ Slide: speed of both feet over the ground, of the slowest point of the sole, whi
 stands (contacts detected on the input). Carrying: the same while the simulated foot carries
 more than a tenth of the weight, whatever the input's contacts are. Deepest: how far the body's
 surface is under the ground at worst, and in the worst 1 % of the frames. Lengths: largest
-change of a bone's length. Jerk: mean third derivative of the joints' places. Distance: of the
-joints from the input, mean and 95th percentile. Speed: seconds of take for one second of one
-processor. Help: force from outside as a share of the weight. Impossible: what of the change of
-momentum neither gravity nor a push within friction by ground that is touched could give, mean,
-as a share of the weight. The ground is under the feet of each take.
+change of a bone's length. Jerk: mean third derivative of the joints' positions. Distance: of
+the joints from the input, mean and 95th percentile. Speed: seconds of take for one second of
+one processor. Help: force from outside as a fraction of the weight. Impossible: what of the
+change of momentum neither gravity nor a push within friction by ground that is touched could
+give, mean, as a fraction of the weight. The ground is under the feet of each take.
 """
 
 import argparse
@@ -47,7 +47,7 @@ from .physics_momentum import impossible_force
 
 DATA = Path(__file__).resolve().parents[4] / "shared" / "data"
 CARRIES = 0.1
-"""Share of the weight."""
+"""Fraction of the weight."""
 STRENGTHS = (0.25, 0.5, 1.0)
 LONGEST = 600
 """Frames of a take."""
@@ -105,8 +105,8 @@ def clips(title: str, at_most: int) -> Iterator[Motion]:
     elif folder == "mocap/hdm05":
         files = [f for f in files if f.suffix == ".amc"]
     files = [file for file in files if file.name.startswith(beginnings)]
-    for place in np.linspace(0, len(files) - 1, min(at_most, len(files))).astype(int):
-        motion = motion_of(files[place])
+    for index in np.linspace(0, len(files) - 1, min(at_most, len(files))).astype(int):
+        motion = motion_of(files[index])
         yield motion.slice(1, min(motion.n_frames, LONGEST))
 
 
@@ -156,7 +156,7 @@ def row(motion: Motion, result: Motion, simulated: Simulated, speed: float = np.
     depths = np.maximum(-measure_clearance(body, result, simulated.ground), 0.0)
     seconds = motion.n_frames * motion.dt
     before, after = (forward_kinematics(each).positions for each in (motion, result))
-    apart = np.linalg.norm(after - before, axis=-1)[:, list(body.joints)]
+    displacements = np.linalg.norm(after - before, axis=-1)[:, list(body.joints)]
     jerks = np.linalg.norm(np.diff(after, 3, axis=0) * motion.frame_rate**3, axis=-1)
     is_input = result is motion
     return Row((
@@ -166,8 +166,8 @@ def row(motion: Motion, result: Motion, simulated: Simulated, speed: float = np.
         1000 * np.percentile(depths, 99),
         1000 * length_change(result, after),
         jerks.mean(),
-        1000 * apart.mean(),
-        1000 * np.percentile(apart, 95),
+        1000 * displacements.mean(),
+        1000 * np.percentile(displacements, 95),
         100 * impossible_force(body, result, simulated.ground),
         np.nan if is_input else 100 * simulated.followed.mean(),
         np.nan if is_input else 100 * simulated.support.mean(),

@@ -32,11 +32,11 @@ def centre_of_mass(body: PhysicsBody, motion: Motion) -> Array:
 
 
 def impossible_force(body: PhysicsBody, motion: Motion, ground: float) -> float:
-    """Return the mean force that the ground cannot give, as a share of the weight.
+    """Return the mean force that the ground cannot give, as a fraction of the weight.
 
     The change of momentum, less gravity, must come from the ground: nothing while no part is
     near it, and else a push within the cone of friction. What is left over is impossible. A
-    fifth of a second at either end is not looked at, since nothing is known of what was before
+    fifth of a second at either end is ignored, since the motion is unknown before
     and after.
     """
     centre = gaussian_filter1d(

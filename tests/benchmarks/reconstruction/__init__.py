@@ -1,1 +1,1 @@
-"""Reconstruct and its parts, on recordings with known truth."""
+"""Reconstruct and its parts, on recordings with ground truth."""

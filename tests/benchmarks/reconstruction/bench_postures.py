@@ -1,4 +1,4 @@
-"""Postures from a library: parts used, energies, lost joints; large libraries.
+"""Postures from a library: parts used, energies, missing joints; large libraries.
 
     python -m tests.benchmarks.reconstruction.bench_postures          # about five minutes
     python -m tests.benchmarks.reconstruction.bench_postures --dev    # clips to tune on
@@ -6,7 +6,7 @@
     python -m tests.benchmarks.reconstruction.bench_postures --search # large libraries alone
 
 Libraries are of other persons than the clips: CMU walkers for development and one actor of
-HDM05. "Lost" joints are taken out of the capture; all methods get the mask. Interpolation
+HDM05. "Missing" joints are taken out of the capture; all methods get the mask. Interpolation
 knows both ends of a loss, as does ours but for "causal". Only one loss in each take.
 """
 
@@ -62,8 +62,8 @@ def main() -> None:
         tables.append(part.energies(optical[::3]))
         _say("parts, energies")
         for title, found in zip(titles, (optical, kinect), strict=True):
-            tables += part.lost_joints(title, found)
-            _say(f"lost joints, {title}")
+            tables += part.missing_joints(title, found)
+            _say(f"missing joints, {title}")
     Report(chosen.docs).part("postures", tables, perf_counter() - started)
 
 
@@ -74,21 +74,21 @@ def growth() -> str:
     rows = {}
     for size in SIZES:
         directions, changes = _mixed(library, size, random)
-        asked, speeds = _mixed(library, N_QUERIES, random)
+        postures, speeds = _mixed(library, N_QUERIES, random)
         body = build_body_postures(directions, changes, ADULT_BONE_LENGTHS_M)
-        query = _query(build_body_postures(asked, speeds, ADULT_BONE_LENGTHS_M), random)
+        query = _query(build_body_postures(postures, speeds, ADULT_BONE_LENGTHS_M), random)
         groups = group_postures(directions)
         index = index_postures(body, groups)
         started = perf_counter()
         found, _ = nearest_postures(index, query)
-        quick = perf_counter() - started
-        whole = index_postures(body, 0 * groups)
+        fast = perf_counter() - started
+        exact = index_postures(body, 0 * groups)
         started = perf_counter()
-        truth, _ = nearest_postures(whole, query, n_looked_at=size)
+        truth, _ = nearest_postures(exact, query, n_looked_at=size)
         slow = perf_counter() - started
-        shared = [len(set(a) & set(b)) / 30 for a, b in zip(found, truth, strict=True)]
-        times = [1e3 * each / N_QUERIES for each in (quick, slow)]
-        rows[f"{size:,}"] = [*map(number, times), f"{np.mean(shared):.3f}"]
+        overlaps = [len(set(a) & set(b)) / 30 for a, b in zip(found, truth, strict=True)]
+        times = [1e3 * each / N_QUERIES for each in (fast, slow)]
+        rows[f"{size:,}"] = [*map(number, times), f"{np.mean(overlaps):.3f}"]
     header = ["postures", "ours, ms per frame", "each pose, ms", "true neighbors found"]
     return "**Search in large libraries** (30 neighbors)\n\n" + table(header, rows) + "\n"
 
@@ -96,15 +96,15 @@ def growth() -> str:
 def _mixed(
     library: PostureLibrary, size: int, random: np.random.Generator
 ) -> tuple[Single, Single]:
-    """More postures: each between two alike ones of the library, with limbs of others."""
+    """More postures: each between two similar ones of the library, with limbs of others."""
     first = random.integers(library.n_postures, size=size)
     limbs = random.integers(library.n_postures, size=(size, 4))
     directions, changes = library.directions[first].copy(), library.changes[first].copy()
     for limb in range(4):
-        place = slice(4 + 4 * limb, 8 + 4 * limb)
+        bones = slice(4 + 4 * limb, 8 + 4 * limb)
         swapped = random.uniform(size=size) < 0.3
-        directions[swapped, place] = library.directions[limbs[swapped, limb], place]
-        changes[swapped, place] = library.changes[limbs[swapped, limb], place]
+        directions[swapped, bones] = library.directions[limbs[swapped, limb], bones]
+        changes[swapped, bones] = library.changes[limbs[swapped, limb], bones]
     directions = directions + random.normal(scale=0.05, size=directions.shape)
     directions[:, 0] = 0.0
     sizes = np.linalg.norm(directions, axis=-1, keepdims=True)
@@ -113,11 +113,11 @@ def _mixed(
 
 
 def _query(body: BodyPostures, random: np.random.Generator) -> PostureQuery:
-    trust = random.uniform(0.5, 1.0, size=body.positions.shape[:2])
-    for frame, limb in enumerate(random.integers(5, size=len(trust))):
-        trust[frame, 4 + 4 * limb : 8 + 4 * limb] = 0.0
+    reliability = random.uniform(0.5, 1.0, size=body.positions.shape[:2])
+    for frame, limb in enumerate(random.integers(5, size=len(reliability))):
+        reliability[frame, 4 + 4 * limb : 8 + 4 * limb] = 0.0
     wide = (each.astype(np.float64) for each in (body.positions, body.speeds))
-    return PostureQuery(*wide, trust, 0.2)
+    return PostureQuery(*wide, reliability, 0.2)
 
 
 def _say(what: str) -> None:

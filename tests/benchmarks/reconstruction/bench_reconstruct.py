@@ -4,7 +4,7 @@
     make bench-reconstruct ARGUMENTS="--takes 1"             # a tenth of the takes
     make bench-reconstruct ARGUMENTS="--part kinect --docs"  # docs/benchmarks_reconstruction.md
 
-Priors are learned without the subject that they are tried on, and kept under build/reconstruct.
+Priors are learned without the tested subject, and cached in build/reconstruct.
 """
 
 import argparse
@@ -34,7 +34,7 @@ RELIABILITY = "reliability"
 
 
 def main() -> None:
-    """Print the tables of the parts that are asked for."""
+    """Print the tables of the requested parts."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parts = [*PARTS, RELIABILITY]
     parser.add_argument("--part", choices=parts, action="append", help="all by default")

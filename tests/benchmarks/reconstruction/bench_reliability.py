@@ -31,8 +31,8 @@ from .part_reliability import (
     Pair,
     area_under_curve,
     areas_by_subject,
-    doubts,
-    doubts_left_out,
+    error_scores,
+    error_scores_by_subject,
     fit_model,
     read_pairs,
     signs_of,
@@ -83,7 +83,7 @@ def areas(pairs: list[Pair]) -> str:
     rows: dict[str, list[str]] = {}
     for causal in (False, True):
         signs = [signs_of(pair.recording, causal) for pair in pairs]
-        measures = dict(doubts(pairs, causal))
+        measures = dict(error_scores(pairs, causal))
         measures["path: distance from the smoothed path"] = [each.deviation for each in signs]
         measures["lengths: maximum error"] = [each.length_error for each in signs]
         for name, error_probability in measures.items():
@@ -93,15 +93,15 @@ def areas(pairs: list[Pair]) -> str:
                 [areas_by_subject(pairs, error_probability, limit) for limit in LIMITS],
             )
         left_out = [
-            areas_by_subject(pairs, doubts_left_out(pairs, signs, limit), limit)
+            areas_by_subject(pairs, error_scores_by_subject(pairs, signs, limit), limit)
             for limit in LIMITS
         ]
         _put_areas(rows, "default, subject left out", left_out)
     error = np.concatenate([pair.error.ravel() for pair in pairs])
-    shares = " and ".join(f"{np.nanmean(error > limit):.1%}" for limit in LIMITS)
+    fractions = " and ".join(f"{np.nanmean(error > limit):.1%}" for limit in LIMITS)
     columns = [f"{when}, > {100 * limit:.0f} cm" for when in WHEN for limit in LIMITS]
     head = (
-        f"**Area under the ROC curve** of detecting joint errors above 5 and 10 cm ({shares}"
+        f"**Area under the ROC curve** of detecting joint errors above 5 and 10 cm ({fractions}"
         f" of all), {len(pairs)} takes of UI-PRMD; mean over subjects (worst subject)\n\n"
     )
     return head + table(["measure", *columns], rows) + "\n"
@@ -121,7 +121,7 @@ def calibration(pairs: list[Pair]) -> str:
     error = np.concatenate([pair.error.ravel() for pair in pairs])
     rows: dict[str, list[str]] = {}
     for limit in LIMITS:
-        left_out = doubts_left_out(pairs, signs, limit)
+        left_out = error_scores_by_subject(pairs, signs, limit)
         error_probability = np.concatenate([each.ravel() for each in left_out])[
             np.isfinite(error)
         ]
@@ -170,25 +170,27 @@ MEASURES: dict[str, Callable[..., np.ndarray]] = {
 
 def _agreement(takes: list[JointRecording]) -> list[str]:
     found = [measure_reliability(take, settings=EYES_CLOSED) for take in takes]
-    seen = [take.tracks.visible for take in takes]
+    visible = [take.tracks.visible for take in takes]
     inferred = np.concatenate([
-        _doubted(take)[known] for take, known in zip(takes, seen, strict=True)
+        _low_confidence(take)[is_visible]
+        for take, is_visible in zip(takes, visible, strict=True)
     ])
     cells = [f"{inferred.mean():.1%}"]
     for measure in MEASURES.values():
         error_probability = [
-            1.0 - measure(each)[known] for each, known in zip(found, seen, strict=True)
+            1.0 - measure(each)[is_visible]
+            for each, is_visible in zip(found, visible, strict=True)
         ]
         cells.append(f"{area_under_curve(np.concatenate(error_probability), inferred):.3f}")
     return cells
 
 
 def _has_flags(take: object) -> bool:
-    return isinstance(take, JointRecording) and _doubted(take).any()
+    return isinstance(take, JointRecording) and _low_confidence(take).any()
 
 
-def _doubted(take: JointRecording) -> np.ndarray:
-    """Tell which joints the device doubts: by its state, or by its confidence."""
+def _low_confidence(take: JointRecording) -> np.ndarray:
+    """Return which joints have low confidence by the device: by its state or its confidence."""
     if take.tracking_state is not None:
         return take.tracking_state < TRACKED
     if take.tracks.confidence is not None:

@@ -1,4 +1,4 @@
-"""Takes of UI-PRMD with joints lost, hidden, shaken or swapped, and which these are."""
+"""Takes of UI-PRMD with missing, hidden, shaken or swapped joints, and which these are."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from solvers.motion.humanoid.posture_joints import (
     posture_joint_indices,
 )
 
-from .kinect_folds import seen_of
+from .kinect_folds import observed_postures
 from .kinect_pairs import Pair
 
 Flags = NDArray[np.bool_]
@@ -24,7 +24,7 @@ LIMBS = {"arm": (4, 5, 6), "leg": (12, 13, 14, 15), "both arms": (4, 5, 6, 8, 9,
 """Numbers of `POSTURE_JOINTS`; this sensor tells no ends of hands."""
 COUNTS = (1, 2, 4, 8)
 SECONDS = (0.5, 1.0, 2.0)
-LEAST_SEEN = 4
+MIN_OBSERVED_FRAMES = 4
 """Frames before and after what is damaged."""
 SHAKEN = (5, 6, 9, 10, 13, 14, 17, 18)
 JUMPS = (0.05, 0.15)
@@ -51,12 +51,12 @@ class Damaged:
     where: Flags
 
 
-def lost(pair: Pair, random: np.random.Generator) -> Iterator[Damaged]:
-    """Lose some joints at random, or whole limbs, once in the take."""
-    observed = np.flatnonzero(np.isfinite(seen_of(pair)).all(axis=(0, 2)))
+def with_missing_joints(pair: Pair, random: np.random.Generator) -> Iterator[Damaged]:
+    """Remove some joints at random, or complete limbs, once in the take."""
+    observed = np.flatnonzero(np.isfinite(observed_postures(pair)).all(axis=(0, 2)))
     for seconds in SECONDS:
         n = round(seconds * pair.kinect.frame_rate)
-        if n + 2 * LEAST_SEEN >= pair.kinect.n_frames:
+        if n + 2 * MIN_OBSERVED_FRAMES >= pair.kinect.n_frames:
             continue
         choices = {str(n): random.choice(observed, n, replace=False) for n in COUNTS}
         for what, joints in {**choices, **LIMBS}.items():
@@ -67,8 +67,8 @@ def lost(pair: Pair, random: np.random.Generator) -> Iterator[Damaged]:
 def hidden(pair: Pair) -> Iterator[Damaged]:
     """Lose the joints that the sensor would have to see through the body."""
     for view, angle in VIEWS.items():
-        where = occluded(seen_of(pair), pair.kinect.frame_rate, angle)
-        where &= (~where).sum(axis=0) >= LEAST_SEEN
+        where = occluded(observed_postures(pair), pair.kinect.frame_rate, angle)
+        where &= (~where).sum(axis=0) >= MIN_OBSERVED_FRAMES
         if where.any():
             yield Damaged(view, "as long as hidden", without(pair, where), where)
 
@@ -77,28 +77,28 @@ def shaken(pair: Pair, random: np.random.Generator) -> Iterator[Damaged]:
     """Let two joints jump in each frame of a stretch."""
     for seconds in (0.3, 1.0):
         n = round(seconds * pair.kinect.frame_rate)
-        if n + 2 * LEAST_SEEN >= pair.kinect.n_frames:
+        if n + 2 * MIN_OBSERVED_FRAMES >= pair.kinect.n_frames:
             continue
         where = _stretch(pair, n, random.choice(SHAKEN, 2, replace=False), random)
         jumps = random.normal(size=(*where.shape, 3))
         jumps *= random.uniform(*JUMPS, where.shape)[..., None] / np.linalg.norm(
             jumps, axis=-1, keepdims=True
         )
-        moved = seen_of(pair) + np.where(where[..., None], jumps, 0.0)
+        moved = observed_postures(pair) + np.where(where[..., None], jumps, 0.0)
         yield Damaged("vibration", f"{seconds:g} s", _with(pair, moved), where)
 
 
 def swapped(pair: Pair, random: np.random.Generator) -> Iterator[Damaged]:
     """Exchange left and right limbs for half a second."""
     n = round(0.5 * pair.kinect.frame_rate)
-    if n + 2 * LEAST_SEEN >= pair.kinect.n_frames:
+    if n + 2 * MIN_OBSERVED_FRAMES >= pair.kinect.n_frames:
         return
     for what, (left, right) in zip(("arms", "legs"), SWAPS, strict=True):
         where = _stretch(pair, n, np.array(left + right), random)
-        moved, seen = seen_of(pair), seen_of(pair)
+        moved, original = observed_postures(pair), observed_postures(pair)
         rows = np.flatnonzero(where.any(axis=1))
-        moved[np.ix_(rows, left)] = seen[np.ix_(rows, right)]
-        moved[np.ix_(rows, right)] = seen[np.ix_(rows, left)]
+        moved[np.ix_(rows, left)] = original[np.ix_(rows, right)]
+        moved[np.ix_(rows, right)] = original[np.ix_(rows, left)]
         yield Damaged(f"swapped {what}", "0.5 s", _with(pair, moved), where)
 
 
@@ -140,20 +140,20 @@ def _behind(sensor: Array, joint: Array, one: Array, other: Array, radius: float
 
 def without(pair: Pair, where: Flags) -> Pair:
     """Take joints out of the recording."""
-    return _with(pair, np.where(where[..., None], np.nan, seen_of(pair)))
+    return _with(pair, np.where(where[..., None], np.nan, observed_postures(pair)))
 
 
 def _with(pair: Pair, moved: Array) -> Pair:
     positions = pair.kinect.tracks.positions.copy()
-    for role, place in posture_joint_indices(pair.kinect.names).items():
-        positions[:, place] = moved[:, POSTURE_JOINTS.index(role)]
+    for role, index in posture_joint_indices(pair.kinect.names).items():
+        positions[:, index] = moved[:, POSTURE_JOINTS.index(role)]
     tracks = pair.kinect.tracks.with_positions(positions)
     return replace(pair, kinect=pair.kinect.with_tracks(tracks))
 
 
 def _stretch(pair: Pair, n: int, joints: Array, random: np.random.Generator) -> Flags:
     n_frames = pair.kinect.n_frames
-    start = random.integers(LEAST_SEEN, n_frames - n - LEAST_SEEN + 1)
+    start = random.integers(MIN_OBSERVED_FRAMES, n_frames - n - MIN_OBSERVED_FRAMES + 1)
     where = np.zeros((n_frames, N_JOINTS), bool)
     where[start : start + n, joints] = True
     return where

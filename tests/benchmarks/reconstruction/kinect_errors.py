@@ -15,22 +15,22 @@ def compared(made: Array, truth: Array) -> tuple[Array, Array, Array]:
     off = made - truth
     between = off - off[:, ABOVE]
     between[:, 0] = np.nan
-    known = np.isfinite(off).any(axis=(0, 2))
-    usual = np.zeros((N_JOINTS, 3))
-    usual[known] = np.nanmean(off[:, known], axis=0)
+    is_known = np.isfinite(off).any(axis=(0, 2))
+    mean_error = np.zeros((N_JOINTS, 3))
+    mean_error[is_known] = np.nanmean(off[:, is_known], axis=0)
     absolute, relative, free = (
-        np.linalg.norm(one, axis=-1) for one in (off, between, off - usual)
+        np.linalg.norm(one, axis=-1) for one in (off, between, off - mean_error)
     )
     return absolute, relative, free
 
 
-def apart_free(made: Array, truth: Array) -> Array:
-    """Return errors of the way from the joint above beside their means, (n_frames, 20)."""
+def bone_direction_errors(made: Array, truth: Array) -> Array:
+    """Return errors of the vector from the parent joint, less their means, (n_frames, 20)."""
     off = made - truth
     between = off - off[:, ABOVE]
     between[:, 0] = np.nan
-    known = np.isfinite(between).any(axis=(0, 2))
-    between[:, known] -= np.nanmean(between[:, known], axis=0)
+    is_known = np.isfinite(between).any(axis=(0, 2))
+    between[:, is_known] -= np.nanmean(between[:, is_known], axis=0)
     return np.asarray(np.linalg.norm(between, axis=-1))
 
 

@@ -1,4 +1,4 @@
-"""UI-PRMD without one subject at a time: what the others teach is kept under build/reconstruct.
+"""UI-PRMD without one subject at a time; models of the others are cached in build/reconstruct.
 
 Delete that folder after a change of how priors are learned.
 """
@@ -26,7 +26,7 @@ from solvers.reconstruction.residual_correction.learn_confidence import (
 from .kinect_pairs import Pair, read_pairs
 from .posture_sources import cmu_library, exercise_library, joined
 
-KEPT = Path(__file__).resolve().parents[3] / "build" / "reconstruct"
+CACHE = Path(__file__).resolve().parents[3] / "build" / "reconstruct"
 SUBJECTS = ("s01", "s02", "s03", "s04", "s05")
 PRIORS = {
     ResidualMethod.HIERARCHICAL: ResidualPriorSettings(),
@@ -65,7 +65,7 @@ def residual_prior(subject: str, method: ResidualMethod) -> ResidualPrior:
 @cache
 def confident_prior(subject: str) -> ResidualPrior:
     """Return the same with a confidence that was learned by leaving each of the others out."""
-    path = KEPT / f"confident_{subject}.npz"
+    path = CACHE / f"confident_{subject}.npz"
     if not path.exists():
         found = [_tried(subject, one) for one in SUBJECTS if one != subject]
         prior = residual_prior(subject, ResidualMethod.HIERARCHICAL)
@@ -84,7 +84,7 @@ def _tried(subject: str, other: str) -> Array:
 
 
 def _taught(method: ResidualMethod, without: tuple[str, ...]) -> ResidualPrior:
-    path = KEPT / f"{method.value}_{'_'.join(without)}.npz"
+    path = CACHE / f"{method.value}_{'_'.join(without)}.npz"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
         teachers = others(*without)
@@ -103,9 +103,11 @@ def posture_library(subject: str, others_too: bool = True) -> PostureLibrary:
     Or, without the others too, its CMU captures alone.
     """
     if not others_too:
-        return _kept("cmu", cmu_library)
-    mine = _kept(f"exercises_{subject}", lambda: exercise_library(_postures_of_others(subject)))
-    return joined(_kept("cmu", cmu_library), mine)
+        return _cached("cmu", cmu_library)
+    mine = _cached(
+        f"exercises_{subject}", lambda: exercise_library(_postures_of_others(subject))
+    )
+    return joined(_cached("cmu", cmu_library), mine)
 
 
 def _postures_of_others(subject: str) -> list[Pair]:
@@ -113,8 +115,8 @@ def _postures_of_others(subject: str) -> list[Pair]:
     return [pair for pair in pairs() if pair.subject != subject]
 
 
-def _kept(name: str, build: Callable[[], PostureLibrary]) -> PostureLibrary:
-    path = KEPT / f"{name}.npz"
+def _cached(name: str, build: Callable[[], PostureLibrary]) -> PostureLibrary:
+    path = CACHE / f"{name}.npz"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
         build().save(path)
@@ -122,10 +124,10 @@ def _kept(name: str, build: Callable[[], PostureLibrary]) -> PostureLibrary:
 
 
 def truth_of(pair: Pair) -> Array:
-    """Return the true joints of postures, (n_frames, 20, 3); NaN where not known."""
+    """Return the true joints of postures, (n_frames, 20, 3); NaN where unknown."""
     return posture_positions(pair.truth)
 
 
-def seen_of(pair: Pair) -> Array:
+def observed_postures(pair: Pair) -> Array:
     """Return what the Kinect saw of them."""
     return posture_positions(pair.kinect)

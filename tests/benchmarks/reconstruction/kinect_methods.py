@@ -35,10 +35,10 @@ from ..peers.posture_regression import Predict
 from ..peers.smoothers import gaussian, gcv_spline
 from .kinect_folds import (
     confident_prior,
+    observed_postures,
     others,
     posture_library,
     residual_prior,
-    seen_of,
     truth_of,
 )
 from .kinect_pairs import Pair
@@ -46,7 +46,7 @@ from .kinect_pairs import Pair
 Method = Callable[[Pair, str], Array]
 """From a take, and who was left out, to the joints of postures (n_frames, 20, 3)."""
 
-CALM = 1 / 30
+SMOOTHING_S = 1 / 30
 """Seconds of the Gaussian that regressions see through, as our prior does."""
 SMOOTHING = 0.05
 """Seconds; predictions of regressions are smoothed like ours."""
@@ -57,57 +57,61 @@ TERMS_PUBLISHED = ThreeTermSettings()
 
 
 def raw(pair: Pair, subject: str) -> Array:
-    """As it was seen."""
-    return seen_of(pair)
+    """Return the recorded joints."""
+    return observed_postures(pair)
 
 
 def filtered(
     smooth: Callable[..., Array], pair: Pair, subject: str, **settings: float
 ) -> Array:
     """Smooth each coordinate on its own."""
-    seen = seen_of(pair)
-    known = np.isfinite(seen).all(axis=(0, 2))
-    flat = seen[:, known].reshape(len(seen), -1)
-    seen[:, known] = smooth(flat, pair.kinect.frame_rate, **settings).reshape(len(seen), -1, 3)
-    return seen
+    observed = observed_postures(pair)
+    is_observed = np.isfinite(observed).all(axis=(0, 2))
+    flat = observed[:, is_observed].reshape(len(observed), -1)
+    observed[:, is_observed] = smooth(flat, pair.kinect.frame_rate, **settings).reshape(
+        len(observed), -1, 3
+    )
+    return observed
 
 
 def regressed(learn: Callable[[Array, Array], Predict], pair: Pair, subject: str) -> Array:
     """Add the offsets that a regression predicts in the frame of the heading."""
-    calm = smooth_postures(pair.kinect, CALM)
-    columns = _tracked(calm.features)
-    offsets = np.zeros_like(calm.features)
+    smoothed = smooth_postures(pair.kinect, SMOOTHING_S)
+    columns = _tracked(smoothed.features)
+    offsets = np.zeros_like(smoothed.features)
     predict = _regression(learn, subject)
-    predicted = predict(calm.features[:, columns[1:]].reshape(len(offsets), -1))
+    predicted = predict(smoothed.features[:, columns[1:]].reshape(len(offsets), -1))
     offsets[:, columns] = predicted.reshape(len(offsets), -1, 3)
-    return _calmed(calm.positions + calm.rotate_to_world(offsets), pair)
+    return _smoothed(smoothed.positions + smoothed.rotate_to_world(offsets), pair)
 
 
 def from_examples(learn: Callable[[Array], Predict], pair: Pair, subject: str) -> Array:
-    """Take the whole posture from true postures of others, brought to the actor's size."""
-    calm = smooth_postures(pair.kinect, CALM)
-    columns = _tracked(calm.features)
+    """Take the complete posture from true postures of others, scaled to the actor's size."""
+    smoothed = smooth_postures(pair.kinect, SMOOTHING_S)
+    columns = _tracked(smoothed.features)
     predict = _memory(learn, subject)
-    made = np.full_like(calm.features, np.nan)
-    found = predict(calm.features[:, columns].reshape(len(made), -1))
-    seen = calm.normalized.postures[:, columns]
-    size = np.linalg.norm(seen) / np.linalg.norm(calm.features[:, columns])
+    made = np.full_like(smoothed.features, np.nan)
+    found = predict(smoothed.features[:, columns].reshape(len(made), -1))
+    observed = smoothed.normalized.postures[:, columns]
+    size = np.linalg.norm(observed) / np.linalg.norm(smoothed.features[:, columns])
     made[:, columns] = size * found.reshape(len(made), -1, 3)
-    return _calmed(calm.normalized.to_world(made), pair)
+    return _smoothed(smoothed.normalized.to_world(made), pair)
 
 
 @cache
 def _regression(learn: Callable[[Array, Array], Predict], subject: str) -> Predict:
     features, offsets = [], []
     for pair in others(subject):
-        calm = smooth_postures(pair.kinect, CALM)
-        columns = _tracked(calm.features)
-        off = rotate_about_vertical(truth_of(pair) - calm.positions, -calm.normalized.headings)
-        features.append(calm.features[::THINNED, columns[1:]])
+        smoothed = smooth_postures(pair.kinect, SMOOTHING_S)
+        columns = _tracked(smoothed.features)
+        off = rotate_about_vertical(
+            truth_of(pair) - smoothed.positions, -smoothed.normalized.headings
+        )
+        features.append(smoothed.features[::THINNED, columns[1:]])
         offsets.append(off[::THINNED, columns])
     X, Y = (_flat(parts) for parts in (features, offsets))
-    known = np.isfinite(Y).all(axis=1)
-    return learn(X[known], Y[known])
+    is_observed = np.isfinite(Y).all(axis=1)
+    return learn(X[is_observed], Y[is_observed])
 
 
 @cache
@@ -115,9 +119,11 @@ def _memory(learn: Callable[[Array], Predict], subject: str) -> Predict:
     examples = []
     for pair in others(subject):
         plain = normalize_postures(truth_of(pair), pair.truth.frame_rate)
-        seen = smooth_postures(pair.kinect, CALM)
-        size = np.nanmax(np.abs(seen.features)) / np.nanmax(np.abs(seen.normalized.postures))
-        columns = _tracked(seen.features)
+        observed = smooth_postures(pair.kinect, SMOOTHING_S)
+        size = np.nanmax(np.abs(observed.features)) / np.nanmax(
+            np.abs(observed.normalized.postures)
+        )
+        columns = _tracked(observed.features)
         examples.append(size * plain.postures[::THINNED, columns])
     X = _flat(examples)
     return learn(X[np.isfinite(X).all(axis=1)])
@@ -133,7 +139,7 @@ def _flat(parts: list[Array]) -> Array:
     return together.reshape(len(together), -1)
 
 
-def _calmed(positions: Array, pair: Pair) -> Array:
+def _smoothed(positions: Array, pair: Pair) -> Array:
     ones = np.ones((len(positions), N_JOINTS))
     return smooth_trajectories(positions, ones, SMOOTHING * pair.kinect.frame_rate)
 
@@ -197,7 +203,7 @@ METHODS: dict[str, Method] = {
         f"Gaussian, {n} frames": partial(filtered, gaussian, sigma_frames=float(n))
         for n in (1, 2, 3)
     },
-    "one-euro (causal)": partial(filtered, one_euro, slowest=2.0, haste=5.0),
+    "one-euro (causal)": partial(filtered, one_euro, slowest=2.0, speed_gain=5.0),
     "Kalman, constant velocity, smoothed": partial(filtered, constant_velocity, agility=0.5),
     "GCV smoothing spline": partial(filtered, gcv_spline),
     "constant offset": partial(regressed, posture_regression.constant),

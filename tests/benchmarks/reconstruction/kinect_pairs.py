@@ -1,13 +1,13 @@
-"""Takes of UI-PRMD, seen by a Kinect and by an optical system, with true joints from markers.
+"""Takes of UI-PRMD, by a Kinect and by an optical system, with true joints from markers.
 
 The ten takes of exercise 3 by subject 1 are left out: their markers do not belong to what the
-Kinect saw. Laid over each other as rigid bodies they are 26 cm apart, but 8 cm when one is
+Kinect saw. After a rigid fit their distance is 26 cm, but 8 cm when one is
 mirrored: the repetitions that were paired are of the other leg.
 
 Nor do the markers of four more exercises by that subject. In these he stands all the time, and
-his ankles are 9 to 20 cm apart as the Kinect has it, 39 to 48 cm as the markers have it, never
-less than 20 cm off; of others, who stand so too, some frame is at most 15 cm off. Nobody learns
-from these 40 takes; they are still compared, and figures without them are given as well.
+the distance of his ankles is 9 to 20 cm by the Kinect and 39 to 48 cm by the markers, never
+less than 20 cm off; of others, who stand so too, some frame is at most 15 cm off. No method
+learns from these 40 takes; they are still compared, and figures without them are given as well.
 """
 
 from collections.abc import Iterator
@@ -47,7 +47,7 @@ class Pair:
 
 
 def read_pairs(folder: Path = FOLDER) -> Iterator[Pair]:
-    """Yield all takes in which any joint is known, but the mispaired ones."""
+    """Yield all takes with any true joint, except the mispaired ones."""
     for path in sorted(folder.glob("*.npz")):
         if path.stem.startswith(MISPAIRED):
             continue
@@ -58,39 +58,39 @@ def read_pairs(folder: Path = FOLDER) -> Iterator[Pair]:
 
 
 def true_joints(markers: Tracks) -> Tracks:
-    """Place the joints that UI-PRMD names amid the markers of Plug-in Gait.
+    """Estimate the joints that UI-PRMD names from the markers of Plug-in Gait.
 
     Hips: Harrington et al. 2007. Elbows, knees, ankles and toes are where their markers are; a
     constant offset of a joint is no sensor error; measures without it are given as well.
     """
-    spots = {name: markers.positions[:, place] for place, name in enumerate(markers.names)}
+    by_name = {name: markers.positions[:, index] for index, name in enumerate(markers.names)}
 
     def middle(*names: str) -> Array:
-        return np.mean([spots[name] for name in names], axis=0)
+        return np.mean([by_name[name] for name in names], axis=0)
 
-    places = {"Waist": middle("LASI", "RASI", "LPSI", "RPSI"), "Spine": middle("T10", "STRN")}
-    places["Neck"] = middle("C7", "CLAV")
-    places["Chest"] = (places["Neck"] + middle("C7", "CLAV", "T10", "STRN")) / 2.0
-    places["HeadTip"] = middle("LFHD", "RFHD", "LBHD", "RBHD")
-    places["Head"] = (places["Neck"] + places["HeadTip"]) / 2.0
-    places["LUpLeg"], places["RUpLeg"] = _hips(spots)
+    joints = {"Waist": middle("LASI", "RASI", "LPSI", "RPSI"), "Spine": middle("T10", "STRN")}
+    joints["Neck"] = middle("C7", "CLAV")
+    joints["Chest"] = (joints["Neck"] + middle("C7", "CLAV", "T10", "STRN")) / 2.0
+    joints["HeadTip"] = middle("LFHD", "RFHD", "LBHD", "RBHD")
+    joints["Head"] = (joints["Neck"] + joints["HeadTip"]) / 2.0
+    joints["LUpLeg"], joints["RUpLeg"] = _hips(by_name)
     for side in ("L", "R"):
-        shoulder = spots[f"{side}SHO"] - BELOW_SHOULDER
-        places[f"{side}Collar"] = 0.6 * places["Neck"] + 0.4 * shoulder
-        places[f"{side}UpArm"] = shoulder
-        places[f"{side}ForeArm"] = spots[f"{side}ELB"]
-        places[f"{side}Hand"] = middle(f"{side}WRA", f"{side}WRB")
-        places[f"{side}LowLeg"] = spots[f"{side}KNE"]
-        places[f"{side}Foot"] = spots[f"{side}ANK"]
-        places[f"{side}Toes"] = spots[f"{side}TOE"]
-    return Tracks(NAMES, np.stack([places[name] for name in NAMES], axis=1), markers.frame_rate)
+        shoulder = by_name[f"{side}SHO"] - BELOW_SHOULDER
+        joints[f"{side}Collar"] = 0.6 * joints["Neck"] + 0.4 * shoulder
+        joints[f"{side}UpArm"] = shoulder
+        joints[f"{side}ForeArm"] = by_name[f"{side}ELB"]
+        joints[f"{side}Hand"] = middle(f"{side}WRA", f"{side}WRB")
+        joints[f"{side}LowLeg"] = by_name[f"{side}KNE"]
+        joints[f"{side}Foot"] = by_name[f"{side}ANK"]
+        joints[f"{side}Toes"] = by_name[f"{side}TOE"]
+    return Tracks(NAMES, np.stack([joints[name] for name in NAMES], axis=1), markers.frame_rate)
 
 
-def _hips(spots: dict[str, Array]) -> tuple[Array, Array]:
+def _hips(by_name: dict[str, Array]) -> tuple[Array, Array]:
     """Left and right hip joint by the regression of Harrington et al. 2007."""
-    front = (spots["LASI"] + spots["RASI"]) / 2.0
-    across = spots["LASI"] - spots["RASI"]
-    along = front - (spots["LPSI"] + spots["RPSI"]) / 2.0
+    front = (by_name["LASI"] + by_name["RASI"]) / 2.0
+    across = by_name["LASI"] - by_name["RASI"]
+    along = front - (by_name["LPSI"] + by_name["RPSI"]) / 2.0
     width, depth = (np.nanmedian(np.linalg.norm(one, axis=-1)) for one in (across, along))
     x = across / np.linalg.norm(across, axis=-1, keepdims=True)
     y = along - (along * x).sum(axis=-1, keepdims=True) * x

@@ -22,9 +22,9 @@ from tests.benchmarks.reconstruction.posture_synthesis import solve_sequentially
 
 from ..peers.gap_fillers import linear
 from ..shared.tables import number, table
-from .kinect_damage import Damaged, hidden, lost
+from .kinect_damage import Damaged, hidden, with_missing_joints
 from .kinect_errors import compared, jerk
-from .kinect_folds import SUBJECTS, posture_library, seen_of, takes_of, truth_of
+from .kinect_folds import SUBJECTS, observed_postures, posture_library, takes_of, truth_of
 from .kinect_methods import Method, by_postures, by_published_postures, by_reconstruct, joints
 from .part_losses import REPETITIONS, bridged_by, error
 
@@ -52,7 +52,7 @@ CLASSES: dict[str, Method] = {
 }
 
 
-class Asked(NamedTuple):
+class EnergyCase(NamedTuple):
     """A damaged take, and what any weights of the energy are to solve."""
 
     damaged: Damaged
@@ -63,14 +63,14 @@ class Asked(NamedTuple):
 
 def energy_weights() -> str:
     """Return the error without each term of the energy, in the same natural posture spaces."""
-    asked = list(_all_asked())
+    cases = list(_all_cases())
     rows = {}
     for name, weights in VARIANTS.items():
-        found = [_measured(one, weights) for one in asked]
-        gone, apart, lengths, jerks = (
+        found = [_measured(one, weights) for one in cases]
+        missing, directions, lengths, jerks = (
             np.concatenate(each) for each in zip(*found, strict=True)
         )
-        cells = [f"{100.0 * np.nanmean(one):.2f}" for one in (gone, apart, lengths)]
+        cells = [f"{100.0 * np.nanmean(one):.2f}" for one in (missing, directions, lengths)]
         rows[name] = [*cells, number(float(np.nanmean(jerks)))]
     columns = [
         "missing joints, cm",
@@ -80,67 +80,69 @@ def energy_weights() -> str:
     ]
     head = (
         "**Weights of the energy of [SHJT13]** (eq. 10 to 15; published 1, .5, 1.5, .25;"
-        f" Gauss-Newton), joints missing for {SECONDS}, {len(asked)} cases, subject left"
+        f" Gauss-Newton), joints missing for {SECONDS}, {len(cases)} cases, subject left"
         " out\n\n"
     )
     return head + table(["terms", *columns], rows) + "\n"
 
 
-def _all_asked() -> Iterator[Asked]:
+def _all_cases() -> Iterator[EnergyCase]:
     for subject in SUBJECTS:
         library = posture_library(subject)
         for count, pair in enumerate(takes_of(subject, *REPETITIONS)[::EVERY]):
-            for damaged in lost(pair, np.random.default_rng(count)):
+            for damaged in with_missing_joints(pair, np.random.default_rng(count)):
                 if damaged.seconds == SECONDS and damaged.what in {"4", "arm", "leg"}:
-                    seen, rate = seen_of(damaged.pair), pair.kinect.frame_rate
-                    trust = np.isfinite(seen).all(axis=-1).astype(np.float64)
-                    plain = normalize_postures(seen, rate, trust)
-                    lengths = estimate_bone_lengths(plain.postures, trust)
+                    observed, rate = observed_postures(damaged.pair), pair.kinect.frame_rate
+                    reliability = np.isfinite(observed).all(axis=-1).astype(np.float64)
+                    plain = normalize_postures(observed, rate, reliability)
+                    lengths = estimate_bone_lengths(plain.postures, reliability)
                     body = build_body_postures(library.directions, library.changes, lengths)
                     index = index_postures(body, library.groups)
                     speeds = rates_from_directions(plain.postures, rate)
-                    query = PostureQuery(plain.postures, speeds, trust, 0.0)
-                    places, _ = nearest_postures(index, query)
-                    spaces = local_pca(body.positions[places].astype(np.float64))
-                    demands = EnergyTargets(plain.postures, trust, spaces.neighbors, lengths)
-                    yield Asked(damaged, plain, spaces, demands)
+                    query = PostureQuery(plain.postures, speeds, reliability, 0.0)
+                    indices, _ = nearest_postures(index, query)
+                    spaces = local_pca(body.positions[indices].astype(np.float64))
+                    demands = EnergyTargets(
+                        plain.postures, reliability, spaces.neighbors, lengths
+                    )
+                    yield EnergyCase(damaged, plain, spaces, demands)
 
 
-def _measured(asked: Asked, weights: EnergyWeights) -> tuple[Array, Array, Array, Array]:
-    """Return errors of lost joints, of ways from the joint above, of lengths, and jerks."""
+def _measured(case: EnergyCase, weights: EnergyWeights) -> tuple[Array, Array, Array, Array]:
+    """Return errors of missing joints, of vectors from parent joints, of lengths, and jerks."""
     demands = EnergyTargets(
-        asked.demands.observed, asked.demands.reliability, asked.demands.neighbors,
-        asked.demands.lengths, weights=weights,
+        case.demands.observed, case.demands.reliability, case.demands.neighbors,
+        case.demands.lengths, weights=weights,
     )  # fmt: skip
-    made = asked.plain.to_world(solve_sequentially(asked.spaces, demands)[0])
-    pair = asked.damaged.pair
-    _, apart, _ = compared(made, truth_of(pair))
+    made = case.plain.to_world(solve_sequentially(case.spaces, demands)[0])
+    pair = case.damaged.pair
+    _, directions, _ = compared(made, truth_of(pair))
     return (
-        error(made, asked.damaged),
-        apart.ravel(),
+        error(made, case.damaged),
+        directions.ravel(),
         segment_lengths(made)[:, 1:].std(axis=0),
         jerk(made, pair).ravel(),
     )
 
 
 def classes() -> str:
-    """Return table IV of [SHJT13]: eq. 18, the worse the body is seen."""
+    """Return table IV of [SHJT13]: eq. 18, for worse and worse views of the body."""
     errors: dict[str, dict[str, list[Array]]] = {name: {} for name in CLASSES}
     for subject in SUBJECTS:
         for pair in takes_of(subject, *REPETITIONS)[::EVERY]:
-            nothing = np.zeros(seen_of(pair).shape[:2], bool)
+            nothing = np.zeros(observed_postures(pair).shape[:2], bool)
             cases = [("(a) unchanged", Damaged("", "", pair, nothing))]
             cases += [(f"(b) hidden, {one.what}", one) for one in hidden(pair)]
             cases += [
                 (f"(c) 8 joints missing, {one.seconds}", one)
-                for one in lost(pair, np.random.default_rng(0))
+                for one in with_missing_joints(pair, np.random.default_rng(0))
                 if one.what == "8"
             ]
             for what, damaged in cases:
                 for name, method in CLASSES.items():
                     made = method(damaged.pair, subject)
-                    _, apart, _ = compared(made, truth_of(pair))
-                    errors[name].setdefault(what, []).append(apart.ravel())
+                    _, directions, _ = compared(made, truth_of(pair))
+                    errors[name].setdefault(what, []).append(directions.ravel())
     columns = sorted(dict.fromkeys(what for each in errors.values() for what in each))
     rows = {
         name: [f"{100.0 * np.nanmean(np.concatenate(each[what])):.2f}" for what in columns]

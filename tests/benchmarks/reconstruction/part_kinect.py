@@ -20,7 +20,7 @@ from solvers.reconstruction.reliability.scores import posture_reliability
 from solvers.reconstruction.residual_correction.correct_postures import predict_positions
 
 from ..shared.tables import number, table
-from .kinect_errors import apart_free, compared, jerk
+from .kinect_errors import bone_direction_errors, compared, jerk
 from .kinect_folds import SUBJECTS, posture_library, residual_prior, takes_of, truth_of
 from .kinect_methods import METHODS, Method, raw
 from .kinect_pairs import Pair
@@ -28,7 +28,7 @@ from .kinect_pairs import Pair
 LENGTHS = (3.0, 10.0, 30.0)
 """Seconds."""
 WORST = 0.1
-"""Share of the joint-frames, those in which raw is most off."""
+"""Fraction of the joint-frames: those with the largest raw errors."""
 COLUMNS = (
     "absolute, cm", "vector from the parent, cm", "offset-free, cm", "worst tenth, cm",
     "jerk, m/s³", "ms per frame",
@@ -62,14 +62,14 @@ OTHERWISE_TITLE = (
 
 @dataclass(frozen=True, eq=False)
 class Errors:
-    """What a method made of all takes, metres; NaN where the truth is not known."""
+    """Errors of a method in all takes, metres; NaN where the truth is unknown."""
 
     absolute: Array
     relative: Array
     free: Array
-    """Beside the mean offset of each joint and take."""
-    apart: Array
-    """The same of the way from the joint above."""
+    """Relative to the mean offset of each joint and take."""
+    directions: Array
+    """The same for the vector from the parent joint."""
     jerk: float
     seconds: float
     subjects: NDArray[np.str_]
@@ -81,7 +81,7 @@ class Errors:
 def errors_of(method: Method, n_repetitions: int) -> Errors:
     """Let a method rebuild the first repetitions of all exercises of all subjects."""
     found: list[tuple[Array, Array, Array]] = []
-    apart = []
+    directions = []
     jerks, whose, which, matched, taken = [], [], [], [], 0.0
     for subject in SUBJECTS:
         takes = takes_of(subject, n_repetitions)
@@ -91,14 +91,14 @@ def errors_of(method: Method, n_repetitions: int) -> Errors:
             made = method(pair, subject)
             taken += process_time() - started
             found.append(compared(made, truth_of(pair)))
-            apart.append(apart_free(made, truth_of(pair)))
+            directions.append(bone_direction_errors(made, truth_of(pair)))
             jerks.append(jerk(made, pair))
             whose += [subject] * len(made)
             which += [pair.name[:3]] * len(made)
             matched += [pair.matched] * len(made)
     absolute, relative, free = (np.concatenate(parts) for parts in zip(*found, strict=True))
     return Errors(
-        absolute, relative, free, np.concatenate(apart),
+        absolute, relative, free, np.concatenate(directions),
         float(np.nanmean(np.concatenate(jerks))), taken, np.array(whose), np.array(which),
         np.array(matched),
     )  # fmt: skip
@@ -163,8 +163,8 @@ def _otherwise(found: Errors, before: Errors) -> list[str]:
         _centimetres(found.free[sound]),
         _centimetres(found.free[worst]),
         _centimetres(found.relative),
-        _centimetres(found.apart),
-        _centimetres(found.apart[_worst(before.apart)]),
+        _centimetres(found.directions),
+        _centimetres(found.directions[_worst(before.directions)]),
     ]
 
 
@@ -206,13 +206,13 @@ def _to_and_fro(recording: JointRecording, n_frames: int) -> JointRecording:
 def _correction_alone(takes: list[Pair]) -> str:
     """Return the time of prediction and smoothing, without reliability and skeleton."""
     taken, n_frames = 0.0, 0
-    usual = CorrectionSettings()
+    default = CorrectionSettings()
     for pair in takes:
         prior = residual_prior(pair.subject, ResidualMethod.HIERARCHICAL)
-        trust = measure_reliability(pair.kinect)
-        weights = posture_reliability(pair.kinect, trust.combined)
+        reliability = measure_reliability(pair.kinect)
+        weights = posture_reliability(pair.kinect, reliability.combined)
         started = process_time()
-        predict_positions(pair.kinect, prior, weights, usual)
+        predict_positions(pair.kinect, prior, weights, default)
         taken += process_time() - started
         n_frames += pair.kinect.n_frames
     each = 1e3 * taken / n_frames

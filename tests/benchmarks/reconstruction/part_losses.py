@@ -1,6 +1,6 @@
-"""Error on joints of UI-PRMD that are lost, hidden, shaken or swapped.
+"""Errors of joints of UI-PRMD that are missing, hidden, shaken or swapped.
 
-What is measured is the distance to the true joint beside the joint's mean offset over those
+The error is the distance to the true joint, less the joint's mean offset over those
 frames of the take that are not damaged.
 """
 
@@ -19,10 +19,10 @@ from ..peers.gap_fillers import cubic, linear, pchip
 from ..peers.one_euro import one_euro
 from ..peers.smoothers import gaussian, hampel_gcv_spline
 from ..shared.tables import table
-from .kinect_damage import Damaged, hidden, lost, shaken, swapped
-from .kinect_folds import SUBJECTS, others, seen_of, takes_of, truth_of
+from .kinect_damage import Damaged, hidden, shaken, swapped, with_missing_joints
+from .kinect_folds import SUBJECTS, observed_postures, others, takes_of, truth_of
 from .kinect_methods import (
-    CALM,
+    SMOOTHING_S,
     THINNED,
     Method,
     by_postures,
@@ -36,67 +36,69 @@ from .kinect_pairs import Pair
 
 N_NEIGHBOURS, N_COMPONENTS = 30, 20
 NOISE = 0.02
-"""Metres by which seen joints may lie beside the space of components."""
+"""Distance that observed joints may have from the space of components, metres."""
 REPETITIONS = (1, 1)
-"""How many of each exercise after how many: the second. A first one is doubtful."""
+"""How many of each exercise after how many: the second, since first ones are unreliable."""
 LINEAR = "linear interpolation"
 
 
 def hold(gapped: Array, frame_rate: float) -> Array:
-    """Stay where a joint was seen last."""
-    seen = np.isfinite(gapped)
-    last = np.maximum.accumulate(np.where(seen, np.arange(len(gapped))[:, None], 0), axis=0)
+    """Hold the last observed position of each joint."""
+    observed = np.isfinite(gapped)
+    last = np.maximum.accumulate(np.where(observed, np.arange(len(gapped))[:, None], 0), axis=0)
     return np.take_along_axis(gapped, last, axis=0)
 
 
 def bridged_by(
     fill: Callable[[Array, float], Array], pair: Pair, subject: str, in_body: bool = False
 ) -> Array:
-    """Fill the gaps of each coordinate, in the world or beside hips and heading."""
-    seen, rate = seen_of(pair), pair.kinect.frame_rate
+    """Fill the gaps of each coordinate, in the world or relative to hips and heading."""
+    observed, rate = observed_postures(pair), pair.kinect.frame_rate
     if not in_body:
-        return fill(seen.reshape(len(seen), -1), rate).reshape(seen.shape)
-    plain = normalize_postures(seen, rate, np.isfinite(seen).all(axis=-1).astype(float))
-    flat = plain.postures.reshape(len(seen), -1)
-    return plain.to_world(fill(flat, rate).reshape(seen.shape))
+        return fill(observed.reshape(len(observed), -1), rate).reshape(observed.shape)
+    plain = normalize_postures(observed, rate, np.isfinite(observed).all(axis=-1).astype(float))
+    flat = plain.postures.reshape(len(observed), -1)
+    return plain.to_world(fill(flat, rate).reshape(observed.shape))
 
 
 def by_example(complete: Callable[..., Array], pair: Pair, subject: str) -> Array:
     """Complete postures frame by frame from what the Kinect saw of other subjects."""
-    seen = seen_of(pair)
+    observed = observed_postures(pair)
     plain = normalize_postures(
-        seen, pair.kinect.frame_rate, np.isfinite(seen).all(axis=-1).astype(float)
+        observed, pair.kinect.frame_rate, np.isfinite(observed).all(axis=-1).astype(float)
     )
-    size = _size(smooth_postures(pair.kinect, CALM))
-    flat = size * plain.postures.reshape(len(seen), -1)
+    size = _size(smooth_postures(pair.kinect, SMOOTHING_S))
+    flat = size * plain.postures.reshape(len(observed), -1)
     observed = np.isfinite(flat)
-    examples = seen_examples(subject)
-    known = np.isfinite(examples).all(axis=0)
+    examples = sensor_examples(subject)
+    is_known = np.isfinite(examples).all(axis=0)
     result = flat.copy()
     patterns, which = np.unique(observed, axis=0, return_inverse=True)
     for number, pattern in enumerate(patterns):
         rows = np.flatnonzero(which.ravel() == number)
-        result[np.ix_(rows, ~pattern & known)] = complete(
-            examples, flat[rows][:, pattern], pattern, ~pattern & known
+        result[np.ix_(rows, ~pattern & is_known)] = complete(
+            examples, flat[rows][:, pattern], pattern, ~pattern & is_known
         )
-    made = plain.to_world(result.reshape(seen.shape) / size)
-    return np.where(np.isfinite(seen), seen, made)
+    made = plain.to_world(result.reshape(observed.shape) / size)
+    return np.where(np.isfinite(observed), observed, made)
 
 
-def nearest_mean(examples: Array, seen: Array, observed: Array, wanted: Array) -> Array:
+def nearest_mean(examples: Array, values: Array, observed: Array, wanted: Array) -> Array:
     """Mean of the nearest examples."""
-    known = examples[:, observed]
-    far = (known**2).sum(axis=1) - 2.0 * seen @ known.T
+    known_examples = examples[:, observed]
+    far = (known_examples**2).sum(axis=1) - 2.0 * values @ known_examples.T
     nearest = np.argpartition(far, N_NEIGHBOURS, axis=1)[:, :N_NEIGHBOURS]
     return examples[:, wanted][nearest].mean(axis=1)
 
 
-def principal(examples: Array, seen: Array, observed: Array, wanted: Array) -> Array:
+def principal(examples: Array, values: Array, observed: Array, wanted: Array) -> Array:
     """Most probable point in the space of principal components."""
     mean, axes, spread = examples.mean(axis=0), *_components(examples)
-    known = axes[:, observed]
+    known_axes = axes[:, observed]
     pull = np.diag(NOISE**2 / spread)
-    found = np.linalg.solve(known @ known.T + pull, known @ (seen - mean[observed]).T)
+    found = np.linalg.solve(
+        known_axes @ known_axes.T + pull, known_axes @ (values - mean[observed]).T
+    )
     return mean[wanted] + found.T @ axes[:, wanted]
 
 
@@ -110,15 +112,20 @@ def _components(examples: Array) -> tuple[Array, Array]:
 
 
 @cache
-def seen_examples(subject: str) -> Array:
-    """What the Kinect saw of the others, normalised and of usual size, (n, 60)."""
-    found = [smooth_postures(pair.kinect, CALM).features[::THINNED] for pair in others(subject)]
+def sensor_examples(subject: str) -> Array:
+    """Postures of the others by the Kinect, normalised and of default size, (n, 60)."""
+    found = [
+        smooth_postures(pair.kinect, SMOOTHING_S).features[::THINNED]
+        for pair in others(subject)
+    ]
     together = np.concatenate(found)
     return together.reshape(len(together), -1)
 
 
-def _size(calm: SmoothedPostures) -> float:
-    sizes = [np.nanmax(np.abs(one)) for one in (calm.features, calm.normalized.postures)]
+def _size(smoothed: SmoothedPostures) -> float:
+    sizes = [
+        np.nanmax(np.abs(one)) for one in (smoothed.features, smoothed.normalized.postures)
+    ]
     return float(sizes[0] / sizes[1])
 
 
@@ -141,10 +148,10 @@ OURS: dict[str, Method] = {
         by_reconstruct, method=ReconstructMethod.BOTH, others_too=False
     ),
 }
-CALMED: dict[str, Method] = {
+SMOOTHERS: dict[str, Method] = {
     "raw": raw,
     "Gaussian, 2 frames": partial(filtered, gaussian, sigma_frames=2.0),
-    "one-euro (causal)": partial(filtered, one_euro, slowest=2.0, haste=5.0),
+    "one-euro (causal)": partial(filtered, one_euro, slowest=2.0, speed_gain=5.0),
     "Hampel, GCV spline": partial(filtered, hampel_gcv_spline),
 }
 
@@ -153,10 +160,10 @@ def error(made: Array, damaged: Damaged) -> Array:
     """Distances on the damaged joints, metres, (n,)."""
     off = made - truth_of(damaged.pair)
     sound = np.where(damaged.where[..., None], np.nan, off)
-    known = np.isfinite(sound).any(axis=(0, 2))
-    usual = np.full(off.shape[1:], np.nan)
-    usual[known] = np.nanmean(sound[:, known], axis=0)
-    return np.asarray(np.linalg.norm(off - usual, axis=-1)[damaged.where])
+    is_known = np.isfinite(sound).any(axis=(0, 2))
+    mean_error = np.full(off.shape[1:], np.nan)
+    mean_error[is_known] = np.nanmean(sound[:, is_known], axis=0)
+    return np.asarray(np.linalg.norm(off - mean_error, axis=-1)[damaged.where])
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,10 +176,10 @@ class Found:
 
 
 def losses(n_repetitions: int) -> list[str]:
-    """Return tables of what was lost and of what was hidden."""
+    """Return tables of missing and of hidden joints."""
     methods = {**FILLED, **OURS}
     random, behind = (
-        errors_of(lost, methods, every=4),
+        errors_of(with_missing_joints, methods, every=4),
         errors_of(hidden, methods, every=2),
     )
     return [
@@ -186,7 +193,7 @@ def losses(n_repetitions: int) -> list[str]:
 
 def damages(n_repetitions: int) -> list[str]:
     """Return tables of joints that were shaken or swapped, without a word of the tracker."""
-    methods = {**CALMED, **OURS}
+    methods = {**SMOOTHERS, **OURS}
     jumpy, wrong = (
         errors_of(shaken, methods, every=3),
         errors_of(swapped, methods, every=3),
@@ -224,12 +231,15 @@ def errors_of(
 def errors_table(title: str, found: dict[str, list[Found]], by: Callable[[Found], str]) -> str:
     base = LINEAR if LINEAR in found else "raw"
     columns = list(dict.fromkeys(by(one) for one in found[base]))
-    usual = _mean(found[base])
+    baseline = _mean(found[base])
     rows = {}
     for name, all_found in found.items():
         cells = [_mean([one for one in all_found if by(one) == column]) for column in columns]
         overall = _mean(all_found)
-        rows[name] = [*map(_centimetres, [*cells, overall]), f"{overall / usual - 1.0:+.0%}"]
+        rows[name] = [
+            *map(_centimetres, [*cells, overall]),
+            f"{overall / baseline - 1.0:+.0%}",
+        ]
     n = sum(len(one.errors) for one in found[base])
     head = f"**{title}** (cm on these {n} joint-frames, offset-free)\n\n"
     return head + table(["method", *columns, "all", f"against {base}"], rows) + "\n"

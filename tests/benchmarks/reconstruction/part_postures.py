@@ -1,4 +1,4 @@
-"""Postures that come back from a library: parts used, energies, and joints that are lost."""
+"""Postures completed from a library: parts used, energies, and missing joints."""
 
 from collections.abc import Callable, Iterator
 from functools import cache, partial
@@ -43,16 +43,16 @@ from ..shared.tables import Scores
 
 Flags = NDArray[np.bool_]
 Method = Callable[[Array, Flags, PostureLibrary], Array]
-"""From true postures, which joints are lost, and a library to estimates."""
+"""Estimates from true postures, the mask of missing joints, and a library."""
 
 RATE = clips.FRAME_RATE
 KINECT_EXERCISES = ("m01", "m03", "m06", "m08")
 ARM, LEG, OTHER_LEG = (4, 5, 6, 7), (12, 13, 14, 15), (16, 17, 18, 19)
-LOST: dict[str, int | tuple[int, ...]] = {
+MISSING_JOINTS: dict[str, int | tuple[int, ...]] = {
     "1": 1, "2": 2, "4": 4, "8": 8, "arm": ARM, "leg": LEG, "legs": LEG + OTHER_LEG,
 }  # fmt: skip
 SECONDS = (0.25, 0.5, 1.0, 2.0)
-LEAST_SEEN = 4
+MIN_OBSERVED_FRAMES = 4
 """Frames before and after a loss."""
 PARTS = {
     "left hand, left foot": (6, 14),
@@ -122,35 +122,35 @@ def kinect_clips(dev: bool) -> tuple[Clip, ...]:
 
 def ours(
     postures: Array,
-    lost: Flags,
+    missing: Flags,
     library: PostureLibrary,
     settings: PostureSettings = DEFAULT_SETTINGS,
 ) -> Array:
-    """Reconstruct as the verb does, with all that is not lost trusted."""
-    seen = np.where(lost[..., None], np.nan, postures)
-    trust = np.isfinite(seen).all(axis=-1).astype(float)
+    """Reconstruct as the verb does, with full reliability of all observed joints."""
+    observed = np.where(missing[..., None], np.nan, postures)
+    reliability = np.isfinite(observed).all(axis=-1).astype(float)
     recording = JointRecording(
-        Tracks(SENSOR_JOINTS[Sensor.KINECT_V1], seen, RATE), None, Sensor.KINECT_V1
+        Tracks(SENSOR_JOINTS[Sensor.KINECT_V1], observed, RATE), None, Sensor.KINECT_V1
     )
     return reconstruct_postures(
         recording,
         library,
         settings=settings,
-        reliability=Reliability(trust, trust, trust, trust),
+        reliability=Reliability(reliability, reliability, reliability, reliability),
     ).tracks.positions
 
 
 def interpolated(
-    kind: str, in_body: bool, postures: Array, lost: Flags, library: PostureLibrary
+    kind: str, in_body: bool, postures: Array, missing: Flags, library: PostureLibrary
 ) -> Array:
     """Bridge each loss by a curve, in the world or relative to hips and heading."""
     if in_body:
-        seen = np.where(lost[..., None], np.nan, postures)
-        plain = normalize_postures(seen, RATE, 1.0 - lost)
-        return plain.to_world(interpolated(kind, False, plain.postures, lost, library))
+        observed = np.where(missing[..., None], np.nan, postures)
+        plain = normalize_postures(observed, RATE, 1.0 - missing)
+        return plain.to_world(interpolated(kind, False, plain.postures, missing, library))
     result, frames = postures.copy(), np.arange(len(postures))
-    for joint in np.flatnonzero(lost.any(axis=0)):
-        gone = lost[:, joint]
+    for joint in np.flatnonzero(missing.any(axis=0)):
+        gone = missing[:, joint]
         x, y = frames[~gone], postures[~gone, joint]
         if kind == "hold":
             result[gone, joint] = y[np.searchsorted(x, frames[gone]) - 1]
@@ -164,25 +164,27 @@ def interpolated(
 
 
 def from_neighbours(
-    project: bool, postures: Array, lost: Flags, library: PostureLibrary
+    project: bool, postures: Array, missing: Flags, library: PostureLibrary
 ) -> Array:
-    """Take lost joints from the mean of 30 neighbours, or from 20 components of all."""
-    seen = np.where(lost[..., None], np.nan, postures)
-    plain = normalize_postures(seen, RATE, 1.0 - lost)
-    body = build_body_postures(library.directions, library.changes, estimate_bone_lengths(seen))
+    """Take missing joints from the mean of 30 neighbors, or from 20 components of all."""
+    observed = np.where(missing[..., None], np.nan, postures)
+    plain = normalize_postures(observed, RATE, 1.0 - missing)
+    body = build_body_postures(
+        library.directions, library.changes, estimate_bone_lengths(observed)
+    )
     if project:
-        known = np.broadcast_to(body.positions, (1, *body.positions.shape))
-        space = local_pca(known[:, :: max(library.n_postures // 800, 1)])
+        candidates = np.broadcast_to(body.positions, (1, *body.positions.shape))
+        space = local_pca(candidates[:, :: max(library.n_postures // 800, 1)])
         made = _projected(space.means[0], space.axes[0], plain.postures)
     else:
-        query = PostureQuery(plain.postures, 0.0 * plain.postures, 1.0 - lost, 0.0)
-        places, _ = nearest_postures(index_postures(body, 0 * library.groups), query)
-        made = body.positions[places].mean(axis=1).astype(np.float64)
-    return np.where(lost[..., None], plain.to_world(made), postures)
+        query = PostureQuery(plain.postures, 0.0 * plain.postures, 1.0 - missing, 0.0)
+        indices, _ = nearest_postures(index_postures(body, 0 * library.groups), query)
+        made = body.positions[indices].mean(axis=1).astype(np.float64)
+    return np.where(missing[..., None], plain.to_world(made), postures)
 
 
 def _projected(mean: Array, axes: Array, postures: Array) -> Array:
-    """Least squares on what was seen."""
+    """Least squares on the observed joints."""
     result = np.empty_like(postures)
     for frame, flat in enumerate(postures.reshape(len(postures), -1)):
         observed = np.isfinite(flat)
@@ -205,17 +207,17 @@ METHODS: dict[str, Method] = {
 }
 
 
-def lost_joints(title: str, found: tuple[Clip, ...]) -> tuple[Scores, Scores]:
+def missing_joints(title: str, found: tuple[Clip, ...]) -> tuple[Scores, Scores]:
     """Error of missing joints by number and duration."""
     by_joints, by_seconds = (
         Scores(f"Missing joints, {title}, by {by}", "mm on the missing joints")
         for by in ("joints", "seconds")
     )
     for number, clip in enumerate(found):
-        for what, seconds, lost in _losses(clip.postures, np.random.default_rng(number)):
+        for what, seconds, missing in _losses(clip.postures, np.random.default_rng(number)):
             for name, method in METHODS.items():
-                made = method(clip.postures, lost, clip.library)
-                error = 1e3 * np.linalg.norm(made - clip.postures, axis=-1)[lost].mean()
+                made = method(clip.postures, missing, clip.library)
+                error = 1e3 * np.linalg.norm(made - clip.postures, axis=-1)[missing].mean()
                 case = f"{clip.name} {what} {seconds}"
                 by_joints.add(name, what, case, float(error))
                 by_seconds.add(name, f"{seconds} s", case, float(error))
@@ -225,19 +227,23 @@ def lost_joints(title: str, found: tuple[Clip, ...]) -> tuple[Scores, Scores]:
 
 
 def _losses(postures: Array, random: np.random.Generator) -> Iterator[tuple[str, float, Flags]]:
-    seen = np.flatnonzero(np.isfinite(postures).all(axis=(0, 2)))
+    observed = np.flatnonzero(np.isfinite(postures).all(axis=(0, 2)))
     for seconds in SECONDS:
         n = round(seconds * RATE)
-        if n + 2 * LEAST_SEEN >= len(postures):
+        if n + 2 * MIN_OBSERVED_FRAMES >= len(postures):
             continue
-        for what, which in LOST.items():
-            start = random.integers(LEAST_SEEN, len(postures) - n - LEAST_SEEN)
-            joints = (
-                random.choice(seen, which, replace=False) if isinstance(which, int) else which
+        for what, which in MISSING_JOINTS.items():
+            start = random.integers(
+                MIN_OBSERVED_FRAMES, len(postures) - n - MIN_OBSERVED_FRAMES
             )
-            lost = np.zeros(postures.shape[:2], bool)
-            lost[start : start + n, np.intersect1d(joints, seen)] = True
-            yield what, seconds, lost
+            joints = (
+                random.choice(observed, which, replace=False)
+                if isinstance(which, int)
+                else which
+            )
+            missing = np.zeros(postures.shape[:2], bool)
+            missing[start : start + n, np.intersect1d(joints, observed)] = True
+            yield what, seconds, missing
 
 
 def parts_used(title: str, found: tuple[Clip, ...]) -> Scores:
@@ -248,12 +254,12 @@ def parts_used(title: str, found: tuple[Clip, ...]) -> Scores:
     scores = Scores(f"Parts used, {title}", "cm, eq. 18")
     for clip in found:
         for column, parts in PARTS.items():
-            lost = np.ones(clip.postures.shape[:2], bool)
-            lost[:, [0, *parts]] = False
-            lost[0] = False
-            ways = {"ours": ours, "kNN mean": partial(from_neighbours, False)}
-            for name, method in ways.items():
-                made = method(clip.postures, lost, clip.library)
+            missing = np.ones(clip.postures.shape[:2], bool)
+            missing[:, [0, *parts]] = False
+            missing[0] = False
+            methods = {"ours": ours, "kNN mean": partial(from_neighbours, False)}
+            for name, method in methods.items():
+                made = method(clip.postures, missing, clip.library)
                 off = (made - made[:, PARENT_INDICES]) - (
                     clip.postures - clip.postures[:, PARENT_INDICES]
                 )
@@ -269,23 +275,23 @@ def energies(found: tuple[Clip, ...]) -> Scores:
     )
     solvers = {"Gauss-Newton": solve_sequentially, "published search": search_sequentially}
     for number, clip in enumerate(found):
-        lost = np.zeros(clip.postures.shape[:2], bool)
+        missing = np.zeros(clip.postures.shape[:2], bool)
         limb = (ARM, LEG, OTHER_LEG)[number % 3]
-        lost[len(lost) // 3 : 2 * len(lost) // 3, limb] = True
-        plain = normalize_postures(clip.postures, RATE, 1.0 - lost)
+        missing[len(missing) // 3 : 2 * len(missing) // 3, limb] = True
+        plain = normalize_postures(clip.postures, RATE, 1.0 - missing)
         lengths = np.nanmedian(segment_lengths(plain.postures), axis=0)
         library = clip.library
         body = build_body_postures(library.directions, library.changes, lengths)
         query = PostureQuery(
-            plain.postures, rates_from_directions(plain.postures, RATE), 1.0 - lost, 0.0
+            plain.postures, rates_from_directions(plain.postures, RATE), 1.0 - missing, 0.0
         )
-        places, _ = nearest_postures(index_postures(body, library.groups), query)
-        spaces = local_pca(body.positions[places].astype(np.float64))
-        asked = EnergyTargets(plain.postures, 1.0 - lost, spaces.neighbors, lengths)
+        indices, _ = nearest_postures(index_postures(body, library.groups), query)
+        spaces = local_pca(body.positions[indices].astype(np.float64))
+        targets = EnergyTargets(plain.postures, 1.0 - missing, spaces.neighbors, lengths)
         for name, solve in solvers.items():
             started = perf_counter()
-            _, found_energies = solve(spaces, asked)
-            taken = 1e3 * (perf_counter() - started) / len(lost)
-            scores.add(name, "energy", clip.name, 1e4 * float(found_energies.mean()))
+            _, solve_energies = solve(spaces, targets)
+            taken = 1e3 * (perf_counter() - started) / len(missing)
+            scores.add(name, "energy", clip.name, 1e4 * float(solve_energies.mean()))
             scores.add(name, "ms per frame", clip.name, taken, follows=False)
     return scores

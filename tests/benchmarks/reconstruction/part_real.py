@@ -1,4 +1,4 @@
-"""Recordings of other sensors, rooms and people, whose truth nobody knows: before and after."""
+"""Recordings of other sensors, rooms and people without ground truth: before and after."""
 
 from collections.abc import Callable
 from functools import partial
@@ -49,7 +49,7 @@ def takes_of(name: str) -> list[JointRecording]:
     """A few takes, evenly from all there are."""
     paths = sorted((DATA / "kinect" / name.split(",")[0]).glob(FILES[name]))
     chosen = np.unique(np.linspace(0, len(paths) - 1, N_FILES).round().astype(int))
-    found = [read_recording(paths[place]) for place in chosen]
+    found = [read_recording(paths[index]) for index in chosen]
     return [take for take in found if isinstance(take, JointRecording)]
 
 
@@ -98,10 +98,10 @@ def _skeleton(solve: Callable[[JointRecording], Reconstruction]) -> Callable[...
     def joints(take: JointRecording) -> Tracks:
         motion = solve(take).motion
         world = forward_kinematics(motion).positions
-        known = [name for name in take.names if name in motion.skeleton.names]
-        places = [motion.skeleton.names.index(name) for name in known]
+        shared_names = [name for name in take.names if name in motion.skeleton.names]
+        indices = [motion.skeleton.names.index(name) for name in shared_names]
         positions = np.full((motion.n_frames, take.n_joints, 3), np.nan)
-        positions[:, [take.names.index(name) for name in known]] = world[:, places]
+        positions[:, [take.names.index(name) for name in shared_names]] = world[:, indices]
         return take.tracks.with_positions(positions)
 
     return joints
@@ -123,11 +123,11 @@ def _row(
         reliable.append(moved[(reliability > SOUND) & np.isfinite(moved)])
         unreliable.append(moved[(reliability < WRONG) & np.isfinite(moved)])
     n_frames = sum(take.n_frames for take in takes)
-    ways = [np.concatenate(one) for one in (reliable, unreliable)]
+    jitter = [np.concatenate(one) for one in (reliable, unreliable)]
     figures = [
         100.0 * float(np.mean(lengths)),
         float(np.mean(jerks)),
-        *(100.0 * float(one.mean()) if len(one) else np.nan for one in ways),
+        *(100.0 * float(one.mean()) if len(one) else np.nan for one in jitter),
     ]
     return [*map(number, figures), f"{1e3 * taken / n_frames:.2f}"]
 

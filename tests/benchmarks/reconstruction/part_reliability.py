@@ -28,7 +28,7 @@ LIMITS = (0.05, 0.10)
 """Metres from the truth that are wrong."""
 FEWEST = 20
 """Wrong and right ones that there must be for a curve."""
-SHARES = (0.1, 0.15, 0.2, 0.3, 0.5)
+FRACTIONS = (0.1, 0.15, 0.2, 0.3, 0.5)
 FLOORS = (0.0002, 0.0003, 0.0005, 0.001, 0.002)
 
 
@@ -39,7 +39,7 @@ class Pair:
     name: str
     recording: JointRecording
     error: Array
-    """Metres beside the median offset of each joint, (n_frames, n_joints)."""
+    """Distance from the median offset of each joint in metres, (n_frames, n_joints)."""
 
     @property
     def subject(self) -> str:
@@ -52,8 +52,8 @@ def read_pairs(folder: Path) -> list[Pair]:
     pairs = []
     for pair in kinect_pairs.read_pairs(folder):
         off = pair.kinect.tracks.positions - pair.truth.positions
-        seen = np.isfinite(off).any(axis=(0, 2))
-        off[:, seen] -= np.nanmedian(off[:, seen], axis=0)
+        is_observed = np.isfinite(off).any(axis=(0, 2))
+        off[:, is_observed] -= np.nanmedian(off[:, is_observed], axis=0)
         pairs.append(Pair(pair.name, pair.kinect, np.linalg.norm(off, axis=-1)))
     return pairs
 
@@ -67,25 +67,25 @@ def area_under_curve(score: Array, wrong: Flags) -> float:
     return float(ranks / (n_wrong * n_right))
 
 
-def areas_by_subject(pairs: list[Pair], doubt: list[Array], limit: float) -> list[float]:
-    """Return for each subject how well doubt finds joints more than a limit off."""
+def areas_by_subject(pairs: list[Pair], scores: list[Array], limit: float) -> list[float]:
+    """Return for each subject how well the scores detect errors above a limit."""
     areas = []
     for subject in sorted({pair.subject for pair in pairs}):
-        mine = [place for place, pair in enumerate(pairs) if pair.subject == subject]
-        error = np.concatenate([pairs[place].error.ravel() for place in mine])
-        score = np.concatenate([doubt[place].ravel() for place in mine])
-        known = np.isfinite(error)
-        areas.append(area_under_curve(score[known], error[known] > limit))
+        mine = [index for index, pair in enumerate(pairs) if pair.subject == subject]
+        error = np.concatenate([pairs[index].error.ravel() for index in mine])
+        score = np.concatenate([scores[index].ravel() for index in mine])
+        is_known = np.isfinite(error)
+        areas.append(area_under_curve(score[is_known], error[is_known] > limit))
     return areas
 
 
-def doubts(pairs: list[Pair], causal: bool) -> Iterator[tuple[str, list[Array]]]:
+def error_scores(pairs: list[Pair], causal: bool) -> Iterator[tuple[str, list[Array]]]:
     """Yield each measure's name and 1 less reliability of every take."""
-    ways = {method: [] for method in ReliabilityMethod}
-    for pair, method in product(pairs, ways):
+    by_method = {method: [] for method in ReliabilityMethod}
+    for pair, method in product(pairs, by_method):
         settings = ReliabilitySettings(method=method, causal=causal)
-        ways[method].append(measure_reliability(pair.recording, settings=settings))
-    published = ways[ReliabilityMethod.PUBLISHED]
+        by_method[method].append(measure_reliability(pair.recording, settings=settings))
+    published = by_method[ReliabilityMethod.PUBLISHED]
     yield "behaviour term", [1.0 - found.behavior for found in published]
     yield "kinematics term", [1.0 - found.kinematics for found in published]
     yield (
@@ -94,7 +94,7 @@ def doubts(pairs: list[Pair], causal: bool) -> Iterator[tuple[str, list[Array]]]
     )
     yield (
         "default as it ships",
-        [1.0 - found.combined for found in ways[ReliabilityMethod.DEFAULT]],
+        [1.0 - found.combined for found in by_method[ReliabilityMethod.DEFAULT]],
     )
 
 
@@ -102,8 +102,8 @@ def signs_of(recording: JointRecording, causal: bool) -> ErrorIndicators:
     """Return what betrays errors in a take without tracking states."""
     positions, parents = recording.tracks.positions, np.array(recording.parents)
     lengths = parent_distances(positions, parents)
-    trust = recording.tracks.visible.astype(float)
-    reference = reference_lengths(lengths, np.zeros(len(positions), bool), trust)
+    visible = recording.tracks.visible.astype(float)
+    reference = reference_lengths(lengths, np.zeros(len(positions), bool), visible)
     return measure_error_indicators(
         positions, lengths - reference, parents, recording.frame_rate, causal
     )
@@ -112,34 +112,34 @@ def signs_of(recording: JointRecording, causal: bool) -> ErrorIndicators:
 def fit_model(signs: Iterable[ErrorIndicators], errors: Iterable[Array]) -> ErrorModel:
     """Fit a line to logarithms of errors, by least squares."""
     error = np.concatenate([each.ravel() for each in errors])
-    known = np.isfinite(error)
-    aim = np.log(error[known] + ONE_CENTIMETER)
+    is_known = np.isfinite(error)
+    aim = np.log(error[is_known] + ONE_CENTIMETER)
     both = list(signs)
     every = ErrorIndicators(
-        np.concatenate([each.deviation.ravel() for each in both])[known],
-        np.concatenate([each.length_error.ravel() for each in both])[known],
-        np.concatenate([each.jumps.ravel() for each in both])[known],
+        np.concatenate([each.deviation.ravel() for each in both])[is_known],
+        np.concatenate([each.length_error.ravel() for each in both])[is_known],
+        np.concatenate([each.jumps.ravel() for each in both])[is_known],
     )
     fits = []
-    for share, floor in product(SHARES, FLOORS):
-        sign = ErrorModel(share, floor, 0.0, 1.0, 1.0).combine(every)
+    for fraction, floor in product(FRACTIONS, FLOORS):
+        sign = ErrorModel(fraction, floor, 0.0, 1.0, 1.0).combine(every)
         slope, level = np.polyfit(sign, aim, 1)
         spread = float(np.std(aim - level - slope * sign))
-        fits.append(ErrorModel(share, floor, float(level), float(slope), spread))
+        fits.append(ErrorModel(fraction, floor, float(level), float(slope), spread))
     return min(fits, key=lambda fit: fit.spread)
 
 
-def doubts_left_out(
+def error_scores_by_subject(
     pairs: list[Pair], signs: list[ErrorIndicators], limit: float
 ) -> list[Array]:
     """Return 1 less the chance to be right, from models that know nothing of the subject."""
     found: dict[int, Array] = {}
     for subject in sorted({pair.subject for pair in pairs}):
-        known = [place for place, pair in enumerate(pairs) if pair.subject != subject]
+        training = [index for index, pair in enumerate(pairs) if pair.subject != subject]
         model = fit_model(
-            [signs[place] for place in known], [pairs[place].error for place in known]
+            [signs[index] for index in training], [pairs[index].error for index in training]
         )
-        for place, pair in enumerate(pairs):
+        for index, pair in enumerate(pairs):
             if pair.subject == subject:
-                found[place] = 1.0 - model.probability_within(signs[place], limit)
-    return [found[place] for place in range(len(pairs))]
+                found[index] = 1.0 - model.probability_within(signs[index], limit)
+    return [found[index] for index in range(len(pairs))]

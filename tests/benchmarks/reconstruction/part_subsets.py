@@ -1,4 +1,4 @@
-"""Table III of [SHJT13] on UI-PRMD: whole postures from a few joints, subject left out."""
+"""Table III of [SHJT13] on UI-PRMD: complete postures from a few joints, subject left out."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from solvers.reconstruction import ReconstructMethod
 
 from ..shared.tables import table
 from .kinect_damage import without
-from .kinect_errors import apart_free, compared
+from .kinect_errors import bone_direction_errors, compared
 from .kinect_folds import SUBJECTS, takes_of, truth_of
 from .kinect_methods import Method, by_postures, by_published_postures, by_reconstruct, joints
 from .part_losses import REPETITIONS
@@ -35,21 +35,21 @@ METHODS: dict[str, Method] = {
 
 
 def subsets(n_repetitions: int) -> list[str]:
-    """Return errors of the way from the joint above, as they are and without their mean."""
+    """Return errors of the vector from the parent joint, as they are and without their mean."""
     del n_repetitions
     errors: dict[str, dict[str, list[tuple[Array, Array]]]] = {}
     takes = [pair for one in SUBJECTS for pair in takes_of(one, *REPETITIONS)[::EVERY]]
     for pair in takes:
         for part, used in PARTS.items():
-            kept = [POSTURE_JOINTS.index(role) for role in ("hips", *used)]
-            lost = np.ones((pair.kinect.n_frames, N_JOINTS), dtype=np.bool_)
-            lost[:, kept] = False
-            lost[0] = False
-            blind = without(pair, lost)
+            used_joints = [POSTURE_JOINTS.index(role) for role in ("hips", *used)]
+            missing = np.ones((pair.kinect.n_frames, N_JOINTS), dtype=np.bool_)
+            missing[:, used_joints] = False
+            missing[0] = False
+            blind = without(pair, missing)
             for name, method in METHODS.items():
                 made = method(blind, pair.subject)[1:]
                 truth = truth_of(pair)[1:]
-                found = compared(made, truth)[1], apart_free(made, truth)
+                found = compared(made, truth)[1], bone_direction_errors(made, truth)
                 errors.setdefault(name, {}).setdefault(part, []).append(found)
     rows = {
         name: [

@@ -42,15 +42,15 @@ from .part_kinect import WORST, Errors, errors_of
 from .part_losses import Found, errors_table
 from .part_losses import errors_of as damage_errors
 
-SPATIAL, TEMPORAL, TRUST = 0.6, 0.2, 0.2
+SPATIAL, TEMPORAL, RELIABILITY = 0.6, 0.2, 0.2
 TERMS = {
     "spatial": (SPATIAL, 0.0, 0.0),
     "temporal": (0.0, TEMPORAL, 0.0),
-    "reliability": (0.0, 0.0, TRUST),
+    "reliability": (0.0, 0.0, RELIABILITY),
     "spatial, temporal": (SPATIAL, TEMPORAL, 0.0),
-    "spatial, reliability": (SPATIAL, 0.0, TRUST),
-    "temporal, reliability": (0.0, TEMPORAL, TRUST),
-    "all three": (SPATIAL, TEMPORAL, TRUST),
+    "spatial, reliability": (SPATIAL, 0.0, RELIABILITY),
+    "temporal, reliability": (0.0, TEMPORAL, RELIABILITY),
+    "all three": (SPATIAL, TEMPORAL, RELIABILITY),
 }
 SIGNS = {
     "no reliability": (),
@@ -81,8 +81,8 @@ def terms(n_repetitions: int) -> list[str]:
     ]
 
 
-def _published(spatial: float, temporal: float, trust: float) -> Method:
-    settings = ThreeTermSettings(spatial=spatial, temporal=temporal, trust=trust)
+def _published(spatial: float, temporal: float, reliability: float) -> Method:
+    settings = ThreeTermSettings(spatial=spatial, temporal=temporal, trust=reliability)
     return joints(by_published_residuals, settings=settings)
 
 
@@ -116,19 +116,22 @@ def _what(found: Found) -> str:
 
 def _trusting(pair: Pair, subject: str, used: tuple[str, ...] | None) -> Reconstruction:
     """Reconstruct poses with some reliability terms only; None uses the default."""
-    trust = measure_reliability(pair.kinect)
+    reliability = measure_reliability(pair.kinect)
     if used is not None:
-        trust = _only(measure_reliability(pair.kinect, settings=SIGNS_PUBLISHED), used)
+        reliability = _only(measure_reliability(pair.kinect, settings=SIGNS_PUBLISHED), used)
     return reconstruct_postures(
-        pair.kinect, posture_library(subject), reliability=trust, settings=PostureSettings()
+        pair.kinect,
+        posture_library(subject),
+        reliability=reliability,
+        settings=PostureSettings(),
     )
 
 
-def _only(trust: Reliability, used: tuple[str, ...]) -> Reliability:
-    combined = np.ones_like(trust.combined)
+def _only(reliability: Reliability, used: tuple[str, ...]) -> Reliability:
+    combined = np.ones_like(reliability.combined)
     for name in used:
-        combined = np.minimum(combined, getattr(trust, name))
-    return replace(trust, combined=combined)
+        combined = np.minimum(combined, getattr(reliability, name))
+    return replace(reliability, combined=combined)
 
 
 def confidence(n_repetitions: int) -> list[str]:
@@ -192,13 +195,13 @@ def _confidences(
             result = solve(pair, subject)
             methods = posture_positions(result.tracks) - truth_of(pair)
             if relative_to_offset:
-                seen = np.isfinite(methods).any(axis=(0, 2))
-                methods[:, seen] -= np.nanmean(methods[:, seen], axis=0)
+                is_known = np.isfinite(methods).any(axis=(0, 2))
+                methods[:, is_known] -= np.nanmean(methods[:, is_known], axis=0)
             off = np.linalg.norm(methods, axis=-1)
             observed = np.isfinite(off)
             confidence_values = np.zeros((len(off), N_JOINTS))
-            for role, place in posture_joint_indices(pair.kinect.names).items():
-                confidence_values[:, POSTURE_JOINTS.index(role)] = result.confidence[:, place]
+            for role, index in posture_joint_indices(pair.kinect.names).items():
+                confidence_values[:, POSTURE_JOINTS.index(role)] = result.confidence[:, index]
             confidences.append(confidence_values[observed])
             correct.append(off[observed] < WITHIN)
     return np.concatenate(confidences), np.concatenate(correct)

@@ -1,4 +1,4 @@
-"""How far off upper arms and thighs are turned, from positions of joints alone.
+"""Axial rotation errors of upper arms and thighs, from positions of joints alone.
 
 Actor dg of HDM05, whom no library that ships knows; and actors of CMU, each with the library
 made anew without him. Settings were chosen on others: bd and bk of HDM05, and the actors of CMU
@@ -27,7 +27,7 @@ from solvers.rotations.representations import angle_between, rotate
 from ..shared import clips
 from ..shared.tables import number, table
 from .posture_sources import cmu_library, exercise
-from .twist_cases import KINECT, LOST, TRUE, Case, cases
+from .twist_cases import KINECT, LIMB_MISSING, TRUE, Case, cases
 
 Group = tuple[list[Motion], PostureLibrary]
 """Clips of one rig, and the library that they are rebuilt with."""
@@ -40,7 +40,7 @@ ACTOR, OTHER_ACTORS = "dg", ("bd", "bk")
 SUBJECTS = ("05", "06", "13", "29", "35", "49")
 UPPER = ("ShoulderLeft", "ShoulderRight", "HipLeft", "HipRight")
 ARMS, LEGS = slice(0, 2), slice(2, 4)
-SEEN = (TRUE, KINECT, LOST)
+INPUTS = (TRUE, KINECT, LIMB_MISSING)
 COLUMNS = (
     "straight arms", "bent arms", "straight legs", "bent legs", "all", "elbow or knee aside",
 )  # fmt: skip
@@ -112,15 +112,15 @@ def _short(motion: Motion) -> Motion:
 
 def _table(title: str, groups: list[Group]) -> str:
     rows = {}
-    for seen in SEEN:
+    for source in INPUTS:
         found: dict[str, list[tuple[Array, Array, Case]]] = {name: [] for name in METHODS}
         for motions, library in groups:
-            for case in cases(motions, seen):
+            for case in cases(motions, source):
                 result = reconstruct(case.recording, library)
                 for name, method in METHODS.items():
                     found[name].append((*_errors(case, result, method(result)), case))
         for name, errors in found.items():
-            rows[f"{seen}: {name}"] = _cells(errors)
+            rows[f"{source}: {name}"] = _cells(errors)
     n_clips = sum(len(motions) for motions, _ in groups)
     head = f"**{title}**, {n_clips} clips, degrees\n\n"
     return head + table(["joints, twist by", *COLUMNS], rows) + "\n"
@@ -129,7 +129,7 @@ def _table(title: str, groups: list[Group]) -> str:
 def _errors(
     case: Case, result: Reconstruction, twists: LimbTwists | None
 ) -> tuple[Array, Array]:
-    """Return by how much limbs are turned off, and bends lie aside of their hinge, in degrees.
+    """Return axial rotation errors of limbs, and angles of flexion off the hinge axis, degrees.
 
     Both of shape (n_frames, 4).
     """
@@ -140,13 +140,13 @@ def _errors(
     uppers = [motion.skeleton.index(name) for name in UPPER]
     off = angle_between(world.rotations[:, uppers], case.truth.rotations)
     aside = np.empty_like(off)
-    for place, (name, limb) in enumerate(zip(UPPER, TWISTED_LIMBS, strict=True)):
+    for index, (name, limb) in enumerate(zip(UPPER, TWISTED_LIMBS, strict=True)):
         lower = motion.skeleton.index(_below(name))
         end = motion.skeleton.index(_below(_below(name)))
-        way = world.positions[:, end] - world.positions[:, lower]
-        hinge = rotate(world.rotations[:, uppers[place]], limb.hinge)
-        share = np.einsum("fi,fi->f", way, hinge) / np.linalg.norm(way, axis=-1)
-        aside[:, place] = np.arcsin(np.clip(np.abs(share), 0.0, 1.0))
+        direction = world.positions[:, end] - world.positions[:, lower]
+        hinge = rotate(world.rotations[:, uppers[index]], limb.hinge)
+        sine = np.einsum("fi,fi->f", direction, hinge) / np.linalg.norm(direction, axis=-1)
+        aside[:, index] = np.arcsin(np.clip(np.abs(sine), 0.0, 1.0))
     return np.degrees(off), np.degrees(aside)
 
 

@@ -13,19 +13,19 @@ from .part_reliability import Pair
 TAKE = "m02_s02_e01"
 LEFT, TOP, ROW, GAP, WIDTH = 96.0, 40.0, 13.0, 62.0, 900.0
 STEPS: tuple[Color, ...] = ((247, 247, 247), (253, 219, 160), (230, 120, 40), (120, 20, 30))
-"""From trusted to not, in equal steps; darker as well as redder."""
+"""From reliable to unreliable, in equal steps; darker as well as redder."""
 WORST = 0.10
-"""Metres that are as dark as no trust at all."""
+"""Error that is as dark as reliability zero, metres."""
 
 
 def draw_take(pair: Pair, path: Path) -> None:
-    """Draw doubts of both methods above the true error, joint by joint."""
+    """Draw error scores of both methods above the true error, joint by joint."""
     published = ReliabilitySettings(method=ReliabilityMethod.PUBLISHED)
     recording = pair.recording
     panels = {
-        "Doubted by default: chance of more than 5 cm": 1.0
+        "Default: probability of an error above 5 cm": 1.0
         - measure_reliability(recording).combined,
-        "Doubted as published": 1.0
+        "As published: 1 - reliability": 1.0
         - measure_reliability(recording, settings=published).combined,
         "True error by the optical system, darkest: 10 cm and more": pair.error / WORST,
     }
@@ -60,9 +60,9 @@ def _draw_seconds(canvas: Canvas, n_frames: int, frame_rate: float, top: float) 
 def _color(value: float) -> Color:
     if not np.isfinite(value):
         return (255, 255, 255)
-    place = float(np.clip(value, 0.0, 1.0)) * (len(STEPS) - 1)
+    position = float(np.clip(value, 0.0, 1.0)) * (len(STEPS) - 1)
     red, green, blue = (
-        round(float(np.interp(place, range(len(STEPS)), [step[part] for step in STEPS])))
+        round(float(np.interp(position, range(len(STEPS)), [step[part] for step in STEPS])))
         for part in range(3)
     )
     return red, green, blue

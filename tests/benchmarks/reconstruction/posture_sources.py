@@ -53,15 +53,15 @@ def exercise(name: str, folder: Path = MOCAP) -> Motion:
 def exercise_library(pairs: Iterable[Pair]) -> PostureLibrary:
     """Return true postures of some repetitions among these takes of UI-PRMD.
 
-    Without twists: nobody measured them, and elbows and knees are where their markers are, on
+    Without twists: they were not measured, and elbows and knees are where their markers are, on
     the skin, so that the planes of small bends lie aslant.
     """
     motions = []
     for pair in pairs:
-        seen = np.isfinite(pair.truth.positions).any(axis=(0, 2)).all()
-        if pair.name[-3:] in TAUGHT and seen:
-            whole = pair.truth.with_positions(fill_gaps(pair.truth.positions))
-            motions.append(motion_from_points(whole, joint_parents(whole.names)))
+        is_complete = np.isfinite(pair.truth.positions).any(axis=(0, 2)).all()
+        if pair.name[-3:] in TAUGHT and is_complete:
+            complete = pair.truth.with_positions(fill_gaps(pair.truth.positions))
+            motions.append(motion_from_points(complete, joint_parents(complete.names)))
     library = build_posture_library(motions, settings=UI_PRMD, trained_on=UI_PRMD_WORDS)
     return replace(library, twists=None)
 

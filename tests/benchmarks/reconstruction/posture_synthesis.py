@@ -15,7 +15,7 @@ from solvers.reconstruction.published.sequential import choose_sequentially
 
 N_STEPS = 6
 MIN_GAIN = 1e-4
-"""Share of the energy; a step that gains less is the last one."""
+"""Fraction of the energy; a step that gains less is the last one."""
 RIDGE = 1e-9
 
 
@@ -23,7 +23,7 @@ def solve_postures(spaces: PostureSpaces, demands: EnergyTargets, n_starts: int 
     """Return the coordinates of the postures of least energy, shape (n_frames, n_dimensions).
 
     But for the lengths of segments and for which neighbour is the nearest, the energy is a
-    quadratic. It is minimised for each neighbour in turn, in closed form; from the best of
+    quadratic. It is minimised for one neighbour after another, in closed form; from the best of
     these minima Gauss-Newton steps follow, with lengths linearised and the nearest neighbour
     taken anew before each. A step that does not gain is halved.
 
@@ -59,9 +59,9 @@ def solve_sequentially(
     """
 
     def choose(
-        space: PostureSpaces, asked: EnergyTargets, last: Array | None, frame: int
+        space: PostureSpaces, targets: EnergyTargets, last: Array | None, frame: int
     ) -> Array:
-        return solve_postures(space, asked, n_starts)
+        return solve_postures(space, targets, n_starts)
 
     return choose_sequentially(spaces, demands, choose, before)
 
@@ -71,34 +71,36 @@ class _Quadratic:
 
     def __init__(self, spaces: PostureSpaces, demands: EnergyTargets) -> None:
         w, axes = demands.weights, spaces.axes
-        told = np.isfinite(demands.observed).all(axis=-1)
+        is_observed = np.isfinite(demands.observed).all(axis=-1)
         self.style = w.style / N_JOINTS
-        control = np.repeat(w.control * np.where(told, demands.reliability, 0.0), 3, axis=1)
-        asked = np.nan_to_num(demands.observed).reshape(control.shape) - spaces.means
-        weights, pull = control + self.style, control * asked
+        control = np.repeat(
+            w.control * np.where(is_observed, demands.reliability, 0.0), 3, axis=1
+        )
+        targets = np.nan_to_num(demands.observed).reshape(control.shape) - spaces.means
+        weights, pull = control + self.style, control * targets
         if demands.expected is not None:
-            known = np.isfinite(demands.expected).all(axis=-1)
-            going = np.repeat(known * w.continuity / N_JOINTS, 3, axis=1)
+            is_expected = np.isfinite(demands.expected).all(axis=-1)
+            going = np.repeat(is_expected * w.continuity / N_JOINTS, 3, axis=1)
             to = np.nan_to_num(demands.expected).reshape(control.shape) - spaces.means
             weights, pull = weights + going, pull + going * to
-        turned = axes.swapaxes(-1, -2)
-        self.H = turned @ (axes * weights[..., None]) + RIDGE * np.eye(axes.shape[-1])
+        transposed = axes.swapaxes(-1, -2)
+        self.H = transposed @ (axes * weights[..., None]) + RIDGE * np.eye(axes.shape[-1])
         self.b = np.einsum("fji,fj->fi", axes, pull)
         self.off = spaces.neighbors - spaces.means[:, None]
-        self.places = self.off @ axes
+        self.neighbor_coordinates = self.off @ axes
         """Coordinates of the neighbours."""
 
     def minima(self, n_starts: int) -> list[Array]:
         """Return the best minima over which neighbour is the nearest one."""
-        right = self.b[..., None] + self.style * self.places.swapaxes(-1, -2)
+        right = self.b[..., None] + self.style * self.neighbor_coordinates.swapaxes(-1, -2)
         z = np.linalg.solve(self.H, right)
         energies = self.style * np.einsum("fni,fni->fn", self.off, self.off)
         energies -= np.einsum("fin,fin->fn", right, z)
         n_starts = min(n_starts, energies.shape[1])
         order = np.argsort(energies, axis=1, kind="stable")[:, :n_starts]
         return [
-            np.take_along_axis(z, order[:, None, [place]], axis=2)[..., 0]
-            for place in range(n_starts)
+            np.take_along_axis(z, order[:, None, [start]], axis=2)[..., 0]
+            for start in range(n_starts)
         ]
 
 
@@ -113,13 +115,19 @@ def _descend(
     energy = posture_energy(x, demands)
     for _ in range(N_STEPS):
         nearest = style_distances(x[:, None], demands)[:, 0].argmin(axis=-1)
-        place = np.take_along_axis(quadratic.places, nearest[:, None, None], axis=1)[:, 0]
-        ways = (x - x[:, PARENT_INDICES])[:, 1:]
-        sizes = np.maximum(np.linalg.norm(ways, axis=-1), 1e-9)
-        J = np.einsum("fsk,fskd->fsd", ways / sizes[..., None], bones)
+        style_coordinates = np.take_along_axis(
+            quadratic.neighbor_coordinates, nearest[:, None, None], axis=1
+        )[:, 0]
+        directions = (x - x[:, PARENT_INDICES])[:, 1:]
+        sizes = np.maximum(np.linalg.norm(directions, axis=-1), 1e-9)
+        J = np.einsum("fsk,fskd->fsd", directions / sizes[..., None], bones)
         long = sizes - demands.lengths[1:]
         H = quadratic.H + w * (J.swapaxes(-1, -2) @ J)
-        slope = quadratic.b + quadratic.style * place - w * np.einsum("fsd,fs->fd", J, long)
+        slope = (
+            quadratic.b
+            + quadratic.style * style_coordinates
+            - w * np.einsum("fsd,fs->fd", J, long)
+        )
         slope -= np.einsum("fij,fj->fi", quadratic.H, z)
         step = np.linalg.solve(H, slope[..., None])[..., 0]
         before = energy

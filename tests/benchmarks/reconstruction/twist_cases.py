@@ -1,6 +1,6 @@
-"""Clips whose rotations are known, as positions of joints: true, as a Kinect errs, and lost.
+"""Clips with true rotations, as joint positions: true, with Kinect errors, and missing.
 
-Makers' elbows and knees turn about axes that are turned about limbs by a constant (30 degrees
+Elbow and knee axes of some makers are rotated about the limb by a constant (30 degrees
 in the arms of CMU and HDM05). It is measured where limbs bend and taken out of the truth.
 """
 
@@ -22,11 +22,11 @@ from solvers.rotations.representations import multiply, quaternion_from_rotation
 from solvers.workflows.reconstruct_motion import postures_recording
 from solvers.workflows.standard_joints import KINECT_V1
 
-from .kinect_folds import pairs, seen_of, truth_of
+from .kinect_folds import observed_postures, pairs, truth_of
 
 Flags = NDArray[np.bool_]
 
-TRUE, KINECT, LOST = "optical capture", "Kinect errors", "limb missing 1.5 s"
+TRUE, KINECT, LIMB_MISSING = "optical capture", "Kinect errors", "limb missing 1.5 s"
 BENT = np.radians(30.0)
 """Bends from which on a maker's hinge is measured."""
 HAND_ENDS, HANDS = (7, 11), (6, 10)
@@ -34,9 +34,9 @@ HAND_ENDS, HANDS = (7, 11), (6, 10)
 EVERY = 7
 """Every so manieth take of UI-PRMD lends its errors."""
 SECONDS = 1.5
-"""How long a limb is lost."""
+"""How long a limb is missing, seconds."""
 MARGIN = 4
-"""Frames at both ends of a clip in which nothing is lost."""
+"""Frames at both ends of a clip without missing joints."""
 
 
 class Truth(NamedTuple):
@@ -51,7 +51,7 @@ class Truth(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A clip, its joints as they were seen, and which limbs in which frames are scored."""
+    """A clip, its observed joints, and which limbs in which frames are scored."""
 
     recording: JointRecording
     truth: Truth
@@ -59,21 +59,21 @@ class Case:
 
 
 def true_rotations(motions: Sequence[Motion]) -> list[Truth]:
-    """Return how limbs were turned in clips of one rig."""
+    """Return the axial rotations of limbs in clips of one rig."""
     plain = [_as_made(motion) for motion in motions]
     off = np.zeros(len(TWISTED_LIMBS), complex)
     for (bends, rotations), normals in plain:
-        for place, limb in enumerate(TWISTED_LIMBS):
-            bent = bends[:, place] > BENT
-            world, normal = rotations[bent, place], normals[bent, place]
+        for index, limb in enumerate(TWISTED_LIMBS):
+            flexed = bends[:, index] > BENT
+            world, normal = rotations[flexed, index], normals[flexed, index]
             axis, hinge = rotate(world, np.array(limb.along)), rotate(world, limb.hinge)
             sin = np.einsum("fi,fi->f", np.cross(hinge, normal), axis)
             cos = np.einsum("fi,fi->f", hinge, normal)
-            off[place] += ((cos + 1j * sin) / np.hypot(cos, sin)).sum()
-    turns = quaternion_from_rotation_vector(
+            off[index] += ((cos + 1j * sin) / np.hypot(cos, sin)).sum()
+    corrections = quaternion_from_rotation_vector(
         np.angle(off)[:, None] * np.array([limb.along for limb in TWISTED_LIMBS])
     )
-    return [Truth(made.bends, multiply(made.rotations, turns)) for made, _ in plain]
+    return [Truth(made.bends, multiply(made.rotations, corrections)) for made, _ in plain]
 
 
 def _as_made(motion: Motion) -> tuple[Truth, Array]:
@@ -83,15 +83,15 @@ def _as_made(motion: Motion) -> tuple[Truth, Array]:
     alignment = t_pose_alignment(motion.skeleton, humanoid)
     world = multiply(forward_kinematics(motion).rotations, alignment)
     postures = postures_from_motion(motion)
-    ways = [_ways(postures, limb) for limb in TWISTED_LIMBS]
-    normals = np.stack([np.cross(*each) for each in ways], axis=1)
-    cos = np.stack([np.einsum("fi,fi->f", *each) for each in ways], axis=1)
+    directions = [_bone_directions(postures, limb) for limb in TWISTED_LIMBS]
+    normals = np.stack([np.cross(*each) for each in directions], axis=1)
+    cos = np.stack([np.einsum("fi,fi->f", *each) for each in directions], axis=1)
     bends = np.arctan2(np.linalg.norm(normals, axis=-1), cos)
     own = [joints[POSTURE_JOINTS[limb.upper]] for limb in TWISTED_LIMBS]
     return Truth(bends, world[:, own]), normals
 
 
-def _ways(postures: Array, limb: TwistedLimb) -> tuple[Array, Array]:
+def _bone_directions(postures: Array, limb: TwistedLimb) -> tuple[Array, Array]:
     first = postures[:, limb.lower] - postures[:, limb.upper]
     second = postures[:, limb.end] - postures[:, limb.lower]
     first /= np.linalg.norm(first, axis=-1, keepdims=True)
@@ -100,11 +100,11 @@ def _ways(postures: Array, limb: TwistedLimb) -> tuple[Array, Array]:
 
 @cache
 def kinect_errors() -> tuple[Array, ...]:
-    """Errors of whole takes beside their means, in the actor's heading, (n_frames, 20, 3)."""
+    """Errors of complete takes less their means, in the actor's heading, (n_frames, 20, 3)."""
     found = []
     for pair in pairs()[::EVERY]:
         heading = normalize_postures(truth_of(pair), pair.truth.frame_rate).headings
-        off = rotate_about_vertical(seen_of(pair) - truth_of(pair), -heading)
+        off = rotate_about_vertical(observed_postures(pair) - truth_of(pair), -heading)
         off[:, HAND_ENDS] = off[:, HANDS]
         if pair.matched and np.isfinite(off).all():
             found.append(off - off.mean(axis=0))
@@ -118,37 +118,39 @@ def as_a_kinect_errs(motion: Motion, random: np.random.Generator) -> Array:
     errors = kinect_errors()
     off = errors[random.integers(len(errors))]
     there_and_back = np.concatenate([off, off[::-1]])
-    places = (random.integers(len(off)) + np.arange(len(postures))) % len(there_and_back)
-    return postures + rotate_about_vertical(there_and_back[places], heading)
+    indices = (random.integers(len(off)) + np.arange(len(postures))) % len(there_and_back)
+    return postures + rotate_about_vertical(there_and_back[indices], heading)
 
 
-def cases(motions: Sequence[Motion], seen: str) -> Iterator[Case]:
-    """Yield the clips of one rig, seen in one of three ways."""
+def cases(motions: Sequence[Motion], source: str) -> Iterator[Case]:
+    """Yield the clips of one rig with one of the three inputs."""
     random = np.random.default_rng(4)
     for motion, truth in zip(motions, true_rotations(motions), strict=True):
         recording = postures_recording(motion)
         scored = np.ones(truth.bends.shape, bool)
-        if seen != TRUE:
-            known = np.isfinite(postures_from_motion(motion)).all(axis=-1).any(axis=0)
-            places = as_a_kinect_errs(motion, random)[:, known]
-            if seen == LOST:
-                scored = _lost(recording, places, random)
-            recording = replace(recording, tracks=recording.tracks.with_positions(places))
+        if source != TRUE:
+            is_known = np.isfinite(postures_from_motion(motion)).all(axis=-1).any(axis=0)
+            positions = as_a_kinect_errs(motion, random)[:, is_known]
+            if source == LIMB_MISSING:
+                scored = _remove_limbs(recording, positions, random)
+            recording = replace(recording, tracks=recording.tracks.with_positions(positions))
         yield Case(recording, truth, scored)
 
 
-def _lost(recording: JointRecording, places: Array, random: np.random.Generator) -> Flags:
+def _remove_limbs(
+    recording: JointRecording, positions: Array, random: np.random.Generator
+) -> Flags:
     """Take out what is below one elbow and one knee, for a while; say which limbs and when."""
-    n_frames = len(places)
+    n_frames = len(positions)
     length = min(round(SECONDS * recording.frame_rate), n_frames - 2 * MARGIN)
-    lost = np.zeros((n_frames, len(TWISTED_LIMBS)), bool)
+    missing = np.zeros((n_frames, len(TWISTED_LIMBS)), bool)
     for pair in ((0, 1), (2, 3)):
-        place = int(random.choice(pair))
+        index = int(random.choice(pair))
         start = int(random.integers(MARGIN, n_frames - length - MARGIN + 1))
-        lost[start : start + length, place] = True
-        limb = TWISTED_LIMBS[place]
+        missing[start : start + length, index] = True
+        limb = TWISTED_LIMBS[index]
         below = [limb.lower, limb.end, limb.end + 1]
         names = {KINECT_V1[POSTURE_JOINTS[joint]] for joint in below} & set(recording.names)
         for name in names:
-            places[start : start + length, recording.names.index(name)] = np.nan
-    return lost
+            positions[start : start + length, recording.names.index(name)] = np.nan
+    return missing

@@ -1,1 +1,1 @@
-"""Retarget and Unbake, beside other retargeters."""
+"""Compare Retarget and Unbake with other retargeters."""

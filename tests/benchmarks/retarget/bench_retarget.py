@@ -76,7 +76,7 @@ def _hdm05(dev: bool) -> Iterator[tuple[str, Motion]]:
 
 def _retargeted(title: str, motions: list[tuple[str, Motion]]) -> list[Scores]:
     where = f"{title}, {len(motions)} clips to {len(BODIES)} rigs"
-    seen = Scores(f"{where}: poses in the world", UNITS, OURS)
+    pose_scores = Scores(f"{where}: poses in the world", UNITS, OURS)
     by_rig = Scores(f"{where}: poses in the world, {OURS}, by rig", UNITS)
     reached = Scores(f"{where}: what the solver aimed at", UNITS, OURS)
     for name, motion in motions:
@@ -87,12 +87,12 @@ def _retargeted(title: str, motions: list[tuple[str, Motion]]) -> list[Scores]:
             for method, give in METHODS.items():
                 given = acted(give(motion, source.humanoid, target, roles), roles)
                 figures = seen_figures(source, given)
-                _add(seen, method, f"{name} {family}", figures)
+                _add(pose_scores, method, f"{name} {family}", figures)
                 if method == OURS:
                     _add(by_rig, family, name, figures)
                 _add(reached, method, f"{name} {family}", ik_figures(source, given))
     print(f"Done: {title}", file=sys.stderr, flush=True)
-    return [seen, by_rig, reached]
+    return [pose_scores, by_rig, reached]
 
 
 def _add(scores: Scores, row: str, clip: str, figures: dict[str, float]) -> None:
@@ -111,11 +111,11 @@ def copied(
             rotations[:, joint] = motion.rotations[:, theirs[role]]
     growth = leg_length(target, target_map) / leg_length(motion.skeleton, source_map)
     rest = target.rest_positions
-    places = growth * motion.root_positions - (rest[ours["hips"]] - rest[0])
-    return Motion(target, rotations, places, motion.frame_rate)
+    positions = growth * motion.root_positions - (rest[ours["hips"]] - rest[0])
+    return Motion(target, rotations, positions, motion.frame_rate)
 
 
-def turned_only(
+def rotated_only(
     motion: Motion, source_map: HumanoidMap, target: Skeleton, target_map: HumanoidMap
 ) -> Motion:
     """Align the rest poses, but bring no limb anywhere."""
@@ -125,7 +125,7 @@ def turned_only(
 
 METHODS: dict[str, Giver] = {
     OURS: retarget,
-    "rest poses aligned, no limb IK": turned_only,
+    "rest poses aligned, no limb IK": rotated_only,
     "local rotations copied": copied,
 }
 

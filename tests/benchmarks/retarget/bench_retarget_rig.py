@@ -157,11 +157,13 @@ def off(source: bpy.types.Object, target: bpy.types.Object) -> float:
     return max(
         float(np.linalg.norm(there - poses.positions[frame, rig.skeleton.names.index(name)]))
         for frame in frames.tolist()
-        for name, there in zip(names, places(target, frame + 1, names), strict=True)
+        for name, there in zip(names, bone_heads(target, frame + 1, names), strict=True)
     )
 
 
-def places(armature: bpy.types.Object, frame: int, names: Sequence[str]) -> list[np.ndarray]:
+def bone_heads(
+    armature: bpy.types.Object, frame: int, names: Sequence[str]
+) -> list[np.ndarray]:
     bpy.context.scene.frame_set(frame)
     bones = armature.pose.bones
     return [np.array(armature.matrix_world @ bones[name].head) for name in names]

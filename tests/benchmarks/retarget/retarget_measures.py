@@ -1,10 +1,10 @@
-"""How a retargeted body is judged: by the solver's own targets, and by what is seen of it.
+"""Measures of a retargeted body: the solver's own targets, and poses in the world.
 
 IK: distance of foot and hand from where the solver wanted them, so that it shows only whether
 the limbs reached. Everything else is measured in the world, against the source scaled by the
-legs from the ground under its first place; arms, trunk and legs of other proportions cannot all
-be there at once, so that no method gets 0. A path is what is left without the mean of the clip,
-which is the difference of the proportions.
+legs from the ground under its first position; arms, trunk and legs of other proportions cannot
+all be there at once, so that no method gets 0. A path is what is left without the mean of the
+clip, which is the difference of the proportions.
 """
 
 from dataclasses import dataclass
@@ -45,7 +45,7 @@ class Acted:
         return np.asarray(self.poses.positions[:, self.joints[role]])
 
     def on_ground(self, role: str) -> Array:
-        """Return the same from the ground under the first place of the hips."""
+        """Return the same from the ground under the first position of the hips."""
         return self.at(role) - self.at("hips")[0] * (1.0, 1.0, 0.0)
 
 
@@ -98,19 +98,19 @@ def seen_figures(source: Acted, given: Acted) -> dict[str, float]:
 
 
 def trunk_angles(source: Acted, given: Acted) -> Array:
-    """Return the angle between the ways from hips to neck, beyond that at rest, degrees.
+    """Return the angle between the directions from hips to neck, less that at rest, degrees.
 
-    The source's way is first turned, with its hips, as rest poses differ.
+    The source's direction is first rotated with its hips, since rest poses differ.
     """
-    ways, rests = [], []
+    directions, rests = [], []
     for one in (source, given):
         top, hips = one.joints["neck"], one.joints["hips"]
-        places = one.motion.skeleton.rest_positions
-        rests.append(_unit(places[top] - places[hips]))
-        ways.append(_unit(one.at("neck") - one.at("hips")))
-    turn = source.poses.rotations[:, source.joints["hips"]]
-    in_hips = rotate(rotation_between(*rests), rotate(inverse(turn), ways[0]))
-    cosines = (rotate(turn, in_hips) * ways[1]).sum(axis=-1)
+        positions = one.motion.skeleton.rest_positions
+        rests.append(_unit(positions[top] - positions[hips]))
+        directions.append(_unit(one.at("neck") - one.at("hips")))
+    rotation = source.poses.rotations[:, source.joints["hips"]]
+    in_hips = rotate(rotation_between(*rests), rotate(inverse(rotation), directions[0]))
+    cosines = (rotate(rotation, in_hips) * directions[1]).sum(axis=-1)
     return np.asarray(np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0))))
 
 
@@ -129,9 +129,9 @@ def _off(source: Acted, given: Acted, role: str, growth: float) -> tuple[Array, 
 
     And how far it is without the mean of the clip, both of shape (n_frames,).
     """
-    way = 100.0 * (given.on_ground(role) - growth * source.on_ground(role))
-    about_mean = way - way.mean(axis=0)
-    return np.linalg.norm(way, axis=-1), np.linalg.norm(about_mean, axis=-1)
+    offset = 100.0 * (given.on_ground(role) - growth * source.on_ground(role))
+    about_mean = offset - offset.mean(axis=0)
+    return np.linalg.norm(offset, axis=-1), np.linalg.norm(about_mean, axis=-1)
 
 
 def _lowest(one: Acted) -> Array:
@@ -159,22 +159,22 @@ def _growth(source: Acted, given: Acted) -> float:
 
 
 def _arm(one: Acted, side: str) -> float:
-    places = one.motion.skeleton.rest_positions
+    positions = one.motion.skeleton.rest_positions
     roles = [f"{side}UpperArm", f"{side}LowerArm", f"{side}Hand"]
-    ways = np.diff(places[[one.joints[role] for role in roles]], axis=0)
-    return float(np.linalg.norm(ways, axis=1).sum())
+    bones = np.diff(positions[[one.joints[role] for role in roles]], axis=0)
+    return float(np.linalg.norm(bones, axis=1).sum())
 
 
 def _slide(one: Acted, contacts: NDArray[np.bool_]) -> float:
     """Metres per second in contact, of the slower of ankle and toes."""
     skeleton: Skeleton = one.motion.skeleton
     feet = one.poses.positions[:, foot_points(skeleton, one.humanoid), :2]
-    ways = np.linalg.norm(np.diff(feet, axis=0), axis=-1).min(axis=-1)
+    steps = np.linalg.norm(np.diff(feet, axis=0), axis=-1).min(axis=-1)
     standing = contacts[1:] & contacts[:-1]
     if not standing.any():
         return float("nan")
-    return float(ways[standing].mean()) * one.motion.frame_rate
+    return float(steps[standing].mean()) * one.motion.frame_rate
 
 
-def _unit(ways: Array) -> Array:
-    return np.asarray(ways / np.linalg.norm(ways, axis=-1, keepdims=True))
+def _unit(vectors: Array) -> Array:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))

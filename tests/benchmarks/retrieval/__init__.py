@@ -1,1 +1,1 @@
-"""Find Similar and gestures, beside published methods."""
+"""Compare Find Similar and gestures with published methods."""

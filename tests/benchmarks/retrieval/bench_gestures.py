@@ -228,10 +228,10 @@ def speed() -> str:
     session = LiveSession()
     for line in lines:
         session.receive([line])
-    heard = perf_counter()
+    recognized = perf_counter()
     rows = {
         "decoding a line of 20 joints": [f"{1000 * (decoded - started) / len(lines):.2f}"],
-        "complete session": [f"{1000 * (heard - decoded) / len(lines):.2f}"],
+        "complete session": [f"{1000 * (recognized - decoded) / len(lines):.2f}"],
     }
     return "**Time**\n\n" + table(["step", "ms per frame"], rows) + "\n"
 

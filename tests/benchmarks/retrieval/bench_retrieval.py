@@ -4,7 +4,7 @@ make bench-retrieval                                # some 20 minutes
 make bench-retrieval ARGUMENTS="--method DTW"       # those with this in their name
 make bench-retrieval ARGUMENTS=--docs               # into docs/benchmarks_retrieval.md
 make bench-retrieval ARGUMENTS=--choose             # settings of pyramids, training classes
-make bench-retrieval ARGUMENTS=--pursuit            # sparse codes, beside scikit-learn's
+make bench-retrieval ARGUMENTS=--pursuit            # sparse codes, against scikit-learn's
 make bench-retrieval ARGUMENTS=--times              # one search, step by step
 
 Answers of methods are stored under build/retrieval; tables show all stored methods.
@@ -41,18 +41,18 @@ def main() -> None:
     chosen = parser.parse_args()
     report = Report(chosen.docs, DOCS / "benchmarks_retrieval.md")
     started = perf_counter()
-    apart: dict[str, Callable[[], str]] = {
+    separate: dict[str, Callable[[], str]] = {
         "choice": lambda: choose()[1], "pursuit": compare_pursuits, "times": time_searches,
     }  # fmt: skip
-    asked = {"choice": chosen.choose, "pursuit": chosen.pursuit, "times": chosen.times}
-    for name in [name for name, wanted in asked.items() if wanted]:
+    requested = {"choice": chosen.choose, "pursuit": chosen.pursuit, "times": chosen.times}
+    for name in [name for name, wanted in requested.items() if wanted]:
         with threadpool_limits(1):
-            tables = [apart[name]()]
+            tables = [separate[name]()]
         report.part(name, tables, perf_counter() - started)
         return
     names = [name for name in METHODS if chosen.method.lower() in name.lower()]
     part.find_all(names, chosen.jobs, _say)
-    found = part.kept()
+    found = part.cached_results()
     tables = [part.accuracy(found), part.damaged(found), part.seen_by_kinect(found),
               part.each_class(found)]  # fmt: skip
     if chosen.docs:

@@ -25,9 +25,9 @@ UTD_ORDER = ["head", "chest", "spine", "hips"]
 UTD_ORDER += [side + part for side, limb in LIMBS for part in limb]
 ALWAYS = GestureSettings(waves_need_hand_up=False)
 ONE_GRIP = 1.0
-"""Seconds without zoom or turn, after which the next one is another."""
+"""Seconds without zoom or rotation, after which a new gesture starts."""
 RIGHT_WRIST, LEFT_WRIST, HEAD = 10, 6, 3
-TOUCH, QUICK = 0.2, 1.5
+TOUCH, WAVE_SPEED = 0.2, 1.5
 """Metres, and metres per second, of the simple thresholds."""
 MOVES = {Gesture.ZOOM, Gesture.TURN}
 
@@ -73,10 +73,10 @@ def ours(stream: Stream, settings: GestureSettings) -> tuple[GestureEvent, ...]:
 
 
 def thresholds(stream: Stream, settings: GestureSettings) -> tuple[GestureEvent, ...]:
-    """Return what simple thresholds tell: places and speeds of wrists, in metres.
+    """Return the gestures by simple thresholds on positions and speeds of wrists, in metres.
 
     A wrist above the head is a hand up, wrists that come nearer than 20 cm clap, a wrist that
-    moves sideways at 1.5 m/s waves; each at its beginning. Zoom and turn are left out.
+    moves sideways at 1.5 m/s waves; each at its beginning. Zoom and rotation are left out.
     """
     del settings
     wrist, other = stream.positions[:, RIGHT_WRIST], stream.positions[:, LEFT_WRIST]
@@ -85,8 +85,8 @@ def thresholds(stream: Stream, settings: GestureSettings) -> tuple[GestureEvent,
     rules = {
         Gesture.HAND_UP: wrist[:, 2] > stream.positions[:, HEAD, 2],
         Gesture.CAPTURE_START: clap,
-        Gesture.PAGE_NEXT: speed < -QUICK,  # the actor faces the camera
-        Gesture.PAGE_BACK: speed > QUICK,
+        Gesture.PAGE_NEXT: speed < -WAVE_SPEED,  # the actor faces the camera
+        Gesture.PAGE_BACK: speed > WAVE_SPEED,
     }
     events = [
         GestureEvent(gesture, float(stream.times[frame]), float(stream.times[frame]))

@@ -5,9 +5,9 @@ r"""How a clip library grows: 300 to 100,000 clips, built in one file and search
     python -m tests.benchmarks.retrieval.part_growth --log growth.log --docs  # of a run
 
 The clips are those of HDM05 and the CMU walks, varied: faster or slower (0.7 to 1.4), bones
-turned by some degrees, shaken, mirrored. They are varied as postures of the standard body, in
+rotated by some degrees, shaken, mirrored. They are varied as postures of the standard body, in
 which all actors have the same bone lengths anyway; to read and describe a real clip of two
-seconds takes about 15 ms beside that. Each query is a clip of the library, at another speed and
+seconds takes about 15 ms more. Each query is a clip of the library, at another speed and
 shaken again; it is found when that clip comes first, or among the first ten. At each size a
 process of its own searches, so that its memory can be measured. Times are CPU times, with
 one thread: other work on the machine does not count.
@@ -61,17 +61,17 @@ from .retrieval_pictures import draw_growth
 SIZES = (300, 1_000, 3_000, 10_000)
 BATCH = 100
 N_QUERIES = 30
-TOLD = 20
+N_MATCHES = 20
 SLOWEST, FASTEST = 0.7, 1.4
-TURNED, SHAKEN, ASKED = np.radians(6.0), 0.005, 0.01
-"""Standard deviations, radians by which bones are turned for good, and metres by which joints
-are shaken in the library and beyond that in what asks."""
+ROTATION_NOISE, POSITION_NOISE, QUERY_NOISE = np.radians(6.0), 0.005, 0.01
+"""Standard deviations: of constant bone rotations, radians; of jitter of joints in the library,
+metres; and of added jitter in queries, metres."""
 SHOWN = {
     "hours": "hours", "add_s": "to add all, s", "file_mb": "file, MB", "open_ms": "to open, ms",
-    "ask_ms": "describe, ms", "find_ms": "search, ms", "search_mb": "memory, MB",
+    "describe_ms": "describe, ms", "find_ms": "search, ms", "search_mb": "memory, MB",
     "first": "found first", "in_ten": "in the first ten", "kin": "of its kind in ten",
 }  # fmt: skip
-DRAWN = ("search_mb", "open_ms", "find_ms", "ask_ms")
+DRAWN = ("search_mb", "open_ms", "find_ms", "describe_ms")
 PICTURE = PICTURES / "retrieval_growth.png"
 
 
@@ -90,15 +90,15 @@ class Row:
     open_ms: float
     search_mb: float
     """Peak memory of the process that searches."""
-    ask_ms: float
+    describe_ms: float
     """Median: describing the query."""
     find_ms: float
     """Median: all the rest."""
     first: float
-    """Share of queries whose clip comes first."""
+    """Fraction of queries whose clip comes first."""
     in_ten: float
     kin: float
-    """Share, in the first ten, of variations of the clip that the query varies."""
+    """Fraction of variations of the same clip among the first ten."""
 
 
 def run(sizes: Sequence[int] = SIZES, n_queries: int = N_QUERIES) -> list[Row]:
@@ -137,38 +137,40 @@ def varied(number: int) -> ClipPostures:
     speed = np.exp(rng.uniform(np.log(SLOWEST), np.log(FASTEST)))
     last = original.n_frames - 1.0
     moments = np.arange(0.0, last + 1e-9, speed)
-    positions, course = (
+    positions, root_velocity = (
         interp1d(np.arange(last + 1.0), values, axis=0)(moments)
         for values in (original.positions, original.root_velocity)
     )
-    turned = turned_bones(positions, TURNED * rng.normal(size=(N_JOINTS, 3)))
-    turned += SHAKEN * rng.normal(size=turned.shape)
+    posed = rotate_bones(positions, ROTATION_NOISE * rng.normal(size=(N_JOINTS, 3)))
+    posed += POSITION_NOISE * rng.normal(size=posed.shape)
     if rng.integers(2):
-        turned = turned[:, MIRROR_JOINTS] * (-1.0, 1.0, 1.0)
-        course = course * (-1.0, 1.0, 1.0, -1.0)
-    return ClipPostures(turned, speed * course, RATE)
+        posed = posed[:, MIRROR_JOINTS] * (-1.0, 1.0, 1.0)
+        root_velocity = root_velocity * (-1.0, 1.0, 1.0, -1.0)
+    return ClipPostures(posed, speed * root_velocity, RATE)
 
 
-def turned_bones(positions: Array, vectors: Array) -> Array:
-    """Return postures each of whose bones is turned, and with it what hangs on it."""
-    turns, result = [IDENTITY], positions.copy()
+def rotate_bones(positions: Array, vectors: Array) -> Array:
+    """Return postures with each bone rotated, and its descendants with it."""
+    rotations, result = [IDENTITY], positions.copy()
     for joint in range(1, N_JOINTS):
         above = PARENTS[joint]
-        turns.append(multiply(turns[above], quaternion_from_rotation_vector(vectors[joint])))
+        rotations.append(
+            multiply(rotations[above], quaternion_from_rotation_vector(vectors[joint]))
+        )
         bones = positions[:, joint] - positions[:, above]
-        result[:, joint] = result[:, above] + rotate(turns[joint], bones)
+        result[:, joint] = result[:, above] + rotate(rotations[joint], bones)
     return result
 
 
-def asking(number: int) -> Tracks:
+def query_tracks(number: int) -> Tracks:
     """Return what is searched with: a clip of the library, shaken and at another speed."""
     rng = np.random.default_rng([number, 1])
     clip = varied(number)
     headings = np.cumsum(clip.root_velocity[:, 3]) / RATE
-    turns = quaternion_from_rotation_vector(headings[:, None] * (0.0, 0.0, 1.0))
-    places = np.cumsum(rotate(turns, clip.root_velocity[:, :3]), axis=0) / RATE
-    positions = rotate(turns[:, None], clip.positions) + places[:, None]
-    positions += ASKED * rng.normal(size=positions.shape)
+    rotations = quaternion_from_rotation_vector(headings[:, None] * (0.0, 0.0, 1.0))
+    path = np.cumsum(rotate(rotations, clip.root_velocity[:, :3]), axis=0) / RATE
+    positions = rotate(rotations[:, None], clip.positions) + path[:, None]
+    positions += QUERY_NOISE * rng.normal(size=positions.shape)
     return Tracks(POSTURE_JOINTS, positions, RATE * rng.uniform(0.95, 1.05))
 
 
@@ -186,20 +188,22 @@ _ORIGINALS: list[ClipPostures] = []
 
 
 def search(path: Path, n_queries: int) -> dict[str, float]:
-    """Open a library, ask it for some of its clips, and tell what came of it."""
+    """Open a library, search for some of its clips, and return the figures."""
     began = process_time()
     library = load_clip_library(path)
     entries = library.entries
     assert library.blocks
     opened = process_time() - began
     rng = np.random.default_rng(len(entries))
-    asked = rng.permutation(len(entries))[:n_queries]
-    answers = [_asked(library, int(number)) for number in asked]
-    ask, find, first, in_ten, kin = (np.array(column) for column in zip(*answers, strict=True))
+    numbers = rng.permutation(len(entries))[:n_queries]
+    answers = [_search(library, int(number)) for number in numbers]
+    describe, find, first, in_ten, kin = (
+        np.array(column) for column in zip(*answers, strict=True)
+    )
     return {
         "open_ms": 1000.0 * opened,
         "search_mb": _peak(),
-        "ask_ms": 1000.0 * float(np.median(ask)),
+        "describe_ms": 1000.0 * float(np.median(describe)),
         "find_ms": 1000.0 * float(np.median(find)),
         "first": float(first.mean()),
         "in_ten": float(in_ten.mean()),
@@ -207,20 +211,20 @@ def search(path: Path, n_queries: int) -> dict[str, float]:
     }
 
 
-def _asked(library: ClipLibrary, number: int) -> tuple[float, float, bool, bool, float]:
-    query = asking(number)
+def _search(library: ClipLibrary, number: int) -> tuple[float, float, bool, bool, float]:
+    query = query_tracks(number)
     vocabulary = library.vocabulary
     assert vocabulary is not None
     began = process_time()
     features = vocabulary.features(clip_postures(query, RATE))
     describe_segments(features, np.array([[0, len(features)]], dtype=np.int32), vocabulary)
-    asked = process_time()
-    matches = find_similar(query, library, settings=FindSettings(n_matches=TOLD))
+    start = process_time()
+    matches = find_similar(query, library, settings=FindSettings(n_matches=N_MATCHES))
     found = process_time()
     ten = [int(match.clip) for match in matches[:10]]
     kin = np.mean([one % len(originals()) == number % len(originals()) for one in ten])
-    description = asked - began
-    return description, found - asked - description, ten[0] == number, number in ten, float(kin)
+    description = start - began
+    return description, found - start - description, ten[0] == number, number in ten, float(kin)
 
 
 def _searched(path: Path, n_queries: int) -> tuple[float, ...]:

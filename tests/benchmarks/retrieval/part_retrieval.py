@@ -1,4 +1,4 @@
-"""How well clips of a class are found: clean, damaged and seen by a Kinect."""
+"""How well clips of a class are found: clean, damaged and recorded by a Kinect."""
 
 import pickle
 import re
@@ -34,9 +34,9 @@ from .retrieval_protocol import (
 
 Say = Callable[[str], None]
 OTHERS = "other actors"
-KEPT = Path("build") / "retrieval"
+CACHE = Path("build") / "retrieval"
 EVERY = 4
-"""Of the clips of test classes, that many-th is damaged and asked for."""
+"""Every so many-th clip of the test classes is a damaged query."""
 
 
 @dataclass
@@ -69,38 +69,40 @@ class Found:
 
 def find_all(names: Sequence[str], n_jobs: int, say: Say) -> None:
     """Ask these methods everything, `n_jobs` at a time, and keep what they answer."""
-    KEPT.mkdir(parents=True, exist_ok=True)
+    CACHE.mkdir(parents=True, exist_ok=True)
     with ProcessPoolExecutor(n_jobs, get_context("spawn")) as pool:
-        asked = {pool.submit(found_by, name): name for name in names}
-        for each in as_completed(asked):
+        pending = {pool.submit(found_by, name): name for name in names}
+        for each in as_completed(pending):
             found = each.result()
-            _kept(asked[each]).write_bytes(pickle.dumps(found))
-            say(f"{asked[each]}: MAP {mean_precision(found.tested('clean')):.3f}")
+            _cache_file(pending[each]).write_bytes(pickle.dumps(found))
+            say(f"{pending[each]}: MAP {mean_precision(found.tested('clean')):.3f}")
 
 
-def kept() -> dict[str, Found]:
+def cached_results() -> dict[str, Found]:
     """Return what was found by this run and those before."""
     return {
-        name: pickle.loads(_kept(name).read_bytes()) for name in METHODS if _kept(name).exists()
+        name: pickle.loads(_cache_file(name).read_bytes())
+        for name in METHODS
+        if _cache_file(name).exists()
     }
 
 
-def _kept(name: str) -> Path:
-    return KEPT / f"{re.sub('[^a-zA-Z0-9]+', '_', name)}.pickle"
+def _cache_file(name: str) -> Path:
+    return CACHE / f"{re.sub('[^a-zA-Z0-9]+', '_', name)}.pickle"
 
 
 def found_by(name: str) -> Found:
     """Ask one method everything; damaged queries are of the test classes only."""
     clips = library()
-    asked = [clip for clip in clips if clip.label not in TRAINING]
+    pending = [clip for clip in clips if clip.label not in TRAINING]
     with threadpool_limits(1):
         started = process_time()
         prepared = METHODS[name].prepare([clip.tracks for clip in clips])
         found = Found(process_time() - started, megabytes(prepared))
         for kind, damage in DAMAGES.items():
-            of = clips if kind == "clean" else asked[::EVERY]
+            of = clips if kind == "clean" else pending[::EVERY]
             found.answers[kind] = answer(prepared, clips, queries(clips, of, damage))
-        others = queries(clips, asked, DAMAGES["clean"], other_actors=True)
+        others = queries(clips, pending, DAMAGES["clean"], other_actors=True)
         found.answers[OTHERS] = answer(prepared, clips, others)
         found.kinect = answer(prepared, clips, _kinect(clips))
     return found

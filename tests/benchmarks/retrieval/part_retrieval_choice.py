@@ -18,9 +18,9 @@ from .retrieval_clips import training_library
 from .retrieval_damage import DAMAGES
 from .retrieval_protocol import Method, Query, answer, mean_precision, queries
 
-ASKED = ("clean", "joints missing", "missing at random", "0.7x speed")
+KINDS = ("clean", "joints missing", "missing at random", "0.7x speed")
 EVERY = 2
-"""Of the clips, that many-th is asked for."""
+"""Every so many-th clip is a query."""
 START = Pyramids(
     DictionarySettings(n_atoms=32, n_nonzeros=3),
     PyramidSettings(gap=0.1, normalise_cubes=True),
@@ -41,22 +41,22 @@ class PostureQueries:
     def __init__(self) -> None:
         clips = training_library()
         self.tracks = [clip.tracks for clip in clips]
-        self.asked: list[tuple[Tracks, list[Query]]] = []
-        for name in ASKED:
+        self.query_sets: list[tuple[Tracks, list[Query]]] = []
+        for name in KINDS:
             found = list(queries(clips, clips[::EVERY], DAMAGES[name], other_actors=True))
-            self.asked.append((name, found))
+            self.query_sets.append((name, found))
         self.postures: dict[int, ClipPostures] = {}
 
     def score(self, method: Method) -> list[float]:
         """Return MAP of each kind of damage, with all clips of the actor left out."""
         prepared = method.prepare(self.tracks)
-        seen = _Seen(prepared, self.postures)
+        cached = _CachedLibrary(prepared, self.postures)
         clips = training_library()
-        return [mean_precision(answer(seen, clips, found)) for _, found in self.asked]
+        return [mean_precision(answer(cached, clips, found)) for _, found in self.query_sets]
 
 
-class _Seen:
-    """As what was prepared, but postures of queries are kept from one method to the next."""
+class _CachedLibrary:
+    """The prepared library, with postures of queries cached from one method to the next."""
 
     def __init__(self, prepared: PyramidLibrary, postures: dict[int, ClipPostures]) -> None:
         self._prepared, self._postures = prepared, postures
@@ -71,12 +71,12 @@ class _Seen:
 
 def choose() -> tuple[Pyramids, str]:
     """Return the best settings, and a table of the best few of each step."""
-    asked, best = PostureQueries(), START
+    scorer, best = PostureQueries(), START
     tables = []
     for tried in TRIED:
         rows = []
         for method in _variants(best, tried):
-            scores = asked.score(method)
+            scores = scorer.score(method)
             rows.append((float(np.mean(scores)), scores, method))
             print(
                 f"{rows[-1][0]:.4f}",
@@ -123,4 +123,4 @@ def _table(rows: Sequence[tuple[float, list[float], Pyramids]]) -> str:
         _words(method): [f"{mean:.3f}", *(f"{one:.3f}" for one in scores)]
         for mean, scores, method in rows
     }
-    return table(["settings", "mean MAP", *ASKED], cells)
+    return table(["settings", "mean MAP", *KINDS], cells)

@@ -15,8 +15,8 @@ from .retrieval_default import Default
 
 REPEATS = 10
 EVERY = 4
-"""Of the clips, that many-th asks."""
-TOLD = 20
+"""Every so many-th clip is a query."""
+N_MATCHES = 20
 RATES = (120.0, 30.0)
 
 
@@ -25,36 +25,36 @@ def time_searches() -> str:
     clips = library()
     prepared = Default().prepare([clip.tracks for clip in clips])
     allowed = ~np.eye(len(clips), dtype=bool)
-    places = range(0, len(clips), EVERY)
+    indices = range(0, len(clips), EVERY)
     rows = {}
     for rate in RATES:
-        tracks = {place: resample(clips[place].tracks, rate) for place in places}
-        times = [_shortest(partial(prepared.describe, tracks[at])) for at in places]
+        tracks = {index: resample(clips[index].tracks, rate) for index in indices}
+        times = [_shortest(partial(prepared.describe, tracks[at])) for at in indices]
         rows[f"describing a query of {rate:.0f} Hz"] = times
-    asked = {at: prepared.describe(clips[at].tracks) for at in places}
+    described = {at: prepared.describe(clips[at].tracks) for at in indices}
     rows["search: all clips ranked"] = [
-        _shortest(partial(prepared.distances, asked[at], allowed[at])) for at in places
+        _shortest(partial(prepared.distances, described[at], allowed[at])) for at in indices
     ]
     for n_aligned in (0, FindSettings().n_aligned):
-        settings = FindSettings(n_matches=TOLD, n_aligned=n_aligned)
-        name = f"find_similar, {TOLD} matches, {n_aligned} aligned frame by frame, 120 Hz"
+        settings = FindSettings(n_matches=N_MATCHES, n_aligned=n_aligned)
+        name = f"find_similar, {N_MATCHES} matches, {n_aligned} aligned frame by frame, 120 Hz"
         rows[name] = [
             _shortest(
                 partial(find_similar, clips[at].tracks, prepared.library, settings=settings)
             )
-            for at in places
+            for at in indices
         ]
     return (
         f"**Time of one search of {len(clips)} clips**, one thread, ms: median over"
-        f" {len(places)} queries of the shortest of {REPEATS}\n\n{_table(rows)}\n"
+        f" {len(indices)} queries of the shortest of {REPEATS}\n\n{_table(rows)}\n"
     )
 
 
-def _shortest(ask: Callable[[], object]) -> float:
+def _shortest(describe: Callable[[], object]) -> float:
     times = []
     for _ in range(REPEATS):
         started = process_time()
-        ask()
+        describe()
         times.append(process_time() - started)
     return 1e3 * min(times)
 

@@ -1,4 +1,4 @@
-"""How long orthogonal matching pursuit takes, beside scikit-learn's."""
+"""How long orthogonal matching pursuit takes, compared with scikit-learn's."""
 
 import warnings
 from collections.abc import Callable
@@ -25,10 +25,10 @@ def compare_pursuits() -> str:
     """Return a table of milliseconds for 300 postures, the least of five runs."""
     clips = [clip_postures(clip.tracks, RATE) for clip in training_library()]
     found = [observed_signals(clip.positions) for clip in clips]
-    postures = np.concatenate([signals for signals, seen in found if seen.all()])
+    postures = np.concatenate([signals for signals, observed in found if observed.all()])
     rng = np.random.default_rng(0)
     drawn = rng.permutation(len(postures))
-    asked, first = postures[drawn[:N_SIGNALS]], postures[drawn[N_SIGNALS:][:N_ATOMS]]
+    signals_, first = postures[drawn[:N_SIGNALS]], postures[drawn[N_SIGNALS:][:N_ATOMS]]
     settings = DictionarySettings(n_atoms=N_ATOMS, n_rounds=5, n_examples=5000)
     random = rng.normal(size=first.shape)
     atoms = {
@@ -40,7 +40,7 @@ def compare_pursuits() -> str:
     for name, each in atoms.items():
         for n_nonzeros in (35, 5):
             label = f"{name}, {n_nonzeros} non-zeros"
-            rows[label] = _row(asked, each, n_nonzeros)
+            rows[label] = _row(signals_, each, n_nonzeros)
     header = [f"{N_ATOMS} atoms", "ours, ms", "scikit-learn, ms", "times", "left, mm", "theirs"]
     return f"**Sparse codes of {N_SIGNALS} postures**\n\n{table(header, rows)}\n"
 

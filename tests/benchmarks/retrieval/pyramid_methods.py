@@ -42,8 +42,8 @@ class Pyramids:
     """Spatial temporal pyramid matching; `cosine` divides by both clips' own size.
 
     With `PARTS`, each part of the body has a dictionary and pyramids of its own, whose kernels
-    are added. With `filled`, joints that were lost are put where the others let expect them,
-    as the product does; without, codes are those that tell best what was seen.
+    are added. With `filled`, missing joints are filled from the others,
+    as the product does; without, codes are those that fit the observed joints best.
     """
 
     dictionary: DictionarySettings = DictionarySettings()
@@ -55,14 +55,14 @@ class Pyramids:
 
     def prepare(self, clips: Sequence[Tracks]) -> "PyramidLibrary":
         postures = [clip_postures(clip, self.frame_rate) for clip in clips]
-        kept = []
+        part_libraries = []
         for root, joints in self.parts:
             of_part = [only(each, root, joints) for each in postures]
             dictionary = learn_dictionary(of_part, self.dictionary)
             rows = [pyramid_descriptor(each, dictionary, self.pyramid) for each in of_part]
             sizes = np.array([row.sum() for row in rows])
-            kept.append(PartLibrary(dictionary, vstack(rows).tocsc(), sizes))
-        return PyramidLibrary(self, kept, learn_posture_distribution(postures))
+            part_libraries.append(PartLibrary(dictionary, vstack(rows).tocsc(), sizes))
+        return PyramidLibrary(self, part_libraries, learn_posture_distribution(postures))
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,25 +75,25 @@ class PartLibrary:
 @dataclass(frozen=True, eq=False)
 class PyramidLibrary:
     method: Pyramids
-    kept: list[PartLibrary]
-    usual: PostureDistribution
+    part_libraries: list[PartLibrary]
+    distribution: PostureDistribution
 
     def describe(self, tracks: Tracks) -> list[Any]:
         return self.described(clip_postures(tracks, self.method.frame_rate))
 
     def described(self, postures: ClipPostures) -> list[Any]:
         if self.method.filled:
-            postures = self.usual.fill_gaps(postures)
+            postures = self.distribution.fill_gaps(postures)
         return [
             pyramid_descriptor(
                 only(postures, root, joints), part.dictionary, self.method.pyramid
             )
-            for (root, joints), part in zip(self.method.parts, self.kept, strict=True)
+            for (root, joints), part in zip(self.method.parts, self.part_libraries, strict=True)
         ]
 
     def distances(self, query: list[Any], allowed: Flags) -> Array:
         total = np.zeros(len(allowed))
-        for row, part in zip(query, self.kept, strict=True):
+        for row, part in zip(query, self.part_libraries, strict=True):
             kernel = pyramid_kernel(row, part.rows)[0]
             size = np.sqrt(part.sizes * row.sum()) if self.method.cosine else 1.0
             total -= kernel / np.maximum(size, 1e-12)

@@ -22,7 +22,7 @@ from ..shared import clips
 
 RATE = 120.0
 WALK = 2.5
-"""Seconds that are kept of each CMU walk, from its middle: about as long as other clips."""
+"""Seconds used of each CMU walk, from its middle: about as long as other clips."""
 TRAINING = frozenset({
     "depositFloorR", "hopBothLegs1hops", "lieDownFloor", "squat1Reps", "walk", "run",
 })  # fmt: skip
@@ -104,8 +104,8 @@ def _hops() -> list[LabelledClip]:
     }
     return [
         _clip(f"{label} {name} {start:.1f}", label, "49", _cut(takes[name], start, HOP))
-        for label, places in HOPS.items()
-        for name, (first, last) in places.items()
+        for label, intervals in HOPS.items()
+        for name, (first, last) in intervals.items()
         for start in np.arange(first, last - HOP + 1e-6, HOP)
     ]
 

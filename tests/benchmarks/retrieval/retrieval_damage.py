@@ -1,4 +1,4 @@
-"""What is done to queries: joints lost, noise, other speeds."""
+"""What is done to queries: missing joints, noise, other speeds."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,7 +11,7 @@ from solvers.motion.humanoid.posture_joints import HIPS, N_JOINTS
 Random = np.random.Generator
 Damage = Callable[[Tracks, Random], Tracks]
 
-LOST = 0.3
+MISSING = 0.3
 NOISE = 0.02
 """Metres; standard deviation of each coordinate, new in each frame."""
 
@@ -21,18 +21,18 @@ def unharmed(tracks: Tracks, random: Random) -> Tracks:
 
 
 def lose_joints(tracks: Tracks, random: Random) -> Tracks:
-    """Lose 30 % of the joints for the whole clip, any but the hips."""
+    """Remove 30 % of the joints in all frames, any but the hips."""
     others = np.setdiff1d(np.arange(N_JOINTS), [HIPS])
-    lost = random.choice(others, round(LOST * N_JOINTS), replace=False)
+    missing = random.choice(others, round(MISSING * N_JOINTS), replace=False)
     positions = tracks.positions.copy()
-    positions[:, lost] = np.nan
+    positions[:, missing] = np.nan
     return replace(tracks, positions=positions)
 
 
 def lose_at_random(tracks: Tracks, random: Random) -> Tracks:
     """Lose 30 % of all joints in all frames, the hips too."""
-    lost = random.uniform(size=tracks.positions.shape[:2]) < LOST
-    return replace(tracks, positions=np.where(lost[..., None], np.nan, tracks.positions))
+    missing = random.uniform(size=tracks.positions.shape[:2]) < MISSING
+    return replace(tracks, positions=np.where(missing[..., None], np.nan, tracks.positions))
 
 
 def add_noise(tracks: Tracks, random: Random) -> Tracks:
@@ -41,7 +41,7 @@ def add_noise(tracks: Tracks, random: Random) -> Tracks:
 
 
 def at_speed(speed: float, tracks: Tracks) -> Tracks:
-    """Return what a camera of the same rate would see of someone that much faster."""
+    """Return the clip at this speed, at the same frame rate."""
     faster = replace(tracks, frame_rate=tracks.frame_rate * speed)
     return resample(faster, tracks.frame_rate)
 

@@ -29,13 +29,13 @@ class Default:
             Clip(str(number), clip) for number, clip in enumerate(clips)
         ])  # fmt: skip
         names = {number: int(entry.name) for number, entry in library.numbered().items()}
-        places = np.zeros(max(names) + 1, dtype=np.intp)
-        places[list(names)] = list(names.values())
-        return DefaultLibrary(library, places, self.settings)
+        indices = np.zeros(max(names) + 1, dtype=np.intp)
+        indices[list(names)] = list(names.values())
+        return DefaultLibrary(library, indices, self.settings)
 
 
-class Asked(NamedTuple):
-    """A query, and the settings it is asked with: those for a sensor, if one saw it."""
+class QueryWithSettings(NamedTuple):
+    """A query and the settings of its search: those for a sensor, if one recorded it."""
 
     described: DescribedQuery
     settings: FindSettings
@@ -44,23 +44,23 @@ class Asked(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class DefaultLibrary:
     library: ClipLibrary
-    places: NDArray[np.intp]
+    indices: NDArray[np.intp]
     """Which clip each number of the library is."""
     settings: FindSettings
 
-    def describe(self, tracks: Tracks) -> Asked:
+    def describe(self, tracks: Tracks) -> QueryWithSettings:
         vocabulary = self.library.vocabulary
         assert vocabulary is not None
         postures = clip_postures(tracks, RATE)
         settings = self.settings if tracks.confidence is None else self.settings.for_sensor()
-        return Asked(describe_query(postures, vocabulary, settings), settings)
+        return QueryWithSettings(describe_query(postures, vocabulary, settings), settings)
 
-    def distances(self, query: Asked, allowed: Flags) -> Array:
+    def distances(self, query: QueryWithSettings, allowed: Flags) -> Array:
         ignored = self.library.numbers_of(map(str, np.flatnonzero(~allowed)))
         described, index = query.described, self.library.search_index
         ranking = rank_clips(
             described.segments, described.weights, index, query.settings, ignored
         )
         result = np.full(len(allowed), np.inf)
-        result[self.places[ranking.clips]] = ranking.distances
+        result[self.indices[ranking.clips]] = ranking.distances
         return result

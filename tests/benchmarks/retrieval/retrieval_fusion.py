@@ -37,8 +37,8 @@ class Fused:
         fused = FusedLibrary(prepared, between, self.n_neighbours)
         if self.n_neighbours:
             allowed = ~np.eye(len(clips), dtype=bool)
-            for place, clip in enumerate(clips):
-                between[place] = fused.plain(fused.describe(clip), allowed[place])
+            for index, clip in enumerate(clips):
+                between[index] = fused.plain(fused.describe(clip), allowed[index])
         return fused
 
 
@@ -55,20 +55,22 @@ class FusedLibrary:
         plain = self.plain(query, allowed)
         if not self.n_neighbours:
             return plain
-        places = np.flatnonzero(allowed)
+        indices = np.flatnonzero(allowed)
         result = np.full(len(allowed), np.inf)
-        within = self.between[np.ix_(places, places)]
-        scores_ = manifold_ranking(within, plain[places], self.n_neighbours)
+        within = self.between[np.ix_(indices, indices)]
+        scores_ = manifold_ranking(within, plain[indices], self.n_neighbours)
         # Clips that nothing reaches come last, in the order of plain distances.
-        result[places] = -scores_ + 1e-6 * plain[places]
+        result[indices] = -scores_ + 1e-6 * plain[indices]
         return result
 
     def plain(self, query: list[Any], allowed: Flags) -> Array:
         total = np.zeros(len(allowed))
         for each, described in zip(self.prepared, query, strict=True):
-            apart = each.distances(described, allowed)
-            known = apart[allowed]
-            total += (apart - known.mean()) / max(float(known.std()), 1e-12)
+            distances_ = each.distances(described, allowed)
+            allowed_distances = distances_[allowed]
+            total += (distances_ - allowed_distances.mean()) / max(
+                float(allowed_distances.std()), 1e-12
+            )
         return total
 
 
@@ -82,13 +84,13 @@ def manifold_ranking(between: Array, query: Array, n_neighbours: int) -> Array:
     query : shape (n_clips,)
     """
     n_clips, few = len(query), min(n_neighbours, len(query) - 1)
-    apart = np.where(np.eye(n_clips, dtype=bool), np.inf, between)
-    nearest = np.argpartition(apart, few - 1, axis=1)[:, :few]
+    distances_ = np.where(np.eye(n_clips, dtype=bool), np.inf, between)
+    nearest = np.argpartition(distances_, few - 1, axis=1)[:, :few]
     links = np.zeros((n_clips, n_clips))
     np.put_along_axis(links, nearest, 1.0, axis=1)
     links = np.maximum(links, links.T)
     size = np.sqrt(links.sum(axis=1))
-    asked = np.zeros(n_clips)
-    asked[np.argsort(query)[:n_neighbours]] = 1.0
+    query_weights = np.zeros(n_clips)
+    query_weights[np.argsort(query)[:n_neighbours]] = 1.0
     spread = np.eye(n_clips) - SPREADING * links / np.outer(size, size)
-    return np.asarray(np.linalg.solve(spread, asked))
+    return np.asarray(np.linalg.solve(spread, query_weights))

@@ -51,7 +51,7 @@ SETS = (
     QuerySet("walk (UTD)", "walk", "depth/utd_mhad/a23_*_skeleton.mat"),
 )
 """Kicks are with the right leg, the library's with the left: their mirror images ask. Joggers
-and walkers stay on the spot, and the library's get somewhere."""
+and walkers stay in place, while those of the library travel."""
 
 
 @cache
@@ -70,15 +70,15 @@ def kinect_queries() -> tuple[LabelledClip, ...]:
 
 def _of_utd(path: Path) -> Tracks:
     x, y, z = np.transpose(loadmat(path)["d_skel"], (1, 2, 0)).astype(float)
-    seen = np.stack([x, -z, y], axis=-1)
+    is_observed = np.stack([x, -z, y], axis=-1)
     order = [OF_UTD.index(name) for name in POSTURE_JOINTS]
-    return Tracks(POSTURE_JOINTS, seen[:, order], FRAME_RATE)
+    return Tracks(POSTURE_JOINTS, is_observed[:, order], FRAME_RATE)
 
 
 def moving(tracks: Tracks) -> Tracks:
     """Cut off what stands still before and after, as one would of a query."""
-    signals, seen = observed_signals(tracks.positions)
-    smooth = gaussian_filter1d(signals[:, seen], SMOOTH * tracks.frame_rate, axis=0)
+    signals, is_observed = observed_signals(tracks.positions)
+    smooth = gaussian_filter1d(signals[:, is_observed], SMOOTH * tracks.frame_rate, axis=0)
     speeds = np.linalg.norm(np.gradient(smooth, axis=0), axis=1)
     fast = np.flatnonzero(speeds > STILL * speeds.max())
     return replace(tracks, positions=tracks.positions[fast[0] : fast[-1] + 1])

@@ -31,7 +31,7 @@ N_NEIGHBOURS = 3
 
 METHODS: dict[str, Method] = {
     OURS: Default(),
-    "ours, without asking the like": Default(FindSettings(n_alike=0)),
+    "ours, without re-ranking": Default(FindSettings(n_alike=0)),
     "ours, codewords alone": Default(FindSettings(n_alike=0, n_warped=0)),
     PUBLISHED: Pyramids(),
     CUBES: Pyramids(pyramid=PyramidSettings(normalise_cubes=True)),

@@ -26,12 +26,12 @@ def draw_curves(answers: Mapping[str, Sequence[Answer]], title: str, path: Path)
         canvas.text(LEFT - 8.0, y, f"{mark:.1f}", FAINT, "rm")
         canvas.text(x, TOP + SIZE + 14.0, f"{mark:.1f}", FAINT, "mm")
     canvas.text(LEFT + SIZE / 2.0, TOP + SIZE + 36.0, "recall; up: precision", FAINT, "mm")
-    for place, (name, color) in enumerate(colors(list(answers)).items()):
+    for index, (name, color) in enumerate(colors(list(answers)).items()):
         curve = np.mean([each.curve for each in answers[name]], axis=0)
         width = 3.5 if name.startswith("ours") else 1.5
         line = np.column_stack([LEFT + RECALLS * SIZE, TOP + (1.0 - curve) * SIZE])
         canvas.line(line, color, width)
-        y = TOP + ROW * (place + 0.5)
+        y = TOP + ROW * (index + 0.5)
         canvas.line([(LEFT + SIZE + 20.0, y), (LEFT + SIZE + 44.0, y)], color, width)
         canvas.text(LEFT + SIZE + 52.0, y, name)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -57,12 +57,12 @@ def draw_growth(
         canvas.line([(x, TOP), (x, TOP + SIZE)], GRID)
         canvas.text(x, TOP + SIZE + 14.0, f"{10**mark:,.0f}", FAINT, "mm")
     canvas.text(LEFT + SIZE / 2.0, TOP + SIZE + 36.0, "clips", FAINT, "mm")
-    for place, (name, color) in enumerate(colors(list(columns)).items()):
+    for index, (name, color) in enumerate(colors(list(columns)).items()):
         x = LEFT + SIZE * (across - left) / (right - left)
         canvas.line(
             np.column_stack([x, TOP + SIZE * (high - up[name]) / (high - low)]), color, 2.5
         )
-        y = TOP + ROW * (place + 0.5)
+        y = TOP + ROW * (index + 0.5)
         canvas.line([(LEFT + SIZE + 20.0, y), (LEFT + SIZE + 44.0, y)], color, 2.5)
         canvas.text(LEFT + SIZE + 52.0, y, name)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -71,23 +71,23 @@ def draw_growth(
 
 def draw_confusion(answers: Sequence[Answer], title: str, path: Path) -> None:
     """Draw what classes were found first, for queries of each class: a row each."""
-    asked = sorted({each.label for each in answers})
-    every = sorted({label for each in answers for label in each.found} | set(asked))
-    canvas = Canvas(NAMES + CELL * len(every) + 20.0, TOP + CELL * len(asked) + 170.0)
+    labels = sorted({each.label for each in answers})
+    every = sorted({label for each in answers for label in each.found} | set(labels))
+    canvas = Canvas(NAMES + CELL * len(every) + 20.0, TOP + CELL * len(labels) + 170.0)
     canvas.text(LEFT, 20.0, title)
-    for row, label in enumerate(asked):
+    for row, label in enumerate(labels):
         up = TOP + row * CELL
         canvas.text(NAMES - 8.0, up + CELL / 2.0, label, INK, "rm")
         mine = [each.found for each in answers if each.label == label]
         for column, other in enumerate(every):
-            share = float(np.mean([found.get(other, 0.0) for found in mine]))
+            fraction = float(np.mean([found.get(other, 0.0) for found in mine]))
             left = NAMES + column * CELL
-            canvas.box(left, up, left + CELL - 1.0, up + CELL - 1.0, _shade(share))
-            if share >= 0.005:
-                ink = (255, 255, 255) if share > 0.5 else INK
-                words = f"{share:.2f}".lstrip("0")
+            canvas.box(left, up, left + CELL - 1.0, up + CELL - 1.0, _shade(fraction))
+            if fraction >= 0.005:
+                ink = (255, 255, 255) if fraction > 0.5 else INK
+                words = f"{fraction:.2f}".lstrip("0")
                 canvas.text(left + CELL / 2.0, up + CELL / 2.0, words, ink, "mm")
-    bottom = TOP + len(asked) * CELL
+    bottom = TOP + len(labels) * CELL
     for column, other in enumerate(every):
         x, lower = NAMES + (column + 0.5) * CELL, 16.0 * (column % 9)
         canvas.line([(x, bottom + 2.0), (x, bottom + 8.0 + lower)], GRID)
@@ -96,6 +96,6 @@ def draw_confusion(answers: Sequence[Answer], title: str, path: Path) -> None:
     canvas.picture().save(path)
 
 
-def _shade(share: float) -> Color:
-    red, green, blue = (round(250 + share * (part - 250)) for part in DARK)
+def _shade(fraction: float) -> Color:
+    red, green, blue = (round(250 + fraction * (part - 250)) for part in DARK)
     return red, green, blue

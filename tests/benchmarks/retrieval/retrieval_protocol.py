@@ -26,7 +26,7 @@ RECALLS = np.linspace(0.0, 1.0, 21)
 
 
 class Prepared(Protocol):
-    """A library that can be asked."""
+    """A library that answers queries."""
 
     def describe(self, tracks: Tracks) -> Any:
         """Return what of a recording is compared."""
@@ -39,7 +39,7 @@ class Prepared(Protocol):
 
 
 class Method(Protocol):
-    """A way to find similar clips."""
+    """A method to find similar clips."""
 
     def prepare(self, clips: Sequence[Tracks]) -> Prepared:
         """Learn what is needed, and describe the clips. Labels are not given."""
@@ -65,37 +65,37 @@ class Answer:
     curve: Array
     """Precision from each of `RECALLS` on at best."""
     found: dict[str, float]
-    """Classes of the first that many as the class has, as shares."""
+    """Fractions of classes among as many first matches as the class has clips."""
     describe_ms: float
     search_ms: float
 
 
 def queries(
     library: Sequence[LabelledClip],
-    asked: Sequence[LabelledClip],
+    requested: Sequence[LabelledClip],
     damage: Damage,
     other_actors: bool = False,
 ) -> Iterator[Query]:
     """Return a query for each clip that has a relevant one to be found.
 
-    Damage is the same for each method: its seed is the place of the clip.
+    Damage is the same for each method: its seed is the index of the clip.
     """
     labels = np.array([clip.label for clip in library])
     actors = np.array([clip.actor for clip in library])
     names = np.array([clip.name for clip in library])
-    for place, clip in enumerate(asked):
+    for index, clip in enumerate(requested):
         allowed = actors != clip.actor if other_actors else names != clip.name
         if (labels[allowed] == clip.label).any():
-            tracks = damage(clip.tracks, np.random.default_rng(place))
+            tracks = damage(clip.tracks, np.random.default_rng(index))
             yield Query(clip, tracks, allowed)
 
 
 def answer(
-    prepared: Prepared, library: Sequence[LabelledClip], asked: Iterable[Query]
+    prepared: Prepared, library: Sequence[LabelledClip], requested: Iterable[Query]
 ) -> list[Answer]:
     """Ask all queries."""
     labels = np.array([clip.label for clip in library])
-    return [_answer(prepared, labels, query) for query in asked]
+    return [_answer(prepared, labels, query) for query in requested]
 
 
 def _answer(prepared: Prepared, labels: NDArray[np.str_], query: Query) -> Answer:
@@ -104,8 +104,8 @@ def _answer(prepared: Prepared, labels: NDArray[np.str_], query: Query) -> Answe
     between = process_time()
     distances = prepared.distances(described, query.allowed)
     ended = process_time()
-    places = np.flatnonzero(query.allowed)
-    ranked = labels[places[np.argsort(distances[places], kind="stable")]]
+    indices = np.flatnonzero(query.allowed)
+    ranked = labels[indices[np.argsort(distances[indices], kind="stable")]]
     right = ranked == query.clip.label
     n_right = int(right.sum())
     precision = np.cumsum(right) / np.arange(1, len(right) + 1)

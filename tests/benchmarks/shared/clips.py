@@ -1,7 +1,7 @@
 """Which recordings the benchmarks use, and which of them a method may be tuned on.
 
 Settings are chosen on the clips of DEV_SUBJECTS only; every published figure is computed on the
-other subjects. This is the one place that says so.
+other subjects. This is the only file that lists them.
 """
 
 from functools import cache
@@ -25,7 +25,7 @@ QUICK_DEV = ("07_03", "10_04", "26_01", "27_01", "32_01", "07_11")
 
 FRAME_RATE = 30.0
 STEP = 4
-"""Recordings are at 120 Hz; every fourth frame is kept, as in [LC10]."""
+"""Recordings are at 120 Hz; every fourth frame is used, as in [LC10]."""
 CMU_METRES = 0.0254 / 0.45
 """CMU lengths are inches times 0.45."""
 

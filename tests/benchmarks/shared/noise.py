@@ -1,9 +1,9 @@
-"""What is spoilt and scored: joint-angle channels of a motion, their noise and their errors.
+"""Corrupted and scored channels: joint angles of a motion, their noise and their errors.
 
 Channels are, in degrees: the heading of the root; the rotation vector of the root without its
 heading; the rotation vector of every other joint; each about the mean rotation of the training
 clips. Only channels that move by more than STILL in the training clips are used. Noise on the
-root's position is that on the angles times METRES_PER_DEGREE and is scored apart.
+root's position is that on the angles times METRES_PER_DEGREE and is scored separately.
 """
 
 from collections.abc import Sequence
@@ -47,7 +47,7 @@ class Channels:
         return np.asarray(moving)
 
     def of_joints(self, joints: Sequence[int]) -> NDArray[np.intp]:
-        """Places of these joints' channels among the columns."""
+        """Indices of these joints' channels among the columns."""
         wanted = np.repeat(np.isin(np.arange(len(self.means)), joints), 3)
         return np.flatnonzero(np.concatenate([[0 in joints], wanted])[self.kept])
 
@@ -61,7 +61,7 @@ class Channels:
         everything[:, self.kept] = values
         vectors = np.radians(everything[:, 1:]).reshape(len(values), -1, 3)
         rotations = multiply(self.means, quaternion_from_rotation_vector(vectors))
-        rotations[:, 0] = multiply(_turn(np.radians(everything[:, 0])), rotations[:, 0])
+        rotations[:, 0] = multiply(_yaw_rotation(np.radians(everything[:, 0])), rotations[:, 0])
         return like.with_poses(rotations)
 
 
@@ -91,10 +91,10 @@ def corrupt_in_bursts(
     groups: Sequence[NDArray[np.intp]],
     rng: np.random.Generator,
 ) -> Array:
-    """Add Gaussian noise; turn whole joints away for a few frames, as a swapped marker does.
+    """Add Gaussian noise; rotate some joints away for a few frames, as a swapped marker does.
 
     Each group of channels is off for about `fraction` of the frames, in runs of BURSTS frames,
-    by one and the same turn of the size of an outlier during a run.
+    by one constant rotation of the size of an outlier during a run.
     """
     noisy = values + sigma * rng.normal(size=values.shape)
     n_frames = len(values)
@@ -102,8 +102,8 @@ def corrupt_in_bursts(
         n_runs = rng.poisson(fraction * n_frames / np.mean(BURSTS))
         for start in rng.integers(0, n_frames, size=n_runs):
             run = slice(start, start + int(rng.integers(BURSTS[0], BURSTS[1] + 1)))
-            way = rng.normal(size=len(group))
-            noisy[run, group] += rng.uniform(*OUTLIERS) * way / np.linalg.norm(way)
+            direction = rng.normal(size=len(group))
+            noisy[run, group] += rng.uniform(*OUTLIERS) * direction / np.linalg.norm(direction)
     return noisy
 
 
@@ -138,8 +138,8 @@ def _heading(rotations: Array) -> Array:
 
 
 def _without_heading(rotations: Array) -> Array:
-    return multiply(_turn(-_heading(rotations)), rotations)
+    return multiply(_yaw_rotation(-_heading(rotations)), rotations)
 
 
-def _turn(angle: Array) -> Array:
+def _yaw_rotation(angle: Array) -> Array:
     return quaternion_from_rotation_vector(angle[..., None] * (0.0, 0.0, 1.0))

@@ -29,17 +29,17 @@ def draw_scores(scores: Scores, path: Path) -> None:
         y = axis.height(mark)
         canvas.line([(LEFT, y), (WIDTH - RIGHT + 20, y)], GRID)
         canvas.text(LEFT - 8.0, y, number(mark), FAINT, "rm")
-    for place, (x, column) in enumerate(zip(across, scores.columns, strict=False)):
-        lower = 14.0 * (place % 2) if len(scores.columns) > 6 else 0.0
+    for index, (x, column) in enumerate(zip(across, scores.columns, strict=False)):
+        lower = 14.0 * (index % 2) if len(scores.columns) > 6 else 0.0
         canvas.text(x, axis.bottom + 14.0 + lower, column, FAINT, "mm")
-    for place, (name, color) in enumerate(colors(scores.methods).items()):
+    for index, (name, color) in enumerate(colors(scores.methods).items()):
         width = 3.5 if name.startswith("ours") else 1.5
         for run in _runs(scores, name, across, axis):
             if len(run) > 1:
                 canvas.line(run, color, width)
             for point in run:
                 canvas.dot(point, color, width + 1.0)
-        y = TOP + ROW * (place + 0.5)
+        y = TOP + ROW * (index + 0.5)
         canvas.line([(WIDTH - RIGHT + 40, y), (WIDTH - RIGHT + 64, y)], color, width)
         canvas.text(WIDTH - RIGHT + 72.0, y, name, INK, "lm")
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -86,11 +86,11 @@ def _runs(
 def colors(methods: list[str]) -> dict[str, Color]:
     greys = iter([INK, FAINT, FAINT])
     others = [name for name in methods if not name.startswith("ours")]
-    hues = {name: place / max(len(others), 1) for place, name in enumerate(others)}
+    hues = {name: index / max(len(others), 1) for index, name in enumerate(others)}
     found: dict[str, Color] = {}
-    for place, name in enumerate(methods):
+    for index, name in enumerate(methods):
         if name in hues:
-            red, green, blue = hsv_to_rgb(hues[name], 0.75, 0.85 if place % 2 else 0.6)
+            red, green, blue = hsv_to_rgb(hues[name], 0.75, 0.85 if index % 2 else 0.6)
             found[name] = (round(255 * red), round(255 * green), round(255 * blue))
         else:
             found[name] = next(greys)

@@ -1,4 +1,4 @@
-"""What a run leaves behind: tables on the terminal and, if asked for, in docs/benchmarks.md.
+"""Print tables on the terminal and, on request, write them to docs/benchmarks.md.
 
 A part's tables replace what stands between its two marks in the document; everything else in
 it is written by hand.

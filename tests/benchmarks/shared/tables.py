@@ -84,7 +84,7 @@ class Scores:
 def table(header: Sequence[str], rows: dict[str, list[str]]) -> str:
     """Return a Markdown table, padded so that it reads well as plain text too."""
     lines = [list(header), *([name, *cells] for name, cells in rows.items())]
-    widths = [max(len(line[place]) for line in lines) for place in range(len(header))]
+    widths = [max(len(line[index]) for line in lines) for index in range(len(header))]
     padded = [
         "| " + " | ".join(cell.ljust(w) for cell, w in zip(line, widths, strict=True)) + " |"
         for line in lines

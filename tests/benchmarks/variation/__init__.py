@@ -1,1 +1,1 @@
-"""Vary, beside other ways to make variants."""
+"""Compare Vary with other methods to make variants."""

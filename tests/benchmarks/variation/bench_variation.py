@@ -72,14 +72,14 @@ def main() -> None:
 
 def measured(sets: Sets) -> list[str]:
     """Measure all methods on all sets."""
-    whole = Scores(f"{len(sets)} sets, {N_VARIANTS} variants of each", UNIT, "")
+    scores = Scores(f"{len(sets)} sets, {N_VARIANTS} variants of each", UNIT, "")
     for name, examples in sets.items():
         judge = Judge(examples)
-        for method, way in methods().items():
-            for column, figure in _figures(judge, way).items():
-                whole.add(method, column, name, figure)
+        for method, method_parts in methods().items():
+            for column, figure in _figures(judge, method_parts).items():
+                scores.add(method, column, name, figure)
         print(f"Done: {name}", file=sys.stderr, flush=True)
-    return [whole.markdown()]
+    return [scores.markdown()]
 
 
 def by_set(sets: Sets) -> list[str]:
@@ -94,12 +94,12 @@ def by_set(sets: Sets) -> list[str]:
 
 
 def _figures(
-    judge: Judge, way: tuple[Callable[..., VariationModel] | None, Maker]
+    judge: Judge, method_parts: tuple[Callable[..., VariationModel] | None, Maker]
 ) -> dict[str, float]:
-    variants, seconds, learning = _timed(way, judge.examples)
+    variants, seconds, learning = _timed(method_parts, judge.examples)
     drawn = [one.motion for one in variants]
     planted = [plant_variant(one).motion for one in variants[:N_PLANTED]]
-    figures = judge.figures(drawn) | judge.footing_of(drawn[:N_PLANTED], planted)
+    figures = judge.figures(drawn) | judge.contacts_of(drawn[:N_PLANTED], planted)
     return figures | {SECONDS: seconds, LEARNING: learning}
 
 
@@ -135,10 +135,10 @@ def _seeded(
 
 
 def _timed(
-    way: tuple[Callable[..., VariationModel] | None, Maker], examples: Sequence[Motion]
+    method_parts: tuple[Callable[..., VariationModel] | None, Maker], examples: Sequence[Motion]
 ) -> tuple[Sequence[Variant], float, float]:
     """Return variants, seconds per second of motion, and seconds that learning takes."""
-    learn, make = way
+    learn, make = method_parts
     start = perf_counter()
     source = learn(examples) if learn else examples
     learned = perf_counter()
@@ -176,10 +176,10 @@ def discriminated(sets: Sets) -> list[str]:
         rows.setdefault("the captures that variants are made of", []).append(
             number(classification_accuracy(held, given))
         )
-        for method, way in methods().items():
+        for method, method_parts in methods().items():
             if method in EXCUSED:
                 continue
-            variants = _timed(way, given)[0]
+            variants = _timed(method_parts, given)[0]
             motions = [one.motion for one in variants]
             rows.setdefault(method, []).append(number(classification_accuracy(held, motions)))
             if method == OURS:

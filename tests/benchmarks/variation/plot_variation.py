@@ -19,8 +19,8 @@ WIDTH, HEIGHT, MARGIN = 420.0, 240.0, 34.0
 def draw_components(panels: dict[str, tuple[Sequence[Motion], Sequence[Motion]]]) -> str:
     """Draw the first principal component of examples, red, over variants, grey (fig. 4.5)."""
     canvas = Canvas(WIDTH * 2, HEIGHT * ((len(panels) + 1) // 2))
-    for place, (title, (examples, variants)) in enumerate(panels.items()):
-        left, top = WIDTH * (place % 2) + MARGIN, HEIGHT * (place // 2) + MARGIN
+    for index, (title, (examples, variants)) in enumerate(panels.items()):
+        left, top = WIDTH * (index % 2) + MARGIN, HEIGHT * (index // 2) + MARGIN
         curves = [_component(examples, one) for one in (*variants, *examples)]
         low, high = (edge(np.concatenate(curves)) for edge in (np.min, np.max))
         longest = max(len(one) for one in curves)

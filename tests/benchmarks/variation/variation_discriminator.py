@@ -1,4 +1,4 @@
-"""How well a classifier tells variants from captures that nobody had learned from."""
+"""How well a classifier distinguishes variants from held-out captures."""
 
 from collections.abc import Sequence
 
@@ -21,16 +21,16 @@ def classification_accuracy(captures: Sequence[Motion], others: Sequence[Motion]
     """
     clips = [_windows(one) for one in (*captures, *others)]
     axes = _axes(np.concatenate([body for body, _ in clips]))
-    seen = np.concatenate([np.column_stack([body @ axes.T, pace]) for body, pace in clips])
+    features = np.concatenate([np.column_stack([body @ axes.T, pace]) for body, pace in clips])
     groups = np.repeat(np.arange(len(clips)), [len(body) for body, _ in clips])
     labels = groups >= len(captures)
     guessed = np.zeros_like(labels)
     folds = StratifiedGroupKFold(min(4, len(captures)), shuffle=True, random_state=0)
-    for train, test in folds.split(seen, labels, groups):
+    for train, test in folds.split(features, labels, groups):
         forest = RandomForestClassifier(
             100, class_weight="balanced", min_samples_leaf=3, random_state=0
         )
-        guessed[test] = forest.fit(seen[train], labels[train]).predict(seen[test])
+        guessed[test] = forest.fit(features[train], labels[train]).predict(features[test])
     return 100.0 * float(balanced_accuracy_score(labels, guessed))
 
 

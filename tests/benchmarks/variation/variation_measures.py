@@ -29,8 +29,8 @@ class Judge:
     def __init__(self, examples: Sequence[Motion]) -> None:
         self.examples = list(examples)
         self.bodies = [_body(one) for one in examples]
-        self.variation, apart = _variation(self.bodies)
-        self.nearest = float(np.median(np.nanmin(apart, axis=1)))
+        self.variation, distances = _variation(self.bodies)
+        self.nearest = float(np.median(np.nanmin(distances, axis=1)))
         self.windows = [_windows(one) for one in examples]
         gaps = [
             cdist(one, np.concatenate(self.windows[:i] + self.windows[i + 1 :])).min(axis=1)
@@ -40,18 +40,18 @@ class Judge:
         self.jerk = float(np.mean([_jerk(one) for one in examples]))
         self.limits = learn_joint_limits(examples)
         self.spectrum = _spectrum(examples)
-        self.footing = footing_figures(examples)
+        self.contacts = contact_figures(examples)
 
-    def footing_of(
+    def contacts_of(
         self, drawn: Sequence[Motion], planted: Sequence[Motion]
     ) -> dict[str, float]:
         """Return figures of feet: of the examples, of variants as drawn and as finished."""
-        slides, stands = zip(*map(footing_figures, (drawn, planted)), strict=True)
+        slides, stands = zip(*map(contact_figures, (drawn, planted)), strict=True)
         return {
-            "slide of examples": self.footing[0],
+            "slide of examples": self.contacts[0],
             "slide drawn": slides[0],
             "slide": slides[1],
-            "stands of examples %": 100.0 * self.footing[1],
+            "stands of examples %": 100.0 * self.contacts[1],
             "stands %": 100.0 * stands[1],
             "jerk finished": float(np.mean([_jerk(one) for one in planted])) / self.jerk,
         }
@@ -71,7 +71,7 @@ class Judge:
             "jerk ratio": float(np.mean([_jerk(one) for one in variants])) / self.jerk,
             "beyond limits %": 100.0
             * float(np.mean([(one > BEYOND).mean() for one in beyond])),
-            "spectrum": _alike(self.spectrum, _spectrum(variants)),
+            "spectrum": _spectral_overlap(self.spectrum, _spectrum(variants)),
         }
 
 
@@ -83,14 +83,14 @@ def _body(motion: Motion) -> np.ndarray:
 
 def _variation(bodies: Sequence[np.ndarray]) -> tuple[float, np.ndarray]:
     """Return the mean distance of pairs and all distances, NaN where not measured."""
-    apart = np.full((len(bodies), len(bodies)), np.nan)
+    distances = np.full((len(bodies), len(bodies)), np.nan)
     pairs = list(combinations(range(len(bodies)), 2))
     if len(pairs) > PAIRS + 10:
         chosen = np.random.default_rng(0).choice(len(pairs), PAIRS, replace=False)
-        pairs = [pairs[place] for place in chosen]
+        pairs = [pairs[index] for index in chosen]
     for i, j in pairs:
-        apart[i, j] = apart[j, i] = warp(bodies[i], bodies[j]).cost
-    return float(np.nanmean(apart)), apart
+        distances[i, j] = distances[j, i] = warp(bodies[i], bodies[j]).cost
+    return float(np.nanmean(distances)), distances
 
 
 def _windows(motion: Motion) -> np.ndarray:
@@ -102,7 +102,7 @@ def _windows(motion: Motion) -> np.ndarray:
     return np.stack([body[frames].ravel() for frames in held])
 
 
-def _turns(motion: Motion) -> np.ndarray:
+def _rotation_steps(motion: Motion) -> np.ndarray:
     """Return the angular velocities of joints from frame to frame, radians per second."""
     steps = multiply(inverse(motion.rotations[:-1]), motion.rotations[1:])
     return np.asarray(rotation_vector_from_quaternion(steps) * motion.frame_rate)
@@ -114,30 +114,32 @@ def _jerk(motion: Motion) -> float:
     At 30 Hz for all, since some methods know no more.
     """
     motion = every(motion, max(round(motion.frame_rate / WINDOW_RATE), 1))
-    return float(np.abs(np.diff(_turns(motion), n=2, axis=0)).mean() * motion.frame_rate**2)
+    return float(
+        np.abs(np.diff(_rotation_steps(motion), n=2, axis=0)).mean() * motion.frame_rate**2
+    )
 
 
 def _spectrum(motions: Sequence[Motion]) -> np.ndarray:
     """Return the mean power of angular velocity by frequency to 15 Hz and channel."""
     grid, powers = np.linspace(0.0, 15.0, 46), []
     for motion in motions:
-        turns = _turns(motion).reshape(motion.n_frames - 1, -1)
-        size = max(round(4 * motion.frame_rate), len(turns))
-        power = np.abs(np.fft.rfft(turns, size, axis=0)) ** 2
+        steps = _rotation_steps(motion).reshape(motion.n_frames - 1, -1)
+        size = max(round(4 * motion.frame_rate), len(steps))
+        power = np.abs(np.fft.rfft(steps, size, axis=0)) ** 2
         tones = np.fft.rfftfreq(size, 1.0 / motion.frame_rate)
         powers.append(np.stack([np.interp(grid, tones, one) for one in power.T], axis=-1))
     return np.asarray(np.mean(powers, axis=0))
 
 
-def _alike(one: np.ndarray, other: np.ndarray) -> float:
+def _spectral_overlap(one: np.ndarray, other: np.ndarray) -> float:
     """Return the Bhattacharyya coefficient of spectra by channel, weighted by power: to 1."""
     weights = one.sum(axis=0)
     shapes = [each / np.maximum(each.sum(axis=0), 1e-12) for each in (one, other)]
-    alike = np.sqrt(shapes[0] * shapes[1]).sum(axis=0)
-    return float((weights * alike).sum() / weights.sum())
+    overlap = np.sqrt(shapes[0] * shapes[1]).sum(axis=0)
+    return float((weights * overlap).sum() / weights.sum())
 
 
-def footing_figures(motions: Sequence[Motion]) -> tuple[float, float]:
+def contact_figures(motions: Sequence[Motion]) -> tuple[float, float]:
     """Return how fast feet in contact slide, cm/s, and in which part of the time they stand.
 
     As Check says (`measure_quality`): the same measure for examples and variants.
@@ -145,9 +147,9 @@ def footing_figures(motions: Sequence[Motion]) -> tuple[float, float]:
     slides, stands = [], []
     for motion in motions:
         contacts, joints = detect_contacts(motion), find_foot_joints(motion)
-        places = forward_kinematics(motion).positions[:, joints]
+        positions = forward_kinematics(motion).positions[:, joints]
         feet = [
-            measure_foot_slide(side, "", places[:, row], contacts[:, row], motion.frame_rate)
+            measure_foot_slide(side, "", positions[:, row], contacts[:, row], motion.frame_rate)
             for row, side in enumerate(SIDES)
         ]
         speeds = np.concatenate([foot.speed for foot in feet])

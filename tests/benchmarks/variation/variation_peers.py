@@ -1,6 +1,6 @@
-"""Other ways to vary motions: copies, Perlin noise, and two written from their papers.
+"""Other methods to vary motions: copies, Perlin noise, and two written from their papers.
 
-All work at 30 Hz on the courses of examples: the root's way and rotation vectors.
+All work at 30 Hz on the curves of examples: the root's path and rotation vectors.
 """
 
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ RATE = 30.0
 OCTAVES = ((1.0, 1.0), (2.0, 0.5), (4.0, 0.25))
 """Frequencies of Perlin noise in hertz, and their strengths."""
 BANDWIDTH = 0.25
-"""Of the kernel regression, by the usual distance of examples."""
+"""Bandwidth of the kernel regression, in median distances of examples."""
 PATCH, COARSEST, GROWTH, ROUNDS, ALPHA = 11, 0.25, 1.35, 4, 0.01
 """Of generative motion matching: patch in frames, first part of the length, growth of stages,
 rounds in a stage, completeness."""
@@ -37,7 +37,7 @@ class Flat:
     """Examples as rows of numbers at 30 Hz."""
 
     skeleton: object
-    usual: np.ndarray
+    mean: np.ndarray
     rows: list[np.ndarray]
     """Each (n_frames, 4 + 3 n_joints)."""
 
@@ -46,7 +46,7 @@ class Flat:
         return motion_from_curves(
             MotionCurves(rows[:, :N_ROOT_CHANNELS], joints),
             self.skeleton,
-            self.usual,
+            self.mean,
             RATE,
             np.zeros(3),
         )
@@ -54,18 +54,20 @@ class Flat:
 
 def flatten(examples: Sequence[Motion]) -> Flat:
     motions = [resample(one, RATE) for one in examples]
-    turns = [headings_from_motion(one) for one in motions]
-    plain = [remove_heading(one, turn) for one, turn in zip(motions, turns, strict=True)]
-    usual = mean_rotation(np.concatenate(plain))
+    headings = [headings_from_motion(one) for one in motions]
+    plain = [
+        remove_heading(one, heading) for one, heading in zip(motions, headings, strict=True)
+    ]
+    mean = mean_rotation(np.concatenate(plain))
     rows = []
-    for motion, turn in zip(motions, turns, strict=True):
-        course = curves_from_motion(motion, turn, usual)
-        rows.append(np.column_stack([course.root, course.joints.reshape(motion.n_frames, -1)]))
-    return Flat(examples[0].skeleton, usual, rows)
+    for motion, heading in zip(motions, headings, strict=True):
+        curves = curves_from_motion(motion, heading, mean)
+        rows.append(np.column_stack([curves.root, curves.joints.reshape(motion.n_frames, -1)]))
+    return Flat(examples[0].skeleton, mean, rows)
 
 
 def copies(examples: Sequence[Motion], n: int, rng: np.random.Generator) -> list[Motion]:
-    return [examples[place % len(examples)] for place in range(n)]
+    return [examples[index % len(examples)] for index in range(n)]
 
 
 def perlin(examples: Sequence[Motion], n: int, rng: np.random.Generator) -> list[Motion]:
@@ -75,8 +77,8 @@ def perlin(examples: Sequence[Motion], n: int, rng: np.random.Generator) -> list
     strength = means.std(axis=0)
     strength[:3] = 0.0
     made = []
-    for place in range(n):
-        rows = flat.rows[place % len(flat.rows)]
+    for index in range(n):
+        rows = flat.rows[index % len(flat.rows)]
         times = np.arange(len(rows)) / RATE
         noise = sum(
             part * _gradient_noise(times * tone, rows.shape[1], rng) for tone, part in OCTAVES
@@ -87,10 +89,10 @@ def perlin(examples: Sequence[Motion], n: int, rng: np.random.Generator) -> list
 
 def _gradient_noise(times: np.ndarray, n: int, rng: np.random.Generator) -> np.ndarray:
     slopes = rng.uniform(-1.0, 1.0, (int(times[-1]) + 2, n))
-    whole = times.astype(int)
-    part = (times - whole)[:, None]
+    lower = times.astype(int)
+    part = (times - lower)[:, None]
     fade = part**3 * (part * (6.0 * part - 15.0) + 10.0)
-    return (1.0 - fade) * slopes[whole] * part + fade * slopes[whole + 1] * (part - 1.0)
+    return (1.0 - fade) * slopes[lower] * part + fade * slopes[lower + 1] * (part - 1.0)
 
 
 def lau(examples: Sequence[Motion], n: int, rng: np.random.Generator) -> list[Motion]:
@@ -108,16 +110,18 @@ def lau(examples: Sequence[Motion], n: int, rng: np.random.Generator) -> list[Mo
     before = np.concatenate([np.stack([r[1:-1], r[:-2]], axis=1) for r in flat.rows]) / scale
     change = np.concatenate([r[2:] - r[1:-1] for r in flat.rows])
     starts = rng.integers(len(flat.rows), size=(n, len(Partition)))
-    lengths = [len(flat.rows[place]) for place in rng.integers(len(flat.rows), size=n)]
+    lengths = [len(flat.rows[index]) for index in rng.integers(len(flat.rows), size=n)]
     states = np.zeros((n, max(lengths), before.shape[-1]))
     for node, start in zip(nodes, starts.T, strict=True):
-        for one, place in enumerate(start):
-            states[one, :2, node] = flat.rows[place][:2, node].T
-        seen = before[:, :, node].reshape(len(before), -1)
-        width = BANDWIDTH * np.median(cdist(seen[::7], seen[::11]))
+        for one, index in enumerate(start):
+            states[one, :2, node] = flat.rows[index][:2, node].T
+        states_before = before[:, :, node].reshape(len(before), -1)
+        width = BANDWIDTH * np.median(cdist(states_before[::7], states_before[::11]))
         for step in range(2, states.shape[1]):
             last = states[:, [step - 1, step - 2]][:, :, node] / scale[node]
-            weights = np.exp(-0.5 * (cdist(last.reshape(n, -1), seen) / width) ** 2) + 1e-300
+            weights = (
+                np.exp(-0.5 * (cdist(last.reshape(n, -1), states_before) / width) ** 2) + 1e-300
+            )
             weights /= weights.sum(axis=1, keepdims=True)
             mean = weights @ change[:, node]
             spread = weights @ change[:, node] ** 2 - mean**2
@@ -141,8 +145,8 @@ def motion_matching(
         stages.append(stages[-1] * GROWTH)
     stages.append(1.0)
     made = []
-    for place in range(n):
-        length = len(flat.rows[place % len(flat.rows)])
+    for index in range(n):
+        length = len(flat.rows[index % len(flat.rows)])
         found = np.zeros((0, 0))
         for part in stages:
             rows = [
@@ -163,9 +167,9 @@ def motion_matching(
 def _matched(found: np.ndarray, keys: np.ndarray, patch: int) -> np.ndarray:
     """Replace each patch by the best example's, and average where they overlap."""
     queries = _patches(found, patch)
-    apart = cdist(queries.reshape(len(queries), -1), keys.reshape(len(keys), -1)) ** 2
-    apart /= ALPHA * apart.mean() + apart.min(axis=0)
-    chosen = keys[apart.argmin(axis=1)]
+    distances = cdist(queries.reshape(len(queries), -1), keys.reshape(len(keys), -1)) ** 2
+    distances /= ALPHA * distances.mean() + distances.min(axis=0)
+    chosen = keys[distances.argmin(axis=1)]
     total, count = np.zeros_like(found), np.zeros((len(found), 1))
     for start, one in enumerate(chosen):
         total[start : start + patch] += one

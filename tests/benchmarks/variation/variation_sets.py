@@ -24,7 +24,7 @@ CYCLE = 0.8
 
 
 def development_sets() -> dict[str, list[Motion]]:
-    """Sets on which settings are chosen: squats and hops of the actor kept aside."""
+    """Sets on which settings are chosen: squats and hops of the held-out actor."""
     return {f"{name} bd": hdm05(name, "bd") for name in ("squat", "hop")}
 
 
@@ -52,8 +52,8 @@ def walking_cycles(subject: str) -> list[Motion]:
     for path in sorted(clips.WALKS.glob(f"{subject}_*.bvh")):
         motion = clips.read_cmu(path, 1)
         body, names = positions_in_body_frame(motion), motion.skeleton.names
-        apart = body[:, names.index("RightFoot"), 1] - body[:, names.index("LeftFoot"), 1]
-        peaks, _ = find_peaks(apart, distance=round(CYCLE * motion.frame_rate), height=0.2)
+        separation = body[:, names.index("RightFoot"), 1] - body[:, names.index("LeftFoot"), 1]
+        peaks, _ = find_peaks(separation, distance=round(CYCLE * motion.frame_rate), height=0.2)
         if len(peaks) > 2:
             found.append(motion.slice(int(peaks[0]), int(peaks[1]) + 1))
     return found[:MOST]

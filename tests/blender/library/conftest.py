@@ -28,19 +28,19 @@ def clip_motions(load):
         shape = (walk.n_frames, len(walk.skeleton.names), 3)
         sway = np.cumsum(rng.normal(scale=0.01, size=shape), axis=0)
         still = rotations.quaternion_from_rotation_vector(sway)
-        places = np.tile(walk.root_positions[0], (walk.n_frames, 1))
+        root_positions = np.tile(walk.root_positions[0], (walk.n_frames, 1))
         time = np.arange(walk.n_frames) / 30.0
         swing = np.sin(2.0 * np.pi * 0.8 * speed * time + rng.uniform(0, 1))
         names = walk.skeleton.names
-        turns = WAVE if kind == "wave" else SQUAT
-        for joint, (axis, middle, reach) in turns.items():
+        swings = WAVE if kind == "wave" else SQUAT
+        for joint, (axis, middle, reach) in swings.items():
             angles = middle + reach * swing
             still[:, names.index(joint)] = rotations.quaternion_from_rotation_vector(
                 angles[:, None] * np.array(axis)
             )
         if kind == "squat":
-            places[:, 2] -= 0.15 * (1.0 + swing)
-        return walk.with_poses(still, places)
+            root_positions[:, 2] -= 0.15 * (1.0 + swing)
+        return walk.with_poses(still, root_positions)
 
     return make
 
@@ -107,11 +107,11 @@ def blend_file(blank, bring, clip_files, tmp_path):
 
 @pytest.fixture
 def index(load, tmp_path):
-    """Index places into a library: `index(folder, ...)`; return what became of it."""
+    """Index sources into a library: `index(folder, ...)`; return what became of it."""
     indexing = load("mocap_assist.library.solve_indexing")
 
-    def do(*places, tags=(), assets_only=False, library=tmp_path / "clips.library", rig=""):
-        found = tuple(indexing.Source(str(place), assets_only) for place in places)
+    def do(*sources, tags=(), assets_only=False, library=tmp_path / "clips.library", rig=""):
+        found = tuple(indexing.Source(str(source), assets_only) for source in sources)
         blender = indexing.BackgroundBlender("", str(rig))
         return indexing.index_sources(
             indexing.IndexProblem(str(library), found, tuple(tags), blender)

@@ -1,13 +1,11 @@
-"""Libraries that this user keeps current are indexed by themselves."""
+"""Libraries that this user keeps current are indexed automatically."""
 
 import pytest
 
 pytestmark = pytest.mark.usefixtures("permissions")
 
 
-def test_it_is_indexed_once_when_there_is_something_new(
-    look, library, keep, clip_files, entries
-):
+def test_changed_folder_is_indexed_once(look, library, keep, clip_files, entries):
     keep()
     assert look(6) == 1
     assert len(entries(clip_files / "my.clips")) == 6
@@ -17,7 +15,7 @@ def test_it_is_indexed_once_when_there_is_something_new(
     assert "stroll" in entries(clip_files / "my.clips")
 
 
-def test_not_while_a_file_is_being_written(look, library, keep, clip_files):
+def test_library_is_not_indexed_while_a_file_is_written(look, library, keep, clip_files):
     keep()
     look(6)
     with (clip_files / "long.bvh").open("w") as file:
@@ -27,7 +25,9 @@ def test_not_while_a_file_is_being_written(look, library, keep, clip_files):
             assert look(1) == 0
 
 
-def test_another_file_does_not_change_what_is_kept(look, library, keep, blank, clip_files):
+def test_opening_another_file_keeps_the_updated_libraries(
+    look, library, keep, blank, clip_files
+):
     keep()
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     blank.context.scene.mocap_assist.library.sources = "//somewhere/else"
@@ -36,14 +36,14 @@ def test_another_file_does_not_change_what_is_kept(look, library, keep, blank, c
     assert (clip_files / "my.clips").is_file()
 
 
-def test_it_goes_on_where_files_cannot_be_looked_at(look, library, keep, clip_files):
+def test_update_continues_with_a_broken_link(look, library, keep, clip_files):
     keep()
     (clip_files / "lost.bvh").symlink_to(clip_files / "nowhere.bvh")
 
     assert look(6) == 1
 
 
-def test_two_libraries_are_kept(look, library, keep, tmp_path, entries):
+def test_two_libraries_are_updated(look, library, keep, tmp_path, entries):
     names = ("one.clips", "other.clips")
     for name in names:
         library.library_file = str(tmp_path / name)
@@ -54,9 +54,7 @@ def test_two_libraries_are_kept(look, library, keep, tmp_path, entries):
         assert len(entries(tmp_path / name)) == 6
 
 
-def test_a_refusal_is_shown_and_does_not_end_the_looking(
-    look, library, keep, blank, clip_files
-):
+def test_refusal_is_shown_and_updates_continue(look, library, keep, blank, clip_files):
     (clip_files / "in_the_way").write_text("a file where a folder should be")
     library.library_file = str(clip_files / "in_the_way" / "my.clips")
     keep()
@@ -65,7 +63,7 @@ def test_a_refusal_is_shown_and_does_not_end_the_looking(
     assert "my.clips" in blank.context.window_manager.mocap_assist_indexing.said
 
 
-def test_a_source_whose_name_begins_like_the_library_counts(look, library, keep, clip_files):
+def test_source_with_the_library_name_as_prefix_is_watched(look, library, keep, clip_files):
     library.sources = str(clip_files / "my.clips-takes")
     (clip_files / "my.clips-takes").mkdir()
     (clip_files / "walk_0.bvh").rename(clip_files / "my.clips-takes" / "walk.bvh")
@@ -75,16 +73,14 @@ def test_a_source_whose_name_begins_like_the_library_counts(look, library, keep,
     assert look(6) == 0
 
 
-def test_a_place_that_cannot_be_looked_at_does_not_hide_the_others(
-    look, library, keep, clip_files
-):
+def test_invalid_source_does_not_hide_the_others(look, library, keep, clip_files):
     library.sources = f"{clip_files / ('long' * 100)}; {clip_files}"
     keep()
 
     assert look(3) == 1
 
 
-def test_a_file_that_is_opened_meanwhile_only_delays_it(
+def test_opening_a_file_delays_the_update(
     load, library, keep, blank, clip_files, entries, look
 ):
     auto_update = load("mocap_assist.library.auto_update")

@@ -1,4 +1,4 @@
-"""Which libraries are kept current, as this user said on this machine; no file asks for it."""
+"""Libraries that this user keeps current on this machine; no file can request it."""
 
 import json
 
@@ -7,8 +7,8 @@ import pytest
 pytestmark = pytest.mark.usefixtures("permissions")
 
 
-def test_a_file_from_elsewhere_starts_and_writes_nothing(look, library, blank, clip_files):
-    """It names sources and a library, as one that was saved where Keep Current was on."""
+def test_received_file_starts_and_writes_nothing(look, library, blank, clip_files):
+    """It names sources and a library, as a file saved with Keep Current on."""
     library.library_file = "//startup/x.clips"
     stored = getattr(library, "bl_system_properties_get", lambda: library)()
     stored["keep_current"] = True  # which began it in earlier versions
@@ -25,7 +25,7 @@ def test_a_file_from_elsewhere_starts_and_writes_nothing(look, library, blank, c
     assert sorted(clip_files.rglob("*")) == before
 
 
-def test_pressing_again_ends_it(look, library, keep, clip_files):
+def test_second_press_ends_the_updates(look, library, keep, clip_files):
     keep()
     keep()
 
@@ -33,33 +33,33 @@ def test_pressing_again_ends_it(look, library, keep, clip_files):
     assert not (clip_files / "my.clips").exists()
 
 
-def test_the_button_shows_whether_these_sources_are_kept(library, keep, load, blank):
-    are_kept = load("mocap_assist.library.auto_update_list").choices_are_kept
-    assert not are_kept(library.settings().choices)
+def test_button_shows_whether_these_sources_are_updated(library, keep, load, blank):
+    is_updated = load("mocap_assist.library.auto_update_list").choices_are_kept
+    assert not is_updated(library.settings().choices)
     keep()
-    assert are_kept(library.settings().choices)
+    assert is_updated(library.settings().choices)
     blank.ops.mocap_assist.add_source_folder(directory="/elsewhere")
-    assert "/elsewhere" in library.sources and are_kept(library.settings().choices)
+    assert "/elsewhere" in library.sources and is_updated(library.settings().choices)
 
     library.sources = "/written/by/a/file"
 
-    assert not are_kept(library.settings().choices)
+    assert not is_updated(library.settings().choices)
 
 
-def test_a_library_without_sources_is_no_longer_kept(library, keep, load, blank):
+def test_library_without_sources_is_not_updated(library, keep, load, blank):
     keep()
     blank.ops.mocap_assist.remove_source(index=0)
 
     assert not load("mocap_assist.library.auto_update_list").auto_updated_libraries()
 
 
-def test_nothing_to_keep_is_refused(library, blank):
+def test_keep_current_raises_without_sources(library, blank):
     library.sources = ""
     with pytest.raises(RuntimeError, match="No sources are listed"):
         blank.ops.mocap_assist.keep_current()
 
 
-def test_it_waits_for_another_solve(load, library, keep, monkeypatch):
+def test_update_waits_for_another_solve(load, library, keep, monkeypatch):
     keep()
     auto_update = load("mocap_assist.library.auto_update")
     monkeypatch.setattr(auto_update, "why_busy", lambda: "Track runs.")
@@ -89,7 +89,7 @@ def test_damaged_permissions_allow_nothing(permissions, load, stored):
     assert not permissions.recording_allowed("/x")
 
 
-def test_permissions_are_kept_in_a_file_of_this_machine(permissions, library, keep, clip_files):
+def test_permissions_are_stored_on_this_machine(permissions, library, keep, clip_files):
     keep()
     permissions.allow_recording("//depth.mkv")
 
@@ -98,7 +98,7 @@ def test_permissions_are_kept_in_a_file_of_this_machine(permissions, library, ke
     assert permissions.recording_allowed("//depth.mkv")
 
 
-def test_the_extension_can_be_switched_off_after_the_looking_has_ended(load):
+def test_extension_can_be_disabled_after_the_updates_have_ended(load):
     auto_update = load("mocap_assist.library.auto_update")
     auto_update.unregister()
     auto_update.unregister()

@@ -14,15 +14,15 @@ from addon_utils import enable
 enable({package!r}, default_set=True)
 from importlib import import_module
 indexing = import_module({package!r} + ".mocap_assist.library.solve_indexing")
-places = tuple(indexing.Source(path) for path in sys.argv[2:])
+sources = tuple(indexing.Source(path) for path in sys.argv[2:])
 blender = indexing.BackgroundBlender("")
-done = indexing.index_sources(indexing.IndexProblem(sys.argv[1], places, (), blender))
+done = indexing.index_sources(indexing.IndexProblem(sys.argv[1], sources, (), blender))
 print("READ", done.n_added, flush=True)
 os._exit(0)
 """
 
 
-def test_mixed_rigs_are_found_together(
+def test_index_accepts_mixed_rigs(
     blank, index, entries, find, newcomer, make_armature, animate, tmp_path, recordings
 ):
     animate(make_armature(name="Plain"))
@@ -42,7 +42,7 @@ def test_mixed_rigs_are_found_together(
 
 
 @pytest.mark.parametrize("n_frames", [1, 2])
-def test_clips_of_hardly_any_frames(
+def test_clips_of_one_to_three_frames_are_indexed(
     find, newcomer, blank, index, clip_motions, load, tmp_path, n_frames
 ):
     short = tmp_path / "short.bvh"
@@ -60,7 +60,7 @@ def test_clips_of_hardly_any_frames(
     assert load("mocap_assist.search.ghost_drawing").ghost_now(blank.context) is not None
 
 
-def test_a_query_of_one_frame(find, newcomer, blank):
+def test_find_accepts_a_query_of_one_frame(find, newcomer, blank):
     newcomer("squat")
     scene = blank.context.scene
     scene.use_preview_range, scene.frame_preview_start, scene.frame_preview_end = True, 30, 30
@@ -69,7 +69,7 @@ def test_a_query_of_one_frame(find, newcomer, blank):
     assert blank.ops.mocap_assist.load_match() == {"FINISHED"}
 
 
-def test_a_library_of_a_newer_version_is_refused_everywhere(find, newcomer, blank, tmp_path):
+def test_every_button_refuses_a_library_of_a_newer_version(find, newcomer, blank, tmp_path):
     newcomer("walk")
     path = tmp_path / "clips.library"
     with closing(sqlite3.connect(path)) as database, database:
@@ -85,7 +85,9 @@ def test_a_library_of_a_newer_version_is_refused_everywhere(find, newcomer, blan
     assert path.read_bytes() == before
 
 
-def test_two_blenders_index_at_once(load, clip_files, blend_file, entries, tmp_path):
+def test_two_blenders_can_index_one_library_at_once(
+    load, clip_files, blend_file, entries, tmp_path
+):
     package = load("solvers").__name__.removesuffix(".solvers")
     script = tmp_path / "index.py"
     script.write_text(INDEX.format(package=package))
@@ -94,8 +96,8 @@ def test_two_blenders_index_at_once(load, clip_files, blend_file, entries, tmp_p
     for path in clip_files.iterdir():
         (others / f"other_{path.name}").write_bytes(path.read_bytes())
     calls = [
-        [sys.executable, str(script), str(tmp_path / "clips.library"), str(place), more]
-        for place, more in ((clip_files, str(blend_file)), (others, str(blend_file.parent)))
+        [sys.executable, str(script), str(tmp_path / "clips.library"), str(source), more]
+        for source, more in ((clip_files, str(blend_file)), (others, str(blend_file.parent)))
     ]
 
     running = [

@@ -27,7 +27,7 @@ def failing(load, monkeypatch):
     return spoil
 
 
-def test_the_other_actions_of_a_file_are_read_when_one_raises(load, blend_file, failing):
+def test_other_actions_of_a_file_are_read_when_one_raises(load, blend_file, failing):
     failing("read_source", lambda scene, armature, source: source[0].name == "wave_0")
 
     (read,) = load("mocap_assist.library.blend_clips").read_files([str(blend_file)], False, ())
@@ -37,22 +37,20 @@ def test_the_other_actions_of_a_file_are_read_when_one_raises(load, blend_file, 
     assert sentence.startswith(f"{blend_file}, wave_0: {FAULT}")
 
 
-def test_the_other_files_are_read_when_one_raises(load, blend_file, failing, tmp_path):
+def test_other_files_are_read_when_one_raises(load, blend_file, failing, tmp_path):
     twin = shutil.copy(blend_file, tmp_path / "twin.blend")
     opened = iter([True, False])
     failing("actions_of", lambda assets_only: next(opened))
 
-    odd, whole = load("mocap_assist.library.blend_clips").read_files(
+    odd, intact = load("mocap_assist.library.blend_clips").read_files(
         [str(blend_file), str(twin)], False, ()
     )
 
     assert odd.clips == () and odd.refused[0].startswith(f"{blend_file}: {FAULT}")
-    assert len(whole.clips) == 3 and whole.refused == ()
+    assert len(intact.clips) == 3 and intact.refused == ()
 
 
-def test_a_file_with_a_name_that_is_no_utf8_is_refused_and_the_others_are_not(
-    load, index, blend_file
-):
+def test_file_name_that_is_not_utf_8_is_refused_and_others_are_read(load, index, blend_file):
     odd = blend_file.with_name(os.fsdecode(b"caf\xe9.blend"))
     shutil.copy(blend_file, odd)
 
@@ -63,7 +61,7 @@ def test_a_file_with_a_name_that_is_no_utf8_is_refused_and_the_others_are_not(
     assert r"caf\udce9.blend' is not valid UTF-8" in sentence
 
 
-def test_the_other_clips_are_indexed_when_one_cannot_be_described(
+def test_other_clips_are_indexed_when_one_cannot_be_described(
     load, index, blend_file, monkeypatch
 ):
     indexing = load("mocap_assist.library.solve_indexing")
@@ -83,7 +81,7 @@ def test_the_other_clips_are_indexed_when_one_cannot_be_described(
     assert sentence.startswith(f"{blend_file}, wave_0: {FAULT}")
 
 
-def test_the_others_are_indexed_when_a_file_goes_away_meanwhile(
+def test_other_files_are_indexed_when_one_is_deleted_meanwhile(
     load, index, blend_file, clip_files, monkeypatch
 ):
     indexing = load("mocap_assist.library.solve_indexing")
@@ -102,9 +100,7 @@ def test_the_others_are_indexed_when_a_file_goes_away_meanwhile(
     assert done.refused == (f"{gone}: No such file or directory.",)
 
 
-def test_the_other_places_are_indexed_when_one_is_a_circle_of_links(
-    index, blend_file, clip_files
-):
+def test_other_sources_are_indexed_when_one_is_a_circular_link(index, blend_file, clip_files):
     circle = blend_file.parent.parent / "circle"
     circle.symlink_to(circle)
 
@@ -119,7 +115,7 @@ def test_the_other_places_are_indexed_when_one_is_a_circle_of_links(
 
 @pytest.fixture
 def closed(tmp_path, monkeypatch):
-    """A folder that cannot be opened; whoever tests as root could look into any."""
+    """A folder that cannot be opened; root could open any."""
     folder, stat = tmp_path / "closed", Path.stat
     folder.mkdir()
 
@@ -132,7 +128,7 @@ def closed(tmp_path, monkeypatch):
     return folder
 
 
-def test_the_other_places_are_indexed_when_one_is_closed(index, clip_files, closed):
+def test_other_sources_are_indexed_when_one_is_unreadable(index, clip_files, closed):
     done = index(closed / "takes", clip_files, closed / "shot.blend")
 
     assert done.n_clips == 6
@@ -141,7 +137,7 @@ def test_the_other_places_are_indexed_when_one_is_closed(index, clip_files, clos
     )
 
 
-def test_a_library_or_rig_in_a_closed_folder_is_refused(load, index, clip_files, closed):
+def test_library_or_rig_in_an_unreadable_folder_is_refused(load, index, clip_files, closed):
     refused = load("solvers.errors").InvalidFileError
     with pytest.raises(refused, match=r"my\.clips cannot be kept there: Permission denied\."):
         index(clip_files, library=closed / "my.clips")

@@ -1,11 +1,11 @@
-"""Find Similar: what of the library is like an action, and where in it."""
+"""Find Similar: which clips are similar to an action, and in which frames."""
 
 import numpy as np
 import pytest
 
 
 @pytest.mark.parametrize("kind", ["walk", "wave", "squat"])
-def test_the_kind_comes_first(find, newcomer, kind):
+def test_clips_of_the_same_kind_rank_first(find, newcomer, kind):
     newcomer(kind)
 
     rows = find()
@@ -17,7 +17,7 @@ def test_the_kind_comes_first(find, newcomer, kind):
     assert all(0 <= row.start < row.stop < 75 for row in rows)
 
 
-def test_the_very_motion_has_the_full_score(find, bring, clip_files, tmp_path):
+def test_identical_motion_has_the_highest_score(find, bring, clip_files, tmp_path):
     copy = tmp_path / "copy.bvh"
     copy.write_bytes((clip_files / "walk_0.bvh").read_bytes())
     bring(copy)
@@ -33,7 +33,7 @@ def test_find_leaves_out_the_source_of_the_query(find, bring, clip_files):
     assert "wave_0" not in {row.name for row in find()}
 
 
-def test_selected_bones_ask_for_their_parts(find, newcomer, blank, load):
+def test_selected_bones_limit_the_search_to_their_parts(find, newcomer, blank, load):
     armature = newcomer("wave")
     parts = load("mocap_assist.search.chosen_parts")
     compat = load("mocap_assist.blender.compat")
@@ -48,10 +48,10 @@ def test_selected_bones_ask_for_their_parts(find, newcomer, blank, load):
     assert not (chosen.left_arm or chosen.left_leg or chosen.right_leg)
     assert find(bones="SELECTED")
     with pytest.raises(load("solvers.errors").InvalidMotionError, match="selected bones"):
-        parts.parts_of_bones(skeleton, {"Nobody"}, settings)
+        parts.parts_of_bones(skeleton, {"Unknown"}, settings)
 
 
-def test_a_range_of_frames_is_found_where_it_lies(find, newcomer, blank, bring, load, tmp_path):
+def test_preview_range_limits_the_query(find, newcomer, blank, bring, load, tmp_path):
     armature = newcomer("walk", seconds=8.0)
     scene = blank.context.scene
     scene.use_preview_range = True
@@ -65,7 +65,7 @@ def test_a_range_of_frames_is_found_where_it_lies(find, newcomer, blank, bring, 
     assert search.query == armature.animation_data.action.name
 
 
-def test_alignment_runs_through_both(find, newcomer, blank, load):
+def test_alignment_covers_query_and_match(find, newcomer, blank, load):
     newcomer("squat")
     find()
     search = load("mocap_assist.search.searches").listed(blank.context)
@@ -89,14 +89,16 @@ def test_thumbnails_show_the_clip(find, newcomer, blank, load):
     assert (pictures[0] != pictures[-1]).any()
 
 
-def test_joints_of_a_camera_are_a_query_as_markers_too(find, blank, recordings, index):
+def test_camera_joints_can_be_a_query_as_armature_and_as_empties(
+    find, blank, recordings, index
+):
     take = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
     for target in ("ARMATURE", "OBJECT"):
         blank.ops.mocap_assist.import_recording(filepath=str(take), target=target)
         assert len(find()) == 6
 
 
-def test_without_a_library_the_button_says_so(blank, newcomer, tmp_path):
+def test_find_reports_a_missing_library(blank, newcomer, tmp_path):
     newcomer("walk")
     blank.context.scene.mocap_assist.library.library_file = str(tmp_path / "none.library")
 
@@ -104,7 +106,7 @@ def test_without_a_library_the_button_says_so(blank, newcomer, tmp_path):
         blank.ops.mocap_assist.find_similar()
 
 
-def test_without_the_shared_library_the_button_is_gray(blank, newcomer, load, monkeypatch):
+def test_find_is_disabled_without_the_shared_library(blank, newcomer, load, monkeypatch):
     newcomer("walk")
     monkeypatch.setattr(load("mocap_assist.library.sources"), "SHARED", "never indexed.clips")
 
@@ -112,7 +114,7 @@ def test_without_the_shared_library_the_button_is_gray(blank, newcomer, load, mo
         blank.ops.mocap_assist.find_similar()
 
 
-def test_what_is_no_library_is_refused_in_a_sentence(blank, newcomer, tmp_path):
+def test_find_refuses_a_damaged_library(blank, newcomer, tmp_path):
     newcomer("walk")
     broken = tmp_path / "broken.library"
     broken.write_bytes(b"SQLite format 3\0" + bytes(200))
@@ -122,7 +124,7 @@ def test_what_is_no_library_is_refused_in_a_sentence(blank, newcomer, tmp_path):
         blank.ops.mocap_assist.find_similar()
 
 
-def test_an_armature_without_a_body(blank, find, make_armature, animate):
+def test_find_refuses_an_armature_without_a_body(blank, find, make_armature, animate):
     armature = make_armature(bones={"Lid": (None, (0, 0, 0), (0, 0, 1), False)}, name="Box")
     animate(armature)
 
@@ -130,7 +132,7 @@ def test_an_armature_without_a_body(blank, find, make_armature, animate):
         find()
 
 
-def test_nothing_of_the_scene_is_changed(find, newcomer, blank, keys_of):
+def test_find_does_not_change_the_scene(find, newcomer, blank, keys_of):
     armature = newcomer("walk")
     action = armature.animation_data.action
     before = (keys_of(action), sorted(blank.data.actions.keys()))

@@ -12,7 +12,7 @@ def twin(blend_file, tmp_path):
     return other / "shot.blend"
 
 
-def test_no_clip_is_lost_when_another_indexes_a_file_of_the_same_name(
+def test_all_clips_are_added_when_another_process_indexes_the_same_name(
     index, entries, blend_file, twin, load, monkeypatch
 ):
     indexing = load("mocap_assist.library.solve_indexing")

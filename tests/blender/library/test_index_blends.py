@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 
-def test_all_actions_of_a_file_with_tags_and_catalog(index, entries, blend_file):
+def test_actions_become_clips_with_tags_and_catalog(index, entries, blend_file):
     done = index(blend_file.parent, tags=("studio",))
 
     found = entries()
@@ -19,13 +19,13 @@ def test_all_actions_of_a_file_with_tags_and_catalog(index, entries, blend_file)
     assert (found["shot/walk_0"].n_frames, found["shot/walk_0"].frame_rate) == (75, 30.0)
 
 
-def test_of_asset_libraries_only_the_assets(index, entries, blend_file):
+def test_only_assets_of_asset_libraries_are_indexed(index, entries, blend_file):
     index(blend_file.parent, assets_only=True)
 
     assert sorted(entries()) == ["shot/wave_0"]
 
 
-def test_it_is_the_motion_of_the_recording(load, index, blend_file, clip_motions, tmp_path):
+def test_indexed_motion_equals_the_recording(load, index, blend_file, clip_motions, tmp_path):
     index(blend_file)
     retrieval = load("solvers.retrieval")
     with retrieval.load_clip_library(tmp_path / "clips.library") as library:
@@ -36,7 +36,7 @@ def test_it_is_the_motion_of_the_recording(load, index, blend_file, clip_motions
     np.testing.assert_allclose(stored, wave.postures.positions, atol=2e-3)
 
 
-def test_only_what_has_changed_is_read_again(index, entries, blend_file, monkeypatch, load):
+def test_unchanged_files_are_not_read_again(index, entries, blend_file, monkeypatch, load):
     index(blend_file)
     indexing = load("mocap_assist.library.solve_indexing")
     read = []
@@ -58,7 +58,7 @@ def test_only_what_has_changed_is_read_again(index, entries, blend_file, monkeyp
     assert len(read) == 1 and len(entries()) == 3
 
 
-def test_actions_that_are_gone_leave_the_library(blank, index, entries, blend_file):
+def test_deleted_actions_are_removed_from_the_library(blank, index, entries, blend_file):
     index(blend_file)
     blank.ops.wm.open_mainfile(filepath=str(blend_file))
     blank.data.actions.remove(blank.data.actions["squat_0"])
@@ -92,7 +92,7 @@ def test_an_invalid_blend_file_is_reported_and_others_are_read(
     assert "broken.blend" in said
 
 
-def test_actions_without_a_rig_or_a_body(blank, index, entries, blend_file):
+def test_actions_without_a_rig_or_a_body_are_refused(blank, index, entries, blend_file):
     blank.ops.wm.open_mainfile(filepath=str(blend_file))
     for name in ("walk_0", "squat_0", "wave_0"):
         action = blank.data.actions[name]
@@ -132,7 +132,9 @@ def test_a_file_without_motion_is_not_opened_again(index, blank, tmp_path, monke
     assert "cube.glb has no skeleton" in again.refused[0]
 
 
-def test_same_names_in_two_folders_are_kept_apart(index, entries, blend_file, tmp_path):
+def test_clips_of_the_same_name_in_two_folders_become_unique(
+    index, entries, blend_file, tmp_path
+):
     other = tmp_path / "other"
     other.mkdir()
     (other / "shot.blend").write_bytes(blend_file.read_bytes())
@@ -155,7 +157,9 @@ def test_nothing_in_a_file_is_executed(blank, index, entries, blend_file, tmp_pa
     assert len(entries()) == 3 and not trap.exists()
 
 
-def test_files_and_blend_files_of_one_folder(index, entries, blend_file, clip_files):
+def test_recordings_and_blend_files_of_one_folder_are_indexed(
+    index, entries, blend_file, clip_files
+):
     blend_file.rename(clip_files / "shot.blend")
     (clip_files / "empty.bvh").write_bytes(b"")
     (clip_files / "notes.txt").write_text("nothing of ours")

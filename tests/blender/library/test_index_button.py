@@ -1,4 +1,4 @@
-"""The button Index: beside the animator's work, and without a word of the scene."""
+"""The button Index runs in the background and reads nothing of the scene."""
 
 import tempfile
 import time
@@ -16,7 +16,7 @@ def library(blank, tmp_path):
     return settings
 
 
-def test_sources_tags_and_asset_libraries(blank, clip_files, blend_file, entries):
+def test_index_uses_sources_tags_and_asset_libraries(blank, clip_files, blend_file, entries):
     library = blank.context.scene.mocap_assist.library
     library.library_file = str(clip_files.parent / "own" / "clips.library")
     library.sources, library.tags = f"{clip_files}; ", "take one, hall"
@@ -38,17 +38,17 @@ def test_index_reports_missing_sources(blank, library):
         blank.ops.mocap_assist.index_library()
 
 
-def test_the_library_that_all_files_share(load, blank):
-    places = load("mocap_assist.library.sources")
+def test_default_library_is_in_the_user_folder(load, blank):
+    sources = load("mocap_assist.library.sources")
     choices = load("mocap_assist.library.choices").LibraryChoices()
 
-    path = places.library_path(choices)
+    path = sources.library_path(choices)
 
     assert path.name == "clips.library"
-    assert str(path.parent) == blank.utils.extension_path_user(places.EXTENSION)
+    assert str(path.parent) == blank.utils.extension_path_user(sources.EXTENSION)
 
 
-def test_sources_are_added_and_taken_out(blank, library, tmp_path):
+def test_sources_are_added_and_removed(blank, library, tmp_path):
     add = blank.ops.mocap_assist
     add.add_source_folder(directory=str(tmp_path))
     add.add_source_files(directory=str(tmp_path), files=[{"name": "a.blend"}])
@@ -98,7 +98,7 @@ def waiting(load, blank, monkeypatch, tmp_path, clip_files):
     )  # fmt: skip
 
 
-def test_the_window_stays_free_until_it_is_done(waiting, blank, entries):
+def test_window_stays_responsive_during_indexing(waiting, blank, entries):
     assert waiting.state.running
     assert not blank.ops.mocap_assist.index_library.poll()
     outcomes = set()
@@ -116,14 +116,14 @@ def test_the_window_stays_free_until_it_is_done(waiting, blank, entries):
     assert blank.ops.mocap_assist.index_library.poll()
 
 
-def test_escape_ends_it(waiting):
+def test_escape_cancels_indexing(waiting):
     assert waiting.operator.modal(waiting.context, event("ESC", "PRESS")) == {"CANCELLED"}
 
     assert waiting.reports == [({"INFO"}, "Cancelled.")]
     assert not (waiting.state.running or waiting.timers or list(waiting.jobs.iterdir()))
 
 
-def test_another_file_ends_it(waiting, blank):
+def test_opening_another_file_ends_indexing(waiting, blank):
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     waiting.context.window_manager.mocap_assist_indexing = (
         blank.context.window_manager.mocap_assist_indexing

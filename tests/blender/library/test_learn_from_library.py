@@ -28,7 +28,7 @@ def noisy(library, newcomer, rng):
     return armature
 
 
-def test_clean_finds_its_own_examples(noisy, blank, load):
+def test_clean_finds_examples_in_the_library(noisy, blank, load):
     done = blank.ops.mocap_assist.denoise(prior="LIBRARY", plant_feet=False)
 
     assert done == {"FINISHED"}
@@ -38,7 +38,9 @@ def test_clean_finds_its_own_examples(noisy, blank, load):
     assert "clips of the library: " in entry["prior_used"] and "walk_" in entry["prior_used"]
 
 
-def test_actions_of_blend_files_teach_too(noisy, blank, load, clip_files, entries, tmp_path):
+def test_clean_learns_from_actions_of_blend_files(
+    noisy, blank, load, clip_files, entries, tmp_path
+):
     with load("solvers.retrieval").load_clip_library(tmp_path / "clips.library") as opened:
         opened.remove([name for name in entries() if not name.startswith("shot/")])
 
@@ -48,7 +50,7 @@ def test_actions_of_blend_files_teach_too(noisy, blank, load, clip_files, entrie
     assert "of the library: shot/walk_0" in entry["prior_used"]
 
 
-def test_reconstruct_finds_its_own_postures(library, blank, recordings, load):
+def test_reconstruct_finds_postures_in_the_library(library, blank, recordings, load):
     take = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
     blank.ops.mocap_assist.import_recording(filepath=str(take))
 
@@ -62,7 +64,7 @@ def test_reconstruct_finds_its_own_postures(library, blank, recordings, load):
 @pytest.mark.parametrize(
     ("button", "setting"), [("denoise", "prior"), ("reconstruct", "postures")]
 )
-def test_without_a_library_they_say_what_to_do(newcomer, blank, tmp_path, button, setting):
+def test_buttons_report_a_missing_library(newcomer, blank, tmp_path, button, setting):
     newcomer("walk")
     blank.context.scene.mocap_assist.library.library_file = str(tmp_path / "none.library")
 
@@ -70,7 +72,7 @@ def test_without_a_library_they_say_what_to_do(newcomer, blank, tmp_path, button
         getattr(blank.ops.mocap_assist, button)(**{setting: "LIBRARY"})
 
 
-def test_the_command_line_takes_a_library(noisy, load, capsys, tmp_path):
+def test_command_line_accepts_a_library(noisy, load, capsys, tmp_path):
     run = load("mocap_assist.batch.command").run
     words = ["denoise", "--library", str(tmp_path / "clips.library"), "--no-plant-feet"]
 

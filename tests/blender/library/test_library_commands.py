@@ -20,7 +20,7 @@ def lines_of(out):
     return [json.loads(line) for line in out.splitlines() if line.startswith("{")]
 
 
-def test_index_then_find(command, newcomer, blend_file, clip_files, tmp_path):
+def test_find_command_finds_indexed_clips(command, newcomer, blend_file, clip_files, tmp_path):
     library = tmp_path / "all.library"
 
     status, out, err = command(

@@ -28,7 +28,7 @@ def choose(blank):
     return click
 
 
-def test_the_same_body_makes_the_same_motion(
+def test_loaded_clip_equals_the_recording_on_the_same_body(
     find, newcomer, load_match, choose, poses, bring, clip_files, blank
 ):
     armature = newcomer("wave")
@@ -48,7 +48,7 @@ def test_the_same_body_makes_the_same_motion(
         )
 
 
-def test_only_what_matches_from_where_the_query_is(
+def test_matching_frames_start_at_the_position_of_the_query(
     find, newcomer, load_match, blank, load, poses
 ):
     armature = newcomer("walk", seconds=6.0)
@@ -69,12 +69,12 @@ def test_only_what_matches_from_where_the_query_is(
     assert np.degrees(np.arctan2(facing[1, 0], facing[0, 0])) == pytest.approx(0.0, abs=12.0)
 
 
-@pytest.mark.parametrize("turn", [0.0, 2.0])
-def test_it_stands_there_however_the_armature_is_turned(
-    find, newcomer, load_match, blank, poses, turn, load
+@pytest.mark.parametrize("heading", [0.0, 2.0])
+def test_loaded_match_starts_at_the_query_for_any_armature_heading(
+    find, newcomer, load_match, blank, poses, heading, load
 ):
     armature = newcomer("squat")
-    armature.location, armature.rotation_euler = (3.0, -2.0, 0.0), (0.0, 0.0, turn)
+    armature.location, armature.rotation_euler = (3.0, -2.0, 0.0), (0.0, 0.0, heading)
     armature.rotation_mode = "XYZ"
     blank.context.view_layer.update()
     find()
@@ -89,7 +89,7 @@ def test_it_stands_there_however_the_armature_is_turned(
     assert np.dot(after[:3, 0], before[:3, 0]) > 0.97
 
 
-def test_another_rig_gets_it_retargeted(
+def test_match_is_retargeted_to_another_rig(
     find, newcomer, load_match, choose, make_armature, blank, poses, bring, clip_files
 ):
     newcomer("wave")
@@ -109,7 +109,9 @@ def test_another_rig_gets_it_retargeted(
         assert (found * expected).sum(axis=-1).min() > 0.97, bone
 
 
-def test_clips_from_blend_files(blank, blend_file, index, newcomer, find, load_match, choose):
+def test_clip_of_a_blend_file_is_loaded(
+    blank, blend_file, index, newcomer, find, load_match, choose
+):
     index(blend_file)
     newcomer("squat")
     find()
@@ -122,7 +124,7 @@ def test_clips_from_blend_files(blank, blend_file, index, newcomer, find, load_m
     assert (noted["file"], noted["item"]) == (str(blend_file), "squat_0")
 
 
-def test_as_a_strip_at_the_current_frame_in_the_time_of_the_query(find, newcomer, blank, load):
+def test_strip_starts_at_the_current_frame_with_the_query_timing(find, newcomer, blank, load):
     armature = newcomer("walk")
     played = armature.animation_data.action
     find()
@@ -144,7 +146,9 @@ def test_as_a_strip_at_the_current_frame_in_the_time_of_the_query(find, newcomer
     assert strip.action_slot is not None
 
 
-def test_the_rate_of_the_scene_is_kept_in_time(find, newcomer, load_match, choose, blank):
+def test_loaded_clip_keeps_its_duration_at_the_scene_rate(
+    find, newcomer, load_match, choose, blank
+):
     newcomer("walk")
     find()
     choose("walk_0")
@@ -155,14 +159,14 @@ def test_the_rate_of_the_scene_is_kept_in_time(find, newcomer, load_match, choos
     assert np.ptp(action.frame_range) == pytest.approx(2 * 74, abs=1)
 
 
-def test_a_file_that_has_gone_or_changed(find, newcomer, blank, clip_files):
+def test_load_reports_a_changed_or_deleted_file(find, newcomer, blank, clip_files):
     armature = newcomer("walk")
     played = armature.animation_data.action
     find()
     name = blank.context.window_manager.mocap_assist_matches.rows[0].name
     path = clip_files / f"{name}.bvh"
     lines = path.read_text().splitlines()
-    cut = next(place for place, line in enumerate(lines) if line.startswith("Frames:"))
+    cut = next(number for number, line in enumerate(lines) if line.startswith("Frames:"))
     lines[cut] = "Frames: 3"
     path.write_text("\n".join(lines[: cut + 5]) + "\n")
 
@@ -175,7 +179,7 @@ def test_a_file_that_has_gone_or_changed(find, newcomer, blank, clip_files):
     assert armature.animation_data.action == played
 
 
-def test_without_a_match_the_button_says_what_to_do(newcomer, blank):
+def test_load_reports_a_missing_search(newcomer, blank):
     newcomer("walk")
     listed = blank.context.window_manager.mocap_assist_matches
     listed.rows.clear()

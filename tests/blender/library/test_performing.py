@@ -10,12 +10,12 @@ def performing(load):
 
 @pytest.fixture
 def performance(load, recordings):
-    """What a camera has seen of somebody."""
+    """The joints of a recorded actor."""
     path = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
     return load("solvers.recordings").read_recording(path)
 
 
-def test_a_performance_fills_the_list_and_waves_page_it(
+def test_performance_fills_the_list_and_waves_page_it(
     find, newcomer, performing, performance, blank
 ):
     newcomer("walk")
@@ -32,7 +32,7 @@ def test_a_performance_fills_the_list_and_waves_page_it(
     assert performing.page(blank.context, 1) == said
 
 
-def test_the_library_is_shown(performing, blank):
+def test_show_library_turns_on_the_ghost(performing, blank):
     blank.context.window_manager.mocap_assist_matches.rows.clear()
     blank.context.window_manager.mocap_assist_ghost = False
 
@@ -41,7 +41,7 @@ def test_the_library_is_shown(performing, blank):
     assert performing.page(blank.context, 1) == "No search yet."
 
 
-def test_without_a_library_it_says_so(performing, performance, blank, tmp_path):
+def test_performance_reports_a_missing_library(performing, performance, blank, tmp_path):
     blank.context.scene.mocap_assist.library.library_file = str(tmp_path / "none")
 
     assert "There is no library yet" in performing.search_with(blank.context, performance)

@@ -25,7 +25,7 @@ def at_once(load, monkeypatch):
     )
 
 
-def test_variants_of_what_was_found(find, newcomer, use, blank, at_once, capfd):
+def test_variants_are_made_from_matches(find, newcomer, use, blank, at_once, capfd):
     armature = newcomer("walk")
     query = armature.animation_data.action
     listed = [row.name for row in find()]
@@ -43,7 +43,7 @@ def test_variants_of_what_was_found(find, newcomer, use, blank, at_once, capfd):
     assert made.name.startswith(f"{listed[0]}.{armature.name}.variant 01")
 
 
-def test_another_rig_gets_them_retargeted(
+def test_matches_are_retargeted_to_another_rig(
     find, newcomer, use, make_armature, blank, poses, bring, clip_files, at_once
 ):
     newcomer("wave")
@@ -65,7 +65,7 @@ def test_another_rig_gets_them_retargeted(
         assert (found * expected).sum(axis=-1).min() > 0.97, bone
 
 
-def test_a_clip_without_its_file_is_left_out_and_reported(
+def test_clip_without_its_file_is_skipped_and_reported(
     find, newcomer, use, clip_files, at_once, capfd
 ):
     newcomer("walk")
@@ -79,7 +79,7 @@ def test_a_clip_without_its_file_is_left_out_and_reported(
     assert "1 could not be loaded" in said and f"{listed[0]}.bvh was moved or deleted" in said
 
 
-def test_all_gone_is_an_error_and_nothing_is_written(
+def test_vary_raises_and_writes_nothing_when_all_files_are_missing(
     find, newcomer, blank, clip_files, at_once
 ):
     newcomer("walk")
@@ -94,6 +94,6 @@ def test_all_gone_is_an_error_and_nothing_is_written(
     assert set(blank.data.actions) == before
 
 
-def test_without_matches_the_button_is_grey(blank, newcomer):
+def test_button_is_disabled_without_matches(blank, newcomer):
     newcomer("walk")
     assert not blank.ops.mocap_assist.use_matches.poll()

@@ -26,25 +26,25 @@ def window(blank, view):
     )
     other = SimpleNamespace(type="OUTLINER", tag_redraw=lambda: None)
     screen = SimpleNamespace(areas=[other, area])
-    seen = SimpleNamespace(timers=[], status=[], reports=[], modals=[])
+    record = SimpleNamespace(timers=[], status=[], reports=[], modals=[])
     shown = SimpleNamespace(screen=screen)
-    seen.context = SimpleNamespace(
+    record.context = SimpleNamespace(
         scene=blank.context.scene,
         window=shown,
         window_manager=SimpleNamespace(
-            event_timer_add=lambda *_, **__: seen.timers.append("timer") or "timer",
-            event_timer_remove=seen.timers.remove,
-            modal_handler_add=seen.modals.append,
+            event_timer_add=lambda *_, **__: record.timers.append("timer") or "timer",
+            event_timer_remove=record.timers.remove,
+            modal_handler_add=record.modals.append,
             windows=[shown],
         ),
-        workspace=SimpleNamespace(status_text_set=seen.status.append),
+        workspace=SimpleNamespace(status_text_set=record.status.append),
     )
-    return seen
+    return record
 
 
 @pytest.fixture
 def port():
-    """One that nobody listens on."""
+    """Return a port without a listener."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
         free.bind(("127.0.0.1", 0))
         return free.getsockname()[1]
@@ -55,9 +55,9 @@ def listen(load, window, port, monkeypatch):
     """Press Listen; return the button. All is ended afterwards."""
     button = load("mocap_assist.live.listen_button")
     listening = load("mocap_assist.live.listening")
-    usual = button.preferred
+    original = button.preferred
     monkeypatch.setattr(
-        button, "preferred", lambda name: port if name == "live_port" else usual(name)
+        button, "preferred", lambda name: port if name == "live_port" else original(name)
     )
 
     class Button(button.ListenButton):

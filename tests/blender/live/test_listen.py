@@ -10,29 +10,27 @@ from numpy.testing import assert_allclose
 
 @pytest.fixture
 def library(load, monkeypatch):
-    """What the library was told; the real one is put back."""
+    """Record the calls to the library; the real one is restored."""
     commands = load("mocap_assist.live.commands")
-    told = []
+    calls = []
     library = commands.Library(
-        show=lambda context: told.append("show") or "The library.",
-        page=lambda context, step: told.append(step) or "A page.",
-        search=lambda context, query: told.append(query) or "Searched.",
+        show=lambda context: calls.append("show") or "The library.",
+        page=lambda context, step: calls.append(step) or "A page.",
+        search=lambda context, query: calls.append(query) or "Searched.",
     )
     monkeypatch.setattr(commands, "LIBRARY", library)
-    return told
+    return calls
 
 
-def test_off_until_it_is_pressed(load, blank):
+def test_listening_is_off_until_the_button_is_pressed(load, blank):
     assert load("mocap_assist.live.listening").current() is None
 
 
-def test_without_a_window_the_button_is_grey(blank):
+def test_button_is_disabled_without_a_window(blank):
     assert not blank.ops.mocap_assist.listen.poll()
 
 
-def test_pressed_it_listens_on_loopback_only_and_pressed_again_it_stops(
-    listen, load, window, port
-):
+def test_press_listens_on_loopback_only_and_second_press_stops(listen, load, window, port):
     button = listen()
 
     current = load("mocap_assist.live.listening").current()
@@ -49,14 +47,14 @@ def test_pressed_it_listens_on_loopback_only_and_pressed_again_it_stops(
         free.bind(("127.0.0.1", port))
 
 
-def test_the_first_button_ends_once_the_second_stopped_it(listen, window, event):
+def test_first_operator_ends_after_the_second_stopped_listening(listen, window, event):
     button = listen()
     listen()
 
     assert button.modal(window.context, event("TIMER")) == {"CANCELLED"}
 
 
-def test_esc_stops_it_and_other_keys_pass(listen, load, window, event):
+def test_esc_stops_listening_and_other_keys_pass(listen, load, window, event):
     button = listen()
 
     assert button.modal(window.context, event("A", "PRESS")) == {"PASS_THROUGH"}
@@ -65,7 +63,7 @@ def test_esc_stops_it_and_other_keys_pass(listen, load, window, event):
     assert load("mocap_assist.live.listening").current() is None and window.timers == []
 
 
-def test_another_file_stops_it(listen, load, blank, window, event):
+def test_opening_another_file_stops_listening(listen, load, blank, window, event):
     button = listen()
     listening = load("mocap_assist.live.listening")
 
@@ -91,7 +89,7 @@ def test_a_port_in_use_is_reported(listen, load, window, port):
     assert load("mocap_assist.live.listening").current() is None and window.timers == []
 
 
-def test_gestures_reach_the_library_and_a_performance_is_searched_for(
+def test_gestures_reach_the_library_and_a_performance_starts_a_search(
     listen, act, library, load, window
 ):
     button = listen()
@@ -108,7 +106,7 @@ def test_gestures_reach_the_library_and_a_performance_is_searched_for(
     assert window.status[-1].startswith("Searched.")
 
 
-def test_without_a_library_it_says_so_and_keeps_the_performance(listen, act, load, window):
+def test_missing_library_is_reported_and_the_performance_is_kept(listen, act, load, window):
     button = listen()
 
     act(button, "hand up", "clap", "rest", "clap")
@@ -117,7 +115,7 @@ def test_without_a_library_it_says_so_and_keeps_the_performance(listen, act, loa
     assert load("mocap_assist.live.commands").last_performance().n_frames >= 15
 
 
-def test_zoom_and_turn_move_the_view_of_the_window(listen, act, view):
+def test_zoom_and_turn_gestures_move_the_view(listen, act, view):
     act(listen(), "zoom in")
     assert view.view_distance == pytest.approx(10.0 / (1.27 / 0.57), rel=0.2)
     view.view_distance = 10.0
@@ -130,7 +128,7 @@ def test_zoom_and_turn_move_the_view_of_the_window(listen, act, view):
     assert view.view_rotation.to_euler().z == pytest.approx(-swung, abs=0.1)
 
 
-def test_a_view_through_a_camera_stays(listen, act, view, window):
+def test_camera_view_does_not_move(listen, act, view, window):
     view.view_perspective = "CAMERA"
 
     act(listen(), "zoom in")
@@ -139,7 +137,7 @@ def test_a_view_through_a_camera_stays(listen, act, view, window):
     assert "no 3D View" in window.status[-1]
 
 
-def test_rubbish_is_counted_and_nothing_else(listen, load, window, port, event):
+def test_invalid_datagrams_are_counted_only(listen, load, window, port, event):
     button = listen()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         for junk in (b"", b"\xff" * 1000, b'{"format": "mocap-assist-live"}', b"x" * 60_000):
@@ -147,11 +145,11 @@ def test_rubbish_is_counted_and_nothing_else(listen, load, window, port, event):
 
     assert button.modal(window.context, event("TIMER")) == {"PASS_THROUGH"}
 
-    heard = load("mocap_assist.live.listening").current().heard
-    assert (heard.frames, heard.unreadable) == (0, 3)
+    statistics = load("mocap_assist.live.listening").current().heard
+    assert (statistics.frames, statistics.unreadable) == (0, 3)
 
 
-def test_the_figure_stands_on_the_ground_at_the_origin(listen, act, load):
+def test_figure_stands_on_the_ground_at_the_origin(listen, act, load):
     act(listen(), "rest")
 
     lines = load("mocap_assist.live.listening").current().figure.lines()
@@ -161,22 +159,22 @@ def test_the_figure_stands_on_the_ground_at_the_origin(listen, act, load):
     assert np.abs(lines[..., :2]).max() < 0.5
 
 
-def test_bones_that_are_not_seen_are_not_drawn(load):
+def test_missing_and_unreliable_bones_are_not_drawn(load):
     figure = load("mocap_assist.drawing.live_figure").LiveFigure((1, 1, 1, 1), 2.0)
     frames, motion = load("solvers.recordings.live.frames"), load("solvers.motion")
     names = motion.SENSOR_JOINTS[motion.Sensor.KINECT_V1]
-    places, sure = np.ones((20, 3)), np.ones(20)
-    places[7], sure[11] = np.nan, 0.1
+    positions, confidence = np.ones((20, 3)), np.ones(20)
+    positions[7], confidence[11] = np.nan, 0.1
 
     assert figure.lines().shape == (0, 2, 3)
-    figure.show(frames.LiveFrame(0.0, 0, names, places, sure))
+    figure.show(frames.LiveFrame(0.0, 0, names, positions, confidence))
 
     assert figure.lines().shape == (17, 2, 3)
     figure.remove()
     figure.remove()
 
 
-def test_turning_goes_round_the_vertical_and_zoom_has_ends(load, view):
+def test_view_rotates_about_the_vertical_and_zoom_is_limited(load, view):
     control = load("mocap_assist.drawing.view_control")
     area = SimpleNamespace(
         type="VIEW_3D",

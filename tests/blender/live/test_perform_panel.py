@@ -1,13 +1,13 @@
-"""The panel Perform says what can be done, and what was heard."""
+"""The panel Perform shows what can be done, and what was received."""
 
 import pytest
 
 
-def test_at_first_there_is_the_button_and_the_port(draw):
+def test_panel_shows_button_and_port_before_listening(draw):
     assert draw("MOCAP_PT_perform") == ["mocap_assist.listen", "live_port"]
 
 
-def test_while_it_listens_it_tells_what_it_hears(draw, listen, act):
+def test_panel_shows_received_frames_while_listening(draw, listen, act):
     button = listen()
     assert "No data yet." in " ".join(draw("MOCAP_PT_perform"))
 
@@ -20,5 +20,5 @@ def test_while_it_listens_it_tells_what_it_hears(draw, listen, act):
 
 
 @pytest.mark.parametrize("suffix", ["", "_graph", "_dopesheet"])
-def test_it_is_on_the_tab(blank, suffix):
+def test_panel_is_on_the_mocap_tab(blank, suffix):
     assert getattr(blank.types, f"MOCAP_PT_perform{suffix}").bl_category == "Mocap"

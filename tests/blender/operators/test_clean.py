@@ -14,7 +14,7 @@ def roughness(keys):
     return np.abs(np.diff(values, n=3)).mean()
 
 
-def test_the_result_is_a_new_calmer_action_with_the_same_channels(noisy, clean, keys_of):
+def test_result_is_a_new_smoother_action_with_the_same_channels(noisy, clean, keys_of):
     raw = noisy.animation_data.action
     before = keys_of(raw)
 
@@ -29,7 +29,7 @@ def test_the_result_is_a_new_calmer_action_with_the_same_channels(noisy, clean, 
     assert np.mean(calmer) > 0.9
 
 
-def test_it_says_what_was_done(noisy, clean):
+def test_clean_reports_its_result(noisy, clean):
     result = clean(strength=0.9)
 
     entry = json.loads(result["mocap_assist_history"])[-1]
@@ -72,7 +72,7 @@ def test_results_of_results_are_named_after_the_recording(noisy, clean):
     assert [clean().name for _ in range(3)] == [CLEAN, f"{CLEAN}.001", f"{CLEAN}.002"]
 
 
-def test_revert_takes_every_result_off_the_nla_and_leaves_other_tracks(noisy, clean, blank):
+def test_revert_removes_every_result_from_the_nla_and_no_other_track(noisy, clean, blank):
     clean(result_as="NLA_TRACK")
     clean(result_as="NLA_TRACK")
     layer = noisy.animation_data.nla_tracks.new()
@@ -85,7 +85,7 @@ def test_revert_takes_every_result_off_the_nla_and_leaves_other_tracks(noisy, cl
         blank.ops.mocap_assist.revert_to_raw()
 
 
-def test_a_muted_track_is_not_what_the_armature_plays(noisy, clean, blank):
+def test_muted_track_is_not_the_played_action(noisy, clean, blank):
     clean(result_as="NLA_TRACK")
     noisy.animation_data.nla_tracks[0].mute = True
 
@@ -120,7 +120,7 @@ def test_only_selected_bones_change(noisy, clean, keys_of, load):
     assert changed == {'pose.bones["Head"].rotation_euler'}
 
 
-def test_cleaning_part_by_part_keeps_the_parts_already_clean(noisy, clean, keys_of, blank):
+def test_cleaning_parts_one_by_one_keeps_the_clean_parts(noisy, clean, keys_of, blank):
     scene = blank.context.scene
     scene.frame_start, scene.frame_end = 1, 30
     first = keys_of(clean(frame_range="SCENE"))
@@ -148,7 +148,7 @@ def test_a_cleaned_range_joins_the_rest_without_a_step(noisy, clean, keys_of, bl
         assert abs(moved[19]) <= abs(moved).max() / 2
 
 
-def test_half_the_strength_goes_half_the_way(noisy, clean, keys_of, blank):
+def test_half_strength_is_halfway(noisy, clean, keys_of, blank):
     raw = keys_of(noisy.animation_data.action)
     path = "OBActor", 'pose.bones["Head"].rotation_euler', 2
     values = [np.array([key[1] for key in raw[path]])]
@@ -159,7 +159,7 @@ def test_half_the_strength_goes_half_the_way(noisy, clean, keys_of, blank):
     assert_allclose(values[1], (values[0] + values[2]) / 2, atol=2e-3)
 
 
-def test_filled_and_corrected_keys_are_marked_per_bone_and_frame(noisy, clean, keys_of):
+def test_filled_and_corrected_keys_are_marked_by_bone_and_frame(noisy, clean, keys_of):
     action = noisy.animation_data.action
     bag = action.layers[0].strips[0].channelbag(action.slots[0])
     for curve in bag.fcurves:
@@ -175,7 +175,7 @@ def test_filled_and_corrected_keys_are_marked_per_bone_and_frame(noisy, clean, k
     assert arm.count("KEYFRAME") >= 40 and head.count("KEYFRAME") >= 50
 
 
-def test_undo_is_one_step(noisy, clean, blank):
+def test_clean_is_one_undo_step(noisy, clean, blank):
     window = blank.context.window_manager.windows[0]
     with blank.context.temp_override(window=window, screen=window.screen):
         blank.ops.ed.undo_push(message="before")
@@ -199,7 +199,7 @@ def test_the_redo_panel_does_not_solve_again(noisy, clean, load, monkeypatch, bl
     assert not solved
 
 
-def test_noise_in_the_rest_of_the_action_stays(noisy, clean, blank, capfd):
+def test_noise_outside_the_range_stays(noisy, clean, blank, capfd):
     scene, action = blank.context.scene, noisy.animation_data.action
     path = 'pose.bones["Head"].rotation_euler'
 
@@ -221,7 +221,7 @@ def test_noise_in_the_rest_of_the_action_stays(noisy, clean, blank, capfd):
     assert "Applied the modifiers of 1 curves." in capfd.readouterr().out
 
 
-def test_locations_of_bones_come_nearer_to_the_truth(make_armature, animate, clean, rng):
+def test_bone_locations_get_nearer_to_the_truth(make_armature, animate, clean, rng):
     armature = make_armature()
     action = animate(armature, range(1, 91), locations=True)
 

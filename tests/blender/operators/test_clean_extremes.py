@@ -31,14 +31,14 @@ def test_clean_reports_an_empty_selection(noisy, clean, load):
         ),
     ],
 )
-def test_bad_input_gives_one_sentence(spoil, sentence, noisy, clean, blank):
+def test_clean_reports_invalid_input_in_one_sentence(spoil, sentence, noisy, clean, blank):
     spoil(blank, noisy)
 
     with pytest.raises(RuntimeError, match=sentence):
         clean()
 
 
-def test_an_action_that_tweak_mode_locks_is_left_alone(noisy, clean, blank):
+def test_action_locked_by_tweak_mode_is_not_changed(noisy, clean, blank):
     clean(result_as="NLA_TRACK")
     noisy.animation_data.nla_tracks[0].strips[0].select = True
     noisy.animation_data.use_tweak_mode = True
@@ -50,7 +50,7 @@ def test_an_action_that_tweak_mode_locks_is_left_alone(noisy, clean, blank):
     assert blank.data.actions.keys() == actions
 
 
-def test_a_bone_without_keys_stays_as_it_is(noisy, clean, keys_of):
+def test_bone_without_keys_is_unchanged(noisy, clean, keys_of):
     action = noisy.animation_data.action
     bag = action.layers[0].strips[0].channelbag(action.slots[0])
     for curve in [curve for curve in bag.fcurves if "Spine" in curve.data_path]:
@@ -59,7 +59,7 @@ def test_a_bone_without_keys_stays_as_it_is(noisy, clean, keys_of):
     assert not any("Spine" in path for _, path, _ in keys_of(clean()))
 
 
-def test_two_bones_are_enough(make_armature, animate, clean, blank):
+def test_clean_accepts_two_bones(make_armature, animate, clean, blank):
     bones = {
         "upper": (None, (0, 0, 0), (0, 0, 1), False),
         "lower": ("upper", (0, 0, 1), (0, 0, 2), True),
@@ -70,7 +70,7 @@ def test_two_bones_are_enough(make_armature, animate, clean, blank):
     assert clean(plant_feet=True).name == CLEAN
 
 
-def test_one_frame_is_enough(make_armature, animate, clean, keys_of):
+def test_clean_accepts_one_frame(make_armature, animate, clean, keys_of):
     armature = make_armature(mode="XYZ")
     raw = keys_of(animate(armature, frames=[1]))
 

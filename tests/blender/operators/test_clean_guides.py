@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 
-def test_the_animators_contacts_are_used_and_kept(noisy, clean, blank, load):
+def test_edited_contacts_are_used_and_preserved(noisy, clean, blank, load):
     contacts = load("mocap_assist.actions.contacts")
     frames = np.arange(1.0, 61.0)
     first = clean(plant_feet=True)
@@ -21,8 +21,8 @@ def test_the_animators_contacts_are_used_and_kept(noisy, clean, blank, load):
     second = clean(plant_feet=True)
 
     assert second != first
-    kept = contacts.read_contacts(second, second.slots[0], frames)
-    assert (kept == keyed).all()
+    stored = contacts.read_contacts(second, second.slots[0], frames)
+    assert (stored == keyed).all()
     left = load("mocap_assist.actions.armature_read").read_take(noisy, blank.context.scene)
     kinematics = load("solvers.motion.skeletons.kinematics")
     motion = left.parts[0].motion
@@ -52,7 +52,7 @@ def contact_curve(action):
     return bag.fcurves.find('["mocap_contact_left"]', index=0)
 
 
-def test_detected_contacts_are_detected_anew_until_one_is_edited(walker, clean, load, blank):
+def test_contacts_are_detected_again_until_one_is_edited(walker, clean, load, blank):
     contacts = load("mocap_assist.actions.contacts")
     played = {"frames": np.arange(1.0, walker.animation_data.action.frame_range[1] + 1.0)}
     result = clean(plant_feet=True)
@@ -73,7 +73,7 @@ def test_detected_contacts_are_detected_anew_until_one_is_edited(walker, clean, 
     assert (contacts.animators_contacts((third, third.slots[0]), **played) == mine).all()
 
 
-def test_plant_feet_detects_anew_too_until_a_key_is_edited(walker, load, blank):
+def test_plant_feet_detects_contacts_again_until_a_key_is_edited(walker, load, blank):
     contacts = load("mocap_assist.actions.contacts")
     played = {"frames": np.arange(1.0, walker.animation_data.action.frame_range[1] + 1.0)}
     blank.ops.mocap_assist.plant_feet()
@@ -90,9 +90,7 @@ def test_plant_feet_detects_anew_too_until_a_key_is_edited(walker, load, blank):
     assert (contacts.read_contacts(second, second.slots[0], **played) == mine).all()
 
 
-def test_contacts_of_the_animator_stay_his_when_other_frames_are_cleaned(
-    walker, clean, load, blank
-):
+def test_edited_contacts_stay_when_other_frames_are_cleaned(walker, clean, load, blank):
     contacts = load("mocap_assist.actions.contacts")
     scene = blank.context.scene
     scene.frame_start, scene.frame_end = 1, 45
@@ -103,12 +101,12 @@ def test_contacts_of_the_animator_stay_his_when_other_frames_are_cleaned(
 
     both = clean(plant_feet=True, frame_range="SCENE")
 
-    kept = contacts.animators_contacts((both, both.slots[0]), np.arange(1.0, 91.0))
+    stored = contacts.animators_contacts((both, both.slots[0]), np.arange(1.0, 91.0))
     mine = contacts.read_contacts(first, first.slots[0], np.arange(1.0, 46.0))
-    assert kept is not None and (kept[:45] == mine).all()
+    assert stored is not None and (stored[:45] == mine).all()
 
 
-def test_limit_constraints_are_kept(noisy, clean, blank, keys_of):
+def test_clean_respects_limit_constraints(noisy, clean, blank, keys_of):
     limit = noisy.pose.bones["Head"].constraints.new("LIMIT_ROTATION")
     limit.owner_space, limit.use_limit_z, limit.min_z, limit.max_z = "LOCAL", True, -0.05, 0.05
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 LOOKS = 400
-"""Between two turns of the window: how often the work asks whether one is due."""
+"""How often the work checks the time in one time slice."""
 
 
 def bones(n_bones):
@@ -23,7 +23,7 @@ def bones(n_bones):
 
 @pytest.fixture
 def work_of(load, monkeypatch):
-    """Note how many bones and curves are read, or frames evaluated, in each turn."""
+    """Count the bones and curves read, or frames evaluated, in each time slice."""
     counted = {"bone": 0, "keys": 0, "frames": 0}
 
     def count(owner, name, kind, size=lambda *_: 1):
@@ -40,20 +40,20 @@ def work_of(load, monkeypatch):
     count(channel, "read_keys", "keys")
     count(channel, "_evaluated", "frames", lambda _, frames: len(frames))
 
-    def turn():
+    def time_slice():
         done = dict(counted)
         counted.update(dict.fromkeys(counted, 0))
         return done
 
-    return turn
+    return time_slice
 
 
 @pytest.fixture
-def read_in_turns(load, monkeypatch, blank, work_of):
-    """Read as Clean does; return what is to be solved, and the work of each turn."""
-    turns = load("mocap_assist.blender.time_slices")
+def read_in_slices(load, monkeypatch, blank, work_of):
+    """Read as Clean does; return the problem, and the work of each time slice."""
+    time_slices = load("mocap_assist.blender.time_slices")
     clock = itertools.count()
-    monkeypatch.setattr(turns, "monotonic", lambda: next(clock))  # each look is a second
+    monkeypatch.setattr(time_slices, "monotonic", lambda: next(clock))  # each look is a second
 
     def read(armature):
         choices, denoising = load("mocap_assist.clean.choices"), load("solvers.denoising")
@@ -63,7 +63,7 @@ def read_in_turns(load, monkeypatch, blank, work_of):
             denoising.PlantSettings(),
         )
         reading = load("mocap_assist.clean.cleaning").read_cleaning
-        work, done = turns.Work(reading, blank.context.scene, armature, settings), []
+        work, done = time_slices.Work(reading, blank.context.scene, armature, settings), []
         while not work.run_slice(LOOKS):
             done.append(work_of())
         return work.result.args[0], [*done, work_of()]
@@ -72,25 +72,27 @@ def read_in_turns(load, monkeypatch, blank, work_of):
 
 
 @pytest.mark.parametrize(("n_bones", "n_frames"), [(2000, 6), (2, 100_000)])
-def test_each_turn_has_its_share_of_the_work(
-    make_armature, animate, read_in_turns, n_bones, n_frames
+def test_each_time_slice_does_part_of_the_work(
+    make_armature, animate, read_in_slices, n_bones, n_frames
 ):
     armature = make_armature(bones(n_bones))
     animate(armature, frames=range(1, n_frames + 1))
 
-    problem, turns = read_in_turns(armature)
+    problem, time_slices = read_in_slices(armature)
 
     (body,) = problem.recordings
     assert body.n_frames == n_frames and set(bones(n_bones)) <= set(body.skeleton.names)
     assert np.isfinite(body.rotations).all()
-    assert len(turns) >= 6 * n_bones // LOOKS  # 4 curves of each bone, and twice itself
+    assert len(time_slices) >= 6 * n_bones // LOOKS  # 4 curves of each bone, and twice itself
     for kind, total in (("bone", n_bones), ("keys", 4 * n_bones + 3)):
-        assert sum(turn[kind] for turn in turns) == total
-        assert max(turn[kind] for turn in turns) <= LOOKS
-    assert not any(turn["frames"] for turn in turns)  # keys lie on all of them
+        assert sum(time_slice[kind] for time_slice in time_slices) == total
+        assert max(time_slice[kind] for time_slice in time_slices) <= LOOKS
+    assert not any(
+        time_slice["frames"] for time_slice in time_slices
+    )  # keys lie on all of them
 
 
-def test_clean_ends_on_a_long_take(make_armature, animate, blank):
+def test_clean_finishes_on_a_long_take(make_armature, animate, blank):
     armature = make_armature(bones(2))
     raw = animate(armature, frames=range(1, 20_001))
 

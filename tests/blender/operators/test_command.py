@@ -18,7 +18,7 @@ def command(load, capsys):
     return call
 
 
-def test_the_command_cleans_and_saves(bad_arm, blank, command, tmp_path):
+def test_denoise_command_cleans_and_saves(bad_arm, blank, command, tmp_path):
     target = tmp_path / "clean.blend"
 
     status, out, err = command(
@@ -37,7 +37,7 @@ def test_the_command_cleans_and_saves(bad_arm, blank, command, tmp_path):
     assert blank.data.actions["walk.clean"]["mocap_assist_source"] == blank.data.actions["walk"]
 
 
-def test_the_command_learns_from_files(dancer, blank, command, tmp_path):
+def test_denoise_command_learns_from_files(dancer, blank, command, tmp_path):
     clips = [str(tmp_path / f"{name}.bvh") for name in ("one", "two")]
     for clip in clips:
         blank.ops.export_anim.bvh(filepath=clip, frame_start=1, frame_end=300)
@@ -54,7 +54,7 @@ def test_the_command_learns_from_files(dancer, blank, command, tmp_path):
     )  # fmt: skip
 
 
-def test_the_command_passes_over_armatures_that_play_nothing(dancer, make_armature, command):
+def test_denoise_command_skips_armatures_without_an_action(dancer, make_armature, command):
     make_armature(name="Driven").driver_add("location", 0)
 
     status, out, _ = command("quality", "--json")
@@ -62,7 +62,7 @@ def test_the_command_passes_over_armatures_that_play_nothing(dancer, make_armatu
     assert (status, json.loads(out)["armature"]) == (0, "Actor")
 
 
-def test_an_unwritable_file_is_reported(dancer, command, tmp_path):
+def test_command_reports_an_unwritable_file(dancer, command, tmp_path):
     (tmp_path / "x.blend").mkdir()
 
     status, _, err = command("denoise", "--output", str(tmp_path / "x.blend"))
@@ -70,7 +70,7 @@ def test_an_unwritable_file_is_reported(dancer, command, tmp_path):
     assert status == 2 and "x.blend was not saved" in err
 
 
-def test_the_command_measures(bad_arm, command):
+def test_quality_command_measures(bad_arm, command):
     status, out, _ = command("quality", "--armature", "Actor")
     assert status == 0 and "LeftArm is missing for 2.00 s." in out
 
@@ -96,16 +96,16 @@ def test_the_command_measures(bad_arm, command):
         ),
     ],
 )
-def test_the_command_fails_with_one_sentence_and_status_2(words, sentence, dancer, command):
+def test_command_fails_with_one_sentence_and_status_2(words, sentence, dancer, command):
     assert command(*words) == (2, "", sentence)
 
 
-def test_a_slip_in_the_command_line_has_status_2(dancer, command):
+def test_invalid_command_line_has_status_2(dancer, command):
     status, _, err = command("denoise", "--strenght", "1")
     assert status == 2 and "unrecognized arguments" in err.lower()
 
 
-def test_figures_are_alone_in_a_file_of_their_own(bad_arm, command, tmp_path):
+def test_json_file_has_the_figures_only(bad_arm, command, tmp_path):
     figures = tmp_path / "figures.jsonl"
 
     status, out, err = command("quality", "--json", str(figures))
@@ -115,7 +115,9 @@ def test_figures_are_alone_in_a_file_of_their_own(bad_arm, command, tmp_path):
     assert json.loads(line)["armature"] == "Actor"
 
 
-def test_where_figures_cannot_be_written_nothing_is_done(bad_arm, command, tmp_path, blank):
+def test_command_changes_nothing_when_figures_cannot_be_written(
+    bad_arm, command, tmp_path, blank
+):
     target = str(tmp_path / "x.blend")
 
     done = command("denoise", "--output", target, "--json", str(tmp_path / "no" / "f.jsonl"))
@@ -124,7 +126,9 @@ def test_where_figures_cannot_be_written_nothing_is_done(bad_arm, command, tmp_p
     assert not list(tmp_path.iterdir()) and "walk.clean" not in blank.data.actions
 
 
-def test_the_command_converts_what_is_played(dancer, blank, command, load, tmp_path, poses):
+def test_convert_command_writes_the_played_action(
+    dancer, blank, command, load, tmp_path, poses
+):
     dancer.animation_data.action.name = "dance"
     shown = poses(dancer, range(1, 301, 50))
 
@@ -133,10 +137,10 @@ def test_the_command_converts_what_is_played(dancer, blank, command, load, tmp_p
     said = json.loads(out)
     assert (status, said["n_frames"], said["frame_rate_hz"]) == (0, 300, 30.0)
     motion = load("solvers.recordings").read_bvh(tmp_path / "dance.bvh")
-    places = (
+    positions = (
         load("solvers.motion.skeletons.kinematics").forward_kinematics(motion).positions[::50]
     )
-    foot = places[:, motion.skeleton.index("LeftFoot")] - places[:, 0]
+    foot = positions[:, motion.skeleton.index("LeftFoot")] - positions[:, 0]
     expected = shown["LeftFoot"][:, :3, 3] - shown["Hips"][:, :3, 3]
     assert_allclose(foot, expected, atol=1e-4)
 
@@ -167,7 +171,7 @@ def test_convert_reports_an_unsupported_format(dancer, command, tmp_path, name, 
     assert status == 2 and sentence in err and not list(tmp_path.iterdir())
 
 
-def test_a_take_with_gaps_is_not_converted(bad_arm, command, tmp_path):
+def test_convert_refuses_a_take_with_gaps(bad_arm, command, tmp_path):
     status, _, err = command("convert", str(tmp_path / "x.bvh"))
 
     assert status == 2 and "LeftArm" in err and not list(tmp_path.iterdir())

@@ -18,24 +18,24 @@ class ProcessAndThreads:
 
 
 @pytest.mark.parametrize(("given", "number"), [({}, "1"), ({"threads": 3}, "3")])
-def test_quick_solve_has_its_own_process_and_threads_in_a_command(
+def test_short_solve_has_its_own_process_and_threads_in_a_command(
     load, monkeypatch, given, number
 ):
     threads = load("solvers.processes.threads")
     for name in threads.VARIABLES:
         monkeypatch.setenv(name, "7")
-    quick = load("mocap_assist.jobs.job").ShortSolve(ProcessAndThreads())
+    short_solve = load("mocap_assist.jobs.job").ShortSolve(ProcessAndThreads())
     solving = load("mocap_assist.batch.solving")
 
     process, environment = solving.solve_in_subprocess(
-        quick, argparse.Namespace(**given), lambda *_: None
+        short_solve, argparse.Namespace(**given), lambda *_: None
     )
 
     assert process != os.getpid()
     assert {environment[name] for name in threads.VARIABLES} == {number}
 
 
-def test_every_verb_that_solves_has_the_option(load, capsys):
+def test_every_solving_verb_has_the_threads_option(load, capsys):
     command = load("mocap_assist.batch.command")
     verbs = load("mocap_assist.batch.verbs").VERBS
     solving = {name for name, verb in verbs.items() if verb.solves} | {"capture", "index"}

@@ -23,7 +23,7 @@ def commands():
 
 
 @pytest.mark.parametrize("line", list(commands()))
-def test_it_is_understood(load, line):
+def test_documented_command_is_parsed(load, line):
     module = load("mocap_assist.batch.command")
     words = shlex.split(line, comments=True)
     own, after = module._split_words(words[words.index("mocap_assist") + 1 :])

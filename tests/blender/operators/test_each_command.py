@@ -33,7 +33,7 @@ def takes(load, tmp_path):
     return folder
 
 
-def test_import_brings_files_and_folders_into_one_scene(blank, command, takes, tmp_path):
+def test_import_command_reads_files_and_folders_into_one_scene(blank, command, takes, tmp_path):
     target = tmp_path / "all.blend"
 
     status, out, err = command("import", takes, "--output", target, "--json")
@@ -47,7 +47,7 @@ def test_import_brings_files_and_folders_into_one_scene(blank, command, takes, t
     assert {"one", "two"} <= {each.name for each in blank.data.objects}
 
 
-def test_a_shoot_is_imported_then_cleaned_then_taken_up_again(blank, command, takes, tmp_path):
+def test_each_command_imports_cleans_and_resumes(blank, command, takes, tmp_path):
     raw, clean = tmp_path / "raw", tmp_path / "clean"
 
     status, out, err = command(
@@ -59,9 +59,9 @@ def test_a_shoot_is_imported_then_cleaned_then_taken_up_again(blank, command, ta
     assert "1 of 3 files failed" in err and "bad.bvh" in err
     made = {path.relative_to(raw).as_posix() for path in raw.rglob("*.blend")}
     assert made == {"one.blend", "second/two.blend"}
-    told = json.loads((raw / "report.json").read_text())
-    assert (told["done"], told["failed"]) == (2, 1)
-    for each in told["files"]:
+    report = json.loads((raw / "report.json").read_text())
+    assert (report["done"], report["failed"]) == (2, 1)
+    for each in report["files"]:
         if "error" not in each:
             assert (each["joints"], each["n_frames"], each["frame_rate_hz"]) == (22, 60, 30.0)
             assert (each["gaps"], each["warnings"]) == (0, "")
@@ -70,11 +70,11 @@ def test_a_shoot_is_imported_then_cleaned_then_taken_up_again(blank, command, ta
         "each", raw, "--output-folder", clean, "--report", "--", "denoise", "--no-plant-feet"
     )
     assert (status, err) == (0, "")
-    told = json.loads((clean / "report.json").read_text())
+    report = json.loads((clean / "report.json").read_text())
     assert all(
         each["after"]["mean_jitter_m_per_s3"] < 0.5 * each["before"]["mean_jitter_m_per_s3"]
         and (clean / each["picture"]).exists()
-        for each in told["files"]
+        for each in report["files"]
     )
     blank.ops.wm.open_mainfile(filepath=str(clean / "second" / "two.blend"))
     assert blank.data.objects["two"].animation_data.action.name == "two.clean"
@@ -102,17 +102,19 @@ def test_a_shoot_is_imported_then_cleaned_then_taken_up_again(blank, command, ta
          "There is no file"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_done_is_said_at_once(command, takes, tmp_path, words, sentence):
-    places = {"takes": takes, "out": tmp_path / "out"}
+def test_each_command_reports_impossible_requests_at_once(
+    command, takes, tmp_path, words, sentence
+):
+    folders = {"takes": takes, "out": tmp_path / "out"}
 
-    status, _, err = command(*(word.format(**places) for word in words))
+    status, _, err = command(*(word.format(**folders) for word in words))
 
     assert status == 2
     assert sentence in err
     assert err.count("\n") == 1
 
 
-def test_link_to_itself_and_missing_file_stop_no_other(command, takes, tmp_path):
+def test_circular_link_and_missing_file_do_not_stop_other_files(command, takes, tmp_path):
     loop, out = tmp_path / "loop.bvh", tmp_path / "out"
     loop.symlink_to(loop)
 
@@ -127,7 +129,7 @@ def test_link_to_itself_and_missing_file_stop_no_other(command, takes, tmp_path)
     assert (out / "one.blend").exists()
 
 
-def test_markers_are_cleaned_where_there_is_no_armature(blank, command, load, tmp_path, rng):
+def test_each_command_cleans_markers_without_an_armature(blank, command, load, tmp_path, rng):
     tracks = load("solvers.motion").Tracks(
         ("a", "b", "c"),
         rng.normal(size=(3, 3)) + rng.normal(scale=0.002, size=(90, 3, 3)),
@@ -178,9 +180,7 @@ def test_each_reports_a_folder_that_cannot_be_created(command, takes, tmp_path):
     assert "in_the_way" in err and "Traceback" not in err
 
 
-def test_the_other_files_are_done_when_the_work_on_one_raises(
-    load, command, takes, tmp_path, monkeypatch
-):
+def test_other_files_are_processed_when_one_raises(load, command, takes, tmp_path, monkeypatch):
     each_verb = load("mocap_assist.batch.each_verb")
     real = each_verb.remove_picture
 
@@ -200,7 +200,7 @@ def test_the_other_files_are_done_when_the_work_on_one_raises(
     assert "one.bvh: this is a bug in Mocap Assist (IndexError at " in out
 
 
-def test_a_closed_folder_and_a_name_too_long_are_named_before_any_blender_starts(
+def test_unreadable_folder_and_long_name_are_reported_before_blender_starts(
     command, takes, tmp_path, monkeypatch
 ):
     for name in ("bad.bvh", "one.bvh"):

@@ -26,7 +26,7 @@ def module(load):
 
 
 class Stopped:
-    """An Event of which nobody asks more than three times."""
+    """An Event that may be checked at most three times."""
 
     def __init__(self, third):
         self.n_waits, self.third = 0, third
@@ -58,7 +58,7 @@ def each(load, tmp_path):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
-def test_no_blender_goes_on_when_each_is_killed(each, tmp_path, scratch):
+def test_no_blender_continues_when_each_is_killed(each, tmp_path, scratch):
     with each("--jobs", "2") as running:
         while not list(tmp_path.glob("out/*.blend")):
             assert running.poll() is None
@@ -79,7 +79,7 @@ def test_no_blender_goes_on_when_each_is_killed(each, tmp_path, scratch):
     assert not [path for path in tmp_path.rglob("out/*") if path.name.startswith(".")]
 
 
-def test_no_second_blender_starts_when_one_still_makes_the_file(module, load, tmp_path):
+def test_second_blender_does_not_start_while_one_writes_the_file(module, load, tmp_path):
     scratch_module = load("solvers.processes.scratch")
     target = tmp_path / "take.blend"
     lock = load("solvers.processes.locks").try_lock(scratch_module.lock_for_work_on(target))
@@ -108,9 +108,7 @@ def test_no_blender_starts_after_a_cancel(module, load, tmp_path):
     lock.release()
 
 
-def test_blender_keeps_others_off_its_file_and_reports_who_holds_it(
-    module, load, tmp_path, monkeypatch
-):
+def test_blender_locks_its_file_and_reports_the_holder(module, load, tmp_path, monkeypatch):
     monkeypatch.setattr(module, "end_with_stdin", lambda: None)
     monkeypatch.setattr(module, "LOCK_TIMEOUT_S", 0.0)
     target = tmp_path / "take.blend"
@@ -126,7 +124,7 @@ def test_blender_keeps_others_off_its_file_and_reports_who_holds_it(
     assert not module._is_locked(target)
 
 
-def test_errors_of_a_blender_are_kept_and_its_input_stays_open_until_it_ends(module, tmp_path):
+def test_errors_of_a_child_are_returned_and_its_input_stays_open(module, tmp_path):
     code = (
         "import os, select, sys\n"
         "closed = select.select([0], [], [], 0.2)[0]\n"

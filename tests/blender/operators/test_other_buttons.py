@@ -37,7 +37,7 @@ def test_jump_steps_through_the_list(bad_arm, blank):
     assert blank.context.scene.frame_current == int(found.issues[-1].start)
 
 
-def test_plant_feet_uses_the_keyed_contacts_and_moves_only_legs_and_hips(
+def test_plant_feet_uses_keyed_contacts_and_moves_only_legs_and_hips(
     dancer, blank, load, keys_of
 ):
     contacts = load("mocap_assist.actions.contacts")
@@ -69,7 +69,7 @@ def test_plant_feet_uses_the_keyed_contacts_and_moves_only_legs_and_hips(
     assert entry["slide_after_cm"] < 0.1 * entry["slide_before_cm"]
 
 
-def test_what_was_learned_serves_clean(dancer, blank, tmp_path):
+def test_clean_uses_saved_patterns(dancer, blank, tmp_path):
     learned = tmp_path / "dance.npz"
     with pytest.raises(RuntimeError, match="Choose a file to write the motion model"):
         blank.ops.mocap_assist.learn_patterns(examples="walk")
@@ -86,13 +86,13 @@ def test_what_was_learned_serves_clean(dancer, blank, tmp_path):
     assert blank.ops.mocap_assist.denoise(**settings) == {"FINISHED"}
 
 
-def test_feet_of_a_short_take_need_no_other_process(dancer, blank, load, monkeypatch):
+def test_feet_of_a_short_take_are_planted_in_this_process(dancer, blank, load, monkeypatch):
     """The redo panel does so at every change of a setting."""
     monkeypatch.setattr(load("mocap_assist.jobs.job"), "Job", None)
 
     assert blank.ops.mocap_assist.plant_feet() == {"FINISHED"}
 
 
-def test_check_leaves_no_step_to_undo_nor_a_redo_panel_that_solves_anew(blank):
+def test_check_adds_no_undo_step_and_no_redo_panel(blank):
     assert blank.types.MOCAP_ASSIST_OT_measure_quality.bl_options == {"REGISTER"}
     assert blank.types.MOCAP_ASSIST_OT_plant_feet.bl_options == {"REGISTER", "UNDO"}

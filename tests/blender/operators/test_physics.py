@@ -9,7 +9,7 @@ import pytest
 
 @pytest.fixture
 def walker(blank, load, tmp_path):
-    """A walk of a whole figure, two seconds at 30 Hz, 10 cm under the ground."""
+    """A walk of a complete body, two seconds at 30 Hz, 10 cm below the ground."""
     samples, recordings = load("solvers.samples"), load("solvers.recordings")
     walk = samples.walking_gait(samples.GaitSettings(duration=2.0, frame_rate=30.0))
     sunk = walk.with_poses(root_positions=walk.root_positions - (0.0, 0.0, 0.1))
@@ -35,9 +35,9 @@ def test_the_result_is_a_new_action_on_the_ground(walker, blank, keys_of, load):
     assert walker.animation_data.action == raw
 
 
-def test_a_part_of_it_needs_no_new_simulation(walker, blank, load, monkeypatch):
+def test_partial_strength_needs_no_new_simulation(walker, blank, load, monkeypatch):
     assert blank.ops.mocap_assist.simulate() == {"FINISHED"}
-    whole = lowest_foot(walker, blank, load)
+    full = lowest_foot(walker, blank, load)
     blank.ops.mocap_assist.revert_to_raw()
     raw = lowest_foot(walker, blank, load)
     monkeypatch.setattr(load("mocap_assist.jobs.job"), "Job", None)
@@ -45,10 +45,10 @@ def test_a_part_of_it_needs_no_new_simulation(walker, blank, load, monkeypatch):
     assert blank.ops.mocap_assist.simulate(strength=0.5) == {"FINISHED"}
 
     half = lowest_foot(walker, blank, load)
-    assert half == pytest.approx((whole + raw) / 2, abs=0.02)
+    assert half == pytest.approx((full + raw) / 2, abs=0.02)
 
 
-def test_the_ground_is_under_the_feet_if_asked(walker, blank):
+def test_ground_is_under_the_feet_on_request(walker, blank):
     assert blank.ops.mocap_assist.simulate(ground="FEET") == {"FINISHED"}
 
     action = walker.animation_data.action
@@ -57,7 +57,7 @@ def test_the_ground_is_under_the_feet_if_asked(walker, blank):
     assert -0.15 < entry["ground_m"] < -0.05
 
 
-def test_a_take_that_cannot_be_followed_is_said_and_left(walker, blank, keys_of, load):
+def test_unfollowable_take_is_reported_and_unchanged(walker, blank, keys_of, load):
     raw = walker.animation_data.action
     before = keys_of(raw)
 
@@ -70,23 +70,23 @@ def test_a_take_that_cannot_be_followed_is_said_and_left(walker, blank, keys_of,
     }
 
 
-def test_a_grey_button_says_why(blank):
+def test_disabled_button_gives_a_reason(blank):
     assert not blank.ops.mocap_assist.simulate.poll()
     with pytest.raises(RuntimeError, match="Select an animated armature"):
         blank.ops.mocap_assist.simulate()
 
 
-def test_the_engine_comes_from_the_extensions_wheels(extension, load):
+def test_engine_is_imported_from_the_wheels(extension, load):
     engine = load("solvers.physics.engine").load_engine()
 
     assert Path(engine.__file__).is_relative_to(Path(extension.__file__).parents[2] / ".local")
 
 
-def test_it_is_one_step_to_undo(blank):
+def test_physics_is_one_undo_step(blank):
     assert blank.types.MOCAP_ASSIST_OT_simulate.bl_options == {"REGISTER", "UNDO"}
 
 
-def test_the_command_simulates_and_saves(walker, load, blank, capsys, tmp_path):
+def test_simulate_command_simulates_and_saves(walker, load, blank, capsys, tmp_path):
     target = tmp_path / "physics.blend"
     run = load("mocap_assist.batch.command").run
 
@@ -103,9 +103,9 @@ def test_the_command_simulates_and_saves(walker, load, blank, capsys, tmp_path):
 def lowest_foot(armature, blank, load, action=None):
     """Return the mean height of the lower foot over the take."""
     if action is not None:
-        armature.animation_data.action, kept = action, armature.animation_data.action
+        armature.animation_data.action, replaced = action, armature.animation_data.action
         height = lowest_foot(armature, blank, load)
-        armature.animation_data.action = kept
+        armature.animation_data.action = replaced
         return height
     read = load("mocap_assist.actions.armature_read").read_take
     source = load("mocap_assist.runtime.selection").played_source(armature)

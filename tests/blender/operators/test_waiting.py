@@ -36,7 +36,7 @@ def press_clean(make_button, window, load):
 
 
 @pytest.mark.parametrize("key", ["ESC", "RIGHTMOUSE"])
-def test_escape_ends_the_solve_and_writes_nothing(noisy, press_clean, window, blank, key):
+def test_escape_cancels_the_solve_and_writes_nothing(noisy, press_clean, window, blank, key):
     actions = blank.data.actions.keys()
 
     button = press_clean()
@@ -62,7 +62,7 @@ class TooLarge:
         raise AssertionError("It was called in this process.")
 
 
-def test_lack_of_memory_is_one_sentence_in_a_window_and_in_a_script(
+def test_out_of_memory_is_one_sentence_in_a_window_and_in_a_script(
     noisy, make_button, window, load
 ):
     button = make_button("denoise", None)
@@ -77,7 +77,7 @@ def test_lack_of_memory_is_one_sentence_in_a_window_and_in_a_script(
     assert folders() == set()
 
 
-def test_the_result_goes_to_the_armature_that_was_read(
+def test_result_is_written_to_the_armature_that_was_read(
     noisy, make_armature, animate, press_clean, window, blank
 ):
     button = press_clean()
@@ -94,7 +94,7 @@ def test_the_result_goes_to_the_armature_that_was_read(
     assert window.timers == [] and window.status[-1] is None and not window.job.running
 
 
-def test_what_is_adjusted_afterwards_is_adjusted_on_that_armature(
+def test_redo_adjusts_the_armature_that_was_read(
     noisy, make_armature, animate, press_clean, window
 ):
     button = press_clean()
@@ -108,7 +108,7 @@ def test_what_is_adjusted_afterwards_is_adjusted_on_that_armature(
     assert other.animation_data.action == untouched
 
 
-def test_bones_that_are_selected_meanwhile_are_not_written(
+def test_bones_selected_during_the_solve_are_not_written(
     noisy, press_clean, window, load, keys_of
 ):
     compat, bones = (
@@ -141,12 +141,12 @@ def play_another(bpy, armature):
     move_a_key(bpy, armature)
 
 
-def turn_the_rig(bpy, armature):
+def rotate_the_rig(bpy, armature):
     armature.rotation_euler.z += 1.0
 
 
-@pytest.mark.parametrize("change", [move_a_key, play_another, turn_the_rig])
-def test_what_was_changed_meanwhile_is_not_overwritten(
+@pytest.mark.parametrize("change", [move_a_key, play_another, rotate_the_rig])
+def test_changes_during_the_solve_are_not_overwritten(
     noisy, press_clean, window, blank, change
 ):
     button = press_clean()
@@ -160,7 +160,7 @@ def test_what_was_changed_meanwhile_is_not_overwritten(
     assert kind == {"ERROR"} and "Actor was changed during the solve; nothing was" in said
 
 
-def test_a_deleted_armature_is_reported(noisy, press_clean, window, blank):
+def test_armature_deleted_during_the_solve_is_reported(noisy, press_clean, window, blank):
     button = press_clean()
     blank.data.objects.remove(noisy)
 
@@ -169,7 +169,7 @@ def test_a_deleted_armature_is_reported(noisy, press_clean, window, blank):
     assert "Actor was deleted during the solve" in window.reports[-1][1]
 
 
-def test_one_solve_at_a_time(noisy, press_clean, window, blank):
+def test_second_solve_is_refused_during_a_solve(noisy, press_clean, window, blank):
     button = press_clean()
 
     for name in ("denoise", "measure_quality", "plant_feet", "learn_patterns"):
@@ -199,7 +199,7 @@ def real_manager(window, blank, load, monkeypatch):
     monkeypatch.setattr(load("mocap_assist.runtime.ends_with_file"), "bpy", found)
 
 
-def test_another_file_ends_the_solve(noisy, press_clean, window, blank, real_manager):
+def test_opening_another_file_ends_the_solve(noisy, press_clean, window, blank, real_manager):
     button = press_clean()
 
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
@@ -209,7 +209,7 @@ def test_another_file_ends_the_solve(noisy, press_clean, window, blank, real_man
     assert button.modal(window.context, event("TIMER")) == {"CANCELLED"}
 
 
-def test_switching_the_extension_off_ends_the_solve(
+def test_disabling_the_extension_ends_the_solve(
     noisy, press_clean, window, extension, blank, real_manager
 ):
     press_clean()
@@ -222,7 +222,7 @@ def test_switching_the_extension_off_ends_the_solve(
     assert blank.ops.mocap_assist.denoise.poll()
 
 
-def test_a_file_saved_during_a_solve_does_not_say_for_ever_that_it_runs(blank, load):
+def test_file_saved_during_a_solve_opens_without_a_running_solve(blank, load):
     blank.context.window_manager.mocap_assist_job.running = True
 
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)

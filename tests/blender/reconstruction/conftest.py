@@ -1,4 +1,4 @@
-"""A walk that a Kinect lost the left forearm of, as an armature; and the button Reconstruct."""
+"""A Kinect walk with an occluded left forearm, as an armature; and the button Reconstruct."""
 
 import pytest
 from kinect_walks import tracked_walk, true_positions

@@ -45,7 +45,7 @@ def all_there_is(blank):
     return names
 
 
-def test_all_actions_of_a_blend_teach_postures_and_nothing_of_it_stays(
+def test_all_actions_of_a_blend_file_are_read_and_nothing_remains(
     library, walk, reconstruct, all_there_is
 ):
     before = all_there_is()
@@ -58,7 +58,7 @@ def test_all_actions_of_a_blend_teach_postures_and_nothing_of_it_stays(
     assert after == before
 
 
-def test_a_rig_is_read_where_it_stands_in_its_own_file(library, walk, load, blank, stroll):
+def test_rig_of_another_file_is_read_in_its_world_space(library, walk, load, blank, stroll):
     examples = load("mocap_assist.clean.examples").read_examples(
         blank.context.scene, walk, str(library)
     )
@@ -69,53 +69,56 @@ def test_a_rig_is_read_where_it_stands_in_its_own_file(library, walk, load, blan
     leaning = true @ np.array([[1, 0, 0], [0, cosine, -sine], [0, sine, cosine]]).T
     assert len(examples.motions) == 2 and not examples.files
     for motion in examples.motions:
-        places = kinematics(motion).positions
-        assert np.allclose(places[:, 0], leaning[:, 0], atol=1e-4)
+        positions = kinematics(motion).positions
+        assert np.allclose(positions[:, 0], leaning[:, 0], atol=1e-4)
 
 
-def in_turns(load, *given):
-    """Read examples with a turn for Blender whenever one is possible; count them."""
+def in_time_slices(load, *given):
+    """Read examples in the shortest possible time slices; count them."""
     work = load("mocap_assist.blender.time_slices").Work(
         load("mocap_assist.clean.examples").read_examples, *given
     )
-    n_turns = 0
+    n_slices = 0
     while not work.run_slice(0.0):
-        n_turns += 1
-        yield n_turns, None
-    yield n_turns, work.result
+        n_slices += 1
+        yield n_slices, None
+    yield n_slices, work.result
 
 
-def test_they_are_read_in_turns_and_nothing_of_the_file_is_there_in_between(
+def test_actions_are_read_in_time_slices_without_linked_data_between(
     library, walk, load, blank, all_there_is
 ):
     scene, before = blank.context.scene, all_there_is()
     at_once = load("mocap_assist.clean.examples").read_examples(scene, walk, str(library))
 
-    between = [(turn, all_there_is()) for turn in in_turns(load, scene, walk, str(library))]
+    between = [
+        (time_slice, all_there_is())
+        for time_slice in in_time_slices(load, scene, walk, str(library))
+    ]
 
     assert all(each == before for _, each in between)
-    n_turns, examples = between[-1][0]
-    assert n_turns >= 2  # one for each action
+    n_slices, examples = between[-1][0]
+    assert n_slices >= 2  # one for each action
     assert len(examples.motions) == len(at_once.motions) == 2
     for one, other in zip(examples.motions, at_once.motions, strict=True):
         np.testing.assert_array_equal(one.rotations, other.rotations)
         np.testing.assert_array_equal(one.root_positions, other.root_positions)
 
 
-def test_a_folder_of_recordings_is_looked_through_in_turns(walk, load, blank, stroll, tmp_path):
+def test_folder_of_recordings_is_read_in_time_slices(walk, load, blank, stroll, tmp_path):
     folder = tmp_path / "takes"
     folder.mkdir()
     for number in range(5):
         (folder / f"take_{number}.bvh").write_bytes(stroll.read_bytes())
         (folder / f"note_{number}.txt").write_text("not a recording")
 
-    *_, (n_turns, examples) = in_turns(load, blank.context.scene, walk, str(folder))
+    *_, (n_slices, examples) = in_time_slices(load, blank.context.scene, walk, str(folder))
 
-    assert n_turns == 10  # one for each file
+    assert n_slices == 10  # one for each file
     assert examples.files == tuple(str(folder / f"take_{each}.bvh") for each in range(5))
 
 
-def test_it_may_be_linked_already(library, walk, reconstruct, blank, all_there_is):
+def test_file_that_is_already_linked_is_read(library, walk, reconstruct, blank, all_there_is):
     with blank.data.libraries.load(str(library), link=True) as (there, into):
         into.objects = list(there.objects)
     blank.context.scene.collection.objects.link(into.objects[0])
@@ -144,7 +147,7 @@ def test_invalid_examples_give_one_message(content, walk, blank, tmp_path, all_t
     assert all_there_is() == before
 
 
-def test_clean_learns_from_it_too(library, stroll, bring, blank):
+def test_clean_learns_from_a_blend_file(library, stroll, bring, blank):
     bring(stroll)
 
     said = blank.ops.mocap_assist.denoise(

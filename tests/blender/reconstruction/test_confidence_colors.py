@@ -1,10 +1,10 @@
-"""The colours of trust: from the action, at each frame."""
+"""Confidence colors: from the action, at each frame."""
 
 import numpy as np
 import pytest
-from kinect_walks import LOST
+from kinect_walks import OCCLUDED_FRAMES
 
-INSIDE = LOST.start + 15
+INSIDE = OCCLUDED_FRAMES.start + 15
 
 
 @pytest.fixture
@@ -17,7 +17,7 @@ def of_bone(armature, shown, name):
     return shown.colors[[bone.name for bone in armature.pose.bones].index(name)]
 
 
-def test_a_hidden_arm_is_red_and_the_other_blue(walk, reconstruct, colors):
+def test_hidden_arm_is_red_and_the_other_blue(walk, reconstruct, colors):
     reconstruct()
 
     shown = colors.colored_bones_at(walk, INSIDE)
@@ -30,10 +30,13 @@ def test_a_hidden_arm_is_red_and_the_other_blue(walk, reconstruct, colors):
     assert of_bone(walk, before, "WristLeft")[0][2] > of_bone(walk, shown, "WristLeft")[0][2]
 
 
-def test_a_bone_blends_into_the_color_of_the_next(walk, reconstruct, colors):
+def test_bone_blends_into_the_color_of_the_next(walk, reconstruct, colors):
     reconstruct()
 
-    shown = [colors.colored_bones_at(walk, frame) for frame in range(LOST.start - 10, INSIDE)]
+    shown = [
+        colors.colored_bones_at(walk, frame)
+        for frame in range(OCCLUDED_FRAMES.start - 10, INSIDE)
+    ]
 
     arms = np.array([of_bone(walk, each, "ShoulderLeft") for each in shown])
     elbows = np.array([of_bone(walk, each, "ElbowLeft")[0] for each in shown])
@@ -41,7 +44,7 @@ def test_a_bone_blends_into_the_color_of_the_next(walk, reconstruct, colors):
     assert np.abs(arms[:, 0] - arms[:, 1]).max() > 0.2
 
 
-def test_lines_lie_where_the_bones_are_posed(walk, reconstruct, colors, blank):
+def test_lines_follow_the_posed_bones(walk, reconstruct, colors, blank):
     reconstruct()
     blank.context.scene.frame_set(INSIDE)
 
@@ -52,7 +55,7 @@ def test_lines_lie_where_the_bones_are_posed(walk, reconstruct, colors, blank):
         assert np.allclose(tail, bone.tail, atol=1e-6)
 
 
-def test_there_is_none_on_what_was_not_reconstructed(walk, colors, blank):
+def test_recording_without_a_reconstruction_has_no_colors(walk, colors, blank):
     assert colors.colored_bones_at(walk, 5) is None
 
     blank.ops.mocap_assist.denoise(plant_feet=False)
@@ -65,13 +68,13 @@ def test_shades_go_from_red_to_blue(colors, reliability, channel):
     assert np.argmax(colors.color_from_reliability(reliability)[:3]) == channel
 
 
-def test_an_unknown_reliability_is_gray(colors):
+def test_unknown_reliability_is_gray(colors):
     red, green, blue, _ = colors.color_from_reliability(np.nan)
 
     assert red == green == blue
 
 
-def test_the_switch_leaves_the_scene_alone(walk, reconstruct, blank):
+def test_color_switch_does_not_change_the_scene(walk, reconstruct, blank):
     reconstruct()
     bones = [bone.color.palette for bone in walk.pose.bones]
 

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from kinect_walks import HIDDEN, LOST
+from kinect_walks import HIDDEN, OCCLUDED_FRAMES
 from numpy.testing import assert_allclose, assert_array_equal
 
 HISTORY, SOURCE = "mocap_assist_history", "mocap_assist_source"
@@ -20,13 +20,13 @@ def body(load, blank):
             armature, blank.context.scene
         )
         motion = take.parts[0].motion
-        places = load("solvers.motion").forward_kinematics(motion).positions
-        return dict(zip(motion.skeleton.names, np.moveaxis(places, 1, 0), strict=True))
+        positions = load("solvers.motion").forward_kinematics(motion).positions
+        return dict(zip(motion.skeleton.names, np.moveaxis(positions, 1, 0), strict=True))
 
     return read
 
 
-def test_the_result_is_a_new_action_and_the_recorded_one_stays(walk, reconstruct, keys_of):
+def test_result_is_a_new_action_and_the_recorded_one_stays(walk, reconstruct, keys_of):
     raw = walk.animation_data.action
     before = keys_of(raw)
 
@@ -42,7 +42,7 @@ def test_the_result_is_a_new_action_and_the_recorded_one_stays(walk, reconstruct
     assert 0.03 < entry["rebuilt_share"] < 0.2
 
 
-def test_the_hidden_forearm_comes_nearer_to_the_truth(walk, reconstruct, body, truth):
+def test_hidden_forearm_gets_nearer_to_the_truth(walk, reconstruct, body, truth):
     raw = body(walk)
 
     reconstruct()
@@ -50,11 +50,15 @@ def test_the_hidden_forearm_comes_nearer_to_the_truth(walk, reconstruct, body, t
     clean = body(walk)
     for name, joint in zip(HIDDEN, (5, 6, 7), strict=True):
         error = [
-            np.nanmean(np.linalg.norm(each[name][LOST] - truth[LOST, joint], axis=-1))
+            np.nanmean(
+                np.linalg.norm(
+                    each[name][OCCLUDED_FRAMES] - truth[OCCLUDED_FRAMES, joint], axis=-1
+                )
+            )
             for each in (raw, clean)
         ]
         assert error[1] < 0.6 * error[0], name
-    assert all(np.isfinite(places).all() for places in clean.values())
+    assert all(np.isfinite(positions).all() for positions in clean.values())
 
 
 def test_reliable_joints_keep_their_positions(walk, reconstruct, body):
@@ -71,22 +75,22 @@ def test_reliable_joints_keep_their_positions(walk, reconstruct, body):
 def test_reliability_is_stored_in_the_action(walk, reconstruct, load):
     result = reconstruct()
 
-    trust = load("mocap_assist.actions.reliability_curves").reliability_at
+    reliability_at = load("mocap_assist.actions.reliability_curves").reliability_at
     source = (result, walk.animation_data.action_slot)
-    hidden = trust(source, ["WristLeft", "WristRight"], LOST.start + 15)
-    seen = trust(source, ["WristLeft", "WristRight"], 10)
+    hidden = reliability_at(source, ["WristLeft", "WristRight"], OCCLUDED_FRAMES.start + 15)
+    visible = reliability_at(source, ["WristLeft", "WristRight"], 10)
     assert hidden["WristLeft"] < 0.3 < 0.6 < hidden["WristRight"]
-    assert seen["WristLeft"] > 0.2 + hidden["WristLeft"]
+    assert visible["WristLeft"] > 0.2 + hidden["WristLeft"]
 
 
-def test_keys_that_are_guessed_look_so(walk, reconstruct, blank):
+def test_estimated_keys_have_the_type_generated(walk, reconstruct, blank):
     result = reconstruct()
 
     path = 'pose.bones["ElbowLeft"].rotation_quaternion'
     curves = result.layers[0].strips[0].channelbags[0].fcurves
     curve = next(each for each in curves if each.data_path == path)
     generated = [key.co.x for key in curve.keyframe_points if key.type == "GENERATED"]
-    assert {LOST.start + 15.0} <= set(generated)
+    assert {OCCLUDED_FRAMES.start + 15.0} <= set(generated)
     assert not {10.0, 80.0} & set(generated)
 
 
@@ -116,7 +120,7 @@ def test_frames_outside_of_the_range_stay_as_they_were(walk, reconstruct, keys_o
     assert changed > 10
 
 
-def test_reconstructing_again_starts_from_what_was_recorded(walk, reconstruct, keys_of):
+def test_second_reconstruction_starts_from_the_recording(walk, reconstruct, keys_of):
     first = reconstruct()
 
     second = reconstruct()
@@ -130,8 +134,10 @@ def test_reconstructing_again_starts_from_what_was_recorded(walk, reconstruct, k
     assert len(json.loads(second[HISTORY])) == 1
 
 
-def test_a_rig_of_another_kind_keeps_its_hands(make_armature, animate, reconstruct, blank):
-    """Of joints that belong to no body, all turns stay."""
+def test_joints_outside_the_body_keep_their_rotations(
+    make_armature, animate, reconstruct, blank
+):
+    """Joints without a role keep all rotations."""
     armature = make_armature()
     animate(armature)
     blank.context.scene.render.fps = 30
@@ -150,7 +156,7 @@ def test_a_rig_of_another_kind_keeps_its_hands(make_armature, animate, reconstru
 
 
 @pytest.mark.parametrize("kind", ["action", "folder"])
-def test_clips_of_your_own_teach_postures(
+def test_postures_are_learned_from_given_clips(
     walk, reconstruct, load, blank, tmp_path, bring, kind
 ):
     samples = load("solvers.samples")
@@ -169,16 +175,18 @@ def test_clips_of_your_own_teach_postures(
     assert "1 clip of your own" in json.loads(result[HISTORY])[-1]["method"]
 
 
-def test_the_message_fits_the_status_bar(walk, reconstruct, capfd):
+def test_message_fits_the_status_bar(walk, reconstruct, capfd):
     reconstruct(plant_feet=True)
 
-    told = capfd.readouterr().out.strip().splitlines()[-1].removeprefix("Info: ")
-    assert len(told) < 100
-    assert told.startswith("walk.reconstructed: rebuilt 6.") and "% of joint samples" in told
-    assert "foot slide" in told and told.endswith(" cm.")
+    message = capfd.readouterr().out.strip().splitlines()[-1].removeprefix("Info: ")
+    assert len(message) < 100
+    assert (
+        message.startswith("walk.reconstructed: rebuilt 6.") and "% of joint samples" in message
+    )
+    assert "foot slide" in message and message.endswith(" cm.")
 
 
-def test_the_button_is_grey_without_an_armature(blank):
+def test_button_is_disabled_without_an_armature(blank):
     blank.ops.object.empty_add()
 
     with pytest.raises(RuntimeError, match="Select an animated armature"):

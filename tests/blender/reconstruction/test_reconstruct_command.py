@@ -15,9 +15,7 @@ def run(load, tmp_path, blank):
     return command
 
 
-def test_reconstructs_what_armatures_play_and_saves_the_file(
-    walk, run, tmp_path, blank, capsys
-):
+def test_reconstruct_command_writes_actions_and_saves(walk, run, tmp_path, blank, capsys):
     blank.ops.wm.save_as_mainfile(filepath=str(tmp_path / "walk.blend"))
 
     status = run("reconstruct", "--no-plant-feet", "--json")
@@ -31,6 +29,6 @@ def test_reconstructs_what_armatures_play_and_saves_the_file(
     assert "walk.reconstructed" in blank.data.actions
 
 
-def test_says_what_is_wrong_in_one_sentence(blank, run, capsys):
+def test_reconstruct_command_reports_errors_in_one_sentence(blank, run, capsys):
     assert run("reconstruct") == 2
     assert capsys.readouterr().err.strip() == "The scene has no animated armature."

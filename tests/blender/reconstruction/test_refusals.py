@@ -1,4 +1,4 @@
-"""What cannot be reconstructed is told in one sentence, and nothing is written."""
+"""Takes that cannot be reconstructed give one sentence, and nothing is written."""
 
 import numpy as np
 import pytest
@@ -34,7 +34,7 @@ def refused(blank):
     return press
 
 
-def test_an_armature_in_millimetres_is_understood(load, truth, import_joints, blank):
+def test_armature_in_millimeters_is_accepted(load, truth, import_joints, blank):
     """Blender has no unit of its own: the size of the body tells it."""
     names = load("solvers.motion").SENSOR_JOINTS[load("solvers.motion").Sensor.KINECT_V1]
     armature = import_joints(names, truth, global_scale=1000.0)
@@ -46,14 +46,14 @@ def test_an_armature_in_millimetres_is_understood(load, truth, import_joints, bl
     assert np.allclose(hips.head, 1000.0 * truth[29, 0], atol=30.0)
 
 
-def test_no_unit_makes_a_man_of_this(load, truth, import_joints, refused):
+def test_armature_that_fits_no_unit_is_refused(load, truth, import_joints, refused):
     names = load("solvers.motion").SENSOR_JOINTS[load("solvers.motion").Sensor.KINECT_V1]
     import_joints(names, truth, global_scale=1e-4)
 
     assert "Read the recording with a scale of" in refused()
 
 
-def test_an_armature_without_a_body(make_armature, animate, refused):
+def test_armature_without_a_body_is_refused(make_armature, animate, refused):
     bones = {"Door": (None, (0, 0, 0), (0, 0, 1), False),
              "Handle": ("Door", (0, 0, 1), (0, 0, 1.2), True)}  # fmt: skip
     animate(make_armature(bones))
@@ -61,7 +61,7 @@ def test_an_armature_without_a_body(make_armature, animate, refused):
     assert "no joint for hips" in refused()
 
 
-def test_markers_are_not_for_it(blank, load, tmp_path, rng):
+def test_markers_are_refused(blank, load, tmp_path, rng):
     motion = load("solvers.motion")
     tracks = motion.Tracks(("A", "B"), rng.random((9, 2, 3)), 30.0)
     load("solvers.recordings").write_trc(tracks, tmp_path / "take.trc")
@@ -71,14 +71,12 @@ def test_markers_are_not_for_it(blank, load, tmp_path, rng):
         blank.ops.mocap_assist.reconstruct()
 
 
-def test_examples_that_were_not_picked(walk, blank):
+def test_missing_examples_are_reported(walk, blank):
     with pytest.raises(RuntimeError, match="Pick clean actions"):
         blank.ops.mocap_assist.reconstruct(postures="EXAMPLES")
 
 
-def test_a_take_with_a_long_gap_says_where_it_is_a_guess(
-    load, truth, import_joints, blank, capfd
-):
+def test_long_gap_is_reported_with_its_frames(load, truth, import_joints, blank, capfd):
     positions = np.array(tracked_walk(load("solvers.motion"), truth).tracks.positions)
     positions[20:60] = np.nan
     names = load("solvers.motion").SENSOR_JOINTS[load("solvers.motion").Sensor.KINECT_V1]
@@ -90,7 +88,7 @@ def test_a_take_with_a_long_gap_says_where_it_is_a_guess(
     assert armature.animation_data.action.name == "take.reconstructed"
 
 
-def test_the_button_is_grey_while_nothing_plays(make_armature, blank):
+def test_button_is_disabled_without_an_action(make_armature, blank):
     make_armature()
 
     with pytest.raises(RuntimeError, match="has no action"):

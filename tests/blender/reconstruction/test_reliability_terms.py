@@ -1,10 +1,10 @@
-"""The three signs of trust, apart: kept with the action, shown one by one."""
+"""The three reliability terms: stored with the action, shown one by one."""
 
 import numpy as np
 import pytest
-from kinect_walks import LOST
+from kinect_walks import OCCLUDED_FRAMES
 
-INSIDE = LOST.start + 15
+INSIDE = OCCLUDED_FRAMES.start + 15
 TERMS = {"COMBINED", "BEHAVIOR", "KINEMATICS", "TRACKING"}
 
 
@@ -31,19 +31,24 @@ def names(terms):
     return {term.name for term in terms}
 
 
-def test_each_sign_says_its_own_of_the_hidden_hand(walk, reconstruct, curves):
+def test_each_term_is_low_for_the_hidden_hand(walk, reconstruct, curves):
     source = (reconstruct(), walk.animation_data.action_slot)
 
-    def trust(term, frame):
+    def reliability(term, frame):
         bone = ["WristLeft"]
         return curves.reliability_at(source, bone, frame, curves.Term[term])["WristLeft"]
 
-    assert trust("TRACKING", INSIDE) == pytest.approx(0.5)
-    assert trust("TRACKING", 10) == 1.0
-    inside = range(LOST.start + 3, LOST.stop - 3)
-    assert np.mean([trust("BEHAVIOR", frame) for frame in inside]) < 0.7
-    assert np.mean([trust("KINEMATICS", frame) for frame in inside]) < 0.8
-    assert np.mean([trust("KINEMATICS", frame) for frame in range(1, LOST.start - 3)]) > 0.85
+    assert reliability("TRACKING", INSIDE) == pytest.approx(0.5)
+    assert reliability("TRACKING", 10) == 1.0
+    inside = range(OCCLUDED_FRAMES.start + 3, OCCLUDED_FRAMES.stop - 3)
+    assert np.mean([reliability("BEHAVIOR", frame) for frame in inside]) < 0.7
+    assert np.mean([reliability("KINEMATICS", frame) for frame in inside]) < 0.8
+    assert (
+        np.mean([
+            reliability("KINEMATICS", frame) for frame in range(1, OCCLUDED_FRAMES.start - 3)
+        ])
+        > 0.85
+    )
 
 
 def test_colors_follow_the_chosen_term(walk, reconstruct, colors, curves):
@@ -60,9 +65,7 @@ def test_colors_follow_the_chosen_term(walk, reconstruct, colors, curves):
     assert names(colors.available_terms(walk)) == TERMS
 
 
-def test_lengths_have_a_term_while_the_file_exists(
-    walk, walk_file, reconstruct, colors, curves
-):
+def test_length_term_needs_the_source_file(walk, walk_file, reconstruct, colors, curves):
     walk_file.unlink()
 
     reconstruct()
@@ -71,9 +74,7 @@ def test_lengths_have_a_term_while_the_file_exists(
     assert colors.colored_bones_at(walk, INSIDE, curves.Term.KINEMATICS) is None
 
 
-def test_the_panel_offers_the_signs_and_says_what_is_missing(
-    walk, walk_file, reconstruct, draw, switch
-):
+def test_panel_shows_terms_and_missing_ones(walk, walk_file, reconstruct, draw, switch):
     assert "No confidence data in this action." in " ".join(draw("MOCAP_PT_reconstruct"))
     reconstruct()
     shown = draw("MOCAP_PT_reconstruct")
@@ -86,7 +87,7 @@ def test_the_panel_offers_the_signs_and_says_what_is_missing(
     assert "Lengths: needs the imported file" in " ".join(draw("MOCAP_PT_reconstruct"))
 
 
-def test_a_sensor_that_was_silent_is_said_to_be(make_armature, animate, reconstruct, draw,
+def test_panel_reports_a_sensor_without_states(make_armature, animate, reconstruct, draw,
                                                 switch, blank):  # fmt: skip
     animate(make_armature())
     blank.context.scene.render.fps = 30

@@ -20,7 +20,7 @@ def found(load, blank):
 
 
 @pytest.mark.parametrize("fps", [24, 30, 60])
-def test_an_imported_take_is_recognized_where_it_stands(walk_file, bring, found, blank, fps):
+def test_imported_take_is_recognized_after_moving(walk_file, bring, found, blank, fps):
     armature = bring(walk_file)
     blank.context.scene.render.fps = fps
     armature.location, armature.rotation_euler.z, armature.scale = (2, 1, 0.9), 0.5, (1.1,) * 3
@@ -29,13 +29,13 @@ def test_an_imported_take_is_recognized_where_it_stands(walk_file, bring, found,
     assert found(armature, walk_file) is not None
 
 
-def test_so_is_a_real_one_with_gaps(recordings, bring, found):
+def test_real_take_with_gaps_is_recognized(recordings, bring, found):
     path = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
 
     assert found(bring(path), path) is not None
 
 
-def test_an_edited_one_is_taken_as_the_animator_left_it(walk, walk_file, found):
+def test_edited_take_is_used_as_edited(walk, walk_file, found):
     curves = walk.animation_data.action.layers[0].strips[0].channelbags[0].fcurves
     path = 'pose.bones["ElbowRight"].rotation_quaternion'
     key = curves.find(path, index=1).keyframe_points[40]
@@ -44,16 +44,16 @@ def test_an_edited_one_is_taken_as_the_animator_left_it(walk, walk_file, found):
     assert found(walk, walk_file) is None
 
 
-def test_without_the_file_it_works_too(walk, walk_file, reconstruct):
+def test_reconstruct_works_without_the_source_file(walk, walk_file, reconstruct):
     walk_file.unlink()
 
     assert reconstruct().name == "walk.reconstructed"
 
 
-def test_the_file_helps_where_a_joint_hangs_on_a_lost_one(
+def test_source_file_improves_joints_below_a_missing_one(
     load, truth, bring, tmp_path, reconstruct, blank
 ):
-    """The elbow is lost; where the wrist was, only the file knows."""
+    """The elbow is missing; only the file has the position of the wrist."""
     from kinect_walks import tracked_walk
 
     motion, recordings = load("solvers.motion"), load("solvers.recordings")
@@ -66,24 +66,26 @@ def test_the_file_helps_where_a_joint_hangs_on_a_lost_one(
     )
     wrist = names.index("WristRight")
     errors = []
-    for kept in (True, False):
+    for with_file in (True, False):
         armature = bring(path)
-        if not kept:
+        if not with_file:
             path.unlink()
         reconstruct()
         take = load("mocap_assist.actions.armature_read").read_take(
             armature, blank.context.scene
         )
         body = take.parts[0].motion
-        places = motion.forward_kinematics(body).positions[:, body.skeleton.index("WristRight")]
-        errors.append(np.linalg.norm(places - truth[:, wrist], axis=-1)[60:75].mean())
+        found_positions = motion.forward_kinematics(body).positions[
+            :, body.skeleton.index("WristRight")
+        ]
+        errors.append(np.linalg.norm(found_positions - truth[:, wrist], axis=-1)[60:75].mean())
 
     assert errors[0] < 0.03
     assert errors[0] < 0.8 * errors[1]
 
 
 @pytest.mark.parametrize(("first", "last"), [(25, 65), (1, 40), (50, 90)])
-def test_a_part_of_the_take_is_found_in_its_file(
+def test_segment_of_a_take_is_found_in_its_file(
     walk, walk_file, load, blank, reconstruct, first, last
 ):
     scene = blank.context.scene
@@ -100,15 +102,15 @@ def test_a_part_of_the_take_is_found_in_its_file(
 
     wrists = (each.tracks.positions for each in (found, recording))
     mine, theirs = (
-        places[:, each.names.index("WristLeft")]
-        for places, each in zip(wrists, (found, recording), strict=True)
+        positions[:, each.names.index("WristLeft")]
+        for positions, each in zip(wrists, (found, recording), strict=True)
     )
     assert np.allclose(mine, theirs[first - 1 : last], atol=1e-4)
     terms = load("mocap_assist.drawing.confidence_colors").available_terms(walk)
     assert "KINEMATICS" in {term.name for term in terms}
 
 
-def test_hips_that_were_never_tracked_are_between_the_legs(
+def test_hips_never_tracked_are_between_the_legs(
     load, truth, bring, tmp_path, reconstruct, capfd
 ):
     from kinect_walks import tracked_walk
@@ -123,10 +125,10 @@ def test_hips_that_were_never_tracked_are_between_the_legs(
     )
 
     armature = bring(path)
-    told = capfd.readouterr().out
+    message = capfd.readouterr().out
     result = reconstruct()
 
-    assert "with hips added between the legs" in told
+    assert "with hips added between the legs" in message
     assert "HipCenter" in armature.pose.bones
     assert result.name == "walk.reconstructed"
     terms = load("mocap_assist.drawing.confidence_colors").available_terms(armature)

@@ -2,28 +2,30 @@
 
 import numpy as np
 import pytest
-from kinect_walks import LOST
+from kinect_walks import OCCLUDED_FRAMES
 
 
 @pytest.fixture
 def elbows(load, blank):
-    """Where the left elbow and wrist are in an action while the camera lost them."""
+    """Positions of the left elbow and wrist in an action while they are occluded."""
 
-    def places(armature, action):
+    def arm_positions(armature, action):
         read = load("mocap_assist.actions.armature_read").read_take
         take = read(armature, blank.context.scene, source=(action, action.slots[0]))
         motion = take.parts[0].motion
         found = load("solvers.motion.skeletons.kinematics").forward_kinematics(motion).positions
-        return found[LOST][:, [motion.skeleton.index(n) for n in ("ElbowLeft", "WristLeft")]]
+        return found[OCCLUDED_FRAMES][
+            :, [motion.skeleton.index(n) for n in ("ElbowLeft", "WristLeft")]
+        ]
 
-    return places
+    return arm_positions
 
 
 def off(one, other):
     return float(np.nanmean(np.linalg.norm(one - other, axis=-1)))
 
 
-def test_clean_starts_from_what_was_reconstructed(walk, reconstruct, blank, elbows, load):
+def test_clean_starts_from_the_reconstruction(walk, reconstruct, blank, elbows, load):
     history = load("mocap_assist.scene.history")
     raw = walk.animation_data.action
     rebuilt = reconstruct()
@@ -38,7 +40,7 @@ def test_clean_starts_from_what_was_reconstructed(walk, reconstruct, blank, elbo
     assert walk.animation_data.action == raw
 
 
-def test_where_the_reconstruction_is_gone_clean_starts_from_the_recording(
+def test_clean_starts_from_the_recording_without_the_reconstruction(
     walk, reconstruct, blank, load
 ):
     rebuilt = reconstruct()

@@ -23,8 +23,10 @@ def press_reconstruct(make_button, window, load):
     return press
 
 
-@pytest.mark.parametrize("solved", [0.0, 0.2], ids=["at once", "on the way"])
-def test_escape_ends_it_and_writes_nothing(walk, press_reconstruct, window, blank, solved):
+@pytest.mark.parametrize("solved", [0.0, 0.2], ids=["at once", "half way"])
+def test_escape_cancels_reconstruct_and_writes_nothing(
+    walk, press_reconstruct, window, blank, solved
+):
     actions = blank.data.actions.keys()
     button = press_reconstruct()
     wait(button, window, until=lambda: button._job.progress()[0] >= solved)
@@ -37,7 +39,7 @@ def test_escape_ends_it_and_writes_nothing(walk, press_reconstruct, window, blan
     assert nothing_is_left(window) and window.reports == [({"INFO"}, "Cancelled.")]
 
 
-def test_left_alone_it_writes_a_new_action(walk, press_reconstruct, window, blank):
+def test_reconstruct_writes_a_new_action_when_it_ends(walk, press_reconstruct, window, blank):
     recorded = walk.animation_data.action
 
     assert wait(press_reconstruct(), window) == {"FINISHED"}

@@ -21,7 +21,7 @@ def test_find_bones_fills_a_row_for_each_role_with_a_score(listed):
     assert listed.source_score > 0.9 and listed.target_score > 0.9
 
 
-def test_what_the_list_says_is_done(listed, walker, give, blank, keys_of):
+def test_retarget_uses_the_list(listed, walker, give, blank, keys_of):
     target = blank.context.scene.objects["Unreal"]
     next(row for row in listed.rows if row.name == "head").target = ""
 
@@ -30,7 +30,7 @@ def test_what_the_list_says_is_done(listed, walker, give, blank, keys_of):
     assert "head" not in keyed and "neck_01" in keyed
 
 
-def test_the_list_of_other_armatures_is_not_used(listed, walker, give, make_rig, keys_of):
+def test_list_of_other_armatures_is_ignored(listed, walker, give, make_rig, keys_of):
     next(row for row in listed.rows if row.name == "head").target = ""
     other = make_rig("Mixamo")
 
@@ -39,7 +39,7 @@ def test_the_list_of_other_armatures_is_not_used(listed, walker, give, make_rig,
     assert "Head" in keyed
 
 
-def test_presets_come_back_as_they_were_saved(listed, blank, tmp_path, walker, give, keys_of):
+def test_preset_restores_the_saved_list(listed, blank, tmp_path, walker, give, keys_of):
     row = next(row for row in listed.rows if row.name == "neck")
     row.target = "neck_02"
     path = str(tmp_path / "unreal.json")
@@ -56,7 +56,7 @@ def test_presets_come_back_as_they_were_saved(listed, blank, tmp_path, walker, g
     assert any("neck_02" in path for _, path, _ in keyed)
 
 
-def test_presets_that_are_none_are_refused_in_a_sentence(listed, blank, tmp_path):
+def test_invalid_presets_are_refused_in_one_sentence(listed, blank, tmp_path):
     bad = tmp_path / "bad.json"
     bad.write_text("{}")
 
@@ -66,14 +66,14 @@ def test_presets_that_are_none_are_refused_in_a_sentence(listed, blank, tmp_path
         blank.ops.mocap_assist.load_bone_map(filepath=str(tmp_path / "no"), side="source")
 
 
-def test_presets_are_kept_in_the_folder_of_the_user(load, extension):
+def test_presets_are_stored_in_the_user_folder(load, extension):
     folder = load("mocap_assist.retarget.bone_list").preset_folder()
 
     assert folder.is_dir() and "bl_ext" not in str(folder)
     assert folder.name == "bone_maps" and ".user" in folder.parts
 
 
-def test_the_panel_says_what_is_missing(walker, blank, load, make_rig):
+def test_panel_shows_missing_input(walker, blank, load, make_rig):
     why = load("mocap_assist.retarget.panel").why_not_pressed
     shown = blank.context.scene.mocap_assist.retarget
 
@@ -90,7 +90,7 @@ def test_the_panel_says_what_is_missing(walker, blank, load, make_rig):
     assert "Select the source armature" in why(blank.context)
 
 
-def test_actions_are_ticked_and_unticked(walker, blank):
+def test_actions_can_be_selected_and_deselected(walker, blank):
     shown = blank.context.scene.mocap_assist.retarget
     name = walker.animation_data.action.name
 

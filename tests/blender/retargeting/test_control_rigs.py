@@ -8,7 +8,7 @@ ARM = ("LeftArm", "LeftForeArm", "LeftHand")
 
 @pytest.fixture
 def puppet(make_rig, blank):
-    """A Mixamo rig whose left arm hangs on a helper that copies the chest's turn."""
+    """A Mixamo rig whose left arm hangs on a helper that copies the chest's rotation."""
     rig = make_rig("Mixamo", "Puppet", lowered=0.6)
     blank.ops.object.mode_set(mode="EDIT")
     bones = rig.data.edit_bones
@@ -30,8 +30,8 @@ def constrain(rig, kind, **settings):
     return constraint
 
 
-def turns(poses, rig, frames=range(1, 61, 7)):
-    """How far each arm bone has turned in the world since it rested."""
+def arm_rotations(poses, rig, frames=range(1, 61, 7)):
+    """Return the world rotation of each arm bone relative to its rest pose."""
     matrices = poses(rig, frames)
     return {
         name: matrices[name][:, :3, :3]
@@ -43,32 +43,32 @@ def turns(poses, rig, frames=range(1, 61, 7)):
 
 
 @pytest.mark.parametrize("carrier", ["Spine2", "Head"])
-def test_arms_turn_alike_whatever_carries_them(carrier, puppet, walker, give, poses):
+def test_arm_rotations_do_not_depend_on_the_parent(carrier, puppet, walker, give, poses):
     give(walker, puppet, keep_hands=False)
-    free = turns(poses, puppet)
+    free = arm_rotations(poses, puppet)
     rest = (puppet.matrix_world @ puppet.data.bones[carrier].matrix_local).inverted()
     constrain(puppet, "CHILD_OF", subtarget=carrier, inverse_matrix=rest)
     puppet.data.bones["helper"].use_inherit_rotation = False
     give(walker, puppet, keep_hands=False)
 
-    held = turns(poses, puppet)
+    held = arm_rotations(poses, puppet)
     for name in ARM:
         np.testing.assert_allclose(held[name], free[name], atol=1e-3)
 
 
-def test_a_bone_that_does_not_inherit_turns_alike(puppet, walker, give, poses):
+def test_bone_without_inherited_rotation_rotates_equally(puppet, walker, give, poses):
     give(walker, puppet, keep_hands=False)
-    free = turns(poses, puppet)
+    free = arm_rotations(poses, puppet)
     puppet.data.bones["LeftArm"].use_inherit_rotation = False
 
     give(walker, puppet, keep_hands=False)
 
-    held = turns(poses, puppet)
+    held = arm_rotations(poses, puppet)
     for name in ARM:
         np.testing.assert_allclose(held[name], free[name], atol=1e-3)
 
 
-def test_a_mixture_is_refused_by_name(puppet, walker, blank):
+def test_partial_constraint_is_refused_by_name(puppet, walker, blank):
     constrain(puppet, "COPY_ROTATION", subtarget="Head", influence=0.5)
     blank.context.view_layer.objects.active = walker
 
@@ -76,7 +76,7 @@ def test_a_mixture_is_refused_by_name(puppet, walker, blank):
         blank.ops.mocap_assist.retarget(target="Puppet")
 
 
-def test_a_rig_in_its_rest_position_is_refused(puppet, walker, blank):
+def test_rig_in_rest_position_is_refused(puppet, walker, blank):
     puppet.data.pose_position = "REST"
     blank.context.view_layer.objects.active = walker
 

@@ -22,7 +22,7 @@ def made_of(bpy, operation="retarget"):
     return found
 
 
-def test_all_actions_that_fit_are_retargeted_in_one_step(target, walker, give, blank, keys_of):
+def test_all_matching_actions_are_retargeted_in_one_step(target, walker, give, blank, keys_of):
     raw = walker.animation_data.action
     for name in ("run", "jump"):
         raw.copy().name = name
@@ -37,7 +37,7 @@ def test_all_actions_that_fit_are_retargeted_in_one_step(target, walker, give, b
     assert len({json.dumps(sorted(keys_of(action).items(), key=str)) for action in made}) == 1
 
 
-def test_what_was_given_to_the_target_is_not_taken_for_the_source(target, walker, give, blank):
+def test_actions_of_the_target_are_no_sources(target, walker, give, blank):
     """Both have bones of the same names."""
     for _ in range(2):
         give(walker, target, takes="ALL")
@@ -46,7 +46,7 @@ def test_what_was_given_to_the_target_is_not_taken_for_the_source(target, walker
     assert len(made_of(blank)) == 2
 
 
-def test_listed_actions_and_no_others(target, walker, give, blank):
+def test_only_listed_actions_are_retargeted(target, walker, give, blank):
     raw = walker.animation_data.action
     for name in ("run", "jump"):
         raw.copy().name = name
@@ -56,7 +56,7 @@ def test_listed_actions_and_no_others(target, walker, give, blank):
     assert {action.name for action in made_of(blank)} == {"jump.Mixamo", f"{raw.name}.Mixamo"}
 
 
-def test_a_linked_action_serves_and_is_remembered(target, walker, give, blank, tmp_path):
+def test_linked_action_is_retargeted_and_remembered(target, walker, give, blank, tmp_path):
     raw = walker.animation_data.action
     raw.name = "linked walk"
     blank.data.libraries.write(str(tmp_path / "clips.blend"), {raw})
@@ -72,7 +72,7 @@ def test_a_linked_action_serves_and_is_remembered(target, walker, give, blank, t
     assert action["mocap_assist_given_by"] == linked
 
 
-def test_what_is_written_says_how_it_was_made(target, walker, give):
+def test_result_stores_its_settings_and_source(target, walker, give):
     action = give(walker, target, root_motion="IN_PLACE")
 
     entry = json.loads(action["mocap_assist_history"])[-1]
@@ -109,7 +109,7 @@ def test_retarget_reports_impossible_requests(target, blank, settings, sentence)
     assert not made_of(blank) and target.animation_data is None
 
 
-def test_figures_without_hips_are_refused(walker, make_armature, blank):
+def test_armature_without_hips_is_refused(walker, make_armature, blank):
     prop = make_armature({"Lid": (None, (0, 0, 0), (0, 0, 1), False)}, name="Box")
     blank.context.view_layer.objects.active = walker
 
@@ -117,16 +117,16 @@ def test_figures_without_hips_are_refused(walker, make_armature, blank):
         blank.ops.mocap_assist.retarget(target=prop.name)
 
 
-def test_nothing_but_actions_is_left_behind(target, walker, give, blank):
-    kept = ("objects", "armatures", "meshes", "collections", "scenes")
-    before = {name: len(getattr(blank.data, name)) for name in kept}
+def test_retarget_adds_only_actions(target, walker, give, blank):
+    collections = ("objects", "armatures", "meshes", "collections", "scenes")
+    before = {name: len(getattr(blank.data, name)) for name in collections}
 
     give(walker, target)
 
-    assert {name: len(getattr(blank.data, name)) for name in kept} == before
+    assert {name: len(getattr(blank.data, name)) for name in collections} == before
 
 
-def test_one_step_takes_it_back(target, walker, give, blank):
+def test_retarget_is_one_undo_step(target, walker, give, blank):
     window = blank.context.window
     with blank.context.temp_override(window=window, screen=window.screen):
         blank.ops.ed.undo_push(message="before")
@@ -138,9 +138,7 @@ def test_one_step_takes_it_back(target, walker, give, blank):
     assert blank.data.objects["Mixamo"].animation_data is None
 
 
-def test_the_result_is_cleaned_and_reverted_to_as_a_recording_of_its_own(
-    target, walker, give, blank
-):
+def test_retargeted_action_can_be_cleaned_and_reverted(target, walker, give, blank):
     given = give(walker, target)
     blank.context.view_layer.objects.active = target
 
@@ -154,7 +152,7 @@ def test_the_result_is_cleaned_and_reverted_to_as_a_recording_of_its_own(
     assert operations == ["retarget", "denoise"]
 
 
-def test_several_slots_and_bones_of_another_rig_do_not_confuse(target, walker, give, blank):
+def test_other_slots_and_bones_are_ignored(target, walker, give, blank):
     """The slot that keys the source's bones is taken, wherever it stands."""
     raw = walker.animation_data.action
     other = blank.data.actions.new("two")

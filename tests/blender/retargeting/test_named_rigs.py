@@ -34,7 +34,7 @@ def length(points):
     return np.linalg.norm(np.diff(points[0], axis=0), axis=1).sum()
 
 
-def test_ends_of_limbs_go_where_the_source_says(case, walker, give, poses):
+def test_hands_and_feet_follow_the_source(case, walker, give, poses):
     target, names = case
     frames = range(1, 61, 3)
 
@@ -87,22 +87,22 @@ def test_only_mapped_bones_are_keyed_and_the_source_stays(case, walker, give, ke
     assert np.isfinite([key[:2] for keys in keys_of(action).values() for key in keys]).all()
 
 
-def test_travel_goes_onto_the_bone_above_the_hips(make_rig, walker, give, poses):
+def test_travel_is_keyed_on_the_bone_above_the_hips(make_rig, walker, give, poses):
     target, names = make_rig("Unreal", lowered=0.8), ("root", "pelvis", "hand_l", "ball_r")
     frames = range(1, 61, 5)
     give(walker, target)
-    kept = heads(poses, target, frames, names)
+    stationary = heads(poses, target, frames, names)
 
     give(walker, target, root_motion="ROOT_BONE")
 
     moved = heads(poses, target, frames, names)
-    assert np.linalg.norm((moved - kept)[:, 1:], axis=-1).max() < 1e-4
-    assert np.abs(kept[:, 0]).max() < 1e-6 and np.abs(moved[:, 0, 2]).max() < 1e-5
-    beside = np.linalg.norm((moved[:, 1] - moved[:, 0])[:, :2], axis=-1)
-    assert beside.max() < 0.1 and np.linalg.norm(moved[-1, 0] - moved[0, 0]) > 1.0
+    assert np.linalg.norm((moved - stationary)[:, 1:], axis=-1).max() < 1e-4
+    assert np.abs(stationary[:, 0]).max() < 1e-6 and np.abs(moved[:, 0, 2]).max() < 1e-5
+    distance = np.linalg.norm((moved[:, 1] - moved[:, 0])[:, :2], axis=-1)
+    assert distance.max() < 0.1 and np.linalg.norm(moved[-1, 0] - moved[0, 0]) > 1.0
 
 
-def test_in_place_the_body_stays(make_rig, walker, give, poses):
+def test_in_place_removes_the_travel(make_rig, walker, give, poses):
     target = make_rig("Mixamo")
 
     give(walker, target, root_motion="IN_PLACE")
@@ -111,7 +111,9 @@ def test_in_place_the_body_stays(make_rig, walker, give, poses):
     assert np.linalg.norm((hips - hips[0])[:, :2], axis=-1).max() < 0.15
 
 
-def test_a_recorded_walk_reaches_a_mixamo_rig(make_rig, import_bvh, recordings, give, poses):
+def test_recorded_walk_is_retargeted_to_a_mixamo_rig(
+    make_rig, import_bvh, recordings, give, poses
+):
     source = import_bvh(recordings / "mocap" / "cmu_walk" / "07_01.bvh", 0.0254 / 0.45)
     target = make_rig("Mixamo", prefix="mixamorig:", lowered=0.7, scale=0.01)
     frames = range(1, 301, 20)

@@ -19,7 +19,7 @@ def command(load, capsys):
     return call
 
 
-def test_motions_are_given_to_the_target_and_saved(walker, make_rig, blank, command, tmp_path):
+def test_retarget_command_writes_actions_and_saves(walker, make_rig, blank, command, tmp_path):
     make_rig("Mixamo")
     saved = tmp_path / "hero.blend"
 
@@ -36,7 +36,7 @@ def test_motions_are_given_to_the_target_and_saved(walker, make_rig, blank, comm
     assert action.name == lines[0]["action"]
 
 
-def test_keys_are_thinned_out(walker, command, tmp_path):
+def test_retarget_command_reduces_keys(walker, command, tmp_path):
     status, lines, err = command(
         "unbake", "--tolerance", "2", "--json", "--output", str(tmp_path / "few.blend")
     )
@@ -47,7 +47,7 @@ def test_keys_are_thinned_out(walker, command, tmp_path):
     assert lines[0]["settings"]["tolerance"] == 0.02
 
 
-def test_mistakes_are_said_in_a_sentence(walker, command, tmp_path):
+def test_retarget_command_reports_errors_in_one_sentence(walker, command, tmp_path):
     output = ("--output", str(tmp_path / "x.blend"))
 
     for words, sentence in (

@@ -40,7 +40,7 @@ def ends_off(poses, hero, walker):
 
 
 @pytest.mark.parametrize("limbs", ["FK", "IK", "BOTH"])
-def test_ends_of_limbs_go_where_the_source_says(limbs, hero, walker, give, poses):
+def test_hands_and_feet_follow_the_source(limbs, hero, walker, give, poses):
     give(walker, hero, limbs=limbs)
 
     feet, hands = ends_off(poses, hero, walker)
@@ -55,9 +55,9 @@ def test_joints_do_not_flip(limbs, hero, walker, give, poses):
 
     def steps(armature, names):
         found = poses(armature, frames)
-        turns = np.stack([found[name][:, :3, :3] for name in names], axis=1)
-        turns /= np.linalg.norm(turns, axis=-2, keepdims=True)
-        cosine = (np.einsum("fjab,fjab->fj", turns[1:], turns[:-1]) - 1.0) / 2.0
+        rotations = np.stack([found[name][:, :3, :3] for name in names], axis=1)
+        rotations /= np.linalg.norm(rotations, axis=-2, keepdims=True)
+        cosine = (np.einsum("fjab,fjab->fj", rotations[1:], rotations[:-1]) - 1.0) / 2.0
         return np.degrees(np.arccos(cosine.clip(-1.0, 1.0))).max(axis=0)
 
     ours = steps(hero, [f"DEF-{name}" for name in DEFORM])
@@ -65,7 +65,7 @@ def test_joints_do_not_flip(limbs, hero, walker, give, poses):
 
 
 @pytest.mark.parametrize("limbs", ["FK", "IK"])
-def test_what_its_controls_make_may_be_taken(limbs, hero, walker, give, poses, make_rig):
+def test_rigify_rig_can_be_the_source(limbs, hero, walker, give, poses, make_rig):
     """Where its body is depends on constraints: the pose that Blender shows is read."""
     give(walker, hero, limbs=limbs)
     target = make_rig("Mixamo", prefix="mixamorig:")
@@ -76,16 +76,18 @@ def test_what_its_controls_make_may_be_taken(limbs, hero, walker, give, poses, m
     ours = heads(poses, target, [f"mixamorig:{bone}" for bone in bones])
     theirs = heads(poses, walker, bones)
     for start, end in ((0, 1), (2, 3)):
-        ways = [unit(points[:, end] - points[:, start]) for points in (ours, theirs)]
-        angles = np.degrees(np.arccos((ways[0] * ways[1]).sum(axis=1).clip(-1.0, 1.0)))
+        directions = [unit(points[:, end] - points[:, start]) for points in (ours, theirs)]
+        angles = np.degrees(
+            np.arccos((directions[0] * directions[1]).sum(axis=1).clip(-1.0, 1.0))
+        )
         assert angles.max() < 6.0
 
 
-def unit(ways):
-    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
+def unit(vectors):
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
-def test_with_both_the_animator_may_switch(hero, walker, give, poses, blank):
+def test_fk_and_ik_keys_give_the_same_pose(hero, walker, give, poses, blank):
     action = give(walker, hero, limbs="BOTH")
     by_fk = heads(poses, hero, [f"DEF-{name}" for name in DEFORM])
 
@@ -96,12 +98,12 @@ def test_with_both_the_animator_may_switch(hero, walker, give, poses, blank):
             curve.update()
     by_ik = heads(poses, hero, [f"DEF-{name}" for name in DEFORM])
 
-    apart = np.linalg.norm(by_fk - by_ik, axis=-1).max(axis=0)
-    assert apart[[2, 5]].max() < 0.1 * CENTIMETRE
-    assert 0.0 < apart[[1, 4]].max() < 4 * CENTIMETRE  # Rigify's IK limbs stretch a little
+    distances = np.linalg.norm(by_fk - by_ik, axis=-1).max(axis=0)
+    assert distances[[2, 5]].max() < 0.1 * CENTIMETRE
+    assert 0.0 < distances[[1, 4]].max() < 4 * CENTIMETRE  # Rigify's IK limbs stretch a little
 
 
-def test_the_body_turns_as_solved(hero, walker, give, load, blank):
+def test_body_rotates_as_solved(hero, walker, give, load, blank):
     """Every mapped part is where the solver wants it, which its own tests judge."""
     retargeting = load("mocap_assist.retarget.retargeting")
     choices = load("mocap_assist.retarget.choices")
@@ -149,15 +151,15 @@ def test_only_controls_are_keyed_and_the_rig_stays(hero, walker, give, keys_of):
     assert after == {name: before[name] for name in after}
 
 
-def test_travel_goes_onto_the_root_bone(hero, walker, give, poses):
+def test_travel_is_keyed_on_the_root_bone(hero, walker, give, poses):
     give(walker, hero)
     names = [f"DEF-{name}" for name in DEFORM]
-    kept = heads(poses, hero, names)
+    before = heads(poses, hero, names)
 
     give(walker, hero, root_motion="ROOT_BONE")
 
     root = heads(poses, hero, ["root"])[:, 0]
-    assert np.linalg.norm(heads(poses, hero, names) - kept, axis=-1).max() < CENTIMETRE
+    assert np.linalg.norm(heads(poses, hero, names) - before, axis=-1).max() < CENTIMETRE
     assert np.abs(root[:, 2]).max() < 1e-5
     hips = heads(poses, hero, ["DEF-spine"])[:, 0]
     assert np.linalg.norm((hips - root)[:, :2], axis=1).max() < 0.3
@@ -165,7 +167,7 @@ def test_travel_goes_onto_the_root_bone(hero, walker, give, poses):
 
 
 @pytest.mark.parametrize("how", ["overridden", "appended"])
-def test_a_hero_that_stands_and_faces_elsewhere_walks_there(how, bring, walker, give, poses):
+def test_moved_and_rotated_rig_walks_from_there(how, bring, walker, give, poses):
     hero = bring(how)
     give(walker, hero)
     names = [f"DEF-{name}" for name in DEFORM]
@@ -174,12 +176,16 @@ def test_a_hero_that_stands_and_faces_elsewhere_walks_there(how, bring, walker, 
     hero.location, hero.rotation_euler = (3.0, 1.0, 0.5), (0.0, 0.0, 0.7)
     give(walker, hero)
 
-    turn = np.array([[np.cos(0.7), -np.sin(0.7), 0], [np.sin(0.7), np.cos(0.7), 0], [0, 0, 1]])
-    moved = here @ turn.T + (3.0, 1.0, 0.5)
+    rotation = np.array([
+        [np.cos(0.7), -np.sin(0.7), 0],
+        [np.sin(0.7), np.cos(0.7), 0],
+        [0, 0, 1],
+    ])
+    moved = here @ rotation.T + (3.0, 1.0, 0.5)
     assert np.linalg.norm(heads(poses, hero, names) - moved, axis=-1).max() < 0.001
 
 
-def test_a_linked_rig_gets_actions_but_does_not_play_them(bring, walker, blank, keys_of, give):
+def test_linked_rig_gets_actions_and_plays_none(bring, walker, blank, keys_of, give):
     hero = bring("linked")
     blank.context.view_layer.objects.active = walker
 

@@ -14,7 +14,7 @@ def n_keys(keys):
 
 
 @pytest.mark.parametrize("mode", ["QUATERNION", "ZXY", "AXIS_ANGLE"])
-def test_ends_of_limbs_are_off_by_no_more_than_the_tolerance(
+def test_hand_and_foot_errors_stay_within_the_tolerance(
     walker, blank, poses, keys_of, load, mode
 ):
     rekeyed(walker, mode, load)
@@ -45,7 +45,7 @@ def test_a_larger_tolerance_leaves_fewer_keys(walker, blank, keys_of):
     assert found[0] > found[1] > found[2]
 
 
-def test_few_keys_can_be_thinned_out_again_and_reverted(walker, blank, keys_of):
+def test_unbaked_action_can_be_unbaked_again_and_reverted(walker, blank, keys_of):
     raw = walker.animation_data.action
     for tolerance in (0.002, 0.03):
         assert blank.ops.mocap_assist.reduce_keys(tolerance=tolerance) == {"FINISHED"}
@@ -57,7 +57,7 @@ def test_few_keys_can_be_thinned_out_again_and_reverted(walker, blank, keys_of):
     assert walker.animation_data.action == raw
 
 
-def test_gaps_are_not_unbaked(walker, blank):
+def test_unbake_refuses_gaps(walker, blank):
     bag = walker.animation_data.action.layers[0].strips[0].channelbags[0]
     for curve in bag.fcurves:
         if "LeftForeArm" in curve.data_path:
@@ -69,7 +69,7 @@ def test_gaps_are_not_unbaked(walker, blank):
 
 
 def rekeyed(armature, mode, load):
-    """Key the same turns in another rotation mode."""
+    """Key the same rotations in another rotation mode."""
     modes = load("mocap_assist.actions.rotation_modes")
     reading = load("mocap_assist.actions.armature_read")
     writing = load("mocap_assist.actions.action_write")

@@ -33,9 +33,7 @@ def joint_positions(scene_io, take):
 
 
 @pytest.mark.parametrize("mode", MODES)
-def test_joints_are_where_blender_shows_the_bones(
-    mode, make_armature, animate, poses, scene_io
-):
+def test_read_joints_equal_blenders_bones(mode, make_armature, animate, poses, scene_io):
     armature = make_armature(mode=mode)
     animate(armature)
     armature.matrix_world = (
@@ -55,7 +53,7 @@ def test_joints_are_where_blender_shows_the_bones(
 
 
 @pytest.mark.parametrize("mode", MODES)
-def test_writing_what_was_read_moves_nothing(mode, make_armature, animate, poses, rewrite):
+def test_writing_the_read_motion_changes_nothing(mode, make_armature, animate, poses, rewrite):
     armature = make_armature(mode=mode)
     animate(armature, locations=True)
     before = poses(armature, range(1, 61))
@@ -66,7 +64,7 @@ def test_writing_what_was_read_moves_nothing(mode, make_armature, animate, poses
         assert_allclose(matrices, before[bone], atol=NEAR)
 
 
-def test_an_armature_that_is_moved_as_an_object_is_read_in_the_world(
+def test_moved_armature_is_read_in_world_space(
     make_armature, animate, poses, rewrite, scene_io
 ):
     armature = make_armature()
@@ -87,13 +85,13 @@ def test_an_armature_that_is_moved_as_an_object_is_read_in_the_world(
         assert_allclose(matrices, before[bone], atol=NEAR)
 
 
-def test_a_turn_is_written_without_jumps(make_armature, animate, rewrite, blank):
+def test_full_rotations_are_written_without_jumps(make_armature, animate, rewrite, blank):
     armature = make_armature(mode="ZXY")
     action = animate(armature)
     slot = armature.animation_data.action_slot
     path = 'pose.bones["Head"].rotation_euler'
     curves = action.layers[0].strips[0].channelbag(slot).fcurves
-    for frame in range(60):  # five full turns
+    for frame in range(60):  # five full rotations
         curves.find(path, index=2).keyframe_points[frame].co.y = frame * 10 * np.pi / 60
 
     clean = rewrite(armature)
@@ -121,7 +119,7 @@ def test_connected_bones_ignore_their_location_and_keep_its_keys(
     assert all(before[key] == after[key] for key in connected)
 
 
-def test_only_the_chosen_bones_change_and_the_source_never(
+def test_only_chosen_bones_change_and_the_source_stays(
     make_armature, animate, keys_of, rewrite, scene_io
 ):
     armature = make_armature(mode="XYZ")
@@ -227,7 +225,7 @@ def test_a_linked_rig_is_read_and_an_override_gets_the_result(
     ("scale", "unit_scale", "metres"),
     [(1.0, 1.0, 1.0), (2.0, 1.0, 2.0), (100.0, 1.0, 1.0), (100.0, 0.01, 1.0), (17.7, 1.0, 1.0)],
 )
-def test_a_body_is_as_large_as_bodies_are(
+def test_bones_have_plausible_lengths_at_any_scale(
     scale, unit_scale, metres, make_armature, animate, poses, rewrite, scene_io, blank
 ):
     """BVH in centimetres or in CMU's unit is often imported as if it were metres."""
@@ -258,7 +256,7 @@ def test_unevenly_scaled_armatures_are_refused_with_a_reason(make_armature, anim
         scene_io.reading.read_take(armature, armature.users_scene[0])
 
 
-def test_the_sentence_says_what_is_missing(make_armature, blank, scene_io):
+def test_error_names_the_missing_input(make_armature, blank, scene_io):
     armature, scene = make_armature(), blank.context.scene
     with pytest.raises(scene_io.errors.InvalidMotionError, match="Actor has no action"):
         scene_io.reading.read_take(armature, scene)

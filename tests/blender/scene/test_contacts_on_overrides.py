@@ -36,9 +36,7 @@ def save_and_open(bpy, path):
     return again
 
 
-def test_it_keeps_its_foot_contacts_when_its_file_is_loaded_again(
-    override, blank, tmp_path, contacts
-):
+def test_override_keeps_its_foot_contacts_after_reloading(override, blank, tmp_path, contacts):
     again = save_and_open(blank, tmp_path / "shot.blend")
 
     assert [again[name] for name in contacts.PROPERTIES] == [0, 1]
@@ -47,9 +45,7 @@ def test_it_keeps_its_foot_contacts_when_its_file_is_loaded_again(
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_a_key_without_a_value_means_that_the_foot_does_not_stand(
-    override, blank, tmp_path, contacts, load, value
-):
+def test_key_without_a_value_means_no_contact(override, blank, tmp_path, contacts, load, value):
     curves = load("mocap_assist.actions.bone_channels").animated_curves
     animation = override.animation_data
     channel = curves(animation.action, animation.action_slot)['["mocap_contact_left"]', 0]

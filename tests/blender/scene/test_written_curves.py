@@ -39,7 +39,7 @@ def selected(curve):
 
 
 @pytest.mark.parametrize("frames", [FRAMES, PART])
-def test_keys_are_selected_if_those_that_they_replace_were(curve, write, frames):
+def test_new_keys_inherit_the_selection_of_replaced_keys(curve, write, frames):
     assert_array_equal(selected(curve), False)
     for index in (5, 25, 55):
         select(curve.keyframe_points[index], True)
@@ -51,7 +51,7 @@ def test_keys_are_selected_if_those_that_they_replace_were(curve, write, frames)
     assert_array_equal(selected(curve), before)
 
 
-def test_keys_where_there_was_none_are_not_selected(curve, write):
+def test_added_keys_are_not_selected(curve, write):
     for key in list(curve.keyframe_points)[20:40][::-1]:
         curve.keyframe_points.remove(key)
     for key in curve.keyframe_points:
@@ -79,7 +79,7 @@ def stepped(curve):
 
 
 def several(curve):
-    """In this order: the noise is cut off, not the other way round."""
+    """In this order: noise first, then the cut."""
     noise(curve)
     modifier = curve.modifiers.new("LIMITS")
     modifier.use_min_y, modifier.min_y = True, -0.1
@@ -92,7 +92,7 @@ def several(curve):
 
 
 @pytest.mark.parametrize("modify", [noise, limited_noise, stepped, several])
-def test_modifiers_act_on_the_keys_outside_and_not_on_those_written(curve, write, modify):
+def test_modifiers_affect_only_keys_outside_the_range(curve, write, modify):
     modify(curve)
     before = evaluated(curve, FRAMES)
     assert np.abs(before - [key.co.y for key in curve.keyframe_points]).max() > 0.05
@@ -103,7 +103,7 @@ def test_modifiers_act_on_the_keys_outside_and_not_on_those_written(curve, write
 
 
 @pytest.mark.parametrize(("written", "n_left"), [(FRAMES, 0), (PART, 2), (FRAMES[:20], 1)])
-def test_a_modifier_goes_where_nothing_is_left_for_it(curve, write, written, n_left):
+def test_modifier_is_removed_when_all_its_keys_are_written(curve, write, written, n_left):
     noise(curve)
     before = evaluated(curve, FRAMES)
 
@@ -113,7 +113,7 @@ def test_a_modifier_goes_where_nothing_is_left_for_it(curve, write, written, n_l
     assert len(curve.modifiers) == n_left
 
 
-def test_the_noise_fades_towards_the_written_keys(curve, write):
+def test_noise_modifier_fades_toward_the_written_keys(curve, write):
     noise(curve)
     write(curve, PART, np.zeros(20))
 
@@ -124,14 +124,18 @@ def test_the_noise_fades_towards_the_written_keys(curve, write):
 
 
 @pytest.mark.parametrize("frames", [FRAMES, PART])
-def test_cycles_go_on_with_the_clean_keys(curve, write, frames):
+def test_cycles_modifier_repeats_the_clean_keys(curve, write, frames):
     cycles = curve.modifiers.new("CYCLES")
     cycles.mode_after, cycles.cycles_after = "REPEAT_OFFSET", 3
 
     write(curve, frames, np.linspace(0.0, 1.0, len(frames)))
 
-    (kept,) = curve.modifiers
-    assert (kept.type, kept.mode_after, kept.cycles_after) == ("CYCLES", "REPEAT_OFFSET", 3)
+    (modifier,) = curve.modifiers
+    assert (modifier.type, modifier.mode_after, modifier.cycles_after) == (
+        "CYCLES",
+        "REPEAT_OFFSET",
+        3,
+    )
     again, first = evaluated(curve, FRAMES + 59.0), evaluated(curve, FRAMES)
     assert_allclose(again, first + first[-1] - first[0], atol=1e-5)
 

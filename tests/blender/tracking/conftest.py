@@ -1,16 +1,16 @@
-"""A short recording of depth whose joints are known, as points in the scene."""
+"""A short depth recording with true joints, as points in the scene."""
 
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-QUICK = {"backward": False, "refine": False, "plant_feet": False}
+FAST_SETTINGS = {"backward": False, "refine": False, "plant_feet": False}
 
 
 @pytest.fixture(autouse=True)
-def end_is_seen_late(load, monkeypatch):
-    """On a busy machine a solve may end before the window first looks; it is to look once."""
+def end_is_noticed_late(load, monkeypatch):
+    """Report the end one check late; a solve may end before the first check."""
     job, ended = load("mocap_assist.jobs.job").Job, set()
     done = job.done
 
@@ -41,7 +41,7 @@ def truth(recordings, n_frames):
 
 @pytest.fixture
 def points(truth, blank, tmp_path):
-    """The object that Import makes of it."""
+    """The object that Import makes of the recording."""
     path = tmp_path / "walk.npz"
     np.savez_compressed(path, **truth)
     blank.context.scene.render.fps = 30
@@ -52,7 +52,7 @@ def points(truth, blank, tmp_path):
 
 @pytest.fixture(scope="session")
 def shelf(tmp_path_factory):
-    """Where scenes are kept that take long to make, for all tests that begin with the same."""
+    """A cache of scenes that take long to make, for all tests that start with the same one."""
     return tmp_path_factory.mktemp("shelf")
 
 
@@ -66,7 +66,7 @@ def walk(truth, n_frames, blank, shelf):
         np.savez_compressed(path, **truth)
         blank.context.scene.render.fps = 30
         blank.ops.mocap_assist.import_recording(filepath=str(path))
-        assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
+        assert blank.ops.mocap_assist.track_depth(**FAST_SETTINGS) == {"FINISHED"}
         blank.ops.wm.save_as_mainfile(filepath=str(scene), copy=True)
     blank.ops.wm.open_mainfile(filepath=str(scene))
     objects = {each.type: each for each in blank.data.objects}

@@ -6,22 +6,24 @@ import numpy as np
 import pytest
 from depth_folders import open3d
 
-QUICK = ["--no-backward", "--no-refine", "--no-plant-feet"]
+FAST_OPTIONS = ["--no-backward", "--no-refine", "--no-plant-feet"]
 
 
-def test_takes_become_armatures_and_what_fails_is_named(truth, blank, load, tmp_path, capsys):
+def test_capture_command_makes_armatures_and_names_failed_takes(
+    truth, blank, load, tmp_path, capsys
+):
     run = load("mocap_assist.batch.command").run
     good, wrong, target = (tmp_path / name for name in ("walk.npz", "no.npz", "out.blend"))
     np.savez_compressed(good, **truth)
     wrong.write_bytes(b"nothing")
-    words = ["capture", str(good), str(wrong), "--output", str(target), *QUICK]
+    words = ["capture", str(good), str(wrong), "--output", str(target), *FAST_OPTIONS]
 
-    status = run([*words, "--json", str(tmp_path / "told.json")])
+    status = run([*words, "--json", str(tmp_path / "report.json")])
 
-    told = json.loads((tmp_path / "told.json").read_text())
+    report = json.loads((tmp_path / "report.json").read_text())
     said = capsys.readouterr()
     assert status == 2 and "no.npz" in said.err
-    assert told["objects"] == ["walk tracked"] and len(told["failed"]) == 1
+    assert report["objects"] == ["walk tracked"] and len(report["failed"]) == 1
     blank.ops.wm.open_mainfile(filepath=str(target))
     armature = blank.data.objects["walk tracked"]
     assert armature.animation_data.action is not None
@@ -59,7 +61,15 @@ def test_a_folder_of_takes_is_captured(takes, blank, load, tmp_path, capsys):
     run = load("mocap_assist.batch.command").run
     out = tmp_path / "out"
 
-    status = run(["each", str(takes), "--output-folder", str(out), "--", "capture", *QUICK])
+    status = run([
+        "each",
+        str(takes),
+        "--output-folder",
+        str(out),
+        "--",
+        "capture",
+        *FAST_OPTIONS,
+    ])
 
     assert status == 0, capsys.readouterr().err
     made = {path.relative_to(out).as_posix() for path in out.rglob("*.blend")}
@@ -69,7 +79,9 @@ def test_a_folder_of_takes_is_captured(takes, blank, load, tmp_path, capsys):
 
     empty = tmp_path / "empty"
     empty.mkdir()
-    assert run(["capture", str(empty), "--output", str(tmp_path / "no.blend"), *QUICK]) == 2
+    assert (
+        run(["capture", str(empty), "--output", str(tmp_path / "no.blend"), *FAST_OPTIONS]) == 2
+    )
     assert "There is no recording in the folder" in capsys.readouterr().err
 
 
@@ -78,7 +90,7 @@ def test_a_folder_of_takes_becomes_one_scene(takes, blank, load, tmp_path, capsy
     run = load("mocap_assist.batch.command").run
     target = tmp_path / "both.blend"
 
-    status = run(["capture", str(takes), "--output", str(target), *QUICK])
+    status = run(["capture", str(takes), "--output", str(target), *FAST_OPTIONS])
 
     assert status == 0, capsys.readouterr().err
     blank.ops.wm.open_mainfile(filepath=str(target))

@@ -16,20 +16,20 @@ def drawn(made, load, blank):
 
 
 @pytest.mark.parametrize("scale", [(0.0, 0.0, 0.0), (1.0, 1.0, 0.0)])
-def test_an_armature_that_is_scaled_to_nothing_is_no_error(scale, made, drawn):
+def test_armature_of_scale_zero_is_no_error(scale, made, drawn):
     made.armature.scale = scale
     body = drawn()
     assert np.isfinite(body.points).all() and np.isfinite(body.normals).all()
 
 
-def test_a_bone_that_is_scaled_to_nothing_is_no_error(made, drawn):
+def test_bone_of_scale_zero_is_no_error(made, drawn):
     made.armature.pose.bones["chest"].scale = (0.0, 0.0, 0.0)
     body = drawn()
     assert np.isfinite(body.points).all() and np.isfinite(body.normals).all()
 
 
 @pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (0.5, 1.0, 2.0), (-1.0, 1.0, 1.0)])
-def test_normals_and_triangles_face_outwards(scale, made, drawn):
+def test_normals_and_triangles_face_outward(scale, made, drawn):
     """A closed surface whose triangles face outwards has a positive volume."""
     made.armature.scale = scale
     body = drawn()

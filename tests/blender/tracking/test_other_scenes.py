@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-QUICK = {"backward": False, "refine": False, "plant_feet": False}
+FAST_SETTINGS = {"backward": False, "refine": False, "plant_feet": False}
 
 
 @pytest.fixture
@@ -25,17 +25,17 @@ def centimetres(truth, blank, tmp_path):
     return blank.context.object
 
 
-def test_body_and_correction_in_centimetres_between_whole_frames(
+def test_body_and_retracking_work_in_centimeters_between_frames(
     centimetres, truth, blank, load
 ):
-    assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
+    assert blank.ops.mocap_assist.track_depth(**FAST_SETTINGS) == {"FINISHED"}
     armature = blank.context.object
     blank.context.scene.frame_set(5)  # picture 5 is at frame 1 + 5 * 0.8
     drawn = load("mocap_assist.track.body_overlay").body_at(armature, 5)
-    place = np.array(centimetres.matrix_world)
-    seen = truth["joints"][5] @ place[:3, :3].T + place[:3, 3]
-    assert np.ptp(drawn.points[:, 2]) == pytest.approx(np.ptp(seen[:, 2]), rel=0.2)
-    assert np.linalg.norm(drawn.points.mean(axis=0) - seen.mean(axis=0)) < 20.0
+    matrix = np.array(centimetres.matrix_world)
+    observed = truth["joints"][5] @ matrix[:3, :3].T + matrix[:3, 3]
+    assert np.ptp(drawn.points[:, 2]) == pytest.approx(np.ptp(observed[:, 2]), rel=0.2)
+    assert np.linalg.norm(drawn.points.mean(axis=0) - observed.mean(axis=0)) < 20.0
 
     before = armature.animation_data.action
     assert blank.ops.mocap_assist.retrack(reach=0.07) == {"FINISHED"}

@@ -1,23 +1,23 @@
-"""Track from Here reads what the animator sees, or says what stands in the way."""
+"""Track from Here reads the displayed pose, or says what prevents it."""
 
 import numpy as np
 import pytest
 from mathutils import Quaternion
 
 ARM = "rightUpperArm"
-TURN = Quaternion((0.0, 1.0, 0.0), 0.5)
+ROTATION = Quaternion((0.0, 1.0, 0.0), 0.5)
 
 
 @pytest.fixture
 def read(made, load, blank):
-    """Read the scene as the button does; return the frame and pose that would be kept."""
+    """Read the scene as the button does; return the frame and the pose to constrain."""
     retracking = load("mocap_assist.track.retracking")
     settings = retracking.RetrackBundle(load("solvers.depth_tracking").RetrackSettings())
 
     def read():
         blank.context.view_layer.update()
-        asked = retracking.read_retracking(blank.context.scene, made.armature, settings)
-        return asked.args[1]
+        problem = retracking.read_retracking(blank.context.scene, made.armature, settings)
+        return problem.args[1]
 
     return read
 
@@ -45,13 +45,13 @@ def refused(read, load):
     return refused
 
 
-def test_turned_bones_and_moved_hips_are_read_as_they_are_seen(made, read, load, blank):
+def test_rotated_bones_and_moved_hips_are_read_as_displayed(made, read, load, blank):
     from mathutils import Matrix
 
     made.armature.matrix_world = Matrix.Scale(2.0, 4) @ made.armature.matrix_world
     bones = made.armature.pose.bones
     bones["hips"].location.x += 0.3
-    bones[ARM].rotation_quaternion = TURN @ bones[ARM].rotation_quaternion
+    bones[ARM].rotation_quaternion = ROTATION @ bones[ARM].rotation_quaternion
     correction = read()
     assert correction.frame == 4
     space = load("mocap_assist.track.tracked_body")
@@ -63,7 +63,7 @@ def test_turned_bones_and_moved_hips_are_read_as_they_are_seen(made, read, load,
     np.testing.assert_allclose(shown, expected, atol=1e-4)
 
 
-def test_a_constraint_is_named_by_the_bone_that_it_moves(made, refused, blank):
+def test_constrained_bone_is_named(made, refused, blank):
     target = blank.data.objects.new("target", None)
     blank.context.collection.objects.link(target)
     target.location = (0.6, 2.4, 1.4)
@@ -73,17 +73,17 @@ def test_a_constraint_is_named_by_the_bone_that_it_moves(made, refused, blank):
 
 
 @pytest.mark.parametrize("bone", ["rightShoulder", "leftUpperLeg"])
-def test_a_moved_joint_is_named(bone, made, refused):
+def test_moved_joint_is_named(bone, made, refused):
     made.armature.pose.bones[bone].location = (0.0, 0.2, 0.0)
     refused(f"{bone} of wall tracked .* its rotations place it")
 
 
-def test_a_scaled_bone_is_noticed(made, refused):
+def test_scaled_bone_is_refused(made, refused):
     made.armature.pose.bones["chest"].scale = (1.3, 1.3, 1.3)
     refused("chest of wall tracked .* its rotations place it")
 
 
-def test_a_bone_between_is_noticed_where_it_is_turned(made, edit, refused, read):
+def test_rotated_extra_bone_is_refused(made, edit, refused, read):
     def put_between(bones):
         new = bones.new("twist")
         new.head, new.tail = bones["rightShoulder"].head, bones["rightShoulder"].tail
@@ -95,14 +95,14 @@ def test_a_bone_between_is_noticed_where_it_is_turned(made, edit, refused, read)
     refused(f"{ARM} of wall tracked .* its rotations place it")
 
 
-def test_bones_that_do_not_inherit_are_noticed(made, refused):
+def test_bones_without_inherited_rotation_are_refused(made, refused):
     bones = made.armature.pose.bones
-    bones["rightShoulder"].rotation_quaternion = TURN
+    bones["rightShoulder"].rotation_quaternion = ROTATION
     made.armature.data.bones[ARM].use_inherit_rotation = False
     refused(f"{ARM} of wall tracked .* its rotations place it")
 
 
-def test_a_copy_of_a_bone_does_not_take_its_place(made, edit, read, read_take, blank):
+def test_copy_of_a_bone_does_not_replace_it(made, edit, read, read_take, blank):
     before = read().pose.rotations
 
     def double(bones):
@@ -115,6 +115,6 @@ def test_a_copy_of_a_bone_does_not_take_its_place(made, edit, read, read_take, b
     assert read_take(made).bones["hips"] == "hips"
 
 
-def test_an_armature_that_shows_its_rest_pose_is_named(made, refused):
+def test_armature_in_rest_position_is_named(made, refused):
     made.armature.data.pose_position = "REST"
     refused("wall tracked shows its rest pose")

@@ -34,12 +34,12 @@ def strip(made, load):
     return strip
 
 
-def test_a_result_on_an_nla_track_may_be_tracked_from(strip, why_grey):
+def test_result_on_an_nla_track_can_be_retracked(strip, why_grey):
     assert why_grey() == ""
 
 
 @pytest.mark.parametrize("change", ["moved", "scaled", "reversed", "by a curve"])
-def test_a_strip_that_plays_at_other_frames_is_refused(change, strip, made, why_grey, load):
+def test_shifted_strip_is_refused(change, strip, made, why_grey, load):
     if change == "moved":
         strip.frame_start, strip.frame_end = 6.0, 21.2
     elif change == "scaled":
@@ -80,16 +80,16 @@ def refused(made, read_take, load):
     return refused
 
 
-def test_bones_whose_rotation_has_no_keys_are_named(made, refused):
+def test_bones_without_rotation_keys_are_named(made, refused):
     for bone in (ARM, "hips"):
         made.armature.pose.bones[bone].rotation_mode = "XYZ"
     refused(f"hips, {ARM} of wall tracked")
 
 
-@pytest.mark.parametrize("lost", ["muted", "cleared"])
-def test_muted_and_empty_channels_are_no_keys(lost, curves, refused):
+@pytest.mark.parametrize("fault", ["muted", "cleared"])
+def test_muted_and_empty_channels_are_no_keys(fault, curves, refused):
     curve = curves(ARM, "rotation_quaternion")[2]
-    if lost == "muted":
+    if fault == "muted":
         curve.mute = True
     else:
         curve.keyframe_points.clear()
@@ -102,7 +102,7 @@ def test_hips_without_location_keys_are_named(made, curves, refused, load):
     refused("hips of wall tracked")
 
 
-def test_keys_of_other_things_do_not_make_a_take_longer(made, read_take, blank):
+def test_keys_of_other_channels_do_not_extend_the_take(made, read_take, blank):
     made.armature["mood"] = 1.0
     for frame in (-40, 300):
         made.armature.keyframe_insert('["mood"]', frame=frame)
@@ -115,7 +115,7 @@ def test_keys_of_other_things_do_not_make_a_take_longer(made, read_take, blank):
     assert take.frames == pytest.approx(1.0 + 0.8 * np.arange(20)) and take.first == 0
 
 
-def test_a_take_whose_hips_were_moved_away_in_time_is_refused(curves, refused):
+def test_take_with_shifted_hip_keys_is_refused(curves, refused):
     for name in ("rotation_quaternion", "location"):
         for curve in curves("hips", name):
             for key in curve.keyframe_points:

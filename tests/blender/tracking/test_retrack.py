@@ -27,14 +27,14 @@ def tracked(walk):
 
 
 def hands(blank, armature, frames=range(1, 17)):
-    places = []
+    positions = []
     for frame in frames:
         blank.context.scene.frame_set(frame)
-        places.append(armature.matrix_world @ armature.pose.bones["rightHand"].head)
-    return np.array(places)
+        positions.append(armature.matrix_world @ armature.pose.bones["rightHand"].head)
+    return np.array(positions)
 
 
-def turned_away(blank, armature, frames):
+def rotate_away(blank, armature, frames):
     """Key the arm wrongly in these frames."""
     bone = armature.pose.bones[ARM]
     for frame in frames:
@@ -51,10 +51,10 @@ def keys(action, load, slot):
     }
 
 
-def test_a_pose_that_was_not_even_keyed_mends_the_frames_around_it(tracked, blank, load):
+def test_unkeyed_pose_corrects_the_frames_around_it(tracked, blank, load):
     right = hands(blank, tracked)
     wrong_frames = range(4, 13)
-    turned_away(blank, tracked, wrong_frames)
+    rotate_away(blank, tracked, wrong_frames)
     wrong = hands(blank, tracked)
     raw, slot = tracked.animation_data.action, tracked.animation_data.action_slot
     before = keys(raw, load, slot)
@@ -68,8 +68,8 @@ def test_a_pose_that_was_not_even_keyed_mends_the_frames_around_it(tracked, blan
     action = tracked.animation_data.action
     assert action is not raw and action.name == raw.name + ".retracked"
     assert keys(raw, load, slot) == before
-    mended = hands(blank, tracked)
-    off = np.linalg.norm(mended - right, axis=-1)
+    corrected = hands(blank, tracked)
+    off = np.linalg.norm(corrected - right, axis=-1)
     assert np.linalg.norm(wrong - right, axis=-1)[[4, 6, 9]].min() > 0.2
     assert off[7] < 0.01
     assert off[3:12].mean() < 0.05
@@ -96,9 +96,7 @@ def test_frames_beyond_its_reach_keep_their_keys(tracked, blank, load):
     assert (entry["first_picture"], entry["last_picture"]) == (4, 10)
 
 
-def test_it_works_after_moving_scaling_and_renaming_and_again_on_its_result(
-    tracked, blank, load
-):
+def test_retracking_works_after_transforms_renaming_and_retracking(tracked, blank, load):
     from mathutils import Matrix
 
     tracked.matrix_world = Matrix.Translation((1.0, 2.0, 0.0)) @ Matrix.Scale(2.0, 4)
@@ -131,7 +129,7 @@ def test_confidence_and_residual_are_updated_and_issues_are_listed(tracked, blan
     assert blank.context.scene.mocap_assist.checked == action.name
 
 
-def test_why_it_is_grey_or_refuses(tracked, points, blank):
+def test_retrack_gives_a_reason_when_refused(tracked, points, blank):
     blank.context.scene.frame_set(90)
     with pytest.raises(RuntimeError, match="Frame 90 is not in the recording"):
         blank.ops.mocap_assist.retrack()
@@ -150,7 +148,7 @@ def press(load, press_button, tracked):
     )
 
 
-def test_it_can_be_watched_and_esc_leaves_the_hand_pose_as_it_was(
+def test_retracking_has_a_preview_and_esc_restores_the_pose(
     tracked, press, window, blank, load
 ):
     action = tracked.animation_data.action

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-QUICK = {"backward": False, "refine": False, "plant_feet": False}
+FAST_SETTINGS = {"backward": False, "refine": False, "plant_feet": False}
 JOINTS = {
     "leftUpperArm": "LeftArm", "rightLowerArm": "RightForeArm", "head": "Head",
     "leftLowerLeg": "LeftLeg", "rightFoot": "RightFoot", "leftHand": "LeftHand",
@@ -16,27 +16,27 @@ def heads(armature, names):
     return np.array([armature.matrix_world @ armature.pose.bones[name].head for name in names])
 
 
-def test_the_armature_stands_where_the_points_are(points, truth, blank):
-    place = np.array(points.matrix_world)
-    assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
+def test_armature_is_at_the_points(points, truth, blank):
+    matrix = np.array(points.matrix_world)
+    assert blank.ops.mocap_assist.track_depth(**FAST_SETTINGS) == {"FINISHED"}
     armature = blank.context.object
     assert armature.type == "ARMATURE" and armature.name == "walk tracked"
 
     names = [str(name) for name in truth["joint_names"]]
     for frame in (1, 6):
         blank.context.scene.frame_set(frame)
-        seen = truth["joints"][frame - 1][[names.index(name) for name in JOINTS.values()]]
-        world = seen @ place[:3, :3].T + place[:3, 3]
+        observed = truth["joints"][frame - 1][[names.index(name) for name in JOINTS.values()]]
+        world = observed @ matrix[:3, :3].T + matrix[:3, 3]
         off = np.linalg.norm(heads(armature, JOINTS) - world, axis=-1)
         assert off.mean() < 0.08
 
 
-def test_it_follows_points_that_were_moved_and_scaled(points, truth, blank, load):
+def test_armature_follows_moved_and_scaled_points(points, truth, blank, load):
     from mathutils import Matrix
 
     points.matrix_world = Matrix.Translation((3.0, 1.0, 0.5)) @ Matrix.Scale(2.0, 4)
     blank.context.view_layer.update()
-    assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
+    assert blank.ops.mocap_assist.track_depth(**FAST_SETTINGS) == {"FINISHED"}
 
     blank.context.scene.frame_set(1)
     head = heads(blank.context.object, ["head"])[0]
@@ -46,12 +46,12 @@ def test_it_follows_points_that_were_moved_and_scaled(points, truth, blank, load
 
 
 def test_residual_confidence_and_origin_are_stored_and_clean_accepts_them(points, blank, load):
-    assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
+    assert blank.ops.mocap_assist.track_depth(**FAST_SETTINGS) == {"FINISHED"}
     armature = blank.context.object
     action = armature.animation_data.action
-    told = json.loads(action["mocap_assist_captured"])
-    assert told["operation"] == "track_depth" and told["recording"].endswith("walk.npz")
-    assert 0.0 < told["mean_residual_cm"] < 5.0
+    report = json.loads(action["mocap_assist_captured"])
+    assert report["operation"] == "track_depth" and report["recording"].endswith("walk.npz")
+    assert 0.0 < report["mean_residual_cm"] < 5.0
     compat = load("mocap_assist.blender.compat")
     bag = compat.channelbag(action, armature.animation_data.action_slot)
     residual = bag.fcurves.find('["mocap_residual"]')
@@ -67,20 +67,20 @@ def test_residual_confidence_and_origin_are_stored_and_clean_accepts_them(points
     assert armature.animation_data.action is not action
 
 
-def test_without_points_the_button_says_why(blank):
+def test_button_gives_a_reason_without_points(blank):
     blank.ops.object.armature_add()
     assert not blank.ops.mocap_assist.track_depth.poll()
     with pytest.raises(RuntimeError, match="Select the points of an imported depth recording"):
         blank.ops.mocap_assist.track_depth()
 
 
-def test_a_recording_that_is_gone_is_named_and_nothing_is_added(points, blank, load, tmp_path):
+def test_missing_recording_is_named_and_nothing_is_added(points, blank, load, tmp_path):
     (tmp_path / "walk.npz").unlink()
     preview = load("mocap_assist.depth.depth_preview")
     preview._loaded()
     before = set(blank.data.objects.keys())
     with pytest.raises(RuntimeError, match=r"walk\.npz"):
-        blank.ops.mocap_assist.track_depth(**QUICK)
+        blank.ops.mocap_assist.track_depth(**FAST_SETTINGS)
     assert set(blank.data.objects.keys()) == before
 
 
@@ -89,5 +89,5 @@ def test_track_reports_that_no_actor_was_detected(blank, tmp_path, truth):
     np.savez_compressed(path, **{**truth, "depth": 0 * truth["depth"]})
     blank.ops.mocap_assist.import_recording(filepath=str(path))
     with pytest.raises(RuntimeError, match="No person is visible"):
-        blank.ops.mocap_assist.track_depth(**QUICK)
+        blank.ops.mocap_assist.track_depth(**FAST_SETTINGS)
     assert len(blank.data.armatures) == 0

@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 
-def test_next_goes_on_from_an_issue_that_was_clicked(blank, actor):
+def test_next_continues_from_a_clicked_issue(blank, actor):
     found = blank.context.scene.mocap_assist
     for frame in (10.0, 20.0, 30.0):
         issue = found.issues.add()
@@ -16,15 +16,15 @@ def test_next_goes_on_from_an_issue_that_was_clicked(blank, actor):
     assert (found.active_issue, blank.context.scene.frame_current) == (2, 30)
 
 
-def test_nothing_that_a_button_was_given_is_filled_in_at_the_next_press(blank):
-    """Blender fills it in, unless an option says not to: it then looks like a caller's wish."""
+def test_button_properties_are_not_reused_at_the_next_press(blank):
+    """Without SKIP_SAVE, Blender would fill in the last value as if the caller had given it."""
     for name in dir(blank.ops.mocap_assist):
         for each in getattr(blank.ops.mocap_assist, name).get_rna_type().properties:
             if each.identifier != "rna_type":
                 assert each.is_skip_save, f"{name}: {each.identifier}"
 
 
-def test_the_redo_panel_offers_only_what_needs_no_new_solve(blank, draw):
+def test_redo_panel_has_only_properties_without_a_new_solve(blank, draw):
     button = blank.types.MOCAP_ASSIST_OT_denoise
     properties = blank.ops.mocap_assist.denoise.get_rna_type()
     shown = set(draw(SimpleNamespace(draw=button.draw, bl_rna=properties)))

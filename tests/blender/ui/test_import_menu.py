@@ -10,7 +10,7 @@ EXTENSIONS = {
 }  # fmt: skip
 
 
-def test_dropped_files_of_every_format_are_taken(blank):
+def test_files_of_every_format_can_be_dropped(blank):
     handler = blank.types.MOCAP_FH_recording
 
     assert set(handler.bl_file_extensions.split(";")) == EXTENSIONS
@@ -22,21 +22,21 @@ def test_dropped_files_of_every_format_are_taken(blank):
 
 
 @pytest.mark.parametrize(("area", "taken"), [("VIEW_3D", True), ("TEXT_EDITOR", False)])
-def test_files_are_taken_where_objects_are(area, taken, blank):
+def test_files_can_be_dropped_in_object_editors(area, taken, blank):
     screen = blank.context.window.screen
-    place = max(screen.areas, key=lambda each: each.width)
-    before, place.type = place.type, area
-    region = next(each for each in place.regions if each.type == "WINDOW")
+    editor = max(screen.areas, key=lambda each: each.width)
+    before, editor.type = editor.type, area
+    region = next(each for each in editor.regions if each.type == "WINDOW")
     try:
-        with blank.context.temp_override(area=place, region=region):
+        with blank.context.temp_override(area=editor, region=region):
             polled = blank.types.MOCAP_FH_recording.poll_drop(blank.context)
     finally:
-        place.type = before
+        editor.type = before
 
     assert bool(polled) == taken
 
 
-def test_the_file_menu_has_the_entry(blank, draw):
+def test_file_menu_has_the_import_entry(blank, draw):
     menu = blank.types.TOPBAR_MT_file_import
 
     entries = [each for each in menu._dyn_ui_initialize() if "mocap_assist" in each.__module__]
@@ -44,7 +44,7 @@ def test_the_file_menu_has_the_entry(blank, draw):
     assert len(entries) == 1
 
 
-def test_clean_offers_markers_nothing_that_only_joints_have(blank, draw, load, rng, tmp_path):
+def test_clean_panel_hides_joint_settings_for_markers(blank, draw, load, rng, tmp_path):
     joints = {"joint_limits", "plant_feet", "contact_height"}
     assert joints - {"contact_height"} <= set(draw("MOCAP_PT_clean"))
     tracks = load("solvers.motion").Tracks(("a", "b"), rng.normal(size=(30, 2, 3)), 24.0)
@@ -57,7 +57,7 @@ def test_clean_offers_markers_nothing_that_only_joints_have(blank, draw, load, r
     assert {"strength", "frame_range", "mocap_assist.denoise"} <= shown
 
 
-def test_the_panel_tells_where_the_selected_take_came_from(blank, draw, load, tmp_path):
+def test_panel_shows_the_source_of_the_selected_take(blank, draw, load, tmp_path):
     samples = load("solvers.samples")
     walk = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=25.0))
     load("solvers.recordings").write_bvh(walk, tmp_path / "stroll.bvh")

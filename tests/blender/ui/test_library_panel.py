@@ -26,7 +26,7 @@ def matched(load, blank):
     return search
 
 
-def test_without_matches_it_offers_index_and_find(draw, blank):
+def test_panel_shows_index_and_find_without_matches(draw, blank):
     blank.context.window_manager.mocap_assist_matches.rows.clear()
 
     shown = draw("MOCAP_PT_library")
@@ -36,7 +36,7 @@ def test_without_matches_it_offers_index_and_find(draw, blank):
     assert "Select an animated armature" in " ".join(shown)
 
 
-def test_every_setting_of_the_search_is_there_once(draw, blank, actor):
+def test_panel_shows_every_search_setting_once(draw, blank, actor):
     find = blank.context.scene.mocap_assist.find
 
     shown = draw("MOCAP_PT_library")
@@ -45,7 +45,7 @@ def test_every_setting_of_the_search_is_there_once(draw, blank, actor):
     assert sorted(names - {"n_aligned"}) == sorted(name for name in shown if name in names)
 
 
-def test_matches_with_their_pictures_and_what_can_be_done(draw, matched, blank):
+def test_panel_shows_matches_with_previews_and_buttons(draw, matched, blank):
     shown = draw("MOCAP_PT_library")
 
     assert shown.count("icon") == 3
@@ -55,7 +55,7 @@ def test_matches_with_their_pictures_and_what_can_be_done(draw, matched, blank):
     assert "frames 0–9 of 20" in " ".join(shown) and "calm" in " ".join(shown)
 
 
-def test_what_was_forgotten_is_asked_for_again(draw, matched, blank):
+def test_discarded_search_asks_for_a_new_one(draw, matched, blank):
     blank.context.window_manager.mocap_assist_matches.search = -1
 
     assert "Press Find Similar again." in " ".join(draw("MOCAP_PT_library"))

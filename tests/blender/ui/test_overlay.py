@@ -20,9 +20,7 @@ def source_of(armature):
 
 
 @pytest.mark.parametrize("mode", ["QUATERNION", "XYZ", "ZYX", "AXIS_ANGLE"])
-def test_heads_and_tails_are_those_of_blenders_own_pose(
-    blank, overlay, make_armature, animate, mode
-):
+def test_heads_and_tails_equal_blenders_pose(blank, overlay, make_armature, animate, mode):
     armature = make_armature(mode=mode)
     animate(armature, locations=True)
 
@@ -37,7 +35,7 @@ def test_heads_and_tails_are_those_of_blenders_own_pose(
             assert_allclose(figures.tails[frame - 1, index], bone.tail, atol=2e-6)
 
 
-def test_the_lines_are_the_bones_and_what_joins_those_that_hang_free(overlay, actor):
+def test_lines_are_bones_and_links_of_unconnected_bones(overlay, actor):
     figures = overlay.figures_at(actor, source_of(actor), 17)
 
     lines = figures.segments(17)
@@ -47,14 +45,14 @@ def test_the_lines_are_the_bones_and_what_joins_those_that_hang_free(overlay, ac
     assert_allclose(lines[0], [figures.heads[16, 0], figures.tails[16, 0]])
 
 
-def test_before_and_after_the_action_its_ends_are_shown(overlay, actor):
+def test_overlay_holds_the_ends_of_the_action(overlay, actor):
     figures = overlay.figures_at(actor, source_of(actor), 1000)
 
     assert_allclose(figures.segments(-5), figures.segments(1))
     assert_allclose(figures.segments(1000), figures.segments(60))
 
 
-def test_a_bone_that_is_not_recorded_and_all_below_it_are_left_out(overlay, actor):
+def test_missing_bone_and_its_descendants_are_not_drawn(overlay, actor):
     action, slot = source_of(actor)
     for curve in action.layers[0].strips[0].channelbag(slot).fcurves:
         if '"LeftArm"' in curve.data_path:
@@ -65,9 +63,9 @@ def test_a_bone_that_is_not_recorded_and_all_below_it_are_left_out(overlay, acto
 
     figures = overlay.figures_at(actor, (action, slot), 30)
 
-    whole, gapped = figures.segments(10), figures.segments(30)
-    # The tail of the arm, the whole forearm; the arm's head and its join are still known.
-    assert len(whole) - len(gapped) == 2
+    complete, gapped = figures.segments(10), figures.segments(30)
+    # Missing: the tail of the arm and the forearm. Present: the head of the arm and its link.
+    assert len(complete) - len(gapped) == 2
 
 
 def test_a_long_action_is_read_in_blocks(overlay, actor, monkeypatch):
@@ -79,8 +77,8 @@ def test_a_long_action_is_read_in_blocks(overlay, actor, monkeypatch):
     assert [len(block.heads) for block in blocks] == [25, 25, 10]
 
 
-def test_keys_are_read_once_however_many_blocks_are_drawn(overlay, actor, monkeypatch):
-    whole = overlay.read_figures(actor, source_of(actor), range(1, 61))
+def test_keys_are_read_once_for_any_number_of_blocks(overlay, actor, monkeypatch):
+    complete = overlay.read_figures(actor, source_of(actor), range(1, 61))
     read, read_keys = [], overlay.read_keys
     monkeypatch.setattr(overlay, "BLOCK_POSES", 10 * len(actor.data.bones))
     monkeypatch.setattr(
@@ -89,13 +87,13 @@ def test_keys_are_read_once_however_many_blocks_are_drawn(overlay, actor, monkey
 
     for frame in (5, 15, 25, 60, 5):
         block = overlay.figures_at(actor, source_of(actor), frame)
-        assert_allclose(block.segments(frame), whole.segments(frame), atol=1e-6)
+        assert_allclose(block.segments(frame), complete.segments(frame), atol=1e-6)
 
     assert read == [source_of(actor)]
 
 
 @pytest.mark.parametrize("length", [1, 7, 25])
-def test_a_gap_is_one_in_blocks_of_any_length(overlay, actor, monkeypatch, length):
+def test_gap_stays_a_gap_for_any_block_length(overlay, actor, monkeypatch, length):
     action, slot = source_of(actor)
     for curve in action.layers[0].strips[0].channelbag(slot).fcurves:
         if '"LeftArm"' in curve.data_path:
@@ -103,16 +101,16 @@ def test_a_gap_is_one_in_blocks_of_any_length(overlay, actor, monkeypatch, lengt
                 if 10 <= key.co.x < 50:
                     curve.keyframe_points.remove(key)
             curve.update()
-    whole = overlay.read_figures(actor, (action, slot), range(1, 61))
+    complete = overlay.read_figures(actor, (action, slot), range(1, 61))
     monkeypatch.setattr(overlay, "BLOCK_POSES", length * len(actor.data.bones))
 
     for frame in (1, 9, 10, 30, 49, 50, 60):
         block = overlay.figures_at(actor, (action, slot), frame)
-        assert_allclose(block.segments(frame), whole.segments(frame), atol=1e-6)
-    assert len(whole.segments(30)) < len(whole.segments(9))
+        assert_allclose(block.segments(frame), complete.segments(frame), atol=1e-6)
+    assert len(complete.segments(30)) < len(complete.segments(9))
 
 
-def test_raw_and_clean_are_found_from_either(blank, load, overlay, actor):
+def test_raw_and_clean_are_found_from_each_other(blank, load, overlay, actor):
     raw = actor.animation_data.action
     assert overlay.raw_and_clean(actor) == ((raw, raw.slots[0]), None)
     assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
@@ -124,7 +122,7 @@ def test_raw_and_clean_are_found_from_either(blank, load, overlay, actor):
     assert overlay.raw_and_clean(actor) == pair
 
 
-def test_what_is_kept_holds_nothing_of_blenders(overlay, actor):
+def test_cache_has_no_blender_data(overlay, actor):
     overlay.figures_at(actor, source_of(actor), 17)
 
     ((key, figures),) = overlay._cache.items()
@@ -135,7 +133,7 @@ def test_what_is_kept_holds_nothing_of_blenders(overlay, actor):
     assert all(type(name) is str for name in figures.bones)
 
 
-def test_another_file_makes_it_forget(blank, overlay, actor):
+def test_loading_another_file_clears_the_cache(blank, overlay, actor):
     overlay.figures_at(actor, source_of(actor), 17)
 
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
@@ -143,7 +141,7 @@ def test_another_file_makes_it_forget(blank, overlay, actor):
     assert not overlay._cache
 
 
-def test_edited_keys_are_read_anew_after_a_pause(blank, load, overlay, actor):
+def test_edited_keys_are_read_again_after_a_pause(blank, load, overlay, actor):
     refresh = load("mocap_assist.drawing.overlay_drawing").refresh
     old = overlay.figures_at(actor, source_of(actor), 17)
     bone = actor.pose.bones["LeftArm"]
@@ -158,7 +156,7 @@ def test_edited_keys_are_read_anew_after_a_pause(blank, load, overlay, actor):
     assert np.abs(new.tails[16] - old.tails[16]).max() > 0.01
 
 
-def test_playing_on_keeps_what_was_read(blank, overlay, actor):
+def test_playback_does_not_read_again(blank, overlay, actor):
     overlay.figures_at(actor, source_of(actor), 1)
 
     for frame in FRAMES:
@@ -167,7 +165,7 @@ def test_playing_on_keeps_what_was_read(blank, overlay, actor):
     assert len(overlay._cache) == 1
 
 
-def test_only_so_much_is_kept(overlay, actor, animate, monkeypatch):
+def test_cache_size_is_limited(overlay, actor, animate, monkeypatch):
     monkeypatch.setattr(overlay, "MAX_CACHED", 5)
     for _ in range(overlay.MAX_CACHED + 3):
         animate(actor)

@@ -11,7 +11,7 @@ PANELS = ("import", "clean", "check", "compare", "feet", "retarget")
 
 @pytest.mark.parametrize("suffix", EDITORS)
 @pytest.mark.parametrize("panel", PANELS)
-def test_every_panel_is_on_the_tab_mocap_of_every_editor(blank, panel, suffix):
+def test_every_panel_is_on_the_mocap_tab(blank, panel, suffix):
     kind = getattr(blank.types, f"MOCAP_PT_{panel}{suffix}")
 
     assert kind.bl_space_type == EDITORS[suffix]
@@ -19,14 +19,14 @@ def test_every_panel_is_on_the_tab_mocap_of_every_editor(blank, panel, suffix):
     assert kind.bl_category == "Mocap"
 
 
-def test_without_an_armature_clean_says_what_to_select(draw):
+def test_clean_panel_says_what_to_select_without_an_armature(draw):
     shown = draw("MOCAP_PT_clean")
 
     assert "mocap_assist.denoise" in shown
     assert "Select an animated armature" in " ".join(shown)
 
 
-def test_clean_offers_every_setting_of_its_button_once(blank, draw, actor):
+def test_clean_panel_shows_every_setting_once(blank, draw, actor):
     clean = blank.context.scene.mocap_assist.clean
     hidden = {"examples", "learned_file", "unswap"}  # the last one is for markers
 
@@ -38,7 +38,7 @@ def test_clean_offers_every_setting_of_its_button_once(blank, draw, actor):
     assert "Select an animated armature" not in " ".join(shown)
 
 
-def test_where_patterns_come_from_is_asked_for_only_where_it_matters(blank, draw):
+def test_pattern_source_is_shown_only_when_used(blank, draw):
     clean = blank.context.scene.mocap_assist.clean
     found = {}
     for prior in ("TAKE", "EXAMPLES", "LEARNED"):
@@ -49,7 +49,7 @@ def test_where_patterns_come_from_is_asked_for_only_where_it_matters(blank, draw
     assert [prior for prior in found if "learned_file" in found[prior]] == ["LEARNED"]
 
 
-def test_examples_are_added_from_a_menu_and_taken_out_again(blank, draw, actor):
+def test_examples_are_added_from_a_menu_and_removed(blank, draw, actor):
     clean = blank.context.scene.mocap_assist.clean
     clean.prior = "EXAMPLES"
     run, jump = (blank.data.actions.new(name) for name in ("run", "jump"))
@@ -66,7 +66,7 @@ def test_examples_are_added_from_a_menu_and_taken_out_again(blank, draw, actor):
     assert clean.examples == "jump"
 
 
-def test_recordings_on_disk_are_examples_too(blank, draw, tmp_path):
+def test_recordings_on_disk_can_be_examples(blank, draw, tmp_path):
     clean = blank.context.scene.mocap_assist.clean
     clean.prior = "EXAMPLES"
 
@@ -86,7 +86,7 @@ PANELS = {
 
 
 @pytest.mark.parametrize("owner", PANELS)
-def test_a_running_solve_shows_how_far_it_is_in_its_own_panel(blank, draw, actor, owner):
+def test_running_solve_shows_its_progress_in_its_panel(blank, draw, actor, owner):
     if owner == "solve":
         blank.ops.object.empty_add()  # the panel is there for markers
         holder = blank.context.object
@@ -106,7 +106,7 @@ def test_a_running_solve_shows_how_far_it_is_in_its_own_panel(blank, draw, actor
     assert "Esc cancels" in shown[PANELS[owner]]
 
 
-def test_a_checked_take_lists_its_issues_with_buttons(blank, draw, actor):
+def test_checked_take_lists_its_issues_with_buttons(blank, draw, actor):
     assert "mocap_assist.jump_to_issue" not in draw("MOCAP_PT_check")
     found = blank.context.scene.mocap_assist
     issue = found.issues.add()
@@ -119,7 +119,7 @@ def test_a_checked_take_lists_its_issues_with_buttons(blank, draw, actor):
     assert "LeftLeg jumps at frame 12." in " ".join(shown)
 
 
-def test_issues_of_another_action_are_said_to_be_so(blank, draw, actor):
+def test_issues_of_another_action_are_labeled(blank, draw, actor):
     action = actor.animation_data.action
     for curve in action.layers[0].strips[0].channelbag(action.slots[0]).fcurves:
         curve.keyframe_points[30].co.y += 1.0
@@ -133,7 +133,7 @@ def test_issues_of_another_action_are_said_to_be_so(blank, draw, actor):
     assert stale in " ".join(draw("MOCAP_PT_check"))
 
 
-def test_a_result_shows_its_figures_its_source_and_its_contacts(blank, draw, actor):
+def test_result_shows_figures_source_and_contacts(blank, draw, actor):
     assert draw("MOCAP_PT_feet") == ["mocap_assist.plant_feet"]
     assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
 
@@ -142,7 +142,7 @@ def test_a_result_shows_its_figures_its_source_and_its_contacts(blank, draw, act
     assert {"mocap_contact_left", "mocap_contact_right"} <= set(draw("MOCAP_PT_feet"))
 
 
-def test_the_menu_holds_the_buttons(draw):
+def test_menu_has_the_buttons(draw):
     shown = draw("MOCAP_MT_clean")
 
     assert shown[1:5] == [
@@ -152,7 +152,7 @@ def test_the_menu_holds_the_buttons(draw):
 
 
 @pytest.mark.parametrize("group", ["clean", "check"])
-def test_the_sidebar_starts_from_the_defaults_of_the_solvers(blank, load, group):
+def test_sidebar_has_the_defaults_of_the_solvers(blank, load, group):
     shown = getattr(blank.context.scene.mocap_assist, group)
     bundle = {
         "clean": load("mocap_assist.clean.choices").CleanSettings,
@@ -175,7 +175,7 @@ def test_figures_compare_the_raw_take_with_the_last_result(load):
     assert rows == [("Spikes", "7", "0"), ("Missing (%)", "1.3", "0.0")]
 
 
-def test_a_figure_that_is_not_known_is_a_dash(load):
+def test_unknown_figure_is_a_dash(load):
     rows = load("mocap_assist.panels.figures").figure_rows([
         {"before": {"foot_slide_cm_per_s": None}, "after": {"foot_slide_cm_per_s": 1.25}}
     ])
@@ -183,14 +183,14 @@ def test_a_figure_that_is_not_known_is_a_dash(load):
     assert rows == [("Foot Slide (cm/s)", "–", "1.2")]
 
 
-def test_frames_of_an_issue_are_read_as_one_says_them(load):
+def test_frame_ranges_are_formatted_as_text(load):
     frames_text = load("mocap_assist.panels.figures").frames_text
 
     assert frames_text(12.0, 12.0) == "12"
     assert frames_text(12.0, 15.5) == "12 – 15.5"
 
 
-def test_a_sentence_is_broken_to_fit_the_sidebar(load):
+def test_long_sentence_is_wrapped_to_the_sidebar(load):
     lines = load("mocap_assist.panels.drawing").column_lines
     sentence = "Select an animated armature."
 
@@ -198,7 +198,7 @@ def test_a_sentence_is_broken_to_fit_the_sidebar(load):
     assert " ".join(lines(sentence, 0)) == sentence
 
 
-def test_the_panel_of_reconstruct_shows_its_settings_and_the_colours(blank, draw, actor):
+def test_reconstruct_panel_shows_settings_and_colors(blank, draw, actor):
     shown = draw("MOCAP_PT_reconstruct")
 
     assert {"postures", "plant_feet", "mocap_assist.reconstruct", "mocap_assist_heat"} <= set(
@@ -206,7 +206,7 @@ def test_the_panel_of_reconstruct_shows_its_settings_and_the_colours(blank, draw
     )
 
 
-def test_clips_of_postures_have_a_list_of_their_own(blank, draw, actor):
+def test_posture_clips_have_a_separate_list(blank, draw, actor):
     settings = blank.context.scene.mocap_assist
     settings.reconstruct.postures = "EXAMPLES"
     assert "MOCAP_MT_posture_examples" in draw("MOCAP_PT_reconstruct")

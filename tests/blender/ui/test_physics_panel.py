@@ -1,7 +1,7 @@
 """The panel of Physics."""
 
 
-def test_the_panel_offers_every_setting_and_the_button(draw):
+def test_physics_panel_shows_every_setting_and_the_button(draw):
     shown = draw("MOCAP_PT_physics")
 
     assert {"strength", "ground", "ground_height", "response", "smoothing", "friction"} <= set(
@@ -10,5 +10,5 @@ def test_the_panel_offers_every_setting_and_the_button(draw):
     assert "mocap_assist.simulate" in shown
 
 
-def test_it_says_why_the_button_is_grey(draw):
+def test_physics_panel_gives_a_reason_when_disabled(draw):
     assert "Select an animated armature." in " ".join(draw("MOCAP_PT_physics"))

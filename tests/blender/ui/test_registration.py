@@ -36,7 +36,7 @@ def traces():
     return handlers + entries + manuals + classes + properties
 
 
-def test_switching_off_and_on_twice_leaves_nothing_twice_and_nothing_behind(extension, blank):
+def test_disabling_and_enabling_twice_leaves_no_duplicates_or_remains(extension, blank):
     on = traces()
     for _ in range(2):
         extension.unregister()
@@ -58,7 +58,7 @@ def preferences(load):
     bpy.ops.mocap_assist.reset_preferences()
 
 
-def test_the_panels_move_to_the_tab_that_the_preferences_name(blank, preferences):
+def test_panels_move_to_the_tab_in_the_preferences(blank, preferences):
     preferences.tab = "Cleaning"
     assert bpy.types.MOCAP_PT_clean_graph.bl_category == "Cleaning"
 
@@ -67,7 +67,7 @@ def test_the_panels_move_to_the_tab_that_the_preferences_name(blank, preferences
     assert bpy.types.MOCAP_PT_clean_graph.bl_category == "Mocap"
 
 
-def test_scenes_without_a_choice_put_results_where_the_preferences_say(blank, preferences):
+def test_new_scene_takes_the_result_target_from_the_preferences(blank, preferences):
     preferences.result_as = "NLA_TRACK"
 
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
@@ -75,7 +75,7 @@ def test_scenes_without_a_choice_put_results_where_the_preferences_say(blank, pr
     assert bpy.context.scene.mocap_assist.clean.result_as == "NLA_TRACK"
 
 
-def test_so_does_a_scene_that_is_added(blank, preferences):
+def test_added_scene_takes_the_result_target_from_the_preferences(blank, preferences):
     preferences.result_as = "NLA_TRACK"
 
     bpy.ops.scene.new(type="EMPTY")
@@ -86,7 +86,7 @@ def test_so_does_a_scene_that_is_added(blank, preferences):
     assert bpy.context.scene.mocap_assist.clean.result_as == "NLA_TRACK"
 
 
-def test_so_does_the_open_scene_when_the_extension_is_switched_on(
+def test_open_scene_takes_the_result_target_when_the_extension_is_enabled(
     blank, extension, load, request
 ):
     extension.unregister()
@@ -103,7 +103,7 @@ def test_so_does_the_open_scene_when_the_extension_is_switched_on(
     assert bpy.context.scene.mocap_assist.clean.result_as == "NLA_TRACK"
 
 
-def test_a_scene_that_has_its_choice_keeps_it(blank, preferences, load):
+def test_scene_keeps_its_own_result_target(blank, preferences, load):
     preferences.result_as = "NLA_TRACK"
     bpy.context.scene.mocap_assist.clean.result_as = "ACTION"
 
@@ -112,9 +112,7 @@ def test_a_scene_that_has_its_choice_keeps_it(blank, preferences, load):
     assert bpy.context.scene.mocap_assist.clean.result_as == "ACTION"
 
 
-def test_switched_on_for_one_session_alone_it_does_without_preferences(
-    blank, extension, draw, load
-):
+def test_extension_works_without_preferences(blank, extension, draw, load):
     module, addons = load("mocap_assist.ui.preferences"), bpy.context.preferences.addons
     addons.remove(addons[module.EXTENSION])
     try:
@@ -129,14 +127,14 @@ def test_switched_on_for_one_session_alone_it_does_without_preferences(
         addons.new().module = module.EXTENSION
 
 
-def test_preferences_draw_each_of_them_and_a_way_back(draw, load):
+def test_preferences_show_each_setting_and_a_reset_button(draw, load):
     kind = load("mocap_assist.ui.preferences").MOCAP_AP_preferences
 
     assert draw(kind)[: len(kind.__annotations__)] == list(kind.__annotations__)
     assert "mocap_assist.reset_preferences" in draw(kind)
 
 
-def test_every_button_has_a_chapter_that_is_in_the_shipped_manual(load):
+def test_every_button_has_a_chapter_in_the_manual(load):
     manual = load("mocap_assist.ui.manual")
     address, chapters = manual.manual_map()
     page = manual.MANUAL.read_text(encoding="utf-8")
@@ -148,7 +146,7 @@ def test_every_button_has_a_chapter_that_is_in_the_shipped_manual(load):
         assert any(fnmatchcase(button, what) for what, _ in chapters), button
 
 
-def test_tooltips_are_sentences_without_a_full_stop():
+def test_tooltips_have_no_period():
     for name in dir(bpy.ops.mocap_assist):
         kind = getattr(bpy.ops.mocap_assist, name).get_rna_type()
         for described in (kind, *kind.properties):

@@ -1,7 +1,7 @@
 """What the panel Retarget shows, and when."""
 
 
-def test_every_setting_is_offered_once(blank, draw, actor):
+def test_retarget_panel_shows_every_setting_once(blank, draw, actor):
     shown = blank.context.scene.mocap_assist.retarget
     of_rigs_with_both_and_of_lists = {"limbs", "actions"}
 
@@ -14,11 +14,11 @@ def test_every_setting_is_offered_once(blank, draw, actor):
     assert {"mocap_assist.retarget", "mocap_assist.find_bones", "tolerance"} <= set(drawn)
 
 
-def test_it_says_that_a_target_is_missing(draw, actor):
+def test_retarget_panel_reports_a_missing_target(draw, actor):
     assert "Choose the target armature." in " ".join(draw("MOCAP_PT_retarget"))
 
 
-def test_bones_and_presets_are_drawn_once_they_are_found(blank, draw, actor, make_armature):
+def test_retarget_panel_shows_found_bones_and_presets(blank, draw, actor, make_armature):
     target = make_armature(name="Double")
     blank.context.view_layer.objects.active = actor
     blank.context.scene.mocap_assist.retarget.target = target.name
@@ -32,7 +32,7 @@ def test_bones_and_presets_are_drawn_once_they_are_found(blank, draw, actor, mak
     assert drawn.count("source") == 1 and drawn.count("target") == 2  # and the target itself
 
 
-def test_actions_can_be_ticked_where_they_are_listed(blank, draw, actor):
+def test_listed_actions_have_checkboxes(blank, draw, actor):
     assert "mocap_assist.tick_action" not in draw("MOCAP_PT_retarget")
 
     blank.context.scene.mocap_assist.retarget.takes = "LISTED"

@@ -1,4 +1,4 @@
-"""Translations are whole, and of what the panels really say."""
+"""Translations are complete, and of texts in the panels."""
 
 from string import Formatter
 
@@ -48,15 +48,13 @@ def names_of(blank, drawn):
             yield getattr(blank.types, idname).bl_label
 
 
-def test_every_translated_text_is_one_that_a_panel_shows(
-    blank, load, draw, actor, translations
-):
+def test_every_translated_text_is_in_a_panel(blank, load, draw, actor, translations):
     drawn = said_by(blank, draw, actor)
     shown = drawn | set(names_of(blank, drawn))
     # What the recording layout cannot see: texts given to properties, and filled-in ones.
     elsewhere = {"Motion Model", "Left Foot Contact", "Right Foot Contact", "Made from {raw}"}
     elsewhere |= {"Previous", "Next"}
-    # A figure that is not known, as for feet that never stand, is not shown.
+    # An unknown figure, as for feet that never stand, is not shown.
     elsewhere |= {label for label, *_ in load("mocap_assist.panels.figures").FIGURES}
 
     assert set(translations.TEXTS) - shown - elsewhere == set()
@@ -68,7 +66,7 @@ def test_every_text_is_translated_into_every_language(translations):
         assert all(texts), english
 
 
-def test_translations_keep_what_is_to_be_filled_in(translations):
+def test_translations_keep_placeholders(translations):
     def fields(text):
         return {name for _, name, _, _ in Formatter().parse(text) if name}
 
@@ -76,7 +74,7 @@ def test_translations_keep_what_is_to_be_filled_in(translations):
         assert all(fields(text) == fields(english) for text in texts), english
 
 
-def test_blender_is_given_labels_and_buttons(translations):
+def test_blender_translates_labels_and_buttons(translations):
     french = translations.dictionary()["fr_FR"]
 
     assert french["*", "Clean"] == french["Operator", "Clean"] == "Nettoyer"

@@ -11,9 +11,9 @@ def walker(blank, load, tmp_path):
     samples, recordings = load("solvers.samples"), load("solvers.recordings")
     blank.context.scene.render.fps = 30
     for seed in range(1, N_WALKS + 1):
-        quick = 0.85 + 0.1 * seed
+        speed = 0.85 + 0.1 * seed
         settings = samples.GaitSettings(
-            duration=1.5 / quick, frame_rate=30.0, seed=seed, cadence=100.0 * quick, speed=quick
+            duration=1.5 / speed, frame_rate=30.0, seed=seed, cadence=100.0 * speed, speed=speed
         )
         recordings.write_bvh(samples.walking_gait(settings), tmp_path / f"walk_{seed}.bvh")
         blank.ops.mocap_assist.import_recording(filepath=str(tmp_path / f"walk_{seed}.bvh"))

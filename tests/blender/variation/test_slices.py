@@ -21,22 +21,22 @@ def n_variants(blank):
     return sum(".variant" in each.name for each in blank.data.actions)
 
 
-def test_they_come_one_by_one_and_the_last_ends_it(button, window, blank):
-    seen = []
+def test_variants_arrive_one_by_one_and_the_last_ends_the_operator(button, window, blank):
+    counts = []
 
     def look():
-        seen.append(n_variants(blank))
+        counts.append(n_variants(blank))
         return False
 
     assert wait(button, window, look) == {"FINISHED"}
 
-    assert next(n for n in seen if n) == 1 and {1, 2, 3} <= set(seen)
+    assert next(n for n in counts if n) == 1 and {1, 2, 3} <= set(counts)
     assert n_variants(blank) == 4 and nothing_is_left(window)
     assert window.reports[-1] == ({"INFO"}, "4 variants of 2 actions.")
 
 
 @pytest.mark.parametrize("n_written", [0, 2])
-def test_esc_leaves_nothing_behind(button, window, blank, walker, n_written):
+def test_esc_removes_all_variants(button, window, blank, walker, n_written):
     played = walker.animation_data.action
     wait(button, window, lambda: n_variants(blank) == n_written)
 
@@ -47,7 +47,7 @@ def test_esc_leaves_nothing_behind(button, window, blank, walker, n_written):
     assert walker.animation_data.action == played
 
 
-def test_an_example_that_is_changed_or_deleted_meanwhile(button, window, blank):
+def test_example_changed_or_deleted_during_the_solve_is_reported(button, window, blank):
     wait(button, window, lambda: n_variants(blank) == 2)
     blank.data.actions.remove(blank.data.actions["walk_1"])
 

@@ -26,11 +26,11 @@ def crowd(blank, variants, walker):
     return members
 
 
-def test_a_click_plays_a_variant_and_each_has_its_picture(variants, walker):
+def test_clicked_variant_plays_and_each_has_a_preview(variants, walker):
     assert [row.name for row in variants.rows] == [f"walk_1.variant 0{n}" for n in (1, 2, 3, 4)]
-    for place in (2, 0, 3):
-        variants.active = place
-        assert walker.animation_data.action == variants.rows[place].action
+    for index in (2, 0, 3):
+        variants.active = index
+        assert walker.animation_data.action == variants.rows[index].action
         assert walker.animation_data.action_slot is not None
     pictures = []
     for row in variants.rows:
@@ -41,7 +41,7 @@ def test_a_click_plays_a_variant_and_each_has_its_picture(variants, walker):
     assert len({picture.tobytes() for picture in pictures}) == 4
 
 
-def test_keep_picked_deletes_the_others_but_what_is_used(variants, walker, blank):
+def test_keep_picked_deletes_unused_others(variants, walker, blank):
     assert not blank.ops.mocap_assist.keep_variants.poll()
     other = blank.data.objects.new("Other", walker.data)
     other.animation_data_create().action = variants.rows[3].action
@@ -55,7 +55,7 @@ def test_keep_picked_deletes_the_others_but_what_is_used(variants, walker, blank
     assert walker.animation_data.action.name == "walk_1.variant 02"
 
 
-def placed(crowd):
+def placements(crowd):
     return [
         (
             [strip.action.name for track in each.animation_data.nla_tracks
@@ -67,32 +67,33 @@ def placed(crowd):
     ]  # fmt: skip
 
 
-def test_a_crowd_plays_them_at_other_times_and_places_the_same_for_a_seed(
-    crowd, blank, walker, poses
-):
+def test_crowd_delays_and_offsets_repeat_for_the_same_seed(crowd, blank, walker, poses):
     where = [tuple(each.location) for each in crowd]
     settings = {"delay": 2.0, "spread": 0.5, "turn": 0.3}
 
     assert blank.ops.mocap_assist.assign_variants(**settings) == {"FINISHED"}
 
-    first = placed(crowd)
+    first = placements(crowd)
     played = [strips[-1] for strips, *_ in first]
     assert len(set(played[:4])) == 4 and played[4] in played[:4]
     starts = [start for _, start, *_ in first]
     assert len(set(starts)) > 2 and all(1 <= start <= 61 for start in starts)
-    shifts = [np.hypot(*place[:2]) for *_, place, _ in first]
+    shifts = [np.hypot(*location[:2]) for *_, location, _ in first]
     assert len(set(shifts)) == 5 and max(shifts) <= 0.5
     assert [tuple(each.location) for each in crowd] == where
     assert not np.allclose(*(poses(crowd[1], [frame])["Hips"][0] for frame in (70, 80)))
     blank.context.scene.frame_set(1)
     for seed, same in ((0, True), (1, False), (0, True)):
         blank.ops.mocap_assist.assign_variants(crowd_seed=seed, **settings)
-        assert (placed(crowd) == first) == same
+        assert (placements(crowd) == first) == same
     blank.ops.mocap_assist.assign_variants(delay=0.0, spread=0.0, turn=0.0)
-    assert all(place == (0.0, 0.0, 0.0) and turn == 0.0 for *_, place, turn in placed(crowd))
+    assert all(
+        location == (0.0, 0.0, 0.0) and heading == 0.0
+        for *_, location, heading in placements(crowd)
+    )
 
 
-def test_other_bones_are_reported_and_no_variant_is_assigned(crowd, make_armature, blank):
+def test_assign_refuses_armatures_with_other_bones(crowd, make_armature, blank):
     stranger = make_armature(bones={"Wheel": (None, (0, 0, 0), (0, 0, 1), False)}, name="Car")
     stranger.select_set(True)
 
@@ -102,9 +103,9 @@ def test_other_bones_are_reported_and_no_variant_is_assigned(crowd, make_armatur
     assert crowd[1].animation_data is None
 
 
-def test_strips_follow_one_another(variants, walker, blank):
-    for place in (0, 2):
-        variants.rows[place].picked = True
+def test_strips_are_placed_one_after_another(variants, walker, blank):
+    for index in (0, 2):
+        variants.rows[index].picked = True
     blank.context.scene.frame_set(10)
 
     assert blank.ops.mocap_assist.stack_variants() == {"FINISHED"}
@@ -115,7 +116,7 @@ def test_strips_follow_one_another(variants, walker, blank):
     assert walker.animation_data.action is None
 
 
-def test_assets_with_tags_and_a_sheet(variants, blank, tmp_path):
+def test_variants_become_assets_with_tags_and_a_contact_sheet(variants, blank, tmp_path):
     variants.rows[2].picked = True
     blank.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
 
@@ -136,7 +137,7 @@ def test_assets_with_tags_and_a_sheet(variants, blank, tmp_path):
         assert "Traceback" not in str(refusal.value)
 
 
-def test_a_saved_file_keeps_the_list_and_the_pictures(variants, blank, tmp_path):
+def test_saved_file_keeps_the_list_and_previews(variants, blank, tmp_path):
     blank.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
     blank.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
 
@@ -145,7 +146,7 @@ def test_a_saved_file_keeps_the_list_and_the_pictures(variants, blank, tmp_path)
     assert tuple(rows[3].action.preview.image_size) == (128, 128)
 
 
-def test_the_panel_shows_them_and_what_is_missing(blank, draw, walker, vary):
+def test_panel_shows_variants_and_missing_input(blank, draw, walker, vary):
     shown = draw("MOCAP_PT_vary")
     assert "mocap_assist.vary" in shown and "mocap_assist.keep_variants" not in shown
 
@@ -161,7 +162,7 @@ def test_the_panel_shows_them_and_what_is_missing(blank, draw, walker, vary):
 
 
 @pytest.mark.parametrize("number", [-5, 10**8])
-def test_the_panel_bears_a_number_that_another_version_has_stored(blank, draw, walker, number):
+def test_panel_accepts_an_index_stored_by_another_version(blank, draw, walker, number):
     group = blank.context.scene.mocap_assist.vary
     getattr(group, "bl_system_properties_get", lambda: group)()["n_variants"] = number
     group.actions = "walk_1"
@@ -171,7 +172,7 @@ def test_the_panel_bears_a_number_that_another_version_has_stored(blank, draw, w
     assert 1 <= group.settings().choices.n_variants <= 1000
 
 
-def test_the_panel_does_not_look_into_variants_however_many(vary, draw, load, monkeypatch):
+def test_panel_does_not_read_variants(vary, draw, load, monkeypatch):
     retargeting, looks = load("mocap_assist.retarget.retargeting"), []
     look = retargeting.animated_paths
 

@@ -10,18 +10,18 @@ EXAMPLES = ["walk_1", "walk_2", "walk_3"]
 
 @pytest.fixture
 def body(blank, walker, load):
-    """The motion of an action as it is read back, and its joints' places."""
+    """The motion of an action as read back, and its joint positions."""
     read = load("mocap_assist.actions.armature_read").read_take
-    places = load("solvers.motion").forward_kinematics
+    kinematics = load("solvers.motion").forward_kinematics
 
     def of(action):
         take = read(walker, blank.context.scene, source=(action, action.slots[0]))
-        return take.parts[0].motion, places(take.parts[0].motion).positions
+        return take.parts[0].motion, kinematics(take.parts[0].motion).positions
 
     return of
 
 
-def test_new_actions_that_differ_in_space_and_time(vary, walker, blank, body, keys_of):
+def test_variants_differ_in_space_and_time(vary, walker, blank, body, keys_of):
     before = {name: keys_of(blank.data.actions[name]) for name in EXAMPLES}
 
     made = vary(timing=2.0, n_variants=6)
@@ -32,8 +32,8 @@ def test_new_actions_that_differ_in_space_and_time(vary, walker, blank, body, ke
     for one in range(len(found)):
         for other in range(max(one + 1, len(EXAMPLES)), len(found)):
             n_frames = min(found[one][0].n_frames, found[other][0].n_frames)
-            apart = found[one][1][:n_frames] - found[other][1][:n_frames]
-            assert np.linalg.norm(apart, axis=-1).max() > 0.03, (one, other)
+            displacements = found[one][1][:n_frames] - found[other][1][:n_frames]
+            assert np.linalg.norm(displacements, axis=-1).max() > 0.03, (one, other)
     lengths = [motion.n_frames for motion, _ in found[len(EXAMPLES) :]]
     assert len(set(lengths)) > 1 and all(30 < length < 65 for length in lengths)
     assert walker.animation_data.action == made[0] and made[0].use_fake_user
@@ -42,7 +42,7 @@ def test_new_actions_that_differ_in_space_and_time(vary, walker, blank, body, ke
     }  # fmt: skip
 
 
-def test_the_same_seed_makes_the_same_and_another_seed_others(vary, keys_of):
+def test_variants_repeat_for_the_same_seed_only(vary, keys_of):
     def keys(**settings):
         return [list(keys_of(action).values()) for action in vary(n_variants=2, **settings)]
 
@@ -51,7 +51,7 @@ def test_the_same_seed_makes_the_same_and_another_seed_others(vary, keys_of):
     assert keys(seed=6) != first
 
 
-def test_feet_stand(vary, body, load):
+def test_planted_feet_do_not_slide(vary, body, load):
     planted, free = (vary(n_variants=2, plant_feet=on) for on in (True, False))
 
     plant = load("solvers.denoising").plant_feet
@@ -63,9 +63,7 @@ def test_feet_stand(vary, body, load):
     assert sum(slides(planted)) < 0.5 * sum(slides(free))
 
 
-def test_variants_begin_where_the_example_does_wherever_that_is(
-    vary, walker, blank, poses, load
-):
+def test_variants_start_where_the_example_starts(vary, walker, blank, poses, load):
     """Of amount 0 the variant is the example, as Blender itself plays it."""
     walker.location, walker.rotation_mode = (3.0, 1.0, 0.5), "XYZ"
     walker.rotation_euler, walker.scale = (0.0, 0.0, 2.0), (0.5, 0.5, 0.5)
@@ -82,13 +80,13 @@ def test_variants_begin_where_the_example_does_wherever_that_is(
         np.testing.assert_allclose(found[bone], matrices, atol=0.01, err_msg=bone)
 
 
-def test_variants_that_are_all_alike_are_said_to_be(vary, capfd):
+def test_identical_variants_are_reported(vary, capfd):
     vary(n_variants=2, amount=0.0, timing=0.0, plant_feet=False)
 
     assert "Variants are nearly identical" in capfd.readouterr().out
 
 
-def test_what_is_not_the_body_is_held(vary, walker, blank):
+def test_channels_outside_the_body_are_constant(vary, walker, blank):
     action = blank.data.actions["walk_1"]
     walker["shown"] = 3.0
     bag = action.layers[0].strips[0].channelbags[0]
@@ -102,7 +100,7 @@ def test_what_is_not_the_body_is_held(vary, walker, blank):
     assert [tuple(key.co) for key in held.keyframe_points] == [(1.0, 7.0)]
 
 
-def test_pressed_again_it_varies_the_examples_and_counts_on(vary, walker, blank):
+def test_second_press_varies_the_examples_and_continues_the_numbers(vary, walker, blank):
     vary(n_variants=2)
     assert blank.ops.mocap_assist.vary(n_variants=2) == {"FINISHED"}
 
@@ -111,7 +109,7 @@ def test_pressed_again_it_varies_the_examples_and_counts_on(vary, walker, blank)
     assert json.loads(played["mocap_assist_variant"])["examples"] == EXAMPLES
 
 
-def test_a_variant_can_be_cleaned_in_its_turn(vary, walker, blank, body):
+def test_variant_can_be_cleaned(vary, walker, blank, body):
     (made,) = vary(n_variants=1)
 
     assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
@@ -121,7 +119,7 @@ def test_a_variant_can_be_cleaned_in_its_turn(vary, walker, blank, body):
     assert np.abs(body(cleaned)[1] - body(made)[1]).max() < 0.05
 
 
-def test_wrong_choices_are_said_in_a_sentence(walker, blank):
+def test_invalid_choices_are_reported_in_one_sentence(walker, blank):
     with pytest.raises(RuntimeError, match="no action kick with keys for the bones"):
         blank.ops.mocap_assist.vary(actions="kick")
     blank.data.actions["walk_2"].layers[0].strips[0].channelbags[0].fcurves.clear()
@@ -130,7 +128,9 @@ def test_wrong_choices_are_said_in_a_sentence(walker, blank):
     assert len(blank.data.actions) == len(EXAMPLES)
 
 
-def test_the_command_makes_them_and_a_contact_sheet(walker, load, blank, capsys, tmp_path):
+def test_vary_command_writes_variants_and_a_contact_sheet(
+    walker, load, blank, capsys, tmp_path
+):
     target, sheet = tmp_path / "crowd.blend", tmp_path / "sheet.png"
     run = load("mocap_assist.batch.command").run
     words = ["vary", "--actions", "; ".join(EXAMPLES), "--n-variants", "3", "--seed", "2"]

@@ -46,7 +46,7 @@ def heads(poses, rig, frames=FRAMES):
     return np.stack([matrices[name][:, :3, 3] for name in ENDS], axis=1)
 
 
-def test_no_amount_plays_as_the_example_does(hero, vary_hero, poses):
+def test_variant_with_amount_zero_equals_the_example(hero, vary_hero, poses):
     expected = heads(poses, hero)
 
     (copy,) = vary_hero(n_variants=1, amount=0.0, timing=0.0, base=1, plant_feet=False)
@@ -55,7 +55,7 @@ def test_no_amount_plays_as_the_example_does(hero, vary_hero, poses):
     np.testing.assert_allclose(heads(poses, hero), expected, atol=0.01)
 
 
-def test_variants_differ_stay_near_and_the_controls_are_keyed(hero, vary_hero, poses, keys_of):
+def test_variants_differ_slightly_and_key_the_controls(hero, vary_hero, poses, keys_of):
     example = heads(poses, hero)
 
     made = vary_hero(n_variants=3)
@@ -64,8 +64,8 @@ def test_variants_differ_stay_near_and_the_controls_are_keyed(hero, vary_hero, p
     for action in made:
         play(hero, action)
         shown.append(heads(poses, hero))
-    apart = [np.linalg.norm(one - example, axis=-1).mean() for one in shown]
-    assert all(0.01 < each < 0.35 for each in apart), apart
+    distances = [np.linalg.norm(one - example, axis=-1).mean() for one in shown]
+    assert all(0.01 < each < 0.35 for each in distances), distances
     assert np.linalg.norm(shown[0] - shown[1], axis=-1).mean() > 0.01
     keyed = {path.split('"')[1] for _, path, _ in keys_of(made[0]) if '"' in path}
     assert not any(name.startswith(("DEF-", "ORG-", "MCH-")) for name in keyed)
@@ -75,7 +75,7 @@ def test_variants_differ_stay_near_and_the_controls_are_keyed(hero, vary_hero, p
     }
 
 
-def test_feet_of_the_rig_stand(hero, vary_hero, poses, load, blank):
+def test_planted_feet_of_the_rig_do_not_slide(hero, vary_hero, poses, load, blank):
     made = vary_hero(n_variants=2)
     read = load("mocap_assist.variants.reading").read_body
     plant = load("solvers.denoising").plant_feet
@@ -85,7 +85,7 @@ def test_feet_of_the_rig_stand(hero, vary_hero, poses, load, blank):
         assert plant(take.parts[0].motion).slide_before < 0.05
 
 
-def test_a_face_and_what_is_no_bone_are_held_but_no_control_of_the_body(
+def test_face_and_object_channels_are_constant_and_body_controls_vary(
     hero, vary_hero, blank, keys_of
 ):
     action = blank.data.actions["walk_1.Hero"]
@@ -103,7 +103,7 @@ def test_a_face_and_what_is_no_bone_are_held_but_no_control_of_the_body(
     assert chest not in paths
 
 
-def test_the_body_is_looked_at_once_for_each_press(hero, vary_hero, load, monkeypatch):
+def test_rig_is_evaluated_once_for_each_press(hero, vary_hero, load, monkeypatch):
     reading, looks = load("mocap_assist.variants.reading"), []
     shown = reading.with_body_shown
     look = shown.steps

@@ -1,4 +1,4 @@
-"""Files that are wrong in every way that users found: written whole, or one sentence."""
+"""Invalid files that users reported: the output is complete, or there is one sentence."""
 
 import json
 import os
@@ -124,7 +124,7 @@ def test_denoise_fills_unusual_takes_completely(call, bvh, tmp_path, spoil, fram
     ],
     ids=["empty", "zeros", "binary", "endless", "one line", "no frames", "NUL", "huge"],
 )
-def test_what_is_no_take_is_one_sentence(call, tmp_path, verb, content):
+def test_file_that_is_no_take_gives_one_sentence(call, tmp_path, verb, content):
     source = tmp_path / "in.bvh"
     source.write_bytes(content)
     target = [] if verb == "quality" else [tmp_path / "out.bvh"]
@@ -137,7 +137,7 @@ def test_what_is_no_take_is_one_sentence(call, tmp_path, verb, content):
     assert [path.name for path in tmp_path.iterdir()] == ["in.bvh"]
 
 
-def test_a_folder_is_no_file_to_read_nor_to_write(call, bvh, tmp_path):
+def test_folder_is_refused_as_input_and_output_file(call, bvh, tmp_path):
     folder = tmp_path / "folder.bvh"
     folder.mkdir()
 
@@ -149,7 +149,7 @@ def test_a_folder_is_no_file_to_read_nor_to_write(call, bvh, tmp_path):
         assert error_output.count("\n") == 1
 
 
-def test_a_file_is_no_folder_to_write_to(call, bvh):
+def test_file_is_refused_as_output_folder(call, bvh):
     status, _, error_output = call("convert", bvh(), "--output-folder", bvh(name="b.bvh"))
 
     assert status == 2
@@ -157,7 +157,7 @@ def test_a_file_is_no_folder_to_write_to(call, bvh):
 
 
 @pytest.mark.parametrize("verb", ["convert", "learn"])
-def test_a_full_disk_is_named_and_leaves_what_was_there(bvh, tmp_path, verb):
+def test_full_disk_is_reported_and_keeps_the_old_file(bvh, tmp_path, verb):
     resource = pytest.importorskip("resource")
     source, target = bvh(), tmp_path / "out.bvh"
     words = ["convert", source, target]
@@ -199,7 +199,7 @@ def test_a_full_disk_is_named_and_leaves_what_was_there(bvh, tmp_path, verb):
     ],
     ids=" ".join,
 )
-def test_settings_out_of_range_are_one_sentence(call, bvh, tmp_path, words):
+def test_settings_out_of_range_give_one_sentence(call, bvh, tmp_path, words):
     status, printed, error_output = call("denoise", bvh(), tmp_path / "out.bvh", *words)
 
     assert (status, printed) == (2, "")
@@ -207,7 +207,7 @@ def test_settings_out_of_range_are_one_sentence(call, bvh, tmp_path, words):
     assert not (tmp_path / "out.bvh").exists()
 
 
-def test_too_little_memory_is_one_sentence(call, bvh, tmp_path, monkeypatch):
+def test_out_of_memory_gives_one_sentence(call, bvh, tmp_path, monkeypatch):
     def gluttonous(*_, **__):
         raise MemoryError
 
@@ -247,7 +247,7 @@ def test_interrupt_leaves_only_complete_files(swinging_leg, tmp_path):
         assert read_bvh(file).n_frames == swinging_leg.n_frames
 
 
-def test_damaged_patterns_are_refused_or_read_never_run(swinging_leg, tmp_path, rng):
+def test_damaged_patterns_are_never_executed(swinging_leg, tmp_path, rng):
     path, bad = tmp_path / "walk.npz", tmp_path / "bad.npz"
     learn_filter_bases([swinging_leg]).save(path)
     complete = path.read_bytes()
@@ -284,7 +284,7 @@ def test_damaged_patterns_are_refused_or_read_never_run(swinging_leg, tmp_path, 
         ("frame_rate", lambda rate: -rate, "a frame rate of -30 Hz"),
     ],
 )
-def test_patterns_of_another_making_are_refused(swinging_leg, tmp_path, name, change, sentence):
+def test_invalid_patterns_are_refused(swinging_leg, tmp_path, name, change, sentence):
     path = tmp_path / "walk.npz"
     learn_filter_bases([swinging_leg]).save(path)
     with np.load(path) as archive:

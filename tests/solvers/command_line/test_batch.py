@@ -31,7 +31,7 @@ def test_output_folder_resumes_in_a_second_run(call, leg_file, tmp_path):
 
 
 @pytest.mark.parametrize("change", ["options", "source", "again", "version"])
-def test_what_would_come_out_otherwise_is_made_again(
+def test_output_is_made_again_when_the_result_would_differ(
     call, leg_file, tmp_path, change, monkeypatch
 ):
     words = ["convert", leg_file, "--output-folder", tmp_path / "out"]
@@ -67,7 +67,7 @@ def test_one_bad_file_does_not_stop_the_others(call, leg_file, tmp_path):
     assert "There is no file" in error_output
 
 
-def test_several_at_a_time_give_the_same_files(start, leg_file, twin_file, tmp_path):
+def test_parallel_jobs_give_the_same_files(start, leg_file, twin_file, tmp_path):
     done = start(
         "convert", leg_file, twin_file, "--jobs", 2, "--output-folder", tmp_path / "out"
     )
@@ -78,7 +78,7 @@ def test_several_at_a_time_give_the_same_files(start, leg_file, twin_file, tmp_p
         assert (tmp_path / "out" / name).read_bytes() == leg_file.read_bytes()
 
 
-def test_several_at_a_time_name_the_one_that_fails_and_do_the_others(
+def test_parallel_jobs_name_the_failed_file_and_do_the_others(
     start, leg_file, twin_file, tmp_path
 ):
     bad = tmp_path / "bad.bvh"
@@ -120,7 +120,7 @@ if __name__ == "__main__":
 """
 
 
-def test_a_process_that_dies_takes_only_its_own_file_along(start, tmp_path, monkeypatch):
+def test_crashed_process_loses_only_its_own_file(start, tmp_path, monkeypatch):
     """As the system does to a process that takes all memory."""
     monkeypatch.setenv("PYTHONPATH", ".")
     program = tmp_path / "deadly.py"

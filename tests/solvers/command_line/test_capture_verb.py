@@ -13,7 +13,7 @@ from solvers.depth_tracking.body.model import default_body, load_body_model
 from solvers.depth_tracking.body.ray_capsules import cast_rays
 from solvers.recordings import read_bvh, read_recording
 
-QUICK = ("--no-backward", "--no-refine", "--no-feet", "--check-every", "1000")
+FAST_OPTIONS = ("--no-backward", "--no-refine", "--no-feet", "--check-every", "1000")
 
 
 @pytest.fixture(scope="module")
@@ -29,9 +29,11 @@ def take(tmp_path_factory):
 
 
 def test_a_standing_body_is_written_as_a_skeleton_with_its_figures(call, take, tmp_path):
-    target, kept = tmp_path / "out.bvh", tmp_path / "body.npz"
+    target, body_file = tmp_path / "out.bvh", tmp_path / "body.npz"
 
-    status, out, err = call("capture", take, target, "--keep-body", kept, "--json", *QUICK)
+    status, out, err = call(
+        "capture", take, target, "--keep-body", body_file, "--json", *FAST_OPTIONS
+    )
 
     assert (status, err) == (0, "")
     figures = json.loads(out)
@@ -41,11 +43,20 @@ def test_a_standing_body_is_written_as_a_skeleton_with_its_figures(call, take, t
     assert motion.n_frames == 4 and 1.3 < motion.skeleton.height < 2.1
 
     joints = tmp_path / "joints"
-    again = call("capture", take, "--output-folder", joints, "--joints", "--body", kept, *QUICK)
+    again = call(
+        "capture",
+        take,
+        "--output-folder",
+        joints,
+        "--joints",
+        "--body",
+        body_file,
+        *FAST_OPTIONS,
+    )
     assert again[0] == 0
     found = read_recording(next(joints.glob("*.csv")))
     assert found.tracks.confidence is not None
-    assert load_body_model(kept).lengths.shape == default_body().lengths.shape
+    assert load_body_model(body_file).lengths.shape == default_body().lengths.shape
 
 
 def test_capture_reports_missing_depth_and_missing_actor_in_one_sentence(call, take, tmp_path):
@@ -59,7 +70,7 @@ def test_capture_reports_missing_depth_and_missing_actor_in_one_sentence(call, t
             with np.load(take) as archive:
                 arrays = dict(archive)
             np.savez(empty, **(arrays | {"depth": 0 * arrays["depth"]}))
-        status, _, err = call("capture", source or empty, tmp_path / "out.bvh", *QUICK)
+        status, _, err = call("capture", source or empty, tmp_path / "out.bvh", *FAST_OPTIONS)
         assert status == 2 and err.count("\n") == 1 and words in err
         assert not (tmp_path / "out.bvh").exists()
 
@@ -82,15 +93,15 @@ def takes(take, tmp_path):
 
 
 @pytest.fixture
-def known(tmp_path):
+def with_body(tmp_path):
     """The options by which a body need not be looked for."""
     default_body().save(tmp_path / "known.npz")
-    return ("--body", tmp_path / "known.npz", *QUICK)
+    return ("--body", tmp_path / "known.npz", *FAST_OPTIONS)
 
 
-def test_a_folder_of_takes_is_captured_take_by_take(call, takes, known):
+def test_a_folder_of_takes_is_captured_take_by_take(call, takes, with_body):
     out = takes / "captured"
-    words = ("capture", takes, "--output-folder", out, *known)
+    words = ("capture", takes, "--output-folder", out, *with_body)
 
     status, printed, err = call(*words, "--jobs", 2, "--report")
 
@@ -106,13 +117,15 @@ def test_a_folder_of_takes_is_captured_take_by_take(call, takes, known):
     assert again.count("Already made.") == 2
 
 
-def test_one_bad_take_does_not_stop_the_others(call, takes, known, tmp_path):
+def test_one_bad_take_does_not_stop_the_others(call, takes, with_body, tmp_path):
     complete = (takes / "monday" / "standing.npz").read_bytes()
     (takes / "monday" / "cut short.npz").write_bytes(complete[: len(complete) // 2])
     for picture in (takes / "tuesday" / "pictures" / "depth").iterdir():
         picture.write_bytes(picture.read_bytes()[:40])
 
-    status, printed, err = call("capture", takes, "--output-folder", tmp_path / "out", *known)
+    status, printed, err = call(
+        "capture", takes, "--output-folder", tmp_path / "out", *with_body
+    )
 
     assert status == 2 and printed.count("4 frames, ") == 1
     messages = err.strip().split("\n")
@@ -122,17 +135,19 @@ def test_one_bad_take_does_not_stop_the_others(call, takes, known, tmp_path):
     )
 
 
-def test_a_folder_that_is_a_take_itself(call, takes, known, tmp_path):
+def test_folder_that_is_one_take_is_captured(call, takes, with_body, tmp_path):
     take = takes / "tuesday" / "pictures"
 
-    assert call("capture", take, "--output-folder", tmp_path / "out", *known)[0] == 0
+    assert call("capture", take, "--output-folder", tmp_path / "out", *with_body)[0] == 0
     assert (tmp_path / "out" / "pictures.bvh").is_file()
 
-    status, _, err = call("capture", takes / "stills", "--output-folder", tmp_path, *QUICK)
+    status, _, err = call(
+        "capture", takes / "stills", "--output-folder", tmp_path, *FAST_OPTIONS
+    )
     assert status == 2 and "There is no recording in the folder" in err
 
 
-def test_one_file_has_no_room_for_two_bodies(call, takes, tmp_path):
+def test_two_takes_into_one_file_are_refused(call, takes, tmp_path):
     words = ("--keep-body", tmp_path / "body.npz")
 
     status, _, err = call("capture", takes, "--output-folder", tmp_path / "out", *words)

@@ -25,7 +25,7 @@ def test_convert_writes_the_same_motion(call, leg_file, tmp_path):
     assert (tmp_path / "copy.bvh").read_bytes() == leg_file.read_bytes()
 
 
-def test_convert_takes_points_too(call, tmp_path, rng):
+def test_convert_accepts_points(call, tmp_path, rng):
     tracks = Tracks(("a", "b"), rng.normal(size=(9, 2, 3)), 50.0)
     write_c3d(tracks, tmp_path / "points.c3d")
 
@@ -36,7 +36,7 @@ def test_convert_takes_points_too(call, tmp_path, rng):
     assert_allclose(copied, 1000 * tracks.positions, rtol=1e-6)
 
 
-def test_markers_go_from_trc_to_c3d_and_back_and_are_cleaned(call, tmp_path, rng):
+def test_markers_are_converted_between_trc_and_c3d_and_cleaned(call, tmp_path, rng):
     steps = rng.normal(scale=0.01, size=(60, 3, 3)).cumsum(axis=0)
     steps[20:23, 1] = np.nan
     tracks = Tracks(("a", "b", "c"), 1.0 + steps, 50.0)
@@ -86,10 +86,12 @@ def test_quality_prints_the_report_or_its_figures(call, leg_file):
 
 
 def test_denoise_writes_a_cleaner_take(call, swinging_leg, tmp_path, rng):
-    turns = swinging_leg.rotations + rng.normal(scale=0.02, size=swinging_leg.rotations.shape)
-    turns[:, -1] = swinging_leg.rotations[:, -1]
-    turns /= np.linalg.norm(turns, axis=-1, keepdims=True)
-    write_bvh(swinging_leg.with_poses(turns), tmp_path / "noisy.bvh")
+    rotations = swinging_leg.rotations + rng.normal(
+        scale=0.02, size=swinging_leg.rotations.shape
+    )
+    rotations[:, -1] = swinging_leg.rotations[:, -1]
+    rotations /= np.linalg.norm(rotations, axis=-1, keepdims=True)
+    write_bvh(swinging_leg.with_poses(rotations), tmp_path / "noisy.bvh")
 
     status, printed, _ = call(
         "denoise", tmp_path / "noisy.bvh", tmp_path / "clean.bvh", "--json"
@@ -101,7 +103,8 @@ def test_denoise_writes_a_cleaner_take(call, swinging_leg, tmp_path, rng):
     assert figures["after"]["n_frames"] == 120
     clean = read_bvh(tmp_path / "clean.bvh")
     errors = [
-        np.abs(each - swinging_leg.rotations)[:, :3].mean() for each in (turns, clean.rotations)
+        np.abs(each - swinging_leg.rotations)[:, :3].mean()
+        for each in (rotations, clean.rotations)
     ]
     assert errors[1] < 0.7 * errors[0]
 
@@ -113,7 +116,7 @@ def test_denoise_learns_from_clips(call, leg_file, tmp_path):
     assert "1 example clip" in printed
 
 
-def test_what_was_learned_once_serves_as_well_as_the_clips(call, leg_file, tmp_path):
+def test_saved_patterns_give_the_same_result_as_their_clips(call, leg_file, tmp_path):
     twin = tmp_path / "twin.bvh"
     twin.write_bytes(leg_file.read_bytes())
     learned, out = tmp_path / "legs.npz", [tmp_path / "a.bvh", tmp_path / "b.bvh"]
@@ -148,7 +151,7 @@ def test_learn_reports_its_result(call, leg_file, tmp_path):
     assert re.fullmatch(rf"Learned \d+ patterns from 1 clip into {learned}\.\n", printed)
 
 
-def test_patterns_of_points_are_not_for_a_skeleton(call, leg_file, tmp_path, rng):
+def test_patterns_of_points_are_refused_for_a_skeleton(call, leg_file, tmp_path, rng):
     steps = rng.normal(scale=0.01, size=(90, 4, 3)).cumsum(axis=0)
     write_c3d(Tracks(("a", "b", "c", "d"), 1.0 + steps, 30.0), tmp_path / "points.c3d")
     assert call("learn", tmp_path / "points.c3d", "--output", tmp_path / "points.npz")[0] == 0
@@ -161,7 +164,7 @@ def test_patterns_of_points_are_not_for_a_skeleton(call, leg_file, tmp_path, rng
     assert "The examples are of points, the recording is not." in error_output
 
 
-def test_nothing_in_a_file_of_patterns_is_run(call, leg_file, tmp_path):
+def test_pattern_file_is_never_executed(call, leg_file, tmp_path):
     """A pickle can run any program when it is opened; such a file is refused unopened."""
     flag, bad = tmp_path / "flag", tmp_path / "bad.npz"
 
@@ -181,7 +184,7 @@ def test_nothing_in_a_file_of_patterns_is_run(call, leg_file, tmp_path):
     assert not flag.exists()
 
 
-def test_denoise_holds_joints_to_the_angles_of_the_clips(call, swinging_leg, tmp_path):
+def test_denoise_limits_joints_to_the_angles_of_the_clips(call, swinging_leg, tmp_path):
     """A knee that is held bent by 60 degrees more is no noise: only limits bring it back."""
     good, bent = tmp_path / "good.bvh", tmp_path / "bent.bvh"
     write_bvh(swinging_leg, good)
@@ -200,7 +203,7 @@ def test_denoise_holds_joints_to_the_angles_of_the_clips(call, swinging_leg, tmp
     assert excess["--joint-limits"] < np.radians(5.1) < np.radians(15.0) < excess["--no-feet"]
 
 
-def test_denoise_plants_the_feet_if_there_are_any(call, leg_file, tmp_path):
+def test_denoise_plants_existing_feet(call, leg_file, tmp_path):
     """The sample has some; a single leg has none that it knows."""
     walk = walking_gait(GaitSettings(duration=1.5, frame_rate=30.0))
     write_bvh(walk, tmp_path / "walk.bvh")
@@ -266,7 +269,7 @@ def test_help_fits_the_window(call, verb, monkeypatch):
         ([], "The following arguments are required: VERB"),
     ],
 )
-def test_a_mistake_is_one_sentence_and_status_2(
+def test_invalid_arguments_give_one_sentence_and_status_2(
     call, leg_file, tmp_path, monkeypatch, words, sentence
 ):
     monkeypatch.chdir(tmp_path)

@@ -38,7 +38,7 @@ def copy(task, prepared, progress):
 
 
 @pytest.mark.parametrize("error", [IndexError, OverflowError, RecursionError, UnicodeError])
-def test_the_other_files_are_done_when_the_work_on_one_raises(perform, legs, tmp_path, error):
+def test_other_files_are_processed_when_one_raises(perform, legs, tmp_path, error):
     def work(task, prepared, progress):
         if task.source.name == "odd.bvh":
             raise error
@@ -72,7 +72,7 @@ def test_report_and_lines_name_the_file_when_its_figures_cannot_be_written(
 
 
 @pytest.mark.parametrize("figures", ['{"a": NaN}', '{"after": {"mean_jitter_m_per_s3": "x"}}'])
-def test_a_report_names_the_file_when_its_recorded_figures_cannot_be_shown(
+def test_report_names_the_file_when_its_stored_figures_are_invalid(
     perform, legs, tmp_path, figures
 ):
     words = [*legs, "--output-folder", tmp_path / "out", "--report"]
@@ -89,7 +89,7 @@ def test_a_report_names_the_file_when_its_recorded_figures_cannot_be_shown(
     assert (tmp_path / "out" / "report.html").read_text().count(FAULT) == 1
 
 
-def test_the_take_stays_and_the_picture_is_named_when_drawing_raises(
+def test_take_is_written_and_the_picture_is_named_when_drawing_raises(
     perform, legs, tmp_path, monkeypatch
 ):
     def fail(*_):
@@ -108,7 +108,7 @@ def test_the_take_stays_and_the_picture_is_named_when_drawing_raises(
 
 
 @pytest.mark.parametrize("depth", [70, 900, 100_000])
-def test_everything_is_made_when_the_record_is_nested_deeply(call, legs, tmp_path, depth):
+def test_files_are_made_again_when_the_record_is_nested_deeply(call, legs, tmp_path, depth):
     record = tmp_path / "out" / "mocap_assist.json"
     record.parent.mkdir()
     record.write_text('{"leg.bvh": ' + '{"a":' * depth + "1" + "}" * depth + "}")

@@ -28,7 +28,7 @@ def library(call, walks, tmp_path):
     return path
 
 
-def test_index_tells_what_it_did_and_does_it_once(call, walks, library):
+def test_index_reports_its_work_and_does_it_once(call, walks, library):
     assert call("index", library, walks)[1] == f"3 unchanged; {library} has 3 clips.\n"
     status, printed, _ = call("index", library, walks, "--tag", "loud", "--json", "--jobs", 1)
     messages = json.loads(printed)
@@ -51,7 +51,7 @@ def test_index_reports_each_refused_file_and_fails(call, walks, library, tmp_pat
     assert "broken.bvh" in failed
 
 
-def test_index_removes_what_has_gone(call, walks, tmp_path):
+def test_index_removes_deleted_files(call, walks, tmp_path):
     folder = shutil.copytree(walks, tmp_path / "walks")
     path = tmp_path / "library.clips"
     call("index", path, folder)
@@ -117,7 +117,7 @@ def test_wrong_library_arguments_are_reported_in_one_sentence(call, walks, libra
 
 
 @pytest.mark.parametrize("verb", ["denoise", "reconstruct"])
-def test_a_take_learns_from_what_is_like_it_and_not_from_itself(
+def test_denoise_learns_from_similar_clips_except_its_own_take(
     call, walks, library, tmp_path, verb
 ):
     target = tmp_path / "clean.bvh"

@@ -33,7 +33,7 @@ def named(folder, name: bytes):
     return path
 
 
-def test_a_name_that_is_no_utf8_is_converted_and_shown_escaped(call, folder, tmp_path):
+def test_name_that_is_not_utf_8_is_converted_and_shown_escaped(call, folder, tmp_path):
     named(folder, NO_UTF8)
 
     words = ["convert", folder, "--output-folder", tmp_path / "out", "--report"]
@@ -46,7 +46,7 @@ def test_a_name_that_is_no_utf8_is_converted_and_shown_escaped(call, folder, tmp
     assert json.loads((tmp_path / "out" / "report.json").read_text())["done"] == 3
 
 
-def test_a_library_refuses_a_name_that_is_no_utf8_and_keeps_the_others(call, folder, tmp_path):
+def test_library_refuses_a_name_that_is_not_utf_8_and_adds_the_others(call, folder, tmp_path):
     path = named(folder, NO_UTF8)
 
     for _ in range(2):
@@ -60,9 +60,7 @@ def test_a_library_refuses_a_name_that_is_no_utf8_and_keeps_the_others(call, fol
 
 
 @pytest.mark.parametrize("letter", ["a", "é", "走"])
-def test_the_longest_names_are_made_or_refused_before_the_take_is_made(
-    call, folder, tmp_path, letter
-):
+def test_longest_names_are_written_or_refused_before_the_work(call, folder, tmp_path, letter):
     length = len(letter.encode())
     fits, long = letter * (247 // length), letter * (251 // length)
     for stem in (fits, long):
@@ -77,7 +75,7 @@ def test_the_longest_names_are_made_or_refused_before_the_take_is_made(
     assert {path.name for path in out.glob("*/*.png")} == {"walk.bvh.png", f"{fits}.bvh.png"}
 
 
-def test_a_name_that_is_too_long_is_refused_when_it_is_named(call, folder, tmp_path):
+def test_argument_with_a_too_long_name_is_refused(call, folder, tmp_path):
     target = tmp_path / f"{'a' * 252}.bvh"
 
     status, _, err = call("convert", folder / "walk.bvh", target)
@@ -86,7 +84,7 @@ def test_a_name_that_is_too_long_is_refused_when_it_is_named(call, folder, tmp_p
     assert f"The output {'a' * 40}... needs a name of 256 bytes, but 255 is the maximum." in err
 
 
-def test_a_target_that_cannot_be_written_stops_no_other(call, folder, tmp_path):
+def test_unwritable_output_does_not_stop_other_files(call, folder, tmp_path):
     (tmp_path / "out" / "walk.bvh").mkdir(parents=True)
 
     status, out, err = call("convert", folder, "--output-folder", tmp_path / "out")
@@ -123,7 +121,7 @@ def test_unreadable_folder_is_indexed_once_it_is_readable(call, folder, tmp_path
     assert "1 added, 1 unchanged" in out
 
 
-def test_other_files_cost_nothing_and_a_second_run_passes_over_its_own(call, folder, tmp_path):
+def test_other_files_are_ignored_and_a_second_run_skips_its_outputs(call, folder, tmp_path):
     for name, content in {**OTHERS, **pictures()}.items():
         (folder / name).write_bytes(content)
     words = ["convert", folder, "--output-folder", folder / "out", "--report"]
@@ -147,7 +145,7 @@ def test_a_link_to_a_file_elsewhere_is_converted(call, folder, tmp_path):
     assert read_bvh(tmp_path / "out" / "more" / "link.bvh").n_frames == 30
 
 
-def test_a_link_to_itself_stops_no_other(call, folder, tmp_path):
+def test_circular_link_does_not_stop_other_files(call, folder, tmp_path):
     loop, out = tmp_path / "loop.bvh", tmp_path / "out"
     loop.symlink_to(loop)
     out.mkdir()
@@ -165,10 +163,10 @@ def test_a_link_to_itself_stops_no_other(call, folder, tmp_path):
     assert read_bvh(out / "walk.bvh").n_frames == 30
 
 
-def test_unreadable_file_stops_no_other(call, folder, tmp_path, monkeypatch):
+def test_unreadable_file_does_not_stop_other_files(call, folder, tmp_path, monkeypatch):
     hidden = (folder / "more" / "walk.bvh").rename(folder / "more" / "hidden.bvh")
     named = (hidden, folder / "walk.bvh")
-    for name in ("stat", "open"):  # As for somebody who may not look into it; root may.
+    for name in ("stat", "open"):  # As for a user without permission; root has it.
         monkeypatch.setattr(os, name, refusing(getattr(os, name), hidden))
 
     for words in (

@@ -11,7 +11,7 @@ from solvers.errors import InvalidSettingError
 from solvers.settings import Settings, setting
 
 
-class Way(Enum):
+class Method(Enum):
     FAST = "fast"
     EXACT = "exact"
 
@@ -22,7 +22,7 @@ class BowSettings(Settings):
     tilt: float = setting(pi / 2, "Tilts 100 % more", unit="rad", minimum=0.0, maximum=pi)
     n_shots: int = setting(3, "More is louder", minimum=1, maximum=10)
     wet: bool = setting(True, "Whether it rains")
-    way: Way = setting(Way.FAST, "How")
+    method: Method = setting(Method.FAST, "How")
     label: str = setting("x", "What to call it")
 
 
@@ -40,16 +40,16 @@ def parser():
 
 def test_each_kind_of_setting_is_read(parser):
     words = ["--string-length", "1.5", "--tilt", "180", "--n-shots", "7", "--no-wet"]
-    words += ["--way", "exact", "--label", "y"]
+    words += ["--method", "exact", "--label", "y"]
 
     settings = settings_from_arguments(parser.parse_args(words), BowSettings)
 
     assert settings == BowSettings(
-        string_length=1.5, tilt=pi, n_shots=7, wet=False, way=Way.EXACT, label="y"
+        string_length=1.5, tilt=pi, n_shots=7, wet=False, method=Method.EXACT, label="y"
     )
 
 
-def test_what_is_not_given_is_the_default_of_each_class(parser):
+def test_omitted_option_is_the_default_of_each_class(parser):
     arguments = parser.parse_args([])
 
     assert settings_from_arguments(arguments, BowSettings) == BowSettings()
@@ -61,7 +61,7 @@ def test_help_has_unit_range_and_default(parser):
 
     assert "Longer is lower [m, 0.1 to 2, default 0.7]" in text
     assert "Tilts 100 % more [degrees, 0 to 180, default 90]" in text
-    assert "--way {fast|exact} How [default fast]" in text
+    assert "--method {fast|exact} How [default fast]" in text
     assert "Whether it rains [default yes]" in text
 
 
@@ -75,13 +75,15 @@ def test_a_value_out_of_range_is_refused_with_the_range(parser):
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["--way", "slow"], "Argument --way: 'slow' is not one of fast, exact"),
+        (["--method", "slow"], "Argument --method: 'slow' is not one of fast, exact"),
         (["--n-shots", "many"], "Argument --n-shots: invalid int value: 'many'"),
         (["--tilt", "up"], "Argument --tilt: invalid angle value: 'up'"),
         (["--speed", "1"], "Unrecognized arguments: --speed 1"),
     ],
 )
-def test_a_slip_is_one_sentence_on_stderr_and_status_2(parser, capsys, words, sentence):
+def test_invalid_option_gives_one_sentence_on_stderr_and_status_2(
+    parser, capsys, words, sentence
+):
     with pytest.raises(SystemExit) as stopped:
         parser.parse_args(words)
 

@@ -50,9 +50,7 @@ def test_writes_joints_with_their_confidence(call, walk_file, walk, tmp_path):
 
 
 @pytest.mark.parametrize(("options", "ending"), [((), ".bvh"), (("--joints",), ".csv")])
-def test_many_files_go_into_a_folder_and_are_not_made_twice(
-    call, walk_file, walk, tmp_path, options, ending
-):
+def test_reconstruct_writes_many_files_once(call, walk_file, walk, tmp_path, options, ending):
     write_joint_csv(walk, tmp_path / "other.csv")
     words = ("reconstruct", walk_file, tmp_path / "other.csv", "--output-folder",
              tmp_path / "out", "--jobs", 2, *options)  # fmt: skip
@@ -64,7 +62,7 @@ def test_many_files_go_into_a_folder_and_are_not_made_twice(
     assert again[1].count("Already made.") == 2
 
 
-def test_the_motion_of_a_skeleton_is_rebuilt_on_it(call, tmp_path):
+def test_motion_of_a_skeleton_is_reconstructed_on_it(call, tmp_path):
     walk = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=30.0))
     write_bvh(walk, tmp_path / "walk.bvh")
 
@@ -76,7 +74,7 @@ def test_the_motion_of_a_skeleton_is_rebuilt_on_it(call, tmp_path):
     assert set(clean.skeleton.names) == set(read_bvh(tmp_path / "walk.bvh").skeleton.names)
 
 
-def test_clips_of_your_own_teach_postures(call, walk_file, tmp_path):
+def test_postures_are_learned_from_given_clips(call, walk_file, tmp_path):
     walk = samples.walking_gait(samples.GaitSettings(duration=3.0, frame_rate=30.0))
     (tmp_path / "clean").mkdir()
     write_bvh(walk, tmp_path / "clean" / "walk.bvh")
@@ -131,13 +129,13 @@ def test_markers_are_refused(call, tmp_path):
 
 
 @pytest.mark.parametrize("target", ["out.c3d", "out.trc", "out"])
-def test_other_endings_are_refused_before_any_work(call, walk_file, tmp_path, target):
+def test_other_file_types_are_refused_before_the_work(call, walk_file, tmp_path, target):
     status, _, err = call("reconstruct", walk_file, tmp_path / target)
 
     assert status == 2 and ".bvh" in err and ".csv" in err
 
 
-def test_a_skeleton_has_no_joints_to_write(call, tmp_path):
+def test_joints_option_is_refused_for_a_skeleton(call, tmp_path):
     walk = samples.walking_gait(samples.GaitSettings(duration=0.5, frame_rate=30.0))
     write_bvh(walk, tmp_path / "walk.bvh")
 
@@ -146,7 +144,7 @@ def test_a_skeleton_has_no_joints_to_write(call, tmp_path):
     assert status == 2 and "out.bvh" in err
 
 
-def test_a_recording_of_which_nothing_was_tracked(call, tmp_path):
+def test_recording_without_tracked_joints_is_refused(call, tmp_path):
     names = SENSOR_JOINTS[Sensor.KINECT_V1]
     path = tmp_path / "empty.csv"
     columns = ",".join(f"{name}.{axis}" for name in names for axis in "xyz")
@@ -168,7 +166,7 @@ def clips(tmp_path):
     return tmp_path / "clips"
 
 
-def test_postures_of_your_own_are_learned_once(call, walk_file, clips, tmp_path):
+def test_learned_postures_are_saved_and_reused(call, walk_file, clips, tmp_path):
     own = tmp_path / "own.npz"
     status, out, err = call("learn-postures", clips, "--output", own, "--n-postures", 40)
     assert (status, err) == (0, "")
@@ -183,7 +181,7 @@ def test_postures_of_your_own_are_learned_once(call, walk_file, clips, tmp_path)
     assert twice == 2 and "not allowed with" in contradiction
 
 
-def test_points_have_no_postures(call, walk, tmp_path):
+def test_points_are_refused_as_posture_clips(call, walk, tmp_path):
     write_trc(walk.tracks, tmp_path / "points.trc")
 
     status, _, err = call(

@@ -1,4 +1,4 @@
-"""A whole batch is told in one page, also after it was stopped and taken up again."""
+"""A complete batch is reported in one page, also after an interruption."""
 
 import json
 import os
@@ -53,7 +53,7 @@ def takes(swinging_leg, tmp_path) -> Path:
     return folder
 
 
-def test_a_page_tells_of_every_file(call, takes, tmp_path):
+def test_report_has_every_file(call, takes, tmp_path):
     (takes / "bad.bvh").write_text("HIERARCHY\nMOTION\n")
     out = tmp_path / "out"
 
@@ -127,7 +127,7 @@ def noted_in(folder: Path, name: str) -> bool:
     return record.exists() and name in record.read_text()
 
 
-def test_killed_in_the_middle_and_taken_up_again(swinging_leg, takes, tmp_path, call):
+def test_killed_batch_is_resumed(swinging_leg, takes, tmp_path, call):
     """The last file takes long: there the batch is killed."""
     out, late = tmp_path / "out", tmp_path / "late.bvh"
     write_long_bvh(swinging_leg, late)
@@ -176,7 +176,7 @@ def test_report_distinguishes_files_of_the_same_name(call, takes, swinging_leg, 
     }  # fmt: skip
 
 
-def test_a_changed_skeleton_or_example_makes_a_take_anew(call, recordings, tmp_path):
+def test_changed_skeleton_or_example_makes_a_take_again(call, recordings, tmp_path):
     for name in ("05.asf", "05_13.amc"):
         (tmp_path / name).write_bytes((recordings / "mocap" / name).read_bytes())
     words = ["convert", tmp_path / "05_13.amc", "--output-folder", tmp_path / "out"]
@@ -187,7 +187,7 @@ def test_a_changed_skeleton_or_example_makes_a_take_anew(call, recordings, tmp_p
     assert "Already made." not in call(*words)[1]
 
 
-def test_a_picture_is_of_what_is_there_now(call, takes, tmp_path):
+def test_report_picture_shows_the_current_take(call, takes, tmp_path):
     (takes / "kinect.csv").unlink()
     words = ["denoise", takes, "--output-folder", tmp_path / "out"]
     call(*words, "--report")

@@ -11,21 +11,21 @@ from solvers.samples import GaitSettings, walking_gait
 
 NAMES = SENSOR_JOINTS[Sensor.KINECT_V1]
 KNEE = NAMES.index("KneeLeft")
-QUICK = ["--local-points", "10", "--whole-points", "10", "--sample", "50"]
+SMALL_PRIOR = ["--local-points", "10", "--whole-points", "10", "--sample", "50"]
 
 
 @pytest.fixture
 def stage(tmp_path):
-    """Three walks of an optical system, and of a sensor that sees knees too far apart."""
+    """Three walks of an optical system, and of a sensor with the knees too far out."""
     (tmp_path / "kinect").mkdir()
     (tmp_path / "truth").mkdir()
     for name, speed in (("anna_1", 0.9), ("anna_2", 1.2), ("bob_1", 1.5)):
         walk = walking_gait(GaitSettings(duration=3.0, frame_rate=30.0, speed=speed))
         write_bvh(walk, tmp_path / "truth" / f"{name}.bvh")
-        seen = postures_from_motion(walk)
-        seen[:, KNEE, 0] += 0.08
-        seen[:, NAMES.index("KneeRight"), 0] -= 0.08
-        joints = JointRecording(Tracks(NAMES, seen, 30.0), None, Sensor.KINECT_V1)
+        observed = postures_from_motion(walk)
+        observed[:, KNEE, 0] += 0.08
+        observed[:, NAMES.index("KneeRight"), 0] -= 0.08
+        joints = JointRecording(Tracks(NAMES, observed, 30.0), None, Sensor.KINECT_V1)
         write_joint_csv(joints, tmp_path / "kinect" / f"{name}.csv")
     return tmp_path
 
@@ -33,11 +33,11 @@ def stage(tmp_path):
 def learn(call, stage, *more):
     return call(
         "learn-residuals", stage / "kinect", "--truth", stage / "truth",
-        "--output", stage / "sensor.npz", *QUICK, *more,
+        "--output", stage / "sensor.npz", *SMALL_PRIOR, *more,
     )  # fmt: skip
 
 
-def test_what_a_sensor_does_wrong_is_learned_and_taken_out(call, stage):
+def test_sensor_errors_are_learned_and_corrected(call, stage):
     status, out, err = learn(call, stage, "--actors", "anna", "bob")
     assert (status, err) == (0, "")
     assert "3 takes of 2 actors" in out
@@ -45,11 +45,13 @@ def test_what_a_sensor_does_wrong_is_learned_and_taken_out(call, stage):
     source, target = stage / "kinect" / "anna_2.csv", stage / "clean.csv"
     messages = ["--residuals", stage / "sensor.npz", "--shift"]
     assert call("reconstruct", source, target, *messages)[0] == 0
-    seen, clean = (read_recording(path).tracks.positions[:, KNEE] for path in (source, target))
-    assert np.mean((clean - seen)[:, 0]) == pytest.approx(-0.08, abs=0.03)
+    observed, clean = (
+        read_recording(path).tracks.positions[:, KNEE] for path in (source, target)
+    )
+    assert np.mean((clean - observed)[:, 0]) == pytest.approx(-0.08, abs=0.03)
 
 
-def test_a_take_without_partner_is_named(call, stage):
+def test_take_without_a_partner_is_named(call, stage):
     (stage / "truth" / "bob_1.bvh").unlink()
     status, _, err = learn(call, stage)
     assert status == 2
@@ -62,8 +64,8 @@ def test_an_unknown_actor_is_named(call, stage):
     assert "bob_1 does not start with the name of an actor: anna" in err
 
 
-def test_confidence_asks_who_was_recorded(call, stage):
-    """Three takes are not three people: each would be tried on somebody known."""
+def test_confidence_requires_actor_labels(call, stage):
+    """Three takes are not three actors: each would be tested on a training actor."""
     status, _, err = learn(call, stage, "--confidence")
 
     assert status == 2

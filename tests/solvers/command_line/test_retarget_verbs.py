@@ -57,14 +57,14 @@ def test_retarget_takes_many_files_settings_and_json(call, walk_file, rig_file, 
 
 
 def test_retarget_reads_maps_from_files(call, walk_file, tmp_path):
-    """A target of which no name is known, whose map swaps the feet's sides."""
+    """A target with unknown names, whose map swaps the sides of the feet."""
     rig = mixamo()
     names = tuple(f"joint{chr(97 + i // 26)}{chr(97 + i % 26)}" for i in range(rig.n_joints))
     nameless = Skeleton(names, rig.parents, rig.offsets)
-    known = find_humanoid_map(rig).indices(rig)
+    indices = find_humanoid_map(rig).indices(rig)
     write_bvh(resting(nameless), tmp_path / "rig.bvh")
     write_humanoid_map(
-        HumanoidMap({role: names[joint] for role, joint in known.items()}),
+        HumanoidMap({role: names[joint] for role, joint in indices.items()}),
         tmp_path / "rig.json",
     )
 
@@ -78,16 +78,16 @@ def test_retarget_reads_maps_from_files(call, walk_file, tmp_path):
 
 def test_detected_map_can_be_saved_edited_and_reused(call, walk_file, rig_file, tmp_path):
     """A first go writes the map; without its arms, a second one leaves the arms at rest."""
-    kept = tmp_path / "rig.json"
+    map_file = tmp_path / "rig.json"
     out = tmp_path / "out.bvh"
-    call("retarget", walk_file, out, "--to", rig_file, "--write-target-map", kept)
-    found = read_humanoid_map(kept)
+    call("retarget", walk_file, out, "--to", rig_file, "--write-target-map", map_file)
+    found = read_humanoid_map(map_file)
     for role in [role for role in found.joints if "Arm" in role or "Hand" in role]:
         found = found.with_joint(role, None)
-    write_humanoid_map(found, kept)
+    write_humanoid_map(found, map_file)
 
     status, printed, _ = call(
-        "retarget", walk_file, out, "--to", rig_file, "--target-map", kept
+        "retarget", walk_file, out, "--to", rig_file, "--target-map", map_file
     )
 
     assert status == 0 and "16 shared roles" in printed
@@ -117,7 +117,7 @@ def test_retarget_reports_what_is_wrong(call, walk_file, rig_file, tmp_path, wor
     assert not (tmp_path / "out.bvh").exists()
 
 
-def test_a_root_bone_carries_the_travel(call, walk_file, tmp_path):
+def test_travel_moves_to_the_root_bone(call, walk_file, tmp_path):
     write_bvh(resting(unreal()), tmp_path / "rig.bvh")
 
     status, _, _ = call(

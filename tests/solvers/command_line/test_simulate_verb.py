@@ -19,7 +19,7 @@ def sunk(tmp_path):
     return tmp_path / "sunk.bvh"
 
 
-def test_writes_a_motion_on_the_ground_and_tells_the_figures(call, sunk, tmp_path):
+def test_simulate_writes_a_motion_on_the_ground_and_reports_figures(call, sunk, tmp_path):
     status, out, err = call("simulate", sunk, tmp_path / "stands.bvh", "--json")
 
     assert (status, err) == (0, "")
@@ -44,7 +44,7 @@ def test_simulate_uses_settings_and_reports_the_result(call, sunk, tmp_path):
     assert "Joints moved by" in out
 
 
-def test_refuses_points(call, tmp_path):
+def test_simulate_refuses_points(call, tmp_path):
     points = Tracks(("a", "b"), np.ones((3, 2, 3)), 30.0)
     write_trc(points, tmp_path / "points.trc")
 

@@ -21,7 +21,7 @@ def marker_file(walk, tmp_path):
     return tmp_path / "walk.c3d"
 
 
-def test_writes_a_skeleton_and_tells_how_well_it_fits(call, marker_file, tmp_path):
+def test_solve_writes_a_skeleton_and_reports_the_fit(call, marker_file, tmp_path):
     status, out, err = call("solve", marker_file, tmp_path / "walk.bvh", "--json")
 
     assert (status, err) == (0, "")
@@ -33,7 +33,7 @@ def test_writes_a_skeleton_and_tells_how_well_it_fits(call, marker_file, tmp_pat
     assert find_humanoid_map(motion.skeleton).score == 1.0
 
 
-def test_many_files_all_become_bvh(call, marker_file, walk, tmp_path):
+def test_solve_writes_bvh_for_many_files(call, marker_file, walk, tmp_path):
     write_trc(markers_on(walk), tmp_path / "other.trc")
 
     status, out, _ = call(
@@ -46,13 +46,13 @@ def test_many_files_all_become_bvh(call, marker_file, walk, tmp_path):
     assert written == {"walk.bvh", "other.bvh"}
 
 
-def test_refuses_what_is_no_bvh_before_any_work(call, marker_file, tmp_path):
+def test_solve_refuses_other_output_types_before_the_work(call, marker_file, tmp_path):
     status, _, err = call("solve", marker_file, tmp_path / "again.c3d")
 
     assert status == 2 and ".bvh" in err
 
 
-def test_refuses_what_has_a_skeleton(call, walk, tmp_path):
+def test_solve_refuses_a_recording_with_a_skeleton(call, walk, tmp_path):
     write_bvh(walk, tmp_path / "walk.bvh")
 
     status, _, err = call("solve", tmp_path / "walk.bvh", tmp_path / "again.bvh")

@@ -50,7 +50,7 @@ def solved(start, takes, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("verb", ["denoise", "reconstruct"])
-def test_bytes_are_independent_of_thread_variables(verb, solved):
+def test_output_does_not_depend_on_thread_variables(verb, solved):
     """Figures too: they show differences that are too small for the digits of a file."""
     alone = solved(verb, 1)
 

@@ -22,7 +22,7 @@ def walks(tmp_path):
     return folder
 
 
-def test_variants_and_their_picture_are_written(call, walks, tmp_path):
+def test_vary_writes_variants_and_a_picture(call, walks, tmp_path):
     out = tmp_path / "crowd"
     status, printed, err = call("vary", walks, "--output", out, "--number", "3", "--json")
     assert (status, err) == (0, "")
@@ -34,7 +34,7 @@ def test_variants_and_their_picture_are_written(call, walks, tmp_path):
     assert (out / "variants.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_the_amount_of_nothing_is_a_copy(call, walks, tmp_path):
+def test_amount_zero_is_a_copy(call, walks, tmp_path):
     still = ["--amount", "0", "--timing", "0", "--base", "2", "--no-plant-feet"]
     status, *_ = call("vary", walks, "--output", tmp_path / "out", "--number", "1", *still)
     assert status == 0
@@ -44,7 +44,7 @@ def test_the_amount_of_nothing_is_a_copy(call, walks, tmp_path):
     assert np.ptp(heights[0]) == pytest.approx(np.ptp(heights[1]), rel=0.2)
 
 
-def test_points_and_a_file_in_the_way_are_refused(call, walks, tmp_path):
+def test_vary_refuses_points_and_a_file_at_the_output_folder(call, walks, tmp_path):
     points = tmp_path / "points.trc"
     write_trc(Tracks(("LASI",), np.ones((5, 1, 3)), 30.0), points)
     status, _, err = call("vary", walks, points, "--output", tmp_path / "out")

@@ -1,4 +1,4 @@
-"""Tracking of synthetic people whose identity and positions are known."""
+"""Tracking of synthetic people with true identities and positions."""
 
 import numpy as np
 import pytest
@@ -46,7 +46,7 @@ def test_runner_is_one_person_next_to_a_bystander():
 
 
 def test_two_people_keep_their_identities_when_they_pass():
-    """The second shows more surface on its way past, but less in total."""
+    """The second shows more surface while passing, but less in total."""
     tracked = track(
         (0.5, lambda time: (0.8 * time - 2.0, 0.0, 3.0)),
         (0.45, lambda time: (2.0 - 0.8 * time, 0.0, 4.2)),

@@ -123,9 +123,9 @@ def test_previous_intensities_move_with_the_surface():
     remembered = previous_intensities(now, chosen, PreviousFrame(then.frames, before))
 
     actual = after.intensities[now.image.pixels]
-    known = np.isfinite(remembered)
-    assert known.mean() > 0.8
-    errors = np.abs(remembered - actual)[known]
+    is_remembered = np.isfinite(remembered)
+    assert is_remembered.mean() > 0.8
+    errors = np.abs(remembered - actual)[is_remembered]
     assert np.median(errors) < 25.0 < np.abs(127.0 - actual).mean()
 
 
@@ -217,7 +217,7 @@ def test_shipped_prior_contains_walking_and_names_its_license():
     assert np.corrcoef(walk.T)[0, 1] < -0.5
 
 
-N_ROOT_OF = {name: place for place, name in enumerate(COORDINATES[N_ROOT:])}
+N_ROOT_OF = {name: index for index, name in enumerate(COORDINATES[N_ROOT:])}
 
 
 def test_colors_are_read_only_if_a_term_uses_them():

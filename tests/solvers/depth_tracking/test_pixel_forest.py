@@ -148,9 +148,9 @@ def test_classify_pixels_matches_a_scalar_traversal(forest, held_out):
     depth = held_out[0][3]
     found = classify_pixels(depth, CAMERA, forest)
     for pixel in range(0, len(found.rows), 41):
-        spot = int(found.rows[pixel]), int(found.columns[pixel])
+        position = int(found.rows[pixel]), int(found.columns[pixel])
         fractions = np.mean(
-            [leaf_probabilities(tree, depth, *spot) for tree in forest.trees], axis=0
+            [leaf_probabilities(tree, depth, *position) for tree in forest.trees], axis=0
         )
         np.testing.assert_allclose(found.probabilities[pixel], fractions, atol=1e-6)
 

@@ -66,9 +66,9 @@ def test_unfinished_capture_keeps_tracked_frames():
     first, some = unfinished_capture(observed[:6], 30.0)
     assert first == 0 and some.motion.n_frames == 6
     assert_array_equal(some.poses, [one.pose for one in observed[:6]])
-    _, kept = unfinished_capture(observed[:17], 30.0)
-    assert kept.motion.n_frames == 10
-    assert_array_equal(kept.poses[:3], [one.pose for one in observed[:3]])
+    _, unfinished = unfinished_capture(observed[:17], 30.0)
+    assert unfinished.motion.n_frames == 10
+    assert_array_equal(unfinished.poses[:3], [one.pose for one in observed[:3]])
     _, all_of_it = unfinished_capture(observed[:20], 30.0)
     assert_array_equal(all_of_it.poses, complete.poses)
     assert_allclose(all_of_it.motion.rotations, complete.motion.rotations, atol=1e-12)
@@ -82,9 +82,11 @@ def test_unfinished_capture_ignores_earlier_bodies_and_raises_without_poses():
     before = [one._replace(body=other, frame=one.frame + 20) for one in observed]
 
     repeated = [one._replace(frame=7) for one in observed[:1]]
-    first, kept = unfinished_capture([*before, *repeated],
+    first, unfinished = unfinished_capture([*before, *repeated],
                                      30.0)  # fmt: skip
 
-    assert first == 7 and kept.motion.n_frames == 1 and kept.body is observed[0].body
+    assert (
+        first == 7 and unfinished.motion.n_frames == 1 and unfinished.body is observed[0].body
+    )
     with pytest.raises(InvalidMotionError, match="No pose was tracked yet"):
         unfinished_capture([], 30.0)

@@ -91,8 +91,8 @@ def test_ball_on_the_axis_is_its_radius_nearer_than_its_center():
     assert_allclose(image.depth_image()[20, 20], head[2] - 0.1, atol=1e-5)
     # The outline of a ball is where rays touch it: sine of the half angle = radius / distance.
     tangent = np.tan(np.arcsin(0.1 / head[2]))
-    seen_up = (image.depth_image()[:20, 20] > 0.0).sum()
-    assert seen_up == np.floor(400.0 * tangent)
+    visible_height = (image.depth_image()[:20, 20] > 0.0).sum()
+    assert visible_height == np.floor(400.0 * tangent)
 
 
 def test_straight_limb_is_its_radius_nearer_than_its_axis():

@@ -103,6 +103,6 @@ def test_refine_body_raises_for_invalid_input():
     recording = recorded(waving(2))
     with pytest.raises(InvalidMotionError, match=r"not \(2, 36\)"):
         refine_body(recording, BODY, np.zeros((3, 36)))
-    nobody = DepthRecording(CAMERA, 2, 30.0, lambda _: np.zeros((120, 160), dtype=np.float32))
+    empty = DepthRecording(CAMERA, 2, 30.0, lambda _: np.zeros((120, 160), dtype=np.float32))
     with pytest.raises(InvalidMotionError, match="No frame shows an actor"):
-        refine_body(nobody, BODY, np.zeros((2, 36)))
+        refine_body(empty, BODY, np.zeros((2, 36)))

@@ -1,4 +1,4 @@
-"""Compare the z-buffer with ray casting and known shapes."""
+"""Compare the z-buffer with ray casting and analytic shapes."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def by_rays(vertices, triangles, labels, camera):
     """Intersect every ray with every triangle (Möller and Trumbore 1997)."""
     depth = np.zeros((camera.height, camera.width))
     observed = np.full(depth.shape, NO_PART, dtype=np.uint8)
-    for spot, ray in zip(np.ndindex(depth.shape), camera.rays().reshape(-1, 3), strict=True):
+    for pixel, ray in zip(np.ndindex(depth.shape), camera.rays().reshape(-1, 3), strict=True):
         for corners in triangles:
             a, b, c = vertices[corners]
             normal = np.cross(ray, c - a)
@@ -27,9 +27,9 @@ def by_rays(vertices, triangles, labels, camera):
             side = np.cross(-a, b - a)
             v = ray @ side / scale
             z = (c - a) @ side / scale
-            if min(u, v, 1.0 - u - v) >= 0.0 and z > 0.0 and not 0.0 < depth[spot] <= z:
-                depth[spot] = z
-                observed[spot] = labels[corners[np.argmax([1.0 - u - v, u, v])]]
+            if min(u, v, 1.0 - u - v) >= 0.0 and z > 0.0 and not 0.0 < depth[pixel] <= z:
+                depth[pixel] = z
+                observed[pixel] = labels[corners[np.argmax([1.0 - u - v, u, v])]]
     return depth, observed
 
 

@@ -1,4 +1,4 @@
-"""One corrected frame repairs a segment of a recording with known joints."""
+"""One corrected frame repairs a segment of a recording with true joints."""
 
 import numpy as np
 import pytest
@@ -25,8 +25,8 @@ CMU = {
 N_FRAMES, CORRECTED, WRONG = 40, 20, slice(8, 33)
 
 
-def with_known_joints(recordings, take, first):
-    """Return the recording, the body, and its poses by the known joints."""
+def with_true_joints(recordings, take, first):
+    """Return the recording, the body, and its poses from the true joints."""
     with np.load(recordings / "depth" / "truth" / f"{take}.npz") as truth:
         depth = truth["depth"][first : first + N_FRAMES]
         names = truth["joint_names"].tolist()
@@ -54,7 +54,7 @@ def test_retrack_recovers_occluded_arms(recordings, take, first, maximum):
 
     In the diagonal walk the body occludes one arm in most of them.
     """
-    recording, body, poses = with_known_joints(recordings, take, first)
+    recording, body, poses = with_true_joints(recordings, take, first)
     wrong = poses.copy()
     for side in ("left", "right"):
         for name, value in (("HumerusX", 1.2), ("HumerusZ", 0.1), ("Radius", 0.1)):

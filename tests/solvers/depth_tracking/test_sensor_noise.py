@@ -55,11 +55,11 @@ def test_shadow_of_a_bar_is_as_wide_as_the_disparity(rng):
     scene = wall()
     scene.depth[:, 80:100] = 1.5
     observed = add_sensor_noise(scene, CAMERA, rng, replace(NO_NOISE, baseline=0.075))
-    unseen = np.flatnonzero(observed.depth[60] == 0)
+    holes = np.flatnonzero(observed.depth[60] == 0)
     width = 280.0 * 0.075 * (1 / 1.5 - 1 / 3.0)
-    assert unseen.max() == 79
-    assert abs(len(unseen) - width) <= 1
-    assert (observed.labels[60, unseen] == NO_PART).all()
+    assert holes.max() == 79
+    assert abs(len(holes) - width) <= 1
+    assert (observed.labels[60, holes] == NO_PART).all()
 
 
 def test_holes_have_the_requested_fraction_and_more_at_edges(rng):

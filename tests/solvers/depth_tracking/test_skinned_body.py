@@ -73,10 +73,10 @@ def test_vertices_move_with_the_mean_of_their_joints(person, rng):
     vertex = int(np.flatnonzero(weights[:, elbow])[0])
     weights[vertex] = 0.0
     weights[vertex, [arm, elbow]] = 0.3, 0.9
-    shared = type(person)(person.skeleton, person.vertices, person.triangles, weights)
+    uniform = type(person)(person.skeleton, person.vertices, person.triangles, weights)
     rotations = quaternion_from_rotation_vector(rng.normal(size=(person.skeleton.n_joints, 3)))
     root = np.array([1.0, 2.0, 3.0])
-    moved, _ = shared.pose(rotations, root)
+    moved, _ = uniform.pose(rotations, root)
     world = forward_kinematics(Motion(person.skeleton, rotations[None], root[None], 30.0))
     rest = person.vertices[vertex] - person.skeleton.rest_positions[[arm, elbow]]
     ends = world.positions[0, [arm, elbow]] + rotate(world.rotations[0, [arm, elbow]], rest)

@@ -205,9 +205,9 @@ def test_pose_without_terms_is_the_predicted_one():
 
 
 def test_natural_stance_weighs_the_trunk_more_than_limbs():
-    asked = natural_stance(np.ones(36), 2.0, 5.0)
-    assert_allclose(asked.vector[:6], 0.0)
+    equations = natural_stance(np.ones(36), 2.0, 5.0)
+    assert_allclose(equations.vector[:6], 0.0)
     trunk, limb = (COORDINATES.index(name) for name in ("lowerBackZ", "leftFemurX"))
-    assert asked.vector[trunk] < asked.vector[limb] < 0.0
-    assert asked.vector[COORDINATES.index("rightAnkle")] == -5.0
-    assert_allclose(asked.cost, 0.5 * np.trace(asked.matrix))
+    assert equations.vector[trunk] < equations.vector[limb] < 0.0
+    assert equations.vector[COORDINATES.index("rightAnkle")] == -5.0
+    assert_allclose(equations.cost, 0.5 * np.trace(equations.matrix))

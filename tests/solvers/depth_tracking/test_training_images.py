@@ -61,16 +61,20 @@ def test_poses_without_heading_stay_upright(person, rng):
 
 def test_selected_poses_differ_and_cover_the_rest(person, gait):
     poses = remove_heading(person.rotations_of(gait))
-    kept = select_diverse_poses(person, poses, 0.15, 1000)
-    assert 3 < len(kept) < len(poses)
+    selected = select_diverse_poses(person, poses, 0.15, 1000)
+    assert 3 < len(selected) < len(poses)
 
     def joints(rotations):
         return world_poses(person.skeleton, rotations, np.zeros((len(rotations), 3))).positions
 
-    distances = np.linalg.norm(joints(kept)[:, None] - joints(kept), axis=-1).max(axis=-1)
-    assert distances[~np.eye(len(kept), dtype=bool)].min() > 0.15
-    to_kept = np.linalg.norm(joints(poses)[:, None] - joints(kept), axis=-1).max(axis=-1)
-    assert to_kept.min(axis=1).max() <= 0.15 + 1e-6
+    distances = np.linalg.norm(joints(selected)[:, None] - joints(selected), axis=-1).max(
+        axis=-1
+    )
+    assert distances[~np.eye(len(selected), dtype=bool)].min() > 0.15
+    to_selected = np.linalg.norm(joints(poses)[:, None] - joints(selected), axis=-1).max(
+        axis=-1
+    )
+    assert to_selected.min(axis=1).max() <= 0.15 + 1e-6
     assert len(select_diverse_poses(person, poses, 0.0, 7)) == 7
 
 

@@ -119,7 +119,7 @@ def test_arm_that_turns_the_view_does_not_wave(monkeypatch):
 
 
 def test_turn_is_the_angle_of_the_straight_arm():
-    """From (0.7, 0.66) to straight ahead: counter-clockwise as seen from above."""
+    """From (0.7, 0.66) to straight ahead: counter-clockwise from above."""
     performance = perform_gestures(["turn"])
 
     events = recognize_gestures(performance.times, performance.positions)

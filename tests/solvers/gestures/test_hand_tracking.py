@@ -8,7 +8,7 @@ from solvers.gestures.hand_tracking import HandEstimator
 from solvers.gestures.settings import GestureSettings
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 
-SURE = np.ones(20)
+CONFIDENT = np.ones(20)
 
 
 @pytest.fixture
@@ -22,7 +22,7 @@ def t_pose():
 
 
 def test_hands_of_a_t_pose(t_pose):
-    hands = HandEstimator(GestureSettings()).read(0.0, t_pose, SURE)
+    hands = HandEstimator(GestureSettings()).read(0.0, t_pose, CONFIDENT)
 
     assert_allclose(hands.right, (1, 0, 0), atol=1e-12)
     assert_allclose(hands.left, (-1, 0, 0), atol=1e-12)
@@ -34,7 +34,7 @@ def test_hands_of_a_t_pose(t_pose):
 def test_forward_follows_the_heading(t_pose):
     t_pose[POSTURE_JOINTS.index("rightHand")] += (0.25, -0.25, 0.1)
 
-    hands = HandEstimator(GestureSettings()).read(0.0, t_pose, SURE)
+    hands = HandEstimator(GestureSettings()).read(0.0, t_pose, CONFIDENT)
 
     arm = (0.5 + 0.25 + np.hypot(0.25, 0.1)) / 2  # median of both arms' lengths
     assert_allclose(hands.right * arm, (0.25, 0.25, 0.1), atol=1e-12)
@@ -43,22 +43,22 @@ def test_forward_follows_the_heading(t_pose):
 def test_single_outlier_has_no_effect(t_pose):
     reader = HandEstimator(GestureSettings())
     for frame in range(3):
-        unchanged = reader.read(frame / 30, t_pose, SURE)
+        unchanged = reader.read(frame / 30, t_pose, CONFIDENT)
     wild = t_pose.copy()
     wild[POSTURE_JOINTS.index("rightHand")] += 2.0
 
-    hands = reader.read(0.1, wild, SURE)
+    hands = reader.read(0.1, wild, CONFIDENT)
 
     assert_allclose(hands.right, unchanged.right, atol=1e-12)
 
 
 def test_missing_hand_is_held_briefly(t_pose):
     reader = HandEstimator(GestureSettings(patience=0.2))
-    unchanged = reader.read(0.0, t_pose, SURE)
-    unsure = SURE.copy()
-    unsure[POSTURE_JOINTS.index("rightHand")] = 0.1
+    unchanged = reader.read(0.0, t_pose, CONFIDENT)
+    uncertain = CONFIDENT.copy()
+    uncertain[POSTURE_JOINTS.index("rightHand")] = 0.1
 
-    soon, late = reader.read(0.19, t_pose, unsure), reader.read(0.21, t_pose, unsure)
+    soon, late = reader.read(0.19, t_pose, uncertain), reader.read(0.21, t_pose, uncertain)
 
     assert_allclose(soon.right, unchanged.right)
     assert np.isnan(soon.latest_gap)
@@ -70,9 +70,9 @@ def test_both_arms_are_required_but_not_hips_and_head(t_pose):
         gapped = t_pose.copy()
         gapped[POSTURE_JOINTS.index(joint)] = np.nan
 
-        assert HandEstimator(GestureSettings()).read(0.0, gapped, SURE) is None
+        assert HandEstimator(GestureSettings()).read(0.0, gapped, CONFIDENT) is None
 
 
 def test_joints_in_one_point_give_no_hands(t_pose):
-    assert HandEstimator(GestureSettings()).read(0.0, 0.0 * t_pose, SURE) is None
-    assert HandEstimator(GestureSettings()).read(0.0, np.zeros((20, 3)), SURE) is None
+    assert HandEstimator(GestureSettings()).read(0.0, 0.0 * t_pose, CONFIDENT) is None
+    assert HandEstimator(GestureSettings()).read(0.0, np.zeros((20, 3)), CONFIDENT) is None

@@ -66,17 +66,17 @@ def test_find_clusters_tolerates_noise(take, rng):
 def test_constrained_distances_are_constant_and_noise_is_lower(take, rng, noise):
     noisy = take.with_positions(take.positions + noise * rng.normal(size=take.positions.shape))
 
-    kept = constrain_clusters(noisy, find_rigid_clusters(noisy)).tracks.positions
+    constrained = constrain_clusters(noisy, find_rigid_clusters(noisy)).tracks.positions
 
     for members in ([0, 1, 2, 3], [5, 6]):
-        assert np.ptp(lengths(kept, members), axis=0).max() < 1e-9
+        assert np.ptp(lengths(constrained, members), axis=0).max() < 1e-9
     before, after = (
         np.sqrt(((each - take.positions)[:, :4] ** 2).mean())
-        for each in (noisy.positions, kept)
+        for each in (noisy.positions, constrained)
     )
     # Twelve coordinates with six degrees of freedom keep half of the noise variance.
     assert after == pytest.approx(np.sqrt(0.5) * before, rel=0.05)
-    assert np.array_equal(kept[:, 4], noisy.positions[:, 4])
+    assert np.array_equal(constrained[:, 4], noisy.positions[:, 4])
 
 
 def test_missing_marker_needs_three_reference_markers(take):
@@ -84,12 +84,14 @@ def test_missing_marker_needs_three_reference_markers(take):
     positions[50:100, 0] = np.nan
     positions[200:250, :2] = np.nan
 
-    kept = constrain_clusters(take.with_positions(positions), find_rigid_clusters(take))
+    constrained = constrain_clusters(take.with_positions(positions), find_rigid_clusters(take))
 
-    assert_allclose(kept.tracks.positions[50:100, 0], take.positions[50:100, 0], atol=1e-6)
-    assert np.isnan(kept.tracks.positions[200:250, :2]).all()
-    assert kept.filled[50:100, 0].all() and kept.filled.sum() == 50
-    assert kept.moved.max() < 1e-6
+    assert_allclose(
+        constrained.tracks.positions[50:100, 0], take.positions[50:100, 0], atol=1e-6
+    )
+    assert np.isnan(constrained.tracks.positions[200:250, :2]).all()
+    assert constrained.filled[50:100, 0].all() and constrained.filled.sum() == 50
+    assert constrained.moved.max() < 1e-6
 
 
 def test_three_collinear_markers_do_not_determine_a_fourth():
@@ -98,23 +100,23 @@ def test_three_collinear_markers_do_not_determine_a_fourth():
     positions[5:, 3] = np.nan
     take = Tracks(tuple("abcd"), positions, 60.0)
 
-    kept = constrain_clusters(
+    constrained = constrain_clusters(
         take, [Cluster(tuple("abcd"), rod - rod.mean(axis=0), 0.0)]
     ).tracks
 
-    assert np.isnan(kept.positions[5:, 3]).all()
-    assert_allclose(kept.positions[:5], rod + np.zeros((5, 1, 1)), atol=1e-9)
+    assert np.isnan(constrained.positions[5:, 3]).all()
+    assert_allclose(constrained.positions[:5], rod + np.zeros((5, 1, 1)), atol=1e-9)
 
 
 def test_outlier_marker_is_corrected_and_hardly_moves_others(take):
     positions = take.positions.copy()
     positions[100:110, 2] += [0.0, 0.0, 0.08]
 
-    kept = constrain_clusters(
+    constrained = constrain_clusters(
         take.with_positions(positions), find_rigid_clusters(take)
     ).tracks.positions
 
-    errors = np.linalg.norm(kept - take.positions, axis=-1)[:, :4]
+    errors = np.linalg.norm(constrained - take.positions, axis=-1)[:, :4]
     assert errors.max() < 0.004
 
 
@@ -153,8 +155,8 @@ def test_head_of_a_real_take_is_a_cluster_and_moves_by_millimeters(recordings):
     take = read_c3d(recordings / "markers" / "85_02.c3d")
 
     clusters = find_rigid_clusters(take)
-    kept = constrain_clusters(take, clusters)
+    constrained = constrain_clusters(take, clusters)
 
     assert ("LFHD", "RFHD", "LBHD", "RBHD") in [cluster.names for cluster in clusters]
-    assert kept.moved.mean() < 0.002
+    assert constrained.moved.mean() < 0.002
     assert len(find_rigid_clusters(take, settings=ClusterSettings(slack=0.001))) < len(clusters)

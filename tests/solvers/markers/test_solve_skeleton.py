@@ -1,4 +1,4 @@
-"""Solve joint centers and rotations from markers, and compare with known bodies."""
+"""Solve joint centers and rotations from markers, and compare with simulated bodies."""
 
 import numpy as np
 import pytest
@@ -108,9 +108,9 @@ def test_missing_marker_hardly_matters_and_missing_limb_is_nan(walk):
 
     assert joint_errors(solved, walk, ["leftLowerLeg"])[50:90].max() < 0.03
     missing = [solved.motion.skeleton.index(f"right{part}") for part in ("LowerArm", "Hand")]
-    known = solved.motion.observed
-    assert not known[100:140, missing].any()
-    assert known[:100].all() and known[140:].all()
+    observed = solved.motion.observed
+    assert not observed[100:140, missing].any()
+    assert observed[:100].all() and observed[140:].all()
     assert np.isnan(solved.joint_centers.positions[100:140, missing[1]]).all()
 
 

@@ -137,10 +137,10 @@ def test_viterbi_finds_the_cheapest_sequence_of_labels(rng):
 @pytest.mark.parametrize("file", ["85_02.c3d", "HDM_bd_05-01_01_120.c3d"])
 def test_clean_real_takes_stay_unchanged(recordings, file):
     take = read_c3d(recordings / "markers" / file)
-    kept = [n for n, name in enumerate(take.names) if not name.startswith("*")]
-    names = tuple(take.names[n] for n in kept)
+    named = [n for n, name in enumerate(take.names) if not name.startswith("*")]
+    names = tuple(take.names[n] for n in named)
 
-    assert unswap_markers(Tracks(names, take.positions[:, kept], 120.0)).swaps == ()
+    assert unswap_markers(Tracks(names, take.positions[:, named], 120.0)).swaps == ()
 
 
 def test_swap_in_a_real_recording_is_found(recordings):

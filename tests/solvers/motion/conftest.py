@@ -27,7 +27,7 @@ CENTRE = (
     ("Head", "Neck", (0.0, -0.02, 0.09)),
     ("Head_end", "Head", (0.0, 0.0, 0.18)),
 )
-SHARED = {"Hips", "Spine2"}
+CENTRAL = {"Hips", "Spine2"}
 
 
 @pytest.fixture
@@ -36,7 +36,7 @@ def body() -> Skeleton:
     rows = list(CENTRE)
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         for name, parent, (x, y, z) in SIDE:
-            above = parent if parent in SHARED else side + parent
+            above = parent if parent in CENTRAL else side + parent
             rows.append((side + name, above, (sign * x, y, z)))
     names = [name for name, _, _ in rows]
     parents = [names.index(parent) if parent else -1 for _, parent, _ in rows]

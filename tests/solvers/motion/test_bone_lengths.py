@@ -59,8 +59,8 @@ def test_bone_of_length_zero_has_the_rest_direction(leg):
 def test_longer_legs_make_longer_steps(lively, resized):
     moved = transfer_motion(lively, resized)
 
-    travel, old_way = (np.ptp(one.root_positions, axis=0) for one in (moved, lively))
-    assert_allclose(travel, 1.2 * old_way)
+    travel, old_travel = (np.ptp(one.root_positions, axis=0) for one in (moved, lively))
+    assert_allclose(travel, 1.2 * old_travel)
     assert_allclose(moved.root_positions[:, 2], 1.2 * lively.root_positions[:, 2])
     assert_allclose(moved.root_positions[0, :2], lively.root_positions[0, :2])
     assert_allclose(moved.rotations, lively.rotations)

@@ -215,9 +215,12 @@ def planned_ankle(time: np.ndarray, lag: float) -> np.ndarray:
     """Forward and upward position of an ankle that is at 0.08 m in stance."""
     cycle, phase = np.divmod(time, 1.0)
     swing = np.clip((phase - STANCE) / (1.0 - STANCE), 0.0, 1.0)
-    eased = swing * swing * (3.0 - 2.0 * swing)
+    eased_swing = swing * swing * (3.0 - 2.0 * swing)
     return np.stack(
-        [-0.8 * (cycle + eased + STANCE / 2 - lag), 0.08 + 0.15 * np.sin(np.pi * swing) ** 2],
+        [
+            -0.8 * (cycle + eased_swing + STANCE / 2 - lag),
+            0.08 + 0.15 * np.sin(np.pi * swing) ** 2,
+        ],
         axis=-1,
     )
 

@@ -28,15 +28,15 @@ def test_roles_by_shape_equal_those_by_name_on_real_skeletons(recordings, name):
     assert by_shape(skeleton) == by_name(skeleton)
 
 
-def test_poser_skeleton_but_for_two_joints_three_centimetres_apart(recordings):
+def test_poser_skeleton_gets_its_roles_except_two_nearby_joints(recordings):
     """Between buttock and thigh, lengths cannot tell where the leg begins."""
     skeleton = read_bvh(recordings / "formats" / "bvh" / "11_01.bvh").skeleton
 
     shape, names = by_shape(skeleton), by_name(skeleton)
 
-    apart = {role for role in names if shape.get(role) != names[role]}
-    assert apart <= {"leftUpperLeg", "rightUpperLeg"}
-    for role in apart:
+    different = {role for role in names if shape.get(role) != names[role]}
+    assert different <= {"leftUpperLeg", "rightUpperLeg"}
+    for role in different:
         assert shape[role] == skeleton.parents[names[role]]
 
 

@@ -28,9 +28,9 @@ def test_left_right_swaps_do_not_change_the_heading(walk, n_frames):
     assert_allclose(headings(corrupted), headings(walk), atol=np.radians(3.0))
 
 
-@pytest.mark.parametrize("turns_per_second", [0.5, 1.0, 2.0])
-def test_heading_of_a_spinning_actor_is_followed(walk, turns_per_second):
-    angles = 2.0 * np.pi * turns_per_second * np.arange(len(walk)) / 30.0
+@pytest.mark.parametrize("rotations_per_second", [0.5, 1.0, 2.0])
+def test_heading_of_a_spinning_actor_is_followed(walk, rotations_per_second):
+    angles = 2.0 * np.pi * rotations_per_second * np.arange(len(walk)) / 30.0
     middle = slice(10, -10)  # smoothing shortens the ends
 
     found = headings(rotate_about_vertical(walk, angles)) - headings(walk)

@@ -178,7 +178,7 @@ def test_cut_is_an_issue_and_no_spike(walk):
     assert quality.mean_jitter == pytest.approx(plain.mean_jitter)
     assert not quality.spikes.any()
     assert quality.feet[0].distance == pytest.approx(plain.feet[0].distance)
-    assert [(spot.kind, spot.start_frame) for spot in issues if spot.kind == "cut"] == [
+    assert [(issue.kind, issue.start_frame) for issue in issues if issue.kind == "cut"] == [
         ("cut", 0)
     ]
 

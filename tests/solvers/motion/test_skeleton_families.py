@@ -1,4 +1,4 @@
-"""Every common skeleton gets its roles right; what cannot be told is not believed."""
+"""Every common skeleton gets its roles; ambiguous ones get a low score."""
 
 from collections import Counter
 
@@ -43,12 +43,12 @@ def without(joints: list[Joint], name: str) -> list[Joint]:
     ]
 
 
-def test_there_are_at_least_forty():
+def test_at_least_forty_skeleton_families_are_tested():
     assert len(FAMILIES) >= 40
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_all_roles_are_right(family):
+def test_every_family_gets_its_roles(family):
     joints = joints_of(family)
 
     found = find_humanoid_map(skeleton_from(joints))
@@ -58,7 +58,7 @@ def test_all_roles_are_right(family):
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_order_does_not_matter(family):
+def test_roles_do_not_depend_on_joint_order(family):
     joints = shuffled(joints_of(family), seed=1)
 
     assert dict(find_humanoid_map(skeleton_from(joints)).joints) == expected(joints)
@@ -66,7 +66,7 @@ def test_order_does_not_matter(family):
 
 @pytest.mark.parametrize("prefix", ["Actor1:", "Armature|", "char_", "rig:Skeleton1:"])
 @pytest.mark.parametrize("family", FAMILIES)
-def test_prefixes_do_not_matter(family, prefix):
+def test_roles_do_not_depend_on_prefixes(family, prefix):
     joints = renamed(joints_of(family), lambda name: prefix + name)
 
     assert dict(find_humanoid_map(skeleton_from(joints)).joints) == expected(joints)
@@ -99,20 +99,20 @@ def _is_spine(role: str) -> bool:
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-@pytest.mark.parametrize("turn", [(0, 1, 2), (1, 2, 0), (0, 2, 1)])
-def test_structure_alone_is_right_in_any_axes(family, turn):
-    """Names that say only their side; the axes are turned and one is flipped with them."""
+@pytest.mark.parametrize("axes", [(0, 1, 2), (1, 2, 0), (0, 2, 1)])
+def test_structure_gives_the_roles_in_any_axes(family, axes):
+    """Names with a side only; the axes are permuted and one may be flipped."""
     joints = joints_of(family)
-    sign = 1.0 if turn != (0, 2, 1) else -1.0
+    sign = 1.0 if axes != (0, 2, 1) else -1.0
     counts, numbers = Counter(), {}
     for joint in joints:
         side = "R" if joint.position[0] < -0.01 else "L" if joint.position[0] > 0.01 else "C"
         numbers[joint.name] = f"{side}_{counts[side]}"
         counts[side] += 1
     joints = renamed(joints, lambda name: numbers[name])
-    turned = [j._replace(position=j.position[list(turn)] * (1, sign, 1)) for j in joints]
+    permuted = [j._replace(position=j.position[list(axes)] * (1, sign, 1)) for j in joints]
 
-    found = find_humanoid_map(skeleton_from(turned))
+    found = find_humanoid_map(skeleton_from(permuted))
 
     limbs = {
         role: name for role, name in expected(joints).items() if "eg" in role or "rm" in role
@@ -120,7 +120,7 @@ def test_structure_alone_is_right_in_any_axes(family, turn):
     assert {role: found.joints.get(role) for role in limbs} == limbs
 
 
-def test_toes_are_no_fingers():
+def test_toes_are_not_classified_as_fingers():
     """Character Creator names its toes after fingers, and the legs come first."""
     joints = joints_of("Character Creator")
     foot = next(joint for joint in joints if joint.role == "leftToes")
@@ -139,7 +139,7 @@ def test_toes_are_no_fingers():
     assert not any("IndexToe" in name for name in found.joints.values())
 
 
-def test_many_equal_limbs_do_not_take_long():
+def test_search_of_many_equal_limbs_ends_within_its_budget():
     """An octopus of 585 joints is searched within its budget, and is no person."""
     parents, offsets = [-1], [np.zeros(3)]
     level = [0]

@@ -26,7 +26,7 @@ from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_g
 
 MILLIMETRE = 0.001
 LOADED = 0.5
-"""Share of the weight."""
+"""Fraction of the weight."""
 
 
 @pytest.fixture(scope="module")

@@ -56,18 +56,18 @@ def test_feet_slide_less_by_an_independent_measure(good_takes):
 
 def test_feet_rest_while_loaded(good_takes):
     """Compare with friction only, by contacts that do not depend on the take."""
-    for motion, kept in good_takes.values():
+    for motion, planted in good_takes.values():
         settings = SimulateSettings(ground=Ground.FEET, plant=False)
         free = simulate(motion, settings=settings)
-        loaded = kept.foot_loads > 0.1
+        loaded = planted.foot_loads > 0.1
         creeps, rests = (
             sum(foot.distance for foot in measure_quality(each.motion, contacts=loaded).feet)
-            for each in (free, kept)
+            for each in (free, planted)
         )
 
-        assert loaded.any() and np.array_equal(free.foot_loads, kept.foot_loads)
+        assert loaded.any() and np.array_equal(free.foot_loads, planted.foot_loads)
         assert rests < 0.8 * creeps
-        assert jerk(kept.motion) < 1.1 * jerk(free.motion)
+        assert jerk(planted.motion) < 1.1 * jerk(free.motion)
 
 
 def test_planting_does_not_sink_knees(recordings):

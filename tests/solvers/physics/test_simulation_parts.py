@@ -198,8 +198,8 @@ def test_target_smoothing_equals_a_gaussian_at_any_frame_rate(frame_rate):
     target = smooth_target(coordinates, still, frame_rate, 0.03).at_frames()
 
     inner = slice(len(time) // 4, -len(time) // 4)
-    kept = np.exp(-0.5 * (2 * np.pi * 4.0 * 0.03) ** 2)
-    assert_allclose(target[inner, 0], kept * wave[inner], atol=0.02)
+    gain = np.exp(-0.5 * (2 * np.pi * 4.0 * 0.03) ** 2)
+    assert_allclose(target[inner, 0], gain * wave[inner], atol=0.02)
     assert_allclose(target[:, 2], 3.0 * time, atol=1e-9)  # a straight path stays unchanged
 
 

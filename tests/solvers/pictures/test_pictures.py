@@ -92,7 +92,7 @@ def test_missing_joint_is_not_drawn(swinging_leg):
     assert is_color(thigh[44:], CLEAN).any()
 
 
-def test_last_motion_is_on_top(swinging_leg):
+def test_last_motion_is_drawn_on_top(swinging_leg):
     pixels = draw_stick_figures({"raw": swinging_leg, "clean": swinging_leg}).pixels
 
     figures = pixels[44:]
@@ -100,8 +100,8 @@ def test_last_motion_is_on_top(swinging_leg):
     assert is_color(figures, CLEAN).any()
 
 
-def test_left_side_is_lighter():
-    """Seen from the front, the left (+X) stands on the right of the picture."""
+def test_left_side_is_drawn_lighter():
+    """In front view, the left (+X) is on the right of the picture."""
     skeleton = Skeleton(
         ("root", "left", "right"),
         (-1, 0, 0),
@@ -148,7 +148,7 @@ def test_drawing_raises_without_frames(swinging_leg, frames):
 
 
 def test_curve_passes_through_its_values(leg):
-    """The hip turns by a straight ramp of 40 degrees, so the plot is its own diagonal."""
+    """The hip rotates by a linear ramp of 40 degrees, so the plot is its own diagonal."""
     vectors = np.zeros((101, 4, 3))
     vectors[:, 0, 0] = np.radians(np.linspace(-20.0, 20.0, 101))
     ramp = Motion(leg, quaternion_from_rotation_vector(vectors), np.zeros((101, 3)), 50.0)

@@ -36,7 +36,7 @@ with ScratchFolder() as scratch:
 
 
 @pytest.fixture(autouse=True)
-def place(tmp_path, monkeypatch):
+def folder(tmp_path, monkeypatch):
     """An own folder for temporary files, also of processes that are started."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     for name in ("TMPDIR", "TEMP", "TMP"):
@@ -50,35 +50,35 @@ def leave_behind() -> None:
     assert done.returncode == -signal.SIGKILL
 
 
-def test_folder_is_private_and_goes_with_its_lock(place):
+def test_folder_is_private_and_deleted_with_its_lock(folder):
     with ScratchFolder() as scratch:
         (scratch.path / "file").write_text("")
-        assert scratch.path.parent == place
+        assert scratch.path.parent == folder
         assert scratch.path.stat().st_mode & 0o077 == 0
 
-    assert not list(place.iterdir())
+    assert not list(folder.iterdir())
 
 
-def test_folder_goes_when_nobody_refers_to_it(place):
+def test_folder_is_deleted_without_references(folder):
     scratch = ScratchFolder()
     assert scratch.path.is_dir()
 
     del scratch
 
-    assert not list(place.iterdir())
+    assert not list(folder.iterdir())
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
-def test_folder_of_a_killed_process_is_cleared_by_the_next(place):
+def test_folder_of_a_killed_process_is_deleted_by_the_next(folder):
     leave_behind()
-    assert len(list(place.iterdir())) == 2
+    assert len(list(folder.iterdir())) == 2
 
     subprocess.run([sys.executable, "-c", HOLDING], stdin=subprocess.DEVNULL, check=True)
 
-    assert not list(place.iterdir())
+    assert not list(folder.iterdir())
 
 
-def test_folder_in_use_stays_when_others_are_cleared(place):
+def test_folder_in_use_stays_when_others_are_cleared(folder):
     held = ScratchFolder()
     with subprocess.Popen(
         [sys.executable, "-c", HOLDING],
@@ -88,69 +88,69 @@ def test_folder_in_use_stays_when_others_are_cleared(place):
     ) as other:
         path = Path(other.stdout.readline().strip())
 
-        clear_abandoned(place)
+        clear_abandoned(folder)
 
         assert path.is_dir() and held.path.is_dir()
-        assert len(list(place.iterdir())) == 4
+        assert len(list(folder.iterdir())) == 4
         other.stdin.close()
 
 
-def test_what_is_not_ours_stays_when_scratch_is_cleared(place, monkeypatch):
-    (place / "mocap_assist_of_an_artist").mkdir()
-    (place / "other.lock").touch()
+def test_foreign_files_stay_when_scratch_is_cleared(folder, monkeypatch):
+    (folder / "mocap_assist_of_an_artist").mkdir()
+    (folder / "other.lock").touch()
     leave_behind()
     if hasattr(os, "getuid"):
         user = os.getuid()
         monkeypatch.setattr(os, "getuid", lambda: user + 1)
-        clear_abandoned(place)
-        assert len(list(place.iterdir())) == 4
+        clear_abandoned(folder)
+        assert len(list(folder.iterdir())) == 4
         monkeypatch.undo()
 
-    clear_abandoned(place)
+    clear_abandoned(folder)
 
-    assert {path.name for path in place.iterdir()} == {
+    assert {path.name for path in folder.iterdir()} == {
         "mocap_assist_of_an_artist",
         "other.lock",
     }
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs links")
-def test_nothing_is_removed_through_a_link_when_scratch_is_cleared(place):
-    (place / "precious").mkdir()
-    (place / "precious" / "file").write_text("")
-    (place / "mocap_assist_0").symlink_to(place / "precious")
-    (place / "mocap_assist_0.lock").touch()
-    (place / "mocap_assist_1.lock").symlink_to(place / "precious" / "file")
+def test_nothing_is_removed_through_a_link_when_scratch_is_cleared(folder):
+    (folder / "precious").mkdir()
+    (folder / "precious" / "file").write_text("")
+    (folder / "mocap_assist_0").symlink_to(folder / "precious")
+    (folder / "mocap_assist_0.lock").touch()
+    (folder / "mocap_assist_1.lock").symlink_to(folder / "precious" / "file")
 
-    clear_abandoned(place)
+    clear_abandoned(folder)
 
-    assert (place / "precious" / "file").is_file()
-
-
-def test_orphan_removes_the_folder_and_its_lock(place):
-    (place / "mocap_assist_0").mkdir()
-    (place / "mocap_assist_0" / "half").touch()
-    (place / "mocap_assist_0.lock").touch()
-
-    remove_orphaned(place / "mocap_assist_0")
-
-    assert not list(place.iterdir())
+    assert (folder / "precious" / "file").is_file()
 
 
-def test_folder_that_cannot_be_made_is_one_sentence(place, monkeypatch):
-    monkeypatch.setattr(tempfile, "tempdir", str(place / "gone"))
+def test_orphan_removes_the_folder_and_its_lock(folder):
+    (folder / "mocap_assist_0").mkdir()
+    (folder / "mocap_assist_0" / "half").touch()
+    (folder / "mocap_assist_0.lock").touch()
+
+    remove_orphaned(folder / "mocap_assist_0")
+
+    assert not list(folder.iterdir())
+
+
+def test_folder_that_cannot_be_made_gives_one_sentence(folder, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(folder / "gone"))
     with pytest.raises(
         InvalidFileError, match=r"Temporary files cannot be written in .*gone: No"
     ):
         ScratchFolder()
 
 
-def test_lock_is_held_once_and_free_after_its_release(place):
-    path = lock_for_work_on(place / "take.blend")
+def test_lock_is_held_once_and_free_after_its_release(folder):
+    path = lock_for_work_on(folder / "take.blend")
     lock = try_lock(path)
     assert lock is not None
     assert try_lock(path) is None
-    assert try_lock(lock_for_work_on(place / "other.blend")) is not None
+    assert try_lock(lock_for_work_on(folder / "other.blend")) is not None
 
     lock.release()
 
@@ -160,9 +160,9 @@ def test_lock_is_held_once_and_free_after_its_release(place):
     again.release()
 
 
-def test_lock_is_taken_on_the_new_file_when_its_holder_removes_the_old(place, monkeypatch):
-    """Between the opening of a file and its locking, whoever held it may remove it."""
-    path = place / "a.lock"
+def test_lock_is_taken_on_the_new_file_when_its_holder_removes_the_old(folder, monkeypatch):
+    """Between opening and locking a file, its holder may remove it."""
+    path = folder / "a.lock"
     first = try_lock(path)
     real = os.open
     opened = []

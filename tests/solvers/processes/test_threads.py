@@ -1,4 +1,4 @@
-"""One place decides on threads of linear algebra, whatever the environment says."""
+"""One module sets the threads of linear algebra, whatever the environment says."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""Workers end with the process that started them, and have the threads that are asked for."""
+"""Workers end with the process that started them, and have the requested threads."""
 
 import os
 import subprocess
@@ -50,11 +50,11 @@ def test_workers_of_a_command_end_when_it_is_killed(verb, swinging_leg, tmp_path
 
     for number in range(20):
         write_bvh(swinging_leg, tmp_path / f"{number:02}.bvh")
-    places = {
+    inputs = {
         "denoise": [tmp_path, "--output-folder", tmp_path / "out"],
         "index": [tmp_path / "a.clips", tmp_path],
     }
-    words = [sys.executable, "-m", "solvers", verb, *places[verb], "--jobs", "2"]
+    words = [sys.executable, "-m", "solvers", verb, *inputs[verb], "--jobs", "2"]
     with subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE) as parent:
         started = set()
         while len(started) < 3 and parent.poll() is None:  # two workers and their tracker

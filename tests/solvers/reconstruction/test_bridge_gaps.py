@@ -31,10 +31,12 @@ def test_library_pose_dominates_inside_a_long_gap():
 
 
 def test_path_and_posture_have_equal_weight_at_the_half_weight_time():
-    n_lost = int(4 * HALF_WEIGHT_S * RATE)
-    observed, rebuilt = np.zeros((n_lost + 200, 1, 3)), np.ones((n_lost + 200, 1, 3))
-    found = blend_short_gaps(observed, gap_mask(n_lost + 200, 100, 100 + n_lost), rebuilt, RATE)
-    np.testing.assert_allclose(found[100 + n_lost // 2], 0.5, atol=0.02)
+    n_missing = int(4 * HALF_WEIGHT_S * RATE)
+    observed, rebuilt = np.zeros((n_missing + 200, 1, 3)), np.ones((n_missing + 200, 1, 3))
+    found = blend_short_gaps(
+        observed, gap_mask(n_missing + 200, 100, 100 + n_missing), rebuilt, RATE
+    )
+    np.testing.assert_allclose(found[100 + n_missing // 2], 0.5, atol=0.02)
 
 
 def test_one_sided_gap_is_left_to_the_library():

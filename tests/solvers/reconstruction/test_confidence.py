@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bad_sensor import KNEE, QUICK, pair, recording, seen_by_a_bad_sensor, truth
+from bad_sensor import KNEE, SMALL_PRIOR, pair, recording, simulate_bad_sensor, truth
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError, InvalidMotionError
@@ -33,7 +33,7 @@ def pairs():
 
 @pytest.fixture(scope="module")
 def prior(pairs):
-    return learn_residual_prior(pairs, actors=ACTORS, settings=QUICK)
+    return learn_residual_prior(pairs, actors=ACTORS, settings=SMALL_PRIOR)
 
 
 def test_probability_integrates_over_an_unknown_variance(rng):
@@ -79,11 +79,11 @@ def test_calibration_recovers_slope_and_spread_of_held_out_actors(rng):
 def test_larger_errors_of_all_actors_widen_the_spread_at_equal_level():
     log_variances = np.linspace(-8.0, -6.0, 50)
 
-    kept = fit_calibration(
+    fitted = fit_calibration(
         np.stack([log_variances, log_variances + 0.7], axis=-1), keep_level=True
     )
 
-    assert kept == pytest.approx((0.0, 1.0, 0.7))
+    assert fitted == pytest.approx((0.0, 1.0, 0.7))
 
 
 def test_without_constant_offset_the_level_is_learned():
@@ -100,11 +100,11 @@ def test_confidence_is_calibrated_for_new_actors_at_any_error_size(rng):
     """The expected fraction of errors lies within the distance; without calibration it is
     smaller.
     """
-    known, new = (np.exp(0.5 * 1.2 * rng.normal(size=n)) for n in (60, 400))
+    training, new = (np.exp(0.5 * 1.2 * rng.normal(size=n)) for n in (60, 400))
     variances = np.exp(rng.normal(-7.6, 0.4, size=20))
     points = [
         np.stack([np.log(variances), np.log(variances) + 2.0 * np.log(each)], axis=-1)
-        for each in known
+        for each in training
     ]
     errors = (
         rng.normal(size=(400, 20, 50, 3)) * (new[:, None] * np.sqrt(variances))[..., None, None]
@@ -124,13 +124,13 @@ def test_confidence_is_calibrated_for_new_actors_at_any_error_size(rng):
 
 
 def test_calibration_from_held_out_actors_is_saved_in_the_file(prior, pairs, tmp_path):
-    calibrated = calibrate_confidence(prior, pairs, ACTORS, settings=QUICK)
+    calibrated = calibrate_confidence(prior, pairs, ACTORS, settings=SMALL_PRIOR)
     calibrated.save(tmp_path / "prior.npz")
     again = load_residual_prior(tmp_path / "prior.npz")
 
     assert_allclose(again.calibration, calibrated.calibration)
     assert (calibrated.calibration[:, 2] > 0.0).all()
-    take = recording(seen_by_a_bad_sensor(truth(1.3)))
+    take = recording(simulate_bad_sensor(truth(1.3)))
     before, after = (correct_postures(take, each) for each in (prior, again))
     assert_allclose(after.tracks.positions, before.tracks.positions)
     knee = [each.confidence[:, KNEE].mean() for each in (before, after)]
@@ -158,7 +158,7 @@ def test_load_raises_for_an_invalid_calibration(prior, tmp_path):
 
 def test_calibrate_confidence_raises_for_two_actors(prior, pairs):
     with pytest.raises(InvalidMotionError, match="needs 3; there are 2"):
-        calibrate_confidence(prior, pairs, ("anna", "anna", "bob", "bob"), settings=QUICK)
+        calibrate_confidence(prior, pairs, ("anna", "anna", "bob", "bob"), settings=SMALL_PRIOR)
 
 
 def test_calibration_without_measurements_is_the_identity(prior):

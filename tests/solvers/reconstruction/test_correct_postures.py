@@ -1,10 +1,19 @@
-"""Learn residual priors from simulated sensors with known errors, and apply them."""
+"""Learn residual priors from simulated sensors with constructed errors, and apply them."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from bad_sensor import HAND, KNEE, NAMES, QUICK, pair, recording, seen_by_a_bad_sensor, truth
+from bad_sensor import (
+    HAND,
+    KNEE,
+    NAMES,
+    SMALL_PRIOR,
+    pair,
+    recording,
+    simulate_bad_sensor,
+    truth,
+)
 from scipy.optimize import minimize
 
 from solvers.errors import InvalidMotionError
@@ -33,7 +42,7 @@ from solvers.reconstruction.residual_correction.smooth_trajectories import (
 @pytest.fixture(scope="module")
 def prior():
     return learn_residual_prior(
-        [pair(truth(speed)) for speed in (0.9, 1.1, 1.45, 1.6)], settings=QUICK
+        [pair(truth(speed)) for speed in (0.9, 1.1, 1.45, 1.6)], settings=SMALL_PRIOR
     )
 
 
@@ -43,7 +52,7 @@ def error(positions: np.ndarray, true: np.ndarray, joint: int = KNEE) -> float:
 
 def test_sensor_error_is_subtracted_from_a_new_walk(prior):
     true = truth(1.3)
-    given_ = recording(seen_by_a_bad_sensor(true))
+    given_ = recording(simulate_bad_sensor(true))
     before = error(given_.tracks.positions, true)
     after = error(correct_postures(given_, prior).tracks.positions, true)
     assert before > 0.06
@@ -51,7 +60,7 @@ def test_sensor_error_is_subtracted_from_a_new_walk(prior):
 
 
 def test_without_shift_joints_keep_their_mean_position(prior):
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    given_ = recording(simulate_bad_sensor(truth(1.3)))
     moved = correct_postures(given_, prior, settings=CorrectionSettings(shift=False))
     mean = (moved.tracks.positions - given_.tracks.positions)[:, KNEE].mean(axis=0)
     assert np.abs(mean).max() < 0.01
@@ -60,20 +69,20 @@ def test_without_shift_joints_keep_their_mean_position(prior):
 
 
 def test_prior_ignores_heading_and_position(prior):
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    given_ = recording(simulate_bad_sensor(truth(1.3)))
     angles = np.full(given_.n_frames, 2.0)
-    turned_ = recording(
+    rotated = recording(
         rotate_about_vertical(given_.tracks.positions, angles) + np.array([4.0, 1.0, 0.0])
     )
     here = correct_postures(given_, prior).tracks.positions
-    moved = correct_postures(turned_, prior).tracks.positions
+    moved = correct_postures(rotated, prior).tracks.positions
     np.testing.assert_allclose(
         rotate_about_vertical(here, angles) + np.array([4.0, 1.0, 0.0]), moved, atol=1e-4
     )
 
 
 def test_prior_predicts_nothing_far_from_its_training_data(prior):
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    given_ = recording(simulate_bad_sensor(truth(1.3)))
     upside_down = given_.tracks.positions.copy()
     upside_down[:, 1:] = upside_down[:, :1] + (upside_down[:, 1:] - upside_down[:, :1]) * (
         1.0,
@@ -99,7 +108,7 @@ def test_prior_predicts_nothing_far_from_its_training_data(prior):
 
 
 def test_joint_never_observed_does_not_affect_others(prior):
-    positions = seen_by_a_bad_sensor(truth(1.3))
+    positions = simulate_bad_sensor(truth(1.3))
     positions[:, HAND] = np.nan
     result = correct_postures(recording(positions), prior)
     assert np.isnan(result.tracks.positions[:, HAND]).all()
@@ -118,21 +127,21 @@ def test_joint_without_training_data_changes_nothing():
     for speed in (0.9, 1.1, 1.45, 1.6):
         observed, true = pair(truth(speed))
         takes.append((recording(blind(observed.tracks.positions)), true))
-    handless = learn_residual_prior(takes, settings=QUICK)
-    observed = seen_by_a_bad_sensor(truth(1.3))
+    handless = learn_residual_prior(takes, settings=SMALL_PRIOR)
+    observed = simulate_bad_sensor(truth(1.3))
 
     with_ends, without = (
         correct_postures(recording(one), handless) for one in (observed, blind(observed))
     )
 
-    shared = [joint for joint in range(20) if joint not in ends]
+    common = [joint for joint in range(20) if joint not in ends]
     np.testing.assert_allclose(
-        with_ends.confidence[:, shared], without.confidence[:, shared], atol=0.02
+        with_ends.confidence[:, common], without.confidence[:, common], atol=0.02
     )
 
 
 def test_gaps_are_bridged(prior):
-    positions = seen_by_a_bad_sensor(truth(1.3))
+    positions = simulate_bad_sensor(truth(1.3))
     positions[40:46, KNEE] = np.nan
     result = correct_postures(recording(positions), prior)
     assert error(result.tracks.positions[40:46], truth(1.3)[40:46]) < 0.05
@@ -140,7 +149,7 @@ def test_gaps_are_bridged(prior):
 
 @pytest.mark.parametrize("n_frames", [1, 2, 3, 5, 6])
 def test_correct_postures_accepts_short_takes(prior, n_frames):
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3))[:n_frames])
+    given_ = recording(simulate_bad_sensor(truth(1.3))[:n_frames])
     for method in CorrectionMethod:
         result = correct_postures(given_, prior, settings=CorrectionSettings(method=method))
         assert np.isfinite(result.tracks.positions).all()
@@ -177,16 +186,16 @@ def test_filter_ends_where_the_smoother_of_past_frames_ends(rng):
 def test_published_method_minimizes_the_published_energy(rng):
     """Minimize eq. 5.6 of [ZH14] numerically in the third frame."""
     positions = truth(1.3)[:3] + rng.normal(scale=0.02, size=(3, 20, 3))
-    foretold = positions + rng.normal(scale=0.03, size=positions.shape)
+    predicted = positions + rng.normal(scale=0.03, size=positions.shape)
     variances = rng.uniform(1e-4, 1e-3, size=(3, 20))
     reliability = rng.uniform(size=(3, 20))
     found = minimize_terms(
-        recording(positions), foretold, variances, reliability, ThreeTermSettings()
+        recording(positions), predicted, variances, reliability, ThreeTermSettings()
     )
 
     def energy(offset: np.ndarray) -> float:
         y = offset * 100.0
-        spatial = ((y - 100.0 * (foretold - positions)[2, KNEE]) ** 2).sum()
+        spatial = ((y - 100.0 * (predicted - positions)[2, KNEE]) ** 2).sum()
         smooth = 100.0 * (2.0 * found[1, KNEE] - found[0, KNEE] - positions[2, KNEE])
         return float(
             0.6 * spatial / (2.0 * 1e4 * variances[2, KNEE])
@@ -213,19 +222,19 @@ def test_actor_labels_separate_actor_specific_errors():
     takes = [pair(truth(speed), 0.10) for speed in (1.0, 1.2, 1.4, 1.6)] + [
         pair(truth(1.3), 0.0)
     ]
-    labeled = learn_residual_prior(takes, actors=[*"aaaa", "b"], settings=QUICK)
-    untold = learn_residual_prior(takes, settings=QUICK)
-    given_ = recording(seen_by_a_bad_sensor(truth(1.5), 0.05))
+    labeled = learn_residual_prior(takes, actors=[*"aaaa", "b"], settings=SMALL_PRIOR)
+    unlabeled = learn_residual_prior(takes, settings=SMALL_PRIOR)
+    given_ = recording(simulate_bad_sensor(truth(1.5), 0.05))
     sideways = [
         (correct_postures(given_, one).tracks.positions - given_.tracks.positions)[:, KNEE, 0]
-        for one in (labeled, untold)
+        for one in (labeled, unlabeled)
     ]
     assert abs(sideways[0].mean() + 0.05) < abs(sideways[1].mean() + 0.05)
 
 
 def test_learn_residual_prior_repeats_for_the_same_pairs(prior):
     again = learn_residual_prior(
-        [pair(truth(speed)) for speed in (0.9, 1.1, 1.45, 1.6)], settings=QUICK
+        [pair(truth(speed)) for speed in (0.9, 1.1, 1.45, 1.6)], settings=SMALL_PRIOR
     )
     np.testing.assert_array_equal(prior.means, again.means)
 
@@ -233,11 +242,11 @@ def test_learn_residual_prior_repeats_for_the_same_pairs(prior):
 def test_published_prior_uses_neighbors_only():
     published = learn_residual_prior(
         [pair(truth(speed)) for speed in (0.9, 1.6)],
-        settings=replace(QUICK, method=ResidualMethod.PUBLISHED, calm=0.0),
+        settings=replace(SMALL_PRIOR, method=ResidualMethod.PUBLISHED, calm=0.0),
     )
     kernel = published.kernel(KNEE)
     assert kernel.shared[1] < 1e-3 * kernel.shared[0]
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    given_ = recording(simulate_bad_sensor(truth(1.3)))
     result = reconstruct_published_residuals(given_, published)
     assert error(result.tracks.positions, truth(1.3)) < 0.6 * error(
         given_.tracks.positions, truth(1.3)
@@ -252,9 +261,9 @@ def test_mirror_setting_shares_errors_of_left_and_right_limbs():
         unobserved = true.positions.copy()
         unobserved[:, [MIRROR_JOINTS[joint] for joint in (KNEE, KNEE + 1, KNEE + 2)]] = np.nan
         takes.append((observed, true.with_positions(unobserved)))
-    both_sides = learn_residual_prior(takes, settings=replace(QUICK, mirror=True))
+    both_sides = learn_residual_prior(takes, settings=replace(SMALL_PRIOR, mirror=True))
     assert "rightLowerLeg" not in both_sides.joints
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    given_ = recording(simulate_bad_sensor(truth(1.3)))
     image = recording(mirror_postures(given_.tracks.positions))
     here = correct_postures(given_, both_sides).tracks.positions
     mirrored = correct_postures(image, both_sides).tracks.positions
@@ -273,4 +282,4 @@ def test_learn_residual_prior_raises_for_mismatched_pairs():
         learn_residual_prior([(observed, true)], actors=["a", "b"])
     unobserved = Tracks(NAMES, np.full((90, 20, 3), np.nan), 30.0)
     with pytest.raises(InvalidMotionError, match="No joint is known in both"):
-        learn_residual_prior([(observed, unobserved)], settings=QUICK)
+        learn_residual_prior([(observed, unobserved)], settings=SMALL_PRIOR)

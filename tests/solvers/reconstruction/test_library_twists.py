@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from upright_positions import PLACES
+from upright_positions import POSITIONS
 
 from solvers.motion import (
     SENSOR_JOINTS,
@@ -34,7 +34,7 @@ AT = np.radians(50.0)
 def hanging_arm(flexion: np.ndarray) -> Tracks:
     """A body whose left elbow flexes forward by these angles, radians."""
     still = np.zeros((len(flexion), 20, 3))
-    for name, position in PLACES.items():
+    for name, position in POSITIONS.items():
         still[:, NAMES.index(name)] = position
     direction = np.stack([0.0 * flexion, -np.sin(flexion), -np.cos(flexion)], axis=-1)
     elbow = still[:, NAMES.index("ElbowLeft")]
@@ -106,11 +106,11 @@ def test_published_method_uses_library_twists_only():
 
 
 def test_published_method_has_no_twist_where_it_is_unknown():
-    known, unknown = similar_twists(30, library_only=True), np.arange(30) >= 20
-    known.vectors[unknown] = 0.0
+    twists, unknown = similar_twists(30, library_only=True), np.arange(30) >= 20
+    twists.vectors[unknown] = 0.0
 
     motion = motion_from_positions(
-        hanging_arm(np.full(30, np.radians(80.0))), PARENTS, twists=known
+        hanging_arm(np.full(30, np.radians(80.0))), PARENTS, twists=twists
     )
 
     assert_allclose(elbow_twist_deg(motion), np.where(unknown, 0.0, np.degrees(AT)), atol=0.5)

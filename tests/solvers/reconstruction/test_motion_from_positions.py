@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from kinect_walks import true_positions
 from numpy.testing import assert_allclose
-from upright_positions import PLACES
+from upright_positions import POSITIONS
 
 from solvers import samples
 from solvers.errors import InvalidMotionError
@@ -104,7 +104,7 @@ def flexing_arm(angles: np.ndarray, plane: float) -> Tracks:
     The elbow flexes forward (-Y), rotated about the upper arm by `plane` toward the body.
     """
     still = np.zeros((len(angles), 20, 3))
-    for name, position in PLACES.items():
+    for name, position in POSITIONS.items():
         still[:, NAMES.index(name)] = position
     direction = np.stack(
         [-np.sin(angles) * np.sin(plane), -np.sin(angles) * np.cos(plane), -np.cos(angles)],
@@ -161,10 +161,10 @@ def test_no_joint_jumps_while_a_body_rotates_by_360_degrees(walk):
     angles = np.linspace(0.0, 4.0 * np.pi, len(walk))
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
     x, y, z = np.moveaxis(walk, -1, 0)
-    turning = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
+    rotating = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
     still, motion = (
-        motion_from_positions(as_tracks(each), PARENTS) for each in (walk, turning)
+        motion_from_positions(as_tracks(each), PARENTS) for each in (walk, rotating)
     )
 
     steps = angle_between(still.rotations[1:, 1:], still.rotations[:-1, 1:])

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bad_sensor import KNEE, QUICK, pair, recording, seen_by_a_bad_sensor, truth
+from bad_sensor import KNEE, SMALL_PRIOR, pair, recording, simulate_bad_sensor, truth
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError
@@ -155,12 +155,14 @@ def test_short_takes_and_blocks_of_frames(process, n_frames):
 
 @pytest.fixture(scope="module")
 def prior():
-    return learn_residual_prior([pair(truth(speed)) for speed in (0.9, 1.6)], settings=QUICK)
+    return learn_residual_prior(
+        [pair(truth(speed)) for speed in (0.9, 1.6)], settings=SMALL_PRIOR
+    )
 
 
 def test_interpolation_between_predictions_is_accurate(prior):
     """Interpolate linearly between every second frame; the knee's error has cusps."""
-    smoothed = smooth_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 1 / 30)
+    smoothed = smooth_postures(recording(simulate_bad_sensor(truth(1.3))), 1 / 30)
     few = prior.predict(smoothed)
     all_frames = prior.predict(replace(smoothed, frame_rate=10.0))
     still = replace(prior, movement=None)
@@ -176,7 +178,7 @@ def test_interpolation_between_predictions_is_accurate(prior):
 
 def test_causal_prediction_ignores_later_frames(prior):
     """Predictions of the first second do not depend on later frames."""
-    smoothed = smooth_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 0.0)
+    smoothed = smooth_postures(recording(simulate_bad_sensor(truth(1.3))), 0.0)
     cut = replace(smoothed, features=smoothed.features[:30])
 
     complete, begun = (prior.predict(one, ahead=False).offsets for one in (smoothed, cut))

@@ -108,8 +108,8 @@ def test_grouped_search_finds_nearly_all_true_neighbors(random):
     body = _body(positions)
     all_of_them, _ = nearest_postures(index_postures(body, 0 * groups), query, 30)
     found, _ = nearest_postures(index_postures(body, groups), query, 30, n_looked_at=3000)
-    shared = [len(set(a) & set(b)) / 30 for a, b in zip(all_of_them, found, strict=True)]
-    assert np.mean(shared) >= 0.95
+    overlaps = [len(set(a) & set(b)) / 30 for a, b in zip(all_of_them, found, strict=True)]
+    assert np.mean(overlaps) >= 0.95
 
 
 def test_spaces_are_principal_components(problem):
@@ -232,15 +232,17 @@ def test_lengths_are_constrained_and_reliable_joints_hardly_move(bodies, random)
     corrupted[:, 13] += random.normal(scale=0.1, size=(20, 3))
     certain = np.ones((20, 20))
     certain[:, 13] = 0.0
-    kept = constrain_lengths(corrupted, ADULT_BONE_LENGTHS_M, certain, certain)
+    constrained = constrain_lengths(corrupted, ADULT_BONE_LENGTHS_M, certain, certain)
     np.testing.assert_allclose(
-        segment_lengths(kept), np.tile(ADULT_BONE_LENGTHS_M, (20, 1)), atol=0.01
+        segment_lengths(constrained), np.tile(ADULT_BONE_LENGTHS_M, (20, 1)), atol=0.01
     )
     others = np.arange(20) != 13
-    assert np.linalg.norm(kept - corrupted, axis=-1)[:, others].mean() < 2e-3
+    assert np.linalg.norm(constrained - corrupted, axis=-1)[:, others].mean() < 2e-3
 
 
 def test_observed_bones_stay_unchanged(bodies):
     longer = resize_postures(bodies[:20], 1.1 * ADULT_BONE_LENGTHS_M)
-    kept = constrain_lengths(longer, ADULT_BONE_LENGTHS_M, np.ones((20, 20)), np.ones((20, 20)))
-    np.testing.assert_allclose(kept, longer)
+    constrained = constrain_lengths(
+        longer, ADULT_BONE_LENGTHS_M, np.ones((20, 20)), np.ones((20, 20))
+    )
+    np.testing.assert_allclose(constrained, longer)

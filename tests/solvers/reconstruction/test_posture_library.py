@@ -69,11 +69,11 @@ def test_subsampled_postures_are_distinct_and_cover_the_rest():
     displacements = random.normal(size=(3, 60)) * 0.1
     directions = (random.normal(size=(400, 3)) @ displacements).reshape(400, 20, 3)
     spacing = 0.03
-    kept = subsample_postures(directions, 400, spacing)
+    subsample = subsample_postures(directions, 400, spacing)
     points = positions_from_directions(directions, ADULT_BONE_LENGTHS_M).reshape(400, -1)
-    displacements = np.linalg.norm(points[:, None] - points[kept], axis=-1) / np.sqrt(20.0)
-    among = displacements[kept] + np.eye(len(kept))
-    assert 1 < len(kept) < 400
+    displacements = np.linalg.norm(points[:, None] - points[subsample], axis=-1) / np.sqrt(20.0)
+    among = displacements[subsample] + np.eye(len(subsample))
+    assert 1 < len(subsample) < 400
     assert among.min() > 0.8 * spacing  # compared in principal components
     assert displacements.min(axis=1).max() < 1.2 * spacing
 
@@ -143,17 +143,17 @@ def test_build_raises_without_postures():
 
 
 def test_bone_axis_corrections_recover_known_rotations(walk, library):
-    """Rotate the bones of the observed body by known angles and estimate them."""
+    """Rotate the bones of the observed body by given angles and estimate them."""
     lengths = estimate_bone_lengths(walk)
-    known = np.tile(np.eye(3), (20, 1, 1))
+    rotations = np.tile(np.eye(3), (20, 1, 1))
     cos, sin = np.cos(0.3), np.sin(0.3)
     for bone, name in enumerate(POSTURE_JOINTS):
         side = 1.0 if "left" in name else -1.0
         if bone in CORRECTED_BONES and name not in {"spine", "chest", "head"}:
-            known[bone] = [[cos, 0, side * sin], [0, 1, 0], [-side * sin, 0, cos]]
+            rotations[bone] = [[cos, 0, side * sin], [0, 1, 0], [-side * sin, 0, cos]]
     directions = bone_directions(walk)
     observed = build_body_postures(
-        directions, np.zeros_like(directions), lengths, known
+        directions, np.zeros_like(directions), lengths, rotations
     ).positions
     plain = positions_from_directions(directions, lengths)
     reliability = np.full(walk.shape[:2], 100.0)

@@ -25,7 +25,7 @@ from solvers.recordings import read_bvh, read_recording
 from solvers.samples import GaitSettings, walking_gait
 
 LEG = [POSTURE_JOINTS.index(f"left{part}") for part in ("LowerLeg", "Foot", "Toes")]
-GONE = slice(30, 60)
+GAP = slice(30, 60)
 KINECT = SENSOR_JOINTS[Sensor.KINECT_V1]
 
 
@@ -33,7 +33,7 @@ def recorded(positions, names=KINECT):
     return JointRecording(Tracks(names, positions, 30.0), None, Sensor.KINECT_V1)
 
 
-def known_reliability(reliability):
+def given_reliability(reliability):
     return Reliability(reliability, reliability, reliability, reliability)
 
 
@@ -42,7 +42,7 @@ def reconstructed(positions, library, complete=complete_postures, **settings):
     reliability = np.isfinite(positions).all(axis=-1).astype(float)
     return reconstruct_postures(
         recorded(positions), library, settings=PostureSettings(**settings),
-        reliability=known_reliability(reliability), complete=complete,
+        reliability=given_reliability(reliability), complete=complete,
     )  # fmt: skip
 
 
@@ -65,24 +65,24 @@ def walk():
 @pytest.fixture
 def walk_without_leg(walk):
     observed = walk.copy()
-    observed[GONE, LEG] = np.nan
+    observed[GAP, LEG] = np.nan
     return observed
 
 
 def test_missing_leg_walks_on_and_observed_joints_stay(walk, walk_without_leg, library):
     result = reconstructed(walk_without_leg, library)
     errors = np.linalg.norm(result.tracks.positions - walk, axis=-1)
-    kept = np.isfinite(walk_without_leg).all(axis=-1)
-    assert np.quantile(errors[kept], 0.99) < 0.02
+    is_observed = np.isfinite(walk_without_leg).all(axis=-1)
+    assert np.quantile(errors[is_observed], 0.99) < 0.02
     straight = walk.copy()
     frames = np.arange(len(walk))
-    observed = np.setdiff1d(frames, frames[GONE])
+    observed = np.setdiff1d(frames, frames[GAP])
     for joint in LEG:
         for axis in range(3):
             straight[:, joint, axis] = np.interp(frames, observed, walk[observed, joint, axis])
-    default = np.linalg.norm(straight - walk, axis=-1)[~kept].mean()
+    default = np.linalg.norm(straight - walk, axis=-1)[~is_observed].mean()
     assert default > 0.1
-    assert errors[~kept].mean() < 0.3 * default
+    assert errors[~is_observed].mean() < 0.3 * default
 
 
 @pytest.mark.parametrize(
@@ -92,7 +92,7 @@ def test_every_method_fills_every_frame_plausibly(walk, walk_without_leg, librar
     result = reconstructed(walk_without_leg, library, **settings)
     errors = np.linalg.norm(result.tracks.positions - walk, axis=-1)
     assert np.isfinite(errors).all()
-    assert errors[GONE][:, LEG].mean() < 0.15
+    assert errors[GAP][:, LEG].mean() < 0.15
     assert ((result.confidence >= 0.0) & (result.confidence <= 1.0)).all()
     assert np.isfinite(result.motion.rotations).all()
 
@@ -150,9 +150,9 @@ def test_missing_hips_follow_the_joints_around_them(walk, library):
     bob = 0.15 * np.sin(2.0 * np.pi * np.arange(len(walk)) / 30.0)
     truth = walk + bob[:, None, None] * (0.0, 0.0, 1.0)
     observed = truth.copy()
-    observed[GONE, 0] = np.nan
+    observed[GAP, 0] = np.nan
     errors = np.linalg.norm(reconstructed(observed, library).tracks.positions - truth, axis=-1)
-    assert errors[GONE, 0].max() < 0.06
+    assert errors[GAP, 0].max() < 0.06
 
 
 def test_constant_offset_of_a_limb_is_learned_where_observed(walk, library):

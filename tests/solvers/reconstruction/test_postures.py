@@ -111,6 +111,10 @@ def test_lengths_ignore_unreliable_frames(walk):
 
 
 def test_bone_never_observed_gets_the_typical_fraction(walk):
-    unseen = walk.copy()
-    unseen[:, POSTURE_JOINTS.index("leftHandEnd")] = np.nan
-    assert 0.05 < estimate_bone_lengths(unseen)[POSTURE_JOINTS.index("leftHandEnd")] < 0.15
+    without_fingertip = walk.copy()
+    without_fingertip[:, POSTURE_JOINTS.index("leftHandEnd")] = np.nan
+    assert (
+        0.05
+        < estimate_bone_lengths(without_fingertip)[POSTURE_JOINTS.index("leftHandEnd")]
+        < 0.15
+    )

@@ -29,9 +29,9 @@ from solvers.reconstruction.published.residual_reconstruction import (
 )
 from solvers.reconstruction.reconstruct import shipped_residual_prior
 
-LOST, HIDDEN = kinect_walks.LOST, [5, 6, 7]
+OCCLUDED_FRAMES, HIDDEN = kinect_walks.OCCLUDED_FRAMES, [5, 6, 7]
 OURS = (ReconstructMethod.BOTH, ReconstructMethod.POSTURES, ReconstructMethod.RESIDUALS)
-SEEN = [joint for joint in range(20) if joint not in HIDDEN]
+VISIBLE = [joint for joint in range(20) if joint not in HIDDEN]
 
 
 @pytest.fixture(scope="module")
@@ -53,8 +53,8 @@ def mean_error(positions, true, joints, frames=slice(None)):
 def test_reconstruction_reduces_the_error_of_a_noisy_forearm(walk, true, method, causal):
     settings = ReconstructSettings(method=method, causal=causal)
     found = reconstruct(walk, settings=settings).tracks.positions
-    before = mean_error(walk.tracks.positions, true, HIDDEN, LOST)
-    assert mean_error(found, true, HIDDEN, LOST) < (0.7 if causal else 0.5) * before
+    before = mean_error(walk.tracks.positions, true, HIDDEN, OCCLUDED_FRAMES)
+    assert mean_error(found, true, HIDDEN, OCCLUDED_FRAMES) < (0.7 if causal else 0.5) * before
 
 
 def test_published_methods_equal_their_separate_verbs(walk):
@@ -75,21 +75,21 @@ def test_published_methods_equal_their_separate_verbs(walk):
     chosen = ReconstructSettings(method=ReconstructMethod.PUBLISHED_RESIDUALS, shift=True)
     complete = reconstruct(v2, settings=chosen)
     np.testing.assert_array_equal(complete.tracks.positions, separate.tracks.positions)
-    moved = mean_error(complete.tracks.positions, walk.tracks.positions, SEEN)
+    moved = mean_error(complete.tracks.positions, walk.tracks.positions, VISIBLE)
     other = reconstruct(walk, settings=chosen)  # whose errors the prior does not know
-    assert mean_error(other.tracks.positions, walk.tracks.positions, SEEN) < moved
+    assert mean_error(other.tracks.positions, walk.tracks.positions, VISIBLE) < moved
 
 
 def test_postures_improve_joints_that_residuals_only_smooth(walk, true):
     missing = walk.tracks.positions.copy()
-    missing[LOST, HIDDEN[0] : HIDDEN[-1] + 1] = np.nan
+    missing[OCCLUDED_FRAMES, HIDDEN[0] : HIDDEN[-1] + 1] = np.nan
     unobserved = JointRecording(walk.tracks.with_positions(missing), None, walk.sensor)
     error = {
         method: mean_error(
             reconstruct(
                 unobserved, settings=ReconstructSettings(method=method)
             ).tracks.positions,
-            true, HIDDEN, LOST,
+            true, HIDDEN, OCCLUDED_FRAMES,
         )
         for method in (ReconstructMethod.BOTH, ReconstructMethod.RESIDUALS)
     }  # fmt: skip
@@ -98,9 +98,12 @@ def test_postures_improve_joints_that_residuals_only_smooth(walk, true):
 
 def test_observed_joints_keep_their_positions(walk, true):
     found = reconstruct(walk)
-    assert mean_error(found.tracks.positions, walk.tracks.positions, SEEN) < 0.015
-    assert found.confidence[:, SEEN].mean() > 0.7
-    assert found.confidence[LOST][:, HIDDEN].mean() < found.confidence[:, SEEN].mean() - 0.1
+    assert mean_error(found.tracks.positions, walk.tracks.positions, VISIBLE) < 0.015
+    assert found.confidence[:, VISIBLE].mean() > 0.7
+    assert (
+        found.confidence[OCCLUDED_FRAMES][:, HIDDEN].mean()
+        < found.confidence[:, VISIBLE].mean() - 0.1
+    )
 
 
 def test_bones_have_constant_lengths(walk):
@@ -140,7 +143,7 @@ def test_inferred_joints_are_reconstructed_more_at_lower_weight(walk, true):
             reconstruct(
                 clean, settings=ReconstructSettings(inferred=count)
             ).tracks.positions,
-            true, HIDDEN, LOST,
+            true, HIDDEN, OCCLUDED_FRAMES,
         )
         for count in (0.0, 0.5, 1.0)
     ]  # fmt: skip

@@ -155,10 +155,10 @@ def test_reliability_agrees_at_all_frame_rates(frame_rate):
     fast = fast + wrong.reshape(fast.shape)
 
     slow = measure_reliability(recorded(fast[::step])).combined
-    quick = measure_reliability(recorded(fast, frame_rate)).combined[::step]
+    fast_reliability = measure_reliability(recorded(fast, frame_rate)).combined[::step]
 
     assert 0.4 < slow.mean() < 0.98
-    assert np.abs(slow - quick).mean() < 0.06
+    assert np.abs(slow - fast_reliability).mean() < 0.06
 
 
 @every_method

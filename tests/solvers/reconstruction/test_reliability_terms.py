@@ -21,7 +21,7 @@ CAUSAL = ReliabilitySettings(causal=True)
 PUBLISHED = ReliabilitySettings(method=ReliabilityMethod.PUBLISHED)
 
 
-def path_with_turns(*angles: float, length: float = 0.1) -> np.ndarray:
+def path_with_corners(*angles: float, length: float = 0.1) -> np.ndarray:
     """One joint that moves in a plane by steps of equal length and rotates by these degrees."""
     directions = np.radians(np.cumsum([0.0, *angles]))
     moves = length * np.stack(
@@ -42,14 +42,14 @@ def path_with_turns(*angles: float, length: float = 0.1) -> np.ndarray:
     ],
 )
 def test_behavior_term_depends_on_the_mean_turn(angles, expected):
-    term = behavior_term(path_with_turns(*angles), 30.0, CAUSAL)
+    term = behavior_term(path_with_corners(*angles), 30.0, CAUSAL)
 
     assert term[-1, 0] == pytest.approx(expected, abs=1e-6)
 
 
 @pytest.mark.parametrize(("length", "expected"), [(0.0299, 1.0), (0.0301, 0.0)])
 def test_steps_below_three_centimeters_are_not_vibration(length, expected):
-    path = path_with_turns(180.0, 180.0, 180.0, length=length)
+    path = path_with_corners(180.0, 180.0, 180.0, length=length)
 
     assert behavior_term(path, 30.0, CAUSAL)[-1, 0] == pytest.approx(expected, abs=1e-6)
 
@@ -60,7 +60,7 @@ def test_settings_raise_for_a_roof_below_the_floor():
 
 
 def test_the_floor_is_a_speed_at_any_frame_rate():
-    corners = path_with_turns(*[180.0] * 9, length=0.0299)[:, 0, 0]
+    corners = path_with_corners(*[180.0] * 9, length=0.0299)[:, 0, 0]
     path = np.zeros((41, 1, 3))
     path[:, 0, 0] = np.interp(np.arange(41) / 4.0, np.arange(11), corners)
 
@@ -69,7 +69,7 @@ def test_the_floor_is_a_speed_at_any_frame_rate():
 
 
 def test_causal_vibration_uses_past_frames_only():
-    path = path_with_turns(*[0.0] * 9, *[180.0] * 10)
+    path = path_with_corners(*[0.0] * 9, *[180.0] * 10)
     changed = path.copy()
     changed[12:] = 5.0
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bad_sensor import QUICK, pair, recording, seen_by_a_bad_sensor, truth
+from bad_sensor import SMALL_PRIOR, pair, recording, simulate_bad_sensor, truth
 from damage import damaged, searching
 from hypothesis import given
 from hypothesis import strategies as st
@@ -15,14 +15,16 @@ from solvers.reconstruction import correct_postures, learn_residual_prior, load_
 
 @pytest.fixture(scope="module")
 def prior():
-    return learn_residual_prior([pair(truth(speed)) for speed in (0.9, 1.6)], settings=QUICK)
+    return learn_residual_prior(
+        [pair(truth(speed)) for speed in (0.9, 1.6)], settings=SMALL_PRIOR
+    )
 
 
 def test_load_restores_a_saved_prior(prior, tmp_path):
     path = tmp_path / "prior.npz"
     prior.save(path)
     again = load_residual_prior(path)
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    given_ = recording(simulate_bad_sensor(truth(1.3)))
     np.testing.assert_array_equal(
         correct_postures(given_, prior).tracks.positions,
         correct_postures(given_, again).tracks.positions,

@@ -99,11 +99,11 @@ def test_process_is_exact_with_an_inducing_point_at_each_example(examples):
         basis_functions(complete, complete, KERNEL.lengths[1]),
     )
     mean, covariance = posterior(bases, errors, takes, actors, KERNEL, 1.0)
-    new_local, new_whole = local[:5] + 0.3, complete[:5] - 0.2
+    new_local, new_complete = local[:5] + 0.3, complete[:5] - 0.2
     columns = shared_design(
         (
             basis_functions(new_local, local, KERNEL.lengths[0]),
-            basis_functions(new_whole, complete, KERNEL.lengths[1]),
+            basis_functions(new_complete, complete, KERNEL.lengths[1]),
         ),
         KERNEL,
     )
@@ -111,7 +111,7 @@ def test_process_is_exact_with_an_inducing_point_at_each_example(examples):
         shared * squared_exponential(new, old, size)
         for shared, new, old, size in zip(
             KERNEL.shared,
-            (new_local, new_whole),
+            (new_local, new_complete),
             (local, complete),
             KERNEL.lengths,
             strict=True,
@@ -122,9 +122,9 @@ def test_process_is_exact_with_an_inducing_point_at_each_example(examples):
     np.testing.assert_allclose(columns @ mean, between @ solved[:, :3], atol=2e-3)
     own = MEAN_VARIANCE + sum(KERNEL.shared)
     expected = own - np.einsum("ij,ji->i", between, solved[:, 3:])
-    known = np.einsum("ni,ij,nj->n", columns, covariance, columns)
+    explained = np.einsum("ni,ij,nj->n", columns, covariance, columns)
     open_variance = sum(KERNEL.shared) + MEAN_VARIANCE - (columns**2).sum(axis=1)
-    np.testing.assert_allclose(known + open_variance, expected, atol=5e-3)
+    np.testing.assert_allclose(explained + open_variance, expected, atol=5e-3)
 
 
 def test_constant_error_of_one_actor_is_not_generalized(examples):

@@ -1,4 +1,4 @@
-"""Transient jumps are detected in their frames only, and fast movement is kept."""
+"""Transient jumps are detected in their frames only, and fast movement is not."""
 
 import kinect_walks
 import numpy as np

@@ -115,10 +115,10 @@ def test_hinges_match_the_twists():
     postures = standing(rng)
     twists = 0.7 * np.exp(1j * rng.uniform(-2.0, 2.0, (len(postures), 4)))
 
-    known = hinges_from_twists(postures, LimbTwists(twists))
+    hinges = hinges_from_twists(postures, LimbTwists(twists))
 
     directions = np.stack(
-        [known[POSTURE_JOINTS[limb.upper]].vectors for limb in TWISTED_LIMBS], axis=1
+        [hinges[POSTURE_JOINTS[limb.upper]].vectors for limb in TWISTED_LIMBS], axis=1
     )
     assert_allclose(np.linalg.norm(directions, axis=-1), 0.7)
     assert_allclose(
@@ -155,8 +155,8 @@ def test_twist_of_a_bone_matches_its_clip(gait):
 
     before, after = twists_of(gait), twists_of(with_twisted_arm(gait, angles))
 
-    turned_by = np.angle(after[:, LEFT_ARM] * np.conj(before[:, LEFT_ARM]))
-    assert_allclose(turned_by, angles, atol=0.02)
+    rotation_angles = np.angle(after[:, LEFT_ARM] * np.conj(before[:, LEFT_ARM]))
+    assert_allclose(rotation_angles, angles, atol=0.02)
     assert_allclose(after[:, 1:], before[:, 1:], atol=1e-9)
 
 

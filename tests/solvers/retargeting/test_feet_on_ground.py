@@ -75,7 +75,7 @@ def test_soles_are_level_for_any_feet_of_the_rest_pose():
 
 
 def test_body_with_hips_at_the_origin_repeats_its_own_steps(recordings):
-    """Its rest pose shows no ground, for source and target alike."""
+    """Its rest pose defines no ground, for source and target."""
     motion = every_fourth(
         read_recording(recordings / "mocap/hdm05/HDM_bd_sneak2StepsLStart_001_120.amc")
     )

@@ -26,7 +26,7 @@ def stretched(names: tuple[str, ...], factor: float) -> Skeleton:
 
 
 BODIES = {
-    "usual": mixamo(),
+    "default": mixamo(),
     "short legs": stretched(("Leg", "Foot"), 0.6),
     "long legs": stretched(("Leg", "Foot"), 1.4),
     "long arms": stretched(("ForeArm", "Hand"), 1.4),
@@ -110,12 +110,14 @@ def test_arm_eases_into_full_extension():
     distances = np.linspace(0.1, 3.0, 300)
     direction = distances[:, None] * np.array([0.0, 0.0, -1.0])
 
-    eased = np.linalg.norm(ease_into_extension(direction, np.full((300, 3), 0.1), 1.0), axis=1)
+    reached = np.linalg.norm(
+        ease_into_extension(direction, np.full((300, 3), 0.1), 1.0), axis=1
+    )
 
-    assert_allclose(eased[distances < 0.9], distances[distances < 0.9])
-    assert (np.diff(eased) >= 0.0).all()
-    assert eased.max() <= 1.0
-    assert np.abs(np.diff(eased, 2)).max() < 2e-3
+    assert_allclose(reached[distances < 0.9], distances[distances < 0.9])
+    assert (np.diff(reached) >= 0.0).all()
+    assert reached.max() <= 1.0
+    assert np.abs(np.diff(reached, 2)).max() < 2e-3
 
 
 def on_all_fours() -> Motion:
@@ -136,8 +138,8 @@ def on_all_fours() -> Motion:
     motion = Motion(rig, rotations, positions, 60.0)
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         arm = [rig.index(f"mixamorig:{side}{part}") for part in ("Arm", "ForeArm", "Hand")]
-        spot = np.tile([sign * 0.2, -0.5, 0.05], (120, 1))
-        motion = reach(motion, (arm[0], arm[1], arm[2]), spot)
+        target = np.tile([sign * 0.2, -0.5, 0.05], (120, 1))
+        motion = reach(motion, (arm[0], arm[1], arm[2]), target)
     return motion
 
 

@@ -130,9 +130,13 @@ def toe_flexion_deg(motion: Motion) -> np.ndarray:
 
 
 def sensor_motion(recording) -> Motion:
-    kept = [j for j, up in enumerate(recording.parents) if up >= 0 or j in recording.parents]
-    names = tuple(recording.tracks.names[joint] for joint in kept)
-    tracks = Tracks(names, recording.tracks.positions[:300, kept], recording.tracks.frame_rate)
+    connected = [
+        j for j, up in enumerate(recording.parents) if up >= 0 or j in recording.parents
+    ]
+    names = tuple(recording.tracks.names[joint] for joint in connected)
+    tracks = Tracks(
+        names, recording.tracks.positions[:300, connected], recording.tracks.frame_rate
+    )
     return motion_from_points(tracks, joint_parents(names))
 
 

@@ -218,8 +218,8 @@ def test_cubic_needs_two_keys():
 def test_single_joint_has_end_points():
     lone = Skeleton(("hips",), (-1,), np.zeros((1, 3)))
     angle = np.linspace(0, 3, 50)
-    turning = quaternion_from_rotation_vector(angle[:, None, None] * np.array([0, 0, 1.0]))
+    rotations = quaternion_from_rotation_vector(angle[:, None, None] * np.array([0, 0, 1.0]))
 
-    sparse = reduce_keys(Motion(lone, turning, np.zeros((50, 3)), 30.0), 0.001)
+    sparse = reduce_keys(Motion(lone, rotations, np.zeros((50, 3)), 30.0), 0.001)
 
     assert 2 <= len(sparse.rotations[0].frames) < 10 and sparse.error <= 0.001

@@ -135,38 +135,38 @@ def test_gaps_remain_and_do_not_spread(walk):
 
 def test_in_place_removes_the_travel(walk):
     still = retargeted(walk, mixamo(), RetargetSettings(root_motion=RootMotion.IN_PLACE))
-    kept = retargeted(walk, mixamo())
+    default = retargeted(walk, mixamo())
 
-    assert np.linalg.norm(np.ptp(kept.root_positions[:, :2], axis=0)) > 2.0
+    assert np.linalg.norm(np.ptp(default.root_positions[:, :2], axis=0)) > 2.0
     assert np.linalg.norm(np.ptp(still.root_positions[60:-60, :2], axis=0)) < 0.1
-    assert_allclose(still.root_positions[:, 2], kept.root_positions[:, 2], atol=1e-12)
+    assert_allclose(still.root_positions[:, 2], default.root_positions[:, 2], atol=1e-12)
 
 
 def test_a_root_bone_carries_the_body_without_changing_it(walk):
-    kept = retargeted(walk, unreal())
+    default = retargeted(walk, unreal())
     carried = retargeted(walk, unreal(), RetargetSettings(root_motion=RootMotion.ROOT_BONE))
 
-    assert_allclose(kept.rotations[:, 0], np.tile(IDENTITY, (240, 1)))
+    assert_allclose(default.rotations[:, 0], np.tile(IDENTITY, (240, 1)))
     assert angle_between(carried.rotations[:, 0], carried.rotations[0, 0]).max() > 0.01
     assert_allclose(
         forward_kinematics(carried).positions[:, 1:],
-        forward_kinematics(kept).positions[:, 1:],
+        forward_kinematics(default).positions[:, 1:],
         atol=1e-9,
     )
 
 
 def test_retarget_names_missing_roles(walk):
     roles = find_humanoid_map(walk.skeleton)
-    nobody = HumanoidMap({})
+    empty_map = HumanoidMap({})
 
     with pytest.raises(
         InvalidMotionError, match="source's skeleton has the humanoid role hips"
     ):
-        retarget(walk, nobody, mixamo(), find_humanoid_map(mixamo()))
+        retarget(walk, empty_map, mixamo(), find_humanoid_map(mixamo()))
     with pytest.raises(
         InvalidMotionError, match="target's skeleton has the humanoid role hips"
     ):
-        retarget(walk, roles, mixamo(), nobody)
+        retarget(walk, roles, mixamo(), empty_map)
     with pytest.raises(InvalidMotionError, match="no joint above the hips"):
         retargeted(walk, mixamo(), RetargetSettings(root_motion=RootMotion.ROOT_BONE))
 

@@ -70,13 +70,13 @@ def test_random_trees_give_finite_numbers_or_a_message(source, target, root_moti
 
 @settings(max_examples=20)
 @given(st.sets(st.sampled_from([role for role in MAP.joints if role != "hips"]), max_size=21))
-def test_any_roles_may_be_missing(lost):
+def test_any_roles_may_be_missing(missing):
     rig = unreal()
     partial = find_humanoid_map(rig)
-    for role in lost:
+    for role in missing:
         partial = partial.with_joint(role, None)
 
-    for maps in ((MAP, partial), (partial_of(MAP, lost), find_humanoid_map(rig))):
+    for maps in ((MAP, partial), (partial_of(MAP, missing), find_humanoid_map(rig))):
         result = retarget(WALK, maps[0], rig, maps[1])
         assert np.isfinite(result.rotations).all()
         height = forward_kinematics(result).positions[:, rig.index("pelvis"), 2]
@@ -129,10 +129,10 @@ def test_deform_bones_next_to_the_hips_are_refused():
     names = ("root", *rig.names)
     parents = [-1, *(parent + 1 for parent in parents)]
     parents[loose + 1] = 0
-    beside = Skeleton(names, tuple(parents), np.vstack([np.zeros((1, 3)), rig.offsets]))
+    next_to_hips = Skeleton(names, tuple(parents), np.vstack([np.zeros((1, 3)), rig.offsets]))
 
     with pytest.raises(InvalidMotionError, match=r"LeftUpLeg \(leftUpperLeg\) does not hang"):
-        retarget(WALK, MAP, beside, find_humanoid_map(beside))
+        retarget(WALK, MAP, next_to_hips, find_humanoid_map(next_to_hips))
 
 
 def test_swapped_sides_are_refused():

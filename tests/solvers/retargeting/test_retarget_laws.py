@@ -139,8 +139,8 @@ def test_hips_are_not_lowered_for_a_horizontal_leg(degrees, sinks):
 
     drop = pelvis_drop([np.zeros((10, 3))], [foot], [np.ones(10)], 30.0)
 
-    beside, below = 1.02 * np.sin(angle), 1.02 * np.cos(angle)
-    needed = below - np.sqrt(max(1.0 - beside**2, 0.0))
+    horizontal, below = 1.02 * np.sin(angle), 1.02 * np.cos(angle)
+    needed = below - np.sqrt(max(1.0 - horizontal**2, 0.0))
     assert_allclose(drop, sinks * needed, atol=1e-12)
 
 
@@ -160,9 +160,9 @@ def test_ground_path_rotates_with_the_body():
 
 
 def test_root_bone_rotation_is_optional():
-    kept = RetargetSettings(root_motion=RootMotion.ROOT_BONE, turn_root=False)
+    unrotated_root = RetargetSettings(root_motion=RootMotion.ROOT_BONE, turn_root=False)
 
-    assert_allclose(retargeted(WALK, unreal(), kept).rotations[:, 0, 0], 1.0)
+    assert_allclose(retargeted(WALK, unreal(), unrotated_root).rotations[:, 0, 0], 1.0)
 
 
 def retargeted(motion: Motion, rig: Skeleton, settings: RetargetSettings = AS_EVER) -> Motion:

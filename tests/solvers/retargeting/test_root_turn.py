@@ -14,13 +14,13 @@ from solvers.rotations.representations import (
     quaternion_from_rotation_vector,
 )
 
-WHOLE_TURN = np.linspace(0.0, 2.0 * np.pi, 120)
+FULL_CIRCLE = np.linspace(0.0, 2.0 * np.pi, 120)
 
 
 @pytest.mark.parametrize("axis", [(1.0, 0, 0), (-1.0, 0, 0), (0, 1.0, 0)])
 @pytest.mark.parametrize("smoothing", [0.0, 0.5])
 def test_root_does_not_rotate_in_flips_and_cartwheels(axis, smoothing):
-    flip = rotating_body(quaternion_from_rotation_vector(WHOLE_TURN[:, None] * np.array(axis)))
+    flip = rotating_body(quaternion_from_rotation_vector(FULL_CIRCLE[:, None] * np.array(axis)))
 
     path = ground_path(flip, find_humanoid_map(flip.skeleton), smoothing)
 
@@ -30,8 +30,8 @@ def test_root_does_not_rotate_in_flips_and_cartwheels(axis, smoothing):
 @pytest.mark.parametrize("bow", [0.5, 1.0, 1.7])
 def test_heading_of_a_bowing_actor_is_followed(bow):
     """Rotated by 250 degrees with a bow; the heading is defined in every frame."""
-    yaw = quaternion_from_rotation_vector(0.7 * WHOLE_TURN[:, None] * np.array([0, 0, 1.0]))
-    tilt = bow * np.sin(0.5 * WHOLE_TURN)[:, None] * np.array([1.0, 0, 0])
+    yaw = quaternion_from_rotation_vector(0.7 * FULL_CIRCLE[:, None] * np.array([0, 0, 1.0]))
+    tilt = bow * np.sin(0.5 * FULL_CIRCLE)[:, None] * np.array([1.0, 0, 0])
     motion = rotating_body(multiply(yaw, quaternion_from_rotation_vector(tilt)))
 
     path = ground_path(motion, find_humanoid_map(motion.skeleton), 0.0)
@@ -41,8 +41,8 @@ def test_heading_of_a_bowing_actor_is_followed(bow):
 
 def test_root_rotates_smoothly_while_an_actor_gets_up():
     """Lies down facing -Y and gets up with another heading, 90 degrees away."""
-    tilt = np.radians(90.0) * np.sin(0.5 * WHOLE_TURN)[:, None] * np.array([1.0, 0, 0])
-    angle = 0.5 * np.pi * np.round(0.5 * WHOLE_TURN / np.pi)[:, None] * np.array([0, 0, 1.0])
+    tilt = np.radians(90.0) * np.sin(0.5 * FULL_CIRCLE)[:, None] * np.array([1.0, 0, 0])
+    angle = 0.5 * np.pi * np.round(0.5 * FULL_CIRCLE / np.pi)[:, None] * np.array([0, 0, 1.0])
     motion = rotating_body(
         multiply(quaternion_from_rotation_vector(angle), quaternion_from_rotation_vector(tilt))
     )

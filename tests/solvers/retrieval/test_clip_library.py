@@ -156,9 +156,12 @@ def test_clip_without_a_body_is_named_and_nothing_is_added():
     library = build_clip_library(clips())
     markers = Clip("some markers", Tracks(("a", "b"), np.zeros((9, 2, 3)), 30.0))
     missing = act("wave")
-    unseen = Clip("nobody", missing.with_positions(np.full_like(missing.positions, np.nan)))
+    unobserved = Clip("nobody", missing.with_positions(np.full_like(missing.positions, np.nan)))
 
-    for bad, sentence in ((markers, "some markers: No body was"), (unseen, "nobody: No joint")):
+    for bad, sentence in (
+        (markers, "some markers: No body was"),
+        (unobserved, "nobody: No joint"),
+    ):
         with pytest.raises(InvalidMotionError, match=sentence):
             library.add([*clips(("wave",), (3.5,)), bad])
     assert len(library.entries) == len(ACTS) * len(SPEEDS)

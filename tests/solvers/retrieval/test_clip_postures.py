@@ -19,7 +19,7 @@ from solvers.samples import GaitSettings, walking_gait
 @pytest.mark.parametrize("name", ["step", "kick"])
 def test_postures_ignore_heading_position_and_size(name):
     here = clip_postures(act(name))
-    moved = clip_postures(act(name, heading=2.5, place=(7.0, -2.0)))
+    moved = clip_postures(act(name, heading=2.5, position=(7.0, -2.0)))
     assert_allclose(moved.positions, here.positions, atol=1e-9)
     assert_allclose(moved.root_velocity, here.root_velocity, atol=1e-9)
     assert_allclose(clip_postures(act(name, size=1.3)).positions, here.positions, atol=1e-9)

@@ -1,4 +1,4 @@
-"""K-SVD recovers known atoms, also with missing joints."""
+"""K-SVD recovers true atoms, also with missing joints."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def as_clip(signals, frame_rate=30.0):
     return ClipPostures(signals.reshape(n_frames, 20, 3), np.zeros((n_frames, 4)), frame_rate)
 
 
-def sums_of_known_atoms(rng, n_atoms=12, n_frames=800, n_nonzeros=2):
+def sums_of_random_atoms(rng, n_atoms=12, n_frames=800, n_nonzeros=2):
     atoms = np.linalg.qr(rng.normal(size=(60, 60)))[0][:n_atoms]
     weights = np.zeros((n_frames, n_atoms))
     for row in weights:
@@ -30,13 +30,13 @@ def sums_of_known_atoms(rng, n_atoms=12, n_frames=800, n_nonzeros=2):
 
 
 def test_known_atoms_are_recovered(rng):
-    atoms, signals = sums_of_known_atoms(rng)
+    atoms, signals = sums_of_random_atoms(rng)
     settings = DictionarySettings(n_atoms=12, n_nonzeros=2, n_rounds=30)
 
     learned = learn_dictionary([as_clip(signals)], settings)
 
-    likeness = np.abs(learned.atoms @ atoms.T).max(axis=0)
-    assert (likeness > 0.99).sum() >= 10
+    similarity = np.abs(learned.atoms @ atoms.T).max(axis=0)
+    assert (similarity > 0.99).sum() >= 10
 
 
 def test_each_round_reduces_the_error(rng):

@@ -12,7 +12,7 @@ from solvers.motion import JointRecording, Sensor, Tracks
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.retrieval import Clip, FindMethod, FindSettings, build_clip_library, find_similar
 
-KEPT = dict.fromkeys(("trunk", "left_arm", "right_arm", "left_leg", "right_leg"), False)
+NO_PARTS = dict.fromkeys(("trunk", "left_arm", "right_arm", "left_leg", "right_leg"), False)
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def kinds(matches, n=3):
 @pytest.mark.parametrize(
     "done",
     [
-        {"heading": 2.0, "place": (3.0, -5.0)},
+        {"heading": 2.0, "position": (3.0, -5.0)},
         {"size": 1.25},
         {"seconds": 2.9},
         {"frame_rate": 120.0},
@@ -106,8 +106,8 @@ def test_search_can_be_limited_to_body_parts(library):
     legs = [POSTURE_JOINTS.index(f"left{part}") for part in ("LowerLeg", "Foot", "Toes")]
     mixed[:, legs] = kick.positions[:, legs]
     both = replace(wave, positions=mixed)
-    arm = FindSettings(**KEPT | {"right_arm": True})
-    leg = FindSettings(**KEPT | {"left_leg": True})
+    arm = FindSettings(**NO_PARTS | {"right_arm": True})
+    leg = FindSettings(**NO_PARTS | {"left_leg": True})
     assert kinds(find_similar(both, library, settings=arm)) == ["wave"] * 3
     assert kinds(find_similar(both, library, settings=leg)) == ["kick"] * 3
 
@@ -165,12 +165,14 @@ def test_empty_library_has_no_matches():
 
 def test_invalid_queries_are_refused(library):
     with pytest.raises(InvalidMotionError, match="No part of the body is chosen"):
-        find_similar(act("kick"), library, settings=FindSettings(**KEPT))
+        find_similar(act("kick"), library, settings=FindSettings(**NO_PARTS))
     unobserved = act("kick")
     arm = [POSTURE_JOINTS.index(f"left{part}") for part in ("UpperArm", "LowerArm", "Hand")]
     unobserved.positions[:, arm] = np.nan
     with pytest.raises(InvalidMotionError, match="no tracked joints in: left arm"):
-        find_similar(unobserved, library, settings=FindSettings(**KEPT | {"left_arm": True}))
+        find_similar(
+            unobserved, library, settings=FindSettings(**NO_PARTS | {"left_arm": True})
+        )
     unobserved.positions[:] = np.nan
     with pytest.raises(InvalidMotionError, match="No joint was tracked"):
         find_similar(unobserved, library)

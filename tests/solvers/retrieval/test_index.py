@@ -154,9 +154,9 @@ def test_halves_of_a_clip_are_distinguished(vocabulary):
         for clip in (rising, falling)
     )
     legs = [list(BodyPart).index(part) for part in (BodyPart.LEFT_LEG, BodyPart.RIGHT_LEG)]
-    alike = np.einsum("pcw,pdw->cd", up[legs], down[legs]) / 2.0
-    assert alike[1, 2] > alike[1, 1] + 0.1
-    assert alike[2, 1] > alike[2, 2] + 0.04
+    similarities = np.einsum("pcw,pdw->cd", up[legs], down[legs]) / 2.0
+    assert similarities[1, 2] > similarities[1, 1] + 0.1
+    assert similarities[2, 1] > similarities[2, 2] + 0.04
 
 
 def test_large_block_finds_the_same_best_segments(vocabulary, monkeypatch):
@@ -182,12 +182,12 @@ def test_blocks_survive_storage_and_merging(vocabulary):
         [build_block([1, 2], described[:2]), build_block([3, 4, 5], described[2:])],
         np.array([1, 2, 4, 5]),
     )
-    kept = complete.clips != 3
+    remaining = complete.clips != 3
     query = (complete.histograms[0] / HISTOGRAM_SCALE).astype(np.float32)
     assert_array_equal(read.similarities(query), complete.similarities(query))
-    assert_array_equal(together.clips, complete.clips[kept])
-    assert_array_equal(together.summaries, complete.summaries[kept])
-    assert_array_equal(together.similarities(query), complete.similarities(query)[kept])
+    assert_array_equal(together.clips, complete.clips[remaining])
+    assert_array_equal(together.summaries, complete.summaries[remaining])
+    assert_array_equal(together.similarities(query), complete.similarities(query)[remaining])
 
 
 @pytest.mark.parametrize(

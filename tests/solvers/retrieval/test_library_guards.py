@@ -53,7 +53,7 @@ def test_path_that_is_not_utf_8_is_refused_and_escaped():
 
 
 @pytest.mark.parametrize("name", ["Gehen (2)", "散歩/歩", "👨‍👩‍👧 walk", "café", "a b\u00a0c"])
-def test_name_in_any_language_is_kept(name):
+def test_name_in_any_language_is_accepted(name):
     assert Clip(name, None, (name,)).name == name
 
 

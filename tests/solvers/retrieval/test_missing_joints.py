@@ -14,7 +14,9 @@ from solvers.retrieval.postures.mean_postures import (
 )
 from solvers.retrieval.postures.part_reliability import part_reliability
 
-USUAL = learn_posture_distribution([clip_postures(act(name, 2.5), 20.0) for name in ACTS])
+DISTRIBUTION = learn_posture_distribution([
+    clip_postures(act(name, 2.5), 20.0) for name in ACTS
+])
 RIGHT_ARM = list(BodyPart).index(BodyPart.RIGHT_ARM)
 
 
@@ -47,7 +49,7 @@ def test_filled_joints_follow_the_actors_proportions(name, times):
     complete = clip_postures(actor, 20.0)
     observed = clip_postures(with_missing_joints(actor, "spine"), 20.0)
 
-    found = USUAL.fill_gaps(observed).positions
+    found = DISTRIBUTION.fill_gaps(observed).positions
 
     above = [spine, chest, head]
     assert np.abs(found - complete.positions)[:, above].max() < 0.05
@@ -59,7 +61,7 @@ def test_filled_joints_follow_the_actors_proportions(name, times):
 def test_body_without_hips_and_shoulders_gets_a_heading(heading):
     names = ("chest", "head", "leftUpperArm", "leftUpperLeg", "rightUpperLeg")
     query = with_missing_joints(act("kick", heading=heading), *names)
-    found = USUAL.fill_gaps(clip_postures(query, 20.0)).positions
+    found = DISTRIBUTION.fill_gaps(clip_postures(query, 20.0)).positions
     assert_allclose(found, clip_postures(act("kick"), 20.0).positions, atol=0.15)
 
 
@@ -84,7 +86,7 @@ def test_long_gaps_remain():
 )
 def test_reliability_equals_the_explained_variance(names):
     rng = np.random.default_rng(1)
-    spread = USUAL.covariance + 1e-9 * np.eye(60)
+    spread = DISTRIBUTION.covariance + 1e-9 * np.eye(60)
     drawn = rng.multivariate_normal(np.zeros(60), spread, size=40_000).reshape(-1, 20, 3)
     observed = np.ones((8, 20), bool)
     observed[:, joint_indices(*names)] = False
@@ -100,7 +102,7 @@ def test_reliability_equals_the_explained_variance(names):
         for joints, root in zip(JOINTS, ROOTS, strict=True)
         if (true := drawn[:, joints] - drawn[:, [root]]) is not None
     ]
-    assert_allclose(part_reliability(observed, USUAL), expected, atol=0.03)
+    assert_allclose(part_reliability(observed, DISTRIBUTION), expected, atol=0.03)
 
 
 def _spread(values):
@@ -108,15 +110,19 @@ def _spread(values):
 
 
 def test_reliability_falls_with_missing_joints_of_an_arm():
-    known = []
+    reliabilities = []
     for names in ([], ["rightLowerArm"], ["rightLowerArm", "rightHand", "rightHandEnd"]):
         observed = np.ones((10, 20), bool)
         observed[1:, joint_indices(*names)] = False
-        known.append(part_reliability(observed, USUAL))
-    assert_array_equal(known[0], 1.0)
-    assert known[0][RIGHT_ARM] > known[1][RIGHT_ARM] > known[2][RIGHT_ARM] + 0.2
-    assert_allclose(np.delete(known[2], RIGHT_ARM), 1.0)
+        reliabilities.append(part_reliability(observed, DISTRIBUTION))
+    assert_array_equal(reliabilities[0], 1.0)
+    assert (
+        reliabilities[0][RIGHT_ARM]
+        > reliabilities[1][RIGHT_ARM]
+        > reliabilities[2][RIGHT_ARM] + 0.2
+    )
+    assert_allclose(np.delete(reliabilities[2], RIGHT_ARM), 1.0)
 
 
 def test_parts_never_observed_have_a_low_reliability():
-    assert (part_reliability(np.zeros((3, 20), bool), USUAL) <= 0.02).all()
+    assert (part_reliability(np.zeros((3, 20), bool), DISTRIBUTION) <= 0.02).all()

@@ -170,6 +170,6 @@ def test_other_actors_hops_are_nearer_than_squats(recordings):
     same = np.arange(6)[:, None] // 3 == np.arange(6) // 3
     is_off_diagonal = ~np.eye(6, dtype=bool)
     assert kernel[same & is_off_diagonal].mean() > 1.5 * kernel[~same].mean()
-    for row, alike in zip(kernel, same & is_off_diagonal, strict=True):
-        others = ~alike & (np.arange(6) != row.argmax())
-        assert row[alike].max() > row[others].max()
+    for row, same_class in zip(kernel, same & is_off_diagonal, strict=True):
+        others = ~same_class & (np.arange(6) != row.argmax())
+        assert row[same_class].max() > row[others].max()

@@ -12,8 +12,7 @@ from scipy.spatial.distance import cdist
 from solvers.motion.humanoid.posture_heading import rotate_about_vertical
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.retrieval import Clip, FindSettings, build_clip_library, find_similar
-from solvers.retrieval.index import reranking as likes
-from solvers.retrieval.index import search_index
+from solvers.retrieval.index import reranking, search_index
 from solvers.retrieval.index.index_block import IndexBlock
 from solvers.retrieval.index.posting_lists import build_posting_lists
 from solvers.retrieval.index.search_index import SearchIndex
@@ -24,7 +23,7 @@ from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
 from solvers.retrieval.postures.mean_postures import learn_posture_distribution
 
 RNG = np.random.default_rng(5)
-BELIEVED, BLAMED = likes.NEIGHBOR_WEIGHT, likes.MAX_DISTANCE_RATIO
+BELIEVED, BLAMED = reranking.NEIGHBOR_WEIGHT, reranking.MAX_DISTANCE_RATIO
 
 
 def block(clips, seed=0):
@@ -65,11 +64,11 @@ def test_segments_are_loaded_from_their_blocks():
     assert_array_equal(steps[[1, 3]], first.summaries[[0, 2]].astype(np.float32))
 
 
-@pytest.mark.parametrize("at_once", [1, 300, likes.MAX_CELLS])
+@pytest.mark.parametrize("at_once", [1, 300, reranking.MAX_CELLS])
 def test_distances_of_clips_equal_the_plain_algorithm(at_once, monkeypatch):
-    monkeypatch.setattr(likes, "MAX_CELLS", at_once)
+    monkeypatch.setattr(reranking, "MAX_CELLS", at_once)
     sequences = RNG.normal(size=(5, 16, 3)).astype(np.float32)
-    between = likes.pairwise_warping_costs(sequences)
+    between = reranking.pairwise_warping_costs(sequences)
     for one, other in np.ndindex(5, 5):
         expected = plain_cost(cdist(sequences[one, ::2], sequences[other, ::2]))
         assert_allclose(between[one, other], expected, rtol=1e-4, atol=1e-3)
@@ -78,10 +77,12 @@ def test_distances_of_clips_equal_the_plain_algorithm(at_once, monkeypatch):
 def test_only_small_libraries_cache_clip_distances(monkeypatch):
     index = SearchIndex([(block(range(6)), np.ones(6, bool))])
     segments = np.array([5, 1, 2])
-    kept = index.pairwise_distances(segments)
+    distances = index.pairwise_distances(segments)
     steps = weight_mean_posture(index.steps(segments), MEAN_POSTURE_WEIGHT)
     # Nothing is from itself but what single numbers leave of it.
-    assert_allclose(kept, likes.pairwise_warping_costs(steps.reshape(3, 16, 40)), atol=2e-3)
+    assert_allclose(
+        distances, reranking.pairwise_warping_costs(steps.reshape(3, 16, 40)), atol=2e-3
+    )
     monkeypatch.setattr(search_index, "MAX_PAIRWISE_SEGMENTS", 5)
     assert index.pairwise_distances(segments) is None
 
@@ -98,17 +99,17 @@ def test_clips_are_reranked_by_their_nearest_neighbors():
     ]
     nearest = [some[:3] for some in others]
     result = distances.astype(float)
-    for _ in range(likes.N_ROUNDS):
+    for _ in range(reranking.N_ROUNDS):
         before = result.copy()
         for one in range(9):
             voices = [
-                1.0 + likes.RECIPROCAL_WEIGHT * (one in nearest[other])
+                1.0 + reranking.RECIPROCAL_WEIGHT * (one in nearest[other])
                 for other in nearest[one]
             ]
-            heard = np.average(before[nearest[one]], weights=voices)
-            result[one] = (before[one] + BELIEVED * heard) / (1.0 + BELIEVED)
+            neighbor_mean = np.average(before[nearest[one]], weights=voices)
+            result[one] = (before[one] + BELIEVED * neighbor_mean) / (1.0 + BELIEVED)
     expected = np.minimum(result, BLAMED * distances)
-    assert_allclose(likes.rerank_by_neighbors(distances, between, 3), expected, rtol=1e-5)
+    assert_allclose(reranking.rerank_by_neighbors(distances, between, 3), expected, rtol=1e-5)
 
 
 def test_near_duplicate_of_the_query_stays_first():
@@ -117,7 +118,7 @@ def test_near_duplicate_of_the_query_stays_first():
         [[0, 2, 2.1, 2.2], [2, 0, 0.1, 0.1], [2.1, 0.1, 0, 0.1], [2.2, 0.1, 0.1, 0]],
         dtype=np.float32,
     )
-    assert likes.rerank_by_neighbors(distances, between, 2).argmin() == 0
+    assert reranking.rerank_by_neighbors(distances, between, 2).argmin() == 0
 
 
 @pytest.mark.parametrize(

@@ -117,7 +117,7 @@ def test_schema_of_another_program_is_refused(path, sql):
         load_clip_library(path)
 
 
-def test_view_in_place_of_a_table_is_refused(path):
+def test_view_instead_of_a_table_is_refused(path):
     change(path, "DROP TABLE clips")
     change(path, f"CREATE VIEW clips AS {ENDLESS}")
     with pytest.raises(InvalidFileError, match="is not a clip library"):

@@ -33,7 +33,7 @@ from solvers.rotations.representations import (
 
 ORDERS = ["".join(order) for order in permutations("XYZ")]
 VECTORS = arrays(float, 3, elements=st.floats(-3.0, 3.0, allow_subnormal=False))
-TURNS = VECTORS.map(quaternion_from_rotation_vector)
+ROTATIONS = VECTORS.map(quaternion_from_rotation_vector)
 
 
 @pytest.fixture
@@ -86,14 +86,14 @@ def test_leading_axes_broadcast(random_rotations):
     )
 
 
-@given(TURNS, TURNS, TURNS)
+@given(ROTATIONS, ROTATIONS, ROTATIONS)
 def test_rotations_form_a_group(a, b, c):
     assert_allclose(multiply(multiply(a, b), c), multiply(a, multiply(b, c)), atol=1e-13)
     assert_allclose(multiply(a, inverse(a)), IDENTITY, atol=1e-13)
     assert_allclose(np.linalg.norm(multiply(a, b)), 1.0)
 
 
-@given(TURNS, VECTORS, VECTORS)
+@given(ROTATIONS, VECTORS, VECTORS)
 def test_rotation_keeps_lengths_and_angles(rotation, u, v):
     assert_allclose(rotate(rotation, u) @ rotate(rotation, v), u @ v, atol=1e-11)
     assert_allclose(
@@ -110,7 +110,7 @@ def test_logarithm_inverts_the_exponential(vector):
 
     short = vector if angle <= np.pi else vector * (1 - 2 * np.pi / angle)
 
-    if abs(angle - np.pi) > 1e-6:  # at a half turn both signs are right
+    if abs(angle - np.pi) > 1e-6:  # at 180 degrees both signs are right
         assert_allclose(back, short, atol=1e-9)
 
 
@@ -182,8 +182,10 @@ def test_unwrapping_skips_gaps():
     unwrapped = unwrap_euler(folded)
 
     assert np.isnan(unwrapped[10:13]).all()
-    kept = np.isfinite(folded)
-    assert_allclose((unwrapped - unwrapped[0])[kept], (angles - angles[0])[kept], atol=1e-12)
+    is_finite = np.isfinite(folded)
+    assert_allclose(
+        (unwrapped - unwrapped[0])[is_finite], (angles - angles[0])[is_finite], atol=1e-12
+    )
 
 
 def test_unrolled_signs_do_not_jump_over_gaps(rng):
@@ -209,7 +211,7 @@ def test_slerp_agrees_with_scipy(random_rotations):
             assert angle_between(slerp(start[pair], stop[pair], fraction), expected) < 1e-7
 
 
-@given(TURNS, TURNS, st.floats(0.0, 1.0))
+@given(ROTATIONS, ROTATIONS, st.floats(0.0, 1.0))
 def test_slerp_is_even_and_takes_the_shortest_path(a, b, fraction):
     complete = angle_between(a, b)
 
@@ -257,7 +259,7 @@ def test_opposite_directions_give_180_degrees_and_zero_identity():
     assert_allclose(rotation_between(np.zeros(3), [1.0, 0, 0]), IDENTITY)
 
 
-@given(TURNS, VECTORS)
+@given(ROTATIONS, VECTORS)
 def test_swing_times_twist_is_the_rotation(rotation, axis):
     if np.linalg.norm(axis) < 1e-3:
         return

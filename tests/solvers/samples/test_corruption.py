@@ -19,10 +19,10 @@ def walk():
 def test_jitter_has_the_stated_deviation_on_every_channel(walk):
     error = noise(corrupt(walk, CorruptionSettings(jitter=3.0)), walk)
 
-    turning = [not walk.skeleton.is_end_site(joint) for joint in range(walk.n_joints)]
-    assert_allclose(error[:, turning].std(axis=0), 3.0, atol=0.5)
-    assert_allclose(np.abs(error[:, turning]).mean(), 3.0 * np.sqrt(2 / np.pi), rtol=0.02)
-    assert_allclose(error[:, np.invert(turning)], 0.0, atol=1e-9)
+    moving = [not walk.skeleton.is_end_site(joint) for joint in range(walk.n_joints)]
+    assert_allclose(error[:, moving].std(axis=0), 3.0, atol=0.5)
+    assert_allclose(np.abs(error[:, moving]).mean(), 3.0 * np.sqrt(2 / np.pi), rtol=0.02)
+    assert_allclose(error[:, np.invert(moving)], 0.0, atol=1e-9)
 
 
 def test_spikes_have_the_stated_fraction_and_size(walk):
@@ -102,6 +102,6 @@ def test_settings_raise_for_a_fraction_above_one():
 
 
 def noise(corrupted, clean):
-    """Rotation vectors from the clean to the spoilt pose, degrees."""
-    turn = multiply(inverse(clean.rotations), corrupted.rotations)
-    return np.degrees(rotation_vector_from_quaternion(turn))
+    """Rotation vectors from the clean to the corrupted pose, degrees."""
+    error = multiply(inverse(clean.rotations), corrupted.rotations)
+    return np.degrees(rotation_vector_from_quaternion(error))

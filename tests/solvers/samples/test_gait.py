@@ -1,4 +1,4 @@
-"""The sample must walk like a person, or whoever judges the tools by it is misled."""
+"""The sample must walk like a person, or tools that are measured on it are misjudged."""
 
 import numpy as np
 import pytest

@@ -28,8 +28,8 @@ def test_observed_values_and_the_input_stay_unchanged(rng):
 
     result = fill_gaps(values)
 
-    known = np.isfinite(before).all(axis=-1)
-    assert_array_equal(result[known], before[known])
+    is_observed = np.isfinite(before).all(axis=-1)
+    assert_array_equal(result[is_observed], before[is_observed])
     assert_array_equal(values, before)
 
 
@@ -46,9 +46,9 @@ def test_point_never_observed_stays_missing():
 def test_unreliable_values_are_interpolated():
     values = np.arange(6.0)[:, None] * np.ones(2)
     values[2:4] = 100.0
-    known = np.array([True, True, False, False, True, True])
+    is_observed = np.array([True, True, False, False, True, True])
 
-    result = fill_gaps(values, known)
+    result = fill_gaps(values, is_observed)
 
     assert_allclose(result[:, 0], np.arange(6.0), atol=1e-12)
 

@@ -83,7 +83,7 @@ def test_spikes_are_found_if_a_third_of_all_frames_are_spikes(rng):
 
 
 def test_local_noise_is_high_where_the_noise_is(rng):
-    """White noise of known size in the second half of a 2 Hz swing sampled at 30 Hz."""
+    """White noise of given deviation in the second half of a 2 Hz swing sampled at 30 Hz."""
     time = np.arange(600) / 30.0
     trajectory = np.sin(2 * np.pi * 2.0 * time)[:, None] * [1.0, 0.0, 0.0]
     trajectory[300:] += rng.normal(scale=0.05, size=(300, 3))

@@ -90,14 +90,14 @@ def test_variants_do_not_flip_arms_that_point_up(method, walks):
 
 
 @pytest.mark.parametrize("method", EVERY)
-def test_variants_keep_several_rotations_on_the_spot(method, walks):
+def test_variants_keep_several_rotations_in_place(method, walks):
     spun = []
     for walk, power in zip(walks, (1.0, 1.1, 0.95, 1.05), strict=True):
         angle = about((0, 0, 1), 6 * np.pi * passing(walk, power))
         rotations = walk.rotations.copy()
         rotations[:, 0] = multiply(angle, rotations[:, 0])
-        in_place = walk.root_positions * (0.0, 0.0, 1.0)
-        spun.append(walk.with_poses(rotations, in_place))
+        positions = walk.root_positions * (0.0, 0.0, 1.0)
+        spun.append(walk.with_poses(rotations, positions))
     settings = VarySettings(method=method)
 
     drawn = draw_variants(learn_variation_model(spun, settings=settings), 6, settings=settings)
@@ -145,7 +145,7 @@ def test_model_is_the_same_at_twice_the_frame_rate(walks):
 
 
 @pytest.mark.parametrize("method", Method)
-def test_twenty_thousand_frames(method, walks):
+def test_learning_accepts_twenty_thousand_frames(method, walks):
     """A repeated walk: many frames and their kernels are equal."""
     walk = walks[0]
     rotations = np.tile(walk.rotations, (400, 1, 1))[:20_000]

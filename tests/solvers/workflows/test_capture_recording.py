@@ -20,7 +20,7 @@ from solvers.workflows import capture_recording
 from solvers.workflows.capture_remarks import thickness
 
 BODY = default_body()
-QUICK = CaptureSettings(backward=False, refine=False, check_every=1000)
+FAST = CaptureSettings(backward=False, refine=False, check_every=1000)
 LEVEL = "No floor is visible, so the camera is assumed to be level."
 N_FRAMES = 12
 LEGS = [
@@ -41,7 +41,7 @@ def changed(recording: DepthRecording, change) -> DepthRecording:
 
 
 def caught(recording: DepthRecording, body: BodyModel | None = BODY):
-    return capture_recording(recording, body, settings=QUICK, planting=None)
+    return capture_recording(recording, body, settings=FAST, planting=None)
 
 
 def test_valid_recording_has_no_remarks():
@@ -60,7 +60,9 @@ def test_larger_of_two_people_is_tracked_and_the_other_reported():
     other[:3] += (1.3, 0.0, 0.9)
     behind = drawn(other, BODY.scaled(0.8)).astype(np.float32)
 
-    found = caught(changed(recorded(poses), lambda _, seen: np.where(seen > 0.0, seen, behind)))
+    found = caught(
+        changed(recorded(poses), lambda _, depth: np.where(depth > 0.0, depth, behind))
+    )
 
     assert "Up to 2 people are visible, from 0.0 s on; the most visible one" in found.remarks[0]
     assert off(found, poses).mean() < 0.04
@@ -72,10 +74,10 @@ def test_actor_outside_the_image_is_estimated_flagged_and_reported():
 
     found = caught(recorded(poses))
 
-    gone = np.array([not seen.any() for seen in map(drawn, poses)])
-    assert 3 < gone.sum() < 20
+    is_missing = np.array([not depth.any() for depth in map(drawn, poses)])
+    assert 3 < is_missing.sum() < 20
     assert (
-        found.captured.low_confidence[gone].all()
+        found.captured.low_confidence[is_missing].all()
         and found.captured.low_confidence[:8].mean() < 0.1
     )
     assert re.match(
@@ -100,7 +102,7 @@ def test_upper_body_has_tracked_arms_and_unreliable_legs():
     assert not found.captured.low_confidence[:, ARMS].any()
 
 
-def test_real_upper_bodies_close_by(recordings):
+def test_real_upper_bodies_near_the_camera_are_captured(recordings):
     for path in sorted((recordings / "depth" / "skeltrack").iterdir())[:3]:
         found = caught(read_depth(path), None)
 
@@ -109,16 +111,16 @@ def test_real_upper_bodies_close_by(recordings):
         assert found.captured.residual[0] < 0.05
 
 
-def test_holes_are_no_obstacle():
+def test_depth_images_with_holes_are_captured():
     """Each frame loses every sixth of its pixels, and two patches of eight by eight."""
     poses = waving(N_FRAMES)
 
-    def torn(frame, seen):
+    def torn(frame, depth):
         draw = np.random.default_rng(frame)
-        seen = seen * (draw.random(seen.shape) > 0.16)
+        depth = depth * (draw.random(depth.shape) > 0.16)
         for row, column in draw.integers([20, 60], [90, 100], (2, 2)):
-            seen[row : row + 8, column : column + 8] = 0.0
-        return seen
+            depth[row : row + 8, column : column + 8] = 0.0
+        return depth
 
     found = caught(changed(recorded(poses), torn))
 
@@ -129,7 +131,7 @@ def test_holes_are_no_obstacle():
 def test_missing_frames_are_interpolated_and_reported():
     poses, missing = waving(18), (4, 5, 9, 10, 11, 15)
 
-    found = caught(changed(recorded(poses), lambda one, seen: seen * (one not in missing)))
+    found = caught(changed(recorded(poses), lambda one, depth: depth * (one not in missing)))
 
     assert any(
         "frames no person is detected" in message or "Nobody is" in message
@@ -154,7 +156,7 @@ def test_wrong_focal_lengths_are_reported(across, down, words):
     assert any(words in remark for remark in found.remarks)
 
 
-def test_a_body_as_thick_as_a_barrel_may_be_a_wrong_focal_length():
+def test_very_thick_body_is_reported_as_a_possible_wrong_focal_length():
     """At half the focal length all is twice as wide and high, but no deeper."""
     barrel = BodyModel(BODY.lengths, 1.7 * BODY.radii)
     recording = recorded(waving(4), barrel)
@@ -171,7 +173,7 @@ def test_a_body_as_thick_as_a_barrel_may_be_a_wrong_focal_length():
 
 
 def test_wrong_scale_is_refused_or_reported():
-    in_millimetres = changed(recorded(waving(3)), lambda _, seen: 1000.0 * seen)
+    in_millimetres = changed(recorded(waving(3)), lambda _, depth: 1000.0 * depth)
 
     try:
         message = " ".join(caught(in_millimetres).remarks)
@@ -180,7 +182,7 @@ def test_wrong_scale_is_refused_or_reported():
     assert "scale" in message or "depth is in meters" in message
 
 
-def test_what_is_no_actor_agrees_badly():
+def test_object_that_is_no_actor_has_low_agreement():
     """A board as large as a person, a meter and a half by one."""
     board = np.zeros((120, 160), np.float32)
     board[20:110, 50:110] = 2.5
@@ -202,7 +204,7 @@ def peak_of(n_frames: int, read) -> int:
         tracemalloc.stop()
 
 
-def test_no_image_stays_in_memory():
+def test_images_are_released_from_memory():
     """Each further frame takes much less than its picture: a take of any length fits."""
     still = drawn(waving(1)[0]).astype(np.float32)
     peak_of(2, lambda _: still)  # What is loaded once and for all.

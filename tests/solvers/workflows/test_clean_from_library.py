@@ -70,7 +70,7 @@ def test_missing_leg_is_filled_from_similar_clips(library):
     assert messages[-1] == 1.0
 
 
-def test_what_is_learned_is_what_those_clips_teach(library):
+def test_learned_prior_equals_that_of_the_clips(library):
     learned = bases_from_library(walk(115), library, fetch=fetched)
 
     assert set(learned.clips) == set(WALKS)
@@ -78,7 +78,7 @@ def test_what_is_learned_is_what_those_clips_teach(library):
     assert learned.message.startswith("Learned from 4 clips of the library: ")
 
 
-def test_the_more_a_clip_is_like_the_take_the_more_it_counts(monkeypatch, library):
+def test_more_similar_clips_have_more_weight(monkeypatch, library):
     messages = []
     here = sys.modules["solvers.workflows.clean_from_library"]
     learn = here.learn_filter_bases
@@ -97,11 +97,11 @@ def test_the_more_a_clip_is_like_the_take_the_more_it_counts(monkeypatch, librar
 
 @pytest.mark.parametrize(("score", "n_validations"), [(0.0, 0), (1.1, 1)])
 def test_clips_with_a_low_score_are_validated(monkeypatch, library, score, n_validations):
-    here, asked = sys.modules["solvers.workflows.clean_from_library"], []
+    here, validated = sys.modules["solvers.workflows.clean_from_library"], []
     monkeypatch.setattr(here, "MIN_CONFIDENT_SCORE", score)
-    monkeypatch.setattr(here, "prior_fills_gaps", lambda take, *_: asked.append(take))
+    monkeypatch.setattr(here, "prior_fills_gaps", lambda take, *_: validated.append(take))
     learned = bases_from_library(without_a_leg(walk(115)), library, fetch=fetched)
-    assert len(asked) == n_validations
+    assert len(validated) == n_validations
     assert (learned.bases is None) == bool(n_validations)
     assert ("not used: they predict" in learned.message) == bool(n_validations)
 
@@ -112,7 +112,7 @@ def test_ignored_clips_are_not_learned_from(library):
     assert set(learned.clips) == {"walk 100", "walk 130"}
 
 
-def test_only_the_frames_that_match_are_learned_from(monkeypatch, library):
+def test_only_matching_frames_are_learned_from(monkeypatch, library):
     learned_of = []
     monkeypatch.setattr(
         sys.modules["solvers.workflows.clean_from_library"],
@@ -127,7 +127,7 @@ def test_only_the_frames_that_match_are_learned_from(monkeypatch, library):
     assert 90 <= learned_of[0].n_frames <= 90 + 2 * 15 + 45
 
 
-def test_a_library_of_other_movements_does_no_harm(recordings):
+def test_library_of_other_movements_does_not_degrade_the_result(recordings):
     hdm05 = recordings / "mocap" / "hdm05"
     files = {kind: sorted(hdm05.glob(f"HDM_d*_{kind}*_120.amc"))[:3]
              for kind in ("squat1Reps", "lieDownFloor", "kickLFront1Reps")}  # fmt: skip
@@ -180,12 +180,12 @@ def test_clip_of_an_action_is_not_read_from_its_file():
     assert messages.clips == ("Walk",)
 
 
-def test_what_a_sensor_saw_is_no_example(library):
+def test_sensor_recordings_are_no_examples(library):
     joints = Tracks(("a",), np.zeros((9, 1, 3)), 30.0)
     assert bases_from_library(walk(115), library, fetch=lambda entry: joints).bases is None
 
 
-def test_clips_too_short_to_learn_from_are_reported():
+def test_too_short_clips_are_reported():
     short = {name: motion.slice(0, 5) for name, motion in WALKS.items()}
     library = build_clip_library(Clip(name, motion) for name, motion in short.items())
     learned = bases_from_library(
@@ -206,7 +206,7 @@ def test_points_are_refused(library):
         clean_from_library(markers, library)
 
 
-def test_it_may_be_cancelled_while_clips_are_read(library):
+def test_reading_clips_can_be_cancelled(library):
     def cancel(fraction, message=""):
         if message.startswith("Reading walk"):
             raise SolveCancelled
@@ -215,7 +215,7 @@ def test_it_may_be_cancelled_while_clips_are_read(library):
         clean_from_library(walk(115), library, fetch=fetched, progress=cancel)
 
 
-def test_a_search_with_noise_finds_the_same_clips(library, rng):
+def test_search_with_noise_finds_the_same_clips(library, rng):
     truth = walk(115)
     shape = (*truth.rotations.shape[:2], 3)
     noise = quaternion_from_rotation_vector(np.radians(3.0) * rng.normal(size=shape))
@@ -228,7 +228,7 @@ def test_a_search_with_noise_finds_the_same_clips(library, rng):
     assert error(cleaned.recording, truth, everywhere) < 0.5 * error(noisy, truth, everywhere)
 
 
-def test_what_is_read_again_is_refused_as_files_are(tmp_path):
+def test_missing_clip_file_is_refused(tmp_path):
     with pytest.raises(InvalidFileError, match="There is no file"):
         read_origin(
             build_clip_library([

@@ -31,14 +31,14 @@ def clip_request(tmp_path):
     return found
 
 
-def test_a_file_becomes_what_a_library_keeps_of_it(clip_request):
+def test_file_becomes_a_library_entry(clip_request):
     _, clip, sentence, _ = describe_file(clip_request[1])
     assert (clip.entry.name, clip.entry.tags, clip.entry.n_frames) == ("clip 1", ("walk",), 60)
     assert clip.entry.origin == clip_request[1].origin
     assert (clip.postures.n_frames, clip.postures.frame_rate, sentence) == (40, 20.0, "")
 
 
-def test_a_file_that_takes_its_process_down_is_refused_and_the_others_are_not(clip_request):
+def test_file_that_crashes_its_process_is_refused_and_others_are_described(clip_request):
     deadly = clip_request[1]._replace(tags=(Deadly(),))
 
     found = list(describe_files([clip_request[0], deadly, *clip_request[2:]], jobs=2))
@@ -50,7 +50,7 @@ def test_a_file_that_takes_its_process_down_is_refused_and_the_others_are_not(cl
     )
 
 
-def test_what_is_wrong_is_one_sentence_that_names_the_file(clip_request, tmp_path, monkeypatch):
+def test_error_is_one_sentence_with_the_file(clip_request, tmp_path, monkeypatch):
     gone = ClipRequest("gone", Origin(str(tmp_path / "gone.bvh")), ())
     assert describe_file(gone).sentence == f"There is no file {tmp_path / 'gone.bvh'}."
 
@@ -68,7 +68,7 @@ def test_what_is_wrong_is_one_sentence_that_names_the_file(clip_request, tmp_pat
         assert sentence.endswith(ending)
 
 
-def test_who_cancels_is_not_refused(clip_request, monkeypatch):
+def test_cancellation_is_no_refusal(clip_request, monkeypatch):
     def cancel(path):
         raise SolveCancelled
 

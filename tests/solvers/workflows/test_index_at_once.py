@@ -65,7 +65,7 @@ def test_parallel_indexing_keeps_clips_of_the_same_names(folders, library):
     assert len(index_files(library, folders).unchanged) == 6
 
 
-def test_no_clip_is_there_twice_when_another_indexes_the_same_files(folders, library):
+def test_no_clip_is_duplicated_when_another_process_indexes_the_same_files(folders, library):
     first, _ = folders
 
     index_files(library, [first], progress=once(lambda: index_files(library, [first.parent])))
@@ -73,7 +73,7 @@ def test_no_clip_is_there_twice_when_another_indexes_the_same_files(folders, lib
     assert paths_of(library) == {f"takes/t{n}": first / f"t{n}.bvh" for n in range(3)}
 
 
-def test_clip_of_another_process_stays_when_a_file_turns_out_to_be_of_no_use(folders, library):
+def test_clip_of_another_process_stays_when_its_file_is_refused(folders, library):
     """Its name may be that of another file by now."""
     first, second = folders
     index_files(library, [first])
@@ -91,7 +91,7 @@ def test_clip_of_another_process_stays_when_a_file_turns_out_to_be_of_no_use(fol
     assert len(paths_of(library)) == 3
 
 
-def test_odd_names_of_files_are_refused_and_the_others_become_clips(folders, library):
+def test_invalid_file_names_are_refused_and_others_become_clips(folders, library):
     first, _ = folders
     (first / "t1.bvh").rename(first / "line\nbreak.bvh")
     odd = first / "caf\udce9"
@@ -110,7 +110,7 @@ def test_odd_names_of_files_are_refused_and_the_others_become_clips(folders, lib
         assert r"line\nbreak.bvh' has control characters; rename the file or" in sentences[1]
 
 
-def test_odd_tag_is_refused_before_anything_is_done(folders, library):
+def test_invalid_tag_is_refused_before_the_work(folders, library):
     with pytest.raises(InvalidMotionError, match=r"'a\\tb' has control characters"):
         index_files(library, folders, tags=["fine", "a\tb"])
     assert not library.exists()

@@ -1,4 +1,4 @@
-"""A library is kept as its files are: what is new, changed, gone or of no use."""
+"""A library follows its files: new, changed, deleted or refused ones."""
 
 import os
 import shutil
@@ -69,7 +69,7 @@ def test_folder_becomes_clips_named_by_their_paths(folder, library):
     assert best.clip == "a/fast"
 
 
-def test_what_has_not_changed_is_not_read_again(folder, library, monkeypatch):
+def test_unchanged_files_are_not_read_again(folder, library, monkeypatch):
     index_files(library, [folder])
     (folder / "markers.trc").unlink()
     monkeypatch.setattr(describe_files, "read_tracked", None)
@@ -80,7 +80,7 @@ def test_what_has_not_changed_is_not_read_again(folder, library, monkeypatch):
     assert not (report.added or report.changed or report.removed or report.refused)
 
 
-def test_what_was_refused_is_not_read_again_until_it_changes(folder, library, monkeypatch):
+def test_refused_files_are_not_read_again_until_they_change(folder, library, monkeypatch):
     first = index_files(library, [folder])
     read, tried = describe_files.read_tracked, []
     monkeypatch.setattr(
@@ -91,19 +91,19 @@ def test_what_was_refused_is_not_read_again_until_it_changes(folder, library, mo
     assert again.refused == first.refused
     assert not tried
 
-    write_bvh(walk(100), folder / "markers.trc")  # formats are told by content
+    write_bvh(walk(100), folder / "markers.trc")  # formats are recognized by content
     assert index_files(library, [folder]).added == ("markers",)
     assert len(tried) == 1
 
 
-def test_what_another_version_refused_is_tried_again(folder, library, monkeypatch):
+def test_files_refused_by_another_version_are_read_again(folder, library, monkeypatch):
     index_files(library, [folder])
     monkeypatch.setattr(indexing, "version", lambda: "later")
     monkeypatch.setattr(describe_files, "read_tracked", lambda path: walk())
     assert index_files(library, [folder / "markers.trc"]).n_clips == 4
 
 
-def test_what_memory_could_not_hold_is_tried_again(folder, library, monkeypatch):
+def test_files_refused_for_memory_are_read_again(folder, library, monkeypatch):
     def too_large(path):
         raise MemoryError
 
@@ -121,7 +121,7 @@ def test_library_without_stored_refusals_is_used(folder, library):
     assert len(index_files(library, [folder]).refused) == 1
 
 
-def test_an_amc_has_changed_when_its_skeleton_has(tmp_path, library, recordings):
+def test_amc_file_counts_as_changed_with_its_skeleton(tmp_path, library, recordings):
     mocap = recordings / "mocap"
     for name in ("05.asf", "05_13.amc"):
         shutil.copy(mocap / name, tmp_path / name)
@@ -139,7 +139,7 @@ def test_an_amc_has_changed_when_its_skeleton_has(tmp_path, library, recordings)
     assert index_files(library, [clip]).added == ("05_13",)
 
 
-def test_what_has_changed_is_read_again_under_its_name(folder, library):
+def test_changed_file_is_read_again_under_its_name(folder, library):
     index_files(library, [folder])
     write_bvh(walk(70, duration=2.0), folder / "a" / "fast.bvh")
     moved = (folder / "a" / "slow.bvh").stat().st_mtime_ns + 10**9
@@ -187,7 +187,7 @@ def test_clips_of_deleted_files_are_removed_on_request(folder, library):
         assert [match.clip for match in find_similar(walk(), opened)] == ["a/slow"]
 
 
-def test_a_file_that_is_damaged_later_is_forgotten(folder, library):
+def test_clip_of_a_file_damaged_later_is_removed(folder, library):
     index_files(library, [folder])
     (folder / "a" / "fast.bvh").write_text("HIERARCHY\nROOT")
 
@@ -213,19 +213,19 @@ def test_clips_of_the_same_name_become_unique(folder, library):
     assert {"fast", "slow", "fast.bvh", "slow.bvh"} <= names
 
 
-def test_a_file_named_twice_is_one_clip(folder, library):
+def test_file_listed_twice_is_one_clip(folder, library):
     report = index_files(library, [folder / "a", folder, folder / "a" / "slow.bvh"])
     assert report.added == ("fast", "slow", "b/slow")
 
 
-def test_processes_side_by_side_make_the_same_library(folder, tmp_path):
+def test_parallel_processes_make_the_same_library(folder, tmp_path):
     alone, together = tmp_path / "1.clips", tmp_path / "2.clips"
     first = index_files(alone, [folder])
     assert index_files(together, [folder], jobs=2) == first
     assert entries(alone) == entries(together)
 
 
-def test_an_interrupt_loses_no_more_than_a_batch(folder, library, monkeypatch):
+def test_interrupt_loses_at_most_one_batch(folder, library, monkeypatch):
     monkeypatch.setattr(indexing, "MAX_BATCH_CLIPS", 2)
     for number in range(5):
         write_bvh(walk(100 + number), folder / f"{number}.bvh")
@@ -241,7 +241,7 @@ def test_an_interrupt_loses_no_more_than_a_batch(folder, library, monkeypatch):
     assert (len(rest.unchanged), rest.n_clips) == (4, 8)
 
 
-def test_long_takes_are_written_sooner(folder, library, monkeypatch):
+def test_long_takes_are_written_in_smaller_batches(folder, library, monkeypatch):
     monkeypatch.setattr(indexing, "MAX_BATCH_FRAMES", 30)
     written = []
     monkeypatch.setattr(
@@ -261,7 +261,7 @@ def test_progress_rises_to_one(folder, library):
     assert (messages[0], messages[-1]) == (0.0, 1.0)
 
 
-def test_what_is_not_there_is_refused_before_anything_is_done(folder, library, tmp_path):
+def test_missing_source_is_refused_before_the_work(folder, library, tmp_path):
     with pytest.raises(InvalidFileError, match="There is no file or folder"):
         index_files(library, [folder, tmp_path / "none"])
     assert not library.exists()
@@ -270,14 +270,14 @@ def test_what_is_not_there_is_refused_before_anything_is_done(folder, library, t
         index_files(library, [folder])
 
 
-def test_sources_may_go_after_they_were_indexed(folder, library):
+def test_indexed_sources_can_be_deleted(folder, library):
     index_files(library, [folder])
     shutil.rmtree(folder)
     with load_clip_library(library) as opened:
         assert len(find_similar(walk(80), opened)) == 3
 
 
-def test_rigs_of_all_kinds_are_found_together(recordings, library):
+def test_one_library_can_hold_any_rigs(recordings, library):
     """BVH of CMU and AMC of HDM05 and what a Kinect saw: a squat finds squats."""
     hdm05 = recordings / "mocap" / "hdm05"
     squats = sorted(hdm05.glob("HDM_bd_squat1Reps_*.amc"))[:3]

@@ -35,7 +35,7 @@ def test_all_joints_are_recovered_below_a_missing_joint(walk):
     assert found.tracks.visible[10:14, ankle].all()
 
 
-def test_the_confidence_of_a_tracker_without_states_comes_along(walk):
+def test_confidence_of_a_tracker_without_states_is_recovered(walk):
     messages = np.random.default_rng(2).random(walk.tracks.positions.shape[:2])
     tracks = vocabulary.Tracks(walk.names, walk.tracks.positions, 30.0, messages)
     sure = vocabulary.JointRecording(tracks, None, walk.sensor)
@@ -47,25 +47,30 @@ def test_the_confidence_of_a_tracker_without_states_comes_along(walk):
 
 
 def test_joints_follow_a_moved_armature(walk):
-    """Turned about Z, scaled, and moved: as an armature that stands elsewhere."""
+    """Rotated about Z, scaled, and moved, as a moved armature."""
     motion = motion_from_points(walk.tracks, walk.parents)
-    turn, shift = quaternion_from_rotation_vector(np.array([0.0, 0.0, 0.8])), (1.0, 2.0, 0.9)
+    rotation, shift = (
+        quaternion_from_rotation_vector(np.array([0.0, 0.0, 0.8])),
+        (1.0, 2.0, 0.9),
+    )
     body = motion.skeleton
-    larger = Skeleton(body.names, body.parents, 1.1 * rotate(turn, body.offsets))
-    back = turn * (1.0, -1.0, -1.0, -1.0)
-    rotations = multiply(multiply(turn, motion.rotations), back)  # about turned axes
-    rotations[:, 0] = multiply(multiply(turn, motion.rotations[:, 0]), back)
-    moved = Motion(larger, rotations, 1.1 * rotate(turn, motion.root_positions) + shift, 30.0)
+    larger = Skeleton(body.names, body.parents, 1.1 * rotate(rotation, body.offsets))
+    back = rotation * (1.0, -1.0, -1.0, -1.0)
+    rotations = multiply(multiply(rotation, motion.rotations), back)  # about rotated axes
+    rotations[:, 0] = multiply(multiply(rotation, motion.rotations[:, 0]), back)
+    moved = Motion(
+        larger, rotations, 1.1 * rotate(rotation, motion.root_positions) + shift, 30.0
+    )
 
     found = joints_from_source(moved, walk)
 
     head = walk.tracks.positions[:, walk.names.index("Head")]
-    expected = 1.1 * rotate(turn, head) + shift
+    expected = 1.1 * rotate(rotation, head) + shift
     assert_allclose(found.tracks.positions[:, found.names.index("Head")], expected, atol=1e-6)
 
 
 @pytest.mark.parametrize("change", ["edited", "filled", "other", "slower"])
-def test_it_is_not_believed_for_a_motion_that_was_changed(walk, change):
+def test_source_is_ignored_for_an_edited_motion(walk, change):
     motion = motion_from_points(walk.tracks, walk.parents)
     rotations = motion.rotations.copy()
     if change == "edited":
@@ -84,7 +89,7 @@ def test_it_is_not_believed_for_a_motion_that_was_changed(walk, change):
 
 
 @pytest.mark.parametrize(("first", "stop"), [(0, 40), (5, 60), (70, 90), (30, 31)])
-def test_a_part_of_it_is_found_where_it_was(walk, first, stop):
+def test_segment_is_found_at_its_frames(walk, first, stop):
     motion = motion_from_points(walk.tracks, walk.parents).slice(first, stop)
 
     found = joints_from_source(motion, walk)
@@ -95,7 +100,7 @@ def test_a_part_of_it_is_found_where_it_was(walk, first, stop):
     assert_array_equal(found.tracking_state, walk.tracking_state[first:stop, order])
 
 
-def test_a_part_that_was_edited_is_not_believed(walk):
+def test_source_is_ignored_for_an_edited_segment(walk):
     motion = motion_from_points(walk.tracks, walk.parents).slice(20, 70)
     indices = motion.root_positions.copy()
     indices[30] += 0.05
@@ -103,7 +108,7 @@ def test_a_part_that_was_edited_is_not_believed(walk):
     assert joints_from_source(motion.with_poses(motion.rotations, indices), walk) is None
 
 
-def test_a_longer_motion_is_not_of_it(walk):
+def test_source_is_ignored_for_a_longer_motion(walk):
     motion = motion_from_points(walk.tracks, walk.parents)
     twice = motion.with_poses(
         np.concatenate([motion.rotations] * 2), np.concatenate([motion.root_positions] * 2)
@@ -121,7 +126,7 @@ def test_motionless_take_is_matched(walk):
     assert joints_from_source(motion, still) is not None
 
 
-def test_a_motion_whose_hips_were_put_between_the_legs_is_of_it(walk):
+def test_motion_with_estimated_hips_matches_its_source(walk):
     positions = walk.tracks.positions.copy()
     positions[:, walk.names.index("HipCenter")] = np.nan
     untracked = walk.with_tracks(walk.tracks.with_positions(positions))

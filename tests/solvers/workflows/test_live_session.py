@@ -24,7 +24,7 @@ def lines_of(made, body=0, since=0.0, **settings):
     ]
 
 
-def heard(session, lines):
+def receive(session, lines):
     """All events, queries and messages, as Blender would get them: a few lines at a time."""
     news = [session.receive(lines[start : start + 3]) for start in range(0, len(lines), 3)]
     events = [event.gesture for each in news for event in each.events]
@@ -32,12 +32,12 @@ def heard(session, lines):
     return events, queries, [each.message for each in news if each.message]
 
 
-def test_what_is_performed_between_claps_is_the_query():
+def test_motion_between_claps_is_the_query():
     made = ["clap", "hand up", "wave left", "clap", "rest"]
     performance = perform_gestures(made)
     session = LiveSession()
 
-    events, queries, messages = heard(session, lines_of(made))
+    events, queries, messages = receive(session, lines_of(made))
 
     assert events == [Gesture.CAPTURE_START, Gesture.CAPTURE_END] and not messages
     (query,) = queries
@@ -52,10 +52,10 @@ def test_what_is_performed_between_claps_is_the_query():
     assert_allclose(query.tracks.positions, expected, atol=1e-3)
 
 
-def test_a_session_of_all_commands():
+def test_session_recognizes_all_commands():
     made = ["hand up", "wave right", "rest", "clap", "rest", "clap", "rest", "zoom in"]
 
-    events, queries, _ = heard(LiveSession(), lines_of(made, noise=0.005))
+    events, queries, _ = receive(LiveSession(), lines_of(made, noise=0.005))
 
     assert events[:4] == [
         Gesture.HAND_UP, Gesture.PAGE_NEXT, Gesture.CAPTURE_START, Gesture.CAPTURE_END,
@@ -66,41 +66,41 @@ def test_a_session_of_all_commands():
 def test_performance_without_duration_is_dropped():
     session = LiveSession()
 
-    events, queries, messages = heard(session, lines_of(["clap", "clap", "rest"]))
+    events, queries, messages = receive(session, lines_of(["clap", "clap", "rest"]))
     assert events == [Gesture.CAPTURE_START, Gesture.CAPTURE_END]
     n_frames = [query.n_frames for query in queries]
     assert n_frames == [] or n_frames[0] >= 15
     assert messages == ([] if queries else [TOO_SHORT])
 
 
-def test_a_sender_that_is_started_again_drops_the_performance():
+def test_restarted_sender_drops_the_performance():
     session = LiveSession()
-    heard(session, lines_of(["rest", "rest", "clap", "rest"]))
+    receive(session, lines_of(["rest", "rest", "clap", "rest"]))
     assert session.mode is Mode.CAPTURING
 
-    events, queries, messages = heard(session, lines_of(["hand up"]))
+    events, queries, messages = receive(session, lines_of(["hand up"]))
 
     assert (events[0], queries, messages) == (Gesture.CAPTURE_DROPPED, [], [NO_END])
     assert events[1:] == [Gesture.HAND_UP]
 
 
-def test_another_actor_does_not_end_the_first_ones_performance():
+def test_second_actor_does_not_end_the_performance():
     session = LiveSession()
-    heard(session, lines_of(["clap"], body=1))
+    receive(session, lines_of(["clap"], body=1))
 
-    events, _, _ = heard(session, lines_of(["clap"], body=2, since=10.0))
+    events, _, _ = receive(session, lines_of(["clap"], body=2, since=10.0))
 
     assert events == [Gesture.CAPTURE_DROPPED, Gesture.CAPTURE_START]
 
 
 def test_recorded_frames_are_limited():
     session = LiveSession(GestureSettings(longest_capture=600.0))
-    heard(session, lines_of(["clap"]))
+    receive(session, lines_of(["clap"]))
     (last,) = lines_of(["rest"])[:1]
     del last
     still = lines_of(["rest"] * 20, since=20.0, frame_rate=240.0)
 
-    heard(session, still)
+    receive(session, still)
 
     assert session.mode is Mode.CAPTURING
     assert len(session._performed) <= 20_000
@@ -125,7 +125,7 @@ def test_frames_without_arms_have_no_gestures(names):
         assert session.receive([encode_frame(frame)]).events == ()
 
 
-def test_the_joints_of_every_sensor_are_found():
+def test_joints_of_every_sensor_are_recognized():
     for sensor in (Sensor.KINECT_V1, Sensor.KINECT_V2, Sensor.AZURE_KINECT):
         names = SENSOR_JOINTS[sensor]
         indices = np.arange(3.0 * len(names)).reshape(-1, 3)

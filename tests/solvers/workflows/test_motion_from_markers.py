@@ -1,4 +1,4 @@
-"""From a spoilt optical take to a whole motion, in one go."""
+"""From a damaged optical take to a complete motion, in one call."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def walk():
 
 @pytest.fixture(scope="module")
 def corrupted(walk) -> Tracks:
-    """Swapped wrists, a lost head marker, a lost arm, and points of other names."""
+    """Swapped wrists, a missing head marker, a missing arm, and points of other names."""
     take = markers_on(walk, noise=0.0005, skin=0.002)
     positions = take.positions.copy()
     position = {name: index for index, name in enumerate(take.names)}
@@ -52,12 +52,14 @@ def test_observed_samples_are_unchanged_unless_smoothed(corrupted):
     result = motion_from_markers(corrupted)
     smooth = motion_from_markers(corrupted, settings=MarkerMotionSettings(smooth=True))
 
-    known = result.solved.motion.observed
-    assert np.array_equal(result.motion.rotations[known], result.solved.motion.rotations[known])
+    observed = result.solved.motion.observed
+    assert np.array_equal(
+        result.motion.rotations[observed], result.solved.motion.rotations[observed]
+    )
     assert not np.array_equal(result.motion.rotations, smooth.motion.rotations)
 
 
-def test_steps_can_be_left_out(corrupted):
+def test_steps_can_be_disabled(corrupted):
     plain = MarkerMotionSettings(unswap=False, fill=False)
 
     result = motion_from_markers(corrupted, settings=plain)
@@ -66,7 +68,7 @@ def test_steps_can_be_left_out(corrupted):
     assert result.motion.observed.all()
 
 
-def test_points_of_no_set_are_refused(walk):
+def test_points_of_no_marker_set_are_refused(walk):
     points = Tracks(("a", "b"), np.zeros((5, 2, 3)), 60.0)
 
     with pytest.raises(InvalidMotionError, match="Label them first"):

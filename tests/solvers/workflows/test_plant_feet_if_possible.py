@@ -1,4 +1,4 @@
-"""Feet are planted by what was trusted: lost toes do not lead still ankles astray."""
+"""Feet are planted by reliable joints: missing toes do not move resting ankles."""
 
 import numpy as np
 import pytest
@@ -24,19 +24,19 @@ PLANTING = PlantSettings()
 STANDING = np.ones((60, 2), bool)
 
 
-def places_of(motion: Motion, name: str) -> np.ndarray:
+def positions_of(motion: Motion, name: str) -> np.ndarray:
     return forward_kinematics(motion).positions[:, motion.skeleton.index(name)]
 
 
-def trust_of(motion: Motion, name: str, terms: float) -> np.ndarray:
-    """All joints are trusted but one."""
+def reliability_of(motion: Motion, name: str, terms: float) -> np.ndarray:
+    """All joints are reliable except one."""
     reliability = np.ones((motion.n_frames, motion.n_joints))
     reliability[:, motion.skeleton.index(name)] = terms
     return reliability
 
 
 def standing(toe: np.ndarray) -> Motion:
-    """A body that stands for 2 s while its left toe is seen at these places about the ankle."""
+    """A body that stands for 2 s, with its left toe at these positions about the ankle."""
     still = np.repeat(true_positions(samples, posture_joints)[:1], 60, axis=0)
     for side, across in (("Left", 0.1), ("Right", -0.1)):
         for part, height in (("Hip", 0.92), ("Knee", 0.5), ("Ankle", 0.08)):
@@ -59,12 +59,12 @@ def test_resting_ankle_stays_when_its_toe_is_missing():
     motion = wandering()
 
     planted = plant_feet_if_possible(
-        motion, PLANTING, STANDING, reliability=trust_of(motion, "FootLeft", 0.0)
+        motion, PLANTING, STANDING, reliability=reliability_of(motion, "FootLeft", 0.0)
     )
 
-    moved = places_of(planted.motion, "AnkleLeft") - places_of(motion, "AnkleLeft")
+    moved = positions_of(planted.motion, "AnkleLeft") - positions_of(motion, "AnkleLeft")
     assert np.linalg.norm(moved, axis=-1).max() < 0.01
-    toe = places_of(planted.motion, "FootLeft") - places_of(planted.motion, "AnkleLeft")
+    toe = positions_of(planted.motion, "FootLeft") - positions_of(planted.motion, "AnkleLeft")
     assert np.abs(np.degrees(np.arctan2(toe[:, 0], -toe[:, 1]))).max() < 30.0
 
 
@@ -77,11 +77,13 @@ def test_reliable_ankle_is_planted_near_its_rest_position(recordings, take):
 
     before, terms = found.reconstruction.motion, found.reconstruction.reliability.combined
     for name in ("AnkleLeft", "AnkleRight"):
-        seen = places_of(before, name)
-        around = np.lib.stride_tricks.sliding_window_view(seen, 15, axis=0)
+        before_positions = positions_of(before, name)
+        around = np.lib.stride_tricks.sliding_window_view(before_positions, 15, axis=0)
         still = np.linalg.norm(np.ptp(around, axis=-1), axis=-1) < 0.02
         sure = still & (terms[7:-7, recording.names.index(name)] > 0.6)
-        moved = np.linalg.norm(places_of(found.motion, name) - seen, axis=-1)[7:-7]
+        moved = np.linalg.norm(positions_of(found.motion, name) - before_positions, axis=-1)[
+            7:-7
+        ]
         assert moved[sure].max(initial=0.0) < 0.05, name
 
 
@@ -89,17 +91,19 @@ def test_missing_toe_that_points_up_is_flattened():
     motion = standing(np.array([0.0, -0.1, 0.1]))
 
     planted = plant_feet_if_possible(
-        motion, PLANTING, STANDING, reliability=trust_of(motion, "FootLeft", 0.0)
+        motion, PLANTING, STANDING, reliability=reliability_of(motion, "FootLeft", 0.0)
     ).motion
 
-    toe = places_of(planted, "FootLeft") - places_of(planted, "AnkleLeft")
+    toe = positions_of(planted, "FootLeft") - positions_of(planted, "AnkleLeft")
     assert (toe[:, 2] < -0.02).all()
     assert (toe[:, 1] < -0.08).all()
-    seen, shown = (
-        np.linalg.norm(places_of(each, "FootLeft") - places_of(each, "AnkleLeft"), axis=-1)
+    before_positions, shown = (
+        np.linalg.norm(
+            positions_of(each, "FootLeft") - positions_of(each, "AnkleLeft"), axis=-1
+        )
         for each in (motion, planted)
     )
-    np.testing.assert_allclose(shown, seen, atol=1e-9)
+    np.testing.assert_allclose(shown, before_positions, atol=1e-9)
 
 
 def test_reliable_feet_are_planted_as_without_reliability():
@@ -120,7 +124,7 @@ def test_reliable_feet_are_planted_as_without_reliability():
 
 @pytest.mark.parametrize("number", [1, 2, 3])
 def test_feet_of_real_takes_stand_flat_where_their_ankles_are(recordings, number):
-    """Planting moved trusted ankles by up to 15 cm, and toes pointed up in 63 % of take 2."""
+    """Planting moved reliable ankles by up to 15 cm, and toes pointed up in 63 % of take 2."""
     path = recordings / "kinect" / "kimore" / f"JointPositionExercise{number}.csv"
     recording = read_recording(path).slice(0, 300)
 
@@ -129,7 +133,7 @@ def test_feet_of_real_takes_stand_flat_where_their_ankles_are(recordings, number
     before = found.reconstruction.motion
     for side, name in enumerate(("Left", "Right")):
         contact = found.planted.contacts[:, side]
-        ankle, toe = (places_of(found.motion, f"{part}{name}") for part in ("Ankle", "Foot"))
+        ankle, toe = (positions_of(found.motion, f"{part}{name}") for part in ("Ankle", "Foot"))
         assert (toe > ankle)[contact, 2].mean() < 0.1
-        moved = np.linalg.norm(ankle - places_of(before, f"Ankle{name}"), axis=-1)
+        moved = np.linalg.norm(ankle - positions_of(before, f"Ankle{name}"), axis=-1)
         assert np.percentile(moved, 95) < 0.06

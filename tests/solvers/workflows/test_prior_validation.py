@@ -1,4 +1,4 @@
-"""Examples of another movement are found out where the lost joints were seen."""
+"""Examples of another movement are rejected by observed samples of the missing joints."""
 
 import numpy as np
 import pytest
@@ -39,14 +39,12 @@ def good():
     return learn_filter_bases([walk(110), walk(120)])
 
 
-def test_walks_foretell_a_walk_better_than_the_take_alone(take, good):
+def test_prior_of_walks_is_accepted_for_a_walk(take, good):
     assert prior_fills_gaps(take, good, unwatched)
 
 
 @pytest.mark.parametrize(("times", "believed"), [(0.9, True), (1.1, False)])
-def test_what_is_worse_than_the_take_alone_is_not_believed(
-    take, good, monkeypatch, times, believed
-):
+def test_prior_of_other_movements_is_rejected(take, good, monkeypatch, times, believed):
     monkeypatch.setattr(
         module, "_error", lambda trial, bases, progress: 1.0 if bases is None else times
     )
@@ -54,7 +52,7 @@ def test_what_is_worse_than_the_take_alone_is_not_believed(
 
 
 @pytest.mark.parametrize("frames", [slice(40, 45), slice(0, None), slice(0, 0)])
-def test_without_a_long_gap_or_sight_nothing_is_tried(frames, good, monkeypatch):
+def test_no_validation_runs_without_a_long_gap_or_observed_samples(frames, good, monkeypatch):
     motion = walk(115)
     monkeypatch.setattr(module, "denoise", None)
     assert prior_fills_gaps(without(motion, leg(motion), frames), good, unwatched)
@@ -78,7 +76,7 @@ def test_a_long_take_is_validated_in_a_window(monkeypatch):
     assert first.truth.n_frames <= 30 + 2 * 120
 
 
-def test_it_can_be_cancelled(take, good):
+def test_validation_can_be_cancelled(take, good):
     def cancel(fraction, message=""):
         if fraction > 0.3:
             raise SolveCancelled

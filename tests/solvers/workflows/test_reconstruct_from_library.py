@@ -1,4 +1,4 @@
-"""What was lost of a take is rebuilt from the postures of clips that are like it."""
+"""Missing joints of a take are reconstructed from the postures of similar clips."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from solvers.retrieval import Clip, build_clip_library
 from solvers.workflows import postures_from_library, reconstruct_from_library
 from solvers.workflows.reconstruct_motion import postures_recording
 
-LOST = ("KneeLeft", "AnkleLeft", "FootLeft")
+MISSING = ("KneeLeft", "AnkleLeft", "FootLeft")
 
 
 @pytest.fixture(scope="module")
@@ -35,11 +35,11 @@ def library(clips):
 
 @pytest.fixture
 def squat(clips):
-    """A squat whose left leg is lost in the middle, and where it truly is."""
+    """A squat with the left leg missing in the middle, and its true positions."""
     name = next(name for name in clips if name.startswith("dg_squat"))
     truth = postures_recording(clips[name])
     positions = truth.tracks.positions.copy()
-    columns = [truth.tracks.names.index(joint) for joint in LOST]
+    columns = [truth.tracks.names.index(joint) for joint in MISSING]
     middle = len(positions) // 2
     hidden = slice(middle - 12, middle + 12)
     positions[hidden, columns] = np.nan
@@ -67,7 +67,7 @@ def test_missing_limbs_are_closer_than_with_shipped_postures(clips, library, squ
     assert found.method.startswith("Learned from 9 clips of the library: bk_squat1Reps")
 
 
-def test_a_skeletons_motion_is_searched_with_as_well(clips, library):
+def test_motion_of_a_skeleton_can_be_the_query(clips, library):
     name = next(iter(of_others(clips)))
     found = postures_from_library(
         clips[name], library, ignore=of_others(clips), fetch=lambda entry: clips[entry.name]
@@ -76,7 +76,7 @@ def test_a_skeletons_motion_is_searched_with_as_well(clips, library):
     assert found.postures.n_postures > load_posture_library().n_postures
 
 
-def test_without_a_clip_all_is_as_without_a_library(squat):
+def test_result_equals_that_without_a_library_when_no_clip_matches(squat):
     recording = squat[0]
     empty = reconstruct_from_library(recording, build_clip_library([]))
     default = reconstruct(recording)
@@ -84,7 +84,7 @@ def test_without_a_clip_all_is_as_without_a_library(squat):
     assert empty.method.startswith("No clip of the library is similar to this take; ")
 
 
-def test_joined_postures_are_those_of_both():
+def test_joined_libraries_have_the_postures_of_both():
     shipped = load_posture_library()
     part = replace(
         shipped, directions=shipped.directions[:50], changes=shipped.changes[:50],

@@ -41,7 +41,7 @@ def walk(truth) -> JointRecording:
     return tracked_walk(vocabulary, truth)
 
 
-def test_every_joint_is_there_in_every_frame_and_bones_have_one_length(walk):
+def test_all_joints_are_filled_and_bone_lengths_are_constant(walk):
     result = reconstruct_recording(walk)
 
     assert result.motion.observed.all()
@@ -55,7 +55,7 @@ def test_standing_feet_do_not_slide(walk):
     assert result.planted.slide_after < 0.1 * result.planted.slide_before
 
 
-def test_feet_are_left_alone_on_request(walk):
+def test_feet_are_not_planted_on_request(walk):
     result = reconstruct_recording(walk, planting=None)
 
     assert result.planted is None
@@ -75,7 +75,7 @@ def test_body_without_legs_reports_that_feet_are_not_planted(truth):
     assert len(result.remarks) == 1 and result.remarks[0].startswith("Feet were not planted")
 
 
-def test_fifteen_joints_of_another_tracker_make_a_body(truth):
+def test_fifteen_joints_of_another_tracker_are_reconstructed(truth):
     indices = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in NITE.values()]
     recording = JointRecording(Tracks(tuple(NITE), truth[:, indices], 30.0), None, Sensor.OTHER)
 
@@ -91,7 +91,7 @@ def test_fifteen_joints_of_another_tracker_make_a_body(truth):
     "file",
     ["azure/joints_sync_1.csv", "irds/215_18_5_8_1_stand.txt", "laban/Ges01_wavehand.csv"],
 )
-def test_trackers_of_25_and_32_joints(recordings, file):
+def test_trackers_with_25_and_32_joints_are_reconstructed(recordings, file):
     recording = read_recording(recordings / "kinect" / file)
 
     result = reconstruct_recording(recording)
@@ -141,7 +141,7 @@ def test_recordings_of_untracked_joints_are_refused(truth, state, settings, mess
         reconstruct_recording(recording, settings=settings)
 
 
-def test_a_spine_alone_is_no_body(truth):
+def test_recording_of_a_spine_only_is_refused(truth):
     columns = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in ("HipCenter", "Spine")]
     recording = as_recording(truth[:, columns], ("SpineBase", "SpineMid"))
 
@@ -156,7 +156,7 @@ def test_unrecognized_joint_names_are_reported(truth):
         reconstruct_recording(as_recording(truth, names))
 
 
-def test_a_child_and_a_giant_are_human(truth):
+def test_small_and_tall_bodies_are_accepted(truth):
     for size in (0.5, 1.3):
         assert reconstruct_recording(as_recording(size * truth)).motion.observed.all()
 
@@ -179,12 +179,12 @@ def test_gap_in_time_stamps_is_estimated_and_reported(walk, tmp_path):
     assert "Nothing was tracked for 3.0 s from 1.5 s on" in result.remarks[0]
 
 
-def test_two_frames_are_enough(truth):
+def test_two_frames_are_reconstructed(truth):
     assert reconstruct_recording(as_recording(truth[:2])).motion.n_frames == 2
     assert reconstruct_recording(as_recording(truth[:1])).motion.n_frames == 1
 
 
-def test_the_motion_of_a_trackers_armature_is_rebuilt_on_its_own_skeleton(walk):
+def test_motion_of_a_tracker_armature_is_reconstructed_on_its_skeleton(walk):
     motion = motion_from_points(walk.tracks, walk.parents)
     order = [walk.names.index(name) for name in motion.skeleton.names]
 
@@ -196,17 +196,17 @@ def test_the_motion_of_a_trackers_armature_is_rebuilt_on_its_own_skeleton(walk):
     assert result.reliability[45, wrist] < 0.3 < result.reliability[10, wrist]
 
 
-def test_the_motion_of_any_other_rig_is_rebuilt_too():
+def test_motion_of_another_rig_is_reconstructed():
     walk = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=30.0))
 
     result = reconstruct_motion(walk)
 
     assert result.motion.skeleton is walk.skeleton
-    known = np.isfinite(result.reliability).all(axis=0)
-    assert 15 <= known.sum() < walk.n_joints or known.all()
+    is_known = np.isfinite(result.reliability).all(axis=0)
+    assert 15 <= is_known.sum() < walk.n_joints or is_known.all()
 
 
-def test_hips_that_are_never_tracked_are_between_the_legs(recordings):
+def test_hips_never_tracked_are_between_the_legs(recordings):
     recording = read_recording(recordings / "kinect" / "irds" / "215_18_5_3_1_stand.txt")
     hips, *legs = (recording.names.index(each) for each in ("SpineBase", "HipLeft", "HipRight"))
     untracked = recording.tracks.positions.copy()

@@ -1,10 +1,10 @@
-"""Why a joint of an armature was trusted or not: three signs, and which tell nothing."""
+"""Why a joint of an armature is reliable or not: three terms, and which are missing."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from kinect_walks import HIDDEN, LOST, tracked_walk, true_positions
+from kinect_walks import HIDDEN, OCCLUDED_FRAMES, tracked_walk, true_positions
 
 import solvers.motion as motion_module
 from solvers import samples
@@ -40,8 +40,10 @@ def test_tracking_term_is_that_of_the_sensor(walk, moved):
 
     for name in HIDDEN:
         message = of(reliability.tracking, moved, name)
-        assert np.allclose(message[LOST], GUESSED)
-        assert np.allclose(np.delete(message, np.arange(LOST.start, LOST.stop)), 1.0)
+        assert np.allclose(message[OCCLUDED_FRAMES], GUESSED)
+        assert np.allclose(
+            np.delete(message, np.arange(OCCLUDED_FRAMES.start, OCCLUDED_FRAMES.stop)), 1.0
+        )
     assert np.allclose(of(reliability.tracking, moved, "WristRight"), 1.0)
 
 
@@ -58,15 +60,15 @@ def test_length_term_needs_the_recording_of_an_armature(walk, moved):
 
     assert np.isnan(alone.kinematics).all()
     elbow = of(with_file.kinematics, moved, "ElbowLeft")
-    assert elbow[LOST].mean() < 0.8 < np.median(elbow[: LOST.start])
+    assert elbow[OCCLUDED_FRAMES].mean() < 0.8 < np.median(elbow[: OCCLUDED_FRAMES.start])
 
 
 def test_jittering_joint_has_a_low_behavior_term(walk, moved):
     reliability = reconstruct_motion(moved, source=walk).reliability_terms
 
     wrist = of(reliability.behavior, moved, "WristLeft")
-    assert wrist[LOST].mean() < 0.7
-    assert np.allclose(wrist[: LOST.start - 3], 1.0)
+    assert wrist[OCCLUDED_FRAMES].mean() < 0.7
+    assert np.allclose(wrist[: OCCLUDED_FRAMES.start - 3], 1.0)
 
 
 def test_other_joints_have_no_reliability():

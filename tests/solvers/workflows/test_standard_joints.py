@@ -1,4 +1,4 @@
-"""Joints under other names are understood, and what is told of them comes along."""
+"""Joints with other names are recognized, with their states and confidence."""
 
 import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
@@ -9,7 +9,7 @@ from solvers.workflows.standard_joints import standardize_joint_names
 NAMES = ("head", "leftUpperLeg", "rightUpperLeg", "leftLowerLeg", "rightLowerLeg")
 
 
-def test_hips_between_the_legs_are_as_sure_as_the_less_sure_leg():
+def test_estimated_hips_have_the_lower_confidence_of_both_legs():
     rng = np.random.default_rng(1)
     positions, messages = rng.normal(size=(4, 5, 3)), rng.random((4, 5))
     state = rng.integers(0, 3, (4, 5))
@@ -29,7 +29,7 @@ def test_hips_between_the_legs_are_as_sure_as_the_less_sure_leg():
     assert_array_equal(found.tracking_state[:, knee], state[:, 3])
 
 
-def test_what_the_tracker_does_not_tell_is_not_made_up():
+def test_missing_states_and_confidence_stay_missing():
     take = JointRecording(Tracks(NAMES, np.ones((4, 5, 3)), 30.0), None, Sensor.OTHER)
 
     found = standardize_joint_names(take)

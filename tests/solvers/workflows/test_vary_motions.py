@@ -56,7 +56,7 @@ def test_the_same_seed_makes_the_same_variants(walks):
     )
 
 
-def test_an_example_of_another_behaviour_is_named(walks):
+def test_example_of_another_behavior_is_named(walks):
     still = walks[0]
     rotations = np.repeat(still.rotations[:1], still.n_frames, axis=0)
     standing = Motion(still.skeleton, rotations, still.root_positions * 0.3, still.frame_rate)

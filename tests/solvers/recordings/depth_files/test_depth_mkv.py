@@ -177,7 +177,7 @@ def test_a_picture_of_another_size_is_an_empty_frame(write):
     assert any("1 images are damaged" in sentence for sentence in text)
 
 
-def test_colours_are_found_where_the_points_fall(write):
+def test_colors_are_found_where_the_points_fall(write):
     """A wall one meter away; its left half is red for the camera of color, its right blue."""
     painted = np.zeros((720, 1280, 3), np.uint8)
     painted[:, :640, 0], painted[:, 640:, 2] = 255, 255

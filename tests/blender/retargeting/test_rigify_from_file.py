@@ -1,4 +1,4 @@
-"""A stranger's take, from the file to a Rigify rig: standing, cleaned, on the right limbs."""
+"""A foreign take, from the file to a Rigify rig: upright, cleaned, on the right limbs."""
 
 import numpy as np
 import pytest
@@ -20,13 +20,13 @@ LIMBS = {
 def smplx(tmp_path):
     """A body that bows and bends a knee, as AMASS stores it: Z up, 60 Hz."""
     n_frames = 60
-    turn = np.linspace(0.0, 1.0, n_frames)
+    progress = np.linspace(0.0, 1.0, n_frames)
     poses = np.zeros((n_frames, 55, 3))
     poses[:, 0, 0] = np.pi / 2
-    poses[:, 3, 0] = 0.5 * turn
-    poses[:, 6, 0] = 0.5 * turn
-    poses[:, 1, 0] = -0.6 * turn
-    poses[:, 4, 0] = 1.0 * turn
+    poses[:, 3, 0] = 0.5 * progress
+    poses[:, 6, 0] = 0.5 * progress
+    poses[:, 1, 0] = -0.6 * progress
+    poses[:, 4, 0] = 1.0 * progress
     poses[:, 16, 2] = -1.0
     poses[:, 17, 2] = 1.0
     path = tmp_path / "bow.npz"
@@ -51,7 +51,7 @@ def take(request, recordings, smplx):
 @pytest.mark.parametrize(
     "take", ["Bandai-Namco", "Mixamo FBX", "Mixamo GLB", "SMPL-X"], indirect=True
 )
-def test_the_rig_does_what_the_take_does(take, blank, hero, give, poses, load):
+def test_retargeted_rig_follows_the_take(take, blank, hero, give, poses, load):
     blank.ops.mocap_assist.import_recording(filepath=str(take))
     source = blank.context.object
     assert source.type == "ARMATURE"

@@ -44,20 +44,18 @@ def entry_of(action):
     return json.loads(action[HISTORY])[-1]
 
 
-def test_a_file_of_postures_takes_the_place_of_those_that_are_shipped(
-    walk, reconstruct, postures_file
-):
+def test_posture_file_replaces_the_shipped_library(walk, reconstruct, postures_file):
     entry = entry_of(reconstruct(postures="LEARNED", postures_file=str(postures_file)))
 
     assert "Anna's walk" in entry["method"] and "CMU" not in entry["method"]
     assert entry["settings"]["postures_file"] == str(postures_file)
 
 
-def test_a_file_of_how_the_sensor_errs_is_taken_out(walk, reconstruct, residuals_file):
-    usual = reconstruct()
+def test_residual_file_corrects_the_sensor_errors(walk, reconstruct, residuals_file):
+    default = reconstruct()
     own = reconstruct(residuals_file=str(residuals_file))
 
-    assert "my own sensor" not in entry_of(usual)["method"]
+    assert "my own sensor" not in entry_of(default)["method"]
     assert "my own sensor" in entry_of(own)["method"]
     first, second = (
         np.array([
@@ -66,12 +64,12 @@ def test_a_file_of_how_the_sensor_errs_is_taken_out(walk, reconstruct, residuals
             if "KneeRight" in curve.data_path and "mocap" not in curve.data_path
             for key in curve.keyframe_points
         ])
-        for action in (usual, own)
+        for action in (default, own)
     )
     assert np.abs(first - second).max() > 1e-3
 
 
-def test_postures_learned_anew_are_read_anew(walk, reconstruct, postures_file, load):
+def test_updated_posture_file_is_read_again(walk, reconstruct, postures_file, load):
     reconstruction = load("solvers.reconstruction")
     choice = {"postures": "LEARNED", "postures_file": str(postures_file)}
     reconstruct(**choice)
@@ -99,11 +97,11 @@ def test_a_damaged_model_file_gives_one_message(
         assert said.strip().count("\n") == 0
 
 
-def test_postures_that_were_not_picked(walk, refused):
+def test_missing_posture_file_is_reported(walk, refused):
     assert "Choose a pose file" in refused(postures="LEARNED")
 
 
-def test_the_panel_offers_both(blank, draw, actor):
+def test_panel_has_fields_for_both_files(blank, draw, actor):
     settings = blank.context.scene.mocap_assist.reconstruct
     shown = draw("MOCAP_PT_reconstruct")
     assert "residuals_file" in shown and "postures_file" not in shown

@@ -1,4 +1,4 @@
-"""Points and armature are in one place, however the camera stood."""
+"""Points and armature have the same world positions for any camera pose."""
 
 import numpy as np
 import pytest
@@ -24,14 +24,16 @@ def stood(load):
 
 @pytest.mark.parametrize("roll, tilt", [(0.0, 20.0), (10.0, 0.0), (5.0, 30.0), (-12.0, 15.0)])
 @pytest.mark.parametrize("matrix", [None, MOVED])
-def test_the_body_is_seen_where_the_camera_saw_it(
+def test_armature_and_points_agree_for_any_camera_pose(
     roll, tilt, matrix, stood, write_tracked, given_poses, load, blank
 ):
     made = write_tracked(floor=stood(roll, tilt), matrix=matrix)
-    seen = load("solvers.depth_tracking.body.kinematics").segment_frames(made.body, given_poses)
+    frames = load("solvers.depth_tracking.body.kinematics").segment_frames(
+        made.body, given_poses
+    )
     shown = load("mocap_assist.track.tracked_body").posed_frames
     for picture in (0, 11):
         blank.context.scene.frame_set(1 + picture)
-        through_points = np.array(made.points.matrix_world) @ seen[picture]
+        through_points = np.array(made.points.matrix_world) @ frames[picture]
         through_bones = np.array(made.armature.matrix_world) @ shown(made.armature, made.body)
         np.testing.assert_allclose(through_bones, through_points, atol=1e-4)

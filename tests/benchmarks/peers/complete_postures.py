@@ -1,8 +1,8 @@
-"""What all peers of retrieval see: whole postures, however much of a query is lost.
+"""Complete postures for all peers of retrieval, however many joints of a query are missing.
 
-Methods from the literature know nothing of lost joints. So that they can be compared there too,
-gaps are bridged in time and joints that were never seen are put where they most likely are,
-given the others (the conditional mean of a Gaussian of the library's postures).
+Methods from the literature do not handle missing joints. So that they can be compared there
+too, gaps are bridged in time and joints that were never observed get their most likely
+positions, given the others (the conditional mean of a Gaussian of the library's postures).
 """
 
 from collections.abc import Sequence
@@ -16,12 +16,12 @@ from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
 from solvers.retrieval.published.observed_signals import observed_signals
 
 RIDGE = 1e-4
-"""Metres squared; a centimetre of doubt on each coordinate."""
+"""Metres squared; a standard deviation of one centimetre on each coordinate."""
 
 
 @dataclass(frozen=True, eq=False)
-class WholePostures:
-    """OutputKind postures whole; frames are vectors of 60."""
+class CompletePostures:
+    """Fill missing joints of postures; frames are vectors of 60."""
 
     mean: Array
     covariance: Array
@@ -32,23 +32,30 @@ class WholePostures:
 
     def completed(self, postures: ClipPostures) -> Array:
         """Return frames, shape (n_frames, 60), without NaN."""
-        signals, seen = observed_signals(postures.positions)
-        if seen.all():
+        signals, is_observed = observed_signals(postures.positions)
+        if is_observed.all():
             return signals
-        known = self.covariance[np.ix_(seen, seen)] + RIDGE * np.eye(seen.sum())
-        to_lost = np.linalg.solve(known, self.covariance[np.ix_(seen, ~seen)])
-        signals[:, ~seen] = self.mean[~seen] + (signals[:, seen] - self.mean[seen]) @ to_lost
+        observed_covariance = self.covariance[
+            np.ix_(is_observed, is_observed)
+        ] + RIDGE * np.eye(is_observed.sum())
+        weights = np.linalg.solve(
+            observed_covariance, self.covariance[np.ix_(is_observed, ~is_observed)]
+        )
+        signals[:, ~is_observed] = (
+            self.mean[~is_observed]
+            + (signals[:, is_observed] - self.mean[is_observed]) @ weights
+        )
         return signals
 
 
-def learn_whole(
+def learn_complete_postures(
     clips: Sequence[Tracks], frame_rate: float
-) -> tuple[WholePostures, list[Array]]:
+) -> tuple[CompletePostures, list[Array]]:
     """Return what completes, and the library's clips as frames."""
     found = [observed_signals(clip_postures(clip, frame_rate).positions)[0] for clip in clips]
     frames = np.concatenate(found)
-    whole = WholePostures(frames.mean(axis=0), np.cov(frames.T), frame_rate)
-    return whole, found
+    complete = CompletePostures(frames.mean(axis=0), np.cov(frames.T), frame_rate)
+    return complete, found
 
 
 def resampled(frames: Array, n_frames: int) -> Array:

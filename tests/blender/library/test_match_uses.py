@@ -1,4 +1,4 @@
-"""What else becomes of a match: a ghost, a link, an example to learn from, an asset."""
+"""Other uses of a match: a ghost, a link, an example to learn from, an asset."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def ghost(load, blank):
     return lines
 
 
-def test_the_ghost_of_the_very_motion_is_where_the_query_is(
+def test_ghost_of_the_identical_motion_is_on_the_query(
     find, bring, clip_files, choose, ghost, poses, blank, load, tmp_path
 ):
     blank.context.scene.render.fps = 30
@@ -45,11 +45,11 @@ def test_the_ghost_of_the_very_motion_is_where_the_query_is(
         found = poses(armature, [frame])
         joints = lines.reshape(-1, 3)
         for bone in ("Hips", "LeftFoot", "RightHand", "LeftLeg"):
-            place = found[bone][0][:3, 3]
-            assert np.linalg.norm(joints - place, axis=-1).min() < 0.08, (bone, frame)
+            head = found[bone][0][:3, 3]
+            assert np.linalg.norm(joints - head, axis=-1).min() < 0.08, (bone, frame)
 
 
-def test_the_ghost_stands_still_before_and_after(find, newcomer, ghost, load, blank):
+def test_ghost_holds_its_ends_outside_the_match(find, newcomer, ghost, load, blank):
     newcomer("squat")
     find()
 
@@ -63,7 +63,7 @@ def test_there_is_no_ghost_without_a_match(ghost, blank):
     assert ghost(1) is None
 
 
-def test_the_ghost_goes_back_through_time_as_the_alignment_says(load):
+def test_ghost_frames_follow_the_alignment(load):
     ghost, finding = (
         load("mocap_assist.search.ghost"),
         load("mocap_assist.search.solve_finding"),
@@ -111,7 +111,7 @@ def test_recordings_cannot_be_linked(actions_found, choose, blank):
         blank.ops.mocap_assist.link_match()
 
 
-def test_a_blend_file_that_has_gone(actions_found, choose, blank, blend_file):
+def test_use_reports_a_missing_blend_file(actions_found, choose, blank, blend_file):
     played = actions_found.animation_data.action
     choose("shot/wave_0")
     blend_file.unlink()
@@ -124,7 +124,7 @@ def test_a_blend_file_that_has_gone(actions_found, choose, blank, blend_file):
     assert actions_found.animation_data.action == played
 
 
-def test_clean_and_reconstruct_learn_from_the_best(actions_found, blank, clip_files):
+def test_clean_and_reconstruct_learn_from_the_best_matches(actions_found, blank, clip_files):
     settings = blank.context.scene.mocap_assist
 
     assert blank.ops.mocap_assist.learn_from_matches(n_best=3) == {"FINISHED"}
@@ -139,7 +139,7 @@ def test_clean_and_reconstruct_learn_from_the_best(actions_found, blank, clip_fi
     assert len(settings.reconstruct.examples.split("; ")) == 2
 
 
-def test_clips_whose_files_are_gone_do_not_serve(actions_found, blank, clip_files, blend_file):
+def test_clips_with_missing_files_are_no_examples(actions_found, blank, clip_files, blend_file):
     for path in (*clip_files.iterdir(), blend_file):
         path.unlink()
 
@@ -148,7 +148,7 @@ def test_clips_whose_files_are_gone_do_not_serve(actions_found, blank, clip_file
     assert blank.context.scene.mocap_assist.clean.examples == ""
 
 
-def test_an_action_becomes_an_asset_with_all_that_belongs_to_it(
+def test_action_becomes_an_asset_with_catalog_tags_and_preview(
     actions_found, blank, tmp_path, choose, index, load
 ):
     choose("shot/wave_0")
@@ -163,8 +163,8 @@ def test_an_action_becomes_an_asset_with_all_that_belongs_to_it(
     data = action.asset_data
     assert [tag.name for tag in data.tags] == ["greeting", "Gestures/Hello", "best", "of all"]
     catalogs = load("mocap_assist.library.catalogs")
-    known = catalogs.read_catalogs(tmp_path / "assets" / "blender_assets.cats.txt")
-    assert known == {data.catalog_id: "Ours/Hands"}
+    stored = catalogs.read_catalogs(tmp_path / "assets" / "blender_assets.cats.txt")
+    assert stored == {data.catalog_id: "Ours/Hands"}
     assert tuple(action.preview.image_size) == (128, 128)
     pixels = np.empty(128 * 128 * 4, np.float32)
     action.preview.image_pixels_float.foreach_get(pixels)
@@ -182,7 +182,7 @@ def test_catalogs_need_a_saved_file(newcomer, blank):
     assert blank.ops.mocap_assist.mark_asset(tags="x") == {"FINISHED"}
 
 
-def test_catalogs_are_added_once_and_others_stay(load, tmp_path):
+def test_catalog_is_added_once_and_others_stay(load, tmp_path):
     catalogs = load("mocap_assist.library.catalogs")
     file = tmp_path / catalogs.FILE
     file.write_text("# note\nVERSION 1\n\n11111111-0000-0000-0000-000000000000:A/B:A-B")

@@ -1,4 +1,4 @@
-"""Scenes that nobody means to make: one sentence, at once, and nothing is changed."""
+"""Invalid scenes: one sentence, at once, and nothing is changed."""
 
 from types import SimpleNamespace
 
@@ -58,7 +58,7 @@ def test_a_mirrored_armature_is_refused(walker, refused, blank, button, scale, r
 
 @pytest.mark.parametrize("button", BUTTONS)
 @pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_an_armature_that_stands_nowhere_is_refused(walker, refused, blank, button, value):
+def test_armature_with_nan_location_is_refused(walker, refused, blank, button, value):
     walker.location.x = value
     blank.context.view_layer.update()
 
@@ -69,7 +69,7 @@ def test_an_armature_that_stands_nowhere_is_refused(walker, refused, blank, butt
 
 
 @pytest.mark.parametrize("button", BUTTONS)
-def test_a_key_at_no_frame_is_refused(walker, refused, button):
+def test_key_at_frame_nan_is_refused(walker, refused, button):
     curves(walker)[0].keyframe_points[-1].co.x = np.nan
 
     assert "has a key whose frame is not a number (NaN)" in refused(button)
@@ -77,7 +77,7 @@ def test_a_key_at_no_frame_is_refused(walker, refused, button):
 
 @pytest.mark.parametrize("button", BUTTONS)
 @pytest.mark.parametrize("frame", [np.inf, -np.inf, 2e6])
-def test_a_key_beyond_all_frames_is_refused(walker, refused, button, frame):
+def test_key_beyond_the_frame_limit_is_refused(walker, refused, button, frame):
     curves(walker)[0].keyframe_points[-1 if frame > 0 else 0].co.x = frame
 
     sentence = refused(button)
@@ -99,7 +99,7 @@ def test_keys_out_of_order_are_refused(walker, refused, button):
 
 @pytest.mark.parametrize("button", BUTTONS)
 @pytest.mark.parametrize("frame", [-1_000_000, 20_000, 1_048_574])
-def test_a_stray_key_far_out_is_refused_before_anything_is_sampled(
+def test_distant_single_key_is_refused_before_sampling(
     walker, refused, load, monkeypatch, button, frame
 ):
     channel = load("mocap_assist.actions.curves").Channel
@@ -113,7 +113,7 @@ def test_a_stray_key_far_out_is_refused_before_anything_is_sampled(
     assert "choose a frame range" in sentence
 
 
-def test_a_frame_range_leaves_a_stray_key_out(walker, blank):
+def test_frame_range_excludes_a_distant_key(walker, blank):
     curves(walker)[0].keyframe_points.insert(500_000, 0.3)
     blank.context.scene.use_preview_range = True
     blank.context.scene.frame_preview_start, blank.context.scene.frame_preview_end = 1, 50
@@ -124,7 +124,7 @@ def test_a_frame_range_leaves_a_stray_key_out(walker, blank):
     assert curves(walker)[0].keyframe_points[-1].co.x == 500_000
 
 
-def test_few_keys_of_an_animator_are_read_however_far_apart(make_armature, animate, blank):
+def test_sparse_keys_are_read_at_any_distance(make_armature, animate, blank):
     armature = make_armature()
     animate(armature, frames=range(1, 9000, 1500))
 
@@ -132,14 +132,14 @@ def test_few_keys_of_an_animator_are_read_however_far_apart(make_armature, anima
 
 
 @pytest.mark.parametrize("button", BUTTONS)
-def test_a_frame_rate_beyond_reason_is_refused(walker, refused, blank, button):
+def test_extreme_frame_rate_is_refused(walker, refused, blank, button):
     blank.context.scene.render.fps, blank.context.scene.render.fps_base = 32767, 1e-5
 
     assert "Hz is not that of a recording" in refused(button)
 
 
 @pytest.mark.parametrize("button", BUTTONS)
-def test_a_take_of_nan_only_is_refused(walker, refused, button):
+def test_take_of_nan_only_is_refused(walker, refused, button):
     for curve in curves(walker):
         keys = np.empty(2 * len(curve.keyframe_points), dtype=np.float32)
         curve.keyframe_points.foreach_get("co", keys)
@@ -151,7 +151,7 @@ def test_a_take_of_nan_only_is_refused(walker, refused, button):
 
 @pytest.fixture
 def press_slowly(press_button, load, monkeypatch):
-    """Press Clean in a window; Blender has a turn after each bone that is read."""
+    """Press Clean in a window; Blender gets control after each bone that is read."""
     monkeypatch.setattr(load("mocap_assist.runtime.solver_operator"), "MAX_SLICE_S", 0.0)
     choices = load("mocap_assist.clean.choices")
     denoising = load("solvers.denoising")
@@ -173,7 +173,7 @@ def is_reading(button):
     return not hasattr(button, "_job")
 
 
-def test_esc_works_while_a_take_is_read(walker, press_slowly, window, blank):
+def test_esc_cancels_reading_a_take(walker, press_slowly, window, blank):
     button = press_slowly()
     assert is_reading(button) and "Reading" in window.status[-1]
     button.modal(window.context, event("TIMER"))
@@ -183,22 +183,22 @@ def test_esc_works_while_a_take_is_read(walker, press_slowly, window, blank):
     assert nothing_is_left(window) and len(blank.data.actions) == 1
 
 
-def test_a_take_that_is_read_in_turns_is_the_same(walker, press_slowly, window, blank, keys_of):
+def test_take_read_in_time_slices_is_the_same(walker, press_slowly, window, blank, keys_of):
     played = walker.animation_data.action
     assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
     at_once = list(keys_of(walker.animation_data.action).values())
     walker.animation_data.action = played
 
     button = press_slowly()
-    turns = SimpleNamespace(reading=0)
+    counter = SimpleNamespace(reading=0)
 
     def look():
-        turns.reading += is_reading(button)
+        counter.reading += is_reading(button)
         return False
 
     assert wait(button, window, look) == {"FINISHED"}
 
-    assert turns.reading > len(walker.data.bones)
+    assert counter.reading > len(walker.data.bones)
     assert list(keys_of(walker.animation_data.action).values()) == at_once
 
 
@@ -214,19 +214,19 @@ def undo_like(bpy, armature):
     """Replace all curves, as undo does, which makes pointers to them stale."""
     before = armature.animation_data.action
     bag = before.layers[0].strips[0].channelbags[0]
-    kept = [
+    stored = [
         (curve.data_path, curve.array_index, [tuple(key.co) for key in curve.keyframe_points])
         for curve in bag.fcurves
     ]
     bag.fcurves.clear()
-    for path, index, keys in kept:
+    for path, index, keys in stored:
         curve = bag.fcurves.new(path, index=index)
         for key in keys:
             curve.keyframe_points.insert(*key)
 
 
 @pytest.mark.parametrize("change", [delete_armature, delete_action])
-def test_what_is_deleted_while_it_is_read_is_named(walker, press_slowly, window, blank, change):
+def test_object_deleted_during_reading_is_named(walker, press_slowly, window, blank, change):
     button = press_slowly()
     button.modal(window.context, event("TIMER"))
     assert is_reading(button)
@@ -238,7 +238,7 @@ def test_what_is_deleted_while_it_is_read_is_named(walker, press_slowly, window,
     assert nothing_is_left(window)
 
 
-def test_curves_that_are_replaced_while_they_are_read_are_found_again(
+def test_curves_replaced_during_reading_are_found_again(
     walker, press_slowly, window, blank, keys_of
 ):
     played = walker.animation_data.action

@@ -1,4 +1,4 @@
-"""Track in a window: the body is seen meanwhile, and Esc keeps what was asked to be kept."""
+"""Track in a window: the body is shown meanwhile, and Esc keeps tracked frames on request."""
 
 import json
 
@@ -33,9 +33,7 @@ def drawn(button):
     return button._view.drawn
 
 
-def test_the_body_lies_on_the_points_while_it_is_tracked_and_time_goes_along(
-    press, window, blank, truth
-):
+def test_preview_body_is_at_the_points_and_the_frame_advances(press, window, blank, truth):
     blank.context.scene.frame_set(40, subframe=0.25)
     button = press()
     wait(button, window, until=lambda: drawn(button) is not None)
@@ -44,8 +42,8 @@ def test_the_body_lies_on_the_points_while_it_is_tracked_and_time_goes_along(
 
     frame = blank.context.scene.frame_current_final
     assert 1.0 <= frame <= 6.0
-    seen = truth["joints"][int(frame) - 1]
-    middle = np.array(blank.context.object.matrix_world)[:3] @ [*seen.mean(axis=0), 1.0]
+    observed = truth["joints"][int(frame) - 1]
+    middle = np.array(blank.context.object.matrix_world)[:3] @ [*observed.mean(axis=0), 1.0]
     assert np.linalg.norm(drawn(button).points.mean(axis=0) - middle) < 0.2
     assert np.ptp(drawn(button).points[:, 2]) > 1.2
     assert drawn(button).triangles.max() == len(drawn(button).points) - 1
@@ -55,7 +53,7 @@ def test_the_body_lies_on_the_points_while_it_is_tracked_and_time_goes_along(
     assert not drawing.is_on and nothing_is_left(window)
 
 
-def test_esc_leaves_nothing_as_a_rule(press, window, blank):
+def test_esc_discards_tracked_frames_by_default(press, window, blank):
     blank.context.scene.frame_set(9)
     button = press()
     wait(button, window, until=lambda: drawn(button) is not None)
@@ -67,14 +65,14 @@ def test_esc_leaves_nothing_as_a_rule(press, window, blank):
     assert blank.context.scene.frame_current == 9
 
 
-def test_esc_keeps_what_is_tracked_if_that_was_asked_for(press, window, blank, truth, load):
+def test_esc_keeps_tracked_frames_on_request(press, window, blank, truth, load):
     button = press(keep_on_esc=True)
 
     def three_poses():
         if not hasattr(button, "_job"):  # the take is still read
             return False
-        told, _ = load("mocap_assist.jobs.protocol").read_previews(button._job._path, 0)
-        return sum(isinstance(each, tuple) and len(each) == 3 for each in told) >= 3
+        previews, _ = load("mocap_assist.jobs.protocol").read_previews(button._job._path, 0)
+        return sum(isinstance(each, tuple) and len(each) == 3 for each in previews) >= 3
 
     wait(button, window, until=three_poses)
 
@@ -91,13 +89,13 @@ def test_esc_keeps_what_is_tracked_if_that_was_asked_for(press, window, blank, t
     blank.context.scene.frame_set(2)
     head = armature.matrix_world @ armature.pose.bones["head"].head
     names = [str(each) for each in truth["joint_names"]]
-    place = np.array(blank.data.objects["walk"].matrix_world)[:3]
-    seen = place @ [*truth["joints"][1][names.index("Head")], 1.0]
-    assert np.linalg.norm(np.array(head) - seen) < 0.15
+    matrix = np.array(blank.data.objects["walk"].matrix_world)[:3]
+    observed = matrix @ [*truth["joints"][1][names.index("Head")], 1.0]
+    assert np.linalg.norm(np.array(head) - observed) < 0.15
     assert nothing_is_left(window)
 
 
-def test_esc_before_the_first_pose_keeps_nothing_and_says_so(press, window, blank):
+def test_esc_before_the_first_pose_keeps_nothing_and_reports_it(press, window, blank):
     button = press(keep_on_esc=True)
 
     assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
@@ -108,7 +106,7 @@ def test_esc_before_the_first_pose_keeps_nothing_and_says_so(press, window, blan
     assert not blank.data.armatures and nothing_is_left(window)
 
 
-def test_points_that_are_deleted_meanwhile_are_named_at_the_end(press, window, blank, points):
+def test_points_deleted_during_tracking_are_named(press, window, blank, points):
     button = press()
     wait(button, window, until=lambda: drawn(button) is not None)
     blank.data.objects.remove(points)
@@ -129,7 +127,7 @@ def test_nothing_is_drawn_without_live_preview(press, window, blank):
     }
 
 
-def test_blender_may_end_it_as_when_another_file_is_loaded(press, window):
+def test_loading_another_file_ends_tracking(press, window):
     button = press()
     wait(button, window, until=lambda: drawn(button) is not None)
     drawing = button._view._drawing
@@ -140,18 +138,18 @@ def test_blender_may_end_it_as_when_another_file_is_loaded(press, window):
     assert nothing_is_left(window)
 
 
-def test_half_a_pose_is_left_for_the_next_look(load, tmp_path):
+def test_incomplete_pose_waits_for_the_next_read(load, tmp_path):
     protocol = load("mocap_assist.jobs.protocol")
     path = tmp_path / protocol.PREVIEWS
     with path.open("wb") as file:
         for thing in ("one", {"two": 2}):
             protocol.append_preview(file, thing)
-    whole = path.read_bytes()
-    path.write_bytes(whole[:-3])
+    content = path.read_bytes()
+    path.write_bytes(content[:-3])
 
     assert protocol.read_previews(tmp_path / "none", 0) == ([], 0)
-    first, place = protocol.read_previews(tmp_path, 0)
+    first, offset = protocol.read_previews(tmp_path, 0)
     assert first == ["one"]
-    assert protocol.read_previews(tmp_path, place) == ([], place)
-    path.write_bytes(whole)
-    assert protocol.read_previews(tmp_path, place) == ([{"two": 2}], len(whole))
+    assert protocol.read_previews(tmp_path, offset) == ([], offset)
+    path.write_bytes(content)
+    assert protocol.read_previews(tmp_path, offset) == ([{"two": 2}], len(content))

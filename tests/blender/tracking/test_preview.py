@@ -63,7 +63,7 @@ def press(load, window, blank, monkeypatch):
         bl_idname, settings_group = "mocap_assist.count", "track"
         read_scene = staticmethod(lambda scene, thing, settings: partial(int, 7))
         write_scene = staticmethod(
-            lambda scene, thing, settings, found, asked: f"{found} found."
+            lambda scene, thing, settings, found, choices: f"{found} found."
         )
 
         def prepare(self, context):
@@ -93,21 +93,21 @@ def ended(button, window):
     return None
 
 
-def test_a_view_that_fails_is_closed_and_the_result_comes(press, window):
+def test_failing_preview_is_closed_and_the_result_arrives(press, window):
     view = View(looks=np.linalg.LinAlgError("Singular matrix"))
     assert ended(press(view), window) == {"FINISHED"}
     assert (view.n_looks, view.is_closed) == (1, True)
     assert window.reports == [({"INFO"}, "7 found.")] and nothing_is_left(window)
 
 
-def test_a_view_of_what_was_deleted_waits(press, window, load):
+def test_preview_of_a_deleted_object_waits(press, window, load):
     view = View(looks=load("solvers.errors").InvalidMotionError("Gone."))
     assert ended(press(view), window) == {"FINISHED"}
     assert view.n_looks > 1 and view.is_closed and nothing_is_left(window)
 
 
 @pytest.mark.parametrize("looks", [None, ValueError("No.")])
-def test_a_view_that_cannot_even_be_closed_leaves_the_button_free(looks, press, window):
+def test_preview_that_cannot_be_closed_does_not_block_the_button(looks, press, window):
     view = View(looks=looks, closes=RuntimeError("Not now."))
     assert ended(press(view), window) == {"FINISHED"}
     assert view.is_closed and nothing_is_left(window)
@@ -127,7 +127,7 @@ def test_unreadable_files_count_as_no_progress(load, tmp_path, monkeypatch):
     assert protocol.last_progress(tmp_path) == (0.5, "Half way")
 
 
-def test_track_from_here_is_watched_if_its_caller_wants_that(write_tracked, load, blank):
+def test_track_from_here_has_a_preview_on_request(write_tracked, load, blank):
     made = write_tracked()
     retracking, choices = (
         load("mocap_assist.track.retracking"),
@@ -144,6 +144,6 @@ def test_track_from_here_is_watched_if_its_caller_wants_that(write_tracked, load
             view.close()
 
 
-def test_esc_keeps_nothing_of_what_is_tracked_again(load):
+def test_esc_discards_retracked_frames(load):
     retrack = load("operators.retrack").MOCAP_OT_retrack
     assert retrack.rescue(None, None, None) is None

@@ -30,7 +30,9 @@ def remove_keys(action, bone, start, stop):
         (np.array([1.0, 12.0, 15.0, 40.0]), np.arange(1.0, 41.0)),  # keyed by hand
     ],
 )
-def test_frames_are_those_of_the_keys(keyed, expected, make_armature, animate, scene_io, blank):
+def test_read_frames_equal_the_key_frames(
+    keyed, expected, make_armature, animate, scene_io, blank
+):
     armature, scene = make_armature(), blank.context.scene
     scene.render.fps = 30
     animate(armature, frames=keyed)
@@ -59,7 +61,7 @@ def test_a_long_take_between_frames_keeps_all_its_samples(
 
 
 @pytest.mark.parametrize("keyed", [np.arange(1.0, 61.0, 0.25), np.arange(1.5, 61.0)])
-def test_keys_between_frames_are_kept_exactly(
+def test_keys_between_frames_are_preserved_exactly(
     keyed, make_armature, animate, scene_io, blank, keys_of
 ):
     armature = make_armature(mode="XYZ")
@@ -75,9 +77,7 @@ def test_keys_between_frames_are_kept_exactly(
         )
 
 
-def test_ranges_are_those_of_scene_preview_and_selection(
-    make_armature, animate, scene_io, blank
-):
+def test_range_is_that_of_scene_preview_or_selection(make_armature, animate, scene_io, blank):
     armature, scene = make_armature(), blank.context.scene
     action = animate(armature)
     ranges, read = scene_io.frames.FrameRange, scene_io.reading.read_take
@@ -126,9 +126,7 @@ def test_keys_outside_the_range_stay_bit_for_bit(
     assert [key[1] for key in head[19:40]] == [1.0] * 21
 
 
-def test_where_a_recorded_bone_has_no_keys_there_is_a_gap(
-    make_armature, animate, scene_io, blank
-):
+def test_missing_keys_of_a_recorded_bone_are_a_gap(make_armature, animate, scene_io, blank):
     armature = make_armature()
     action = animate(armature)
     remove_keys(action, "LeftArm", 20, 30)
@@ -142,7 +140,7 @@ def test_where_a_recorded_bone_has_no_keys_there_is_a_gap(
     assert (~motion.observed).sum() == 22
 
 
-def test_a_held_pose_whose_keys_were_removed_is_no_gap(make_armature, animate, scene_io, blank):
+def test_held_pose_with_removed_keys_is_no_gap(make_armature, animate, scene_io, blank):
     armature = make_armature()
     action = animate(armature)
     for index in range(4):
@@ -186,7 +184,7 @@ UNREAL = {
 }
 
 
-def test_the_pelvis_below_a_moving_root_is_read_in_the_world_and_written_back(
+def test_pelvis_below_a_moving_root_is_read_and_written_in_world_space(
     make_armature, animate, poses, scene_io, blank
 ):
     armature = make_armature(UNREAL)
@@ -202,8 +200,8 @@ def test_the_pelvis_below_a_moving_root_is_read_in_the_world_and_written_back(
     positions = scene_io.kinematics.forward_kinematics(pelvis).positions
     shown = before["spine_01"][:, :3, 3]
     moved = take.offsets.positions[:, take.offsets.names.index("spine_01")]
-    turned = scene_io.rotations.rotate(pelvis.rotations[:, 0], moved)
-    assert_allclose(positions[:, pelvis.skeleton.index("spine_01")] + turned, shown, atol=2e-5)
+    offset = scene_io.rotations.rotate(pelvis.rotations[:, 0], moved)
+    assert_allclose(positions[:, pelvis.skeleton.index("spine_01")] + offset, shown, atol=2e-5)
     source = scene_io.reading.action_of(armature)
     clean, slot = scene_io.writing.write_take(armature, source, take, take.rig.bones, {})
     assert clean != action
@@ -212,9 +210,7 @@ def test_the_pelvis_below_a_moving_root_is_read_in_the_world_and_written_back(
         assert_allclose(matrices, before[bone], atol=2e-5)
 
 
-def test_a_root_that_alone_moves_is_the_root_of_the_body(
-    make_armature, animate, scene_io, blank
-):
+def test_only_moving_root_is_the_body_root(make_armature, animate, scene_io, blank):
     armature = make_armature(UNREAL)
     animate(armature)  # only the root moves
 
@@ -223,9 +219,7 @@ def test_a_root_that_alone_moves_is_the_root_of_the_body(
     assert [part.motion.skeleton.names[0] for part in take.parts] == ["root"]
 
 
-def test_a_tracked_spine_with_many_fingers_does_not_become_the_root(
-    make_armature, animate, scene_io, blank
-):
+def test_spine_with_many_fingers_is_not_the_root(make_armature, animate, scene_io, blank):
     fingers = {
         f"finger_{index}": ("hand_l", (0.8, 0.01 * index, 1.4), (0.9, 0.01 * index, 1.4), False)
         for index in range(10)

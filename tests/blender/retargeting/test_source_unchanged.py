@@ -54,9 +54,7 @@ def acted(hero, blank):
 
 @pytest.mark.parametrize("posed", [False, True])
 @pytest.mark.parametrize("takes", ["ALL", "PLAYED"])
-def test_a_rig_that_plays_one_of_many_actions_stays_as_it_was(
-    takes, posed, acted, make_rig, give, blank
-):
+def test_source_rig_with_many_actions_is_unchanged(takes, posed, acted, make_rig, give, blank):
     target = make_rig("Mixamo", prefix="mixamorig:")
     if posed:  # where the played action has keys, too
         acted.pose.bones["chest"].location = (0.0, 0.3, 0.1)

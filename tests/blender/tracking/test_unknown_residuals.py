@@ -1,4 +1,4 @@
-"""Frames in which nobody was in the picture have no residual; what is kept stays JSON."""
+"""Frames without a person have no residual; the stored report stays valid JSON."""
 
 import json
 
@@ -11,23 +11,21 @@ def strict(text):
     return json.loads(text, parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))
 
 
-def test_track_says_nothing_of_a_residual_that_is_not_known(write_tracked):
+def test_track_omits_an_unknown_residual(write_tracked):
     made = write_tracked(residual=np.nan)
     assert "20 frames" in made.said and "nan" not in made.said and " cm" not in made.said
     assert strict(made.source[0]["mocap_assist_captured"])["mean_residual_cm"] is None
 
 
-def test_track_says_the_mean_of_what_is_known(write_tracked):
+def test_track_reports_the_mean_of_known_residuals(write_tracked):
     residual = np.where(np.arange(20) % 2, np.nan, 0.03)
     made = write_tracked(residual=residual)
     assert "3.0 cm" in made.said
-    told = strict(made.source[0]["mocap_assist_captured"])
-    assert told["mean_residual_cm"] == pytest.approx(3.0)
+    report = strict(made.source[0]["mocap_assist_captured"])
+    assert report["mean_residual_cm"] == pytest.approx(3.0)
 
 
-def test_track_from_here_writes_what_is_known_of_a_residual(
-    write_tracked, read_take, load, blank
-):
+def test_track_from_here_writes_known_residuals(write_tracked, read_take, load, blank):
     made = write_tracked()
     solvers, retracking = load("solvers.depth_tracking"), load("mocap_assist.track.retracking")
     take = read_take(made)

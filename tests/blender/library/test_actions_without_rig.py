@@ -1,4 +1,4 @@
-"""Actions that lie in a .blend file without their rig; another file has it."""
+"""Actions in a .blend file without their rig; another file has the rig."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def alone(blank, blend_file):
     return path
 
 
-def test_actions_are_reported_without_the_rig(index, entries, alone):
+def test_index_refuses_actions_without_their_rig(index, entries, alone):
     done = index(alone)
 
     assert len(done.refused) == 2 and entries() == {}
@@ -27,7 +27,7 @@ def test_actions_are_reported_without_the_rig(index, entries, alone):
     assert all("name a file with its rig" in said for said in done.refused)
 
 
-def test_with_it_they_are_clips_like_any_other(
+def test_actions_become_clips_with_a_rig_file(
     index, entries, alone, blend_file, load, tmp_path
 ):
     index(blend_file)
@@ -42,7 +42,7 @@ def test_with_it_they_are_clips_like_any_other(
             np.testing.assert_allclose(found, expected, atol=1e-6)
 
 
-def test_a_rig_with_other_bones_is_reported(
+def test_index_reports_a_rig_with_other_bones(
     index, entries, alone, blank, make_armature, animate, tmp_path
 ):
     armature = make_armature(name="Plain")
@@ -58,7 +58,7 @@ def test_a_rig_with_other_bones_is_reported(
     assert all(f"nor in {other}, has the bones" in said for said in done.refused)
 
 
-def test_a_file_that_holds_no_rig_keeps_nothing_out(
+def test_unreadable_rig_file_excludes_no_other_clips(
     index, entries, alone, blend_file, tmp_path
 ):
     broken = tmp_path / "broken.blend"
@@ -70,7 +70,7 @@ def test_a_file_that_holds_no_rig_keeps_nothing_out(
     assert done.refused[0].startswith(f"{broken} cannot be read for its rig")
 
 
-def test_a_match_is_appended_with_it(alone, find, index, blend_file, newcomer, blank):
+def test_match_is_appended_with_its_rig(alone, find, index, blend_file, newcomer, blank):
     index(alone, rig=blend_file)
     armature = newcomer("wave")
     library = blank.context.scene.mocap_assist.library
