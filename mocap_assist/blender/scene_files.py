@@ -12,6 +12,7 @@ import bpy
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import open_regular
 from ...solvers.json_text import parse_json
+from ...solvers.recordings import refuse_stand_ins
 from ..jobs.in_blender import is_scene_file
 
 COMMON_RATES = (15.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 200.0, 240.0)
@@ -42,6 +43,7 @@ def open_scene_file(path: str) -> None:
     suffix = Path(path).suffix.lower()
     if not is_scene_file(path):
         return _run(path, bpy.ops.wm.open_mainfile, load_ui=False, use_scripts=False)
+    refuse_stand_ins(path)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     if suffix == ".fbx":
         return _run(path, bpy.ops.wm.fbx_import)
