@@ -76,7 +76,7 @@ kills: .venv-4.5/ready zip  ## kill commands at random moments; ARGUMENTS="--kil
 
 # --- What there is to see ---
 
-.PHONY: demo docs pictures pictures-origins bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-import-corpus bench-video bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth sensitivity
+.PHONY: demo docs pictures pictures-origins bench-denoise bench-first-press bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-import-corpus bench-video bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth sensitivity
 demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
@@ -113,6 +113,9 @@ failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the 
 # ARGUMENTS=--help lists the other options.
 bench-denoise: .venv-4.5/ready  ## measure denoising and gap filling against peers
 	$(PYTHON_4.5) -m tests.benchmarks.denoise.bench_denoise $(ARGUMENTS)
+
+bench-first-press: .venv-4.5/ready  ## measure Clean without examples against filters
+	nice $(PYTHON_4.5) -m tests.benchmarks.first_press.bench_first_press $(ARGUMENTS)
 
 bench-feet: .venv-4.5/ready  ## measure foot planting against pinning
 	$(PYTHON_4.5) -m tests.benchmarks.denoise.bench_feet $(ARGUMENTS)

@@ -83,7 +83,7 @@ def import_files(
     *,
     progress: Progress = unwatched,
 ) -> Imported:
-    """Make an armature or empties of each file; those that cannot be read are told of.
+    """Make an armature or empties of each file; those that cannot be read are reported.
 
     A file that fails leaves nothing behind. Raises SolveCancelled by `progress`; the scene is
     then as it was.

@@ -27,12 +27,12 @@ from ...solvers.recordings import (
     ReadingSettings,
     is_depth_recording,
     open_as,
+    questions_of,
     read_depth,
     settle,
 )
 from ...solvers.recordings.conventions import (
     conventions_of,
-    question_of_size,
     with_conventions,
 )
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
@@ -149,8 +149,7 @@ def read_takes(
         take = first.name if others else ""
         name = bodies.listed[index].name if len(bodies.listed) > 1 else ""
         warnings = () if contents else found.refused
-        if question := question_of_size(first.motion):
-            warnings = (*warnings, question)
+        warnings = (*warnings, *questions_of(first.motion, conversion.floor))
         contents.append(
             ReadRecording(first.motion, warnings, take, name, tuple(others), offered)
         )

@@ -39,7 +39,7 @@ from .joint_files import (
 )
 from .joints import read_joints, write_joints
 from .marker_files import read_c3d, read_trc, write_c3d, write_trc
-from .read_as import open_as, read_as, settle
+from .read_as import open_as, questions_of, read_as, settle
 from .read_recording import (
     is_depth_recording,
     list_bodies,
@@ -82,6 +82,7 @@ __all__ = [
     "may_contain_motion",
     "open_as",
     "open_bodies",
+    "questions_of",
     "read_acclaim",
     "read_acclaim_limits",
     "read_as",

@@ -20,6 +20,7 @@ from .representations import (
     twist_about,
     unroll,
     unwrap_euler,
+    unwrap_rotation_vectors,
 )
 from .rigid_fit import fit_rotations, fit_similarity, nearest_rotations
 
@@ -47,4 +48,5 @@ __all__ = [
     "twist_about",
     "unroll",
     "unwrap_euler",
+    "unwrap_rotation_vectors",
 ]

@@ -18,6 +18,7 @@ from .quaternion_algebra import (
 
 IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
 SMALL_ANGLE_RAD = 1e-6
+FULL_TURN_RAD = 2.0 * np.pi
 GIMBAL_LOCK_COSINE = 1e-7
 """Cosine of the middle Euler angle below which the other two share one axis."""
 QUATERNIONS_PER_BLOCK = 8192
@@ -190,6 +191,30 @@ def unroll(rotations: Array) -> Array:
     agreement = np.einsum("...i,...i->...", continuous[1:], continuous[:-1])
     signs = np.cumprod(np.where(agreement < 0.0, -1.0, 1.0), axis=0)
     result[1:] *= signs[..., None]
+    return result
+
+
+def unwrap_rotation_vectors(vectors: Array) -> Array:
+    """Return equivalent rotation vectors that change least along the first axis.
+
+    Rotation by an angle about an axis equals rotation by the angle plus full turns. The first
+    valid vector stays as it is, so a result may be longer than pi. NaN frames are skipped.
+
+    Parameters
+    ----------
+    vectors : shape (n_frames, ..., 3), radians
+    """
+    result = np.array(vectors, dtype=np.float64)
+    last = np.full(result.shape[1:], np.nan)
+    for vector in result:
+        angle = np.linalg.norm(vector, axis=-1, keepdims=True)
+        # A rotation by nearly nothing has no axis of its own.
+        with_axis = np.where(angle > SMALL_ANGLE_RAD, vector, last)
+        length = np.linalg.norm(with_axis, axis=-1, keepdims=True)
+        axis = with_axis / np.maximum(length, SMALL_ANGLE_RAD)
+        turns = np.round(((last - vector) * axis).sum(axis=-1, keepdims=True) / FULL_TURN_RAD)
+        vector += np.nan_to_num(turns) * FULL_TURN_RAD * np.nan_to_num(axis)
+        last = np.where(np.isfinite(vector), vector, last)
     return result
 
 

@@ -39,7 +39,7 @@ from .file_axes import (
     with_axes,
     with_conventions,
 )
-from .floor import floor_level, lacks_floor, put_on_floor
+from .floor import floor_level, lacks_floor, put_on_floor, question_of_floor
 from .points import (
     METERS,
     axes_of_points,
@@ -47,6 +47,7 @@ from .points import (
     is_upside_down,
     judge_axes_of_points,
     meters_from_unit_name,
+    other_standing_axis,
     point_names,
     points_z_up,
 )
@@ -97,9 +98,11 @@ __all__ = [
     "longest_bone_path",
     "meters_from_unit_name",
     "observed_body",
+    "other_standing_axis",
     "point_names",
     "points_z_up",
     "put_on_floor",
+    "question_of_floor",
     "question_of_size",
     "recorded_seconds",
     "reinterpreted",

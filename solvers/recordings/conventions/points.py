@@ -25,6 +25,9 @@ GUESSED = 0.9
 files that state theirs, but they are few."""
 BODY_EXTENT_M = 1.5
 FLOOR_TOLERANCE_M = 0.15
+MIN_STANDING_M, MIN_STANDING_RATIO = 1.2, 1.5
+"""Extent of markers on a body that stands, and relative to their extent along the stated axis:
+a body is about three times as tall as wide, and arms may be spread."""
 
 
 def point_names(labels: Sequence[str]) -> tuple[str, ...]:
@@ -102,6 +105,23 @@ def is_upside_down(points: NDArray[np.float64], up: str) -> bool:
         np.nanpercentile(along, 2) > -FLOOR_TOLERANCE_M
         and np.nanpercentile(along, 98) > FLOOR_TOLERANCE_M
     )
+
+
+def other_standing_axis(points: NDArray[np.float64], up: str) -> str:
+    """Return the axis along which points, in meters, stand if the stated one cannot be right.
+
+    So it is where they are half below the floor along the stated axis, and along another one
+    are all above it and much farther apart. Empty if the stated axis may be right.
+    """
+    if up[-1:] not in {"X", "Y", "Z"} or points.shape[1] < MIN_BODY_JOINTS:
+        return ""
+    lowest = np.nanpercentile(points.reshape(-1, 3), 2, axis=0)
+    extents = np.median(_extents(points), axis=0)
+    stated = "XYZ".index(up[-1])
+    best = int(np.argmax(np.where(lowest > -FLOOR_TOLERANCE_M, extents, 0.0)))
+    is_sunk = lowest[stated] <= -FLOOR_TOLERANCE_M
+    is_tall = extents[best] > max(MIN_STANDING_M, MIN_STANDING_RATIO * extents[stated])
+    return f"+{'XYZ'[best]}" if is_sunk and is_tall and best != stated else ""
 
 
 def _looks_y_up(points: NDArray[np.float64]) -> bool:

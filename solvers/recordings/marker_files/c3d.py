@@ -17,6 +17,7 @@ from ..conventions import (
     is_upside_down,
     judge_axes_of_points,
     meters_from_unit_name,
+    other_standing_axis,
     point_names,
     points_z_up,
 )
@@ -101,16 +102,24 @@ def open_c3d(
     used = [labels[index] for index in columns]
     unit = _unit(file, points) if scale is None else scale
     points *= unit
-    screen = file.texts("POINT:Y_SCREEN")
-    up = screen[0].strip().upper() if screen else ""
-    if is_upside_down(points, up):
-        progress(0.8, f"Y_SCREEN says {up}, which hangs the actor below the floor; not used")
-        up = f"+{up[-1]}"
-    axes = judge_axes_of_points(points, up, unit)
+    axes = judge_axes_of_points(points, _up(file, points, progress), unit)
     positions = points_z_up(points, axes.up)
     tracks = Tracks(point_names(used), positions, file.frame_rate, conventions=axes)
     progress(1.0, "Reading")
     return bodies_of_markers(path, tracks, used)
+
+
+def _up(file: C3dFile, points: NDArray[np.float64], progress: Progress) -> str:
+    """Return the Y axis of the screen, unless points, in meters, show that it is not up."""
+    screen = file.texts("POINT:Y_SCREEN")
+    up = screen[0].strip().upper() if screen else ""
+    if is_upside_down(points, up):
+        progress(0.8, f"Y_SCREEN says {up}, which hangs the actor below the floor; not used")
+        return f"+{up[-1]}"
+    if other := other_standing_axis(points, up):
+        progress(0.8, f"Y_SCREEN says {up}, but the actor stands along {other}, which is used")
+        return other
+    return up
 
 
 def _labels(file: C3dFile, n_points: int) -> list[str]:

@@ -71,8 +71,8 @@ def test_files_that_end_their_reader_are_named_and_the_others_come(
         assert f"{walks / name} made its reader end early, by signal SIGABRT" in said
     assert said.count("early") == len(deadly) and "Nothing was changed" not in said
     assert nothing_is_left(window)
-    told = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
-    assert told == sorted(told)
+    percentages = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
+    assert percentages == sorted(percentages)
 
 
 def test_where_all_end_their_reader_the_scene_stays(dying, press, window, walks, blank):

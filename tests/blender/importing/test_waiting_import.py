@@ -89,8 +89,8 @@ def test_all_that_can_be_read_comes_in(press, window, load, monkeypatch, blank, 
     assert said.startswith("1 of 3 files failed.") and "cut.bvh" in said
     assert operator.note.startswith("first: an armature of 31 bones, 317 frames at 120 Hz.")
     assert nothing_is_left(window)
-    told = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
-    assert told == sorted(told)
+    percentages = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
+    assert percentages == sorted(percentages)
     assert reading_is_shown(window)
 
 

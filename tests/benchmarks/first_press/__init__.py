@@ -1,0 +1,1 @@
+"""Clean at the first press, without examples, next to the filters an animator has."""

@@ -1,0 +1,162 @@
+r"""Clean as it is pressed first, without examples, next to the filters an animator has.
+
+    make bench-first-press                      # the scored takes: some minutes
+    make bench-first-press ARGUMENTS=--quick    # six development takes at 30 Hz: a minute
+    make bench-first-press ARGUMENTS=--development   # all development takes
+    make bench-first-press ARGUMENTS=--docs     # also writes docs/benchmarks_first_press.md
+
+Which takes are for development is fixed in takes.py, what is corrupted in conditions.py, what
+is measured in measures.py. `--only ours` leaves out the peers.
+"""
+
+import argparse
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from time import perf_counter
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from ..shared.report import DOCS, Report
+from ..shared.tables import number, table
+from .conditions import CONDITIONS, Case
+from .filters import METHODS, OURS, PEERS, PUBLISHED
+from .measures import Figures, measure
+from .takes import DEVELOPMENT, QUICK, SCORED, Take
+
+DOCUMENT = DOCS / "benchmarks_first_press.md"
+MUCH_BETTER = 0.9
+"""A peer with less than this fraction of our error is a tenth better."""
+MIN_DIFFERENCE = 0.02
+"""Degrees: less between ours and a peer is no difference."""
+TITLES = {
+    "angle": "Angle error, degrees, mean over takes",
+    "position": "Distance of hands and feet from the truth, cm, mean over takes",
+    "speed_kept": "Peak speed of hands and feet, relative to the truth's, mean over takes",
+    "reach_lost": "Worst reach lost at a turning point, cm, of all takes",
+}
+
+
+class Scores:
+    """Figures by method, condition and take."""
+
+    def __init__(self) -> None:
+        self.figures: dict[str, dict[str, dict[str, Figures]]] = defaultdict(
+            lambda: defaultdict(dict)
+        )
+        self.flagged: dict[str, list[float]] = defaultdict(list)
+        self.seconds: dict[str, float] = defaultdict(float)
+
+    def tables(self) -> list[str]:
+        """Return a table for each figure, and one of what is only asked of ours."""
+        texts = []
+        for column, title in TITLES.items():
+            statistic = np.max if column == "reach_lost" else np.mean
+            rows = {
+                method: [
+                    number(float(statistic([getattr(each, column) for each in takes.values()])))
+                    for takes in conditions.values()
+                ]
+                for method, conditions in self.figures.items()
+            }
+            texts.append(f"**{title}**\n\n{self._table(rows)}\n")
+        return [*texts, f"**Only ours**\n\n{self._table(self._own_rows())}\n", self._worst()]
+
+    def _table(self, rows: dict[str, list[str]]) -> str:
+        return table(["", *map(str, CONDITIONS)], rows)
+
+    def _own_rows(self) -> dict[str, list[str]]:
+        worse = [len(self._worse(str(one))) for one in CONDITIONS]
+        n_takes = len(self.figures[OURS][str(CONDITIONS[0])])
+        return {
+            "takes where a peer is a tenth better, %": [
+                f"{100 * count / n_takes:.0f}" for count in worse
+            ],
+            "good samples flagged, %": [
+                f"{100 * np.mean(self.flagged[str(one)]):.2f}" for one in CONDITIONS
+            ],
+            "seconds": [f"{self.seconds[str(one)]:.1f}" for one in CONDITIONS],
+        }
+
+    def _worse(self, condition: str) -> dict[str, tuple[float, str]]:
+        """Return the error relative to the best peer, and its name, where it is much better."""
+        found = {}
+        for take, ours in self.figures[OURS][condition].items():
+            peers = {name: self.figures[name][condition] for name in PEERS}
+            angles = {name: each[take].angle for name, each in peers.items() if take in each}
+            if condition == "clean":
+                angles.pop("interpolation", None)  # it returns its input
+            best = min(angles, key=angles.__getitem__, default=None)
+            if best is not None and angles[best] < min(
+                MUCH_BETTER * ours.angle, ours.angle - MIN_DIFFERENCE
+            ):
+                found[take] = (ours.angle / angles[best], best)
+        return found
+
+    def _worst(self) -> str:
+        rows = {}
+        for one in map(str, CONDITIONS):
+            worse = sorted(self._worse(one).items(), key=lambda each: -each[1][0])[:3]
+            ours = self.figures[OURS][one].items()
+            lost = sorted(ours, key=lambda each: -each[1].reach_lost)[:3]
+            rows[one] = [
+                "; ".join(f"{take} x{ratio:.2f} of {peer}" for take, (ratio, peer) in worse),
+                "; ".join(
+                    f"{take} {each.worst.place} {each.reach_lost:.1f}"
+                    for take, each in lost
+                    if each.worst
+                ),
+            ]
+        header = ["", "a peer is nearer to the truth", "reach lost, cm"]
+        return f"**Our worst takes**\n\n{table(header, rows)}\n"
+
+
+def main() -> None:
+    """Print the tables, and perhaps write them down."""
+    chosen = _arguments()
+    takes = SCORED
+    if chosen.quick or chosen.development:
+        takes = QUICK if chosen.quick else DEVELOPMENT
+    methods = [
+        name
+        for name in METHODS
+        if not (chosen.quick and name == PUBLISHED) and (not chosen.only or name in chosen.only)
+    ]
+    started = perf_counter()
+    with threadpool_limits(1):
+        scores = run(takes, methods)
+    seconds = perf_counter() - started
+    Report(chosen.docs, DOCUMENT).part("first press", scores.tables(), seconds)
+    print(f"{seconds:.0f} s")
+
+
+def run(takes: Sequence[Take], methods: Iterable[str]) -> Scores:
+    """Run the methods on all takes in all conditions."""
+    scores, methods = Scores(), tuple(methods)
+    for condition in CONDITIONS:
+        for take in takes:
+            case = Case(take, condition)
+            for name in methods:
+                started = perf_counter()
+                result = METHODS[name](case)
+                if name == OURS:
+                    scores.seconds[str(condition)] += perf_counter() - started
+                    assert result.flagged is not None
+                    is_good = case.is_good
+                    scores.flagged[str(condition)].append(float(result.flagged[is_good].mean()))
+                figures = measure(case, result.motion)
+                scores.figures[name][str(condition)][str(take)] = figures
+    return scores
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="six development takes")
+    parser.add_argument("--development", action="store_true", help="development takes")
+    parser.add_argument("--only", nargs="+", default=[], help="names of methods")
+    parser.add_argument("--docs", action="store_true", help=f"rewrite {DOCUMENT.name}")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,152 @@
+"""What is wrong with a take: noise, outliers, bursts, drift, or a missing limb."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.arrays import Array
+from solvers.motion import Motion, find_humanoid_map
+from solvers.rotations import unwrap_rotation_vectors
+
+from ..shared.noise import (
+    METRES_PER_DEGREE,
+    Channels,
+    corrupt,
+    corrupt_in_bursts,
+    learn_channels,
+    seeded,
+)
+from .takes import Take, read
+
+LIMBS = {"arm": ("left", "UpperArm"), "leg": ("right", "UpperLeg")}
+MISSING_S = 1.0
+
+
+@dataclass(frozen=True)
+class Condition:
+    """How a take is corrupted."""
+
+    title: str
+    sigma: float = 0.0
+    """Standard deviation of the noise of each channel, degrees or half centimeters."""
+    outliers: float = 0.0
+    """Fraction of single samples that lie 20 to 60 degrees off."""
+    bursts: float = 0.0
+    """Fraction of frames in which a joint is off by 20 to 60 degrees, for 2 to 8 frames."""
+    drift: float = 0.0
+    """Standard deviation of 1/f noise, degrees."""
+    limb: str = ""
+    """Which limb is missing for a second."""
+
+    def __str__(self) -> str:
+        return self.title
+
+
+CONDITIONS = (
+    Condition("clean"),
+    Condition("sigma 1", sigma=1.0),
+    Condition("sigma 3", sigma=3.0),
+    Condition("3, 10 % outliers", sigma=3.0, outliers=0.10),
+    Condition("bursts", sigma=0.3, bursts=0.02),
+    Condition("1/f drift", drift=3.0),
+    Condition("arm lost 1 s", limb="arm"),
+    Condition("leg lost 1 s", limb="leg"),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A take in one condition, as curves: degrees, and half centimeters of the root."""
+
+    take: Take
+    condition: Condition
+
+    @cached_property
+    def truth(self) -> Motion:
+        return read(self.take)
+
+    @cached_property
+    def channels(self) -> Channels:
+        return learn_channels([self.truth])
+
+    @cached_property
+    def clean(self) -> Array:
+        """The true curves, shape (n_frames, n_channels), without jumps of full turns."""
+        kept = self.channels.kept
+        curves = replace(self.channels, kept=np.ones_like(kept)).values(self.truth)
+        vectors = np.radians(curves[:, 1:]).reshape(len(curves), -1, 3)
+        curves[:, 1:] = np.degrees(unwrap_rotation_vectors(vectors)).reshape(len(curves), -1)
+        return np.hstack([curves[:, kept], self.truth.root_positions / METRES_PER_DEGREE])
+
+    @cached_property
+    def corrupted(self) -> Array:
+        """The curves that every method is given; NaN where missing."""
+        condition, rng = self.condition, seeded(str(self.take), str(self.condition))
+        if condition.bursts:
+            return corrupt_in_bursts(
+                self.clean, condition.sigma, condition.bursts, self._groups, rng
+            )
+        result = corrupt(self.clean, condition.sigma, condition.outliers, rng)
+        if condition.drift:
+            result += condition.drift * _one_over_f(result.shape, rng)
+        if condition.limb:
+            rows = np.arange(len(result))[self.missing_frames]
+            result[np.ix_(rows, self.channels.of_joints(self.missing_joints))] = np.nan
+        return result
+
+    @cached_property
+    def is_good(self) -> NDArray[np.bool_]:
+        """Where a joint is observed and no outlier, shape (n_frames, n_joints)."""
+        error = np.abs(self.corrupted - self.clean)
+        limit = 5.0 * self.condition.sigma + 3.0 * self.condition.drift + 1e-6
+        good = np.ones(self.truth.rotations.shape[:2], dtype=np.bool_)
+        for joint in range(self.truth.n_joints):
+            columns = self.channels.of_joints([joint])
+            if joint == 0:
+                columns = np.append(columns, np.arange(-3, 0) + error.shape[1])
+            good[:, joint] = (error[:, columns] < limit).all(axis=1)
+        return good
+
+    @cached_property
+    def recording(self) -> Motion:
+        """The corrupted take."""
+        return self.motion(self.corrupted)
+
+    @cached_property
+    def missing_joints(self) -> list[int]:
+        """Joints of the missing limb."""
+        side, top = LIMBS[self.condition.limb]
+        skeleton = self.truth.skeleton
+        first = skeleton.index(find_humanoid_map(skeleton).joints[side + top])
+        moving = self.channels.joints
+        return [joint for joint in skeleton.subtree(first) if moving[joint]]
+
+    @cached_property
+    def missing_frames(self) -> slice:
+        """The second in the middle of the take, or half of a shorter take."""
+        n_frames = self.truth.n_frames
+        length = min(round(MISSING_S * self.truth.frame_rate), n_frames // 2)
+        start = (n_frames - length) // 2
+        return slice(start, start + length)
+
+    def motion(self, curves: Array) -> Motion:
+        """Return the take with these curves; joints with a NaN are missing."""
+        moved = self.channels.motion(curves[:, :-3], self.truth)
+        return moved.with_poses(root_positions=curves[:, -3:] * METRES_PER_DEGREE)
+
+    @property
+    def _groups(self) -> Sequence[NDArray[np.intp]]:
+        moving = np.flatnonzero(self.channels.joints)
+        root = np.arange(-3, 0) + self.clean.shape[1]
+        return [*(self.channels.of_joints([int(joint)]) for joint in moving), root]
+
+
+def _one_over_f(shape: tuple[int, int], rng: np.random.Generator) -> Array:
+    """Return noise with a power of one over the frequency and standard deviation 1."""
+    spectrum = np.fft.rfft(rng.normal(size=shape), axis=0)
+    frequencies = np.maximum(np.arange(len(spectrum)), 1.0)
+    noise = np.fft.irfft(spectrum / np.sqrt(frequencies)[:, None], n=shape[0], axis=0)
+    return np.asarray(noise / noise.std(axis=0))
