@@ -78,13 +78,11 @@ def _open_gltf(path: str) -> None:
     content = _gltf_content(path)
     _refuse_other_files(path, content)
     render = bpy.context.scene.render
-    render.fps, render.fps_base = _as_fps(_gltf_rate(content))
+    rate = _gltf_rate(content)
+    render.fps = max(1, round(rate))
+    render.fps_base = rate / render.fps  # Blender's importer multiplies by it
     _run(path, bpy.ops.import_scene.gltf, disable_bone_shape=True, import_shading="NORMALS")
-
-
-def _as_fps(rate: float) -> tuple[int, float]:
-    fps = max(1, round(rate))
-    return fps, fps / rate
+    render.fps_base = render.fps / rate
 
 
 def _gltf_content(path: str) -> dict[str, Any]:
