@@ -89,7 +89,7 @@ def import_files(
     then as it was.
     """
     transaction = ImportTransaction(context, choices)
-    conversion = conversion_from_choices(context, choices)
+    conversion = conversion_from_choices(context, transaction.choices)
     try:
         for index, path in enumerate(paths):
             file_progress = within(progress, index / len(paths), (index + 1) / len(paths))

@@ -26,16 +26,18 @@ from .solve_reading import (
     Conversion,
     ReadRecording,
     TrackedRecording,
+    at_rate,
     connected_joints,
     convert_takes,
     convert_tracked,
 )
 
 MAX_NAMED = 3  # joints that a sentence lists
+SAME_SAMPLE = 1e-6  # samples; a distance that is only rounding, as in `resample`
 
 
 class SensorSamples(NamedTuple):
-    """Values of the sensor at its own samples, even if the motion is resampled."""
+    """Values of the sensor."""
 
     frames: Array
     """Scene frames, shape (n_samples,)."""
@@ -45,6 +47,20 @@ class SensorSamples(NamedTuple):
     def of(self, name: str) -> tuple[Array, dict[str, Array]]:
         """Return the frames and the values of one joint or marker."""
         return self.frames, self.values.get(name, {})
+
+    def on_frames(self, frames: Array) -> "SensorSamples":
+        """Return the lower of the two nearest values at each of other frames."""
+        between = np.interp(frames, self.frames, np.arange(len(self.frames)))
+        nearest = np.round(between)
+        between = np.where(np.abs(between - nearest) < SAME_SAMPLE, nearest, between)
+        low, high = np.floor(between).astype(int), np.ceil(between).astype(int)
+        return SensorSamples(
+            frames,
+            {
+                name: {kind: np.minimum(each[low], each[high]) for kind, each in values.items()}
+                for name, values in self.values.items()
+            },
+        )
 
 
 class CreatedObjects(NamedTuple):
@@ -93,9 +109,11 @@ def make_objects(
     samples = timing(scene, choices.frame_rate, recording.frame_rate, choices.frame_start)
     if moving is None:
         moving = convert_tracked(recording, conversion_from_choices(context, choices))
-    resampled = choices.frame_rate is FrameRate.RESAMPLE
-    frames = (samples._replace(step=1.0) if resampled else samples).frames(moving.n_frames)
     sensor_samples = SensorSamples(samples.frames(recording.n_frames), sensor_values(recording))
+    if choices.frame_rate is FrameRate.RESAMPLE:
+        moving, samples = at_rate(moving, scene_rate(scene)), samples._replace(step=1.0)
+        sensor_samples = sensor_samples.on_frames(samples.frames(moving.n_frames))
+    frames = samples.frames(moving.n_frames)
     if isinstance(moving, Motion):
         mode = choices.rotate_mode.name
         made = _make_armature(context, name, moving, mode, frames, sensor_samples, progress)
@@ -174,11 +192,12 @@ def add_takes(
     scene, metres = context.scene, unit_of(context.scene)
     made.action.name = fitting_name(content.take)
     slot, last, names = made.top.animation_data.action_slot, made.last_frame, [content.take]
-    for take in convert_takes(content.others, conversion_from_choices(context, choices)):
+    conversion = conversion_from_choices(context, choices)
+    if choices.frame_rate is FrameRate.UPDATE:  # the scene gets the rate of the first take
+        conversion = conversion._replace(frame_rate=content.recording.frame_rate)
+    for take in convert_takes(content.others, conversion):
         rate = take.motion.frame_rate
         samples = timing(scene, choices.frame_rate, rate, choices.frame_start)
-        if choices.frame_rate is FrameRate.UPDATE:  # the scene gets the rate of the first take
-            samples = samples._replace(step=content.recording.frame_rate / rate)
         frames = samples.frames(take.motion.n_frames)
         action, _ = write_motion(
             made.top, made.bones, take.motion, frames, metres, name=fitting_name(take.name)

@@ -212,11 +212,16 @@ def convert_recording(recording: Recording, conversion: Conversion) -> Motion | 
 def convert_tracked(recording: TrackedRecording, conversion: Conversion) -> Motion | Tracks:
     """Convert joints or markers to a motion or points for the scene."""
     moving = scaled(_joined(recording, conversion.armature), conversion.scale)
-    if conversion.frame_rate is None:
+    return moving if conversion.frame_rate is None else at_rate(moving, conversion.frame_rate)
+
+
+def at_rate(moving: Moving, frame_rate: float) -> Moving:
+    """Return the recording with so many frames per second, in hertz."""
+    if moving.frame_rate == frame_rate:
         return moving
     if isinstance(moving, Motion):
-        return resample(moving, conversion.frame_rate)
-    return resample(moving, conversion.frame_rate)
+        return cast(Moving, resample(moving, frame_rate))
+    return cast(Moving, resample(moving, frame_rate))
 
 
 def in_one_tree(recording: JointRecording) -> bool:

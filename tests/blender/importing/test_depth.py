@@ -46,7 +46,7 @@ def test_only_what_was_seen_is_drawn(archive, depth, bring, blank):
 
 def test_it_plays_in_seconds_at_the_rate_of_the_scene(archive, bring, blank):
     blank.context.scene.render.fps = 60
-    made = bring(archive, update_scene_duration=True)
+    made = bring(archive, frame_rate="SCALE", update_scene_duration=True)
 
     places = []
     for frame in (1, 3, 4, 5, 15, 400):

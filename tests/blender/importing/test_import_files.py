@@ -77,7 +77,7 @@ def test_markers_become_empties_with_gaps(file, recordings, bring, load, blank):
 
 def test_a_walk_is_cleaned_after_it_was_imported(recordings, bring, blank):
     armature = bring(recordings / "mocap" / "cmu_walk" / "07_01.bvh")
-    assert (blank.context.scene.render.fps, blank.context.scene.frame_end) == (24, 250)
+    assert (blank.context.scene.render.fps, blank.context.scene.frame_end) == (120, 317)
 
     assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
 
