@@ -46,7 +46,8 @@ def _text(scores: Scores | str) -> str:
 
 def _run(seconds: float) -> str:
     now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
-    words = [f"python -m tests.benchmarks.{Path(sys.argv[0]).stem}", *sys.argv[1:]]
+    module = Path(sys.argv[0]).resolve().relative_to(DOCS.parent).with_suffix("")
+    words = ["python -m", ".".join(module.parts), *sys.argv[1:]]
     machine = f"{platform.system()} {platform.machine()}, Python {platform.python_version()}"
     return f"`{' '.join(words)}`, {now}, {machine}, one BLAS thread, {seconds:.0f} s.\n"
 
