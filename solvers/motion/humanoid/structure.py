@@ -136,7 +136,7 @@ def _may_stand(skeleton: Skeleton, legs: MirroredLimbs, trunk: Array, height: fl
 
 def is_human_angle(cosine: float) -> bool:
     """Whether trunk and legs at this angle stand, or lie along one axis as if folded up."""
-    return cosine > np.cos(np.radians(MAX_HUMAN_ANGLE_DEG)) or cosine < ALONG_ONE_AXIS
+    return bool(cosine > np.cos(np.radians(MAX_HUMAN_ANGLE_DEG)) or cosine < ALONG_ONE_AXIS)
 
 
 def _is_folded(skeleton: Skeleton, limbs: MirroredLimbs, height: float) -> bool:
