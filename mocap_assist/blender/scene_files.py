@@ -25,17 +25,18 @@ MAX_RATE_HZ = 10_000.0
 RATE_TOLERANCE = 0.01
 MAX_JSON_BYTES = 1 << 28
 USD_OPTIONS = {
-    "import_meshes": False, "import_cameras": False, "import_materials": False,
+    "import_cameras": False, "import_materials": False,
     "import_textures_mode": "IMPORT_NONE",
 }  # fmt: skip
 GLB_MAGIC = 0x46546C67
 GLB_JSON = 0x4E4F534A
 
 
-def open_scene_file(path: str) -> None:
+def open_scene_file(path: str, *, meshes: bool = False) -> None:
     """Replace the open scene by a .blend file, or by what an importer makes of another file.
 
-    Scripts and drivers of the file are off. The scene plays at the rate of the file.
+    Scripts and drivers of the file are off. The scene plays at the rate of the file. USD is
+    read without its meshes unless they are wanted.
 
     Raises
     ------
@@ -52,7 +53,7 @@ def open_scene_file(path: str) -> None:
     if suffix == ".dae":
         return _open_collada(path)
     if suffix in {".usd", ".usda", ".usdc", ".usdz"}:
-        return _run(path, bpy.ops.wm.usd_import, **USD_OPTIONS)
+        return _run(path, bpy.ops.wm.usd_import, **USD_OPTIONS, import_meshes=meshes)
     return _open_gltf(path)
 
 

@@ -59,6 +59,11 @@ class ImportChoices(FloorSettings, ReadingSettings):
     rotate_mode: Rotation = setting(
         Rotation.QUATERNION, "Rotation mode of the bones", label="Rotation"
     )
+    keep_meshes: bool = setting(
+        False,
+        "Keep the skinned meshes of FBX, glTF and USD files, without materials",
+        label="Keep Meshes",
+    )
     frame_start: int = setting(
         1,
         "First frame of the animation",

@@ -9,6 +9,7 @@ from ..jobs.in_blender import is_scene_file
 from .depth_folders import is_take
 
 DEPTH, SKELETON, JOINTS, MARKERS, SMPL = "depth", "skeleton", "joints", "markers", "smpl"
+SCENE = "scene"
 MOVING = {SKELETON, JOINTS, MARKERS, SMPL}
 MARKER_FORMATS = {"C3D", "TRC", "OptiTrack CSV", "Qualisys TSV", "Vicon CSV"}
 MAX_LOOKED_AT = 50
@@ -17,6 +18,7 @@ FOR_KINDS: dict[str, set[str]] = {
     "target": {JOINTS},
     "up": MOVING, "forward": MOVING, "place_on_floor": MOVING,
     "height": {SMPL},
+    "keep_meshes": {SCENE},
     "rotate_mode": {SKELETON, JOINTS, SMPL},
     "focal_length": {DEPTH}, "focal_length_y": {DEPTH}, "center_x": {DEPTH},
     "center_y": {DEPTH}, "held": {DEPTH}, "mirrored": {DEPTH},
@@ -38,7 +40,7 @@ def fitting(names: Iterable[str], kinds: Collection[str]) -> list[str]:
 
 def _kinds(path: Path) -> set[str]:
     if is_scene_file(path):
-        return {SKELETON}
+        return {SKELETON, SCENE}
     if is_take(path):
         return {DEPTH}
     found = attempt(path, detect_format, path)

@@ -26,6 +26,7 @@ from ..scene.scene_rate import (
     set_scene_rate,
 )
 from ..scene.scene_state import SceneState
+from .bind_meshes import bind_skinned_meshes
 from .choices import ImportChoices
 from .depth_objects import make_preview
 from .recording_objects import add_takes, make_objects
@@ -170,6 +171,9 @@ class ImportTransaction:
             )
         if content.others:
             made = add_takes(context, made, path, content, choices)
+        if content.meshes is not None:
+            bound = bind_skinned_meshes(context, content.meshes, content.armature, made.top)
+            made = made._replace(what=made.what + bound)
         for owner in filter(None, (made.top, made.action)):
             origin = origin_of_file(path, recording, choices.global_scale, content.body)
             note_origin(owner, origin)

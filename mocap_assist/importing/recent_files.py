@@ -11,9 +11,10 @@ from ...solvers.recordings.skeleton_files import find_skeleton
 from .solve_reading import Conversion, ReadRecording, read_takes
 
 MOST = 20_000_000  # numbers that are kept
+BYTES = 8  # of a number
 
 State = tuple[tuple[str, int, int], ...]
-Reading = tuple[ReadingSettings, Floor, str]
+Reading = tuple[ReadingSettings, Floor, str, bool]
 _read: dict[tuple[State, Reading], list[ReadRecording]] = {}
 
 
@@ -39,7 +40,7 @@ def bodies_of(path: Path) -> tuple[Body, ...]:
 
 def reading_of(conversion: Conversion) -> Reading:
     """Return what a file is read by, of all that is done to it."""
-    return conversion.reading, conversion.floor, conversion.body
+    return conversion.reading, conversion.floor, conversion.body, conversion.meshes
 
 
 def remember(path: Path, state: State, takes: list[ReadRecording], reading: Reading) -> None:
@@ -65,6 +66,7 @@ def state_of(path: Path) -> State:
 def _size(take: ReadRecording) -> int:
     recording = take.recording
     others = sum(other.motion.rotations.size for other in take.others)
+    others += len(take.meshes.content) // BYTES if take.meshes else 0
     if isinstance(recording, DepthRecording):
         return 0  # never kept
     if isinstance(recording, Motion):

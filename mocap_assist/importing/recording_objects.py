@@ -87,6 +87,7 @@ def conversion_from_choices(context: bpy.types.Context, choices: ImportChoices) 
         choices.reading,
         choices.depth,
         choices.place_on_floor,
+        choices.keep_meshes,
         choices.body,
         BackgroundBlender(str(bpy.app.binary_path)),
     )

@@ -21,6 +21,8 @@ class Take:
 
     name: str
     motion: Motion
+    armature: str = ""
+    """Name of the armature in the file."""
 
 
 def bodies_of_scene(path: str, found: BlendRead) -> Bodies[tuple[Take, ...]]:
@@ -35,7 +37,9 @@ def bodies_of_scene(path: str, found: BlendRead) -> Bodies[tuple[Take, ...]]:
     groups = _grouped(found.clips)
     longest = max(clip.motion.n_frames for group in groups for clip in group)
     listed = tuple(_body(name, group, longest) for name, group in _named(groups))
-    takes = [tuple(Take(clip.item, clip.motion) for clip in group) for group in groups]
+    takes = [
+        tuple(Take(clip.item, clip.motion, clip.armature) for clip in group) for group in groups
+    ]
     return Bodies(path, listed, lambda index, progress: takes[index])
 
 

@@ -36,7 +36,7 @@ from ...solvers.recordings.conventions import (
     with_conventions,
 )
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
-from ..jobs.in_blender import BackgroundBlender, is_scene_file, read_blends
+from ..jobs.in_blender import BackgroundBlender, SkinnedMeshes, is_scene_file, read_blends
 from .solve_bodies import Take, bodies_of_scene, choice_in_scene
 
 TrackedRecording = Motion | Tracks | JointRecording
@@ -60,6 +60,8 @@ class Conversion(NamedTuple):
     """Interpretation of depth images."""
     floor: Floor = Floor.NEVER
     """Whether takes are put on the floor."""
+    meshes: bool = False
+    """Whether skinned meshes are read too."""
     body: str = ""
     """Bodies to read of a file with several; empty for the default (`Bodies.choose`)."""
     blender: BackgroundBlender = BackgroundBlender("")
@@ -80,6 +82,10 @@ class ReadRecording(NamedTuple):
     """Further takes of the same skeleton."""
     bodies: tuple[Body, ...] = ()
     """Bodies to choose from in its file."""
+    meshes: SkinnedMeshes | None = None
+    """Skinned meshes of the file."""
+    armature: str = ""
+    """Name in the file of what deforms them."""
 
 
 class Read(NamedTuple):
@@ -135,7 +141,10 @@ def read_takes(
     if not is_scene_file(path):
         return _read_bodies(path, conversion, progress)
     (found,) = _attempt_read(
-        path, lambda: read_blends(conversion.blender, [str(path)], progress=progress)
+        path,
+        lambda: read_blends(
+            conversion.blender, [str(path)], meshes=conversion.meshes, progress=progress
+        ),
     )
     bodies = bodies_of_scene(str(path), found)
     offered = tuple(bodies.listed[each] for each in bodies.offered)
@@ -151,7 +160,16 @@ def read_takes(
         warnings = () if contents else found.refused
         warnings = (*warnings, *questions_of(first.motion, conversion.floor))
         contents.append(
-            ReadRecording(first.motion, warnings, take, name, tuple(others), offered)
+            ReadRecording(
+                first.motion,
+                warnings,
+                take,
+                name,
+                tuple(others),
+                offered,
+                found.meshes,
+                first.armature,
+            )
         )
     return contents
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...solvers.errors import InvalidFileError
 from ...solvers.faults import attempt
@@ -66,6 +66,17 @@ class BlendClip:
     """Name of the armature."""
 
 
+class SkinnedMeshes(NamedTuple):
+    """Meshes of a file that armatures deform, in the rest pose of the file."""
+
+    content: bytes
+    """A .blend file with the objects."""
+    owners: dict[str, str]
+    """Name of the armature of each object."""
+    heads: dict[str, dict[str, tuple[float, ...]]]
+    """Head of each bone of each armature, in the world of the file."""
+
+
 @dataclass(frozen=True, eq=False)
 class BlendRead:
     """Clips of a .blend file."""
@@ -75,6 +86,8 @@ class BlendRead:
     """A message for each unreadable action, or for the file."""
     is_empty: bool = False
     """Whether the file has no motion at all, so that it need not be read again."""
+    meshes: SkinnedMeshes | None = None
+    """Only if they were asked for."""
 
 
 def read_blends(
@@ -83,6 +96,7 @@ def read_blends(
     *,
     assets_only: bool = False,
     items: Sequence[str] = (),
+    meshes: bool = False,
     progress: Progress = unwatched,
 ) -> list[BlendRead]:
     """Read the armature actions of .blend, FBX, glTF and USD files in a background Blender.
@@ -93,6 +107,7 @@ def read_blends(
     paths : of the files
     assets_only : skip actions that are not marked as assets
     items : read only these actions; empty reads all
+    meshes : also return skinned meshes
 
     Raises
     ------
@@ -102,7 +117,7 @@ def read_blends(
         Blender crashed while it read one of the files.
     """
     blender.check_rig()
-    request = partial(_read_here, tuple(paths), assets_only, tuple(items), blender.rig)
+    request = partial(_read_here, tuple(paths), assets_only, tuple(items), blender.rig, meshes)
     return run(request, progress, blender.command())
 
 
@@ -111,10 +126,13 @@ def _read_here(
     assets_only: bool,
     items: tuple[str, ...],
     rig: str,
+    meshes: bool,
     *,
     progress: Progress,
 ) -> list[BlendRead]:
     """Read in this Blender: the reader can be imported only there."""
     reader: Any = importlib.import_module(f"{EXTENSION}.{READER}")
-    read: list[BlendRead] = reader.read_files(paths, assets_only, items, rig, progress=progress)
+    read: list[BlendRead] = reader.read_files(
+        paths, assets_only, items, rig, meshes=meshes, progress=progress
+    )
     return read

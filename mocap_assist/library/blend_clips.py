@@ -16,6 +16,7 @@ from ..actions.fitting import fitting_slots, plays, plays_slot
 from ..blender import compat
 from ..blender.compat import Source
 from ..blender.scene_files import open_scene_file
+from ..blender.skinned_meshes import pack_skinned_meshes
 from ..blender.stated_conventions import stated_conventions
 from ..jobs.in_blender import BlendClip, BlendRead, is_scene_file
 from ..rigs.evaluated_body import body_bones, with_body_shown
@@ -36,12 +37,13 @@ def read_files(
     items: Sequence[str],
     rig: str = "",
     *,
+    meshes: bool = False,
     progress: Progress = unwatched,
 ) -> list[BlendRead]:
     """Open each file, with its scripts and drivers off, and read its actions.
 
     Those whose bones no armature there has are read with one of the armatures of the file
-    `rig`.
+    `rig`. With `meshes`, skinned meshes are returned too.
     """
     found = []
     for index, path in enumerate(paths):
@@ -49,7 +51,7 @@ def read_files(
         if sentence := path_fault(path):
             found.append(BlendRead((), (sentence,)))
             continue
-        read = attempt(path, _read_file, path, assets_only, items, rig)
+        read = attempt(path, _read_file, path, assets_only, items, rig, meshes)
         found.append(BlendRead((), (read.sentence,)) if isinstance(read, Failure) else read)
     return found
 
@@ -108,8 +110,10 @@ def read_source(
     return take.parts[0].motion
 
 
-def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> BlendRead:
-    open_scene_file(path)
+def _read_file(
+    path: str, assets_only: bool, items: Sequence[str], rig: str, meshes: bool
+) -> BlendRead:
+    open_scene_file(path, meshes=meshes)
     if is_scene_file(path):
         if sentence := _without_motion(path):
             return BlendRead((), (sentence,), is_empty=True)
@@ -132,7 +136,8 @@ def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> 
     is_empty = not (clips or refused)
     if is_scene_file(path):
         clips = _with_one_root(path, clips)
-    return BlendRead(tuple(clips), tuple(refused), is_empty=is_empty)
+    kept = pack_skinned_meshes() if meshes else None
+    return BlendRead(tuple(clips), tuple(refused), is_empty=is_empty, meshes=kept)
 
 
 def _with_one_root(path: str, clips: list[BlendClip]) -> list[BlendClip]:

@@ -1,0 +1,74 @@
+"""Bind skinned meshes of a file to the armature that Import has made."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import bpy
+import mathutils
+import numpy as np
+
+from ...solvers.arrays import Array
+from ...solvers.rotations import fit_similarity
+from ..blender.skinned_meshes import FILE
+from ..jobs.in_blender import SkinnedMeshes
+from ..scene.scene_objects import add_quietly
+
+MAX_MISFIT = 0.02
+"""Mean distance between bones of the file and of the scene, relative to the body's extent, up to
+which a mesh is bound. Chosen by hand: rounding gives 0.0001, another rest pose 0.1 and more."""
+MIN_BONES = 3
+
+
+def bind_skinned_meshes(
+    context: bpy.types.Context,
+    meshes: SkinnedMeshes,
+    owner: str,
+    armature: bpy.types.Object,
+) -> str:
+    """Add the meshes of an armature of the file, bound to that of the scene; say how many.
+
+    They are moved as the rest pose was: bones of one name lie on each other.
+    """
+    names = [mesh for mesh, each in meshes.owners.items() if each == owner]
+    if not names:
+        return ""
+    placed = _placement(meshes.heads[owner], armature)
+    if placed is None:
+        return ", without its meshes, which do not fit the rest pose of these bones"
+    for mesh in _append(meshes.content, names):
+        mesh.use_fake_user = mesh.data.use_fake_user = False
+        mesh.data.transform(placed, shape_keys=True)
+        add_quietly(context, mesh)
+        mesh.parent = armature
+        mesh.modifiers.new("Armature", "ARMATURE").object = armature
+    return f", {len(names)} skinned mesh" + "es" * (len(names) > 1)
+
+
+def _placement(
+    heads: Mapping[str, tuple[float, ...]], armature: bpy.types.Object
+) -> mathutils.Matrix | None:
+    """Return the similarity from the file's world to the armature; None if bones differ."""
+    bones = armature.data.bones
+    common = [name for name in heads if name in bones]
+    if len(common) < MIN_BONES:
+        return None
+    source: Array = np.array([heads[name] for name in common])
+    target: Array = np.array([bones[name].head_local for name in common])
+    rotation, scale, translation = fit_similarity(source, target)
+    moved = scale * source @ rotation.T + translation
+    extent = float(np.ptp(target, axis=0).max())
+    if not np.linalg.norm(moved - target, axis=1).mean() <= MAX_MISFIT * extent:
+        return None
+    placed = np.eye(4)
+    placed[:3, :3], placed[:3, 3] = scale * rotation, translation
+    return mathutils.Matrix(placed)
+
+
+def _append(content: bytes, names: list[str]) -> list[bpy.types.Object]:
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / FILE
+        path.write_bytes(content)
+        with bpy.data.libraries.load(str(path), link=False) as (_, taken):
+            taken.objects = names
+    return [each for each in taken.objects if each is not None and each.type == "MESH"]
