@@ -17,7 +17,7 @@ def lossy(recordings):
 def test_bones_follow_the_joints(lossy, bring, load, poses):
     recording = load("solvers.recordings").read_recording(lossy)
 
-    armature = bring(lossy, frame_rate="ONE")
+    armature = bring(lossy, frame_rate="ONE", place_on_floor="NEVER")
 
     shown = poses(armature, range(1, recording.n_frames + 1))
     misses = [
@@ -38,7 +38,7 @@ def test_what_was_not_tracked_has_no_keys(fps, lossy, bring, load, blank):
     expected = motion.motion_from_points(recording.tracks, recording.parents)
     assert not expected.observed.all()
 
-    armature = bring(lossy)
+    armature = bring(lossy, place_on_floor="NEVER")
 
     take = load("mocap_assist.actions.armature_read").read_take(armature, blank.context.scene)
     read = take.parts[0].motion
@@ -78,7 +78,8 @@ def test_empties_give_back_what_the_camera_measured(lossy, bring, load, blank):
     recording = load("solvers.recordings").read_recording(lossy)
     read = load("mocap_assist.actions.marker_take").read_markers
 
-    tracks = read(bring(lossy, target="OBJECT"), blank.context.scene).tracks
+    empties = bring(lossy, target="OBJECT", place_on_floor="NEVER")
+    tracks = read(empties, blank.context.scene).tracks
 
     order = [recording.names.index(name) for name in tracks.names]
     assert len(order) == recording.n_joints
