@@ -10,6 +10,7 @@ import bpy
 from .blender.settings_properties import settings_from
 from .check.choices import CheckSettings
 from .clean.choices import CleanSettings
+from .exporting.choices import ExportSettings
 from .library.choices import FindBundle, LibraryBundle, LoadBundle, UseBundle
 from .markers.solving import SolveBundle
 from .physics.simulating import SimulateBundle
@@ -30,6 +31,11 @@ class MOCAP_PG_clean(bpy.types.PropertyGroup):
 @settings_from(CheckSettings)
 class MOCAP_PG_check(bpy.types.PropertyGroup):
     """Settings of the button Check."""
+
+
+@settings_from(ExportSettings)
+class MOCAP_PG_export(bpy.types.PropertyGroup):
+    """Settings of the button Export Clean Take."""
 
 
 @settings_from(RetargetBundle)
@@ -134,6 +140,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
 
     clean: bpy.props.PointerProperty(type=MOCAP_PG_clean)
     check: bpy.props.PointerProperty(type=MOCAP_PG_check)
+    export: bpy.props.PointerProperty(type=MOCAP_PG_export)
     solve: bpy.props.PointerProperty(type=MOCAP_PG_solve)
     reconstruct: bpy.props.PointerProperty(type=MOCAP_PG_reconstruct)
     simulate: bpy.props.PointerProperty(type=MOCAP_PG_simulate)
@@ -169,6 +176,7 @@ class MOCAP_PG_job(bpy.types.PropertyGroup):
 CLASSES = (
     MOCAP_PG_clean,
     MOCAP_PG_check,
+    MOCAP_PG_export,
     MOCAP_PG_solve,
     MOCAP_PG_retarget,
     MOCAP_PG_simulate,

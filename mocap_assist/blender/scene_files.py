@@ -12,6 +12,7 @@ import bpy
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import open_regular
 from ...solvers.json_text import parse_json
+from ...solvers.recordings import refuse_stand_ins
 from ..jobs.in_blender import is_scene_file
 
 COMMON_RATES = (15.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 200.0, 240.0)
@@ -42,6 +43,7 @@ def open_scene_file(path: str) -> None:
     suffix = Path(path).suffix.lower()
     if not is_scene_file(path):
         return _run(path, bpy.ops.wm.open_mainfile, load_ui=False, use_scripts=False)
+    refuse_stand_ins(path)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     if suffix == ".fbx":
         return _run(path, bpy.ops.wm.fbx_import)
@@ -76,13 +78,11 @@ def _open_gltf(path: str) -> None:
     content = _gltf_content(path)
     _refuse_other_files(path, content)
     render = bpy.context.scene.render
-    render.fps, render.fps_base = _as_fps(_gltf_rate(content))
+    rate = _gltf_rate(content)
+    render.fps = max(1, round(rate))
+    render.fps_base = rate / render.fps  # Blender's importer multiplies by it
     _run(path, bpy.ops.import_scene.gltf, disable_bone_shape=True, import_shading="NORMALS")
-
-
-def _as_fps(rate: float) -> tuple[int, float]:
-    fps = max(1, round(rate))
-    return fps, fps / rate
+    render.fps_base = render.fps / rate
 
 
 def _gltf_content(path: str) -> dict[str, Any]:

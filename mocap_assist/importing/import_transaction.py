@@ -109,7 +109,10 @@ class ImportTransaction:
         self._created.append(made)
         self._tops.append(top.session_uid)
         self._messages.append(
-            " ".join([sentence, *[f"{text}." for text in content.warnings[:MAX_WARNINGS]]])
+            " ".join([
+                sentence,
+                *[f"{text.rstrip('.')}." for text in content.warnings[:MAX_WARNINGS]],
+            ])
         )
         self._figures.append(_figures(content))
 

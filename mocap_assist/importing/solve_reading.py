@@ -18,7 +18,7 @@ from ...solvers.motion import (
     resample,
 )
 from ...solvers.motion.humanoid import fill_missing_hips
-from ...solvers.progress import Progress, Remark, unwatched
+from ...solvers.progress import Progress, Remark, collect_remarks, unwatched
 from ...solvers.recordings import (
     DEFAULT_READING,
     Body,
@@ -158,7 +158,8 @@ def read_takes(
 
 def _read_bodies(path: Path, conversion: Conversion, progress: Progress) -> list[ReadRecording]:
     """Return the chosen bodies of a file that is read without Blender."""
-    listener = _WarningCollector(progress)
+    remarks: list[Remark] = []
+    listener = collect_remarks(progress, remarks)
 
     def read() -> tuple[list[tuple[str, Recording]], tuple[Body, ...]]:
         if is_depth_recording(path):
@@ -171,7 +172,7 @@ def _read_bodies(path: Path, conversion: Conversion, progress: Progress) -> list
     return [
         ReadRecording(
             recording,
-            tuple(listener.warnings) if number == 0 else (),
+            tuple(remarks) if number == 0 else (),
             body=name if len(found) > 1 or conversion.body else "",
             bodies=offered,
         )
@@ -199,20 +200,6 @@ def _attempt_read(path: Path, read: Callable[[], Result]) -> Result:
     if isinstance(found, Failure):
         raise found.as_error()
     return found
-
-
-class _WarningCollector:
-    """A Progress that collects the warnings of a reader."""
-
-    def __init__(self, progress: Progress) -> None:
-        self._progress = progress
-        self.warnings: list[str] = []
-
-    def __call__(self, fraction: float, message: str = "") -> None:
-        if message not in {"", "Reading", *self.warnings}:
-            first = 0 if isinstance(message, Remark) else len(self.warnings)
-            self.warnings.insert(first, message)
-        self._progress(fraction, message)
 
 
 def convert_recording(recording: Recording, conversion: Conversion) -> Motion | Tracks | None:

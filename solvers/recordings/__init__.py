@@ -57,7 +57,7 @@ from .reading_settings import (
     Unit,
 )
 from .recording_figures import recording_figures
-from .refused_files import SCENE_SUFFIXES
+from .refused_files import SCENE_SUFFIXES, refuse_stand_ins
 from .skeleton_files import read_acclaim, read_acclaim_limits, read_bvh, write_bvh
 
 __all__ = [
@@ -107,6 +107,7 @@ __all__ = [
     "read_ui_prmd_pair",
     "recording_figures",
     "recordings_in",
+    "refuse_stand_ins",
     "settle",
     "write_bvh",
     "write_c3d",

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ..motion import JointRecording, Motion, Tracks
-from ..progress import Progress, unwatched, within
+from ..progress import Progress, Remark, unwatched, within
 from .conventions import (
     Bodies,
     conventions_of,
@@ -82,7 +82,7 @@ def open_as(
     def settled(recording: Tracked, progress: Progress) -> Tracked:
         recording = settle(recording, settings, floor)
         for question in questions_of(recording, floor):
-            progress(1.0, question)
+            progress(1.0, Remark(question))
         return recording
 
     together = bodies.read_together

@@ -73,10 +73,12 @@ def stands_upright(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
         (roles[r] for r in ("neck", "upperChest", "chest", "head") if r in roles), None
     )
     feet = [roles[f"{side}Foot"] for side in SIDES if f"{side}Foot" in roles]
-    if chest is None or "hips" not in roles or len(feet) < 2:
+    tops = [roles[r] for r in ("leftUpperLeg", "rightUpperLeg") if r in roles]
+    pelvis = [roles["hips"]] if "hips" in roles else tops
+    if chest is None or not pelvis or len(feet) < 2:
         return True
     positions = skeleton.rest_positions
-    hips = positions[roles["hips"]]
+    hips = positions[pelvis].mean(axis=0)
     legs, trunk = hips - positions[feet].mean(axis=0), positions[chest] - hips
     height = float(np.linalg.norm(legs) + np.linalg.norm(trunk))
     half_distance = np.linalg.norm(positions[feet[0]] - positions[feet[1]]) / 2
@@ -94,14 +96,13 @@ def _descent(skeleton: Skeleton, roles: Mapping[str, int]) -> float:
 
 
 def _links(roles: Mapping[str, int]) -> list[tuple[int, int]]:
-    """Return the joints of each mapped link of a limb."""
-    links = [
-        (f"{side}{upper}", f"{side}{lower}")
+    """Return the joints of each link of a limb, from one with a role to the next."""
+    limbs = [
+        [roles[side + part] for part in limb if side + part in roles]
         for side in SIDES
         for limb in LIMBS
-        for upper, lower in pairwise(limb)
     ]
-    return [(roles[a], roles[b]) for a, b in links if a in roles and b in roles]
+    return [link for limb in limbs for link in pairwise(limb)]
 
 
 def _skips_joint(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:

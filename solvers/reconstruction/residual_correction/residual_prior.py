@@ -117,9 +117,8 @@ class ResidualPrior:
             KEYS.get(name, name): np.asarray(getattr(self, name)) for name in PRIOR_FIELDS
         }
         if self.movement is not None:
-            arrays |= {
-                MOVEMENT_PREFIX + name: one for name, one in self.movement.arrays().items()
-            }
+            movement = self.movement.arrays()
+            arrays |= {MOVEMENT_PREFIX + name: one for name, one in movement.items()}
         LAYOUT.write(path, arrays)
 
     @cached_property

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...motion import Motion, Tracks
-from ...progress import Progress, unwatched
+from ...progress import Progress, Remark, unwatched
 from ..containers import C3dFile
 from ..conventions import (
     Bodies,
@@ -83,7 +83,7 @@ def open_c3d(
         if not file.n_points:
             recording = read_c3d_rotations(file, scale, progress)
             return Bodies(str(path), (), lambda index, progress: recording)
-        progress(0.1, "The poses of segments in its ROTATION group are left out")
+        progress(0.1, Remark("The poses of segments in its ROTATION group are left out"))
     points, observed = file.read_points()
     progress(0.6, "Reading")
     points[~observed | (points == 0.0).all(axis=-1) | ~np.isfinite(points).all(axis=-1)] = (
@@ -114,10 +114,15 @@ def _up(file: C3dFile, points: NDArray[np.float64], progress: Progress) -> str:
     screen = file.texts("POINT:Y_SCREEN")
     up = screen[0].strip().upper() if screen else ""
     if is_upside_down(points, up):
-        progress(0.8, f"Y_SCREEN says {up}, which hangs the actor below the floor; not used")
+        progress(
+            0.8, Remark(f"Y_SCREEN says {up}, which hangs the actor below the floor; not used")
+        )
         return f"+{up[-1]}"
     if other := other_standing_axis(points, up):
-        progress(0.8, f"Y_SCREEN says {up}, but the actor stands along {other}, which is used")
+        progress(
+            0.8,
+            Remark(f"Y_SCREEN says {up}, but the actor stands along {other}, which is used"),
+        )
         return other
     return up
 

@@ -10,7 +10,7 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import Motion, Tracks
-from ...progress import Progress, unwatched, within
+from ...progress import Progress, Remark, unwatched, within
 from ...rotations import normalize, unroll
 from ..containers import LineReader, decode_text, split_cells, stream_cells
 from ..conventions import check_scale, point_names, points_z_up
@@ -109,7 +109,7 @@ def _points(
             " Export it again."
         )
     if key == BODIES:
-        progress(0.8, "Of rigid bodies the origins are read, not the rotations")
+        progress(0.8, Remark("Of rigid bodies the origins are read, not the rotations"))
     first = n_stamps + step * np.arange(len(labels))
     points = rows[:, first[:, None] + np.arange(3)]
     mark_missing(points, path)

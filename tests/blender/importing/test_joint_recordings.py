@@ -80,9 +80,8 @@ def test_empties_give_back_what_the_camera_measured(lossy, bring, load, blank):
     recording = load("solvers.recordings").read_recording(lossy)
     read = load("mocap_assist.actions.marker_take").read_markers
 
-    tracks = read(
-        bring(lossy, target="OBJECT", place_on_floor="NEVER"), blank.context.scene
-    ).tracks
+    empties = bring(lossy, target="OBJECT", place_on_floor="NEVER")
+    tracks = read(empties, blank.context.scene).tracks
 
     order = [recording.names.index(name) for name in tracks.names]
     assert len(order) == recording.n_joints

@@ -94,6 +94,24 @@ def test_what_is_no_such_file_is_refused_in_a_sentence(bring, tmp_path, content,
     assert "take." in message and "Traceback" not in message
 
 
+@pytest.mark.parametrize(
+    ("suffix", "content", "sentence"),
+    [
+        ("glb", b"<!DOCTYPE html><html></html>", "is a web page"),
+        ("fbx", b"version https://git-lfs.github.com/spec/v1\n", "git lfs pull"),
+    ],
+)
+def test_what_stands_where_a_file_should_be_is_named(
+    bring, tmp_path, suffix, content, sentence
+):
+    (tmp_path / f"take.{suffix}").write_bytes(content)
+
+    armatures, message = bring(tmp_path / f"take.{suffix}")
+
+    assert not armatures
+    assert sentence in message
+
+
 def test_a_lying_header_of_a_glb_costs_no_memory(bring, tmp_path):
     path = tmp_path / "take.glb"
     path.write_bytes(struct.pack("<IIIII", 0x46546C67, 2, 100, 0xFFFFFFFF, 0x4E4F534A))
