@@ -4,6 +4,7 @@ import re
 import struct
 from collections import Counter
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import addon_utils
@@ -14,6 +15,7 @@ from ...solvers.files import open_regular
 from ...solvers.json_text import parse_json
 from ...solvers.recordings import refuse_stand_ins
 from ..jobs.in_blender import is_scene_file
+from .gltf_skins import find_joint_trees, write_with_skins
 
 COMMON_RATES = (15.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 200.0, 240.0)
 MIN_RATE_HZ = 12.0
@@ -81,8 +83,19 @@ def _open_gltf(path: str) -> None:
     rate = _gltf_rate(content)
     render.fps = max(1, round(rate))
     render.fps_base = rate / render.fps  # Blender's importer multiplies by it
-    _run(path, bpy.ops.import_scene.gltf, disable_bone_shape=True, import_shading="NORMALS")
+    trees = find_joint_trees(content)
+    with TemporaryDirectory() as folder:
+        copy = Path(folder) / Path(path).name
+        if trees:
+            write_with_skins(path, content, trees, copy)
+        _run(path, _import_gltf, opened=str(copy) if trees else path)
     render.fps_base = render.fps / rate
+
+
+def _import_gltf(*, filepath: str, opened: str) -> None:
+    bpy.ops.import_scene.gltf(
+        filepath=opened, disable_bone_shape=True, import_shading="NORMALS"
+    )
 
 
 def _gltf_content(path: str) -> dict[str, Any]:

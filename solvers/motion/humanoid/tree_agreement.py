@@ -8,7 +8,7 @@ import numpy as np
 
 from ..skeletons import Skeleton
 from .limb_division import MIN_SPREAD_FRACTION
-from .structure import MAX_HUMAN_ANGLE_DEG
+from .structure import is_human_angle
 
 LIMBS = (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand"))
 SIDES = ("left", "right")
@@ -37,6 +37,9 @@ rigs of `tests/solvers/motion`."""
 NOT_STANDING = 0.5
 """Factor of the score of a map whose legs do not stand below the trunk. Chosen by hand on the
 rigs of `tests/solvers/motion`."""
+ARM_TO_LEG, TRUNK_TO_LEG = (0.52, 0.9), (0.45, 0.8)
+"""Lengths relative to thigh and shank: of the arm bones (0.68 in people), and from hips to neck
+(0.6); from Winter 2009, figure 4.1, with a margin. The trunks of animals are longer."""
 
 
 def tree_agreement(skeleton: Skeleton, joints: Mapping[str, str]) -> float:
@@ -51,7 +54,8 @@ def tree_agreement(skeleton: Skeleton, joints: Mapping[str, str]) -> float:
     -------
     float
         1 where limb joints descend from each other, no joint of a limb or of the spine is
-        left over between two that have a role, lengths are human, and the rest pose stands.
+        left over between two that have a role, lengths are human, and the rest pose stands. A
+        body of clearly human lengths may rest in any pose, such as the first of a somersault.
     """
     indices = {name: index for index, name in enumerate(skeleton.names)}
     roles = {role: indices[name] for role, name in joints.items()}
@@ -62,7 +66,7 @@ def tree_agreement(skeleton: Skeleton, joints: Mapping[str, str]) -> float:
         agreement *= NO_SPINE
     if _has_odd_lengths(skeleton, roles):
         agreement *= ODD_LENGTHS
-    if not stands_upright(skeleton, roles):
+    if not (stands_upright(skeleton, roles) or _has_human_lengths(skeleton, roles)):
         agreement *= NOT_STANDING
     return agreement
 
@@ -84,8 +88,39 @@ def stands_upright(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
     half_distance = np.linalg.norm(positions[feet[0]] - positions[feet[1]]) / 2
     if half_distance < MIN_SPREAD_FRACTION * height or np.linalg.norm(trunk) < 0.1 * height:
         return True  # folded: all bones have one direction
-    cosine = legs @ trunk / max(np.linalg.norm(legs) * np.linalg.norm(trunk), 1e-12)
-    return bool(cosine > np.cos(np.radians(MAX_HUMAN_ANGLE_DEG)))
+    return is_human_angle(
+        float(legs @ trunk / max(np.linalg.norm(legs) * np.linalg.norm(trunk), 1e-12))
+    )
+
+
+def _has_human_lengths(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
+    """Whether arms and trunk are as long, relative to the legs, as those of people."""
+    if not {"hips", "neck"} <= roles.keys() or any(
+        side + part not in roles for side in SIDES for limb in LIMBS for part in limb
+    ):
+        return False
+    legs, arms = (
+        sum(
+            _path_length(skeleton, roles[side + limb[0]], roles[side + limb[-1]])
+            for side in SIDES
+        )
+        / 2
+        for limb in LIMBS
+    )
+    trunk = _path_length(skeleton, roles["hips"], roles["neck"])
+    return bool(
+        ARM_TO_LEG[0] < arms / max(legs, 1e-9) < ARM_TO_LEG[1]
+        and TRUNK_TO_LEG[0] < trunk / max(legs, 1e-9) < TRUNK_TO_LEG[1]
+    )
+
+
+def _path_length(skeleton: Skeleton, above: int, below: int) -> float:
+    """Return the length of the bones from one joint down to another; 0 if it is not below."""
+    chain = [below, *skeleton.ancestors(below)]
+    if above not in chain:
+        return 0.0
+    bones = chain[: chain.index(above)]
+    return float(np.linalg.norm(skeleton.offsets[bones], axis=1).sum())
 
 
 def _descent(skeleton: Skeleton, roles: Mapping[str, int]) -> float:

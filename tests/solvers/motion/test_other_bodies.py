@@ -132,5 +132,71 @@ def test_sides_are_those_of_the_names_wherever_the_body_faces(family, turn, has_
     assert found.score > MIN_NAME_SCORE / 2
 
 
+@pytest.mark.parametrize("family", ["Mixamo", "Unreal", "Rigify"])
+def test_bones_along_one_axis_at_rest_keep_the_roles_of_their_names(family):
+    """Rokoko and others store every bone along X; only the hips show a width."""
+    rig = RIGS[family](1.0)
+    lengths = np.linalg.norm(rig.offsets, axis=1)
+    along = np.array([1.0, 0.0, 0.0]) * lengths[:, None]
+    beside = np.abs(rig.offsets[:, 0]) > 0.5 * lengths
+    offsets = np.where(beside[:, None], rig.offsets, along)
+
+    found = find_humanoid_map(Skeleton(rig.names, rig.parents, offsets))
+
+    assert found.joints == find_humanoid_map(rig).joints
+    assert found.score == 1.0
+
+
+@pytest.mark.parametrize("family", ["Mixamo", "Unreal", "Rigify"])
+def test_a_rest_pose_of_a_somersault_keeps_the_roles_of_its_names(family):
+    """An animation without its mesh rests in its first frame: here bent double."""
+    rig = RIGS[family](1.0)
+    upper = next(
+        j
+        for j, name in enumerate(rig.names)
+        if name.endswith(("Spine", "spine_01", "spine.001"))
+    )
+    offsets = rig.offsets.copy()
+    for joint in rig.subtree(upper):
+        if joint != upper:
+            offsets[joint] *= (1.0, -1.0, -1.0)  # half a turn about X
+
+    found = find_humanoid_map(Skeleton(rig.names, rig.parents, offsets))
+
+    assert found.joints == find_humanoid_map(rig).joints
+    assert found.score == 1.0
+
+
+def test_plain_words_of_a_game_are_enough():
+    """As of a robot: no collar bones, and other bones that control it."""
+    rows = [
+        ("MASTER", "", (0, 0, 0)), ("hip", "MASTER", (0, 0, 0.63)),
+        ("waist", "hip", (0, 0, 0.12)),
+        ("chest", "waist", (0, 0, 0.25)), ("neck", "chest", (0, 0, 0.37)),
+        ("head", "neck", (0, 0.05, 0.15)), ("HEAD_AIM", "MASTER", (0, -1.7, 1.9)),
+    ]  # fmt: skip
+    for side, sign in (("l", 1), ("r", -1)):
+        rows += [
+            (f"{side}-arm", "chest", (sign * 0.28, 0, 0.23)),
+            (f"{side}-forearm", f"{side}-arm", (sign * 0.2, 0.1, -0.18)),
+            (f"{side}-hand", f"{side}-forearm", (sign * 0.25, -0.1, -0.2)),
+            (f"{side}-thigh", "hip", (sign * 0.1, 0, 0.05)),
+            (f"{side}-leg", f"{side}-thigh", (sign * 0.02, 0, -0.2)),
+            (f"{side}-foot", f"{side}-leg", (sign * 0.03, 0, -0.43)),
+            (f"{side}-LEGCONTROL", "MASTER", (sign * 0.15, 0, 0.06)),
+        ]
+    names = [name for name, _, _ in rows]
+    parents = tuple(names.index(parent) if parent else -1 for _, parent, _ in rows)
+    skeleton = Skeleton(tuple(names), parents, np.array([row[2] for row in rows], float))
+
+    found = find_humanoid_map(skeleton)
+
+    assert found.score > MIN_NAME_SCORE
+    assert found.joint("hips") == "hip"
+    assert found.joint("leftUpperArm") == "l-arm"
+    assert found.joint("rightLowerLeg") == "r-leg"
+    assert found.joint("head") == "head"
+
+
 def is_toe(name):
     return "Toe" in name or "ball" in name
