@@ -175,7 +175,7 @@ def role_faults(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]
 
 def _missing_middles(roles: Mapping[str, int]) -> dict[str, str]:
     """Return a clause for both ends of each limb whose middle has no joint."""
-    faults = {}
+    faults: dict[str, str] = {}
     for side, (upper, middle, end) in product(SIDES, LIMBS):
         ends = {f"{side}{upper}", f"{side}{end}"}
         if ends <= roles.keys() and f"{side}{middle}" not in roles:
