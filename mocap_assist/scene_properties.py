@@ -15,6 +15,7 @@ from .library.choices import FindBundle, LibraryBundle, LoadBundle, UseBundle
 from .markers.solving import SolveBundle
 from .physics.simulating import SimulateBundle
 from .reconstruct.choices import ReconstructBundle
+from .retarget.bone_map import explain_edited
 from .retarget.choices import RetargetBundle, UnbakeBundle
 from .track.retracking import RetrackBundle
 from .track.tracking import TrackBundle
@@ -107,11 +108,19 @@ class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
     """Bones of source and target that play one part of the body; `name` is the role's."""
 
     source: bpy.props.StringProperty(
-        name="Source bone", description="Bone of the source that plays this part"
+        name="Source bone",
+        description="Bone of the source that plays this part",
+        update=explain_edited,
     )
     target: bpy.props.StringProperty(
-        name="Target bone", description="Bone or control of the target that plays this part"
+        name="Target bone",
+        description="Bone or control of the target that plays this part",
+        update=explain_edited,
     )
+    source_confidence: bpy.props.FloatProperty(name="Source Confidence", default=1.0)
+    target_confidence: bpy.props.FloatProperty(name="Target Confidence", default=1.0)
+    source_reason: bpy.props.StringProperty(name="Source Reason")
+    target_reason: bpy.props.StringProperty(name="Target Reason")
 
 
 class MOCAP_PG_bone_map(bpy.types.PropertyGroup):

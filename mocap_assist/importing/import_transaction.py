@@ -14,6 +14,7 @@ from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import recording_figures
 from ...solvers.recordings.conventions import conventions_of
+from ..actions.markers import markers_of
 from ..scene.origin import note_origin, origin_of_file
 from ..scene.other_animation import is_animated
 from ..scene.scene_objects import Numbers, choose, in_object_mode, remove, undo_on_error
@@ -136,7 +137,8 @@ class ImportTransaction:
         objects = {each.session_uid: each for each in context.view_layer.objects}
         tops = tuple(objects[number] for number in self._tops if number in objects)
         if tops:
-            choose(context, list(tops), tops[-1])
+            chosen = [each for top in tops for each in markers_of(top) or [top]]
+            choose(context, chosen, tops[-1])
         failed = self._failed if self._messages or self._failed else ["No file was chosen."]
         return Imported(tops, tuple(self._messages), tuple(failed), tuple(self._figures))
 

@@ -17,8 +17,7 @@ class FrameRate(Choice):
 
     AUTO = (
         "auto",
-        "Set the scene to the rate and length of the recording if nothing else is animated;"
-        " otherwise put one key on each scene frame",
+        "Take over rate and length if nothing else is animated, else resample to the scene",
     )
     SCALE = "scale FPS", "Keep every sample at its time; keys may lie between frames"
     RESAMPLE = "resample to scene FPS", "Keep the timing and put one key on each scene frame"

@@ -1,8 +1,8 @@
 """Whether the tree of a skeleton agrees with the roles that names suggest."""
 
 import re
-from collections.abc import Mapping
-from itertools import pairwise
+from collections.abc import Mapping, Sequence
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -140,25 +140,74 @@ def _links(roles: Mapping[str, int]) -> list[tuple[int, int]]:
     return [link for limb in limbs for link in pairwise(limb)]
 
 
+def role_faults(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]:
+    """Return what the tree and the lengths say against the role of a joint of a limb.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    joints : mapping of role to joint name
+
+    Returns
+    -------
+    dict of role to clause, such as "it does not hang below LeftUpLeg"; empty without faults
+    """
+    indices = {name: index for index, name in enumerate(skeleton.names)}
+    roles = {role: indices[name] for role, name in joints.items()}
+    role_of = {joint: role for role, joint in roles.items()}
+    faults: dict[str, str] = {}
+    for upper, lower in _links(roles):
+        name = skeleton.names[upper]
+        if upper not in skeleton.ancestors(lower):
+            faults[role_of[lower]] = f"it does not hang below {name}"
+        elif (left := _joint_between(skeleton, set(role_of), upper, lower)) is not None:
+            for joint in (upper, lower):
+                faults[role_of[joint]] = f"{skeleton.names[left]} lies between two parts"
+    faults |= _missing_middles(roles)
+    for limb in LIMBS:
+        if _has_odd_lengths(skeleton, roles, (limb,)):
+            odd = {f"{side}{part}" for side in SIDES for part in limb} & roles.keys()
+            faults |= dict.fromkeys(
+                odd - faults.keys(), "the lengths of this limb are no person's"
+            )
+    return faults
+
+
+def _missing_middles(roles: Mapping[str, int]) -> dict[str, str]:
+    """Return a clause for both ends of each limb whose middle has no joint."""
+    faults: dict[str, str] = {}
+    for side, (upper, middle, end) in product(SIDES, LIMBS):
+        ends = {f"{side}{upper}", f"{side}{end}"}
+        if ends <= roles.keys() and f"{side}{middle}" not in roles:
+            faults |= dict.fromkeys(ends, f"no bone between plays {side}{middle}")
+    return faults
+
+
 def _skips_joint(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
     """Whether a joint lies between two of a limb that is neither a helper nor a twist bone."""
     taken = set(roles.values())
-    for upper, lower in _links(roles):
-        above = skeleton.ancestors(lower)
-        if upper not in above:
-            continue
-        chain = above[: above.index(upper)]
-        ends = skeleton.rest_positions[[upper, lower]]
-        length = np.linalg.norm(ends[1] - ends[0])
-        for joint in chain:
-            between = np.linalg.norm(ends - skeleton.rest_positions[joint], axis=1).min()
-            if (
-                joint not in taken
-                and between > MIN_BONE_FRACTION * length
-                and not _is_twist(skeleton.names[joint], skeleton.names[upper])
-            ):
-                return True
-    return False
+    return any(
+        _joint_between(skeleton, taken, upper, lower) is not None
+        for upper, lower in _links(roles)
+    )
+
+
+def _joint_between(skeleton: Skeleton, taken: set[int], upper: int, lower: int) -> int | None:
+    """Return a joint without a role between two of a limb, no helper and no twist bone."""
+    above = skeleton.ancestors(lower)
+    if upper not in above:
+        return None
+    ends = skeleton.rest_positions[[upper, lower]]
+    length = np.linalg.norm(ends[1] - ends[0])
+    for joint in above[: above.index(upper)]:
+        between = np.linalg.norm(ends - skeleton.rest_positions[joint], axis=1).min()
+        if (
+            joint not in taken
+            and between > MIN_BONE_FRACTION * length
+            and not _is_twist(skeleton.names[joint], skeleton.names[upper])
+        ):
+            return joint
+    return None
 
 
 def _is_twist(name: str, upper: str) -> bool:
@@ -180,9 +229,11 @@ def _skips_spine(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
     return len(free) > 1  # one may be the shoulder
 
 
-def _has_odd_lengths(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
+def _has_odd_lengths(
+    skeleton: Skeleton, roles: Mapping[str, int], limbs: Sequence[tuple[str, ...]] = LIMBS
+) -> bool:
     """Whether a limb's upper and lower bones, or both sides, differ as in no person."""
-    for limb in LIMBS:
+    for limb in limbs:
         lengths = {}
         for side in SIDES:
             joints = [roles[f"{side}{part}"] for part in limb if f"{side}{part}" in roles]

@@ -25,6 +25,12 @@ def bring(blank):
 
 
 @pytest.fixture
+def markers_of(load):
+    """The markers below an object."""
+    return load("mocap_assist.actions.markers").markers_of
+
+
+@pytest.fixture
 def key_times():
     """Scene frames of the keys of an armature's root."""
 
