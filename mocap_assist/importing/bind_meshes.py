@@ -15,8 +15,8 @@ from ..jobs.in_blender import SkinnedMeshes
 from ..scene.scene_objects import add_quietly
 
 MAX_MISFIT = 0.02
-"""Mean distance between bones of the file and of the scene, relative to the body's extent, up to
-which a mesh is bound. Chosen by hand: rounding gives 0.0001, another rest pose 0.1 and more."""
+"""Mean distance between bones of the file and of the scene (fraction of the body's extent) up
+to which a mesh is bound. Chosen by hand: rounding gives 0.0001, another rest pose 0.1."""
 MIN_BONES = 3
 
 
