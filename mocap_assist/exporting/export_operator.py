@@ -1,5 +1,6 @@
 """What the operator of Export adds to a solve: the file browser before it."""
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,9 @@ from ..runtime.selection import played_source, selected_armature
 from ..runtime.solver_operator import SolverOperator, in_background
 from .export_target import ENDINGS, with_ending
 from .formats import FileFormat
+
+FORBIDDEN = re.compile(r'[\\/:*?"<>|\x00-\x1f]')
+"""Characters that file names cannot have on some system."""
 
 
 class ExportOperator(SolverOperator):
@@ -68,4 +72,4 @@ def default_path(armature: bpy.types.Object) -> str:
     except InvalidMotionError:
         name = armature.name
     folder = Path(bpy.data.filepath).parent if bpy.data.filepath else Path.home()
-    return str(absolute(str(folder / bpy.path.clean_name(name, replace="_"))))
+    return str(absolute(str(folder / FORBIDDEN.sub("_", name))))

@@ -29,6 +29,7 @@ RECORDINGS = {
         "joints.txt": "kinect/irds/215_18_0_5_1_stand.txt",
     },
     "clean": {},
+    "export": {},
     "depth": {"walk.npz": "depth/truth/walk_front.npz"},
     "import": {
         "walk.bvh": "mocap/cmu_walk/07_01.bvh",

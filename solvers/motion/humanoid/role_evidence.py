@@ -31,14 +31,14 @@ class Reason(Enum):
     """
 
     CONTROL = "control of a generated rig, by its name", 0.99  # not measured
-    BOTH = "by name and structure", 0.99  # 1.000 of 13,059
-    NAME = "by name; the structure is unclear here", 0.9  # 0.999 of 5,593
+    BOTH = "by name and structure", 0.99  # 1.000 of 13,057
+    NAME = "by name; the structure is unclear here", 0.9  # 0.998 of 5,241
     TRUNK = "by name; the structure counts the spine differently", 0.9  # 1.000 of 1,514
     STRUCTURE = "by structure only: name unknown", 0.8  # 0.994 of 1,105
     TREE_DECIDES = "names disagree with the tree: structure decides", 0.7  # 0.92 of 25
     UNCLEAR = "by structure only, but the proportions are hardly human", 0.4  # 0.74 of 46
     CONTRADICTED = "by name, but the structure suggests {other}", 0.15  # 0.151 of 377
-    FAULT = "by name, but {fault}", 0.1  # 0.109 of 184
+    FAULT = "by name, but {fault}", 0.4  # 0.69 of 532
     NEITHER = "neither name nor structure suggests it", 0.1  # of edited maps: not measured
 
     def __init__(self, text: str, confidence: float) -> None:

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -163,12 +163,23 @@ def role_faults(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]
         elif (left := _joint_between(skeleton, set(role_of), upper, lower)) is not None:
             for joint in (upper, lower):
                 faults[role_of[joint]] = f"{skeleton.names[left]} lies between two parts"
+    faults |= _missing_middles(roles)
     for limb in LIMBS:
         if _has_odd_lengths(skeleton, roles, (limb,)):
             odd = {f"{side}{part}" for side in SIDES for part in limb} & roles.keys()
             faults |= dict.fromkeys(
                 odd - faults.keys(), "the lengths of this limb are no person's"
             )
+    return faults
+
+
+def _missing_middles(roles: Mapping[str, int]) -> dict[str, str]:
+    """Return a clause for both ends of each limb whose middle has no joint."""
+    faults: dict[str, str] = {}
+    for side, (upper, middle, end) in product(SIDES, LIMBS):
+        ends = {f"{side}{upper}", f"{side}{end}"}
+        if ends <= roles.keys() and f"{side}{middle}" not in roles:
+            faults |= dict.fromkeys(ends, f"no bone between plays {side}{middle}")
     return faults
 
 

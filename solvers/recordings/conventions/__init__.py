@@ -50,6 +50,7 @@ from .points import (
     other_standing_axis,
     point_names,
     points_z_up,
+    stand_markers,
 )
 from .sensor_axes import from_azure_space, from_kinect_space
 from .subjects import bodies_of_joints, bodies_of_markers
@@ -111,6 +112,7 @@ __all__ = [
     "rotations_z_up_from_y_up",
     "stack_body_frames",
     "stand_along",
+    "stand_markers",
     "stand_upright",
     "stature",
     "turn_between",

@@ -7,7 +7,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion import AxisName, FileConventions
+from ...motion import AxisName, FileConventions, Tracks
 from ..containers import UniqueNames, printable
 from .axes import MIN_BODY_JOINTS, z_up_from_y_up
 from .file_axes import FORWARD
@@ -68,8 +68,32 @@ def judge_axes_of_points(
         up = default_up
     if up[-1:] in {"X", "Y", "Z"}:
         return axes_of_points(up, unit)
-    guessed = axes_of_points("Y" if _looks_y_up(points) else "Z", unit)
-    return replace(guessed, confidence=GUESSED)
+    guessed = "+Y" if _looks_y_up(points) else "+Z"
+    axes = axes_of_points(other_standing_axis(points, guessed) or guessed, unit)
+    return replace(axes, confidence=GUESSED)
+
+
+def stand_markers(
+    labels: Sequence[str],
+    points: NDArray[np.float64],
+    frame_rate: float,
+    unit: float,
+    default_up: str,
+) -> Tracks:
+    """Return markers of a file that does not state its axes, with what was judged.
+
+    Parameters
+    ----------
+    labels : names in the file (`point_names`)
+    points : shape (n_frames, n_points, 3), meters
+    frame_rate : hertz
+    unit : meters per unit of the file
+    default_up : axis of the program, where there are too few points for a body
+    """
+    axes = judge_axes_of_points(points, "", unit, default_up)
+    return Tracks(
+        point_names(labels), points_z_up(points, axes.up), frame_rate, conventions=axes
+    )
 
 
 def axes_of_points(up: str, unit: float = 1.0) -> FileConventions:

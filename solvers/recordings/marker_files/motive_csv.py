@@ -12,7 +12,7 @@ from ...motion import Motion, Tracks
 from ...progress import Progress, Remark, unwatched, within
 from ...rotations import multiply, normalize, quaternion_from_euler, rotate, unroll
 from ..containers import LineReader, stream_cells
-from ..conventions import check_scale, meters_from_unit_name, point_names, points_z_up
+from ..conventions import check_scale, meters_from_unit_name, stand_markers
 from ..skeleton_files import recording_from_segments
 from .marker_rows import at_constant_rate, mark_missing
 from .motive_header import (
@@ -127,9 +127,8 @@ def _points(
     points = _positions(items, rows)
     mark_missing(points, path)
     points, rate = _resampled(header, points, rows, path)
-    names = point_names([item.name for item in items])
     progress(1.0, "Reading")
-    return Tracks(names, points_z_up(points * unit, default_up="+Y"), rate)
+    return stand_markers([item.name for item in items], points * unit, rate, unit, "+Y")
 
 
 def _skeleton(

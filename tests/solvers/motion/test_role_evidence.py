@@ -117,6 +117,18 @@ def test_a_map_of_high_confidence_needs_no_sentence(body):
     assert describe_low_confidence(humanoid, explain_roles(body, humanoid)) == ""
 
 
+def test_a_limb_without_its_middle_is_marked(body):
+    """Thigh and ankle have roles, the knee has none: a joint more may be off."""
+    humanoid = find_humanoid_map(body).with_joint("leftLowerLeg", None)
+
+    evidence = explain_roles(body, humanoid)
+
+    for role in ("leftUpperLeg", "leftFoot"):
+        assert evidence[role].text == "by name, but no bone between plays leftLowerLeg"
+        assert evidence[role].has_low_confidence
+    assert not evidence["rightFoot"].has_low_confidence
+
+
 def test_joints_that_the_skeleton_lacks_have_no_evidence(body):
     assert explain_roles(body, HumanoidMap({"hips": "Nobody"})) == {}
 

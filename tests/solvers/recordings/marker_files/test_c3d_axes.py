@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solvers.motion import Tracks
-from solvers.recordings import read_c3d, write_c3d
+from solvers.recordings import read_c3d, read_trc, write_c3d, write_trc
 
 
 def test_a_screen_that_hangs_the_actor_below_the_floor_is_not_obeyed(recordings):
@@ -76,3 +76,20 @@ def test_the_screen_is_obeyed_where_it_may_be_right(tmp_path, rng, pose):
 
     assert read == pytest.approx(tracks.positions, abs=1e-5)
     assert "Y_SCREEN" not in said
+
+
+@pytest.mark.parametrize("up", ["X", "Y", "Z"])
+def test_a_table_without_axes_stands_whatever_is_up(tmp_path, rng, up):
+    """A TRC states no axis; what was judged is noted, so that it can be changed."""
+    tracks = standing(rng)
+    stored = np.roll(tracks.positions, {"X": 1, "Y": 2, "Z": 0}[up], axis=-1)
+    x, y, z = np.moveaxis(stored, -1, 0)
+    written = tracks.with_positions(np.stack([x, -z, y], axis=-1))  # it is written with Y up
+    write_trc(written, tmp_path / "a.trc")
+    text = (tmp_path / "a.trc").read_text()
+    (tmp_path / "a.trc").write_text(text.replace("\tY up", ""))
+
+    read = read_trc(tmp_path / "a.trc")
+
+    assert read.positions[..., 2] == pytest.approx(tracks.positions[..., 2], abs=1e-5)
+    assert read.conventions.up == up
