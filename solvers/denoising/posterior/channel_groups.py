@@ -113,7 +113,11 @@ def estimate_in_groups(
         iterations = max(iterations, group_estimate.iterations)
         converged &= group_estimate.converged
     estimate = Estimate(*(part[:n_frames] for part in parts), iterations, converged)
-    stacked, n_smoothed = stack_with_spline(channels.flat, estimate)
+    stacked, n_smoothed = stack_with_spline(
+        channels.flat,
+        estimate,
+        keep_outliers=bool(smooth_fractions) and min(smooth_fractions) < 1.0,
+    )
     message = _describe_prior(bases, smooth_fractions, n_channels)
     return stacked, message + _describe_spline(n_smoothed, n_channels // 3)
 

@@ -35,7 +35,9 @@ MIN_VARIANCE = 1e-12
 """Square degrees or centimeters. Guards a division and the logarithm of zero."""
 
 
-def stack_with_spline(noisy: Array, estimate: Estimate) -> tuple[Estimate, int]:
+def stack_with_spline(
+    noisy: Array, estimate: Estimate, *, keep_outliers: bool = False
+) -> tuple[Estimate, int]:
     """Return the estimate, stacked with a spline, and the number of joints it serves better.
 
     A joint without outliers is the weighted mean of both that minimizes the leave-one-out error
@@ -48,6 +50,8 @@ def stack_with_spline(noisy: Array, estimate: Estimate) -> tuple[Estimate, int]:
         NaN where not observed; each joint has three channels.
     estimate : Estimate
         With leave-one-out errors; NaN in channels that were not estimated.
+    keep_outliers : bool
+        Keep all outliers, because examples of the movement found them in the other limbs.
 
     References
     ----------
@@ -66,7 +70,7 @@ def stack_with_spline(noisy: Array, estimate: Estimate) -> tuple[Estimate, int]:
     for joint, ((own, plain), (is_known, is_outlier)) in enumerate(
         zip(errors, masks, strict=True)
     ):
-        if is_outlier.any():
+        if is_outlier.any() and not keep_outliers:
             with_outliers = _log_likelihood(own[is_known & ~is_outlier])
             with_outliers += is_outlier.sum() * (log_rate + np.log(OUTLIER_DENSITY))
             weights[joint] = with_outliers > _log_likelihood(plain[is_known])
@@ -107,6 +111,8 @@ def _stacking_weights(
 
 def _log_likelihood(errors: Array) -> float:
     """Return the log-likelihood of errors under Student's t distribution of the best scale."""
+    if not errors.size:
+        return 0.0
     variance = np.mean(errors**2) + MIN_VARIANCE
     for _ in range(N_SCALE_UPDATES):
         weights = (DEGREES_OF_FREEDOM + 1.0) / (DEGREES_OF_FREEDOM + errors**2 / variance)
