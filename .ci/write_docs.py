@@ -40,6 +40,7 @@ PAGES = {
     "tracking": "track_depth retrack",
     "reconstruction": "reconstruct",
     "cleaning": "denoise learn_patterns plant_feet measure_quality jump_to_issue revert_to_raw",
+    "export": "export_take",
     "physics": "simulate",
     "markers": "solve_skeleton",
     "retargeting": "retarget reduce_keys",

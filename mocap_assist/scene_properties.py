@@ -10,10 +10,12 @@ import bpy
 from .blender.settings_properties import settings_from
 from .check.choices import CheckSettings
 from .clean.choices import CleanSettings
+from .exporting.choices import ExportSettings
 from .library.choices import FindBundle, LibraryBundle, LoadBundle, UseBundle
 from .markers.solving import SolveBundle
 from .physics.simulating import SimulateBundle
 from .reconstruct.choices import ReconstructBundle
+from .retarget.bone_map import explain_edited
 from .retarget.choices import RetargetBundle, UnbakeBundle
 from .track.retracking import RetrackBundle
 from .track.tracking import TrackBundle
@@ -30,6 +32,11 @@ class MOCAP_PG_clean(bpy.types.PropertyGroup):
 @settings_from(CheckSettings)
 class MOCAP_PG_check(bpy.types.PropertyGroup):
     """Settings of the button Check."""
+
+
+@settings_from(ExportSettings)
+class MOCAP_PG_export(bpy.types.PropertyGroup):
+    """Settings of the button Export Clean Take."""
 
 
 @settings_from(RetargetBundle)
@@ -101,11 +108,19 @@ class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
     """Bones of source and target that play one part of the body; `name` is the role's."""
 
     source: bpy.props.StringProperty(
-        name="Source bone", description="Bone of the source that plays this part"
+        name="Source bone",
+        description="Bone of the source that plays this part",
+        update=explain_edited,
     )
     target: bpy.props.StringProperty(
-        name="Target bone", description="Bone or control of the target that plays this part"
+        name="Target bone",
+        description="Bone or control of the target that plays this part",
+        update=explain_edited,
     )
+    source_confidence: bpy.props.FloatProperty(name="Source Confidence", default=1.0)
+    target_confidence: bpy.props.FloatProperty(name="Target Confidence", default=1.0)
+    source_reason: bpy.props.StringProperty(name="Source Reason")
+    target_reason: bpy.props.StringProperty(name="Target Reason")
 
 
 class MOCAP_PG_bone_map(bpy.types.PropertyGroup):
@@ -134,6 +149,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
 
     clean: bpy.props.PointerProperty(type=MOCAP_PG_clean)
     check: bpy.props.PointerProperty(type=MOCAP_PG_check)
+    export: bpy.props.PointerProperty(type=MOCAP_PG_export)
     solve: bpy.props.PointerProperty(type=MOCAP_PG_solve)
     reconstruct: bpy.props.PointerProperty(type=MOCAP_PG_reconstruct)
     simulate: bpy.props.PointerProperty(type=MOCAP_PG_simulate)
@@ -169,6 +185,7 @@ class MOCAP_PG_job(bpy.types.PropertyGroup):
 CLASSES = (
     MOCAP_PG_clean,
     MOCAP_PG_check,
+    MOCAP_PG_export,
     MOCAP_PG_solve,
     MOCAP_PG_retarget,
     MOCAP_PG_simulate,

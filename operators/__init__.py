@@ -6,6 +6,7 @@ from .assign_variants import MOCAP_OT_assign_variants
 from .change_axes import MOCAP_OT_change_axes
 from .denoise import MOCAP_OT_denoise
 from .draw_variants import MOCAP_OT_draw_variants
+from .export_take import MOCAP_OT_export_take
 from .find_similar import MOCAP_OT_find_similar
 from .import_job import MOCAP_OT_import_job
 from .import_recording import MOCAP_OT_import_recording
@@ -54,6 +55,7 @@ OPERATORS = (
     MOCAP_OT_retarget,
     MOCAP_OT_reduce_keys,
     MOCAP_OT_revert_to_raw,
+    MOCAP_OT_export_take,
     MOCAP_OT_index_library,
     MOCAP_OT_keep_current,
     MOCAP_OT_find_similar,

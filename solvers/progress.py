@@ -35,24 +35,6 @@ def within(progress: Progress, start: float, stop: float) -> Progress:
     return partly
 
 
-def collect_messages(progress: Progress, messages: list[str]) -> Progress:
-    """Return a Progress that also collects the final messages of a reader.
-
-    Parameters
-    ----------
-    progress : Progress
-    messages : list of str
-        Gets messages other than `READING`, such as the assumed unit of length.
-    """
-
-    def report(fraction: float, message: str = "") -> None:
-        if fraction >= 1.0 and message not in ("", READING, *messages):
-            messages.append(message)
-        progress(fraction, message)
-
-    return report
-
-
 def collect_remarks(progress: Progress, remarks: list[Remark]) -> Progress:
     """Return a Progress that also collects each `Remark` once."""
 

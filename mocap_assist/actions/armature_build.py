@@ -20,6 +20,8 @@ def build_armature(
 ) -> tuple[bpy.types.Object, tuple[str, ...]]:
     """Add an armature to the scene, in its rest pose, selected and active.
 
+    It is drawn as sticks in front of all else: octahedra of long bones would hide the body.
+
     A bone goes from its joint to its child; among several to the one that goes straight on, as
     the neck does above the shoulders, or else to the middle of all. An end site is the tail of
     its bone rather than a bone. What `read_take` reads of the armature is the skeleton again.
@@ -42,6 +44,7 @@ def build_armature(
     in_object_mode(context)
     name = fitting_name(name)
     armature = bpy.data.objects.new(name, bpy.data.armatures.new(name))
+    armature.data.display_type, armature.show_in_front = "STICK", True
     add_object(context, armature)
     heads = skeleton.rest_positions / metres
     tips = _tips(skeleton)

@@ -17,15 +17,29 @@ CROSS = 0.2  # meters: half the length of the cross that shows what holds them
 
 
 def build_empties(
-    context: bpy.types.Context, name: str, points: tuple[str, ...], metres: float
+    context: bpy.types.Context,
+    name: str,
+    points: tuple[str, ...],
+    metres: float,
+    collection: bpy.types.Collection | None = None,
 ) -> tuple[bpy.types.Object, tuple[bpy.types.Object, ...]]:
     """Add an empty for each point, below one that holds them together, which becomes active.
 
-    `metres` is the length of one of the scene's units.
+    The one that holds them is not drawn: Blender draws a line from each object to a parent
+    that is. With a collection they are added there, and the active object stays.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+    name : of the one that holds them
+    points : names
+    metres : length of one of the scene's units
+    collection : bpy.types.Collection, optional
     """
     in_object_mode(context)
     holder = bpy.data.objects.new(fitting_name(name), None)
     holder.empty_display_size = CROSS / metres
+    holder.instance_type, holder.show_instancer_for_viewport = "COLLECTION", False
     made = []
     for point in points:
         empty = bpy.data.objects.new(fitting_name(point), None)
@@ -33,9 +47,15 @@ def build_empties(
         empty.empty_display_size = SIZE / metres
         empty[POINT] = point
         empty.parent = holder
-        add_quietly(context, empty)
         made.append(empty)
-    add_object(context, holder)
+        if collection is None:
+            add_quietly(context, empty)
+        else:
+            collection.objects.link(empty)
+    if collection is None:
+        add_object(context, holder)
+    else:
+        collection.objects.link(holder)
     return holder, tuple(made)
 
 

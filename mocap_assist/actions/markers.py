@@ -9,11 +9,16 @@ from ..scene import history
 from .empties_build import POINT
 
 PATH = "location"
+STICKS = "mocap_assist_sticks"
+"""Custom property of the mesh object that connects markers of a known set."""
 
 
 def holder_of(active: bpy.types.Object | None) -> bpy.types.Object | None:
-    """Return the parent of a take's markers: the active empty, or its parent; or None."""
-    if active is None or active.type != "EMPTY":
+    """Return the parent of a take's markers: the active empty, or its parent; or None.
+
+    The parent is also found by the sticks between the markers.
+    """
+    if active is None or (active.type != "EMPTY" and STICKS not in active):
         return None
     for each in (active, active.parent):
         if each is not None and any(map(is_marker, each.children)):

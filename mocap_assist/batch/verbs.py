@@ -22,6 +22,8 @@ from ..clean.choices import CleanSettings, Prior
 from ..clean.cleaning import read_cleaning, write_cleaned
 from ..runtime.selection import played_source
 from ..scene import history
+from .export_verb import HELP as EXPORT_HELP
+from .export_verb import add_export_options, check_export, perform_export
 from .library_verbs import FIND_HELP, add_find_options, check_find, perform_find
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct
 from .retarget_verbs import (
@@ -190,6 +192,14 @@ VERBS = {
         writes=False,
         check=_check_targets,
         solves=False,
+    ),
+    "export": Verb(
+        EXPORT_HELP,
+        add_export_options,
+        perform_export,
+        writes=False,
+        check=check_export,
+        on_markers=False,
     ),
     "reconstruct": Verb(
         "Rebuild missing and wrong joints of depth camera takes, and plant feet.",

@@ -4,6 +4,7 @@ import re
 import struct
 from collections import Counter
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import addon_utils
@@ -12,7 +13,9 @@ import bpy
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import open_regular
 from ...solvers.json_text import parse_json
+from ...solvers.recordings import refuse_stand_ins
 from ..jobs.in_blender import is_scene_file
+from .gltf_skins import find_joint_trees, write_with_skins
 
 COMMON_RATES = (15.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 200.0, 240.0)
 MIN_RATE_HZ = 12.0
@@ -42,6 +45,7 @@ def open_scene_file(path: str) -> None:
     suffix = Path(path).suffix.lower()
     if not is_scene_file(path):
         return _run(path, bpy.ops.wm.open_mainfile, load_ui=False, use_scripts=False)
+    refuse_stand_ins(path)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     if suffix == ".fbx":
         return _run(path, bpy.ops.wm.fbx_import)
@@ -76,13 +80,22 @@ def _open_gltf(path: str) -> None:
     content = _gltf_content(path)
     _refuse_other_files(path, content)
     render = bpy.context.scene.render
-    render.fps, render.fps_base = _as_fps(_gltf_rate(content))
-    _run(path, bpy.ops.import_scene.gltf, disable_bone_shape=True, import_shading="NORMALS")
+    rate = _gltf_rate(content)
+    render.fps = max(1, round(rate))
+    render.fps_base = rate / render.fps  # Blender's importer multiplies by it
+    trees = find_joint_trees(content)
+    with TemporaryDirectory() as folder:
+        copy = Path(folder) / Path(path).name
+        if trees:
+            write_with_skins(path, content, trees, copy)
+        _run(path, _import_gltf, opened=str(copy) if trees else path)
+    render.fps_base = render.fps / rate
 
 
-def _as_fps(rate: float) -> tuple[int, float]:
-    fps = max(1, round(rate))
-    return fps, fps / rate
+def _import_gltf(*, filepath: str, opened: str) -> None:
+    bpy.ops.import_scene.gltf(
+        filepath=opened, disable_bone_shape=True, import_shading="NORMALS"
+    )
 
 
 def _gltf_content(path: str) -> dict[str, Any]:

@@ -65,6 +65,10 @@ def show_checked(
         item.name = issue.joint.removesuffix("_end")
         item.start, item.stop = frames[issue.start_frame], frames[issue.stop_frame - 1]
         item.kind, item.severity, item.sentence = issue.kind, issue.severity, issue.sentence
+    return " ".join(filter(None, [_summary(checked), checked.low_confidence]))
+
+
+def _summary(checked: Checked) -> str:
     if not checked.issues:
         return "No issues found."
     n_issues = len(checked.issues)

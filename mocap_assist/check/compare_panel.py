@@ -1,8 +1,9 @@
-"""Panel: compare raw and clean, and revert."""
+"""Panel: compare raw and clean, revert, and export."""
 
 import bpy
 
 from ..blender.mixins import PanelMixin
+from ..exporting.export_menu import EXPORT, draw_export
 from ..panels.drawing import exists
 from ..panels.preferred import preferences
 from ..runtime.selection import played_result, selected_subject
@@ -12,7 +13,7 @@ REVERT = "mocap_assist.revert_to_raw"
 
 
 class ComparePanel(PanelMixin):
-    """The overlay's switch, and Revert."""
+    """The overlay's switch, Revert and Export."""
 
     bl_label = "Compare"
 
@@ -25,6 +26,8 @@ class ComparePanel(PanelMixin):
             _draw_colors(column)
         if exists(REVERT):
             layout.operator(REVERT, icon="LOOP_BACK")
+        if exists(EXPORT):
+            draw_export(layout, context)
 
 
 def _draw_colors(column: bpy.types.UILayout) -> None:

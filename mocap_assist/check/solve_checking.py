@@ -13,7 +13,14 @@ from ...solvers.denoising import (
     find_worst_issues,
     measure_quality,
 )
-from ...solvers.motion import JointLimits, Motion, Tracks
+from ...solvers.motion import (
+    JointLimits,
+    Motion,
+    Tracks,
+    describe_low_confidence,
+    explain_roles,
+    find_humanoid_map,
+)
 from ...solvers.progress import Progress, unwatched, within
 
 
@@ -23,6 +30,8 @@ class Checked:
 
     quality: Quality
     issues: tuple[Issue, ...]
+    low_confidence: str = ""
+    """A sentence about joints whose role has low confidence: feet may be other joints then."""
 
 
 def check(
@@ -45,4 +54,11 @@ def check(
     worst = find_worst_issues(
         body, quality, settings=issues, progress=within(progress, 0.9, 1.0)
     )
-    return Checked(quality, worst)
+    return Checked(quality, worst, _low_confidence(body))
+
+
+def _low_confidence(body: Motion | Tracks) -> str:
+    if isinstance(body, Tracks):
+        return ""
+    humanoid = find_humanoid_map(body.skeleton)
+    return describe_low_confidence(humanoid, explain_roles(body.skeleton, humanoid))

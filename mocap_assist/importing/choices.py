@@ -67,7 +67,7 @@ class ImportChoices(FloorSettings, ReadingSettings):
         label="Start Frame",
     )
     frame_rate: FrameRate = setting(
-        FrameRate.SCALE,
+        FrameRate.AUTO,
         "What to do when the frame rates of recording and scene differ",
         label="Frame Rate",
     )

@@ -38,7 +38,7 @@ class ImportJob:
     ) -> None:
         self.transaction = ImportTransaction(context, choices)
         paths = self._readable(context, paths, choices)
-        self._wanted = conversion_from_choices(context, choices)
+        self._wanted = conversion_from_choices(context, self.transaction.choices)
         self._batches = deque(batches(paths))
         self._n_files, self._n_read, self._n_in = len(paths), 0, 0
         self._shown = 0.0

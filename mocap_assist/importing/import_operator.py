@@ -9,12 +9,14 @@ from ...solvers.errors import MocapAssistError
 from ..blender.mixins import SettingsMixin
 from ..blender.path_properties import FILE, FOLDER, HIDDEN, path_property
 from ..panels.drawing import draw_lines
+from ..runtime.solver_operator import in_background
 from ..runtime.watch import why_busy
 from .body_choice import bodies_to_choose, body_items, number_of, text_of
 from .file_kinds import DEPTH, FOR_KINDS, MOVING, fitting, kinds_of
 from .import_job import ImportJob
 from .import_transaction import Imported
 from .importing import chosen_paths, import_files
+from .show_actor import show_actor
 
 WIDTH = 400  # of the dialog, pixels at scale 1
 
@@ -46,10 +48,10 @@ class FilesOperator(SettingsMixin):
         """Import while a script, or the redo panel, waits."""
         paths, choices = chosen_paths(self), self.settings().choices
         self.kinds = kinds_of(paths)
-        return self.end(import_files(context, paths, choices))
+        return self.end(context, import_files(context, paths, choices))
 
-    def end(self, imported: Imported) -> set[str]:
-        """Tell what became of the files."""
+    def end(self, context: bpy.types.Context, imported: Imported) -> set[str]:
+        """Report what became of the files."""
         self.note = imported.note
         self.report({"ERROR"} if imported.failed else {"INFO"}, imported.sentence)
         return {"FINISHED"} if imported.made else {"CANCELLED"}
@@ -116,7 +118,13 @@ class WaitingImport(FilesOperator):
         except BaseException:
             job.cancel(context)
             raise
-        return self.end(job.transaction.end(context)) if ended else {"RUNNING_MODAL"}
+        return self.end(context, job.transaction.end(context)) if ended else {"RUNNING_MODAL"}
+
+    def end(self, context: bpy.types.Context, imported: Imported) -> set[str]:
+        """Show the actor as well: it was an animator who imported, not a script."""
+        if imported.made and not in_background():
+            show_actor(context)
+        return super().end(context, imported)
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the operator: another file is loaded, or the window closes."""

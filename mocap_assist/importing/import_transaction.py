@@ -14,14 +14,23 @@ from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import recording_figures
 from ...solvers.recordings.conventions import conventions_of
+from ..actions.markers import markers_of
 from ..scene.origin import note_origin, origin_of_file
+from ..scene.other_animation import is_animated
 from ..scene.scene_objects import Numbers, choose, in_object_mode, remove, undo_on_error
-from ..scene.scene_rate import FrameRate, extend_duration, set_scene_rate
+from ..scene.scene_rate import (
+    FrameRate,
+    extend_duration,
+    is_same_rate,
+    scene_rate,
+    set_duration,
+    set_scene_rate,
+)
 from ..scene.scene_state import SceneState
 from .choices import ImportChoices
 from .depth_objects import make_preview
 from .recording_objects import add_takes, make_objects
-from .solve_reading import ReadRecording, in_one_tree
+from .solve_reading import ReadRecording, Recording, in_one_tree
 
 logger = logging.getLogger(__name__)
 
@@ -65,7 +74,13 @@ class ImportTransaction:
     """
 
     def __init__(self, context: bpy.types.Context, choices: ImportChoices) -> None:
-        self._choices = choices
+        auto = choices.frame_rate is FrameRate.AUTO
+        self._sets_duration = auto and not is_animated(context.scene)
+        if auto:
+            rate = FrameRate.UPDATE if self._sets_duration else FrameRate.RESAMPLE
+            choices = replace(choices, frame_rate=rate)
+        self.choices = choices
+        """With the frame rate decided."""
         self._state = SceneState.of(context)
         self._created: list[Numbers] = []
         self._tops: list[int] = []
@@ -94,7 +109,10 @@ class ImportTransaction:
         self._created.append(made)
         self._tops.append(top.session_uid)
         self._messages.append(
-            " ".join([sentence, *[f"{text}." for text in content.warnings[:MAX_WARNINGS]]])
+            " ".join([
+                sentence,
+                *[f"{text.rstrip('.')}." for text in content.warnings[:MAX_WARNINGS]],
+            ])
         )
         self._figures.append(_figures(content))
 
@@ -118,7 +136,8 @@ class ImportTransaction:
         objects = {each.session_uid: each for each in context.view_layer.objects}
         tops = tuple(objects[number] for number in self._tops if number in objects)
         if tops:
-            choose(context, list(tops), tops[-1])
+            chosen = [each for top in tops for each in markers_of(top) or [top]]
+            choose(context, chosen, tops[-1])
         failed = self._failed if self._messages or self._failed else ["No file was chosen."]
         return Imported(tops, tuple(self._messages), tuple(failed), tuple(self._figures))
 
@@ -141,10 +160,10 @@ class ImportTransaction:
         moving: Motion | Tracks | None,
         progress: Progress,
     ) -> tuple[bpy.types.Object, str]:
-        choices, recording = self._choices, content.recording
+        choices, recording = self.choices, content.recording
         name = f"{path.stem} {content.body}".strip()
         if self._tops and choices.frame_rate is FrameRate.UPDATE:  # the first has set the rate
-            choices = replace(choices, frame_rate=FrameRate.SCALE)
+            choices = replace(choices, frame_rate=FrameRate.RESAMPLE)
         if isinstance(recording, DepthRecording):
             made = make_preview(context, path, recording, choices, progress=progress)
         else:
@@ -156,15 +175,37 @@ class ImportTransaction:
         for owner in filter(None, (made.top, made.action)):
             origin = origin_of_file(path, recording, choices.global_scale, content.body)
             note_origin(owner, origin)
-        if choices.frame_rate is FrameRate.UPDATE:
-            set_scene_rate(context.scene, recording.frame_rate)
-        if choices.update_scene_duration:
-            extend_duration(context.scene, made.last_frame)
         rate = f"{recording.n_frames} frames at {recording.frame_rate:.5g} Hz"
         sentences = [f"{made.top.name}: {made.what}, {rate}."]
         if not isinstance(recording, DepthRecording):
             sentences.append(f"{conventions_of(recording).sentence()}.")
+        sentences += self._set_time(context.scene, choices, recording, made.last_frame)
         return made.top, " ".join(sentences)
+
+    def _set_time(
+        self,
+        scene: bpy.types.Scene,
+        choices: ImportChoices,
+        recording: Recording,
+        last_frame: float,
+    ) -> list[str]:
+        """Set the scene's rate and range as far as chosen; return sentences about it."""
+        before, end, sentences = scene_rate(scene), scene.frame_end, []
+        is_moving = not isinstance(recording, DepthRecording)
+        if is_same_rate(recording.frame_rate, before):
+            pass
+        elif choices.frame_rate is FrameRate.UPDATE:
+            set_scene_rate(scene, recording.frame_rate)
+            sentences.append(f"The scene now plays at {scene_rate(scene):.5g} FPS.")
+        elif choices.frame_rate is FrameRate.RESAMPLE and is_moving:
+            sentences.append(f"Resampled to the scene's {before:.5g} FPS.")
+        if self._sets_duration and not self._tops:
+            set_duration(scene, choices.frame_start, last_frame)
+        elif self._sets_duration or choices.update_scene_duration:
+            extend_duration(scene, last_frame)
+        elif last_frame > end:
+            sentences.append(f"It ends at frame {last_frame:.0f}, the scene at {end}.")
+        return sentences
 
 
 def _figures(content: ReadRecording) -> dict[str, Any]:

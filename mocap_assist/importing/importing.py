@@ -83,13 +83,13 @@ def import_files(
     *,
     progress: Progress = unwatched,
 ) -> Imported:
-    """Make an armature or empties of each file; those that cannot be read are told of.
+    """Make an armature or empties of each file; those that cannot be read are reported.
 
     A file that fails leaves nothing behind. Raises SolveCancelled by `progress`; the scene is
     then as it was.
     """
     transaction = ImportTransaction(context, choices)
-    conversion = conversion_from_choices(context, choices)
+    conversion = conversion_from_choices(context, transaction.choices)
     try:
         for index, path in enumerate(paths):
             file_progress = within(progress, index / len(paths), (index + 1) / len(paths))

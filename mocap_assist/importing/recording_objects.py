@@ -12,7 +12,6 @@ from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.motion.humanoid import fill_missing_hips
 from ...solvers.progress import Progress, unwatched
 from ..actions.armature_build import build_armature
-from ..actions.empties_build import build_empties, write_tracks
 from ..actions.new_action import write_motion
 from ..actions.sensor_notes import sensor_values, write_sensor_values
 from ..blender import compat
@@ -22,29 +21,19 @@ from ..scene.origin import note_origin, origin_of_file
 from ..scene.scene_rate import FrameRate, scene_rate, timing
 from ..scene.units import unit_of
 from .choices import ImportChoices, Target
+from .marker_objects import Timed, make_markers, observed_points
+from .sensor_samples import SensorSamples
 from .solve_reading import (
     Conversion,
     ReadRecording,
     TrackedRecording,
+    at_rate,
     connected_joints,
     convert_takes,
     convert_tracked,
 )
 
 MAX_NAMED = 3  # joints that a sentence lists
-
-
-class SensorSamples(NamedTuple):
-    """Values of the sensor at its own samples, even if the motion is resampled."""
-
-    frames: Array
-    """Scene frames, shape (n_samples,)."""
-    values: dict[str, dict[str, Array]]
-    """By joint or marker."""
-
-    def of(self, name: str) -> tuple[Array, dict[str, Array]]:
-        """Return the frames and the values of one joint or marker."""
-        return self.frames, self.values.get(name, {})
 
 
 class CreatedObjects(NamedTuple):
@@ -93,14 +82,17 @@ def make_objects(
     samples = timing(scene, choices.frame_rate, recording.frame_rate, choices.frame_start)
     if moving is None:
         moving = convert_tracked(recording, conversion_from_choices(context, choices))
-    resampled = choices.frame_rate is FrameRate.RESAMPLE
-    frames = (samples._replace(step=1.0) if resampled else samples).frames(moving.n_frames)
     sensor_samples = SensorSamples(samples.frames(recording.n_frames), sensor_values(recording))
+    if choices.frame_rate is FrameRate.RESAMPLE:
+        moving, samples = at_rate(moving, scene_rate(scene)), samples._replace(step=1.0)
+        sensor_samples = sensor_samples.on_frames(samples.frames(moving.n_frames))
+    frames = samples.frames(moving.n_frames)
     if isinstance(moving, Motion):
         mode = choices.rotate_mode.name
         made = _make_armature(context, name, moving, mode, frames, sensor_samples, progress)
     else:
-        made = _make_empties(context, name, moving, frames, sensor_samples, progress)
+        timed = Timed(moving, frames, sensor_samples)
+        made = _make_empties(context, name, recording, timed, progress)
     what = made.what
     if choices.target is not Target.ARMATURE or not isinstance(recording, JointRecording):
         pass
@@ -127,16 +119,6 @@ def _never_seen(recording: TrackedRecording, in_armature: bool) -> str:
         return ""
     more = f" and {len(never_observed) - MAX_NAMED} more" * (len(never_observed) > MAX_NAMED)
     return f", without {', '.join(never_observed[:MAX_NAMED])}{more} (never observed)"
-
-
-def _observed_points(tracks: Tracks) -> Tracks:
-    """Leave out points that were never observed: they would appear at the origin."""
-    observed = np.flatnonzero(tracks.visible.any(axis=0))
-    if not len(observed):
-        raise InvalidMotionError("The recording has no observed points.")
-    confidence = None if tracks.confidence is None else tracks.confidence[:, observed]
-    names = tuple(tracks.names[point] for point in observed)
-    return Tracks(names, tracks.positions[:, observed], tracks.frame_rate, confidence)
 
 
 def _make_armature(
@@ -174,11 +156,12 @@ def add_takes(
     scene, metres = context.scene, unit_of(context.scene)
     made.action.name = fitting_name(content.take)
     slot, last, names = made.top.animation_data.action_slot, made.last_frame, [content.take]
-    for take in convert_takes(content.others, conversion_from_choices(context, choices)):
+    conversion = conversion_from_choices(context, choices)
+    if choices.frame_rate is FrameRate.UPDATE:  # the scene gets the rate of the first take
+        conversion = conversion._replace(frame_rate=content.recording.frame_rate)
+    for take in convert_takes(content.others, conversion):
         rate = take.motion.frame_rate
         samples = timing(scene, choices.frame_rate, rate, choices.frame_start)
-        if choices.frame_rate is FrameRate.UPDATE:  # the scene gets the rate of the first take
-            samples = samples._replace(step=content.recording.frame_rate / rate)
         frames = samples.frames(take.motion.n_frames)
         action, _ = write_motion(
             made.top, made.bones, take.motion, frames, metres, name=fitting_name(take.name)
@@ -197,19 +180,16 @@ def add_takes(
 def _make_empties(
     context: bpy.types.Context,
     name: str,
-    tracks: Tracks,
-    frames: Array,
-    sensor_samples: SensorSamples,
+    recording: TrackedRecording,
+    timed: Timed,
     progress: Progress,
 ) -> CreatedObjects:
-    metres = unit_of(context.scene)
-    tracks = _observed_points(tracks)
-    holder, empties = build_empties(context, name, tracks.names, metres)
-    action = write_tracks(name, empties, tracks, frames, metres, progress=progress)
-    for point, empty in zip(tracks.names, empties, strict=True):
-        write_sensor_values(
-            compat.channelbag(action, empty.animation_data.action_slot),
-            empty,
-            *sensor_samples.of(point),
-        )
-    return CreatedObjects(holder, action, float(frames[-1]), f"{tracks.n_points} empties")
+    observed = observed_points(timed.tracks)
+    if not observed:
+        raise InvalidMotionError("The recording has no observed points.")
+    parents = None
+    if isinstance(recording, JointRecording):
+        row_of = {joint: row for row, joint in enumerate(observed)}
+        parents = [row_of.get(recording.parents[joint], -1) for joint in observed]
+    holder, action, what = make_markers(context, name, timed.of(observed), parents, progress)
+    return CreatedObjects(holder, action, float(timed.frames[-1]), what)

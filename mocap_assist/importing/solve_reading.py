@@ -18,7 +18,7 @@ from ...solvers.motion import (
     resample,
 )
 from ...solvers.motion.humanoid import fill_missing_hips
-from ...solvers.progress import Progress, Remark, unwatched
+from ...solvers.progress import Progress, Remark, collect_remarks, unwatched
 from ...solvers.recordings import (
     DEFAULT_READING,
     Body,
@@ -27,12 +27,12 @@ from ...solvers.recordings import (
     ReadingSettings,
     is_depth_recording,
     open_as,
+    questions_of,
     read_depth,
     settle,
 )
 from ...solvers.recordings.conventions import (
     conventions_of,
-    question_of_size,
     with_conventions,
 )
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
@@ -149,8 +149,7 @@ def read_takes(
         take = first.name if others else ""
         name = bodies.listed[index].name if len(bodies.listed) > 1 else ""
         warnings = () if contents else found.refused
-        if question := question_of_size(first.motion):
-            warnings = (*warnings, question)
+        warnings = (*warnings, *questions_of(first.motion, conversion.floor))
         contents.append(
             ReadRecording(first.motion, warnings, take, name, tuple(others), offered)
         )
@@ -159,7 +158,8 @@ def read_takes(
 
 def _read_bodies(path: Path, conversion: Conversion, progress: Progress) -> list[ReadRecording]:
     """Return the chosen bodies of a file that is read without Blender."""
-    listener = _WarningCollector(progress)
+    remarks: list[Remark] = []
+    listener = collect_remarks(progress, remarks)
 
     def read() -> tuple[list[tuple[str, Recording]], tuple[Body, ...]]:
         if is_depth_recording(path):
@@ -172,7 +172,7 @@ def _read_bodies(path: Path, conversion: Conversion, progress: Progress) -> list
     return [
         ReadRecording(
             recording,
-            tuple(listener.warnings) if number == 0 else (),
+            tuple(remarks) if number == 0 else (),
             body=name if len(found) > 1 or conversion.body else "",
             bodies=offered,
         )
@@ -202,20 +202,6 @@ def _attempt_read(path: Path, read: Callable[[], Result]) -> Result:
     return found
 
 
-class _WarningCollector:
-    """A Progress that collects the warnings of a reader."""
-
-    def __init__(self, progress: Progress) -> None:
-        self._progress = progress
-        self.warnings: list[str] = []
-
-    def __call__(self, fraction: float, message: str = "") -> None:
-        if message not in {"", "Reading", *self.warnings}:
-            first = 0 if isinstance(message, Remark) else len(self.warnings)
-            self.warnings.insert(first, message)
-        self._progress(fraction, message)
-
-
 def convert_recording(recording: Recording, conversion: Conversion) -> Motion | Tracks | None:
     """Convert a recording to a motion or points for the scene; None for depth."""
     if isinstance(recording, DepthRecording):
@@ -226,11 +212,16 @@ def convert_recording(recording: Recording, conversion: Conversion) -> Motion | 
 def convert_tracked(recording: TrackedRecording, conversion: Conversion) -> Motion | Tracks:
     """Convert joints or markers to a motion or points for the scene."""
     moving = scaled(_joined(recording, conversion.armature), conversion.scale)
-    if conversion.frame_rate is None:
+    return moving if conversion.frame_rate is None else at_rate(moving, conversion.frame_rate)
+
+
+def at_rate(moving: Moving, frame_rate: float) -> Moving:
+    """Return the recording with so many frames per second, in hertz."""
+    if moving.frame_rate == frame_rate:
         return moving
     if isinstance(moving, Motion):
-        return resample(moving, conversion.frame_rate)
-    return resample(moving, conversion.frame_rate)
+        return cast(Moving, resample(moving, frame_rate))
+    return cast(Moving, resample(moving, frame_rate))
 
 
 def in_one_tree(recording: JointRecording) -> bool:

@@ -38,6 +38,14 @@ class BackgroundBlender:
     rig: str = ""
     """A .blend file with armatures for files of actions only; empty for none."""
 
+    def command(self) -> tuple[str, ...]:
+        """Return the command that starts it, for `job.run`."""
+        if not self.program:
+            return (*isolated_command(BLEND_CHILD), "--")
+        # It finds the extension's wheels by PYTHONPATH, which Blender otherwise ignores.
+        start = (self.program, "--python-use-system-env", "--background", "--factory-startup")
+        return (*start, "--python-exit-code", "1", "--python", str(BLEND_CHILD), "--")
+
     def check_rig(self) -> None:
         """Raise InvalidFileError if the rig's file is missing or inaccessible."""
         if self.rig and attempt(self.rig, Path(self.rig).is_file) is not True:
@@ -95,7 +103,7 @@ def read_blends(
     """
     blender.check_rig()
     request = partial(_read_here, tuple(paths), assets_only, tuple(items), blender.rig)
-    return run(request, progress, _program(blender.program))
+    return run(request, progress, blender.command())
 
 
 def _read_here(
@@ -110,11 +118,3 @@ def _read_here(
     reader: Any = importlib.import_module(f"{EXTENSION}.{READER}")
     read: list[BlendRead] = reader.read_files(paths, assets_only, items, rig, progress=progress)
     return read
-
-
-def _program(path: str) -> tuple[str, ...]:
-    if not path:
-        return (*isolated_command(BLEND_CHILD), "--")
-    # It finds the extension's wheels by PYTHONPATH, which Blender otherwise ignores.
-    options = ("--python-use-system-env", "--background", "--factory-startup")
-    return (path, *options, "--python-exit-code", "1", "--python", str(BLEND_CHILD), "--")

@@ -136,21 +136,22 @@ def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> 
 
 
 def _with_one_root(path: str, clips: list[BlendClip]) -> list[BlendClip]:
-    """Read takes again whose body begins lower down than in another take of its armature.
+    """Read takes again whose body begins higher up than in another take of its armature.
 
-    Where the body begins is judged by how bones travel, which differs from take to take.
+    Where the body begins is judged by how bones travel, which differs from take to take. What
+    the bones above do is part of the motion; what the hips do below a bone above them is not.
     """
-    largest: dict[str, Motion] = {}
+    smallest: dict[str, Motion] = {}
     for clip in clips:
-        known = largest.setdefault(clip.armature, clip.motion)
-        if clip.motion.skeleton.n_joints > known.skeleton.n_joints:
-            largest[clip.armature] = clip.motion
+        known = smallest.setdefault(clip.armature, clip.motion)
+        if clip.motion.skeleton.n_joints < known.skeleton.n_joints:
+            smallest[clip.armature] = clip.motion
     sources = {
         item: found for action in bpy.data.actions for item, found in sources_of(action).items()
     }
     same = []
     for clip in clips:
-        root = largest[clip.armature].skeleton.names[0]
+        root = smallest[clip.armature].skeleton.names[0]
         if clip.motion.skeleton.names[0] != root:
             armature, source = sources[clip.item]
             motion = read_source(bpy.context.scene, armature, source, root)

@@ -17,7 +17,7 @@ logger = logging.getLogger(__name__)
 
 BETWEEN_LOOKS = 0.25  # seconds
 MOST_NAMED = 3
-"""Files of no use that are told of in the window; the log has all."""
+"""Unusable files that are named in the window; the log has all."""
 
 
 class WaitingIndex(SettingsMixin):

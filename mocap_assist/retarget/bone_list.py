@@ -11,8 +11,17 @@ from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.motion import read_humanoid_map, write_humanoid_map
 from ..blender.mixins import OperatorMixin
 from ..blender.path_properties import absolute, path_property
+from ..panels.drawing import draw_sentence
 from ..runtime.selection import selected_armature, why_not_retarget
-from .bone_map import SIDES, BoneMaps, find_maps, list_maps, listed_maps
+from .bone_map import (
+    SIDES,
+    BoneMaps,
+    count_low_confidence,
+    find_maps,
+    has_low_confidence,
+    list_maps,
+    listed_maps,
+)
 from .retargeting import target_called
 
 FIND, SAVE, LOAD = (
@@ -36,14 +45,15 @@ class MOCAP_UL_bones(bpy.types.UIList):
         active_property: str,
         index: int,
     ) -> None:
-        """Draw the role and both bones; those that do not exist in red."""
+        """Draw the role and both bones: missing ones in red, low confidence with an icon."""
         columns = layout.split(factor=ROLE_COLUMN, align=True)
         columns.label(text=row.name, translate=False)
         for side in SIDES:
             armature, bone = listed_armature(context, listed, side), getattr(row, side)
             cell = columns.row()
             cell.alert = bool(bone) and armature is not None and bone not in armature.data.bones
-            cell.label(text=bone or "-", translate=False)
+            mark = "ERROR" if has_low_confidence(row, side) else "NONE"
+            cell.label(text=bone or "-", translate=False, icon=mark)
 
 
 def listed_armature(
@@ -174,6 +184,10 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         heads.label(text=f"{getattr(listed, side)} {score:.0%}", translate=False)
     layout.template_list("MOCAP_UL_bones", "", listed, "rows", listed, "active_row", rows=8)
     row = listed.rows[min(listed.active_row, len(listed.rows) - 1)]
+    if n_marked := count_low_confidence(listed):
+        bones = "1 bone has" if n_marked == 1 else f"{n_marked} bones have"
+        draw_sentence(layout, context, f"{bones} low confidence; click a row.", icon="ERROR")
+    _draw_reasons(layout, context, row)
     column = layout.column(align=True)
     for side in SIDES:
         if (armature := listed_armature(context, listed, side)) is not None:
@@ -185,6 +199,19 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         for side in SIDES:
             text = f"{verb} {side.capitalize()} Map"
             row.operator(idname, text=text, icon=icon).side = side
+
+
+def _draw_reasons(
+    layout: bpy.types.UILayout, context: bpy.types.Context, row: bpy.types.PropertyGroup
+) -> None:
+    """Draw how certain both bones of a row are, and why."""
+    for side in SIDES:
+        reason = getattr(row, f"{side}_reason")
+        if getattr(row, side) and reason:
+            confidence = getattr(row, f"{side}_confidence")
+            icon = "ERROR" if has_low_confidence(row, side) else "CHECKMARK"
+            text = f"{side.capitalize()}: {confidence:.0%}, {reason}."
+            draw_sentence(layout, context, text, icon=icon)
 
 
 register, unregister = bpy.utils.register_classes_factory((

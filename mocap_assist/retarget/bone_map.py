@@ -5,11 +5,15 @@ from typing import NamedTuple
 import bpy
 
 from ...solvers.motion import HUMANOID_ROLES, HumanoidMap, read_humanoid_map
+from ...solvers.motion.humanoid import MIN_CONFIDENCE
 from ..blender.path_properties import absolute
+from ..rigs.role_confidence import explain_rig_roles
 from ..rigs.target_read import find_roles
 
 FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
 SIDES = ("source", "target")
+TAKEN = "another row has this bone, so this one is ignored"
+MISSING = "the armature has no such bone"
 
 
 class BoneMaps(NamedTuple):
@@ -67,7 +71,7 @@ def list_maps(
     maps: BoneMaps,
 ) -> None:
     """Show maps in the list of bones, a row for each role; fingers only where there are any."""
-    listed.source, listed.target = source.name, target.name
+    listed.source = listed.target = ""  # so that no row is explained before all are there
     listed.source_score, listed.target_score = (each.score for each in maps)
     listed.rows.clear()
     played = {role for each in maps for role in each.joints}
@@ -77,6 +81,40 @@ def list_maps(
             row.name = role
             row.source = maps.source.joint(role) or ""
             row.target = maps.target.joint(role) or ""
+    listed.source, listed.target = source.name, target.name
+    explain_rows(listed)
+
+
+def explain_rows(listed: bpy.types.PropertyGroup) -> None:
+    """Write confidence and reason into all rows, for the armatures of the list."""
+    for side, humanoid in zip(SIDES, listed_maps(listed), strict=True):
+        armature = listed.id_data.objects.get(getattr(listed, side))
+        if armature is None or armature.type != "ARMATURE":
+            continue
+        evidence = explain_rig_roles(armature, humanoid)
+        for row in listed.rows:
+            found, bone = evidence.get(row.name), getattr(row, side)
+            lack = TAKEN if bone in armature.data.bones else MISSING
+            setattr(row, f"{side}_confidence", found.confidence if found else 0.0)
+            setattr(row, f"{side}_reason", found.text if found else lack if bone else "")
+
+
+def explain_edited(row: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Explain all rows again after one was edited: the roles of a limb depend on each other."""
+    listed = row.id_data.mocap_assist.bone_map
+    if listed.source and listed.target:
+        explain_rows(listed)
+
+
+def count_low_confidence(listed: bpy.types.PropertyGroup) -> int:
+    """Return how many bones of the list have low confidence."""
+    return sum(has_low_confidence(row, side) for row in listed.rows for side in SIDES)
+
+
+def has_low_confidence(row: bpy.types.PropertyGroup, side: str) -> bool:
+    """Whether the bone on one side of a row has low confidence."""
+    low: bool = getattr(row, f"{side}_confidence") < MIN_CONFIDENCE
+    return bool(getattr(row, side)) and low
 
 
 def is_finger(role: str) -> bool:

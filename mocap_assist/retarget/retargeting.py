@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from ...solvers.errors import InvalidMotionError
-from ...solvers.motion import HumanoidMap
+from ...solvers.motion import HumanoidMap, describe_low_confidence
 from ...solvers.retargeting import RootMotion
 from ..actions.action_write import write_action
 from ..actions.armature_read import read_take
@@ -23,11 +23,12 @@ from ..blender.time_slices import Sliced, Steps
 from ..jobs.job import ShortSolve
 from ..rigs.evaluated_body import body_bones, with_body_shown
 from ..rigs.rigify import is_rigify
+from ..rigs.role_confidence import explain_rig_roles
 from ..rigs.target_read import read_target, vertical_part
 from ..runtime.selection import played_source
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
-from .bone_map import BoneMaps, is_finger, maps_for
+from .bone_map import SIDES, BoneMaps, is_finger, maps_for
 from .choices import RetargetBundle, RetargetChoices, Takes
 from .solve_retargeting import Clip, Retargeted, RetargetProblem, retarget_clips
 
@@ -73,10 +74,11 @@ def write_retargeted(
     found = yield from _read(here, settings)
     scene, source = here.find()
     check_unchanged(source, solved_digest, found.problem)
+    low = _low_confidence(source, found)
     for made_from, take, keys in zip(found.sources, found.takes, results, strict=True):
         name = f"{made_from[0].name}.{found.target.name}"
         action, slot = write_action(found.target, name, take.frames, keys, found.switches)
-        entry = _entry(source, found, settings)
+        entry = _entry(source, found, settings) | {"low_confidence": low}
         history.record(action, made_from, entry, of_another_rig=True)
     linked = found.target.library is not None
     if not linked:
@@ -88,7 +90,17 @@ def write_retargeted(
         f"{made}: retargeted {n_frames} frames to {n_bones} bones of {found.target.name}"
         f" (bones matched {score:.0%})."
         + (" It is linked: let its library override play the action." if linked else "")
+        + "".join(f" {each}" for each in low.values() if each)
     )
+
+
+def _low_confidence(source: bpy.types.Object, found: Reading) -> dict[str, str]:
+    """Return a sentence about bones with low confidence, or an empty text, for each side."""
+    armatures = (source, found.target)
+    return {
+        side: describe_low_confidence(humanoid, explain_rig_roles(armature, humanoid))
+        for side, humanoid, armature in zip(SIDES, found.maps, armatures, strict=True)
+    }
 
 
 def target_called(

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 
 import bpy
 
+from ..blender.data_names import fitting_name
 from .scene_state import SceneState
 
 Numbers = dict[str, set[int]]
@@ -27,12 +28,29 @@ def add_object(context: bpy.types.Context, made: bpy.types.Object) -> None:
 
 
 def add_quietly(context: bpy.types.Context, made: bpy.types.Object) -> None:
-    """Link an object where new ones go: the active collection, if it is seen and not linked."""
-    layer = context.view_layer
-    active = layer.active_layer_collection
+    """Link an object where new ones go, without selecting it."""
+    collection_for_new(context).objects.link(made)
+
+
+def collection_for_new(context: bpy.types.Context) -> bpy.types.Collection:
+    """Return the active collection if it is seen and not linked, else that of the scene."""
+    active = context.view_layer.active_layer_collection
     hidden = active.exclude or active.hide_viewport or active.collection.hide_viewport
     usable = not hidden and active.is_visible and active.collection.is_editable
-    (active.collection if usable else context.scene.collection).objects.link(made)
+    return active.collection if usable else context.scene.collection
+
+
+def hidden_collection(context: bpy.types.Context, name: str) -> bpy.types.Collection:
+    """Add a collection where new objects go; its eye in the Outliner is closed."""
+    made = bpy.data.collections.new(fitting_name(name))
+    collection_for_new(context).children.link(made)
+    layers = [context.view_layer.layer_collection]
+    while layers:
+        layer = layers.pop()
+        if layer.collection == made:
+            layer.hide_viewport = True
+        layers += layer.children
+    return made
 
 
 def choose(

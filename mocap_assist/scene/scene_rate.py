@@ -15,6 +15,10 @@ SAME = 1e-6  # relative difference of rates that is only rounding
 class FrameRate(Choice):
     """What happens where the recording has another rate than the scene."""
 
+    AUTO = (
+        "auto",
+        "Take over rate and length if nothing else is animated, else resample to the scene",
+    )
     SCALE = "scale FPS", "Keep every sample at its time; keys may lie between frames"
     RESAMPLE = "resample to scene FPS", "Keep the timing and put one key on each scene frame"
     UPDATE = "update scene FPS", "Set the scene frame rate to that of the first recording"
@@ -54,9 +58,22 @@ def set_scene_rate(scene: bpy.types.Scene, frame_rate: float) -> None:
 def timing(scene: bpy.types.Scene, choice: FrameRate, frame_rate: float, start: int) -> Timing:
     """Return where samples of `frame_rate` come to lie; the scene is not changed."""
     step = scene_rate(scene) / frame_rate
-    if choice in {FrameRate.UPDATE, FrameRate.ONE} or abs(step - 1.0) < SAME:
+    if choice in {FrameRate.UPDATE, FrameRate.ONE} or is_same_rate(step, 1.0):
         step = 1.0
     return Timing(float(start), step)
+
+
+def is_same_rate(one: float, other: float) -> bool:
+    """Whether two rates differ by rounding only."""
+    return abs(one - other) < SAME * other
+
+
+def set_duration(scene: bpy.types.Scene, first_frame: int, last_frame: float) -> None:
+    """Set the scene's range; the current frame moves into it."""
+    scene.frame_start, scene.frame_end = first_frame, ceil(last_frame - SAME)
+    inside = min(max(scene.frame_current, scene.frame_start), scene.frame_end)
+    if inside != scene.frame_current:
+        scene.frame_set(inside)
 
 
 def extend_duration(scene: bpy.types.Scene, last_frame: float) -> None:

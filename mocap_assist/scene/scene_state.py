@@ -14,7 +14,9 @@ class SceneState(NamedTuple):
     selected: frozenset[int]
     fps: int
     fps_base: float
+    frame_start: int
     frame_end: int
+    frame_current: int
 
     @classmethod
     def of(cls, context: bpy.types.Context) -> "SceneState":
@@ -27,14 +29,18 @@ class SceneState(NamedTuple):
             selected=frozenset(each.session_uid for each in objects.selected),
             fps=scene.render.fps,
             fps_base=scene.render.fps_base,
+            frame_start=scene.frame_start,
             frame_end=scene.frame_end,
+            frame_current=scene.frame_current,
         )
 
     def restore(self, context: bpy.types.Context) -> None:
         """Bring it back, as far as the objects are still there."""
         scene, objects = context.scene, context.view_layer.objects
         scene.render.fps, scene.render.fps_base = self.fps, self.fps_base
-        scene.frame_end = self.frame_end
+        scene.frame_start, scene.frame_end = self.frame_start, self.frame_end
+        if scene.frame_current != self.frame_current:
+            scene.frame_set(self.frame_current)
         if SceneState.of(context) == self:
             return
         for each in objects:

@@ -2,6 +2,7 @@
 
 from ..clean import example_list
 from ..drawing import confidence_switch, overlay_switch
+from ..exporting import export_menu
 from ..importing import import_menu
 from ..retarget import bone_list
 from ..retarget import panel as retarget_panel
@@ -22,6 +23,7 @@ PARTS = (
     sidebar,
     menus,
     import_menu,
+    export_menu,
     overlay_switch,
     confidence_switch,
     manual,

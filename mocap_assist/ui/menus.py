@@ -15,6 +15,7 @@ BUTTONS = (
     "mocap_assist.retarget",
     "mocap_assist.reduce_keys",
     "mocap_assist.revert_to_raw",
+    "mocap_assist.export_take",
 )
 MENUS = (
     "VIEW3D_MT_pose",

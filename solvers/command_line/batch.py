@@ -102,7 +102,7 @@ def _perform(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Outco
     """Perform a task; figures that cannot be written as JSON count as its failure."""
     remarks: list[Remark] = []
     outcome = verb.perform(task, prepared, collect_remarks(progress, remarks))
-    added = [f"{remark}." for remark in remarks if remark not in outcome.text]
+    added = [f"{remark.rstrip('.')}." for remark in remarks if remark not in outcome.text]
     outcome = replace(outcome, text="\n".join([outcome.text, *added]))
     json.dumps(outcome.figures, allow_nan=False)
     if getattr(task.arguments, "output_folder", None) is not None:

@@ -11,7 +11,7 @@ from ..depth_tracking.body import LENGTHS, BodyModel, load_body_model
 from ..depth_tracking.capturing import CaptureSettings
 from ..errors import InvalidSettingError
 from ..motion import JointRecording, Sensor
-from ..progress import Progress, collect_messages, within
+from ..progress import Progress, Remark, collect_remarks, within
 from ..recordings import depth_takes_in, read_depth, write_joint_csv
 from ..recordings.depth_files import DepthSettings
 from ..workflows import CapturedMotion, capture_recording
@@ -70,11 +70,11 @@ def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | 
 
 def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) -> Outcome:
     """Capture one recording, write it and report the quality of the tracking."""
-    arguments, messages = task.arguments, list[str]()
+    arguments, messages = task.arguments, list[Remark]()
     recording = read_depth(
         task.source,
         settings_from_arguments(arguments, DepthSettings),
-        progress=collect_messages(within(progress, 0.0, 0.02), messages),
+        progress=collect_remarks(within(progress, 0.0, 0.02), messages),
     )
     first, last = arguments.empty or (0, -1)
     found = capture_recording(
@@ -97,10 +97,10 @@ def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) 
     return _outcome(found, messages)
 
 
-def _outcome(found: CapturedMotion, messages: list[str]) -> Outcome:
+def _outcome(found: CapturedMotion, messages: list[Remark]) -> Outcome:
     captured, remarks = (
         found.captured,
-        [*(f"{message}." for message in messages), *found.remarks],
+        [*(f"{message.rstrip('.')}." for message in messages), *found.remarks],
     )
     restarts = len(captured.restarts)
     times = "once" if restarts == 1 else f"{restarts} times"

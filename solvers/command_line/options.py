@@ -10,6 +10,8 @@ from typing import Any, NoReturn, TypeVar
 from ..settings import Described, Settings
 
 SettingsClass = TypeVar("SettingsClass", bound=Settings)
+MAX_LISTED = 32
+"""Letters of choices that a usage line lists; help lists longer ones."""
 
 
 class SentenceParser(argparse.ArgumentParser):
@@ -59,7 +61,8 @@ def _kind(item: "Field[Any]") -> dict[str, Any]:
         return {"action": argparse.BooleanOptionalAction}
     if issubclass(kind, Enum):
         choices = "|".join(str(one.value) for one in kind)
-        return {"type": _choice_of(kind), "metavar": f"{{{choices}}}"}
+        metavar = f"{{{choices}}}" if len(choices) <= MAX_LISTED else item.name.upper()
+        return {"type": _choice_of(kind), "metavar": metavar}
     if item.metadata["described"].unit == "rad":
         return {"type": _angle, "metavar": "DEGREES"}
     return {"type": kind, "metavar": {int: "N", float: "X", str: "TEXT"}[kind]}
@@ -100,6 +103,9 @@ def _help(item: "Field[Any]") -> str:
     elif kind is bool:
         facts.append(f"default {'yes' if default else 'no'}")
     elif issubclass(kind, Enum):
+        choices = [str(one.value) for one in kind]
+        if len("|".join(choices)) > MAX_LISTED:
+            facts.append(", ".join(choices))
         facts.append(f"default {default.value}")
     else:
         facts.append(f"default {default!r}")

@@ -9,7 +9,7 @@ import numpy as np
 from ..denoising import Planted, PlantSettings, compare_quality, measure_quality
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Sensor, Tracks
-from ..progress import Progress, collect_messages, within
+from ..progress import Progress, within
 from ..reconstruction import (
     PostureLibrary,
     ReconstructSettings,
@@ -98,14 +98,10 @@ def read_guides(arguments: argparse.Namespace, progress: Progress) -> Guides:
 
 def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Outcome:
     """Reconstruct one recording, write it and report rebuilt joints and quality."""
-    notes: list[str] = []
-    reading = collect_messages(within(progress, 0.0, 0.1), notes)
-    given = read_recorded(task.source, task.arguments, reading)
+    given = read_recorded(task.source, task.arguments, within(progress, 0.0, 0.1))
     guides, messages = _select_guides(given, task, prepared, within(progress, 0.1, 0.3))
     rebuilt = _rebuild(given, task, guides, within(progress, 0.3, 0.8))
-    rebuilt = rebuilt._replace(
-        remarks=(*(f"{note}." for note in notes), *messages, *rebuilt.remarks)
-    )
+    rebuilt = rebuilt._replace(remarks=(*messages, *rebuilt.remarks))
     assert task.target is not None
     if task.target.suffix.lower() != JOINTS:
         write(rebuilt.motion, task.target, within(progress, 0.9, 1.0))

@@ -9,6 +9,9 @@ from ..motion import (
     HumanoidMap,
     Motion,
     Skeleton,
+    describe_low_confidence,
+    evidence_figures,
+    explain_roles,
     find_humanoid_map,
     read_humanoid_map,
     write_humanoid_map,
@@ -87,9 +90,17 @@ def perform_retarget(task: Task, target: Target, progress: Progress) -> Outcome:
         f"{len(shared)} shared roles; confidence of the map of the source"
         f" {source_map.score:.0%}, of the target {target.humanoid.score:.0%}."
     )
+    maps = {
+        "source": (source_map, motion.skeleton),
+        "target": (target.humanoid, target.skeleton),
+    }
+    explained = {side: explain_roles(skeleton, each) for side, (each, skeleton) in maps.items()}
+    low = [describe_low_confidence(maps[side][0], each) for side, each in explained.items()]
+    text = " ".join([text, *filter(None, low)])
     figures = {
         "n_frames": result.n_frames,
         "roles": shared,
+        "evidence": {side: evidence_figures(each) for side, each in explained.items()},
         "source_score": source_map.score,
         "target_score": target.humanoid.score,
     }

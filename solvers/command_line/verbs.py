@@ -1,7 +1,6 @@
 """The verbs of `python -m solvers`."""
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 
 from ..denoising import (
@@ -10,7 +9,7 @@ from ..denoising import (
     learn_filter_bases,
     measure_quality,
 )
-from ..progress import Progress, collect_messages, within
+from ..progress import Progress, within
 from ..recordings import FloorSettings, depth_takes_in
 from .capture_verb import add_capture_options, perform_capture, read_body
 from .convert import convert
@@ -80,14 +79,10 @@ def _convert_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _convert(task: Task, prepared: None, progress: Progress) -> Outcome:
-    messages: list[str] = []
-    reading = collect_messages(within(progress, 0.0, 0.7), messages)
+    reading = within(progress, 0.0, 0.7)
     floor = settings_from_arguments(task.arguments, FloorSettings).place_on_floor
     recording = read(task.source, task.arguments, reading, floor)
-    outcome = convert(recording, task.target, within(progress, 0.7, 1.0))
-    return replace(
-        outcome, text=" ".join([outcome.text, *(f"{message}." for message in messages)])
-    )
+    return convert(recording, task.target, within(progress, 0.7, 1.0))
 
 
 VERBS = {

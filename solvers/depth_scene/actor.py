@@ -52,11 +52,11 @@ class Actor:
         Contains only the actor; still read frame by frame.
     floor : Floor, or None
         None if no floor is visible.
-    way : ForegroundMethod
+    method : ForegroundMethod
         Method that separated the actor from the room.
-    seen : bool array, shape (n_frames,)
+    visible : bool array, shape (n_frames,)
         Whether the actor is visible.
-    feet_seen : bool
+    feet_visible : bool
         False if the lower image edge usually cuts the actor off.
     remarks : tuple of str
         Warnings for the animator: several people, missing frames, implausible size.
@@ -64,9 +64,9 @@ class Actor:
 
     recording: DepthRecording
     floor: Floor | None
-    way: ForegroundMethod
-    seen: NDArray[np.bool_]
-    feet_seen: bool
+    method: ForegroundMethod
+    visible: NDArray[np.bool_]
+    feet_visible: bool
     remarks: tuple[str, ...]
 
 

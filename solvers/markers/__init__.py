@@ -8,6 +8,8 @@
 
 from .constrain_clusters import ConstrainedMarkers, constrain_clusters
 from .marker_sets import MarkerSet, find_marker_set
+from .marker_sticks import find_marker_sticks
+from .model_outputs import find_model_outputs
 from .rigid_clusters import Cluster, ClusterSettings, find_rigid_clusters
 from .solve_skeleton import SolvedSkeleton, SolveSettings, solve_skeleton
 from .unswap import Swap, Unswapped, UnswapSettings, unswap_markers
@@ -24,6 +26,8 @@ __all__ = [
     "Unswapped",
     "constrain_clusters",
     "find_marker_set",
+    "find_marker_sticks",
+    "find_model_outputs",
     "find_rigid_clusters",
     "solve_skeleton",
     "unswap_markers",

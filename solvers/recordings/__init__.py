@@ -39,7 +39,7 @@ from .joint_files import (
 )
 from .joints import read_joints, write_joints
 from .marker_files import read_c3d, read_trc, write_c3d, write_trc
-from .read_as import open_as, read_as, settle
+from .read_as import open_as, questions_of, read_as, settle
 from .read_recording import (
     is_depth_recording,
     list_bodies,
@@ -57,7 +57,7 @@ from .reading_settings import (
     Unit,
 )
 from .recording_figures import recording_figures
-from .refused_files import SCENE_SUFFIXES
+from .refused_files import SCENE_SUFFIXES, refuse_stand_ins
 from .skeleton_files import read_acclaim, read_acclaim_limits, read_bvh, write_bvh
 
 __all__ = [
@@ -82,6 +82,7 @@ __all__ = [
     "may_contain_motion",
     "open_as",
     "open_bodies",
+    "questions_of",
     "read_acclaim",
     "read_acclaim_limits",
     "read_as",
@@ -106,6 +107,7 @@ __all__ = [
     "read_ui_prmd_pair",
     "recording_figures",
     "recordings_in",
+    "refuse_stand_ins",
     "settle",
     "write_bvh",
     "write_c3d",

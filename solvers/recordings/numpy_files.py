@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
 from ..motion import AxisName, JointRecording, Motion, Sensor, Tracks, roles_by_name
-from ..progress import Progress, unwatched
+from ..progress import Progress, Remark, unwatched
 from .containers import read_array
 from .conventions import (
     check_scale,
@@ -88,7 +88,7 @@ def _humanml3d_joints(
     }
     judged = judge_up_of_joints(positions, roles, HUMANML3D_UP)
     if not judged.is_clear:
-        progress(1.0, describe_guessed_axis(judged.axis))
+        progress(1.0, Remark(describe_guessed_axis(judged.axis)))
     as_read = file_conventions("Y", unit=scale)
     noted = replace(as_read, has_floor=False)
     tracks = Tracks(NAMES_OF_BODY, positions, HUMANML3D_RATE_HZ, conventions=noted)

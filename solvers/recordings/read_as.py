@@ -6,12 +6,13 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ..motion import JointRecording, Motion, Tracks
-from ..progress import Progress, unwatched, within
+from ..progress import Progress, Remark, unwatched, within
 from .conventions import (
     Bodies,
     conventions_of,
     lacks_floor,
     put_on_floor,
+    question_of_floor,
     question_of_size,
     reinterpreted,
     with_conventions,
@@ -80,8 +81,8 @@ def open_as(
 
     def settled(recording: Tracked, progress: Progress) -> Tracked:
         recording = settle(recording, settings, floor)
-        if question := question_of_size(recording):
-            progress(1.0, question)
+        for question in questions_of(recording, floor):
+            progress(1.0, Remark(question))
         return recording
 
     together = bodies.read_together
@@ -100,3 +101,14 @@ def settle(recording: Recording, settings: ReadingSettings, floor: Floor) -> Rec
         conventions = replace(conventions_of(recording), has_floor=False)
         recording = put_on_floor(with_conventions(recording, conventions))
     return put_on_floor(recording) if floor is Floor.ALWAYS else recording
+
+
+def questions_of(recording: Tracked, floor: Floor) -> list[str]:
+    """Ask whether size and height of an actor are right, where they are odd.
+
+    Heights are not asked about where they are kept on request.
+    """
+    found = [question_of_size(recording)]
+    if floor is not Floor.NEVER:
+        found.append(question_of_floor(recording))
+    return [question for question in found if question]

@@ -6,10 +6,16 @@ from pathlib import Path
 from typing import NamedTuple, Never
 
 from ..errors import InvalidFileError
+from ..files import open_regular
 from ..progress import Progress, unwatched
 
 SCENE_MAGIC = (b"Kaydara FBX Binary", b"; FBX", b"glTF", b"PXR-USDC", b"#usda")
 
+COMPRESSED = (
+    b"\x1f\x8b", b"BZh", b"\xfd7zXZ", b"\x28\xb5\x2f\xfd", b"\x04\x22\x4d\x18", b"7z\xbc\xaf",
+    b"Rar!", b"\x78\x01", b"\x78\x5e", b"\x78\x9c", b"\x78\xda",
+)  # fmt: skip
+"""First bytes of gzip, bzip2, xz, zstd, LZ4, 7-Zip, RAR and, of joblib, zlib."""
 COCO = re.compile(rb'"(image_id|category_id|num_keypoints|keypoint_scores|bbox)"')
 DEEPLABCUT = re.compile(rb"scorer,[^\r\n]*\r?\n(individuals,[^\r\n]*\r?\n)?bodyparts,")
 OPENSIM_BODIES = re.compile(rb"#?\s*times?\s*,\s*(\w+)_x\s*,\s*\1_y\s*,\s*\1_z\s*,\s*\1_rotx")
@@ -78,7 +84,33 @@ def _is_pickle(head: bytes) -> bool:
     return in_archive or in_array or (head[:1] == b"\x80" and head[1:2] in b"\x02\x03\x04\x05")
 
 
+def _is_web_page(head: bytes) -> bool:
+    return re.match(rb"(?i)\s*(<!--.*?-->\s*)?<(!doctype html|html\b)", head, re.S) is not None
+
+
+def _is_compressed(head: bytes) -> bool:
+    """Detect archives other than those of NumPy."""
+    return head.startswith(COMPRESSED) or (
+        head[:4] == b"PK\x03\x04" and b".npy" not in head[:300]
+    )
+
+
+STAND_INS = (
+    Refusal(
+        "web page",
+        _is_web_page,
+        "is a web page that was saved under this name. Download the file itself.",
+    ),
+    Refusal(
+        "Git LFS pointer",
+        lambda head: head.startswith(b"version https://git-lfs"),
+        "is a note of Git LFS where the file should be. Get the file with git lfs pull, or"
+        " download it.",
+    ),
+)
+"""Files that stand where another one should be, whatever the name."""
 REFUSALS = (
+    *STAND_INS,
     Refusal(
         "Acclaim ASF",
         _is_acclaim_skeleton,
@@ -107,4 +139,19 @@ REFUSALS = (
         "is a pickle, which is never opened here: it may run any program. Convert it to .npz"
         " where it was made (docs/formats/smpl.md has the lines).",
     ),
+    Refusal(
+        "compressed file",
+        _is_compressed,
+        "is compressed. Unpack it and import the file in it; a compressed pickle has to be"
+        " converted to .npz where it was made (docs/formats/smpl.md has the lines).",
+    ),
 )
+
+
+def refuse_stand_ins(path: Path | str) -> None:
+    """Raise InvalidFileError for a web page or a pointer that stands where a file should be."""
+    with open_regular(path) as file:
+        head = file.read(512)
+    for each in STAND_INS:
+        if each.fits(head):
+            each.read(path)

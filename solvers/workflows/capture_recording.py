@@ -113,7 +113,7 @@ def capture_actor(
         actor.recording, body, motion_prior=motion_prior, floor=actor.floor,
         settings=settings, on_pose=on_pose, progress=within(progress, 0.0, 0.95),
     )  # fmt: skip
-    plant_settings = planting if actor.feet_seen else None
+    plant_settings = planting if actor.feet_visible else None
     result = plant_feet_if_possible(
         captured.motion, plant_settings, progress=within(progress, 0.95, 1.0)
     )

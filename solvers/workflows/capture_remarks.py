@@ -37,7 +37,7 @@ def capture_remarks(actor: Actor, captured: Capture, *, fitted: bool) -> tuple[s
             " they are estimated from the frames before and after."
         )
     tracked = np.isfinite(captured.residual)
-    if actor.seen.all() and not tracked.all():
+    if actor.visible.all() and not tracked.all():
         remarks.append(
             f"In {int((~tracked).sum())} of {len(tracked)} frames no person is detected."
         )
@@ -47,7 +47,7 @@ def capture_remarks(actor: Actor, captured: Capture, *, fitted: bool) -> tuple[s
             f"The actor would be {ratio:.1f} times as thick as the default body. Check the"
             " focal length of the camera, the scale, and whether the actor carries something."
         )
-    elif actor.feet_seen and tracked.any():
+    elif actor.feet_visible and tracked.any():
         remarks += _fit_remarks(
             float(np.median(captured.coverage[tracked])), np.median(captured.residual[tracked])
         )

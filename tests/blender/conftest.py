@@ -36,6 +36,8 @@ NOT_OURS = ("unclosed file:ResourceWarning:.*import_bvh",)
 """Warnings that Blender's own scripts cause, as filters of Python's."""
 
 IN_ONE_BLENDER = {
+    "exporting/test_export_take.py": (5, 2),
+    "exporting/test_rigs_and_meshes.py": (4, 5),
     "importing/test_failing_readers.py": (5, 2),
     "importing/test_joint_recordings.py": (5, 2),
     "importing/test_make_skeleton.py": (5, 2),

@@ -45,7 +45,7 @@ def module(load):
 def programs(load, module):
     """The commands that run a solve: a bare Python, and a background Blender."""
     in_blender = load("mocap_assist.jobs.in_blender")
-    return {"bare": (), "in a Blender": in_blender._program("")}
+    return {"bare": (), "in a Blender": in_blender.BackgroundBlender("").command()}
 
 
 @pytest.fixture(autouse=True)

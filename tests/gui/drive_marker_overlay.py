@@ -26,11 +26,10 @@ def steps():
         assert bpy.ops.mocap_assist.denoise() == {"FINISHED"}
     bpy.context.window_manager.mocap_assist_overlay = True
     yield from bgui.open_sidebar("Mocap")
-    first, last = bpy.context.object.children[0].animation_data.action.curve_frame_range
+    first, last = bpy.context.selected_objects[0].animation_data.action.curve_frame_range
     bpy.context.scene.frame_set(round((first + last) / 2.0))
     view = bgui.area().spaces.active
-    view.overlay.show_relationship_lines = False
-    markers = [marker.matrix_world.translation for marker in bpy.context.object.children]
+    markers = [marker.matrix_world.translation for marker in bpy.context.selected_objects]
     view.region_3d.view_location = sum(markers[1:], markers[0]) / len(markers)
     view.region_3d.view_distance = 3.0
     yield from settle()

@@ -27,7 +27,6 @@ def steps():
     yield from bgui.open_sidebar("Mocap")
     bpy.context.scene.frame_set(60)
     view = bgui.area().spaces.active
-    view.overlay.show_relationship_lines = False
     view.region_3d.view_location = (0.0, 0.0, 0.9)
     view.region_3d.view_distance = 6.0
     yield from settle()

@@ -29,6 +29,7 @@ RECORDINGS = {
         "joints.txt": "kinect/irds/215_18_0_5_1_stand.txt",
     },
     "clean": {},
+    "export": {},
     "depth": {"walk.npz": "depth/truth/walk_front.npz"},
     "import": {
         "walk.bvh": "mocap/cmu_walk/07_01.bvh",
@@ -45,6 +46,13 @@ RECORDINGS = {
     "physics": {"walk.bvh": "mocap/cmu_walk/07_01.bvh"},
     "reconstruct": {"kinect.txt": "kinect/irds/217_18_0_3_1_wheelchair.txt"},
     "retarget": {},
+    "stands": {
+        "walk.bvh": "mocap/cmu_walk/07_01.bvh",
+        "mixamo.fbx": "corpus/fbx/mixamo_web/Walking.fbx",
+        "kinect.txt": "kinect/irds/215_18_0_5_1_stand.txt",
+        "cmu.c3d": "markers/85_02.c3d",
+        "gait.c3d": "formats/c3d/PiG_Motion-FlatFoot-Hole.c3d",
+    },
     "track": {"walk.npz": "depth/truth/walk_front.npz"},
     "vary": {
         f"kicks/{name}": f"mocap/hdm05/{name}"

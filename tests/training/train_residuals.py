@@ -60,7 +60,7 @@ def show(fraction: float, words: str = "") -> None:
 
 def small(prior: ResidualPrior) -> ResidualPrior:
     """Return the same in single precision, and the many points in half of it."""
-    names = ("usual", "components", "local_points", "whole_points", "means", "covariances")
+    names = ("mean_pose", "components", "local_points", "whole_points", "means", "covariances")
     return replace(
         prior,
         source=np.array(WORDS),

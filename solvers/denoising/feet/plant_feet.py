@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Motion, WorldPoses, forward_kinematics
-from ...motion.humanoid import HumanoidMap, detect_contacts, find_humanoid_map
+from ...motion.humanoid import HumanoidMap, find_humanoid_map
 from ...motion.skeletons import (
     ReachSettings,
     find_shot_boundaries,
@@ -20,6 +20,7 @@ from ...motion.skeletons import (
 from ...progress import Progress, unwatched, within
 from ...rotations import inverse, multiply
 from ...settings import Settings, setting
+from .captured_legs import detect_standing_feet
 from .foot_trajectory import FootTrajectory, plan_foot_trajectory
 from .knee_smoothing import smooth_knees
 from .legs import SIDES, Leg, find_legs
@@ -99,15 +100,14 @@ def plant_feet(
 ) -> Planted:
     """Return the motion with each foot fixed to the floor while in contact.
 
-    As in Kovar et al. [1]_ footplants are met exactly, and the motion is otherwise close to
-    the original and smooth. The method differs. A foot in contact may roll; only the loaded
-    part of the sole, heel, ball or both, must not move. Subtracting the motion of that part
-    leaves one free offset per contact. One banded linear system (`smooth_correction`) yields
-    the offsets, and the curve between them, with the least displacement and curvature. Where
-    a leg would be too short the root is shifted smoothly; bones never stretch. Then hip and
-    knee rotate so that the ankle follows (`reach`). No joint above the hips rotates. Segments
-    of a joined take are planted separately; a segment of less than a quarter of a second has
-    no contact.
+    As in Kovar et al. [1]_ footplants are met exactly, and the motion is otherwise smooth and
+    close to the original. A foot in contact may roll; only the loaded part of the sole, heel,
+    ball or both, must not move. Subtracting its motion leaves one free offset per contact. One
+    banded linear system (`smooth_correction`) yields the offsets, and the curve between them,
+    with the least displacement and curvature. Where a leg would be too short the root is
+    shifted smoothly; bones never stretch. Then hip and knee rotate so that the ankle follows
+    (`reach`). No joint above the hips rotates. Segments of a joined take are planted
+    separately; a segment of less than a quarter of a second has no contact.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def plant_feet(
         elif too_short:
             standing = np.zeros((stop - start, len(SIDES)), dtype=np.bool_)
         else:
-            standing = detect_contacts(segment, humanoid_map)
+            standing = detect_standing_feet(segment, humanoid_map, legs)
         if too_short:
             results.append(Planted(segment, standing, 0.0, 0.0))
         else:

@@ -53,6 +53,14 @@ from .posture_joints import (
     postures_from_motion,
 )
 from .presets import read_humanoid_map, write_humanoid_map
+from .role_evidence import (
+    MIN_CONFIDENCE,
+    Reason,
+    RoleEvidence,
+    describe_low_confidence,
+    evidence_figures,
+    explain_roles,
+)
 from .roles import ESSENTIAL_ROLES, HUMANOID_ROLES, HumanoidMap, find_humanoid_map
 from .standing_rest import with_standing_rest
 
@@ -68,6 +76,7 @@ __all__ = [
     "LATERAL_JOINTS",
     "MAX_BODY_SCALE",
     "MIN_BODY_SCALE",
+    "MIN_CONFIDENCE",
     "MIN_RELIABILITY",
     "MIN_RELIABLE_FRAMES",
     "MIRROR_JOINTS",
@@ -82,12 +91,17 @@ __all__ = [
     "ContactSettings",
     "HumanoidMap",
     "NormalizedPostures",
+    "Reason",
+    "RoleEvidence",
     "bone_directions",
     "canonical_rotations",
     "contacts_of_points",
+    "describe_low_confidence",
     "detect_contacts",
     "estimate_body_scale",
     "estimate_bone_lengths",
+    "evidence_figures",
+    "explain_roles",
     "fill_missing_hips",
     "find_humanoid_map",
     "fit_bone_lengths",

@@ -26,6 +26,11 @@ MIN_SPREAD_FRACTION = 0.03
 by hand on the rigs of `tests/solvers/motion`."""
 
 
+NO_FOOT_MISFIT = 0.25
+"""Added to the misfit, the logarithm of a length, of an ankle that ends a leg of four joints or
+more: its last one is rather the toes. Chosen by hand on the rigs of `tests/solvers/motion`."""
+
+
 def path_length(skeleton: Skeleton, joints: Sequence[int]) -> float:
     """Return the length along the bones from the first to the last of these joints."""
     return float(np.linalg.norm(skeleton.offsets[list(joints[1:])], axis=1).sum())
@@ -49,6 +54,8 @@ def divide_leg(
     """Return hip, knee and ankle of a leg, and the misfit of `_divide`."""
     joints = without_end_sites(skeleton, leg)
     excess = _log_excess(skeleton, leg, len(joints), MAX_FOOT_FRACTION * height)
+    if len(joints) > 3 and joints[-1] == leg[-1]:
+        excess[-1] += NO_FOOT_MISFIT
     return _divide(skeleton, joints, LEG_FRACTIONS, height, np.zeros(len(joints)), excess)
 
 

@@ -150,7 +150,22 @@ def _find_spelling(names: Sequence[str]) -> _Spelling:
         if word in {"l", "r"} and _mirrored(words, index) in bare
     )
     confirmed = {index for index, count in letters.items() if count >= MIN_SIDED_JOINTS}
-    return _Spelling(bare, frozenset(confirmed))
+    return _Spelling(bare, frozenset(confirmed | _balanced_letters(split)))
+
+
+def _balanced_letters(split: Sequence[Sequence[str]]) -> set[int]:
+    """Return at which word as many names have an "l" as have an "r", as numbered joints do."""
+    counts = Counter(
+        (index, word)
+        for words in split
+        for index, word in enumerate(words)
+        if word in {"l", "r"}
+    )
+    return {
+        index
+        for (index, word), count in counts.items()
+        if word == "l" and count == counts[index, "r"] >= MIN_SIDED_JOINTS // 2
+    }
 
 
 def _side_and_words(name: str, spelling: _Spelling) -> tuple[str, list[str]]:

@@ -15,7 +15,8 @@ LEG_BONES = tuple(
 FOOT_BONES = tuple((f"{side}Foot", f"{side}Toes") for side in ("left", "right"))
 FRAME_ROLES = ("hips", "leftUpperLeg", "rightUpperLeg")
 MIN_AREA_M2 = 1e-6
-"""Trunk times width of the hips above which a pose shows where the body faces."""
+"""Trunk times width of the hips, m^2, above which a pose shows where the body faces. It guards
+against division by zero."""
 TOPS = ("neck", "head", "chest", "spine")
 
 

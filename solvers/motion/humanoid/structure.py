@@ -42,6 +42,10 @@ by hand on the rigs of `tests/solvers/motion`."""
 MAX_HUMAN_ANGLE_DEG = 60.0
 """Between trunk and legs in the rest pose of a person, who stands; animals stand at 90. Chosen
 by hand on the rigs of `tests/solvers/motion`."""
+ALONG_ONE_AXIS = -np.cos(np.radians(20.0))
+"""Cosine between trunk and legs, of 160 degrees, below which both point one way from
+the hips: a rest pose of bones along one axis. Chosen by hand on the rigs of
+`tests/solvers/motion`."""
 
 
 class _Match(NamedTuple):
@@ -127,8 +131,12 @@ def _may_stand(skeleton: Skeleton, legs: MirroredLimbs, trunk: Array, height: fl
     lengths = np.linalg.norm(trunk), np.linalg.norm(along)
     if min(lengths) < MIN_SPREAD_FRACTION * height or _is_folded(skeleton, legs, height):
         return True
-    cosine = trunk @ along / np.prod(lengths)
-    return bool(cosine > np.cos(np.radians(MAX_HUMAN_ANGLE_DEG)))
+    return is_human_angle(float(trunk @ along / np.prod(lengths)))
+
+
+def is_human_angle(cosine: float) -> bool:
+    """Whether trunk and legs at this angle stand, or lie along one axis as if folded up."""
+    return bool(cosine > np.cos(np.radians(MAX_HUMAN_ANGLE_DEG)) or cosine < ALONG_ONE_AXIS)
 
 
 def _is_folded(skeleton: Skeleton, limbs: MirroredLimbs, height: float) -> bool:

@@ -228,10 +228,10 @@ TABLES: dict[str, tuple[str, ...]] = {
         "UpLeg", "LowLeg", "Foot", "Toes",
     ),
     "Blender": (
-        "hips hip pelvis", "spine torso abdomen", "chest spine1 spine01 spine001",
+        "hips hip pelvis", "spine torso abdomen waist", "chest spine1 spine01 spine001",
         "upperChest spine2 spine02 spine002", "neck", "head",
-        "shoulder clavicle collar", "upperArm upArm", "lowerArm foreArm lowArm loArm",
-        "hand wrist", "upperLeg upLeg thigh", "lowerLeg lowLeg loLeg shin calf", "foot ankle",
-        "toes toe toeBase ball",
+        "shoulder clavicle collar", "upperArm upArm arm", "lowerArm foreArm lowArm loArm",
+        "hand wrist", "upperLeg upLeg thigh", "lowerLeg lowLeg loLeg shin calf leg",
+        "foot ankle", "toes toe toeBase ball",
     ),
 }  # fmt: skip

@@ -1,14 +1,14 @@
 """Whether the tree of a skeleton agrees with the roles that names suggest."""
 
 import re
-from collections.abc import Mapping
-from itertools import pairwise
+from collections.abc import Mapping, Sequence
+from itertools import pairwise, product
 
 import numpy as np
 
 from ..skeletons import Skeleton
 from .limb_division import MIN_SPREAD_FRACTION
-from .structure import MAX_HUMAN_ANGLE_DEG
+from .structure import is_human_angle
 
 LIMBS = (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand"))
 SIDES = ("left", "right")
@@ -37,6 +37,9 @@ rigs of `tests/solvers/motion`."""
 NOT_STANDING = 0.5
 """Factor of the score of a map whose legs do not stand below the trunk. Chosen by hand on the
 rigs of `tests/solvers/motion`."""
+ARM_TO_LEG, TRUNK_TO_LEG = (0.52, 0.9), (0.45, 0.8)
+"""Lengths relative to thigh and shank: of the arm bones (0.68 in people), and from hips to neck
+(0.6); from Winter 2009, figure 4.1, with a margin. The trunks of animals are longer."""
 
 
 def tree_agreement(skeleton: Skeleton, joints: Mapping[str, str]) -> float:
@@ -51,7 +54,8 @@ def tree_agreement(skeleton: Skeleton, joints: Mapping[str, str]) -> float:
     -------
     float
         1 where limb joints descend from each other, no joint of a limb or of the spine is
-        left over between two that have a role, lengths are human, and the rest pose stands.
+        left over between two that have a role, lengths are human, and the rest pose stands. A
+        body of clearly human lengths may rest in any pose, such as the first of a somersault.
     """
     indices = {name: index for index, name in enumerate(skeleton.names)}
     roles = {role: indices[name] for role, name in joints.items()}
@@ -62,7 +66,7 @@ def tree_agreement(skeleton: Skeleton, joints: Mapping[str, str]) -> float:
         agreement *= NO_SPINE
     if _has_odd_lengths(skeleton, roles):
         agreement *= ODD_LENGTHS
-    if not stands_upright(skeleton, roles):
+    if not (stands_upright(skeleton, roles) or _has_human_lengths(skeleton, roles)):
         agreement *= NOT_STANDING
     return agreement
 
@@ -73,17 +77,50 @@ def stands_upright(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
         (roles[r] for r in ("neck", "upperChest", "chest", "head") if r in roles), None
     )
     feet = [roles[f"{side}Foot"] for side in SIDES if f"{side}Foot" in roles]
-    if chest is None or "hips" not in roles or len(feet) < 2:
+    tops = [roles[r] for r in ("leftUpperLeg", "rightUpperLeg") if r in roles]
+    pelvis = [roles["hips"]] if "hips" in roles else tops
+    if chest is None or not pelvis or len(feet) < 2:
         return True
     positions = skeleton.rest_positions
-    hips = positions[roles["hips"]]
+    hips = positions[pelvis].mean(axis=0)
     legs, trunk = hips - positions[feet].mean(axis=0), positions[chest] - hips
     height = float(np.linalg.norm(legs) + np.linalg.norm(trunk))
     half_distance = np.linalg.norm(positions[feet[0]] - positions[feet[1]]) / 2
     if half_distance < MIN_SPREAD_FRACTION * height or np.linalg.norm(trunk) < 0.1 * height:
         return True  # folded: all bones have one direction
-    cosine = legs @ trunk / max(np.linalg.norm(legs) * np.linalg.norm(trunk), 1e-12)
-    return bool(cosine > np.cos(np.radians(MAX_HUMAN_ANGLE_DEG)))
+    return is_human_angle(
+        float(legs @ trunk / max(np.linalg.norm(legs) * np.linalg.norm(trunk), 1e-12))
+    )
+
+
+def _has_human_lengths(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
+    """Whether arms and trunk are as long, relative to the legs, as those of people."""
+    if not {"hips", "neck"} <= roles.keys() or any(
+        side + part not in roles for side in SIDES for limb in LIMBS for part in limb
+    ):
+        return False
+    legs, arms = (
+        sum(
+            _path_length(skeleton, roles[side + limb[0]], roles[side + limb[-1]])
+            for side in SIDES
+        )
+        / 2
+        for limb in LIMBS
+    )
+    trunk = _path_length(skeleton, roles["hips"], roles["neck"])
+    return bool(
+        ARM_TO_LEG[0] < arms / max(legs, 1e-9) < ARM_TO_LEG[1]
+        and TRUNK_TO_LEG[0] < trunk / max(legs, 1e-9) < TRUNK_TO_LEG[1]
+    )
+
+
+def _path_length(skeleton: Skeleton, above: int, below: int) -> float:
+    """Return the length of the bones from one joint down to another; 0 if it is not below."""
+    chain = [below, *skeleton.ancestors(below)]
+    if above not in chain:
+        return 0.0
+    bones = chain[: chain.index(above)]
+    return float(np.linalg.norm(skeleton.offsets[bones], axis=1).sum())
 
 
 def _descent(skeleton: Skeleton, roles: Mapping[str, int]) -> float:
@@ -94,35 +131,83 @@ def _descent(skeleton: Skeleton, roles: Mapping[str, int]) -> float:
 
 
 def _links(roles: Mapping[str, int]) -> list[tuple[int, int]]:
-    """Return the joints of each mapped link of a limb."""
-    links = [
-        (f"{side}{upper}", f"{side}{lower}")
+    """Return the joints of each link of a limb, from one with a role to the next."""
+    limbs = [
+        [roles[side + part] for part in limb if side + part in roles]
         for side in SIDES
         for limb in LIMBS
-        for upper, lower in pairwise(limb)
     ]
-    return [(roles[a], roles[b]) for a, b in links if a in roles and b in roles]
+    return [link for limb in limbs for link in pairwise(limb)]
+
+
+def role_faults(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]:
+    """Return what the tree and the lengths say against the role of a joint of a limb.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    joints : mapping of role to joint name
+
+    Returns
+    -------
+    dict of role to clause, such as "it does not hang below LeftUpLeg"; empty without faults
+    """
+    indices = {name: index for index, name in enumerate(skeleton.names)}
+    roles = {role: indices[name] for role, name in joints.items()}
+    role_of = {joint: role for role, joint in roles.items()}
+    faults: dict[str, str] = {}
+    for upper, lower in _links(roles):
+        name = skeleton.names[upper]
+        if upper not in skeleton.ancestors(lower):
+            faults[role_of[lower]] = f"it does not hang below {name}"
+        elif (left := _joint_between(skeleton, set(role_of), upper, lower)) is not None:
+            for joint in (upper, lower):
+                faults[role_of[joint]] = f"{skeleton.names[left]} lies between two parts"
+    faults |= _missing_middles(roles)
+    for limb in LIMBS:
+        if _has_odd_lengths(skeleton, roles, (limb,)):
+            odd = {f"{side}{part}" for side in SIDES for part in limb} & roles.keys()
+            faults |= dict.fromkeys(
+                odd - faults.keys(), "the lengths of this limb are no person's"
+            )
+    return faults
+
+
+def _missing_middles(roles: Mapping[str, int]) -> dict[str, str]:
+    """Return a clause for both ends of each limb whose middle has no joint."""
+    faults: dict[str, str] = {}
+    for side, (upper, middle, end) in product(SIDES, LIMBS):
+        ends = {f"{side}{upper}", f"{side}{end}"}
+        if ends <= roles.keys() and f"{side}{middle}" not in roles:
+            faults |= dict.fromkeys(ends, f"no bone between plays {side}{middle}")
+    return faults
 
 
 def _skips_joint(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
     """Whether a joint lies between two of a limb that is neither a helper nor a twist bone."""
     taken = set(roles.values())
-    for upper, lower in _links(roles):
-        above = skeleton.ancestors(lower)
-        if upper not in above:
-            continue
-        chain = above[: above.index(upper)]
-        ends = skeleton.rest_positions[[upper, lower]]
-        length = np.linalg.norm(ends[1] - ends[0])
-        for joint in chain:
-            between = np.linalg.norm(ends - skeleton.rest_positions[joint], axis=1).min()
-            if (
-                joint not in taken
-                and between > MIN_BONE_FRACTION * length
-                and not _is_twist(skeleton.names[joint], skeleton.names[upper])
-            ):
-                return True
-    return False
+    return any(
+        _joint_between(skeleton, taken, upper, lower) is not None
+        for upper, lower in _links(roles)
+    )
+
+
+def _joint_between(skeleton: Skeleton, taken: set[int], upper: int, lower: int) -> int | None:
+    """Return a joint without a role between two of a limb, no helper and no twist bone."""
+    above = skeleton.ancestors(lower)
+    if upper not in above:
+        return None
+    ends = skeleton.rest_positions[[upper, lower]]
+    length = np.linalg.norm(ends[1] - ends[0])
+    for joint in above[: above.index(upper)]:
+        between = np.linalg.norm(ends - skeleton.rest_positions[joint], axis=1).min()
+        if (
+            joint not in taken
+            and between > MIN_BONE_FRACTION * length
+            and not _is_twist(skeleton.names[joint], skeleton.names[upper])
+        ):
+            return joint
+    return None
 
 
 def _is_twist(name: str, upper: str) -> bool:
@@ -144,9 +229,11 @@ def _skips_spine(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
     return len(free) > 1  # one may be the shoulder
 
 
-def _has_odd_lengths(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:
+def _has_odd_lengths(
+    skeleton: Skeleton, roles: Mapping[str, int], limbs: Sequence[tuple[str, ...]] = LIMBS
+) -> bool:
     """Whether a limb's upper and lower bones, or both sides, differ as in no person."""
-    for limb in LIMBS:
+    for limb in limbs:
         lengths = {}
         for side in SIDES:
             joints = [roles[f"{side}{part}"] for part in limb if f"{side}{part}" in roles]

@@ -10,7 +10,7 @@ UNIT_NAMES = {
     0.0254: "inches", 0.3048: "feet",
 }  # fmt: skip
 CERTAIN = 0.995
-"""Confidence above which a sentence does not mention it."""
+"""Confidence, a probability, from which rounding to whole percents gives 100. By definition."""
 
 
 @dataclass(frozen=True)

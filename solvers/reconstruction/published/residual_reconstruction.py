@@ -80,7 +80,7 @@ def reconstruct_published_residuals(
     )
     progress(0.5, "Correcting")
     weights = posture_reliability(recording, reliability.combined)
-    smooth = smooth_postures(recording, float(prior.calm), weights, ahead=True)
+    smooth = smooth_postures(recording, float(prior.smoothing), weights, ahead=True)
     prediction = prior.predict(smooth, ahead=False)
     mean = mean_offset(prediction, weights)
     constant = mean if settings.shift else np.zeros_like(mean)

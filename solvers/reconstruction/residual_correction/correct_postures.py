@@ -174,7 +174,7 @@ def predict_positions(
 ) -> tuple[Array, Prediction, Array]:
     """Return corrected posture joints, the prediction of the prior, and its variances."""
     causal = settings.method is CorrectionMethod.CAUSAL
-    smooth = smooth_postures(recording, float(prior.calm), weights, ahead=not causal)
+    smooth = smooth_postures(recording, float(prior.smoothing), weights, ahead=not causal)
     prediction = prior.predict(smooth, ahead=not causal)
     predicted = smooth.positions + smooth.rotate_to_world(
         _offsets(prediction, weights, settings)

@@ -47,6 +47,8 @@ LAYOUT = ArchiveLayout(
     holds="a damaged prior",
     remedy="Learn it again.",
 )
+KEYS = {"mean_pose": "usual", "smoothing": "calm"}
+"""Keys of fields in a file, where they differ."""
 MOVEMENT_FRACTION = 0.6
 """Fraction of the movement process in a prediction; the rest comes from joints and poses.
 Chosen by hand: x0.5 and x2 change the mean by less than 0.1 %."""
@@ -68,7 +70,7 @@ class ResidualPrior:
     ----------
     joints : shape (n,), str
         Which of `POSTURE_JOINTS` were learned.
-    usual : shape (20, 3), meters
+    mean_pose : shape (20, 3), meters
         Mean pose, for joints that are missing from a recording.
     components : shape (57, n_components)
         Principal components of the complete pose without the hips.
@@ -80,7 +82,7 @@ class ResidualPrior:
         Hyper-parameters (`Kernel`): lengths, shared, personal, take, actor, noise.
     means, covariances : shapes (n, n_weights, 3) and (n, n_weights, n_weights)
         Of the weights of the shared functions and the mean error.
-    calm : shape (), seconds
+    smoothing : shape (), seconds
         Standard deviation of the Gaussian that smooths recordings before prediction.
     mirrored : shape (), bool
         Whether right limbs, not in `joints`, use the mirrored errors of left limbs.
@@ -94,14 +96,14 @@ class ResidualPrior:
     """
 
     joints: NDArray[np.str_]
-    usual: Array
+    mean_pose: Array
     components: Array
     local_points: Array
     whole_points: Array
     kernels: Array
     means: Array
     covariances: Array
-    calm: Array
+    smoothing: Array
     mirrored: NDArray[np.bool_]
     source: NDArray[np.str_]
     movement: MovementProcess | None = None
@@ -111,11 +113,12 @@ class ResidualPrior:
 
     def save(self, path: Path | str) -> None:
         """Write the prior to a file that `load_residual_prior` reads."""
-        arrays = {name: np.asarray(getattr(self, name)) for name in PRIOR_FIELDS}
+        arrays = {
+            KEYS.get(name, name): np.asarray(getattr(self, name)) for name in PRIOR_FIELDS
+        }
         if self.movement is not None:
-            arrays |= {
-                MOVEMENT_PREFIX + name: one for name, one in self.movement.arrays().items()
-            }
+            movement = self.movement.arrays()
+            arrays |= {MOVEMENT_PREFIX + name: one for name, one in movement.items()}
         LAYOUT.write(path, arrays)
 
     @cached_property
@@ -138,8 +141,8 @@ class ResidualPrior:
         the movement process contributes. Otherwise each frame is predicted separately. Joints
         without training data, such as fingertips, are ignored.
         """
-        has_model = (self.usual != 0.0).any(axis=-1, keepdims=True)
-        features = np.where(has_model, fill_missing(smoothed.features, self.usual), 0.0)
+        has_model = (self.mean_pose != 0.0).any(axis=-1, keepdims=True)
+        features = np.where(has_model, fill_missing(smoothed.features, self.mean_pose), 0.0)
         step = max(round(smoothed.frame_rate / PREDICTION_RATE_HZ), 1) if ahead else 1
         last = len(features) - 1
         frames = np.unique(np.append(np.arange(0, last + 1, step), last))
@@ -196,7 +199,7 @@ class ResidualPrior:
         shape = features.shape
         offsets, variances = np.zeros(shape), np.full(shape[:2], np.inf)
         coverage = np.zeros(shape[:2])
-        pose_features = posture_components(features, self.usual, self.components)
+        pose_features = posture_components(features, self.mean_pose, self.components)
         near = proximity(pose_features, self.whole_points, POSTURE_COVERAGE_M)
         for index, name in enumerate(self.joints):
             joint, kernel = POSTURE_JOINTS.index(str(name)), self.kernel(index)
@@ -244,9 +247,9 @@ class ResidualPrior:
         return probability_within(variances, distance, calibration)
 
 
-def posture_components(features: Array, usual: Array, components: Array) -> Array:
+def posture_components(features: Array, mean_pose: Array, components: Array) -> Array:
     """Return principal components of poses, shape (n_frames, n_components)."""
-    flat = (features - usual)[:, 1:].reshape(len(features), -1)
+    flat = (features - mean_pose)[:, 1:].reshape(len(features), -1)
     return np.asarray(flat @ components)
 
 
@@ -274,7 +277,8 @@ def load_residual_prior(path: Path | str) -> ResidualPrior:
         raise LAYOUT.damaged(path, fault)
     joints, source = arrays.pop("joints"), arrays.pop("source")
     mirrored_joints = arrays.pop("mirrored").astype(np.bool_)
-    own = {name: one.astype(np.float64) for name, one in arrays.items()}
+    names = {key: name for name, key in KEYS.items()}
+    own = {names.get(key, key): one.astype(np.float64) for key, one in arrays.items()}
     return ResidualPrior(
         joints=joints, mirrored=mirrored_joints, source=source, movement=movement, **own
     )

@@ -39,7 +39,7 @@ from .file_axes import (
     with_axes,
     with_conventions,
 )
-from .floor import floor_level, lacks_floor, put_on_floor
+from .floor import floor_level, lacks_floor, put_on_floor, question_of_floor
 from .points import (
     METERS,
     axes_of_points,
@@ -47,8 +47,10 @@ from .points import (
     is_upside_down,
     judge_axes_of_points,
     meters_from_unit_name,
+    other_standing_axis,
     point_names,
     points_z_up,
+    stand_markers,
 )
 from .sensor_axes import from_azure_space, from_kinect_space
 from .subjects import bodies_of_joints, bodies_of_markers
@@ -97,9 +99,11 @@ __all__ = [
     "longest_bone_path",
     "meters_from_unit_name",
     "observed_body",
+    "other_standing_axis",
     "point_names",
     "points_z_up",
     "put_on_floor",
+    "question_of_floor",
     "question_of_size",
     "recorded_seconds",
     "reinterpreted",
@@ -108,6 +112,7 @@ __all__ = [
     "rotations_z_up_from_y_up",
     "stack_body_frames",
     "stand_along",
+    "stand_markers",
     "stand_upright",
     "stature",
     "turn_between",

@@ -15,7 +15,7 @@ from ...motion import (
     find_humanoid_map,
     world_poses,
 )
-from ...progress import Progress, unwatched
+from ...progress import Progress, Remark, unwatched
 from .axes import longest_bone_path, rotation_to_z_up
 from .file_axes import FORWARD, turn_motion
 
@@ -167,7 +167,7 @@ def stand_upright(
     """
     judged = judge_up_axis(motion, expected)
     if not judged.is_clear:
-        progress(1.0, describe_guessed_axis(judged.axis))
+        progress(1.0, Remark(describe_guessed_axis(judged.axis)))
     noted = replace(
         motion.conventions or FileConventions(),
         up=judged.axis,

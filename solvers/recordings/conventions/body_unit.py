@@ -20,7 +20,7 @@ from ...motion.humanoid import (
     estimate_body_scale,
     posture_positions,
 )
-from ...progress import Progress
+from ...progress import Progress, Remark
 
 UNITS = (1.0, 0.01, 0.001)
 ODD_STATURE_M = (0.8, 2.6)
@@ -53,7 +53,7 @@ def convert_to_body_unit(
     factor = nearest_unit / unit
     if not MIN_BODY_SCALE <= size * factor <= MAX_BODY_SCALE:
         return recording
-    progress(1.0, describe_guessed_unit(nearest_unit))
+    progress(1.0, Remark(describe_guessed_unit(nearest_unit)))
     tracks = recording.tracks
     noted = replace(tracks.conventions or FileConventions(), unit=nearest_unit)
     larger = replace(tracks, positions=factor * tracks.positions, conventions=noted)

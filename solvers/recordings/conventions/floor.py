@@ -31,6 +31,11 @@ MAX_REST_SPEED = 0.25
 """Speed of rising or falling, m/s, below which a body rests on something; noise is less."""
 MIN_BELOW_FRACTION = 0.3
 """Depth of the feet below height 0, relative to the stature, of a take without a floor."""
+MIN_UPRIGHT_FRACTION = 0.2
+"""Height of the head above the hips, relative to the stature, of who stands or sits: 0.27 to
+0.36 in upright bodies of several makers."""
+MIN_OFF_FLOOR_FRACTION = 0.15
+"""Distance of the lowest level from height 0, relative to the stature, that is a question."""
 MAX_HIPS_FRACTION = 0.15
 """Height of the hips, relative to the stature, of a take whose origin is the hips."""
 NO_FLOOR = (
@@ -57,21 +62,26 @@ def put_on_floor(recording: Recording) -> Recording:
 
 def floor_level(recording: Motion | Tracks | JointRecording) -> float:
     """Return the lowest height that the body rests on; 0 if nothing is observed."""
-    points, soles = _points(recording)
-    heights = np.where(np.isfinite(points[..., 2]), points[..., 2] - soles, np.inf)
-    lowest = heights.min(axis=1, initial=np.inf)
-    lowest = lowest[np.isfinite(lowest)]
+    lowest = _lowest(recording)
     if not len(lowest):
         return 0.0
     resting = lowest[_rests(lowest, recording.frame_rate)]
     return float(np.percentile(resting if len(resting) else lowest, FLOOR_PERCENTILE))
 
 
+def _lowest(recording: Motion | Tracks | JointRecording) -> Array:
+    """Return the height below the body in each frame with an observed joint."""
+    points, soles = _points(recording)
+    heights = np.where(np.isfinite(points[..., 2]), points[..., 2] - soles, np.inf)
+    lowest = heights.min(axis=1, initial=np.inf)
+    return np.asarray(lowest[np.isfinite(lowest)])
+
+
 def lacks_floor(recording: Motion | Tracks | JointRecording) -> bool:
     """Whether height 0 is not a measured floor.
 
-    So it is with depth cameras and video models, and where the hips are the origin and the
-    feet hang below.
+    So it is with depth cameras and video models, where the hips are the origin and the feet
+    hang below, and where an upright actor is far below height 0 in most frames.
     """
     if not conventions_of(recording).has_floor or isinstance(recording, JointRecording):
         return True
@@ -84,13 +94,35 @@ def lacks_floor(recording: Motion | Tracks | JointRecording) -> bool:
     tall = stature(recording)
     if "hips" not in roles or tall is None:
         return False
-    heights = _points(recording, [roles["hips"], roles["head"]])[0][..., 2]
+    heights = _points(recording, [roles["hips"], roles["head"], *roles.values()])[0][..., 2]
     observed = heights[np.isfinite(heights).all(axis=1)]
     if not len(observed):
         return False
-    hips, head = np.median(observed, axis=0)
-    stands = abs(hips) < MAX_HIPS_FRACTION * tall and head - hips > MIN_BELOW_FRACTION * tall
-    return bool(stands and floor_level(recording) < -MIN_BELOW_FRACTION * tall)
+    hips, head = np.median(observed[:, :2], axis=0)
+    is_upright = head - hips > MIN_UPRIGHT_FRACTION * tall
+    is_origin = abs(hips) < MAX_HIPS_FRACTION * tall
+    is_sunk = np.median(observed.min(axis=1)) < -MIN_BELOW_FRACTION * tall
+    is_below = floor_level(recording) < -MIN_BELOW_FRACTION * tall
+    return bool(is_upright and is_below and (is_origin or is_sunk))
+
+
+def question_of_floor(recording: Motion | Tracks | JointRecording) -> str:
+    """Ask whether an actor who never comes near height 0 is right; nothing otherwise.
+
+    Heights of a measured floor are kept, as of an actor on a platform.
+    """
+    tall, lowest = stature(recording), _lowest(recording)
+    if tall is None or isinstance(recording, Tracks) or not len(lowest):
+        return ""
+    nearest = float(np.percentile(np.abs(lowest), FLOOR_PERCENTILE))
+    if nearest < MIN_OFF_FLOOR_FRACTION * tall:
+        return ""
+    level = float(np.median(lowest))
+    side = "above" if level > 0.0 else "below"
+    return (
+        f"The actor stays {abs(level):.2g} m {side} the floor; set Place on Floor to On if this"
+        " is not right"
+    )
 
 
 def _lifted(tracks: Tracks, lift: float) -> Tracks:

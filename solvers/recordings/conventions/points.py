@@ -7,7 +7,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion import AxisName, FileConventions
+from ...motion import AxisName, FileConventions, Tracks
 from ..containers import UniqueNames, printable
 from .axes import MIN_BODY_JOINTS, z_up_from_y_up
 from .file_axes import FORWARD
@@ -25,6 +25,9 @@ GUESSED = 0.9
 files that state theirs, but they are few."""
 BODY_EXTENT_M = 1.5
 FLOOR_TOLERANCE_M = 0.15
+MIN_STANDING_M, MIN_STANDING_RATIO = 1.2, 1.5
+"""Extent of markers on a body that stands, and relative to their extent along the stated axis:
+a body is about three times as tall as wide, and arms may be spread."""
 
 
 def point_names(labels: Sequence[str]) -> tuple[str, ...]:
@@ -65,8 +68,32 @@ def judge_axes_of_points(
         up = default_up
     if up[-1:] in {"X", "Y", "Z"}:
         return axes_of_points(up, unit)
-    guessed = axes_of_points("Y" if _looks_y_up(points) else "Z", unit)
-    return replace(guessed, confidence=GUESSED)
+    guessed = "+Y" if _looks_y_up(points) else "+Z"
+    axes = axes_of_points(other_standing_axis(points, guessed) or guessed, unit)
+    return replace(axes, confidence=GUESSED)
+
+
+def stand_markers(
+    labels: Sequence[str],
+    points: NDArray[np.float64],
+    frame_rate: float,
+    unit: float,
+    default_up: str,
+) -> Tracks:
+    """Return markers of a file that does not state its axes, with what was judged.
+
+    Parameters
+    ----------
+    labels : names in the file (`point_names`)
+    points : shape (n_frames, n_points, 3), meters
+    frame_rate : hertz
+    unit : meters per unit of the file
+    default_up : axis of the program, where there are too few points for a body
+    """
+    axes = judge_axes_of_points(points, "", unit, default_up)
+    return Tracks(
+        point_names(labels), points_z_up(points, axes.up), frame_rate, conventions=axes
+    )
 
 
 def axes_of_points(up: str, unit: float = 1.0) -> FileConventions:
@@ -102,6 +129,23 @@ def is_upside_down(points: NDArray[np.float64], up: str) -> bool:
         np.nanpercentile(along, 2) > -FLOOR_TOLERANCE_M
         and np.nanpercentile(along, 98) > FLOOR_TOLERANCE_M
     )
+
+
+def other_standing_axis(points: NDArray[np.float64], up: str) -> str:
+    """Return the axis along which points, in meters, stand if the stated one cannot be right.
+
+    So it is where they are half below the floor along the stated axis, and along another one
+    are all above it and much farther apart. Empty if the stated axis may be right.
+    """
+    if up[-1:] not in {"X", "Y", "Z"} or points.shape[1] < MIN_BODY_JOINTS:
+        return ""
+    lowest = np.nanpercentile(points.reshape(-1, 3), 2, axis=0)
+    extents = np.median(_extents(points), axis=0)
+    stated = "XYZ".index(up[-1])
+    best = int(np.argmax(np.where(lowest > -FLOOR_TOLERANCE_M, extents, 0.0)))
+    is_sunk = lowest[stated] <= -FLOOR_TOLERANCE_M
+    is_tall = extents[best] > max(MIN_STANDING_M, MIN_STANDING_RATIO * extents[stated])
+    return f"+{'XYZ'[best]}" if is_sunk and is_tall and best != stated else ""
 
 
 def _looks_y_up(points: NDArray[np.float64]) -> bool:

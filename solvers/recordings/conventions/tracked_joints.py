@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...motion import AxisName, FileConventions, JointRecording, Sensor, Tracks
-from ...progress import Progress
+from ...progress import READING, Progress, Remark
 from .body_unit import convert_to_body_unit
 from .time_stamps import DEFAULT_FRAME_RATE, ConstantRate
 
@@ -89,7 +89,7 @@ def joint_recording(
         positions = resampler.positions(positions)
         states = None if states is None else resampler.states(states)
         confidence = None if confidence is None else resampler.confidence(confidence)
-    progress(1.0, "Reading" if times is None else f"Resampled to {frame_rate:.4g} Hz")
+    progress(1.0, READING if times is None else Remark(f"Resampled to {frame_rate:.4g} Hz"))
     unit = default_unit if scale is None else scale
     positions *= unit  # a copy of the argument
     axes = conventions or FileConventions(*SENSOR_AXES.get(sensor, ("Z", "-Y")))

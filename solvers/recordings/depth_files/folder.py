@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ...depth_scene import Camera, DepthRecording
 from ...errors import InvalidFileError
 from ...faults import attempt
-from ...progress import Progress, unwatched
+from ...progress import Progress, Remark, unwatched
 from ..containers import PngHeader, is_listed, read_png_header
 from ..conventions import DEFAULT_FRAME_RATE
 from .camera_orientation import rotate_upright
@@ -96,7 +96,7 @@ def read_depth_folder(
         *layout.remarks,
         *_remarks(layout, is_good, image_indices, frames, settings),
     ):
-        progress(1.0, remark)
+        progress(1.0, Remark(remark))
     progress(1.0, "Reading")
     held = layout.held if settings.held is CameraOrientation.KNOWN else settings.held
     return rotate_upright(recording, held, mirrored=False)

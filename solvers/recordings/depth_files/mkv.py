@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...depth_scene import DepthImage, DepthRecording
 from ...errors import InvalidFileError
-from ...progress import Progress, unwatched, within
+from ...progress import Progress, Remark, unwatched, within
 from ..containers import Matroska, PlainBytes, Track, index_matroska, is_matroska
 from ..conventions import DEFAULT_FRAME_RATE
 from .image_frames import Frames, frames_by_time, match_times
@@ -116,7 +116,7 @@ def read_depth_mkv(
         _color(path, index, lens, track, image_indices, read_depth),
     )
     for remark in _remarks(index, is_good, image_indices):
-        progress(1.0, remark)
+        progress(1.0, Remark(remark))
     progress(1.0, "Reading")
     return recording
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Sensor, Tracks
 from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
-from ...progress import Progress, unwatched
+from ...progress import READING, Progress, Remark, unwatched
 from ..containers import NPY_MAGIC, read_array
 from ..conventions import (
     DEFAULT_FRAME_RATE,
@@ -95,7 +95,8 @@ def read_freemocap(
         names, points = with_centers(names, points)
     noted = replace(axes, has_floor=not is_body)
     tracks = Tracks(names, points * unit, frame_rate, conventions=noted)
-    progress(1.0, describe_guessed_unit(unit) if scale is None and is_body else "Reading")
+    guessed = scale is None and is_body
+    progress(1.0, Remark(describe_guessed_unit(unit)) if guessed else READING)
     return JointRecording(tracks, None, Sensor.MEDIAPIPE) if is_body else tracks
 
 

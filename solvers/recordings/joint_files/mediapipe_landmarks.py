@@ -9,7 +9,7 @@ from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Sensor
 from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS
-from ...progress import Progress
+from ...progress import Progress, Remark
 from ..conventions import DEFAULT_FRAME_RATE, from_azure_space, joint_recording
 
 N_POINTS = len(BODY_POINTS)
@@ -75,8 +75,12 @@ def recording_from_landmarks(
             " pose_world_landmarks of MediaPipe instead."
         )
     if times is None and frame_rate is None:
-        progress(0.9, f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
-    progress(0.9, "MediaPipe keeps the hips at the origin, so the actor does not travel")
+        progress(
+            0.9, Remark(f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
+        )
+    progress(
+        0.9, Remark("MediaPipe keeps the hips at the origin, so the actor does not travel")
+    )
     pairs = [[BODY_POINTS.index(side) for side in sides] for sides in COMPUTED_JOINTS.values()]
     return joint_recording(
         path,

@@ -35,7 +35,8 @@ from .body_json import (
 
 CSV_HEAD = re.compile(rb"(?i)[^\r\n]*\bJOINT_WAIST\.x\b")
 JSON_HEAD = re.compile(
-    rb'(?is)\s*[\[{].*"(skeletons|users|skeleton)"\s*:\s*\[.*"(joints|head|torso|JOINT_\w+)"'
+    rb'(?is)\s*[\[{].*"(skeletons|users|skeleton)"\s*:\s*\['
+    rb'.*"(joints"\s*:\s*\[|joints"\s*:|(head|torso|JOINT_\w+)"\s*:)\s*\{'
 )
 KEYS = frozenset({"skeletons", "Skeletons", "users", "Users", "skeleton", "Skeleton"})
 IDS = ("user_id", "userId", "id", "ID", "Id")

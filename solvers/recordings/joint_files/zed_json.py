@@ -10,7 +10,7 @@ from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Sensor
 from ...motion.skeletons import ZED_BODIES
-from ...progress import Progress, unwatched, within
+from ...progress import Progress, Remark, unwatched, within
 from ..containers import array_from_json
 from ..conventions import (
     Bodies,
@@ -125,7 +125,7 @@ def _recording(
     left, right = (names.index(f"Shoulder{side}") for side in SIDES)
     if is_mirrored(positions, left, right, names.index("Neck"), names.index("Nose")):
         positions = positions * (1.0, -1.0, 1.0)
-        progress(0.0, "The axes of the file are left-handed; the body is mirrored back")
+        progress(0.0, Remark("The axes of the file are left-handed; the body is mirrored back"))
     return joint_recording(
         path,
         names,

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...motion import Motion, Tracks
-from ...progress import Progress, unwatched
+from ...progress import Progress, Remark, unwatched
 from ..containers import C3dFile
 from ..conventions import (
     Bodies,
@@ -17,6 +17,7 @@ from ..conventions import (
     is_upside_down,
     judge_axes_of_points,
     meters_from_unit_name,
+    other_standing_axis,
     point_names,
     points_z_up,
 )
@@ -82,7 +83,7 @@ def open_c3d(
         if not file.n_points:
             recording = read_c3d_rotations(file, scale, progress)
             return Bodies(str(path), (), lambda index, progress: recording)
-        progress(0.1, "The poses of segments in its ROTATION group are left out")
+        progress(0.1, Remark("The poses of segments in its ROTATION group are left out"))
     points, observed = file.read_points()
     progress(0.6, "Reading")
     points[~observed | (points == 0.0).all(axis=-1) | ~np.isfinite(points).all(axis=-1)] = (
@@ -101,16 +102,29 @@ def open_c3d(
     used = [labels[index] for index in columns]
     unit = _unit(file, points) if scale is None else scale
     points *= unit
-    screen = file.texts("POINT:Y_SCREEN")
-    up = screen[0].strip().upper() if screen else ""
-    if is_upside_down(points, up):
-        progress(0.8, f"Y_SCREEN says {up}, which hangs the actor below the floor; not used")
-        up = f"+{up[-1]}"
-    axes = judge_axes_of_points(points, up, unit)
+    axes = judge_axes_of_points(points, _up(file, points, progress), unit)
     positions = points_z_up(points, axes.up)
     tracks = Tracks(point_names(used), positions, file.frame_rate, conventions=axes)
     progress(1.0, "Reading")
     return bodies_of_markers(path, tracks, used)
+
+
+def _up(file: C3dFile, points: NDArray[np.float64], progress: Progress) -> str:
+    """Return the Y axis of the screen, unless points, in meters, show that it is not up."""
+    screen = file.texts("POINT:Y_SCREEN")
+    up = screen[0].strip().upper() if screen else ""
+    if is_upside_down(points, up):
+        progress(
+            0.8, Remark(f"Y_SCREEN says {up}, which hangs the actor below the floor; not used")
+        )
+        return f"+{up[-1]}"
+    if other := other_standing_axis(points, up):
+        progress(
+            0.8,
+            Remark(f"Y_SCREEN says {up}, but the actor stands along {other}, which is used"),
+        )
+        return other
+    return up
 
 
 def _labels(file: C3dFile, n_points: int) -> list[str]:

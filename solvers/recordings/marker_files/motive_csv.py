@@ -9,10 +9,10 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import Motion, Tracks
-from ...progress import Progress, unwatched, within
+from ...progress import Progress, Remark, unwatched, within
 from ...rotations import multiply, normalize, quaternion_from_euler, rotate, unroll
 from ..containers import LineReader, stream_cells
-from ..conventions import check_scale, meters_from_unit_name, point_names, points_z_up
+from ..conventions import check_scale, meters_from_unit_name, stand_markers
 from ..skeleton_files import recording_from_segments
 from .marker_rows import at_constant_rate, mark_missing
 from .motive_header import (
@@ -91,9 +91,11 @@ def read_motive_csv(
     name = max(skeletons, key=lambda name: _n_observed(skeletons[name], rows))
     others = [other for other in skeletons if other != name]
     if others:
-        progress(0.8, f"Only the skeleton {name} is read, not {', '.join(others)}")
+        progress(0.8, Remark(f"Only the skeleton {name} is read, not {', '.join(others)}"))
     if len(header.items) > len(bones):
-        progress(0.8, "Markers and rigid bodies are left out, since the file has a skeleton")
+        progress(
+            0.8, Remark("Markers and rigid bodies are left out, since the file has a skeleton")
+        )
     return _skeleton(header, skeletons[name], rows, unit, path, progress)
 
 
@@ -121,13 +123,12 @@ def _points(
             f"{path} has no positions of markers, rigid bodies or bones. Export it with them."
         )
     if RIGID_BODY in kinds:
-        progress(0.8, "Of rigid bodies the origins are read, not the rotations")
+        progress(0.8, Remark("Of rigid bodies the origins are read, not the rotations"))
     points = _positions(items, rows)
     mark_missing(points, path)
     points, rate = _resampled(header, points, rows, path)
-    names = point_names([item.name for item in items])
     progress(1.0, "Reading")
-    return Tracks(names, points_z_up(points * unit, default_up="+Y"), rate)
+    return stand_markers([item.name for item in items], points * unit, rate, unit, "+Y")
 
 
 def _skeleton(

@@ -10,10 +10,10 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import Motion, Tracks
-from ...progress import Progress, unwatched, within
+from ...progress import Progress, Remark, unwatched, within
 from ...rotations import normalize, unroll
 from ..containers import LineReader, decode_text, split_cells, stream_cells
-from ..conventions import check_scale, point_names, points_z_up
+from ..conventions import check_scale, point_names, stand_markers
 from ..skeleton_files import recording_from_segments
 from .marker_rows import at_constant_rate, mark_missing
 
@@ -53,7 +53,7 @@ def read_qualisys_tsv(
     A skeleton in global coordinates becomes a motion (`recording_from_segments`); markers, and
     the origins of rigid bodies, become points. A point is missing if a cell is blank or not a
     number, or if it is exactly at the origin. QTM has Z up; eight or more points of a file
-    with Y up are recognized by the body (`points_z_up`).
+    with Y up are recognized by the body (`judge_axes_of_points`).
 
     Parameters
     ----------
@@ -109,13 +109,13 @@ def _points(
             " Export it again."
         )
     if key == BODIES:
-        progress(0.8, "Of rigid bodies the origins are read, not the rotations")
+        progress(0.8, Remark("Of rigid bodies the origins are read, not the rotations"))
     first = n_stamps + step * np.arange(len(labels))
     points = rows[:, first[:, None] + np.arange(3)]
     mark_missing(points, path)
     points, rate = _resampled(header, points, rows[:, :n_stamps], path)
     progress(1.0, "Reading")
-    return Tracks(point_names(labels), points_z_up(points * unit, default_up="+Z"), rate)
+    return stand_markers(labels, points * unit, rate, unit, "+Z")
 
 
 def _columns_per_item(header: _Header, width: int, n_items: int, key: str) -> tuple[int, int]:

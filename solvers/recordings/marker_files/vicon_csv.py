@@ -17,7 +17,7 @@ from ..containers import (
     split_cells,
     stream_cells,
 )
-from ..conventions import check_scale, meters_from_unit_name, point_names, points_z_up
+from ..conventions import check_scale, meters_from_unit_name, stand_markers
 from .marker_rows import at_constant_rate, mark_missing
 
 SECTIONS = (b"trajectories", b"devices", b"model outputs", b"joints", b"segments", b"events")
@@ -58,7 +58,7 @@ def read_vicon_csv(
 
     A marker is missing if one of its cells is blank or not a number, or if it is exactly at
     the origin. Skipped frame numbers are gaps. Nexus has Z up; eight or more markers of a file
-    with Y up are recognized by the body (`points_z_up`). Other sections are not read.
+    with Y up are recognized by the body (`judge_axes_of_points`). Other sections are not read.
 
     Parameters
     ----------
@@ -103,7 +103,8 @@ def read_vicon_csv(
         points, rows[:, 0], np.full(len(rows), np.nan), header.rate, path
     )
     progress(1.0, "Reading")
-    return Tracks(point_names(header.labels), points_z_up(points, default_up="+Z"), rate)
+    unit = header.units[0] if scale is None else scale
+    return stand_markers(header.labels, points, rate, unit, "+Z")
 
 
 def _begins_section(line: bytes) -> bool:

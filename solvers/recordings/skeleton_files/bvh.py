@@ -11,7 +11,7 @@ from ..conventions import UpAxisName, check_scale
 from .bvh_channels import BvhChannels, motion_from_poses
 from .bvh_hierarchy import read_hierarchy
 
-COMMON_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240)
+COMMON_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240, 23.976, 29.97, 59.94, 119.88)
 DEFAULT_RATE_HZ = 30.0
 MAX_BLANK_LINES = 4096
 MAX_HIERARCHY_BYTES = 1 << 24

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...motion import Motion, Skeleton
-from ...progress import Progress
+from ...progress import Progress, Remark
 from ...rotations import inverse, multiply, quaternion_from_euler, rotate, rotation_between
 from ..conventions import (
     CENTIMETER,
@@ -207,7 +207,7 @@ def motion_from_poses(
         scale = guess_unit(parents, poses.offsets)
         reach = CENTIMETER * longest_bone_path(parents, poses.offsets)
         if scale != CENTIMETER and MIN_REACH_M < reach < PLAUSIBLE_REACH_M[0]:
-            progress(1.0, describe_guessed_unit(scale))
+            progress(1.0, Remark(describe_guessed_unit(scale)))
     names = tuple(joint.name for joint in joints)
     skeleton = Skeleton(names, parents, scale * z_up_from_y_up(poses.offsets))
     noted = replace(file_conventions("Y", unit=scale), offset_added=poses.offset_added)

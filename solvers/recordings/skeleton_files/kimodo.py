@@ -7,7 +7,7 @@ import numpy as np
 
 from ...errors import InvalidFileError
 from ...motion import Motion
-from ...progress import Progress, unwatched
+from ...progress import Progress, Remark, unwatched
 from ...rotations import quaternion_from_matrix
 from ..containers import read_archive_members
 from ..conventions import (
@@ -91,7 +91,9 @@ def read_kimodo(
     rotations[finite] = quaternion_from_matrix(matrices[finite])
     rate = arrays.get("fps")
     if rate is None:
-        progress(0.5, f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
+        progress(
+            0.5, Remark(f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
+        )
     try:
         motion = motion_from_world_poses(
             names,

@@ -7,7 +7,7 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidFileError, InvalidMotionError
 from ...motion import Motion, Skeleton, Tracks, find_humanoid_map
-from ...progress import Progress, unwatched
+from ...progress import Progress, Remark, unwatched
 from ...rotations import (
     inverse,
     matrix_from_quaternion,
@@ -80,13 +80,15 @@ def recording_from_segments(
         try:
             motion = motion_from_world_poses(list(tree), above, origins, turned, frame_rate)
         except InvalidFileError:
-            progress(1.0, f"Positions and rotations disagree. {POINTS_ONLY}")
+            progress(1.0, Remark(f"Positions and rotations disagree. {POINTS_ONLY}"))
         else:
             if others := [name for name in names if name not in tree]:
-                progress(1.0, f"Left out, since they are on no bone: {', '.join(others[:5])}")
+                progress(
+                    1.0, Remark(f"Left out, since they are on no bone: {', '.join(others[:5])}")
+                )
             return face_forward(stand_upright(motion, progress))
     else:
-        progress(1.0, POINTS_ONLY)
+        progress(1.0, Remark(POINTS_ONLY))
     if not np.isfinite(positions).all(axis=-1).any():
         raise InvalidMotionError("No segment is observed in any frame. Export it again.")
     return Tracks(tuple(names), points_z_up(positions, default_up=default_up), frame_rate)

@@ -8,7 +8,7 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidFileError, InvalidSettingError
 from ...motion import Motion, Skeleton
-from ...progress import Progress, unwatched
+from ...progress import Progress, Remark, unwatched
 from ...rotations import quaternion_from_rotation_vector
 from ..containers import read_archive_members
 from ..conventions import (
@@ -179,7 +179,7 @@ def _motion(
     positions = _member(arrays, POSITIONS)
     if positions is None:
         positions = np.zeros((n_frames, 3))
-        progress(0.5, "The file has no positions, so the body stays in place")
+        progress(0.5, Remark("The file has no positions, so the body stays in place"))
     if positions.shape != (n_frames, 3):
         raise InvalidFileError(
             f"{path} has {n_frames} poses but positions of shape {positions.shape}."
@@ -271,5 +271,5 @@ def _rate(arrays: dict[str, Array], progress: Progress) -> float:
     rate = _number(arrays, RATES, 0.0)
     if rate > 0.0:
         return common_rate(rate)
-    progress(0.5, f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
+    progress(0.5, Remark(f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed"))
     return DEFAULT_FRAME_RATE

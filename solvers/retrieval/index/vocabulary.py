@@ -66,7 +66,7 @@ class Vocabulary:
     words : shape (5, n_words, 8)
     spread : shape (5,), squared meters
         Median squared distance of a frame from its nearest word.
-    usual : UsualPostures
+    posture_distribution : PostureDistribution
         Prior for joints that are not tracked.
     n_frames : int
         Number of frames in the training clips.

@@ -5,17 +5,19 @@
 
 Each file is read as Import reads it, FBX, glTF, USD and Collada by Blender's importers. Of a
 body the table says whether it stands, how tall it is, how far its feet are from the floor, how
-far it travels, which roles were found and at what rate it plays; of a refusal the sentence.
-`TRUTH` holds what is known of the files. Wrong is what differs from it without a message.
+far it travels, how many roles were found with what confidence, and at what rate it plays; of a
+refusal the sentence. `TRUTH` holds what is known of the files, the joints of the limbs too.
+Wrong is what differs from it without a message about it.
 """
 
 import argparse
+import re
 import sys
-from dataclasses import dataclass
-from fnmatch import fnmatch
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from time import perf_counter
 from typing import Any
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
@@ -23,62 +25,7 @@ from ..shared.clips import DATA
 from ..shared.report import Report
 from ..shared.tables import table
 from .bench_scene_io import CHECKOUT, load_checkout
-
-HEIGHT_TOLERANCE = 0.15
-MIN_UPRIGHT = 0.8
-"""Cosine between the trunk and the vertical in most frames of an actor who stands."""
-
-
-@dataclass(frozen=True)
-class Truth:
-    """What is known of a file."""
-
-    height_m: float | None = None
-    """Of the tallest joint above the lowest in most frames; None where it is no body."""
-    rate_hz: float | None = None
-    stands: bool = True
-    refused: bool = False
-
-
-REFUSED = Truth(refused=True)
-TRUTH = {
-    "bvh/assimp_boxing_toes/*": Truth(1.62, 100.0),
-    "bvh/bandai_namco/*": Truth(1.38, 30.0),
-    "bvh/dme_*/*": Truth(1.38, 120.0),
-    "bvh/ganimator_crab/*": Truth(),
-    "bvh/mixamo_bvh_joe/*": Truth(1.9, 60.0),
-    "bvh/olympe_*/*": Truth(1.67, 24.0),
-    "bvh/pybvh_test1/*": Truth(1.64, 30.0),
-    "bvh/pybvh_test3/*": Truth(1.62, 120.0),
-    "bvh/smpl_*/*": Truth(1.42, 60.0),
-    "bvh/xsens_mvn/*": Truth(1.53, 60.0),
-    "dae/*": Truth(),
-    "fbx/assimp_skeleton/*": Truth(),
-    "fbx/max7_skin/*": Truth(),
-    "fbx/mixamo_web/Rolling.fbx": Truth(0.9, 30.0, stands=False),
-    "fbx/mixamo_web/*": Truth(1.9, 30.0),
-    "fbx/ue4_mannequin/*": REFUSED,
-    "glb/khronos_cesiumman/*": Truth(1.13, 24.0),
-    "glb/mixamo_blender/*": Truth(1.68, 30.0),
-    "glb/khronos_riggedsimple/*": Truth(),
-    "glb/m2m_quadruped_fox/*": Truth(),
-    "lab/c3d_bts/*": Truth(1.5, 100.0),
-    "lab/c3d_qualisys/*": Truth(1.47, 200.0),
-    "lab/c3d_rotation/*": Truth(1.65, 85.0),
-    "lab/openpose_json/*": REFUSED,
-    "lab/pose2sim/*.trc": Truth(1.67, 60.0),
-    "lab/pose2sim/*": REFUSED,
-    "lab/pyomeca_csv/markers.csv": Truth(1.05, 100.0, stands=False),
-    "lab/pyomeca_csv/*": Truth(),
-    "smpl/aist_pkl/*": REFUSED,
-    "smpl/humanml3d_263/*": REFUSED,
-    "smpl/kimodo_soma_npz/*": Truth(1.6, 30.0),
-    "udp/*": REFUSED,
-    "usd/*": Truth(),
-    "vrm/vrma_pixiv/*": Truth(1.56, 30.0),
-    "vrm/*": REFUSED,
-}
-"""By path below the corpus; of other files nothing is known."""
+from .corpus_truth import FOOT_MARKERS, TOP_MARKERS, Truth, faults_of, truth_of
 
 
 def main() -> None:
@@ -93,10 +40,7 @@ def main() -> None:
     rows, wrong, n_read = {}, [], 0
     for path in recordings():
         name = path.relative_to(DATA).as_posix().removeprefix("corpus/")
-        truth = next(
-            (truth for pattern, truth in TRUTH.items() if fnmatch(name, pattern)), None
-        )
-        for take, row, faults in read(path, truth):
+        for take, row, faults in read(path, truth_of(name)):
             rows[f"{name} {take}".strip()] = [*row, ", ".join(faults)]
             n_read += row[0] == "read"
             wrong += [name] * bool(faults)
@@ -123,23 +67,30 @@ def read(path: Path, truth: Truth | None) -> list[tuple[str, list[str], list[str
     """Return name, row and faults of each take of a file, or of its refusal."""
     from mocap_ext.mocap_assist.importing.solve_reading import Conversion, read_takes
     from mocap_ext.solvers.errors import MocapAssistError
+    from mocap_ext.solvers.recordings import Floor
 
     try:
-        takes = read_takes(path, Conversion())
+        contents = read_takes(path, Conversion(floor=Floor.AUTO))
     except MocapAssistError as error:
         sentence = str(error).replace(str(path), path.name).replace("|", "/")
         faults = ["refused"] * bool(truth and not truth.refused and truth.height_m)
         return [("", ["refused", *["-"] * 6, sentence], faults)]
     found = []
-    for take in takes:
-        figures, sentence = measure(take.recording), ". ".join(take.warnings)
-        faults = [] if truth is None or take.warnings else faults_of(figures, truth)
-        found.append((take.take, ["read", *shown(figures), sentence], faults))
+    for content in contents:
+        sentence = ". ".join(content.warnings)
+        takes = [
+            (content.take, content.recording),
+            *((take.name, take.motion) for take in content.others),
+        ]
+        for take, recording in takes:
+            figures, joints = measure(recording)
+            faults = faults_of(figures, joints, truth, sentence)
+            found.append((take, ["read", *shown(figures), sentence], faults))
     return found
 
 
-def measure(recording: Any) -> dict[str, float]:
-    """Return what a body does: direction, height, floor and travel in meters."""
+def measure(recording: Any) -> tuple[dict[str, float], dict[str, str]]:
+    """Return direction, height, floor and travel in meters, and the joint of each role."""
     from mocap_ext.solvers.motion import (
         JointRecording,
         Motion,
@@ -155,17 +106,18 @@ def measure(recording: Any) -> dict[str, float]:
         )
         points, rate = poses.positions, recording.frame_rate
         found = find_humanoid_map(recording.skeleton)
-        score, roles = found.score, found.indices(recording.skeleton)
+        score, joints = found.score, dict(found.joints)
+        names = recording.skeleton.names
     elif hasattr(recording, "tracks") or hasattr(recording, "positions"):
         tracks = recording.tracks if isinstance(recording, JointRecording) else recording
-        points, rate, score = tracks.positions, tracks.frame_rate, np.nan
-        named = roles_by_name(tracks.names) if isinstance(recording, JointRecording) else {}
-        roles = {role: tracks.names.index(name) for role, name in named.items()}
+        points, rate, score, names = tracks.positions, tracks.frame_rate, np.nan, tracks.names
+        joints = roles_by_name(names) if isinstance(recording, JointRecording) else {}
     else:
-        return {"rate": recording.frame_rate, "roles": 0.0}
+        return {"rate": recording.frame_rate, "roles": 0.0}, {}
+    roles = {role: names.index(name) for role, name in joints.items()}
     observed = points[np.isfinite(points).any(axis=(1, 2))]
     if not len(observed):
-        return {"rate": rate, "roles": 0.0}
+        return {"rate": rate, "roles": 0.0}, joints
     low, high = np.nanmin(observed[..., 2], axis=1), np.nanmax(observed[..., 2], axis=1)
     center = observed[:, roles["hips"]] if "hips" in roles else np.nanmean(observed, axis=1)
     figures = {
@@ -173,24 +125,29 @@ def measure(recording: Any) -> dict[str, float]:
         "height": float(np.median(high - low)), "low": float(np.median(low)),
         "travel": float(np.linalg.norm(np.nanmax(center, axis=0) - np.nanmin(center, axis=0))),
     }  # fmt: skip
-    if {"head", "hips"} <= roles.keys():
-        trunk = observed[:, roles["head"]] - observed[:, roles["hips"]]
+    trunk = direction_of_trunk(observed, roles, names)
+    if trunk is not None:
         up = trunk[:, 2] / np.linalg.norm(trunk, axis=1)
-        figures["upright"] = float(np.nanmedian(up))
-    return figures
+        if np.isfinite(up).any():
+            figures["upright"] = float(np.nanmedian(up))
+    return figures, joints
 
 
-def faults_of(figures: dict[str, float], truth: Truth) -> list[str]:
-    """Return what differs from the truth."""
-    if truth.refused:
-        return ["read"]
-    if truth.height_m is None:
-        return ["taken for a person"] * (figures.get("score", 0.0) >= 0.5)
-    height = figures.get("height", np.nan)
-    faults = ["height"] * (not abs(height / truth.height_m - 1.0) <= HEIGHT_TOLERANCE)
-    faults += ["lies"] * (truth.stands and figures.get("upright", 1.0) < MIN_UPRIGHT)
-    faults += ["rate"] * (truth.rate_hz not in {None, round(figures["rate"], 3)})
-    return faults
+def direction_of_trunk(
+    positions: np.ndarray, roles: Mapping[str, int], names: Sequence[str]
+) -> np.ndarray | None:
+    """Return the vectors from hips to head or, of markers, from the feet to the shoulders."""
+    if {"head", "hips"} <= roles.keys():
+        return np.asarray(positions[:, roles["head"]] - positions[:, roles["hips"]])
+    plain = [name.rpartition(":")[2].replace(" ", "").lower() for name in names]
+    top = [k for k, name in enumerate(plain) if re.fullmatch(TOP_MARKERS, name)]
+    feet = [k for k, name in enumerate(plain) if re.fullmatch(FOOT_MARKERS, name)]
+    if roles or not top or not feet:
+        return None
+    with catch_warnings():
+        simplefilter("ignore")  # frames without any of them
+        above = np.nanmean(positions[:, top], axis=1)
+        return np.asarray(above - np.nanmean(positions[:, feet], axis=1))
 
 
 def shown(figures: dict[str, float]) -> list[str]:
@@ -199,7 +156,8 @@ def shown(figures: dict[str, float]) -> list[str]:
         f"{figures[key]:.2f}" if key in figures else "-"
         for key in ("upright", "height", "low", "travel")
     ]
-    return [*cells, f"{figures['roles']:.0f}", f"{figures['rate']:g}"]
+    sure = f" ({figures['score']:.0%})" if np.isfinite(figures.get("score", np.nan)) else ""
+    return [*cells, f"{figures['roles']:.0f}{sure}", f"{figures['rate']:g}"]
 
 
 if __name__ == "__main__":

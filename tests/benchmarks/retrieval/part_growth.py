@@ -6,11 +6,10 @@ r"""How a clip library grows: 300 to 100,000 clips, built in one file and search
 
 The clips are those of HDM05 and the CMU walks, varied: faster or slower (0.7 to 1.4), bones
 rotated by some degrees, shaken, mirrored. They are varied as postures of the standard body, in
-which all actors have the same bone lengths anyway; to read and describe a real clip of two
-seconds takes about 15 ms more. Each query is a clip of the library, at another speed and
-shaken again; it is found when that clip comes first, or among the first ten. At each size a
-process of its own searches, so that its memory can be measured. Times are CPU times, with
-one thread: other work on the machine does not count.
+which all actors have the same bone lengths; to read and describe a real clip of two seconds
+takes about 15 ms more. Each query is a clip of the library, at another speed and shaken again;
+it is found when that clip comes first, or among the first ten. At each size a process of its
+own searches, so that its memory can be measured. Times are CPU times, with one thread.
 """
 
 import argparse

@@ -25,6 +25,25 @@ def bring(blank):
 
 
 @pytest.fixture
+def markers_of(load):
+    """The markers below an object."""
+    return load("mocap_assist.actions.markers").markers_of
+
+
+@pytest.fixture
+def key_times():
+    """Scene frames of the keys of an armature's root."""
+
+    def read(armature):
+        action = armature.animation_data.action
+        bag = action.layers[0].strips[0].channelbag(armature.animation_data.action_slot)
+        curve = next(each for each in bag.fcurves if each.data_path.endswith("location"))
+        return np.array([key.co.x for key in curve.keyframe_points])
+
+    return read
+
+
+@pytest.fixture
 def walks(recordings, tmp_path):
     """Three files of a folder of their own: two walks, and between them one that is cut."""
     content = (recordings / "mocap" / "cmu_walk" / WALK).read_bytes()

@@ -46,7 +46,7 @@ def test_only_what_was_seen_is_drawn(archive, depth, bring, blank):
 
 def test_it_plays_in_seconds_at_the_rate_of_the_scene(archive, bring, blank):
     blank.context.scene.render.fps = 60
-    made = bring(archive, update_scene_duration=True)
+    made = bring(archive, frame_rate="SCALE", update_scene_duration=True)
 
     places = []
     for frame in (1, 3, 4, 5, 15, 400):
@@ -184,11 +184,11 @@ def test_of_a_room_only_so_many_points_are_shown_as_are_cheap(tmp_path, bring, r
     assert points_of(made)[:, 1].min() == pytest.approx(10.0, abs=0.05)
 
 
-@pytest.mark.parametrize("told", ["nonsense", "{}", '{"path": 3, "every": null}'])
-def test_an_edited_preview_is_hidden_with_a_message(archive, bring, blank, told):
+@pytest.mark.parametrize("result", ["nonsense", "{}", '{"path": 3, "every": null}'])
+def test_an_edited_preview_is_hidden_with_a_message(archive, bring, blank, result):
     made = bring(archive)
 
-    made.data["mocap_assist_depth"] = told
+    made.data["mocap_assist_depth"] = result
     blank.context.scene.frame_set(3)
 
     assert not len(points_of(made))
@@ -206,10 +206,10 @@ def test_all_four_numbers_of_the_camera_can_be_given(archive, depth, bring):
 
 def test_import_warns_of_implausible_intrinsics(archive, blank, load):
     choices = load("mocap_assist.importing.choices").ImportChoices(focal_length=900.0)
-    told = load("mocap_assist.importing.importing").import_files(
+    result = load("mocap_assist.importing.importing").import_files(
         blank.context, [archive], choices
     )
-    assert "The field of view would be 5 degrees" in told.sentence
+    assert "The field of view would be 5 degrees" in result.sentence
 
 
 def test_points_in_edit_mode_wait_and_let_others_play(archive, bring, blank):

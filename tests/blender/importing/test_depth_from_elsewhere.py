@@ -74,8 +74,8 @@ def test_a_preview_that_was_tampered_with_shows_nothing(archive, bring, blank, c
 @pytest.mark.parametrize("number", ["1e999", "-1e999", "1" + 400 * "0"])
 def test_a_number_beyond_all_numbers_shows_nothing(archive, bring, blank, number):
     mesh = bring(archive).data
-    told = json.loads(mesh["mocap_assist_depth"]) | {"start": "HERE"}
-    mesh["mocap_assist_depth"] = json.dumps(told).replace('"HERE"', number)
+    stored = json.loads(mesh["mocap_assist_depth"]) | {"start": "HERE"}
+    mesh["mocap_assist_depth"] = json.dumps(stored).replace('"HERE"', number)
 
     blank.context.scene.frame_set(3)
 
@@ -84,8 +84,8 @@ def test_a_number_beyond_all_numbers_shows_nothing(archive, bring, blank, number
 
 def test_the_steepest_step_shows_an_end_of_the_recording(archive, bring, blank, capsys):
     mesh = bring(archive).data
-    told = json.loads(mesh["mocap_assist_depth"])
-    mesh["mocap_assist_depth"] = json.dumps(told | {"step": 1e-320, "every": 10**300})
+    stored = json.loads(mesh["mocap_assist_depth"])
+    mesh["mocap_assist_depth"] = json.dumps(stored | {"step": 1e-320, "every": 10**300})
 
     for frame in (-5, 1, 3):
         blank.context.scene.frame_set(frame)

@@ -71,8 +71,8 @@ def test_files_that_end_their_reader_are_named_and_the_others_come(
         assert f"{walks / name} made its reader end early, by signal SIGABRT" in said
     assert said.count("early") == len(deadly) and "Nothing was changed" not in said
     assert nothing_is_left(window)
-    told = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
-    assert told == sorted(told)
+    percentages = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
+    assert percentages == sorted(percentages)
 
 
 def test_where_all_end_their_reader_the_scene_stays(dying, press, window, walks, blank):
@@ -88,14 +88,14 @@ def test_where_all_end_their_reader_the_scene_stays(dying, press, window, walks,
 @pytest.mark.parametrize("fault", [RecursionError("too deep"), ValueError("0"), MemoryError()])
 def test_a_fault_of_a_reader_keeps_no_other_file_out(load, walks, monkeypatch, fault):
     reading = load("mocap_assist.importing.solve_reading")
-    read = reading.read_tracked
+    open_as = reading.open_as
 
-    def fail(path, **more):
+    def fail(path, *settings, **more):
         if path.name == "cut.bvh":
             raise fault
-        return read(path, **more)
+        return open_as(path, *settings, **more)
 
-    monkeypatch.setattr(reading, "read_tracked", fail)
+    monkeypatch.setattr(reading, "open_as", fail)
     paths = [walks / name for name in ("first.bvh", "cut.bvh", "second.bvh")]
 
     (first,), refusal, (second,) = reading.read_files(
@@ -142,7 +142,7 @@ def test_warnings_of_readers_are_reported_in_a_window_and_by_a_script(
     assert wait(operator, window) == {"FINISHED"}
 
     ((_, said),) = window.reports
-    assert "40 frames at 30 Hz. Resampled to 30 Hz. first: " in said
+    assert "40 frames at 30 Hz. " in said and said.count("Resampled to 30 Hz. ") == 1
     assert operator.note == said
     figures = operator._job.transaction.end(blank.context).figures
     assert figures[0]["warnings"].startswith("Resampled to 30 Hz.")

@@ -17,7 +17,7 @@ def lossy(recordings):
 def test_bones_follow_the_joints(lossy, bring, load, poses):
     recording = load("solvers.recordings").read_recording(lossy)
 
-    armature = bring(lossy, frame_rate="ONE")
+    armature = bring(lossy, frame_rate="ONE", place_on_floor="NEVER")
 
     shown = poses(armature, range(1, recording.n_frames + 1))
     misses = [
@@ -38,7 +38,7 @@ def test_what_was_not_tracked_has_no_keys(fps, lossy, bring, load, blank):
     expected = motion.motion_from_points(recording.tracks, recording.parents)
     assert not expected.observed.all()
 
-    armature = bring(lossy)
+    armature = bring(lossy, frame_rate="SCALE", place_on_floor="NEVER")
 
     take = load("mocap_assist.actions.armature_read").read_take(armature, blank.context.scene)
     read = take.parts[0].motion
@@ -54,16 +54,18 @@ def test_what_was_not_tracked_has_no_keys(fps, lossy, bring, load, blank):
 
 
 @pytest.mark.parametrize("target", ["ARMATURE", "OBJECT"])
-def test_confidence_is_kept_and_survives_cleaning(lossy, bring, load, target, blank):
+def test_confidence_is_kept_and_survives_cleaning(
+    lossy, bring, load, target, blank, markers_of
+):
     recording = load("solvers.recordings").read_recording(lossy)
 
-    made = bring(lossy, target=target, frame_rate="ONE")
+    made = bring(lossy, target=target, frame_rate="ONE", place_on_floor="NEVER")
     if target == "ARMATURE":
         assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
         owners = {bone.name: bone for bone in made.pose.bones}
         assert made.animation_data.action.name.endswith(".clean")
     else:
-        owners = {empty["mocap_assist_point"]: empty for empty in made.children}
+        owners = {empty["mocap_assist_point"]: empty for empty in markers_of(made)}
 
     states = np.zeros((recording.n_frames, len(owners)))
     for frame in range(recording.n_frames):
@@ -78,7 +80,8 @@ def test_empties_give_back_what_the_camera_measured(lossy, bring, load, blank):
     recording = load("solvers.recordings").read_recording(lossy)
     read = load("mocap_assist.actions.marker_take").read_markers
 
-    tracks = read(bring(lossy, target="OBJECT"), blank.context.scene).tracks
+    empties = bring(lossy, target="OBJECT", place_on_floor="NEVER")
+    tracks = read(empties, blank.context.scene).tracks
 
     order = [recording.names.index(name) for name in tracks.names]
     assert len(order) == recording.n_joints
@@ -86,12 +89,12 @@ def test_empties_give_back_what_the_camera_measured(lossy, bring, load, blank):
 
 
 @pytest.mark.parametrize("target", ["ARMATURE", "OBJECT"])
-def test_the_file_and_the_sensor_are_noted(target, lossy, bring, load):
+def test_the_file_and_the_sensor_are_noted(target, lossy, bring, load, markers_of):
     origin = load("mocap_assist.scene.origin")
 
     made = bring(lossy, target=target)
 
-    player = made if target == "ARMATURE" else made.children[0]
+    player = made if target == "ARMATURE" else markers_of(made)[0]
     for owner in (made, player.animation_data.action):
         noted = origin.origin_of(owner)
         assert noted["file"].endswith(lossy.name)

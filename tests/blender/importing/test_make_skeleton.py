@@ -34,16 +34,16 @@ def places(blank, armature, bone, frames):
     return np.array(found)
 
 
-def test_a_c3d_becomes_a_cleaned_armature(blank, holder, tracks, load, recordings):
-    markers = {child.name: child.animation_data.action for child in holder.children}
+def test_a_c3d_becomes_a_cleaned_armature(blank, holder, tracks, load, recordings, markers_of):
+    markers = {child.name: child.animation_data.action for child in markers_of(holder)}
     assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
-    cleaned = {child.name: child.animation_data.action for child in holder.children}
+    cleaned = {child.name: child.animation_data.action for child in markers_of(holder)}
 
     assert blank.ops.mocap_assist.solve_skeleton() == {"FINISHED"}
 
     armature = blank.context.object
     assert armature.type == "ARMATURE"
-    assert {child.name: child.animation_data.action for child in holder.children} == cleaned
+    assert {child.name: child.animation_data.action for child in markers_of(holder)} == cleaned
     assert markers.keys() == cleaned.keys()
     skeleton = load("solvers.recordings").read_acclaim(recordings / "mocap" / "05_13.amc")
     joints = load("solvers.motion").forward_kinematics(skeleton)

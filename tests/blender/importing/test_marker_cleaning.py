@@ -55,14 +55,14 @@ def in_order(take, tracks):
 
 @pytest.mark.parametrize(("fps", "unit"), [(24, 1.0), (60, 0.01), (240, 1.0)])
 def test_markers_read_back_as_they_were_recorded(
-    fps, unit, file, bad_tracks, bring, read, blank
+    fps, unit, file, bad_tracks, bring, read, blank, markers_of
 ):
     blank.context.scene.render.fps = fps
     blank.context.scene.unit_settings.scale_length = unit
 
     holder = bring(file)
 
-    size = holder.children[0].matrix_world.translation.length * unit
+    size = markers_of(holder)[0].matrix_world.translation.length * unit
     assert 0.1 < size < 10.0
     take = read(holder)
 
@@ -81,14 +81,14 @@ def test_markers_are_read_in_the_world(holder, bad_tracks, read):
 
 
 def test_clean_fills_and_calms_markers_and_revert_brings_the_raw_ones_back(
-    holder, true_tracks, bad_tracks, read, keys_of, blank
+    holder, true_tracks, bad_tracks, read, keys_of, blank, markers_of
 ):
-    raw = holder.children[0].animation_data.action
+    raw = markers_of(holder)[0].animation_data.action
     recorded = keys_of(raw)
 
     assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
 
-    played = {each.animation_data.action for each in holder.children}
+    played = {each.animation_data.action for each in markers_of(holder)}
     assert [action.name for action in played] == ["walk.clean"]
     take = read(holder)
     found = take.tracks.positions[:, in_order(take, true_tracks)]
@@ -101,15 +101,15 @@ def test_clean_fills_and_calms_markers_and_revert_brings_the_raw_ones_back(
 
     assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
 
-    assert {each.animation_data.action for each in holder.children} == {raw}
+    assert {each.animation_data.action for each in markers_of(holder)} == {raw}
     again = read(holder)
     assert_allclose(
         again.tracks.positions[:, in_order(again, bad_tracks)], bad_tracks.positions, atol=NEAR
     )
 
 
-def test_only_the_selected_markers_change(holder, keys_of, blank):
-    chosen = holder.children[3]
+def test_only_the_selected_markers_change(holder, keys_of, blank, markers_of):
+    chosen = markers_of(holder)[3]
     raw = keys_of(chosen.animation_data.action)
     for each in blank.context.view_layer.objects:
         each.select_set(each == chosen)
@@ -126,13 +126,13 @@ def test_only_the_selected_markers_change(holder, keys_of, blank):
     assert changed == {chosen.animation_data.action_slot.identifier}
 
 
-def test_cleaning_again_starts_from_what_was_recorded(holder, keys_of, blank):
+def test_cleaning_again_starts_from_what_was_recorded(holder, keys_of, blank, markers_of):
     assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
-    first = keys_of(holder.children[0].animation_data.action)
+    first = keys_of(markers_of(holder)[0].animation_data.action)
 
     assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
 
-    action = holder.children[0].animation_data.action
+    action = markers_of(holder)[0].animation_data.action
     assert action.name == "walk.clean.001"
     assert keys_of(action) == first
 
@@ -169,8 +169,8 @@ def test_markers_have_no_keys_of_bones_to_thin_out(holder, blank):
 
 @pytest.mark.parametrize("button", ["denoise", "measure_quality"])
 @pytest.mark.parametrize("only_one", [True, False])
-def test_markers_of_nan_only_are_named(holder, blank, button, only_one):
-    for marker in holder.children[: 1 if only_one else None]:
+def test_markers_of_nan_only_are_named(holder, blank, button, only_one, markers_of):
+    for marker in markers_of(holder)[: 1 if only_one else None]:
         animation = marker.animation_data
         bag = animation.action.layers[0].strips[0].channelbag(animation.action_slot)
         for curve in bag.fcurves:
@@ -179,12 +179,12 @@ def test_markers_of_nan_only_are_named(holder, blank, button, only_one):
 
     with pytest.raises(RuntimeError, match="nothing was captured") as refusal:
         getattr(blank.ops.mocap_assist, button)()
-    assert f"All keys of {holder.children[0].name}" in str(refusal.value)
-    assert (holder.children[1].name in str(refusal.value)) != only_one
+    assert f"All keys of {markers_of(holder)[0].name}" in str(refusal.value)
+    assert (markers_of(holder)[1].name in str(refusal.value)) != only_one
 
 
-def test_a_marker_that_stands_nowhere_now_is_named(holder, blank):
-    holder.children[0].scale.x = np.nan
+def test_a_marker_that_stands_nowhere_now_is_named(holder, blank, markers_of):
+    markers_of(holder)[0].scale.x = np.nan
 
     with pytest.raises(RuntimeError, match=r"scale of .* is not a number"):
         blank.ops.mocap_assist.denoise()

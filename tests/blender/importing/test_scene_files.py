@@ -56,7 +56,8 @@ def test_takes_of_one_skeleton_are_actions_of_one_armature(bring, recordings, bl
     assert [each.name for each in blank.data.actions] == ["Idle", "Walk"]
     assert all(each.use_fake_user for each in blank.data.actions)
     ends = [each.frame_range[1] for each in blank.data.actions]
-    assert ends == pytest.approx([24.2, 24.2])  # 30 samples of 30 Hz at 24 frames per second
+    assert ends == [30.0, 30.0]
+    assert blank.context.scene.render.fps == 30
 
 
 def test_a_vrm_animation_comes_in_without_a_skin(bring, recordings):
@@ -64,7 +65,7 @@ def test_a_vrm_animation_comes_in_without_a_skin(bring, recordings):
 
     assert len(armature.data.bones) >= 51
     assert "leftUpperArm" in armature.data.bones
-    assert armature.animation_data.action.frame_range[1] == pytest.approx(73.0)  # 3 s
+    assert armature.animation_data.action.frame_range[1] == 91.0  # 3 s at 30 Hz
 
 
 @pytest.mark.parametrize(
@@ -91,6 +92,24 @@ def test_what_is_no_such_file_is_refused_in_a_sentence(bring, tmp_path, content,
 
     assert not armatures
     assert "take." in message and "Traceback" not in message
+
+
+@pytest.mark.parametrize(
+    ("suffix", "content", "sentence"),
+    [
+        ("glb", b"<!DOCTYPE html><html></html>", "is a web page"),
+        ("fbx", b"version https://git-lfs.github.com/spec/v1\n", "git lfs pull"),
+    ],
+)
+def test_what_stands_where_a_file_should_be_is_named(
+    bring, tmp_path, suffix, content, sentence
+):
+    (tmp_path / f"take.{suffix}").write_bytes(content)
+
+    armatures, message = bring(tmp_path / f"take.{suffix}")
+
+    assert not armatures
+    assert sentence in message
 
 
 def test_a_lying_header_of_a_glb_costs_no_memory(bring, tmp_path):

@@ -207,6 +207,44 @@ def test_many_takes_are_many_actions(blank, recordings, capfd):
     assert "14 takes as actions (Bark, Bite, Death and 11 more)" in capfd.readouterr().out
 
 
+def test_a_still_take_does_not_hold_the_others_back(blank, recordings, tmp_path, load):
+    """Hips below a root bone: one take stands still, the other walks, in one file."""
+    walk = min((recordings / "mocap" / "cmu_walk").glob("07_0*.bvh"))
+    blank.ops.import_anim.bvh(filepath=str(walk), frame_start=1)
+    armature = blank.context.object
+    blank.ops.object.mode_set(mode="EDIT")
+    bones = armature.data.edit_bones
+    root = bones.new("root")
+    root.tail = (0.0, 1.0, 0.0)
+    bones["Hips"].parent = root
+    blank.ops.object.mode_set(mode="OBJECT")
+    walking = armature.animation_data.action
+    walking.name = "Walking"
+    still = walking.copy()
+    still.name = "Standing"
+    for curve in still.layers[0].strips[0].channelbags[0].fcurves:
+        for point in curve.keyframe_points:
+            point.co.y = curve.keyframe_points[0].co.y
+        curve.update()
+    path = tmp_path / "game.glb"
+    blank.ops.export_scene.gltf(filepath=str(path), export_animation_mode="ACTIONS")
+    for kind in (blank.data.objects, blank.data.armatures, blank.data.actions):
+        blank.data.batch_remove(list(kind))
+
+    assert bring(blank, path, frame_rate="UPDATE") == ["game"]
+
+    armature, read = blank.data.objects["game"], load("mocap_assist.actions.armature_read")
+    travel = {}
+    for action in blank.data.actions:
+        take = read.read_take(
+            armature, blank.context.scene, source=(action, action.slots[0])
+        ).parts[0]
+        assert take.motion.skeleton.names[0] == "Hips"
+        travel[action.name] = np.ptp(take.motion.root_positions, axis=0).max()
+    assert travel["Standing"] == pytest.approx(0.0, abs=1e-3)
+    assert travel["Walking"] > 2.0
+
+
 def test_failing_take_leaves_nothing(blank, recordings, load, monkeypatch):
     objects = load("mocap_assist.importing.recording_objects")
     write, written = objects.write_motion, []

@@ -1,4 +1,4 @@
-"""In what unit files are: guessed by the size of the body and told, or chosen."""
+"""The unit of files: guessed from the size of the body and reported, or chosen."""
 
 import numpy as np
 import pytest
@@ -62,15 +62,15 @@ def test_the_dialog_says_what_was_guessed(load, silent, blank):
     assert SAID in preview(blank.context, [silent])
 
 
-def test_a_window_tells_it_and_reads_in_the_unit_that_was_chosen(
+def test_a_window_reports_the_guess_and_reads_in_the_chosen_unit(
     press, window, walks, silent, load, blank
 ):
     units = load("solvers.recordings").Unit
-    for unit, told in ((units.GUESS, 1), (units.METRES, 0)):
+    for unit, n_messages in ((units.GUESS, 1), (units.METRES, 0)):
         operator = press(silent.name, unit=unit)
         assert wait(operator, window) == {"FINISHED"}
-        assert window.reports[-1][1].count(SAID) == told
-        size = 1.0 if told else 1000.0
+        assert window.reports[-1][1].count(SAID) == n_messages
+        size = 1.0 if n_messages else 1000.0
         assert 1.2 * size < height(blank.context.object) < 2.0 * size
 
 

@@ -17,7 +17,8 @@ def everything(blank):
             *(sorted(each.name for each in kind) for kind in kinds),
             sorted(each.name for each in view.objects.selected),
             active and (active.name, active.mode),
-            (scene.render.fps, scene.render.fps_base, scene.frame_end),
+            (scene.render.fps, scene.render.fps_base),
+            (scene.frame_start, scene.frame_end, scene.frame_current),
         )
 
     return look
@@ -53,17 +54,33 @@ def test_escape_while_files_are_read_leaves_all_as_it_was(
 def test_escape_after_the_first_has_come_in_takes_it_back(
     posing, press, window, everything, load, blank
 ):
+    blank.context.scene.render.fps, blank.context.scene.frame_end = 24, 40
     before = everything()
     update = load("mocap_assist.scene.scene_rate").FrameRate.UPDATE
     operator = press("first.bvh", "second.bvh", frame_rate=update, update_scene_duration=True)
 
     wait(operator, window, until=lambda: len(blank.data.objects) > len(before[0]))
-    assert everything()[-1] != before[-1]
+    assert everything()[-2:] != before[-2:]
     assert window.status[-1].startswith("Importing second.bvh")
     assert operator.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
 
     assert everything() == before
     assert nothing_is_left(window)
+
+
+def test_escape_restores_rate_and_range_of_a_scene_without_animation(
+    press, window, everything, blank
+):
+    scene = blank.context.scene
+    scene.frame_start, scene.frame_end, scene.frame_current = 5, 900, 700
+    before = everything()
+    operator = press("first.bvh", "second.bvh")
+
+    wait(operator, window, until=lambda: len(blank.data.objects) > 0)
+    assert (scene.render.fps, scene.frame_end, scene.frame_current) == (120, 317, 317)
+    operator.modal(window.context, event("ESC", "PRESS"))
+
+    assert everything() == before
 
 
 @pytest.mark.parametrize("bytes_at_once", [1, 64_000_000])
@@ -89,8 +106,8 @@ def test_all_that_can_be_read_comes_in(press, window, load, monkeypatch, blank, 
     assert said.startswith("1 of 3 files failed.") and "cut.bvh" in said
     assert operator.note.startswith("first: an armature of 31 bones, 317 frames at 120 Hz.")
     assert nothing_is_left(window)
-    told = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
-    assert told == sorted(told)
+    percentages = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
+    assert percentages == sorted(percentages)
     assert reading_is_shown(window)
 
 
@@ -221,6 +238,6 @@ def test_the_dialog_does_not_wait_for_a_large_file(load, walks, monkeypatch, bla
 
     large = importing.preview(blank.context, [walks / "first.bvh"])
 
-    assert small == "first.bvh: 317 frames at 120 Hz; the scene plays at 24 FPS"
+    assert small.startswith("first.bvh: 317 frames at 120 Hz; the scene plays at 24 FPS. Y is")
     assert large == "first.bvh: 0.2 MB; the scene plays at 24 FPS"
     assert "cannot be read" in importing.preview(blank.context, [walks / "gone.bvh"])

@@ -96,3 +96,24 @@ def test_feet_of_a_short_take_are_planted_in_this_process(dancer, blank, load, m
 def test_check_adds_no_undo_step_and_no_redo_panel(blank):
     assert blank.types.MOCAP_ASSIST_OT_measure_quality.bl_options == {"REGISTER"}
     assert blank.types.MOCAP_ASSIST_OT_plant_feet.bl_options == {"REGISTER", "UNDO"}
+
+
+def test_check_reports_bones_whose_names_the_tree_refutes(
+    make_armature, animate, blank, capsys
+):
+    """The left leg has its names shifted: its thigh is called shin, and so on."""
+    armature = make_armature()
+    names = ("LeftUpLeg", "LeftLeg", "LeftFoot")
+    bones = [armature.data.bones[name] for name in names]
+    for number, bone in enumerate(bones):
+        bone.name = f"bone {number}"
+    for bone, name in zip(bones, (*names[1:], names[0]), strict=True):
+        bone.name = name
+    animate(armature)
+
+    assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
+
+    assert (
+        "low confidence: LeftLeg as leftUpperLeg (by name, but no bone between"
+        in capsys.readouterr().out
+    )

@@ -98,3 +98,49 @@ def test_actions_can_be_selected_and_deselected(walker, blank):
     assert shown.actions == name
     blank.ops.mocap_assist.tick_action(action=name)
     assert shown.actions == ""
+
+
+def test_each_bone_has_a_confidence_and_a_reason(listed):
+    row = next(row for row in listed.rows if row.name == "leftLowerLeg")
+
+    assert (row.source, row.source_reason) == ("LeftLeg", "by name and structure")
+    assert row.source_confidence > 0.9
+    assert row.target_confidence > 0.5 and row.target_reason
+
+
+def test_a_wrong_bone_is_marked_with_its_reason(listed, draw, load):
+    row = next(row for row in listed.rows if row.name == "leftLowerLeg")
+    listed.active_row = list(listed.rows).index(row)
+    assert "low confidence" not in " ".join(draw("MOCAP_PT_retarget"))
+
+    row.source = "LeftHand"
+
+    assert load("mocap_assist.retarget.bone_map").has_low_confidence(row, "source")
+    drawn = " ".join(draw("MOCAP_PT_retarget"))
+    assert "low confidence; click a row" in drawn
+    assert "Source: 10%, neither name nor structure suggests it." in drawn
+
+
+def test_retarget_reports_bones_with_low_confidence(listed, walker, give, blank, capsys):
+    rows = {row.name: row for row in listed.rows}
+    rows["leftShoulder"].source = ""
+    rows["neck"].source = "LeftShoulder"
+
+    entry = give(walker, blank.context.scene.objects["Unreal"])
+
+    assert "Bones with low confidence: LeftShoulder as neck" in capsys.readouterr().out
+    assert "LeftShoulder as neck" in entry["mocap_assist_history"]
+
+
+@pytest.mark.parametrize(
+    ("bone", "reason"),
+    [("Spine", "another row has this bone, so this one is ignored"),
+     ("Nobody", "the armature has no such bone")],
+)  # fmt: skip
+def test_a_bone_without_effect_is_marked(listed, load, bone, reason):
+    row = next(row for row in listed.rows if row.name == "leftShoulder")
+
+    row.source = bone
+
+    assert row.source_reason == reason
+    assert load("mocap_assist.retarget.bone_map").has_low_confidence(row, "source")

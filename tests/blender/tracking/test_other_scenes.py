@@ -21,7 +21,8 @@ def centimetres(truth, blank, tmp_path):
     scene = blank.context.scene
     scene.unit_settings.system, scene.unit_settings.scale_length = "METRIC", 0.01
     scene.render.fps = 24
-    assert blank.ops.mocap_assist.import_recording(filepath=str(path)) == {"FINISHED"}
+    import_recording = blank.ops.mocap_assist.import_recording
+    assert import_recording(filepath=str(path), frame_rate="SCALE") == {"FINISHED"}
     return blank.context.object
 
 

@@ -110,12 +110,16 @@ def test_estimated_unit_is_reported(call, walk, tmp_path):
     text = (tmp_path / "large.csv").read_text()
     (tmp_path / "large.csv").write_text(text.replace("units=m,", "", 1))
 
-    for verb in ("reconstruct", "convert"):
-        target = tmp_path / f"{verb}.bvh" if verb == "reconstruct" else tmp_path / "out.trc"
-        status, out, _ = call(verb, tmp_path / "large.csv", target)
-        assert status == 0 and out.count("Lengths are interpreted as millimeters") == 1
-        status, out, _ = call(verb, tmp_path / "said.csv", target)
-        assert status == 0 and "Lengths" not in out
+    for verb, names in (
+        ("reconstruct", ["out.bvh"]),
+        ("convert", ["out.trc"]),
+        ("quality", []),
+    ):
+        targets = [tmp_path / name for name in names]
+        status, out, _ = call(verb, tmp_path / "large.csv", *targets)
+        assert status == 0 and out.count("Lengths are interpreted as millimeters") == 1, verb
+        status, out, _ = call(verb, tmp_path / "said.csv", *targets)
+        assert status == 0 and "Lengths" not in out, verb
 
 
 def test_markers_are_refused(call, tmp_path):

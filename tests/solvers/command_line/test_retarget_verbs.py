@@ -44,6 +44,25 @@ def test_retarget_writes_the_motion_of_the_target(call, walk_file, rig_file, tmp
     assert np.ptp(position[:, given.skeleton.index("mixamorig:LeftFoot"), 1]) > 0.5
 
 
+def test_retarget_reports_roles_with_low_confidence(call, walk_file, rig_file, tmp_path):
+    """A map whose neck is a shoulder: names and structure are against it."""
+    skeleton = read_bvh(walk_file).skeleton
+    right = find_humanoid_map(skeleton)
+    wrong = right.with_joint("neck", right.joints["leftShoulder"])
+    write_humanoid_map(wrong, tmp_path / "wrong.json")
+    words = ("retarget", walk_file, tmp_path / "out.bvh", "--to", rig_file)
+
+    _, plain, _ = call(*words)
+    status, printed, _ = call(*words, "--again", "--source-map", tmp_path / "wrong.json")
+    _, figures, _ = call(*words, "--again", "--json", "--source-map", tmp_path / "wrong.json")
+
+    assert status == 0
+    assert "low confidence" not in plain
+    assert f"low confidence: {wrong.joints['neck']} as neck (neither name" in printed
+    neck = json.loads(figures)["evidence"]["source"]["neck"]
+    assert neck["confidence"] < 0.5 and neck["reason"].startswith("neither name")
+
+
 def test_retarget_takes_many_files_settings_and_json(call, walk_file, rig_file, tmp_path):
     status, printed, _ = call(
         "retarget", walk_file, "--to", rig_file, "--output-folder", tmp_path / "out",

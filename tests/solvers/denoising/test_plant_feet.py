@@ -153,6 +153,26 @@ def test_permanent_contact_holds_both_feet(walk):
     assert planted.slide_after < 0.05 * planted.slide_before
 
 
+@pytest.mark.parametrize("captured", ["arms", "right leg"])
+def test_legs_that_were_not_captured_stay_stiff(walk, captured):
+    """A suit for the upper body: legs hang from hips that sway in place."""
+    rotations = walk.rotations.copy()
+    stiff = {leg.side: [*leg.chain, leg.toe] for leg in find_legs(walk.skeleton)}
+    for side in ("left", "right") if captured == "arms" else ("left",):
+        rotations[:, stiff[side]] = rotations[0, stiff[side]]
+    sway = np.zeros((walk.n_frames, 3))
+    sway[:, 0] = 0.05 * np.sin(np.arange(walk.n_frames) / 20.0)
+    rotations[:, 0] = quaternion_from_rotation_vector(sway)
+    hips = np.broadcast_to(walk.root_positions[0], sway.shape)
+    swaying = walk.with_poses(rotations=rotations, root_positions=hips)
+
+    planted = plant_feet(swaying)
+
+    assert not planted.contacts[:, 0].any()
+    kept = planted.motion.rotations[:, stiff["left"]]
+    assert kept == pytest.approx(rotations[:, stiff["left"]], abs=1e-12)
+
+
 def test_rotates_and_moves_with_its_input(walk, contacts):
     rotation = quaternion_from_rotation_vector([0.0, 0.0, 2.0])
     source = add_foot_slide(walk).slice(0, 90)

@@ -59,9 +59,9 @@ def test_find_actor_works_in_a_room_with_default_settings(takes, name):
 
     actor = find_actor(recording)
 
-    assert actor.way is ForegroundMethod.AUTOMATIC
+    assert actor.method is ForegroundMethod.AUTOMATIC
     assert actor.floor.height == pytest.approx(floor_of(take), abs=0.03)
-    assert actor.seen.all()
+    assert actor.visible.all()
     assert actor.remarks == ()
     assert np.mean(agreements(actor.recording, take)) > 0.85
 
@@ -100,9 +100,9 @@ def test_find_actor_uses_frames_of_the_empty_room(takes):
 
     actor = find_actor(recording, empty=range(30))
 
-    assert actor.way is ForegroundMethod.BACKGROUND
-    assert not actor.seen[:25].any()
-    assert actor.seen[31:].all()
+    assert actor.method is ForegroundMethod.BACKGROUND
+    assert not actor.visible[:25].any()
+    assert actor.visible[31:].all()
     assert any("No person is visible in" in remark for remark in actor.remarks)
     found = agreement(actor.recording.frame(70) > 0.0, take.frame(40) > 0.0)
     assert found > 0.8
@@ -115,17 +115,18 @@ def test_find_actor_keeps_a_recording_of_the_actor_alone(recordings):
     for path in sorted(folder.glob("a*_s7_t1_depth.mat"))[::4]:
         recording = read_depth(path)
         actor = find_actor(recording)
-        assert actor.way is ForegroundMethod.RECORDED, path
+        assert actor.method is ForegroundMethod.RECORDED, path
         assert actor.floor is None
-        assert (actor.seen.all(), actor.feet_seen, actor.remarks) == (True, True, ()), path
+        assert actor.visible.all() and actor.feet_visible, path
+        assert actor.remarks == (), path
         assert min(agreements(actor.recording, recording)) > 0.98
 
 
 def test_find_actor_reports_missing_feet_of_a_close_actor(recordings):
     for path in sorted((recordings / "depth" / "skeltrack").iterdir()):
         actor = find_actor(read_depth(path))
-        assert actor.way is ForegroundMethod.RECORDED
-        assert not actor.feet_seen
+        assert actor.method is ForegroundMethod.RECORDED
+        assert not actor.feet_visible
         assert "The image ends above the feet" in actor.remarks[0]
 
 
@@ -151,7 +152,7 @@ def test_find_actor_follows_the_same_person_when_two_pass(takes, in_a_room):
     actor = find_actor(both, ForegroundSettings(farthest=7.0))
 
     assert "2 people are visible" in actor.remarks[0]
-    assert actor.seen.all()
+    assert actor.visible.all()
     assert min(agreements(actor.recording, take)) > 0.8
 
 
@@ -162,8 +163,8 @@ def test_find_actor_handles_an_actor_who_leaves_and_returns(takes):
 
     actor = find_actor(recording)
 
-    assert (~actor.seen).sum() == pytest.approx(30, abs=6)
-    assert not actor.seen[36:54].any()
+    assert (~actor.visible).sum() == pytest.approx(30, abs=6)
+    assert not actor.visible[36:54].any()
     assert all(actor.recording.frame(frame).max() == 0.0 for frame in missing_frames)
     assert min(agreements(actor.recording, recording)[:2]) > 0.98
     assert agreement(actor.recording.frame(80) > 0, take.frame(80) > 0) > 0.98

@@ -1,5 +1,6 @@
 """Roles found by the shape of the rest pose equal those found by names."""
 
+import numpy as np
 import pytest
 from rigs import RIGS, with_all_fingers
 
@@ -38,6 +39,30 @@ def test_poser_skeleton_gets_its_roles_except_two_nearby_joints(recordings):
     assert different <= {"leftUpperLeg", "rightUpperLeg"}
     for role in different:
         assert shape[role] == skeleton.parents[names[role]]
+
+
+def test_the_last_joint_of_a_short_foot_is_the_toes():
+    """Shanks to the toes and forearms of one height: the last of four joints is no ankle."""
+    rows = [
+        ("hips", -1, (0.0, 0.0, 0.68)), ("spine", 0, (0.0, 0.0, 0.15)),
+        ("chest", 1, (0.0, 0.0, 0.25)), ("neck", 2, (0.0, 0.0, 0.06)),
+        ("head", 3, (0.0, 0.0, 0.05)),
+    ]  # fmt: skip
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        limbs = [
+            [("UpperArm", (0.09, 0.0, 0.0)), ("LowerArm", (0.21, 0.0, -0.11)),
+             ("Hand", (0.14, -0.08, -0.09))],
+            [("UpperLeg", (0.07, 0.0, -0.06)), ("LowerLeg", (0.0, -0.04, -0.26)),
+             ("Foot", (0.0, 0.07, -0.27)), ("Toes", (0.0, -0.03, -0.065))],
+        ]  # fmt: skip
+        for limb, top in zip(limbs, (2, 0), strict=True):
+            for part, (x, y, z) in limb:
+                rows.append((side + part, top, (sign * x, y, z)))
+                top = len(rows) - 1
+    names, parents, offsets = zip(*rows, strict=True)
+    skeleton = Skeleton(names, parents, np.array(offsets))
+
+    assert by_shape(skeleton) == {name: joint for joint, name in enumerate(names)}
 
 
 @pytest.mark.parametrize("actor", ["bd", "bk", "dg"])

@@ -18,8 +18,8 @@ from solvers.recordings.conventions.tracked_joints import joint_recording
 WORDS = {1.0: "meters", 0.01: "centimeters", 0.001: "millimeters"}
 
 
-class Told:
-    """A Progress that keeps what it is told."""
+class KeptMessages:
+    """A Progress that keeps its messages."""
 
     def __init__(self):
         self.messages = []
@@ -40,7 +40,7 @@ def walk():
 @pytest.mark.parametrize("default", WORDS)
 @pytest.mark.parametrize("true", WORDS)
 def test_body_has_human_size_for_any_default_unit(walk, default, true):
-    messages = Told()
+    messages = KeptMessages()
 
     found = joint_recording(
         "take", walk.names, walk.tracks.positions / true, Sensor.KINECT_V1,
@@ -57,7 +57,7 @@ def test_body_has_human_size_for_any_default_unit(walk, default, true):
 
 @pytest.mark.parametrize("size", [0.4, 2.5])
 def test_a_child_or_a_giant_stays_what_it_is(walk, size):
-    messages = Told()
+    messages = KeptMessages()
     other = walk.with_tracks(walk.tracks.with_positions(size * walk.tracks.positions))
 
     assert convert_to_body_unit(other, 1.0, messages) is other
@@ -65,7 +65,7 @@ def test_a_child_or_a_giant_stays_what_it_is(walk, size):
 
 
 def test_who_gives_the_unit_is_obeyed(walk):
-    messages, positions = Told(), 1000.0 * walk.tracks.positions
+    messages, positions = KeptMessages(), 1000.0 * walk.tracks.positions
 
     found = joint_recording(
         "take", walk.names, positions, Sensor.KINECT_V1, scale=1.0, progress=messages
@@ -80,19 +80,19 @@ def test_what_is_no_body_keeps_its_unit(names):
     points = Tracks(names, 1000.0 * np.random.default_rng(0).random((4, 3, 3)), 30.0)
     recording = JointRecording(points, None, Sensor.OTHER)
 
-    assert convert_to_body_unit(recording, 1.0, Told()) is recording
+    assert convert_to_body_unit(recording, 1.0, KeptMessages()) is recording
 
 
 def test_joints_at_one_position_have_no_size(walk):
     flat = walk.with_tracks(walk.tracks.with_positions(np.ones_like(walk.tracks.positions)))
 
-    assert convert_to_body_unit(flat, 1.0, Told()) is flat
+    assert convert_to_body_unit(flat, 1.0, KeptMessages()) is flat
 
 
 def test_no_unit_makes_a_man_of_an_ant(walk):
     ant = walk.with_tracks(walk.tracks.with_positions(0.002 * walk.tracks.positions / 100.0))
 
-    assert convert_to_body_unit(ant, 0.001, Told()) is ant
+    assert convert_to_body_unit(ant, 0.001, KeptMessages()) is ant
 
 
 def test_our_own_table_counts_by_its_word_and_is_guessed_without(walk, tmp_path):
@@ -102,7 +102,7 @@ def test_our_own_table_counts_by_its_word_and_is_guessed_without(walk, tmp_path)
     text = output.read_text()
     assert "units=m," in text
     silent.write_text(text.replace("units=m,", "", 1))
-    messages = Told()
+    messages = KeptMessages()
 
     by_word, guessed = read_recording(output), read_recording(silent, progress=messages)
     given = read_recording(silent, scale=0.01)
@@ -115,7 +115,7 @@ def test_our_own_table_counts_by_its_word_and_is_guessed_without(walk, tmp_path)
 
 def test_a_kinect_file_in_millimetres_is_the_same_take(recordings, tmp_path):
     path = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
-    true, messages = read_recording(path), Told()
+    true, messages = read_recording(path), KeptMessages()
 
     def thousandfold(position):
         return position[1] + ",".join(
@@ -138,7 +138,7 @@ def test_no_recording_of_ours_is_guessed_anew(recordings):
     """A guess is for files in a unit that is not their format's; these all are in it."""
     paths = sorted((recordings / "kinect").glob("*/*"))
     for path in [each for each in paths if each.is_file()][::9]:
-        messages = Told()
+        messages = KeptMessages()
         try:
             read_recording(path, progress=messages)
         except MocapAssistError:  # no recording

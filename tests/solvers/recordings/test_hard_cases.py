@@ -143,9 +143,7 @@ def test_a_jump_is_no_floor():
 
 def test_a_platform_stays_where_it_is(tmp_path):
     """Somebody who stands on a table of a measured room."""
-    take = body(hips=(0.0, 0.0, 0.96 + 0.7))
-    renamed = Skeleton(tuple(f"b_{name}" for name in NAMES), PARENTS, take.skeleton.offsets)
-    take = Motion(renamed, take.rotations, take.root_positions, RATE)
+    take = plain_names(body(hips=(0.0, 0.0, 0.96 + 0.7)))
 
     motion, _ = read(take, tmp_path / "a.bvh", floor=Floor.AUTO)
 
@@ -247,3 +245,41 @@ def _between(one, other) -> np.ndarray:
     if half[0] < 1e-9:
         return np.array([0.0, 0.0, 0.0, 1.0])
     return half / np.linalg.norm(half)
+
+
+def test_an_actor_far_above_the_floor_is_a_question(tmp_path):
+    """Nobody comes near the floor: a platform, or a floor that is elsewhere."""
+    take = plain_names(body(hips=(0.0, 0.0, 0.96 + 0.7)))
+
+    for floor, asks in ((Floor.AUTO, True), (Floor.NEVER, False), (Floor.ALWAYS, False)):
+        _, said = read(take, tmp_path / "a.bvh", floor=floor)
+        assert ("The actor stays 0.7 m above the floor" in said) == asks
+
+
+def test_an_actor_far_below_the_floor_is_put_on_it(tmp_path):
+    """A camera at chest height is the origin of the take, and the hips are below it."""
+    take = plain_names(body(hips=(0.0, 2.0, -0.35)))
+
+    motion, said = read(take, tmp_path / "a.bvh", floor=Floor.AUTO)
+
+    assert places(motion)["b_left_foot"][:, 2] == pytest.approx(0.02, abs=0.03)
+    assert "the floor" not in said
+
+
+def test_steps_down_are_no_wrong_floor(tmp_path):
+    """Who goes down into a cellar for a while stands on the floor before."""
+    take = plain_names(body())
+    take.root_positions[70:, 2] -= 1.5
+
+    motion, said = read(take, tmp_path / "a.bvh", floor=Floor.AUTO)
+
+    assert motion.root_positions[:60, 2] == pytest.approx(0.96, abs=0.01)
+    assert "the floor" not in said
+
+
+def plain_names(motion: Motion) -> Motion:
+    """Return a take whose names are those of no video model, and whose rest hips are at 0."""
+    names = tuple(f"b_{name}" for name in motion.skeleton.names)
+    offsets = np.concatenate([np.zeros((1, 3)), motion.skeleton.offsets[1:]])
+    skeleton = Skeleton(names, PARENTS, offsets)
+    return Motion(skeleton, motion.rotations, motion.root_positions.copy(), RATE)

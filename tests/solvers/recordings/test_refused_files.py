@@ -1,9 +1,11 @@
 """Files that are no recordings are refused with what would serve, and nothing else is."""
 
+import gzip
 import io
 import json
 import pickle
 import zipfile
+import zlib
 
 import numpy as np
 import pytest
@@ -55,6 +57,12 @@ def object_array() -> bytes:
         (pickle.dumps({"smpl_poses": 1}, protocol=2), PICKLE),
         (torch_file(), PICKLE),
         (object_array(), PICKLE),
+        (zlib.compress(pickle.dumps({"smpl_poses": 1})), "a compressed pickle has to be"),
+        (gzip.compress(b"HIERARCHY"), "is compressed. Unpack it"),
+        (b"PK\x03\x04" + bytes(26) + b"take.bvh" + bytes(60), "is compressed. Unpack it"),
+        ("<!DOCTYPE html><html><body>Sign in</body></html>", "is a web page"),
+        ("\n<!-- saved -->\n<HTML lang='en'>", "is a web page"),
+        ("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", "git lfs pull"),
     ],
 )
 def test_what_would_serve_is_said(read_any, content, sentence):

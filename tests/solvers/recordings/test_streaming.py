@@ -53,7 +53,7 @@ def message(tmp_path, monkeypatch):
 
 
 def figures(recording):
-    """All that a recording holds, so that equal ones can be told by ==."""
+    """The content of a recording, comparable with ==."""
     if isinstance(recording, Motion):
         skeleton = recording.skeleton
         arrays = (skeleton.offsets, recording.rotations, recording.root_positions)

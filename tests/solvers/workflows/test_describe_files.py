@@ -59,7 +59,7 @@ def test_error_is_one_sentence_with_the_file(clip_request, tmp_path, monkeypatch
         (OSError(5, "Input/output error"), ": Input/output error."),
     ):
 
-        def fail(path, error=error):
+        def fail(path, error=error, **body):
             raise error
 
         monkeypatch.setattr(describing, "read_tracked", fail)
@@ -69,7 +69,7 @@ def test_error_is_one_sentence_with_the_file(clip_request, tmp_path, monkeypatch
 
 
 def test_cancellation_is_no_refusal(clip_request, monkeypatch):
-    def cancel(path):
+    def cancel(path, **body):
         raise SolveCancelled
 
     monkeypatch.setattr(describing, "read_tracked", cancel)

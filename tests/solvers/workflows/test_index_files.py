@@ -83,9 +83,12 @@ def test_unchanged_files_are_not_read_again(folder, library, monkeypatch):
 def test_refused_files_are_not_read_again_until_they_change(folder, library, monkeypatch):
     first = index_files(library, [folder])
     read, tried = describe_files.read_tracked, []
-    monkeypatch.setattr(
-        describe_files, "read_tracked", lambda path: tried.append(path) or read(path)
-    )
+
+    def reading(path, **body):
+        tried.append(path)
+        return read(path, **body)
+
+    monkeypatch.setattr(describe_files, "read_tracked", reading)
 
     again = index_files(library, [folder])
     assert again.refused == first.refused
@@ -99,12 +102,12 @@ def test_refused_files_are_not_read_again_until_they_change(folder, library, mon
 def test_files_refused_by_another_version_are_read_again(folder, library, monkeypatch):
     index_files(library, [folder])
     monkeypatch.setattr(indexing, "version", lambda: "later")
-    monkeypatch.setattr(describe_files, "read_tracked", lambda path: walk())
+    monkeypatch.setattr(describe_files, "read_tracked", lambda path, **body: walk())
     assert index_files(library, [folder / "markers.trc"]).n_clips == 4
 
 
 def test_files_refused_for_memory_are_read_again(folder, library, monkeypatch):
-    def too_large(path):
+    def too_large(path, **body):
         raise MemoryError
 
     with monkeypatch.context() as patched:

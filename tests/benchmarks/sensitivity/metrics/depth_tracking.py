@@ -26,7 +26,7 @@ def prepare() -> dict[str, Any]:
     return {
         "camera": one.depth.camera.every(2),
         "images": images,
-        "body": one.usual,
+        "body": one.typical_body,
         "truth": truth,
     }
 

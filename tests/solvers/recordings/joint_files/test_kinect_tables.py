@@ -19,7 +19,7 @@ ONE, TWO = "72057594037931101", "72057594037931691"
 
 
 def upright(values):
-    """Camera space to ours, told otherwise than the readers do: as a matrix."""
+    """Camera space to ours, unlike in the readers, as a matrix."""
     return values[..., :3] @ np.array([[-1, 0, 0], [0, 0, 1], [0, 1, 0]], dtype=float)
 
 

@@ -110,7 +110,7 @@ def test_any_skeleton_survives_writing_and_reading(rng, tmp_path):
     ("word", "rate"),
     [("0.00833333", 120.0), (".0083333", 120.0), ("0.008333", 120.0), ("0.016667", 60.0),
      ("0.0333667", 29.97), ("0.04", 25.0), ("0.008", 125.0), ("0.033", 30.0),
-     ("0.0138888889", 72.0), ("1e-2", 100.0)],
+     ("0.0138888889", 72.0), ("1e-2", 100.0), ("0.008342", 119.88), ("0.0417084", 23.976)],
 )  # fmt: skip
 def test_rounded_frame_time_gives_a_common_rate(read, word, rate):
     assert read(ARM.replace("0.0333333", word)).frame_rate == pytest.approx(rate, rel=1e-6)

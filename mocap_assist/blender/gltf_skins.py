@@ -1,0 +1,135 @@
+"""Give the joints of a glTF file without a skin one, so that Blender makes an armature of them.
+
+Animations of web pages and game engines come without the mesh that they move: a tree of nodes.
+Blender makes an armature only of nodes that a skin names.
+"""
+
+import json
+import struct
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from ...solvers.recordings.conventions import MIN_BODY_JOINTS
+
+GLB_MAGIC, GLB_VERSION, GLB_JSON = 0x46546C67, 2, 0x4E4F534A
+HEADER_BYTES = 20
+"""Of the file and of its first chunk."""
+MAX_SCALE_ERROR = 0.05
+"""Of a joint; a node of another scale is an object that holds joints."""
+
+
+def find_joint_trees(content: Mapping[str, Any]) -> list[list[int]]:
+    """Return the nodes of each animated tree that is large enough for a body.
+
+    Empty where the file has a skin: it says which nodes are joints.
+    """
+    nodes = [_dict(each) for each in _list(content.get("nodes"))]
+    if _list(content.get("skins")):
+        return []
+    animated = _animated_nodes(content)
+    below = {child for node in nodes for child in _children(node, len(nodes))}
+    seen: set[int] = set()
+    trees = []
+    for top in (index for index in range(len(nodes)) if index not in below):
+        for root in _joint_roots(nodes, top, animated):
+            tree = _subtree(nodes, root, seen)
+            if sum(node in animated for node in tree) >= MIN_BODY_JOINTS:
+                trees.append(tree)
+    return trees
+
+
+def write_with_skins(
+    path: str, content: Mapping[str, Any], trees: list[list[int]], copy: Path
+) -> None:
+    """Write a copy of a glTF file, text or binary, whose joints have skins."""
+    skins = [{"joints": tree, "skeleton": tree[0]} for tree in trees]
+    folder = Path(path).resolve().parent
+    changed = {
+        **content,
+        "skins": skins,
+        "buffers": [
+            _found_from_elsewhere(each, folder) for each in _list(content.get("buffers"))
+        ],
+    }
+    text = json.dumps(changed).encode()
+    with Path(path).open("rb") as file, copy.open("wb") as target:
+        head = file.read(HEADER_BYTES)
+        if head[:4] != struct.pack("<I", GLB_MAGIC):
+            target.write(text)
+            return
+        file.seek(HEADER_BYTES + struct.unpack("<I", head[12:16])[0])
+        rest = file.read()
+        text += b" " * (-len(text) % 4)
+        total = HEADER_BYTES + len(text) + len(rest)
+        target.write(struct.pack("<III", GLB_MAGIC, GLB_VERSION, total))
+        target.write(struct.pack("<II", len(text), GLB_JSON) + text + rest)
+
+
+def _joint_roots(nodes: list[dict[str, Any]], top: int, animated: set[int]) -> list[int]:
+    """Return the uppermost joints below a node of a scene."""
+    waiting, roots, seen = [top], [], set()
+    while waiting:
+        node = waiting.pop()
+        if node in seen:
+            continue
+        seen.add(node)
+        if node in animated and _is_of_scale_one(nodes[node]):
+            roots.append(node)
+        else:
+            waiting += _children(nodes[node], len(nodes))
+    return roots
+
+
+def _subtree(nodes: list[dict[str, Any]], root: int, seen: set[int]) -> list[int]:
+    waiting, tree = [root], []
+    while waiting:
+        node = waiting.pop()
+        if node not in seen:
+            seen.add(node)
+            tree.append(node)
+            waiting += _children(nodes[node], len(nodes))
+    return tree
+
+
+def _animated_nodes(content: Mapping[str, Any]) -> set[int]:
+    """Return the nodes whose rotation is animated."""
+    return {
+        target["node"]
+        for animation in _list(content.get("animations"))
+        for channel in _list(_dict(animation).get("channels"))
+        if (target := _dict(_dict(channel).get("target"))).get("path") == "rotation"
+        and isinstance(target.get("node"), int)
+    }
+
+
+def _is_of_scale_one(node: Mapping[str, Any]) -> bool:
+    scale = _list(node.get("scale")) or [1.0]
+    return all(
+        isinstance(each, int | float) and abs(each - 1.0) <= MAX_SCALE_ERROR for each in scale
+    )
+
+
+def _children(node: Mapping[str, Any], n_nodes: int) -> list[int]:
+    return [
+        child
+        for child in _list(node.get("children"))
+        if isinstance(child, int) and 0 <= child < n_nodes
+    ]
+
+
+def _found_from_elsewhere(buffer: Any, folder: Path) -> Any:
+    """Return a buffer whose file is found from another folder too."""
+    uri = _dict(buffer).get("uri")
+    if not isinstance(uri, str) or uri.startswith("data:"):
+        return buffer
+    return {**buffer, "uri": quote(folder.as_posix()) + "/" + uri}
+
+
+def _list(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else []
+
+
+def _dict(value: Any) -> dict[str, Any]:
+    return value if isinstance(value, dict) else {}

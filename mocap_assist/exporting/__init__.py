@@ -1,0 +1,1 @@
+"""Export what an armature plays, as a file for other programs."""

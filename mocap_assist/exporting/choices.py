@@ -1,0 +1,51 @@
+"""What an animator chooses for Export."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from ...solvers.settings import Settings, setting
+from ..actions.frames import FrameRange
+from .formats import ExportedBones, FileFormat
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExportChoices(Settings):
+    """How a take comes into a file."""
+
+    file_format: FileFormat = setting(
+        FileFormat.FBX,
+        "File to write; a name with another known ending decides",
+        label="Format",
+    )
+    frame_range: FrameRange = setting(FrameRange.ACTION, "Frames of the action to export")
+    exported_bones: ExportedBones = setting(
+        ExportedBones.ALL, "Bones that come into the file", label="Bones"
+    )
+    meshes: bool = setting(
+        False,
+        "Include the meshes that the armature deforms; BVH has none",
+        label="Skinned Meshes",
+    )
+    overwrite_recording: bool = setting(
+        False, "Allow to replace the file that the take was imported from"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExportFile(Settings):
+    """Where the file lies."""
+
+    filepath: str = setting("", "File to write", label="File")
+
+
+class ExportSettings(NamedTuple):
+    """Settings that the sidebar keeps."""
+
+    choices: ExportChoices
+
+
+class ExportBundle(NamedTuple):
+    """Settings of the button."""
+
+    choices: ExportChoices
+    file: ExportFile
