@@ -24,7 +24,7 @@ N_SCALE_UPDATES = 20
 """Updates of the scale of that distribution (expectation maximization)."""
 PRIOR_SAMPLES = 1000.0
 """Samples, one of them an outlier, that are counted in addition to the take's own. A clean
-take has hardly any outliers. Chosen by hand on the development takes of the first press."""
+take has hardly any outliers. Chosen by hand; not swept."""
 POOLED_JOINTS = 4.0
 """Weight, in joints, of the assumption that the spline serves a joint as well as it serves the
 others. Chosen by hand on the development takes of the first press: x0.25 costs 0.9 % at 3
