@@ -21,8 +21,8 @@ from .conditions import Case
 
 OURS, PUBLISHED, INPUT = "ours", "[LC10] as published", "input"
 GAUSSIAN_S, SAVITZKY_GOLAY_S = 0.04, 0.3
-"""Standard deviation and length of the windows, in seconds. Chosen by hand and not swept, as are
-the settings of one-euro and Kalman below."""
+"""Standard deviation and length of the windows, in seconds. Chosen by hand, not
+swept, as are the settings of one-euro and Kalman below."""
 
 
 @dataclass(frozen=True, eq=False)
