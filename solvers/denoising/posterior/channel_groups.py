@@ -19,6 +19,7 @@ from .prior_selection import (
     build_take_prior,
     select_prior,
 )
+from .spline_stacking import stack_with_spline
 from .windows import Windows
 
 MAX_GROUP_CHANNELS = 96
@@ -42,6 +43,7 @@ MIN_NOISE = 0.01
 POOR_FIT_FRACTION = 0.2
 """Fraction of plain smoothness above which the examples are reported to fit badly. Chosen by
 hand: x0.5 and x2 move no error; it only decides a sentence."""
+PARTS = ("values", "inliers", "deviation", "leave_one_out_error")
 
 
 class RoughTake(NamedTuple):
@@ -64,13 +66,16 @@ def estimate_in_groups(
     pattern_rate = float(bases.frame_rate) if bases else FilterBasesSettings().frame_rate
     window = bases.window if bases else FilterBasesSettings().n_frames
     take = _estimate_roughly(channels.flat, frame_rate, pattern_rate, window)
-    values, inliers = take.values.copy(), np.isfinite(take.noisy).astype(float)
-    deviation = np.where(
-        np.isfinite(take.noisy) | (take.n_observed > 0), 0.0, UNKNOWN_DEVIATION
+    is_unknown = np.isnan(take.noisy) & (take.n_observed == 0)
+    parts = (
+        take.values.copy(),
+        np.isfinite(take.noisy).astype(float),
+        np.where(is_unknown, UNKNOWN_DEVIATION, 0.0),
+        np.full_like(take.noisy, np.nan),
     )
     in_examples = _find_example_channels(channels, bases)
     groups = group_channels(channels.flat, take.values, in_examples)
-    outlier_probability = np.zeros((len(values), n_channels // 3))
+    outlier_probability = np.zeros((len(take.noisy), n_channels // 3))
     iterations, converged, smooth_fractions = 0, True, []
     for index, columns in enumerate(groups):
         step = within(progress, index / len(groups), (index + 1) / len(groups))
@@ -103,14 +108,18 @@ def estimate_in_groups(
         )  # fmt: skip
         group_outliers = np.isfinite(part.noisy) * (1.0 - group_estimate.inliers)
         np.maximum.at(outlier_probability.T, joints, group_outliers.T)
-        values[:, columns], inliers[:, columns] = group_estimate.values, group_estimate.inliers
-        deviation[:, columns] = group_estimate.deviation
+        for complete, name in zip(parts, PARTS, strict=True):
+            complete[:, columns] = getattr(group_estimate, name)
         iterations = max(iterations, group_estimate.iterations)
         converged &= group_estimate.converged
-    trimmed = (values[:n_frames], inliers[:n_frames], deviation[:n_frames])
-    not_computed = np.full_like(channels.flat, np.nan)
-    estimate = Estimate(*trimmed, not_computed, iterations, converged)
-    return estimate, _describe_prior(bases, smooth_fractions, n_channels)
+    estimate = Estimate(*(part[:n_frames] for part in parts), iterations, converged)
+    stacked, n_smoothed = stack_with_spline(
+        channels.flat,
+        estimate,
+        keep_outliers=bool(smooth_fractions) and min(smooth_fractions) < 1.0,
+    )
+    message = _describe_prior(bases, smooth_fractions, n_channels)
+    return stacked, message + _describe_spline(n_smoothed, n_channels // 3)
 
 
 def _build_examples_prior(
@@ -200,3 +209,9 @@ def _describe_prior(
     if len(smooth_fractions) < n_channels / 3:
         return f"Patterns of {clips} for the joints that they have; otherwise the take's own."
     return f"Patterns of {clips}, adapted to the take."
+
+
+def _describe_spline(n_smoothed: int, n_joints: int) -> str:
+    if not n_smoothed:
+        return ""
+    return f" Plain smoothing predicts {n_smoothed} of {n_joints} joints better and is used."

@@ -21,8 +21,8 @@ from .conditions import Case
 
 OURS, PUBLISHED, INPUT = "ours", "[LC10] as published", "input"
 GAUSSIAN_S, SAVITZKY_GOLAY_S = 0.04, 0.3
-"""Standard deviation and length of the windows, in seconds: of the values .02, .04, .08 and .2,
-.3, .5 those with the least error on the development takes at sigma 1 and 3."""
+"""Standard deviation and length of the windows, in seconds. Chosen by hand, not
+swept, as are the settings of one-euro and Kalman below."""
 
 
 @dataclass(frozen=True, eq=False)
