@@ -5,11 +5,11 @@ Blender makes an armature only of nodes that a skin names.
 """
 
 import json
+import re
 import struct
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
 from ...solvers.recordings.conventions import MIN_BODY_JOINTS
 
@@ -124,7 +124,7 @@ def _found_from_elsewhere(buffer: Any, folder: Path) -> Any:
     uri = _dict(buffer).get("uri")
     if not isinstance(uri, str) or uri.startswith("data:"):
         return buffer
-    return {**buffer, "uri": quote(folder.as_posix()) + "/" + uri}
+    return {**buffer, "uri": _quoted(folder.as_posix()) + "/" + uri}
 
 
 def _list(value: Any) -> list[Any]:
@@ -133,3 +133,9 @@ def _list(value: Any) -> list[Any]:
 
 def _dict(value: Any) -> dict[str, Any]:
     return value if isinstance(value, dict) else {}
+
+
+def _quoted(path: str) -> str:
+    """Return a path as a URI: all but letters, digits and `-._~/` as percent signs and hex."""
+    text = re.sub(rb"[^A-Za-z0-9._~/-]", lambda match: b"%%%02X" % match[0][0], path.encode())
+    return text.decode()

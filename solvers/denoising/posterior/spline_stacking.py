@@ -18,12 +18,12 @@ from .estimate_channels import OUTLIER_DENSITY
 from .smoothing_spline import Smoothed, smooth_by_spline
 
 DEGREES_OF_FREEDOM = 4.0
-"""Of Student's t distribution of prediction errors, which are larger in fast motion. From
-Lange, Little, Taylor (1989), doi:10.1080/01621459.1989.10478852."""
+"""Number that shapes Student's t distribution of prediction errors, which are larger in fast
+motion; a count. From Lange, Little, Taylor (1989), doi:10.1080/01621459.1989.10478852."""
 N_SCALE_UPDATES = 20
 """Updates of the scale of that distribution (expectation maximization)."""
 PRIOR_SAMPLES = 1000.0
-"""Samples, one of them an outlier, that are counted in addition to the take's own. A clean
+"""The number of samples, one of them an outlier, in addition to the take's own. A clean
 take has hardly any outliers. Chosen by hand; not swept."""
 POOLED_JOINTS = 4.0
 """Weight, in joints, of the assumption that the spline serves a joint as well as it serves the

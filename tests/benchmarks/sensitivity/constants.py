@@ -81,7 +81,7 @@ UNITS_BY_WORDS = {
     r"severity": "severity", r"time constants": "time const.", r"fraction": "fraction",
     r"standard deviations": "std. dev.", r"relative|ratio": "ratio",
     r"\bfactors?\b": "factor", r"logarithm": "log",
-    r"number of|iterations|rounds": "count", r"weight": "weight",
+    r"number of|a count|iterations|rounds": "count", r"weight": "weight",
 }  # fmt: skip
 
 

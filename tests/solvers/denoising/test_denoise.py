@@ -101,9 +101,8 @@ def test_examples_of_another_movement_are_rejected(swinging_leg):
         60.0,
     )
     bases = learn_filter_bases([frantic])
-    takes = [
-        shaken(swinging_leg, np.random.default_rng(seed), np.radians(3)) for seed in range(5)
-    ]
+    seeds = map(np.random.default_rng, range(5))
+    takes = [shaken(swinging_leg, seed, np.radians(3)) for seed in seeds]
 
     wrong = [error(denoise(noisy, bases), swinging_leg) for noisy in takes]
     without = [error(denoise(noisy), swinging_leg) for noisy in takes]
