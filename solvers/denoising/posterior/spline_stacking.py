@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import t as students_t
+from scipy.special import gammaln
 
 from ...arrays import Array
 from .estimate import Estimate
@@ -117,10 +117,10 @@ def _log_likelihood(errors: Array) -> float:
     for _ in range(N_SCALE_UPDATES):
         weights = (DEGREES_OF_FREEDOM + 1.0) / (DEGREES_OF_FREEDOM + errors**2 / variance)
         variance = np.mean(weights * errors**2) + MIN_VARIANCE
-    scale = np.sqrt(variance)
-    return float(students_t.logpdf(errors / scale, DEGREES_OF_FREEDOM).sum()) - len(
-        errors
-    ) * float(np.log(scale))
+    n = DEGREES_OF_FREEDOM
+    constant = gammaln((n + 1.0) / 2.0) - gammaln(n / 2.0) - np.log(n * np.pi * variance) / 2.0
+    tails = (n + 1.0) / 2.0 * np.log1p(errors**2 / (n * variance))
+    return float((constant - tails).sum())
 
 
 def _blend(

@@ -13,7 +13,7 @@ from solvers.denoising import learn_joint_limits, limit_excess, load_filter_base
 from solvers.motion import Tracks
 from solvers.recordings import read_bvh, read_c3d, read_trc, write_bvh, write_c3d, write_trc
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
-from solvers.samples import GaitSettings, walking_gait
+from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 
 AXES = "Y is up, Z is forward, lengths are in centimeters"
 
@@ -116,15 +116,19 @@ def test_denoise_learns_from_clips(call, leg_file, tmp_path):
     assert "1 example clip" in printed
 
 
-def test_saved_patterns_give_the_same_result_as_their_clips(call, leg_file, tmp_path):
+def test_saved_patterns_give_the_same_result_as_their_clips(
+    call, leg_file, swinging_leg, tmp_path
+):
+    noisy = tmp_path / "noisy.bvh"
+    write_bvh(corrupt(swinging_leg, CorruptionSettings(jitter=3.0)), noisy)
     twin = tmp_path / "twin.bvh"
     twin.write_bytes(leg_file.read_bytes())
     learned, out = tmp_path / "legs.npz", [tmp_path / "a.bvh", tmp_path / "b.bvh"]
     longer = ("--window", 0.8, "--frame-rate", 20)
 
     status, printed, _ = call("learn", leg_file, twin, "--output", learned, *longer, "--json")
-    call("denoise", leg_file, out[0], "--train", leg_file, twin, *longer)
-    call("denoise", leg_file, out[1], "--bases", learned)
+    call("denoise", noisy, out[0], "--train", leg_file, twin, *longer)
+    call("denoise", noisy, out[1], "--bases", learned)
 
     assert status == 0
     figures = json.loads(printed)
@@ -138,7 +142,7 @@ def test_saved_patterns_give_the_same_result_as_their_clips(call, leg_file, tmp_
         "parts": ["hips", "joint knee", "joint ankle", "place"],
     }
     assert out[0].read_bytes() == out[1].read_bytes()
-    assert call("denoise", leg_file, out[1])[0] == 0
+    assert call("denoise", noisy, out[1])[0] == 0
     assert out[0].read_bytes() != out[1].read_bytes()
 
 
