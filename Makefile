@@ -77,7 +77,7 @@ kills: .venv-4.5/ready zip  ## kill commands at random moments; ARGUMENTS="--kil
 
 # --- What there is to see ---
 
-.PHONY: demo docs pictures pictures-origins bench-denoise bench-first-press bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-import-corpus bench-video bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth sensitivity
+.PHONY: demo docs pictures pictures-origins bench-denoise bench-first-press bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-import-corpus bench-roles bench-video bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth sensitivity
 demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
@@ -94,7 +94,7 @@ pictures-origins: .venv-4.5/ready  ## takes of many makers, imported, cleaned, o
 
 # Each writes what is shipped from recordings of ../shared/data; ARGUMENTS="--out FILE" writes
 # elsewhere, and each script says which clips, bodies and licences. The forest takes half an hour.
-.PHONY: forest postures residuals motion-prior failures
+.PHONY: forest postures residuals motion-prior motion-mixture failures
 forest: .venv-4.5/ready  ## train the shipped forest that classifies body parts in depth images
 	$(PYTHON_4.5) -m tests.training.train_forest $(ARGUMENTS)
 
@@ -106,6 +106,9 @@ residuals: .venv-4.5/ready  ## learn the shipped errors of a Kinect, and how sur
 
 motion-prior: .venv-4.5/ready  ## learn the shipped motion prior of the depth tracker
 	$(PYTHON_4.5) -m tests.training.train_motion_prior $(ARGUMENTS)
+
+motion-mixture: .venv-4.5/ready  ## learn how joints move, for Clean without examples
+	$(PYTHON_4.5) -m tests.training.train_motion_mixture $(ARGUMENTS)
 
 failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the weights
 	$(PYTHON_4.5) -m tests.training.learn_failures
@@ -132,6 +135,9 @@ bench-import: .venv-4.5/ready  ## measure the import time of recordings of five 
 
 bench-import-corpus: .venv-4.5/ready  ## read every recording of other makers, and compare with its truth
 	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_import_corpus $(ARGUMENTS)
+
+bench-roles: .venv-4.5/ready  ## measure how often the role of a bone is right, by its reason
+	PYTHONPATH=.:tests/fixtures $(PYTHON_4.5) -m tests.benchmarks.importing.bench_role_confidence
 
 bench-video: .venv-4.5/ready  ## measure Clean, Plant Feet and Physics on takes of video models
 	$(PYTHON_4.5) -m tests.benchmarks.video.bench_video $(ARGUMENTS)

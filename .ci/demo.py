@@ -3,7 +3,7 @@
     MOCAP_ASSIST_ZIP=dist/mocap_assist-0.1.0-linux_x64.zip \
         python .ci/demo.py OUTPUT_FOLDER [CLIP.bvh]
 
-Without a clip it is the built-in sample: a walk, spoilt with jitter, spikes and an arm that is
+Without a clip it is the built-in sample: a walk, damaged with jitter, spikes and an arm that is
 missing for two seconds; there the true error can be measured. Leaves demo.blend and
 before_after.png in the folder, and prints the figures.
 """
@@ -100,7 +100,7 @@ def installed(module: str) -> ModuleType:
 
 
 def make_sample(path: Path) -> Any:
-    """Write the spoilt walk, whose arm is still there, and return the walk as it should be."""
+    """Write the damaged walk, whose arm is still there, and return the walk as it should be."""
     samples = installed("solvers.samples")
     walk = samples.walking_gait(samples.GaitSettings(duration=8.0, frame_rate=30.0))
     wrong = samples.CorruptionSettings(jitter=3.0, spikes=0.004, root_jitter=0.004)
@@ -109,7 +109,7 @@ def make_sample(path: Path) -> Any:
 
 
 def import_clip(bpy: Any, path: Path) -> Any:
-    """Import a BVH file in metres with Blender's own importer; return the armature."""
+    """Import a BVH file in meters with Blender's own importer; return the armature."""
     read_bvh = installed("solvers.recordings").read_bvh
     in_metres, as_written = read_bvh(path), read_bvh(path, scale=1.0)
     reach = [np.abs(motion.skeleton.offsets).sum() for motion in (in_metres, as_written)]

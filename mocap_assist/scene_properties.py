@@ -110,12 +110,12 @@ class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
     source: bpy.props.StringProperty(
         name="Source bone",
         description="Bone of the source that plays this part",
-        update=explain_edited,
+        update=explain_edited("source"),
     )
     target: bpy.props.StringProperty(
         name="Target bone",
         description="Bone or control of the target that plays this part",
-        update=explain_edited,
+        update=explain_edited("target"),
     )
     source_confidence: bpy.props.FloatProperty(name="Source Confidence", default=1.0)
     target_confidence: bpy.props.FloatProperty(name="Target Confidence", default=1.0)
@@ -135,7 +135,7 @@ class MOCAP_PG_bone_map(bpy.types.PropertyGroup):
 
 
 class MOCAP_PG_issue(bpy.types.PropertyGroup):
-    """A place of the take that needs an eye; `name` is the bone's."""
+    """An issue of the list of Check; `name` is the bone's."""
 
     start: bpy.props.FloatProperty(name="First frame")
     stop: bpy.props.FloatProperty(name="Last frame")

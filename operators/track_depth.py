@@ -28,4 +28,4 @@ class MOCAP_OT_track_depth(WatchedOperator, bpy.types.Operator):
     open_view, rescue = watch_tracking, rescue_partial
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Nothing can be changed without tracking anew."""
+        """Draw nothing: no setting can change without tracking again."""

@@ -16,7 +16,13 @@ STRAIGHT = 0.5  # cosine of the angle up to which a child continues its parent b
 
 
 def build_armature(
-    context: bpy.types.Context, name: str, skeleton: Skeleton, metres: float, mode: str
+    context: bpy.types.Context,
+    name: str,
+    skeleton: Skeleton,
+    metres: float,
+    mode: str,
+    *,
+    connected: bool = True,
 ) -> tuple[bpy.types.Object, tuple[str, ...]]:
     """Add an armature to the scene, in its rest pose, selected and active.
 
@@ -34,6 +40,8 @@ def build_armature(
     metres : float
         Length of one of the scene's units.
     mode : rotation mode of the bones
+    connected : bool
+        Whether a bone that begins at the tail of its parent ignores location keys.
 
     Returns
     -------
@@ -49,7 +57,7 @@ def build_armature(
     heads = skeleton.rest_positions / metres
     tips = _tips(skeleton)
     tails = _tails(skeleton, tips) / metres
-    bone_names = _add_bones(armature, skeleton, tips, heads, tails)
+    bone_names = _add_bones(armature, skeleton, tips, heads, tails, connected)
     for joint, bone in enumerate(bone_names):
         if not bone:
             continue
@@ -60,7 +68,12 @@ def build_armature(
 
 
 def _add_bones(
-    armature: bpy.types.Object, skeleton: Skeleton, tips: set[int], heads: Array, tails: Array
+    armature: bpy.types.Object,
+    skeleton: Skeleton,
+    tips: set[int],
+    heads: Array,
+    tails: Array,
+    connected: bool,
 ) -> tuple[str, ...]:
     bpy.ops.object.mode_set(mode="EDIT")
     bones = armature.data.edit_bones
@@ -72,7 +85,7 @@ def _add_bones(
         bone.head, bone.tail = heads[joint], tails[joint]
         if parent >= 0:
             bone.parent = bones[bone_names[parent]]
-            bone.use_connect = bool((heads[joint] == tails[parent]).all())
+            bone.use_connect = connected and bool((heads[joint] == tails[parent]).all())
         bone_names[joint] = bone.name
     bpy.ops.object.mode_set(mode="OBJECT")
     return tuple(bone_names.get(joint, "") for joint in range(skeleton.n_joints))

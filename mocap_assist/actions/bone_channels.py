@@ -30,7 +30,7 @@ def animated_curves(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> Cur
 def animated_paths(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> Iterator[str]:
     """Yield the data paths of the slot's F-Curves that are not muted, one for each curve.
 
-    For panels, which ask at every redraw: whoever has seen enough may stop.
+    An iterator, because panels read them at every redraw and often need only the first few.
     """
     bag = compat.channelbag(action, slot)
     for curve in () if bag is None else bag.fcurves:
@@ -141,7 +141,7 @@ def sampled(curves: Mapping[int, Channel], present: object, frames: Array) -> Ar
 def gaps_of(
     curves: Mapping[int, Channel], frames: Array, step: float | None = None
 ) -> NDArray[np.bool_]:
-    """Tell the frames at which a property was not captured; see `unobserved`."""
+    """Return where a property was not captured, shape (n_frames,); see `unobserved`."""
     if not curves or all(channel.keyed_at(frames) for channel in curves.values()):
         return np.zeros(len(frames), bool)
     return unobserved([channel.keys for channel in curves.values()], frames, step)

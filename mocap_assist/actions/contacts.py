@@ -56,10 +56,10 @@ def write_contacts(
 
     The keys are held until the next one: 1 the foot stands, 0 it does not. Few as they are,
     they are moved, added and removed like any others in the Dope Sheet. The first and the last
-    frame are keyed too, and so tell which frames are meant.
+    frame are keyed too, and so mark which frames have contacts.
 
-    Keys that were `detected` have the type GENERATED, and the action remembers them: until one
-    of them is edited they are nobody's decision, and are detected anew next time.
+    Keys that were `detected` have the type GENERATED, and the action remembers them: unless
+    one of them is edited, contacts are detected again next time.
     """
     bag = compat.ensure_channelbag(action, slot)
     detected &= _untouched(action, slot) or not any(_contact_keys(action, slot))

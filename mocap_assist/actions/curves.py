@@ -14,7 +14,7 @@ from .curve_modifiers import Written, keep_outside
 CONSTANT, LINEAR = 0, 1  # Blender's numbers for interpolation
 MEASURED, GENERATED = 0, 5  # and for its key types KEYFRAME and GENERATED
 AUTO_CLAMPED = 4  # and for that type of handle
-ON_FRAME = 1e-3  # frames; keys are 32-bit numbers, whose grain at frame 10,000 is this
+ON_FRAME = 1e-3  # frames; keys are 32-bit numbers, whose precision at frame 10,000 is this
 
 LAST_FRAME = 1_048_574  # Blender's MAXFRAME
 
@@ -121,7 +121,7 @@ def write_first(
 
 
 def deselect(curve: bpy.types.FCurve) -> None:
-    """Let no key of a curve be selected: Blender selects those that are new."""
+    """Deselect all keys of a curve: Blender selects new ones."""
     points = curve.keyframe_points
     for name in SELECTED:
         points.foreach_set(name, np.zeros(len(points), np.bool_))
@@ -138,8 +138,8 @@ def write_values(
 
     Keys outside stay as they are, and so do modifiers there; within, the values were read
     through the modifiers, which are not applied a second time. A new key is selected if the
-    key that it replaces was. Between new keys the curve goes straight by default: captured
-    keys lie one frame apart, where handles would only say what the next key says anyway.
+    key that it replaces was. New keys are interpolated linearly by default: captured
+    keys lie one frame apart, where handles would only repeat the next key.
     `types`, shape (n_frames,), are Blender's key types; without it all are MEASURED.
     """
     points = curve.keyframe_points
@@ -186,7 +186,7 @@ def _rebuild(
 def _chosen(
     points: bpy.types.FCurveKeyframePoints, times: NDArray[Any], frames: Array
 ) -> NDArray[np.bool_]:
-    """Tell which of the frames have a key that is selected, shape (n_frames,)."""
+    """Return which of the frames have a selected key, shape (n_frames,)."""
     selected = _column(points, SELECTED[0])[:, 0]
     if not selected.any():
         return np.zeros(len(frames), bool)
@@ -216,6 +216,6 @@ def _column(
 
 
 def _kind(name: str) -> type[np.generic]:
-    """Blender's own kinds of number; any other takes five times as long."""
+    """Blender's own number types; any other takes five times as long."""
     default = KEY[name][1]
     return {float: np.float32, bool: np.bool_, int: np.uint8}[type(default)]

@@ -1,4 +1,4 @@
-"""Make empties that move as recorded points do: one action for all, a slot for each."""
+"""Make empties that follow recorded points: one action for all, a slot for each."""
 
 import bpy
 
@@ -13,7 +13,7 @@ from .new_action import write_channels
 POINT = "mocap_assist_point"
 """Custom property of an empty: the name of its point, which Blender may have to change."""
 SIZE = 0.015  # meters: radius of the sphere that shows a marker
-CROSS = 0.2  # meters: half the length of the cross that shows what holds them
+CROSS = 0.2  # meters: half the length of the cross that shows their parent
 
 
 def build_empties(
@@ -23,7 +23,7 @@ def build_empties(
     metres: float,
     collection: bpy.types.Collection | None = None,
 ) -> tuple[bpy.types.Object, tuple[bpy.types.Object, ...]]:
-    """Add an empty for each point, below one that holds them together, which becomes active.
+    """Add an empty for each point, and a parent empty, which becomes active.
 
     The one that holds them is not drawn: Blender draws a line from each object to a parent
     that is. With a collection they are added there, and the active object stays.

@@ -1,4 +1,4 @@
-"""Which moments of an action are read: a range, on the grid of the action's keys."""
+"""Choose the frames at which an action is read: a range, on the grid of its keys."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -17,11 +17,11 @@ WIDEST_STEP = (
 MIN_ON_GRID = 0.9  # fraction of keys of each curve that must be on the grid
 OFF_GRID = 0.05  # of a step from it at most
 MIN_FILLED = 0.5
-"""Fraction of the grid that has keys. Exporters add keys between frames at fast moments; those
-alone make no finer grid."""
+"""Fraction of the grid that has keys. Exporters add keys between frames where motion is fast;
+these do not make the grid finer."""
 MAX_FRAMES_PER_KEY = 20
 MAX_FRAMES_OF_FEW_KEYS = 10_000
-"""A span with so many more frames than keys is no take, but one stray key far out."""
+"""A range with this many times more frames than keys is no take: one key lies far outside."""
 SPACING_TOLERANCE = 0.1  # fraction by which times between keys may differ
 
 
@@ -66,7 +66,7 @@ def range_bounds(
 
 
 class Grid(NamedTuple):
-    """Moments that lie evenly in time."""
+    """Evenly spaced frames."""
 
     frames: Array
     """Scene frames, shape (n_frames,), not always whole ones."""
@@ -82,8 +82,8 @@ def key_grid(
     """Return the frames within `bounds` on which the channels have their keys.
 
     A take keyed four times a frame, or at .5 of every frame, or on every second one, is read
-    where its keys are; where keys follow no grid, or are far apart, on every whole frame. What
-    is known to be `recorded` may have its samples far apart.
+    where its keys are; where keys follow no grid, or lie many frames apart, on every whole
+    frame. An action that is known to be `recorded` may have samples many frames apart.
 
     Raises
     ------
@@ -144,7 +144,7 @@ def _spacing(times: Array) -> float:
     """Return the typical time between keys: the mean of those near the median.
 
     Blender keeps times in single precision: late in a long take the median alone is off by a
-    thousandth, which over its many keys makes whole frames.
+    thousandth, which over its many keys adds up to whole frames.
     """
     spacings = np.diff(times)
     median = np.median(spacings)

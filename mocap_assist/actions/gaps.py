@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 from ...solvers.arrays import Array
 
 WIDEST_STEP = 2.5  # a median distance of keys, in frames, above which an animator set them
-WIDEST_HOLE = 1.5  # distances between neighbours, in median ones, that are no gap
+WIDEST_HOLE = 1.5  # distances between neighbors, in median ones, that are no gap
 
 
 def unobserved(
     channels: Sequence[Array], frames: Array, step: float | None = None
 ) -> NDArray[np.bool_]:
-    """Tell the frames at which a bone was not captured, shape (n_frames,).
+    """Return the frames at which a bone was not captured, shape (n_frames,).
 
     A recorded take has keys on every frame; where *all* channels of a bone have none, before
     the first and after the last key too, the sensor had lost it. No gap is seen in curves that
@@ -27,8 +27,8 @@ def unobserved(
         Frame and value of each key of each animated channel of one bone.
     frames : shape (n_frames,)
     step : float
-        Frames from one sample to the next of what is known to be a recording: then no keys are
-        taken for set by hand, though they are few or far apart.
+        Frames from one sample to the next, where the action is known to be a recording: then
+        even few or widely spaced keys count as captured.
     """
     gap = np.ones(len(frames), bool)
     held = np.ones(len(frames), bool)

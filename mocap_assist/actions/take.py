@@ -50,7 +50,7 @@ class ArmatureTake:
 
     `parts[0]` is the body: the tree of hips, spine and limbs, in the world. Further trees, such
     as props and IK controls, follow, each in the space in which its parent rests. `offsets`
-    are the locations of bones inside the trees, in their parents' rest axes, metres.
+    are the locations of bones inside the trees, in their parents' rest axes, meters.
     """
 
     rig: Rig
@@ -115,7 +115,8 @@ def part_of(
 
     A is the rest orientation of the bone in the world. No forward kinematics is needed, since
     a joint's local rotation and Blender's basis are one rotation about different axes.
-    The root's rotation is then carried into the world.
+    The root's rotation is then carried into the world. Constant location keys of the other
+    bones are part of the skeleton.
     """
     world = multiply(rest.rotations[0], rig.rest_rotations)
     rotations = []
@@ -132,10 +133,31 @@ def part_of(
     moved = rotate(rig.rest_rotations[root], channels[root].locations)
     positions = carrier.points(rig.heads[root] + moved)
     skeleton, owners = skeleton_of(rig, bones, rest)
+    skeleton = _with_keyed_lengths(skeleton, owners, channels, rest.scale, world)
     still = np.tile([1.0, 0.0, 0.0, 0.0], (len(positions), 1))
     rotations += [still] * (len(owners) - len(bones))
     motion = Motion(skeleton, np.stack(rotations, axis=1), positions, frame_rate)
     return Part(motion, owners, carrier)
+
+
+def _with_keyed_lengths(
+    skeleton: Skeleton,
+    owners: tuple[int, ...],
+    channels: tuple[BoneChannels, ...],
+    scale: float,
+    world: Array,
+) -> Skeleton:
+    """Return a skeleton with the constant location keys of its bones, but the root's."""
+    offsets = skeleton.offsets.copy()
+    for joint, bone in enumerate(owners):
+        if joint == 0 or bone < 0 or not channels[bone].location_keyed:
+            continue
+        if not channels[bone].travels:
+            location = np.nan_to_num(channels[bone].locations[:1])
+            offsets[joint] += scale * rotate(world[bone], location)[0]
+    if (offsets == skeleton.offsets).all():
+        return skeleton
+    return Skeleton(skeleton.names, skeleton.parents, offsets)
 
 
 def basis_rotations(part: Part, rig: Rig, rest: Placement) -> dict[int, Array]:

@@ -1,4 +1,4 @@
-"""`import`: what the button Import does, to files and folders."""
+"""The command `import`: what the button Import does, for files and folders."""
 
 import argparse
 from pathlib import Path

@@ -10,6 +10,7 @@ from ...solvers.errors import InvalidFileError
 from ..jobs.in_blender import SkinnedMeshes
 
 MAX_BYTES = 1 << 28
+"""Of the packed meshes of a file, bytes; guards memory against scans of whole scenes."""
 FILE = "meshes.blend"
 
 

@@ -25,6 +25,8 @@ def clean_report(n_frames: int, cleaned: Cleaned, name: str, n_modified: int = 0
         message.append(f"Applied the modifiers of {n_modified} curves.")
     if not all(each.converged for each in cleaned.solution.denoised):
         message.append("Stopped before the result converged; try a shorter range.")
+    if cleaned.low_confidence:
+        message.append(cleaned.low_confidence)
     return " ".join(message)
 
 

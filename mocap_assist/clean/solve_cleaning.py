@@ -29,7 +29,14 @@ from ...solvers.denoising import (
 )
 from ...solvers.denoising.feet import find_legs
 from ...solvers.markers import Swap, unswap_markers
-from ...solvers.motion import JointLimits, Motion, Tracks
+from ...solvers.motion import (
+    JointLimits,
+    Motion,
+    Tracks,
+    describe_low_confidence,
+    explain_roles,
+    find_humanoid_map,
+)
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.recordings import read_motion_or_tracks
 from ...solvers.rotations import angle_between, slerp
@@ -131,6 +138,8 @@ class Cleaned:
     before: Quality
     """Of the recording, its feet measured at the contacts at which they were planted."""
     after: Quality
+    low_confidence: str = ""
+    """A sentence about roles that planted the feet, if any has low confidence."""
 
 
 def names_of(recording: Motion | Tracks) -> tuple[str, ...]:
@@ -201,7 +210,17 @@ def clean(
         measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.05))
         for each, start in ((problem.recordings[0], 0.9), (body, 0.95))
     )
-    return Cleaned((body, *other_trees), moved, solution, planted, before, after)
+    marked = "" if planted is None else _low_confidence_of_legs(body)
+    return Cleaned((body, *other_trees), moved, solution, planted, before, after, marked)
+
+
+def _low_confidence_of_legs(body: Motion | Tracks) -> str:
+    if isinstance(body, Tracks):
+        return ""
+    humanoid = find_humanoid_map(body.skeleton)
+    evidence = explain_roles(body.skeleton, humanoid)
+    legs = {r: each for r, each in evidence.items() if "Leg" in r or r.endswith("Foot")}
+    return describe_low_confidence(humanoid, legs)
 
 
 def _planted(body: Motion, finish: Finish, progress: Progress) -> Planted | None:

@@ -6,7 +6,7 @@ from ...solvers.recordings import ALL_BODIES, Body
 from .recent_files import bodies_of
 
 Item = tuple[str, str, str, str, int]
-BEST = ("best", "Best Seen", "Import the person seen in most frames", "NONE", 0)
+BEST = ("best", "Most Frames", "Import the person that is in most frames", "NONE", 0)
 EVERY = ("all", "All", "Import every body as an armature of its own", "NONE", 1)
 FIRST = 2
 """Number of the item of the first body."""
@@ -38,7 +38,7 @@ def body_items(paths: list[Path]) -> list[Item]:
 
 
 def number_of(text: str, paths: list[Path]) -> int:
-    """Return the number of the item that means this text; the best seen for others."""
+    """Return the number of the item that means this text; `BEST` for others."""
     if text.strip().lower() == ALL_BODIES:
         return EVERY[-1]
     names = [body.name for body in bodies_to_choose(paths)] if len(paths) == 1 else []

@@ -28,7 +28,7 @@ class ImportJob:
     Parameters
     ----------
     context : bpy.types.Context
-        With a window, whose status bar tells how far the work is.
+        With a window, whose status bar shows the progress.
     paths : files, at least one
     choices : ImportChoices
     """
@@ -90,8 +90,8 @@ class ImportJob:
     def _fetch(self) -> None:
         """Take over what was read, and let the next files be read meanwhile.
 
-        Where the process has died, nobody knows of which file: halves of them are read again,
-        until it is alone.
+        A process that died does not report at which file: each half of them is read again,
+        until the damaged file is alone.
         """
         paths = self._batches.popleft()
         try:
@@ -149,10 +149,10 @@ def batches(paths: Iterable[Path]) -> Iterator[list[Path]]:
 
 
 def _refusal(path: Path, error: ProcessDied | OutOfMemoryError) -> MocapAssistError:
-    """Say which file it was that could not be read."""
+    """Return the error that names the file that could not be read."""
     if isinstance(error, OutOfMemoryError):
         return InvalidFileError(f"{path} does not fit into memory. Import a part of the take.")
     return InvalidFileError(
-        f"{path} made its reader end early, {error.cause}. Import a part of the take, or have"
-        f" it exported anew.{error.last_output}"
+        f"{path} made its reader end early, {error.cause}. Import a part of the take, or"
+        f" export it again.{error.last_output}"
     )

@@ -23,7 +23,7 @@ def read_again(
 ) -> list[ReadRecording]:
     """Return the takes of a file, as `read_takes` does; an unchanged file is read once.
 
-    Recordings of depth are opened anew: little is read for that.
+    Depth recordings are opened again: little is read for that.
     """
     state, reading = state_of(path), reading_of(conversion)
     takes = _read.pop((state, reading), None) or read_takes(path, conversion, progress)

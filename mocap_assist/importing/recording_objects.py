@@ -12,6 +12,7 @@ from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.motion.humanoid import fill_missing_hips
 from ...solvers.progress import Progress, unwatched
 from ..actions.armature_build import build_armature
+from ..actions.bone_lengths import key_lengths
 from ..actions.new_action import write_motion
 from ..actions.sensor_notes import sensor_values, write_sensor_values
 from ..blender import compat
@@ -90,7 +91,10 @@ def make_objects(
     frames = samples.frames(moving.n_frames)
     if isinstance(moving, Motion):
         mode = choices.rotate_mode.name
-        made = _make_armature(context, name, moving, mode, frames, sensor_samples, progress)
+        is_tracked = isinstance(recording, JointRecording)
+        made = _make_armature(
+            context, name, moving, mode, frames, sensor_samples, is_tracked, progress
+        )
     else:
         timed = Timed(moving, frames, sensor_samples)
         made = _make_empties(context, name, recording, timed, progress)
@@ -129,12 +133,18 @@ def _make_armature(
     mode: str,
     frames: Array,
     sensor_samples: SensorSamples,
+    is_tracked: bool,
     progress: Progress,
 ) -> CreatedObjects:
+    """Add an armature; Reconstruct can change the lengths of bones that a camera tracked."""
     metres = unit_of(context.scene)
-    armature, bones = build_armature(context, name, motion.skeleton, metres, mode)
+    armature, bones = build_armature(
+        context, name, motion.skeleton, metres, mode, connected=not is_tracked
+    )
     action, slot = write_motion(armature, bones, motion, frames, metres, progress=progress)
     bag = compat.channelbag(action, slot)
+    if is_tracked:
+        key_lengths(action, slot, {bone: np.zeros(3) for bone in bones[1:] if bone}, frames[0])
     for joint, bone in zip(motion.skeleton.names, bones, strict=True):
         if bone:
             write_sensor_values(bag, armature.pose.bones[bone], *sensor_samples.of(joint))

@@ -6,13 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...solvers.errors import InvalidFileError
-from ...solvers.motion import Motion, Skeleton
+from ...solvers.motion import Motion
 from ...solvers.recordings import ALL_BODIES, Bodies, Body
 from ...solvers.recordings.conventions import MIN_BODY_JOINTS, observed_body
 from ..jobs.in_blender import BlendClip, BlendRead
-
-SAME_OFFSET_M = 1e-4
-"""Offsets of two takes of one skeleton differ by rounding only."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,25 +48,21 @@ def choice_in_scene(wanted: str, bodies: Bodies[tuple[Take, ...]]) -> list[int]:
 
 
 def _grouped(clips: Sequence[BlendClip]) -> list[list[BlendClip]]:
-    """Put together the clips of each armature and skeleton."""
+    """Put together the clips of each armature with the same joints.
+
+    Bone lengths that an action changes by constant keys are those of the group's first clip.
+    """
     groups: list[list[BlendClip]] = []
     for clip in clips:
         for group in groups:
             first = group[0]
-            if first.armature == clip.armature and _is_same(
-                first.motion.skeleton, clip.motion.skeleton
-            ):
+            same_joints = first.motion.skeleton.same_joints(clip.motion.skeleton)
+            if first.armature == clip.armature and same_joints:
                 group.append(clip)
                 break
         else:
             groups.append([clip])
     return groups
-
-
-def _is_same(one: Skeleton, other: Skeleton) -> bool:
-    return one.same_joints(other) and np.allclose(
-        one.offsets, other.offsets, rtol=0.0, atol=SAME_OFFSET_M
-    )
 
 
 def _named(groups: list[list[BlendClip]]) -> list[tuple[str, list[BlendClip]]]:

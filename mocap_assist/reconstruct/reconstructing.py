@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
-from ...solvers.motion import Motion
+from ...solvers.motion import Motion, Sensor
 from ..actions.armature_read import read_take
 from ..actions.armature_write import check_writable, count_modified, put_to_use, write_take
+from ..actions.bone_lengths import has_constant_locations, key_lengths, length_locations
 from ..actions.contacts import animators_contacts, write_contacts
 from ..actions.curves import GENERATED, MEASURED
 from ..actions.reliability_curves import Term, write_reliability
@@ -109,6 +110,9 @@ def write_reconstructed(
     action, slot = write_take(
         armature, reading.recorded, take, bones, _key_types(names, rebuilt), suffix=SUFFIX
     )
+    if problem.resize:
+        lengths = length_locations(reading.take, rebuilt.motion.skeleton)
+        key_lengths(action, slot, lengths, reading.take.frames[0])
     for term in Term:
         values = getattr(rebuilt.solution.reliability_terms, term.name.lower())
         reliability = dict(zip(names, values.T, strict=True))
@@ -151,6 +155,8 @@ def _problem(
         body=body,
         tracking_state=state,
         source=_source_of(reading.recorded[0]),
+        sensor=_sensor_of(reading.recorded[0]),
+        resize=_is_resizable(reading.take),
         settings=settings.rebuilding,
         examples=examples,
         postures_file=postures,
@@ -164,6 +170,17 @@ def _source_of(action: bpy.types.Action) -> tuple[str, int, str] | None:
     origin = origin_of(action)
     path, body = (str(origin.get(name, "")) for name in ("file", "body"))
     return (*_dated(path), body) if absolute(path).is_file() else None
+
+
+def _is_resizable(take: ArmatureTake) -> bool:
+    """Whether constant locations can change bones: an import with keys for them, as a whole."""
+    return has_constant_locations(take) and bool((ease_of(take.grid) == 1.0).all())
+
+
+def _sensor_of(action: bpy.types.Action) -> Sensor:
+    """Return the sensor that an action was imported from."""
+    noted = str(origin_of(action).get("sensor", ""))
+    return Sensor(noted) if noted in {one.value for one in Sensor} else Sensor.OTHER
 
 
 def _dated(file: str) -> tuple[str, int]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...solvers.arrays import Array
 from ...solvers.denoising import Planted, PlantSettings, Quality, measure_quality
 from ...solvers.errors import MocapAssistError
-from ...solvers.motion import JointRecording, Motion
+from ...solvers.motion import JointRecording, Motion, Sensor
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.reconstruction import (
     ReconstructSettings,
@@ -39,6 +39,10 @@ class RebuildProblem:
     """Tracking state of each joint, shape (n_frames, n_joints)."""
     source: tuple[str, int, str] | None
     """The file that the take was imported from, if it is there, its date, and the body."""
+    sensor: Sensor
+    """The sensor that the take was imported from, as noted on its action."""
+    resize: bool
+    """Whether location keys can give bones other lengths."""
     settings: ReconstructSettings
     examples: Examples | None
     """Clips of natural postures; None for those that are shipped, or of a file."""
@@ -95,6 +99,8 @@ def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> Rebuilt
         prior,
         source=_source(problem),
         tracking_state=problem.tracking_state,
+        sensor=problem.sensor,
+        resize=problem.resize,
         settings=problem.settings,
         progress=within(progress, 0.2, 1.0),
     )

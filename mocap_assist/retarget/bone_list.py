@@ -108,7 +108,7 @@ class MOCAP_OT_find_bones(_BoneButton, bpy.types.Operator):
         return self.done(partial(self.find, context))
 
     def find(self, context: bpy.types.Context) -> None:
-        """Fill the list anew."""
+        """Fill the list again."""
         found = context.scene.mocap_assist
         source, target = _both_armatures(context)
         list_maps(found.bone_map, source, target, find_maps(source, target))

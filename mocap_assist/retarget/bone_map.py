@@ -1,11 +1,12 @@
 """Which bones of source and target play which part: found, edited, or from presets."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import bpy
 
 from ...solvers.motion import HUMANOID_ROLES, HumanoidMap, read_humanoid_map
-from ...solvers.motion.humanoid import MIN_CONFIDENCE
+from ...solvers.motion.humanoid import ESSENTIAL_ROLES, MIN_CONFIDENCE
 from ..blender.path_properties import absolute
 from ..rigs.role_confidence import explain_rig_roles
 from ..rigs.target_read import find_roles
@@ -99,11 +100,32 @@ def explain_rows(listed: bpy.types.PropertyGroup) -> None:
             setattr(row, f"{side}_reason", found.text if found else lack if bone else "")
 
 
-def explain_edited(row: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Explain all rows again after one was edited: the roles of a limb depend on each other."""
-    listed = row.id_data.mocap_assist.bone_map
-    if listed.source and listed.target:
-        explain_rows(listed)
+def explain_edited(side: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:
+    """Return what to do after a bone of this side was edited.
+
+    All rows are explained again, because the roles of a limb depend on each other, and the
+    heading follows.
+    """
+
+    def explain(row: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+        listed = row.id_data.mocap_assist.bone_map
+        if listed.source and listed.target:
+            explain_rows(listed)
+            setattr(listed, f"{side}_score", share_of_certain_roles(listed, side))
+
+    return explain
+
+
+def share_of_certain_roles(listed: bpy.types.PropertyGroup, side: str) -> float:
+    """Return the fraction of the essential roles whose bone has no low confidence."""
+    certain = [
+        row
+        for row in listed.rows
+        if row.name in ESSENTIAL_ROLES
+        and getattr(row, side)
+        and not has_low_confidence(row, side)
+    ]
+    return len(certain) / len(ESSENTIAL_ROLES)
 
 
 def count_low_confidence(listed: bpy.types.PropertyGroup) -> int:
@@ -118,5 +140,5 @@ def has_low_confidence(row: bpy.types.PropertyGroup, side: str) -> bool:
 
 
 def is_finger(role: str) -> bool:
-    """Tell whether a role is a part of a finger."""
+    """Return whether a role is a part of a finger."""
     return any(finger in role for finger in FINGERS)

@@ -27,7 +27,7 @@ from ..actions.rotation_modes import (
 
 MOVES = 1e-6  # radians
 FINEST = 0.1
-"""Radians for each metre of tolerance that angles between keys may always be off."""
+"""Radians for each meter of tolerance that angles between keys may always be off."""
 MIN_KEYS = 2  # keys without which nothing moves
 TIGHTER, N_TRIES = 0.6, 6
 """Axes and angles do not go between keys as quaternions do: where that brings an end too far

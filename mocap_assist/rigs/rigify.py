@@ -20,7 +20,7 @@ IK_PARENT_ROOT = 1
 
 
 def is_rigify(bones: Collection[str]) -> bool:
-    """Tell whether bones are those of a generated rig."""
+    """Return whether bones are those of a generated rig."""
     return "MCH-torso.parent" in bones or ("torso" in bones and "ORG-spine" in bones)
 
 

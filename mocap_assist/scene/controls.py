@@ -66,7 +66,7 @@ class TargetRig:
     Attributes
     ----------
     skeleton : Skeleton
-        The joints that play roles, in the stage, metres.
+        The joints that play roles, in the stage, meters.
     humanoid : HumanoidMap
     controls : tuple of Control
     metres : float

@@ -53,7 +53,7 @@ def given_to(action: bpy.types.Action) -> str:
 
 
 def was_thinned(action: bpy.types.Action) -> bool:
-    """Tell whether Unbake made it: frames without keys are no gaps then."""
+    """Return whether Unbake made it: frames without keys are no gaps then."""
     entries = history(action)
     return bool(entries) and entries[-1].get("operation") == "reduce_keys"
 
@@ -75,7 +75,7 @@ def raw_of(action: bpy.types.Action, slot: bpy.types.ActionSlot | None = None) -
 def cleaned_from(played: Source) -> Source:
     """Return what Clean starts from: the recorded action, or what made another motion of it.
 
-    Cleaning again starts anew; what Reconstruct or Physics made is kept.
+    Cleaning again starts from the same action; what Reconstruct or Simulate made is kept.
     """
     action, slot = played
     while (entries := history(action)) and entries[-1].get("operation") not in REMADE:

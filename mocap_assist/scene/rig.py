@@ -71,7 +71,7 @@ class Placement:
     scale: float
 
     def in_unit(self, metres: float) -> "Placement":
-        """Return the placement with its metres taken for units of so many meters."""
+        """Return the placement with its meters taken for units of so many meters."""
         return Placement(self.rotations, metres * self.origins, metres * self.scale)
 
     def points(self, points: Array) -> Array:
@@ -114,7 +114,7 @@ def placement_of(matrix: Matrix, name: str) -> tuple[Array, Array, float]:
     Raises
     ------
     InvalidMotionError
-        The scale differs between axes, is zero or mirrors, so that there are no metres; or
+        The scale differs between axes, is zero or mirrors, so that there are no meters; or
         something is not a number.
     """
     check_finite(matrix, name)

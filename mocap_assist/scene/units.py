@@ -5,7 +5,7 @@ import bpy
 from ...solvers.recordings.conventions import guess_unit, longest_bone_path
 from .rig import Rig
 
-# Metres from foot to hand along the bones: from a cat to a dragon. Beyond it, a recording was
+# Meters from foot to hand along the bones: from a cat to a dragon. Beyond it, a recording was
 # imported in the unit of its file, such as centimeters, as happens with BVH every day.
 PLAUSIBLE_REACH = (0.25, 15.0)
 

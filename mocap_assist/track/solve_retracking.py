@@ -47,7 +47,7 @@ def retrack_recording(
     show: Show = no_preview,
     progress: Progress = unwatched,
 ) -> Retracked:
-    """Track again from a corrected frame; show each pose, as `Onlooker` can rebuild it."""
+    """Track again from a corrected frame; show each pose as it is found."""
     actor_only = find_actor(
         played.recording, played.actor, progress=within(progress, 0.0, ACTOR_FRACTION)
     ).recording

@@ -86,7 +86,7 @@ def assign(
     Raises
     ------
     InvalidMotionError
-        Somebody cannot play them; nothing is changed then.
+        An armature cannot play them; nothing is changed then.
     """
     scene, actions = context.scene, listing.chosen(context.scene)
     members = draw_members(len(armatures), len(actions), settings.choices)

@@ -13,11 +13,18 @@ from ..motion.skeletons import describe_shots, find_shot_boundaries, is_short_sh
 from ..progress import Progress, unwatched, within
 from ..settings import Choice, Settings, setting
 from .channels import CENTIMETERS, Channels, decode, encode
+from .edge_poses import (
+    describe_edge_poses,
+    find_edge_poses,
+    hide_edge_poses,
+    restore_edge_poses,
+)
 from .limits import clamp_to_limits, find_impossible_rotations
 from .marker_gaps import FilledMarkers, fill_markers
 from .observed_samples import max_per_joint, observed_mask, restore_observed
-from .posterior import Estimate, estimate_in_groups
+from .posterior import Estimate
 from .published import filter_as_published
+from .stacking import estimate_and_stack
 from .window_priors import FilterBases
 
 MIN_OUTLIER_ERROR = 2.0
@@ -88,7 +95,8 @@ def denoise(
 
     A take that was joined from several recordings is cleaned segment by segment. A segment of
     less than a quarter of a second keeps its samples; only its gaps are filled. Such a segment
-    is the T-pose at the start of many recordings.
+    is the T-pose at the start of many recordings. A single limb that starts or ends in a
+    separate pose keeps its samples too.
 
     Parameters
     ----------
@@ -128,9 +136,11 @@ def denoise(
             "Nothing was observed in this take; there is nothing to clean."
         )
     cuts = find_shot_boundaries(recording)
+    edge_poses = find_edge_poses(recording, cuts)
+    take = hide_edge_poses(recording, edge_poses)
     results = []
-    for start, stop in shot_ranges(recording, cuts):
-        segment = recording.slice(start, stop) if cuts else recording
+    for start, stop in shot_ranges(take, cuts):
+        segment = take.slice(start, stop) if cuts else take
         step = within(progress, start / recording.n_frames, stop / recording.n_frames)
         if cuts and is_short_shot(stop - start, recording.frame_rate):
             unchanged_settings = replace(settings, strength=0.0)
@@ -142,7 +152,12 @@ def denoise(
         else:
             results.append(_denoise_segment(segment, bases, limits, settings, step))
     progress(1.0, "Done")
-    return _join_segments(recording, results, cuts) if cuts else results[0]
+    result = _join_segments(take, results, cuts) if cuts else results[0]
+    complete, confidence = restore_edge_poses(
+        recording, result.recording, result.confidence, edge_poses
+    )
+    message = f"{result.prior_used} {describe_edge_poses(edge_poses)}".strip()
+    return replace(result, recording=complete, confidence=confidence, prior_used=message)
 
 
 def _denoise_segment(
@@ -236,7 +251,7 @@ def _estimate(
 ) -> tuple[Estimate, str]:
     if settings.method is Method.PUBLISHED:
         return filter_as_published(channels, frame_rate, bases, progress)
-    return estimate_in_groups(channels, frame_rate, bases, progress)
+    return estimate_and_stack(channels, frame_rate, bases, progress)
 
 
 def _unchanged(segment: Motion | Tracks) -> Denoised:

@@ -26,20 +26,20 @@ from .recording import DepthRecording
 
 DEFAULT_FOREGROUND = ForegroundSettings()
 SAMPLES_PER_SECOND, MAX_SAMPLES = 6.0, 12_000
-"""Frames a second, in hertz, from which the scene is learned, and their maximum number. Chosen
-by hand: x0.5 and x2 move no error."""
+"""Frames a second, in hertz, from which the scene is learned, and their maximum number. They
+guard the run time and the memory of long recordings."""
 COARSE_WIDTH = 160
 MAX_BODY_COVERAGE, MIN_BODY_FRACTION = 0.5, 0.75
 """Fractions: an image is actor-only if less of it has depth, and more of that belongs to one
-body. Chosen by hand: x0.5 and x2 move no error."""
+body. They guard recordings whose room was removed by another program."""
 MIN_MOVING_FRACTION = 0.1
-"""A body with fewer pixels in front of the room counts as furniture. Chosen by hand: x0.5 and
-x2 move no error."""
+"""A body with fewer pixels in front of the room counts as furniture. It guards rooms with
+furniture as large as a person."""
 STATURE_RANGE_M = (0.6, 2.6)
 """Plausible height of an actor whose feet are visible. It guards against wrong units."""
 MIN_CROPPED_FRACTION = 0.05
-"""Minimum fraction of the actor in the lowest image row if the feet are outside the image.
-Chosen by hand: x0.5 and x2 move no error."""
+"""Minimum fraction of the actor in the lowest image row if the feet are outside the image. It
+guards actors too near to the camera for their feet."""
 
 
 @dataclass(frozen=True, eq=False)

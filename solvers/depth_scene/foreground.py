@@ -28,8 +28,8 @@ BACKGROUND_QUANTILE = 0.9
 """Quantile of a pixel's depths that shows the room behind a moving actor. Chosen by hand: x0.5
 and x2 move no error."""
 MAX_ACTOR_DISTANCE_M = 1.2
-"""A body farther from the expected position of the actor is another person. Chosen by hand:
-x0.5 and x2 move no error."""
+"""A body farther from the expected position of the actor is another person. It guards images in
+which only another person is visible."""
 
 
 class ForegroundMethod(Choice):

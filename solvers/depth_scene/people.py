@@ -10,13 +10,14 @@ from ..arrays import Array
 from .bodies import Bodies
 
 MAX_SPEED_M_S = 4.0
-"""Maximum speed of a body's center. Chosen by hand: x0.5 and x2 move no error."""
+"""Maximum speed of a body's center. It guards recordings of several people: a runner stays one
+person, a bystander another."""
 MAX_GAP_S = 1.0
-"""A body that reappears after a longer gap counts as another person. Chosen by hand: x0.5 and
-x2 move no error."""
+"""A body that reappears after a longer gap counts as another person. It guards recordings in
+which an actor leaves and another one enters."""
 MAX_JUMP_M = 0.3
-"""Maximum jump of the center of the visible surface between two samples. Chosen by hand: x0.5
-and x2 move no error."""
+"""Maximum jump of the center of the visible surface between two samples. It guards recordings
+of several people who pass in front of each other."""
 
 
 @dataclass

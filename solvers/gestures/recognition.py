@@ -14,8 +14,8 @@ from .still_gestures import HandUp, Turn, Zoom
 from .stroke_gestures import Clap, Wave
 
 MAX_BREAK_S = 0.5
-"""Seconds without a frame, or without hands, after which all gestures are reset. Chosen by
-hand: x0.5 and x2 move no error."""
+"""Seconds without a frame, or without hands, after which all gestures are reset. It guards
+gestures that would begin before a break of the stream and end after it."""
 DEFAULT_SETTINGS = GestureSettings()
 
 

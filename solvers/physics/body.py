@@ -31,19 +31,20 @@ MIN_MASS_KG = 0.05
 costs 1.1 %."""
 
 MAX_STILL_RAD = 1e-3
-"""Radians: a joint without a role that rotates less is part of the one above. Chosen by hand:
-x0.5 and x2 move no error."""
+"""Radians: a joint without a role that rotates less is part of the one above. It guards rigs
+with fingers and helper bones that rest, which would be segments of little mass."""
 
 MIN_SIZE, MAX_SIZE = 0.05, 20.0
-"""Bounds of the size of a body: leg length relative to 0.9 m. Chosen by hand: x0.5 and x2 move
-no error."""
+"""Bounds of the size of a body: leg length relative to 0.9 m, from a doll to a giant. They
+guard takes in a wrong unit."""
 
 MIN_FRAME_RATE_HZ = 5.0
-"""Minimum frame rate. Chosen by hand: x0.5 and x2 move no error."""
+"""Minimum frame rate. It guards takes with a few poses a second, between which no path is
+known."""
 
 MIN_LENGTH_M = 0.01
-"""Meters, for legs of 0.9 m: a shorter segment is a sphere. Chosen by hand: x0.5 and x2 move no
-error."""
+"""Meters, for legs of 0.9 m: a shorter segment is a sphere. It guards rigs with bones of zero
+length, which have no direction."""
 
 
 class JointFrame(NamedTuple):

@@ -26,8 +26,8 @@ the other, and legs that press on it stand more firmly. Chosen by hand: x0.5 cos
 costs 4.9 %."""
 
 MAX_HOVER_M = 0.25
-"""Meters, for legs of 0.9 m: greater lasting heights are no capture error. Chosen by hand: x0.5
-and x2 move no error."""
+"""Meters, for legs of 0.9 m: a body that stays higher is not on this ground. It guards takes on
+a platform or in camera space."""
 
 
 def joints_of_ends(body: PhysicsBody) -> NDArray[np.intp]:

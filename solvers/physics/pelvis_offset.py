@@ -18,8 +18,8 @@ SMOOTHING_S = 0.04
 """Time constant in seconds of the pelvis offset. Chosen by hand: x0.5 and x2 move no error."""
 
 MIN_KNEE_OFFSET_M = 0.01
-"""Minimum distance of a knee from the line of its leg in meters, for legs of 0.9 m. Chosen by
-hand: x0.5 and x2 move no error."""
+"""Minimum distance of a knee from the line of its leg in meters, for legs of 0.9 m. It guards a
+division where a knee is straight."""
 
 N_BANDS = 6
 """Bands above the diagonal: three components, coupled with those of two frames before."""

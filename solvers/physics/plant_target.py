@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..motion import Motion, ReachSettings, WorldPoses, forward_kinematics, reach
+from ..motion import Motion, WorldPoses, forward_kinematics, reach
 from ..motion.humanoid import UP
 from ..rotations import (
     inverse,
@@ -21,19 +21,17 @@ from .foot_support import distribute_load
 from .pelvis_offset import LegGoal, solve_pelvis_offset
 
 MIN_FRAMES = 4
-"""Minimum frames in which a foot can stand. Chosen by hand: x0.5 and x2 move no error."""
+"""Minimum frames in which a foot can stand. It guards takes too short for a second
+difference."""
 
 BLEND_S = 0.3
-"""Seconds over which a released foot blends to its own motion. Chosen by hand: x0.5 costs
+"""Seconds over which a released foot blends to its own motion, and a simulated body to the take
+next to a failure. Chosen by hand: x0.5 costs
 0.9 %, x2 costs 0.6 %."""
 
 MAX_TURN_RATE_RAD_S = 0.6
 """Radians per second: a foot that rotates faster on the ground does so on purpose. Chosen by
 hand: x0.5 costs 1.5 %, x2 gains 1.0 %."""
-
-REACH_SOFTNESS = 0.01
-"""Fraction of a leg's length kept in reserve, so that knees do not snap straight. Chosen by
-hand: x0.5 and x2 move no error."""
 
 
 class FootPlan(NamedTuple):
@@ -129,8 +127,7 @@ def _apply_foot_plan(motion: Motion, poses: WorldPoses, foot: FootPlan) -> Motio
     `poses` are those of the motion before any correction.
     """
     ankle = foot.goal.chain[-1]
-    settings = ReachSettings(softness=REACH_SOFTNESS)
-    result = reach(motion, foot.goal.chain, foot.goal.ankle, settings)
+    result = reach(motion, foot.goal.chain, foot.goal.ankle)
     parent_rotations = forward_kinematics(result).rotations[:, motion.skeleton.parents[ankle]]
     rotations = result.rotations.copy()
     foot_rotations = multiply(foot.rotations, poses.rotations[:, ankle])

@@ -6,10 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, forward_kinematics
-
-MAX_GROUND_DIFFERENCE_M = 0.25
-"""Maximum distance, for legs of 0.9 m, between the feet's ground and the given one. Chosen by
-hand: x0.5 and x2 move no error."""
+from .body_surface import MAX_HOVER_M
 
 
 def mean_distance(motion: Motion, other: Motion, joints: Sequence[int]) -> float:
@@ -37,7 +34,7 @@ def describe_result(followed: NDArray[np.bool_], given_up: bool, smoothing: floa
 
 def is_near_ground(ground: float, under_feet: float, size: float) -> bool:
     """Return whether the height under the feet is near the ground's, for this body size."""
-    return abs(under_feet - ground) <= MAX_GROUND_DIFFERENCE_M * size
+    return abs(under_feet - ground) <= MAX_HOVER_M * size
 
 
 def describe_ground(ground: float, under_feet: float, size: float, given: float | None) -> str:

@@ -13,10 +13,10 @@ from .body_surface import measure_foot_slide, measure_penetration
 from .engine import load_engine
 from .feet import add_soles, find_ground, has_long_contact
 from .foot_support import sum_foot_loads
+from .plant_target import BLEND_S
 from .report import describe_ground, describe_result, is_near_ground, mean_distance
 from .settings import Ground, SimulateSettings
 from .simulate_segment import (
-    EASE_S,
     SimulatedSegment,
     SimulationConditions,
     find_segments,
@@ -26,13 +26,9 @@ from .target import blend_motions, fade_around, fill_motion_gaps
 
 Flags = NDArray[np.bool_]
 DEFAULT_SETTINGS = SimulateSettings()
-MIN_SECONDS_PER_LOSS = 1.0
-"""Seconds of a take per loss of the body; with more frequent losses the result is the input.
-Chosen by hand: x0.5 and x2 move no error."""
-
 MAX_LOST_FRACTION = 0.3
-"""Fraction of frames that the body may fail to follow, likewise. Chosen by hand: x0.5 and x2
-move no error."""
+"""Fraction of frames that the body may fail to follow; with more, the result is the take. It
+guards takes that no body can follow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,9 +211,7 @@ def _assemble_result(
 ) -> Simulated:
     """Blend the simulated segments with the take, and measure the result."""
     followed = np.concatenate([segment.followed for segment in segments])
-    n_resets = sum(segment.n_resets for segment in segments)
-    reset_too_often = n_resets > 1 + motion.n_frames * motion.dt / MIN_SECONDS_PER_LOSS
-    given_up = reset_too_often or float((~followed).mean()) > MAX_LOST_FRACTION
+    given_up = float((~followed).mean()) > MAX_LOST_FRACTION
     if given_up:
         followed[:] = False
     rotations = np.concatenate([segment.motion.rotations for segment in segments])
@@ -256,5 +250,5 @@ def _assemble_result(
 def _fade_weights(segments: list[SimulatedSegment], frame_rate: float) -> Array:
     """Return weights that rise from 0, where the body was lost, to 1, shape (n_frames,)."""
     return np.concatenate([
-        fade_around(~segment.followed, EASE_S * frame_rate) for segment in segments
+        fade_around(~segment.followed, BLEND_S * frame_rate) for segment in segments
     ])

@@ -29,7 +29,7 @@ from .foot_support import (
     detect_target_contacts,
     weights_between_frames,
 )
-from .plant_target import plant_target_feet
+from .plant_target import BLEND_S, plant_target_feet
 from .target import blend_motions, fade_around, smooth_target
 from .world import build_world
 
@@ -40,8 +40,7 @@ by hand: x0.5 gains 0.2 %, x2 costs 8.4 %."""
 
 MAX_JUMP_M, MAX_SPEED_M_S = 0.05, 12.0
 """Meters, for legs of 0.9 m, and meters per second. A greater mean joint displacement between
-frames is a discontinuity, as between joined clips, or after a T-pose. Chosen by hand: x0.5 and
-x2 move no error."""
+frames is a discontinuity. They guard takes with joined clips, or with a T-pose at the start."""
 
 STANCE_SPEED_M_S, SWING_SPEED_M_S = 0.3, 0.8
 """Meters per second, for legs of 0.9 m: a sole slower than the first in the target gets full
@@ -53,19 +52,13 @@ MIN_FRICTION_FACTOR = 0.05
 0.1 %."""
 
 
-EASE_S = 0.3
-"""Seconds over which the result blends to the input next to a failure. Chosen by hand: x0.5 and
-x2 move no error."""
-
 MAX_EXTRA_SINK_M = 0.001
 """Meters, for legs of 0.9 m: planting is dropped where the body would sink deeper by this.
 Chosen by hand: x0.5 and x2 move no error."""
 
-MAX_ATTEMPTS = 4
-"""Chosen by hand: x0.5 and x2 move no error."""
-MIN_RETRY_SMOOTHING_S, MAX_RETRY_SMOOTHING_S = 0.005, 0.16
-"""Smoothing in seconds: the minimum to double for the first retry, and the maximum, beyond
-which little of a motion remains. Chosen by hand: x0.5 and x2 move no error."""
+RETRY_SMOOTHINGS_S = (0.04, 0.08, 0.16)
+"""Smoothing in seconds of the next attempts, where it is more than requested. They guard takes
+that the body does not follow, such as shaking ones; with more, little of a motion remains."""
 
 MAX_SUPPORT_FRACTION = 0.75
 """Fraction of the external force that a body in balance does not use on average. Chosen by
@@ -144,11 +137,8 @@ def simulate_segment(
 
 
 def _retry_smoothings(requested: float) -> list[float]:
-    """Return the smoothing of each attempt in seconds: as requested first, then doubled."""
-    maximum = max(requested, MAX_RETRY_SMOOTHING_S)
-    minimum = max(requested, MIN_RETRY_SMOOTHING_S)
-    retries = [min(minimum * 2**doublings, maximum) for doublings in range(1, MAX_ATTEMPTS)]
-    return list(dict.fromkeys([requested, *retries]))
+    """Return the smoothing of each attempt in seconds: as requested first, then more."""
+    return [requested, *(more for more in RETRY_SMOOTHINGS_S if more > requested)]
 
 
 def _plant_segment(
@@ -165,7 +155,7 @@ def _plant_segment(
         for each in (segment.motion, motion)
     )
     weights = fade_around(
-        after < before - MAX_EXTRA_SINK_M * body.size, EASE_S * motion.frame_rate
+        after < before - MAX_EXTRA_SINK_M * body.size, BLEND_S * motion.frame_rate
     )
     motion = blend_motions(segment.motion, motion, body.joints, weights)
     return replace(segment, motion=motion, contacts=detect_touching_feet(body, motion, ground))

@@ -9,7 +9,14 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import InvalidMotionError
-from ..motion import JointRecording, Motion, Skeleton, Tracks, forward_kinematics
+from ..motion import (
+    JointRecording,
+    Motion,
+    Skeleton,
+    Tracks,
+    find_humanoid_map,
+    forward_kinematics,
+)
 from ..rotations import rotate
 from ..settings import Choice, Settings, setting
 from .canvas import FAINT, INK, Canvas, Color, lighten_color, series_colors
@@ -222,8 +229,10 @@ def _position_and_facing(recording: Recording) -> tuple[Array, Array]:
         position, _ = _position_and_facing(recording.tracks)
         return position, np.tile((0.0, -1.0), (len(position), 1))
     if isinstance(recording, Motion):
-        facing = rotate(recording.rotations[:, 0], [0.0, -1.0, 0.0])
-        return recording.root_positions, facing[:, :2]
+        hips = find_humanoid_map(recording.skeleton).indices(recording.skeleton).get("hips", 0)
+        poses = forward_kinematics(recording)
+        facing = rotate(poses.rotations[:, hips], [0.0, -1.0, 0.0])
+        return poses.positions[:, hips], facing[:, :2]
     visible = recording.visible[..., None]
     counts = np.maximum(visible.sum(axis=1), 1)
     position = np.where(visible, recording.positions, 0.0).sum(axis=1) / counts

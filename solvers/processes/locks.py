@@ -20,7 +20,7 @@ else:
 
 
 HELD = {errno.EACCES, errno.EAGAIN, errno.EDEADLK}
-"""What systems report where somebody else holds a lock."""
+"""What systems report where another process holds a lock."""
 
 
 class FileLock:
@@ -35,7 +35,7 @@ class FileLock:
             os.close(self._file)
             with suppress(OSError):
                 self._path.unlink()
-        else:  # while it is locked, so that nobody else's is removed
+        else:  # while it is locked, so that no other process's file is removed
             self._path.unlink(missing_ok=True)
             os.close(self._file)
 

@@ -95,7 +95,7 @@ def _clear_once(parent: Path) -> None:
 
 
 def _new_folder(parent: Path) -> tuple[Path, FileLock]:
-    """Make a folder, locked before it exists, so that nobody finds it without its owner."""
+    """Make a folder, locked before it exists, so that it never looks abandoned."""
     lock = None
     while lock is None:  # another process that clears may hold a new one for a moment
         folder = parent / f"{PREFIX}{token_hex(NAME_BYTES)}"

@@ -14,7 +14,7 @@ from ..signals import fill_gaps, smooth_gaussian
 from .joint_rotations import Reconstruction
 from .pose_completion import (
     PostureSettings,
-    blend_short_gaps,
+    blend_gaps,
     complete_joints,
     reconstruct_postures,
 )
@@ -105,7 +105,8 @@ class ReconstructSettings(Settings):
     )  # fmt: skip
     causal: bool = setting(False, "Use only earlier frames, as in a live system; less smooth")
     shift: bool = setting(
-        False, "Also correct the constant joint offsets of this sensor model",
+        True, "Correct the constant joint offsets of a known sensor; off keeps its mean joints",
+        label="Sensor Offset",
     )  # fmt: skip
 
 
@@ -204,8 +205,12 @@ def reconstruct(
     if not settings.causal:
         observed = recording.tracks.visible & (replacement <= 0.0)
         completed = completed.with_positions(
-            blend_short_gaps(
-                recording.tracks.positions, observed, completed.positions, recording.frame_rate
+            blend_gaps(
+                recording.tracks.positions,
+                observed,
+                completed.positions,
+                rebuilt.deviation,
+                recording.frame_rate,
             )
         )
     corrected = correct_postures(
@@ -221,7 +226,7 @@ def reconstruct(
     )
     return Reconstruction(
         corrected.tracks, corrected.motion, reliability, confidence,
-        f"{rebuilt.method}; {corrected.method}", rebuilt.twists,
+        f"{rebuilt.method}; {corrected.method}", rebuilt.twists, corrected.shift,
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import InvalidMotionError
-from ..motion import Skeleton
+from ..motion import Motion, Skeleton, forward_kinematics
 from ..rotations import angle_between
 
 Joints = dict[str, int]
@@ -14,6 +14,15 @@ SIDES = ("left", "right")
 MIN_BACKWARD_ANGLE_RAD = np.radians(135.0)
 """Angle in radians between feet and hips from which the feet point backward. Chosen by hand:
 halfway between square and opposite."""
+MIN_KNEE_BEND = 0.08
+"""Distance of the knee from the line between hip and ankle, as a fraction of the leg, from
+which it shows where it bends. Chosen by hand: 37 degrees of flexion, far above noise."""
+MAX_KNEES_FORWARD = 0.1
+"""Fraction of bent knees in front of that line, below which knees bend backward. Chosen by
+hand: 1.0 in people, 0.0 where left and right are exchanged."""
+MIN_BENT_FRAMES = 10
+"""Frames with a bent knee that show its direction; fewer may be faults of a sensor."""
+MAX_SAMPLED_FRAMES = 500
 LIMBS = {
     "Leg": ("UpperLeg", "LowerLeg", "Foot"),
     "Arm": ("UpperArm", "LowerArm", "Hand"),
@@ -105,3 +114,40 @@ def check_feet(alignment: Array, joints: Joints, whose: str) -> None:
             f"The feet of the {whose} skeleton point backwards in the rest pose. Exchange left"
             " and right in the map, as for a mirrored recording, or give the toes their role."
         )
+
+
+def knees_bend_backward(motion: Motion, joints: Joints) -> bool:
+    """Whether both knees bend backward, as where left and right are the viewer's.
+
+    Without toes the rest pose does not show where a body faces: only its sides do.
+    """
+    thighs = [joints.get(f"{side}UpperLeg") for side in SIDES]
+    top = next((joints[role] for role in ("neck", "head", "chest") if role in joints), None)
+    if None in thighs or top is None:
+        return False
+    sampled = motion.rotations[:: -(-motion.n_frames // MAX_SAMPLED_FRAMES)]
+    still = Motion(motion.skeleton, sampled, np.zeros((len(sampled), 3)), motion.frame_rate)
+    places = forward_kinematics(still).positions
+    left, right = (places[:, thigh] for thigh in thighs)
+    forward = np.cross(left - right, places[:, top] - places[:, joints["hips"]])
+    bends = [_knee_bends(places, joints, side, forward) for side in SIDES]
+    return all(
+        len(each) >= MIN_BENT_FRAMES and bool((each > 0.0).mean() < MAX_KNEES_FORWARD)
+        for each in bends
+    )
+
+
+def _knee_bends(places: Array, joints: Joints, side: str, forward: Array) -> Array:
+    """Return how far forward each clearly bent knee is, as a fraction of the leg."""
+    roles = [f"{side}{part}" for part in LIMBS["Leg"]]
+    if any(role not in joints for role in roles):
+        return np.empty(0)
+    hip, knee, ankle = (places[:, joints[role]] for role in roles)
+    leg = np.linalg.norm(knee - hip, axis=-1) + np.linalg.norm(ankle - knee, axis=-1)
+    along = (ankle - hip) / np.maximum(np.linalg.norm(ankle - hip, axis=-1), 1e-9)[:, None]
+    aside = knee - hip
+    aside = aside - (aside * along).sum(axis=-1, keepdims=True) * along
+    length = np.linalg.norm(forward, axis=-1)
+    ahead = (aside * forward).sum(axis=-1) / np.maximum(length * leg, 1e-9)
+    is_bent = np.linalg.norm(aside, axis=-1) > MIN_KNEE_BEND * leg
+    return np.asarray(ahead[is_bent & np.isfinite(ahead)])

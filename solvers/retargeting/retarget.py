@@ -17,13 +17,14 @@ from ..motion import (
     world_poses,
 )
 from ..motion.humanoid import with_standing_rest
-from ..progress import Progress, unwatched
+from ..progress import Progress, Remark, unwatched
 from ..rotations import IDENTITY
 from ..settings import Choice, Settings, setting
 from .body import SIDES, Body, find_body, without_gaps
 from .feet import place_feet
 from .hands import place_hands
 from .limbs import Transfer
+from .map_checks import knees_bend_backward
 from .placement import ankle_height, find_placement
 from .pose_transfer import transfer_pose
 from .root_motion import in_place, on_root_bone
@@ -82,6 +83,12 @@ class RetargetSettings(Settings):
     )
 
 
+BACKWARD_KNEES = Remark(
+    "The knees of the source bend backward. If its left and right are the viewer's, exchange"
+    " them in the map"
+)
+
+
 def retarget(
     motion: Motion,
     source_map: HumanoidMap,
@@ -137,6 +144,8 @@ def retarget(
     """
     motion = with_standing_rest(motion, source_map)
     source = find_body(motion.skeleton, source_map, "source's")
+    if knees_bend_backward(motion, source_map.indices(motion.skeleton)):
+        progress(0.0, BACKWARD_KNEES)
     target = find_body(target_skeleton, target_map, "target's")
     if settings.root_motion is RootMotion.ROOT_BONE and target.joints["hips"] == 0:
         raise InvalidMotionError(

@@ -2,6 +2,7 @@
 
 from .quaternion_algebra import multiply_components, rotate_components
 from .representations import (
+    FULL_TURN_RAD,
     IDENTITY,
     angle_between,
     euler_from_quaternion,
@@ -25,6 +26,7 @@ from .representations import (
 from .rigid_fit import fit_rotations, fit_similarity, nearest_rotations
 
 __all__ = [
+    "FULL_TURN_RAD",
     "IDENTITY",
     "angle_between",
     "euler_from_quaternion",

@@ -1,14 +1,13 @@
 """Rotations as unit quaternions w x y z, arrays of shape (..., 4); leading axes broadcast.
 
-NaN in a rotation gives NaN in its results only. SciPy's order x y z w is confined to this
-module.
+NaN in a rotation gives NaN in its results only.
 """
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from ..arrays import Array
+from .matrix_quaternions import quaternions_of_matrices
 from .quaternion_algebra import (
     Components,
     cross_components,
@@ -97,7 +96,7 @@ def quaternion_from_matrix(matrices: ArrayLike) -> Array:
     valid = np.isfinite(flat).all(axis=(1, 2))
     result = np.full((len(flat), 4), np.nan)
     if valid.any():
-        result[valid] = _from_scipy(Rotation.from_matrix(flat[valid]))
+        result[valid] = quaternions_of_matrices(flat[valid])
     return result.reshape(*matrices.shape[:-2], 4)
 
 
@@ -286,7 +285,3 @@ def _cross(a: Array, b: Array) -> Array:
 
 def _within_half_turn(angles: Array) -> Array:
     return np.asarray(angles - 2 * np.pi * np.round(angles / (2 * np.pi)))
-
-
-def _from_scipy(rotations: Rotation) -> Array:
-    return np.roll(rotations.as_quat(canonical=True), 1, axis=-1)

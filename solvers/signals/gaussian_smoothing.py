@@ -1,7 +1,6 @@
 """Smooth values over time with a Gaussian filter, zero-phase or causal."""
 
 import numpy as np
-from scipy.ndimage import convolve1d, gaussian_filter1d
 
 from ..arrays import Array
 
@@ -23,6 +22,8 @@ def smooth_gaussian(values: Array, frames: float, *, ahead: bool = True) -> Arra
         True: a zero-phase filter that also uses later frames. False: a causal filter, the
         earlier half of the Gaussian; its result lags by 0.8 `frames`.
     """
+    from scipy.ndimage import convolve1d, gaussian_filter1d  # slow to import: only when needed
+
     values = np.array(values, dtype=np.float64)
     if frames <= 0.0:
         return values

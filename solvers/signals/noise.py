@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
 
 from ..arrays import Array
 
@@ -80,6 +79,8 @@ def remove_outliers(values: Array, half_width: int, tolerance: float) -> Array:
     tolerance : float
         In robust standard deviations of the moving window.
     """
+    from scipy.ndimage import median_filter  # slow to import: only when needed
+
     filled = fill_channel_gaps(values)
     size = (2 * half_width + 1, 1)
     center = median_filter(filled, size, mode="nearest")

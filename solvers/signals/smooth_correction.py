@@ -1,7 +1,6 @@
 """Correct a curve as smoothly as possible so that it has a given velocity in some frames."""
 
 import numpy as np
-from scipy.linalg import solveh_banded
 
 from ..arrays import Array
 from .second_differences import second_difference_bands
@@ -56,6 +55,8 @@ def smooth_correction(
     Array
         Shape (n_frames, n_components).
     """
+    from scipy.linalg import solveh_banded  # slow to import: only when needed
+
     n_frames, n_components = len(speed) + 1, speed.shape[1]
     held = np.broadcast_to(held if held.ndim == 2 else held[:, None], speed.shape)
     goal = np.zeros((n_frames, n_components)) if goal is None else goal

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import correlate1d
 
 from ..arrays import Array
 from .noise import MAD_TO_SIGMA, estimate_noise
@@ -100,6 +99,8 @@ def _bisquare(distance: Array) -> Array:
 
 def _local_fit(signal: Array, weights: Array, offsets: Array, window: Array) -> Array:
     """Return the weighted parabola at each frame; the mean where too few frames are valid."""
+
+    from scipy.ndimage import correlate1d  # slow to import: only when needed
 
     def moment(values: Array, power: int) -> Array:
         kernel = window * offsets**power

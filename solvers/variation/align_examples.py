@@ -14,8 +14,8 @@ ALIGNMENT_RATE_HZ = 20.0
 """Frame rate at which examples are aligned. Chosen by hand: x0.5 gains 0.9 %, x2 gains
 1.5 %."""
 MAX_ALIGNED_FRAMES = 1500
-"""Maximum frames of an example for alignment; longer examples are sampled more coarsely. Chosen
-by hand: x0.5 and x2 move no error; it bounds the run time of long examples."""
+"""Maximum frames of an example for alignment; longer examples are sampled more coarsely. It
+bounds the run time of examples of minutes."""
 SMOOTHING_S = 0.2
 """Standard deviation in seconds of the Gaussian that smooths the alignment: the steps of a
 warping path are no change of speed by the actor. Chosen by hand: x0.5 costs 2.9 %, x2 costs

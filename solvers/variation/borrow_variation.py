@@ -39,8 +39,8 @@ LEG_FACTOR, ROOT_FACTOR = 0.5, 0.3
 """Factors for legs, whose feet stand on the ground, and for the trajectory of the root. Chosen
 by hand: first, x0.5 gains 0.7 %, x2 gains 0.3 %; second, x0.5 costs 0.1 %, x2 gains 0.1 %."""
 MAX_SCALE = 2.0
-"""Maximum factor by which borrowed deviations grow where the clip moves more. Chosen by hand:
-x0.5 and x2 move no error."""
+"""Maximum factor by which borrowed deviations grow where the clip moves more. It guards clips
+that move much more than the motion from which variation is borrowed."""
 
 
 def borrow_variation(motion: Motion, others: Sequence[VariationModel] = ()) -> VariationModel:

@@ -32,10 +32,11 @@ from .vary_settings import DEFAULT_SETTINGS, Method, VarySettings
 
 MAX_DISTANCE_RATIO = 2.0
 """Distance to the other examples, relative to the median, beyond which an example is reported
-as an outlier. Chosen by hand: x0.5 and x2 move no error; it only decides a warning."""
+as an outlier. It guards sets of examples with a clip of another behavior, and only decides a
+warning."""
 MAX_VALUES = 600_000_000
-"""Maximum count of values in all curves together, so that they fit in memory. Chosen by hand:
-x0.5 and x2 move no error."""
+"""Maximum count of values in all curves together, so that they fit in memory. It bounds the
+memory."""
 
 
 def learn_variation_model(

@@ -33,8 +33,8 @@ DRAW_RATE_HZ = 30.0
 """Rate at which weights are drawn; they change slowly. Chosen by hand: x0.5 costs 7.9 %, x2
 costs nothing."""
 MAX_DRAWN_SAMPLES = 2000
-"""Maximum count of drawn samples; in clips of more than a minute weights change more slowly.
-Chosen by hand: x0.5 and x2 move no error."""
+"""Maximum count of drawn samples; in clips of more than a minute weights change more slowly. It
+bounds the memory."""
 JITTER = 1e-9
 """Variance, relative to one, added to the kernel: it guards its Cholesky factor."""
 

@@ -1,4 +1,4 @@
-"""Find the joints that a reconstruction filled or moved."""
+"""Find the joints that a reconstruction filled or moved, and describe the offset of all."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,22 @@ MIN_CHANGE_M = 0.05
 
 
 def find_changed_joints(recording: JointRecording, result: Reconstruction) -> NDArray[np.bool_]:
-    """Return which joints were missing or moved, shape (n_frames, n_joints)."""
-    moved = np.linalg.norm(result.tracks.positions - recording.tracks.positions, axis=-1)
-    return np.asarray(~(moved <= MIN_CHANGE_M))  # missing joints are NaN
+    """Return which joints were missing or moved, shape (n_frames, n_joints).
+
+    The constant offset of the sensor moves all joints and does not count.
+    """
+    moved = result.tracks.positions - recording.tracks.positions
+    if result.shift is not None:
+        moved = moved - result.shift
+    return np.asarray(~(np.linalg.norm(moved, axis=-1) <= MIN_CHANGE_M))  # missing: NaN
+
+
+def shift_remarks(result: Reconstruction) -> list[str]:
+    """Report the size of the sensor's constant offset, if it was corrected."""
+    if result.shift is None:
+        return []
+    distance_cm = 100.0 * float(np.linalg.norm(result.shift, axis=-1).mean())
+    return [
+        f"Joints moved by {distance_cm:.1f} cm on average, the constant offset of this kind of"
+        " sensor; switch off Sensor Offset to keep them."
+    ]

@@ -153,7 +153,7 @@ class _Indexing:
     def _as_indexed(self, sources: Sequence[ClipSource]) -> Iterator[ClipSource]:
         """Yield sources; of files whose bodies were indexed one by one, each of these again.
 
-        A clip of the default body gives way to clips of named ones.
+        Clips of named bodies replace a clip of the default body.
         """
         bodies: dict[str, list[str]] = {}
         for path, body in self._known:

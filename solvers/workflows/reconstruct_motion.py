@@ -31,8 +31,12 @@ from ..reconstruction import (
     ResidualPrior,
     reconstruct,
 )
-from ..reconstruction.joint_rotations import fit_motion_to_postures, motion_from_positions
-from .changed_joints import find_changed_joints
+from ..reconstruction.joint_rotations import (
+    fit_motion_to_postures,
+    motion_from_positions,
+    resize_skeleton,
+)
+from .changed_joints import find_changed_joints, shift_remarks
 from .joints_from_source import joints_from_source
 from .standard_joints import KINECT_V1, check_size, check_tracked, gap_remarks
 
@@ -48,7 +52,7 @@ class RebuiltMotion:
     Attributes
     ----------
     motion : Motion
-        Of the given skeleton; without gaps.
+        Of the given skeleton, apart from the lengths of its bones; without gaps.
     reliability_terms : Reliability
         Reliability of each joint and its terms. NaN for joints that are not posture joints; a
         term that the take cannot measure is NaN everywhere.
@@ -87,6 +91,8 @@ def reconstruct_motion(
     *,
     source: JointRecording | None = None,
     tracking_state: NDArray[np.int8] | None = None,
+    sensor: Sensor = Sensor.OTHER,
+    resize: bool = False,
     humanoid_map: HumanoidMap | None = None,
     settings: ReconstructSettings = RECONSTRUCT_SETTINGS,
     progress: Progress = unwatched,
@@ -108,6 +114,11 @@ def reconstruct_motion(
         (`joints_from_source`).
     tracking_state : shape (n_frames, n_joints), optional
         State of each joint: 2 tracked, 1 inferred, 0 not tracked.
+    sensor : Sensor
+        The sensor that tracked the motion, where `source` is missing or does not match.
+    resize : bool
+        Whether bones may get other lengths, where the constant offset of the sensor was
+        corrected.
     humanoid_map : HumanoidMap, optional
         Humanoid role of each joint; detected by default.
     settings : ReconstructSettings
@@ -122,7 +133,7 @@ def reconstruct_motion(
     """
     tracked = _is_tracked(motion.skeleton.names)
     if tracked:
-        recording, columns = _all_joints(motion, source, tracking_state)
+        recording, columns = _all_joints(motion, source, tracking_state, sensor)
     else:
         found = humanoid_map or find_humanoid_map(motion.skeleton)
         recording, columns = _postures_of(motion, found)
@@ -132,20 +143,20 @@ def reconstruct_motion(
         recording, postures, prior, settings=settings, progress=within(progress, 0.0, 0.9)
     )
     if tracked:
+        skeleton, combined = motion.skeleton, rebuilt.reliability.combined
+        if resize and rebuilt.shift is not None:
+            skeleton = resize_skeleton(skeleton, rebuilt.tracks, recording.parents, combined)
         result = motion_from_positions(
-            rebuilt.tracks,
-            recording.parents,
-            rebuilt.reliability.combined,
-            twists=rebuilt.twists,
-            skeleton=motion.skeleton,
-        )
+            rebuilt.tracks, recording.parents, combined, twists=rebuilt.twists,
+            skeleton=skeleton,
+        )  # fmt: skip
     else:
         result = fit_motion_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
     reliability_terms, confidence, changed = _for_skeleton_joints(
         motion.n_joints, recording, rebuilt, columns
     )
     progress(1.0, "Done")
-    remarks = tuple(gap_remarks(recording))
+    remarks = (*gap_remarks(recording), *shift_remarks(rebuilt))
     return RebuiltMotion(
         result, reliability_terms, confidence, changed, rebuilt.method, remarks
     )
@@ -200,7 +211,10 @@ def _is_tracked(names: tuple[str, ...]) -> bool:
 
 
 def _all_joints(
-    motion: Motion, source: JointRecording | None, state: NDArray[np.int8] | None
+    motion: Motion,
+    source: JointRecording | None,
+    state: NDArray[np.int8] | None,
+    sensor: Sensor,
 ) -> tuple[JointRecording, dict[int, int]]:
     """Return the positions of all joints, and the column of each joint."""
     columns = {joint: joint for joint in range(motion.n_joints)}
@@ -209,7 +223,7 @@ def _all_joints(
         return measured, columns
     positions = forward_kinematics(motion).positions
     tracks = Tracks(motion.skeleton.names, positions, motion.frame_rate)
-    return JointRecording(tracks, state, Sensor.OTHER), columns
+    return JointRecording(tracks, state, sensor), columns
 
 
 def _postures_of(

@@ -10,7 +10,7 @@ from ..motion import JointRecording, Motion, Skeleton
 from ..progress import Progress, unwatched, within
 from ..reconstruction import PostureLibrary, ReconstructSettings, ResidualPrior, reconstruct
 from ..reconstruction.joint_rotations import Reconstruction, motion_from_positions
-from .changed_joints import find_changed_joints
+from .changed_joints import find_changed_joints, shift_remarks
 from .plant_feet_if_possible import plant_feet_if_possible
 from .standard_joints import check_size, gap_remarks, standardize_joint_names
 
@@ -98,7 +98,9 @@ def reconstruct_recording(
         progress=within(progress, 0.8, 1.0),
     )
     progress(1.0, "Done")
-    remarks = (*gap_remarks(standardized), *planting_result.remarks)
+    remarks = (
+        *gap_remarks(standardized), *shift_remarks(rebuilt), *planting_result.remarks,
+    )  # fmt: skip
     changed = find_changed_joints(standardized, rebuilt)
     return ReconstructedMotion(
         planting_result.motion, rebuilt, planting_result.planted, changed, remarks

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 # Blender's importer leaves its file open.
-INCH = 0.0254 / 0.45  # CMU's unit, in metres
+INCH = 0.0254 / 0.45  # CMU's unit, in meters
 
 
 @pytest.fixture

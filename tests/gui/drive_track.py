@@ -145,7 +145,7 @@ def keep_on_esc(points):
 def steps():
     yield from prepare()
     points = bpy.context.object
-    points.select_set(False)  # active alone, so that its points keep their colour
+    points.select_set(False)  # active alone, so that its points keep their color
     name = points.name
     yield from settle()
     bgui.shot("0-points.png")

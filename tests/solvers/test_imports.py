@@ -15,3 +15,12 @@ def test_slow_libraries_are_imported_on_demand(name):
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
     assert set(run.stdout.split()).isdisjoint(SLOW)
+
+
+def test_reading_needs_no_scipy():
+    """A background Blender reads files of other programs: its start is what they wait for."""
+    code = "import sys, solvers.motion, solvers.recordings; print(*sys.modules)"
+    run = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert "scipy" not in run.stdout.split()

@@ -113,7 +113,7 @@ def test_solver_gives_the_same_motion_at_60_and_120_hertz(name):
 @every_verb_that_returns_a_motion
 def test_solver_does_not_add_jitter_to_a_clean_take(name):
     """At 120 Hz, where a filter that treats neighboring frames separately would show; white
-    noise of a tenth of a millimetre is allowed, whose third differences come to 770 m/s^3.
+    noise of a tenth of a millimeter is allowed, whose third differences come to 770 m/s^3.
     """
     walk = walk_of_few_joints(GaitSettings(duration=2.0, frame_rate=120.0))
 

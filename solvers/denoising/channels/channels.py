@@ -31,6 +31,8 @@ class Channels:
         Origin of each part's values, as `encode_motion` or `encode_tracks` needs it.
     path : TravelPath
         Position and heading of the body.
+    moving_references : shape (n_frames, n_parts - 1, 4), optional
+        Rotations of the joints' references over time, of a motion.
     """
 
     keys: tuple[str, ...]
@@ -38,8 +40,14 @@ class Channels:
     joints: NDArray[np.intp]
     references: Mapping[str, Array]
     path: TravelPath
+    moving_references: Array | None = None
 
     @property
     def flat(self) -> Array:
         """Values as columns, shape (n_frames, 3 n_parts)."""
         return self.values.reshape(len(self.values), -1)
+
+    @property
+    def n_rotations(self) -> int:
+        """Number of columns, the first ones, that are rotations of joints."""
+        return 0 if self.moving_references is None else self.flat.shape[1] - 3

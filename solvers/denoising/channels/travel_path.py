@@ -6,8 +6,8 @@ import numpy as np
 from scipy.ndimage import correlate1d
 
 from ...arrays import Array
-from ...rotations import quaternion_from_rotation_vector
-from ...signals import fill_channel_gaps, remove_outliers
+from ...rotations import FULL_TURN_RAD, quaternion_from_rotation_vector
+from ...signals import fill_channel_gaps, remove_outliers, smooth_gaussian
 
 SMOOTHING_S = 0.5
 """Standard deviation of the kernel that removes the gait from the path, seconds. Chosen by
@@ -18,6 +18,12 @@ hand: x0.5 costs 0.1 %, x2 costs nothing."""
 SPIKE_TOLERANCE = 3.5
 """Robust standard deviations of the neighborhood beyond which a sample is a spike. Chosen by
 hand: x0.5 costs 0.1 %, x2 costs nothing."""
+MAX_ANGLE_RAD = np.radians(120.0)
+"""Angle to a smooth reference within which rotation vectors are safe: two thirds of the half
+turn at which they jump. A guard."""
+UNWRAP_S = 0.05
+"""Standard deviation of the kernel that removes jitter of headings before they are unwrapped,
+seconds. A guard: a sample alone must not decide on a turn."""
 GAP_WEIGHT = 1e-3
 """Weight of a frame that was not observed, relative to one that was. Chosen by hand: x0.5 and
 x2 move no error; it guards a singular system, from x0.01 to x100."""
@@ -48,11 +54,30 @@ def fit_travel_path(ground_positions: Array, headings: Array, frame_rate: float)
     """
     mean = float(np.angle(np.nansum(np.exp(1j * headings)) + 1e-12))
     aligned = rotate_on_ground(ground_positions, -mean)
-    coordinates = np.column_stack([aligned, unwrap_angles(headings) - mean])
+    relative = unwrap_angles(headings - mean, UNWRAP_S * frame_rate)
+    fitted = fit_local_lines(_without_spikes(aligned, frame_rate), SMOOTHING_S * frame_rate)
+    smooth_headings = smooth_angles(relative, frame_rate)
+    return TravelPath(rotate_on_ground(fitted, mean), smooth_headings + mean)
+
+
+def smooth_angles(angles: Array, frame_rate: float) -> Array:
+    """Fit lines to angles (n_frames,), radians, around every frame; NaN: not observed.
+
+    The kernel is halved until the result lags behind by at most 120 degrees: fast turns are
+    smoothed less.
+    """
+    clean = _without_spikes(angles[:, None], frame_rate)
+    width = SMOOTHING_S * frame_rate
+    fitted = fit_local_lines(clean, width)
+    while width > 1.0 and np.nanmax(np.abs(clean - fitted), initial=0.0) > MAX_ANGLE_RAD:
+        width /= 2.0
+        fitted = fit_local_lines(clean, width)
+    return np.asarray(fitted[:, 0])
+
+
+def _without_spikes(values: Array, frame_rate: float) -> Array:
     half_width = max(round(SPIKE_HALF_WIDTH_S * frame_rate), 2)
-    clean = remove_outliers(coordinates, half_width, SPIKE_TOLERANCE)
-    fitted = fit_local_lines(clean, SMOOTHING_S * frame_rate)
-    return TravelPath(rotate_on_ground(fitted[:, :2], mean), fitted[:, 2] + mean)
+    return remove_outliers(values, half_width, SPIKE_TOLERANCE)
 
 
 def rotate_on_ground(ground_positions: Array, angle: float | Array) -> Array:
@@ -63,12 +88,16 @@ def rotate_on_ground(ground_positions: Array, angle: float | Array) -> Array:
     )
 
 
-def unwrap_angles(angles: Array) -> Array:
-    """Return the angles (n_frames,) without jumps of full turns; NaN is skipped."""
-    result = angles.copy()
-    observed = np.isfinite(angles)
-    result[observed] = np.unwrap(angles[observed])
-    return result
+def unwrap_angles(angles: Array, width: float) -> Array:
+    """Return the angles (n_frames,) without jumps of full turns; NaN stays NaN.
+
+    Each angle is the equivalent nearest to the direction of the mean over its neighbors, with
+    Gaussian weights of this width in frames. Spikes therefore do not add up to full turns.
+    """
+    unit_vectors = fill_channel_gaps(np.column_stack([np.cos(angles), np.sin(angles)]))
+    x, y = smooth_gaussian(unit_vectors, width).T
+    smooth = np.unwrap(np.arctan2(y, x))
+    return np.asarray(angles + FULL_TURN_RAD * np.round((smooth - angles) / FULL_TURN_RAD))
 
 
 def fit_local_lines(values: Array, width: float) -> Array:

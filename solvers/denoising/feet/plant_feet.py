@@ -20,11 +20,11 @@ from ...motion.skeletons import (
 from ...progress import Progress, unwatched, within
 from ...rotations import inverse, multiply
 from ...settings import Settings, setting
-from .captured_legs import detect_standing_feet
 from .foot_trajectory import FootTrajectory, plan_foot_trajectory
 from .knee_smoothing import smooth_knees
 from .legs import SIDES, Leg, find_legs
 from .root_offset import compute_root_offset
+from .standing_feet import detect_standing_feet
 
 Flags = NDArray[np.bool_]
 

@@ -11,8 +11,8 @@ MIN_IMPOSSIBLE_EXCESS = np.radians(10.0)
 """Radians: a joint this far beyond its limits was not really observed. Chosen by hand: x0.5
 costs nothing, x2 costs 33.3 %."""
 MIN_FOLLOWED_EXCESS = np.radians(1.0)
-"""Radians: an estimate this far beyond the limits follows an impossible rotation. Chosen by
-hand: x0.5 and x2 move no error; above 0 it guards against rounding."""
+"""Radians: an estimate this far beyond the limits follows an impossible rotation. Above 0 it
+guards against rounding."""
 MAX_EXCESS_FRACTION = 0.5
 """Limits that a joint exceeds in a larger fraction of the frames belong to another body. Chosen
 by hand: x0.5 costs 33.3 %, x2 costs nothing."""

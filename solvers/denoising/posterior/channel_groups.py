@@ -12,14 +12,12 @@ from ..channels import Channels
 from ..window_priors import FilterBases, FilterBasesSettings, WindowPrior
 from .estimate import Estimate
 from .estimate_channels import estimate_channels
-from .joint_outliers import JointOutlierPrior
 from .prior_selection import (
     UNKNOWN_DEVIATION,
     build_examples_prior,
     build_take_prior,
     select_prior,
 )
-from .spline_stacking import stack_with_spline
 from .windows import Windows
 
 MAX_GROUP_CHANNELS = 96
@@ -51,6 +49,8 @@ class RoughTake(NamedTuple):
 
     noisy: Array
     """NaN where not observed, and beyond the end of a take shorter than a window."""
+    is_error: NDArray[np.bool_]
+    """Samples known to be wrong."""
     values: Array
     """Without spikes, gaps bridged by straight lines: no NaN."""
     noise: Array
@@ -59,13 +59,20 @@ class RoughTake(NamedTuple):
 
 
 def estimate_in_groups(
-    channels: Channels, frame_rate: float, bases: FilterBases | None, progress: Progress
+    channels: Channels,
+    is_error: NDArray[np.bool_],
+    frame_rate: float,
+    bases: FilterBases | None,
+    progress: Progress,
 ) -> tuple[Estimate, str]:
-    """Estimate all channels; return them with a sentence on the prior."""
+    """Estimate all channels; return them with a sentence on the prior.
+
+    Samples known to be errors, shape (n_frames, n_channels), are outliers from the start.
+    """
     n_frames, n_channels = channels.flat.shape
     pattern_rate = float(bases.frame_rate) if bases else FilterBasesSettings().frame_rate
     window = bases.window if bases else FilterBasesSettings().n_frames
-    take = _estimate_roughly(channels.flat, frame_rate, pattern_rate, window)
+    take = _estimate_roughly(channels.flat, is_error, frame_rate, pattern_rate, window)
     is_unknown = np.isnan(take.noisy) & (take.n_observed == 0)
     parts = (
         take.values.copy(),
@@ -75,7 +82,6 @@ def estimate_in_groups(
     )
     in_examples = _find_example_channels(channels, bases)
     groups = group_channels(channels.flat, take.values, in_examples)
-    outlier_probability = np.zeros((len(take.noisy), n_channels // 3))
     iterations, converged, smooth_fractions = 0, True, []
     for index, columns in enumerate(groups):
         step = within(progress, index / len(groups), (index + 1) / len(groups))
@@ -83,7 +89,10 @@ def estimate_in_groups(
             take.noise[columns], take.n_observed[columns], FIRST_GUESS_EFFICIENCY
         )
         part = take._replace(
-            noisy=take.noisy[:, columns], values=take.values[:, columns], noise=first_noise
+            noisy=take.noisy[:, columns],
+            is_error=take.is_error[:, columns],
+            values=take.values[:, columns],
+            noise=first_noise,
         )
         prior = build_take_prior(
             part.values,
@@ -93,34 +102,24 @@ def estimate_in_groups(
             window,
             pattern_rate,
         )
-        joints = columns // 3
         if bases is not None and in_examples[columns[0]]:
             examples = _build_examples_prior(
                 part, n_frames, bases, channels.keys, columns, prior
             )
             prior, smooth_fraction = select_prior(
-                examples, prior, *part[:3], joints, take.windows, step
+                examples, prior, *part[:4], columns // 3, take.windows, step
             )  # fmt: skip
             smooth_fractions += [smooth_fraction] * len(columns)
         group_estimate = estimate_channels(
-            *part[:3], prior, take.windows, within(step, 0.4, 1.0),
-            joints=JointOutlierPrior(joints, outlier_probability[:, joints]),
+            *part[:4], prior, take.windows, within(step, 0.4, 1.0),
         )  # fmt: skip
-        group_outliers = np.isfinite(part.noisy) * (1.0 - group_estimate.inliers)
-        np.maximum.at(outlier_probability.T, joints, group_outliers.T)
         for complete, name in zip(parts, PARTS, strict=True):
             complete[:, columns] = getattr(group_estimate, name)
         iterations = max(iterations, group_estimate.iterations)
         converged &= group_estimate.converged
     values, inliers, deviation, leave_one_out = (part[:n_frames] for part in parts)
     estimate = Estimate(values, inliers, deviation, leave_one_out, iterations, converged)
-    stacked, n_smoothed = stack_with_spline(
-        channels.flat,
-        estimate,
-        keep_outliers=bool(smooth_fractions) and min(smooth_fractions) < 1.0,
-    )
-    message = _describe_prior(bases, smooth_fractions, n_channels)
-    return stacked, message + _describe_spline(n_smoothed, n_channels // 3)
+    return estimate, _describe_prior(bases, smooth_fractions, n_channels)
 
 
 def _build_examples_prior(
@@ -147,16 +146,28 @@ def _build_examples_prior(
 
 
 def _estimate_roughly(
-    noisy: Array, frame_rate: float, pattern_rate: float, window: int
+    noisy: Array,
+    is_error: NDArray[np.bool_],
+    frame_rate: float,
+    pattern_rate: float,
+    window: int,
 ) -> RoughTake:
     length = max(round(window * frame_rate / pattern_rate), 2)
     padded = np.full((max(len(noisy), length), noisy.shape[1]), np.nan)
     padded[: len(noisy)] = noisy
-    despiked = remove_outliers(padded, SPIKE_HALF_WIDTH, SPIKE_TOLERANCE)
+    padded_errors = np.zeros(padded.shape, dtype=np.bool_)
+    padded_errors[: len(noisy)] = is_error
+    despiked = np.where(padded_errors, np.nan, padded)
+    despiked = remove_outliers(despiked, SPIKE_HALF_WIDTH, SPIKE_TOLERANCE)
     noise = np.maximum(estimate_noise(despiked), MIN_NOISE)
     windows = Windows(len(padded), length, length / window)
     return RoughTake(
-        padded, fill_channel_gaps(despiked), noise, np.isfinite(despiked).sum(axis=0), windows
+        padded,
+        padded_errors,
+        fill_channel_gaps(despiked),
+        noise,
+        np.isfinite(despiked).sum(axis=0),
+        windows,
     )
 
 
@@ -210,9 +221,3 @@ def _describe_prior(
     if len(smooth_fractions) < n_channels / 3:
         return f"Patterns of {clips} for the joints that they have; otherwise the take's own."
     return f"Patterns of {clips}, adapted to the take."
-
-
-def _describe_spline(n_smoothed: int, n_joints: int) -> str:
-    if not n_smoothed:
-        return ""
-    return f" Plain smoothing predicts {n_smoothed} of {n_joints} joints better and is used."

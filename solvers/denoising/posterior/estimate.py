@@ -1,6 +1,7 @@
 """The result of any method on channels."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ...arrays import Array
 
@@ -18,3 +19,13 @@ class Estimate:
     """Error of each sample's prediction from all others; NaN where unknown."""
     iterations: int
     converged: bool
+
+
+class Smoothed(NamedTuple):
+    """The result of a smoother of complete channels, of shape (n_frames, n_channels)."""
+
+    values: Array
+    leave_one_out_error: Array
+    """Error of each sample's prediction from all others."""
+    variance: Array
+    """Of the error of the values, given the noise that the smoother found."""

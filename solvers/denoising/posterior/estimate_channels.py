@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...progress import Progress, unwatched
@@ -10,11 +11,9 @@ from ...signals import shrink_noise
 from ..window_priors import WindowPrior
 from .covariance import adapt_covariance, covariance_from_prior
 from .estimate import Estimate
-from .fast_motion import find_fast_motion
 from .filter_pass import filter_windows
 from .filters import Filter, build_filters, compute_variance, sum_window_weights
 from .gap_patterns import find_gap_patterns, find_long_gaps
-from .joint_outliers import JointOutlierPrior
 from .smoothness import fit_smoothness
 from .windows import Windows
 
@@ -58,13 +57,13 @@ NOISE_BOUNDS = (0.5, 1.1)
 
 def estimate_channels(
     noisy: Array,
+    is_error: NDArray[np.bool_],
     start: Array,
     noise: Array,
     prior: WindowPrior,
     windows: Windows,
     progress: Progress = unwatched,
     *,
-    joints: JointOutlierPrior | None = None,
     noise_factors: Sequence[float] = NOISE_FACTORS,
     max_iterations: int = MAX_ITERATIONS,
 ) -> Estimate:
@@ -89,14 +88,12 @@ def estimate_channels(
     prior : WindowPrior
     windows : Windows
     progress : Progress
-    joints : JointOutlierPrior, optional
-        Which channels tend to be wrong together.
     noise_factors : sequence of float
         Inflation of the noise, one for each of the first rounds.
     max_iterations : int
         Iterations after them.
     """
-    state = _PosteriorState(noisy, start, noise, prior, windows.with_less_overlap, joints)
+    state = _PosteriorState(noisy, is_error, start, noise, prior, windows.with_less_overlap)
     n_first_rounds, n_rounds = len(noise_factors), len(noise_factors) + max_iterations
     for index, factor in enumerate(noise_factors):
         progress(index / n_rounds, "Denoising")
@@ -127,21 +124,22 @@ class _PosteriorState:
     def __init__(
         self,
         noisy: Array,
+        is_error: NDArray[np.bool_],
         start: Array,
         noise: Array,
         prior: WindowPrior,
         windows: Windows,
-        joints: JointOutlierPrior | None,
     ) -> None:
         self.observed, self.samples = np.isfinite(noisy), np.nan_to_num(noisy)
-        self.joints, self.prior = joints, prior.truncated(windows.length)
+        self.prior = prior.truncated(windows.length)
         self.set_windows(windows)
         self.estimate, self.mean = start, prior.mean
         self.bounds = _bounds(start, prior)
         self.first_noise = self.noise = noise
         self.covariance = covariance_from_prior(self.prior, windows.length)
         self.filters = list[Filter]()
-        self.weight, self.rate = self.observed.astype(float), INITIAL_OUTLIER_RATE
+        self.may_be_right = self.observed & ~is_error
+        self.weight, self.rate = self.may_be_right.astype(float), INITIAL_OUTLIER_RATE
         self.variance = np.zeros_like(noisy)
         self.leave_one_out_ratio = np.ones_like(noisy)
         """Variance without the sample, relative to `variance`, the variance with it."""
@@ -157,17 +155,8 @@ class _PosteriorState:
         error = self.samples - self.estimate
         prediction_error = error * (self.weight * self.leave_one_out_ratio + 1.0 - self.weight)
         spread = self.noise**2 + self.variance * self.leave_one_out_ratio + MIN_OUTLIER_ERROR**2
-        outlier_rates: float | Array = self.rate
-        if self.joints is not None:
-            outlier_rates = self.joints.outlier_rates(
-                self.observed * (1.0 - self.weight), self.observed, self.rate
-            )
-        inlier_probability = _inlier_probability_of(prediction_error, spread, outlier_rates)
-        fast_motion = find_fast_motion(
-            np.where(self.observed, error, np.nan), inlier_probability, self.noise, self.rate,
-            self.windows.length,
-        )  # fmt: skip
-        target_weight = self.observed * np.where(fast_motion, 1.0, inlier_probability)
+        inlier_probability = _inlier_probability_of(prediction_error, spread, self.rate)
+        target_weight = self.may_be_right * inlier_probability
         self.weight = self.weight + step * (target_weight - self.weight)
         outlier_fraction = (
             1.0 - float(self.weight[self.observed].mean()) if self.observed.any() else 0.0
@@ -248,7 +237,7 @@ def _bounds(start: Array, prior: WindowPrior) -> tuple[Array, Array]:
     return low - margin, high + margin
 
 
-def _inlier_probability_of(error: Array, spread: Array, rate: float | Array) -> Array:
+def _inlier_probability_of(error: Array, spread: Array, rate: float) -> Array:
     """Compare noise around the prediction from all other samples with an outlier."""
     inlier_probability = np.exp(-0.5 * error**2 / spread) / np.sqrt(2 * np.pi * spread)
     inlier_probability *= 1.0 - rate

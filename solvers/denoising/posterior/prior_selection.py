@@ -142,6 +142,7 @@ def select_prior(
     examples: WindowPrior,
     own: WindowPrior,
     noisy: Array,
+    is_error: NDArray[np.bool_],
     rough: Array,
     noise: Array,
     joints: NDArray[np.intp],
@@ -164,7 +165,8 @@ def select_prior(
     scored = np.flatnonzero(np.isfinite(noisy).mean(axis=0) > MIN_OBSERVED_FRACTION)
     if not len(scored):
         return candidates[SMOOTH_FRACTIONS[0]], SMOOTH_FRACTIONS[0]
-    scored_take = (noisy[:, scored], rough[:, scored], noise[scored])
+    rough, noise = rough[:, scored], noise[scored]
+    scored_take = (noisy[:, scored], is_error[:, scored], rough, noise)
     without_gaps = replace(windows, solve_gaps=False)
     trials = []
     for index, prior in enumerate(candidates.values()):
@@ -180,12 +182,12 @@ def select_prior(
     inlier_probability = np.mean([trial.inliers for trial in trials], axis=0)
     scores = [
         IN_SAMPLE_PENALTY**index
-        * score_leave_one_out(trial.leave_one_out_error, inlier_probability, scored_take[2])
+        * score_leave_one_out(trial.leave_one_out_error, inlier_probability, noise)
         for index, trial in enumerate(trials)
     ]
     best = list(candidates)[int(np.argmin(scores))]
     joint_error = score_leave_joint_out(
-        candidates[best].select_channels(scored), *scored_take[1:], joints[scored], windows
+        candidates[best].select_channels(scored), rough, noise, joints[scored], windows
     )
     return replace(candidates[best], decoupling=float(np.clip(joint_error, 0.0, 1.0))), best
 

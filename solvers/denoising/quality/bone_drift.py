@@ -12,8 +12,8 @@ from ...motion.humanoid import roles_by_name
 from ..feet import SIDES
 
 MAX_SAMPLED_FRAMES = 1000
-"""Frames used to decide which points are rigidly connected; the drift uses all frames. Chosen
-by hand: x0.5 and x2 move no error; bounds the run time of long takes."""
+"""Frames used to decide which points are rigidly connected; the drift uses all frames. It
+bounds the run time of long takes."""
 LENGTH_COST = 0.01
 """Cost per meter: of two equally constant connections the shorter one is preferred. Chosen by
 hand: x0.5 costs 0.4 %, x2 gains 0.4 %."""
@@ -24,8 +24,8 @@ MAX_LENGTH_VARIATION = 0.1
 """Interquartile range of a bone's length, relative to its length. Chosen by hand: x0.5 gains
 2.2 %, x2 costs 0.8 %."""
 MIN_NAMED_BONES = 6
-"""With fewer named bones, the names are not those of a body. Chosen by hand: x0.5 and x2 move
-no error; guards against markers with a name or two of a body."""
+"""With fewer named bones, the names are not those of a body. It guards takes of markers, of
+which a name or two are those of a body."""
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,8 @@ import numpy as np
 
 from ..forest import PixelParts
 from ..terms import Hypothesis, Observation
+from ..tracking import MAX_DEPTH_ERROR_M
 from .part_capsules import CAPSULE_OF_PART
-
-MAX_DEPTH_ERROR_M = 0.1
-"""Larger depth errors score 0. Chosen by hand; no sweep yet."""
 
 
 def pose_score(

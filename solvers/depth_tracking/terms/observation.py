@@ -15,7 +15,8 @@ from ...depth_scene import Camera, DepthRecording
 Integers = NDArray[np.intp]
 
 MIN_AREA_M2 = 0.02
-"""Minimum visible surface of an actor: half a forearm. Chosen by hand; no sweep yet."""
+"""Minimum visible surface of an actor: half a forearm. It guards images in which the actor is
+out of view."""
 
 
 @dataclass(frozen=True, eq=False)

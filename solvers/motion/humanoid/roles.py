@@ -2,13 +2,17 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from ...errors import InvalidMotionError
 from ..skeletons import Skeleton
+from .name_conflicts import has_human_limbs, without_contradictions
 from .names import name_matches, with_fingers
-from .structure import roles_by_structure
+from .structure import Structure, roles_by_structure
 from .tables import ARM_ROLES, CENTRAL_ROLES, FINGER_ROLES, LEG_ROLES
 from .tree_agreement import tree_agreement
 
@@ -44,6 +48,9 @@ rigs of `tests/solvers/motion`."""
 MIN_AGREEMENT = 0.9
 """Fraction, of the roles that names and structure both assign, so that structure may fill
 others. Chosen by hand on the rigs of `tests/solvers/motion`."""
+
+REMEMBERED_MAPS = 8
+"""Skeletons whose maps are kept."""
 
 
 @dataclass(frozen=True)
@@ -119,11 +126,23 @@ def find_humanoid_map(skeleton: Skeleton) -> HumanoidMap:
         of VRM's essential roles found, lowered where the tree disagrees. The score by
         structure, up to 0.8, measures how human the proportions are.
     """
+    return _find_map(skeleton.names, skeleton.parents, skeleton.offsets.tobytes())
+
+
+@lru_cache(maxsize=REMEMBERED_MAPS)
+def _find_map(names: tuple[str, ...], parents: tuple[int, ...], offsets: bytes) -> HumanoidMap:
+    """Return the map; many steps of one press ask for that of the same skeleton."""
+    skeleton = Skeleton(names, parents, np.frombuffer(offsets).reshape(-1, 3))
     by_name = _best_names(skeleton)
-    if by_name.has(*BODY_ROLES) and by_name.score == 1.0:
+    is_complete = by_name.has(*BODY_ROLES) and by_name.score == 1.0
+    if is_complete and has_human_limbs(skeleton, by_name.joints):
         return by_name
-    joints, humanness = roles_by_structure(skeleton)
-    by_structure = HumanoidMap(joints, MAX_STRUCTURE_SCORE * humanness * _coverage(joints))
+    structure = roles_by_structure(skeleton)
+    by_structure = HumanoidMap(
+        structure.joints,
+        MAX_STRUCTURE_SCORE * structure.humanness * _coverage(structure.joints),
+    )
+    by_name = _corrected(skeleton, by_name, structure)
     if by_name.score >= MIN_NAME_SCORE:
         return _fill_from(skeleton, by_name, by_structure)
     return max(by_name, by_structure, key=lambda found: found.score)
@@ -139,24 +158,37 @@ def _best_names(skeleton: Skeleton) -> HumanoidMap:
     best = max(scored, key=lambda found: (found.score, len(found.joints)), default=None)
     if best is None:
         return HumanoidMap({}, 0.0)
-    joints = with_fingers(skeleton.names, best.joints)
+    return replace(
+        best, joints=_fingers_below_hands(skeleton, with_fingers(skeleton.names, best.joints))
+    )
+
+
+def _fingers_below_hands(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]:
+    """Return the map without fingers that do not hang below the hand of their side."""
     below = {
         side: {skeleton.names[joint] for joint in skeleton.subtree(skeleton.index(hand))}
         for side in ("left", "right")
-        if (hand := best.joints.get(f"{side}Hand"))
+        if (hand := joints.get(f"{side}Hand"))
     }
-    return replace(
-        best,
-        joints={
-            role: joint
-            for role, joint in joints.items()
-            if role in best.joints or joint in below.get(_side(role), ())
-        },
-    )
+    return {
+        role: joint
+        for role, joint in joints.items()
+        if role in BODY_ROLES or joint in below.get(_side(role), ())
+    }
 
 
 def _side(role: str) -> str:
     return "left" if role.startswith("left") else "right"
+
+
+def _corrected(skeleton: Skeleton, by_name: HumanoidMap, structure: Structure) -> HumanoidMap:
+    """Return the map by names with the structure's roles where lengths contradict names."""
+    joints = without_contradictions(skeleton, by_name.joints, structure)
+    if joints == dict(by_name.joints):
+        return by_name
+    joints = _fingers_below_hands(skeleton, joints)
+    corrected = _score_names(skeleton, joints)
+    return replace(corrected, score=min(corrected.score, MAX_STRUCTURE_SCORE))
 
 
 def _score_names(skeleton: Skeleton, joints: Mapping[str, str]) -> HumanoidMap:
@@ -184,8 +216,13 @@ def _fill_from(
 def _lower_spine(skeleton: Skeleton, joints: dict[str, str]) -> dict[str, str]:
     """Return the map with the first joint above the hips as spine, if it has no role.
 
-    A table may call the only joint it knows the spine, where others lie below it.
+    A table may call the only joint it knows the spine, where others lie below it, or know only
+    a chest.
     """
+    if "spine" not in joints and "chest" in joints:
+        lower = {"spine": joints["chest"], "chest": joints.get("upperChest", "")}
+        others = {r: j for r, j in joints.items() if r not in ("chest", "upperChest")}
+        return others | {role: joint for role, joint in lower.items() if joint}
     if not {"hips", "spine"} <= joints.keys() or "chest" in joints:
         return joints
     above = skeleton.ancestors(skeleton.index(joints["spine"]))

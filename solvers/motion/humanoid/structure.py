@@ -1,5 +1,6 @@
 """Assign humanoid roles to joints by the tree and the lengths of the bones."""
 
+import re
 from collections.abc import Sequence
 from itertools import product
 from typing import NamedTuple
@@ -47,6 +48,20 @@ ALONG_ONE_AXIS = -np.cos(np.radians(20.0))
 the hips: a rest pose of bones along one axis. Chosen by hand on the rigs of
 `tests/solvers/motion`."""
 
+FACE_OR_TIP = re.compile(r"end|top|tip|nub|jaw|eye|face|hair|hat|頭先", re.IGNORECASE)
+"""Names of what lies beyond the head."""
+
+
+class Structure(NamedTuple):
+    """The roles that tree and lengths suggest."""
+
+    joints: dict[str, str]
+    """Joint names by role; empty without two legs."""
+    humanness: float
+    """How human the proportions are, 0 to 1."""
+    height: float
+    """Of the person whose bones are as long, in meters; 0 without two legs."""
+
 
 class _Match(NamedTuple):
     """Legs, arms and height that fit best, and how badly."""
@@ -57,18 +72,14 @@ class _Match(NamedTuple):
     misfit: float
 
 
-def roles_by_structure(skeleton: Skeleton) -> tuple[dict[str, str], float]:
-    """Return joint names by role, and how human the proportions are, 0 to 1.
+def roles_by_structure(skeleton: Skeleton) -> Structure:
+    """Return joint names by role, and how human the proportions are.
 
     Legs and arms are two pairs of branches that mirror each other, with the trunk between
     them. Knee and ankle, elbow and wrist are the joints that divide each limb most like a
     human limb. Lengths decide, so that the rest pose may have any axes and even be folded up.
     Sides follow the names, where they have any; else the toes show where the rest pose faces,
     or else -Y. Fingers get no role.
-
-    Returns
-    -------
-    dict of role to joint name, and float; empty and 0.0 without two legs.
     """
     pairs = find_mirrored_limbs(skeleton)
     rough = [
@@ -77,7 +88,7 @@ def roles_by_structure(skeleton: Skeleton) -> tuple[dict[str, str], float]:
         if arms is None or _are_separate(skeleton, legs, arms)
     ]
     if not rough:
-        return {}, 0.0
+        return Structure({}, 0.0, 0.0)
     rough.sort(key=lambda match: match.misfit)
     match = min(
         (_match(skeleton, each.legs, each.arms, HEIGHT_FACTORS) for each in rough[:N_REFINED]),
@@ -85,9 +96,10 @@ def roles_by_structure(skeleton: Skeleton) -> tuple[dict[str, str], float]:
     )
     roles = _Body(skeleton, match).roles()
     n_others = _count_other_limbs(skeleton, match, pairs)
-    return (
+    return Structure(
         {role: skeleton.names[joint] for role, joint in roles.items()},
         float(np.exp(-match.misfit)) / (1 + n_others),
+        match.height,
     )
 
 
@@ -254,6 +266,8 @@ class _Body:
         if above:
             top = max(above, key=lambda joint: self.positions[joint] @ self.up)
             neck = without_end_sites(self.skeleton, self._path(chest, top))
+            if len(neck) > 1 and FACE_OR_TIP.search(self.skeleton.names[neck[-1]]):
+                neck = neck[:-1]
             branch = [j for j in neck if len(self.skeleton.children[j]) > 1]
             neck = neck[: neck.index(branch[0]) + 1] if branch else neck
             if neck:

@@ -11,6 +11,7 @@ from .limb_division import MIN_SPREAD_FRACTION
 from .structure import is_human_angle
 
 LIMBS = (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand"))
+ALL_PARTS = (("Toes", *LIMBS[0]), ("Shoulder", *LIMBS[1]))
 SIDES = ("left", "right")
 TWIST_WORD = re.compile("twist|roll|bend|stretch|helper|correct|half|sub|捩", re.IGNORECASE)
 NO_LETTERS = re.compile(r"[\W\d_]+")
@@ -163,7 +164,7 @@ def role_faults(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]
         elif (left := _joint_between(skeleton, set(role_of), upper, lower)) is not None:
             for joint in (upper, lower):
                 faults[role_of[joint]] = f"{skeleton.names[left]} lies between two parts"
-    faults |= _missing_middles(roles)
+    faults |= _missing_middles(roles) | _trunk_faults(skeleton, roles)
     for limb in LIMBS:
         if _has_odd_lengths(skeleton, roles, (limb,)):
             odd = {f"{side}{part}" for side in SIDES for part in limb} & roles.keys()
@@ -181,6 +182,53 @@ def _missing_middles(roles: Mapping[str, int]) -> dict[str, str]:
         if ends <= roles.keys() and f"{side}{middle}" not in roles:
             faults |= dict.fromkeys(ends, f"no bone between plays {side}{middle}")
     return faults
+
+
+def missing_ends(joints: Mapping[str, str]) -> dict[str, str]:
+    """Return a clause for the parts of each limb of which the first or last has no joint.
+
+    That is a fault only if nothing else supports them: some rigs have no hands or feet.
+    """
+    faults: dict[str, str] = {}
+    for side, limb in product(SIDES, ALL_PARTS):
+        upper, end = limb[1], limb[-1]
+        present = {side + part for part in limb} & joints.keys()
+        if present and side + upper not in present:
+            faults |= dict.fromkeys(present, f"no bone above plays {side}{upper}")
+        elif present and side + end not in present:
+            faults |= dict.fromkeys(present, f"no bone below plays {side}{end}")
+    return faults
+
+
+def _trunk_faults(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, str]:
+    """Return a clause for each part of the trunk that carries limbs it cannot, or does not."""
+    faults: dict[str, str] = {}
+    legs, arms = (
+        [
+            {roles[side + part], *skeleton.ancestors(roles[side + part])}
+            for side in SIDES
+            if (part := next((p for p in limb if side + p in roles), None))
+        ]
+        for limb in LIMBS
+    )
+    carries_legs = set.intersection(*legs) if legs else set()
+    carries_arms = set.intersection(*arms) if arms else set()
+    if "hips" in roles and carries_legs and roles["hips"] not in carries_legs:
+        faults["hips"] = "it does not carry the legs"
+    for role in ("spine", "chest", "upperChest", "neck", "head"):
+        if roles.get(role) in carries_legs:
+            faults[role] = "it carries the legs"
+        elif roles.get(role) in carries_arms and (
+            role == "head" or (role == "neck" and _goes_on(skeleton, roles.get("head")))
+        ):
+            faults[role] = "it carries the arms"  # where the neck may, the head ends
+    return faults
+
+
+def _goes_on(skeleton: Skeleton, joint: int | None) -> bool:
+    return joint is not None and any(
+        not skeleton.is_end_site(child) for child in skeleton.children[joint]
+    )
 
 
 def _skips_joint(skeleton: Skeleton, roles: Mapping[str, int]) -> bool:

@@ -11,7 +11,13 @@ from .limb_ik import ReachSettings, reach
 from .mediapipe import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
 from .motion import Motion
 from .resampling import resample
-from .shot_boundaries import describe_shots, find_shot_boundaries, is_short_shot, shot_ranges
+from .shot_boundaries import (
+    MIN_SHOT_S,
+    describe_shots,
+    find_shot_boundaries,
+    is_short_shot,
+    shot_ranges,
+)
 from .skeleton import Skeleton
 from .tracks import Tracks
 from .velocities import linear_velocities
@@ -22,6 +28,7 @@ __all__ = [
     "COMPUTED_JOINTS",
     "HAND_POINTS",
     "INFERRED",
+    "MIN_SHOT_S",
     "NUITRACK",
     "ROTATION_VECTOR",
     "SENSOR_JOINTS",

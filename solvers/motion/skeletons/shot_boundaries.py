@@ -32,8 +32,8 @@ MIN_JOINTS = 6
 MIN_MOTION = 1e-6
 """Radians or meters: a joint with smaller steps does not move. It guards a division."""
 MIN_SHOT_S = 0.25
-"""A shorter shot shows no movement that can be distinguished from noise. Chosen by hand: x0.5
-and x2 move no error."""
+"""A shorter shot shows no movement that can be distinguished from noise. It guards takes whose
+body jumps away for a few frames and returns."""
 STEPS_PER_BLOCK = 512
 """Steps per block, which limits the memory for long takes."""
 

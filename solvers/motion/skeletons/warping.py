@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.distance import cdist
 
 from ...errors import InvalidMotionError
 
@@ -79,6 +78,9 @@ def frame_distances(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[n
     InvalidMotionError
         No pair of frames has a joint in common.
     """
+    # A tenth of a second of every process to import: only when needed.
+    from scipy.spatial.distance import cdist
+
     a, b = (x[:, None] if x.ndim == 2 else x for x in (a, b))
     total = np.zeros((len(a), len(b)))
     common = np.zeros((len(a), len(b)))

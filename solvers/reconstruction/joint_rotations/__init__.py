@@ -4,7 +4,7 @@ from .fit_to_postures import fit_motion_to_postures
 from .library_body import BodyPostures, bone_axis_corrections, build_body_postures
 from .limb_angles import Complex, axial_angles
 from .limb_twist import flexion_weights
-from .motion_from_positions import motion_from_positions
+from .motion_from_positions import motion_from_positions, resize_skeleton
 from .other_joints import find_anchors, positions_from_postures
 from .result import Reconstruction
 from .trunk_twist import (
@@ -35,5 +35,6 @@ __all__ = [
     "mirror_twists",
     "motion_from_positions",
     "positions_from_postures",
+    "resize_skeleton",
     "untwisted_hinges",
 ]

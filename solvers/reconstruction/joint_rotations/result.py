@@ -28,6 +28,9 @@ class Reconstruction:
         Description of the methods, neighbors and training data.
     twists : LimbTwists, optional
         Axial rotations of upper arms and thighs from a library, if one was used.
+    shift : shape (n_frames, n_joints, 3), meters, optional
+        Constant offset of the sensor that was corrected: how far it moved each joint. None if
+        none was.
     """
 
     tracks: Tracks
@@ -36,3 +39,4 @@ class Reconstruction:
     confidence: NDArray[np.float64]
     method: str = ""
     twists: LimbTwists | None = None
+    shift: NDArray[np.float64] | None = None

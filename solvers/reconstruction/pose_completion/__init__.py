@@ -1,6 +1,6 @@
 """Missing joints completed from a library of poses, weighted by reliability."""
 
-from .bridge_gaps import blend_short_gaps
+from .bridge_gaps import blend_gaps
 from .complete_postures import (
     MODEL_ERROR_M,
     CompletedPostures,
@@ -16,7 +16,7 @@ __all__ = [
     "CompletedPostures",
     "ObservedTake",
     "PostureSettings",
-    "blend_short_gaps",
+    "blend_gaps",
     "complete_joints",
     "confidence_from_deviation",
     "reconstruct_postures",

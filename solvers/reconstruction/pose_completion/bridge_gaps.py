@@ -1,22 +1,32 @@
-"""Blend short gaps toward the joint's own interpolated path."""
+"""Blend completed joints with their own interpolated paths, by the expected error of each."""
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from ...arrays import Array
+from ...signals import find_runs
+from .held_out_paths import rest_probability
 
 HALF_WEIGHT_S = 0.12
-"""Gap time (s) at which the joint's own path and the library pose have equal weight. The gap
-time is half the harmonic mean of the times to the nearest reliable frames. Movements outside
-the library are best with 0.25 s (UI-PRMD), movements inside it with 0; this value is a
-compromise. Chosen by hand: x0.5 costs 0.4 %, x2 gains 0.8 %."""
+"""Gap time (s) at which the joint's own path and the library pose have equal weight, if
+the joint moves. The gap time is half the harmonic mean of the times to the nearest reliable
+frames. Movements outside the library are best with 0.25 s (UI-PRMD), movements inside it with
+0; this value is a compromise. Chosen by hand: x0.5 costs 0.4 %, x2 gains 0.8 %."""
 
 
-def blend_short_gaps(
-    tracked: Array, reliable: NDArray[np.bool_], rebuilt: Array, frame_rate: float
+def blend_gaps(
+    tracked: Array,
+    reliable: NDArray[np.bool_],
+    rebuilt: Array,
+    deviation: Array,
+    frame_rate: float,
 ) -> Array:
-    """Blend completed joints toward the joint's own path near the ends of a gap.
+    """Blend completed joints with the joint's own path across each gap.
+
+    A joint that rests follows its path, and the probability that it rests is judged on the
+    take (`rest_probability`). Otherwise the weight of the path falls with the time to the ends
+    of the gap.
 
     Parameters
     ----------
@@ -26,6 +36,8 @@ def blend_short_gaps(
         Reliable observations; false where a position is NaN.
     rebuilt : shape (n_frames, n_joints, 3), meters
         Positions from library poses.
+    deviation : shape (n_frames, n_joints), meters
+        Expected error of `rebuilt` on each axis.
     frame_rate : float, hertz
 
     Returns
@@ -34,29 +46,40 @@ def blend_short_gaps(
         Equal to `rebuilt` without reliable frames on both sides.
     """
     result = rebuilt.copy()
-    frames = np.arange(len(tracked))
     for joint in range(tracked.shape[1]):
-        reliable_frames = frames[reliable[:, joint]]
-        if len(reliable_frames) < 2:
+        known = np.flatnonzero(reliable[:, joint])
+        if len(known) < 2:
             continue
-        inside = frames[reliable_frames[0] : reliable_frames[-1] + 1]
-        following = np.searchsorted(reliable_frames, inside)
-        before = (
-            inside
-            - reliable_frames[
-                np.where(reliable_frames[following] == inside, following, following - 1)
-            ]
-        )
-        after = reliable_frames[following] - inside
-        gap = np.maximum(before + after, 1)
-        gap_time = before * after / (gap * frame_rate)
-        weight = (1.0 / (1.0 + (gap_time / HALF_WEIGHT_S) ** 2))[:, None]
-        path = _hermite_path(reliable_frames, tracked[reliable_frames, joint])(inside)
-        result[inside, joint] = weight * path + (1.0 - weight) * rebuilt[inside, joint]
+        inside = slice(known[0], known[-1] + 1)
+        frames = np.arange(inside.start, inside.stop)
+        weight = _weight_by_time(known, frames, frame_rate)
+        path = _hermite_path(known, tracked[known, joint])(frames)
+        for start, stop in find_runs(~reliable[inside, joint]):
+            gap = slice(start + known[0], stop + known[0])
+            rest = rest_probability(
+                tracked[:, joint],
+                reliable[:, joint],
+                gap,
+                rebuilt[gap, joint] - path[start:stop],
+                deviation[gap, joint],
+            )
+            weight[start:stop] = rest + (1.0 - rest) * weight[start:stop]
+        result[inside, joint] += weight[:, None] * (path - rebuilt[inside, joint])
     return result
 
 
-def _hermite_path(frames: NDArray[np.int64], positions: Array) -> CubicHermiteSpline:
+def _weight_by_time(
+    known: NDArray[np.intp], frames: NDArray[np.intp], frame_rate: float
+) -> Array:
+    """Return the weight of the path in each frame: 1 at reliable ones, less far from them."""
+    following = np.searchsorted(known, frames)
+    before = frames - known[np.where(known[following] == frames, following, following - 1)]
+    after = known[following] - frames
+    gap_time = before * after / (np.maximum(before + after, 1) * frame_rate)
+    return np.asarray(1.0 / (1.0 + (gap_time / HALF_WEIGHT_S) ** 2))
+
+
+def _hermite_path(frames: NDArray[np.intp], positions: Array) -> CubicHermiteSpline:
     """Return a smooth path through positions with limited overshoot.
 
     Slopes are at most three times those of the adjacent straight segments (Fritsch and Carlson

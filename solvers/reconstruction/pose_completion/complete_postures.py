@@ -62,6 +62,8 @@ class CompletedPostures(NamedTuple):
 
     postures: Array
     confidence: Array
+    deviation: Array
+    """Expected error of each joint on each axis, (n_frames, 20), meters."""
     twists: LimbTwists | None
     """None if the library has no twists."""
     method: str = "most probable postures"
@@ -125,7 +127,7 @@ def complete_postures(
     confidence = confidence_from_deviation(np.hypot(settings.noise, spread))
     postures = corrected.values + errors.offset
     postures = constrain_lengths(postures, lengths, reliability, confidence)
-    return CompletedPostures(postures + offset, confidence, twists)
+    return CompletedPostures(postures + offset, confidence, corrected.spread, twists)
 
 
 def _fit_library_to_actor(

@@ -37,6 +37,8 @@ class CompletedJoints(NamedTuple):
 
     tracks: Tracks
     confidence: Array
+    deviation: Array
+    """Expected error on each axis, shape (n_frames, n_joints), meters."""
     method: str
     twists: LimbTwists | None
 
@@ -136,11 +138,12 @@ def complete_joints(
     joints = positions_from_postures(
         tracks.names, tracks.positions, combined, positions, world_positions
     )
-    confidence = completed.confidence[:, find_anchors(tracks.names)]
+    anchors = find_anchors(tracks.names)
     description = _describe_method(completed.method, settings, library)
     return CompletedJoints(
-        tracks.with_positions(joints), confidence, description, completed.twists
-    )
+        tracks.with_positions(joints), completed.confidence[:, anchors],
+        completed.deviation[:, anchors], description, completed.twists,
+    )  # fmt: skip
 
 
 def _check_observed(recording: JointRecording, positions: Array, reliability: Array) -> None:

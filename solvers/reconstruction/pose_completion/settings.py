@@ -12,11 +12,11 @@ class PostureSettings(Settings):
     causal: bool = setting(False, "Use only earlier frames, as in a live system; less smooth")
     n_neighbours: int = setting(
         30, "Number of library poses that each pose is made of; more vary more",
-        minimum=2, maximum=200,
+        minimum=2, maximum=200, label="Neighbors",
     )  # fmt: skip
     n_dimensions: int = setting(
         20, "Dimensions in which a pose may differ from the mean of its neighbors",
-        minimum=1, maximum=60, advanced=True,
+        minimum=1, maximum=60, advanced=True, label="Dimensions",
     )  # fmt: skip
     noise: float = setting(
         0.005, "Position error of reliable joints; higher smooths them more", unit="m",

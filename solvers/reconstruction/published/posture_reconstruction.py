@@ -75,9 +75,11 @@ def search_as_published(
         return search_sequentially(spaces, targets, before=last)[0]
 
     chosen, twists = synthesize(take, body, index, causal_settings, progress, choose)
+    deviation = np.hypot(chosen.spread, MODEL_ERROR_M)
     return CompletedPostures(
         chosen.values,
-        confidence_from_deviation(np.hypot(chosen.spread, MODEL_ERROR_M)),
+        confidence_from_deviation(deviation),
+        deviation,
         twists and replace(twists, ignore_flexion=True),
         "postures by stochastic search",
     )

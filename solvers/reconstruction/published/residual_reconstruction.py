@@ -22,6 +22,7 @@ from ..residual_correction import (
     ResidualPrior,
     assemble_correction,
     mean_offset,
+    shift_in_world,
     smooth_postures,
 )
 
@@ -83,17 +84,18 @@ def reconstruct_published_residuals(
     smooth = smooth_postures(recording, float(prior.smoothing), weights, ahead=True)
     prediction = prior.predict(smooth, ahead=False)
     mean = mean_offset(prediction, weights)
-    constant = mean if settings.shift else np.zeros_like(mean)
-    offsets = prediction.offsets + (constant - mean)
-    if not settings.change:
-        offsets = np.broadcast_to(constant, offsets.shape)
-    predicted = smooth.positions + smooth.rotate_to_world(offsets)
+    predicted = smooth.positions.copy()
+    if settings.change:
+        predicted += smooth.rotate_to_world(prediction.offsets - mean)
+    shift = shift_in_world(smooth, mean) if settings.shift else None
+    if shift is not None:
+        predicted += shift
     variances = prediction.variances + prior.constant_variances(constant=settings.shift)
     corrected = CorrectedPostures(
         minimize_terms(recording, predicted, variances, weights, settings),
         prediction,
         variances,
-        shift=settings.shift,
+        shift,
         uses_prior=settings.change or settings.shift,
         method="published",
     )

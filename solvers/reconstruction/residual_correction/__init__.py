@@ -7,6 +7,7 @@ from .correct_postures import (
     assemble_correction,
     correct_postures,
     mean_offset,
+    shift_in_world,
 )
 from .inputs import smooth_postures
 from .kernel import squared_distances
@@ -27,6 +28,7 @@ __all__ = [
     "learn_residual_prior",
     "load_residual_prior",
     "mean_offset",
+    "shift_in_world",
     "smooth_postures",
     "squared_distances",
 ]

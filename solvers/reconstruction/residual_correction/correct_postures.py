@@ -18,7 +18,7 @@ from ..joint_rotations import (
     positions_from_postures,
 )
 from ..reliability import Reliability, measure_reliability, posture_reliability
-from .inputs import smooth_postures
+from .inputs import SmoothedPostures, smooth_postures
 from .prediction import Prediction
 from .residual_prior import ResidualPrior
 from .smooth_trajectories import filter_trajectories, smooth_trajectories
@@ -70,9 +70,9 @@ def correct_postures(
 ) -> Reconstruction:
     """Correct the sensor's errors in joint positions with a residual prior.
 
-    The mean offset of the take and a fraction of its change are subtracted. Over the complete
-    take, the distance to the corrected positions, weighted by reliability, and the
-    accelerations are minimized.
+    The mean offset of the take and a fraction of its change, less in takes unlike the training
+    data, are subtracted. Over the complete take, the distance to the corrected positions,
+    weighted by reliability, and the accelerations are minimized.
 
     Parameters
     ----------
@@ -109,12 +109,7 @@ def correct_postures(
     )
     weights = posture_reliability(recording, reliability.combined)
     progress(0.4, "Correcting")
-    corrected = CorrectedPostures(
-        *predict_positions(recording, prior, weights, settings),
-        shift=settings.shift,
-        uses_prior=settings.change > 0.0 or settings.shift,
-        method=settings.method.value,
-    )
+    corrected = predict_postures(recording, prior, weights, settings)
     progress(0.9, "Correcting")
     result = assemble_correction(recording, prior, reliability, corrected, twists)
     progress(1.0, "Corrected")
@@ -127,7 +122,8 @@ class CorrectedPostures(NamedTuple):
     positions: Array
     prediction: Prediction
     variances: Array
-    shift: bool
+    shift: Array | None
+    """Constant offset in world axes, shape (n_frames, 20, 3); None if it was not corrected."""
     uses_prior: bool
     method: str
 
@@ -143,7 +139,7 @@ def assemble_correction(
     weights = posture_reliability(recording, reliability.combined)
     coverage = corrected.prediction.coverage if corrected.uses_prior else 0.0
     probability = prior.confidence(
-        corrected.variances, CONFIDENCE_DISTANCE_M, constant=corrected.shift
+        corrected.variances, CONFIDENCE_DISTANCE_M, constant=corrected.shift is not None
     )
     confidence = coverage * probability + (1.0 - coverage) * weights
     tracks = recording.tracks
@@ -155,7 +151,8 @@ def assemble_correction(
         corrected.positions,
     )
     joints[:, ~tracks.visible.any(axis=0)] = np.nan
-    confidence = confidence[:, find_anchors(tracks.names)]
+    anchors = find_anchors(tracks.names)
+    shift = None if corrected.shift is None else corrected.shift[:, anchors]
     rebuilt = tracks.with_positions(joints)
     motion = motion_from_positions(
         rebuilt, recording.parents, reliability.combined, twists=twists
@@ -163,37 +160,44 @@ def assemble_correction(
     method = f"smoothed ({corrected.method})"
     if corrected.uses_prior:
         method += f" with a residual prior of {prior.source}"
-    return Reconstruction(rebuilt, motion, reliability, confidence, method, twists)
+    return Reconstruction(
+        rebuilt, motion, reliability, confidence[:, anchors], method, twists, shift
+    )
 
 
-def predict_positions(
+def predict_postures(
     recording: JointRecording,
     prior: ResidualPrior,
     weights: Array,
     settings: CorrectionSettings,
-) -> tuple[Array, Prediction, Array]:
-    """Return corrected posture joints, the prediction of the prior, and its variances."""
+) -> CorrectedPostures:
+    """Return corrected posture joints, given the reliability of each, (n_frames, 20)."""
     causal = settings.method is CorrectionMethod.CAUSAL
     smooth = smooth_postures(recording, float(prior.smoothing), weights, ahead=not causal)
     prediction = prior.predict(smooth, ahead=not causal)
+    mean = mean_offset(prediction, weights)
+    fraction = settings.change * prediction.coverage.mean(axis=0)
     predicted = smooth.positions + smooth.rotate_to_world(
-        _offsets(prediction, weights, settings)
+        fraction[:, None] * (prediction.offsets - mean)
     )
-    variances = prediction.variances + prior.constant_variances(constant=settings.shift)
+    shift = shift_in_world(smooth, mean) if settings.shift else None
+    if shift is not None:
+        predicted += shift
     smoother = filter_trajectories if causal else smooth_trajectories
     frames = settings.smoothing * recording.frame_rate
-    return smoother(predicted, np.maximum(weights, MIN_WEIGHT), frames), prediction, variances
+    return CorrectedPostures(
+        smoother(predicted, np.maximum(weights, MIN_WEIGHT), frames),
+        prediction,
+        prediction.variances + prior.constant_variances(constant=settings.shift),
+        shift,
+        uses_prior=settings.change > 0.0 or settings.shift,
+        method=settings.method.value,
+    )
 
 
-def _offsets(prediction: Prediction, weights: Array, settings: CorrectionSettings) -> Array:
-    """Return the offsets to apply: their mean over the take, and their change with pose.
-
-    Only a fraction of the change is applied, less in takes unlike the training data.
-    """
-    mean = mean_offset(prediction, weights)
-    constant = mean if settings.shift else np.zeros_like(mean)
-    fraction = settings.change * prediction.coverage.mean(axis=0)
-    return np.asarray(constant + fraction[:, None] * (prediction.offsets - mean))
+def shift_in_world(smooth: SmoothedPostures, mean: Array) -> Array:
+    """Return a constant offset of each joint, (20, 3), in world axes, (n_frames, 20, 3)."""
+    return smooth.rotate_to_world(np.broadcast_to(mean, smooth.positions.shape))
 
 
 def mean_offset(prediction: Prediction, weights: Array) -> Array:

@@ -12,7 +12,7 @@ from ...motion.humanoid import N_JOINTS, posture_positions
 from ...progress import Progress, unwatched, within
 from ..reliability import measure_reliability, posture_reliability
 from .confidence import IDENTITY_CALIBRATION, Calibration
-from .correct_postures import CorrectionSettings, predict_positions
+from .correct_postures import CorrectionSettings, predict_postures
 from .learn_residual_prior import (
     MEDIAN_SQUARED_LENGTH,
     ResidualPriorSettings,
@@ -128,12 +128,12 @@ def _take_variances(
     measured = []
     for shift in (True, False):
         settings = CorrectionSettings(shift=shift)
-        positions, _, variances = predict_positions(recording, prior, weights, settings)
-        off = truth - positions
+        corrected = predict_postures(recording, prior, weights, settings)
+        off = truth - corrected.positions
         if not shift:
             known = np.isfinite(off).any(axis=(0, 2))
             off[:, known] -= np.nanmean(off[:, known], axis=0)
-        measured.append((variances, (off**2).sum(axis=-1)))
+        measured.append((corrected.variances, (off**2).sum(axis=-1)))
     return measured
 
 

@@ -50,9 +50,10 @@ MAX_FLOOR_FRACTION = 0.4
 CLEAR_LEAD = 0.5
 """Lead over the next axis below which the report says that the evidence disagrees."""
 CLEAR_STANDING = 0.7
-"""Evidence of motion and floor, each, from which a rest pose with another axis is no doubt."""
+"""Evidence of motion and floor, each, from which another axis of the rest pose is ignored."""
 CLEAR_FLOOR_LEAD = 0.3
-"""Lead of the evidence of the floor for that: who lies at the origin is near zero both ways."""
+"""Lead of the evidence of the floor for that: an actor who lies at the origin is near zero on
+both axes."""
 MIN_REST_STANDING = 0.7
 """Evidence from which the rest pose has an axis of its own."""
 MIN_SPREAD_FRACTION = 0.03

@@ -28,7 +28,7 @@ def file_conventions(
 def with_axes(
     conventions: FileConventions, up: AxisName | None, forward: AxisName | None
 ) -> FileConventions:
-    """Return conventions with the axes that somebody gives; None keeps what was judged.
+    """Return conventions with the axes that the user chose; None keeps what was judged.
 
     Where only another up axis is given, the usual forward axis belongs to it.
 

@@ -34,6 +34,9 @@ MIN_BELOW_FRACTION = 0.3
 MIN_UPRIGHT_FRACTION = 0.2
 """Height of the head above the hips, relative to the stature, of who stands or sits: 0.27 to
 0.36 in upright bodies of several makers."""
+MAX_FLIGHT_STATURES = 10.0
+"""Distance from height 0, in statures, above which units of positions and bones differ rather
+than heights. Chosen by hand: confused units give factors of 2.5 to 100."""
 MIN_OFF_FLOOR_FRACTION = 0.15
 """Distance of the lowest level from height 0, relative to the stature, that is a question."""
 MAX_HIPS_FRACTION = 0.15
@@ -119,6 +122,11 @@ def question_of_floor(recording: Motion | Tracks | JointRecording) -> str:
         return ""
     level = float(np.median(lowest))
     side = "above" if level > 0.0 else "below"
+    if nearest > MAX_FLIGHT_STATURES * tall:
+        return (
+            f"The actor stays {abs(level):.2g} m {side} the floor: positions and bone lengths"
+            " of the file have different units; export it again with one unit"
+        )
     return (
         f"The actor stays {abs(level):.2g} m {side} the floor; set Place on Floor to On if this"
         " is not right"

@@ -88,8 +88,8 @@ class BvhChannels:
 
         That is rarer. Each joint of the body has one vote: its
         channels are nearer to zero than to its OFFSET, or not. The root and the joints below
-        it that carry the body travel, and are asked only where no other joint has channels;
-        of the root only the height tells.
+        it that carry the body travel, and vote only where no other joint has channels; of the
+        root only the height counts.
         """
         voters = [joint for joint in range(1, len(self.joints)) if joint not in self.trunk]
         votes = sum(map(self._vote_for_offset, voters))
@@ -100,7 +100,7 @@ class BvhChannels:
     def _vote_for_offset(self, joint: int) -> int:
         """Return 1 where position channels are nearer to zero than to the OFFSET, else -1.
 
-        Return 0 where there are no channels, or nothing to tell the two apart.
+        Return 0 where there are no channels, or both are as near.
         """
         observed = np.array([f"{axis}position" in self.columns[joint] for axis in "xyz"])
         observed &= (True, True, True) if joint else (False, True, False)

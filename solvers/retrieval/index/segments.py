@@ -12,15 +12,13 @@ from .vocabulary import N_AXES, Vocabulary
 
 RATE = 20.0
 """Hertz at which clips are compared. Chosen by hand: x0.5 gains 0.4 %, x2 costs 1.6 %."""
-LONG_CLIP_S = 4.0
-"""Seconds; longer clips are also indexed in segments. Chosen by hand: x0.5 and x2 move no
-error."""
 MIN_SEGMENT_S = 2.0
-"""Seconds; other segments are two, four ... times as long. Chosen by hand: x0.5 and x2 move no
-error."""
+"""Seconds; other segments are two, four ... times as long. It guards libraries of takes of
+minutes, in which an action is a small part: clips of twice this length are also indexed in
+segments."""
 MAX_SEGMENT_FRACTION = 0.7
-"""Maximum length of a segment, relative to the clip. Chosen by hand: x0.5 and x2 move no
-error."""
+"""Maximum length of a segment, relative to the clip. It bounds the size of the index: a longer
+one would describe the clip itself again."""
 N_CUBES = 3
 N_STEPS = 16
 """Time samples of a segment for dynamic time warping."""
@@ -100,7 +98,9 @@ def segment_frames(n_frames: int, frame_rate: float) -> NDArray[np.int32]:
     """Return the first and end frames of the segments of a clip, shape (n_segments, 2)."""
     segments = [(0, n_frames)]
     length = MIN_SEGMENT_S * frame_rate
-    while n_frames > LONG_CLIP_S * frame_rate and length < MAX_SEGMENT_FRACTION * n_frames:
+    while (
+        n_frames > 2.0 * MIN_SEGMENT_S * frame_rate and length < MAX_SEGMENT_FRACTION * n_frames
+    ):
         n_segments = int(np.ceil(2.0 * (n_frames - length) / length)) + 1
         starts = np.linspace(0, n_frames - length, n_segments)
         segments += [(round(start), round(start + length)) for start in starts]

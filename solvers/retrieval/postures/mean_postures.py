@@ -25,7 +25,7 @@ MAX_LENGTH_RATIO = 1.4
 """Maximum ratio by which a path past missing joints is scaled up or down. Chosen by hand: x0.5
 costs 1.7 %, x2 costs nothing."""
 MIN_PATH_M = 0.01
-"""Minimum length of such a path in meters. Chosen by hand: x0.5 and x2 move no error."""
+"""Minimum length of such a path in meters. It guards a division where a joint rests."""
 MIN_OBSERVED_FRACTION = 0.9
 """Fraction of frames with an observed joint above which it helps to find the heading. Chosen by
 hand: x0.5 and x2 move no error."""
@@ -39,9 +39,6 @@ ALL_ANGLES = np.radians(np.arange(-180.0, 180.0, 5.0))
 HEADING_ERROR_RAD = np.radians(20.0)
 """Standard deviation of the heading error of a body with missing joints. Chosen by hand: x0.5
 and x2 move no error."""
-HEADING_NOISE_M = 0.03
-"""Standard deviation of a joint position in meters, for the estimation of the heading. Chosen
-by hand: x0.5 and x2 move no error."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +105,7 @@ class PostureDistribution:
             np.linspace(0, len(complete) - 1, min(N_HEADING_FRAMES, len(complete))).astype(int)
         ]
         columns = np.repeat(frequent, 3)
-        covariance = self.covariance[np.ix_(columns, columns)] + HEADING_NOISE_M**2 * np.eye(
+        covariance = self.covariance[np.ix_(columns, columns)] + POSITION_NOISE_M**2 * np.eye(
             columns.sum()
         )
         whitening = np.linalg.inv(np.linalg.cholesky(covariance)).T

@@ -12,7 +12,7 @@ MIN_OBSERVED_FRACTION = 0.5
 """Fraction of frames with an observed joint above which it counts as known. Chosen by hand:
 x0.5 and x2 move no error."""
 MIN_RELIABILITY = 0.02
-"""Lower bound of the reliability of a part. Chosen by hand: x0.5 and x2 move no error."""
+"""Lower bound of the reliability of a part. It guards queries of which no part is observed."""
 MIN_VARIANCE_M2 = 1e-9
 """Minimum variance that is divided by. It guards a division."""
 

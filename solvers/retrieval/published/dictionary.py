@@ -54,7 +54,7 @@ class PostureDictionary:
     ----------
     atoms : shape (n_atoms, 60), of length 1
     mean : shape (60,), meters
-        Mean that is subtracted from postures; 0 unless centred.
+        Mean that is subtracted from postures; 0 unless centered.
     n_nonzeros : int
         Atoms per posture.
     """

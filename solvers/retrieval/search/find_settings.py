@@ -14,11 +14,11 @@ RELIABILITY_POWER = 4.0
 """Exponent of the reliability of a part in its weight. Chosen by hand: x0.5 and x2 move no
 error."""
 SENSOR_MEAN_POSTURE_WEIGHT = 0.4
-"""Maximum weight of the mean posture for sensor data. Chosen by hand: x0.5 and x2 move no
-error."""
+"""Maximum weight of the mean posture for sensor data. Chosen by a sweep over the training data
+of docs/benchmarks_retrieval.md."""
 MIN_ACTIVITY = 0.05
 """Movement of the most active part, relative to the average, below which the query counts as a
-static pose. Chosen by hand: x0.5 and x2 move no error."""
+static pose. It guards queries of a static pose."""
 REST_WEIGHT = 0.2
 """Activity of a part at rest, as a fraction of that of the most active part. Chosen by hand:
 x0.5 and x2 move no error."""

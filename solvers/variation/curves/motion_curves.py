@@ -19,8 +19,8 @@ N_ROOT_CHANNELS = 4
 about Z, each since the frame before; then the height of the hips."""
 HEIGHT_COLUMN = 3
 MAX_FRAME_ROTATION_RAD = 2.0
-"""Maximum plausible rotation of a joint within one frame, radians. Chosen by hand: x0.5 and x2
-move no error; it guards against flipped rotations."""
+"""Maximum plausible rotation of a joint within one frame, radians. It guards takes in which a
+joint flips between two frames."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ While working on the method, on development clips only, a run of seconds:
 
 `--only` takes ours, alone (ours without examples), published, or any part of a peer's name;
 `--levels` takes sigma:fraction pairs, `--clean-root` leaves the root's position unspoilt.
-Which clips are for development is fixed in clips.py, what is spoilt in noise.py.
+Which clips are for development is fixed in clips.py, what is damaged in noise.py.
 """
 
 import argparse
@@ -31,6 +31,7 @@ from ..shared.tables import Scores, table
 from .cases import BURSTS, LEVELS, Case, Level
 from .methods import Method
 from .ours import OURS, SHORT_NAMES
+from .part_bases import compare_counts, compare_cycles
 from .part_classes import class_cases, compare_classes
 from .part_denoise import compare, leave_one_out, peers
 from .part_gaps import FILLERS, compare_gaps
@@ -117,6 +118,16 @@ def windows(chosen: argparse.Namespace) -> list[Scores]:
     return compare_windows(_walks(chosen)[: None if chosen.full else WINDOW_CLIPS])
 
 
+def bases(chosen: argparse.Namespace) -> list[Scores | str]:
+    """Numbers of filter bases."""
+    return compare_counts(_walks(chosen))
+
+
+def cycles(chosen: argparse.Namespace) -> list[Scores]:
+    """Lengths of the patterns on movements of a long and of a short cycle."""
+    return compare_cycles()
+
+
 def priors(chosen: argparse.Namespace) -> list[Scores | str]:
     """Right and wrong examples."""
     scores, said = compare_priors(_walks(chosen)[:PRIOR_CLIPS])
@@ -131,6 +142,8 @@ PARTS: dict[str, Callable[[argparse.Namespace], Sequence[Scores | str]]] = {
     "classes": classes,
     "gaps": gaps,
     "windows": windows,
+    "bases": bases,
+    "cycles": cycles,
     "priors": priors,
     "library": library,
     "markers": markers,

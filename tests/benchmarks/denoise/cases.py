@@ -1,4 +1,4 @@
-"""One spoilt clip with everything a method may know, and what a method makes of it."""
+"""One damaged clip with everything a method may know, and what a method makes of it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ from ..shared.noise import (
 
 @dataclass(frozen=True)
 class Level:
-    """How much a clip is spoilt: degrees, and the fraction of samples that are outliers."""
+    """How much a clip is damaged: degrees, and the fraction of samples that are outliers."""
 
     sigma: float
     fraction: float = 0.0
@@ -46,7 +46,7 @@ BURSTS = tuple(Level(3.0, fraction, bursts=True) for fraction in (0.02, 0.05, 0.
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A clip, spoilt, with the clips that a method may learn from."""
+    """A clip, damaged, with the clips that a method may learn from."""
 
     name: str
     level: Level

@@ -1,4 +1,4 @@
-"""Noise and outliers on whole clips: every peer and ours on the same spoilt takes."""
+"""Noise and outliers on whole clips: every peer and ours on the same damaged takes."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from time import perf_counter

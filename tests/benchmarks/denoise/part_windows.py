@@ -86,6 +86,10 @@ def _add(
         error = case.error(case.values(done.recording))
         scores.add(prior, target, case.name, error, follows=False)
         said[f"{target}, {prior}"] = done.prior_used
+        published = Ours(method=DenoiseMethod.PUBLISHED)
+        done = published.denoised(case.noisy_motion, training)
+        error = case.error(case.values(done.recording))
+        scores.add(f"[LC10] as published, {prior}", target, case.name, error, follows=False)
     alone = Ours(prior=False).denoised(case.noisy_motion, ())
     scores.add("none", target, case.name, case.error(case.values(alone.recording)))
     said[f"{target}, none"] = alone.prior_used

@@ -32,7 +32,7 @@ def blender_depth(
     position: np.ndarray,
     camera: Camera,
 ) -> np.ndarray:
-    """Return pictures (n_frames, height, width), metres, 0: nothing.
+    """Return pictures (n_frames, height, width), meters, 0: nothing.
 
     Points are seen at points @ rotation + position.
     """

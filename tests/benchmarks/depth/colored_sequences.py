@@ -1,4 +1,4 @@
-"""What [LOU12] needs and depth/truth lacks: colours, and recorded motions of others."""
+"""What [LOU12] needs and depth/truth lacks: colors, and recorded motions of others."""
 
 from dataclasses import replace
 from functools import cache
@@ -23,7 +23,7 @@ HOPS = "HDM_bd_hopBothLegs1hops_*.amc"
 
 @cache
 def colored(name: str) -> Sequence:
-    """Return one of depth/truth with colours painted on the bodies that it was drawn from."""
+    """Return one of depth/truth with colors painted on the bodies that it was drawn from."""
     one = sequence(name)
     body, laid = truth_bodies(name)
     materials, rng = vertex_materials(body), np.random.default_rng(5)

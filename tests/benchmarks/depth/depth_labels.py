@@ -27,7 +27,7 @@ from solvers.recordings import read_bvh
 from .forest_sources import CMU_METRES, DATA, TRUTH, all_bodies, held_out_motions
 
 SAME_DEPTH = 0.08
-"""Difference of both renderings in metres above which a pixel has no label."""
+"""Difference of both renderings in meters above which a pixel has no label."""
 CMU_JOINTS = {
     "hips": "Hips", "spine": "LowerBack", "chest": "Spine", "neck": "Neck", "head": "Head",
     "UpperArm": "Arm", "LowerArm": "ForeArm", "Hand": "Hand",
@@ -69,7 +69,7 @@ def truth_frames(take: str, every: int = 1, step: int = 2) -> Iterator[LabelledF
 
 
 def truth_bodies(take: str, every: int = 1) -> tuple[SkinnedBody, Iterator[tuple[int, Array]]]:
-    """Return the body of a take, and frames with its vertices there, camera frame, metres."""
+    """Return the body of a take, and frames with its vertices there, camera frame, meters."""
     clip, first, body_name = TRUTH[take]
     body = load_skinned_body(DATA / "body" / f"{body_name}.npz")
     poses = body.rotations_of(read_bvh(DATA / "mocap" / clip, scale=CMU_METRES))

@@ -49,7 +49,7 @@ class Take(NamedTuple):
     """Frame at 30 Hz."""
     n_frames: int = 80
     distance: float = 3.0
-    """Distance from the camera to the middle of the path, metres."""
+    """Distance from the camera to the middle of the path, meters."""
     tilt: float = 0.0
     """Degrees that the camera looks down, from as much higher."""
     spin: float = 0.0
@@ -96,7 +96,7 @@ def more_sequence(name: str) -> Sequence:
 
 
 def posed(body: SkinnedBody, take: Take) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return vertices and joints of each picture in the camera's frame, metres."""
+    """Return vertices and joints of each picture in the camera's frame, meters."""
     motion, rotations = before_camera(body, take)
     found = []
     for pose, root, rotation in zip(

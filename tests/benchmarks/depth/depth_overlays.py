@@ -1,6 +1,6 @@
 """Pictures of a body over the depth that it was found in.
 
-Depth grey, our body orange, its bones green (red where confidence is low), the joints of the
+Depth gray, our body orange, its bones green (red where confidence is low), the joints of the
 Kinect's SDK blue.
 """
 

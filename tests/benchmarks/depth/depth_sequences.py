@@ -38,7 +38,7 @@ class Sequence:
     name: str
     depth: DepthRecording
     joints: np.ndarray
-    """Shape (n_frames, 21, 3), metres, camera frame, in the order of `JOINTS`."""
+    """Shape (n_frames, 21, 3), meters, camera frame, in the order of `JOINTS`."""
 
     @property
     def body(self) -> BodyModel:
@@ -76,7 +76,7 @@ def sequence(name: str, folder: Path = TRUTH) -> Sequence:
 
 
 def noisier(one: Sequence, sigma: float, seed: int = 0) -> Sequence:
-    """Return the sequence with Gaussian noise, `sigma` metres at 3 m, growing as z squared."""
+    """Return the sequence with Gaussian noise, `sigma` meters at 3 m, growing as z squared."""
 
     def read(frame: int) -> np.ndarray:
         rng = np.random.default_rng((seed, frame))
@@ -90,7 +90,7 @@ def noisier(one: Sequence, sigma: float, seed: int = 0) -> Sequence:
 
 @dataclass(frozen=True, eq=False)
 class Errors:
-    """How far joints were off, metres, each (n_frames, 21)."""
+    """How far joints were off, meters, each (n_frames, 21)."""
 
     raw: np.ndarray
     offset_taken: np.ndarray

@@ -50,7 +50,7 @@ class KinectTake:
     subject: int
     depth: DepthRecording
     joints: np.ndarray
-    """Shape (n_frames, 16, 3), metres, camera frame (y down); NaN before the SDK began."""
+    """Shape (n_frames, 16, 3), meters, camera frame (y down); NaN before the SDK began."""
 
     @property
     def name(self) -> str:
@@ -60,7 +60,7 @@ class KinectTake:
     def distances(self, found: np.ndarray) -> np.ndarray:
         """Return how far our joints (n_frames, 21, 3) are from the SDK's, (n_frames, 16).
 
-        Metres, after the median offset of each joint, for joints are defined differently.
+        Meters, after the median offset of each joint, for joints are defined differently.
         """
         off = found[:, OURS] - self.joints
         return np.linalg.norm(off - np.nanmedian(off, axis=0), axis=-1)

@@ -42,7 +42,7 @@ class Take(NamedTuple):
     """Frames of the clip per picture: 4 of 120 make 30 per second."""
     n_frames: int = 60
     distance: float = 3.0
-    """Distance to the middle of the path, metres."""
+    """Distance to the middle of the path, meters."""
 
 
 TAKES = {
@@ -71,7 +71,7 @@ TAKES = {
 
 @cache
 def tuning_sequence(name: str, columns: int = 160) -> Sequence:
-    """Draw one of `TAKES`, with the noise of a Kinect, and with colours."""
+    """Draw one of `TAKES`, with the noise of a Kinect, and with colors."""
     take = TAKES[name]
     rng = np.random.default_rng((11, list(TAKES).index(name)))
     body = vary_body(all_bodies(), rng, SHAPES)

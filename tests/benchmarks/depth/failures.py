@@ -39,7 +39,7 @@ class Judged(NamedTuple):
     features: Array
     """`FEATURES` of each, shape (n, 6)."""
     errors: Array
-    """Mean distance of its joints to the true ones, metres, shape (n,)."""
+    """Mean distance of its joints to the true ones, meters, shape (n,)."""
     published: NDArray[np.bool_]
     """Whether each has failed by the thresholds of [WZC12]."""
 

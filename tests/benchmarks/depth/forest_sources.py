@@ -30,7 +30,7 @@ TRUTH = {
     "jump": ("cmu_hop/49_03.bvh", 241, "male_average"),
 }
 """What each take of depth/truth was rendered from: clip, its first frame, body. Found by their
-joints, which agree to a micrometre; every fourth frame was taken."""
+joints, which agree to a micrometer; every fourth frame was taken."""
 HELD_OUT = ("05_01", "49_02", "49_03")
 """Clips that no model is trained on; all clips of the walkers 07 and 35 too."""
 HELD_OUT_WALKERS = ("07", "35")
@@ -66,7 +66,7 @@ def cmu_motions(folder: Path = DATA, but: tuple[str, ...] = ()) -> list[Motion]:
 
 
 def held_out_motions(folder: Path = DATA) -> list[Motion]:
-    """Return clips of HDM05: other actors, and a licence under which nothing may ship."""
+    """Return clips of HDM05: other actors, and a license under which nothing may ship."""
     mocap = folder / "mocap" / "hdm05"
     return [
         resample(read_acclaim(path, mocap / f"{path.name[:6]}.asf"), FRAME_RATE)

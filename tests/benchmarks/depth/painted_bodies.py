@@ -1,4 +1,4 @@
-"""Skinned bodies with skin, hair, shirt, trousers and shoes, as a colour camera sees them."""
+"""Skinned bodies with skin, hair, shirt, trousers and shoes, as a color camera sees them."""
 
 from typing import NamedTuple
 
@@ -29,10 +29,10 @@ NOISE = 4.0
 
 
 class ColoredPicture(NamedTuple):
-    """What a camera of depth and colour sees."""
+    """What a camera of depth and color sees."""
 
     depth: NDArray[np.float32]
-    """Shape (height, width), metres; 0: nothing."""
+    """Shape (height, width), meters; 0: nothing."""
     color: NDArray[np.uint8]
     """Shape (height, width, 3)."""
 
@@ -62,7 +62,7 @@ def colored_picture(
     camera: Camera,
     rng: np.random.Generator,
 ) -> ColoredPicture:
-    """Draw a posed body, its vertices (n, 3) in the camera's frame, metres."""
+    """Draw a posed body, its vertices (n, 3) in the camera's frame, meters."""
     facing = posed_normals(vertices, body.triangles) @ LAMP
     bright = AMBIENT + (1.0 - AMBIENT) * np.maximum(facing, 0.0)
     shades = np.rint(bright * (SHADES - 1)).astype(int)

@@ -3,7 +3,7 @@ r"""Clean as it is pressed first, without examples, next to the filters an anima
     make bench-first-press                      # the scored takes: some minutes
     make bench-first-press ARGUMENTS=--quick    # six development takes at 30 Hz: a minute
     make bench-first-press ARGUMENTS=--development   # all development takes
-    make bench-first-press ARGUMENTS=--docs     # also writes docs/benchmarks_first_press.md
+    make bench-first-press ARGUMENTS="--docs --pictures"   # also writes the document
 
 Which takes are for development is fixed in takes.py, what is corrupted in conditions.py, what
 is measured in measures.py. `--only ours` leaves out the peers.
@@ -17,12 +17,14 @@ from time import perf_counter
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from ..shared.report import DOCS, Report
+from ..shared.report import DOCS, PICTURES, Report
 from ..shared.tables import number, table
+from .calibration import Calibration
 from .conditions import CONDITIONS, Case
+from .draw_worst import draw_worst
 from .filters import METHODS, OURS, PEERS, PUBLISHED
 from .measures import Figures, measure
-from .takes import DEVELOPMENT, QUICK, SCORED, Take
+from .takes import DEVELOPMENT, QUICK, SCORED, UNPACKED, Take
 
 DOCUMENT = DOCS / "benchmarks_first_press.md"
 MUCH_BETTER = 0.9
@@ -46,6 +48,7 @@ class Scores:
         )
         self.flagged: dict[str, list[float]] = defaultdict(list)
         self.seconds: dict[str, float] = defaultdict(float)
+        self.calibration = Calibration()
 
     def tables(self) -> list[str]:
         """Return a table for each figure, and one of what is only asked of ours."""
@@ -60,7 +63,8 @@ class Scores:
                 for method, conditions in self.figures.items()
             }
             texts.append(f"**{title}**\n\n{self._table(rows)}\n")
-        return [*texts, f"**Only ours**\n\n{self._table(self._own_rows())}\n", self._worst()]
+        texts += [f"**Only ours**\n\n{self._table(self._own_rows())}\n", self._worst()]
+        return [*texts, *self.calibration.tables()]
 
     def _table(self, rows: dict[str, list[str]]) -> str:
         return table(["", *map(str, CONDITIONS)], rows)
@@ -82,16 +86,24 @@ class Scores:
         """Return the error relative to the best peer, and its name, where it is much better."""
         found = {}
         for take, ours in self.figures[OURS][condition].items():
-            peers = {name: self.figures[name][condition] for name in PEERS}
-            angles = {name: each[take].angle for name, each in peers.items() if take in each}
-            if condition == "clean":
-                angles.pop("interpolation", None)  # it returns its input
-            best = min(angles, key=angles.__getitem__, default=None)
-            if best is not None and angles[best] < min(
-                MUCH_BETTER * ours.angle, ours.angle - MIN_DIFFERENCE
-            ):
-                found[take] = (ours.angle / angles[best], best)
+            peer = self.best_peer(condition, take)
+            if peer is None:
+                continue
+            angle = self.figures[peer][condition][take].angle
+            if angle < min(MUCH_BETTER * ours.angle, ours.angle - MIN_DIFFERENCE):
+                found[take] = (ours.angle / angle, peer)
         return found
+
+    def best_peer(self, condition: str, take: str) -> str | None:
+        """Return the peer with the least angle error, or None where none was run."""
+        is_clean = any(str(one) == condition and one.is_clean for one in CONDITIONS)
+        unfair = "interpolation" if is_clean else ""  # it returns its input
+        angles = {
+            name: self.figures[name][condition][take].angle
+            for name in PEERS
+            if name in self.figures and name != unfair
+        }
+        return min(angles, key=angles.__getitem__, default=None)
 
     def _worst(self) -> str:
         rows = {}
@@ -125,8 +137,9 @@ def main() -> None:
     started = perf_counter()
     with threadpool_limits(1):
         scores = run(takes, methods)
+        drawn = _draw(scores, takes) if chosen.pictures else []
     seconds = perf_counter() - started
-    Report(chosen.docs, DOCUMENT).part("first press", scores.tables(), seconds)
+    Report(chosen.docs, DOCUMENT).part("first press", [*scores.tables(), *drawn], seconds)
     print(f"{seconds:.0f} s")
 
 
@@ -141,12 +154,29 @@ def run(takes: Sequence[Take], methods: Iterable[str]) -> Scores:
                 result = METHODS[name](case)
                 if name == OURS:
                     scores.seconds[str(condition)] += perf_counter() - started
-                    assert result.flagged is not None
+                    assert result.flagged is not None and result.confidence is not None
+                    scores.calibration.add(case, result.motion, result.confidence)
                     is_good = case.is_good
                     scores.flagged[str(condition)].append(float(result.flagged[is_good].mean()))
                 figures = measure(case, result.motion)
                 scores.figures[name][str(condition)][str(take)] = figures
     return scores
+
+
+def _draw(scores: Scores, takes: Sequence[Take]) -> list[str]:
+    """Draw the calibration and the worst takes; return the pictures as Markdown.
+
+    Those of development takes are for the developer only.
+    """
+    folder = PICTURES if takes is SCORED else UNPACKED / "pictures"
+    curve = folder / "first_press_calibration.png"
+    paths = [curve, *draw_worst(scores, takes, folder)]
+    scores.calibration.draw(curve)
+    titles = (path.stem.removeprefix("first_press_").replace("_", " ") for path in paths)
+    return [
+        f"![{title.capitalize()}]({path.relative_to(DOCS) if takes is SCORED else path})\n"
+        for title, path in zip(titles, paths, strict=True)
+    ]
 
 
 def _arguments() -> argparse.Namespace:
@@ -155,6 +185,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--development", action="store_true", help="development takes")
     parser.add_argument("--only", nargs="+", default=[], help="names of methods")
     parser.add_argument("--docs", action="store_true", help=f"rewrite {DOCUMENT.name}")
+    parser.add_argument("--pictures", action="store_true", help="draw the worst takes")
     return parser.parse_args()
 
 

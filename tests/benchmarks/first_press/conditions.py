@@ -1,4 +1,4 @@
-"""What is wrong with a take: noise, outliers, bursts, drift, or a missing limb."""
+"""What is wrong with a take: noise, outliers, bursts, drift, a missing or misplaced limb."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from solvers.arrays import Array
 from solvers.motion import Motion, find_humanoid_map
-from solvers.rotations import unwrap_rotation_vectors
+from solvers.rotations import IDENTITY, unwrap_rotation_vectors
 
 from ..shared.noise import (
     METRES_PER_DEGREE,
@@ -19,6 +19,7 @@ from ..shared.noise import (
     learn_channels,
     seeded,
 )
+from .root_bone import below_bone, spin, without_bone
 from .takes import Take, read
 
 LIMBS = {"arm": ("left", "UpperArm"), "leg": ("right", "UpperLeg")}
@@ -40,6 +41,16 @@ class Condition:
     """Standard deviation of 1/f noise, degrees."""
     limb: str = ""
     """Which limb is missing for a second."""
+    t_pose_frames: int = 0
+    """For so many frames at the start the left arm is in the rest pose; they are not scored."""
+    spin: float = 0.0
+    """Degrees by which the body turns within a second. Clean gets it below a still bone."""
+
+    @property
+    def is_clean(self) -> bool:
+        """Whether the take is given as it is."""
+        damage = self.sigma, self.outliers, self.bursts, self.drift, self.t_pose_frames
+        return not any(damage) and not self.limb
 
     def __str__(self) -> str:
         return self.title
@@ -54,6 +65,8 @@ CONDITIONS = (
     Condition("1/f drift", drift=3.0),
     Condition("arm lost 1 s", limb="arm"),
     Condition("leg lost 1 s", limb="leg"),
+    Condition("sigma 1, arm in T-pose", sigma=1.0, t_pose_frames=3),
+    Condition("two turns, root bone", spin=720.0),
 )
 
 
@@ -66,7 +79,8 @@ class Case:
 
     @cached_property
     def truth(self) -> Motion:
-        return read(self.take)
+        motion = read(self.take)
+        return spin(motion, self.condition.spin) if self.condition.spin else motion
 
     @cached_property
     def channels(self) -> Channels:
@@ -95,6 +109,12 @@ class Case:
         if condition.limb:
             rows = np.arange(len(result))[self.missing_frames]
             result[np.ix_(rows, self.channels.of_joints(self.missing_joints))] = np.nan
+        if condition.t_pose_frames:
+            arm, rotations = self._joints_of("arm"), self.truth.rotations.copy()
+            rotations[:, arm] = IDENTITY
+            posed = self.channels.values(self.truth.with_poses(rotations))
+            block = np.ix_(range(condition.t_pose_frames), self.channels.of_joints(arm))
+            result[block] = posed[block]
         return result
 
     @cached_property
@@ -115,10 +135,22 @@ class Case:
         """The corrupted take."""
         return self.motion(self.corrupted)
 
+    @property
+    def given(self) -> Motion:
+        """The corrupted take as Clean gets it."""
+        return below_bone(self.recording) if self.condition.spin else self.recording
+
+    def body_of(self, cleaned: Motion) -> Motion:
+        """Return the body of what was given."""
+        return without_bone(cleaned, self.truth) if self.condition.spin else cleaned
+
     @cached_property
     def missing_joints(self) -> list[int]:
         """Joints of the missing limb."""
-        side, top = LIMBS[self.condition.limb]
+        return self._joints_of(self.condition.limb)
+
+    def _joints_of(self, limb: str) -> list[int]:
+        side, top = LIMBS[limb]
         skeleton = self.truth.skeleton
         first = skeleton.index(find_humanoid_map(skeleton).joints[side + top])
         moving = self.channels.joints

@@ -32,15 +32,20 @@ class Result:
     motion: Motion
     flagged: NDArray[np.bool_] | None = None
     """Samples reported as outliers."""
+    confidence: Array | None = None
+    """0 to 1 for each joint, shape (n_frames, n_joints)."""
 
 
 Filter = Callable[[Case], Result]
 
 
 def _denoised(case: Case, method: Method = Method.DEFAULT) -> Result:
-    result = denoise(case.recording, settings=DenoiseSettings(method=method))
+    result = denoise(case.given, settings=DenoiseSettings(method=method))
     assert isinstance(result.recording, Motion)
-    return Result(result.recording, result.outliers)
+    body = slice(result.recording.n_joints - case.truth.n_joints, None)
+    return Result(
+        case.body_of(result.recording), result.outliers[:, body], result.confidence[:, body]
+    )
 
 
 def _smoothed(smoother: Callable[[Array, float], Array], case: Case) -> Result:

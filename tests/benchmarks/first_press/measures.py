@@ -50,7 +50,7 @@ class Figures:
 def measure(case: Case, motion: Motion) -> Figures:
     """Return the figures; of a missing limb, over its missing samples only."""
     joints: list[int] | NDArray[np.bool_] = case.channels.joints
-    frames = slice(None)
+    scored = frames = slice(case.condition.t_pose_frames, None)
     if case.condition.limb:
         joints, frames = case.missing_joints, case.missing_frames
     angle = float(angle_error(motion, case.truth, joints)[frames].mean())
@@ -58,7 +58,8 @@ def measure(case: Case, motion: Motion) -> Figures:
     position = float(np.linalg.norm(estimate - truth, axis=-1)[frames].mean())
     rate = case.truth.frame_rate
     lost, worst = _reach_lost(case.truth, motion)
-    speed = float(np.mean(_peak_speed(estimate, rate) / _peak_speed(truth, rate)))
+    speeds = _peak_speed(estimate[scored], rate) / _peak_speed(truth[scored], rate)
+    speed = float(np.mean(speeds))
     return Figures(angle, CENTIMETERS * position, speed, lost, worst)
 
 

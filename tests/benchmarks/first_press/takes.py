@@ -1,7 +1,8 @@
 """Takes of the first press: settings are chosen on some, the others are scored.
 
-This is the only file that lists them. No actor of HDM05, no walker of CMU and no dance is in
-both lists.
+This is the only file that lists them. No actor of HDM05, no walker of CMU, no dance and no take
+is in both lists; only martial arts are of one person in both. The takes of HDM05 and of the
+corpus are of people whom no prior of Clean learns from.
 """
 
 import tarfile
@@ -15,6 +16,8 @@ from solvers.recordings import read_acclaim, read_bvh
 from ..shared import clips
 
 ARCHIVE = clips.DATA / "mocap" / "cmu_variety.tar.xz"
+JACKS = clips.DATA / "mocap" / "cmu_jumping_jack"
+CORPUS = clips.DATA / "corpus" / "bvh"
 UNPACKED = Path(__file__).resolve().parents[3] / "build" / "first_press"
 MAX_FRAMES = 240
 """Longer takes end here, so that no take takes most of the time."""
@@ -29,7 +32,7 @@ class Take:
     first: int = 0
 
     def __str__(self) -> str:
-        return f"{self.name} {self.rate} Hz"
+        return f"{self.name.split('/')[-1]} {self.rate} Hz"
 
 
 # Settings are chosen on these only.
@@ -50,6 +53,22 @@ DEVELOPMENT = (
     Take("HDM_bd_rotateArmsBothBackward1Reps_002", 120),
     Take("02_05", 120, 700),
     Take("27_01", 120),
+    Take("HDM_bd_throwBasketball_001", 30),
+    Take("HDM_bd_squat1Reps_003", 30),
+    Take("02_04", 30),
+    Take("13_29", 30),
+    Take("bandai_namco/dataset-1_run_angry_001", 30),
+    Take("bandai_namco/dataset-1_dance-short_normal_001", 30, 1200),
+    Take("assimp_boxing_toes/Boxing_Toes", 50, 200),
+    Take("HDM_bd_hopBothLegs1hops_005", 60),
+    Take("HDM_bd_jogLeftCircle4StepsRstart_002", 60),
+    Take("salsa_30", 60, 200),
+    Take("01_01", 60, 300),
+    Take("dme_xia/angry_13_000", 60),
+    Take("HDM_bd_throwBasketball_001", 120),
+    Take("HDM_bd_kickLFront1Reps_004", 120),
+    Take("HDM_bd_hopBothLegs1hops_009", 120),
+    Take("HDM_bd_lieDownFloor_004", 120, 60),
 )
 # These are scored: no setting may be chosen on them.
 SCORED = (
@@ -95,11 +114,30 @@ def _read(name: str) -> Motion:
     for folder in (clips.WALKS, clips.HOPS):
         if (folder / f"{name}.bvh").exists():
             return _without_thumbs(clips.read_cmu(folder / f"{name}.bvh", 1))
+    if "/" in name:
+        return read_bvh(CORPUS / f"{name}.bvh")
+    if (JACKS / f"{name}.amc").exists():
+        return read_acclaim(JACKS / f"{name}.amc", _unpack("asfamc/02.asf"))
+    return read_variety(name)
+
+
+def read_variety(name: str) -> Motion:
+    """Return a complete take of the archive: "02_05" (120 Hz) or "salsa_01" (60 Hz)."""
     if name[0].isdigit():
         _unpack(f"asfamc/{name[:2]}.asf")
         return read_acclaim(_unpack(f"asfamc/{name}.amc"))
     motion = read_bvh(_unpack(f"bvh/{name}.bvh"))
     return motion.slice(1, motion.n_frames)
+
+
+def variety_names() -> list[str]:
+    """Return the names of all takes of the archive."""
+    with tarfile.open(ARCHIVE) as archive:
+        paths = sorted(map(Path, archive.getnames()))
+    return [
+        path.stem for path in paths
+        if path.suffix in (".amc", ".bvh") and path.stem != "standard"
+    ]  # fmt: skip
 
 
 def _without_thumbs(motion: Motion) -> Motion:

@@ -163,7 +163,7 @@ def measured(file: Path, start: Seconds = NO_START) -> list[float | str]:
 
 
 def furthest(file: Path, made: bpy.types.Object) -> float:
-    """Return how far any joint or marker that is read back is from the file's, metres."""
+    """Return how far any joint or marker that is read back is from the file's, meters."""
     from mocap_ext.mocap_assist.actions.armature_read import read_take
     from mocap_ext.mocap_assist.actions.marker_take import read_markers
     from mocap_ext.solvers.motion import Motion, forward_kinematics
@@ -188,7 +188,7 @@ def furthest(file: Path, made: bpy.types.Object) -> float:
 
 
 def positions_of(motion) -> np.ndarray:
-    """Return places of joints, shape (n_joints, n_frames, 3), metres."""
+    """Return places of joints, shape (n_joints, n_frames, 3), meters."""
     from mocap_ext.solvers.motion import forward_kinematics
 
     return np.moveaxis(forward_kinematics(motion).positions, 1, 0)

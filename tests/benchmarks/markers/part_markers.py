@@ -1,12 +1,13 @@
 """Optical markers at 120 Hz: one or five missing for half a second or two, in clean takes."""
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from solvers.arrays import Array
-from solvers.denoising import denoise
+from solvers.denoising import DenoiseSettings, Method, denoise
 from solvers.motion import Tracks
 from solvers.recordings import read_c3d, read_recording
 
@@ -93,10 +94,11 @@ def _cut(tracks: Tracks, take: str, n_markers: int, seconds: float, draw: int) -
     return gapped
 
 
-def ours(gapped: Array, frame_rate: float) -> Array:
+def ours(gapped: Array, frame_rate: float, method: Method = Method.DEFAULT) -> Array:
     """Denoise without examples; observed samples count fully."""
     names = tuple(f"marker {number}" for number in range(gapped.shape[1]))
-    done = denoise(Tracks(names, gapped, frame_rate)).recording
+    settings = DenoiseSettings(method=method)
+    done = denoise(Tracks(names, gapped, frame_rate), settings=settings).recording
     assert isinstance(done, Tracks)
     return np.where(np.isnan(gapped), done.positions, gapped)
 
@@ -113,5 +115,6 @@ FILLERS: dict[str, Filler] = {
         marker_fillers.principal_markers
     ),
     "model averaging (after the authors' program)": marker_fillers.centred(model_averaging),
+    "[LC10] as published, no examples": partial(ours, method=Method.PUBLISHED),
     "ours": ours,
 }

@@ -1,4 +1,4 @@
-"""Joint centres solved from markers, against CMU's own skeletons and simulated bodies."""
+"""Joint centers solved from markers, against CMU's own skeletons and simulated bodies."""
 
 from collections.abc import Callable, Mapping
 from time import perf_counter

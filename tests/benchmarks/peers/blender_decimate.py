@@ -2,7 +2,7 @@
 
 `python -m tests.benchmarks.peers.blender_decimate IN.npz OUT.json` is the child process. Every
 channel is an F-Curve of its own. Rotations are decimated with one margin and positions with
-another, as metres and parts of quaternions have no common one; of the pairs that keep every
+another, as meters and parts of quaternions have no common one; of the pairs that keep every
 joint within the tolerance at every frame, the one with the fewest keys is taken, and the margin
 of its rotations widened by bisection as far as that holds.
 """
@@ -31,7 +31,7 @@ TIMEOUT = 3600.0
 ROTATION_MARGINS = np.geomspace(3e-4, 0.1, 14)
 """Margins of quaternions' parts to begin with."""
 POSITION_MARGINS = np.geomspace(1e-4, 0.05, 14)
-"""Margins of positions, metres."""
+"""Margins of positions, meters."""
 HALVINGS = 4
 
 
@@ -45,7 +45,7 @@ class Decimated:
 
 
 def decimate_in_blender(motion: Motion, tolerances: Sequence[float]) -> list[dict[str, float]]:
-    """Return for each tolerance in metres: keys, error in metres, seconds of the last run."""
+    """Return for each tolerance in meters: keys, error in meters, seconds of the last run."""
     with tempfile.TemporaryDirectory() as folder:
         source, target = Path(folder) / "in.npz", Path(folder) / "out.json"
         np.savez(
@@ -101,7 +101,7 @@ class Search:
         self._positions = self._points.positions(forward_kinematics(motion))
 
     def found(self, tolerances: Sequence[float]) -> list[dict[str, float]]:
-        """Return keys, error and seconds for each tolerance in metres."""
+        """Return keys, error and seconds for each tolerance in meters."""
         rotation_fits = {
             margin: self._decimated(self._quaternions, margin) for margin in ROTATION_MARGINS
         }
@@ -164,7 +164,7 @@ class Search:
         return Decimated(after, keys, seconds)
 
     def _error(self, rotation: Decimated, position: Decimated) -> float:
-        """Return the greatest distance of any joint at any frame, metres."""
+        """Return the greatest distance of any joint at any frame, meters."""
         rotations = self._motion.rotations.copy()
         rotations[:, self._moving] = normalize(rotation.values.reshape(len(rotations), -1, 4))
         other = self._motion.with_poses(rotations, position.values)

@@ -16,7 +16,7 @@ from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
 from solvers.retrieval.published.observed_signals import observed_signals
 
 RIDGE = 1e-4
-"""Metres squared; a standard deviation of one centimetre on each coordinate."""
+"""Metres squared; a standard deviation of one centimeter on each coordinate."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,7 @@
 """[LC10] written a second time, on the benchmark's own channels.
 
 A check that the method "published" of `denoise` is not hobbled by how we encode motion. The
-channels are centred, which the paper does not do: kinder to it.
+channels are centered, which the paper does not do: kinder to it.
 """
 
 from collections.abc import Sequence

@@ -1,6 +1,6 @@
 """Published methods to fill gaps of optical markers; PMA-R2 after reading its authors' program.
 
-(gapped (n_frames, n_markers, 3) metres, NaN = missing, frame rate) -> the same without NaN.
+(gapped (n_frames, n_markers, 3) meters, NaN = missing, frame rate) -> the same without NaN.
 """
 
 from collections.abc import Callable

@@ -43,7 +43,7 @@ def butterworth(noisy: Array, frame_rate: float, cutoff: float = 6.0) -> Array:
 
 
 def hampel(noisy: Array, frame_rate: float) -> Array:
-    """Replace what is far from the median of its neighbours by that median."""
+    """Replace what is far from the median of its neighbors by that median."""
     size = (2 * HAMPEL_HALF_WIDTH + 1, 1)
     centre = median_filter(noisy, size=size, mode="nearest")
     padded = np.pad(noisy, [(HAMPEL_HALF_WIDTH,) * 2, (0, 0)], mode="edge")

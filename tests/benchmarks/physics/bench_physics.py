@@ -176,7 +176,7 @@ def row(motion: Motion, result: Motion, simulated: Simulated, speed: float = np.
 
 
 def length_change(motion: Motion, positions: np.ndarray) -> float:
-    """Return the largest difference of a bone's length from the skeleton's, metres."""
+    """Return the largest difference of a bone's length from the skeleton's, meters."""
     bones = positions[:, 1:] - positions[:, list(motion.skeleton.parents[1:])]
     lengths = np.linalg.norm(motion.skeleton.offsets[1:], axis=-1)
     return float(np.abs(np.linalg.norm(bones, axis=-1) - lengths).max())

@@ -11,14 +11,14 @@ from solvers.rotations.representations import rotate
 
 GRAVITY = np.array([0.0, 0.0, -9.81])
 STEADY = 0.05
-"""Seconds of the Gaussian through which the centre of mass is looked at."""
+"""Seconds of the Gaussian through which the center of mass is looked at."""
 TOUCHING = 0.03
 """Metres over the ground up to which the lowest point may be pushed."""
 FRICTION = 1.0
 
 
 def centre_of_mass(body: PhysicsBody, motion: Motion) -> Array:
-    """Return where the mass is on average, shape (n_frames, 3), metres."""
+    """Return where the mass is on average, shape (n_frames, 3), meters."""
     posed = forward_kinematics(motion)
     total = sum(
         capsule.mass

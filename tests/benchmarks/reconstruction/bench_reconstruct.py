@@ -14,12 +14,22 @@ from time import perf_counter
 from threadpoolctl import threadpool_limits
 
 from ..shared.report import DOCS, Report
-from . import part_kinect, part_losses, part_real, part_subsets, part_terms, part_twist
+from . import (
+    part_blender,
+    part_kinect,
+    part_losses,
+    part_real,
+    part_subsets,
+    part_terms,
+    part_twist,
+)
 from .bench_reliability import tell_reliability
 
 Part = Callable[[int], Sequence[str]]
 
 PARTS: dict[str, Part] = {
+    "blender": part_blender.blender,
+    "rest": part_blender.rest,
     "kinect": part_kinect.accuracy,
     "losses": part_losses.losses,
     "damages": part_losses.damages,

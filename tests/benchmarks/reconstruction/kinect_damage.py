@@ -38,7 +38,7 @@ CAPSULES = (
     ((4, 5), 0.05), ((5, 6), 0.045), ((8, 9), 0.05), ((9, 10), 0.045),
     ((12, 13), 0.075), ((13, 14), 0.055), ((16, 17), 0.075), ((17, 18), 0.055),
 )  # fmt: skip
-"""Joints at both ends, and radius in metres."""
+"""Joints at both ends, and radius in meters."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ from solvers.reconstruction import (
     reconstruct_postures,
 )
 from solvers.reconstruction.reliability.scores import posture_reliability
-from solvers.reconstruction.residual_correction.correct_postures import predict_positions
+from solvers.reconstruction.residual_correction.correct_postures import predict_postures
 
 from ..shared.tables import number, table
 from .kinect_errors import bone_direction_errors, compared, jerk
@@ -62,7 +62,7 @@ OTHERWISE_TITLE = (
 
 @dataclass(frozen=True, eq=False)
 class Errors:
-    """Errors of a method in all takes, metres; NaN where the truth is unknown."""
+    """Errors of a method in all takes, meters; NaN where the truth is unknown."""
 
     absolute: Array
     relative: Array
@@ -212,7 +212,7 @@ def _correction_alone(takes: list[Pair]) -> str:
         reliability = measure_reliability(pair.kinect)
         weights = posture_reliability(pair.kinect, reliability.combined)
         started = process_time()
-        predict_positions(pair.kinect, prior, weights, default)
+        predict_postures(pair.kinect, prior, weights, default)
         taken += process_time() - started
         n_frames += pair.kinect.n_frames
     each = 1e3 * taken / n_frames

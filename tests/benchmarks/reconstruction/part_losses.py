@@ -36,7 +36,7 @@ from .kinect_pairs import Pair
 
 N_NEIGHBOURS, N_COMPONENTS = 30, 20
 NOISE = 0.02
-"""Distance that observed joints may have from the space of components, metres."""
+"""Distance that observed joints may have from the space of components, meters."""
 REPETITIONS = (1, 1)
 """How many of each exercise after how many: the second, since first ones are unreliable."""
 LINEAR = "linear interpolation"
@@ -113,7 +113,7 @@ def _components(examples: Array) -> tuple[Array, Array]:
 
 @cache
 def sensor_examples(subject: str) -> Array:
-    """Postures of the others by the Kinect, normalised and of default size, (n, 60)."""
+    """Postures of the others by the Kinect, normalized and of default size, (n, 60)."""
     found = [
         smooth_postures(pair.kinect, SMOOTHING_S).features[::THINNED]
         for pair in others(subject)
@@ -157,7 +157,7 @@ SMOOTHERS: dict[str, Method] = {
 
 
 def error(made: Array, damaged: Damaged) -> Array:
-    """Distances on the damaged joints, metres, (n,)."""
+    """Distances on the damaged joints, meters, (n,)."""
     off = made - truth_of(damaged.pair)
     sound = np.where(damaged.where[..., None], np.nan, off)
     is_known = np.isfinite(sound).any(axis=(0, 2))

@@ -39,7 +39,7 @@ class Pair:
     name: str
     recording: JointRecording
     error: Array
-    """Distance from the median offset of each joint in metres, (n_frames, n_joints)."""
+    """Distance from the median offset of each joint in meters, (n_frames, n_joints)."""
 
     @property
     def subject(self) -> str:

@@ -152,7 +152,7 @@ def confidence(n_repetitions: int) -> list[str]:
         ),
         _confidence_table(
             "**The same relative to the mean offset of joint and take**, which is not removed"
-            " here (without *shift*, the default of Reconstruct)",
+            " here (without *Sensor Offset*)",
             {
                 name: _confidences(solve, n_repetitions, True)
                 for name, solve in relative.items()

@@ -1,8 +1,8 @@
 """Axial rotation errors of upper arms and thighs, from positions of joints alone.
 
-Actor dg of HDM05, whom no library that ships knows; and actors of CMU, each with the library
-made anew without him. Settings were chosen on others: bd and bk of HDM05, and the actors of CMU
-that `clips.DEV_SUBJECTS` names.
+Actor dg of HDM05, who is in no shipped library; and actors of CMU, each with the library made
+again without him. Settings were chosen on others: bd and bk of HDM05, and the actors of CMU in
+`clips.DEV_SUBJECTS`.
 """
 
 from collections.abc import Callable
@@ -54,7 +54,7 @@ def untwisted(result: Reconstruction) -> LimbTwists:
 
 
 def neighbours(result: Reconstruction) -> LimbTwists:
-    """As [SHJT13]: the neighbours' mean alone."""
+    """As [SHJT13]: the neighbors' mean alone."""
     assert result.twists is not None
     return LimbTwists(result.twists.vectors, ignore_flexion=True)
 

@@ -15,7 +15,7 @@ LEFT, TOP, ROW, GAP, WIDTH = 96.0, 40.0, 13.0, 62.0, 900.0
 STEPS: tuple[Color, ...] = ((247, 247, 247), (253, 219, 160), (230, 120, 40), (120, 20, 30))
 """From reliable to unreliable, in equal steps; darker as well as redder."""
 WORST = 0.10
-"""Error that is as dark as reliability zero, metres."""
+"""Error that is as dark as reliability zero, meters."""
 
 
 def draw_take(pair: Pair, path: Path) -> None:

@@ -22,10 +22,10 @@ RIDGE = 1e-9
 def solve_postures(spaces: PostureSpaces, demands: EnergyTargets, n_starts: int = 2) -> Array:
     """Return the coordinates of the postures of least energy, shape (n_frames, n_dimensions).
 
-    But for the lengths of segments and for which neighbour is the nearest, the energy is a
-    quadratic. It is minimised for one neighbour after another, in closed form; from the best of
-    these minima Gauss-Newton steps follow, with lengths linearised and the nearest neighbour
-    taken anew before each. A step that does not gain is halved.
+    But for the lengths of segments and for which neighbor is the nearest, the energy is a
+    quadratic. It is minimised for one neighbor after another, in closed form; from the best of
+    these minima Gauss-Newton steps follow, with lengths linearised and the nearest neighbor
+    taken again before each. A step that does not gain is halved.
 
     Parameters
     ----------
@@ -88,10 +88,10 @@ class _Quadratic:
         self.b = np.einsum("fji,fj->fi", axes, pull)
         self.off = spaces.neighbors - spaces.means[:, None]
         self.neighbor_coordinates = self.off @ axes
-        """Coordinates of the neighbours."""
+        """Coordinates of the neighbors."""
 
     def minima(self, n_starts: int) -> list[Array]:
-        """Return the best minima over which neighbour is the nearest one."""
+        """Return the best minima over which neighbor is the nearest one."""
         right = self.b[..., None] + self.style * self.neighbor_coordinates.swapaxes(-1, -2)
         z = np.linalg.solve(self.H, right)
         energies = self.style * np.einsum("fni,fni->fn", self.off, self.off)

@@ -129,7 +129,7 @@ def make_rigify() -> bpy.types.Object:
 def retarget(
     source: bpy.types.Object, target: bpy.types.Object, limbs: str
 ) -> tuple[float, float]:
-    """Press the button; return the seconds, and how far feet and hands are off, metres."""
+    """Press the button; return the seconds, and how far feet and hands are off, meters."""
     bpy.ops.object.mode_set(mode="OBJECT")
     bpy.context.view_layer.objects.active = source
     start = perf_counter()

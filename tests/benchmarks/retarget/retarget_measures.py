@@ -41,7 +41,7 @@ class Acted:
     poses: WorldPoses
 
     def at(self, role: str) -> Array:
-        """Return where the joint with this role is, shape (n_frames, 3), metres."""
+        """Return where the joint with this role is, shape (n_frames, 3), meters."""
         return np.asarray(self.poses.positions[:, self.joints[role]])
 
     def on_ground(self, role: str) -> Array:
@@ -115,7 +115,7 @@ def trunk_angles(source: Acted, given: Acted) -> Array:
 
 
 def _sinking(given: Acted) -> Array:
-    """Return how far the ball of each foot is below its height at rest, worst frame, metres.
+    """Return how far the ball of each foot is below its height at rest, worst frame, meters.
 
     Of rigs whose rest pose stands on height 0.
     """
@@ -125,7 +125,7 @@ def _sinking(given: Acted) -> Array:
 
 
 def _off(source: Acted, given: Acted, role: str, growth: float) -> tuple[Array, Array]:
-    """Return how far a joint is from the source's, grown with the legs, centimetres.
+    """Return how far a joint is from the source's, grown with the legs, centimeters.
 
     And how far it is without the mean of the clip, both of shape (n_frames,).
     """
@@ -135,7 +135,7 @@ def _off(source: Acted, given: Acted, role: str, growth: float) -> tuple[Array, 
 
 
 def _lowest(one: Acted) -> Array:
-    """Return the height of the lowest joint with a role but fingers, (n_frames,), metres."""
+    """Return the height of the lowest joint with a role but fingers, (n_frames,), meters."""
     body = [joint for role, joint in one.joints.items() if not any(f in role for f in FINGERS)]
     return np.asarray(one.poses.positions[:, body, 2].min(axis=1))
 

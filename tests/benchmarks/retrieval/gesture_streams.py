@@ -28,7 +28,7 @@ ONE_GRIP = 1.0
 """Seconds without zoom or rotation, after which a new gesture starts."""
 RIGHT_WRIST, LEFT_WRIST, HEAD = 10, 6, 3
 TOUCH, WAVE_SPEED = 0.2, 1.5
-"""Metres, and metres per second, of the simple thresholds."""
+"""Metres, and meters per second, of the simple thresholds."""
 MOVES = {Gesture.ZOOM, Gesture.TURN}
 
 
@@ -73,7 +73,7 @@ def ours(stream: Stream, settings: GestureSettings) -> tuple[GestureEvent, ...]:
 
 
 def thresholds(stream: Stream, settings: GestureSettings) -> tuple[GestureEvent, ...]:
-    """Return the gestures by simple thresholds on positions and speeds of wrists, in metres.
+    """Return the gestures by simple thresholds on positions and speeds of wrists, in meters.
 
     A wrist above the head is a hand up, wrists that come nearer than 20 cm clap, a wrist that
     moves sideways at 1.5 m/s waves; each at its beginning. Zoom and rotation are left out.

@@ -64,7 +64,7 @@ N_MATCHES = 20
 SLOWEST, FASTEST = 0.7, 1.4
 ROTATION_NOISE, POSITION_NOISE, QUERY_NOISE = np.radians(6.0), 0.005, 0.01
 """Standard deviations: of constant bone rotations, radians; of jitter of joints in the library,
-metres; and of added jitter in queries, metres."""
+meters; and of added jitter in queries, meters."""
 SHOWN = {
     "hours": "hours", "add_s": "to add all, s", "file_mb": "file, MB", "open_ms": "to open, ms",
     "describe_ms": "describe, ms", "find_ms": "search, ms", "search_mb": "memory, MB",

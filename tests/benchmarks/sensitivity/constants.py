@@ -19,9 +19,12 @@ ROOT = Path(__file__).resolve().parents[3]
 FAMILIES: dict[str, tuple[str, ...]] = {
     "denoising": (
         "solvers/denoising/denoise.py",
+        "solvers/denoising/edge_poses.py",
         "solvers/denoising/observed_samples.py",
         "solvers/denoising/channels",
+        "solvers/denoising/motion_mixture",
         "solvers/denoising/posterior",
+        "solvers/denoising/stacking",
         "solvers/denoising/window_priors",
         "solvers/denoising/published.py",
         "solvers/signals/noise.py",
@@ -59,6 +62,14 @@ FAMILIES: dict[str, tuple[str, ...]] = {
     "stepwise_variation": ("solvers/variation",),
     "depth_scene": ("solvers/depth_scene",),
     "depth_tracking": ("solvers/depth_tracking",),
+    "depth_bodies": (
+        "solvers/depth_tracking/body/pose_from_joints.py",
+        "solvers/depth_tracking/capturing/calibrate_body.py",
+        "solvers/depth_tracking/capturing/find_body.py",
+        "solvers/depth_tracking/capturing/refine_body.py",
+        "solvers/depth_tracking/capturing/retracked_path.py",
+        "solvers/depth_tracking/capturing/sample_cylinders.py",
+    ),
 }
 """The modules whose constants each metric varies. Left out as a whole: recordings,
 command_line, pictures, processes, samples and rotations (formats, limits against hostile files,
@@ -133,7 +144,9 @@ def constants_of(family: str) -> tuple[Constant, ...]:
 
 
 def _belongs(path: Path, family: str) -> bool:
-    """Whether a module is of the family; the two of variation share a folder."""
+    """Whether a module is of the family; two of variation and two of depth share a folder."""
+    if family == "depth_tracking":
+        return path.as_posix() not in FAMILIES["depth_bodies"]
     if "variation" not in family:
         return True
     return ("published" in path.parts) == family.startswith("stepwise")

@@ -50,14 +50,6 @@ REASONS: dict[str, tuple[str, ...]] = {
         "depth_tracking/body/learn_motion_prior.*",
         "reconstruction/residual_correction/learn_*",
     ),
-    "fits the size of a body or tracks again: takes minutes, no metric yet": (
-        "depth_tracking/body/pose_from_joints.*",
-        "depth_tracking/capturing/calibrate_body.*",
-        "depth_tracking/capturing/find_body.*",
-        "depth_tracking/capturing/refine_body.*",
-        "depth_tracking/capturing/retracked_path.*",
-        "depth_tracking/capturing/sample_cylinders.*",
-    ),
     "rounds numbers in a file": ("reconstruction/pose_library/posture_library.*_STEP",),
     "bounds memory, not the result": (
         "denoising/channels/examples.BLOCK_S",

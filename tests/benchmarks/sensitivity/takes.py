@@ -60,7 +60,7 @@ def variety(name: str) -> Motion:
                 assert member is not None
                 path.write_bytes(member.read())
     if dance:
-        motion = read_bvh(paths[0], scale=clips.CMU_METRES)
+        motion = read_bvh(paths[0])
         return motion.slice(1, motion.n_frames)
     return read_acclaim(paths[0])
 

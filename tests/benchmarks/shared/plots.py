@@ -19,7 +19,7 @@ Color = tuple[int, int, int]
 
 
 def draw_scores(scores: Scores, path: Path) -> None:
-    """Write the means over clips to a PNG file; ours are black and grey."""
+    """Write the means over clips to a PNG file; ours are black and gray."""
     height = max(SMALLEST, TOP + BOTTOM + ROW * len(scores.methods))
     canvas = Canvas(WIDTH, height)
     across = np.linspace(LEFT + 20, WIDTH - RIGHT, max(len(scores.columns), 2))

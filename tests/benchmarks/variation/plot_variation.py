@@ -17,7 +17,7 @@ WIDTH, HEIGHT, MARGIN = 420.0, 240.0, 34.0
 
 
 def draw_components(panels: dict[str, tuple[Sequence[Motion], Sequence[Motion]]]) -> str:
-    """Draw the first principal component of examples, red, over variants, grey (fig. 4.5)."""
+    """Draw the first principal component of examples, red, over variants, gray (fig. 4.5)."""
     canvas = Canvas(WIDTH * 2, HEIGHT * ((len(panels) + 1) // 2))
     for index, (title, (examples, variants)) in enumerate(panels.items()):
         left, top = WIDTH * (index % 2) + MARGIN, HEIGHT * (index // 2) + MARGIN

@@ -94,7 +94,7 @@ def _variation(bodies: Sequence[np.ndarray]) -> tuple[float, np.ndarray]:
 
 
 def _windows(motion: Motion) -> np.ndarray:
-    """Return stretches of 11 frames at 30 Hz, shape (n, n_numbers), in metres of mean joint."""
+    """Return stretches of 11 frames at 30 Hz, shape (n, n_numbers), in meters of mean joint."""
     body = positions_in_body_frame(motion)[:: max(round(motion.frame_rate / WINDOW_RATE), 1)]
     body = body.reshape(len(body), -1) / np.sqrt(body.shape[1])
     starts = range(max(len(body) - WINDOW + 1, 1))

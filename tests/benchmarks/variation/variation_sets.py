@@ -1,4 +1,4 @@
-"""Examples to vary: real clips of one behaviour of one actor each."""
+"""Examples to vary: real clips of one behavior of one actor each."""
 
 import itertools
 from collections.abc import Iterator

@@ -80,7 +80,7 @@ def press(load, window, walks):
 
 @pytest.fixture
 def depth() -> np.ndarray:
-    """A wall three metres away that comes nearer by a decimetre each frame; a hole in it."""
+    """A wall three meters away that comes nearer by a decimeter each frame; a hole in it."""
     pictures = np.full((8, 60, 80), 3000, np.uint16)
     pictures -= np.arange(8, dtype=np.uint16)[:, None, None] * 100
     pictures[:, 10:20, 10:20] = 0

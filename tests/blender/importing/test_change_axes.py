@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-NEAR = 2e-4  # metres; bones and keys are 32-bit numbers
+NEAR = 2e-4  # meters; bones and keys are 32-bit numbers
 FRAMES = (1, 20, 40)
 
 

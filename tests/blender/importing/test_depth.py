@@ -6,7 +6,7 @@ from depth_files import depth_npz
 from depth_folders import open3d, save_png
 from depth_views import points_of
 
-NEAR = 1e-4  # metres: 32-bit numbers
+NEAR = 1e-4  # meters: 32-bit numbers
 
 
 def expected(depth: np.ndarray, focal: float = 90.0) -> np.ndarray:

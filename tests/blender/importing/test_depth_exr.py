@@ -9,7 +9,7 @@ from depth_views import points_of
 from exr_files import exr_header
 
 WIDTH, HEIGHT = 32, 20
-NEAR = 1e-3  # metres
+NEAR = 1e-3  # meters
 
 
 def depth_at(frame: int) -> np.ndarray:

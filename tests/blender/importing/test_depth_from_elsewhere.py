@@ -5,7 +5,7 @@ import json
 import pytest
 from depth_views import points_of
 
-NEAR = 1e-4  # metres: 32-bit numbers
+NEAR = 1e-4  # meters: 32-bit numbers
 
 
 @pytest.fixture

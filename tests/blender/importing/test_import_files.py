@@ -8,8 +8,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 # Blender's importer leaves its file open.
-INCH = 0.0254 / 0.45  # CMU's unit, in metres
-NEAR = 1e-5  # metres; bones and keys are 32-bit numbers
+INCH = 0.0254 / 0.45  # CMU's unit, in meters
+NEAR = 1e-5  # meters; bones and keys are 32-bit numbers
 
 
 @pytest.mark.parametrize("file", ["cmu_walk/07_01.bvh", "05_13.amc"])

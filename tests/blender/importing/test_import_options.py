@@ -3,7 +3,7 @@
 import pytest
 from numpy.testing import assert_allclose
 
-NEAR = 1e-5  # metres; bones and keys are 32-bit numbers
+NEAR = 1e-5  # meters; bones and keys are 32-bit numbers
 WALK = "07_01.bvh"  # 317 frames at 120 Hz
 N_FRAMES, RATE = 317, 120.0
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-NEAR = 1e-5  # metres; bones and keys are 32-bit numbers
-LARGEST = 0.06  # metres that a bone of constant length may miss a joint by
+NEAR = 1e-5  # meters; bones and keys are 32-bit numbers
+LARGEST = 0.06  # meters that a bone of constant length may miss a joint by
 
 
 @pytest.fixture

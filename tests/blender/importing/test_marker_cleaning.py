@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-NEAR = 1e-5  # metres; keys are 32-bit numbers
+NEAR = 1e-5  # meters; keys are 32-bit numbers
 N_MARKERS = 12
 LOST = slice(60, 90)
 

@@ -104,12 +104,12 @@ def test_dialog_shows_a_choice_only_where_there_is_one(blank, crowd, recordings,
     assert not choice.bodies_to_choose([alone])
     labels = [item[1] for item in choice.body_items([crowd])]
     assert labels == [
-        "Best Seen", "All", "1 (1.4 s, 100 % of the frames)", "2 (1.0 s, 71 % of the frames)"
+        "Most Frames", "All", "1 (1.4 s, 100 % of the frames)", "2 (1.0 s, 71 % of the frames)"
     ]  # fmt: skip
     for number, text in enumerate(("", "all", "1", "2")):
         assert choice.text_of(number, [crowd]) == text
         assert choice.number_of(text, [crowd]) == number
-    assert [item[1] for item in choice.body_items([crowd, alone])] == ["Best Seen", "All"]
+    assert [item[1] for item in choice.body_items([crowd, alone])] == ["Most Frames", "All"]
 
 
 def test_esc_takes_every_body_back(press, window, crowd, walks, blank):

@@ -10,7 +10,7 @@ SAID = "Lengths are interpreted as millimeters, by the size of the body; give th
 
 @pytest.fixture
 def silent(load, tmp_path):
-    """A walk of a Kinect in millimetres, in a file that does not say so."""
+    """A walk of a Kinect in millimeters, in a file that does not say so."""
     motion = load("solvers.motion")
     truth = true_positions(
         load("solvers.samples"), load("solvers.motion.humanoid.posture_joints")

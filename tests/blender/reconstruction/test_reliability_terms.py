@@ -20,7 +20,7 @@ def colors(load):
 
 @pytest.fixture
 def switch(blank):
-    """The switch of the colours, on."""
+    """The switch of the colors, on."""
     manager = blank.context.window_manager
     manager.mocap_assist_heat = True
     yield manager

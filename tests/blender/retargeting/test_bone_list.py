@@ -21,6 +21,18 @@ def test_find_bones_fills_a_row_for_each_role_with_a_score(listed):
     assert listed.source_score > 0.9 and listed.target_score > 0.9
 
 
+def test_the_heading_follows_an_edited_bone(listed):
+    source = listed.source_score
+    row = next(row for row in listed.rows if row.name == "leftLowerLeg")
+    bone, row.target = row.target, "hand_l"
+
+    assert listed.target_score < 0.95
+    assert listed.source_score == source
+
+    row.target = bone
+    assert listed.target_score == 1.0
+
+
 def test_retarget_uses_the_list(listed, walker, give, blank, keys_of):
     target = blank.context.scene.objects["Unreal"]
     next(row for row in listed.rows if row.name == "head").target = ""

@@ -25,7 +25,7 @@ def length(armature, names):
 
 
 def ends_off(poses, hero, walker):
-    """How far foot and hand are from where the source's, grown with the limb, are: metres."""
+    """How far foot and hand are from where the source's, grown with the limb, are: meters."""
     names = [f"DEF-{name}" for name in DEFORM]
     ours, theirs = heads(poses, hero, names), heads(poses, walker, SOURCE)
     legs, arms = (

@@ -6,7 +6,7 @@ from mathutils import Euler, Matrix
 from numpy.testing import assert_allclose
 
 MODES = ["QUATERNION", "AXIS_ANGLE", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"]
-NEAR = 2e-5  # metres; poses are 32-bit numbers
+NEAR = 2e-5  # meters; poses are 32-bit numbers
 
 
 @pytest.fixture
@@ -228,7 +228,7 @@ def test_a_linked_rig_is_read_and_an_override_gets_the_result(
 def test_bones_have_plausible_lengths_at_any_scale(
     scale, unit_scale, metres, make_armature, animate, poses, rewrite, scene_io, blank
 ):
-    """BVH in centimetres or in CMU's unit is often imported as if it were metres."""
+    """BVH in centimeters or in CMU's unit is often imported as if it were meters."""
     armature, scene = make_armature(), blank.context.scene
     animate(armature)
     armature.scale = (scale,) * 3

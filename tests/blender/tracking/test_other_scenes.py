@@ -15,7 +15,7 @@ def n_frames():
 
 @pytest.fixture
 def centimetres(truth, blank, tmp_path):
-    """The points of a walk in a scene of centimetres and 24 frames per second."""
+    """The points of a walk in a scene of centimeters and 24 frames per second."""
     path = tmp_path / "walk.npz"
     np.savez_compressed(path, **truth)
     scene = blank.context.scene

@@ -43,12 +43,13 @@ def test_sensor_errors_are_learned_and_corrected(call, stage):
     assert "3 takes of 2 actors" in out
     assert "leftLowerLeg" in load_residual_prior(stage / "sensor.npz").joints
     source, target = stage / "kinect" / "anna_2.csv", stage / "clean.csv"
-    messages = ["--residuals", stage / "sensor.npz", "--shift"]
-    assert call("reconstruct", source, target, *messages)[0] == 0
-    observed, clean = (
-        read_recording(path).tracks.positions[:, KNEE] for path in (source, target)
-    )
-    assert np.mean((clean - observed)[:, 0]) == pytest.approx(-0.08, abs=0.03)
+    observed = read_recording(source).tracks.positions[:, KNEE, 0]
+    for option, moved in (((), -0.08), (("--shift",), -0.08), (("--no-shift",), 0.0)):
+        target.unlink(missing_ok=True)
+        given = ["--residuals", stage / "sensor.npz", *option]
+        assert call("reconstruct", source, target, *given)[0] == 0
+        clean = read_recording(target).tracks.positions[:, KNEE, 0]
+        assert np.mean(clean - observed) == pytest.approx(moved, abs=0.03)
 
 
 def test_take_without_a_partner_is_named(call, stage):

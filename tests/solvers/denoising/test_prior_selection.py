@@ -108,9 +108,12 @@ def test_selects_examples_of_the_movement_but_not_of_stillness(rng):
     noisy, noise = take + 0.5 * rng.normal(size=take.shape), np.full(5, 0.5)
     own = smooth_channels(take.var(axis=0))
     still = replace(prior, slow=1e-4 * prior.slow, fast=1e-4 * prior.fast)
+    no_errors = np.zeros(take.shape, dtype=np.bool_)
 
     fractions = [
-        select_prior(examples, own, noisy, take, noise, JOINTS, WINDOWS, unwatched)[1]
+        select_prior(examples, own, noisy, no_errors, take, noise, JOINTS, WINDOWS, unwatched)[
+            1
+        ]
         for examples in (prior, still)
     ]
 

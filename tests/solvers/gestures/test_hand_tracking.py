@@ -13,7 +13,7 @@ CONFIDENT = np.ones(20)
 
 @pytest.fixture
 def t_pose():
-    """An actor who faces -Y: the right is at -X. Arms of half a metre, wrists 1.3 m apart."""
+    """An actor who faces -Y: the right is at -X. Arms of half a meter, wrists 1.3 m apart."""
     positions = np.full((20, 3), np.nan)
     for side, sign in (("left", 1.0), ("right", -1.0)):
         for part, x in (("UpperArm", 0.15), ("LowerArm", 0.40), ("Hand", 0.65)):

@@ -27,7 +27,7 @@ SHAKEN = SHAKEN.with_poses(
         (0.02, [0.02, 0.04, 0.08, 0.16]),
         (0.1, [0.1, 0.16]),
         (0.3, [0.3]),
-        (0.0, [0.0, 0.01, 0.02, 0.04]),
+        (0.0, [0.0, 0.04, 0.08, 0.16]),
     ],
 )
 def test_each_attempt_smooths_more(monkeypatch, requested, attempts):

@@ -20,7 +20,13 @@ from solvers.pictures import (
 from solvers.pictures.canvas import SERIES, Canvas
 from solvers.pictures.curves import ticks
 from solvers.pictures.stick_figures import project_to_view
-from solvers.rotations.representations import quaternion_from_rotation_vector
+from solvers.rotations import (
+    IDENTITY,
+    multiply,
+    quaternion_from_rotation_vector,
+    rotate,
+)
+from solvers.samples import GaitSettings, walking_gait
 
 RAW, CLEAN = SERIES[:2]
 
@@ -61,7 +67,7 @@ def test_line_breaks_at_nan():
     [(View.SIDE, (2.0, 3.0, 1.0)), (View.FRONT, (1.0, 3.0, -2.0))],
 )
 def test_project_to_view_maps_left_forward_and_up(view, expected):
-    """A point one metre to the left, two ahead and three up, for two directions of facing."""
+    """A point one meter to the left, two ahead and three up, for two directions of facing."""
     points = np.array([[[1.0, -2.0, 3.0]], [[2.0, 1.0, 3.0]]])
 
     projected = project_to_view(points, np.array([0.0, np.pi / 2]), view)
@@ -125,6 +131,28 @@ def test_figures_are_drawn_across_a_gap_of_the_root(swinging_leg):
     picture = draw_stick_figures({"leg": swinging_leg.with_poses(root_positions=root)})
 
     assert is_color(picture.pixels[44:], CLEAN).any()
+
+
+def test_view_turns_with_hips_below_a_still_bone():
+    """Of a walk to the east, as of one to the south, the side is drawn."""
+    south = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
+    turn = quaternion_from_rotation_vector([0.0, 0.0, np.pi / 2])
+    skeleton = south.skeleton
+    parents = (-1, *(parent + 1 for parent in skeleton.parents))
+    offsets = np.vstack([np.zeros(3), skeleton.offsets])
+    offsets[1] = 0.0
+    rig = Skeleton(("root", *skeleton.names), parents, offsets)
+    rotations = np.insert(south.rotations, 0, IDENTITY, axis=1)
+    rotations[:, 1] = multiply(turn, south.rotations[:, 0])
+    east = Motion(rig, rotations, rotate(turn, south.root_positions), south.frame_rate)
+
+    expected, actual = (draw_stick_figures({"walk": each}).pixels for each in (south, east))
+
+    height, width = (
+        min(sides) for sides in zip(expected.shape[:2], actual.shape[:2], strict=True)
+    )
+    differs = (expected[:height, :width] != actual[:height, :width]).any(axis=-1)
+    assert differs.mean() < 0.2 * (expected != 255).any(axis=-1).mean()
 
 
 def test_empty_motion_gives_a_picture(swinging_leg):

@@ -214,13 +214,50 @@ def test_hips_never_tracked_are_between_the_legs(recordings):
     blind_recording = recording.with_tracks(recording.tracks.with_positions(untracked))
 
     found = reconstruct_recording(
-        blind_recording, planting=None
+        blind_recording, planting=None, settings=ReconstructSettings(shift=False)
     ).reconstruction.tracks.positions
 
     true = recording.tracks.positions[:, hips]
     assert np.nanmax(np.linalg.norm(found[:, hips] - true, axis=-1)) < 0.06
     assert np.linalg.norm(found[:, hips] - found[:, legs].mean(axis=1), axis=-1).max() < 0.06
     assert np.isnan(blind_recording.tracks.positions[:, hips]).all()
+
+
+def test_offset_of_a_known_sensor_is_corrected_by_default_and_reported(recordings):
+    recording = read_recording(recordings / "kinect" / "irds" / "215_18_5_3_1_stand.txt")
+
+    def moved_cm(result):
+        moved = result.reconstruction.tracks.positions - recording.tracks.positions
+        return 100.0 * np.linalg.norm(np.nanmean(moved, axis=0), axis=-1)
+
+    default = reconstruct_recording(recording, planting=None)
+    kept = reconstruct_recording(
+        recording, planting=None, settings=ReconstructSettings(shift=False)
+    )
+
+    hips = recording.names.index("SpineBase")
+    assert moved_cm(default)[hips] > 4.0 > 1.0 > moved_cm(kept)[hips]
+    assert any("switch off Sensor Offset to keep them" in one for one in default.remarks)
+    assert not any("Sensor Offset" in one for one in kept.remarks)
+    assert abs(default.rebuilt.mean() - kept.rebuilt.mean()) < 0.05  # hand tips alone
+
+
+def test_offsets_are_not_corrected_for_an_unknown_sensor(walk):
+    result = reconstruct_recording(walk, planting=None)
+
+    assert result.reconstruction.shift is None
+    assert not any("Sensor Offset" in one for one in result.remarks)
+
+
+def test_motion_without_its_file_is_corrected_for_the_sensor_it_came_from(recordings):
+    recording = read_recording(recordings / "kinect" / "irds" / "215_18_5_3_1_stand.txt")
+    motion = motion_from_points(recording.tracks, recording.parents)
+
+    known = reconstruct_motion(motion, sensor=recording.sensor)
+    unknown = reconstruct_motion(motion)
+
+    assert any("Sensor Offset" in one for one in known.remarks)
+    assert unknown.remarks == ()
 
 
 def test_recording_without_tracked_joints_is_refused(truth):

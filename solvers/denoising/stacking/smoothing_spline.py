@@ -1,12 +1,12 @@
 """Smooth every channel by itself: a cubic smoothing spline with cross-validated smoothness."""
 
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import eigh
 
 from ...arrays import Array
+from ..posterior import Smoothed
 
 MAX_BLOCK_FRAMES = 512
 """Frames smoothed at a time; longer takes are blended from overlapping blocks. It bounds the
@@ -14,18 +14,8 @@ run time, which rises with its cube."""
 SMOOTHNESS = np.geomspace(1e-4, 1e6, 61)
 """Candidate weights of the roughness, relative to the squared error, per frame to the fourth
 power. A grid from no smoothing to a straight line."""
-MAX_LEVERAGE = 0.999
+MAX_LEVERAGE = 1.0 - 1e-9
 """Largest weight of a sample in its own estimate. Guards a division."""
-
-
-class Smoothed(NamedTuple):
-    """Smoothed channels, all of shape (n_frames, n_channels)."""
-
-    values: Array
-    leave_one_out_error: Array
-    """Error of each sample's prediction from all others."""
-    leverage: Array
-    """Weight of each sample in its own estimate."""
 
 
 def smooth_by_spline(samples: Array) -> Smoothed:
@@ -46,7 +36,7 @@ def smooth_by_spline(samples: Array) -> Smoothed:
     n_frames = len(samples)
     length = min(n_frames, MAX_BLOCK_FRAMES)
     if length < 4:
-        return Smoothed(samples, np.zeros_like(samples), np.full_like(samples, MAX_LEVERAGE))
+        return Smoothed(samples, *(np.zeros_like(samples) for _ in range(2)))
     last = n_frames - length
     starts = np.unique(np.append(np.arange(0, last, length // 2), last))
     taper = np.minimum(np.arange(1, length + 1), np.arange(length, 0, -1))[:, None]
@@ -67,7 +57,10 @@ def _smooth_block(samples: Array) -> Smoothed:
     gains = 1.0 - remainders[scores.argmin(axis=0)].T
     values = basis @ (gains * coefficients)
     leverage = np.minimum(basis**2 @ gains, MAX_LEVERAGE)
-    return Smoothed(values, (samples - values) / (1.0 - leverage), leverage)
+    residuals = samples - values
+    freedom = np.maximum((1.0 - leverage).sum(axis=0), 1.0)
+    variance = leverage * (residuals**2).sum(axis=0) / freedom
+    return Smoothed(values, residuals / (1.0 - leverage), variance)
 
 
 @lru_cache(maxsize=4)

@@ -3,14 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from numpy.testing import assert_allclose
 
 from solvers.denoising import denoise
-from solvers.denoising.posterior import smoothing_spline
-from solvers.denoising.posterior.estimate import Estimate
-from solvers.denoising.posterior.smoothing_spline import smooth_by_spline
-from solvers.denoising.posterior.spline_stacking import stack_with_spline
+from solvers.denoising.posterior import Estimate, Smoothed
+from solvers.denoising.stacking import smoothing_spline
+from solvers.denoising.stacking.smoothing_spline import smooth_by_spline
+from solvers.denoising.stacking.stack_estimates import stack_estimates
 from solvers.motion import Motion, find_humanoid_map
 from solvers.rotations import angle_between, multiply, quaternion_from_rotation_vector
 from solvers.samples import walker_skeleton
@@ -47,19 +46,34 @@ def test_spline_is_nearer_to_a_wave_than_the_samples(rng):
     assert np.sqrt(np.mean((smooth - wave) ** 2)) < 0.6
 
 
-@pytest.mark.parametrize("weight", [0.0, 0.3, 1.0])
-def test_weight_is_that_of_least_squares(rng, weight):
-    """Against errors of which a mixture is exactly zero, that mixture is found."""
-    samples = np.cumsum(rng.normal(size=(60, 3)), axis=0)
-    spline = smooth_by_spline(samples)
-    errors = -(1.0 - weight) / weight if weight else 50.0
-    estimate = _estimate_with_error(samples, spline.leave_one_out_error * errors)
+def test_weights_are_those_of_the_least_error(rng):
+    """Of two smoothers of independent errors, the mean is weighted by the inverse variances."""
+    truth = np.zeros((4000, 3))
+    noisy = truth + rng.normal(size=truth.shape)
+    variances = 1.0 / np.array([4.0, 8.0])  # of the mean of so many samples that contain it
+    smoothed = [_mean_of_samples(noisy, round(1.0 / each), rng) for each in variances]
+    useless = _estimate(noisy)
 
-    stacked, n_smoothed = stack_with_spline(samples, estimate)
+    _, weights = stack_estimates(noisy, useless, smoothed, np.ones(noisy.shape, dtype=bool))
 
-    expected = weight * estimate.values + (1.0 - weight) * spline.values
-    assert_allclose(stacked.values, expected, atol=1e-6)
-    assert n_smoothed == (weight < 0.5)
+    correlation = variances[0] * variances[1]  # both contain the sample itself
+    gaps = variances - correlation
+    expected = gaps[::-1] / gaps.sum()
+    assert_allclose(weights[0], [0.0, *expected], atol=0.05)
+
+
+def test_clean_take_keeps_its_samples(rng):
+    """Without noise, the candidate that changes nothing wins, although it predicts badly."""
+    clean = 20.0 * np.sin(np.outer(np.arange(200) / 20.0, np.arange(1.0, 7.0)))
+    unchanged = Smoothed(clean, 5.0 + rng.normal(size=clean.shape), np.ones_like(clean))
+    blurred = replace(_estimate(clean + 0.5), leave_one_out_error=np.full(clean.shape, -0.5))
+
+    stacked, weights = stack_estimates(
+        clean, blurred, [unchanged], np.ones(clean.shape, dtype=bool)
+    )
+
+    assert_allclose(weights, np.tile([0.0, 1.0], (2, 1)), atol=0.02)
+    assert_allclose(stacked.values, clean, atol=0.01)
 
 
 def test_clean_kick_keeps_its_height(rng):
@@ -88,10 +102,16 @@ def test_spike_before_a_kick_is_removed(rng):
     assert np.degrees(error) < 3.0
 
 
-def _estimate_with_error(samples: np.ndarray, error: np.ndarray) -> Estimate:
-    ones = np.ones_like(samples)
-    estimate = Estimate(samples + 1.0, ones, ones, ones, 1, True)
-    return replace(estimate, leave_one_out_error=error)
+def _mean_of_samples(noisy: np.ndarray, n: int, rng: np.random.Generator) -> Smoothed:
+    """Return each sample's mean with n - 1 others of the same noise."""
+    others = rng.normal(size=noisy.shape) / np.sqrt(n - 1)
+    return Smoothed(noisy / n + others * (n - 1) / n, noisy - others, np.ones_like(noisy) / n)
+
+
+def _estimate(noisy: np.ndarray) -> Estimate:
+    """Return the samples themselves as the estimate."""
+    ones = np.ones_like(noisy)
+    return Estimate(noisy, ones, ones, 0.0 * noisy, 1, True)
 
 
 def _kick(rng: np.random.Generator) -> Motion:

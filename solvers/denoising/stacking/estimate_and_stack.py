@@ -1,0 +1,76 @@
+"""The default method: find errors, estimate, and stack the estimate with two smoothers."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...progress import Progress, within
+from ..channels import Channels
+from ..motion_mixture import estimate_channel_noise, load_motion_mixture, smooth_by_mixture
+from ..posterior import Estimate, Smoothed, estimate_in_groups
+from ..window_priors import FilterBases
+from .outlier_runs import confirm_outliers, find_bursts
+from .smoothing_spline import smooth_by_spline
+from .stack_estimates import stack_estimates
+
+OUTLIER_THRESHOLD = 0.5
+"""Probability of being an inlier below which a sample is an outlier. By definition."""
+
+MIN_NOISE = 0.01
+"""Degrees or centimeters: smaller noise is that of rounding in files. Guards a division."""
+
+
+def estimate_and_stack(
+    channels: Channels, frame_rate: float, bases: FilterBases | None, progress: Progress
+) -> tuple[Estimate, str]:
+    """Return the estimate of all channels, and what it was made with.
+
+    1. The motion mixture finds errors of several frames.
+    2. Patterns of the take, and of examples if given, fill gaps and find single outliers. The
+       mixture rejects those that people's movement explains, such as a kick.
+    3. A smoothing spline and the mixture smooth what remains. Each joint is the mean of the
+       three, weighted to have the least expected error.
+
+    Parameters
+    ----------
+    channels : Channels
+    frame_rate : float, Hz
+    bases : FilterBases, optional
+    progress : Progress
+    """
+    noisy, mixture = channels.flat, load_motion_mixture()
+    progress(0.0, "Finding errors")
+    bursts = np.zeros(noisy.shape, dtype=np.bool_)
+    rotations = slice(channels.n_rotations)
+    bursts[:, rotations] = find_bursts(noisy[:, rotations], frame_rate, mixture)
+    estimate, prior_used = estimate_in_groups(
+        channels, bursts, frame_rate, bases, within(progress, 0.1, 0.9)
+    )
+    progress(0.9, "Smoothing")
+    known = np.isfinite(noisy) & np.isfinite(estimate.leave_one_out_error)
+    suspected = known & (estimate.inliers < OUTLIER_THRESHOLD)
+    complete = np.where(known & ~suspected, noisy, estimate.values)
+    outliers = confirm_outliers(noisy, suspected, complete, frame_rate, mixture)
+    is_good = known & ~outliers
+    estimate = replace(estimate, inliers=np.where(known, ~outliers, estimate.inliers))
+    complete = np.where(is_good, noisy, estimate.values)
+    noise = estimate_channel_noise(np.where(is_good, noisy, np.nan), MIN_NOISE)
+    smoothers = [
+        smooth_by_spline(complete), smooth_by_mixture(complete, noise, frame_rate, mixture)
+    ]  # fmt: skip
+    stacked, weights = stack_estimates(
+        noisy,
+        estimate,
+        [each for each in smoothers if isinstance(each, Smoothed)],
+        is_good,
+        adapted=bases is None,
+    )
+    sentence = _describe(int(np.count_nonzero(weights[:, 0] < 0.5)))
+    return stacked, f"{prior_used} {sentence}".strip()
+
+
+def _describe(n_joints: int) -> str:
+    if not n_joints:
+        return ""
+    joints = "1 joint" if n_joints == 1 else f"{n_joints} joints"
+    return f"Plain smoothing and a model of how people move predict {joints} better."

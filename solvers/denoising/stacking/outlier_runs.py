@@ -1,0 +1,206 @@
+"""Tell errors that last some frames from fast movement, by what people's joints do.
+
+A kick and a tracking error both leave a joint's path for a few frames and come back. Given the
+frames around it, the motion mixture explains the kick; an error is more likely to be a constant
+offset, or unrelated to the movement.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter
+
+from ...arrays import Array
+from ...signals import fill_channel_gaps, find_runs
+from ..motion_mixture import MotionMixture, PredictiveDensity, estimate_channel_noise
+from ..posterior import OUTLIER_DENSITY, Windows
+
+PRIOR_SAMPLES = 1e6
+"""The number of samples, one of them a spike, in addition to the take's own: a clean take has
+hardly one in ten minutes (60 channels, 30 Hz). Chosen by hand on the development takes of the
+first press: with 1e3 a kick is taken for an error."""
+PRIOR_SAMPLES_OF_BURSTS = 1e9
+"""The number of samples, one of them the start of a burst, which only its shape makes
+suspicious. Chosen by hand on the development takes of the first press: with 1e6 nine runs of
+clean takes are taken for errors, with 1e9 one; of 446 true bursts 3 % are lost."""
+MIN_STEP = 10.0
+"""Degrees or centimeters: an error that begins or ends with a smaller step is left to the
+smoothers. Chosen by hand; not swept."""
+MAX_BURST_S = 0.3
+"""Seconds: longest error that is looked for between two steps. Chosen by hand; not swept."""
+MAX_RUNS_PER_FRAME = 0.1
+"""Number of runs that are tested in a joint, per frame. A joint with more is wrong so often
+that the frames around a run say little about it: what was suspected stays. Chosen by hand; not
+swept."""
+MIN_NOISE = 2.0
+"""Degrees or centimeters: smaller noise would let the mixture reject any movement that its
+recordings lack. Chosen by hand; not swept."""
+
+
+class _Run(NamedTuple):
+    """Samples of a joint that may be one error."""
+
+    frames: slice
+    channels: NDArray[np.bool_]
+
+
+def find_bursts(noisy: Array, frame_rate: float, mixture: MotionMixture) -> NDArray[np.bool_]:
+    """Return samples that are errors of two or more frames, shape (n_frames, n_channels).
+
+    Parameters
+    ----------
+    noisy : shape (n_frames, n_channels)
+        NaN where not observed; each joint has three channels.
+    frame_rate : float, Hz
+    mixture : MotionMixture
+    """
+    max_frames = round(MAX_BURST_S * frame_rate)
+    complete = fill_channel_gaps(noisy)
+    # Single frames that jump are no bursts, and say nothing about one.
+    despiked = median_filter(complete, (3, 1), mode="nearest")
+    noisy = np.where(np.abs(noisy - despiked) > MIN_STEP, np.nan, noisy)
+    found = _select(
+        noisy, np.zeros(noisy.shape, dtype=np.bool_), despiked, frame_rate, mixture, False,
+        lambda joint: _between_steps(despiked[:, joint], max_frames),
+    )  # fmt: skip
+    # An error in its window makes the movement near it unlikely, too.
+    return _select(
+        noisy, found, despiked, frame_rate, mixture, False,
+        lambda joint: _suspected_runs(found[:, joint]),
+    )  # fmt: skip
+
+
+def confirm_outliers(
+    noisy: Array,
+    suspected: NDArray[np.bool_],
+    complete: Array,
+    frame_rate: float,
+    mixture: MotionMixture,
+) -> NDArray[np.bool_]:
+    """Return the suspected outliers that are no movement, shape (n_frames, n_channels).
+
+    Parameters
+    ----------
+    noisy : shape (n_frames, n_channels)
+        NaN where not observed; each joint has three channels.
+    suspected : same shape
+    complete : same shape
+        An estimate without them, without NaN.
+    frame_rate : float, Hz
+    mixture : MotionMixture
+    """
+    return _select(
+        noisy, suspected, complete, frame_rate, mixture, True,
+        lambda joint: _suspected_runs(suspected[:, joint]),
+    )  # fmt: skip
+
+
+def _select(
+    noisy: Array,
+    suspected: NDArray[np.bool_],
+    complete: Array,
+    frame_rate: float,
+    mixture: MotionMixture,
+    are_suspected: bool,
+    candidates: Callable[[slice], list[_Run]],
+) -> NDArray[np.bool_]:
+    """Return the samples of the candidates that are likelier to be errors than movement."""
+    density = frame_rate / mixture.frame_rate
+    length, observed = round(mixture.window * density), np.isfinite(noisy)
+    if len(noisy) < length:
+        return suspected
+    mixture = mixture.truncated(length)
+    windows = Windows(len(noisy), length, density)
+    noise = estimate_channel_noise(complete, MIN_NOISE)
+    kept, max_runs = np.zeros_like(observed), MAX_RUNS_PER_FRAME * len(noisy)
+    gains, runs, first_channels = list[float](), list[_Run](), list[int]()
+    for first in range(0, noisy.shape[1], 3):
+        joint = slice(first, first + 3)
+        is_observed = observed[:, joint]
+        is_valid = is_observed & ~suspected[:, joint]
+        samples = np.where(is_observed, noisy[:, joint], complete[:, joint])
+        predictive = PredictiveDensity(
+            samples - complete[:, joint].mean(axis=0), noise[joint], windows, mixture
+        )
+        found_runs = candidates(joint)
+        if len(found_runs) > max_runs:
+            kept[:, joint] = suspected[:, joint]
+            continue
+        for run in found_runs:
+            is_tested = np.zeros_like(is_observed)
+            is_tested[run.frames, run.channels] = is_observed[run.frames, run.channels]
+            as_movement, as_error = predictive.log_densities(*run, is_valid | is_tested)
+            if are_suspected:
+                unrelated = np.count_nonzero(is_tested) * np.log(OUTLIER_DENSITY)
+                as_error = max(as_error, unrelated)
+            gains.append(as_error - as_movement)
+            runs.append(run)
+            first_channels.append(first)
+    n_samples = observed.sum() + (PRIOR_SAMPLES if are_suspected else PRIOR_SAMPLES_OF_BURSTS)
+    return kept | _likeliest(np.array(gains), runs, first_channels, observed, n_samples)
+
+
+def _likeliest(
+    gains: Array,
+    runs: Sequence[_Run],
+    first_channels: Sequence[int],
+    observed: NDArray[np.bool_],
+    n_samples: float,
+) -> NDArray[np.bool_]:
+    """Return the samples of the likeliest runs that do not overlap.
+
+    The rate of errors starts at that of a take without any, and rises with those found.
+
+    Parameters
+    ----------
+    gains : shape (n_runs,)
+        Log-density of the samples as errors, less that as movement.
+    runs : sequence of _Run
+    first_channels : sequence of int
+        Of their joints.
+    observed : shape (n_frames, n_channels)
+    n_samples : float
+        The take's own and the prior's.
+    """
+    n_found, n_before, log_rate = 0, -1, 0.0
+    while n_found > n_before:
+        log_rate = np.log((n_found + 1.0) / n_samples)
+        n_before, n_found = n_found, np.count_nonzero(gains + log_rate > 0.0)
+    found = np.zeros_like(observed)
+    for index in np.argsort(-gains):
+        frames, tested = runs[index]
+        channels = first_channels[index] + np.flatnonzero(tested)
+        if gains[index] + log_rate > 0.0 and not found[frames, channels].any():
+            found[frames, channels] = observed[frames, channels]
+    return found
+
+
+def _suspected_runs(suspected: NDArray[np.bool_]) -> list[_Run]:
+    """Return runs of suspected samples of a joint; channels with equal frames are one run."""
+    channels_of_run: dict[tuple[int, int], NDArray[np.bool_]] = {}
+    for channel, is_suspected in enumerate(suspected.T):
+        for run in find_runs(is_suspected):
+            channels = channels_of_run.setdefault(run, np.zeros(3, dtype=np.bool_))
+            channels[channel] = True
+    return [_Run(slice(*run), channels) for run, channels in channels_of_run.items()]
+
+
+def _between_steps(samples: Array, max_frames: int) -> list[_Run]:
+    """Return runs of two or more frames that begin and end with a step.
+
+    Only channels count that are off the frames before and after by more than these differ.
+    """
+    edges = np.flatnonzero(np.abs(np.diff(samples, axis=0)).max(axis=1) > MIN_STEP) + 1
+    runs = list[_Run]()
+    for index, start in enumerate(edges):
+        for stop in edges[index + 1 :]:
+            if stop - start > max_frames:
+                break
+            before, after = samples[start - 1], samples[stop]
+            offset = np.abs(samples[start:stop].mean(axis=0) - (before + after) / 2.0)
+            channels = (offset > MIN_STEP) & (np.abs(after - before) < offset)
+            if channels.any() and stop - start > 1:
+                runs.append(_Run(slice(start, stop), channels))
+    return runs

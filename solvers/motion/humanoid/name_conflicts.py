@@ -1,0 +1,172 @@
+"""Where names of joints contradict the lengths of the bones, and what to believe then."""
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from ...arrays import Array
+from ..skeletons import Skeleton
+from .limb_division import ARM_FRACTIONS, LEG_FRACTIONS
+from .structure import HEIGHT_FACTORS, Structure
+from .tables import ARM_ROLES, CENTRAL_ROLES, LEG_ROLES
+
+MIN_HUMANNESS = 0.6
+"""Humanness of the proportions, as a fraction, from which the structure may contradict names.
+Chosen by hand on the rigs of `tests/data/skeleton_families.txt`: their means are 0.74 to 0.8
+without a joint of trunk or foot, 0.2 to 0.54 without one of thigh, shin, arm or hand."""
+MIN_MISFIT_MARGIN = 0.3
+"""Misfit, the logarithm of a length, by which a limb as named must exceed the limb by
+structure before the names are wrong. Chosen by hand: 0.02 is the most that was seen in real
+recordings, and names shifted by one joint begin at 0.39."""
+MAX_NAMED_MISFIT = 0.4
+"""Misfit, the logarithm of a length, up to which each limb as named is human enough to be
+believed without a search for others. Chosen by hand like `MIN_MISFIT_MARGIN`."""
+SHORTEST = 1e-4
+"""Fraction of the height that stands for a bone without length; guards against a logarithm of
+zero."""
+
+HINGES = {"Leg": ("UpperLeg", "LowerLeg", "Foot"), "Arm": ("UpperArm", "LowerArm", "Hand")}
+LENGTHS = {"Leg": LEG_FRACTIONS, "Arm": ARM_FRACTIONS}
+PARTS = {"Leg": LEG_ROLES, "Arm": ARM_ROLES}
+LIMBS = tuple((side, limb) for side in ("left", "right") for limb in HINGES)
+
+
+def has_human_limbs(skeleton: Skeleton, joints: Mapping[str, str]) -> bool:
+    """Whether all limbs of a map fit one height, and its hips carry legs and trunk.
+
+    False if a joint has no role.
+    """
+    limbs = [[joints.get(side + part) for part in HINGES[limb]] for side, limb in LIMBS]
+    if any(name is None for names in limbs for name in names):
+        return False
+    bones = [_bone_lengths(skeleton, [str(name) for name in names]) for names in limbs]
+    if _trunk_is_contradicted(skeleton, joints, joints):
+        return False
+    legs = np.mean([
+        each.sum() for each, (_, limb) in zip(bones, LIMBS, strict=True) if limb == "Leg"
+    ])
+    heights = max(float(legs), 1e-9) / sum(LEG_FRACTIONS) * HEIGHT_FACTORS
+    misfits = [
+        [_misfit(each, limb, height) for each, (_, limb) in zip(bones, LIMBS, strict=True)]
+        for height in heights
+    ]
+    return min(map(max, misfits)) < MAX_NAMED_MISFIT
+
+
+def contradicted_roles(
+    skeleton: Skeleton, joints: Mapping[str, str], structure: Structure
+) -> set[str]:
+    """Return the roles that names and structure assign so differently that names are wrong.
+
+    A limb is contradicted as a whole if its bones as named are far less human than those by
+    structure; the trunk, if a part above the hips carries the legs, or the hips do not. Names
+    stand where lengths cannot tell.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    joints : mapping of role to joint name
+        The map by names.
+    structure : Structure
+
+    Returns
+    -------
+    set of str
+        All roles of the contradicted limbs; empty if the body is hardly human.
+    """
+    if structure.humanness < MIN_HUMANNESS:
+        return set()
+    roles: set[str] = set()
+    for side, limb in LIMBS:
+        if _limb_is_contradicted(skeleton, joints, structure, side, limb):
+            roles |= {side + part for part in PARTS[limb]}
+    if _trunk_is_contradicted(skeleton, joints, structure.joints):
+        roles |= set(CENTRAL_ROLES)
+    return roles
+
+
+def odd_limbs(skeleton: Skeleton, joints: Mapping[str, str], structure: Structure) -> set[str]:
+    """Return the roles of the complete limbs whose bones are not those of the body's height."""
+    return {
+        side + part
+        for side, limb in LIMBS
+        if all(side + part in joints for part in HINGES[limb])
+        and _misfit(
+            _bone_lengths(skeleton, [joints[side + part] for part in HINGES[limb]]),
+            limb,
+            max(structure.height, SHORTEST),
+        )
+        > MAX_NAMED_MISFIT
+        for part in HINGES[limb]
+    }
+
+
+def without_contradictions(
+    skeleton: Skeleton, joints: Mapping[str, str], structure: Structure
+) -> dict[str, str]:
+    """Return a map by names whose contradicted roles are those of the structure instead."""
+    wrong = contradicted_roles(skeleton, joints, structure)
+    decided = {r: joint for r, joint in structure.joints.items() if r in wrong}
+    taken = set(decided.values())
+    kept = {r: name for r, name in joints.items() if r not in wrong and name not in taken}
+    return kept | decided
+
+
+def _limb_is_contradicted(
+    skeleton: Skeleton, joints: Mapping[str, str], structure: Structure, side: str, limb: str
+) -> bool:
+    roles = [side + part for part in HINGES[limb]]
+    if not all(role in structure.joints for role in roles):
+        return False
+    by_structure = [structure.joints[role] for role in roles]
+    by_name = [joints.get(role, structure.joints[role]) for role in roles]
+    # Without an ankle, the structure takes the toes for it; above, a lack is a conflict.
+    lacking = {structure.joints[role] for role in roles[:2] if role not in joints}
+    if not lacking.isdisjoint(joints.values()) or not _is_chain(skeleton, by_name):
+        return True
+    if by_name == by_structure:
+        return False
+    named, structural = (
+        _misfit(_bone_lengths(skeleton, names), limb, structure.height)
+        for names in (by_name, by_structure)
+    )
+    return named > structural + MIN_MISFIT_MARGIN
+
+
+def _trunk_is_contradicted(
+    skeleton: Skeleton, joints: Mapping[str, str], legs: Mapping[str, str]
+) -> bool:
+    """Whether the hips do not carry these legs, or a part above them does."""
+    tops = [legs[role] for role in ("leftUpperLeg", "rightUpperLeg") if role in legs]
+    if not tops:
+        return False
+    carries_legs = set.intersection(*(_lineage(skeleton, top) for top in tops))
+    above = [joints[role] for role in CENTRAL_ROLES if role != "hips" and role in joints]
+    return not carries_legs.isdisjoint(above) or (
+        "hips" in joints and joints["hips"] not in carries_legs
+    )
+
+
+def _lineage(skeleton: Skeleton, name: str) -> set[str]:
+    joint = skeleton.index(name)
+    return {name, *(skeleton.names[above] for above in skeleton.ancestors(joint))}
+
+
+def _is_chain(skeleton: Skeleton, names: Sequence[str]) -> bool:
+    """Whether each of these joints hangs below the one before."""
+    return all(
+        upper != lower and upper in _lineage(skeleton, lower)
+        for upper, lower in pairwise(names)
+    )
+
+
+def _bone_lengths(skeleton: Skeleton, names: Sequence[str]) -> Array:
+    joints = [skeleton.index(name) for name in names]
+    return np.asarray(np.linalg.norm(np.diff(skeleton.rest_positions[joints], axis=0), axis=1))
+
+
+def _misfit(bones: Array, limb: str, height: float) -> float:
+    """Return the sum of the absolute log ratios of two bones to those of a person."""
+    fractions = np.maximum(bones / height, SHORTEST)
+    return float(np.abs(np.log(fractions / np.array(LENGTHS[limb]))).sum())

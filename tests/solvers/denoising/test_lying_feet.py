@@ -1,0 +1,56 @@
+"""Feet of who sits or lies on the floor bear no weight and are not planted."""
+
+import numpy as np
+
+from solvers.denoising import plant_feet
+from solvers.denoising.feet.legs import find_legs
+from solvers.motion import Motion, detect_contacts, forward_kinematics
+from solvers.recordings import read_acclaim
+from solvers.rotations import IDENTITY, multiply, quaternion_from_rotation_vector
+from solvers.samples import GaitSettings, walking_gait
+
+
+def ankle_displacements(before: Motion, after: Motion) -> np.ndarray:
+    ankles = [leg.ankle for leg in find_legs(before.skeleton)]
+    old, new = (forward_kinematics(each).positions[:, ankles] for each in (before, after))
+    return np.linalg.norm(new - old, axis=-1)
+
+
+def test_feet_are_planted_until_the_actor_lies(recordings):
+    motion = read_acclaim(recordings / "mocap/hdm05/HDM_bd_lieDownFloor_002_120.amc")
+    contacts = detect_contacts(motion)
+
+    planted = plant_feet(motion)
+
+    # The hips come to rest after 2.7 of 6 seconds.
+    standing, lying = slice(0, 240), slice(350, None)
+    assert contacts[lying].any(axis=0).all()
+    assert not planted.contacts[lying].any()
+    assert (planted.contacts[standing] == contacts[standing]).all()
+    moved = ankle_displacements(motion, planted.motion)
+    assert moved[400:].max() < 1e-5
+    assert moved[standing].max() > 0.005
+
+
+def test_feet_of_the_deepest_squat_stay_planted(recordings):
+    motion = read_acclaim(recordings / "mocap/hdm05/HDM_bd_squat1Reps_007_120.amc")
+
+    assert (plant_feet(motion).contacts == detect_contacts(motion)).all()
+
+
+def test_body_on_its_back_keeps_its_sliding_heels():
+    walk = walking_gait(GaitSettings(duration=2.0, frame_rate=60.0))
+    still = np.tile(IDENTITY, (*walk.rotations.shape[:2], 1))
+    on_the_back = quaternion_from_rotation_vector([-np.pi / 2, 0.0, 0.0])
+    still[:, 0] = multiply(on_the_back, still[:, 0])
+    knee = find_legs(walk.skeleton)[0].knee
+    bend = 0.1 * (1.0 - np.cos(np.arange(walk.n_frames) / 20.0))
+    still[:, knee] = quaternion_from_rotation_vector(bend[:, None] * (1.0, 0.0, 0.0))
+    hips = np.tile([0.0, 0.0, 0.1], (walk.n_frames, 1))
+    lying = walk.with_poses(still, hips)
+
+    planted = plant_feet(lying)
+
+    assert detect_contacts(lying).any()
+    assert not planted.contacts.any()
+    assert (planted.motion.rotations == lying.rotations).all()

@@ -1,0 +1,137 @@
+"""The mixture of windows: exact where it has one component, and never unpickled."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.fft import idct
+from scipy.stats import multivariate_normal
+
+from solvers.denoising.motion_mixture import (
+    MotionMixture,
+    PredictiveDensity,
+    learn_motion_mixture,
+    load_motion_mixture,
+    smooth_by_mixture,
+)
+from solvers.denoising.posterior import Windows
+from solvers.errors import InvalidFileError, InvalidMotionError
+
+WINDOW = 8
+
+
+@pytest.fixture
+def mixture(rng):
+    """Two components, slow and fast, with correlated channels."""
+    decay = np.tile(10.0 / (1.0 + np.arange(WINDOW)) ** 2, 3)
+    mixing = rng.normal(size=(24, 24)) / 5.0 + np.eye(24)
+    covariance = mixing @ np.diag(decay**2) @ mixing.T
+    return MotionMixture(np.array([0.7, 0.3]), np.stack([0.05 * covariance, covariance]), 30.0)
+
+
+def basis() -> np.ndarray:
+    return idct(np.eye(WINDOW), axis=0, norm="ortho")
+
+
+def frame_covariance(mixture: MotionMixture, component: int, noise: float) -> np.ndarray:
+    """Covariance of the samples of a window, channels outermost."""
+    to_frames = np.kron(np.eye(3), basis())
+    covariance = to_frames @ mixture.covariances[component] @ to_frames.T
+    return covariance + noise**2 * np.eye(len(covariance))
+
+
+def test_predictive_density_is_the_ratio_of_two_densities(mixture, rng):
+    samples, noise = 5.0 * rng.normal(size=(WINDOW, 3)), 0.7
+    valid = rng.random((WINDOW, 3)) < 0.8
+    run, tested = slice(3, 5), np.array([True, False, True])
+    valid[run] |= tested
+    predictive = PredictiveDensity(
+        samples, np.full(3, noise), Windows(WINDOW, WINDOW, 1.0), mixture
+    )
+
+    as_movement, with_offset = predictive.log_densities(run, tested, valid)
+
+    inside = np.zeros((WINDOW, 3), dtype=bool)
+    inside[run] = tested
+    offsets = np.stack([
+        np.outer(inside[:, axis], np.arange(3) == axis).T.ravel() for axis in range(3)
+    ])
+    variance = (120.0 / 2.0) ** 2 / 3.0
+    off = variance * offsets.T @ offsets
+
+    def density(known: np.ndarray, extra: np.ndarray) -> float:
+        chosen = known.T.ravel()
+        total = 0.0
+        for component, weight in enumerate(mixture.weights):
+            covariance = frame_covariance(mixture, component, noise) + extra
+            total += weight * multivariate_normal.pdf(
+                samples.T.ravel()[chosen], cov=covariance[np.ix_(chosen, chosen)]
+            )
+        return float(np.log(total))
+
+    others = density(valid & ~inside, 0.0 * off)
+    assert_allclose(as_movement, density(valid, 0.0 * off) - others, rtol=1e-6)
+    assert_allclose(with_offset, density(valid, off) - others, rtol=1e-6)
+
+
+def test_one_window_is_smoothed_to_the_posterior_mean(mixture, rng):
+    samples, noise = 5.0 * rng.normal(size=(WINDOW, 3)), 0.7
+    samples -= samples.mean(axis=0)
+
+    smoothed = smooth_by_mixture(samples, np.full(3, noise), 30.0, mixture)
+
+    assert smoothed is not None
+    flat, densities, means = samples.T.ravel(), [], []
+    for component, weight in enumerate(mixture.weights):
+        covariance = frame_covariance(mixture, component, noise)
+        densities.append(weight * multivariate_normal.pdf(flat, cov=covariance))
+        means.append(flat - noise**2 * np.linalg.solve(covariance, flat))
+    expected = np.average(means, axis=0, weights=densities).reshape(3, WINDOW).T
+    assert_allclose(smoothed.values, expected, atol=1e-8)
+
+
+@pytest.mark.parametrize("rate", [24.0, 30.0, 60.0, 120.0])
+def test_same_movement_at_any_rate(rate):
+    """A slow wave comes back, and its leave-one-out error is about that of the noise."""
+    rng = np.random.default_rng(0)
+    time = np.arange(round(4.0 * rate)) / rate
+    wave = 20.0 * np.sin(2.0 * np.pi * time[:, None] * np.array([0.5, 0.7, 0.3]))
+    noisy = wave + rng.normal(size=wave.shape)
+
+    smoothed = smooth_by_mixture(noisy, np.ones(3), rate, load_motion_mixture())
+
+    assert smoothed is not None
+    error = np.sqrt(((smoothed.values - wave) ** 2).mean())
+    assert error < 0.7 * np.sqrt(30.0 / rate)
+    assert 0.95 < smoothed.leave_one_out_error.std() < 1.35
+    assert_allclose(np.sqrt(smoothed.variance.mean()), error, rtol=0.5)
+
+
+def test_takes_shorter_than_a_window_are_left_to_others(mixture):
+    assert smooth_by_mixture(np.zeros((WINDOW - 1, 3)), np.ones(3), 30.0, mixture) is None
+
+
+def test_learned_mixture_comes_back_from_its_file(tmp_path, swinging_leg):
+    learned = learn_motion_mixture([swinging_leg], n_components=2, trained_on="a leg")
+    learned.save(tmp_path / "leg.npz")
+
+    loaded = load_motion_mixture(tmp_path / "leg.npz")
+
+    assert loaded.trained_on == "a leg"
+    assert_allclose(loaded.weights.sum(), 1.0)
+    assert_allclose(loaded.covariances, learned.covariances, rtol=1e-5, atol=1e-6)
+
+
+def test_too_little_to_learn_from(swinging_leg):
+    with pytest.raises(InvalidMotionError, match="too short"):
+        learn_motion_mixture([swinging_leg.slice(0, 5)])
+
+
+def test_damaged_file_is_refused(tmp_path):
+    (tmp_path / "bad.npz").write_bytes(b"PK\x03\x04 no archive")
+
+    with pytest.raises(InvalidFileError):
+        load_motion_mixture(tmp_path / "bad.npz")
+
+
+def test_shipped_mixture_says_what_it_was_trained_on():
+    assert "CMU" in load_motion_mixture().trained_on

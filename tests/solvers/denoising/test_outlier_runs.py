@@ -1,0 +1,70 @@
+"""Errors of some frames are found; kicks and clean takes are left alone."""
+
+import numpy as np
+import pytest
+
+from solvers.denoising.motion_mixture import load_motion_mixture
+from solvers.denoising.stacking.outlier_runs import confirm_outliers, find_bursts
+
+MIXTURE = load_motion_mixture()
+
+
+def walk_like(rate: float, rng: np.random.Generator) -> np.ndarray:
+    """Two joints that swing as in a walk, with noise of .3 degrees, and a kick of the first."""
+    time = np.arange(round(4.0 * rate)) / rate
+    swing = 15.0 * np.sin(2.0 * np.pi * time[:, None] + np.arange(6.0))
+    swing[:, 0] += 60.0 * np.exp(-0.5 * ((time - 2.0) / 0.08) ** 2)
+    return np.asarray(swing + 0.3 * rng.normal(size=swing.shape))
+
+
+@pytest.mark.parametrize("rate", [24.0, 30.0, 60.0, 120.0])
+def test_kick_is_no_error(rate, rng):
+    assert not find_bursts(walk_like(rate, rng), rate, MIXTURE).any()
+
+
+@pytest.mark.parametrize("rate", [24.0, 30.0, 60.0, 120.0])
+@pytest.mark.parametrize("duration", [0.07, 0.2])
+def test_burst_is_found_and_nothing_else(rate, duration, rng):
+    samples = walk_like(rate, rng)
+    start, stop = round(1.0 * rate), round((1.0 + duration) * rate)
+    samples[start:stop, 3:] += [40.0, -30.0, 25.0]
+
+    found = find_bursts(samples, rate, MIXTURE)
+
+    expected = np.zeros(samples.shape, dtype=bool)
+    expected[start:stop, 3:] = True
+    assert (found == expected).all()
+
+
+def test_gap_is_no_error_and_hides_none(rng):
+    samples = walk_like(30.0, rng)
+    samples[20:30, 3:] = np.nan
+    samples[40:44, 3:] += 45.0
+
+    found = find_bursts(samples, 30.0, MIXTURE)
+
+    assert not found[20:30].any()
+    assert found[40:44, 3:].all()
+
+
+def test_suspected_kick_is_cleared_and_a_spike_is_not(rng):
+    samples = walk_like(30.0, rng)
+    samples[30, 4] += 40.0
+    suspected = np.zeros(samples.shape, dtype=bool)
+    suspected[58:63, 0] = suspected[30, 4] = True
+    complete = np.where(suspected, np.nan, samples)
+    for column in complete.T:
+        known = np.isfinite(column)
+        column[~known] = np.interp(np.flatnonzero(~known), np.flatnonzero(known), column[known])
+
+    confirmed = confirm_outliers(samples, suspected, complete, 30.0, MIXTURE)
+
+    assert np.argwhere(confirmed).tolist() == [[30, 4]]
+
+
+def test_take_shorter_than_a_window_keeps_what_is_suspected():
+    samples = np.zeros((5, 3))
+    suspected = samples > -1.0
+
+    assert confirm_outliers(samples, suspected, samples, 30.0, MIXTURE).all()
+    assert not find_bursts(samples, 30.0, MIXTURE).any()

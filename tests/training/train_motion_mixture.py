@@ -1,0 +1,66 @@
+"""Learn the mixture of windows that Clean ships, from captures that anyone may use.
+
+    make motion-mixture ARGUMENTS="[--out FILE]"
+
+CMU (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217): playground, jumps, punches,
+sword, lifting, salsa, walks. No actor or take of `tests/benchmarks/first_press/takes.py` that
+is scored, and no development take.
+"""
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+from solvers.denoising.motion_mixture import SHIPPED, learn_motion_mixture
+from solvers.denoising.motion_mixture.learn_mixture import FRAME_RATE
+from solvers.motion import Motion
+
+from ..benchmarks.first_press.takes import DEVELOPMENT, read_variety, variety_names
+from ..benchmarks.shared import clips
+from ..benchmarks.shared.clips import every
+
+ACTORS = ("01_", "02_", "salsa_")
+"""Of `cmu_variety`. Subject 03, martial arts and Indian dance are scored."""
+WALKERS = ("07", "10", "26", "27", "32")
+PHASES = 2
+"""Frames between the starts of the clips that a recording at 60 or 120 Hz is split into."""
+WORDS = (
+    "CMU mocap: playground, jumps, punches, sword, lifting (subjects 01, 02), salsa, walks"
+    " (07, 10, 26, 27, 32), 30 Hz"
+)
+
+
+def motions() -> Iterator[Motion]:
+    """Return the clips to learn from, at FRAME_RATE."""
+    kept_aside = {take.name for take in DEVELOPMENT}
+    names = [name for name in variety_names() if name.startswith(ACTORS)]
+    takes = [read_variety(name) for name in names if name not in kept_aside]
+    takes += [
+        clips.read_cmu(path, 1)
+        for path in sorted(clips.WALKS.glob("*.bvh"))
+        if path.stem[:2] in WALKERS and path.stem not in kept_aside
+    ]
+    for take in takes:
+        step = round(take.frame_rate / FRAME_RATE)
+        for phase in range(0, step, PHASES):
+            yield every(take.slice(phase, take.n_frames), step)
+
+
+def show(fraction: float, message: str) -> None:
+    """Print the progress."""
+    print(f"{fraction:6.1%} {message}", flush=True)
+
+
+def main() -> None:
+    """Learn, and save where it is shipped."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--out", type=Path, default=SHIPPED)
+    given = parser.parse_args()
+    mixture = learn_motion_mixture(list(motions()), trained_on=WORDS, progress=show)
+    mixture.save(given.out)
+
+
+if __name__ == "__main__":
+    main()
