@@ -96,9 +96,14 @@ def _settings(modifier: bpy.types.FModifier) -> dict[str, Any]:
 def _add(curve: bpy.types.FCurve, kind: str, settings: dict[str, Any]) -> None:
     modifier = curve.modifiers.new(kind)
     settings = dict(settings)
-    for frame, low, high in settings.pop("control_points", ()):
-        point = modifier.control_points.add(frame)
-        point.min, point.max = low, high
+    if points := settings.pop("control_points", ()):
+        frames, *limits = zip(*points, strict=True)
+        for frame in frames:
+            modifier.control_points.add(frame)
+        # Never point.min = ...: after that Blender takes the point for a modifier, reads the
+        # memory behind it as the address of a curve, and now and then crashes.
+        for name, values in zip(("min", "max"), limits, strict=True):
+            modifier.control_points.foreach_set(name, values)
     modifier.frame_start = -FAR  # Blender keeps the start before the end at every step
     for name in ("frame_end", "frame_start"):
         setattr(modifier, name, settings.pop(name))

@@ -54,7 +54,11 @@ def test_solver_repeats_its_result(name):
 
     assert len(first) == len(again) > 0
     for one, other in zip(first, again, strict=True):
-        assert np.array_equal(one, other, equal_nan=np.asarray(one).dtype.kind == "f")
+        if np.asarray(one).dtype.kind != "f":
+            assert np.array_equal(one, other)
+        elif np.size(one):  # on some machines rounding depends on where an array lies in memory
+            size = np.abs(np.nan_to_num(one, posinf=0.0, neginf=0.0)).max()
+            assert_allclose(other, one, rtol=0.0, atol=1e-9 * size)
 
 
 @every_verb_that_reports

@@ -84,8 +84,10 @@ def several(curve):
     modifier = curve.modifiers.new("LIMITS")
     modifier.use_min_y, modifier.min_y = True, -0.1
     envelope = curve.modifiers.new("ENVELOPE")
-    point = envelope.control_points.add(30.0)
-    point.min, point.max = -0.5, 2.0
+    envelope.control_points.add(20.0)
+    envelope.control_points.add(30.0)
+    envelope.control_points.foreach_set("min", [-0.6, -0.5])
+    envelope.control_points.foreach_set("max", [1.0, 2.0])
     generator = curve.modifiers.new("GENERATOR")
     generator.poly_order, generator.use_additive = 2, True
     generator.coefficients[0:3] = 0.1, 0.01, 0.001
