@@ -3,7 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...progress import Progress, within
 from ..channels import Channels
 from ..motion_mixture import estimate_channel_noise, load_motion_mixture, smooth_by_mixture
@@ -11,7 +13,7 @@ from ..posterior import Estimate, Smoothed, estimate_in_groups
 from ..window_priors import FilterBases
 from .outlier_runs import confirm_outliers, find_bursts
 from .smoothing_spline import smooth_by_spline
-from .stack_estimates import stack_estimates
+from .stack_estimates import leverage, stack_estimates
 
 OUTLIER_THRESHOLD = 0.5
 """Probability of being an inlier below which a sample is an outlier. By definition."""
@@ -55,18 +57,31 @@ def estimate_and_stack(
     estimate = replace(estimate, inliers=np.where(known, ~outliers, estimate.inliers))
     complete = np.where(is_good, noisy, estimate.values)
     noise = estimate_channel_noise(np.where(is_good, noisy, np.nan), MIN_NOISE)
-    smoothers = [
-        smooth_by_spline(complete), smooth_by_mixture(complete, noise, frame_rate, mixture)
-    ]  # fmt: skip
+    spline = smooth_by_spline(complete)
+    smoothers = [spline, smooth_by_mixture(complete, noise, frame_rate, mixture)]
     stacked, weights = stack_estimates(
         noisy,
         estimate,
         [each for each in smoothers if isinstance(each, Smoothed)],
         is_good,
-        adapted=bases is None,
+        noise * noise_factor(noise, complete, spline, is_good),
     )
     sentence = _describe(int(np.count_nonzero(weights[:, 0] < 0.5)))
     return stacked, f"{prior_used} {sentence}".strip()
+
+
+def noise_factor(
+    noise: Array, complete: Array, spline: Smoothed, is_good: NDArray[np.bool_]
+) -> float:
+    """Return how much smaller the take's noise is than third differences say, at most 1.
+
+    They take fast movement for noise, and Stein's risk would then smooth it away. What a spline
+    leaves holds less movement; half of the channels leave more than this factor, half less.
+    """
+    residuals = np.where(is_good, complete - spline.values, 0.0)
+    free = np.where(is_good, 1.0 - leverage(residuals, spline.leave_one_out_error), 0.0)
+    left = np.sqrt((residuals**2).sum(axis=0) / np.maximum(free.sum(axis=0), 1.0))
+    return float(np.exp(np.minimum(np.median(np.log(np.maximum(left, MIN_NOISE) / noise)), 0.0)))
 
 
 def _describe(n_joints: int) -> str:

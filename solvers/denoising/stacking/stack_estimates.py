@@ -12,24 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...signals import shrink_noise
 from ..posterior import Estimate, Smoothed
 
 POOLED_JOINTS = 4.0
 """Weight, in joints, of the assumption that a smoother serves a joint as well as it serves the
 others. Chosen by hand on the development takes of the first press: x0.25 costs 0.5 %."""
-ADAPTATION_PENALTY = 1.2
-"""Factor of the leverage of an estimate whose patterns have adapted to each sample, too.
-Chosen by hand on the development takes of the first press: 1 costs 16 % on clean takes and
-gains 1.5 % at 3 degrees of noise; 1.5 moves nothing."""
-NOISE_QUANTILE = 0.2
-"""Fraction of the third differences that is taken for noise alone: movement is in the others.
-Chosen by hand on clean takes, where the median takes fast movement for noise."""
-GAUSSIAN_QUANTILE = 0.2533
-"""Standard deviations that this fraction of Gaussian numbers stays below. By definition."""
-NOISE_EFFICIENCY = 0.3
-"""Fraction: efficiency of that quantile, relative to a standard deviation. Chosen by hand; not
-swept."""
 MIN_NOISE = 1e-3
 """Degrees or centimeters. Guards a division."""
 RIDGE = 1e-9
@@ -41,8 +28,7 @@ def stack_estimates(
     estimate: Estimate,
     smoothers: Sequence[Smoothed],
     is_good: NDArray[np.bool_],
-    *,
-    adapted: bool = False,
+    noise: Array,
 ) -> tuple[Estimate, Array]:
     """Return the weighted mean of the estimate and the smoothers, and the weights.
 
@@ -60,8 +46,8 @@ def stack_estimates(
     is_good : shape (n_frames, n_channels)
         Samples that are compared: observed ones that are no outliers. A joint without any keeps
         its estimate.
-    adapted : bool
-        Whether the patterns of the estimate come from the take alone.
+    noise : shape (n_channels,)
+        Standard deviation.
 
     Returns
     -------
@@ -80,12 +66,10 @@ def stack_estimates(
         np.where(is_good, complete - each.values, 0.0) for each in candidates
     ])
     leverages = np.stack([
-        _leverage(residual, each.leave_one_out_error)
+        leverage(residual, each.leave_one_out_error)
         for residual, each in zip(residuals, candidates, strict=True)
     ])
-    if adapted:
-        leverages[0] = np.minimum(ADAPTATION_PENALTY * leverages[0], 1.0)
-    variance = _noise(np.where(is_good, noisy, np.nan)) ** 2
+    variance = np.square(noise)
     joints = (-1, 3)
     products = np.einsum("itc,jtc->cij", residuals, residuals)
     products = products.reshape(*joints, *products.shape[1:]).sum(axis=1)
@@ -106,24 +90,11 @@ def stack_estimates(
     return _blend(estimate, smoothers, np.repeat(weights, 3, axis=0).T, is_good), weights
 
 
-def _leverage(residual: Array, leave_one_out_error: Array) -> Array:
+def leverage(residual: Array, leave_one_out_error: Array) -> Array:
     """Return the weight of each sample in its own estimate, from both of its errors."""
     known = np.isfinite(leave_one_out_error) & (leave_one_out_error != 0.0)
     ratio = np.divide(residual, leave_one_out_error, out=np.zeros_like(residual), where=known)
     return np.asarray(np.clip(1.0 - ratio, 0.0, 1.0))
-
-
-def _noise(samples: Array) -> Array:
-    """Return the standard deviation of each channel's noise, from its stillest moments."""
-    if len(samples) <= 3:
-        return np.full(samples.shape[1], MIN_NOISE)
-    differences = np.abs(np.diff(samples, 3, axis=0)) / np.sqrt(20.0)
-    n_known = np.isfinite(differences).sum(axis=0)
-    ordered = np.sort(differences, axis=0)  # NaN last
-    rank = np.round(NOISE_QUANTILE * np.maximum(n_known - 1, 0)).astype(int)
-    noise = ordered[rank, np.arange(samples.shape[1])] / GAUSSIAN_QUANTILE
-    noise = np.maximum(np.nan_to_num(noise), MIN_NOISE)
-    return shrink_noise(noise, n_known, NOISE_EFFICIENCY)
 
 
 def _least_error_weights(products: Array, freedom: Array) -> Array:

@@ -6,8 +6,10 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 from solvers.denoising import denoise
+from solvers.denoising.motion_mixture import estimate_channel_noise
 from solvers.denoising.posterior import Estimate, Smoothed
 from solvers.denoising.stacking import smoothing_spline
+from solvers.denoising.stacking.estimate_and_stack import noise_factor
 from solvers.denoising.stacking.smoothing_spline import smooth_by_spline
 from solvers.denoising.stacking.stack_estimates import stack_estimates
 from solvers.motion import Motion, find_humanoid_map
@@ -54,7 +56,9 @@ def test_weights_are_those_of_the_least_error(rng):
     smoothed = [_mean_of_samples(noisy, round(1.0 / each), rng) for each in variances]
     useless = _estimate(noisy)
 
-    _, weights = stack_estimates(noisy, useless, smoothed, np.ones(noisy.shape, dtype=bool))
+    _, weights = stack_estimates(
+        noisy, useless, smoothed, np.ones(noisy.shape, dtype=bool), np.ones(3)
+    )
 
     correlation = variances[0] * variances[1]  # both contain the sample itself
     gaps = variances - correlation
@@ -69,11 +73,24 @@ def test_clean_take_keeps_its_samples(rng):
     blurred = replace(_estimate(clean + 0.5), leave_one_out_error=np.full(clean.shape, -0.5))
 
     stacked, weights = stack_estimates(
-        clean, blurred, [unchanged], np.ones(clean.shape, dtype=bool)
+        clean, blurred, [unchanged], np.ones(clean.shape, dtype=bool), np.full(6, 0.01)
     )
 
     assert_allclose(weights, np.tile([0.0, 1.0], (2, 1)), atol=0.02)
     assert_allclose(stacked.values, clean, atol=0.01)
+
+
+def test_noise_factor_tells_movement_from_noise(rng):
+    """Third differences of fast movement are as large as those of noise; a spline follows it."""
+    frames = np.arange(200)
+    fast = 30.0 * np.sin(np.outer(frames / 2.0, np.linspace(0.8, 1.2, 30)))
+    noisy = fast + 3.0 * rng.normal(size=fast.shape)
+
+    factors = [_noise_factor(samples) for samples in (fast, noisy, noisy - fast)]
+
+    assert factors[0] < 0.1
+    assert 0.25 < factors[1] < 1.0  # between noise alone and what differences take for it
+    assert factors[2] > 0.9
 
 
 def test_clean_kick_keeps_its_height(rng):
@@ -100,6 +117,12 @@ def test_spike_before_a_kick_is_removed(rng):
     assert np.flatnonzero(cleaned.outliers[:, leg]).tolist() == [20]
     error = angle_between(cleaned.recording.rotations[20, leg], kick.rotations[20, leg])
     assert np.degrees(error) < 3.0
+
+
+def _noise_factor(samples: np.ndarray) -> float:
+    noise = estimate_channel_noise(samples, 0.01)
+    good = np.ones(samples.shape, dtype=bool)
+    return noise_factor(noise, samples, smooth_by_spline(samples), good)
 
 
 def _mean_of_samples(noisy: np.ndarray, n: int, rng: np.random.Generator) -> Smoothed:
