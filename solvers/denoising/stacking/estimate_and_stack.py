@@ -9,6 +9,7 @@ from ...arrays import Array
 from ...progress import Progress, within
 from ..channels import Channels
 from ..motion_mixture import estimate_channel_noise, load_motion_mixture, smooth_by_mixture
+from ..motion_mixture.channel_noise import MAX_CONSTANT_RANGE
 from ..posterior import Estimate, Smoothed, estimate_in_groups
 from ..window_priors import FilterBases
 from .outlier_runs import confirm_outliers, find_bursts
@@ -18,7 +19,7 @@ from .stack_estimates import leverage, stack_estimates
 OUTLIER_THRESHOLD = 0.5
 """Probability of being an inlier below which a sample is an outlier. By definition."""
 
-MIN_NOISE = 0.01
+MIN_NOISE = 1e-3
 """Degrees or centimeters: smaller noise is that of rounding in files. Guards a division."""
 
 
@@ -58,13 +59,14 @@ def estimate_and_stack(
     complete = np.where(is_good, noisy, estimate.values)
     noise = estimate_channel_noise(np.where(is_good, noisy, np.nan), MIN_NOISE)
     spline = smooth_by_spline(complete)
+    noise *= noise_factor(noise, complete, spline, is_good)
     smoothers = [spline, smooth_by_mixture(complete, noise, frame_rate, mixture)]
     stacked, weights = stack_estimates(
         noisy,
         estimate,
         [each for each in smoothers if isinstance(each, Smoothed)],
         is_good,
-        noise * noise_factor(noise, complete, spline, is_good),
+        noise,
     )
     sentence = _describe(int(np.count_nonzero(weights[:, 0] < 0.5)))
     return stacked, f"{prior_used} {sentence}".strip()
@@ -75,13 +77,15 @@ def noise_factor(
 ) -> float:
     """Return how much smaller the take's noise is than third differences say, at most 1.
 
-    They take fast movement for noise, and Stein's risk would then smooth it away. What a spline
-    leaves holds less movement; half of the channels leave more than this factor, half less.
+    They take fast movement for noise, which would then be smoothed away. What a spline leaves
+    holds less movement; the factor is the median over all channels that move.
     """
     residuals = np.where(is_good, complete - spline.values, 0.0)
     free = np.where(is_good, 1.0 - leverage(residuals, spline.leave_one_out_error), 0.0)
     left = np.sqrt((residuals**2).sum(axis=0) / np.maximum(free.sum(axis=0), 1.0))
-    return float(np.exp(np.minimum(np.median(np.log(np.maximum(left, MIN_NOISE) / noise)), 0.0)))
+    moves = np.ptp(complete, axis=0) > MAX_CONSTANT_RANGE
+    factors = np.maximum(left[moves], MIN_NOISE) / noise[moves]
+    return min(float(np.median(factors)), 1.0) if moves.any() else 1.0
 
 
 def _describe(n_joints: int) -> str:

@@ -10,6 +10,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "denoising/channels/channels.CENTIMETERS",
         "denoising/marker_gaps/gap_boundaries.MEDIAN_NORM",
         "denoising/denoise.HALF_CONFIDENCE_DEVIATION",
+        "denoising/motion_mixture/mixture.N_CHANNELS",
         "denoising/feet/foot_trajectory.ADULT_LEG_M",
         "denoising/quality/bone_drift.*_PERCENTILE",
         "denoising/quality/worst_issues.SEVERE_EXCESS",
@@ -45,6 +46,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "retargeting/map_checks.*",
     ),
     "used to train what ships, not to solve": (
+        "denoising/motion_mixture/learn_mixture.*",
         "depth_tracking/forest_training/*",
         "depth_tracking/forest/grow_tree.*",
         "depth_tracking/body/learn_motion_prior.*",
@@ -62,6 +64,12 @@ REASONS: dict[str, tuple[str, ...]] = {
     "guards a division or a logarithm": (
         "denoising/posterior/channel_groups.MAX_CONSTANT_RANGE",
         "denoising/posterior/smoothness.MIN_POWER",
+        "denoising/motion_mixture/*.MAX_LEVERAGE",
+        "denoising/motion_mixture/channel_noise.MAX_CONSTANT_RANGE",
+        "denoising/stacking/estimate_and_stack.MIN_NOISE",
+        "denoising/stacking/smoothing_spline.MAX_LEVERAGE",
+        "denoising/stacking/stack_estimates.MIN_NOISE",
+        "denoising/stacking/stack_estimates.RIDGE",
         "denoising/window_priors/filter_bases.MIN_ANY_DEVIATION",
         "variation/mixtures.JITTER",
         "denoising/marker_gaps/*.MIN_SQUARED_ERROR",
@@ -89,6 +97,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "denoising/quality/worst_issues.CUT_SEVERITY",
         "denoising/quality/worst_issues.LONG_GAP_S",
     ),
+    "decides what is drawn only": ("markers/stick_sets.MIN_LABELS",),
     "guards against damaged files": (
         "variation/variation_model.*_FRAME_RATE_HZ",
         "motion/skeletons/frame_rate.*",

@@ -81,7 +81,7 @@ def test_clean_take_keeps_its_samples(rng):
 
 
 def test_noise_factor_tells_movement_from_noise(rng):
-    """Third differences of fast movement are as large as those of noise; a spline follows it."""
+    """A spline follows fast movement, whose third differences are as large as noise's."""
     frames = np.arange(200)
     fast = 30.0 * np.sin(np.outer(frames / 2.0, np.linspace(0.8, 1.2, 30)))
     noisy = fast + 3.0 * rng.normal(size=fast.shape)
