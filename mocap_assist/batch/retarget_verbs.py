@@ -42,7 +42,7 @@ def perform_retarget(
     results = solve_in_subprocess(read_retarget(scene, armature, settings), arguments, progress)
     sentence = write_retargeted(scene, armature, settings, results)
     action = scene.objects[settings.choices.target].animation_data.action
-    figures = {"n_actions": len(results), "action": action.name}
+    figures = {"n_actions": len(results.clips), "action": action.name}
     return sentence, figures | history.history(action)[-1]
 
 

@@ -210,12 +210,15 @@ def clean(
         measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.05))
         for each, start in ((problem.recordings[0], 0.9), (body, 0.95))
     )
-    marked = "" if planted is None else _low_confidence_of_legs(body)
+    marked = _low_confidence_of_legs(body, finish)
     return Cleaned((body, *other_trees), moved, solution, planted, before, after, marked)
 
 
-def _low_confidence_of_legs(body: Motion | Tracks) -> str:
-    if isinstance(body, Tracks):
+def _low_confidence_of_legs(body: Motion | Tracks, finish: Finish) -> str:
+    """Return what is uncertain about legs whose feet are to be planted, found or not."""
+    if isinstance(body, Tracks) or finish.planting is None:
+        return ""
+    if find_legs(body.skeleton) and not _chosen_legs(body, finish):
         return ""
     humanoid = find_humanoid_map(body.skeleton)
     evidence = explain_roles(body.skeleton, humanoid)
@@ -227,11 +230,16 @@ def _planted(body: Motion, finish: Finish, progress: Progress) -> Planted | None
     """Plant the feet of what has legs, if the legs were chosen at all."""
     if finish.planting is None:
         return None
-    legs = find_legs(body.skeleton)
-    joints = {body.skeleton.names[joint] for leg in legs for joint in (leg.hip, leg.knee)}
-    if not joints & finish.chosen:
+    if not _chosen_legs(body, finish):
         return None
     return plant_feet(body, finish.contacts, settings=finish.planting, progress=progress)
+
+
+def _chosen_legs(body: Motion, finish: Finish) -> set[str]:
+    """Return the chosen joints of the legs."""
+    legs = find_legs(body.skeleton)
+    joints = {body.skeleton.names[joint] for leg in legs for joint in (leg.hip, leg.knee)}
+    return joints & finish.chosen
 
 
 def _mixed(

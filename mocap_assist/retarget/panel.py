@@ -13,7 +13,7 @@ from ..rigs.rigify import is_rigify
 from ..runtime.selection import selected_armature, why_not_read, why_not_retarget
 from .bone_list import draw_bones
 from .choices import Takes
-from .retargeting import fitting_actions, target_called
+from .retargeting import fitting_actions, remarks_on_target, target_called
 
 RETARGET, UNBAKE, TICK = (
     f"mocap_assist.{name}" for name in ("retarget", "reduce_keys", "tick_action")
@@ -58,6 +58,9 @@ class RetargetPanel(PanelMixin):
         button.operator(RETARGET, icon="CON_ARMATURE")
         if reason:
             draw_sentence(layout, context, reason, icon="INFO")
+        elif (source := selected_armature(context)) is not None:
+            for remark in remarks_on_target(source, context.scene.objects[shown.target]):
+                draw_sentence(layout, context, f"{remark}.", icon="ERROR")
         if exists(UNBAKE):
             _draw_unbake(layout, context)
 

@@ -30,7 +30,7 @@ from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
 from .bone_map import SIDES, BoneMaps, is_finger, maps_for
 from .choices import RetargetBundle, RetargetChoices, Takes
-from .solve_retargeting import Clip, Retargeted, RetargetProblem, retarget_clips
+from .solve_retargeting import Clip, ReportedRetargeting, RetargetProblem, retarget_and_report
 
 N_QUICK = 5000
 """Frames that are solved in half a second: less than it takes to start another process."""
@@ -50,12 +50,12 @@ class Reading(NamedTuple):
 @Sliced
 def read_retarget(
     scene: bpy.types.Scene, source: bpy.types.Object, settings: RetargetBundle
-) -> "Steps[partial[Retargeted]]":
+) -> "Steps[partial[ReportedRetargeting]]":
     """Read source and target; return the picklable solve."""
     found = yield from _read(Subject.of(scene, source), settings)
     problem = found.problem
     n_frames = sum(clip.motion.n_frames for clip in problem.clips)
-    return (ShortSolve if n_frames <= N_QUICK else partial)(retarget_clips, problem)
+    return (ShortSolve if n_frames <= N_QUICK else partial)(retarget_and_report, problem)
 
 
 @Sliced
@@ -63,7 +63,7 @@ def write_retargeted(
     scene: bpy.types.Scene,
     source: bpy.types.Object,
     settings: RetargetBundle,
-    results: Retargeted,
+    results: ReportedRetargeting,
     solved_digest: str | None = None,
 ) -> Steps[str]:
     """Write an action for each clip, let the target play the last; return a sentence.
@@ -75,23 +75,34 @@ def write_retargeted(
     scene, source = here.find()
     check_unchanged(source, solved_digest, found.problem)
     low = _low_confidence(source, found)
-    for made_from, take, keys in zip(found.sources, found.takes, results, strict=True):
+    for made_from, take, keys in zip(found.sources, found.takes, results.clips, strict=True):
         name = f"{made_from[0].name}.{found.target.name}"
         action, slot = write_action(found.target, name, take.frames, keys, found.switches)
-        entry = _entry(source, found, settings) | {"low_confidence": low}
+        entry = _entry(source, found, settings)
+        entry |= {"low_confidence": low, "remarks": list(results.remarks)}
         history.record(action, made_from, entry, of_another_rig=True)
     linked = found.target.library is not None
     if not linked:
         compat.assign(found.target, action, slot)
-    n_bones, n_frames = len(results[-1]), sum(len(take.frames) for take in found.takes)
-    made = action.name if len(results) == 1 else f"{len(results)} actions"
+    n_bones, n_frames = len(results.clips[-1]), sum(len(take.frames) for take in found.takes)
+    made = action.name if len(results.clips) == 1 else f"{len(results.clips)} actions"
     score = min(found.maps.source.score, found.maps.target.score)
     return (
         f"{made}: retargeted {n_frames} frames to {n_bones} bones of {found.target.name}"
         f" (bones matched {score:.0%})."
         + (" It is linked: let its library override play the action." if linked else "")
         + "".join(f" {each}" for each in low.values() if each)
+        + "".join(f" {each}." for each in results.remarks)
     )
+
+
+def remarks_on_target(source: bpy.types.Object, target: bpy.types.Object) -> tuple[str, ...]:
+    """Return what was reported when the action that the target plays was made of the source."""
+    played = target.animation_data and target.animation_data.action
+    entries = history.history(played) if played else []
+    if not entries or entries[-1].get("source_armature") != source.name:
+        return ()
+    return tuple(map(str, entries[-1].get("remarks", ())))
 
 
 def _low_confidence(source: bpy.types.Object, found: Reading) -> dict[str, str]:

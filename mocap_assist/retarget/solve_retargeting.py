@@ -11,7 +11,7 @@ from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import HumanoidMap, Motion, Skeleton, forward_kinematics
 from ...solvers.motion.humanoid import normalize_postures, postures_from_motion
-from ...solvers.progress import Progress, unwatched, within
+from ...solvers.progress import Progress, Remark, collect_remarks, unwatched, within
 from ...solvers.retargeting import RetargetSettings, RootMotion, ground_path, retarget
 from ...solvers.rotations import IDENTITY, inverse, multiply, rotate
 from ..scene.controls import BoneKeys, Carried, TargetRig, keys_of
@@ -63,6 +63,22 @@ class RetargetProblem:
 
 Retargeted = tuple[Mapping[str, BoneKeys], ...]
 """For each clip, the channels of each keyed bone."""
+
+
+class ReportedRetargeting(NamedTuple):
+    """Retargeted clips, and what the report says about them."""
+
+    clips: Retargeted
+    remarks: tuple[Remark, ...]
+
+
+def retarget_and_report(
+    problem: RetargetProblem, *, progress: Progress = unwatched
+) -> ReportedRetargeting:
+    """Give each clip to the target, and collect the solver's remarks."""
+    remarks: list[Remark] = []
+    clips = retarget_clips(problem, progress=collect_remarks(progress, remarks))
+    return ReportedRetargeting(clips, tuple(remarks))
 
 
 def retarget_clips(problem: RetargetProblem, *, progress: Progress = unwatched) -> Retargeted:

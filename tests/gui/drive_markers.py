@@ -33,7 +33,10 @@ def steps():
     bgui.shot("1-markers.png")
     with bgui.override("WINDOW"):
         assert bpy.ops.mocap_assist.solve_skeleton() == {"FINISHED"}
-    assert bpy.context.object.type == "ARMATURE"
+    body = bpy.context.object
+    assert body.type == "ARMATURE"
+    view.region_3d.view_location = body.matrix_world @ body.pose.bones[0].head
+    view.region_3d.view_distance = 2.6
     yield from settle()
     bgui.shot("2-skeleton.png")
 

@@ -153,7 +153,9 @@ def _best_names(skeleton: Skeleton) -> HumanoidMap:
     matches = name_matches(skeleton.names)
     most = max(map(len, matches))
     scored = [
-        _score_names(skeleton, joints) for joints in matches if len(joints) > MIN_MATCH * most
+        _score_names(skeleton, _with_lowest_hips(skeleton, joints))
+        for joints in matches
+        if len(joints) > MIN_MATCH * most
     ]
     best = max(scored, key=lambda found: (found.score, len(found.joints)), default=None)
     if best is None:
@@ -161,6 +163,20 @@ def _best_names(skeleton: Skeleton) -> HumanoidMap:
     return replace(
         best, joints=_fingers_below_hands(skeleton, with_fingers(skeleton.names, best.joints))
     )
+
+
+def _with_lowest_hips(skeleton: Skeleton, joints: Mapping[str, str]) -> Mapping[str, str]:
+    """Return the map with the lowest joint above the legs that has the name of the hips.
+
+    A wrapper may have the same one: "Root" above the "root" that moves.
+    """
+    legs = [joints[role] for role in ("leftUpperLeg", "rightUpperLeg") if role in joints]
+    if not legs or "hips" not in joints:
+        return joints
+    shared = set.intersection(*(set(skeleton.ancestors(skeleton.index(leg))) for leg in legs))
+    name = joints["hips"].casefold()
+    lowest = max((j for j in shared if skeleton.names[j].casefold() == name), default=None)
+    return joints if lowest is None else {**joints, "hips": skeleton.names[lowest]}
 
 
 def _fingers_below_hands(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]:

@@ -46,6 +46,7 @@ FAMILIES: dict[str, tuple[str, ...]] = {
         "solvers/markers/initial_poses.py",
         "solvers/markers/joint_centers.py",
         "solvers/markers/solve_skeleton.py",
+        "solvers/markers/stick_sets.py",
     ),
     "marker_labels": (
         "solvers/markers/constrain_clusters.py",

@@ -89,6 +89,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "denoising/quality/worst_issues.CUT_SEVERITY",
         "denoising/quality/worst_issues.LONG_GAP_S",
     ),
+    "decides what is drawn only": ("markers/stick_sets.MIN_LABELS",),
     "guards against damaged files": (
         "variation/variation_model.*_FRAME_RATE_HZ",
         "motion/skeletons/frame_rate.*",

@@ -98,10 +98,9 @@ def test_check_adds_no_undo_step_and_no_redo_panel(blank):
     assert blank.types.MOCAP_ASSIST_OT_plant_feet.bl_options == {"REGISTER", "UNDO"}
 
 
-def test_check_reports_bones_whose_names_the_tree_refutes(
-    make_armature, animate, blank, capsys
-):
-    """The left leg has its names shifted: its thigh is called shin, and so on."""
+@pytest.fixture
+def shifted_leg(make_armature, animate):
+    """A figure whose left leg has its names shifted: its thigh is called shin, and so on."""
     armature = make_armature()
     names = ("LeftUpLeg", "LeftLeg", "LeftFoot")
     bones = [armature.data.bones[name] for name in names]
@@ -110,10 +109,33 @@ def test_check_reports_bones_whose_names_the_tree_refutes(
     for bone, name in zip(bones, (*names[1:], names[0]), strict=True):
         bone.name = name
     animate(armature)
+    return armature
 
+
+SHIFTED = "low confidence: LeftLeg as leftUpperLeg (by name, but no bone between"
+
+
+def test_check_reports_bones_whose_names_the_tree_refutes(shifted_leg, blank, capsys):
     assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
 
-    assert (
-        "low confidence: LeftLeg as leftUpperLeg (by name, but no bone between"
-        in capsys.readouterr().out
-    )
+    assert SHIFTED in capsys.readouterr().out
+
+
+def test_clean_names_uncertain_legs_where_it_plants_feet(shifted_leg, blank, capsys):
+    assert blank.ops.mocap_assist.denoise(plant_feet=True) == {"FINISHED"}
+
+    assert SHIFTED in capsys.readouterr().out
+
+
+def test_clean_is_silent_about_legs_that_it_leaves_alone(shifted_leg, blank, capsys):
+    assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
+
+    assert "low confidence" not in capsys.readouterr().out
+
+
+def test_clean_is_silent_about_certain_legs(make_armature, animate, blank, capsys):
+    animate(make_armature())
+
+    assert blank.ops.mocap_assist.denoise(plant_feet=True) == {"FINISHED"}
+
+    assert "low confidence" not in capsys.readouterr().out

@@ -200,3 +200,41 @@ def test_plain_words_of_a_game_are_enough():
 
 def is_toe(name):
     return "Toe" in name or "ball" in name
+
+
+@pytest.mark.parametrize("wrapper", ["Root", "ROOT"])
+def test_hips_are_below_a_wrapper_of_the_same_name(wrapper):
+    """Acclaim calls its hips "root", as many programs call what they put above them."""
+    tree = Tree(wrapper, (0, 0, 0))
+    tree.add(wrapper, ("root", (0, 0, 0.95)))
+    tree.add(
+        "root",
+        ("lowerback", (0, 0, 0.1)),
+        ("upperback", (0, 0, 0.12)),
+        ("thorax", (0, 0, 0.12)),
+        ("lowerneck", (0, 0, 0.12)),
+        ("upperneck", (0, 0, 0.06)),
+        ("head", (0, 0, 0.08)),
+    )
+    for side, sign in (("l", 1), ("r", -1)):
+        tree.add(
+            "root",
+            (f"{side}hipjoint", (0, 0, 0)),
+            (f"{side}femur", (0.1 * sign, 0, -0.05)),
+            (f"{side}tibia", (0.05 * sign, 0, -0.42)),
+            (f"{side}foot", (0, 0, -0.42)),
+            (f"{side}toes", (0, -0.15, -0.05)),
+        )
+        tree.add(
+            "thorax",
+            (f"{side}clavicle", (0, 0, 0.05)),
+            (f"{side}humerus", (0.18 * sign, 0, 0.05)),
+            (f"{side}radius", (0.28 * sign, 0, 0)),
+            (f"{side}wrist", (0.25 * sign, 0, 0)),
+            (f"{side}hand", (0.05 * sign, 0, 0)),
+        )
+
+    found = find_humanoid_map(tree.skeleton)
+
+    assert found.joints["hips"] == "root"
+    assert found.score == 1.0
