@@ -53,3 +53,33 @@ def test_every_module_of_a_family_is_measured_by_one():
     for folder in sorted(folders - {"signals"}):
         for module in sorted((ROOT / "solvers" / folder).rglob("*.py")):
             assert {each.path for each in constants_in(module)} <= listed, module
+
+
+def test_each_tuned_constant_was_swept():
+    unswept = [
+        constant.key
+        for family in FAMILIES
+        for constant in constants_of(family)
+        if re.search(r"no sweep yet|not swept", constant.text, re.IGNORECASE)
+    ]
+    assert not unswept
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_document_lists_only_constants_that_exist(family):
+    existing = {
+        f"{Path(constant.path).stem}.{constant.name}" for constant in constants_of(family)
+    }
+    assert listed_constants(family) <= existing
+
+
+def listed_constants(family: str) -> set[str]:
+    """Return what a section of the document names, as module and constant."""
+    title = f"\n## {family.replace('_', ' ').capitalize()}\n"
+    document = (ROOT / "docs" / "sensitivity.md").read_text(encoding="utf-8")
+    section = document.partition(title)[2].partition("\n## ")[0]
+    listed = set(re.findall(r"`(\w+\.\w+)`", section))
+    for part in re.findall(r"[:;] (\w+ `\w+`(?:, `\w+`)*)", section):
+        module, _, names = part.partition(" ")
+        listed |= {f"{module}.{name}" for name in re.findall(r"`(\w+)`", names)}
+    return listed

@@ -16,7 +16,8 @@ from .joint_centers import JointCenters
 from .vectors import frame, median, swing_frames, unit
 
 MIN_FOOT_M = 0.05
-"""Minimum distance between heel and toe markers. Chosen by hand: x0.5 and x2 move no error."""
+"""Minimum distance between heel and toe markers. Chosen by hand: x0.5 and x2 move no error, x10
+gains 0.2 %, x1000 gains 0.3 %."""
 MAX_SLOPE_SINE = 0.4
 """Maximum sine of the angle between the line of heel and toe markers and the sole. Chosen by
 hand: x0.5 and x2 move no error."""

@@ -14,7 +14,7 @@ x0.5 and x2 move no error."""
 MIN_NEIGHBORS = 3
 MIN_JUMP_M = 0.06
 """Step relative to the neighbors in one frame that indicates another marker. Chosen by hand:
-x0.5 and x2 move no error."""
+x0.5 and x2 move no error, x10 costs 3.1 %, x1000 costs 3.1 %."""
 
 
 def find_mistaken_labels(positions: Array, distances: Distances) -> list[PairSwap]:

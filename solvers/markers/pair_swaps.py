@@ -26,10 +26,10 @@ x0.5 costs nothing, x2 fails; second, x0.5 and x2 move no error; third, x0.5 and
 error."""
 MIN_BAD_MISFIT, MIN_BAD_FRAMES = 3.0, 5
 """Misfit above which a label is bad, and minimum number of frames with two bad labels. Chosen
-by hand: x0.5 and x2 move no error."""
+by hand: from x0.001 to x1000 no error moves."""
 MAX_GAP_S = 0.25
-"""Gap above which the position of a marker after it is not predictable. Chosen by hand: x0.5
-and x2 move no error."""
+"""Gap above which the position of a marker after it is not predictable. Chosen by hand: from
+x0.001 to x1000 no error moves."""
 
 
 class PairSwap(NamedTuple):

@@ -24,7 +24,7 @@ HEEL_OFFSET_FRACTION = 0.8
 by hand: x0.5 costs nothing, x2 costs 4.5 %."""
 STANDING_COSINE = 0.5
 """Cosine of the sole's tilt above which the heel is below the ankle, not behind it. Chosen by
-hand: x0.5 and x2 move no error."""
+hand: x0.5 and x2 move no error, x10 gains 6.6 %, x1000 gains 6.8 %."""
 UP = np.array([0.0, 0.0, 1.0])
 
 

@@ -34,7 +34,7 @@ ROUNDING_FRAMES = 1e-6
 """Tolerance of a frame number. It absorbs rounding."""
 MARGIN_FRACTION = 0.5
 """Margin of the alignment on both sides of a segment, as a fraction of its length. Chosen by
-hand: x0.5 and x2 move no error."""
+hand: x0.5 and x2 move no error, x0.1 gains 0.5 %, x0.001 gains 0.7 %."""
 
 
 def find_similar(

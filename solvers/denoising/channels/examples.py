@@ -18,7 +18,7 @@ BLOCK_S = 60.0
 memory."""
 MULTIPLE_TOLERANCE = 0.02
 """Relative difference up to which a frame rate counts as a multiple of another. Chosen by hand:
-x0.5 and x2 move no error; it guards frame rates that are rounded in files."""
+from x0.001 to x1000 no error moves; it guards frame rates that are rounded in files."""
 
 
 class ExampleChannels:

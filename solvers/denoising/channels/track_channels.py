@@ -10,10 +10,6 @@ from ...signals import fill_channel_gaps
 from .channels import CENTIMETERS, Channels
 from .travel_path import TravelPath, fit_travel_path, rotate_on_ground
 
-N_FITS = 4
-"""Alternating fits of the body's mean shape and its position in every frame. Chosen by hand:
-x0.5 and x2 move no error."""
-
 
 def encode_tracks(tracks: Tracks, references: Mapping[str, Array] | None = None) -> Channels:
     """Encode every point by its position, in centimeters, in a frame that follows the body.
@@ -69,12 +65,9 @@ def _fit_shape_and_path(
     else:
         shape = _align_with_x(filled[0])
     ground_positions, headings = _fit_shape(filled, shape, weights)
-    for _ in range(N_FITS):
+    if not (has_reference & ever_observed).any():
         local = _to_path_frame(positions, TravelPath(ground_positions, headings))
-        medians = _median_positions(local)
-        if not (has_reference & ever_observed).any():
-            shape = medians
-        ground_positions, headings = _fit_shape(filled, shape, weights)
+        ground_positions, headings = _fit_shape(filled, _median_positions(local), weights)
     path = fit_travel_path(ground_positions, headings, tracks.frame_rate)
     return path, _median_positions(_to_path_frame(positions, path))
 

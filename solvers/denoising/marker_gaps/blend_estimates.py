@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 
 from ...arrays import Array
@@ -11,11 +12,7 @@ INDEPENDENT_FRACTION = 0.3
 """Fraction of each estimate's error variance, added as independent of all others. Chosen by
 hand: x0.5 gains 0.3 %, x2 gains 0.9 %."""
 MIN_SQUARED_ERROR = 1e-9
-"""Square meters: errors below 0.03 mm are the same. Guards a singular matrix. Guards a singular
-matrix."""
-SUM_WEIGHT = 100.0
-"""Weight of the constraint that the weights sum to one, relative to that of the errors. Chosen
-by hand: x0.5 and x2 move no error; it guards the sum."""
+"""Square meters: errors below 0.03 mm are the same. Guards a singular matrix."""
 
 
 def blend_weights(trials: Sequence[Array]) -> Array:
@@ -23,7 +20,8 @@ def blend_weights(trials: Sequence[Array]) -> Array:
 
     Errors common to all estimates do not average out; different errors do. Therefore the
     products of the errors count, not only their sizes [1]_, and no weight is negative [2]_. The
-    products come from few frames, so the variance of each estimate is increased a little.
+    products come from few frames, so the variance of each estimate is increased a little. The
+    minimum over weights that sum to one is that of w'Pw - 2 sum(w), scaled to that sum.
 
     Parameters
     ----------
@@ -43,8 +41,6 @@ def blend_weights(trials: Sequence[Array]) -> Array:
     products = errors @ errors.T / len(trials[0])
     squares = np.diag(products) + MIN_SQUARED_ERROR
     products += np.diag(MIN_SQUARED_ERROR + INDEPENDENT_FRACTION * squares)
-    root = np.linalg.cholesky(products / squares.min()).T
-    target = np.zeros(len(root) + 1)
-    target[-1] = SUM_WEIGHT
-    weights, _ = nnls(np.vstack([root, np.full(len(root), SUM_WEIGHT)]), target)
+    root = np.linalg.cholesky(products / squares.min())
+    weights, _ = nnls(root.T, solve_triangular(root, np.ones(len(root)), lower=True))
     return np.asarray(weights / weights.sum())

@@ -25,10 +25,10 @@ N_ITERATIONS = 25
 """Updates of expectation maximization."""
 MIN_MOVEMENT = 0.3
 """Degrees: joints whose channels all vary less (standard deviation over the take) stand
-still. Chosen by hand; not swept."""
+still. Chosen by hand; used in training only, so that no sweep varies it."""
 RECORDING_NOISE = 0.05
 """Degrees: added to every covariance, since recordings are not free of noise. Chosen by hand;
-not swept."""
+used in training only, so that no sweep varies it."""
 PRIOR_WINDOWS = 5.0
 """Number of windows without movement that every component has in addition to its own. Guards
 components that few windows belong to."""

@@ -27,16 +27,17 @@ suspicious. Chosen by hand on the development takes of the first press: with 1e6
 clean takes are taken for errors, with 1e9 one; of 446 true bursts 3 % are lost."""
 MIN_STEP = 10.0
 """Degrees or centimeters: an error that begins or ends with a smaller step is left to the
-smoothers. Chosen by hand; not swept."""
+smoothers. Chosen by hand: x0.5 gains 0.1 %, x2 costs 6.7 %."""
 MAX_BURST_S = 0.3
-"""Seconds: longest error that is looked for between two steps. Chosen by hand; not swept."""
+"""Seconds: longest error that is looked for between two steps. Chosen by hand: x0.5 costs
+0.3 %, x2 costs nothing."""
 MAX_RUNS_PER_FRAME = 0.1
 """Number of runs that are tested in a joint, per frame. A joint with more is wrong so often
-that the frames around a run say little about it: what was suspected stays. Chosen by hand; not
-swept."""
+that the frames around a run say little about it: what was suspected stays. Chosen by hand:
+x0.5 costs nothing, x2 costs 6.1 %."""
 MIN_NOISE = 2.0
 """Degrees or centimeters: smaller noise would let the mixture reject any movement that its
-recordings lack. Chosen by hand; not swept."""
+recordings lack. Chosen by hand: x0.5 gains 0.5 %, x2 costs 10.8 %."""
 
 
 class _Run(NamedTuple):

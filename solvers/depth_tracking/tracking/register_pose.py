@@ -34,11 +34,11 @@ _MIN_STEP = 1e-3
 """A shorter step, radians or meters, ends the search. It bounds the run time: half and twice of
 it change no error."""
 _DAMPING_INCREASE, _DAMPING_DECREASE = 5.0, 0.3
-"""Factors of the damping after a step that is refused, and that is accepted. Chosen by hand; no
-sweep yet."""
+"""Factors of the damping after a step that is refused, and that is accepted. Chosen by hand:
+first, x0.5 costs nothing, x2 costs 27.1 %; second, x0.5 and x2 change no error."""
 _METRES_PER_RADIAN = 0.5
-"""Ratio of the translation limit of the hips to the rotation limit. Chosen by hand; no sweep
-yet."""
+"""Ratio of the translation limit of the hips to the rotation limit. Chosen by hand: x0.5 and
+x2 change no error."""
 
 
 @dataclass(frozen=True, eq=False)

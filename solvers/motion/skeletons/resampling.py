@@ -15,7 +15,7 @@ from .tracks import Tracks
 
 STOPBAND_DB = 60.0
 """Attenuation of frequencies above the new Nyquist frequency, decibels. Chosen by hand: x0.5
-and x2 move no error."""
+and x2 move no error, x0.1 fails, x10 costs 0.1 %."""
 
 PASSBAND = 0.7
 """Edge of the passband, as a fraction of the new Nyquist frequency. Chosen by hand: x0.5 costs

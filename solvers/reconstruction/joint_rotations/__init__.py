@@ -1,7 +1,12 @@
 """Joint rotations of a skeleton from the positions of its joints."""
 
 from .fit_to_postures import fit_motion_to_postures
-from .library_body import BodyPostures, bone_axis_corrections, build_body_postures
+from .library_body import (
+    HALF_WEIGHT_COUNT,
+    BodyPostures,
+    bone_axis_corrections,
+    build_body_postures,
+)
 from .limb_angles import Complex, axial_angles
 from .limb_twist import flexion_weights
 from .motion_from_positions import motion_from_positions, resize_skeleton
@@ -18,6 +23,7 @@ from .trunk_twist import (
 )
 
 __all__ = [
+    "HALF_WEIGHT_COUNT",
     "N_TWISTED_LIMBS",
     "TWISTED_LIMBS",
     "BodyPostures",

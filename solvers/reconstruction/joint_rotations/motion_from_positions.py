@@ -19,9 +19,6 @@ from .reach_ankles import reach_ankles
 from .rotation_solver import MIN_LENGTH_M, RotationSolver
 from .trunk_twist import LimbTwists, hinges_from_twists
 
-MIN_APPROACH_WEIGHT = 0.1
-"""Weight of an unreliable joint in the last fit; a reliable one has weight 1. Chosen by hand:
-x0.5 and x2 move no error."""
 ANKLE_WEIGHT = 25.0
 """Weight of an ankle in the last fit, so that standing feet stay in place. Chosen by hand: x0.2
 gains 1 % (subjects 2 and 5 of UI-PRMD), but ankles of real takes then miss by 2 cm."""
@@ -106,7 +103,7 @@ def _approach_weights(body: RotationSolver) -> Array:
     too noisy to turn a hand.
     """
     mean = np.nan_to_num(body.reliability).mean(axis=0)
-    weights = np.tile(np.maximum(mean, MIN_APPROACH_WEIGHT), (len(body.reliability), 1))
+    weights = np.tile(mean, (len(body.reliability), 1))
     for hand in body.hands:
         weights[:, body.skeleton.subtree(hand)[1:]] = 0.0
     weights[:, [leg.end for leg in body.legs().values()]] *= ANKLE_WEIGHT

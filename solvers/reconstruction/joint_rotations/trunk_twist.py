@@ -16,13 +16,6 @@ from .library_body import bone_frames
 from .limb_angles import MIN_LENGTH, Complex, measure_flexion, unit_vectors
 from .limb_twist import HINGES, HingeAxes
 
-MIN_RELIABILITY = 1e-3
-"""Minimum weight of a joint, so that distances to neighbors stay distinct. Chosen by hand: x0.5
-and x2 move no error."""
-HALF_WEIGHT_M = 0.05
-"""Root mean square distance (m) to the nearest pose at which its twist gets half weight. Chosen
-by hand: x0.5 and x2 move no error."""
-
 
 class TwistedLimb(NamedTuple):
     """A limb with an axial rotation; indices into `POSTURE_JOINTS`, directions of a T-pose."""
@@ -149,8 +142,7 @@ def mean_twists(
 ) -> Complex:
     """Return the mean twist of the neighbors, weighted by similarity [SHJT13, VII-B].
 
-    The weight is the inverse of eq. 9, squared. The mean is shorter the farther the nearest
-    neighbor is.
+    The weight is the inverse of eq. 9, squared.
 
     Parameters
     ----------
@@ -165,12 +157,10 @@ def mean_twists(
     shape (n_frames, 4)
     """
     differences = neighbors - postures.reshape(len(postures), 1, -1)
-    joint_weights = np.repeat(np.maximum(reliability, MIN_RELIABILITY), 3, axis=1)
+    joint_weights = np.repeat(reliability, 3, axis=1)
     squares = np.einsum(
         "fni,fni,fi->fn", differences, differences, joint_weights, optimize=False
     )
     weights = 1.0 / np.maximum(squares, MIN_LENGTH)
     weights /= weights.sum(axis=1, keepdims=True)
-    least_square = 3.0 * squares.min(axis=1) / joint_weights.sum(axis=1)
-    proximity = 1.0 / (1.0 + least_square / HALF_WEIGHT_M**2)
-    return np.asarray(proximity[:, None] * np.einsum("fn,fnl->fl", weights, twists))
+    return np.asarray(np.einsum("fn,fnl->fl", weights, twists))

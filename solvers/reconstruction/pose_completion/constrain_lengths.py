@@ -6,9 +6,6 @@ from ...arrays import Array
 from ...motion.humanoid import N_JOINTS, PARENTS, segment_lengths
 
 N_ROUNDS = 30
-MAX_STIFFNESS_RATIO = 50.0
-"""Largest ratio of the mobilities of an unreliable and a reliable joint. Chosen by hand: x0.5
-and x2 move no error."""
 
 
 def constrain_lengths(
@@ -26,7 +23,7 @@ def constrain_lengths(
     lengths : shape (20,), meters
     reliability : shape (n_frames, 20), 0 to 1
         Reliability of the observation of each joint.
-    confidence : shape (n_frames, 20), 0 to 1
+    confidence : shape (n_frames, 20), above 0, at most 1
         Confidence of each joint, observed or not.
 
     References
@@ -35,7 +32,7 @@ def constrain_lengths(
        Visual Communication and Image Representation 18(2). doi:10.1016/j.jvcir.2007.01.005
     """
     x = np.array(postures)
-    mobility = 1.0 / (1.0 / MAX_STIFFNESS_RATIO + np.maximum(reliability, confidence**2))
+    mobility = 1.0 / np.maximum(reliability, confidence**2)
     bone_reliability = np.minimum(reliability, reliability[:, np.maximum(PARENTS, 0)])
     target_lengths = (1.0 - bone_reliability) * lengths + bone_reliability * segment_lengths(x)
     for _ in range(N_ROUNDS):

@@ -22,10 +22,9 @@ MIN_RELIABILITY = 0.5
 HALF_WEIGHT_FRAMES = 6.0
 """Number of frames at which a measured offset gets half its weight. Chosen by hand: x0.5 and x2
 change the mean by less than 0.1 %."""
-DEFAULT_ERROR_M, MIN_ERROR_M, MAX_ERROR_M = 0.1, 0.03, 0.25
-"""Meters: expected error of a joint without observations, and bounds of a measured one. Chosen
-by hand: first, x0.5 costs nothing, x2 costs 0.2 %; second, x0.5 and x2 change the mean by less
-than 0.1 %; third, x0.5 and x2 move no error."""
+DEFAULT_ERROR_M = 0.1
+"""Meters: expected error of a joint without observations. Chosen by hand: x0.5 costs nothing,
+x2 costs 0.2 %."""
 
 
 class SynthesisErrors(NamedTuple):
@@ -55,7 +54,6 @@ def cross_validate_limbs(
     synthesize : Synthesis
     """
     offset, size = np.zeros((N_JOINTS, 3)), np.full(N_JOINTS, DEFAULT_ERROR_M)
-    size[:3] = MIN_ERROR_M
     for limb in map(list, LIMBS):
         is_observed = np.isfinite(postures[:, limb]).all(axis=-1)
         observed = np.where(is_observed, reliability[:, limb], 0.0)
@@ -80,5 +78,5 @@ def cross_validate_limbs(
             if total[index] == 0.0:  # never observed: use the offset of the joint above
                 mean[index] = mean[index - 1]
         offset[limb] = mean
-        size[limb] = np.clip(np.sqrt(variance), MIN_ERROR_M, MAX_ERROR_M)
+        size[limb] = np.sqrt(variance)
     return SynthesisErrors(offset, size)

@@ -10,6 +10,7 @@ from ...motion import Motion, Skeleton, find_humanoid_map, forward_kinematics
 from ...motion.humanoid import POSTURE_JOINTS, t_pose_alignment
 from ...rotations import multiply, rotate
 from ..joint_rotations import (
+    HALF_WEIGHT_COUNT,
     N_TWISTED_LIMBS,
     TWISTED_LIMBS,
     Complex,
@@ -18,10 +19,6 @@ from ..joint_rotations import (
     flexion_weights,
     untwisted_hinges,
 )
-
-HALF_WEIGHT_COUNT = 20.0
-"""Number of flexed poses of a rig at which its rotations of straight limbs get half weight.
-Chosen by hand: x0.5 and x2 move no error."""
 
 
 class ClipTwists(NamedTuple):

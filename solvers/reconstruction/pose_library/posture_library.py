@@ -55,8 +55,9 @@ LAYOUT = ArchiveLayout(
     remedy="Build them again.",
 )
 PACE_S = 0.1
-"""Time (s) that converts the velocity difference of two poses to a distance. Chosen by hand:
-x0.5 and x2 move no error."""
+"""Time (s) that converts the velocity difference of two poses to a distance, where the poses of
+clips are thinned out. Chosen by hand: x0.001 gains 0.02 %, x1000 gains 0.01 %; the shipped
+library was made with it."""
 
 
 @dataclass(frozen=True, kw_only=True)

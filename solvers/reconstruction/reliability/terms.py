@@ -13,8 +13,8 @@ from ...motion.skeletons import INFERRED, TRACKED
 from .settings import SENSOR_RATE_HZ, ReliabilitySettings
 
 MIN_TRACKED_CONFIDENCE = 0.5
-"""Confidence from which on a joint counts as tracked, not inferred. Chosen by hand: x0.5 and x2
-move no error."""
+"""Confidence from which on a joint counts as tracked, not inferred: by definition, the middle
+of its range. Devices that report a confidence instead of a state need it."""
 
 
 def behavior_term(positions: Array, frame_rate: float, settings: ReliabilitySettings) -> Array:

@@ -22,8 +22,8 @@ from ...signals import fill_gaps
 Recording = Motion | Tracks | JointRecording
 
 MAX_BRIDGED_GAP_S = 0.3
-"""Seconds; shorter gaps are interpolated linearly. Chosen by hand: x0.5 and x2 move no
-error."""
+"""Seconds; shorter gaps are interpolated linearly. Chosen by hand: from x0.001 to x1000 no
+error moves."""
 
 
 @dataclass(frozen=True, eq=False)

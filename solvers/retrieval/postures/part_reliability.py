@@ -6,11 +6,8 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...motion.humanoid import N_JOINTS
 from .body_parts import JOINTS, N_PARTS, ROOTS
-from .mean_postures import POSITION_NOISE_M, PostureDistribution
+from .mean_postures import MIN_OBSERVED_FRACTION, POSITION_NOISE_M, PostureDistribution
 
-MIN_OBSERVED_FRACTION = 0.5
-"""Fraction of frames with an observed joint above which it counts as known. Chosen by hand:
-x0.5 and x2 move no error."""
 MIN_RELIABILITY = 0.02
 """Lower bound of the reliability of a part. It guards queries of which no part is observed."""
 MIN_VARIANCE_M2 = 1e-9

@@ -8,7 +8,6 @@ from numpy.testing import assert_allclose
 
 from solvers.denoising.posterior.channel_groups import MAX_GROUP_CHANNELS, group_channels
 from solvers.denoising.posterior.prior_selection import (
-    UNMODELED_FRACTION,
     score_leave_joint_out,
     score_leave_one_out,
     select_prior,
@@ -37,8 +36,7 @@ def test_joint_score_equals_the_error_of_leaving_a_joint_out(rng, density):
     score = score_leave_joint_out(prior, rough, noise, JOINTS, windows)
 
     n_slow, n_channels = prior.n_slow, 5
-    power = np.einsum("kckc->c", prior.slow) / LENGTH
-    spread = np.tile((noise**2 + UNMODELED_FRACTION**2 * power) / density, n_slow)
+    spread = np.tile(noise**2 / density, n_slow)
     covariance = prior.matrix + np.diag(spread)
     coefficients = windows.coefficients_from_frames(
         windows.extract(rough - prior.mean, windows.starts)

@@ -232,7 +232,8 @@ def test_lengths_are_constrained_and_reliable_joints_hardly_move(bodies, random)
     corrupted[:, 13] += random.normal(scale=0.1, size=(20, 3))
     certain = np.ones((20, 20))
     certain[:, 13] = 0.0
-    constrained = constrain_lengths(corrupted, ADULT_BONE_LENGTHS_M, certain, certain)
+    confidence = np.maximum(certain, 0.1)
+    constrained = constrain_lengths(corrupted, ADULT_BONE_LENGTHS_M, certain, confidence)
     np.testing.assert_allclose(
         segment_lengths(constrained), np.tile(ADULT_BONE_LENGTHS_M, (20, 1)), atol=0.01
     )
