@@ -36,9 +36,9 @@ KEYS = (
 )  # fmt: skip
 """Humanoid roles, and the position of the body: all that every recording has."""
 GAP_S, HOP_S = 1.0, 0.25
-"""Length of the gaps that are learned from, and from one to the next, seconds. Chosen by hand on
-the development takes of the first press: first, x0.5 costs 1.5 %, x2 costs 0.8 %; second, x0.5
-and x2 move no error."""
+"""Length of the gaps that are learned from, and from one to the next, seconds. Chosen by hand
+on the development takes of the first press: first, x0.5 costs 1.5 %, x2 costs 0.8 %; second,
+x0.5 and x2 move no error."""
 RIDGE = 10.0
 """Square degrees: what other people's movement does not tell of this body's. Chosen by hand on
 the development takes of the first press: x10 costs 5 %."""
