@@ -6,6 +6,7 @@ import numpy as np
 
 from ...progress import Progress, within
 from ..channels import Channels
+from ..limb_gaps import load_body_relation, predict_limbs
 from ..motion_mixture import estimate_channel_noise, load_motion_mixture, smooth_by_mixture
 from ..posterior import Estimate, Smoothed, estimate_in_groups
 from ..window_priors import FilterBases
@@ -30,6 +31,7 @@ def estimate_and_stack(
        mixture rejects those that people's movement explains, such as a kick.
     3. A smoothing spline and the mixture smooth what remains. Each joint is the mean of the
        three, weighted to have the least expected error.
+    4. Without examples, joints that are missing for long are predicted from the others.
 
     Parameters
     ----------
@@ -65,12 +67,26 @@ def estimate_and_stack(
         is_good,
         adapted=bases is None,
     )
-    sentence = _describe(int(np.count_nonzero(weights[:, 0] < 0.5)))
+    n_predicted = 0
+    if bases is None:
+        stacked, n_predicted = predict_limbs(
+            channels, stacked, frame_rate, load_body_relation()
+        )
+    sentence = _describe(int(np.count_nonzero(weights[:, 0] < 0.5)), n_predicted)
     return stacked, f"{prior_used} {sentence}".strip()
 
 
-def _describe(n_joints: int) -> str:
-    if not n_joints:
-        return ""
-    joints = "1 joint" if n_joints == 1 else f"{n_joints} joints"
-    return f"Plain smoothing and a model of how people move predict {joints} better."
+def _describe(n_smoothed: int, n_predicted: int) -> str:
+    sentences = []
+    if n_smoothed:
+        joints = _joints(n_smoothed)
+        sentences.append(
+            f"Plain smoothing and a model of how people move predict {joints} better."
+        )
+    if n_predicted:
+        sentences.append(f"The rest of the body predicts long gaps of {_joints(n_predicted)}.")
+    return " ".join(sentences)
+
+
+def _joints(n_joints: int) -> str:
+    return "1 joint" if n_joints == 1 else f"{n_joints} joints"
