@@ -94,7 +94,7 @@ pictures-origins: .venv-4.5/ready  ## takes of many makers, imported, cleaned, o
 
 # Each writes what is shipped from recordings of ../shared/data; ARGUMENTS="--out FILE" writes
 # elsewhere, and each script says which clips, bodies and licences. The forest takes half an hour.
-.PHONY: forest postures residuals motion-prior motion-mixture failures
+.PHONY: forest postures residuals motion-prior motion-mixture body-relation failures
 forest: .venv-4.5/ready  ## train the shipped forest that classifies body parts in depth images
 	$(PYTHON_4.5) -m tests.training.train_forest $(ARGUMENTS)
 
@@ -109,6 +109,9 @@ motion-prior: .venv-4.5/ready  ## learn the shipped motion prior of the depth tr
 
 motion-mixture: .venv-4.5/ready  ## learn how joints move, for Clean without examples
 	$(PYTHON_4.5) -m tests.training.train_motion_mixture $(ARGUMENTS)
+
+body-relation: .venv-4.5/ready  ## learn how joints move together, for limbs that are missing
+	$(PYTHON_4.5) -m tests.training.train_body_relation $(ARGUMENTS)
 
 failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the weights
 	$(PYTHON_4.5) -m tests.training.learn_failures

@@ -11,7 +11,7 @@ from ..blender.block_references import BlockReference, SourceReference
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, should_yield
 from ..scene.body import body_root
-from ..scene.history import was_thinned
+from ..scene.history import playing_strips, was_thinned
 from ..scene.origin import origin_of
 from ..scene.rig import Placement, Rig, read_rig
 from ..scene.units import metres_per_unit
@@ -149,6 +149,11 @@ class _Keyed:
 def action_of(armature: bpy.types.Object) -> Source:
     """Return the action and slot of an armature; raise InvalidMotionError without them."""
     animation = armature.animation_data
+    if animation is not None and animation.action is None and playing_strips(animation):
+        raise InvalidMotionError(
+            f"{armature.name} plays NLA strips, not an action. Bake them to one first: Pose >"
+            " Animation > Bake Action."
+        )
     if animation is None or animation.action is None:
         raise InvalidMotionError(f"{armature.name} has no action. Assign or import one.")
     if animation.action_slot is None:

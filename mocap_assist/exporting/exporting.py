@@ -1,5 +1,7 @@
 """What the button Export reads from the scene, and the file that it writes."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from math import ceil, floor
 from pathlib import Path
@@ -58,11 +60,12 @@ def read_export(
     file_format = format_of(target, choices)
     meshes = _skinned_meshes(scene, armature) if choices.meshes else ()
     action, slot = source
+    blend, names = _as_blend(armature, source, meshes)
     request = ExportRequest(
-        armature=armature.name,
+        armature=names[0],
         action=action.name,
         slot=slot.identifier,
-        meshes=tuple(each.name for each in meshes if file_format is not FileFormat.BVH),
+        meshes=() if file_format is FileFormat.BVH else names[1:],
         frames=_scene_frames(take, source[0].name),
         fps=scene.render.fps,
         fps_base=scene.render.fps_base,
@@ -71,7 +74,6 @@ def read_export(
         file_format=file_format,
         bones=choices.exported_bones,
     )
-    blend = _as_blend(armature, source, meshes)
     blender = BackgroundBlender(str(bpy.app.binary_path))
     return partial(export_take, ExportProblem(blend, request, blender))
 
@@ -137,23 +139,38 @@ def _skinned_meshes(
 
 def _as_blend(
     armature: bpy.types.Object, source: Source, meshes: tuple[bpy.types.Object, ...]
-) -> bytes:
-    """Return a .blend file with an armature, an action and meshes; the open file is unchanged.
+) -> tuple[bytes, tuple[str, ...]]:
+    """Return a .blend file with an armature, an action and meshes, and its objects' names.
+
+    Of linked objects it has copies. The open file is unchanged.
 
     Raises
     ------
     InvalidFileError
         Temporary files cannot be written.
     """
-    with ScratchFolder() as scratch:
+    with ScratchFolder() as scratch, _local((armature, *meshes)) as objects:
         path = Path(scratch.path) / "take.blend"
         try:
-            bpy.data.libraries.write(
-                str(path), {armature, source[0], *meshes}, path_remap="ABSOLUTE"
-            )
-            return path.read_bytes()
+            bpy.data.libraries.write(str(path), {*objects, source[0]}, path_remap="ABSOLUTE")
+            return path.read_bytes(), tuple(each.name for each in objects)
         except (OSError, RuntimeError) as error:
             raise InvalidFileError(
                 f"Temporary files cannot be written in {scratch.path.parent}:"
                 f" {str(error).strip()}. Make room there."
             ) from None
+
+
+@contextmanager
+def _local(objects: tuple[bpy.types.Object, ...]) -> Iterator[tuple[bpy.types.Object, ...]]:
+    """Yield the objects, with copies of linked ones for a while: a file cannot hold those."""
+    copies = {each: each.copy() for each in objects if each.library is not None}
+    try:
+        for copy in copies.values():
+            for modifier in copy.modifiers:
+                if modifier.type == "ARMATURE" and modifier.object in copies:
+                    modifier.object = copies[modifier.object]
+        yield tuple(copies.get(each, each) for each in objects)
+    finally:
+        for copy in copies.values():
+            bpy.data.objects.remove(copy)

@@ -7,15 +7,12 @@ import numpy as np
 from ..arrays import Array
 from ..progress import Progress, unwatched
 from .body import Body, Poses, WorldBody
-from .fit_poses import apply_step, compute_residuals, cost_of
+from .fit_poses import DAMPING, apply_step, compute_residuals, cost_of
 
 N_INDEPENDENT_FRAMES = 10.0
 """Effective number of independent frames of a take: skin motion correlates with the pose.
 Chosen by hand: x0.5 gains 2.3 %, x2 costs 1.9 %."""
 MAX_STEPS = 25
-DAMPING = 1e-3
-"""Initial weight of Levenberg-Marquardt damping. Chosen by hand: from x0.001 to x1000 no error
-moves."""
 MIN_COST_GAIN = 1e-3
 """Relative gain of the cost below which the iteration ends. Chosen by hand: x0.5 and x2 move no
 error."""

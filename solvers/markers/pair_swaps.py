@@ -26,10 +26,8 @@ x0.5 costs nothing, x2 fails; second, x0.5 and x2 move no error; third, x0.5 and
 error."""
 MIN_BAD_MISFIT, MIN_BAD_FRAMES = 3.0, 5
 """Misfit above which a label is bad, and minimum number of frames with two bad labels. Chosen
-by hand: from x0.001 to x1000 no error moves."""
-MAX_GAP_S = 0.25
-"""Gap above which the position of a marker after it is not predictable. Chosen by hand: from
-x0.001 to x1000 no error moves."""
+by hand: from x0.001 to x1000 no error moves; without it a swap that starts in a gap stays
+(`test_swap_between_gaps_is_corrected`)."""
 
 
 class PairSwap(NamedTuple):
@@ -43,9 +41,7 @@ class PairSwap(NamedTuple):
     stop: int
 
 
-def find_candidate_pairs(
-    positions: Array, distances: Distances, frame_rate: float
-) -> list[tuple[int, int]]:
+def find_candidate_pairs(positions: Array, distances: Distances) -> list[tuple[int, int]]:
     """Return the pairs of markers that may be swapped.
 
     Either they seem to jump to each other's position; or both labels are bad at one time and
@@ -63,7 +59,7 @@ def find_candidate_pairs(
     ]
     for first in range(n_markers - 1):
         relative = positions[:, first + 1 :] - positions[:, [first]]
-        step_unchanged, step_swapped, typical = _steps(relative, frame_rate)
+        step_unchanged, step_swapped, typical = _steps(relative)
         is_bad_marker = (step_unchanged > typical) & (step_swapped < 0.5 * step_unchanged)
         found += [
             (first, first + 1 + int(other))
@@ -83,7 +79,7 @@ def _bad_frames(positions: Array, distances: Distances) -> NDArray[np.bool_]:
     return is_bad_marker
 
 
-def _steps(relative: Array, frame_rate: float) -> tuple[Array, Array, Array]:
+def _steps(relative: Array) -> tuple[Array, Array, Array]:
     """Return the relative steps of two markers with unchanged and with swapped labels.
 
     Parameters
@@ -102,7 +98,7 @@ def _steps(relative: Array, frame_rate: float) -> tuple[Array, Array, Array]:
     last = np.maximum.accumulate(np.where(valid, frames, -1), axis=0)
     before = np.concatenate([np.full((1, valid.shape[1]), -1), last[:-1]])
     gap = frames - before
-    reached = valid & (before >= 0) & (gap <= max(1.0, MAX_GAP_S * frame_rate))
+    reached = valid & (before >= 0)
     start = np.take_along_axis(relative, np.maximum(before, 0)[..., None], axis=0)
     step_unchanged = np.where(reached, np.linalg.norm(relative - start, axis=-1), np.nan)
     step_swapped = np.where(reached, np.linalg.norm(relative + start, axis=-1), np.nan)
@@ -118,7 +114,7 @@ def _steps(relative: Array, frame_rate: float) -> tuple[Array, Array, Array]:
 
 
 def most_likely_swap(
-    positions: Array, pair: tuple[int, int], distances: Distances, frame_rate: float
+    positions: Array, pair: tuple[int, int], distances: Distances
 ) -> PairSwap | None:
     """Return the most likely swap of two markers; None if there is none.
 
@@ -128,9 +124,7 @@ def most_likely_swap(
     """
     first, second = pair
     relative = (positions[:, second] - positions[:, first])[:, None]
-    step_unchanged, step_swapped, typical = (
-        part[:, 0] for part in _steps(relative, frame_rate)
-    )
+    step_unchanged, step_swapped, typical = (part[:, 0] for part in _steps(relative))
     stay, change = (
         np.nan_to_num(0.5 * (step / typical) ** 2) for step in (step_unchanged, step_swapped)
     )

@@ -74,7 +74,7 @@ def unswap_markers(
     progress(0.0, "Finding swapped markers")
     for number in range(N_PASSES):
         distances = learn_distances(positions)
-        found = _find_changes(positions, distances, tracks.frame_rate, settings)
+        found = _find_changes(positions, distances, settings)
         for change in found:
             _swap_labels(positions, change)
             if confidence is not None:
@@ -90,14 +90,14 @@ def unswap_markers(
 
 
 def _find_changes(
-    positions: Array, distances: Distances, frame_rate: float, settings: UnswapSettings
+    positions: Array, distances: Distances, settings: UnswapSettings
 ) -> list[PairSwap]:
     """Return the changes in order of evidence, each found after applying those before it."""
     positions = positions.copy()
     changes: list[PairSwap] = []
     open_swaps = {
-        pair: most_likely_swap(positions, pair, distances, frame_rate)
-        for pair in find_candidate_pairs(positions, distances, frame_rate)
+        pair: most_likely_swap(positions, pair, distances)
+        for pair in find_candidate_pairs(positions, distances)
     }
     while len(changes) < MAX_SWAPS:
         significant = [
@@ -110,7 +110,7 @@ def _find_changes(
         changes.append(best)
         for pair in open_swaps:
             if {best.first, best.second} & set(pair):
-                open_swaps[pair] = most_likely_swap(positions, pair, distances, frame_rate)
+                open_swaps[pair] = most_likely_swap(positions, pair, distances)
     for change in find_mistaken_labels(positions, distances):
         _swap_labels(positions, change)
         changes.append(change)

@@ -21,6 +21,7 @@ from solvers.depth_tracking.forest_training.train_forest import (
 )
 
 from ..benchmarks.depth.forest_sources import WORDS, all_bodies, taught_motions
+from .arguments import print_progress
 
 SETTINGS = PixelForestSettings(
     n_trees=4, n_pictures=12_000, n_pixels=120, levels=18, n_candidates=100, least_pixels=50
@@ -30,12 +31,9 @@ SETTINGS = PixelForestSettings(
 def grown(settings: PixelForestSettings, number: int) -> tuple[Tree, ...]:
     """Grow one tree from pictures of its own."""
     alone = replace(settings, n_trees=1, seed=settings.seed + number)
-    return train_pixel_forest(taught_motions(), all_bodies(), alone, progress=said).trees
-
-
-def said(fraction: float, message: str) -> None:
-    """Tell how far it is."""
-    print(f"{fraction:6.1%} {message}", flush=True)
+    return train_pixel_forest(
+        taught_motions(), all_bodies(), alone, progress=print_progress
+    ).trees
 
 
 def main() -> None:

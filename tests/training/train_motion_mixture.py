@@ -7,9 +7,7 @@ sword, lifting, salsa, walks. No actor or take of `tests/benchmarks/first_press/
 is scored, and no development take.
 """
 
-import argparse
 from collections.abc import Iterator
-from pathlib import Path
 
 from solvers.denoising.motion_mixture import SHIPPED, learn_motion_mixture
 from solvers.denoising.motion_mixture.learn_mixture import FRAME_RATE
@@ -18,6 +16,7 @@ from solvers.motion import Motion
 from ..benchmarks.first_press.takes import DEVELOPMENT, read_variety, variety_names
 from ..benchmarks.shared import clips
 from ..benchmarks.shared.clips import every
+from .arguments import parse_output, print_progress
 
 ACTORS = ("01_", "02_", "salsa_")
 """Of `cmu_variety`. Subject 03, martial arts and Indian dance are scored."""
@@ -46,20 +45,11 @@ def motions() -> Iterator[Motion]:
             yield every(take.slice(phase, take.n_frames), step)
 
 
-def show(fraction: float, message: str) -> None:
-    """Print the progress."""
-    print(f"{fraction:6.1%} {message}", flush=True)
-
-
 def main() -> None:
     """Learn, and save where it is shipped."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--out", type=Path, default=SHIPPED)
-    given = parser.parse_args()
-    mixture = learn_motion_mixture(list(motions()), trained_on=WORDS, progress=show)
-    mixture.save(given.out)
+    out = parse_output(__doc__, SHIPPED)
+    mixture = learn_motion_mixture(list(motions()), trained_on=WORDS, progress=print_progress)
+    mixture.save(out)
 
 
 if __name__ == "__main__":

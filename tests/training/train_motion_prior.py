@@ -6,13 +6,11 @@ CMU (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217) and UI-PRMD (V
 Paul, Baker 2018, published as ODC-PDDL).
 """
 
-import argparse
-from pathlib import Path
-
 from solvers.depth_tracking.body.learn_motion_prior import learn_motion_prior
 from solvers.depth_tracking.body.motion_prior import SHIPPED
 
 from ..benchmarks.depth.forest_sources import cmu_motions, exercises
+from .arguments import parse_output, print_progress
 
 HOPPER = "49"
 """The actor of hops in depth/truth; the walkers there are held out as well."""
@@ -24,20 +22,11 @@ WORDS = (
 )
 
 
-def said(fraction: float, message: str) -> None:
-    """Tell how far it is."""
-    print(f"{fraction:6.1%} {message}", flush=True)
-
-
 def main() -> None:
     """Learn, and save where it is shipped."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--out", type=Path, default=SHIPPED)
-    given = parser.parse_args()
+    out = parse_output(__doc__, SHIPPED)
     motions = [*cmu_motions(but=(HOPPER,)), *exercises(which=ONCE)]
-    learn_motion_prior(motions, trained_on=WORDS, progress=said).save(given.out)
+    learn_motion_prior(motions, trained_on=WORDS, progress=print_progress).save(out)
 
 
 if __name__ == "__main__":

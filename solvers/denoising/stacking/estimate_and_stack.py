@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...progress import Progress, within
 from ..channels import Channels
+from ..limb_gaps import load_body_relation, predict_limbs
 from ..motion_mixture import estimate_channel_noise, load_motion_mixture, smooth_by_mixture
 from ..motion_mixture.channel_noise import MAX_CONSTANT_RANGE
 from ..posterior import Estimate, Smoothed, estimate_in_groups
@@ -33,6 +34,7 @@ def estimate_and_stack(
        mixture rejects those that people's movement explains, such as a kick.
     3. A smoothing spline and the mixture smooth what remains. Each joint is the mean of the
        three, weighted to have the least expected error.
+    4. Without examples, joints that are missing for long are predicted from the others.
 
     Parameters
     ----------
@@ -68,7 +70,12 @@ def estimate_and_stack(
         is_good,
         noise,
     )
-    sentence = _describe(int(np.count_nonzero(weights[:, 0] < 0.5)))
+    n_predicted = 0
+    if bases is None:
+        stacked, n_predicted = predict_limbs(
+            channels, stacked, frame_rate, load_body_relation()
+        )
+    sentence = _describe(int(np.count_nonzero(weights[:, 0] < 0.5)), n_predicted)
     return stacked, f"{prior_used} {sentence}".strip()
 
 
@@ -88,8 +95,17 @@ def noise_factor(
     return min(float(np.median(factors)), 1.0) if moves.any() else 1.0
 
 
-def _describe(n_joints: int) -> str:
-    if not n_joints:
-        return ""
-    joints = "1 joint" if n_joints == 1 else f"{n_joints} joints"
-    return f"Plain smoothing and a model of how people move predict {joints} better."
+def _describe(n_smoothed: int, n_predicted: int) -> str:
+    sentences = []
+    if n_smoothed:
+        joints = _joints(n_smoothed)
+        sentences.append(
+            f"Plain smoothing and a model of how people move predict {joints} better."
+        )
+    if n_predicted:
+        sentences.append(f"The rest of the body predicts long gaps of {_joints(n_predicted)}.")
+    return " ".join(sentences)
+
+
+def _joints(n_joints: int) -> str:
+    return "1 joint" if n_joints == 1 else f"{n_joints} joints"

@@ -22,6 +22,7 @@ FAMILIES: dict[str, tuple[str, ...]] = {
         "solvers/denoising/edge_poses.py",
         "solvers/denoising/observed_samples.py",
         "solvers/denoising/channels",
+        "solvers/denoising/limb_gaps",
         "solvers/denoising/motion_mixture",
         "solvers/denoising/posterior",
         "solvers/denoising/stacking",

@@ -1,0 +1,140 @@
+"""Adapt the relation of a body's joints to a take, by hiding a limb where it is known."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array
+from .bridges import N_FEATURES, Bridge
+
+MIN_GAP_S = 0.25
+"""Seconds: the estimate by the take's own patterns fills shorter gaps. Chosen by hand on the
+development takes of the first press."""
+OWN_RIDGE = 100.0
+"""Evidence for the general relation, in frames at RATE, each counted N_TRIALS times. Chosen by
+hand on the development takes of the first press: x0.5 and x2 move 0.5 %."""
+RATE = 30.0
+"""Hertz: trial gaps of faster recordings are described at about this rate. By definition that
+of the patterns of Clean."""
+N_TRIALS = 6
+"""Trial gaps that start within the length of one."""
+MAX_TRIALS = 120
+"""Trial gaps in a take, and one more in each stretch without gaps. It bounds the run time."""
+N_FOLDS = 5
+"""Parts of the take that are predicted from the other parts."""
+PRIOR_TRIALS = 1.0
+"""Number of gaps of evidence that the prediction is right as it is. By definition one; x0.5 and
+x2 move no error."""
+MIN_VARIANCE = 1e-6
+"""Square degrees. Guards a division."""
+
+
+class Trials(NamedTuple):
+    """Gaps elsewhere in the take, where the limb is known; a row for each of their frames."""
+
+    features: Array
+    """Shape (n_rows, n_features)."""
+    deviations: Array
+    """Of the limb from the line across the gap, shape (n_rows, n_channels), degrees."""
+    bounds: NDArray[np.intp]
+    """First frame of the gap and the first one after it, shape (n_rows, 2)."""
+    n_independent: float
+    """Number of gaps that would not overlap."""
+
+    @property
+    def length(self) -> float:
+        """Mean length of a gap, frames."""
+        return float(np.diff(self.bounds, axis=1).mean())
+
+
+class AdaptedRelation(NamedTuple):
+    """How a limb follows the rest of the body in this take."""
+
+    regression: Array
+    """From features to deviations, shape (n_features, n_channels)."""
+    weight: float
+    """Of the predicted deviation, 0 (the straight line) to 1, by the trials."""
+    variance: Array | None
+    """Of the error per frame of gap length, shape (n_channels,), square degrees; None if the
+    take has no room for a trial."""
+
+
+def describe_gap(bridge: Bridge, limb: Array, body: Array) -> Array:
+    """Return the features of a gap, shape (n_described, 3 * (n_limb + n_body channels))."""
+    parts = (bridge.missing_features(limb), bridge.observed_features(body))
+    return np.concatenate([each.reshape(len(bridge.frames), -1) for each in parts], axis=1)
+
+
+def try_gaps(
+    limb: Array, body: Array, known: NDArray[np.bool_], length: int, frame_rate: float
+) -> Trials:
+    """Hide the limb where it is known, for as long as it is missing or as there is room.
+
+    Parameters
+    ----------
+    limb, body : shape (n_frames, n_channels), degrees or centimeters
+    known : shape (n_frames,)
+        Where the limb was observed.
+    length : int, frames
+    frame_rate : float, Hz
+    """
+    step = max(round(frame_rate / RATE), 1)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], known.astype(int), [0]])))
+    bridges, n_independent = [], 0.0
+    for start, stop in edges.reshape(-1, 2).tolist():
+        tried = min(length, stop - start - 2)
+        if tried < MIN_GAP_S * frame_rate:
+            continue
+        n_trials = min(
+            N_TRIALS * (stop - start) // tried, 1 + MAX_TRIALS * (stop - start) // len(known)
+        )
+        firsts = np.unique(np.linspace(start + 1, stop - tried - 1, n_trials).astype(int))
+        bridges += [Bridge(first, first + tried, frame_rate, step) for first in firsts.tolist()]
+        n_independent += (stop - start) / tried
+    if not bridges:
+        n_features = N_FEATURES * (limb.shape[1] + body.shape[1])
+        empty = np.zeros((0, n_features)), np.zeros((0, limb.shape[1]))
+        return Trials(*empty, np.zeros((0, 2), dtype=np.intp), 0.0)
+    return Trials(
+        np.concatenate([describe_gap(bridge, limb, body) for bridge in bridges]),
+        np.concatenate([bridge.deviation(limb) for bridge in bridges]),
+        np.repeat(
+            [(bridge.start, bridge.stop) for bridge in bridges],
+            [len(bridge.frames) for bridge in bridges],
+            axis=0,
+        ),
+        n_independent,
+    )
+
+
+def adapt_relation(trials: Trials, general: Array) -> AdaptedRelation:
+    """Return the posterior of a Gaussian regression about the general one, and how good it is.
+
+    Each part of the take is predicted from the trials outside it. The weight is that of the
+    least squared error; the general relation counts as one more gap that was predicted well.
+    """
+    x, y = trials.features, trials.deviations
+    if not len(x):
+        return AdaptedRelation(general, 1.0, None)
+    scale = OWN_RIDGE * np.maximum((y**2).mean(axis=0), MIN_VARIANCE)
+    predicted = np.zeros_like(y)
+    order = np.argsort(trials.bounds[:, 0], kind="stable")
+    for fold in np.array_split(order, min(N_FOLDS, len(order))):
+        first, last = trials.bounds[fold, 0].min(), trials.bounds[fold, 1].max()
+        others = (trials.bounds[:, 1] <= first) | (trials.bounds[:, 0] >= last)
+        predicted[fold] = x[fold] @ _ridge(x[others], y[others], general, scale)
+    power, agreement = (predicted**2).sum(), (predicted * y).sum()
+    prior = PRIOR_TRIALS / trials.n_independent * power + MIN_VARIANCE
+    weight = float(np.clip((agreement + prior) / (power + prior), 0.0, 1.0))
+    variance = ((y - weight * predicted) ** 2).mean(axis=0) / trials.length
+    return AdaptedRelation(_ridge(x, y, general, scale), weight, variance)
+
+
+def _ridge(x: Array, y: Array, general: Array, scale: Array) -> Array:
+    """Return the regression of y on x that a ridge (n_channels,) draws to the general one."""
+    eigenvalues, vectors = np.linalg.eigh(x.T @ x)
+    residual = vectors.T @ (x.T @ (y - x @ general))
+    return np.asarray(
+        general + vectors @ (residual / (np.maximum(eigenvalues, 0.0)[:, None] + scale))
+    )
