@@ -1,12 +1,13 @@
 """How joints of people move within half a second: a mixture learned from many recordings."""
 
-from .channel_noise import estimate_channel_noise
+from .channel_noise import MAX_CONSTANT_RANGE, estimate_channel_noise
 from .learn_mixture import learn_motion_mixture
 from .mixture import SHIPPED, MotionMixture, load_motion_mixture
 from .predictive_density import PredictiveDensity
 from .smooth_joints import smooth_by_mixture
 
 __all__ = [
+    "MAX_CONSTANT_RANGE",
     "SHIPPED",
     "MotionMixture",
     "PredictiveDensity",

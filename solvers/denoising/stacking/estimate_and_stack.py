@@ -9,8 +9,12 @@ from ...arrays import Array
 from ...progress import Progress, within
 from ..channels import Channels
 from ..limb_gaps import load_body_relation, predict_limbs
-from ..motion_mixture import estimate_channel_noise, load_motion_mixture, smooth_by_mixture
-from ..motion_mixture.channel_noise import MAX_CONSTANT_RANGE
+from ..motion_mixture import (
+    MAX_CONSTANT_RANGE,
+    estimate_channel_noise,
+    load_motion_mixture,
+    smooth_by_mixture,
+)
 from ..posterior import Estimate, Smoothed, estimate_in_groups
 from ..window_priors import FilterBases
 from .outlier_runs import confirm_outliers, find_bursts

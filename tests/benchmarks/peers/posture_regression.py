@@ -3,10 +3,12 @@
 Each learns from (n_examples, n_features) and gives back a function of new features.
 """
 
+import warnings
 from collections.abc import Callable
 
 import numpy as np
 from sklearn.ensemble import RandomForestRegressor
+from sklearn.exceptions import ConvergenceWarning
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, WhiteKernel
 from sklearn.gaussian_process.kernels import ConstantKernel as Constant
@@ -57,7 +59,9 @@ def gaussian_process(features: Array, offsets: Array) -> Predict:
     scale = float(features.std(axis=0).mean()) * np.sqrt(features.shape[1])
     kernel = Constant(1.0) * RBF(scale) + WhiteKernel(0.5)
     tuned = GaussianProcessRegressor(kernel, normalize_y=True, random_state=0)
-    tuned.fit(features[few], offsets[few])
+    with warnings.catch_warnings():  # with two threads its search may end within rounding
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        tuned.fit(features[few], offsets[few])
     process = GaussianProcessRegressor(tuned.kernel_, optimizer=None, normalize_y=True)
     return process.fit(features[chosen], offsets[chosen]).predict
 
