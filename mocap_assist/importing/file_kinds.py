@@ -11,7 +11,6 @@ from .depth_folders import is_take
 DEPTH, SKELETON, JOINTS, MARKERS, SMPL = "depth", "skeleton", "joints", "markers", "smpl"
 SCENE = "scene"
 MOVING = {SKELETON, JOINTS, MARKERS, SMPL}
-MARKER_FORMATS = {"C3D", "TRC", "OptiTrack CSV", "Qualisys TSV", "Vicon CSV"}
 MAX_LOOKED_AT = 50
 """Files of which the first bytes are read, so that the dialog comes at once."""
 FOR_KINDS: dict[str, set[str]] = {
@@ -52,4 +51,4 @@ def _kinds(path: Path) -> set[str]:
         return {SMPL, JOINTS} if path.suffix.lower() == ".npy" else {SMPL}
     if found.has_skeleton:
         return {SKELETON}
-    return {MARKERS} if found.name in MARKER_FORMATS else {JOINTS}
+    return {MARKERS} if found.has_markers else {JOINTS}

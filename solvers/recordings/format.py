@@ -37,6 +37,8 @@ class Format(NamedTuple):
     read: Reader
     has_skeleton: bool = False
     """Whether it contains the motion of a skeleton; otherwise points."""
+    has_markers: bool = False
+    """Whether its points are markers; otherwise joints of a body."""
     is_refused: bool = False
     """Whether it is recognized only for a better sentence."""
     lacks_bones: bool = False

@@ -1,8 +1,8 @@
-"""The default method: the posterior of all windows under a prior that adapts to the take."""
+"""The posterior of all windows under a prior that adapts to the take, and single outliers."""
 
 from .channel_groups import estimate_in_groups
 from .estimate import Estimate, Smoothed
-from .estimate_channels import OUTLIER_DENSITY
+from .outlier_model import OUTLIER_DENSITY
 from .windows import Windows
 
 __all__ = [

@@ -14,18 +14,10 @@ from .estimate import Estimate
 from .filter_pass import filter_windows
 from .filters import Filter, build_filters, compute_variance, sum_window_weights
 from .gap_patterns import find_gap_patterns, find_long_gaps
+from .outlier_model import INITIAL_OUTLIER_RATE, compute_inlier_probability
 from .smoothness import fit_smoothness
 from .windows import Windows
 
-OUTLIER_DENSITY = 1.0 / 120.0
-"""Density of an outlier's error, per degree or centimeter: uniform within +-60. Chosen by hand:
-x0.5 costs 4.5 %, x2 costs 4.0 %."""
-MIN_OUTLIER_ERROR = 0.5
-"""Degrees or centimeters: a sample closer to the estimate is hardly an outlier. Chosen by hand:
-x0.5 costs 8.5 %, x2 gains 9.4 %."""
-INITIAL_OUTLIER_RATE = 0.03
-"""Fraction of outliers before the first estimate. Chosen by hand: x0.5 costs nothing, x2 costs
-5.7 %."""
 MAX_ITERATIONS = 30
 """Iterations after which the estimate ends unconverged. Chosen by hand: x0.5 costs 0.1 %, x2
 gains 0.3 %."""
@@ -149,8 +141,8 @@ class _PosteriorState:
         """Move the weights by this step towards the probability of being no outlier."""
         error = self.samples - self.estimate
         prediction_error = error * (self.weight * self.leave_one_out_ratio + 1.0 - self.weight)
-        spread = self.noise**2 + self.variance * self.leave_one_out_ratio + MIN_OUTLIER_ERROR**2
-        inlier_probability = _inlier_probability_of(prediction_error, spread, self.rate)
+        variance = self.noise**2 + self.variance * self.leave_one_out_ratio
+        inlier_probability = compute_inlier_probability(prediction_error, variance, self.rate)
         target_weight = self.may_be_right * inlier_probability
         self.weight = self.weight + step * (target_weight - self.weight)
         outlier_fraction = (
@@ -226,13 +218,6 @@ def _bounds(start: Array, prior: WindowPrior) -> tuple[Array, Array]:
     high = np.maximum(start.max(axis=0), prior.mean)
     margin = MAX_PRIOR_DEVIATIONS * prior.deviation
     return low - margin, high + margin
-
-
-def _inlier_probability_of(error: Array, spread: Array, rate: float) -> Array:
-    """Compare noise around the prediction from all other samples with an outlier."""
-    inlier_probability = np.exp(-0.5 * error**2 / spread) / np.sqrt(2 * np.pi * spread)
-    inlier_probability *= 1.0 - rate
-    return np.asarray(inlier_probability / (inlier_probability + rate * OUTLIER_DENSITY))
 
 
 def _estimate_noise(error: Array, weight: Array, variance: Array, first_noise: Array) -> Array:

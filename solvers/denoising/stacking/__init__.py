@@ -1,4 +1,4 @@
-"""The default method of Clean: errors, patterns and smoothers, weighed by prediction."""
+"""The default method of Clean: find errors, estimate by patterns, average with smoothers."""
 
 from .estimate_and_stack import estimate_and_stack
 

@@ -1,0 +1,33 @@
+"""The outlier model of single samples: noise around the prediction, or a uniform error."""
+
+import numpy as np
+
+from ...arrays import Array
+
+OUTLIER_DENSITY = 1.0 / 120.0
+"""Density of an outlier's error, per degree or centimeter: uniform within +-60. Chosen by hand:
+x0.5 costs 4.5 %, x2 costs 4.0 %."""
+MIN_OUTLIER_ERROR = 0.5
+"""Degrees or centimeters: a sample closer to the estimate is hardly an outlier. Chosen by hand:
+x0.5 costs 8.5 %, x2 gains 9.4 %."""
+INITIAL_OUTLIER_RATE = 0.03
+"""Fraction of outliers before the first estimate. Chosen by hand: x0.5 costs nothing, x2 costs
+5.7 %."""
+
+
+def compute_inlier_probability(error: Array, variance: Array, rate: float) -> Array:
+    """Return the probability that each sample is no outlier.
+
+    Parameters
+    ----------
+    error : shape (n_frames, n_channels)
+        Distance from the prediction by all other samples, degrees or centimeters.
+    variance : same shape
+        Of the noise and of the prediction.
+    rate : float
+        Fraction of outliers.
+    """
+    variance = variance + MIN_OUTLIER_ERROR**2
+    inlier_density = (1.0 - rate) * np.exp(-0.5 * error**2 / variance)
+    inlier_density /= np.sqrt(2 * np.pi * variance)
+    return np.asarray(inlier_density / (inlier_density + rate * OUTLIER_DENSITY))
