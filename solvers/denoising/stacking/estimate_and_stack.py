@@ -65,7 +65,7 @@ def estimate_and_stack(
     complete = np.where(is_good, noisy, estimate.values)
     noise = estimate_channel_noise(np.where(is_good, noisy, np.nan), MIN_NOISE)
     spline = smooth_by_spline(complete)
-    noise *= noise_factor(noise, complete, spline, is_good)
+    noise *= noise_factors(noise, complete, spline, is_good)
     smoothers = [spline, smooth_by_mixture(complete, noise, frame_rate, mixture)]
     stacked, weights = stack_estimates(
         noisy,
@@ -83,20 +83,26 @@ def estimate_and_stack(
     return stacked, f"{prior_used} {sentence}".strip()
 
 
-def noise_factor(
+def noise_factors(
     noise: Array, complete: Array, spline: Smoothed, is_good: NDArray[np.bool_]
-) -> float:
-    """Return how much smaller the take's noise is than third differences say, at most 1.
+) -> Array:
+    """Return how much smaller the noise is than third differences say, shape (n_channels,).
 
     They take fast movement for noise, which would then be smoothed away. What a spline leaves
-    holds less movement; the factor is the median over all channels that move.
+    holds less movement. A spline may follow noise, too: no joint's factor is less than the
+    median of all channels.
     """
     residuals = np.where(is_good, complete - spline.values, 0.0)
     free = np.where(is_good, 1.0 - leverage(residuals, spline.leave_one_out_error), 0.0)
     left = np.sqrt((residuals**2).sum(axis=0) / np.maximum(free.sum(axis=0), 1.0))
     moves = np.ptp(complete, axis=0) > MAX_CONSTANT_RANGE
-    factors = np.maximum(left[moves], MIN_NOISE) / noise[moves]
-    return min(float(np.median(factors)), 1.0) if moves.any() else 1.0
+    if not moves.any():
+        return np.ones_like(noise)
+    logs = np.log(np.maximum(left, MIN_NOISE) / noise)
+    of_joints = np.where(moves, logs, 0.0).reshape(-1, 3).sum(axis=1)
+    of_joints /= np.maximum(moves.reshape(-1, 3).sum(axis=1), 1)
+    logs = np.maximum(np.repeat(of_joints, 3), np.median(logs[moves]))
+    return np.asarray(np.exp(np.minimum(logs, 0.0)))
 
 
 def _describe(n_smoothed: int, n_predicted: int) -> str:

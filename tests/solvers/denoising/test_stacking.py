@@ -9,7 +9,7 @@ from solvers.denoising import denoise
 from solvers.denoising.motion_mixture import estimate_channel_noise
 from solvers.denoising.posterior import Estimate, Smoothed
 from solvers.denoising.stacking import smoothing_spline
-from solvers.denoising.stacking.estimate_and_stack import noise_factor
+from solvers.denoising.stacking.estimate_and_stack import noise_factors
 from solvers.denoising.stacking.smoothing_spline import smooth_by_spline
 from solvers.denoising.stacking.stack_estimates import stack_estimates
 from solvers.motion import Motion, find_humanoid_map
@@ -80,17 +80,22 @@ def test_clean_take_keeps_its_samples(rng):
     assert_allclose(stacked.values, clean, atol=0.01)
 
 
-def test_noise_factor_tells_movement_from_noise(rng):
+def test_noise_factors_tell_movement_from_noise(rng):
     """A spline follows fast movement, whose third differences are as large as noise's."""
     frames = np.arange(200)
     fast = 30.0 * np.sin(np.outer(frames / 2.0, np.linspace(0.8, 1.2, 30)))
     noisy = fast + 3.0 * rng.normal(size=fast.shape)
 
-    factors = [_noise_factor(samples) for samples in (fast, noisy, noisy - fast)]
+    one_noisy_joint = np.hstack([fast[:, :27], (noisy - fast)[:, 27:]])
 
-    assert factors[0] < 0.1
-    assert 0.25 < factors[1] < 1.0  # between noise alone and what differences take for it
-    assert factors[2] > 0.9
+    clean, both, noise, one = (
+        _noise_factors(samples) for samples in (fast, noisy, noisy - fast, one_noisy_joint)
+    )
+
+    assert clean.max() < 0.1
+    assert 0.25 < both.min() <= both.max() < 1.0
+    assert noise.min() > 0.8
+    assert one[:27].max() < 0.1 and one[27:].min() > 0.8
 
 
 def test_clean_kick_keeps_its_height(rng):
@@ -119,10 +124,10 @@ def test_spike_before_a_kick_is_removed(rng):
     assert np.degrees(error) < 3.0
 
 
-def _noise_factor(samples: np.ndarray) -> float:
+def _noise_factors(samples: np.ndarray) -> np.ndarray:
     noise = estimate_channel_noise(samples, 0.01)
     good = np.ones(samples.shape, dtype=bool)
-    return noise_factor(noise, samples, smooth_by_spline(samples), good)
+    return noise_factors(noise, samples, smooth_by_spline(samples), good)
 
 
 def _mean_of_samples(noisy: np.ndarray, n: int, rng: np.random.Generator) -> Smoothed:
