@@ -76,7 +76,7 @@ def plant_target_feet(
     if not feet:
         return motion
     goals = [foot.goal for foot in feet]
-    shift = solve_pelvis_offset(poses, goals, body.size)
+    shift = solve_pelvis_offset(poses, goals, motion.frame_rate, body.size)
     result = motion.with_poses(root_positions=motion.root_positions + shift)
     for foot in feet:
         result = _apply_foot_plan(result, poses, foot)

@@ -32,6 +32,9 @@ Chosen by hand: x0.1 costs 3.4 %; from 1 on no gap is like any other."""
 MAX_GAPS_TOGETHER = 12
 """Gaps of one point that are filled together: their frames are solved at once, so this bounds
 the run time of a marker that flickers."""
+MIN_TRAINING_FRAMES = 12
+"""Frames below which a gap is left to the filter. It guards a marker seen in one frame, whose
+gap would be filled with an expected error of zero."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +143,7 @@ def _fill_point(take: _Take, point: int, length: int, gaps: list[Gap]) -> None:
     gap = np.zeros(len(observed), dtype=bool)
     gap[first_gap] = True
     references = find_reference_markers(take.positions, observed, available, point, gap)
-    if references is None:
+    if references is None or len(references.training_frames) < MIN_TRAINING_FRAMES:
         return
     all_available = available[:, references.points].all(axis=1)
     for start, stop in similar_gaps[1:]:

@@ -65,7 +65,7 @@ def estimate_and_stack(
     complete = np.where(is_good, noisy, estimate.values)
     noise = estimate_channel_noise(np.where(is_good, noisy, np.nan), MIN_NOISE)
     spline = smooth_by_spline(complete)
-    noise *= noise_factors(noise, complete, spline, is_good)
+    noise = np.maximum(noise * noise_factors(noise, complete, spline, is_good), MIN_NOISE)
     smoothers = [spline, smooth_by_mixture(complete, noise, frame_rate, mixture)]
     stacked, weights = stack_estimates(
         noisy,
@@ -113,7 +113,7 @@ def _describe(n_smoothed: int, n_predicted: int) -> str:
             f"Plain smoothing and a model of how people move predict {joints} better."
         )
     if n_predicted:
-        sentences.append(f"The rest of the body predicts long gaps of {_joints(n_predicted)}.")
+        sentences.append(f"Long gaps of {_joints(n_predicted)} are filled by how people move.")
     return " ".join(sentences)
 
 

@@ -11,6 +11,9 @@ Flags = NDArray[np.bool_]
 MAX_JUMP_S = 0.2
 """Maximum duration (s) of a transient jump. Chosen by hand: x0.5 costs 20.9 %, x2 gains
 6.2 %."""
+MIN_JUMP_M = 0.05
+"""Minimum step (m) of a jump at any frame rate. It guards recordings of 120 Hz and more:
+without it a wobble of 2 cm is a jump."""
 MIN_ACCELERATION = 100.0
 """Minimum acceleration (m/s²) of a jump, to reach its speed within one frame. Chosen by hand:
 x0.5 costs nothing, x2 costs 0.6 %."""
@@ -42,7 +45,7 @@ def find_transient_jumps(positions: Array, frame_rate: float) -> Flags:
     steps = np.zeros(positions.shape[:2])
     steps[1:] = vector_lengths(positions[1:] - positions[:-1])  # into each frame
     step_sizes = np.nan_to_num(steps)
-    min_step = MIN_ACCELERATION / frame_rate**2
+    min_step = max(MIN_JUMP_M, MIN_ACCELERATION / frame_rate**2)
     n_context = max(1, round(CONTEXT_S * frame_rate))
     jumps_away = (step_sizes > min_step) & (
         step_sizes > MIN_STEP_RATIO * _max_before(step_sizes, n_context)

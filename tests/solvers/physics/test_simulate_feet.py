@@ -223,7 +223,7 @@ def test_pelvis_moves_where_straight_legs_would_stretch(walk, body):
         down = poses.positions[:, chain[-1]] - (0.0, 0.0, 0.01)
         goals.append(LegGoal(chain, down))
 
-    shift = solve_pelvis_offset(poses, goals, body.size)
+    shift = solve_pelvis_offset(poses, goals, 60.0, body.size)
 
     assert_allclose(shift[:, 2], -0.01, atol=0.002)
     assert np.abs(shift[:, :2]).max() < 0.002
@@ -233,7 +233,7 @@ def test_pelvis_stays_where_no_leg_changes(walk, body):
     poses = forward_kinematics(walk)
     goals = [LegGoal(chain, poses.positions[:, chain[-1]]) for chain in chains(body)]
 
-    assert_allclose(solve_pelvis_offset(poses, goals, body.size), 0.0, atol=1e-12)
+    assert_allclose(solve_pelvis_offset(poses, goals, 60.0, body.size), 0.0, atol=1e-12)
 
 
 def test_planting_is_equivariant_to_heading(shaking, planted):

@@ -1,5 +1,7 @@
 """Queries with missing joints, compared with simpler methods and complete queries."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from acted import ACTS, act
@@ -126,3 +128,19 @@ def test_reliability_falls_with_missing_joints_of_an_arm():
 
 def test_parts_never_observed_have_a_low_reliability():
     assert (part_reliability(np.zeros((3, 20), bool), DISTRIBUTION) <= 0.02).all()
+
+
+def test_joints_that_are_lost_one_after_the_other_are_filled():
+    """No frame shows all joints that most frames show."""
+    postures = clip_postures(act(next(iter(ACTS))), 20.0)
+    positions = postures.positions.copy()
+    parts = np.array_split(np.arange(len(positions)), 3)
+    for frames, joint in zip(
+        parts, ("leftLowerArm", "rightLowerArm", "leftLowerLeg"), strict=True
+    ):
+        positions[np.ix_(frames, joint_indices(joint))] = np.nan
+    positions[:, joint_indices("rightToes")] = np.nan
+
+    filled = DISTRIBUTION.fill_gaps(replace(postures, positions=positions))
+
+    assert np.isfinite(filled.positions).all()
