@@ -82,18 +82,18 @@ def predict_limbs(
     values = estimate.values.reshape(shape).copy()
     deviation = estimate.deviation.reshape(shape).copy()
     missing = np.isnan(channels.values).any(axis=2)
-    for (parts, body), alike in _group_by_joints(gaps, missing, channels, relation).items():
+    for (parts, body), group in _group_by_joints(gaps, missing, channels, relation).items():
         limb_values = canonical[:, parts].reshape(len(values), -1)
         body_values = canonical[:, body].reshape(len(values), -1)
         known = ~missing[:, parts].any(axis=1)
-        length = int(np.median([gap.stop - gap.start for gap in alike]))
+        length = int(np.median([gap.stop - gap.start for gap in group]))
         general = GENERAL_WEIGHT * relation.regress(
             [channels.keys[part] for part in parts], [channels.keys[part] for part in body]
         )
         adapted = adapt_relation(
             try_gaps(limb_values, body_values, known, length, frame_rate), general
         )
-        for gap in alike:
+        for gap in group:
             bridge = Bridge(gap.start, gap.stop, frame_rate)
             block = np.ix_(bridge.frames, np.array(parts))
             predicted = _predict(bridge, limb_values, body_values, adapted)
