@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...rotations import IDENTITY, inverse, rotate
+from ...progress import Progress, unwatched
+from ...rotations import IDENTITY, inverse, matrix_from_quaternion, rotate
 from ..channels import BODY_POSITION, Channels
 from ..posterior import Estimate
 from .adapt_relation import (
@@ -42,7 +43,11 @@ class JointGap(NamedTuple):
 
 
 def predict_limbs(
-    channels: Channels, estimate: Estimate, frame_rate: float, relation: BodyRelation
+    channels: Channels,
+    estimate: Estimate,
+    frame_rate: float,
+    relation: BodyRelation,
+    progress: Progress = unwatched,
 ) -> tuple[Estimate, int]:
     """Predict long gaps of joints from the other joints of the body.
 
@@ -62,6 +67,7 @@ def predict_limbs(
         Of these channels.
     frame_rate : float, Hz
     relation : BodyRelation
+    progress : Progress
 
     Returns
     -------
@@ -82,7 +88,9 @@ def predict_limbs(
     values = estimate.values.reshape(shape).copy()
     deviation = estimate.deviation.reshape(shape).copy()
     missing = np.isnan(channels.values).any(axis=2)
-    for (parts, body), group in _group_by_joints(gaps, missing, channels, relation).items():
+    groups = _group_by_joints(gaps, missing, channels, relation)
+    for index, ((parts, body), group) in enumerate(groups.items()):
+        progress(index / len(groups), "Predicting limbs")
         limb_values = canonical[:, parts].reshape(len(values), -1)
         body_values = canonical[:, body].reshape(len(values), -1)
         known = ~missing[:, parts].any(axis=1)
@@ -97,9 +105,12 @@ def predict_limbs(
             bridge = Bridge(gap.start, gap.stop, frame_rate)
             block = np.ix_(bridge.frames, np.array(parts))
             predicted = _predict(bridge, limb_values, body_values, adapted)
-            predicted = rotate(alignments[list(parts)], predicted)
+            axes = matrix_from_quaternion(alignments[list(parts)])
+            predicted = np.einsum("pac,fpc->fpa", axes, predicted)
             values[block] += (1.0 - OWN_PATTERNS_WEIGHT) * (predicted - values[block])
-            deviation[block] = _deviation(bridge, adapted, deviation[block])
+            if adapted.variance is not None:
+                variance = _variance(bridge, adapted.variance)
+                deviation[block] = np.sqrt(np.einsum("pac,fpc->fpa", axes**2, variance))
     n_joints = len({part for gap in gaps for part in gap.parts})
     flat = estimate.values.shape
     return (
@@ -149,13 +160,11 @@ def _predict(bridge: Bridge, limb: Array, body: Array, adapted: AdaptedRelation)
     return (bridge.line(limb) + adapted.weight * deviation).reshape(len(deviation), -1, 3)
 
 
-def _deviation(bridge: Bridge, adapted: AdaptedRelation, before: Array) -> Array:
-    """Return the standard deviation of the error, least near the ends of the gap.
+def _variance(bridge: Bridge, variance: Array) -> Array:
+    """Return the variance of the error (n_missing_frames, n_parts, 3), least near both ends.
 
-    As of a Brownian bridge, the variance rises with the length of the gap.
+    As of a Brownian bridge, it rises with the length of the gap.
     """
-    if adapted.variance is None:
-        return before
     length = bridge.stop - bridge.start
-    variance = BOW_VARIANCE * length * bridge.bow[:, None] * adapted.variance
-    return np.asarray(np.sqrt(variance).reshape(before.shape))
+    result = BOW_VARIANCE * length * bridge.bow[:, None] * variance
+    return np.asarray(result.reshape(len(result), -1, 3))

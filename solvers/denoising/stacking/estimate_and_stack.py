@@ -77,7 +77,7 @@ def estimate_and_stack(
     n_predicted = 0
     if bases is None:
         stacked, n_predicted = predict_limbs(
-            channels, stacked, frame_rate, load_body_relation()
+            channels, stacked, frame_rate, load_body_relation(), within(progress, 0.95, 1.0)
         )
     sentence = _describe(int(np.count_nonzero(weights[:, 0] < 0.5)), n_predicted)
     return stacked, f"{prior_used} {sentence}".strip()

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.denoising import denoise
-from solvers.denoising.channels import encode
+from solvers.denoising.channels import BODY_POSITION, encode
 from solvers.denoising.limb_gaps import (
     BodyRelation,
     load_body_relation,
@@ -18,9 +18,15 @@ from solvers.denoising.limb_gaps.adapt_relation import adapt_relation, try_gaps
 from solvers.denoising.limb_gaps.body_relation import KEYS
 from solvers.denoising.limb_gaps.bridges import Bridge
 from solvers.denoising.posterior import Estimate
+from solvers.errors import SolveCancelled
 from solvers.motion import Motion, find_humanoid_map
 from solvers.recordings import read_bvh
-from solvers.rotations import angle_between, quaternion_from_rotation_vector
+from solvers.rotations import (
+    angle_between,
+    multiply,
+    quaternion_from_rotation_vector,
+    rotate,
+)
 from solvers.samples import walker_skeleton
 from solvers.signals import fill_channel_gaps
 
@@ -180,6 +186,40 @@ def test_many_gaps_need_no_more_trials(rng):
     trials = try_gaps(values, values, known, 30, RATE)
 
     assert 90 <= len(np.unique(trials.bounds, axis=0)) <= 2 * 90 + 120
+
+
+def test_result_turns_with_the_axes_of_the_rig(rng):
+    """A rig whose rest axes are a quarter turn about Z: X is its Y, Y its -X."""
+    channels = encode(_without_arm(_swings(rng), GAP))
+    turn = quaternion_from_rotation_vector([0.0, 0.0, np.pi / 2])
+    references = {key: value.copy() for key, value in channels.references.items()}
+    for key in set(references) - {BODY_POSITION}:
+        references[key][8:12] = multiply(turn, references[key][8:12])
+    values = channels.values.copy()
+    values[:, :-1] = rotate(turn, values[:, :-1])
+    turned = replace(channels, values=values, references=references)
+
+    results = [
+        predict_limbs(each, _interpolated(each), RATE, load_body_relation())[0]
+        for each in (channels, turned)
+    ]
+
+    predicted, also = (each.values.reshape(channels.values.shape)[GAP] for each in results)
+    assert_allclose(also[:, :-1], rotate(turn, predicted[:, :-1]), atol=1e-9)
+    deviation, same = (each.deviation.reshape(channels.values.shape)[GAP] for each in results)
+    assert_allclose(same[:, :-1], deviation[:, :-1, [1, 0, 2]], atol=1e-9)
+    assert np.ptp(deviation[:, :-1], axis=2).max() > 0.5
+
+
+def test_cancelling_ends_the_prediction(rng):
+    """Many limbs that are lost one after the other may take seconds."""
+    channels = encode(_without_arm(_swings(rng), GAP))
+
+    def cancel(fraction: float, message: str = "") -> None:
+        raise SolveCancelled
+
+    with pytest.raises(SolveCancelled):
+        predict_limbs(channels, _interpolated(channels), RATE, load_body_relation(), cancel)
 
 
 def test_one_frame(rng):
