@@ -22,6 +22,10 @@ from .files import DAMAGE
 MAX_BYTES = 1 << 32
 MAX_HEADER_BYTES = 1024
 """Maximum bytes of the header of an array; 118 are typical."""
+MAX_ASYMMETRY = 1e-4
+"""Difference between elements of a covariance across its diagonal, as a fraction of its
+largest; products of many frames round differently on either side. By definition of single
+precision 1e-7, times the root of a million frames."""
 READABLE = (*DAMAGE, RuntimeError)
 """Errors of zipfile and numpy on damaged archives; RuntimeError on encrypted ones."""
 
@@ -76,6 +80,9 @@ class Values:
         Whether the member may be missing.
     or_empty : bool
         Whether the member may also be empty, with shape (0,).
+    least_eigenvalue : float, optional
+        For symmetric matrices in the last two axes, which may be covariances: the smallest
+        valid eigenvalue, as a fraction of the largest element. None: no matrices.
     """
 
     kinds: str
@@ -85,6 +92,7 @@ class Values:
     finite: bool = True
     optional: bool = False
     or_empty: bool = False
+    least_eigenvalue: float | None = None
 
 
 def numbers(*shape: int | str, **more: Any) -> Values:
@@ -95,6 +103,15 @@ def numbers(*shape: int | str, **more: Any) -> Values:
 def integers(*shape: int | str, **more: Any) -> Values:
     """Return the description of integers."""
     return Values("iu", shape, **more)
+
+
+def covariances(*shape: int | str, least_eigenvalue: float, **more: Any) -> Values:
+    """Return the description of symmetric matrices that can be inverted.
+
+    Either as they are (`least_eigenvalue` above 0) or with a ridge added (below 0, for the
+    rounding of what was saved).
+    """
+    return numbers(*shape, least_eigenvalue=least_eigenvalue, **more)
 
 
 def flags(*shape: int | str, **more: Any) -> Values:
@@ -232,3 +249,24 @@ def _check_values(name: str, array: NDArray[Any], values: Values) -> None:
     too_small = values.minimum > -np.inf and (array < values.minimum).any()
     if too_small or (values.maximum < np.inf and (array > values.maximum).any()):
         raise DamagedMemberError(f"{name} has numbers out of range")
+    if values.least_eigenvalue is not None and not _are_covariances(
+        array.astype(np.float64), values.least_eigenvalue
+    ):
+        raise DamagedMemberError(f"{name} holds a matrix that is no covariance")
+
+
+def _are_covariances(matrices: NDArray[np.float64], least_eigenvalue: float) -> bool:
+    """Return whether matrices (..., n, n) are symmetric, with eigenvalues of this size."""
+    if not matrices.size:
+        return True
+    largest = np.abs(matrices).max(axis=(-2, -1), keepdims=True)
+    transposed = matrices.swapaxes(-1, -2)
+    if (np.abs(matrices - transposed) > MAX_ASYMMETRY * largest).any():
+        return False
+    symmetric = 0.5 * (matrices + transposed)
+    shift = least_eigenvalue * np.maximum(largest, np.finfo(np.float64).tiny)
+    try:
+        np.linalg.cholesky(symmetric - shift * np.eye(matrices.shape[-1]))
+    except np.linalg.LinAlgError:
+        return False
+    return True

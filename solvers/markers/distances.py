@@ -11,11 +11,11 @@ from ..signals import MAD_TO_SIGMA
 
 MAX_NEIGHBORS = 6
 MIN_SPREAD_M = 0.004
-"""Lower bound of the spread of a distance. Chosen by hand: x0.5 and x2 move no error, x10 costs
-3.4 %, x1000 costs 50.0 %."""
+"""Lower bound of the spread of a distance. It guards markers whose distances are exact for most
+of a take: every label would be wrong where skin moves by millimeters."""
 RIGID_SPREAD_M = 0.02
-"""Maximum spread of a distance that identifies a marker by itself. Chosen by hand: x0.5 and x2
-move no error."""
+"""Maximum spread of a distance that identifies a marker by itself. It guards markers that move
+freely, any of whose distances are those of another one at times."""
 MAX_FRAMES = 400
 MIN_FRAMES = 30
 MAX_MISFIT = 8.0

@@ -9,12 +9,12 @@ from .pair_swaps import PairSwap
 
 MIN_BAD_MISFIT, MAX_GOOD_MISFIT = 4.0, 1.0
 """Median misfit, relative to the spread of the distances, above which a label is wrong, and
-below which it is correct. Chosen by hand: first, x0.5 costs nothing, x2 costs 0.3 %; second,
-x0.5 and x2 move no error."""
+below which it is correct. First chosen by hand: x0.5 costs nothing, x2 costs 0.3 %; the second
+guards reflections, which fit no label."""
 MIN_NEIGHBORS = 3
 MIN_JUMP_M = 0.06
-"""Step relative to the neighbors in one frame that indicates another marker. Chosen by hand:
-x0.5 and x2 move no error, x10 costs 3.1 %, x1000 costs 3.1 %."""
+"""Step relative to the neighbors in one frame that indicates another marker. It guards markers
+that get the label of a missing one for some frames: they would keep it."""
 
 
 def find_mistaken_labels(positions: Array, distances: Distances) -> list[PairSwap]:

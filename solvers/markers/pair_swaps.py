@@ -21,9 +21,9 @@ FRAME_WEIGHT = 0.3
 x0.5 costs 2.1 %, x2 costs nothing."""
 STEP_PERCENTILE, STEP_FACTOR, STEP_OFFSET_M = 90.0, 2.0, 0.004
 """Typical step of a pair: this percentile of its relative steps, times the factor, plus the
-offset. A low percentile limits the influence of swaps in short takes. Chosen by hand: first,
-x0.5 costs nothing, x2 fails; second, x0.5 and x2 move no error; third, x0.5 and x2 move no
-error."""
+offset. A low percentile limits the influence of swaps in short takes. First chosen by hand:
+x0.5 costs nothing, x2 fails. The others guard hands that pass each other quickly in a slow
+take, and in one of an actor who stands still."""
 MIN_BAD_MISFIT, MIN_BAD_FRAMES = 3.0, 5
 """Misfit above which a label is bad, and minimum number of frames with two bad labels. Chosen
 by hand: from x0.001 to x1000 no error moves; without it a swap that starts in a gap stays

@@ -19,8 +19,8 @@ UNLINKED_M = 1.0
 is wide."""
 N_ITERATIONS = 4
 MIN_OBSERVED_FRACTION = 0.2
-"""Minimum fraction of frames with both markers of a pair. Chosen by hand: x0.5 and x2 move no
-error, x10 finds no cluster."""
+"""Minimum fraction of frames with both markers of a pair. It guards a marker seen in a few
+frames, in which no distance has time to vary: it would join a cluster."""
 SPREAD_PERCENTILES = (2.0, 50.0, 98.0)
 """Percentiles of a distance that measure its spread. The outer two bound two standard
 deviations, by definition."""
@@ -28,8 +28,8 @@ PERCENTILES_TO_SIGMA = 4.107
 """Standard deviations between the outer two of these percentiles of a normal distribution. By
 definition."""
 MIN_TAKE_SPREAD_M = 0.01
-"""Minimum median spread of all distances in a take for clusters to be detectable. Chosen by
-hand: x0.5 and x2 move no error, x10 finds no cluster."""
+"""Minimum median spread of all distances in a take for clusters to be detectable. It guards an
+actor who stands still, who would be one cluster."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,8 +20,8 @@ from .standing_feet import foot_bone
 Flags = NDArray[np.bool_]
 
 MAX_DROP_FRACTION = 0.15
-"""Maximum pelvis drop for feet to reach, as a fraction of the leg length. Chosen by hand: x0.5
-and x2 move no error, x0.001 costs 1.0 %."""
+"""Maximum pelvis drop for feet to reach, as a fraction of the leg length. It guards feet out of
+reach, such as those of a wrong frame, which would pull the pelvis to the ground."""
 DROP_EASE_S = 0.15
 """Seconds over which the pelvis drop eases in and out. Chosen by hand: x0.5 costs nothing, x2
 gains 0.1 %."""

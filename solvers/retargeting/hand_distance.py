@@ -9,11 +9,11 @@ from ..signals import smoothstep
 
 MEETING_FRACTION, INDEPENDENT_FRACTION = 0.15, 0.4
 """Distances of both hands, as fractions of the arm length: below the first they meet, above the
-second they are independent. Chosen by hand: first, x0.5 and x2 move no error; second, x0.5
-costs nothing, x2 gains 0.3 %."""
+second they are independent. The first guards hands that nearly touch, which would keep part of
+the distance from other arms. Second chosen by hand: x0.5 costs nothing, x2 gains 0.3 %."""
 MAX_EXTENSION_FRACTION = 0.999
-"""Fraction of its length to which an arm may extend for hands to meet. Chosen by hand: x0.5 and
-x2 move no error."""
+"""Fraction of its length to which an arm may extend for hands to meet. It guards arms that are
+too short: the elbow of a straight arm has no direction."""
 
 
 class Arms(NamedTuple):

@@ -19,11 +19,11 @@ SUPPORT_HEIGHT_FRACTIONS = (0.12, 0.18)
 ground. Chosen by hand: x0.5 costs nothing, x2 gains 0.1 %."""
 SUPPORT_SPEED, PASSING_SPEED = 0.25, 1.0
 """Speeds in leg lengths per second: low hands slower than the first support themselves on the
-ground; hands faster than the second only pass. Chosen by hand: from x0.001 to x1000 no error
-moves."""
+ground; hands faster than the second only pass. They guard hands that sweep over the ground,
+which would be pulled to the place of the source's."""
 SPEED_SMOOTHING_S = 0.1
-"""Standard deviation of the Gaussian that smooths the speed. Chosen by hand: x0.5 and x2 move
-no error."""
+"""Standard deviation of the Gaussian that smooths the speed. It guards a hand that turns in a
+sweep over the ground: it stands for an instant, as if it supported the body."""
 SHIFT_SMOOTHING_S = 0.07
 """Standard deviation of the Gaussian that smooths the displacement of the hands. Chosen by
 hand: x0.5 costs 4.2 %, x2 costs nothing."""
@@ -31,11 +31,11 @@ LIFT_EASE_S = 0.07
 """Seconds over which the lift of hands off the ground eases in and out. Chosen by hand: x0.5
 costs 0.2 %, x2 costs nothing."""
 EASE_EXTENSION_FRACTION = 0.9
-"""Fraction of its length from which an arm eases into full extension. Chosen by hand: x0.5 and
-x2 move no error."""
+"""Fraction of its length from which an arm eases into full extension. It guards arms that the
+ground is too low for: they would snap straight."""
 ROUNDING_FRACTION = 0.05
-"""Height over which a hand is decelerated above its minimum height, in leg lengths. Chosen by
-hand: x0.5 and x2 move no error."""
+"""Height over which a hand is decelerated above its minimum height, in leg lengths. It guards
+hands of a body that lies down, which would sink lower than the source's."""
 
 
 class Ground(NamedTuple):

@@ -12,11 +12,11 @@ from .body import hips_of, hold_gaps
 
 UP = np.array([0.0, 0.0, 1.0])
 TRUNCATION_SIGMAS = 4.0
-"""Standard deviations at which the Gaussian is truncated. Chosen by hand: from x0.001 to x1000
-no error moves."""
+"""Standard deviations by which a path is padded. It guards walks, which would slow down at both
+ends of a clip."""
 MAX_TILT_RAD = np.radians(60.0)
-"""Tilt of the hips above which they do not define the facing direction. Chosen by hand: from
-x0.001 to x1000 no error moves."""
+"""Tilt of the hips above which they do not define the facing direction. It guards
+actors who get up: the root would turn in one frame."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,6 +18,7 @@ from depth_files import depth_npz, matlab, pictures
 from exports.whole_exports import EXPORT_TOKENS, EXPORTS
 from fuzz_seeds import (
     QUERY,
+    body_files,
     clip_library,
     crowds,
     depth_folders,
@@ -26,7 +27,6 @@ from fuzz_seeds import (
     png,
     raw_depth,
     scene_json,
-    smpl_crowd,
 )
 from learned_files import LEARNED, npz
 from mkv_files import k4a
@@ -114,7 +114,9 @@ def targets() -> dict[str, Target]:
         found[kind] = Target(content, read_recording, EXPORT_TOKENS)
     for kind, content in crowds().items():
         found[f"crowd_{kind}"] = Target(content, _read_bodies, JOINT_TOKENS)
-    found["crowd_smpl"] = Target(smpl_crowd(), _read_bodies, BINARY_TOKENS, is_archive=True)
+    for kind, content in body_files().items():
+        is_archive = content.startswith(b"PK")
+        found[kind] = Target(content, _read_bodies, BINARY_TOKENS, is_archive=is_archive)
     depth = {"depth_mat": matlab("depth", DEPTH.transpose(1, 2, 0)), "depth_mkv": k4a(DEPTH)}
     for kind, content in depth.items():
         found[kind] = Target(content, _read_depth, BINARY_TOKENS)

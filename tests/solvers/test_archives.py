@@ -1,7 +1,9 @@
 """Whatever an archive says of itself: what fits is loaded, all else is one sentence."""
 
+import importlib
 import io
 import os
+import pkgutil
 import struct
 import tracemalloc
 import zipfile
@@ -11,6 +13,7 @@ import pytest
 from learned_files import LEARNED, SHIPPED, arrays_of, npz
 from numpy.testing import assert_array_equal
 
+import solvers
 from solvers.archives import ArchiveLayout
 from solvers.errors import InvalidFileError
 from solvers.npz_members import LEARNED as BOUND
@@ -58,6 +61,24 @@ def refused(tmp_path):
         return sentence
 
     return load
+
+
+def test_every_layout_of_an_archive_is_tested():
+    modules = [
+        importlib.import_module(found.name)
+        for found in pkgutil.walk_packages(solvers.__path__, "solvers.")
+        if not found.name.endswith("__main__")
+    ]
+    layouts = [
+        each for module in modules for each in vars(module).values()
+        if isinstance(each, ArchiveLayout)
+    ]  # fmt: skip
+    tested = [one.members for one in LEARNED.values()]
+
+    assert len(layouts) >= 10
+    assert [
+        each.kind for each in layouts if not any(each.members is one for one in tested)
+    ] == []
 
 
 @pytest.mark.parametrize("kind", LEARNED)

@@ -12,18 +12,32 @@ from ...archives import ArchiveLayout
 from ...arrays import Array
 from ...errors import InvalidMotionError
 from ...motion import Motion
-from ...npz_members import numbers, words
+from ...npz_members import covariances, words
 from ...rotations import inverse, rotate
 from ..channels import BODY_POSITION, Channels, encode
 from .bridges import N_FEATURES, Bridge
 
 SHIPPED = Path(__file__).parent / "bodies.npz"
+RIDGE = 10.0
+"""Square degrees: what other people's movement does not tell of this body's. Chosen by hand on
+the development takes of the first press: x10 costs 5 %."""
+LEAST_EIGENVALUE = -1e-6
+"""Fraction of the largest moment: rounding in single precision. By definition."""
+MAX_MOMENT = -0.5 * RIDGE / LEAST_EIGENVALUE
+"""Square degrees. By definition the largest whose rounding is below the ridge, so that every
+regression has a solution; people's are 500."""
 LAYOUT = ArchiveLayout(
     "body relation",
     1,
     {
         "keys": words("parts"),
-        "moments": numbers("features", "features"),
+        "moments": covariances(
+            "features",
+            "features",
+            minimum=-MAX_MOMENT,
+            maximum=MAX_MOMENT,
+            least_eigenvalue=LEAST_EIGENVALUE,
+        ),
         "trained_on": words(),
     },
     holds="a damaged body relation",
@@ -39,9 +53,6 @@ GAP_S, HOP_S = 1.0, 0.25
 """Length of the gaps that are learned from, and from one to the next, seconds. Chosen by hand
 on the development takes of the first press: first, x0.5 costs 1.5 %, x2 costs 0.8 %; second,
 x0.5 and x2 move no error."""
-RIDGE = 10.0
-"""Square degrees: what other people's movement does not tell of this body's. Chosen by hand on
-the development takes of the first press: x10 costs 5 %."""
 MIRRORED_ROTATION, MIRRORED_POSITION = np.array([1.0, -1.0, -1.0]), np.array([-1.0, 1.0, 1.0])
 """A mirror swaps left and right. By definition of rotation vectors and of the path's frame."""
 
@@ -130,7 +141,7 @@ def load_body_relation(path: Path | str = SHIPPED) -> BodyRelation:
     """
     arrays = LAYOUT.read(path)
     keys, moments = tuple(map(str, arrays["keys"])), arrays["moments"].astype(float)
-    if len(moments) != 2 * N_FEATURES * 3 * len(keys):
+    if not keys or len(moments) != 2 * N_FEATURES * 3 * len(keys):
         raise LAYOUT.damaged(path, "the moments are not those of the keys")
     return BodyRelation(keys, moments, str(arrays["trained_on"]))
 

@@ -8,14 +8,27 @@ import numpy as np
 
 from ...archives import ArchiveLayout
 from ...arrays import Array
-from ...npz_members import integers, numbers, words
+from ...npz_members import covariances, integers, numbers, words
 
+MAX_COVARIANCE = 180.0**2 * 1000.0
+"""Square degrees: of coefficients of a window of a thousand frames. By definition: a rotation
+vector is at most 180 degrees long."""
+LEAST_EIGENVALUE = 1e-9
+"""Fraction of the largest element, so that a covariance can be inverted. By definition of
+double precision; learned ones have 3e-7."""
 LAYOUT = ArchiveLayout(
     "motion mixture",
     1,
     {
-        "weights": numbers("components", minimum=0.0, maximum=1.0),
-        "covariances": numbers("components", "3*coefficients", "3*coefficients"),
+        "weights": numbers("components", minimum=np.finfo(float).tiny, maximum=1.0),
+        "covariances": covariances(
+            "components",
+            "3*coefficients",
+            "3*coefficients",
+            minimum=-MAX_COVARIANCE,
+            maximum=MAX_COVARIANCE,
+            least_eigenvalue=LEAST_EIGENVALUE,
+        ),
         "frame_rate": numbers(minimum=1.0, maximum=1000.0),
         "n_coefficients": integers(minimum=1, maximum=1000),
         "trained_on": words(),
@@ -26,6 +39,8 @@ LAYOUT = ArchiveLayout(
 SHIPPED = Path(__file__).parent / "motions.npz"
 N_CHANNELS = 3
 """Channels of a joint: its rotation vector. By definition."""
+MAX_MISSING_WEIGHT = 1e-4
+"""Difference of the sum of all weights from 1. By definition: rounding in single precision."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +104,10 @@ def load_motion_mixture(path: Path | str = SHIPPED) -> MotionMixture:
         The file is missing, damaged, or holds something else.
     """
     arrays = LAYOUT.read(path)
+    if arrays["covariances"].shape[1] != N_CHANNELS * int(arrays["n_coefficients"]):
+        raise LAYOUT.damaged(path, "the covariances are not those of the coefficients")
+    if not np.isclose(arrays["weights"].sum(), 1.0, atol=MAX_MISSING_WEIGHT):
+        raise LAYOUT.damaged(path, "the weights do not add up to 1")
     return MotionMixture(
         arrays["weights"],
         arrays["covariances"].astype(float),

@@ -18,8 +18,8 @@ MAX_BODY_SCALE, MIN_BODY_SCALE = 3.0, 0.2
 """Scales of a body relative to that adult beyond which the unit must be wrong. They guard
 against wrong units."""
 MIN_RELIABILITY = 0.6
-"""Joints above this reliability determine the lengths, if there are enough of them. Chosen by
-hand: from x0.001 to x1000 no error moves."""
+"""Joints above this reliability determine the lengths, if there are enough of them. It
+guards actors who are hidden most of the time, with limbs of wrong lengths."""
 MIN_RELIABLE_FRAMES = 15
 
 

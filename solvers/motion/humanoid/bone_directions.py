@@ -14,8 +14,8 @@ MIN_BONE_M = 5e-3
 """Length below which a bone has no direction. It guards a division where a bone has no
 length."""
 RATE_WINDOW_S = 0.1
-"""Seconds to each side over which a rate is measured. Chosen by hand: from x0.001 to x1000 no
-error moves."""
+"""Seconds to each side over which a rate is measured. It guards high frame rates, at which the
+difference of two frames is noise."""
 PARENT_INDICES = np.maximum(PARENTS, 0)
 SUBSTITUTES = {"spine": "chest", "chest": "spine", "leftToes": "", "rightToes": ""}
 """Joint whose direction a missing bone takes, if not its parent; empty: forward."""

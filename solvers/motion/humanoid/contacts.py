@@ -16,8 +16,8 @@ HUMAN_LEG_LENGTH_M = 0.9
 definition."""
 
 GROUND_PERCENTILE = 5.0
-"""Percentile of the heights of slow frames that is the ground; lower ones are noise. Chosen by
-hand: x0.5 and x2 move no error, x1000 fails."""
+"""Percentile of the heights of slow frames that is the ground; lower ones are noise. It guards
+feet that a sensor places below the ground for some frames."""
 
 GROUND_WINDOW_S = 1.0
 """Seconds before and after a frame from which the height of its ground is estimated. It guards
@@ -28,8 +28,8 @@ MAX_GROUND_DRIFT_M = 0.1
 feet that hang or rest in the air for longer than the window."""
 
 MIN_SLOW_FRACTION = 0.02
-"""Fraction of slow frames from which the ground is estimated from these alone. Chosen by hand:
-from x0.001 to x1000 no error moves."""
+"""Fraction of slow frames from which the ground is estimated from these alone. It guards feet
+that slide, and are slow only where they hang in the air."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,8 +14,8 @@ from .motion import Motion
 from .tracks import Tracks
 
 STOPBAND_DB = 60.0
-"""Attenuation of frequencies above the new Nyquist frequency, decibels. Chosen by hand: x0.5
-and x2 move no error, x0.1 fails, x10 costs 0.1 %."""
+"""Attenuation of frequencies above the new Nyquist frequency, decibels. It guards
+shaking limbs and jitter, which would become slow movements."""
 
 PASSBAND = 0.7
 """Edge of the passband, as a fraction of the new Nyquist frequency. Chosen by hand: x0.5 costs

@@ -25,8 +25,8 @@ MIN_STEP_RAD = np.radians(1.0)
 """Lower bound of the typical step of a joint, radians. Chosen by hand: x0.5 costs nothing, x2
 costs 7.1 %."""
 MIN_STEP_M = 0.04
-"""Meters, likewise: a dropped camera frame moves all points of a body by a few centimeters.
-Chosen by hand: from x0.001 to x1000 no error moves."""
+"""Meters, likewise. It guards actors who stand still: a dropped camera frame moves all points
+of a body by a few centimeters."""
 MIN_JOINTS = 6
 """With fewer joints, a common jump of nearly all of them is not significant."""
 MIN_MOTION = 1e-6

@@ -15,6 +15,8 @@ from ...files import open_regular
 from ...npz_members import READABLE, RECORDED, Values, array_content, array_header, read_members
 
 NPY_MAGIC = b"\x93NUMPY"
+MAX_NUMBER = float(np.finfo(np.float32).max)
+"""Without unit. By definition: what sensors and networks store has 32 bits."""
 NUMBERS = Values("fiu", None, finite=False)
 
 
@@ -26,7 +28,7 @@ def read_array(path: Path | str) -> NDArray[np.float64]:
             n_available = os.fstat(file.fileno()).st_size - header.start
             if header.dtype.kind not in NUMBERS.kinds or header.n_bytes > n_available:
                 raise ValueError(header)
-            return _as_float(array_content(file, header))
+            return _as_float(array_content(file, header), path)
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except READABLE:
@@ -42,7 +44,7 @@ def read_archive(path: Path | str, names: tuple[str, ...]) -> list[NDArray[np.fl
         raise InvalidFileError(f"There is no file {path}.") from None
     except READABLE:
         raise _damaged(path) from None
-    return [_as_float(arrays[name]) for name in names]
+    return [_as_float(arrays[name], path) for name in names]
 
 
 def read_archive_members(
@@ -60,12 +62,16 @@ def read_archive_members(
         raise InvalidFileError(f"There is no file {path}.") from None
     except READABLE:
         raise _damaged(path) from None
-    return {name: _as_float(array) for name, array in arrays.items()}
+    return {name: _as_float(array, path) for name, array in arrays.items()}
 
 
-def _as_float(array: NDArray[Any]) -> NDArray[np.float64]:
+def _as_float(array: NDArray[Any], path: Path | str) -> NDArray[np.float64]:
+    """Return the numbers; raise InvalidFileError if squares of them have no number."""
     with np.errstate(invalid="ignore", over="ignore"):  # damaged or very large floats
-        return array.astype(np.float64)
+        found = array.astype(np.float64)
+        if (np.isfinite(found) & (np.abs(found) > MAX_NUMBER)).any():
+            raise _damaged(path)
+    return found
 
 
 def _damaged(path: Path | str) -> InvalidFileError:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
+from ...motion.skeletons import check_frame_rate
 
 DEFAULT_FRAME_RATE = 30.0
 """Frame rate in hertz of every Kinect in good light."""
@@ -30,7 +31,11 @@ MAX_LENGTH_RATIO, MAX_EXTRA_FRAMES = 10, 1000
 
 
 def common_rate(rate: float) -> float:
-    """Return the common rate that a rate such as 120.00004 Hz means, else the rate itself."""
+    """Return the common rate that a rate such as 120.00004 Hz means, else the rate itself.
+
+    Raises InvalidMotionError where a file states a rate that is none, such as 0.
+    """
+    check_frame_rate(rate)
     nearest = min(
         (*COMMON_RATES, 200.0, 240.0, 250.0, 300.0), key=lambda common: abs(common - rate)
     )

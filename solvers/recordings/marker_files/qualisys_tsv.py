@@ -168,7 +168,7 @@ def _resampled(
     frames = stamps[:, 0] if stamps.shape[1] else unknown
     times = stamps[:, 1] if stamps.shape[1] > 1 else unknown
     try:
-        rate = float((header.fields.get("FREQUENCY") or [""])[0].replace(",", "."))
+        rate = float(header.fields.get("FREQUENCY", [""])[0].replace(",", "."))
     except ValueError:  # EXT: an external clock
         rate = 0.0
     return at_constant_rate(values, frames, times, rate if rate > 0.0 else None, path)
@@ -183,7 +183,7 @@ def _read_header(reader: LineReader, path: Path | str) -> _Header:
         if _is_line_of_titles(cells):
             titles = cells
         elif KEY.fullmatch(cells[0]):
-            fields.setdefault(cells[0], cells[1:])
+            fields.setdefault(cells[0], cells[1:] or [""])
         elif any(cells):
             break
         reader.take()

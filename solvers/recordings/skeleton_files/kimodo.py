@@ -36,6 +36,9 @@ JOINTS: tuple[tuple[str, str], ...] = (
     ("RightToeBase", "RightFoot"),
 )  # fmt: skip
 """Names and parents of the 30 joints, in the order of the archives, which name none."""
+MIN_DETERMINANT = 0.5
+"""Of a matrix that rounding has changed. By definition 1 of a rotation, -1 of a mirror
+image."""
 MEMBERS = ("posed_joints", "global_rot_mats", "fps")
 NAMES = frozenset({"posed_joints", "global_rot_mats", "local_rot_mats", "foot_contacts"})
 
@@ -87,6 +90,10 @@ def read_kimodo(
     names = tuple(name for name, _ in JOINTS)
     parents = np.array([names.index(parent) if parent else -1 for _, parent in JOINTS])
     finite = np.isfinite(joints).all(axis=(1, 2)) & np.isfinite(matrices).all(axis=(1, 2, 3))
+    if (np.linalg.det(matrices[finite]) < MIN_DETERMINANT).any():
+        raise InvalidFileError(
+            f"{path} has matrices in global_rot_mats that are no rotations. Export it as BVH."
+        )
     rotations = np.full((*joints.shape[:2], 4), np.nan)
     rotations[finite] = quaternion_from_matrix(matrices[finite])
     rate = arrays.get("fps")

@@ -11,8 +11,8 @@ from ..index import MEAN_POSTURE_WEIGHT
 from ..postures import BodyPart
 
 RELIABILITY_POWER = 4.0
-"""Exponent of the reliability of a part in its weight. Chosen by hand: from x0.001 to x1000 no
-error moves."""
+"""Exponent of the reliability of a part in its weight. It guards queries with a limb that was
+hardly tracked."""
 SENSOR_MEAN_POSTURE_WEIGHT = 0.4
 """Maximum weight of the mean posture for sensor data. Chosen by a sweep over the training data
 of docs/benchmarks_retrieval.md."""
@@ -20,8 +20,8 @@ MIN_ACTIVITY = 0.05
 """Movement of the most active part, relative to the average, below which the query counts as a
 static pose. It guards queries of a static pose."""
 REST_WEIGHT = 0.2
-"""Activity of a part at rest, as a fraction of that of the most active part. Chosen by hand:
-x0.5 and x2 move no error, x1000 costs 0.1 %."""
+"""Activity of a part at rest, as a fraction of that of the most active part. It guards
+queries that move one hand: any clip that moves this hand would answer them."""
 
 
 class FindMethod(Choice):

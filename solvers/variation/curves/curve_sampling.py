@@ -7,8 +7,9 @@ from scipy.sparse import csr_matrix
 from ...arrays import Array
 
 N_PADDING = 12
-"""Frames by which curves are extrapolated at either end, to hide boundary effects. Chosen by
-hand: x0.5 and x2 move no error, x0.1 fails."""
+"""Frames by which curves are extrapolated at either end, to hide boundary effects. It
+guards the ends of straight lines, which would curve: the effect of an end falls to 0.27 per
+frame."""
 
 
 def sample_linearly(curves: Array, times: Array) -> Array:

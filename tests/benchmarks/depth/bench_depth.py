@@ -257,7 +257,7 @@ def resolution() -> list[str]:
 
 
 def _single(scores: Scores) -> str:
-    return scores.markdown().replace(" ± 0.00", "")
+    return scores.markdown()
 
 
 if __name__ == "__main__":

@@ -50,7 +50,7 @@ def captures() -> list[str]:
                 scores.add(label, column, name, figure)
                 if given is None:
                     by_sequence.add(name, column, name, figure)
-    return [scores.markdown(), by_sequence.markdown().replace(" ± 0.00", "")]
+    return [scores.markdown(), by_sequence.markdown()]
 
 
 def more() -> list[str]:
@@ -71,7 +71,7 @@ def more() -> list[str]:
         scores.add(name, column, name, figure)
     for scores, name, (column, figure) in rows:
         scores.add("all", column, name, figure)
-    return [one.markdown().replace(" ± 0.00", "") for one in (captures_table, alone)]
+    return [one.markdown() for one in (captures_table, alone)]
 
 
 def capture_modes() -> list[str]:

@@ -55,7 +55,7 @@ def kinect(subjects: Sequence[int] = SUBJECTS) -> list[str]:
     for column, name, figure in everything:
         scores.add("all", column, name, figure)
     text = scores.markdown()
-    return [text.replace(" ± 0.00", "") if len(subjects) == 1 else text, *_pictures()]
+    return [text, *_pictures()]
 
 
 def _pictures() -> list[str]:

@@ -56,8 +56,9 @@ class Scores:
         return _quietly(np.mean, differences), _quietly(np.std, differences)
 
     def markdown(self) -> str:
-        """Mean ± spread, then the paired difference to ours."""
-        parts = [f"**{self.title}** ({self.unit}; mean ± standard deviation over clips)\n"]
+        """Mean ± spread, then the paired difference to ours; of one clip each, the figures."""
+        statistic = "" if self._is_single else "; mean ± standard deviation over clips"
+        parts = [f"**{self.title}** ({self.unit}{statistic})\n"]
         rows = {name: [self._cell(name, one) for one in self.columns] for name in self.methods}
         parts.append(table(["method", *self.columns], rows))
         if self.ours in self.methods and len(self.methods) > 1:
@@ -72,13 +73,22 @@ class Scores:
     def _cell(self, method: str, column: str) -> str:
         if not np.isfinite(self.mean(method, column)):
             return "-"
-        return f"{number(self.mean(method, column))} ± {number(self.spread(method, column))}"
+        mean = number(self.mean(method, column))
+        is_single = len(self._found[method, column]) == 1
+        return mean if is_single else f"{mean} ± {number(self.spread(method, column))}"
 
     def _pair(self, method: str, column: str) -> str:
         mean, spread = self.paired(method, column)
         if not np.isfinite(mean):
             return "-"
-        return f"{'+' if mean >= 0 else '-'}{number(abs(mean))} ± {number(spread)}"
+        difference = f"{'+' if mean >= 0 else '-'}{number(abs(mean))}"
+        is_single = len(self._found[method, column]) == 1
+        return difference if is_single else f"{difference} ± {number(spread)}"
+
+    @property
+    def _is_single(self) -> bool:
+        """Whether no figure is that of more than one clip."""
+        return all(len(clips) <= 1 for clips in self._found.values())
 
 
 def table(header: Sequence[str], rows: dict[str, list[str]]) -> str:

@@ -90,7 +90,7 @@ def by_set(sets: Sets) -> list[str]:
         for column, figure in _figures(Judge(examples), methods()[OURS]).items():
             (feet if column in FEET else rest).add(name, column, name, figure)
         print(f"Done by itself: {name}", file=sys.stderr, flush=True)
-    return [one.markdown().replace(" ± 0.00", "") for one in (rest, feet)]
+    return [one.markdown() for one in (rest, feet)]
 
 
 def _figures(

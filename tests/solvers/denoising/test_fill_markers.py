@@ -243,3 +243,13 @@ def test_only_short_jumps_are_transient_outliers(body):
     assert not filled[:, [0, 1, 2, 5, 6, 7, 8, 9]].any()
     assert filled[:, 3].sum() == 1
     assert filled[:, 4].sum() <= 4
+
+
+@pytest.mark.parametrize("n_seen", [1, 5])
+def test_marker_hardly_ever_seen_is_not_filled_with_certainty(body, n_seen):
+    noisy = body + np.random.default_rng(9).normal(scale=0.003, size=body.shape)
+    take = gapped(noisy, 7, np.r_[0:100, 100 + n_seen : 240])
+
+    filled = fill_markers(tracks_of(take))
+
+    assert not filled.filled[:, 7].any()

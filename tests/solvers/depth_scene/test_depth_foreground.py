@@ -13,7 +13,9 @@ from solvers.depth_scene.foreground import (
     ForegroundMethod,
     ForegroundSettings,
     cut_out_actor,
+    is_in_front,
     learn_background,
+    uncovered_background,
 )
 from solvers.depth_scene.recording import DepthRecording
 from solvers.errors import InvalidMotionError
@@ -108,3 +110,16 @@ def test_learn_background_returns_median_and_noise(rng):
     assert background.depth[0, 0] == 0.0
     assert background.depth[0, 1] == pytest.approx(np.median(depth[10:, 0, 1]))
     assert np.median(background.spread) == pytest.approx(0.02, rel=0.05)
+
+
+def test_actor_on_the_spot_is_no_noise_of_the_wall_behind_him(rng):
+    """He sways: one half of the frames shows him, the other half the wall, at each pixel."""
+    covers = np.arange(40) % 2 == 0
+    images = np.where(covers[:, None, None], 2.0, 4.0) + rng.normal(0.0, 0.02, (40, 6, 6))
+    camera = Camera(10.0, 10.0, 2.5, 2.5, 6, 6)
+    recording = DepthRecording(camera, 40, 30.0, lambda frame: images[frame])
+
+    background = uncovered_background(recording)
+
+    assert background.spread.max() < 0.04
+    assert is_in_front(images[0], background, 0.05).all()

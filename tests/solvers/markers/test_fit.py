@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 from solvers.markers.body import Poses
 from solvers.markers.build_body import build_body
-from solvers.markers.fit_body import body_slopes, fit_body, measures_of
+from solvers.markers.fit_body import MAX_STEPS, body_slopes, fit_body, measures_of
 from solvers.markers.fit_poses import (
     _prior_residuals,
     apply_step,
@@ -111,3 +111,11 @@ def test_chord_forms_a_right_angle_at_the_joint():
     assert_allclose(np.linalg.norm(marker - joint), 0.06)
     assert_allclose(np.sum((marker - joint) * (joint - start)), 0.0, atol=1e-12)
     assert joint[0, 0] < marker[0, 0]
+
+
+def test_fit_of_a_body_ends_where_its_cost_hardly_falls(initial_fit):
+    steps = []
+
+    fit_body(*initial_fit, progress=lambda fraction, _: steps.append(fraction))
+
+    assert len(steps) < MAX_STEPS

@@ -139,3 +139,33 @@ def test_swapped_sides_of_a_real_take_are_corrected(recordings, parts, n_frames)
     found = reconstruct(corrupted).tracks.positions
 
     assert_allclose(found, reconstruct(take).tracks.positions, atol=0.005)
+
+
+def standing(walk):
+    """The positions of an actor who stands for as long as the walk lasts."""
+    return walk.tracks.positions[40] + np.random.default_rng(6).normal(
+        scale=0.003, size=walk.tracks.positions.shape
+    )
+
+
+def test_turn_of_a_lost_body_is_no_swap(walk):
+    """He faces away when the tracker finds him again, and turns back the same way."""
+    positions = standing(walk)
+    center = positions[:, [walk.names.index("HipCenter")], :2]
+    positions[40:56, :, :2] = (2.0 * center - positions[:, :, :2])[40:56]
+    positions[28:40] = positions[56:68] = np.nan
+    take = JointRecording(walk.tracks.with_positions(positions), None, walk.sensor)
+
+    assert fix_left_right_swaps(take) is take
+
+
+def test_legs_side_by_side_are_not_swapped(walk):
+    """Noise moves each of them to where the other one was, 5 cm away."""
+    positions = standing(walk)
+    for part in LEGS:
+        left, right = (walk.names.index(f"{part}{side}") for side in ("Left", "Right"))
+        positions[:, right] = positions[:, left] + (0.05, 0.0, 0.0)
+    take = JointRecording(walk.tracks.with_positions(positions), None, walk.sensor)
+    crossing = swapped(take, LEGS, slice(40, 45))
+
+    assert fix_left_right_swaps(crossing) is crossing

@@ -125,3 +125,10 @@ def test_transient_wrist_jump_is_unreliable_at_any_rate(recordings, frame_rate):
     assert corrupted[middle, wrist] < 0.1
     assert sound[:, wrist].mean() > 0.7
     assert (sound < 0.5).mean() < 0.03
+
+
+@pytest.mark.parametrize("frame_rate", [120.0, 240.0])
+def test_wobbles_of_two_centimeters_are_no_jumps_at_high_rates(frame_rate):
+    path = path_along(*[0.0] * 20, *[0.02] * 2, *[0.0] * 20)
+
+    assert not find_transient_jumps(path, frame_rate).any()

@@ -144,3 +144,30 @@ def test_joints_that_are_lost_one_after_the_other_are_filled():
     filled = DISTRIBUTION.fill_gaps(replace(postures, positions=positions))
 
     assert np.isfinite(filled.positions).all()
+
+
+def test_joints_lost_one_after_the_other_leave_the_heading_to_the_others():
+    """Hips and shoulders are missing; each arm and leg is lost for a third of the clip."""
+    missing = ("chest", "head", "leftUpperArm", "leftUpperLeg", "rightUpperLeg")
+    query = clip_postures(with_missing_joints(act("kick", heading=2.0), *missing), 20.0)
+    positions = query.positions.copy()
+    thirds = np.array_split(np.arange(len(positions)), 3)
+    for frames, joint in zip(thirds, ("leftHand", "rightHand", "leftFoot"), strict=True):
+        positions[np.ix_(frames, joint_indices(joint))] = np.nan
+
+    found = DISTRIBUTION.fill_gaps(replace(query, positions=positions)).positions
+
+    assert_allclose(found, clip_postures(act("kick"), 20.0).positions, atol=0.15)
+
+
+def test_joints_that_all_miss_a_few_frames_are_filled():
+    """Each joint is observed in most frames, and no frame shows all of them."""
+    postures = clip_postures(act(next(iter(ACTS))), 20.0)
+    positions = postures.positions.copy()
+    for joint, frames in enumerate(np.array_split(np.arange(len(positions)), 16)):
+        positions[frames, joint] = np.nan
+    positions[:, joint_indices("rightToes")] = np.nan
+
+    filled = DISTRIBUTION.fill_gaps(replace(postures, positions=positions))
+
+    assert np.isfinite(filled.positions).all()

@@ -187,3 +187,20 @@ def test_excluded_parts_have_no_weight():
     settings = FindSettings(left_leg=False)
     weights = settings.part_weights(np.ones(5), np.ones(5), np.array([1.0, 1.0, 1.0, 9.0, 1.0]))
     assert_allclose(weights, [1.25, 1.25, 1.25, 0.0, 1.25])
+
+
+def test_parts_at_rest_still_count():
+    """A query that moves one hand is not answered by any clip that moves this hand."""
+    weights = FindSettings().part_weights(
+        np.ones(5), np.ones(5), np.array([0.0, 0.0, 0.0, 1.0, 0.0])
+    )
+
+    assert np.delete(weights, 3).min() > 0.1
+
+
+def test_parts_that_were_hardly_tracked_hardly_count():
+    reliability = np.array([1.0, 1.0, 1.0, 0.3, 1.0])
+
+    weights = FindSettings().part_weights(np.ones(5), reliability, np.ones(5))
+
+    assert weights[3] < 0.02

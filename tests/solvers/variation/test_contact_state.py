@@ -18,6 +18,7 @@ from solvers.variation import (
 )
 from solvers.variation.contact_state import (
     MAX_CONTACT_TIME_S,
+    _signed_change_times,
     contacts_from_state,
     measure_contact_state,
 )
@@ -102,3 +103,10 @@ def test_borrowed_variation_keeps_the_contacts_of_the_clip(walks):
         model.contact_state,
         np.broadcast_to(measure_contact_state(walks[0]), model.contact_state.shape),
     )
+
+
+def test_foot_that_always_stands_has_a_finite_contact_state():
+    """It has no contact change to be near to."""
+    state = _signed_change_times(np.ones(50, bool), 60.0)
+
+    assert np.isfinite(state).all()

@@ -6,6 +6,7 @@ from rigs import RIGS
 
 from solvers.motion import Skeleton, find_humanoid_map
 from solvers.motion.humanoid.roles import MIN_NAME_SCORE
+from solvers.rotations import inverse, normalize, rotate
 
 NO_PERSON = 0.5
 """Confidence below which the panel does not call a map that of a person."""
@@ -165,6 +166,30 @@ def test_a_rest_pose_of_a_somersault_keeps_the_roles_of_its_names(family):
 
     assert found.joints == find_humanoid_map(rig).joints
     assert found.score == 1.0
+
+
+def test_any_rest_axes_and_a_neck_in_the_chest_keep_the_roles_of_the_names(rng):
+    """Of CMU's walks as another tool writes them: each joint at rest has axes of its own."""
+    rig = RIGS["Mixamo"](1.0)
+    roles = find_humanoid_map(rig).joints
+    neck, foot = rig.index(roles["neck"]), rig.index(roles["leftFoot"])
+    trunk = [neck, *rig.ancestors(neck)][
+        : rig.ancestors(neck).index(rig.index(roles["hips"])) + 1
+    ]
+    leg = [foot, rig.parents[foot]]
+    lengths = np.linalg.norm(rig.offsets, axis=1)
+    offsets = rig.offsets.copy()
+    offsets[trunk] *= 0.28 * lengths[leg].sum() / lengths[trunk].sum()
+    for _ in range(10):
+        axes = normalize(rng.normal(size=(rig.n_joints, 4)))
+        turned = offsets.copy()
+        for joint, parent in enumerate(rig.parents):
+            if parent >= 0:
+                turned[joint] = rotate(inverse(axes[parent]), offsets[joint])
+
+        found = find_humanoid_map(Skeleton(rig.names, rig.parents, turned))
+
+        assert found.joints == roles
 
 
 def test_plain_words_of_a_game_are_enough():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from solvers.errors import InvalidFileError
 from solvers.motion import find_humanoid_map, world_poses
 from solvers.recordings import read_recording
 from solvers.recordings.skeleton_files.kimodo import JOINTS
@@ -68,3 +69,23 @@ def test_positions_and_rotations_alone_give_the_same_joints_standing(tmp_path, r
     found = find_humanoid_map(motion.skeleton)
     assert found.joint("leftUpperLeg") == "LeftLeg"
     assert found.joint("leftLowerLeg") == "LeftShin"
+
+
+@pytest.mark.parametrize(
+    ("member", "factor", "sentence"),
+    [
+        ("global_rot_mats", 0.0, "that are no rotations"),
+        ("global_rot_mats", -1.0, "that are no rotations"),
+        ("global_rot_mats", 1e300, "damaged"),
+        ("posed_joints", 1e300, "damaged"),
+    ],
+)
+def test_numbers_that_are_no_motion_are_refused(tmp_path, rng, member, factor, sentence):
+    saved(tmp_path / "take.npz", rng)
+    with np.load(tmp_path / "take.npz") as archive:
+        arrays = dict(archive)
+    arrays[member][3] *= factor
+    np.savez(tmp_path / "take.npz", **arrays)
+
+    with pytest.raises(InvalidFileError, match=sentence):
+        read_recording(tmp_path / "take.npz")

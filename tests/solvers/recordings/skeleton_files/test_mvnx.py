@@ -54,6 +54,8 @@ def test_a_file_cut_short_is_refused(path, tmp_path, end):
         ("<mvnx ", f"<!-- <mvnx {70_000 * 'x'} --><!DOCTYPE x []><mvnx ", "a document type"),
         ('type="normal"', 'type="tpose"', "no positions and orientations"),
         ("<orientation>", "<orientation>x ", "damaged"),
+        ('frameRate="60"', 'frameRate="0"', "damaged"),
+        ('frameRate="60"', 'frameRate="nan"', "damaged"),
         ("position>", "place>", "no positions and orientations"),
         ('<segment label="Pelvis"', '<segment label="Prop1"', "no positions and orientations"),
     ],
