@@ -65,6 +65,16 @@ def test_each_tuned_constant_was_swept():
     assert not unswept
 
 
+def test_constants_that_move_no_error_name_their_case():
+    nameless = [
+        constant.key
+        for family in FAMILIES
+        for constant in constants_of(family)
+        if re.search(r"\bno\s+error", constant.text)
+    ]
+    assert not nameless
+
+
 @pytest.mark.parametrize("family", FAMILIES)
 def test_document_lists_only_constants_that_exist(family):
     existing = {

@@ -18,15 +18,15 @@ from .floor import Floor
 from .recording import DepthImage, DepthRecording
 
 MAX_BACKGROUND_FRAMES = 60
-MIN_NOISE_M, NOISE_FACTOR = 0.01, 4.0
-"""Minimum sensor noise, and the multiple of the noise that counts as significant. Chosen by
-hand: x0.5 and x2 move no error."""
+NOISE_FACTOR = 4.0
+"""Multiple of the sensor's noise, a standard deviation, that counts as significant. It guards
+noisy walls, which would be in front of themselves; more misses an actor near them."""
 NOISE_WINDOW_M = 0.5
 """Readings within this distance of the background depth count as its noise. It guards an
 actor who stays in place: without it he is taken for noise, and half of his pixels are lost."""
 BACKGROUND_QUANTILE = 0.9
-"""Quantile of a pixel's depths that shows the room behind a moving actor. Chosen by hand: x0.5
-and x2 move no error."""
+"""Quantile of a pixel's depths that shows the room behind a moving actor, a fraction. It guards
+pixels that he covers in most frames; more takes stray readings behind a wall for the room."""
 MAX_ACTOR_DISTANCE_M = 1.2
 """A body farther from the expected position of the actor is another person. It guards images in
 which only another person is visible."""
@@ -268,7 +268,7 @@ def cut_out_actor(
 
 def is_in_front(depth: DepthImage, background: Background, margin: float) -> NDArray[np.bool_]:
     """Return the mask of pixels in front of the empty room by more than its noise."""
-    spread = NOISE_FACTOR * np.maximum(background.spread, MIN_NOISE_M)
+    spread = NOISE_FACTOR * background.spread
     is_unknown = background.depth == 0.0
     is_nearer = depth < background.depth - np.maximum(margin, spread)
     return np.asarray((depth > 0.0) & (is_unknown | is_nearer))

@@ -13,8 +13,8 @@ LOOSE_M, FIRM_M, TIGHT_M = 0.03, 0.012, 0.006
 hand: first, x0.5 gains 2.7 %, x2 gains 0.7 %; second, x0.5 gains 6.7 %, x2 costs 8.1 %; third,
 x0.5 costs 3.4 %, x2 gains 6.6 %."""
 FREE_M = 1.0
-"""Standard deviation of an offset that only the markers determine. Chosen by hand: x0.5 and x2
-move no error, x0.001 gains 1.7 %."""
+"""Standard deviation of an offset that only the markers determine. By definition wider than any
+error. It guards leg lengths that start wrong, as of a knee marker placed too low."""
 Triple = tuple[float, float, float]
 NO_PRIOR: Triple = (0.0, 0.0, 0.0)
 

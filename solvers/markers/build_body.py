@@ -22,14 +22,13 @@ from .joint_centers import JointCenters
 from .vectors import median
 
 TOES_END_M, HAND_END_M, HEAD_END_M = 0.06, 0.17, 0.17
-"""Distances from the last joint to the end site in an adult body. Chosen by hand: from x0.001
-to x1000 no error moves."""
-TOE_ABOVE_SOLE_M = 0.02
-"""Height of the toe joint above the sole in meters, in an adult body. Chosen by hand: from
-x0.001 to x1000 no error moves."""
+"""Distances from the last joint to the end site in an adult body, by definition: end sites show
+the last bone of a limb, and no marker is placed by them."""
+TOES_DROP_M = 0.01
+"""Drop from the toe joint to its end site in meters, in an adult body. By definition."""
 SOLE_BELOW_ANKLE_M = 0.07
-"""Height of the ankle above the sole in meters, in an adult body. Chosen by hand: from x0.001
-to x1000 no error moves."""
+"""Height of the ankle above the sole in meters, in an adult body: 0.039 of the stature, as in
+Winter 2009, figure 4.1. The rest pose stands on the floor with it."""
 
 
 def joints_with(landmarks: Collection[str]) -> tuple[JointPrior, ...]:
@@ -100,7 +99,7 @@ def build_body(centers: JointCenters, landmarks: Mapping[str, Array]) -> tuple[B
     frames = bone_frames(centers, landmarks, names)
     offsets = np.array([_offset(joint, centers, frames) for joint in joints])
     offsets = _symmetric(offsets, names)
-    offsets[0] = [0.0, 0.0, _hips_height(offsets, names)]
+    offsets[0] = [0.0, 0.0, _hips_height(offsets, names, centers.scale)]
     marker_offsets = [_marker_offset(marker, centers, frames, landmarks) for marker in markers]
     body = Body(joints, markers, offsets, np.array(marker_offsets))
     return body, local_rotations(frames, joints, len(landmarks["LASI"]))
@@ -115,7 +114,7 @@ def _offset(joint: JointPrior, centers: JointCenters, frames: Mapping[str, Array
         "hips": np.zeros(3),
         "head_end": np.array([0.0, 0.0, HEAD_END_M]),
         "Hand_end": np.array([sign * HAND_END_M, 0.0, 0.0]),
-        "Toes_end": np.array([0.0, -TOES_END_M, -TOE_ABOVE_SOLE_M / 2]),
+        "Toes_end": np.array([0.0, -TOES_END_M, -TOES_DROP_M]),
     }
     if part in fixed:
         return scale * fixed[part]
@@ -148,13 +147,13 @@ def _symmetric(offsets: Array, names: list[str]) -> Array:
     return result
 
 
-def _hips_height(offsets: Array, names: list[str]) -> float:
+def _hips_height(offsets: Array, names: list[str], scale: float) -> float:
     """Return the height of the hips with the soles on the floor."""
     sign_of_axis = [
         name for name in ("leftUpperLeg", "leftLowerLeg", "leftFoot") if name in names
     ]
     return float(
-        SOLE_BELOW_ANKLE_M - sum(offsets[names.index(name), 2] for name in sign_of_axis)
+        scale * SOLE_BELOW_ANKLE_M - sum(offsets[names.index(name), 2] for name in sign_of_axis)
     )
 
 

@@ -12,8 +12,8 @@ MAX_ROTATION_STD_RAD = 0.8
 """Standard deviation above which a joint's rotation is undetermined. Chosen by hand: x0.5 costs
 nothing, x2 gains 15.7 %."""
 MAX_POSITION_STD_M = 0.05
-"""Standard deviation above which the position of the hips is undetermined. Chosen by hand: x0.5
-and x2 move no error, x0.1 costs 100.0 %, x0.001 costs 100.0 %."""
+"""Standard deviation above which the position of the hips is undetermined. It guards frames
+without markers of the pelvis: legs determine the hips, shanks alone do not."""
 REGULARIZATION = 1e-9
 """Weight that is added to the diagonal of the normal equations. It guards a factorization."""
 

@@ -15,16 +15,15 @@ CAUCHY_SCALE = 3.0
 """Scale of the Cauchy weight, in standard deviations of a marker's noise. Chosen by hand: x0.5
 gains 0.5 %, x2 costs 0.8 %."""
 DAMPING = 1e-3
-"""Initial weight of Levenberg-Marquardt damping. Chosen by hand: x0.5 and x2 move no error,
-x0.001 costs 1.4 %, x1000 gains 6.0 %."""
+"""Initial weight of Levenberg-Marquardt damping, relative to the diagonal: that of Madsen,
+Nielsen, Tingleff (2004), Methods for non-linear least squares problems, eq. 3.14."""
 MIN_DAMPING, MAX_DAMPING = 1e-6, 1e6
 """Bounds of the weight of the damping. They guard the search."""
 MAX_STEP_RAD = 0.5
 """Radians: maximum rotation of a joint in one step. Chosen by hand: x0.5 gains 3.9 %, x2 costs
 nothing."""
 MIN_COST_GAIN = 1e-4
-"""Relative gain of the cost below which the iteration ends. Chosen by hand: x0.5 and x2 move no
-error."""
+"""Relative gain of the cost below which the iteration ends. It bounds the run time."""
 
 
 class Residuals(NamedTuple):

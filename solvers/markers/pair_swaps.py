@@ -25,9 +25,8 @@ offset. A low percentile limits the influence of swaps in short takes. First cho
 x0.5 costs nothing, x2 fails. The others guard hands that pass each other quickly in a slow
 take, and in one of an actor who stands still."""
 MIN_BAD_MISFIT, MIN_BAD_FRAMES = 3.0, 5
-"""Misfit above which a label is bad, and minimum number of frames with two bad labels. Chosen
-by hand: from x0.001 to x1000 no error moves; without it a swap that starts in a gap stays
-(`test_swap_between_gaps_is_corrected`)."""
+"""Misfit above which a label is bad, and minimum number of frames with two bad labels. It
+guards swaps that start in a gap, which would stay (`test_swap_between_gaps_is_corrected`)."""
 
 
 class PairSwap(NamedTuple):

@@ -7,8 +7,8 @@ from ..rotations import nearest_rotations
 
 N_REWEIGHTINGS = 8
 CAUCHY_FACTOR, MIN_CAUCHY_SCALE_M = 3.0, 0.004
-"""Scale of the Cauchy weights: a multiple of the median residual, and a lower bound. Chosen by
-hand: from x0.001 to x1000 no error moves; equal weights follow an outlier (`test_rigid`)."""
+"""Scale of the Cauchy weights: a multiple of the median residual, and a lower bound. It guards
+fits with an outlier, which equal weights follow (`test_rigid`)."""
 
 
 def fit_rigid_transform(template: Array, positions: Array) -> tuple[Array, Array]:

@@ -15,8 +15,8 @@ from .world import World
 
 MAX_MEAN_DISTANCE_M, MAX_DISTANCE_S = 0.35, 0.2
 """A body is lost if the mean distance of its joints from their targets exceeds this, for legs
-of 0.9 m, for longer than these seconds. Briefly, the target itself may be wrong. Chosen by
-hand: x0.5 and x2 change nothing; they guard takes that no body can follow."""
+of 0.9 m, for longer than these seconds. Briefly, the target itself may be wrong. They guard
+takes that no body can follow."""
 
 MAX_SPEED = 1e4
 """Meters or radians per second. It guards a simulation that became unstable, whose speeds grow

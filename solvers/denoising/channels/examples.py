@@ -17,8 +17,8 @@ BLOCK_S = 60.0
 """Seconds encoded at a time. The few windows across two blocks are skipped. It bounds the
 memory."""
 MULTIPLE_TOLERANCE = 0.02
-"""Relative difference up to which a frame rate counts as a multiple of another. Chosen by hand:
-from x0.001 to x1000 no error moves; it guards frame rates that are rounded in files."""
+"""Relative difference up to which a frame rate counts as a multiple of another. It guards frame
+rates that are rounded in files."""
 
 
 class ExampleChannels:

@@ -24,8 +24,8 @@ MAX_TRIALS = 120
 N_FOLDS = 5
 """Parts of the take that are predicted from the other parts."""
 PRIOR_TRIALS = 1.0
-"""Number of gaps of evidence that the prediction is right as it is. By definition one; x0.5 and
-x2 move no error."""
+"""Number of gaps of evidence that the prediction is right as it is, by definition one. It
+guards takes too short to test it."""
 MIN_VARIANCE = 1e-6
 """Square degrees. Guards a division."""
 

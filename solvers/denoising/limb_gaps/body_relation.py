@@ -50,9 +50,9 @@ KEYS = (
 )  # fmt: skip
 """Humanoid roles, and the position of the body: all that every recording has."""
 GAP_S, HOP_S = 1.0, 0.25
-"""Length of the gaps that are learned from, and from one to the next, seconds. Chosen by hand
-on the development takes of the first press: first, x0.5 costs 1.5 %, x2 costs 0.8 %; second,
-x0.5 and x2 move no error."""
+"""Length of the gaps that are learned from, and time from one to the next, seconds. First
+chosen by hand on the development takes of the first press: x0.5 costs 1.5 %, x2 costs 0.8 %.
+The second bounds the run time of learning."""
 MIRRORED_ROTATION, MIRRORED_POSITION = np.array([1.0, -1.0, -1.0]), np.array([-1.0, 1.0, 1.0])
 """A mirror swaps left and right. By definition of rotation vectors and of the path's frame."""
 

@@ -10,8 +10,8 @@ from .predict_marker import Prediction
 Flags = NDArray[np.bool_]
 
 MAX_TRAINING_FRAMES = 200
-"""Number of training frames, in addition to those at the boundaries of gaps. Chosen by hand:
-x2 moves no error, x0.2 gains 1.2 %; it bounds the run time of long takes with many gaps."""
+"""Number of training frames, in addition to those at the boundaries of gaps. It bounds the run
+time of long takes with many gaps: x0.2 gains 1.2 %."""
 MAX_TRAINING_RATE_HZ = 60.0
 """Hertz: bodies move too slowly for more frames per second to add information. Chosen by hand:
 x0.5 costs 8.1 %, x2 gains 0.7 %."""

@@ -27,7 +27,7 @@ MIN_DEVIATION_M = 0.001
 gains 0.3 %, x2 costs 1.3 %."""
 N_FITS = 3
 """Alternating fits of the frames and of the mean shape. Chosen by hand: one fit costs 2.4 %, 30
-move no error."""
+gain nothing."""
 
 
 class ReferenceMarkers(NamedTuple):

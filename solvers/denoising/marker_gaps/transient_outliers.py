@@ -10,11 +10,11 @@ COMPARED_FRAMES = (1, 2)
 """Distances in frames, to both sides, at which a point is compared. Chosen by hand: x0.5 gains
 0.1 %, x2 costs 7.9 %."""
 NEIGHBORHOOD_FRAMES = 8
-"""Half width in frames of the neighborhood that defines the typical distance. Chosen by hand:
-a half width of 1 costs 9.8 %, one of 80 moves no error."""
+"""Half width in frames of the neighborhood that defines the typical distance. Chosen by hand: a
+half width of 1 costs 9.8 %, one of 80 gains nothing."""
 MIN_SPIKE_RATIO = 6.0
-"""Minimum distance of a spike, relative to the typical distance. Chosen by hand: x0.1 moves no
-error, since the minimum in meters decides at 120 Hz; x10 costs 0.9 %."""
+"""Minimum distance of a spike, relative to the typical distance. Chosen by hand: x10 costs 0.9
+%; at 120 Hz the minimum in meters decides instead."""
 MIN_SPIKE_M = 0.02
 """Meters: a shorter distance is no spike. Chosen by hand: x0.5 costs 5.0 %, x2 costs
 nothing."""

@@ -39,8 +39,8 @@ MIN_NOISE = 0.01
 """Smallest noise, degrees or centimeters. Chosen by hand: x0.5 costs nothing, x2 costs
 0.1 %."""
 POOR_FIT_FRACTION = 0.2
-"""Fraction of plain smoothness above which the examples are reported to fit badly. Chosen by
-hand: from x0.001 to x1000 no error moves; it only decides a sentence."""
+"""Fraction of plain smoothness above which the examples are reported to fit badly. By
+definition of the report: it only decides its sentence."""
 PARTS = ("values", "inliers", "deviation", "leave_one_out_error")
 
 

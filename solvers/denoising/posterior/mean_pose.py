@@ -13,21 +13,19 @@ from ...arrays import Array
 
 KERNEL_WIDTH = 4.0
 """Root mean square difference of two mean poses, degrees or centimeters per channel, at which
-their correlation falls to exp(-1/2). Chosen by hand: x0.5 and x2 move no error, x10 costs 0.1
-%, x1000 costs 0.2 %."""
+their correlation falls to exp(-1/2): clips of unlike poses do not count. Chosen by hand: x10
+costs 0.1 %, x1000 costs 0.2 %."""
 CLIP_VARIANCE_FRACTION = 0.1
-"""Variance between clips of one actor in one mood, relative to that between all clips. Chosen
-by hand: x0.5 and x2 move no error; nor does x0.01 or x10; it guards against examples that are
-copies."""
+"""Variance between clips of one actor in one mood, relative to that between all clips. It
+guards against examples that are copies, which make the matrix singular."""
 CORRELATION_FRAMES = 10.0
 """Frames of the examples' patterns after which a pose is independent evidence of the mean.
 Chosen by hand: x0.5 gains 0.1 %, x2 costs 0.1 %."""
 MAX_NEIGHBORS = 300
-"""Clips, nearest first, that predict the mean pose: others are too different to matter. Chosen
-by hand: x0.5 and x2 move no error; it bounds the run time of large libraries."""
+"""Clips, nearest first, that predict the mean pose: others are too different to matter. It
+bounds the run time of large libraries."""
 MIN_VARIANCE = 1e-3
-"""Smallest variance of a mean, square degrees or centimeters. Chosen by hand: x0.5 and x2 move
-no error; it guards a division."""
+"""Smallest variance of a mean, square degrees or centimeters. It guards a division."""
 DEFAULT_DEVIATION = 8.0
 """Standard deviation of mean poses, degrees or centimeters, if there are too few examples.
 It guards a single example, from which an actor's posture would seem certain."""

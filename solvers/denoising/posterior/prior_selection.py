@@ -33,9 +33,8 @@ MAX_NOISE_MULTIPLE = 4.0
 """Errors beyond this many standard deviations of the noise all count the same. Chosen by hand:
 x0.5 costs nothing, x2 gains 0.9 %."""
 UNKNOWN_DEVIATION = 30.0
-"""Standard deviation, degrees or centimeters, of channels without any information. Chosen by
-hand: from x0.001 to x1000 no error moves; it guards channels that neither take nor examples
-show."""
+"""Standard deviation, degrees or centimeters, of channels without any information: those that
+neither take nor examples show. By definition so wide that it says nothing."""
 MIN_OBSERVED_FRACTION = 0.5
 """Fraction of a take in which a channel must be observed to score the examples. Chosen by hand:
 x0.5 costs nothing, x2 gains 1.7 %."""
@@ -47,8 +46,8 @@ WINDOWS_FOR_HALF_WEIGHT = 300
 """Windows of a take at which its own covariance would have half the weight. Chosen by hand:
 x0.5 gains 0.3 %, x2 costs 0.2 %."""
 MAX_OWN_WEIGHT = 0.3
-"""Largest weight of the take's own covariance. Chosen by hand: x0.5 and x2 move no error; only
-takes of 130 windows and more reach it."""
+"""Largest weight of the take's own covariance. It guards long takes, of 130 windows and more,
+from repeating their own errors."""
 OWN_WEIGHT_WITHOUT_EXAMPLES = 0.5
 """Weight in gaps without examples: a missing limb is best predicted from the same body. Chosen
 by hand: x0.5 costs nothing, x2 costs 1.4 %."""

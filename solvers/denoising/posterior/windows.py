@@ -17,8 +17,7 @@ N_FEW_OVERLAPS = 4
 """The same for preliminary estimates and for long takes. Chosen by hand: x0.5 costs 2.0 %, x2
 gains 2.7 %."""
 LONG_TAKE_FRAMES = 20_000
-"""Frames above which windows overlap less. Chosen by hand: from x0.1 to x10 no error moves; it
-bounds the run time of long takes."""
+"""Frames above which windows overlap less. It bounds the run time of long takes."""
 
 LONG_GAP_FRACTION = 0.2
 """Fraction of a window above which a gap is solved exactly. Shorter gaps converge quickly.

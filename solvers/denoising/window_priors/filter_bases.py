@@ -20,12 +20,10 @@ from .lag_covariance import LagCovariance, find_leading_eigenpairs
 from .window_prior import count_slow_coefficients
 
 KEPT_ENERGY = 0.99
-"""Fraction of the movement that the stored patterns contain, as in [LC10]. Half and twice the
-rest move no error."""
+"""Fraction of the movement that the stored patterns contain, as in [LC10]."""
 MIN_CHANNEL_DEVIATION = 0.05
-"""Standard deviation, degrees or centimeters, below which a channel does not move. Chosen by
-hand: x0.5 and x2 move no error, x0.001 costs 0.7 %, x1000 costs 11.4 %; it guards against
-channels without any pattern."""
+"""Standard deviation, degrees or centimeters, below which a channel does not move. It guards
+against channels without any pattern: x0.001 costs 0.7 %, x1000 costs 11.4 %."""
 MIN_ANY_DEVIATION = 1e-6
 """Degrees or centimeters: the same where no channel moves; smaller values are rounding
 errors."""

@@ -9,8 +9,8 @@ from ...arrays import Array
 MAX_CLIP_ENDS = 64
 """Number of clips whose first and last frames are stored before they are summed."""
 N_FIRST_EIGENVECTORS = 160
-"""Number of eigenvectors requested first; doubled until they contain enough energy. Chosen by
-hand: from x0.1 to x10 no error moves; it bounds the run time."""
+"""Number of eigenvectors requested first; doubled until they contain enough energy. It bounds
+the run time."""
 
 
 class LagProducts:

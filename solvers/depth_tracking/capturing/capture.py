@@ -61,9 +61,9 @@ class CaptureSettings(RecoverySettings):
 
 
 DEFAULT_CAPTURE = CaptureSettings()
-_SCORE_WEIGHT, _MOVEMENT_SCALE_M = 40.0, 0.04
-"""A score lower by 0.025 costs as much as a mean joint movement of 4 cm in one frame. Chosen by
-hand: first, x0.5 and x2 move no error; second, x0.5 costs 4.7 %, x2 costs nothing."""
+_MOVEMENT_SCALE_M = 0.253
+"""Mean movement of the joints in one frame that costs as much as a score of 0. Chosen by hand:
+x0.5 costs 4.7 %, x2 costs nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +202,7 @@ def best_of_passes(body: BodyModel, passes: Sequence[Pass]) -> tuple[Integers, I
     scores = np.where(is_tracked, np.nan_to_num(scores), np.nan)
     tracked_frames = np.flatnonzero(is_tracked.any(axis=1))
     joints = joint_positions(body, segment_frames(body, np.nan_to_num(poses[tracked_frames])))
-    chosen = choose_poses(scores[tracked_frames], joints, _SCORE_WEIGHT, _MOVEMENT_SCALE_M)
+    chosen = choose_poses(scores[tracked_frames], joints, _MOVEMENT_SCALE_M)
     nearest = nearest_tracked(tracked_frames, len(poses))
     return nearest, chosen[np.searchsorted(tracked_frames, nearest)]
 

@@ -8,13 +8,11 @@ from ...arrays import Array
 Integers = NDArray[np.intp]
 
 
-def choose_poses(
-    scores: Array, joints: Array, score_weight: float, movement_scale: float
-) -> Integers:
+def choose_poses(scores: Array, joints: Array, movement_scale: float) -> Integers:
     """Return the index of the selected candidate in each frame, shape (n_frames,).
 
-    The Viterbi algorithm [VIT67]_ minimizes the total cost. Each frame costs `score_weight`
-    times one minus its score. Each step costs the squared mean movement of the joints over
+    The Viterbi algorithm [VIT67]_ minimizes the total cost. Each frame costs one
+    minus its score. Each step costs the squared mean movement of the joints over
     `movement_scale`. Swapped limbs must jump back, which costs more than the true trajectory.
 
     Parameters
@@ -22,7 +20,6 @@ def choose_poses(
     scores : shape (n_frames, n_candidates)
         Fit of each candidate to its image, 0 to 1; NaN without a candidate.
     joints : shape (n_frames, n_candidates, n_joints, 3), meters
-    score_weight : float
     movement_scale : float, meters
         Mean movement of the joints between frames that costs 1.
 
@@ -31,7 +28,7 @@ def choose_poses(
     .. [VIT67] Viterbi (1967). Error bounds for convolutional codes and an asymptotically
        optimum decoding algorithm. IEEE Transactions on Information Theory 13(2).
     """
-    losses = np.where(np.isfinite(scores), score_weight * (1.0 - scores), np.inf)
+    losses = np.where(np.isfinite(scores), 1.0 - scores, np.inf)
     n_frames, n_candidates = losses.shape
     total, back = losses[0], np.zeros((n_frames, n_candidates), dtype=np.intp)
     for frame in range(1, n_frames):

@@ -15,13 +15,14 @@ from .passes import TrackingContext
 from .smooth_pass import measure_fit
 
 _MIN_CONFIDENCE = 0.2
-"""Minimum confidence of a joint in the comparison, so that occluded joints still count. Chosen
-by hand: x0.5 and x2 move no error, nor do x0.01 and x100 on a drawn take."""
+"""Minimum confidence of a joint in the comparison. It guards corrections of an occluded limb:
+old and new motion would agree at once, wherever it is."""
 _MIN_AGREEING_FRAMES = 4
 """Minimum number of consecutive frames where both motions agree."""
 _SCORE_TOLERANCE = 0.015
-"""Fraction by which the score of the new path may be lower than that of the previous motion.
-Chosen by hand: x0.5 and x2 move no error, nor do x0.01 and x100 on a drawn take."""
+"""Fraction by which the score of the new path may be lower than that of the previous motion. It
+guards corrections that the images hardly show: the path would end at the first frame that fits
+worse by chance."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,7 +17,7 @@ HEADING_OFFSETS = (0.0, np.pi / 3.0, -np.pi / 3.0, np.pi)
 """Heading offsets from the detected heading, radians."""
 STRIDES = (0.35, -0.35)
 """Forward rotation of the left thigh and backward rotation of the right one, radians. It guards
-detections with both legs in front of each other: half and twice of it change no error."""
+detections with both legs in front of each other."""
 UNSIDED_ROUNDS = 3
 
 

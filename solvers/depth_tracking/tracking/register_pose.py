@@ -31,14 +31,14 @@ Prior = Callable[[Array], PoseEquations]
 Likelihood = Callable[[Hypothesis, Observation, TrackerSettings], SurfaceRows]
 
 _MIN_STEP = 1e-3
-"""A shorter step, radians or meters, ends the search. It bounds the run time: half and twice of
-it change no error."""
+"""A shorter step, radians or meters, ends the search. It bounds the run time."""
 _DAMPING_INCREASE, _DAMPING_DECREASE = 5.0, 0.3
 """Factors of the damping after a step that is refused, and that is accepted. Chosen by hand:
-first, x0.5 costs nothing, x2 costs 27.1 %; second, x0.5 and x2 change no error."""
+first, x0.5 costs nothing, x2 costs 27.1 %. The second bounds the run time: how soon steps are
+long again after a refusal."""
 _METRES_PER_RADIAN = 0.5
-"""Ratio of the translation limit of the hips to the rotation limit. Chosen by hand: x0.5 and
-x2 change no error."""
+"""Ratio of the limits of a step: of the hips in meters, and of rotations. By definition half a
+meter, the length of a thigh or upper body, so that both move the next joints equally far."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,9 +27,8 @@ ARMS, LEGS, SHINS, TOES = (
 CORRECTED_BONES = (SPINE, CHEST, HEAD, *ARMS, *LEGS, *TOES)
 """Bones whose directions differ between trackers in the same pose."""
 HALF_WEIGHT_COUNT = 20.0
-"""Number of observations at which a measured offset of bone axes gets half its weight. Chosen
-by hand: from x0.001 to x1000 no error moves; without it a bone that was never observed has no
-rotation."""
+"""Number of observations at which a measured offset of bone axes gets half its weight. It
+guards bones that were never observed, which would have no rotation."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,7 +26,7 @@ ones, whose flexion before and after determines more. By hand: x10 of the first 
 of the second leaves a straight limb without rotation (`test_library_twists`)."""
 ACTOR_BIAS_S = 0.03
 """Time (s) of flexed frames at which the actor's deviation from the library gets half weight.
-From x0.001 to x1000 no error moves; by hand, 0 removes the library's rotation (see tests)."""
+It guards limbs that hardly flex: 0 removes the library's rotation (`test_library_twists`)."""
 
 AGREED_WEIGHT, MIN_WEIGHT = 90.0, 1e-6
 """Weights of a certain and of an undefined angle; an equal change within `SMOOTHING_S` has

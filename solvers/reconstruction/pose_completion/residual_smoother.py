@@ -7,8 +7,7 @@ import numpy as np
 from ...arrays import Array
 
 MIN_RELIABILITY = 0.05
-"""Joints below this reliability count as missing. Chosen by hand: x0.001 moves no error, x10
-costs 3.9 %."""
+"""Joints below this reliability count as missing. Chosen by hand: x10 costs 3.9 %."""
 
 
 class Estimates(NamedTuple):

@@ -17,8 +17,8 @@ Indices = NDArray[np.intp]
 BLOCK_FRAMES = 128
 """Number of frames per block of the search."""
 CANDIDATE_FACTOR = 1.3
-"""Ratio of candidates from the float32 distances to neighbors from the exact ones. Chosen by
-hand: x2 moves no error, and x0.5 would find too few."""
+"""Ratio of candidates from the float32 distances to neighbors from the exact ones. It guards
+the order of neighbors against rounding; x0.5 would find too few."""
 
 
 class PostureQuery(NamedTuple):

@@ -24,8 +24,8 @@ from .residual_prior import ResidualPrior
 from .smooth_trajectories import filter_trajectories, smooth_trajectories
 
 MIN_WEIGHT = 0.02
-"""Weight of an unreliable joint, so that gaps are interpolated smoothly. Chosen by hand: x0.001
-moves no error, x1000 costs 20 %; 0 has no solution for a joint that is never reliable."""
+"""Weight of an unreliable joint, so that gaps are interpolated smoothly. Chosen by hand: x1000
+costs 20 %; 0 has no solution for a joint that is never reliable."""
 CONFIDENCE_DISTANCE_M = 0.05
 """Confidence is, by definition, the probability that a joint is within this distance (m) of its
 true position."""

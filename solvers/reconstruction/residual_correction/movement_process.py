@@ -29,13 +29,13 @@ CONTEXT_S = 0.5
 than 0.1 %."""
 MEAN_WINDOW_S = 1.0
 """Time (s) on both sides of the mean that a pose is compared with. Chosen by hand: x0.1 gains
-0.3 %, x10 moves no error; the shipped prior was learned with it."""
+0.3 %; the shipped prior was learned with it."""
 SPEED_SMOOTHING_S = 0.1
 """Standard deviation (s) of the Gaussian that smooths velocities. Chosen by hand: from x0.1 to
 x10 the mean changes by 0.01 %; the shipped prior was learned with it."""
 PACE_S = 0.2
-"""Time (s) that converts velocity to distance. Chosen by hand: x0.1 moves no error, x10 costs
-0.3 %; the shipped prior was learned with it."""
+"""Time (s) that converts velocity to distance. Chosen by hand: x10 costs 0.3 %; the shipped
+prior was learned with it."""
 N_PARTS = 5
 BLOCK = 512
 
@@ -65,9 +65,8 @@ class Strengths(NamedTuple):
 SHARED_STRENGTHS = Strengths(9.3, 56.0, 3.5, 2.3)
 PERSONAL_STRENGTHS = Strengths(2.6, 3.6, 3.0, 0.47)
 POSTURE_SCALE_M, CONTEXT_SCALE_M, MOVEMENT_SCALE_M = 0.88, 1.63, 0.82
-"""Length scales (m) of features. All these values were chosen on UI-PRMD by leaving out one of
-four actors; each choice without a fifth actor gives the same values. A sweep with other takes
-finds no error that moves."""
+"""Length scales (m) of features. All these values were chosen by a sweep on UI-PRMD that leaves
+out one of four actors; each choice without a fifth actor gives the same values."""
 
 
 COVERAGE_RANGE_M = (1.0, 0.3)

@@ -53,8 +53,8 @@ MOVEMENT_FRACTION = 0.6
 """Fraction of the movement process in a prediction; the rest comes from joints and poses.
 Chosen by hand: x0.5 and x2 change the mean by less than 0.1 %."""
 PREDICTION_RATE_HZ = 15.0
-"""Rate (Hz) of predictions. Errors change slowly, so frames in between are interpolated. Chosen
-by hand: x0.1 gains 0.2 %, x10 moves no error; it bounds the run time of long takes."""
+"""Rate (Hz) of predictions. Errors change slowly, so frames in between are interpolated. It
+bounds the run time of long takes: x0.1 gains 0.2 %."""
 
 LOCAL_COVERAGE_M, POSTURE_COVERAGE_M = (0.15, 0.1), (0.35, 0.15)
 """Feature distance (m) from the nearest inducing point up to which poses count as covered, and

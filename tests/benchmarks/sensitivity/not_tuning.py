@@ -31,7 +31,9 @@ REASONS: dict[str, tuple[str, ...]] = {
         "depth_tracking/detection/robust_parts.MEAN_SURFACE_DEPTH",
         "depth_tracking/*.REFERENCE_*",
     ),
-    "lengths of bodies, from a table": (
+    "lengths of bodies, from a table or by definition": (
+        "markers/build_body.*_M",
+        "markers/joint_centers.HIPS_ABOVE_JOINTS_M",
         "motion/humanoid/limb_division.*_FRACTION*",
         "motion/humanoid/structure.*_FRACTION",
         "retargeting/placement.ANKLE_HEIGHT_FRACTION",

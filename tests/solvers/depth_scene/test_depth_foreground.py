@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from depth_rooms import in_room, room, tilted
+from numpy.testing import assert_allclose
 
 from solvers.depth_scene.bodies import find_bodies
 from solvers.depth_scene.camera import Camera
@@ -116,10 +117,34 @@ def test_actor_on_the_spot_is_no_noise_of_the_wall_behind_him(rng):
     """He sways: one half of the frames shows him, the other half the wall, at each pixel."""
     covers = np.arange(40) % 2 == 0
     images = np.where(covers[:, None, None], 2.0, 4.0) + rng.normal(0.0, 0.02, (40, 6, 6))
-    camera = Camera(10.0, 10.0, 2.5, 2.5, 6, 6)
-    recording = DepthRecording(camera, 40, 30.0, lambda frame: images[frame])
 
-    background = uncovered_background(recording)
+    background = uncovered_background(frames_of(images))
 
     assert background.spread.max() < 0.04
     assert is_in_front(images[0], background, 0.05).all()
+
+
+@pytest.mark.parametrize(("n_covered", "n_beyond"), [(51, 0), (0, 4)])
+def test_room_is_found_behind_long_stays_and_before_stray_readings(n_covered, n_beyond):
+    """In most of 60 frames the actor covers the wall, or a few readings lie behind it."""
+    images = np.full((60, 6, 6), 4.0, np.float32)
+    images[:n_covered] = 2.0
+    images[:n_beyond] = 7.0
+
+    background = uncovered_background(frames_of(images))
+
+    assert_allclose(background.depth, 4.0)
+
+
+def test_noise_of_a_wall_is_no_actor_and_an_actor_near_it_is(rng):
+    """The noise is 2 cm; the actor stands 10 cm in front of the wall."""
+    images = 4.0 + rng.normal(0.0, 0.02, (60, 40, 40))
+    background = learn_background(frames_of(images), range(60))
+
+    assert is_in_front(images, background, 0.0).mean() < 0.001
+    assert is_in_front(images - 0.1, background, 0.0).mean() > 0.8
+
+
+def frames_of(images):
+    camera = Camera(10.0, 10.0, 2.5, 2.5, images.shape[2], images.shape[1])
+    return DepthRecording(camera, len(images), 30.0, lambda frame: images[frame])

@@ -192,11 +192,11 @@ def test_choose_poses_rejects_a_brief_swap_with_a_higher_score():
     scores = np.full((10, 2), 0.7)
     scores[:, 1] = 0.65
     scores[4:7, 1] = 0.72
-    assert_array_equal(choose_poses(scores, joints, 40.0, 0.04), np.zeros(10))
+    assert_array_equal(choose_poses(scores, joints, 0.25), np.zeros(10))
 
     scores[4:, 1] = 0.95
     joints[4:, 1] = 0.3
-    assert_array_equal(choose_poses(scores, joints, 300.0, 0.04)[5:], np.ones(5))
+    assert_array_equal(choose_poses(scores, joints, 0.7)[5:], np.ones(5))
 
 
 @given(
@@ -227,7 +227,7 @@ def test_nearest_tracked_handles_an_hour_of_frames():
 def test_choose_poses_never_chooses_a_missing_candidate():
     scores = np.full((5, 2), 0.5)
     scores[2, 0] = np.nan
-    assert choose_poses(scores, np.zeros((5, 2, 3, 3)), 40.0, 0.04)[2] == 1
+    assert choose_poses(scores, np.zeros((5, 2, 3, 3)), 0.25)[2] == 1
 
 
 def test_capture_has_high_confidence_for_a_visible_static_pose():

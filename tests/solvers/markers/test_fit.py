@@ -113,6 +113,20 @@ def test_chord_forms_a_right_angle_at_the_joint():
     assert joint[0, 0] < marker[0, 0]
 
 
+def test_fit_of_poses_ends_where_its_cost_hardly_falls(initial_fit, monkeypatch):
+    body, observed, poses = initial_fit
+    fitted = fit_poses(body, observed, poses)
+    steps = []
+    monkeypatch.setattr(
+        "solvers.markers.fit_poses.apply_step",
+        lambda *step: steps.append(step) or apply_step(*step),
+    )
+
+    fit_poses(body, observed, fitted)
+
+    assert 0 < len(steps) < 6
+
+
 def test_fit_of_a_body_ends_where_its_cost_hardly_falls(initial_fit):
     steps = []
 

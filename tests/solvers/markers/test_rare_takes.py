@@ -1,13 +1,14 @@
 """Takes of markers that the sweeps do not hold: each is what one constant guards."""
 
+import marked_bodies
 import numpy as np
 import pytest
 from marked_bodies import markers_on
 
-from solvers.markers import find_rigid_clusters, unswap_markers
+from solvers.markers import find_rigid_clusters, solve_skeleton, unswap_markers
 from solvers.markers.distances import learn_distances
 from solvers.markers.initial_poses import _leveling_matrix
-from solvers.motion import Tracks
+from solvers.motion import Tracks, find_humanoid_map, forward_kinematics
 from solvers.samples import GaitSettings, walking_gait
 
 SHAPE = np.array([[0.0, 0, 0], [0.1, 0, 0], [0, 0.12, 0], [0, 0, 0.15], [0.08, 0.1, 0.1]])
@@ -88,3 +89,33 @@ def test_level_of_a_foot_on_tiptoe_or_with_one_place_for_both_markers_is_limited
 
         assert np.isfinite(leveling).all()
         assert abs(leveling[1, 2]) <= 0.4
+
+
+PELVIS_AND_TRUNK = {"LFWT", "RFWT", "LBWT", "RBWT", "C7", "T10", "CLAV", "STRN", "RBAC"}
+
+
+@pytest.mark.parametrize(("thighs", "determined"), [(set(), True), ({"LTHI", "RTHI"}, False)])
+def test_legs_determine_lost_hips_and_shanks_alone_do_not(thighs, determined):
+    take = markers_on(walking_gait(GaitSettings(duration=2.0, frame_rate=30.0)))
+    lost = [take.names.index(name) for name in sorted(PELVIS_AND_TRUNK | thighs)]
+    positions = take.positions.copy()
+    positions[20:40, lost] = np.nan
+
+    hips = solve_skeleton(take.with_positions(positions)).joint_centers.positions[20:40, 0]
+
+    assert np.isfinite(hips).all() == determined
+    assert np.isfinite(hips).any() == determined
+
+
+def test_knee_markers_on_the_shanks_cost_the_hip_joints_millimeters(monkeypatch):
+    """Thighs start 6 cm too long, and shanks too short by that."""
+    bone, anchor, seat = marked_bodies.SIDE["KNE"]
+    monkeypatch.setitem(marked_bodies.SIDE, "KNE", (bone, anchor, seat - 0.06 * UP))
+    walk = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
+    joints = find_humanoid_map(walk.skeleton).indices(walk.skeleton)
+    true = forward_kinematics(walk).positions[:, joints["leftUpperLeg"]]
+
+    solved = solve_skeleton(markers_on(walk)).joint_centers
+
+    found = solved.positions[:, solved.names.index("leftUpperLeg")]
+    assert np.linalg.norm(found - true, axis=-1).mean() < 0.0085

@@ -89,6 +89,20 @@ def test_skeleton_is_a_humanoid_in_t_pose(walk):
     )
 
 
+def test_child_stands_on_the_floor_at_rest(walk):
+    """It is 0.6 times as tall."""
+    take = markers_on(walk.slice(0, 60))
+    adult, child = (
+        solve_skeleton(take.with_positions(size * take.positions)).motion.skeleton
+        for size in (1.0, 0.6)
+    )
+
+    ankle = adult.names.index("leftFoot")
+
+    heights = [each.rest_positions[ankle, 2] for each in (adult, child)]
+    assert_allclose(heights, [0.07, 0.042], atol=0.005)
+
+
 def test_bones_keep_their_lengths_and_rotations_are_smooth(walk):
     solved = solve_skeleton(markers_on(walk))
 

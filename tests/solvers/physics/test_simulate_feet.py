@@ -189,10 +189,7 @@ def test_lowest_part_of_the_sole_bears_the_load():
 
     assert_allclose(weights[15], [1.0, 0.0, 0.0], atol=1e-6)
     assert_allclose(distribute_load(0.0 * heights, 60.0, 1.0)[15], 1 / 3)
-    (
-        assert_allclose(distribute_load(heights - 0.06, 60.0, 1.0)[15], 1 / 3),
-        "what is under presses no more",
-    )
+    assert_allclose(distribute_load(heights - 0.06, 60.0, 1.0)[15], 1 / 3)  # Below the ground.
 
 
 def test_target_feet_are_placed_on_the_ground(walk, body):

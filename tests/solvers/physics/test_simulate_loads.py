@@ -1,15 +1,20 @@
-"""Ground forces on the parts of a body."""
+"""Ground forces on the parts of a body, and which feet stand on them."""
 
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
-from solvers.motion import HumanoidMap, Motion, Skeleton
+from solvers.motion import HumanoidMap, Motion, Skeleton, find_humanoid_map
 from solvers.physics.body import Capsule, build_physics_body
+from solvers.physics.body_surface import select_foot_ends
 from solvers.physics.contact_loads import add_loads
 from solvers.physics.engine import load_engine
+from solvers.physics.feet import add_soles
+from solvers.physics.foot_support import compute_support_weights
 from solvers.physics.world import build_world
+from solvers.samples import GaitSettings, walking_gait
 
 STEP = 1.0 / 240.0
 RADIUS = 0.1
@@ -37,3 +42,24 @@ def test_ground_load_is_greater_at_the_heavier_end_of_a_beam():
     assert_allclose(loads.sum(), 1.0, rtol=0.01)
     assert loads[1] > 0.7
     assert loads[0] < 0.1
+
+
+@pytest.mark.parametrize(("load", "least", "most"), [(0.15, 1.0, 1.0), (0.08, 0.1, 0.5)])
+def test_foot_of_the_free_leg_stands_and_one_that_touches_moves(load, least, most):
+    """The other leg carries the rest of the weight; the feet of the target stand nowhere."""
+    walk = walking_gait(GaitSettings(duration=1.0, frame_rate=60.0))
+    humanoid = find_humanoid_map(walk.skeleton)
+    body = add_soles(build_physics_body(walk, humanoid), walk, humanoid, 0.0)
+    standing = Motion(
+        walk.skeleton,
+        np.repeat(walk.rotations[:1], 20, axis=0),
+        np.repeat(walk.root_positions[:1], 20, axis=0),
+        60.0,
+    )
+    ends = select_foot_ends(body, "left")
+    loads = np.tile(load * ends / ends.sum(), (20, 1))
+
+    weights = compute_support_weights(body, standing, loads, np.zeros((20, 2)), 0.0)
+
+    assert (weights[:, 0] >= least - 1e-9).all()
+    assert (weights[:, 0] <= most).all()

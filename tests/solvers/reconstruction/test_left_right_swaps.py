@@ -169,3 +169,17 @@ def test_legs_side_by_side_are_not_swapped(walk):
     crossing = swapped(take, LEGS, slice(40, 45))
 
     assert fix_left_right_swaps(crossing) is crossing
+
+
+@pytest.mark.parametrize(("duration", "corrected"), [(0.8, True), (1.4, False)])
+def test_sides_that_stay_swapped_for_longer_than_a_second_are_left_alone(
+    walk, duration, corrected
+):
+    """A body that turned around while it was lost looks the same."""
+    positions = np.concatenate([standing(walk)] * 3)
+    n_frames = round(duration * walk.frame_rate)
+    take = JointRecording(Tracks(walk.names, positions, walk.frame_rate), None, walk.sensor)
+
+    found = fix_left_right_swaps(swapped(take, ALL, slice(120, 120 + n_frames)))
+
+    assert np.array_equal(found.tracks.positions, positions) == corrected

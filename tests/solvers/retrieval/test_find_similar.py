@@ -92,6 +92,22 @@ def test_action_is_found_within_a_long_take(library):
     assert best.frames == range(clip[0], clip[-1] + 1)
 
 
+def test_action_longer_than_the_segment_that_is_found_has_its_end():
+    """A kick that is half as fast as the query; segments of the take are 2 and 4 s long."""
+    parts = (act("kick", 5.0, amount=0.0), act("kick", 2.7), act("kick", 5.0, amount=0.0))
+    take = Tracks(POSTURE_JOINTS, np.concatenate([part.positions for part in parts]), 30.0)
+    library = build_clip_library([
+        Clip("take", take),
+        *(Clip(name, act(name)) for name in ACTS if name != "kick"),
+    ])
+
+    best = find_similar(act("kick", 1.4), library)[0]
+
+    assert best.clip == "take"
+    assert abs(best.frames.start - 150) < 9
+    assert abs(best.frames.stop - 231) < 9
+
+
 def test_frames_of_matches_are_at_the_clips_own_rate():
     fast = build_clip_library([Clip("kick", act("kick", frame_rate=120.0))])
     best = find_similar(act("kick", frame_rate=60.0), fast)[0]

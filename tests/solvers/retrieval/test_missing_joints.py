@@ -171,3 +171,18 @@ def test_joints_that_all_miss_a_few_frames_are_filled():
     filled = DISTRIBUTION.fill_gaps(replace(postures, positions=positions))
 
     assert np.isfinite(filled.positions).all()
+
+
+def test_trunk_that_leans_aside_keeps_its_heading_while_limbs_are_lost():
+    """Trunks of the library lean forward; limbs, which show the heading, lack 8 frames."""
+    query = clip_postures(act("kick"), 20.0)
+    trunk = joint_indices("hips", "spine", "chest", "head")
+    positions = query.positions.copy()
+    rise = positions[:, trunk, 2] - positions[:, :1, 2]
+    positions[:, trunk, 0] += np.sin(np.radians(5.0)) * rise
+    complete = positions.copy()
+    positions[:8, np.delete(np.arange(len(POSTURE_JOINTS)), trunk)] = np.nan
+
+    found = DISTRIBUTION.fill_gaps(replace(query, positions=positions)).positions
+
+    assert_allclose(found, complete, atol=0.2)
