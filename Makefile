@@ -82,8 +82,8 @@ demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: 
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
 
-docs: .venv-4.5/ready  ## the tables of settings and the pictures in README.md and docs
-	PYTHONPATH=. $(PYTHON_4.5) .ci/write_docs.py --pictures
+docs: .venv-4.5/ready  ## the tables of settings and of buttons in README.md and docs
+	PYTHONPATH=. $(PYTHON_4.5) .ci/write_docs.py
 
 pictures: .venv-4.5/ready  ## the pictures of docs/formats and of Reconstruct, from ../shared/data
 	PYTHONPATH=. $(PYTHON_4.5) .ci/draw_formats.py ../shared/data

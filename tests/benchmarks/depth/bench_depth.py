@@ -22,7 +22,7 @@ from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, Track
 from solvers.depth_tracking.tracking.track_pose import track_pose
 
 from ..peers.icp_trackers import articulated_icp, ray_constrained_icp
-from ..shared.report import DOCS, PICTURES, Report
+from ..shared.report import BENCHMARK_PICTURES, DOCS, Report, show
 from ..shared.tables import Scores
 from .colored_sequences import colored, others_motions
 from .depth_more import more_sequence
@@ -180,8 +180,9 @@ def terms() -> list[str]:
     """Leave each term or safeguard out, from the true first pose."""
     sequences = [sequence(name) for name in HARD] + [more_sequence(name) for name in HARDER]
     scores = _without(sequences, "Without each part")
-    draw_bars(scores, {"cm": 0.0, "% < 10 cm": LEAST}, PICTURES / "depth_terms.png")
-    return [scores.markdown(), "![What each part is worth](pictures/depth_terms.png)\n"]
+    picture = BENCHMARK_PICTURES / "depth" / "terms.png"
+    draw_bars(scores, {"cm": 0.0, "% < 10 cm": LEAST}, picture)
+    return [scores.markdown(), f"{show(picture, 'What each part is worth')}\n"]
 
 
 def tuning() -> list[str]:

@@ -68,7 +68,7 @@ def tell_reliability(docs: bool) -> None:
     report.part("reliability", tables, perf_counter() - started)
     if docs:
         take = next(pair for pair in pairs if pair.name == TAKE)
-        draw_take(take, PICTURES / "reliability.png")
+        draw_take(take, PICTURES / "results" / "reliability.png")
 
 
 def print_models(pairs: list[Pair]) -> None:

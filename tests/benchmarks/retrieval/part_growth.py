@@ -53,7 +53,7 @@ from solvers.rotations.representations import (
 )
 
 from ..shared import clips
-from ..shared.report import DOCS, PICTURES, Report
+from ..shared.report import BENCHMARK_PICTURES, DOCS, Report, show
 from ..shared.tables import table
 from .retrieval_pictures import draw_growth
 
@@ -71,7 +71,7 @@ SHOWN = {
     "first": "found first", "in_ten": "in the first ten", "kin": "of its kind in ten",
 }  # fmt: skip
 DRAWN = ("search_mb", "open_ms", "find_ms", "describe_ms")
-PICTURE = PICTURES / "retrieval_growth.png"
+PICTURE = BENCHMARK_PICTURES / "retrieval" / "growth.png"
 
 
 @dataclass(frozen=True)
@@ -271,7 +271,7 @@ def tables(rows: Sequence[Row]) -> list[str]:
     }
     return [
         f"**Growth of a library**\n\n{table(['clips', *SHOWN.values()], cells)}\n",
-        f"![growth](pictures/{PICTURE.name})\n",
+        f"{show(PICTURE, 'growth')}\n",
     ]
 
 
