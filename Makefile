@@ -116,7 +116,7 @@ body-relation: .venv-4.5/ready  ## learn how joints move together, for limbs tha
 failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the weights
 	$(PYTHON_4.5) -m tests.training.learn_failures
 
-# Each prints tables; with ARGUMENTS=--docs it rewrites its own part of docs/benchmarks.md, and
+# Each prints tables; with ARGUMENTS=--docs it rewrites its own part of a page in docs/benchmarks, and
 # ARGUMENTS=--help lists the other options.
 bench-denoise: .venv-4.5/ready  ## measure denoising and gap filling against peers
 	$(PYTHON_4.5) -m tests.benchmarks.denoise.bench_denoise $(ARGUMENTS)

@@ -38,7 +38,7 @@ PAGES = {
     "variation": "vary keep_variants stack_variants assign_variants draw_variants"
     " mark_variants",
 }
-"""By page of docs, the buttons that it describes, in the order of the work."""
+"""By page of docs/manual, the buttons that it describes, in the order of the work."""
 
 
 def renewed(text: str) -> str:

@@ -87,7 +87,7 @@ def test_files_named_in_guides_exist(document):
 def test_every_button_has_a_row_on_the_page_of_buttons(write_docs):
     """A new button is named in `PAGES` of `.ci/write_docs.py`, with the page it is on."""
     named = [name for names in write_docs.PAGES.values() for name in names.split()]
-    page = (ROOT / "docs" / "buttons.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "manual" / "buttons.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| \*\*.+?\*\* \| `mocap_assist\.(\w+)`", page, re.MULTILINE)
 
     assert sorted(named) == sorted(write_docs.buttons())

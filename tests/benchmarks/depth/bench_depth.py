@@ -1,7 +1,7 @@
 """The depth tracker against true joints: terms, peers, wrong bodies, noise, resolution.
 
 make bench-depth                    # some five minutes
-make bench-depth ARGUMENTS=--docs   # into docs/benchmarks_depth.md
+make bench-depth ARGUMENTS=--docs   # into docs/benchmarks/depth.md
 """
 
 import argparse
@@ -80,7 +80,7 @@ WITHOUT = {
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--docs", action="store_true", help="write docs/benchmarks_depth.md")
+    parser.add_argument("--docs", action="store_true", help="write docs/benchmarks/depth.md")
     parser.add_argument("--only", help="parts, with commas between")
     parser.add_argument(
         "--subjects", type=int, nargs="+", default=SUBJECTS, help="of the Kinect"
@@ -89,7 +89,7 @@ def main() -> None:
     chosen = parser.parse_args()
     if not TRUTH.exists():
         raise SystemExit(f"There are no recordings in {TRUTH}.")
-    report = Report(chosen.docs, DOCS / "benchmarks_depth.md")
+    report = Report(chosen.docs, DOCS / "benchmarks" / "depth.md")
     parts = {
         "trackers": trackers, "captures": captures, "more": more, "modes": capture_modes,
         "more-modes": more_capture_modes,

@@ -26,7 +26,7 @@ from .filters import METHODS, OURS, PEERS, PUBLISHED
 from .measures import Figures, measure
 from .takes import DEVELOPMENT, QUICK, SCORED, UNPACKED, Take
 
-DOCUMENT = DOCS / "benchmarks_first_press.md"
+DOCUMENT = DOCS / "benchmarks" / "first_press.md"
 MUCH_BETTER = 0.9
 """A peer with less than this fraction of our error is a tenth better."""
 MIN_DIFFERENCE = 0.02

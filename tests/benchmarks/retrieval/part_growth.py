@@ -282,7 +282,7 @@ def main() -> None:
     parser.add_argument("--queries", type=int, default=N_QUERIES)
     parser.add_argument("--search", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--log", type=Path, help="rows that an earlier run printed")
-    parser.add_argument("--docs", action="store_true", help="into docs/benchmarks_retrieval.md")
+    parser.add_argument("--docs", action="store_true", help="into docs/benchmarks/retrieval.md")
     chosen = parser.parse_args()
     if chosen.search is not None:
         print(json.dumps(search(chosen.search, chosen.queries)))
@@ -292,7 +292,7 @@ def main() -> None:
     if chosen.docs:
         drawn = {SHOWN[name]: [getattr(row, name) for row in rows] for name in DRAWN}
         draw_growth([row.n_clips for row in rows], drawn, "Growth of a library", PICTURE)
-    report = Report(chosen.docs, DOCS / "benchmarks_retrieval.md")
+    report = Report(chosen.docs, DOCS / "benchmarks" / "retrieval.md")
     report.part("growth", tables(rows), perf_counter() - began)
 
 

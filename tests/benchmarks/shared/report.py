@@ -1,4 +1,4 @@
-"""Print tables on the terminal and, on request, write them to docs/benchmarks.md.
+"""Print tables on the terminal and, on request, write them to docs/benchmarks/denoising.md.
 
 A part's tables replace what stands between its two marks in the document; everything else in
 it is written by hand.
@@ -16,7 +16,7 @@ from .plots import draw_scores
 from .tables import Scores
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
-DOCUMENT = DOCS / "benchmarks.md"
+DOCUMENT = DOCS / "benchmarks" / "denoising.md"
 PICTURES = DOCS / "pictures"
 BENCHMARK_PICTURES = PICTURES / "benchmarks"
 """A folder for each page of benchmarks."""
@@ -37,7 +37,7 @@ class Report:
             for number, scores in enumerate(tables):
                 text.append(_text(scores))
                 if isinstance(scores, Scores):
-                    path = BENCHMARK_PICTURES / "denoising" / f"{name}_{number}.png"
+                    path = BENCHMARK_PICTURES / self._document.stem / f"{name}_{number}.png"
                     draw_scores(scores, path)
                     text.append(f"{show(path, scores.title, self._document)}\n")
             _replace(self._document, name, "\n".join(text))
