@@ -82,8 +82,8 @@ demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: 
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
 
-docs: .venv-4.5/ready  ## the tables of settings and the pictures in README.md and docs
-	PYTHONPATH=. $(PYTHON_4.5) .ci/write_docs.py --pictures
+docs: .venv-4.5/ready  ## the tables of settings and of buttons in README.md and docs
+	PYTHONPATH=. $(PYTHON_4.5) .ci/write_docs.py
 
 pictures: .venv-4.5/ready  ## the pictures of docs/formats and of Reconstruct, from ../shared/data
 	PYTHONPATH=. $(PYTHON_4.5) .ci/draw_formats.py ../shared/data
@@ -116,7 +116,7 @@ body-relation: .venv-4.5/ready  ## learn how joints move together, for limbs tha
 failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the weights
 	$(PYTHON_4.5) -m tests.training.learn_failures
 
-# Each prints tables; with ARGUMENTS=--docs it rewrites its own part of docs/benchmarks.md, and
+# Each prints tables; with ARGUMENTS=--docs it rewrites its own part of a page in docs/benchmarks, and
 # ARGUMENTS=--help lists the other options.
 bench-denoise: .venv-4.5/ready  ## measure denoising and gap filling against peers
 	$(PYTHON_4.5) -m tests.benchmarks.denoise.bench_denoise $(ARGUMENTS)

@@ -1,4 +1,4 @@
-"""Draw a real recording of each format for docs/formats: docs/pictures/format_*.png.
+"""Draw a real recording of each format for docs/formats: docs/pictures/formats.
 
     make pictures
 
@@ -15,7 +15,7 @@ from solvers.pictures import StickFigureSettings, View, draw_stick_figures
 from solvers.recordings import read_recording
 
 ROOT = Path(__file__).resolve().parents[1]
-PICTURES = ROOT / "docs" / "pictures"
+PICTURES = ROOT / "docs" / "pictures" / "formats"
 SAMPLES = {
     "bvh": ("mocap/cmu_walk/07_01.bvh", "side"),
     "acclaim": ("mocap/05_13.amc", "front"),
@@ -49,7 +49,7 @@ def main(recordings: Path) -> None:
         recording = on_the_floor(read_recording(recordings / file))
         settings = StickFigureSettings(n_figures=8, height=150, view=View(view))
         label = f"{file.rsplit('/', 1)[-1]}, as it was read"
-        draw_stick_figures({label: recording}, settings).save(PICTURES / f"format_{page}.png")
+        draw_stick_figures({label: recording}, settings).save(PICTURES / f"{page}.png")
 
 
 if __name__ == "__main__":

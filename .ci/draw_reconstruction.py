@@ -1,4 +1,4 @@
-"""Draw real recordings before and after Reconstruct: docs/pictures/reconstruction_*.png.
+"""Draw real recordings before and after Reconstruct: docs/pictures/results.
 
     make pictures
 
@@ -18,7 +18,7 @@ from solvers.recordings import read_recording
 from solvers.workflows import reconstruct_recording
 
 ROOT = Path(__file__).resolve().parents[1]
-PICTURES = ROOT / "docs" / "pictures"
+PICTURES = ROOT / "docs" / "pictures" / "results"
 SAMPLES = {
     "irds": ("irds/215_18_5_8_1_stand.txt", range(8, 36), "front"),
     "kimore": ("kimore/JointPositionExercise1.csv", range(0, 505), "front"),

@@ -35,7 +35,7 @@ def main(clip: Path, folder: Path) -> None:
         bpy.ops.import_anim.bvh(filepath=str(clip), update_scene_fps=True)
         source = bpy.context.object
         bpy.ops.mocap_assist.retarget(target=target.name)
-        draw(bpy, extension, source, target, folder / f"rig_{name}.png")
+        draw(bpy, extension, source, target, folder / f"{name}.png")
 
 
 def load_extension(bpy: ModuleType) -> str:
@@ -94,7 +94,7 @@ def draw(bpy: ModuleType, extension: str, source: Any, target: Any, path: Path) 
         draw_stick_figures({label: motion}, settings)
         for label, motion in (
             ("recording", theirs),
-            (path.stem.removeprefix("rig_").capitalize(), ours),
+            (path.stem.capitalize(), ours),
         )
     ]
     stack_pictures(pictures).save(path)

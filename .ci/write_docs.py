@@ -1,7 +1,6 @@
 """Write into the documents what they quote from the code, so that it cannot go stale.
 
-    PYTHONPATH=. python .ci/write_docs.py    tables of settings and of buttons, in docs
-    make docs                                and the pictures in docs/pictures
+    make docs
 
 A table of settings stands between `<!-- settings solvers.denoising.DenoiseSettings -->` and
 `<!-- end -->`, the table of buttons between `<!-- buttons -->` and `<!-- end -->`.
@@ -9,27 +8,16 @@ A table of settings stands between `<!-- settings solvers.denoising.DenoiseSetti
 
 import ast
 import re
-import sys
 from dataclasses import fields
 from enum import Enum
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from solvers.denoising import denoise, plant_feet
-from solvers.pictures import (
-    CurveSettings,
-    StickFigureSettings,
-    View,
-    draw_curves,
-    draw_stick_figures,
-)
-from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 from solvers.settings import label_of
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-PICTURES = ROOT / "docs" / "pictures"
 ENDLESS = 1e6
 SETTINGS = re.compile(r"(<!-- settings ([\w.]+)\.(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 BUTTONS = re.compile(r"(<!-- buttons -->\n).*?(<!-- end -->)", re.DOTALL)
@@ -50,7 +38,7 @@ PAGES = {
     "variation": "vary keep_variants stack_variants assign_variants draw_variants"
     " mark_variants",
 }
-"""By page of docs, the buttons that it describes, in the order of the work."""
+"""By page of docs/manual, the buttons that it describes, in the order of the work."""
 
 
 def renewed(text: str) -> str:
@@ -135,29 +123,11 @@ def _unit(described: Any) -> str:
     return f" {described.unit}" if described.unit else ""
 
 
-def draw_pictures() -> None:
-    """Clean the sample without Blender and draw it before and after."""
-
-    walk = walking_gait(GaitSettings(duration=8.0, frame_rate=30.0))
-    wrong = CorruptionSettings(jitter=3.0, spikes=0.004, root_jitter=0.004)
-    raw = corrupt(walk, wrong, missing={"RightArm": range(90, 150)})
-    clean = plant_feet(denoise(raw).recording).motion
-    both = {"recorded": raw, "cleaned": clean}
-    PICTURES.mkdir(parents=True, exist_ok=True)
-    size = StickFigureSettings(n_figures=8, view=View.QUARTER)
-    draw_stick_figures(both, size, frames=range(60, 180)).save(PICTURES / "before_after.png")
-    draw_curves(both, ["RightArm", "LeftLeg"], CurveSettings(width=1000)).save(
-        PICTURES / "curves.png"
-    )
-
-
-def main(arguments: list[str]) -> None:
+def main() -> None:
     """Renew the documents."""
     for document in DOCUMENTS:
         document.write_text(renewed(document.read_text(encoding="utf-8")), encoding="utf-8")
-    if "--pictures" in arguments:
-        draw_pictures()
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

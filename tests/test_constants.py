@@ -2,7 +2,7 @@
 
 A source is a paper, a standard, a definition, a guard that is named as one, a training script,
 or a sweep: "Chosen by hand: x0.5 costs 3 %, x2 costs 1 %" quotes `make sensitivity`, see
-docs/sensitivity.md.
+docs/benchmarks/sensitivity.md.
 """
 
 import re
@@ -76,7 +76,7 @@ def test_document_lists_only_constants_that_exist(family):
 def listed_constants(family: str) -> set[str]:
     """Return what a section of the document names, as module and constant."""
     title = f"\n## {family.replace('_', ' ').capitalize()}\n"
-    document = (ROOT / "docs" / "sensitivity.md").read_text(encoding="utf-8")
+    document = (ROOT / "docs" / "benchmarks" / "sensitivity.md").read_text(encoding="utf-8")
     section = document.partition(title)[2].partition("\n## ")[0]
     listed = set(re.findall(r"`(\w+\.\w+)`", section))
     for part in re.findall(r"[:;] (\w+ `\w+`(?:, `\w+`)*)", section):

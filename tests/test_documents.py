@@ -75,6 +75,18 @@ def anchor_of(heading: str) -> str:
     return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
 
 
+def test_every_picture_is_on_a_page():
+    shown = {
+        (document.parent / link).resolve()
+        for document in DOCUMENTS
+        for link in LINK.findall(document.read_text(encoding="utf-8"))
+    }
+    pictures = [path for path in (ROOT / "docs" / "pictures").rglob("*") if path.is_file()]
+
+    assert pictures
+    assert not [name_of(path) for path in pictures if path not in shown]
+
+
 @pytest.mark.parametrize("document", GUIDES, ids=name_of)
 def test_files_named_in_guides_exist(document):
     text = document.read_text(encoding="utf-8")
@@ -87,7 +99,7 @@ def test_files_named_in_guides_exist(document):
 def test_every_button_has_a_row_on_the_page_of_buttons(write_docs):
     """A new button is named in `PAGES` of `.ci/write_docs.py`, with the page it is on."""
     named = [name for names in write_docs.PAGES.values() for name in names.split()]
-    page = (ROOT / "docs" / "buttons.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "manual" / "buttons.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| \*\*.+?\*\* \| `mocap_assist\.(\w+)`", page, re.MULTILINE)
 
     assert sorted(named) == sorted(write_docs.buttons())

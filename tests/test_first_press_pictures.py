@@ -48,7 +48,7 @@ def test_three_worst_takes_of_a_condition_are_drawn(walk, monkeypatch, tmp_path)
     paths = draw_worst(scores, TAKES, tmp_path)
 
     assert [each.take.name for each in drawn[:3]] == ["worst", "worse", "bad"]
-    assert paths[0] == tmp_path / "first_press_worst_clean.png"
+    assert paths[0] == tmp_path / "worst_clean.png"
     assert all(path.exists() for path in paths)
     with Image.open(paths[0]) as picture:
         assert picture.size[1] > 3 * 250
@@ -57,7 +57,7 @@ def test_three_worst_takes_of_a_condition_are_drawn(walk, monkeypatch, tmp_path)
 def test_nothing_is_drawn_of_a_condition_in_which_ours_is_best(walk, tmp_path):
     paths = draw_worst(_scores(NOISY, swapped=True), TAKES, tmp_path)
 
-    assert "first_press_worst_sigma_1.png" not in {path.name for path in paths}
+    assert "worst_sigma_1.png" not in {path.name for path in paths}
 
 
 def test_curves_of_one_rotation_do_not_part_by_a_turn():

@@ -137,13 +137,13 @@ REFUSALS = (
         "pickle",
         _is_pickle,
         "is a pickle, which is never opened here: it may run any program. Convert it to .npz"
-        " where it was made (docs/formats/smpl.md has the lines).",
+        " where it was made (docs/formats/skeletons/smpl.md has the lines).",
     ),
     Refusal(
         "compressed file",
         _is_compressed,
         "is compressed. Unpack it and import the file in it; a compressed pickle has to be"
-        " converted to .npz where it was made (docs/formats/smpl.md has the lines).",
+        " converted to .npz where it was made (docs/formats/skeletons/smpl.md has the lines).",
     ),
 )
 

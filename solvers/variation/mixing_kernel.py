@@ -8,7 +8,8 @@ and in time, are therefore preserved.
 
 Scale and bias are not learned by marginal likelihood. Where samples are not exactly aligned,
 the most likely weights change within .1 s; such variants jerk and resemble no example
-(docs/variation.md). The values are the same for all behaviors, chosen on squats and hops.
+(docs/manual/variation.md). The values are the same for all behaviors, chosen on squats and
+hops.
 
 .. [1] Teh, Seeger, Jordan (2005). Semiparametric latent factor models. AISTATS.
 """

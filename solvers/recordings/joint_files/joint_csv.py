@@ -1,4 +1,4 @@
-"""Read and write our own CSV of joints: see docs/formats/joint_csv.md."""
+"""Read and write our own CSV of joints: see docs/formats/joints/joint_csv.md."""
 
 import csv
 from collections import Counter

@@ -1,4 +1,4 @@
-"""Read and write our own JSON of joints: see docs/formats/joint_json.md."""
+"""Read and write our own JSON of joints: see docs/formats/joints/joint_json.md."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Encode and decode frames of a live stream of joints: see docs/formats/live_joints.md."""
+"""Encode and decode frames of a live stream: see docs/formats/joints/live_joints.md."""
 
 import json
 from collections.abc import Iterator

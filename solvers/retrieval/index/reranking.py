@@ -17,13 +17,13 @@ Single = NDArray[np.float32]
 
 NEIGHBOR_WEIGHT = 4.0
 """Total weight of the neighbors of a clip, relative to the clip itself. Chosen by a sweep over
-the training data of docs/benchmarks_retrieval.md."""
+the training data of docs/benchmarks/retrieval.md."""
 MAX_DISTANCE_RATIO = 1.2
 """Maximum of the re-ranked distance over the original one: the query itself stays near. Chosen
 by hand: x0.5 gains 1.5 %, x2 costs 0.6 %."""
 RECIPROCAL_WEIGHT = 3.0
 """Additional weight of reciprocal neighbors. Chosen by a sweep over the training data of
-docs/benchmarks_retrieval.md."""
+docs/benchmarks/retrieval.md."""
 N_ROUNDS = 2
 """Number of averaging passes."""
 STEP_STRIDE = 2

@@ -15,7 +15,7 @@ RELIABILITY_POWER = 4.0
 hardly tracked."""
 SENSOR_MEAN_POSTURE_WEIGHT = 0.4
 """Maximum weight of the mean posture for sensor data. Chosen by a sweep over the training data
-of docs/benchmarks_retrieval.md."""
+of docs/benchmarks/retrieval.md."""
 MIN_ACTIVITY = 0.05
 """Movement of the most active part, relative to the average, below which the query counts as a
 static pose. It guards queries of a static pose."""

@@ -3,7 +3,7 @@ r"""Denoising and gap filling against every filter that an animator has, side by
     python -m tests.benchmarks.denoise.bench_denoise  # a few minutes, quick selection
     python -m tests.benchmarks.denoise.bench_denoise --full          # all scored clips
     python -m tests.benchmarks.denoise.bench_denoise --part gaps     # one part only
-    python -m tests.benchmarks.denoise.bench_denoise --docs  # also rewrites docs/benchmarks.md
+    python -m tests.benchmarks.denoise.bench_denoise --docs  # docs/benchmarks/denoising.md
 
 While working on the method, on development clips only, a run of seconds:
 
@@ -188,7 +188,9 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--only", default="", help="methods, separated by commas")
     parser.add_argument("--levels", type=_levels, default=LEVELS, help="such as 3:0,3:0.1")
     parser.add_argument("--clean-root", action="store_true")
-    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks.md")
+    parser.add_argument(
+        "--docs", action="store_true", help="rewrite docs/benchmarks/denoising.md"
+    )
     return parser.parse_args()
 
 

@@ -1,7 +1,7 @@
 """Planting feet against locking them and against leaving them alone, side by side.
 
     make bench-feet                             # about a minute
-    make bench-feet ARGUMENTS="--full --docs"   # all scored clips, into docs/benchmarks.md
+    make bench-feet ARGUMENTS="--full --docs"   # all clips, docs/benchmarks/denoising.md
     make bench-feet ARGUMENTS=--dev             # clips to tune on
 
 Every method gets the same contacts, detected on what it is given; what is measured in contact
@@ -46,7 +46,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--full", action="store_true", help="all scored clips")
     parser.add_argument("--dev", action="store_true", help="clips to tune on instead")
-    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks.md")
+    parser.add_argument(
+        "--docs", action="store_true", help="rewrite docs/benchmarks/denoising.md"
+    )
     chosen = parser.parse_args()
     started = perf_counter()
     tables = []

@@ -1,7 +1,7 @@
 """The depth tracker against true joints: terms, peers, wrong bodies, noise, resolution.
 
 make bench-depth                    # some five minutes
-make bench-depth ARGUMENTS=--docs   # into docs/benchmarks_depth.md
+make bench-depth ARGUMENTS=--docs   # into docs/benchmarks/depth.md
 """
 
 import argparse
@@ -22,7 +22,7 @@ from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, Track
 from solvers.depth_tracking.tracking.track_pose import track_pose
 
 from ..peers.icp_trackers import articulated_icp, ray_constrained_icp
-from ..shared.report import DOCS, PICTURES, Report
+from ..shared.report import BENCHMARK_PICTURES, DOCS, Report, show
 from ..shared.tables import Scores
 from .colored_sequences import colored, others_motions
 from .depth_more import more_sequence
@@ -80,7 +80,7 @@ WITHOUT = {
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--docs", action="store_true", help="write docs/benchmarks_depth.md")
+    parser.add_argument("--docs", action="store_true", help="write docs/benchmarks/depth.md")
     parser.add_argument("--only", help="parts, with commas between")
     parser.add_argument(
         "--subjects", type=int, nargs="+", default=SUBJECTS, help="of the Kinect"
@@ -89,7 +89,7 @@ def main() -> None:
     chosen = parser.parse_args()
     if not TRUTH.exists():
         raise SystemExit(f"There are no recordings in {TRUTH}.")
-    report = Report(chosen.docs, DOCS / "benchmarks_depth.md")
+    report = Report(chosen.docs, DOCS / "benchmarks" / "depth.md")
     parts = {
         "trackers": trackers, "captures": captures, "more": more, "modes": capture_modes,
         "more-modes": more_capture_modes,
@@ -180,8 +180,9 @@ def terms() -> list[str]:
     """Leave each term or safeguard out, from the true first pose."""
     sequences = [sequence(name) for name in HARD] + [more_sequence(name) for name in HARDER]
     scores = _without(sequences, "Without each part")
-    draw_bars(scores, {"cm": 0.0, "% < 10 cm": LEAST}, PICTURES / "depth_terms.png")
-    return [scores.markdown(), "![What each part is worth](pictures/depth_terms.png)\n"]
+    picture = BENCHMARK_PICTURES / "depth" / "terms.png"
+    draw_bars(scores, {"cm": 0.0, "% < 10 cm": LEAST}, picture)
+    return [scores.markdown(), f"{show(picture, 'What each part is worth')}\n"]
 
 
 def tuning() -> list[str]:

@@ -14,7 +14,7 @@ from PIL import Image
 
 from solvers.depth_tracking.capturing.capture import Capture, capture
 
-from ..shared.report import PICTURES
+from ..shared.report import BENCHMARK_PICTURES, show
 from ..shared.tables import Scores
 from .depth_overlays import overlay, save_sheet, strip
 from .depth_takes import ACTIONS, HANDS, OURS, STABLE, SUBJECTS, KinectTake, kinect_take
@@ -51,7 +51,7 @@ def kinect(subjects: Sequence[int] = SUBJECTS) -> list[str]:
             part = rows[sheet * per_sheet : (sheet + 1) * per_sheet]
             save_sheet(part, 1, 0.6, BUILD / f"s{subject}_{sheet}.jpg")
             if subject == subjects[0]:
-                save_sheet(part, 3, 0.42, PICTURES / f"depth_kinect_{sheet}.jpg")
+                save_sheet(part, 3, 0.42, _picture(sheet))
     for column, name, figure in everything:
         scores.add("all", column, name, figure)
     text = scores.markdown()
@@ -59,8 +59,11 @@ def kinect(subjects: Sequence[int] = SUBJECTS) -> list[str]:
 
 
 def _pictures() -> list[str]:
-    names = [f"depth_kinect_{sheet}.jpg" for sheet in range(SHEETS)]
-    return [f"![All actions of one subject](pictures/{name})" for name in names]
+    return [show(_picture(sheet), "All actions of one subject") for sheet in range(SHEETS)]
+
+
+def _picture(sheet: int) -> Path:
+    return BENCHMARK_PICTURES / "depth" / f"kinect_{sheet}.jpg"
 
 
 def figures(take: KinectTake, found: Capture) -> dict[str, float]:

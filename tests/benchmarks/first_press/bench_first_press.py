@@ -17,7 +17,7 @@ from time import perf_counter
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from ..shared.report import DOCS, PICTURES, Report
+from ..shared.report import BENCHMARK_PICTURES, DOCS, Report, show
 from ..shared.tables import number, table
 from .calibration import Calibration
 from .conditions import CONDITIONS, Case
@@ -26,7 +26,7 @@ from .filters import METHODS, OURS, PEERS, PUBLISHED
 from .measures import Figures, measure
 from .takes import DEVELOPMENT, QUICK, SCORED, UNPACKED, Take
 
-DOCUMENT = DOCS / "benchmarks_first_press.md"
+DOCUMENT = DOCS / "benchmarks" / "first_press.md"
 MUCH_BETTER = 0.9
 """A peer with less than this fraction of our error is a tenth better."""
 MIN_DIFFERENCE = 0.02
@@ -168,13 +168,13 @@ def _draw(scores: Scores, takes: Sequence[Take]) -> list[str]:
 
     Those of development takes are for the developer only.
     """
-    folder = PICTURES if takes is SCORED else UNPACKED / "pictures"
-    curve = folder / "first_press_calibration.png"
+    folder = BENCHMARK_PICTURES / "first_press" if takes is SCORED else UNPACKED / "pictures"
+    curve = folder / "calibration.png"
     paths = [curve, *draw_worst(scores, takes, folder)]
     scores.calibration.draw(curve)
-    titles = (path.stem.removeprefix("first_press_").replace("_", " ") for path in paths)
+    titles = (path.stem.replace("_", " ") for path in paths)
     return [
-        f"![{title.capitalize()}]({path.relative_to(DOCS) if takes is SCORED else path})\n"
+        f"{show(path, title.capitalize(), DOCUMENT)}\n"
         for title, path in zip(titles, paths, strict=True)
     ]
 

@@ -1,7 +1,7 @@
 """Draw the three worst takes of each condition, and of each measure, for eyes.
 
     make bench-first-press ARGUMENTS="--development --pictures"   # build/first_press/pictures
-    make bench-first-press ARGUMENTS=--pictures                   # docs/pictures
+    make bench-first-press ARGUMENTS=--pictures                   # docs/pictures/benchmarks
 
 A picture shows the body around the worst moment, and the joint that is worst there: the truth,
 what was recorded, ours, and the peer that is nearest to the truth on this take.
@@ -79,7 +79,7 @@ def draw_worst(scores: Ranked, takes: Sequence[Take], folder: Path) -> list[Path
     for name, cases in _chosen(scores, by_name).items():
         pictures = [_draw(*each) for each in cases]
         if pictures:
-            written.append(folder / f"first_press_worst_{name}.png")
+            written.append(folder / f"worst_{name}.png")
             pixels = stack_pictures(pictures).pixels
             Image.fromarray(pixels).quantize(N_COLORS).save(written[-1], optimize=True)
     return written

@@ -1,7 +1,7 @@
 """Reading BVH: ours against Blender's own importer and against plain Python.
 
     make bench-bvh
-    make bench-bvh ARGUMENTS=--docs    # into docs/benchmarks.md
+    make bench-bvh ARGUMENTS=--docs    # into docs/benchmarks/denoising.md
 
 30 joints x 5000 frames. Ours reads, checks, turns every angle into a quaternion and checks
 again. Blender's importer also makes an armature and its F-curves. Plain Python only turns the
@@ -37,7 +37,9 @@ IN_BLENDER = "--in-blender"
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks.md")
+    parser.add_argument(
+        "--docs", action="store_true", help="rewrite docs/benchmarks/denoising.md"
+    )
     chosen = parser.parse_args()
     started = perf_counter()
     with tempfile.TemporaryDirectory() as folder:

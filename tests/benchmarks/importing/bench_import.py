@@ -1,7 +1,7 @@
 """How long recordings of five minutes take to come into Blender, and how true they come back.
 
     make bench-import
-    make bench-import ARGUMENTS=--docs    # into docs/importing.md
+    make bench-import ARGUMENTS=--docs    # into docs/manual/importing.md
 
 The recordings are made: a walk of our own generator, as BVH with 120 frames a second, 25
 joints at 30 Hz as a camera has them, and 41 points at 120 Hz. Blender's exporter makes an FBX
@@ -39,7 +39,7 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seconds", type=float, default=SECONDS, help="length of the takes")
-    parser.add_argument("--docs", action="store_true", help="rewrite docs/importing.md")
+    parser.add_argument("--docs", action="store_true", help="rewrite docs/manual/importing.md")
     arguments = parser.parse_args()
     started = perf_counter()
     load_checkout()
@@ -61,7 +61,7 @@ def main() -> None:
         f"**{title}**, fastest of {REPEATS} runs\n\n{table(header, shown)}\n\n"
         f"FBX takes {ratio:.1f} times the processor seconds of Blender's own importer.\n"
     )
-    report = Report(arguments.docs, CHECKOUT / "docs" / "importing.md")
+    report = Report(arguments.docs, CHECKOUT / "docs" / "manual" / "importing.md")
     report.part("import", [text], perf_counter() - started)
 
 

@@ -1,7 +1,7 @@
 """What becomes of every recording of ../shared/data, and whether it is right.
 
     make bench-import-corpus
-    make bench-import-corpus ARGUMENTS=--docs    # into docs/benchmarks_importing.md
+    make bench-import-corpus ARGUMENTS=--docs    # into docs/benchmarks/importing.md
 
 Each file is read as Import reads it, FBX, glTF, USD and Collada by Blender's importers. Of a
 body the table says whether it stands, how tall it is, how far its feet are from the floor, how
@@ -32,7 +32,7 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument(
-        "--docs", action="store_true", help="rewrite docs/benchmarks_importing.md"
+        "--docs", action="store_true", help="rewrite docs/benchmarks/importing.md"
     )
     arguments = parser.parse_args()
     started = perf_counter()
@@ -50,7 +50,7 @@ def main() -> None:
     ]  # fmt: skip
     verdict = f"{n_read} takes read, {len(rows) - n_read} files refused, {len(wrong)} wrong."
     text = f"**{verdict}**\n\n{table(header, rows)}\n"
-    Report(arguments.docs, CHECKOUT / "docs" / "benchmarks_importing.md").part(
+    Report(arguments.docs, CHECKOUT / "docs" / "benchmarks" / "importing.md").part(
         "corpus", [text], perf_counter() - started
     )
     sys.exit(bool(wrong))

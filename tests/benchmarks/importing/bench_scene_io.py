@@ -2,7 +2,7 @@
 
     make bench-scene
     make bench-scene ARGUMENTS="--bones 60 --mode XYZ"
-    make bench-scene ARGUMENTS=--docs    # into docs/benchmarks.md
+    make bench-scene ARGUMENTS=--docs    # into docs/benchmarks/denoising.md
 
 Beside it, in the same run and on the same curves, the fastest bare way that Blender's API
 offers (`foreach_get`, `foreach_set`, no meaning attached). Each time is the median of three.
@@ -33,7 +33,9 @@ def main() -> None:
     parser.add_argument("--bones", type=int, default=120)
     parser.add_argument("--frames", type=int, default=10_000)
     parser.add_argument("--mode", default="QUATERNION", help="rotation mode of the bones")
-    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks.md")
+    parser.add_argument(
+        "--docs", action="store_true", help="rewrite docs/benchmarks/denoising.md"
+    )
     arguments = parser.parse_args()
     started = perf_counter()
     load_checkout()

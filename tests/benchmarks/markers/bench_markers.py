@@ -1,7 +1,7 @@
 """Labels, rigid clusters and skeletons from optical markers, compared with simpler methods.
 
     python -m tests.benchmarks.markers.bench_markers                  # some minutes
-    python -m tests.benchmarks.markers.bench_markers --docs  # into docs/benchmarks_markers.md
+    python -m tests.benchmarks.markers.bench_markers --docs  # into docs/benchmarks/markers.md
     python -m tests.benchmarks.markers.bench_markers --part skeleton
 
 Gaps of markers are measured by bench_denoise --part markers.
@@ -38,9 +38,11 @@ def main() -> None:
     """Print the tables of each part."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--part", choices=PARTS, help="this part only")
-    parser.add_argument("--docs", action="store_true", help="rewrite benchmarks_markers.md")
+    parser.add_argument(
+        "--docs", action="store_true", help="rewrite docs/benchmarks/markers.md"
+    )
     chosen = parser.parse_args()
-    report = Report(chosen.docs, DOCS / "benchmarks_markers.md")
+    report = Report(chosen.docs, DOCS / "benchmarks" / "markers.md")
     with threadpool_limits(1):
         for name in [chosen.part] if chosen.part else PARTS:
             started = perf_counter()

@@ -2,7 +2,7 @@
 
     python -m tests.benchmarks.physics.bench_physics                   # about two minutes
     python -m tests.benchmarks.physics.bench_physics --full --docs
-        # twice as many, docs/physics.md
+        # twice as many, docs/manual/physics.md
 
 Slide: speed of both feet over the ground, of the slowest point of the sole, while the input
 stands (contacts detected on the input). Carrying: the same while the simulated foot carries
@@ -76,7 +76,7 @@ def main() -> None:
     """Print a table for each set of clips."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--full", action="store_true", help="twice as many clips")
-    parser.add_argument("--docs", action="store_true", help="rewrite docs/physics.md")
+    parser.add_argument("--docs", action="store_true", help="rewrite docs/manual/physics.md")
     chosen = parser.parse_args()
     started = perf_counter()
     with threadpool_limits(1):
@@ -84,7 +84,7 @@ def main() -> None:
             means(title, list(clips(title, 12 if chosen.full else 6)))
             for title in (*SETS, SHAKEN)
         ]
-    report = Report(chosen.docs, DOCS / "physics.md")
+    report = Report(chosen.docs, DOCS / "manual" / "physics.md")
     report.part("physics", tables, perf_counter() - started)
 
 

@@ -2,7 +2,7 @@
 
     python -m tests.benchmarks.reconstruction.bench_postures          # about five minutes
     python -m tests.benchmarks.reconstruction.bench_postures --dev    # clips to tune on
-    python -m tests.benchmarks.reconstruction.bench_postures --docs   # into docs/benchmarks.md
+    python -m tests.benchmarks.reconstruction.bench_postures --docs   # benchmarks/denoising.md
     python -m tests.benchmarks.reconstruction.bench_postures --search # large libraries alone
 
 Libraries are of other persons than the clips: CMU walkers for development and one actor of
@@ -44,7 +44,9 @@ def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--dev", action="store_true", help="clips to tune on instead")
-    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks.md")
+    parser.add_argument(
+        "--docs", action="store_true", help="rewrite docs/benchmarks/denoising.md"
+    )
     parser.add_argument("--search", action="store_true", help="search in large libraries")
     chosen = parser.parse_args()
     started = perf_counter()

@@ -2,7 +2,7 @@
 
     make bench-reconstruct                                   # an hour
     make bench-reconstruct ARGUMENTS="--takes 1"             # a tenth of the takes
-    make bench-reconstruct ARGUMENTS="--part kinect --docs"  # docs/benchmarks_reconstruction.md
+    make bench-reconstruct ARGUMENTS="--part kinect --docs"  # docs/benchmarks/reconstruction.md
 
 Priors are learned without the tested subject, and cached in build/reconstruct.
 """
@@ -40,7 +40,7 @@ PARTS: dict[str, Part] = {
     "real": part_real.recordings,
 }
 RELIABILITY = "reliability"
-"""Its tables stand in docs/reliability.md, and `make bench-reliability` makes them alone."""
+"""Its tables are in docs/technical/reliability.md; `make bench-reliability` makes only them."""
 
 
 def main() -> None:
@@ -50,10 +50,10 @@ def main() -> None:
     parser.add_argument("--part", choices=parts, action="append", help="all by default")
     parser.add_argument("--takes", type=int, default=10, help="repetitions of each exercise")
     parser.add_argument(
-        "--docs", action="store_true", help="rewrite docs/benchmarks_reconstruction.md"
+        "--docs", action="store_true", help="rewrite docs/benchmarks/reconstruction.md"
     )
     chosen = parser.parse_args()
-    report = Report(chosen.docs, DOCS / "benchmarks_reconstruction.md")
+    report = Report(chosen.docs, DOCS / "benchmarks" / "reconstruction.md")
     for name in chosen.part or parts:
         if name == RELIABILITY:
             tell_reliability(chosen.docs)

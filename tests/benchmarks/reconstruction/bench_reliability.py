@@ -1,7 +1,7 @@
 """How well reliability tells wrong joints: areas under curves, calibration, device's flags.
 
     make bench-reliability                     # some minutes
-    make bench-reliability ARGUMENTS=--docs    # into docs/reliability.md
+    make bench-reliability ARGUMENTS=--docs    # into docs/technical/reliability.md
     make bench-reliability ARGUMENTS=--fit     # only print the models of errors of all subjects
 
 Areas are computed for each subject of UI-PRMD and averaged. "Left out" are models fitted
@@ -49,7 +49,9 @@ EYES_CLOSED = ReliabilitySettings(inferred=1.0)
 def main() -> None:
     """Print three tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--docs", action="store_true", help="rewrite docs/reliability.md")
+    parser.add_argument(
+        "--docs", action="store_true", help="rewrite docs/technical/reliability.md"
+    )
     parser.add_argument("--fit", action="store_true", help="print fitted models, no tables")
     chosen = parser.parse_args()
     if chosen.fit:
@@ -59,16 +61,16 @@ def main() -> None:
 
 
 def tell_reliability(docs: bool) -> None:
-    """Print the tables; into docs/reliability.md, with its picture, if so."""
+    """Print the tables; into docs/technical/reliability.md, with its picture, if so."""
     started = perf_counter()
     with threadpool_limits(1):
         pairs = read_pairs(KINECT / "ui_prmd")
         tables = [areas(pairs), calibration(pairs), flags()]
-    report = Report(docs, DOCS / "reliability.md")
+    report = Report(docs, DOCS / "technical" / "reliability.md")
     report.part("reliability", tables, perf_counter() - started)
     if docs:
         take = next(pair for pair in pairs if pair.name == TAKE)
-        draw_take(take, PICTURES / "reliability.png")
+        draw_take(take, PICTURES / "results" / "reliability.png")
 
 
 def print_models(pairs: list[Pair]) -> None:

@@ -2,7 +2,7 @@
 
     make bench-retarget                              # about a minute
     make bench-retarget ARGUMENTS=--decimate         # and Blender's Decimate: minutes more
-    make bench-retarget ARGUMENTS="--decimate --docs"  # into docs/benchmarks_retargeting.md
+    make bench-retarget ARGUMENTS="--decimate --docs"  # into docs/benchmarks/retargeting.md
     make bench-retarget ARGUMENTS=--dev              # clips to tune on
 
 What is measured says `retarget_measures`.
@@ -53,7 +53,7 @@ def main() -> None:
             for scores in _retargeted(title, list(motions))
         ]
         tables.append(_speed())
-    report = Report(chosen.docs, DOCS / "benchmarks_retargeting.md")
+    report = Report(chosen.docs, DOCS / "benchmarks" / "retargeting.md")
     report.part("retarget", tables, perf_counter() - started)
     started = perf_counter()
     keys = unbaked(chosen.dev, chosen.decimate)

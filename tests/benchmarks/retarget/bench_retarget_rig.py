@@ -2,7 +2,7 @@
 
     make bench-retarget-rig
     make bench-retarget-rig ARGUMENTS="--frames 2000 --baked 50"
-    make bench-retarget-rig ARGUMENTS=--docs    # into docs/benchmarks_retargeting.md
+    make bench-retarget-rig ARGUMENTS=--docs    # into docs/benchmarks/retargeting.md
 
 A walk is given to a rig of Mixamo's bones and to Rigify's human. Off: how far feet and hands
 of the rig, as Blender evaluates it, are from where the solver wants them. The peer is
@@ -71,7 +71,7 @@ def main() -> None:
     header = ["target", "bones", "keyed", "frames", "seconds", "ms per frame", "off, cm"]
     title = f"Blender {bpy.app.version_string}, a walk at {RATE:g} Hz"
     text = f"**{title}**\n\n{table(header, rows)}\n"
-    report = Report(arguments.docs, DOCS / "benchmarks_retargeting.md")
+    report = Report(arguments.docs, DOCS / "benchmarks" / "retargeting.md")
     report.part("retarget rig", [text], perf_counter() - started)
 
 

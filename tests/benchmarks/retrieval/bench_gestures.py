@@ -1,7 +1,7 @@
 """Detected, missed and false gestures, and delays.
 
     make bench-gestures                     # half a minute
-    make bench-gestures ARGUMENTS=--docs    # into docs/benchmarks_retrieval.md
+    make bench-gestures ARGUMENTS=--docs    # into docs/benchmarks/retrieval.md
 
 Thresholds were set on subjects 1 and 2 of MSR Action3D, 1, 3 and 5 of UTD-MHAD, 1, 2, 5 of
 UI-PRMD and 215 of IRDS, which have columns and rows of their own. The others were not used.
@@ -98,13 +98,13 @@ def main() -> None:
     """Print four tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument(
-        "--docs", action="store_true", help="rewrite docs/benchmarks_retrieval.md"
+        "--docs", action="store_true", help="rewrite docs/benchmarks/retrieval.md"
     )
     chosen = parser.parse_args()
     started = perf_counter()
     with threadpool_limits(1):
         tables = [detections(), alarms(), made_streams(), speed()]
-    report = Report(chosen.docs, DOCS / "benchmarks_retrieval.md")
+    report = Report(chosen.docs, DOCS / "benchmarks" / "retrieval.md")
     report.part("gestures", tables, perf_counter() - started)
 
 

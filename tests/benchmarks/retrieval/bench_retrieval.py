@@ -2,7 +2,7 @@
 
 make bench-retrieval                                # some 20 minutes
 make bench-retrieval ARGUMENTS="--method DTW"       # those with this in their name
-make bench-retrieval ARGUMENTS=--docs               # into docs/benchmarks_retrieval.md
+make bench-retrieval ARGUMENTS=--docs               # into docs/benchmarks/retrieval.md
 make bench-retrieval ARGUMENTS=--choose             # settings of pyramids, training classes
 make bench-retrieval ARGUMENTS=--pursuit            # sparse codes, against scikit-learn's
 make bench-retrieval ARGUMENTS=--times              # one search, step by step
@@ -36,10 +36,10 @@ def main() -> None:
     parser.add_argument("--pursuit", action="store_true", help="time of sparse codes")
     parser.add_argument("--times", action="store_true", help="one search, step by step")
     parser.add_argument(
-        "--docs", action="store_true", help="rewrite docs/benchmarks_retrieval.md"
+        "--docs", action="store_true", help="rewrite docs/benchmarks/retrieval.md"
     )
     chosen = parser.parse_args()
-    report = Report(chosen.docs, DOCS / "benchmarks_retrieval.md")
+    report = Report(chosen.docs, DOCS / "benchmarks" / "retrieval.md")
     started = perf_counter()
     separate: dict[str, Callable[[], str]] = {
         "choice": lambda: choose()[1], "pursuit": compare_pursuits, "times": time_searches,

@@ -53,7 +53,7 @@ from solvers.rotations.representations import (
 )
 
 from ..shared import clips
-from ..shared.report import DOCS, PICTURES, Report
+from ..shared.report import BENCHMARK_PICTURES, DOCS, Report, show
 from ..shared.tables import table
 from .retrieval_pictures import draw_growth
 
@@ -71,7 +71,7 @@ SHOWN = {
     "first": "found first", "in_ten": "in the first ten", "kin": "of its kind in ten",
 }  # fmt: skip
 DRAWN = ("search_mb", "open_ms", "find_ms", "describe_ms")
-PICTURE = PICTURES / "retrieval_growth.png"
+PICTURE = BENCHMARK_PICTURES / "retrieval" / "growth.png"
 
 
 @dataclass(frozen=True)
@@ -271,7 +271,7 @@ def tables(rows: Sequence[Row]) -> list[str]:
     }
     return [
         f"**Growth of a library**\n\n{table(['clips', *SHOWN.values()], cells)}\n",
-        f"![growth](pictures/{PICTURE.name})\n",
+        f"{show(PICTURE, 'growth')}\n",
     ]
 
 
@@ -282,7 +282,7 @@ def main() -> None:
     parser.add_argument("--queries", type=int, default=N_QUERIES)
     parser.add_argument("--search", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--log", type=Path, help="rows that an earlier run printed")
-    parser.add_argument("--docs", action="store_true", help="into docs/benchmarks_retrieval.md")
+    parser.add_argument("--docs", action="store_true", help="into docs/benchmarks/retrieval.md")
     chosen = parser.parse_args()
     if chosen.search is not None:
         print(json.dumps(search(chosen.search, chosen.queries)))
@@ -292,7 +292,7 @@ def main() -> None:
     if chosen.docs:
         drawn = {SHOWN[name]: [getattr(row, name) for row in rows] for name in DRAWN}
         draw_growth([row.n_clips for row in rows], drawn, "Growth of a library", PICTURE)
-    report = Report(chosen.docs, DOCS / "benchmarks_retrieval.md")
+    report = Report(chosen.docs, DOCS / "benchmarks" / "retrieval.md")
     report.part("growth", tables(rows), perf_counter() - began)
 
 

@@ -13,7 +13,7 @@ from time import process_time
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from ..shared.report import PICTURES
+from ..shared.report import BENCHMARK_PICTURES, show
 from ..shared.tables import number, table
 from .retrieval_clips import MISFILED, TRAINING, LabelledClip, library
 from .retrieval_damage import DAMAGES
@@ -173,15 +173,16 @@ def pictures(found: Mapping[str, Found]) -> str:
     """Draw curves and confusions; return the lines that show them."""
     clean = {name: each.tested("clean") for name, each in found.items()}
     kinect = {name: each.kinect for name, each in found.items()}
-    draw_curves(clean, "Queries of test classes, clean", PICTURES / "retrieval_curves.png")
-    draw_curves(kinect, "Queries by Kinect", PICTURES / "retrieval_curves_kinect.png")
+    folder = BENCHMARK_PICTURES / "retrieval"
+    draw_curves(clean, "Queries of test classes, clean", folder / "curves.png")
+    draw_curves(kinect, "Queries by Kinect", folder / "curves_kinect.png")
     shown = ["curves", "curves_kinect"]
     for name, word in ((OURS, "ours"), (PUBLISHED, "published")):
         if name in found:
-            path = PICTURES / f"retrieval_confusion_{word}.png"
+            path = folder / f"confusion_{word}.png"
             draw_confusion(found[name].answers["clean"], f"What {name} finds", path)
             shown.append(f"confusion_{word}")
-    return "\n".join(f"![{each}](pictures/retrieval_{each}.png)\n" for each in shown)
+    return "\n".join(f"{show(folder / f'{each}.png', each)}\n" for each in shown)
 
 
 MEASURES = (mean_precision, mean_true_positives)

@@ -3,7 +3,7 @@
     python -m tests.benchmarks.sensitivity.run_sensitivity                    # all families
     python -m tests.benchmarks.sensitivity.run_sensitivity --family feet      # one, a minute
     python -m tests.benchmarks.sensitivity.run_sensitivity --only posterior   # some modules
-    python -m tests.benchmarks.sensitivity.run_sensitivity --docs   # writes docs/sensitivity.md
+    python -m tests.benchmarks.sensitivity.run_sensitivity --docs   # benchmarks/sensitivity.md
 
 What was measured is kept in build/sensitivity, one JSON file per family; a constant is measured
 again when its value, the metric or the baseline has changed, and all are with `--again`.
@@ -34,7 +34,9 @@ def main() -> None:
     parser.add_argument("--family", nargs="+", default=[], choices=FAMILIES)
     parser.add_argument("--only", default="", help="constants whose module and name hold this")
     parser.add_argument("--again", action="store_true", help="measure also what is known")
-    parser.add_argument("--docs", action="store_true", help="rewrite docs/sensitivity.md")
+    parser.add_argument(
+        "--docs", action="store_true", help="rewrite docs/benchmarks/sensitivity.md"
+    )
     chosen = parser.parse_args()
     _import_what_solvers_need()
     for family in chosen.family or FAMILIES:

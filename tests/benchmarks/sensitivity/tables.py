@@ -1,4 +1,4 @@
-"""Tables of what was measured, for the terminal and for docs/sensitivity.md."""
+"""Tables of what was measured, for the terminal and for docs/benchmarks/sensitivity.md."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -9,7 +9,7 @@ from .constants import ROOT, Constant, constants_of
 from .evaluate import Outcome
 from .not_tuning import reason
 
-DOCUMENT = ROOT / "docs" / "sensitivity.md"
+DOCUMENT = ROOT / "docs" / "benchmarks" / "sensitivity.md"
 MOVES_PERCENT = 0.5
 """Change of any one error of a family, percent, above which a constant moves it."""
 TINY = 1e-9

@@ -1,9 +1,10 @@
-"""Print tables on the terminal and, on request, write them to docs/benchmarks.md.
+"""Print tables on the terminal and, on request, write them to docs/benchmarks/denoising.md.
 
 A part's tables replace what stands between its two marks in the document; everything else in
 it is written by hand.
 """
 
+import os
 import platform
 import re
 import sys
@@ -15,8 +16,10 @@ from .plots import draw_scores
 from .tables import Scores
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
-DOCUMENT = DOCS / "benchmarks.md"
+DOCUMENT = DOCS / "benchmarks" / "denoising.md"
 PICTURES = DOCS / "pictures"
+BENCHMARK_PICTURES = PICTURES / "benchmarks"
+"""A folder for each page of benchmarks."""
 
 
 class Report:
@@ -34,10 +37,15 @@ class Report:
             for number, scores in enumerate(tables):
                 text.append(_text(scores))
                 if isinstance(scores, Scores):
-                    path = PICTURES / f"bench_{name}_{number}.png"
+                    path = BENCHMARK_PICTURES / self._document.stem / f"{name}_{number}.png"
                     draw_scores(scores, path)
-                    text.append(f"![{scores.title}](pictures/{path.name})\n")
+                    text.append(f"{show(path, scores.title, self._document)}\n")
             _replace(self._document, name, "\n".join(text))
+
+
+def show(picture: Path, title: str, document: Path = DOCUMENT) -> str:
+    """Return the Markdown that shows a picture in a document."""
+    return f"![{title}]({Path(os.path.relpath(picture, document.parent)).as_posix()})"
 
 
 def _text(scores: Scores | str) -> str:

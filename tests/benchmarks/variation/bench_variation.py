@@ -1,7 +1,7 @@
 """Variants against copies, Perlin noise and two methods written from their papers.
 
 make bench-variation                    # some seven minutes
-make bench-variation ARGUMENTS=--docs   # into docs/benchmarks_variation.md
+make bench-variation ARGUMENTS=--docs   # into docs/benchmarks/variation.md
 make bench-variation ARGUMENTS=--dev    # sets to tune on, a minute
 make bench-variation ARGUMENTS="--part sets --part pictures"
 """
@@ -58,7 +58,7 @@ def main() -> None:
     parser.add_argument("--part", choices=PARTS, action="append", help="only this; again")
     chosen = parser.parse_args()
     sets = development_sets() if chosen.dev else scored_sets()
-    report = Report(chosen.docs, DOCS / "benchmarks_variation.md")
+    report = Report(chosen.docs, DOCS / "benchmarks" / "variation.md")
     parts: dict[str, Callable[[Sets], list[str]]] = dict(
         zip(PARTS, (measured, by_set, by_examples, discriminated, drawn), strict=True)
     )

@@ -10,7 +10,7 @@ from solvers.pictures import StickFigureSettings, draw_stick_figures
 from solvers.pictures.canvas import FAINT, INK, Canvas
 from solvers.variation.align_examples import positions_in_body_frame
 
-from ..shared.report import PICTURES
+from ..shared.report import BENCHMARK_PICTURES, show
 
 GREY, RED = (165, 170, 180), (200, 40, 40)
 WIDTH, HEIGHT, MARGIN = 420.0, 240.0, 34.0
@@ -32,7 +32,7 @@ def draw_components(panels: dict[str, tuple[Sequence[Motion], Sequence[Motion]]]
             up = floor - (curve - low) / (high - low) * (HEIGHT - 2 * MARGIN)
             color = GREY if row < len(variants) else RED
             canvas.line(list(zip(across, up, strict=True)), color, 1.2)
-    return _saved(canvas.picture().pixels, "variation_components.png")
+    return _saved(canvas.picture().pixels, "components.png")
 
 
 def draw_strips(name: str, examples: Sequence[Motion], variants: Sequence[Motion]) -> str:
@@ -47,7 +47,7 @@ def draw_strips(name: str, examples: Sequence[Motion], variants: Sequence[Motion
         np.pad(one, ((0, 0), (0, width - one.shape[1]), (0, 0)), constant_values=255)
         for one in strips
     ]
-    return _saved(np.concatenate(padded), f"variation_{name.replace(' ', '_')}.png")
+    return _saved(np.concatenate(padded), f"{name.replace(' ', '_')}.png")
 
 
 def _component(examples: Sequence[Motion], motion: Motion) -> np.ndarray:
@@ -62,6 +62,7 @@ def _flat(motion: Motion) -> np.ndarray:
 
 
 def _saved(pixels: np.ndarray, name: str) -> str:
-    PICTURES.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(pixels).save(PICTURES / name, optimize=True)
-    return f"![{name}](pictures/{name})\n"
+    picture = BENCHMARK_PICTURES / "variation" / name
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    Image.fromarray(pixels).save(picture, optimize=True)
+    return f"{show(picture, name)}\n"

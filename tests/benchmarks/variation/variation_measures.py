@@ -1,4 +1,4 @@
-"""What is measured of variants; definitions in docs/benchmarks_variation.md."""
+"""What is measured of variants; definitions in docs/benchmarks/variation.md."""
 
 from collections.abc import Sequence
 from itertools import combinations

@@ -1,7 +1,7 @@
 """What Clean, Plant Feet and Physics make of takes of video models, next to plain filters.
 
     make bench-video                     # about three minutes
-    make bench-video ARGUMENTS=--docs    # into docs/benchmarks_video.md
+    make bench-video ARGUMENTS=--docs    # into docs/benchmarks/video.md
 
 The takes, and which captures they were made from: `video_takes.py`. All steps run with their
 default settings, one after another, as the buttons do.
@@ -52,7 +52,7 @@ WHOLE = {
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks_video.md")
+    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks/video.md")
     parser.add_argument("--clips", type=int, default=None, help="at most this many clips")
     chosen = parser.parse_args()
     started = perf_counter()
@@ -64,7 +64,7 @@ def main() -> None:
         tables.append(compare_faults(dict(list(captures.items())[:: len(captures) // 6 or 1])))
         tables.append(compare_real())
     texts = [each.markdown() if isinstance(each, Scores) else each for each in tables]
-    report = Report(chosen.docs, DOCS / "benchmarks_video.md")
+    report = Report(chosen.docs, DOCS / "benchmarks" / "video.md")
     report.part("video", texts, perf_counter() - started)
 
 

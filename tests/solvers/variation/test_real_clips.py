@@ -29,7 +29,7 @@ def test_variants_are_near_the_examples_but_not_copies(clips):
     variants = synthesize(learn_variation_model(clips), 20)
 
     assert 0.65 < measure_variation(variants) / measure_variation(clips) < 1.4
-    # Body positions jerk more than joint angles: .9 to 1.1 in docs/benchmarks_variation.md.
+    # Body positions jerk more than joint angles: .9 to 1.1 in docs/benchmarks/variation.md.
     assert 0.6 < jerk(variants) / jerk(clips) < 1.45
     reference, result = (
         [positions_in_body_frame(one)[::6] for one in group] for group in (clips, variants)

@@ -30,7 +30,7 @@ LINE = {
     "confidence": [0.9, 0.4],
     "states": [2, 1],
 }
-"""As docs/formats/live_joints.md shows it."""
+"""As docs/formats/joints/live_joints.md shows it."""
 
 
 def line(**changes) -> bytes:

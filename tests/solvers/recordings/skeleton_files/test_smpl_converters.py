@@ -1,4 +1,4 @@
-"""The converters of docs/formats/smpl.md write what our reader reads, from made-up results."""
+"""The converters of docs/formats/skeletons/smpl.md make of made-up results what we read."""
 
 import re
 from pathlib import Path
@@ -12,7 +12,7 @@ from solvers.motion import Motion
 from solvers.recordings import read_recording
 from solvers.rotations import angle_between
 
-PAGE = Path(__file__).parents[4] / "docs" / "formats" / "smpl.md"
+PAGE = Path(__file__).parents[4] / "docs" / "formats" / "skeletons" / "smpl.md"
 N_FRAMES = 8
 POSES = 0.2 * np.random.default_rng(5).normal(size=(N_FRAMES, 72))
 POSES[:, :3] = 0.0
