@@ -1,6 +1,8 @@
 """The default method: find errors, estimate, and stack the estimate with two smoothers."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +19,10 @@ from ..motion_mixture import (
 )
 from ..posterior import Estimate, Smoothed, estimate_in_groups
 from ..window_priors import FilterBases
+from .measure_leverage import leverage, leverage_factor
 from .outlier_runs import confirm_outliers, find_bursts
 from .smoothing_spline import smooth_by_spline
-from .stack_estimates import leverage, stack_estimates
+from .stack_estimates import stack_estimates
 
 OUTLIER_THRESHOLD = 0.5
 """Probability of being an inlier below which a sample is an outlier. By definition."""
@@ -65,12 +68,20 @@ def estimate_and_stack(
     complete = np.where(is_good, noisy, estimate.values)
     noise = estimate_channel_noise(np.where(is_good, noisy, np.nan), MIN_NOISE)
     spline = smooth_by_spline(complete)
-    noise = np.maximum(noise * noise_factors(noise, complete, spline, is_good), MIN_NOISE)
-    smoothers = [spline, smooth_by_mixture(complete, noise, frame_rate, mixture)]
+    factors = noise_factors(noise, complete, [estimate, spline], is_good)
+    noise = np.maximum(noise * factors, MIN_NOISE)
+    by_mixture = partial(smooth_by_mixture, noise=noise, frame_rate=frame_rate, mixture=mixture)
     stacked, weights = stack_estimates(
         noisy,
         estimate,
-        [each for each in smoothers if isinstance(each, Smoothed)],
+        [
+            (smoothed, leverage_factor(smooth, complete, is_good, noise))
+            for smooth, smoothed in (
+                (smooth_by_spline, spline),
+                (by_mixture, by_mixture(complete)),
+            )
+            if smoothed is not None
+        ],
         is_good,
         noise,
     )
@@ -84,20 +95,34 @@ def estimate_and_stack(
 
 
 def noise_factors(
-    noise: Array, complete: Array, spline: Smoothed, is_good: NDArray[np.bool_]
+    noise: Array,
+    complete: Array,
+    candidates: Sequence[Estimate | Smoothed],
+    is_good: NDArray[np.bool_],
 ) -> Array:
     """Return how much smaller the noise is than third differences say, shape (n_channels,).
 
-    They take fast movement for noise, which would then be smoothed away. What a spline leaves
-    holds less movement. A spline may follow noise, too: no joint's factor is less than the
-    median of all channels.
+    They take fast movement for noise, which would then be smoothed away. What the best of the
+    candidates leaves holds less movement. They may follow noise, too: no joint's factor is less
+    than the median of all channels.
     """
-    residuals = np.where(is_good, complete - spline.values, 0.0)
-    free = np.where(is_good, 1.0 - leverage(residuals, spline.leave_one_out_error), 0.0)
-    left = np.sqrt((residuals**2).sum(axis=0) / np.maximum(free.sum(axis=0), 1.0))
     moves = np.ptp(complete, axis=0) > MAX_CONSTANT_RANGE
     if not moves.any():
         return np.ones_like(noise)
+    factors = [_noise_factors_of(noise, complete, each, is_good, moves) for each in candidates]
+    return np.asarray(np.min(factors, axis=0))
+
+
+def _noise_factors_of(
+    noise: Array,
+    complete: Array,
+    candidate: Estimate | Smoothed,
+    is_good: NDArray[np.bool_],
+    moves: NDArray[np.bool_],
+) -> Array:
+    residuals = np.where(is_good, complete - candidate.values, 0.0)
+    free = np.where(is_good, 1.0 - leverage(residuals, candidate.leave_one_out_error), 0.0)
+    left = np.sqrt((residuals**2).sum(axis=0) / np.maximum(free.sum(axis=0), 1.0))
     logs = np.log(np.maximum(left, MIN_NOISE) / noise)
     of_joints = np.where(moves, logs, 0.0).reshape(-1, 3).sum(axis=1)
     of_joints /= np.maximum(moves.reshape(-1, 3).sum(axis=1), 1)

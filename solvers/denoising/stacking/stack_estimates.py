@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ..posterior import Estimate, Smoothed
+from .measure_leverage import leverage
 
 POOLED_JOINTS = 4.0
 """Weight, in joints, of the assumption that a smoother serves a joint as well as it serves the
@@ -26,7 +27,7 @@ RIDGE = 1e-9
 def stack_estimates(
     noisy: Array,
     estimate: Estimate,
-    smoothers: Sequence[Smoothed],
+    smoothers: Sequence[tuple[Smoothed, float]],
     is_good: NDArray[np.bool_],
     noise: Array,
 ) -> tuple[Estimate, Array]:
@@ -41,8 +42,9 @@ def stack_estimates(
     noisy : shape (n_frames, n_channels)
         Each joint has three channels.
     estimate : Estimate
-    smoothers : sequence of Smoothed
-        Of the same take.
+    smoothers : sequence of Smoothed and its `leverage_factor`
+        Of the same take. The estimate counts with a factor of 1: measuring it would take as
+        long as the estimate itself.
     is_good : shape (n_frames, n_channels)
         Samples that are compared: observed ones that are no outliers. A joint without any keeps
         its estimate.
@@ -60,14 +62,16 @@ def stack_estimates(
     .. [1] Stein (1981). Estimation of the mean of a multivariate normal distribution. Annals of
        Statistics 9. doi:10.1214/aos/1176345632
     """
-    candidates: list[Estimate | Smoothed] = [estimate, *smoothers]
+    smoothed = [each for each, _ in smoothers]
+    candidates: list[Estimate | Smoothed] = [estimate, *smoothed]
+    factors = [1.0, *(factor for _, factor in smoothers)]
     complete = np.where(is_good, noisy, estimate.values)
     residuals = np.stack([
         np.where(is_good, complete - each.values, 0.0) for each in candidates
     ])
     leverages = np.stack([
-        leverage(residual, each.leave_one_out_error)
-        for residual, each in zip(residuals, candidates, strict=True)
+        factor * leverage(residual, each.leave_one_out_error)
+        for residual, each, factor in zip(residuals, candidates, factors, strict=True)
     ])
     variance = np.square(noise)
     joints = (-1, 3)
@@ -87,14 +91,7 @@ def stack_estimates(
         weights[compared] = [
             _least_error_weights(*each) for each in zip(products, freedom, strict=True)
         ]
-    return _blend(estimate, smoothers, np.repeat(weights, 3, axis=0).T, is_good), weights
-
-
-def leverage(residual: Array, leave_one_out_error: Array) -> Array:
-    """Return the weight of each sample in its own estimate, from both of its errors."""
-    known = np.isfinite(leave_one_out_error) & (leave_one_out_error != 0.0)
-    ratio = np.divide(residual, leave_one_out_error, out=np.zeros_like(residual), where=known)
-    return np.asarray(np.clip(1.0 - ratio, 0.0, 1.0))
+    return _blend(estimate, smoothed, np.repeat(weights, 3, axis=0).T, is_good), weights
 
 
 def _least_error_weights(products: Array, freedom: Array) -> Array:

@@ -10,6 +10,7 @@ from solvers.denoising.motion_mixture import estimate_channel_noise
 from solvers.denoising.posterior import Estimate, Smoothed
 from solvers.denoising.stacking import smoothing_spline
 from solvers.denoising.stacking.estimate_and_stack import noise_factors
+from solvers.denoising.stacking.measure_leverage import leverage, leverage_factor
 from solvers.denoising.stacking.smoothing_spline import smooth_by_spline
 from solvers.denoising.stacking.stack_estimates import stack_estimates
 from solvers.motion import Motion, find_humanoid_map
@@ -57,13 +58,79 @@ def test_weights_are_those_of_the_least_error(rng):
     useless = _estimate(noisy)
 
     _, weights = stack_estimates(
-        noisy, useless, smoothed, np.ones(noisy.shape, dtype=bool), np.ones(3)
+        noisy,
+        useless,
+        [(each, 1.0) for each in smoothed],
+        np.ones(noisy.shape, dtype=bool),
+        np.ones(3),
     )
 
     correlation = variances[0] * variances[1]  # both contain the sample itself
     gaps = variances - correlation
     expected = gaps[::-1] / gaps.sum()
     assert_allclose(weights[0], [0.0, *expected], atol=0.05)
+
+
+def test_leverage_factor_is_the_share_of_the_noise_that_is_followed(rng):
+    """A spline chooses its smoothness by the noise, too: it follows more than its leverage."""
+    waves = 5.0 * np.sin(np.outer(np.arange(60) / 12.0, np.linspace(0.5, 1.5, 2000)))
+    noise = rng.normal(size=waves.shape)
+    samples, good = waves + noise, np.ones(waves.shape, dtype=bool)
+
+    smoothed = smooth_by_spline(samples)
+    factor = leverage_factor(smooth_by_spline, samples, good, np.ones(2000))
+
+    said = leverage(samples - smoothed.values, smoothed.leave_one_out_error).sum()
+    followed = (noise * (smoothed.values - waves)).sum() / said
+    assert followed > 1.05
+    assert_allclose(factor, followed, rtol=0.05)
+
+
+def test_leverage_factor_of_a_fixed_spline_is_one(rng, monkeypatch):
+    monkeypatch.setattr(smoothing_spline, "SMOOTHNESS", np.array([3.0]))
+    samples = rng.normal(size=(60, 300))
+    good = rng.random(samples.shape) > 0.2
+
+    factor = leverage_factor(smooth_by_spline, samples, good, np.full(300, 2.0))
+
+    assert_allclose(factor, 1.0, atol=0.02)
+
+
+def test_leverage_factor_does_not_depend_on_the_order_of_the_channels(rng):
+    samples = np.cumsum(rng.normal(size=(60, 9)), axis=0)
+    still = np.full((60, 3), 7.0)
+    others = np.hstack([still, samples[:, ::-1]])
+
+    factors = [
+        leverage_factor(
+            smooth_by_spline,
+            each,
+            np.ones(each.shape, dtype=bool),
+            np.full(each.shape[1], 0.5),
+        )
+        for each in (samples, others)
+    ]
+
+    assert factors[0] > 1.01
+    assert_allclose(factors[1], factors[0], rtol=1e-9)
+
+
+def test_smoother_that_follows_noise_gets_less_weight(rng):
+    noisy = rng.normal(size=(2000, 3))
+    smoothed = [_mean_of_samples(noisy, 4, rng) for _ in range(2)]
+
+    equal, weights = (
+        stack_estimates(
+            noisy,
+            _estimate(noisy),
+            [(smoothed[0], 1.0), (smoothed[1], factor)],
+            np.ones(noisy.shape, dtype=bool),
+            np.ones(3),
+        )[1]
+        for factor in (1.0, 1.5)
+    )
+
+    assert weights[0, 2] < equal[0, 2] - 0.1
 
 
 def test_clean_take_keeps_its_samples(rng):
@@ -73,7 +140,7 @@ def test_clean_take_keeps_its_samples(rng):
     blurred = replace(_estimate(clean + 0.5), leave_one_out_error=np.full(clean.shape, -0.5))
 
     stacked, weights = stack_estimates(
-        clean, blurred, [unchanged], np.ones(clean.shape, dtype=bool), np.full(6, 0.01)
+        clean, blurred, [(unchanged, 1.0)], np.ones(clean.shape, dtype=bool), np.full(6, 0.01)
     )
 
     assert_allclose(weights, np.tile([0.0, 1.0], (2, 1)), atol=0.02)
@@ -127,7 +194,7 @@ def test_spike_before_a_kick_is_removed(rng):
 def _noise_factors(samples: np.ndarray) -> np.ndarray:
     noise = estimate_channel_noise(samples, 0.01)
     good = np.ones(samples.shape, dtype=bool)
-    return noise_factors(noise, samples, smooth_by_spline(samples), good)
+    return noise_factors(noise, samples, [smooth_by_spline(samples)], good)
 
 
 def _mean_of_samples(noisy: np.ndarray, n: int, rng: np.random.Generator) -> Smoothed:

@@ -1,0 +1,73 @@
+"""How much a smoother follows the noise of the take that it smooths."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array
+from ..motion_mixture import MAX_CONSTANT_RANGE
+from ..posterior import Smoothed
+
+PROBE_FRACTION = 0.1
+"""Size of the added noise, in standard deviations of the take's own. Small, so that the
+smoother answers in proportion, and far above rounding."""
+MAX_PROBED_FRAMES = 1024
+"""Frames of a long take, in its middle, in which the change is measured. It bounds the run
+time."""
+
+
+def leverage(residual: Array, leave_one_out_error: Array) -> Array:
+    """Return the weight of each sample in its own estimate, from both of its errors."""
+    known = np.isfinite(leave_one_out_error) & (leave_one_out_error != 0.0)
+    ratio = np.divide(residual, leave_one_out_error, out=np.zeros_like(residual), where=known)
+    return np.asarray(np.clip(1.0 - ratio, 0.0, 1.0))
+
+
+def leverage_factor(
+    smooth: Callable[[Array], Smoothed | None],
+    samples: Array,
+    is_good: NDArray[np.bool_],
+    noise: Array,
+) -> float:
+    """Return how much more a smoother follows noise than the leverage of its samples says.
+
+    A smoother that chooses its smoothness from the take chooses it by the noise, too. Noise is
+    added, and its share in the change of the smoothed take is measured [1]_.
+
+    Parameters
+    ----------
+    smooth : function of an array of shape (n_frames, n_channels)
+    samples : shape (n_frames, n_channels), without NaN
+    is_good : shape (n_frames, n_channels)
+        Samples that count.
+    noise : shape (n_channels,)
+        Standard deviation.
+
+    Returns
+    -------
+    float, at least 1
+
+    References
+    ----------
+    .. [1] Ramani, Blu, Unser (2008). Monte-Carlo SURE: a black-box optimization of
+       regularization parameters for general denoising algorithms. IEEE Transactions on Image
+       Processing 17. doi:10.1109/TIP.2008.2001404
+    """
+    first = max(len(samples) - MAX_PROBED_FRAMES, 0) // 2
+    probed = slice(first, first + MAX_PROBED_FRAMES)
+    samples, is_good = samples[probed], is_good[probed]
+    spread = samples.std(axis=0)
+    counts = is_good & (np.ptp(samples, axis=0) > MAX_CONSTANT_RANGE)
+    signs = np.random.default_rng(0).choice([-1.0, 1.0], samples.shape[::-1]).T
+    # By spread: neither the order of the joints nor one that stands still changes the result.
+    signs = np.where(counts, signs[:, np.argsort(np.argsort(-spread))], 0.0)
+    added = PROBE_FRACTION * noise
+    smoothed, again = smooth(samples), smooth(samples + added * signs)
+    if smoothed is None or again is None:
+        return 1.0
+    expected = leverage(samples - smoothed.values, smoothed.leave_one_out_error)[counts].sum()
+    if not expected > 0.0:
+        return 1.0
+    change = (again.values - smoothed.values) / added
+    return max(float((signs * change).sum() / expected), 1.0)
