@@ -19,6 +19,7 @@ from .importing import chosen_paths, import_files
 from .show_actor import show_actor
 
 WIDTH = 400  # of the dialog, pixels at scale 1
+NOTE_WIDTH = 300  # of Adjust Last Operation, whose width Blender chooses
 
 
 class FilesOperator(SettingsMixin):
@@ -74,7 +75,7 @@ class FilesOperator(SettingsMixin):
         if bodies_to_choose(chosen_paths(self)):
             self.layout.column().prop(self, "body_choice", expand=True)
         if self.note:
-            draw_lines(self.layout, self.note, WIDTH)
+            draw_lines(self.layout, self.note, NOTE_WIDTH)
         kinds = self.kinds.split()
         for_depth = fitting(type(self).setting_names, [DEPTH])
         for name in fitting(type(self).setting_names, kinds or MOVING):

@@ -44,6 +44,7 @@ RECORDINGS = {
     "marker_overlay": {"markers.trc": "formats/trc/subject02_running.trc"},
     "markers": {"markers.c3d": "markers/85_02.c3d"},
     "physics": {"walk.bvh": "mocap/cmu_walk/07_01.bvh"},
+    "redo": {"walk.bvh": "mocap/cmu_walk/07_01.bvh"},
     "reconstruct": {"kinect.txt": "kinect/irds/217_18_0_3_1_wheelchair.txt"},
     "retarget": {},
     "stands": {

@@ -1,0 +1,70 @@
+"""Import a walk, open its *Adjust Last Operation* panel, and type another scale.
+
+    make test-gui DRIVERS=redo
+
+Runs inside a Blender with a window; `bgui` comes with the tool and moves a real pointer.
+"""
+
+from pathlib import Path
+
+import bgui
+import bpy
+from stage import empty_scene, settle
+
+FOLDER = Path(__file__).parent
+REDO_PANEL, SCALE = (78, 112), (270, 210)
+"""Pixels at which Blender draws the header and the number; a scan does not reach them."""
+UNTIL_DONE = 600  # tenths of a second
+
+
+def until_done():
+    for _ in range(UNTIL_DONE):
+        yield 0.1
+        if not bpy.context.window_manager.mocap_assist_job.running:
+            return
+    raise AssertionError("The import did not end.")
+
+
+def head_height():
+    armature = bpy.context.object
+    bones = [bone for bone in armature.pose.bones if bone.name.lower() == "head"]
+    return (armature.matrix_world @ bones[0].head).z
+
+
+def steps():
+    empty_scene()
+    yield from bgui.open_sidebar("Mocap")
+    bgui.move(500, 500)
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.import_recording(
+            "INVOKE_DEFAULT", directory=str(FOLDER), files=[{"name": "walk.bvh"}]
+        )
+    yield 1.5
+    yield from bgui.key("Return")
+    yield 0.5
+    yield from until_done()
+    yield from settle()
+    low = head_height()
+    assert low > 1.0, low
+    yield from bgui.click(*REDO_PANEL)
+    yield 1.5
+    bgui.shot("1-redo.png")
+    bgui.move(*SCALE)
+    yield 0.3
+    for _ in range(2):  # a double click edits the number
+        bgui.x("click", 1)
+    yield 0.5
+    yield from bgui.key("ctrl+a")
+    yield from bgui.key("2")
+    yield from bgui.key("Return")
+    yield 1.0
+    yield from until_done()
+    yield from settle()
+    bgui.shot("2-twice-as-tall.png")
+    armatures = [each.name for each in bpy.data.objects if each.type == "ARMATURE"]
+    assert armatures == ["walk"], armatures
+    assert len(bpy.data.actions) == 1, list(bpy.data.actions)
+    assert abs(head_height() - 2.0 * low) < 1e-3, (head_height(), low)
+
+
+bgui.run(steps, timeout=200)
