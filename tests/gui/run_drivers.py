@@ -47,6 +47,7 @@ RECORDINGS = {
     "redo": {"walk.bvh": "mocap/cmu_walk/07_01.bvh"},
     "reconstruct": {"kinect.txt": "kinect/irds/217_18_0_3_1_wheelchair.txt"},
     "retarget": {},
+    "skin": {"walking.glb": "corpus/glb/mixamo_blender/walking.glb"},
     "stands": {
         "walk.bvh": "mocap/cmu_walk/07_01.bvh",
         "mixamo.fbx": "corpus/fbx/mixamo_web/Walking.fbx",
