@@ -1,6 +1,7 @@
 """Adjacent frames follow the correction of one frame; other frames stay unchanged."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +16,8 @@ from solvers.depth_tracking.body.motion import body_motion, motion_frames
 from solvers.depth_tracking.body.pose_from_joints import pose_from_frames
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.retrack import RetrackSettings, retrack
+from solvers.depth_tracking.capturing.retracked_path import _largest_distance
+from solvers.depth_tracking.tracking.fit_quality import FitQuality
 from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.rotations.representations import (
     angle_between,
@@ -65,6 +68,18 @@ def test_pose_from_frames_needs_no_initial_pose():
         again = segment_frames(BODY, pose_from_frames(BODY, frames))
         assert_allclose(again[:, :3, 3], frames[:, :3, 3], atol=2e-3)
         assert_allclose(again[:, :3, :3], frames[:, :3, :3], atol=0.02)
+
+
+def test_motions_do_not_agree_where_an_occluded_arm_differs():
+    """Nothing of the body is visible, so its joints have confidence 0."""
+    truth = waving(N_FRAMES)
+    actor = SimpleNamespace(body=BODY)
+    occluded = FitQuality(*np.zeros(6), np.zeros(len(JOINTS)))
+    frame = CORRECTED + 1
+
+    distance = _largest_distance(actor, truth[frame], with_error(truth)[frame], occluded)
+
+    assert distance > RetrackSettings().agreement
 
 
 def test_retrack_corrects_the_error_and_keeps_other_frames(take, retracked):
