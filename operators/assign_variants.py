@@ -4,26 +4,21 @@ from typing import ClassVar
 
 import bpy
 
+from ..mocap_assist.blender.act_operator import ActOperator
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.variants.choices import CrowdBundle
 from ..mocap_assist.variants.crowd import assign, crowd_of, why_not_assign
-from ..solvers.errors import MocapAssistError
 
 
 @settings_from(CrowdBundle)
-class MOCAP_OT_assign_variants(bpy.types.Operator):
+class MOCAP_OT_assign_variants(ActOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.assign_variants"
     bl_label = "Assign to Selected"
     bl_description = (
         "Play a different variant on each selected armature, at a random start and position"
     )
     bl_options: ClassVar = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if reason := why_not_assign(context):
-            cls.poll_message_set(reason)
-        return not reason
+    why_not = why_not_assign
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         for name in type(self).setting_names:
@@ -31,11 +26,5 @@ class MOCAP_OT_assign_variants(bpy.types.Operator):
                 setattr(self, name, getattr(context.scene.mocap_assist.crowd, name))
         return self.execute(context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        try:
-            message = assign(context, crowd_of(context), self.settings())
-        except MocapAssistError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        self.report({"INFO"}, message)
-        return {"FINISHED"}
+    def act(self, context: bpy.types.Context) -> str:
+        return assign(context, crowd_of(context), self.settings())

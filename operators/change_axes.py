@@ -4,6 +4,7 @@ from typing import ClassVar
 
 import bpy
 
+from ..mocap_assist.blender.act_operator import ActOperator
 from ..mocap_assist.blender.mixins import SettingsMixin
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.importing.changing_axes import (
@@ -14,22 +15,16 @@ from ..mocap_assist.importing.changing_axes import (
     why_fixed,
 )
 from ..mocap_assist.importing.import_operator import WIDTH
-from ..solvers.errors import MocapAssistError
+from ..solvers.errors import InvalidMotionError
 
 
 @settings_from(AxesSettings)
-class MOCAP_OT_change_axes(SettingsMixin, bpy.types.Operator):
+class MOCAP_OT_change_axes(SettingsMixin, ActOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.change_axes"
     bl_label = "Change Up Axis, Forward, Scale"
     bl_description = "Turn or scale the imported take if its file was read wrong"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        reason = why_fixed(context)
-        if reason:
-            cls.poll_message_set(reason)
-        return not reason
+    why_not = why_fixed
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.set_properties(noted_change(imported_object(context)))
@@ -38,17 +33,11 @@ class MOCAP_OT_change_axes(SettingsMixin, bpy.types.Operator):
         )
         return asked
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> str:
         owner = imported_object(context)
         if owner is None:
-            return {"CANCELLED"}
-        try:
-            message = change_axes(context, owner, self.settings().change)
-        except MocapAssistError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        self.report({"INFO"}, message)
-        return {"FINISHED"}
+            raise InvalidMotionError(why_fixed(context))
+        return change_axes(context, owner, self.settings().change)
 
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True

@@ -4,6 +4,7 @@ from typing import ClassVar
 
 import bpy
 
+from ..mocap_assist.blender.act_operator import ActOperator
 from ..mocap_assist.blender.path_properties import file_to_write, path_property
 from ..mocap_assist.variants.crowd import why_not_stack
 from ..mocap_assist.variants.sheet import write_sheet
@@ -12,21 +13,16 @@ from ..solvers.errors import MocapAssistError
 PNG = ".png"
 
 
-class MOCAP_OT_draw_variants(bpy.types.Operator):
+class MOCAP_OT_draw_variants(ActOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.draw_variants"
     bl_label = "Contact Sheet"
     bl_description = "Draw the picked variants, or all, as stick figures to a PNG file"
     bl_options: ClassVar = {"REGISTER"}
+    why_not = why_not_stack
 
     filepath: path_property(options={"SKIP_SAVE"}, name="File", description="PNG file to write")
     filter_glob: bpy.props.StringProperty(default=f"*{PNG}", options={"HIDDEN", "SKIP_SAVE"})
     check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if reason := why_not_stack(context):
-            cls.poll_message_set(reason)
-        return not reason
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if not self.filepath:

@@ -4,11 +4,11 @@ from typing import ClassVar
 
 import bpy
 
+from ..mocap_assist.blender.act_operator import ActOperator
 from ..mocap_assist.library.auto_update_list import toggle_kept
-from ..solvers.errors import MocapAssistError
 
 
-class MOCAP_OT_keep_current(bpy.types.Operator):
+class MOCAP_OT_keep_current(ActOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.keep_current"
     bl_label = "Auto-Update"
     bl_description = (
@@ -16,11 +16,5 @@ class MOCAP_OT_keep_current(bpy.types.Operator):
     )
     bl_options: ClassVar = set[str]()  # nothing of the file is changed
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        try:
-            message = toggle_kept(context.scene.mocap_assist.library.settings().choices)
-        except MocapAssistError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        self.report({"INFO"}, message)
-        return {"FINISHED"}
+    def act(self, context: bpy.types.Context) -> str:
+        return toggle_kept(context.scene.mocap_assist.library.settings().choices)

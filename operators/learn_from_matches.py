@@ -4,16 +4,17 @@ from typing import ClassVar
 
 import bpy
 
+from ..mocap_assist.blender.act_operator import ActOperator
 from ..mocap_assist.search.learning import CLEAN, RECONSTRUCT, learn_from_best
 from ..mocap_assist.search.searches import why_none
-from ..solvers.errors import MocapAssistError
 
 
-class MOCAP_OT_learn_from_matches(bpy.types.Operator):
+class MOCAP_OT_learn_from_matches(ActOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.learn_from_matches"
     bl_label = "Learn from Matches"
     bl_description = "Replace the list of examples by the best of these clips"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
+    why_not = why_none
 
     group: bpy.props.EnumProperty(
         name="For",
@@ -33,16 +34,5 @@ class MOCAP_OT_learn_from_matches(bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if reason := why_none(context):
-            cls.poll_message_set(reason)
-        return not reason
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        try:
-            self.report({"INFO"}, learn_from_best(context, self.group, self.n_best))
-        except MocapAssistError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        return {"FINISHED"}
+    def act(self, context: bpy.types.Context) -> str:
+        return learn_from_best(context, self.group, self.n_best)

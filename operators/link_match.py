@@ -4,17 +4,18 @@ from typing import ClassVar
 
 import bpy
 
+from ..mocap_assist.blender.act_operator import ActOperator
 from ..mocap_assist.search.linking import take_chosen, why_not_link
-from ..solvers.errors import MocapAssistError
 
 
-class MOCAP_OT_link_match(bpy.types.Operator):
+class MOCAP_OT_link_match(ActOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.link_match"
     bl_label = "Link Action"
     bl_description = (
         "Link the action from its .blend file and assign it where the armature has its bones"
     )
     bl_options: ClassVar = {"REGISTER", "UNDO"}
+    why_not = why_not_link
 
     link: bpy.props.BoolProperty(
         name="Link",
@@ -23,16 +24,5 @@ class MOCAP_OT_link_match(bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if reason := why_not_link(context):
-            cls.poll_message_set(reason)
-        return not reason
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        try:
-            self.report({"INFO"}, take_chosen(context, self.link))
-        except MocapAssistError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        return {"FINISHED"}
+    def act(self, context: bpy.types.Context) -> str:
+        return take_chosen(context, self.link)

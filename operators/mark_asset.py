@@ -13,12 +13,7 @@ class MOCAP_OT_mark_asset(MarkOperator, bpy.types.Operator):
     bl_label = "Mark as Asset"
     bl_description = "Mark the current action as an asset with tags, a catalog and a preview"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
+    why_not = why_not_mark
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if reason := why_not_mark(context):
-            cls.poll_message_set(reason)
-        return not reason
-
-    def mark(self, context: bpy.types.Context) -> str:
+    def act(self, context: bpy.types.Context) -> str:
         return mark_played(context, self.tags, self.catalog)

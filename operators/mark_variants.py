@@ -16,12 +16,7 @@ class MOCAP_OT_mark_variants(MarkOperator, bpy.types.Operator):
         "Mark the picked variants, or all, as assets with tags, a catalog and previews"
     )
     bl_options: ClassVar = {"REGISTER", "UNDO"}
+    why_not = why_none
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if reason := why_none(context):
-            cls.poll_message_set(reason)
-        return not reason
-
-    def mark(self, context: bpy.types.Context) -> str:
+    def act(self, context: bpy.types.Context) -> str:
         return mark_variants(context.scene, self.tags, self.catalog)

@@ -2,22 +2,17 @@
 
 import bpy
 
+from ..mocap_assist.blender.act_operator import ActOperator
 from ..mocap_assist.check.reverting import revert, why_not_revert
 from ..mocap_assist.runtime.selection import selected_subject
 
 
-class MOCAP_OT_revert_to_raw(bpy.types.Operator):
+class MOCAP_OT_revert_to_raw(ActOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.revert_to_raw"
     bl_label = "Revert to Raw"
     bl_description = "Assign the recorded action again; the cleaned one stays in the file"
     bl_options = {"REGISTER", "UNDO"}
+    why_not = why_not_revert
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if reason := why_not_revert(context):
-            cls.poll_message_set(reason)
-        return not reason
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        self.report({"INFO"}, revert(selected_subject(context)))
-        return {"FINISHED"}
+    def act(self, context: bpy.types.Context) -> str:
+        return revert(selected_subject(context))

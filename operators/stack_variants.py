@@ -4,26 +4,16 @@ from typing import ClassVar
 
 import bpy
 
+from ..mocap_assist.blender.act_operator import ActOperator
 from ..mocap_assist.variants.crowd import stack, why_not_stack
-from ..solvers.errors import MocapAssistError
 
 
-class MOCAP_OT_stack_variants(bpy.types.Operator):
+class MOCAP_OT_stack_variants(ActOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.stack_variants"
     bl_label = "Push to NLA"
     bl_description = "Put the picked variants, or all, on NLA tracks, one after the other"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
+    why_not = why_not_stack
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if reason := why_not_stack(context):
-            cls.poll_message_set(reason)
-        return not reason
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        try:
-            self.report({"INFO"}, stack(context))
-        except MocapAssistError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        return {"FINISHED"}
+    def act(self, context: bpy.types.Context) -> str:
+        return stack(context)

@@ -101,14 +101,14 @@ def _tips(skeleton: Skeleton) -> set[int]:
         and skeleton.is_end_site(joint)
         and skeleton.names[joint] == f"{skeleton.names[parent]}_end"
         and len(skeleton.children[parent]) == 1
-        and vectors[joint] > SHORT * _extent(skeleton)
+        and vectors[joint] > SHORT * skeleton.extent
     }
 
 
 def _tails(skeleton: Skeleton, tips: set[int]) -> Array:
     """Where the bone of each joint ends, shape (n_joints, 3), meters."""
     heads = skeleton.rest_positions
-    extent = _extent(skeleton)
+    extent = skeleton.extent
     tails = heads.copy()
     for joint, parent in enumerate(skeleton.parents):
         vector = _bone_vector(skeleton, joint)
@@ -123,7 +123,7 @@ def _tails(skeleton: Skeleton, tips: set[int]) -> Array:
 
 def _bone_vector(skeleton: Skeleton, joint: int) -> Array:
     """Return the vector from a joint to its child, straightest child, or mean of all."""
-    distant = SHORT * _extent(skeleton)
+    distant = SHORT * skeleton.extent
     lengths = np.linalg.norm(skeleton.offsets, axis=-1)
     children = [child for child in skeleton.children[joint] if lengths[child] > distant]
     if not children:
@@ -139,8 +139,3 @@ def _bone_vector(skeleton: Skeleton, joint: int) -> Array:
     if len(children) == 1 or cosines.max() > STRAIGHT:
         return np.asarray(vectors[int(np.argmax(cosines))])
     return np.asarray(vectors.mean(axis=0))
-
-
-def _extent(skeleton: Skeleton) -> float:
-    """Return the longest side of the box around the rest pose; 1 m for a single joint."""
-    return float(np.ptp(skeleton.rest_positions, axis=0).max()) or 1.0

@@ -7,6 +7,7 @@ import numpy as np
 from bpy.app import handlers
 from numpy.typing import NDArray
 
+from ...solvers.arrays import Flags
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
@@ -17,7 +18,6 @@ PROPERTIES = ("mocap_contact_left", "mocap_contact_right")
 GROUP = "Foot contacts"
 DETECTED = "mocap_assist_detected_contacts"
 """Property of an action: a digest of its contact keys, if they were detected."""
-Flags = NDArray[np.bool_]
 
 
 def read_contacts(

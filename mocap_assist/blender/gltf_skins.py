@@ -25,8 +25,8 @@ def find_joint_trees(content: Mapping[str, Any]) -> list[list[int]]:
 
     Empty where the file has a skin: it says which nodes are joints.
     """
-    nodes = [_dict(each) for each in _list(content.get("nodes"))]
-    if _list(content.get("skins")):
+    nodes = [dict_of(each) for each in list_of(content.get("nodes"))]
+    if list_of(content.get("skins")):
         return []
     animated = _animated_nodes(content)
     below = {child for node in nodes for child in _children(node, len(nodes))}
@@ -50,7 +50,7 @@ def write_with_skins(
         **content,
         "skins": skins,
         "buffers": [
-            _found_from_elsewhere(each, folder) for each in _list(content.get("buffers"))
+            _found_from_elsewhere(each, folder) for each in list_of(content.get("buffers"))
         ],
     }
     text = json.dumps(changed).encode()
@@ -97,15 +97,15 @@ def _animated_nodes(content: Mapping[str, Any]) -> set[int]:
     """Return the nodes whose rotation is animated."""
     return {
         target["node"]
-        for animation in _list(content.get("animations"))
-        for channel in _list(_dict(animation).get("channels"))
-        if (target := _dict(_dict(channel).get("target"))).get("path") == "rotation"
+        for animation in list_of(content.get("animations"))
+        for channel in list_of(dict_of(animation).get("channels"))
+        if (target := dict_of(dict_of(channel).get("target"))).get("path") == "rotation"
         and isinstance(target.get("node"), int)
     }
 
 
 def _is_of_scale_one(node: Mapping[str, Any]) -> bool:
-    scale = _list(node.get("scale")) or [1.0]
+    scale = list_of(node.get("scale")) or [1.0]
     return all(
         isinstance(each, int | float) and abs(each - 1.0) <= MAX_SCALE_ERROR for each in scale
     )
@@ -114,24 +114,26 @@ def _is_of_scale_one(node: Mapping[str, Any]) -> bool:
 def _children(node: Mapping[str, Any], n_nodes: int) -> list[int]:
     return [
         child
-        for child in _list(node.get("children"))
+        for child in list_of(node.get("children"))
         if isinstance(child, int) and 0 <= child < n_nodes
     ]
 
 
 def _found_from_elsewhere(buffer: Any, folder: Path) -> Any:
     """Return a buffer whose file is found from another folder too."""
-    uri = _dict(buffer).get("uri")
+    uri = dict_of(buffer).get("uri")
     if not isinstance(uri, str) or uri.startswith("data:"):
         return buffer
     return {**buffer, "uri": _quoted(folder.as_posix()) + "/" + uri}
 
 
-def _list(value: Any) -> list[Any]:
+def list_of(value: Any) -> list[Any]:
+    """Return a list of parsed JSON; an empty one if it is something else."""
     return value if isinstance(value, list) else []
 
 
-def _dict(value: Any) -> dict[str, Any]:
+def dict_of(value: Any) -> dict[str, Any]:
+    """Return an object of parsed JSON; an empty one if it is something else."""
     return value if isinstance(value, dict) else {}
 
 

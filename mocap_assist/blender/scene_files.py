@@ -15,7 +15,7 @@ from ...solvers.files import open_regular
 from ...solvers.json_text import parse_json
 from ...solvers.recordings import refuse_stand_ins
 from ..jobs.in_blender import is_scene_file
-from .gltf_skins import find_joint_trees, write_with_skins
+from .gltf_skins import dict_of, find_joint_trees, list_of, write_with_skins
 
 COMMON_RATES = (15.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 200.0, 240.0)
 MIN_RATE_HZ = 12.0
@@ -125,8 +125,8 @@ def _refuse_other_files(path: str, content: dict[str, Any]) -> None:
     It is a stranger's: it may name devices, pipes, private files or those of a server.
     """
     folder = Path(path).resolve().parent
-    for part in (*_list(content.get("buffers")), *_list(content.get("images"))):
-        uri = _dict(part).get("uri")
+    for part in (*list_of(content.get("buffers")), *list_of(content.get("images"))):
+        uri = dict_of(part).get("uri")
         if uri is None or (isinstance(uri, str) and uri.startswith("data:")):
             continue
         named = folder / _unquoted(str(uri)).replace("\\", "/")
@@ -147,13 +147,13 @@ def _unquoted(uri: str) -> str:
 
 def _gltf_rate(content: dict[str, Any]) -> float:
     """Return the rate of most keys in hertz, from the numbers and times of the samplers."""
-    accessors = _list(content.get("accessors"))
+    accessors = list_of(content.get("accessors"))
     rates: list[float] = []
-    for animation in _list(content.get("animations")):
-        for sampler in _list(_dict(animation).get("samplers")):
-            index = _dict(sampler).get("input")
+    for animation in list_of(content.get("animations")):
+        for sampler in list_of(dict_of(animation).get("samplers")):
+            index = dict_of(sampler).get("input")
             if isinstance(index, int) and 0 <= index < len(accessors):
-                rates += _key_rate(_dict(accessors[index]))
+                rates += _key_rate(dict_of(accessors[index]))
     if not rates:
         return RATE_OF_SPARSE_KEYS_HZ
     rate = Counter(rates).most_common(1)[0][0]
@@ -169,16 +169,8 @@ def _key_rate(accessor: dict[str, Any]) -> list[float]:
     if not isinstance(count, int):
         return []
     try:
-        duration = float(_list(last)[0]) - float(_list(first)[0])
+        duration = float(list_of(last)[0]) - float(list_of(first)[0])
         rate = (count - 1) / duration if duration > 0.0 else 0.0
     except (IndexError, TypeError, ValueError, OverflowError):
         return []
     return [round(rate, 3)] if 0.0 < rate < MAX_RATE_HZ else []
-
-
-def _list(value: Any) -> list[Any]:
-    return value if isinstance(value, list) else []
-
-
-def _dict(value: Any) -> dict[str, Any]:
-    return value if isinstance(value, dict) else {}

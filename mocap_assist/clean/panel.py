@@ -4,7 +4,7 @@ import bpy
 
 from ...solvers.denoising import DenoiseSettings, PlantSettings
 from ..blender.mixins import PanelMixin
-from ..panels.drawing import draw_job, draw_sentence, exists, folded
+from ..panels.drawing import draw_sentence, exists, folded, settings_column
 from ..runtime.selection import selected_subject, why_not_clean
 from .choices import Prior
 from .example_list import draw_examples
@@ -21,12 +21,8 @@ class CleanPanel(PanelMixin):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        running = draw_job(layout, context, "clean")
-        column = layout.column()
-        column.enabled = not running
+        column = settings_column(layout, context, "clean")
         clean = context.scene.mocap_assist.clean
-        column.use_property_split = True
-        column.use_property_decorate = False
         subject = selected_subject(context)
         joints = subject is None or subject.type == "ARMATURE"
         _draw_main(column, clean, joints)

@@ -8,7 +8,7 @@ import bpy
 from ...solvers.markers import SolveSettings
 from ...solvers.workflows import MarkerMotionSettings
 from ..blender.mixins import PanelMixin
-from ..panels.drawing import draw_job, draw_sentence, exists
+from ..panels.drawing import draw_sentence, exists, settings_column
 from ..runtime.selection import selected_subject
 from .solving import why_not_solve
 
@@ -28,11 +28,7 @@ class MarkersPanel(PanelMixin):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        running = draw_job(layout, context, "solve")
-        column = layout.column()
-        column.enabled = not running
-        column.use_property_split = True
-        column.use_property_decorate = False
+        column = settings_column(layout, context, "solve")
         solve = context.scene.mocap_assist.solve
         for item in (*fields(MarkerMotionSettings), *fields(SolveSettings)):
             if not item.metadata["described"].advanced:

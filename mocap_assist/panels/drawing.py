@@ -69,6 +69,24 @@ def draw_job(layout: bpy.types.UILayout, context: bpy.types.Context, *owners: st
     return bool(job.running)
 
 
+def settings_column(
+    layout: bpy.types.UILayout, context: bpy.types.Context, *owners: str
+) -> bpy.types.UILayout:
+    """Draw the running solve of these owners; return a column that is grey while any runs."""
+    running = draw_job(layout, context, *owners)
+    column = split_column(layout)
+    column.enabled = not running
+    return column
+
+
+def split_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
+    """Return a column with names left of values, and without dots for keys."""
+    column = layout.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    return column
+
+
 def folded(settings: type[Settings], shown: tuple[str, ...]) -> list[str]:
     """Return the names of the settings that a panel folds away."""
     return [item.name for item in fields(settings) if item.name not in shown]

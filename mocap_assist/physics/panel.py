@@ -7,7 +7,7 @@ import bpy
 
 from ...solvers.physics import Ground, SimulateSettings
 from ..blender.mixins import PanelMixin
-from ..panels.drawing import draw_job, draw_sentence, exists
+from ..panels.drawing import draw_sentence, exists, settings_column
 from ..runtime.selection import why_not_change
 
 SIMULATE = "mocap_assist.simulate"
@@ -25,11 +25,7 @@ class PhysicsPanel(PanelMixin):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        running = draw_job(layout, context, "simulate")
-        column = layout.column()
-        column.enabled = not running
-        column.use_property_split = True
-        column.use_property_decorate = False
+        column = settings_column(layout, context, "simulate")
         simulate = context.scene.mocap_assist.simulate
         for item in fields(SimulateSettings):
             row = column.row()

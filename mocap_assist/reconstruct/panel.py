@@ -9,7 +9,7 @@ from ...solvers.reconstruction import ReconstructSettings
 from ..blender.mixins import PanelMixin
 from ..clean.example_list import RECONSTRUCT, draw_examples
 from ..drawing.confidence_switch import draw_confidence_switch
-from ..panels.drawing import draw_job, draw_sentence, exists, folded
+from ..panels.drawing import draw_sentence, exists, folded, settings_column
 from .choices import Postures
 from .reconstructing import why_not_reconstruct
 
@@ -28,12 +28,8 @@ class ReconstructPanel(PanelMixin):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        running = draw_job(layout, context, "reconstruct")
-        column = layout.column()
-        column.enabled = not running
+        column = settings_column(layout, context, "reconstruct")
         settings = context.scene.mocap_assist.reconstruct
-        column.use_property_split = True
-        column.use_property_decorate = False
         column.prop(settings, "postures", text="Poses")
         if settings.postures == Postures.EXAMPLES.name:
             draw_examples(column, settings, RECONSTRUCT)

@@ -8,7 +8,7 @@ from ...solvers.errors import MocapAssistError
 from ...solvers.retargeting import RetargetSettings, RootMotion
 from ..blender.mixins import PanelMixin
 from ..blender.name_lists import SEPARATOR, join_names, split_names
-from ..panels.drawing import draw_job, draw_sentence, exists, folded
+from ..panels.drawing import draw_sentence, exists, folded, settings_column
 from ..rigs.rigify import is_rigify
 from ..runtime.selection import selected_armature, why_not_read, why_not_retarget
 from .bone_list import draw_bones
@@ -34,13 +34,9 @@ class RetargetPanel(PanelMixin):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        running = draw_job(layout, context, "retarget", "unbake")
         shown = context.scene.mocap_assist.retarget
         reason = why_not_pressed(context)
-        column = layout.column()
-        column.enabled = not running
-        column.use_property_split = True
-        column.use_property_decorate = False
+        column = settings_column(layout, context, "retarget", "unbake")
         column.prop_search(shown, "target", context.scene, "objects", icon="ARMATURE_DATA")
         column.prop(shown, "takes")
         if shown.takes == Takes.LISTED.name:

@@ -1,15 +1,12 @@
-"""What the buttons that make assets of actions ask for, and what they do with the answer."""
-
-from collections.abc import Callable
+"""What the buttons that make assets of actions ask for."""
 
 import bpy
 
-from ...solvers.errors import MocapAssistError
-from ..blender.mixins import OperatorMixin
+from ..blender.act_operator import ActOperator
 
 
-class MarkOperator(OperatorMixin):
-    """Mix in before an operator that defines `mark`."""
+class MarkOperator(ActOperator):
+    """Mix in before an operator that marks assets in `act`."""
 
     tags: bpy.props.StringProperty(
         name="Tags", description="Separated by commas", options={"SKIP_SAVE"}
@@ -20,19 +17,7 @@ class MarkOperator(OperatorMixin):
         options={"SKIP_SAVE"},
     )
 
-    mark: Callable[[bpy.types.Context], str]
-    """Mark assets, and return a message: a method of the operator."""
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for tags and catalog."""
         asked: set[str] = context.window_manager.invoke_props_dialog(self)
         return asked
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Mark assets, and report the result or the error."""
-        try:
-            self.report({"INFO"}, self.mark(context))
-        except MocapAssistError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        return {"FINISHED"}

@@ -7,7 +7,7 @@ import bpy
 from ...solvers.retrieval import FindSettings
 from ..blender.mixins import PanelMixin
 from ..library.auto_update_list import choices_are_kept
-from ..panels.drawing import draw_job, draw_sentence, exists, folded, is_wide
+from ..panels.drawing import draw_sentence, exists, folded, is_wide, settings_column
 from ..panels.figures import frames_text
 from ..runtime.selection import Bones
 from . import searches
@@ -66,9 +66,7 @@ class LibraryPanel(PanelMixin):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         _draw_library(layout, context)
-        running = draw_job(layout, context, "find", "load", "use")
-        column = layout.column()
-        column.enabled = not running
+        column = settings_column(layout, context, "find", "load", "use")
         _draw_query(column, context)
         listed = context.window_manager.mocap_assist_matches
         if listed.rows:
@@ -99,8 +97,6 @@ def _draw_library(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
 
 def _draw_query(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
     find = context.scene.mocap_assist.find
-    column.use_property_split = True
-    column.use_property_decorate = False
     column.prop(find, "frame_range")
     column.row().prop(find, "bones", text="Compare", expand=True)
     if find.bones == Bones.ALL.name:

@@ -6,7 +6,7 @@ import bpy
 
 from ...solvers.depth_scene import ForegroundMethod
 from ..blender.mixins import PanelMixin
-from ..panels.drawing import draw_job, draw_sentence, exists
+from ..panels.drawing import draw_job, draw_sentence, exists, split_column
 from .retracking import why_not_retrack
 from .tracked_body import is_tracked
 from .tracking import why_not_track
@@ -40,7 +40,7 @@ class TrackPanel(PanelMixin):
 def _draw_tracking(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the settings and button that track an armature."""
     track = context.scene.mocap_assist.track
-    column = _settings(layout)
+    column = split_column(layout)
     column.prop(track, "way")
     if track.way == ForegroundMethod.CUT.name:
         for name in CUT:
@@ -55,15 +55,8 @@ def _draw_tracking(layout: bpy.types.UILayout, context: bpy.types.Context) -> No
 def _draw_correction(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the controls that show and correct a tracked motion."""
     layout.prop(context.window_manager, "mocap_assist_body", toggle=True, icon="MOD_SKIN")
-    column = _settings(layout)
+    column = split_column(layout)
     for name in ("reach", "watch"):
         column.prop(context.scene.mocap_assist.retrack, name)
     layout.operator(RETRACK, icon="TRACKING")
     draw_sentence(layout, context, why_not_retrack(context) or HOW, icon="INFO")
-
-
-def _settings(layout: bpy.types.UILayout) -> bpy.types.UILayout:
-    column = layout.column()
-    column.use_property_split = True
-    column.use_property_decorate = False
-    return column

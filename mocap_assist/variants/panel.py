@@ -9,7 +9,7 @@ from ...solvers.denoising import PlantSettings
 from ...solvers.variation import VarySettings
 from ..blender.mixins import PanelMixin
 from ..blender.name_lists import split_names
-from ..panels.drawing import draw_job, draw_sentence, exists
+from ..panels.drawing import draw_sentence, exists, settings_column
 from ..retarget.panel import TICK
 from ..runtime.selection import selected_armature
 from ..search import searches
@@ -71,11 +71,7 @@ class VaryPanel(PanelMixin):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        running = draw_job(layout, context, "vary", "use")
-        column = layout.column()
-        column.enabled = not running
-        column.use_property_split = True
-        column.use_property_decorate = False
+        column = settings_column(layout, context, "vary", "use")
         _draw_actions(column, context)
         _draw_settings(column, context.scene.mocap_assist.vary)
         button = column.row()

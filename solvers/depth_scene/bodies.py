@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Flags
 from .camera import Camera
 
-Mask = NDArray[np.bool_]
 Depth = NDArray[np.floating[Any]]
 Points = NDArray[np.float64]
 
@@ -54,7 +54,7 @@ class Bodies:
     areas: NDArray[np.float64]
     centers: NDArray[np.float64]
 
-    def mask(self, label: int) -> Mask:
+    def mask(self, label: int) -> Flags:
         """Return the pixel mask (height, width) of a body."""
         own = self.labels == label
         mask = np.zeros(self.depth.shape, dtype=bool)
@@ -122,13 +122,13 @@ def _bodies(body_of_component: NDArray[np.intp], points: list[Points]) -> list[P
     ]
 
 
-def _padded_range(occupied: Mask) -> slice:
+def _padded_range(occupied: Flags) -> slice:
     """Return the range of occupied indices, padded by one on both sides."""
     indices = np.flatnonzero(occupied)
     return slice(max(int(indices[0]) - 1, 0), min(int(indices[-1]) + 2, len(occupied)))
 
 
-def _refine_mask(depth: Depth, coarse_depth: Depth, step: int) -> Mask:
+def _refine_mask(depth: Depth, coarse_depth: Depth, step: int) -> Flags:
     """Return the full-resolution pixels at the depth of the coarse body around them."""
     height, width = depth.shape
     mask = np.zeros(depth.shape, dtype=bool)

@@ -7,13 +7,14 @@ import numpy as np
 from ..arrays import Array
 from ..rotations import (
     matrix_from_quaternion,
+    normalize,
     quaternion_from_matrix,
     quaternion_from_rotation_vector,
     rotation_vector_from_quaternion,
 )
 from .body_tables import SIDES
 from .joint_centers import JointCenters
-from .vectors import frame, median, swing_frames, unit
+from .vectors import frame, median, swing_frames
 
 MIN_FOOT_M = 0.05
 """Minimum distance between heel and toe markers. It guards a division where both labels are at
@@ -100,7 +101,9 @@ def _arm(
         positions[side + joint] for joint in ("Shoulder", "UpperArm", "LowerArm")
     )
     local = np.einsum("fji,fj->fi", thorax, shoulder - collar)
-    frames[f"{side}Shoulder"] = swing_frames(thorax, unit(median(local)), shoulder - collar)
+    frames[f"{side}Shoulder"] = swing_frames(
+        thorax, normalize(median(local)), shoulder - collar
+    )
     upward = landmarks[f"{letter}ELB"] - elbow
     frames[f"{side}UpperArm"] = frame(0, sign * (elbow - shoulder), 2, upward)
     if f"{side}Hand" not in positions:

@@ -10,8 +10,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import InvalidMotionError
+from ..rotations import normalize
 from .body_tables import SIDES
-from .vectors import frame, perpendicular, swing_frames, unit
+from .vectors import frame, perpendicular, swing_frames
 
 PositionsByJoint = dict[str, Array]
 
@@ -143,7 +144,7 @@ def _leg(
     down, lateral_offset = np.array([0.0, 0.0, -1.0]), np.array([1.0, 0.0, 0.0])
     outward = sign * _flexion_axis((hip, knee, ankle), 1.0, pelvis, down, lateral_offset)
     positions[f"{side}LowerLeg"] = chord(hip, knee, outward, scale * HALF_KNEE_M)
-    lateral = unit(perpendicular(outward, unit(ankle - positions[f"{side}LowerLeg"])))
+    lateral = normalize(perpendicular(outward, normalize(ankle - positions[f"{side}LowerLeg"])))
     positions[f"{side}Foot"] = ankle - scale * HALF_ANKLE_M * lateral
     toes = [
         landmarks[letter + landmark]
@@ -171,9 +172,9 @@ def _flexion_axis(
     rest, axis : shape (3,)
         The limb's direction, and the axis, in the axes of the trunk in the T-pose.
     """
-    upper, lower = unit(limb[1] - limb[0]), unit(limb[2] - limb[1])
+    upper, lower = normalize(limb[1] - limb[0]), normalize(limb[2] - limb[1])
     hint = swing_frames(trunk, rest, upper) @ axis
-    return unit(sign_of_flexion * np.cross(upper, lower) + HINT_WEIGHT * hint)
+    return normalize(sign_of_flexion * np.cross(upper, lower) + HINT_WEIGHT * hint)
 
 
 def chord(start: Array, marker: Array, outward: Array, half_width: float) -> Array:
@@ -185,7 +186,7 @@ def chord(start: Array, marker: Array, outward: Array, half_width: float) -> Arr
     arm = marker - start
     length = np.linalg.norm(arm, axis=-1, keepdims=True)
     along = arm / length
-    lateral_offset = unit(perpendicular(outward, along))
+    lateral_offset = normalize(perpendicular(outward, along))
     sine = np.minimum(half_width / length, 0.9)
     bone = length * np.sqrt(1.0 - sine**2)
     return np.asarray(start + bone * (np.sqrt(1.0 - sine**2) * along - sine * lateral_offset))
@@ -242,7 +243,7 @@ def _arm(
         positions[f"{side}LowerArm"] = elbow
         return
     inner, outer = landmarks[f"{letter}WRA"], landmarks[f"{letter}WRB"]
-    backward_offset = unit(sign * np.cross(elbow - (inner + outer) / 2, inner - outer))
+    backward_offset = normalize(sign * np.cross(elbow - (inner + outer) / 2, inner - outer))
     wrist = (inner + outer) / 2 - scale * WRIST_DEPTH_M * backward_offset
     out, up = np.array([sign, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
     upward = _flexion_axis((shoulder, elbow, wrist), -sign, thorax, out, up)

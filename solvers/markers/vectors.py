@@ -5,12 +5,7 @@ import warnings
 import numpy as np
 
 from ..arrays import Array
-
-
-def unit(vectors: Array) -> Array:
-    """Return unit vectors; NaN for zero vectors."""
-    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.where(lengths > 0.0, lengths, np.nan))
+from ..rotations import normalize
 
 
 def perpendicular(vectors: Array, axis: Array) -> Array:
@@ -33,8 +28,8 @@ def frame(first: int, along: Array, second: int, hint: Array) -> Array:
     along, hint : shape (..., 3)
     """
     axes: list[Array] = [np.empty(0)] * 3
-    axes[first] = unit(along)
-    axes[second] = unit(perpendicular(hint, axes[first]))
+    axes[first] = normalize(along)
+    axes[second] = normalize(perpendicular(hint, axes[first]))
     third = 3 - first - second
     sign = 1.0 if (third - first) % 3 == 2 else -1.0
     axes[third] = sign * np.cross(axes[first], axes[second])
@@ -47,7 +42,7 @@ def swing_frames(frames: Array, axis: Array, onto: Array) -> Array:
     Opposite directions, without a shortest rotation, give NaN.
     """
     start = frames @ axis
-    stop = unit(onto)
+    stop = normalize(onto)
     cross = np.cross(start, stop)
     agreement = 1.0 + dot(start, stop)
     agreement = np.where(agreement > 1e-9, agreement, np.nan)

@@ -1,15 +1,13 @@
 """Estimate when the feet of a simulated body stand, and on which part of their soles."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from ..motion import HumanoidMap, Motion, detect_contacts
 from ..signals import smooth_gaussian
 from .body import PhysicsBody
 from .body_surface import SIDES, lowest_points, measure_sole_speeds, select_foot_ends
 
-Flags = NDArray[np.bool_]
 SMOOTHING_S = 0.02
 """Standard deviation in seconds of the Gaussian that smooths loads, heights and speeds. Chosen
 by hand: x0.5 costs 0.3 %, x2 gains 0.5 %."""

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from ..motion import HumanoidMap, Motion, find_humanoid_map
 from ..progress import Progress, unwatched, within
 from .body import PhysicsBody, build_physics_body, check_size
@@ -24,7 +23,6 @@ from .simulate_segment import (
 )
 from .target import blend_motions, fade_around, fill_motion_gaps
 
-Flags = NDArray[np.bool_]
 DEFAULT_SETTINGS = SimulateSettings()
 MAX_LOST_FRACTION = 0.3
 """Fraction of frames that the body may fail to follow; with more, the result is the take. It

@@ -12,7 +12,6 @@ from ..errors import InvalidMotionError
 from ..motion import (
     JointRecording,
     Motion,
-    Skeleton,
     Tracks,
     find_humanoid_map,
     forward_kinematics,
@@ -186,7 +185,7 @@ def _figure(recording: Recording, frame_indices: NDArray[np.intp]) -> _Figure:
     shown_poses = recording.with_poses(
         recording.rotations[frame_indices], recording.root_positions[frame_indices]
     )
-    stature = _stature(skeleton)
+    stature = skeleton.extent
     return _Figure(
         forward_kinematics(shown_poses).positions,
         _bones(skeleton.parents),
@@ -240,12 +239,6 @@ def _position_and_facing(recording: Recording) -> tuple[Array, Array]:
     observed = position[np.isfinite(position[:, 0])]
     displacement = observed[-1] - observed[0] if len(observed) else np.zeros(3)
     return position, np.tile(displacement[:2], (len(position), 1))
-
-
-def _stature(skeleton: Skeleton) -> float:
-    """Return the largest extent of the rest pose along an axis, meters; 1 for a single
-    point."""
-    return float(np.ptp(skeleton.rest_positions, axis=0).max()) or 1.0
 
 
 def _height_of_points(tracks: Tracks) -> float:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ..depth_scene import DepthRecording
 from ..motion import JointRecording, Motion, Tracks
+from ..signals import find_runs
 
 
 def recording_figures(
@@ -60,6 +61,5 @@ def recording_figures(
 
 def _gap_lengths(observed: NDArray[np.bool_]) -> NDArray[np.intp]:
     """Return the length in frames of each gap of each column, shape (n_frames, n)."""
-    edge = np.ones((1, observed.shape[1]), dtype=bool)
-    changes = np.diff(np.concatenate([edge, observed, edge]).T.astype(np.int8))
-    return np.flatnonzero(changes == 1) - np.flatnonzero(changes == -1)
+    runs = [find_runs(~column) for column in observed.T]
+    return np.array([stop - start for column in runs for start, stop in column], dtype=np.intp)

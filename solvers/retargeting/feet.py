@@ -1,10 +1,9 @@
 """Retarget feet: scaled ankle paths, soles above the ground, and no additional sliding."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from ..motion import WorldPoses, world_poses
 from ..rotations import IDENTITY, rotate
 from ..signals import smoothstep
@@ -16,8 +15,6 @@ from .placement import rests_on_ground
 from .planting import planting_shift
 from .soles import allowed_depths, sole_above_ground, with_sole
 from .standing_feet import foot_bone
-
-Flags = NDArray[np.bool_]
 
 MAX_DROP_FRACTION = 0.15
 """Maximum pelvis drop for feet to reach, as a fraction of the leg length. It guards feet out of

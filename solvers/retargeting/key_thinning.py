@@ -10,6 +10,7 @@ from ..motion import Motion, forward_kinematics
 from ..motion.skeletons import world_poses
 from ..progress import Progress
 from ..rotations import IDENTITY
+from ..signals import find_runs
 from .error_points import find_error_points
 from .key_curves import KeyCurve, fit_curve
 from .rotation_channels import RotationChannels
@@ -208,8 +209,4 @@ def _first_keys(samples: Array, is_identity: bool) -> Frames:
 
 def _peaks(off: Array, tolerance: float) -> list[int]:
     """Return the worst frame of each interval above the tolerance."""
-    exceeding = np.flatnonzero(off > tolerance)
-    if not len(exceeding):
-        return []
-    segments = np.split(exceeding, np.flatnonzero(np.diff(exceeding) > 1) + 1)
-    return [int(run[off[run].argmax()]) for run in segments]
+    return [start + int(off[start:stop].argmax()) for start, stop in find_runs(off > tolerance)]

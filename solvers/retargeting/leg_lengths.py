@@ -3,11 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Array
-
-Flags = NDArray[np.bool_]
+from ..arrays import Array, Flags
 
 
 class Leg(NamedTuple):

@@ -3,15 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from ..motion import Motion, ReachSettings, Skeleton, WorldPoses, reach
 from .body import SIDES, Body
 from .placement import Placement
 from .standing_feet import Stance
 
-Flags = NDArray[np.bool_]
 Limb = tuple[int, int, int]
 
 

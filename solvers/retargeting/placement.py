@@ -3,12 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from .body import SIDES, Body
-
-Flags = NDArray[np.bool_]
 
 UP = np.array([0.0, 0.0, 1.0])
 ANKLE_HEIGHT_FRACTION = 0.08

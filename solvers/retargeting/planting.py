@@ -1,12 +1,10 @@
 """Limit the sliding of feet to that of the source."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from ..signals import smooth_correction
 
-Flags = NDArray[np.bool_]
 Foot = tuple[Array, Array]
 """Ankle and ball, each of shape (n_frames, 3), meters."""
 

@@ -3,15 +3,12 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from ..motion import WorldPoses
 from ..rotations import IDENTITY, inverse, multiply, slerp
 from .body import Body
 from .trunk_lean import leaning_swings
-
-Flags = NDArray[np.bool_]
 
 TRUNK = ("spine", "chest", "upperChest")
 NECK = ("neck", "head")

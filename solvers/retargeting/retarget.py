@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from ..errors import InvalidMotionError
 from ..motion import (
     HumanoidMap,
@@ -29,8 +28,6 @@ from .placement import ankle_height, find_placement
 from .pose_transfer import transfer_pose
 from .root_motion import in_place, on_root_bone
 from .standing_feet import find_stances, with_level_soles
-
-Flags = NDArray[np.bool_]
 
 
 class RootMotion(Choice):

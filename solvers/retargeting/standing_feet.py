@@ -4,9 +4,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from ..motion import Skeleton, WorldPoses
 from ..rotations import (
     inverse,
@@ -18,8 +17,6 @@ from ..rotations import (
 from ..signals import smooth_gaussian
 from .body import SIDES, Body
 from .placement import leg_length, rests_on_ground
-
-Flags = NDArray[np.bool_]
 
 SPEED_SMOOTHING_S = 0.05
 """Standard deviation of the Gaussian that smooths the angular velocity. Chosen by hand: x0.5

@@ -49,7 +49,7 @@ def rotate(rotations: Array, vectors: ArrayLike) -> Array:
 
 
 def normalize(rotations: Array) -> Array:
-    """Return unit quaternions; zero quaternions become NaN."""
+    """Return quaternions or vectors of length 1; those of length 0 become NaN."""
     norms = np.linalg.norm(rotations, axis=-1, keepdims=True)
     return np.asarray(rotations / np.where(norms > 0.0, norms, np.nan))
 

@@ -1,12 +1,9 @@
 """Fill gaps: positions by linear interpolation, rotations by slerp."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from ..rotations import IDENTITY, slerp
-
-Flags = NDArray[np.bool_]
 
 
 def fill_gaps(values: Array, known: Flags | None = None, *, ahead: bool = True) -> Array:

@@ -6,13 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Flags
 from ..denoising import FilterBases, denoise
 from ..motion import Motion
 from ..progress import Progress, within
 from ..rotations import angle_between
 from ..signals import find_runs
-
-Flags = NDArray[np.bool_]
 
 MIN_GAP_S = 0.3
 """Minimum duration of a gap to validate; shorter ones are interpolated well."""

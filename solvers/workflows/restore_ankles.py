@@ -1,17 +1,14 @@
 """Restore ankles that were reliably observed at rest before feet were planted."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
-from ..arrays import Array
+from ..arrays import Array, Flags
 from ..denoising.feet import SIDES, Leg, find_legs
 from ..motion import Motion, forward_kinematics
 from ..motion.skeletons import ReachSettings, reach
 from ..rotations import inverse, multiply, rotation_between
 from ..signals import smooth_gaussian
-
-Flags = NDArray[np.bool_]
 
 MIN_RELIABILITY = 0.6
 MAX_OFFSET_M = 0.03

@@ -7,11 +7,9 @@ Baker 2018, published as ODC-PDDL) and bodies in the public domain (CC0). The tr
 `train_pixel_forest`; here they grow side by side.
 """
 
-import argparse
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 from solvers.depth_tracking.forest.grow_tree import Tree
 from solvers.depth_tracking.forest.pixel_forest import SHIPPED, PixelForest
@@ -21,7 +19,7 @@ from solvers.depth_tracking.forest_training.train_forest import (
 )
 
 from ..benchmarks.depth.forest_sources import WORDS, all_bodies, taught_motions
-from .arguments import print_progress
+from .arguments import output_parser, print_progress
 
 SETTINGS = PixelForestSettings(
     n_trees=4, n_pictures=12_000, n_pixels=120, levels=18, n_candidates=100, least_pixels=50
@@ -38,17 +36,15 @@ def grown(settings: PixelForestSettings, number: int) -> tuple[Tree, ...]:
 
 def main() -> None:
     """Grow the trees and save them where they are shipped."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = output_parser(__doc__, SHIPPED)
     parser.add_argument("--pictures", type=int, default=SETTINGS.n_pictures)
     parser.add_argument("--trees", type=int, default=SETTINGS.n_trees)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--out", type=Path, default=SHIPPED)
     given = parser.parse_args()
     settings = replace(SETTINGS, n_pictures=given.pictures)
     with ProcessPoolExecutor(given.jobs) as pool:
         trees = pool.map(partial(grown, settings), range(given.trees))
     forest = PixelForest(tuple(tree for each in trees for tree in each), WORDS)
-    given.out.parent.mkdir(exist_ok=True)
     forest.save(given.out)
     n_leaves = sum(len(tree.shares) for tree in forest.trees)
     print(f"{n_leaves} leaves, {given.out.stat().st_size} bytes: {given.out}")

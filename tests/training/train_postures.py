@@ -6,9 +6,6 @@ CMU (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217), and the true 
 UI-PRMD (Vakanski, Jun, Paul, Baker 2018, published as ODC-PDDL).
 """
 
-import argparse
-from pathlib import Path
-
 from solvers.reconstruction.pose_library.posture_library import SHIPPED_LIBRARY
 
 from ..benchmarks.reconstruction.kinect_pairs import read_pairs
@@ -17,20 +14,16 @@ from ..benchmarks.reconstruction.posture_sources import (
     exercise_library,
     joined,
 )
+from .arguments import parse_output
 
 
 def main() -> None:
     """Read the clips, thin out their postures and save them."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--out", type=Path, default=SHIPPED_LIBRARY)
-    given = parser.parse_args()
+    out = parse_output(__doc__, SHIPPED_LIBRARY)
     library = joined(cmu_library(), exercise_library(read_pairs()))
-    given.out.parent.mkdir(exist_ok=True)
-    library.save(given.out)
-    size = given.out.stat().st_size
-    print(f"{library.n_postures} of {library.n_seen} postures, {size} bytes: {given.out}")
+    library.save(out)
+    size = out.stat().st_size
+    print(f"{library.n_postures} of {library.n_seen} postures, {size} bytes: {out}")
 
 
 if __name__ == "__main__":

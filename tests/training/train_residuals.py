@@ -7,9 +7,7 @@ Vakanski, Jun, Paul, Baker (2018). A data set of human body movements for physic
 rehabilitation exercises. Data 3(1). doi:10.3390/data3010002
 """
 
-import argparse
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -23,6 +21,7 @@ from solvers.reconstruction.reconstruct import SHIPPED_PRIOR
 from solvers.reconstruction.residual_correction.learn_confidence import calibrate_confidence
 
 from ..benchmarks.reconstruction.kinect_pairs import read_pairs
+from .arguments import output_parser, print_progress
 
 SETTINGS = ResidualPriorSettings(local_points=30, whole_points=60)
 WORDS = "UI-PRMD: ten exercises by five actors, Kinect v2 against markers"
@@ -33,10 +32,7 @@ def main() -> None:
 
     Its confidence is learned by leaving out one actor after another.
     """
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--out", type=Path, default=SHIPPED_PRIOR)
+    parser = output_parser(__doc__, SHIPPED_PRIOR)
     parser.add_argument("--confidence", action="store_true")
     given = parser.parse_args()
     taken = [pair for pair in read_pairs() if pair.matched]
@@ -45,17 +41,13 @@ def main() -> None:
     if given.confidence:
         prior = load_residual_prior(SHIPPED_PRIOR)
     else:
-        prior = learn_residual_prior(pairs, actors=actors, settings=SETTINGS, progress=show)
-    prior = calibrate_confidence(prior, pairs, actors, progress=show)
-    given.out.parent.mkdir(exist_ok=True)
+        prior = learn_residual_prior(
+            pairs, actors=actors, settings=SETTINGS, progress=print_progress
+        )
+    prior = calibrate_confidence(prior, pairs, actors, progress=print_progress)
     small(prior).save(given.out)
     print(f"{len(prior.joints)} joints, {given.out.stat().st_size} bytes: {given.out}")
     print(f"shift, slope and spread: {prior.calibration.tolist()}")
-
-
-def show(fraction: float, words: str = "") -> None:
-    """Print how far it is."""
-    print(f"{fraction:4.0%} {words}", flush=True)
 
 
 def small(prior: ResidualPrior) -> ResidualPrior:

@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 from ...motion import Motion, Skeleton, WorldPoses
 from ...rotations import (
     inverse,
@@ -18,8 +17,6 @@ from ...rotations import (
 from ...signals import find_runs, smooth_correction
 from .legs import Leg
 from .sole import SMOOTHING_S, estimate_loads, measure_standing_heights, sole_points
-
-Flags = NDArray[np.bool_]
 
 ADULT_LEG_M = 0.9
 """Meters, by definition: the leg for which the lengths of this family are given."""

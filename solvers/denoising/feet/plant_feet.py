@@ -4,9 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 from ...errors import InvalidMotionError
 from ...motion import Motion, WorldPoses, forward_kinematics
 from ...motion.humanoid import HumanoidMap, find_humanoid_map
@@ -25,8 +24,6 @@ from .knee_smoothing import smooth_knees
 from .legs import SIDES, Leg, find_legs
 from .root_offset import compute_root_offset
 from .standing_feet import detect_standing_feet
-
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, kw_only=True)

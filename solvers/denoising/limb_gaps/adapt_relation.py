@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
+from ...signals import find_runs
 from .bridges import N_FEATURES, Bridge
 
 MIN_GAP_S = 0.25
@@ -80,9 +81,8 @@ def try_gaps(
     frame_rate : float, Hz
     """
     step = max(round(frame_rate / RATE), 1)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], known.astype(int), [0]])))
     bridges, n_independent = [], 0.0
-    for start, stop in edges.reshape(-1, 2).tolist():
+    for start, stop in find_runs(known):
         tried = min(length, stop - start - 2)
         if tried < MIN_GAP_S * frame_rate:
             continue

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 from ...motion import Tracks
 from ...progress import Progress, unwatched
 from ...signals import fill_channel_gaps, find_runs
@@ -19,7 +19,6 @@ from .predict_marker import predict_marker
 from .reference_markers import find_reference_markers
 from .transient_outliers import find_transient_outliers
 
-Flags = NDArray[np.bool_]
 Gap = tuple[int, int, int, int]
 """Length, point, first frame, frame after the last."""
 

@@ -3,11 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 from ...signals import DIFFERENCE_GAIN, DIFFERENCE_ORDER, find_runs
 from .predict_marker import Prediction
-
-Flags = NDArray[np.bool_]
 
 MAX_TRAINING_FRAMES = 200
 """Number of training frames, in addition to those at the boundaries of gaps. It bounds the run

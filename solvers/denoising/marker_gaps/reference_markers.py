@@ -5,10 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 from ...rotations import nearest_rotations
-
-Flags = NDArray[np.bool_]
 
 MAX_REFERENCES = 24
 """Reference markers that predict one marker. Chosen by hand: x0.5 gains 8.8 %, x2 costs

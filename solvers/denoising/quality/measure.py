@@ -5,9 +5,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 from ...errors import InvalidMotionError
 from ...motion import JointLimits, Motion, Tracks, forward_kinematics
 from ...motion.humanoid import HumanoidMap, contacts_of_points, detect_contacts
@@ -21,8 +20,6 @@ from .figures import quality_figures
 from .foot_slide import FootSlide, measure_foot_slide
 from .joint_signals import Signal, SpikeRule, extract_signals
 from .report import quality_report
-
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, kw_only=True)

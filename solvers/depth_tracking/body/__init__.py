@@ -9,7 +9,6 @@ from .motion import body_motion, body_skeleton, motion_frames, rest_frames, scen
 from .motion_prior import LocalPca, MotionPrior, load_motion_prior, local_pca
 from .normal_equations import (
     NO_ROWS,
-    Integers,
     PoseEquations,
     SegmentEquations,
     SurfaceRows,
@@ -57,7 +56,6 @@ __all__ = [
     "BodyImage",
     "BodyModel",
     "BodySurface",
-    "Integers",
     "LocalPca",
     "MotionPrior",
     "PoseEquations",

@@ -5,13 +5,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from .kinematics import N_SEGMENTS
 from .tables import CAPSULE_SEGMENTS
-
-Integers = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,9 +1,8 @@
 """Fit a pose to joints, segment transforms, or points on segments."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from .coordinates import COORDINATES, N_COORDINATES, N_ROOT
 from .kinematics import segment_frames, segment_twists
 from .model import BodyModel
@@ -15,8 +14,6 @@ from .normal_equations import (
 )
 from .pose_priors import joint_limits, stay_near
 from .tables import END_SEGMENTS, JOINTS, SEGMENTS
-
-Integers = NDArray[np.intp]
 
 _CARRIERS = np.array([*range(len(SEGMENTS)), *END_SEGMENTS])
 _YAW = COORDINATES.index("yaw")

@@ -5,12 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...depth_scene import Camera
 from .model import BodyModel
 from .tables import CAPSULE_SEGMENTS
-
-Integers = NDArray[np.intp]
 
 NO_SEGMENT = -1
 _MIN_DEPTH_M = 0.05

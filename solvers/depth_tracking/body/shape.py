@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from .kinematics import N_SEGMENTS
 from .model import BodyModel
-from .normal_equations import Integers, SurfaceRows
+from .normal_equations import SurfaceRows
 from .tables import (
     CAPSULE_ENDS,
     CAPSULE_ROWS,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...depth_scene import DepthRecording, Floor
 from ...errors import InvalidMotionError
 from ...motion import Motion, Tracks
@@ -27,8 +27,6 @@ from .choose_poses import choose_poses, nearest_tracked
 from .find_body import find_body
 from .passes import Pass, RecoverySettings, TrackingContext, track_with_restarts
 from .smooth_pass import smooth_poses
-
-Integers = NDArray[np.intp]
 
 
 @dataclass(frozen=True, kw_only=True)

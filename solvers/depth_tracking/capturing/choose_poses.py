@@ -1,11 +1,8 @@
 """Select one candidate pose per frame, balancing image fit and smoothness."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
-
-Integers = NDArray[np.intp]
+from ...arrays import Array, Integers
 
 
 def choose_poses(scores: Array, joints: Array, movement_scale: float) -> Integers:

@@ -3,13 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 from ...depth_scene import Camera
 from ...settings import Settings, setting
-
-Mask = NDArray[np.bool_]
 
 POSITION_STD_M, RADIUS_STD, SHRINK_FACTOR = 0.12, 0.15, 0.65
 """Standard deviations of the first perturbations (position; relative radius), and the factor by
@@ -61,7 +58,7 @@ class Cylinder:
 
 def sample_cylinder(
     depth: Array,
-    part_mask: Mask,
+    part_mask: Flags,
     camera: Camera,
     radii: tuple[float, float],
     rng: np.random.Generator,
@@ -129,7 +126,7 @@ def _surface_plane(points: Array) -> Array:
     return np.asarray(plane)
 
 
-def _rays_around(part_mask: Mask, camera: Camera, max_pixels: int) -> tuple[Array, Mask]:
+def _rays_around(part_mask: Flags, camera: Camera, max_pixels: int) -> tuple[Array, Flags]:
     """Return the rays (n, 3) in and around a part, and the mask of rays that hit it."""
     rows, columns = np.nonzero(part_mask)
     margin = 2 + int(0.2 * max(np.ptp(rows), np.ptp(columns)))
@@ -144,7 +141,7 @@ def _rays_around(part_mask: Mask, camera: Camera, max_pixels: int) -> tuple[Arra
 
 
 def _best_cylinder(
-    directions: Array, radii: Array, surface: Array, rays: Array, is_part: Mask
+    directions: Array, radii: Array, surface: Array, rays: Array, is_part: Flags
 ) -> tuple[Array, Cylinder]:
     """Return the best cylinder with ends along directions (n, 2, 3) and radii (n,).
 

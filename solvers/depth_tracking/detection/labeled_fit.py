@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...rotations import nearest_rotations
 from ..body import (
     CAPSULE_SEGMENTS,
@@ -30,7 +30,6 @@ from ..terms import capsule_offsets
 from .part_capsules import CAPSULE_OF_PART, PART_CAPSULES, PART_SEGMENTS, part_axes
 from .robust_parts import FoundParts
 
-Integers = NDArray[np.intp]
 EquationList = list[SegmentEquations]
 
 LIMIT_WEIGHT = 1.0

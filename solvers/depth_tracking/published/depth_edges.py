@@ -4,9 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt, gaussian_filter, label, sobel
 
-from ...arrays import Array
-
-Integers = NDArray[np.intp]
+from ...arrays import Array, Integers
 
 SMOOTHING_PX = 1.0
 """Standard deviation, pixels. Chosen by hand, as the paper gives no value."""

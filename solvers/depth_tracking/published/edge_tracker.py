@@ -4,12 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...depth_scene import DepthRecording
 from ...progress import Progress, unwatched
 from ..body import (
     BodyModel,
-    Integers,
     MotionPrior,
     SurfaceRows,
     concatenate_rows,

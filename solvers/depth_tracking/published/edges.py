@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ..body import NO_ROWS, Integers, SurfaceRows, rows_toward_targets
+from ...arrays import Integers
+from ..body import NO_ROWS, SurfaceRows, rows_toward_targets
 from ..terms import Hypothesis, Observation
 from .depth_edges import edge_pixels
 

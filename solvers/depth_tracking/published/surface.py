@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...depth_scene import DepthRecording
-from ..body import CAPSULE_SEGMENTS, Integers, SurfaceRows, rows_toward_targets
+from ..body import CAPSULE_SEGMENTS, SurfaceRows, rows_toward_targets
 from ..terms import Hypothesis, Observation, subsampling_step
 
 WINDOW_RADIUS_PX = 7

@@ -1,13 +1,10 @@
 """The closest surface term: observed points pull the closest visible body surface."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ..body import CAPSULE_SEGMENTS, SurfaceRows
 from .hypothesis import Hypothesis
-
-Integers = NDArray[np.intp]
 
 _NO_SURFACE, _EPSILON = 1e3, 1e-12
 """Meters: distance of a surface that faces away, and length below which there is no direction.

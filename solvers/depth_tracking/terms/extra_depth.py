@@ -1,16 +1,13 @@
 """The extra depth term: closest-point pairs for pixels that cannot be compared."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ..body import NO_ROWS, SurfaceRows, rows_toward_targets
 from .hypothesis import Hypothesis
 from .observation import Observation
 from .pixel_groups import PixelGroups
-
-Integers = NDArray[np.intp]
 
 
 def extra_depth_term(

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...depth_scene import Camera
 from ..body import (
     CAPSULE_SEGMENTS,
@@ -17,8 +16,6 @@ from ..body import (
     segment_twists,
 )
 from .observation import rays_through_pixels
-
-Integers = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,14 +5,11 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...depth_scene import Camera, DepthRecording
-
-Integers = NDArray[np.intp]
 
 MIN_AREA_M2 = 0.02
 """Minimum visible surface of an actor: half a forearm. It guards images in which the actor is

@@ -3,12 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Integers
 from .hypothesis import Hypothesis
 from .observation import Observation
-
-Integers = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)

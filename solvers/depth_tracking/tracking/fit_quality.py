@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
-from ..body import END_SEGMENTS, N_SEGMENTS, BodyModel, Integers
+from ...arrays import Array, Integers
+from ..body import END_SEGMENTS, N_SEGMENTS, BodyModel
 from ..terms import Observation, group_pixels
 from .register_pose import Registered
 

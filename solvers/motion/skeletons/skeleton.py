@@ -110,6 +110,11 @@ class Skeleton:
         """Vertical extent of the rest pose, meters."""
         return float(np.ptp(self.rest_positions[:, 2]))
 
+    @property
+    def extent(self) -> float:
+        """Longest side of the box around the rest pose, meters; 1 for a single point."""
+        return float(np.ptp(self.rest_positions, axis=0).max()) or 1.0
+
     def index(self, name: str) -> int:
         """Return the joint called `name`; raises InvalidMotionError where there is none."""
         try:

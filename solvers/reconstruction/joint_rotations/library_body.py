@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Single
 from ...motion.humanoid import (
     CHEST,
     HIPS,
@@ -16,8 +16,6 @@ from ...motion.humanoid import (
     positions_from_directions,
 )
 from ...rotations import nearest_rotations
-
-Single = NDArray[np.float32]
 
 HEAD = POSTURE_JOINTS.index("head")
 ARMS, LEGS, SHINS, TOES = (

@@ -4,13 +4,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...motion.humanoid import N_JOINTS
 
-Indices = NDArray[np.intp]
-Synthesis = Callable[[Indices, Array], Array]
+Synthesis = Callable[[Integers, Array], Array]
 """Function from frame indices and joint reliabilities in these frames to postures."""
 
 LIMBS = ((4, 5, 6, 7), (8, 9, 10, 11), (12, 13, 14, 15), (16, 17, 18, 19), (3,))

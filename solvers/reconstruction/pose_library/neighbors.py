@@ -6,13 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Integers, Single
 from ...progress import Progress, unwatched
 from ..joint_rotations import BodyPostures
 from ..residual_correction import squared_distances
-
-Single = NDArray[np.float32]
-Indices = NDArray[np.intp]
 
 BLOCK_FRAMES = 128
 """Number of frames per block of the search."""
@@ -55,7 +52,7 @@ class PostureIndex:
     Attributes
     ----------
     order : shape (n_postures,)
-        Indices into the library, group by group.
+        Integers into the library, group by group.
     starts : shape (n_groups + 1,)
         Where each group begins in `order`.
     points : float32, shape (n_postures, 40, 3)
@@ -66,8 +63,8 @@ class PostureIndex:
         Root mean square distance of a group's points from its center.
     """
 
-    order: Indices
-    starts: Indices
+    order: Integers
+    starts: Integers
     points: Single
     squares: Single
     centers: Single
@@ -104,7 +101,7 @@ def nearest_postures(
     *,
     n_looked_at: int = 8000,
     progress: Progress = unwatched,
-) -> tuple[Indices, Array]:
+) -> tuple[Integers, Array]:
     """Find the nearest poses by the weighted distance of [SHJT13], eq. 9.
 
     Groups are searched in the order of their expected distance until `n_looked_at` poses were
@@ -163,7 +160,7 @@ def _relative_distances(
 
 def _search_all(
     index: PostureIndex, points: Single, weights: Single, n_neighbours: int
-) -> tuple[Indices, Array]:
+) -> tuple[Integers, Array]:
     relative = _relative_distances(points, weights, index.points, index.squares)
     n_taken = min(int(CANDIDATE_FACTOR * n_neighbours), len(index.order))
     candidates = np.argpartition(relative, n_taken - 1, axis=1)[:, :n_taken]
@@ -171,8 +168,12 @@ def _search_all(
 
 
 def _sort_candidates(
-    index: PostureIndex, points: Single, weights: Single, candidates: Indices, n_neighbours: int
-) -> tuple[Indices, Array]:
+    index: PostureIndex,
+    points: Single,
+    weights: Single,
+    candidates: Integers,
+    n_neighbours: int,
+) -> tuple[Integers, Array]:
     """Sort candidates by their exact distance."""
     differences = index.points[candidates] - points[:, None]
     squares = np.einsum("fnik,fnik,fi->fn", differences, differences, weights, optimize=False)
@@ -184,7 +185,7 @@ def _sort_candidates(
 
 def _search_groups(
     index: PostureIndex, points: Single, weights: Single, n_neighbours: int, n_looked_at: int
-) -> tuple[Indices, Array]:
+) -> tuple[Integers, Array]:
     sizes = np.diff(index.starts)
     ranked = np.argsort(_expected_distances(index, points, weights), axis=1, kind="stable")
     n_compared = np.cumsum(sizes[ranked], axis=1)
@@ -207,8 +208,8 @@ def _search_groups(
 
 def _merge_best(
     best: Single,
-    candidates: Indices,
-    frames: Indices,
+    candidates: Integers,
+    frames: Integers,
     relative: Single,
     start: int,
     n_taken: int,

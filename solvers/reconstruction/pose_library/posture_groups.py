@@ -3,9 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Single
 from ...motion.humanoid import ADULT_BONE_LENGTHS_M, positions_from_directions
-
-Single = NDArray[np.float32]
 
 MIN_POSTURES = 5000
 """Minimum number of poses for clustering; smaller libraries are searched completely."""

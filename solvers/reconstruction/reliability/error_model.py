@@ -12,13 +12,11 @@ from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 from scipy.special import ndtr
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 from ...signals import fill_gaps
 from .settings import SENSOR_RATE_HZ
 from .terms import frame_count, vector_lengths, weighted_sum
 from .transient_jumps import find_transient_jumps
-
-Flags = NDArray[np.bool_]
 
 SMOOTHING_WINDOW_S = 1.0 / 3.0
 """Window (s) of the polynomial that smooths the path. Chosen by hand: x0.5 gains 0.5 %, x2

@@ -6,12 +6,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 from ...motion import JointRecording
 from ...motion.humanoid import SIDES, posture_joint_indices
 from .terms import vector_lengths
 
-Flags = NDArray[np.bool_]
 Pairs = NDArray[np.intp]
 
 MAX_SWAP_S = 1.0

@@ -5,11 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Flags
 from ...motion.humanoid import MIN_RELIABILITY, posture_joint_indices
 from .terms import vector_lengths
-
-Flags = NDArray[np.bool_]
 
 OUT, DOWN = (1.0, 0.0), (0.0, -1.0)
 ARMS = (("UpperArm", "LowerArm"), ("LowerArm", "Hand"))

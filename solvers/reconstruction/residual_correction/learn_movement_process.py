@@ -7,13 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
-from ...arrays import Array
+from ...arrays import Array, Single
 from ...motion.humanoid import MIRROR_JOINTS, mirror_postures
 from .movement_process import (
     PERSONAL_STRENGTHS,
     SHARED_STRENGTHS,
     MovementProcess,
-    Single,
     movement_covariance,
     movement_distances,
     movement_parts,

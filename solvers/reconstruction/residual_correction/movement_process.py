@@ -16,13 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from ...arrays import Array
+from ...arrays import Array, Single
 from ...motion.humanoid import N_JOINTS, mirror_postures
 from ...npz_members import flags, integers, numbers
 from ...signals import smooth_gaussian
 from .kernel import squared_distances
-
-Single = NDArray[np.float32]
 
 CONTEXT_S = 0.5
 """Time (s) to the poses before and after. Chosen by hand: x0.5 and x2 change the mean by less

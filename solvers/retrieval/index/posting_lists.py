@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Single = NDArray[np.float32]
+from ...arrays import Single
 
 
 @dataclass(frozen=True, eq=False)

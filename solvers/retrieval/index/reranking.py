@@ -9,11 +9,9 @@ Reciprocal neighbors get a higher weight [2]_.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Single
 from .time_warping import frame_distances, warping_costs
-
-Single = NDArray[np.float32]
 
 NEIGHBOR_WEIGHT = 4.0
 """Total weight of the neighbors of a clip, relative to the clip itself. Chosen by a sweep over

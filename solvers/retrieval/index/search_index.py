@@ -6,11 +6,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Single
 from .index_block import IndexBlock
 from .reranking import pairwise_warping_costs
 from .segments import MEAN_POSTURE_WEIGHT, weight_mean_posture
 
-Single = NDArray[np.float32]
 Numbers = NDArray[np.int64]
 
 MAX_PAIRWISE_SEGMENTS = 1000

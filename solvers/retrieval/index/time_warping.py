@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-Single = NDArray[np.float32]
+from ...arrays import Single
 
 
 def frame_distances(queries: Single, sequences: Single) -> Single:

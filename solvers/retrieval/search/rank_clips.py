@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Single
 from ..index import (
     HISTOGRAM_SCALE,
     N_AXES,
@@ -21,7 +22,6 @@ from ..index import (
 from ..postures import N_PARTS
 from .find_settings import FindSettings
 
-Single = NDArray[np.float32]
 Numbers = NDArray[np.int64]
 
 CLIPS_PER_NEIGHBOR = 20

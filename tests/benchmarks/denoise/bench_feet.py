@@ -18,10 +18,9 @@ from collections.abc import Callable, Sequence
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.denoising import denoise, learn_filter_bases, plant_feet
 from solvers.denoising.feet.legs import Leg, find_legs
 from solvers.motion import Motion, ReachSettings, detect_contacts, forward_kinematics, reach
@@ -33,7 +32,6 @@ from ..shared import clips
 from ..shared.report import Report
 from ..shared.tables import Scores
 
-Flags = NDArray[np.bool_]
 Planter = Callable[[Motion, Flags], Motion]
 
 SKATING = 1.15

@@ -14,7 +14,6 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
 from statistics import median
 from time import perf_counter
@@ -27,6 +26,7 @@ from solvers.rotations.representations import quaternion_from_rotation_vector
 
 from ..shared.report import Report
 from ..shared.tables import table
+from ..shared.timing import run_times
 
 N_JOINTS, N_FRAMES = 30, 5000
 REPEATS = 5
@@ -46,8 +46,8 @@ def main() -> None:
         path = Path(folder) / "take.bvh"
         write_bvh(_take(), path)
         seconds = {
-            "ours (read_bvh)": _median_time(lambda: read_bvh(path)),
-            "plain float() per number": _median_time(lambda: _plain(path)),
+            "ours (read_bvh)": median(run_times(lambda: read_bvh(path), REPEATS)),
+            "plain float() per number": median(run_times(lambda: _plain(path), REPEATS)),
             "Blender's importer": _blender(path),
         }
         size = path.stat().st_size / 1e6
@@ -78,15 +78,6 @@ def _plain(path: Path) -> list[list[float]]:
             if line.startswith("Frame Time"):
                 break
         return [[float(word) for word in line.split()] for line in file]
-
-
-def _median_time(work: Callable[[], object]) -> float:
-    times = []
-    for _ in range(REPEATS):
-        started = perf_counter()
-        work()
-        times.append(perf_counter() - started)
-    return median(times)
 
 
 def _blender(path: Path) -> float | None:

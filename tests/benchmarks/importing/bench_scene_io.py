@@ -12,7 +12,6 @@ import argparse
 import importlib.util
 import os
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from statistics import median
 from time import perf_counter
@@ -22,6 +21,7 @@ import numpy as np
 
 from ..shared.report import Report
 from ..shared.tables import table
+from ..shared.timing import run_times
 
 CHECKOUT = Path(__file__).resolve().parents[3]
 REPEATS = 3
@@ -64,21 +64,12 @@ def main() -> None:
     )
     rows, bare = {}, 0.0
     for name, run in work.items():
-        seconds = timed(run)
+        seconds = median(run_times(run, REPEATS))
         bare = seconds if "bare" in name else bare
         rows[name] = [f"{seconds:.2f}", f"{1e6 * seconds / keys:.2f}", f"{seconds / bare:.1f}"]
     header = ["what", "seconds", "microseconds per key", "relative to a bare loop"]
     text = f"**{title}**, median of {REPEATS} runs\n\n{table(header, rows)}\n"
     Report(arguments.docs).part("scene", [text], perf_counter() - started)
-
-
-def timed(run: Callable[[], object]) -> float:
-    times = []
-    for _ in range(REPEATS):
-        start = perf_counter()
-        run()
-        times.append(perf_counter() - start)
-    return median(times)
 
 
 def bare_read(curves: list[bpy.types.FCurve]) -> None:

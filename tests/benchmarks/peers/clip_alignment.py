@@ -7,12 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.motion import Tracks
 
 from .complete_postures import CompletePostures, learn_complete_postures, resampled
-
-Flags = NDArray[np.bool_]
 
 BATCH = 32
 """Clips of about the same length that are warped at once."""

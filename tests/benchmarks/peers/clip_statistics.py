@@ -4,16 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 from sklearn.cluster import KMeans
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.motion import Tracks
 
 from .complete_postures import CompletePostures, learn_complete_postures, resampled
-
-Flags = NDArray[np.bool_]
 
 WINDOWS = ((0.0, 1.0), (0.0, 0.5), (0.25, 0.75), (0.5, 1.0))
 """Two levels of [HTGE13], overlapping, as fractions of the clip."""

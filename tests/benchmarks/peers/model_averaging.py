@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.arrays import Array
+from solvers.signals import find_runs
 
 from .marker_fillers import principal_markers
 
@@ -30,7 +31,7 @@ def model_averaging(gapped: Array, frame_rate: float) -> Array:
     missing = np.isnan(gapped).any(axis=2)
     by_components = principal_markers(gapped, frame_rate)
     for marker in np.flatnonzero(missing.any(axis=0)):
-        gaps = _runs(missing[:, marker])
+        gaps = [slice(*run) for run in find_runs(missing[:, marker])]
         for gap in gaps:
             with_ends = slice(max(gap.start - 1, 0), gap.stop + 1)
             present = ~missing[with_ends].any(axis=0)
@@ -166,8 +167,3 @@ def _joined(estimate: Array, track: Array, gap: slice, outside: bool = True) -> 
     )
     weight = (np.arange(gap.stop - gap.start) + 1.0)[:, None] / (gap.stop - gap.start + 1)
     return np.asarray(estimate[gap] + (1 - weight) * start + weight * stop)
-
-
-def _runs(missing: NDArray[np.bool_]) -> list[slice]:
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]]).astype(int)))
-    return [slice(start, stop) for start, stop in edges.reshape(-1, 2)]

@@ -10,14 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.motion import Tracks
 
 from .complete_postures import CompletePostures, learn_complete_postures, resampled
-
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

@@ -10,16 +10,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 from sklearn.cluster import KMeans
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.motion import Tracks
 
 from .complete_postures import CompletePostures, learn_complete_postures
 
-Flags = NDArray[np.bool_]
 String = tuple[int, ...]
 
 PARTS: dict[tuple[int, ...], float] = {

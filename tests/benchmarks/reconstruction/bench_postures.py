@@ -15,9 +15,9 @@ import sys
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from solvers.arrays import Single
 from solvers.motion.humanoid.body_size import ADULT_BONE_LENGTHS_M
 from solvers.reconstruction.joint_rotations.library_body import (
     BodyPostures,
@@ -35,7 +35,6 @@ from ..shared.report import Report
 from ..shared.tables import Scores, number, table
 from . import part_postures as part
 
-Single = NDArray[np.float32]
 SIZES = (2500, 10_000, 30_000, 100_000)
 N_QUERIES = 256
 

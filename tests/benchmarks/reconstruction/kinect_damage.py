@@ -4,9 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.motion.humanoid.posture_heading import normalize_postures, rotate_about_vertical
 from solvers.motion.humanoid.posture_joints import (
     N_JOINTS,
@@ -17,8 +16,6 @@ from solvers.motion.humanoid.posture_joints import (
 
 from .kinect_folds import observed_postures
 from .kinect_pairs import Pair
-
-Flags = NDArray[np.bool_]
 
 LIMBS = {"arm": (4, 5, 6), "leg": (12, 13, 14, 15), "both arms": (4, 5, 6, 8, 9, 10)}
 """Numbers of `POSTURE_JOINTS`; this sensor tells no ends of hands."""

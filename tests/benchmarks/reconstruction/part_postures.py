@@ -6,10 +6,9 @@ from time import perf_counter
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.motion import SENSOR_JOINTS, JointRecording, Motion, Sensor, Tracks
 from solvers.motion.humanoid.body_size import estimate_bone_lengths, segment_lengths
 from solvers.motion.humanoid.bone_directions import PARENT_INDICES, rates_from_directions
@@ -41,7 +40,6 @@ from tests.benchmarks.reconstruction.posture_synthesis import solve_sequentially
 from ..shared import clips
 from ..shared.tables import Scores
 
-Flags = NDArray[np.bool_]
 Method = Callable[[Array, Flags, PostureLibrary], Array]
 """Estimates from true postures, the mask of missing joints, and a library."""
 

@@ -6,10 +6,9 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import rankdata
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.motion import JointRecording
 from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
 from solvers.reconstruction.reliability.error_model import (
@@ -21,8 +20,6 @@ from solvers.reconstruction.reliability.error_model import (
 from solvers.reconstruction.reliability.reference import parent_distances, reference_lengths
 
 from . import kinect_pairs
-
-Flags = NDArray[np.bool_]
 
 LIMITS = (0.05, 0.10)
 """Metres from the truth that are wrong."""

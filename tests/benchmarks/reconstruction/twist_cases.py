@@ -10,9 +10,8 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.motion import JointRecording, Motion, find_humanoid_map, forward_kinematics
 from solvers.motion.humanoid.canonical import t_pose_alignment
 from solvers.motion.humanoid.posture_heading import normalize_postures, rotate_about_vertical
@@ -23,8 +22,6 @@ from solvers.workflows.reconstruct_motion import postures_recording
 from solvers.workflows.standard_joints import KINECT_V1
 
 from .kinect_folds import observed_postures, pairs, truth_of
-
-Flags = NDArray[np.bool_]
 
 TRUE, KINECT, LIMB_MISSING = "optical capture", "Kinect errors", "limb missing 1.5 s"
 BENT = np.radians(30.0)

@@ -10,6 +10,7 @@ from solvers.motion import resample
 from solvers.retrieval import FindSettings, find_similar
 
 from ..shared.tables import number, table
+from ..shared.timing import run_times
 from .retrieval_clips import library
 from .retrieval_default import Default
 
@@ -51,12 +52,7 @@ def time_searches() -> str:
 
 
 def _shortest(describe: Callable[[], object]) -> float:
-    times = []
-    for _ in range(REPEATS):
-        started = process_time()
-        describe()
-        times.append(process_time() - started)
-    return 1e3 * min(times)
+    return 1e3 * min(run_times(describe, REPEATS, process_time))
 
 
 def _table(rows: dict[str, Sequence[float]]) -> str:

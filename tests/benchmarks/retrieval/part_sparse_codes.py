@@ -1,7 +1,6 @@
 """How long orthogonal matching pursuit takes, compared with scikit-learn's."""
 
 import warnings
-from collections.abc import Callable
 from time import process_time
 
 import numpy as np
@@ -14,6 +13,7 @@ from solvers.retrieval.published.observed_signals import observed_signals
 from solvers.retrieval.published.sparse_codes import sparse_codes
 
 from ..shared.tables import number, table
+from ..shared.timing import run_times
 from .retrieval_clips import training_library
 
 N_SIGNALS, N_ATOMS = 300, 700
@@ -55,15 +55,6 @@ def _row(signals: Array, atoms: Array, n_nonzeros: int) -> list[str]:
     def ours() -> Array:
         return sparse_codes(signals, atoms, n_nonzeros).signals(atoms)
 
-    times = [_milliseconds(each) for each in (ours, theirs)]
+    times = [1e3 * min(run_times(each, REPEATS, process_time)) for each in (ours, theirs)]
     left = [1000.0 * np.abs(each() - signals).mean() for each in (ours, theirs)]
     return [*map(number, times), f"{times[1] / times[0]:.1f}", *map(number, left)]
-
-
-def _milliseconds(work: Callable[[], object]) -> float:
-    times = []
-    for _ in range(REPEATS):
-        began = process_time()
-        work()
-        times.append(process_time() - began)
-    return 1000.0 * min(times)

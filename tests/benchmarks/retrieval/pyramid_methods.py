@@ -5,10 +5,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import vstack
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.motion import Tracks
 from solvers.retrieval.postures.body_parts import JOINTS, ROOTS
 from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
@@ -26,9 +25,6 @@ from solvers.retrieval.published.pyramid_matching import (
     pyramid_descriptor,
     pyramid_kernel,
 )
-
-Flags = NDArray[np.bool_]
-
 
 BODY = ((0, tuple(range(20))),)
 PARTS = tuple(

@@ -7,15 +7,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.motion import Tracks
 from solvers.retrieval import Clip, ClipLibrary, FindSettings, build_clip_library
 from solvers.retrieval.index.segments import RATE
 from solvers.retrieval.postures.clip_postures import clip_postures
 from solvers.retrieval.search.describe_query import DescribedQuery, describe_query
 from solvers.retrieval.search.rank_clips import rank_clips
-
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

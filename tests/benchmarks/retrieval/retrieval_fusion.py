@@ -5,14 +5,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.motion import Tracks
 
 from .retrieval_protocol import Method, Prepared
-
-Flags = NDArray[np.bool_]
 
 SPREADING = 0.95
 """Fraction of its score that a clip passes on (alpha of [ZBL04])."""

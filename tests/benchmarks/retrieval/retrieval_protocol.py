@@ -13,13 +13,11 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.motion import Tracks
 
 from .retrieval_clips import LabelledClip
 from .retrieval_damage import Damage
-
-Flags = NDArray[np.bool_]
 
 TOP = 20
 RECALLS = np.linspace(0.0, 1.0, 21)

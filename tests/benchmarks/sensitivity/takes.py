@@ -11,9 +11,8 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.motion import Motion, Skeleton, Tracks, forward_kinematics
 from solvers.recordings import read_acclaim, read_bvh
 from solvers.rotations.representations import (
@@ -24,7 +23,6 @@ from solvers.rotations.representations import (
 
 from ..shared import clips
 
-Flags = NDArray[np.bool_]
 BUILD = Path(__file__).resolve().parents[3] / "build" / "sensitivity"
 WALKS = frozenset(clips.QUICK_DEV)
 ROUGH = (

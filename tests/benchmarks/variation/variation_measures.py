@@ -102,7 +102,7 @@ def _windows(motion: Motion) -> np.ndarray:
     return np.stack([body[frames].ravel() for frames in held])
 
 
-def _rotation_steps(motion: Motion) -> np.ndarray:
+def angular_velocities(motion: Motion) -> np.ndarray:
     """Return the angular velocities of joints from frame to frame, radians per second."""
     steps = multiply(inverse(motion.rotations[:-1]), motion.rotations[1:])
     return np.asarray(rotation_vector_from_quaternion(steps) * motion.frame_rate)
@@ -115,7 +115,7 @@ def _jerk(motion: Motion) -> float:
     """
     motion = every(motion, max(round(motion.frame_rate / WINDOW_RATE), 1))
     return float(
-        np.abs(np.diff(_rotation_steps(motion), n=2, axis=0)).mean() * motion.frame_rate**2
+        np.abs(np.diff(angular_velocities(motion), n=2, axis=0)).mean() * motion.frame_rate**2
     )
 
 
@@ -123,7 +123,7 @@ def _spectrum(motions: Sequence[Motion]) -> np.ndarray:
     """Return the mean power of angular velocity by frequency to 15 Hz and channel."""
     grid, powers = np.linspace(0.0, 15.0, 46), []
     for motion in motions:
-        steps = _rotation_steps(motion).reshape(motion.n_frames - 1, -1)
+        steps = angular_velocities(motion).reshape(motion.n_frames - 1, -1)
         size = max(round(4 * motion.frame_rate), len(steps))
         power = np.abs(np.fft.rfft(steps, size, axis=0)) ** 2
         tones = np.fft.rfftfreq(size, 1.0 / motion.frame_rate)

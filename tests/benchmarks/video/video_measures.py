@@ -3,12 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.denoising.feet import find_foot_joints
 from solvers.motion import Motion, forward_kinematics
 from solvers.rotations import angle_between
-
-Flags = NDArray[np.bool_]
 
 
 def figures_of(motion: Motion, contacts: Flags, truth: Motion | None) -> dict[str, float]:

@@ -1,6 +1,7 @@
 """Adjacent frames follow the correction of one frame; other frames stay unchanged."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,8 +15,13 @@ from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.motion import body_motion, motion_frames
 from solvers.depth_tracking.body.pose_from_joints import pose_from_frames
 from solvers.depth_tracking.body.tables import JOINTS
+from solvers.depth_tracking.capturing import retracked_path
+from solvers.depth_tracking.capturing.passes import RecoverySettings, TrackingContext
 from solvers.depth_tracking.capturing.retrack import RetrackSettings, retrack
+from solvers.depth_tracking.terms import TrackerSettings
+from solvers.depth_tracking.tracking.fit_quality import FitQuality
 from solvers.errors import InvalidMotionError, SolveCancelled
+from solvers.progress import unwatched
 from solvers.rotations.representations import (
     angle_between,
     multiply,
@@ -65,6 +71,44 @@ def test_pose_from_frames_needs_no_initial_pose():
         again = segment_frames(BODY, pose_from_frames(BODY, frames))
         assert_allclose(again[:, :3, 3], frames[:, :3, 3], atol=2e-3)
         assert_allclose(again[:, :3, :3], frames[:, :3, :3], atol=0.02)
+
+
+def test_motions_do_not_agree_where_an_occluded_arm_differs():
+    """Nothing of the body is visible, so its joints have confidence 0."""
+    truth = waving(N_FRAMES)
+    actor = SimpleNamespace(body=BODY)
+    occluded = FitQuality(*np.zeros(6), np.zeros(len(JOINTS)))
+    frame = CORRECTED + 1
+
+    distance = retracked_path._largest_distance(
+        actor, truth[frame], with_error(truth)[frame], occluded
+    )
+
+    assert distance > RetrackSettings().agreement
+
+
+@pytest.mark.parametrize(("loss", "n_poses"), [(0.01, 8), (0.02, 4)])
+def test_path_may_fit_a_little_worse_than_the_old_motion(monkeypatch, loss, n_poses):
+    """It never rejoins the old motion, and its score is lower by this in every frame."""
+    truth = waving(N_FRAMES)
+    score = FitQuality(*np.zeros(6), np.ones(len(JOINTS)))._replace(score=0.8)
+    worse = score._replace(score=0.8 - loss)
+    for name, result in (
+        ("observe", None),
+        ("next_pose_prior", None),
+        ("track_frame", (truth[CORRECTED], worse)),
+        ("measure_fit", score),
+    ):
+        monkeypatch.setattr(retracked_path, name, lambda *given, result=result: result)
+    settings = TrackerSettings(), RecoverySettings()
+    actor = TrackingContext(recorded(truth), BODY, None, *settings)
+
+    path = retracked_path.track_from_correction(
+        actor, truth[CORRECTED], range(8), lambda frame: truth[CORRECTED] + 1.0,
+        RetrackSettings(blend=0.1), unwatched,
+    )  # fmt: skip
+
+    assert len(path.poses) == n_poses
 
 
 def test_retrack_corrects_the_error_and_keeps_other_frames(take, retracked):

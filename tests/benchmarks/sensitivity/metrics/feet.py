@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from solvers.arrays import Array
+from solvers.arrays import Array, Flags
 from solvers.denoising import plant_feet
 from solvers.denoising.feet.legs import find_legs
 from solvers.motion import Motion, detect_contacts, forward_kinematics
 from solvers.rotations.representations import IDENTITY, angle_between
 from solvers.samples import CorruptionSettings, corrupt
 
-from ..takes import Flags, hdm05, variety, walk
+from ..takes import hdm05, variety, walk
 
 SKATING = 0.15
 """Part of the way that the body travels too far."""

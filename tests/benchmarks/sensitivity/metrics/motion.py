@@ -4,13 +4,14 @@ from typing import Any
 
 import numpy as np
 
+from solvers.arrays import Flags
 from solvers.motion import Motion, detect_contacts, motion_from_points, resample
 from solvers.motion.skeletons import find_shot_boundaries
 from solvers.rotations.representations import angle_between
 from solvers.samples import CorruptionSettings, corrupt
 
 from ...shared import clips
-from ..takes import Flags, angle_error, joint_tracks, missed_or_false, variety, walk
+from ..takes import angle_error, joint_tracks, missed_or_false, variety, walk
 
 
 def prepare() -> dict[str, Any]:

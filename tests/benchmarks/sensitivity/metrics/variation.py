@@ -2,14 +2,8 @@
 
 import numpy as np
 
-from solvers.arrays import Array
 from solvers.denoising import learn_joint_limits, limit_excess
 from solvers.motion import JointLimits, Motion, detect_contacts
-from solvers.rotations.representations import (
-    inverse,
-    multiply,
-    rotation_vector_from_quaternion,
-)
 from solvers.variation import (
     VarySettings,
     borrow_variation,
@@ -19,6 +13,7 @@ from solvers.variation import (
     repeat_loop,
 )
 
+from ...variation.variation_measures import angular_velocities
 from ..takes import hdm05, walk
 
 N_VARIANTS = 4
@@ -75,14 +70,11 @@ def _off(one: float, other: float) -> float:
     return 0.1 + abs(float(np.log(one / other)))
 
 
-def _velocities(motion: Motion) -> Array:
-    steps = multiply(inverse(motion.rotations[:-1]), motion.rotations[1:])
-    return np.asarray(rotation_vector_from_quaternion(steps) * motion.frame_rate)
-
-
 def _jerk(motions: list[Motion]) -> float:
     return float(
-        np.mean([np.abs(np.diff(_velocities(each), n=2, axis=0)).mean() for each in motions])
+        np.mean([
+            np.abs(np.diff(angular_velocities(each), n=2, axis=0)).mean() for each in motions
+        ])
     )
 
 
@@ -92,5 +84,5 @@ def _in_contact(motions: list[Motion]) -> float:
 
 def _seam(twice: Motion, n_frames: int) -> float:
     """Largest step of the velocity at the seam, relative to that elsewhere."""
-    steps = np.abs(np.diff(_velocities(twice), axis=0)).mean(axis=(1, 2))
+    steps = np.abs(np.diff(angular_velocities(twice), axis=0)).mean(axis=(1, 2))
     return float(steps[n_frames - 3 : n_frames + 1].max() / np.median(steps))

@@ -1,0 +1,38 @@
+"""Buttons that act at once: whether they can, what they did, and why not."""
+
+from collections.abc import Callable
+from typing import ClassVar
+
+import bpy
+
+from ...solvers.errors import MocapAssistError
+from .mixins import OperatorMixin
+
+
+def _always(context: bpy.types.Context) -> str:
+    return ""
+
+
+class ActOperator(OperatorMixin):
+    """Mix in before an operator that defines `act` and, unless it is never gray, `why_not`."""
+
+    why_not: ClassVar[Callable[[bpy.types.Context], str]] = _always
+    """Return why the button is unavailable, or an empty text."""
+    act: Callable[[bpy.types.Context], str]
+    """Act, and return the message for the status bar: a method of the operator."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if reason := cls.why_not(context):
+            cls.poll_message_set(reason)
+        return not reason
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Act, and report the result or the error."""
+        try:
+            message = self.act(context)
+        except MocapAssistError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, message)
+        return {"FINISHED"}
