@@ -19,6 +19,9 @@ MIN_ZOOM_HEIGHT, MAX_ZOOM_HEIGHT = -0.75, 0.35
 """Range of heights of zooming hands above the shoulders, in arm lengths. Chosen by hand:
 without the second the exercises of UI-PRMD zoom 145 times, without the first MSR Action3D
 once."""
+MIN_ZOOM_GAP, MAX_ZOOM_GAP = 0.25, 2.2
+"""Range of distances of zooming hands, in arm lengths. Chosen by hand: without it an exercise
+of KIMORE zooms."""
 STRAIGHT_REACH = 0.85
 """Reach, in arm lengths, at which an arm counts as straight. Chosen by hand: with 0.7 the
 exercises of UI-PRMD turn the view 54 times."""
@@ -175,8 +178,8 @@ class Zoom:
 
 
 def _is_zoom_pose(hands: Hands) -> bool:
-    """Return whether both hands are in front of the chest."""
-    return all(
+    """Return whether both hands are in front of the chest, next to each other."""
+    return MIN_ZOOM_GAP <= hands.gap <= MAX_ZOOM_GAP and all(
         hand[1] >= MIN_FORWARD and MIN_ZOOM_HEIGHT <= hand[2] <= MAX_ZOOM_HEIGHT
         for hand in (hands.right, hands.left)
     )
