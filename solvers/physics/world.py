@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .body import Capsule, PhysicsBody
+from .tables import ARM
 
 GRAVITY = 9.81
 """Meters per second squared, by definition."""
 SIDES = ("left", "right")
+WEAK_ROLES = {"neck", "head", *(side + part for side in SIDES for part in ARM)}
 CONTACT_TIME_S = 0.01
 """Seconds in which the ground pushes out a penetrating body. Chosen by hand: x0.5 gains 2.5 %,
 x2 costs 11.1 %."""
@@ -36,6 +38,8 @@ class World(NamedTuple):
     """Index of each moving joint's body, in the order of `PhysicsBody.joints`."""
     feet: NDArray[np.bool_]
     """Whether each geometry belongs to the left and the right foot, shape (n_geometries, 2)."""
+    weak: NDArray[np.bool_]
+    """Whether each geometry belongs to an arm or the head, shape (n_geometries,)."""
     first_ends: NDArray[np.intp]
     """Index of each geometry's first end among those of `PhysicsBody.ground_capsules`, shape
     (n_geometries,)."""
@@ -67,11 +71,12 @@ def build_world(
         _geometries_of_roles(model, body, bodies, {f"{side}Foot", f"{side}Toes"})
         for side in SIDES
     ]
+    weak = _geometries_of_roles(model, body, bodies, WEAK_ROLES)
     first_ends = np.zeros(model.ngeom, dtype=np.intp)
     for index, capsule in enumerate(body.ground_capsules):
         first_ends[model.geom(names[id(capsule)]).id] = 2 * index
     data, ghost = engine.MjData(model), engine.MjData(model)
-    return World(model, data, ghost, bodies, np.stack(feet, axis=-1), first_ends, ground)
+    return World(model, data, ghost, bodies, np.stack(feet, axis=-1), weak, first_ends, ground)
 
 
 def _body_element(body: PhysicsBody, joint: int, names: Mapping[int, str]) -> str:

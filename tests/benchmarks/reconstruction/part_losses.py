@@ -69,11 +69,11 @@ def by_example(complete: Callable[..., Array], pair: Pair, subject: str) -> Arra
     )
     size = _size(smooth_postures(pair.kinect, SMOOTHING_S))
     flat = size * plain.postures.reshape(len(observed), -1)
-    observed = np.isfinite(flat)
+    is_observed = np.isfinite(flat)
     examples = sensor_examples(subject)
     is_known = np.isfinite(examples).all(axis=0)
     result = flat.copy()
-    patterns, which = np.unique(observed, axis=0, return_inverse=True)
+    patterns, which = np.unique(is_observed, axis=0, return_inverse=True)
     for number, pattern in enumerate(patterns):
         rows = np.flatnonzero(which.ravel() == number)
         result[np.ix_(rows, ~pattern & is_known)] = complete(

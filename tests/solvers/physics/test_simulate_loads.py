@@ -1,6 +1,7 @@
 """Ground forces on the parts of a body, and which feet stand on them."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from solvers.motion import HumanoidMap, Motion, Skeleton, find_humanoid_map
 from solvers.physics.body import Capsule, build_physics_body
 from solvers.physics.body_surface import select_foot_ends
 from solvers.physics.contact_loads import add_loads
+from solvers.physics.control import ARM_REGULARIZATION, _ground_forces
 from solvers.physics.engine import load_engine
 from solvers.physics.feet import add_soles
 from solvers.physics.foot_support import compute_support_weights
@@ -63,3 +65,36 @@ def test_foot_of_the_free_leg_stands_and_one_that_touches_moves(load, least, mos
 
     assert (weights[:, 0] >= least - 1e-9).all()
     assert (weights[:, 0] <= most).all()
+
+
+def test_legs_carry_the_body_where_arms_touch_too():
+    """A foot and a hand at the same point: the hand would carry half of the weight."""
+    at_the_point = np.zeros((3, 6))
+    at_the_point[[0, 1, 2], [2, 0, 1]] = 1.0
+    weight = np.array([0.0, 0.0, 700.0, 0.0, 0.0, 0.0])
+    penalties = np.repeat([1.0, ARM_REGULARIZATION], 3)
+
+    forces = _ground_forces(
+        np.vstack([at_the_point] * 2),
+        penalties,
+        weight,
+        SimpleNamespace(size=1.0, friction=0.8),
+    )
+
+    foot, hand = forces[0], forces[3]
+    assert_allclose(foot + hand, 700.0, rtol=0.01)
+    assert hand < 0.1 * foot
+
+
+def test_arms_and_head_are_weak():
+    walk = walking_gait(GaitSettings(duration=0.2))
+    humanoid = find_humanoid_map(walk.skeleton)
+    body = build_physics_body(walk, humanoid)
+    world = build_world(load_engine(), body, 0.0, 1.0, STEP)
+    weak = {
+        body.roles.get(joint)
+        for joint, number in zip(body.joints, world.bodies, strict=True)
+        if world.weak[world.model.geom_bodyid == number].any()
+    }
+    assert {"head", "leftLowerArm", "rightLowerArm", "leftHand", "rightHand"} <= weak
+    assert not {"hips", "leftFoot", "rightFoot", "leftLowerLeg", "rightLowerLeg"} & weak
