@@ -14,7 +14,8 @@ def _always(context: bpy.types.Context) -> str:
 
 
 class ActOperator(OperatorMixin):
-    """Mix in before an operator that defines `act` and, unless it is never gray, `why_not`."""
+    """Mix in before an operator that defines `act` or `execute`, and `why_not` unless it is
+    never gray."""
 
     why_not: ClassVar[Callable[[bpy.types.Context], str]] = _always
     """Return why the button is unavailable, or an empty text."""

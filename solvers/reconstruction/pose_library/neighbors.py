@@ -52,7 +52,7 @@ class PostureIndex:
     Attributes
     ----------
     order : shape (n_postures,)
-        Integers into the library, group by group.
+        Indices into the library, group by group.
     starts : shape (n_groups + 1,)
         Where each group begins in `order`.
     points : float32, shape (n_postures, 40, 3)

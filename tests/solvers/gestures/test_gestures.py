@@ -173,25 +173,6 @@ def test_slowly_closing_hands_do_not_clap(monkeypatch, seconds, expected):
     ] == expected
 
 
-def test_arms_that_swing_up_from_the_sides_do_not_clap(monkeypatch):
-    """They were apart while they hung only."""
-    _, clapped, *rest = GESTURES["clap"]
-    hanging, low = (0.35, 0.0, -0.93), (0.0, 0.1, -0.9)
-    swing = ((0.4, hanging, hanging), (0.2, low, low), (0.15, *clapped[1:]), *rest)
-    monkeypatch.setitem(GESTURES, "clap", swing)
-
-    assert recognized(perform_gestures(["clap"])) == []
-
-
-def test_hands_that_touch_do_not_zoom(monkeypatch):
-    """They move from 7 to 17 hundredths of an arm length apart."""
-    together, parted = (-0.3, 0.6, -0.3), (-0.25, 0.6, -0.3)
-    held = ((0.7, together, together), (1.0, together, together), (1.0, parted, parted))
-    monkeypatch.setitem(GESTURES, "zoom in", (*held, *GESTURES["zoom in"][3:]))
-
-    assert Gesture.ZOOM not in recognized(perform_gestures(["zoom in"]))
-
-
 def test_clap_above_the_head_is_ignored(monkeypatch):
     """A jumping jack has it, and it must fit between two claps."""
     over = tuple(
