@@ -9,12 +9,11 @@ from pathlib import Path
 
 import bgui
 import bpy
-from stage import empty_scene, settle
+from stage import empty_scene, settle, until_done
 
 FOLDER = Path(__file__).parent
 WALK, JOINTS = FOLDER / "walk.bvh", FOLDER / "joints.txt"
 CHANGE = "mocap_assist.change_axes"
-UNTIL_DONE = 600  # tenths of a second
 
 
 def drop(path):
@@ -23,14 +22,6 @@ def drop(path):
         bpy.ops.mocap_assist.import_recording(
             "INVOKE_DEFAULT", directory=str(FOLDER), files=[{"name": path.name}]
         )
-
-
-def until_done():
-    for _ in range(UNTIL_DONE):
-        yield 0.1
-        if not bpy.context.window_manager.mocap_assist_job.running:
-            return
-    raise AssertionError("The import did not end.")
 
 
 def head_height(armature):

@@ -12,14 +12,13 @@ from pathlib import Path
 
 import bgui
 import bpy
-from stage import empty_scene, settle
+from stage import UNTIL_DONE, empty_scene, settle, until_done
 
 FOLDER = Path(__file__).parent
 WALK, JOINTS, MARKERS = (FOLDER / name for name in ("walk.bvh", "joints.txt", "markers.trc"))
 LONG = FOLDER / "long.bvh"
 LENGTHS = 100  # of the walk, in the long recording
 IMPORT = "mocap_assist.import_recording"
-UNTIL_DONE = 600  # tenths of a second
 
 
 def look_at(center, distance):
@@ -48,14 +47,6 @@ def make_long():
 
 def job():
     return bpy.context.window_manager.mocap_assist_job
-
-
-def until_done():
-    for _ in range(UNTIL_DONE):
-        yield 0.1
-        if not job().running:
-            return
-    raise AssertionError(f"{job().message} {job().fraction}")
 
 
 def everything():

@@ -9,20 +9,11 @@ from pathlib import Path
 
 import bgui
 import bpy
-from stage import empty_scene, settle
+from stage import empty_scene, settle, until_done
 
 FOLDER = Path(__file__).parent
 REDO_PANEL, SCALE = (78, 112), (270, 210)
 """Pixels at which Blender draws the header and the number; a scan does not reach them."""
-UNTIL_DONE = 600  # tenths of a second
-
-
-def until_done():
-    for _ in range(UNTIL_DONE):
-        yield 0.1
-        if not bpy.context.window_manager.mocap_assist_job.running:
-            return
-    raise AssertionError("The import did not end.")
 
 
 def head_height():

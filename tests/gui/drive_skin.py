@@ -12,12 +12,11 @@ import addon_utils
 import bgui
 import bpy
 import numpy as np
-from stage import empty_scene, settle
+from stage import empty_scene, settle, until_done
 
 FOLDER = Path(__file__).parent
 TAKE = FOLDER / "skinned.fbx"
 FRAMES = (1, 12, 22)
-UNTIL_DONE = 1800  # tenths of a second
 
 
 def make_skinned_fbx():
@@ -26,15 +25,6 @@ def make_skinned_fbx():
         bpy.ops.export_scene.fbx(filepath=str(TAKE), add_leaf_bones=False)
     empty_scene()
     bpy.ops.outliner.orphans_purge(do_recursive=True)
-
-
-def until_done():
-    job = bpy.context.window_manager.mocap_assist_job
-    for _ in range(UNTIL_DONE):
-        yield 0.1
-        if not job.running:
-            return
-    raise AssertionError(job.message)
 
 
 def box(meshes):

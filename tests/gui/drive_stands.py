@@ -13,7 +13,7 @@ import bgui
 import bpy
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from stage import empty_scene, settle
+from stage import empty_scene, settle, until_done
 
 FOLDER = Path(__file__).parent
 TAKES = {
@@ -23,16 +23,6 @@ TAKES = {
     "cmu.c3d": ("EMPTY", 120),
     "gait.c3d": ("EMPTY", 100),
 }
-UNTIL_DONE = 600  # tenths of a second
-
-
-def until_done():
-    job = bpy.context.window_manager.mocap_assist_job
-    for _ in range(UNTIL_DONE):
-        yield 0.1
-        if not job.running:
-            return
-    raise AssertionError(job.message)
 
 
 def points_of(active):

@@ -4,6 +4,7 @@ import bgui
 import bpy
 
 PANELS = "MOCAP_PT_"
+UNTIL_DONE = 1800  # tenths of a second
 
 
 def empty_scene():
@@ -28,3 +29,13 @@ def settle(times=3):
     for _ in range(times):
         bgui.redraw()
         yield 0.5
+
+
+def until_done():
+    """Wait until the running import or solve has ended."""
+    job = bpy.context.window_manager.mocap_assist_job
+    for _ in range(UNTIL_DONE):
+        yield 0.1
+        if not job.running:
+            return
+    raise AssertionError(f"{job.message} {job.fraction}")
