@@ -128,7 +128,7 @@ def test_no_two_folders_import_each_other(layer):
 
 @pytest.mark.parametrize("layer", ["solvers", "mocap_assist", "tests", "docs"])
 def test_no_folder_holds_too_many_files(layer):
-    """Modules are counted, and of the documents, pages and pictures alike."""
+    """Counted are modules, and the pages and pictures of the documents."""
     files = (ROOT / layer).rglob("*.*" if layer == "docs" else "*.py")
     for home, n_files in Counter(file.parent for file in files if file.is_file()).items():
         assert n_files <= MOST_FILES, f"{home} has {n_files} files"

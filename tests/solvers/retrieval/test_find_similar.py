@@ -10,7 +10,14 @@ from numpy.testing import assert_array_equal
 from solvers.errors import InvalidMotionError
 from solvers.motion import JointRecording, Sensor, Tracks
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
-from solvers.retrieval import Clip, FindMethod, FindSettings, build_clip_library, find_similar
+from solvers.retrieval import (
+    Clip,
+    ClipLibrary,
+    FindMethod,
+    FindSettings,
+    build_clip_library,
+    find_similar,
+)
 
 NO_PARTS = dict.fromkeys(("trunk", "left_arm", "right_arm", "left_leg", "right_leg"), False)
 
@@ -73,14 +80,21 @@ def test_query_can_be_excluded(library):
     assert len(names) == 14
 
 
-def test_action_is_found_within_a_long_take(library):
-    parts = [act(name, 3.0) for name in ("step", "bow", "kick", "squat", "step")]
+def library_with_take(parts: list[Tracks]) -> ClipLibrary:
+    """All acts but the kick, and a take of these parts one after the other."""
     take = Tracks(POSTURE_JOINTS, np.concatenate([part.positions for part in parts]), 30.0)
-    long = build_clip_library([
+    return build_clip_library([
         Clip("take", take),
         *(Clip(name, act(name)) for name in ACTS if name != "kick"),
     ])
+
+
+def test_action_is_found_within_a_long_take(library):
+    long = library_with_take([
+        act(name, 3.0) for name in ("step", "bow", "kick", "squat", "step")
+    ])
     best = find_similar(act("kick", 2.7), long)[0]
+
     assert best.clip == "take"
     assert abs(best.frames.start - 180) < 20
     assert abs(best.frames.stop - 270) < 20
@@ -94,12 +108,8 @@ def test_action_is_found_within_a_long_take(library):
 
 def test_action_longer_than_the_segment_that_is_found_has_its_end():
     """A kick that is half as fast as the query; segments of the take are 2 and 4 s long."""
-    parts = (act("kick", 5.0, amount=0.0), act("kick", 2.7), act("kick", 5.0, amount=0.0))
-    take = Tracks(POSTURE_JOINTS, np.concatenate([part.positions for part in parts]), 30.0)
-    library = build_clip_library([
-        Clip("take", take),
-        *(Clip(name, act(name)) for name in ACTS if name != "kick"),
-    ])
+    still = act("kick", 5.0, amount=0.0)
+    library = library_with_take([still, act("kick", 2.7), still])
 
     best = find_similar(act("kick", 1.4), library)[0]
 
