@@ -1,5 +1,6 @@
 """How much a smoother follows the noise of the take that it smooths."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -15,6 +16,10 @@ smoother answers in proportion, and far above rounding."""
 MAX_PROBED_FRAMES = 1024
 """Frames of a long take, in its middle, in which the change is measured. It bounds the run
 time."""
+MIN_PROBED_SAMPLES = 2048
+"""Samples to which noise is added, over all probes: few are probed several times. Over
+100 noisy takes of three channels and 60 frames, the factor lay between 1.0 and 3.4 with one
+probe, and between 1.0 and 1.8 with as many as this takes."""
 
 
 def leverage(residual: Array, leave_one_out_error: Array) -> Array:
@@ -59,15 +64,22 @@ def leverage_factor(
     samples, is_good = samples[probed], is_good[probed]
     spread = samples.std(axis=0)
     counts = is_good & (np.ptp(samples, axis=0) > MAX_CONSTANT_RANGE)
-    signs = np.random.default_rng(0).choice([-1.0, 1.0], samples.shape[::-1]).T
-    # By spread: neither the order of the joints nor one that stands still changes the result.
-    signs = np.where(counts, signs[:, np.argsort(np.argsort(-spread))], 0.0)
-    added = PROBE_FRACTION * noise
-    smoothed, again = smooth(samples), smooth(samples + added * signs)
-    if smoothed is None or again is None:
+    if not counts.any():
+        return 1.0
+    smoothed = smooth(samples)
+    if smoothed is None:
         return 1.0
     expected = leverage(samples - smoothed.values, smoothed.leave_one_out_error)[counts].sum()
     if not expected > 0.0:
         return 1.0
-    change = (again.values - smoothed.values) / added
-    return max(float((signs * change).sum() / expected), 1.0)
+    # By spread: neither the order of the joints nor one that stands still changes the result.
+    order = np.argsort(np.argsort(-spread))
+    rng, added, followed = np.random.default_rng(0), PROBE_FRACTION * noise, []
+    for _ in range(math.ceil(MIN_PROBED_SAMPLES / np.count_nonzero(counts))):
+        signs = rng.choice([-1.0, 1.0], samples.shape[::-1]).T
+        signs = np.where(counts, signs[:, order], 0.0)
+        again = smooth(samples + added * signs)
+        if again is None:
+            return 1.0
+        followed.append((signs * (again.values - smoothed.values) / added).sum())
+    return max(float(np.mean(followed) / expected), 1.0)

@@ -96,6 +96,21 @@ def test_leverage_factor_of_a_fixed_spline_is_one(rng, monkeypatch):
     assert_allclose(factor, 1.0, atol=0.02)
 
 
+def test_leverage_factor_of_a_fixed_spline_is_one_for_a_single_channel(monkeypatch):
+    """One probe of 60 samples is a matter of luck: it says up to 1.6."""
+    monkeypatch.setattr(smoothing_spline, "SMOOTHNESS", np.array([3.0]))
+    good = np.ones((60, 1), dtype=bool)
+
+    factors = [
+        leverage_factor(
+            smooth_by_spline, np.random.default_rng(seed).normal(size=(60, 1)), good, np.ones(1)
+        )
+        for seed in range(10)
+    ]
+
+    assert_allclose(factors, 1.0, atol=0.15)
+
+
 def test_leverage_factor_does_not_depend_on_the_order_of_the_channels(rng):
     samples = np.cumsum(rng.normal(size=(60, 9)), axis=0)
     still = np.full((60, 3), 7.0)
