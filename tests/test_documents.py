@@ -170,3 +170,29 @@ def test_options_in_the_documents_exist(capsys):
             options = set(re.findall(r"--[a-z-]+", capsys.readouterr().out))
             shown = set(re.findall(r"--[a-z-]+", words.partition("#")[0]))
             assert shown <= options, f"{name_of(document)}: {verb} {words}"
+
+
+def test_messages_do_not_point_to_pages_that_the_zip_lacks():
+    """Docstrings may name a page of docs: who reads them has the repository."""
+    named = [
+        f"{path.relative_to(ROOT)}:{node.lineno}"
+        for folder in ("mocap_assist", "operators", "solvers")
+        for path in sorted((ROOT / folder).rglob("*.py"))
+        for node in messages_of(ast.parse(path.read_text(encoding="utf-8")))
+        if "docs/" in node.value
+    ]
+
+    assert not named
+
+
+def messages_of(tree: ast.Module) -> list[ast.Constant]:
+    """Return all strings of a module that are values, not statements such as docstrings."""
+    nodes = list(ast.walk(tree))
+    docstrings = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
+    return [
+        node
+        for node in nodes
+        if isinstance(node, ast.Constant)
+        and isinstance(node.value, str)
+        and id(node) not in docstrings
+    ]

@@ -12,7 +12,8 @@ from ..motion import JointLimits, Motion, Tracks
 from ..motion.skeletons import describe_shots, find_shot_boundaries, is_short_shot, shot_ranges
 from ..progress import Progress, unwatched, within
 from ..settings import Choice, Settings, setting
-from .channels import CENTIMETERS, Channels, decode, encode
+from .channels import CENTIMETERS, Channels, Estimate, decode, encode
+from .default_method import apply_default_method
 from .edge_poses import (
     describe_edge_poses,
     find_edge_poses,
@@ -22,9 +23,7 @@ from .edge_poses import (
 from .limits import clamp_to_limits, find_impossible_rotations
 from .marker_gaps import FilledMarkers, fill_markers
 from .observed_samples import max_per_joint, observed_mask, restore_observed
-from .posterior import Estimate
 from .published import filter_as_published
-from .stacking import estimate_and_stack
 from .window_priors import FilterBases
 
 MIN_OUTLIER_ERROR = 2.0
@@ -251,7 +250,7 @@ def _estimate(
 ) -> tuple[Estimate, str]:
     if settings.method is Method.PUBLISHED:
         return filter_as_published(channels, frame_rate, bases, progress)
-    return estimate_and_stack(channels, frame_rate, bases, progress)
+    return apply_default_method(channels, frame_rate, bases, progress)
 
 
 def _unchanged(segment: Motion | Tracks) -> Denoised:

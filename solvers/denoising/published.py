@@ -5,8 +5,7 @@ import numpy as np
 from ..arrays import Array
 from ..progress import Progress
 from ..signals import fill_channel_gaps, remove_outliers
-from .channels import Channels
-from .posterior import Estimate
+from .channels import Channels, Estimate
 from .window_priors import (
     FilterBases,
     FilterBasesSettings,

@@ -136,14 +136,15 @@ REFUSALS = (
     Refusal(
         "pickle",
         _is_pickle,
-        "is a pickle, which is never opened here: it may run any program. Convert it to .npz"
-        " where it was made (docs/formats/skeletons/smpl.md has the lines).",
+        "is a pickle, which is never opened here: it may run any program. Save its arrays as"
+        " .npz where it was made. For an SMPL body: numpy.savez(file, global_orient=...,"
+        " body_pose=..., transl=...), one row per frame.",
     ),
     Refusal(
         "compressed file",
         _is_compressed,
         "is compressed. Unpack it and import the file in it; a compressed pickle has to be"
-        " converted to .npz where it was made (docs/formats/skeletons/smpl.md has the lines).",
+        " saved as .npz where it was made, with numpy.savez.",
     ),
 )
 

@@ -9,8 +9,8 @@ is scored, and no development take.
 
 from collections.abc import Iterator
 
-from solvers.denoising.motion_mixture import SHIPPED, learn_motion_mixture
-from solvers.denoising.motion_mixture.learn_mixture import FRAME_RATE
+from solvers.denoising.motion_model import SHIPPED, learn_motion_mixture
+from solvers.denoising.motion_model.learn_mixture import FRAME_RATE
 from solvers.motion import Motion
 
 from ..benchmarks.first_press.takes import DEVELOPMENT, read_variety, variety_names

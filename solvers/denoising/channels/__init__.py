@@ -2,6 +2,7 @@
 
 from .channels import CENTIMETERS, Channels
 from .encode import decode, encode
+from .estimate import Estimate, Smoothed
 from .examples import ExampleChannels, Moments
 from .motion_channels import BODY_POSITION
 
@@ -9,8 +10,10 @@ __all__ = [
     "BODY_POSITION",
     "CENTIMETERS",
     "Channels",
+    "Estimate",
     "ExampleChannels",
     "Moments",
+    "Smoothed",
     "decode",
     "encode",
 ]

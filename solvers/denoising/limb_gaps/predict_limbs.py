@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...progress import Progress, unwatched
 from ...rotations import IDENTITY, inverse, matrix_from_quaternion, rotate
-from ..channels import BODY_POSITION, Channels
-from ..posterior import Estimate
+from ..channels import BODY_POSITION, Channels, Estimate
 from .adapt_relation import (
     MIN_GAP_S,
     AdaptedRelation,

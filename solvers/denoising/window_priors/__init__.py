@@ -1,4 +1,4 @@
-"""Priors over a window of motion: filter bases learned from examples, or smoothness alone."""
+"""Windows of a take, and priors over one: filter bases of examples, or smoothness alone."""
 
 from .filter_bases import (
     FilterBases,
@@ -8,6 +8,7 @@ from .filter_bases import (
 )
 from .lag_covariance import LagProducts, find_leading_eigenpairs
 from .window_prior import SmoothPrior, WindowPrior, build_smooth_prior, mix_priors
+from .windows import Windows
 
 __all__ = [
     "FilterBases",
@@ -15,6 +16,7 @@ __all__ = [
     "LagProducts",
     "SmoothPrior",
     "WindowPrior",
+    "Windows",
     "build_smooth_prior",
     "find_leading_eigenpairs",
     "learn_filter_bases",

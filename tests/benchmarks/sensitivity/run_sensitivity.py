@@ -2,7 +2,7 @@
 
     python -m tests.benchmarks.sensitivity.run_sensitivity                    # all families
     python -m tests.benchmarks.sensitivity.run_sensitivity --family feet      # one, a minute
-    python -m tests.benchmarks.sensitivity.run_sensitivity --only posterior   # some modules
+    python -m tests.benchmarks.sensitivity.run_sensitivity --only window_estimates  # some
     python -m tests.benchmarks.sensitivity.run_sensitivity --docs   # benchmarks/sensitivity.md
 
 What was measured is kept in build/sensitivity, one JSON file per family; a constant is measured

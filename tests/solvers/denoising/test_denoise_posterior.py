@@ -3,20 +3,20 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from solvers.denoising.posterior.covariance import WindowCovariance
-from solvers.denoising.posterior.filters import (
+from solvers.denoising.window_estimates.covariance import WindowCovariance
+from solvers.denoising.window_estimates.filters import (
     Filter,
     build_filters,
     compute_gains,
     compute_variance,
     sum_window_weights,
 )
-from solvers.denoising.posterior.gap_patterns import (
+from solvers.denoising.window_estimates.gap_patterns import (
     GapSolution,
     find_gap_patterns,
     find_long_gaps,
 )
-from solvers.denoising.posterior.windows import Windows
+from solvers.denoising.window_priors import Windows
 
 LENGTH, N_SLOW, N_CHANNELS = 8, 5, 3
 
@@ -175,7 +175,9 @@ def test_too_many_gap_patterns_are_filled_iteratively(rng, monkeypatch):
     windows = Windows(57, 20, 1.0)
     assert len(find_gap_patterns(observed_mask, windows, N_SLOW)) > 1
 
-    monkeypatch.setattr("solvers.denoising.posterior.gap_patterns.MAX_MATRIX_ENTRIES", 50)
+    monkeypatch.setattr(
+        "solvers.denoising.window_estimates.gap_patterns.MAX_MATRIX_ENTRIES", 50
+    )
 
     (pattern,) = find_gap_patterns(observed_mask, windows, N_SLOW)
     assert not pattern.channels.size

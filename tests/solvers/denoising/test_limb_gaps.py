@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.denoising import denoise
-from solvers.denoising.channels import BODY_POSITION, encode
+from solvers.denoising.channels import BODY_POSITION, Estimate, encode
 from solvers.denoising.limb_gaps import (
     BodyRelation,
     load_body_relation,
@@ -17,7 +17,6 @@ from solvers.denoising.limb_gaps import (
 from solvers.denoising.limb_gaps.adapt_relation import adapt_relation, try_gaps
 from solvers.denoising.limb_gaps.body_relation import KEYS
 from solvers.denoising.limb_gaps.bridges import Bridge
-from solvers.denoising.posterior import Estimate
 from solvers.errors import SolveCancelled
 from solvers.motion import Motion, find_humanoid_map
 from solvers.recordings import read_bvh

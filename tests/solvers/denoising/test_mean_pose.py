@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.posterior.mean_pose import estimate_mean_pose
+from solvers.denoising.window_estimates.mean_pose import estimate_mean_pose
 
 N_FRAMES = 100.0
 

@@ -6,14 +6,14 @@ from numpy.testing import assert_allclose
 from scipy.fft import idct
 from scipy.stats import multivariate_normal
 
-from solvers.denoising.motion_mixture import (
+from solvers.denoising.motion_model import (
     MotionMixture,
-    PredictiveDensity,
     learn_motion_mixture,
     load_motion_mixture,
     smooth_by_mixture,
 )
-from solvers.denoising.posterior import Windows
+from solvers.denoising.outliers import PredictiveDensity
+from solvers.denoising.window_priors import Windows
 from solvers.errors import InvalidFileError, InvalidMotionError
 
 WINDOW = 8

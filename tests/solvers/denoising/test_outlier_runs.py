@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from solvers.denoising.motion_mixture import load_motion_mixture
-from solvers.denoising.stacking.outlier_runs import confirm_outliers, find_bursts
+from solvers.denoising.motion_model import load_motion_mixture
+from solvers.denoising.outliers import confirm_outliers, find_bursts
 
 MIXTURE = load_motion_mixture()
 

@@ -6,14 +6,17 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.posterior.channel_groups import MAX_GROUP_CHANNELS, group_channels
-from solvers.denoising.posterior.prior_selection import (
+from solvers.denoising.window_estimates.channel_groups import MAX_GROUP_CHANNELS, group_channels
+from solvers.denoising.window_estimates.prior_selection import (
     score_leave_joint_out,
     score_leave_one_out,
     select_prior,
 )
-from solvers.denoising.posterior.smoothness import CORRELATION_TIMES_S, build_smooth_kernels
-from solvers.denoising.posterior.windows import Windows
+from solvers.denoising.window_estimates.smoothness import (
+    CORRELATION_TIMES_S,
+    build_smooth_kernels,
+)
+from solvers.denoising.window_priors import Windows
 from solvers.denoising.window_priors.window_prior import (
     SmoothPrior,
     WindowPrior,

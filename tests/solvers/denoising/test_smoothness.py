@@ -5,12 +5,12 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.fft import dct
 
-from solvers.denoising.posterior.smoothness import (
+from solvers.denoising.window_estimates.smoothness import (
     CORRELATION_TIMES_S,
     build_smooth_kernels,
     fit_smoothness,
 )
-from solvers.denoising.posterior.windows import Windows
+from solvers.denoising.window_priors import Windows
 
 WINDOW, RATE, N_FRAMES = 20, 30.0, 400
 

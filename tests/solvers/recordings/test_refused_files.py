@@ -4,6 +4,7 @@ import gzip
 import io
 import json
 import pickle
+import re
 import zipfile
 import zlib
 
@@ -89,4 +90,16 @@ def test_an_array_of_numbers_is_no_pickle(read_any):
     buffer = io.BytesIO()
     np.save(buffer, np.ones((4, 5, 3)))
 
+    assert read_any(buffer.getvalue()).n_frames == 4
+
+
+def test_the_arrays_that_a_pickle_should_be_saved_as_are_read(read_any):
+    with pytest.raises(InvalidFileError) as refused:
+        read_any(pickle.dumps({"smpl_poses": 1}))
+    names = re.findall(r"(\w+)=\.\.\.", str(refused.value))
+    widths = {"global_orient": 3, "body_pose": 69, "transl": 3}
+    buffer = io.BytesIO()
+    np.savez(buffer, **{name: np.full((4, widths[name]), 0.1) for name in names})
+
+    assert set(names) == set(widths)
     assert read_any(buffer.getvalue()).n_frames == 4

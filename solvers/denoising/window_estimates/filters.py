@@ -7,9 +7,9 @@ import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotri
 
 from ...arrays import Array
+from ..window_priors import Windows
 from .covariance import WindowCovariance
 from .gap_patterns import GapPattern, GapSolution
-from .windows import Windows
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ..motion_mixture import MAX_CONSTANT_RANGE
-from ..posterior import Smoothed
+from ..channels import Smoothed
+from ..motion_model import MAX_CONSTANT_RANGE
 
 PROBE_FRACTION = 0.1
 """Size of the added noise, in standard deviations of the take's own. Small, so that the

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
+from ..window_priors import Windows
 from .filters import Filter
-from .windows import Windows
 
 MAX_BLOCK_WINDOWS = 512
 """Windows processed at a time: this bounds the memory, however long the take."""

@@ -2,15 +2,14 @@
 
 from .channel_noise import MAX_CONSTANT_RANGE, estimate_channel_noise
 from .learn_mixture import learn_motion_mixture
-from .mixture import SHIPPED, MotionMixture, load_motion_mixture
-from .predictive_density import PredictiveDensity
+from .motion_mixture import N_CHANNELS, SHIPPED, MotionMixture, load_motion_mixture
 from .smooth_joints import smooth_by_mixture
 
 __all__ = [
     "MAX_CONSTANT_RANGE",
+    "N_CHANNELS",
     "SHIPPED",
     "MotionMixture",
-    "PredictiveDensity",
     "estimate_channel_noise",
     "learn_motion_mixture",
     "load_motion_mixture",

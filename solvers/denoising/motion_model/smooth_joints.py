@@ -5,8 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ..posterior import Smoothed, Windows
-from .mixture import N_CHANNELS, MotionMixture
+from ..channels import Smoothed
+from ..window_priors import Windows
+from .motion_mixture import N_CHANNELS, MotionMixture
 
 MAX_LEVERAGE = 1.0 - 1e-9
 """Largest weight of a sample in its own estimate. Guards a division."""

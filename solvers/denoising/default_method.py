@@ -1,37 +1,30 @@
-"""The default method: find errors, estimate, and stack the estimate with two smoothers."""
+"""The default method of `denoise`: find outliers, estimate, average with two smoothers."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
-from ...progress import Progress, within
-from ..channels import Channels
-from ..limb_gaps import load_body_relation, predict_limbs
-from ..motion_mixture import (
-    MAX_CONSTANT_RANGE,
-    estimate_channel_noise,
-    load_motion_mixture,
-    smooth_by_mixture,
+from ..progress import Progress, within
+from .averaging import (
+    MIN_NOISE,
+    average_estimates,
+    leverage_factor,
+    noise_factors,
+    smooth_by_spline,
 )
-from ..posterior import Estimate, Smoothed, estimate_in_groups
-from ..window_priors import FilterBases
-from .measure_leverage import leverage, leverage_factor
-from .outlier_runs import confirm_outliers, find_bursts
-from .smoothing_spline import smooth_by_spline
-from .stack_estimates import stack_estimates
+from .channels import Channels, Estimate
+from .limb_gaps import load_body_relation, predict_limbs
+from .motion_model import estimate_channel_noise, load_motion_mixture, smooth_by_mixture
+from .outliers import confirm_outliers, find_bursts
+from .window_estimates import estimate_in_groups
+from .window_priors import FilterBases
 
 OUTLIER_THRESHOLD = 0.5
 """Probability of being an inlier below which a sample is an outlier. By definition."""
 
-MIN_NOISE = 1e-3
-"""Degrees or centimeters: smaller noise is that of rounding in files. Guards a division."""
 
-
-def estimate_and_stack(
+def apply_default_method(
     channels: Channels, frame_rate: float, bases: FilterBases | None, progress: Progress
 ) -> tuple[Estimate, str]:
     """Return the estimate of all channels, and what it was made with.
@@ -71,7 +64,7 @@ def estimate_and_stack(
     factors = noise_factors(noise, complete, [estimate, spline], is_good)
     noise = np.maximum(noise * factors, MIN_NOISE)
     by_mixture = partial(smooth_by_mixture, noise=noise, frame_rate=frame_rate, mixture=mixture)
-    stacked, weights = stack_estimates(
+    averaged, weights = average_estimates(
         noisy,
         estimate,
         [
@@ -87,47 +80,11 @@ def estimate_and_stack(
     )
     n_predicted = 0
     if bases is None:
-        stacked, n_predicted = predict_limbs(
-            channels, stacked, frame_rate, load_body_relation(), within(progress, 0.95, 1.0)
+        averaged, n_predicted = predict_limbs(
+            channels, averaged, frame_rate, load_body_relation(), within(progress, 0.95, 1.0)
         )
     sentence = _describe(int(np.count_nonzero(weights[:, 0] < 0.5)), n_predicted)
-    return stacked, f"{prior_used} {sentence}".strip()
-
-
-def noise_factors(
-    noise: Array,
-    complete: Array,
-    candidates: Sequence[Estimate | Smoothed],
-    is_good: NDArray[np.bool_],
-) -> Array:
-    """Return how much smaller the noise is than third differences say, shape (n_channels,).
-
-    They take fast movement for noise, which would then be smoothed away. What the best of the
-    candidates leaves holds less movement. They may follow noise, too: no joint's factor is less
-    than the median of all channels.
-    """
-    moves = np.ptp(complete, axis=0) > MAX_CONSTANT_RANGE
-    if not moves.any():
-        return np.ones_like(noise)
-    factors = [_noise_factors_of(noise, complete, each, is_good, moves) for each in candidates]
-    return np.asarray(np.min(factors, axis=0))
-
-
-def _noise_factors_of(
-    noise: Array,
-    complete: Array,
-    candidate: Estimate | Smoothed,
-    is_good: NDArray[np.bool_],
-    moves: NDArray[np.bool_],
-) -> Array:
-    residuals = np.where(is_good, complete - candidate.values, 0.0)
-    free = np.where(is_good, 1.0 - leverage(residuals, candidate.leave_one_out_error), 0.0)
-    left = np.sqrt((residuals**2).sum(axis=0) / np.maximum(free.sum(axis=0), 1.0))
-    logs = np.log(np.maximum(left, MIN_NOISE) / noise)
-    of_joints = np.where(moves, logs, 0.0).reshape(-1, 3).sum(axis=1)
-    of_joints /= np.maximum(moves.reshape(-1, 3).sum(axis=1), 1)
-    logs = np.maximum(np.repeat(of_joints, 3), np.median(logs[moves]))
-    return np.asarray(np.exp(np.minimum(logs, 0.0)))
+    return averaged, f"{prior_used} {sentence}".strip()
 
 
 def _describe(n_smoothed: int, n_predicted: int) -> str:

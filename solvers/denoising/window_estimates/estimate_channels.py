@@ -8,15 +8,14 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...progress import Progress, unwatched
 from ...signals import shrink_noise
-from ..window_priors import WindowPrior
+from ..channels import Estimate
+from ..outliers import INITIAL_OUTLIER_RATE, compute_inlier_probability
+from ..window_priors import WindowPrior, Windows
 from .covariance import adapt_covariance, covariance_from_prior
-from .estimate import Estimate
 from .filter_pass import filter_windows
 from .filters import Filter, build_filters, compute_variance, sum_window_weights
 from .gap_patterns import find_gap_patterns, find_long_gaps
-from .outlier_model import INITIAL_OUTLIER_RATE, compute_inlier_probability
 from .smoothness import fit_smoothness
-from .windows import Windows
 
 MAX_ITERATIONS = 30
 """Iterations after which the estimate ends unconverged. Chosen by hand: x0.5 costs 0.1 %, x2

@@ -1,4 +1,4 @@
-"""Stack the estimate with smoothers, joint by joint, by their expected error.
+"""Average the estimate with smoothers, joint by joint, by their expected error (stacking).
 
 The windows' prior is stationary: it smooths a take's fast moments like its still ones. A joint
 is therefore the weighted mean of the estimate and of two smoothers.
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ..posterior import Estimate, Smoothed
+from ..channels import Estimate, Smoothed
 from .measure_leverage import leverage
 
 POOLED_JOINTS = 4.0
@@ -24,7 +24,7 @@ RIDGE = 1e-9
 """Fraction of the trace. Guards equal candidates."""
 
 
-def stack_estimates(
+def average_estimates(
     noisy: Array,
     estimate: Estimate,
     smoothers: Sequence[tuple[Smoothed, float]],

@@ -10,7 +10,7 @@ from ...errors import InvalidMotionError
 from ...motion import Motion
 from ...progress import Progress, unwatched
 from ..channels import encode
-from .mixture import N_CHANNELS, MotionMixture
+from .motion_mixture import N_CHANNELS, MotionMixture
 
 WINDOW = 16
 """Frames of a window, of half a second at 30 Hz. Chosen by hand on the development takes of the

@@ -6,13 +6,16 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 from solvers.denoising import denoise
-from solvers.denoising.motion_mixture import estimate_channel_noise
-from solvers.denoising.posterior import Estimate, Smoothed
-from solvers.denoising.stacking import smoothing_spline
-from solvers.denoising.stacking.estimate_and_stack import noise_factors
-from solvers.denoising.stacking.measure_leverage import leverage, leverage_factor
-from solvers.denoising.stacking.smoothing_spline import smooth_by_spline
-from solvers.denoising.stacking.stack_estimates import stack_estimates
+from solvers.denoising.averaging import (
+    average_estimates,
+    leverage_factor,
+    noise_factors,
+    smooth_by_spline,
+    smoothing_spline,
+)
+from solvers.denoising.averaging.measure_leverage import leverage
+from solvers.denoising.channels import Estimate, Smoothed
+from solvers.denoising.motion_model import estimate_channel_noise
 from solvers.motion import Motion, find_humanoid_map
 from solvers.rotations import angle_between, multiply, quaternion_from_rotation_vector
 from solvers.samples import walker_skeleton
@@ -57,7 +60,7 @@ def test_weights_are_those_of_the_least_error(rng):
     smoothed = [_mean_of_samples(noisy, round(1.0 / each), rng) for each in variances]
     useless = _estimate(noisy)
 
-    _, weights = stack_estimates(
+    _, weights = average_estimates(
         noisy,
         useless,
         [(each, 1.0) for each in smoothed],
@@ -135,7 +138,7 @@ def test_smoother_that_follows_noise_gets_less_weight(rng):
     smoothed = [_mean_of_samples(noisy, 4, rng) for _ in range(2)]
 
     equal, weights = (
-        stack_estimates(
+        average_estimates(
             noisy,
             _estimate(noisy),
             [(smoothed[0], 1.0), (smoothed[1], factor)],
@@ -154,7 +157,7 @@ def test_clean_take_keeps_its_samples(rng):
     unchanged = Smoothed(clean, 5.0 + rng.normal(size=clean.shape), np.ones_like(clean))
     blurred = replace(_estimate(clean + 0.5), leave_one_out_error=np.full(clean.shape, -0.5))
 
-    stacked, weights = stack_estimates(
+    stacked, weights = average_estimates(
         clean, blurred, [(unchanged, 1.0)], np.ones(clean.shape, dtype=bool), np.full(6, 0.01)
     )
 

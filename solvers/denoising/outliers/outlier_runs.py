@@ -14,8 +14,10 @@ from scipy.ndimage import median_filter
 
 from ...arrays import Array
 from ...signals import fill_channel_gaps, find_runs
-from ..motion_mixture import MotionMixture, PredictiveDensity, estimate_channel_noise
-from ..posterior import OUTLIER_DENSITY, Windows
+from ..motion_model import MotionMixture, estimate_channel_noise
+from ..window_priors import Windows
+from .predictive_density import PredictiveDensity
+from .single_outliers import OUTLIER_DENSITY
 
 PRIOR_SAMPLES = 1e6
 """The number of samples, one of them a spike, in addition to the take's own: a clean take has

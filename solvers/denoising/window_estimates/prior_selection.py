@@ -11,6 +11,7 @@ from ..window_priors import (
     FilterBases,
     SmoothPrior,
     WindowPrior,
+    Windows,
     build_smooth_prior,
     mix_priors,
 )
@@ -18,7 +19,6 @@ from .estimate_channels import estimate_channels
 from .filters import compute_gains
 from .mean_pose import estimate_mean_pose
 from .smoothness import build_smooth_kernels
-from .windows import Windows
 
 SMOOTH_FRACTIONS = (0.003, 0.05, 0.3)
 """Weights of the smooth prior in its mixtures with the examples' prior. Chosen by hand: x0.5

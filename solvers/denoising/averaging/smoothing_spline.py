@@ -6,7 +6,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from ...arrays import Array
-from ..posterior import Smoothed
+from ..channels import Smoothed
 
 MAX_BLOCK_FRAMES = 512
 """Frames smoothed at a time; longer takes are blended from overlapping blocks. It bounds the

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from .windows import Windows
+from ..window_priors import Windows
 
 MAX_MATRIX_ENTRIES = 40_000_000
 """Entries of one matrix per gap pattern, over all patterns; two such matrices are stored and a

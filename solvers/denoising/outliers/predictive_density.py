@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from ...arrays import Array
-from ..posterior import OUTLIER_DENSITY, Windows
-from .mixture import N_CHANNELS, MotionMixture
+from ..motion_model import N_CHANNELS, MotionMixture
+from ..window_priors import Windows
+from .single_outliers import OUTLIER_DENSITY
 
 OFFSET_DEVIATION = 0.5 / OUTLIER_DENSITY / np.sqrt(3.0)
 """Standard deviation of an outlier's error, degrees or centimeters. By the width of its uniform

@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...progress import Progress, within
 from ...signals import estimate_noise, fill_channel_gaps, remove_outliers, shrink_noise
-from ..channels import Channels
-from ..window_priors import FilterBases, FilterBasesSettings, WindowPrior
-from .estimate import Estimate
+from ..channels import Channels, Estimate
+from ..window_priors import FilterBases, FilterBasesSettings, WindowPrior, Windows
 from .estimate_channels import estimate_channels
 from .prior_selection import (
     UNKNOWN_DEVIATION,
@@ -18,7 +17,6 @@ from .prior_selection import (
     build_take_prior,
     select_prior,
 )
-from .windows import Windows
 
 MAX_GROUP_CHANNELS = 96
 """Channels solved together; rigs with more are split between joints. Chosen by hand: x0.5 gains

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.fft import idct
 
 from ...arrays import Array
-from .windows import Windows
+from ..window_priors import Windows
 
 CORRELATION_TIMES_S = (0.08, 0.16, 0.32, 0.64, 1.28)
 """Correlation times, seconds, of the smooth movements whose sum is a channel. Chosen by hand:
