@@ -62,7 +62,6 @@ def leverage_factor(
     first = max(len(samples) - MAX_PROBED_FRAMES, 0) // 2
     probed = slice(first, first + MAX_PROBED_FRAMES)
     samples, is_good = samples[probed], is_good[probed]
-    spread = samples.std(axis=0)
     counts = is_good & (np.ptp(samples, axis=0) > MAX_CONSTANT_RANGE)
     if not counts.any():
         return 1.0
@@ -73,11 +72,13 @@ def leverage_factor(
     if not expected > 0.0:
         return 1.0
     # By spread: neither the order of the joints nor one that stands still changes the result.
-    order = np.argsort(np.argsort(-spread))
+    moving = np.flatnonzero(counts.any(axis=0))
+    moving = moving[np.argsort(-samples.std(axis=0)[moving])]
     rng, added, followed = np.random.default_rng(0), PROBE_FRACTION * noise, []
     for _ in range(math.ceil(MIN_PROBED_SAMPLES / np.count_nonzero(counts))):
-        signs = rng.choice([-1.0, 1.0], samples.shape[::-1]).T
-        signs = np.where(counts, signs[:, order], 0.0)
+        signs = np.zeros(samples.shape)
+        signs[:, moving] = rng.choice([-1.0, 1.0], (len(moving), len(samples))).T
+        signs[~counts] = 0.0
         again = smooth(samples + added * signs)
         if again is None:
             return 1.0
