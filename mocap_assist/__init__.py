@@ -7,7 +7,7 @@ Blender is imported only on `register`: a solve in a process of its own passes t
 def register() -> None:
     """Make properties, commands and panels known to Blender."""
     from . import batch, scene_properties, ui
-    from .actions import contacts
+    from .actions import contact_keys
     from .depth import depth_preview
     from .library import auto_update, background
     from .live import listening
@@ -21,7 +21,7 @@ def register() -> None:
     background.register()
     auto_update.register()
     previews.register()
-    contacts.register()
+    contact_keys.register()
     depth_preview.register()
     body_overlay.register()
     watch.register()
@@ -33,7 +33,7 @@ def register() -> None:
 def unregister() -> None:
     """Take them away again."""
     from . import batch, scene_properties, ui
-    from .actions import contacts
+    from .actions import contact_keys
     from .depth import depth_preview
     from .library import auto_update, background
     from .live import listening
@@ -47,7 +47,7 @@ def unregister() -> None:
     watch.unregister()
     body_overlay.unregister()
     depth_preview.unregister()
-    contacts.unregister()
+    contact_keys.unregister()
     previews.unregister()
     auto_update.unregister()
     background.unregister()

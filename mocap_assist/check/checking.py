@@ -5,7 +5,7 @@ from functools import partial
 import bpy
 
 from ..actions.armature_read import read_take
-from ..actions.contacts import read_contacts
+from ..actions.contact_keys import read_contacts
 from ..actions.limits import read_limits
 from ..actions.marker_take import MarkerTake, read_markers
 from ..actions.markers import markers_of, point_names

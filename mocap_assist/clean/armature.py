@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ...solvers.motion import JointLimits
 from ..actions.armature_read import read_take
 from ..actions.armature_write import check_writable, count_modified, put_to_use, write_take
-from ..actions.contacts import animators_contacts, write_contacts
+from ..actions.contact_keys import animators_contacts, write_contacts
 from ..actions.limits import read_limits
 from ..actions.take import ArmatureTake
 from ..blender.compat import Source

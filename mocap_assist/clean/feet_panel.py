@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..actions.contacts import PROPERTIES
+from ..actions.contact_keys import PROPERTIES
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists
 from ..runtime.selection import selected_armature

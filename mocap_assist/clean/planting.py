@@ -8,7 +8,7 @@ import bpy
 from ...solvers.denoising import PlantSettings
 from ..actions.armature_read import read_take
 from ..actions.armature_write import Output, check_writable, put_to_use, write_take
-from ..actions.contacts import animators_contacts, write_contacts
+from ..actions.contact_keys import animators_contacts, write_contacts
 from ..blender.time_slices import Sliced, Steps
 from ..jobs.job import ShortSolve
 from ..runtime.selection import played_source

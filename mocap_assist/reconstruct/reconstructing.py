@@ -12,7 +12,7 @@ from ...solvers.motion import Motion, Sensor
 from ..actions.armature_read import read_take
 from ..actions.armature_write import check_writable, count_modified, put_to_use, write_take
 from ..actions.bone_lengths import has_constant_locations, key_lengths, length_locations
-from ..actions.contacts import animators_contacts, write_contacts
+from ..actions.contact_keys import animators_contacts, write_contacts
 from ..actions.curves import GENERATED, MEASURED
 from ..actions.reliability_curves import Term, write_reliability
 from ..actions.sensor_notes import read_states

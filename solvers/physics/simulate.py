@@ -10,7 +10,6 @@ from ..progress import Progress, unwatched, within
 from .body import PhysicsBody, build_physics_body, check_size
 from .body_surface import measure_foot_slide, measure_penetration
 from .engine import load_engine
-from .feet import add_soles, find_ground, has_long_contact
 from .foot_support import sum_foot_loads
 from .plant_target import BLEND_S
 from .report import describe_ground, describe_result, is_near_ground, mean_distance
@@ -21,6 +20,7 @@ from .simulate_segment import (
     find_segments,
     simulate_segment,
 )
+from .soles_and_ground import add_soles, find_ground, has_long_contact
 from .target import blend_motions, fade_around, fill_motion_gaps
 
 DEFAULT_SETTINGS = SimulateSettings()

@@ -22,7 +22,7 @@ from .body_surface import (
 )
 from .control import build_controller
 from .follow_target import follow_target
-from .foot_contacts import place_feet_on_ground
+from .foot_placement import place_feet_on_ground
 from .foot_support import (
     compute_support_weights,
     detect_target_contacts,

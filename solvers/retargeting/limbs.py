@@ -8,7 +8,7 @@ from ..arrays import Array, Flags
 from ..motion import Motion, ReachSettings, Skeleton, WorldPoses, reach
 from .body import SIDES, Body
 from .placement import Placement
-from .standing_feet import Stance
+from .stances import Stance
 
 Limb = tuple[int, int, int]
 

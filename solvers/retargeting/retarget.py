@@ -20,14 +20,14 @@ from ..progress import Progress, Remark, unwatched
 from ..rotations import IDENTITY
 from ..settings import Choice, Settings, setting
 from .body import SIDES, Body, find_body, without_gaps
-from .feet import place_feet
+from .foot_paths import place_feet
 from .hands import place_hands
 from .limbs import Transfer
 from .map_checks import knees_bend_backward
 from .placement import ankle_height, find_placement
 from .pose_transfer import transfer_pose
 from .root_motion import in_place, on_root_bone
-from .standing_feet import find_stances, with_level_soles
+from .stances import find_stances, with_level_soles
 
 
 class RootMotion(Choice):

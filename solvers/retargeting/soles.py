@@ -10,7 +10,7 @@ from ..rotations import IDENTITY, inverse, multiply, rotate, rotation_between
 from ..signals import smoothstep
 from .body import Body
 from .placement import Placement, leg_length, rests_on_ground
-from .standing_feet import foot_bone
+from .stances import foot_bone
 from .toes import lift_toes, smooth_envelope
 
 DEPTH_TOLERANCE_FRACTION = 0.002

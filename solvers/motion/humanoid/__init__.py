@@ -20,7 +20,7 @@ from .bone_directions import (
 )
 from .bone_lengths import fit_bone_lengths, transfer_motion
 from .canonical import FORWARD, UP, canonical_rotations, from_canonical, t_pose_alignment
-from .contacts import (
+from .foot_contacts import (
     HUMAN_LEG_LENGTH_M,
     ContactSettings,
     contacts_of_points,

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
 from ..skeletons import Motion, Skeleton
-from .contacts import leg_length
+from .foot_contacts import leg_length
 from .roles import HumanoidMap, find_humanoid_map
 
 

@@ -36,7 +36,7 @@ from solvers.motion import (
 from solvers.physics import Ground, Simulated, SimulateSettings, apply_strength, simulate
 from solvers.physics.body import build_physics_body
 from solvers.physics.body_surface import measure_clearance, measure_foot_slide
-from solvers.physics.feet import add_soles
+from solvers.physics.soles_and_ground import add_soles
 from solvers.physics.target import fill_motion_gaps
 from solvers.recordings import read_recording
 from solvers.samples import CorruptionSettings, corrupt

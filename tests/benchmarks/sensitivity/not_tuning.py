@@ -25,7 +25,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "reconstruction/reliability/error_model.ONE_CENTIMETER",
         "reconstruction/residual_correction/learn_residual_prior.MEDIAN_SQUARED_LENGTH",
         "reconstruction/reliability/settings.SENSOR_RATE_HZ",
-        "motion/humanoid/contacts.HUMAN_LEG_LENGTH_M",
+        "motion/humanoid/foot_contacts.HUMAN_LEG_LENGTH_M",
         "motion/humanoid/body_size.ADULT_STATURE_M",
         "retrieval/index/segments.HISTOGRAM_SCALE",
         "depth_tracking/detection/robust_parts.MEAN_SURFACE_DEPTH",

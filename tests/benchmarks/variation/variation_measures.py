@@ -10,7 +10,7 @@ from solvers.denoising import learn_joint_limits, limit_excess
 from solvers.denoising.feet.legs import SIDES, find_foot_joints
 from solvers.denoising.quality.foot_slide import measure_foot_slide
 from solvers.motion import Motion, forward_kinematics, warp
-from solvers.motion.humanoid.contacts import detect_contacts
+from solvers.motion.humanoid.foot_contacts import detect_contacts
 from solvers.rotations.representations import inverse, multiply, rotation_vector_from_quaternion
 from solvers.variation.align_examples import ALIGNMENT_RATE_HZ, positions_in_body_frame
 

@@ -9,7 +9,7 @@ import pytest
 
 
 def test_edited_contacts_are_used_and_preserved(noisy, clean, blank, load):
-    contacts = load("mocap_assist.actions.contacts")
+    contacts = load("mocap_assist.actions.contact_keys")
     frames = np.arange(1.0, 61.0)
     first = clean(plant_feet=True)
     found = contacts.read_contacts(first, first.slots[0], frames)
@@ -53,7 +53,7 @@ def contact_curve(action):
 
 
 def test_contacts_are_detected_again_until_one_is_edited(walker, clean, load, blank):
-    contacts = load("mocap_assist.actions.contacts")
+    contacts = load("mocap_assist.actions.contact_keys")
     played = {"frames": np.arange(1.0, walker.animation_data.action.frame_range[1] + 1.0)}
     result = clean(plant_feet=True)
     keys = contact_curve(result).keyframe_points
@@ -74,7 +74,7 @@ def test_contacts_are_detected_again_until_one_is_edited(walker, clean, load, bl
 
 
 def test_plant_feet_detects_contacts_again_until_a_key_is_edited(walker, load, blank):
-    contacts = load("mocap_assist.actions.contacts")
+    contacts = load("mocap_assist.actions.contact_keys")
     played = {"frames": np.arange(1.0, walker.animation_data.action.frame_range[1] + 1.0)}
     blank.ops.mocap_assist.plant_feet()
     first = walker.animation_data.action
@@ -91,7 +91,7 @@ def test_plant_feet_detects_contacts_again_until_a_key_is_edited(walker, load, b
 
 
 def test_edited_contacts_stay_when_other_frames_are_cleaned(walker, clean, load, blank):
-    contacts = load("mocap_assist.actions.contacts")
+    contacts = load("mocap_assist.actions.contact_keys")
     scene = blank.context.scene
     scene.frame_start, scene.frame_end = 1, 45
     first = clean(plant_feet=True, frame_range="SCENE")

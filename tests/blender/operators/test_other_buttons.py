@@ -40,7 +40,7 @@ def test_jump_steps_through_the_list(bad_arm, blank):
 def test_plant_feet_uses_keyed_contacts_and_moves_only_legs_and_hips(
     dancer, blank, load, keys_of
 ):
-    contacts = load("mocap_assist.actions.contacts")
+    contacts = load("mocap_assist.actions.contact_keys")
     raw = dancer.animation_data.action
     frames = np.arange(1.0, 301.0)
     standing = np.zeros((300, 2), bool)

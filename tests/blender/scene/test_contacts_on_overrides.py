@@ -6,7 +6,7 @@ import pytest
 
 @pytest.fixture
 def contacts(load):
-    return load("mocap_assist.actions.contacts")
+    return load("mocap_assist.actions.contact_keys")
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from solvers.denoising.feet.legs import find_legs
 from solvers.denoising.feet.plant_feet import PlantSettings, plant_feet
 from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.motion import Motion, Skeleton, forward_kinematics
-from solvers.motion.humanoid.contacts import detect_contacts
+from solvers.motion.humanoid.foot_contacts import detect_contacts
 from solvers.recordings.skeleton_files.bvh import read_bvh
 from solvers.rotations.representations import (
     angle_between,

@@ -7,7 +7,7 @@ from solvers.motion import Tracks, resample
 from solvers.motion.humanoid import postures_from_motion
 from solvers.motion.humanoid.body_size import estimate_bone_lengths, segment_lengths
 from solvers.motion.humanoid.bone_directions import rates_from_directions
-from solvers.motion.humanoid.contacts import contacts_of_points
+from solvers.motion.humanoid.foot_contacts import contacts_of_points
 from solvers.motion.humanoid.posture_heading import normalize_postures
 from solvers.motion.skeletons.shot_boundaries import find_shot_boundaries
 from solvers.samples import GaitSettings, walking_gait

@@ -8,8 +8,7 @@ from solvers.motion import Motion, find_humanoid_map, forward_kinematics
 from solvers.physics import SimulateSettings, simulate
 from solvers.physics.body import build_physics_body
 from solvers.physics.body_surface import SIDES, find_leg_chain, lowest_points, select_foot_ends
-from solvers.physics.feet import add_soles
-from solvers.physics.foot_contacts import (
+from solvers.physics.foot_placement import (
     MIN_SWING_CLEARANCE_M,
     STANCE_DEPTH_M,
     place_feet_on_ground,
@@ -17,6 +16,7 @@ from solvers.physics.foot_contacts import (
 from solvers.physics.foot_support import detect_target_contacts, distribute_load
 from solvers.physics.pelvis_offset import LegGoal, solve_pelvis_offset
 from solvers.physics.plant_target import plant_target_feet
+from solvers.physics.soles_and_ground import add_soles
 from solvers.rotations.representations import (
     multiply,
     quaternion_from_rotation_vector,

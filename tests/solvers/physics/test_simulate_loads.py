@@ -13,8 +13,8 @@ from solvers.physics.body_surface import select_foot_ends
 from solvers.physics.contact_loads import add_loads
 from solvers.physics.control import ARM_REGULARIZATION, _ground_forces
 from solvers.physics.engine import load_engine
-from solvers.physics.feet import add_soles
 from solvers.physics.foot_support import compute_support_weights
+from solvers.physics.soles_and_ground import add_soles
 from solvers.physics.world import build_world
 from solvers.samples import GaitSettings, walking_gait
 

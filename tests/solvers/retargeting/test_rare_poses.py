@@ -9,7 +9,7 @@ from rigs import mixamo
 
 from solvers.motion import WorldPoses, find_humanoid_map
 from solvers.retargeting.body import find_body
-from solvers.retargeting.feet import pelvis_drop
+from solvers.retargeting.foot_paths import pelvis_drop
 from solvers.retargeting.hand_distance import Arms, match_meeting_hands
 from solvers.retargeting.hand_heights import (
     Ground,

@@ -9,7 +9,7 @@ from rigs import RIGS, mixamo, unreal
 
 from solvers.motion import HumanoidMap, Motion, Skeleton, find_humanoid_map, forward_kinematics
 from solvers.retargeting import RetargetSettings, RootMotion, ground_path, retarget
-from solvers.retargeting.feet import pelvis_drop
+from solvers.retargeting.foot_paths import pelvis_drop
 from solvers.rotations.representations import (
     angle_between,
     quaternion_from_rotation_vector,

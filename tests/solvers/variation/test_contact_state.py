@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.motion import Motion
-from solvers.motion.humanoid.contacts import detect_contacts
+from solvers.motion.humanoid.foot_contacts import detect_contacts
 from solvers.rotations.representations import IDENTITY
 from solvers.variation import (
     Method,

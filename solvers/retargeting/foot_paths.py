@@ -14,7 +14,7 @@ from .limbs import Limb, Transfer, limb_extension, limb_pairs, reach_with_limb
 from .placement import rests_on_ground
 from .planting import planting_shift
 from .soles import allowed_depths, sole_above_ground, with_sole
-from .standing_feet import foot_bone
+from .stances import foot_bone
 
 MAX_DROP_FRACTION = 0.15
 """Maximum pelvis drop for feet to reach, as a fraction of the leg length. It guards feet out of
