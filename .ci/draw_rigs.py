@@ -53,8 +53,7 @@ def load_extension(bpy: ModuleType) -> str:
 
 def draw(bpy: ModuleType, extension: str, source: Any, target: Any, path: Path) -> None:
     """Draw source and target side by side at the same moments."""
-    from mocap_ext.mocap_assist.retarget import choices as retarget_choices
-    from mocap_ext.mocap_assist.retarget import retargeting
+    from mocap_ext.mocap_assist.retarget import button_settings, retargeting
     from mocap_ext.solvers.motion import Motion, local_rotations
     from mocap_ext.solvers.pictures import (
         StickFigureSettings,
@@ -64,8 +63,8 @@ def draw(bpy: ModuleType, extension: str, source: Any, target: Any, path: Path) 
     from mocap_ext.solvers.retargeting import RetargetSettings
     from mocap_ext.solvers.rotations.representations import quaternion_from_matrix
 
-    chosen = retarget_choices.RetargetBundle(
-        retarget_choices.RetargetChoices(target=target.name), RetargetSettings()
+    chosen = button_settings.RetargetBundle(
+        button_settings.RetargetChoices(target=target.name), RetargetSettings()
     )
     problem = retargeting.read_retarget(bpy.context.scene, source, chosen).args[0]
     theirs, skeleton = problem.clips[0].motion, problem.target.skeleton

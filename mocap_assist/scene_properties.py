@@ -8,33 +8,33 @@ progress of the running solve.
 import bpy
 
 from .blender.settings_properties import settings_from
-from .check.choices import CheckSettings
-from .clean.choices import CleanSettings
-from .exporting.choices import ExportSettings
-from .library.choices import FindBundle, LibraryBundle, LoadBundle, UseBundle
+from .check.button_settings import CheckBundle
+from .clean.button_settings import CleanBundle
+from .exporting.button_settings import ExportPanelBundle
+from .library.button_settings import FindBundle, LibraryBundle, LoadBundle, UseBundle
 from .markers.solving import SolveBundle
 from .physics.simulating import SimulateBundle
-from .reconstruct.choices import ReconstructBundle
+from .reconstruct.button_settings import ReconstructBundle
 from .retarget.bone_map import explain_edited
-from .retarget.choices import RetargetBundle, UnbakeBundle
+from .retarget.button_settings import RetargetBundle, UnbakeBundle
 from .track.retracking import RetrackBundle
 from .track.tracking import TrackBundle
-from .variants.choices import CrowdBundle, VaryBundle
+from .variants.button_settings import CrowdBundle, VaryBundle
 from .variants.properties import CLASSES as VARIANTS
 from .variants.properties import MOCAP_PG_variants
 
 
-@settings_from(CleanSettings)
+@settings_from(CleanBundle)
 class MOCAP_PG_clean(bpy.types.PropertyGroup):
     """Settings of the button Clean."""
 
 
-@settings_from(CheckSettings)
+@settings_from(CheckBundle)
 class MOCAP_PG_check(bpy.types.PropertyGroup):
     """Settings of the button Check."""
 
 
-@settings_from(ExportSettings)
+@settings_from(ExportPanelBundle)
 class MOCAP_PG_export(bpy.types.PropertyGroup):
     """Settings of the button Export Clean Take."""
 

@@ -6,7 +6,7 @@ import bpy
 
 from ..mocap_assist.blender.act_operator import ActOperator
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.variants.choices import CrowdBundle
+from ..mocap_assist.variants.button_settings import CrowdBundle
 from ..mocap_assist.variants.crowd import assign, crowd_of, why_not_assign
 
 

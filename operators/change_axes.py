@@ -8,7 +8,7 @@ from ..mocap_assist.blender.act_operator import ActOperator
 from ..mocap_assist.blender.mixins import SettingsMixin
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.importing.changing_axes import (
-    AxesSettings,
+    AxesBundle,
     change_axes,
     imported_object,
     noted_change,
@@ -18,7 +18,7 @@ from ..mocap_assist.importing.import_operator import WIDTH
 from ..solvers.errors import InvalidMotionError
 
 
-@settings_from(AxesSettings)
+@settings_from(AxesBundle)
 class MOCAP_OT_change_axes(SettingsMixin, ActOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.change_axes"
     bl_label = "Change Up Axis, Forward, Scale"

@@ -3,13 +3,13 @@
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.clean.choices import QUICK, CleanSettings
+from ..mocap_assist.clean.button_settings import QUICK, CleanBundle
 from ..mocap_assist.clean.cleaning import read_cleaning, write_cleaned
 from ..mocap_assist.runtime.selection import why_not_clean
 from ..mocap_assist.runtime.solver_operator import SolverOperator
 
 
-@settings_from(CleanSettings)
+@settings_from(CleanBundle)
 class MOCAP_OT_denoise(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.denoise"
     bl_label = "Clean"

@@ -5,11 +5,11 @@ from typing import ClassVar
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.importing.choices import ImportSettings
+from ..mocap_assist.importing.button_settings import ImportBundle
 from ..mocap_assist.importing.import_operator import WaitingImport
 
 
-@settings_from(ImportSettings)
+@settings_from(ImportBundle)
 class MOCAP_OT_import_job(WaitingImport, bpy.types.Operator):
     bl_idname = "mocap_assist.import_job"
     bl_label = "Import Motion Capture"

@@ -7,14 +7,14 @@ from bpy.props import StringProperty
 
 from ..mocap_assist.blender.path_properties import HIDDEN
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.importing.choices import ImportSettings
+from ..mocap_assist.importing.button_settings import ImportBundle
 from ..mocap_assist.importing.file_kinds import kinds_of
 from ..mocap_assist.importing.import_operator import WIDTH, FilesOperator
 from ..mocap_assist.importing.importing import FILTER, chosen_paths, preview
 from ..mocap_assist.runtime.solver_operator import in_background
 
 
-@settings_from(ImportSettings)
+@settings_from(ImportBundle)
 class MOCAP_OT_import_recording(FilesOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.import_recording"
     bl_label = "Import Motion Capture"

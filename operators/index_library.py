@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.library.choices import LibraryBundle
+from ..mocap_assist.library.button_settings import LibraryBundle
 from ..mocap_assist.library.index_operator import WaitingIndex
 
 

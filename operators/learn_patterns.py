@@ -5,12 +5,12 @@ from typing import ClassVar
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.clean.learning import LearnSettings, read_learning, write_learned
+from ..mocap_assist.clean.learning import LearnBundle, read_learning, write_learned
 from ..mocap_assist.runtime.selection import why_not_learn
 from ..mocap_assist.runtime.solver_operator import SolverOperator
 
 
-@settings_from(LearnSettings)
+@settings_from(LearnBundle)
 class MOCAP_OT_learn_patterns(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.learn_patterns"
     bl_label = "Learn"

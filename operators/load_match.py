@@ -3,7 +3,7 @@
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.library.choices import LoadBundle
+from ..mocap_assist.library.button_settings import LoadBundle
 from ..mocap_assist.runtime.solver_operator import SolverOperator
 from ..mocap_assist.search.loading import read_loading, why_not_load, write_loaded
 

@@ -3,12 +3,12 @@
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.clean.planting import FeetSettings, read_planting, write_planted
+from ..mocap_assist.clean.planting import FeetBundle, read_planting, write_planted
 from ..mocap_assist.runtime.selection import why_not_change
 from ..mocap_assist.runtime.solver_operator import SolverOperator
 
 
-@settings_from(FeetSettings)
+@settings_from(FeetBundle)
 class MOCAP_OT_plant_feet(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.plant_feet"
     bl_label = "Plant Feet"

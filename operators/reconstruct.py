@@ -3,7 +3,7 @@
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.reconstruct.choices import QUICK, ReconstructBundle
+from ..mocap_assist.reconstruct.button_settings import QUICK, ReconstructBundle
 from ..mocap_assist.reconstruct.reconstructing import (
     read_reconstructing,
     why_not_reconstruct,

@@ -4,7 +4,7 @@ import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.runtime.solver_operator import SolverOperator
-from ..mocap_assist.variants.choices import VaryBundle
+from ..mocap_assist.variants.button_settings import VaryBundle
 from ..mocap_assist.variants.reading import read_varying, why_not_vary
 from ..mocap_assist.variants.writing import write_variants
 

@@ -12,7 +12,7 @@ from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError
 from ...solvers.faults import Failure, attempt
 from ...solvers.settings import Settings
-from ..importing.choices import ImportChoices
+from ..importing.button_settings import ImportChoices
 from ..importing.depth_folders import depth_recordings_in, is_take
 from ..importing.importing import import_files
 from ..track.tracking import (

@@ -11,7 +11,7 @@ from ...solvers.command_line.options import arguments_from, settings_from_argume
 from ...solvers.errors import InvalidSettingError
 from ...solvers.files import real_path
 from ...solvers.progress import Progress
-from ..exporting.choices import ExportBundle, ExportChoices, ExportFile
+from ..exporting.button_settings import ExportBundle, ExportChoices, ExportFile
 from ..exporting.export_target import ENDINGS, target_of
 from ..exporting.exporting import read_export, write_exported
 from .solving import solve_in_subprocess

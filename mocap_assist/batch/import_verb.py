@@ -9,7 +9,7 @@ from ...solvers.command_line.files import find_recordings
 from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError
-from ..importing.choices import ImportChoices
+from ..importing.button_settings import ImportChoices
 from ..importing.depth_folders import all_recordings_in, is_take
 from ..importing.importing import import_files
 from .pictures import draw_result

@@ -16,7 +16,7 @@ from ...solvers.errors import InvalidFileError
 from ...solvers.files import real_path, write_atomically
 from ...solvers.progress import Progress
 from ..library.background import message_of
-from ..library.choices import FindBundle, LibraryChoices
+from ..library.button_settings import FindBundle, LibraryChoices
 from ..library.solve_indexing import IndexProblem, Source, index_sources
 from ..library.sources import asset_folders, background_blender, library_path
 from ..search import searches

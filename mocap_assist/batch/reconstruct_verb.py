@@ -9,7 +9,7 @@ import bpy
 from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress
 from ..blender.name_lists import join_names
-from ..reconstruct.choices import Postures, ReconstructBundle
+from ..reconstruct.button_settings import Postures, ReconstructBundle
 from ..reconstruct.reconstructing import read_reconstructing, write_reconstructed
 from ..runtime.selection import played_source
 from ..scene import history

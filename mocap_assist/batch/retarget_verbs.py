@@ -8,7 +8,12 @@ import bpy
 from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress
 from ...solvers.retargeting import RetargetSettings, UnbakeSettings
-from ..retarget.choices import RetargetBundle, RetargetChoices, UnbakeBundle, UnbakeChoices
+from ..retarget.button_settings import (
+    RetargetBundle,
+    RetargetChoices,
+    UnbakeBundle,
+    UnbakeChoices,
+)
 from ..retarget.retargeting import read_retarget, write_retargeted
 from ..retarget.unbaking import read_unbaking, write_unbaked
 from ..scene import history

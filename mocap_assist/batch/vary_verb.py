@@ -8,7 +8,7 @@ import bpy
 
 from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress, within
-from ..variants.choices import VaryBundle
+from ..variants.button_settings import VaryBundle
 from ..variants.listing import chosen
 from ..variants.reading import read_varying
 from ..variants.sheet import write_sheet

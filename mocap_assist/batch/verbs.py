@@ -16,9 +16,9 @@ from ...solvers.progress import Progress
 from ..actions.armature_read import read_take
 from ..actions.marker_take import read_markers
 from ..blender.name_lists import join_names
+from ..check.button_settings import CheckBundle
 from ..check.checking import read_checking, show_checked
-from ..check.choices import CheckSettings
-from ..clean.choices import CleanSettings, Prior
+from ..clean.button_settings import CleanBundle, Prior
 from ..clean.cleaning import read_cleaning, write_cleaned
 from ..runtime.selection import played_source
 from ..scene import history
@@ -82,7 +82,7 @@ def _clean_options(parser: argparse.ArgumentParser) -> None:
         help="clip library, of which what is like the take is learned from; short for --prior"
         " library",
     )  # fmt: skip
-    arguments_from(parser, *get_type_hints(CleanSettings).values())
+    arguments_from(parser, *get_type_hints(CleanBundle).values())
 
 
 def _clean(
@@ -91,7 +91,7 @@ def _clean(
     arguments: argparse.Namespace,
     progress: Progress,
 ) -> VerbResult:
-    settings = _bundle(arguments, CleanSettings)
+    settings = _bundle(arguments, CleanBundle)
     if arguments.train:
         choices = replace(
             settings.choices, prior=Prior.EXAMPLES, examples=join_names(arguments.train)
@@ -107,7 +107,7 @@ def _clean(
 
 
 def _check_options(parser: argparse.ArgumentParser) -> None:
-    arguments_from(parser, *get_type_hints(CheckSettings).values())
+    arguments_from(parser, *get_type_hints(CheckBundle).values())
 
 
 def _check(
@@ -116,7 +116,7 @@ def _check(
     arguments: argparse.Namespace,
     progress: Progress,
 ) -> VerbResult:
-    settings = _bundle(arguments, CheckSettings)
+    settings = _bundle(arguments, CheckBundle)
     checked = solve_in_subprocess(read_checking(scene, armature, settings), arguments, progress)
     sentence = show_checked(scene, armature, settings, checked)
     issues = [issue.sentence for issue in checked.issues]

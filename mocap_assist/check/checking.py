@@ -15,13 +15,13 @@ from ..blender.time_slices import Sliced, Steps
 from ..runtime.selection import played_source, selected_subject
 from ..runtime.subject import Subject, check_unchanged
 from ..scene.scene_objects import choose
-from .choices import CheckSettings
+from .button_settings import CheckBundle
 from .solve_checking import Checked, check
 
 
 @Sliced
 def read_checking(
-    scene: bpy.types.Scene, subject: bpy.types.Object, settings: CheckSettings
+    scene: bpy.types.Scene, subject: bpy.types.Object, settings: CheckBundle
 ) -> "Steps[partial[Checked]]":
     """Read what a subject plays; return the picklable solve."""
     here = Subject.of(scene, subject)
@@ -45,7 +45,7 @@ def read_checking(
 def show_checked(
     scene: bpy.types.Scene,
     subject: bpy.types.Object,
-    settings: CheckSettings,
+    settings: CheckBundle,
     checked: Checked,
     solved_digest: str | None = None,
 ) -> Steps[str]:

@@ -17,7 +17,7 @@ from ..blender.time_slices import Steps
 from ..runtime.selection import played_source
 from ..runtime.subject import Subject
 from ..scene import history
-from .choices import CleanChoices, Limits
+from .button_settings import CleanChoices, Limits
 from .solve_cleaning import Cleaned, Recordings, names_of
 
 

@@ -21,7 +21,7 @@ from ..runtime import redo
 from ..runtime.selection import Bones, chosen_parts
 from ..runtime.subject import Subject, check_unchanged
 from .armature import ArmatureReading
-from .choices import CleanChoices, CleanSettings, Limits, Prior
+from .button_settings import CleanBundle, CleanChoices, Limits, Prior
 from .examples import read_prior
 from .markers import MarkerReading
 from .report import clean_report, entry_of
@@ -33,7 +33,7 @@ EASE = 5  # frames over which a cleaned range joins the frames outside it
 
 @Sliced
 def read_cleaning(
-    scene: bpy.types.Scene, subject: bpy.types.Object, settings: CleanSettings
+    scene: bpy.types.Scene, subject: bpy.types.Object, settings: CleanBundle
 ) -> "Steps[partial[Cleaned]]":
     """Read what an armature, or the markers below an object, play.
 
@@ -62,7 +62,7 @@ def read_cleaning(
 def write_cleaned(
     scene: bpy.types.Scene,
     subject: bpy.types.Object,
-    settings: CleanSettings,
+    settings: CleanBundle,
     cleaned: Cleaned,
     solved_digest: str | None = None,
 ) -> Steps[str]:
@@ -110,7 +110,7 @@ def _read(
 
 
 def _problem(
-    raw: ArmatureTake | MarkerTake, settings: CleanSettings, examples: Examples
+    raw: ArmatureTake | MarkerTake, settings: CleanBundle, examples: Examples
 ) -> Problem:
     choices = settings.choices
     learn_limits = choices.joint_limits is Limits.EXAMPLES and isinstance(raw, ArmatureTake)

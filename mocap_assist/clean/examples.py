@@ -16,7 +16,7 @@ from ..blender.name_lists import split_names
 from ..blender.time_slices import Sliced, Steps, should_yield
 from ..runtime.subject import Subject
 from ..scene.linked_clips import Linked, is_blend, linked_clips
-from .choices import CleanChoices, Prior
+from .button_settings import CleanChoices, Prior
 from .solve_cleaning import Examples
 
 LINKED_AT_ONCE = 8

@@ -28,7 +28,7 @@ class LearnChoices(Settings):
     learned_file: str = setting("", "File to write; Clean can use it in any .blend file")
 
 
-class LearnSettings(NamedTuple):
+class LearnBundle(NamedTuple):
     """Settings of the button."""
 
     choices: LearnChoices
@@ -37,7 +37,7 @@ class LearnSettings(NamedTuple):
 
 @Sliced
 def read_learning(
-    scene: bpy.types.Scene, armature: bpy.types.Object, settings: LearnSettings
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: LearnBundle
 ) -> "Steps[partial[FilterBases]]":
     """Read the examples; return the picklable solve."""
     target_of(settings)
@@ -48,7 +48,7 @@ def read_learning(
 def write_learned(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
-    settings: LearnSettings,
+    settings: LearnBundle,
     bases: FilterBases,
     solved_digest: str | None = None,
 ) -> str:
@@ -60,7 +60,7 @@ def write_learned(
     )
 
 
-def target_of(settings: LearnSettings) -> Path:
+def target_of(settings: LearnBundle) -> Path:
     """Return the file to write, after looking whether it can be written."""
     if not settings.choices.learned_file:
         raise InvalidFileError("Choose a file to write the motion model to.")

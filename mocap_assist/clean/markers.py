@@ -12,7 +12,7 @@ from ..actions.markers import markers_of
 from ..blender.time_slices import Steps
 from ..runtime.subject import Subject
 from ..scene import history
-from .choices import CleanChoices
+from .button_settings import CleanChoices
 from .solve_cleaning import Cleaned, Recordings
 
 

@@ -6,7 +6,7 @@ from ...solvers.denoising import DenoiseSettings, PlantSettings
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists, folded, settings_column
 from ..runtime.selection import selected_subject, why_not_clean
-from .choices import Prior
+from .button_settings import Prior
 from .example_list import draw_examples
 
 LEARN = "mocap_assist.learn_patterns"

@@ -20,7 +20,7 @@ N_QUICK = 5000
 """Frames that are solved in half a second: less than it takes to start another process."""
 
 
-class FeetSettings(NamedTuple):
+class FeetBundle(NamedTuple):
     """Settings of the button."""
 
     planting: PlantSettings
@@ -28,7 +28,7 @@ class FeetSettings(NamedTuple):
 
 @Sliced
 def read_planting(
-    scene: bpy.types.Scene, armature: bpy.types.Object, settings: FeetSettings
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: FeetBundle
 ) -> "Steps[partial[Replanted]]":
     """Read what an armature plays; return the picklable solve."""
     check_writable(armature)
@@ -44,7 +44,7 @@ def read_planting(
 def write_planted(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
-    settings: FeetSettings,
+    settings: FeetBundle,
     result: Replanted,
     solved_digest: str | None = None,
 ) -> Steps[str]:

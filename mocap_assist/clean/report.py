@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...solvers.denoising import Quality
 from ..scene import history
-from .choices import CleanSettings
+from .button_settings import CleanBundle
 from .solve_cleaning import Cleaned
 
 
@@ -30,7 +30,7 @@ def clean_report(n_frames: int, cleaned: Cleaned, name: str, n_modified: int = 0
     return " ".join(message)
 
 
-def entry_of(operation: str, settings: CleanSettings, cleaned: Cleaned) -> dict[str, Any]:
+def entry_of(operation: str, settings: CleanBundle, cleaned: Cleaned) -> dict[str, Any]:
     """Return what the action's history keeps, JSON-ready."""
     body = cleaned.solution.denoised[0]
     return {

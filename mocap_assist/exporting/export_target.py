@@ -12,7 +12,7 @@ from ..blender.compat import Source
 from ..blender.path_properties import absolute
 from ..scene import history
 from ..scene.origin import origin_of
-from .choices import ExportChoices
+from .button_settings import ExportChoices
 from .formats import FileFormat
 
 ENDINGS = {each.ending: each for each in FileFormat}

@@ -44,7 +44,7 @@ class AxesChange(FloorSettings):
     )
 
 
-class AxesSettings(NamedTuple):
+class AxesBundle(NamedTuple):
     """Settings of the button."""
 
     change: AxesChange

@@ -16,7 +16,7 @@ from ...solvers.recordings import (
 from ...solvers.recordings.containers import is_folder
 from ..depth.exr_folder import as_archive, exr_files, size_of
 from ..scene.scene_rate import scene_rate
-from .choices import ImportChoices
+from .button_settings import ImportChoices
 
 WITHIN = ("depth", "color", "rgb", "image", "confidence")
 """Folders that a recording has in it."""

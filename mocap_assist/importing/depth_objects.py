@@ -10,7 +10,7 @@ from ..blender.permissions import allow_recording
 from ..depth.depth_preview import Shown, build_preview, cheap_step
 from ..scene.scene_rate import timing
 from ..scene.units import unit_of
-from .choices import ImportChoices
+from .button_settings import ImportChoices
 from .recording_objects import CreatedObjects
 
 

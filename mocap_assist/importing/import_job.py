@@ -11,7 +11,7 @@ from ...solvers.errors import InvalidFileError, MocapAssistError, OutOfMemoryErr
 from ...solvers.faults import Failure, attempt
 from ..jobs.job import Job, ProcessDied
 from ..runtime.watch import Watch
-from .choices import ImportChoices
+from .button_settings import ImportChoices
 from .depth_folders import readable
 from .import_transaction import READING_FRACTION, ImportTransaction
 from .recent_files import State, reading_of, remember, state_of

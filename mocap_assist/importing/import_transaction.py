@@ -28,7 +28,7 @@ from ..scene.scene_rate import (
 )
 from ..scene.scene_state import SceneState
 from .bind_meshes import bind_skinned_meshes
-from .choices import ImportChoices
+from .button_settings import ImportChoices
 from .depth_objects import make_preview
 from .recording_objects import add_takes, make_objects
 from .solve_reading import ReadRecording, Recording, in_one_tree

@@ -13,7 +13,7 @@ from ...solvers.recordings.conventions import conventions_of
 from ..blender.path_properties import absolute, chosen_files
 from ..jobs.in_blender import is_scene_file
 from ..scene.scene_rate import scene_rate
-from .choices import ImportChoices
+from .button_settings import ImportChoices
 from .depth_folders import is_take, readable, take_of
 from .import_transaction import READING_FRACTION, Imported, ImportTransaction
 from .recent_files import read_again

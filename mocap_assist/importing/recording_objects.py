@@ -21,7 +21,7 @@ from ..jobs.in_blender import BackgroundBlender
 from ..scene.origin import note_origin, origin_of_file
 from ..scene.scene_rate import FrameRate, scene_rate, timing
 from ..scene.units import unit_of
-from .choices import ImportChoices, Target
+from .button_settings import ImportChoices, Target
 from .marker_objects import Timed, make_markers, observed_points
 from .sensor_samples import SensorSamples
 from .solve_reading import (

@@ -12,7 +12,7 @@ import bpy
 from ..blender import permissions
 from ..blender.name_lists import join_names
 from ..jobs.in_blender import BackgroundBlender
-from .choices import LibraryChoices
+from .button_settings import LibraryChoices
 from .solve_indexing import IndexProblem, Source
 from .sources import index_problem, library_path, listed_sources
 

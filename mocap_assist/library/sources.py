@@ -8,7 +8,7 @@ from ...solvers.errors import InvalidFileError
 from ..blender.name_lists import split_names
 from ..blender.path_properties import absolute
 from ..jobs.in_blender import BackgroundBlender
-from .choices import LibraryChoices
+from .button_settings import LibraryChoices
 from .solve_indexing import IndexProblem, Source
 
 EXTENSION = __package__.rsplit(".", 2)[0]

@@ -10,7 +10,7 @@ from ..blender.mixins import PanelMixin
 from ..clean.example_list import RECONSTRUCT, draw_examples
 from ..drawing.confidence_switch import draw_confidence_switch
 from ..panels.drawing import draw_sentence, exists, folded, settings_column
-from .choices import Postures
+from .button_settings import Postures
 from .reconstructing import why_not_reconstruct
 
 BUTTON = "mocap_assist.reconstruct"

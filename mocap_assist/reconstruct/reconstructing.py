@@ -31,7 +31,7 @@ from ..runtime.selection import played_source, selected_armature, why_not_clean
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
 from ..scene.origin import origin_of
-from .choices import Postures, ReconstructBundle
+from .button_settings import Postures, ReconstructBundle
 from .solve_reconstructing import RebuildFinish, RebuildProblem, Rebuilt, rebuild
 
 SUFFIX = ".reconstructed"

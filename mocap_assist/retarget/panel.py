@@ -12,7 +12,7 @@ from ..panels.drawing import draw_sentence, exists, folded, settings_column
 from ..rigs.rigify import is_rigify
 from ..runtime.selection import selected_armature, why_not_read, why_not_retarget
 from .bone_list import draw_bones
-from .choices import Takes
+from .button_settings import Takes
 from .retargeting import fitting_actions, remarks_on_target, target_called
 
 RETARGET, UNBAKE, TICK = (

@@ -29,7 +29,7 @@ from ..runtime.selection import played_source
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
 from .bone_map import SIDES, BoneMaps, is_finger, maps_for
-from .choices import RetargetBundle, RetargetChoices, Takes
+from .button_settings import RetargetBundle, RetargetChoices, Takes
 from .solve_retargeting import Clip, ReportedRetargeting, RetargetProblem, retarget_and_report
 
 N_QUICK = 5000

@@ -15,7 +15,7 @@ from ..blender.time_slices import Sliced, Steps
 from ..runtime.selection import played_source
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
-from .choices import UnbakeBundle
+from .button_settings import UnbakeBundle
 from .solve_unbaking import BoneShape, Tree, Unbaked, UnbakeProblem, unbake
 from .sparse_write import count_keys, write_sparse
 

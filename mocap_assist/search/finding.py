@@ -12,7 +12,7 @@ from ..actions.armature_read import read_take
 from ..actions.frames import FrameRange, Grid
 from ..actions.marker_take import read_markers
 from ..blender.time_slices import Sliced, Steps
-from ..library.choices import FindBundle
+from ..library.button_settings import FindBundle
 from ..library.library_prior import own_origins
 from ..library.sources import library_path
 from ..runtime.selection import Bones, chosen_bones, played_source, why_not_read

@@ -6,8 +6,8 @@ import bpy
 
 from ...solvers.errors import MocapAssistError
 from ..blender.name_lists import SEPARATOR, join_names
-from ..clean.choices import Prior
-from ..reconstruct.choices import Postures
+from ..clean.button_settings import Prior
+from ..reconstruct.button_settings import Postures
 from . import searches
 from .linking import fits_any_armature, is_action, take_action
 from .solve_finding import Found

@@ -13,7 +13,7 @@ from ..actions.action_write import write_action
 from ..actions.armature_write import Output, check_writable
 from ..blender import compat
 from ..blender.stored_json import store_json
-from ..library.choices import LoadBundle, LoadChoices, Part
+from ..library.button_settings import LoadBundle, LoadChoices, Part
 from ..library.solve_fetching import Fetched, FetchProblem, fetch_clip
 from ..library.sources import background_blender
 from ..retarget.solve_retargeting import Start

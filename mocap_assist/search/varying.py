@@ -10,7 +10,7 @@ from ...solvers.errors import InvalidMotionError
 from ..actions.action_write import write_action
 from ..actions.armature_write import check_writable
 from ..blender.name_lists import SEPARATOR, join_names
-from ..library.choices import LoadChoices, UseBundle
+from ..library.button_settings import LoadChoices, UseBundle
 from ..library.solve_fetching import FetchedClips, FetchProblems, fetch_clips
 from ..runtime.subject import check_unchanged
 from . import searches

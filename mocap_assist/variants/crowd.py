@@ -12,7 +12,7 @@ from ..scene.scene_rate import scene_rate
 from ..scene.units import unit_of
 from ..search.nla import add_strip
 from . import listing
-from .choices import CrowdBundle, CrowdChoices
+from .button_settings import CrowdBundle, CrowdChoices
 from .tags import is_variant
 
 NO_ARMATURE = "The armature of the variants was deleted. Press Vary again."

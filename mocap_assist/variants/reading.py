@@ -25,7 +25,7 @@ from ..runtime.redo import fingerprint
 from ..runtime.selection import played_source, selected_armature
 from ..runtime.subject import Subject
 from ..scene.scene_rate import scene_rate
-from .choices import VaryBundle, VaryChoices
+from .button_settings import VaryBundle, VaryChoices
 from .solve_varying import Controls, Varied, VaryProblem, vary
 from .tags import examples_of, is_variant
 

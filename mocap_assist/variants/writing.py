@@ -14,7 +14,7 @@ from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
 from ..search.previews import give_picture
 from . import listing
-from .choices import VaryBundle
+from .button_settings import VaryBundle
 from .keys import Stage, hold_others, without_still
 from .reading import Reading, Switches, read
 from .solve_varying import Varied

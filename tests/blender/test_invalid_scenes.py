@@ -153,14 +153,14 @@ def test_take_of_nan_only_is_refused(walker, refused, button):
 def press_slowly(press_button, load, monkeypatch):
     """Press Clean in a window; Blender gets control after each bone that is read."""
     monkeypatch.setattr(load("mocap_assist.runtime.solver_operator"), "MAX_SLICE_S", 0.0)
-    choices = load("mocap_assist.clean.choices")
+    button_settings = load("mocap_assist.clean.button_settings")
     denoising = load("solvers.denoising")
 
     def press(**chosen):
         return press_button(
             "denoise",
-            choices.CleanSettings(
-                choices.CleanChoices(plant_feet=False, **chosen),
+            button_settings.CleanBundle(
+                button_settings.CleanChoices(plant_feet=False, **chosen),
                 denoising.DenoiseSettings(),
                 denoising.PlantSettings(),
             ),

@@ -122,10 +122,10 @@ def test_choices_have_label_and_help(dish):
 
 def test_every_button_offers_every_setting_with_a_tooltip(load):
     bundles = {
-        "denoise": load("mocap_assist.clean.choices").CleanSettings,
-        "measure_quality": load("mocap_assist.check.choices").CheckSettings,
-        "plant_feet": load("mocap_assist.clean.planting").FeetSettings,
-        "learn_patterns": load("mocap_assist.clean.learning").LearnSettings,
+        "denoise": load("mocap_assist.clean.button_settings").CleanBundle,
+        "measure_quality": load("mocap_assist.check.button_settings").CheckBundle,
+        "plant_feet": load("mocap_assist.clean.planting").FeetBundle,
+        "learn_patterns": load("mocap_assist.clean.learning").LearnBundle,
         "simulate": load("mocap_assist.physics.simulating").SimulateBundle,
     }
     for button, bundle in bundles.items():

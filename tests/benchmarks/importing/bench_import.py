@@ -107,7 +107,7 @@ def write_takes(folder: Path, seconds: float) -> list[Path]:
 
 def write_fbx(folder: Path, seconds: float) -> Path:
     """Return an FBX of the walk at 30 Hz, made by Blender's exporter with a key per frame."""
-    from mocap_ext.mocap_assist.importing.choices import ImportChoices
+    from mocap_ext.mocap_assist.importing.button_settings import ImportChoices
     from mocap_ext.mocap_assist.importing.importing import import_files
     from mocap_ext.solvers.recordings import write_bvh
     from mocap_ext.solvers.samples import GaitSettings, walking_gait
@@ -143,7 +143,7 @@ def measured(file: Path, start: Seconds = NO_START) -> list[float | str]:
 
     `start` is the time that does not count.
     """
-    from mocap_ext.mocap_assist.importing.choices import ImportChoices
+    from mocap_ext.mocap_assist.importing.button_settings import ImportChoices
     from mocap_ext.mocap_assist.importing.importing import import_files
 
     made = []

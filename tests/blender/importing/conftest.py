@@ -56,7 +56,7 @@ def walks(recordings, tmp_path):
 @pytest.fixture
 def press(load, window, walks):
     """Import files of the folder; return the operator, which waits."""
-    choices = load("mocap_assist.importing.choices")
+    button_settings = load("mocap_assist.importing.button_settings")
     module = load("mocap_assist.importing.import_operator")
 
     def start(*names, **chosen):
@@ -66,7 +66,7 @@ def press(load, window, walks):
             poll_message_set = window.reports.append
 
             def settings(self):
-                return choices.ImportSettings(choices.ImportChoices(**chosen))
+                return button_settings.ImportBundle(button_settings.ImportChoices(**chosen))
 
             def report(self, kind, message):
                 window.reports.append((kind, message))

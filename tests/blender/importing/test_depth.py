@@ -205,7 +205,7 @@ def test_all_four_numbers_of_the_camera_can_be_given(archive, depth, bring):
 
 
 def test_import_warns_of_implausible_intrinsics(archive, blank, load):
-    choices = load("mocap_assist.importing.choices").ImportChoices(focal_length=900.0)
+    choices = load("mocap_assist.importing.button_settings").ImportChoices(focal_length=900.0)
     result = load("mocap_assist.importing.importing").import_files(
         blank.context, [archive], choices
     )

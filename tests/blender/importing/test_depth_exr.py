@@ -151,7 +151,7 @@ def test_the_copies_that_were_used_longest_ago_go_when_another_is_made(
 ):
     exr_folder = load("mocap_assist.depth.exr_folder")
     readable = load("mocap_assist.importing.depth_folders").readable
-    choices = load("mocap_assist.importing.choices").ImportChoices()
+    choices = load("mocap_assist.importing.button_settings").ImportChoices()
     made = []
     for number in range(3):
         write(blank, folder / "depth9.exr", depth_at(20 + number))

@@ -122,7 +122,7 @@ def test_a_fault_over_one_file_leaves_the_others_in_the_scene(load, walks, blank
 
     monkeypatch.setattr(transaction, "make_objects", fail)
     importing = load("mocap_assist.importing.importing")
-    choices = load("mocap_assist.importing.choices").ImportChoices()
+    choices = load("mocap_assist.importing.button_settings").ImportChoices()
 
     imported = importing.import_files(
         blank.context, [walks / "first.bvh", walks / "second.bvh"], choices

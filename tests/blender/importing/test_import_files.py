@@ -111,7 +111,7 @@ def test_odd_names_and_bones_without_length_are_no_obstacle(bring, load, blank, 
     turns[:, 6:] = (1.0, 0.0, 0.0, 0.0)
     dance = motion.Motion(skeleton, turns, np.ones((20, 3)) * np.arange(20)[:, None], 24.0)
     make = load("mocap_assist.importing.recording_objects").make_objects
-    choices = load("mocap_assist.importing.choices").ImportChoices()
+    choices = load("mocap_assist.importing.button_settings").ImportChoices()
 
     armature = make(blank.context, "odd", dance, choices).top
 

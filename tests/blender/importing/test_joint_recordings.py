@@ -203,7 +203,7 @@ def test_what_is_never_seen_is_said_and_takes_nothing_along(lossy, load, tmp_pat
         recording.with_tracks(recording.tracks.with_positions(places)), tmp_path / "lost.csv"
     )
     files = load("mocap_assist.importing.importing")
-    choices = load("mocap_assist.importing.choices").ImportChoices()
+    choices = load("mocap_assist.importing.button_settings").ImportChoices()
 
     imported = files.import_files(blank.context, [tmp_path / "lost.csv"], choices)
 

@@ -40,7 +40,7 @@ def test_index_reports_missing_sources(blank, library):
 
 def test_default_library_is_in_the_user_folder(load, blank):
     sources = load("mocap_assist.library.sources")
-    choices = load("mocap_assist.library.choices").LibraryChoices()
+    choices = load("mocap_assist.library.button_settings").LibraryChoices()
 
     path = sources.library_path(choices)
 
@@ -65,7 +65,7 @@ def waiting(load, blank, monkeypatch, tmp_path, clip_files):
     (tmp_path / "jobs").mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "jobs"))
     module = load("mocap_assist.library.index_operator")
-    choices = load("mocap_assist.library.choices")
+    button_settings = load("mocap_assist.library.button_settings")
     monkeypatch.setattr(module, "in_background", lambda: False)
     state = blank.context.window_manager.mocap_assist_indexing
     timers, reports = [], []
@@ -83,8 +83,8 @@ def waiting(load, blank, monkeypatch, tmp_path, clip_files):
         setting_names = ()
 
         def settings(self):
-            return choices.LibraryBundle(
-                choices.LibraryChoices(library_file=str(path), sources=str(clip_files))
+            return button_settings.LibraryBundle(
+                button_settings.LibraryChoices(library_file=str(path), sources=str(clip_files))
             )
 
         def report(self, kind, message):

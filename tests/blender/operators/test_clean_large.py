@@ -56,9 +56,12 @@ def read_in_slices(load, monkeypatch, blank, work_of):
     monkeypatch.setattr(time_slices, "monotonic", lambda: next(clock))  # each look is a second
 
     def read(armature):
-        choices, denoising = load("mocap_assist.clean.choices"), load("solvers.denoising")
-        settings = choices.CleanSettings(
-            choices.CleanChoices(plant_feet=False),
+        button_settings, denoising = (
+            load("mocap_assist.clean.button_settings"),
+            load("solvers.denoising"),
+        )
+        settings = button_settings.CleanBundle(
+            button_settings.CleanChoices(plant_feet=False),
             denoising.DenoiseSettings(),
             denoising.PlantSettings(),
         )

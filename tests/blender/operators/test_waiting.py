@@ -18,12 +18,12 @@ def folders():
 @pytest.fixture
 def press_clean(make_button, window, load):
     """Press Clean, without feet; return the button, which has read the take and waits."""
-    choices = load("mocap_assist.clean.choices")
+    button_settings = load("mocap_assist.clean.button_settings")
     denoising = load("solvers.denoising")
 
     def press(**chosen):
-        settings = choices.CleanSettings(
-            choices.CleanChoices(plant_feet=False, **chosen),
+        settings = button_settings.CleanBundle(
+            button_settings.CleanChoices(plant_feet=False, **chosen),
             denoising.DenoiseSettings(),
             denoising.PlantSettings(),
         )
@@ -113,7 +113,7 @@ def test_bones_selected_during_the_solve_are_not_written(
 ):
     compat, bones = (
         load("mocap_assist.blender.compat"),
-        load("mocap_assist.clean.choices").Bones,
+        load("mocap_assist.clean.button_settings").Bones,
     )
     before = keys_of(noisy.animation_data.action)
     for bone in noisy.pose.bones:

@@ -7,11 +7,11 @@ from modal_events import event, nothing_is_left, wait
 @pytest.fixture
 def press_reconstruct(make_button, window, load):
     """Press Reconstruct; return the button, which has read the take and waits."""
-    choices = load("mocap_assist.reconstruct.choices")
+    button_settings = load("mocap_assist.reconstruct.button_settings")
 
     def press():
-        settings = choices.ReconstructBundle(
-            choices.ReconstructChoices(),
+        settings = button_settings.ReconstructBundle(
+            button_settings.ReconstructChoices(),
             load("solvers.reconstruction").ReconstructSettings(),
             load("solvers.denoising").PlantSettings(),
         )

@@ -106,12 +106,12 @@ def test_fk_and_ik_keys_give_the_same_pose(hero, walker, give, poses, blank):
 def test_body_rotates_as_solved(hero, walker, give, load, blank):
     """Every mapped part is where the solver wants it, which its own tests judge."""
     retargeting = load("mocap_assist.retarget.retargeting")
-    choices = load("mocap_assist.retarget.choices")
+    button_settings = load("mocap_assist.retarget.button_settings")
     solvers = load("solvers.retargeting")
     motion = load("solvers.motion")
     give(walker, hero)
-    settings = choices.RetargetBundle(
-        choices.RetargetChoices(target="Hero"), solvers.RetargetSettings()
+    settings = button_settings.RetargetBundle(
+        button_settings.RetargetChoices(target="Hero"), solvers.RetargetSettings()
     )
     solve = retargeting.read_retarget(blank.context.scene, walker, settings)
     problem = solve.args[0]

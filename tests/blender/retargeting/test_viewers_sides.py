@@ -45,9 +45,9 @@ def test_the_message_of_the_button_reports_backward_knees(
 ):
     target = make_rig("Mixamo")
     retargeting = load("mocap_assist.retarget.retargeting")
-    choices = load("mocap_assist.retarget.choices")
-    settings = choices.RetargetBundle(
-        choices.RetargetChoices(target=target.name),
+    button_settings = load("mocap_assist.retarget.button_settings")
+    settings = button_settings.RetargetBundle(
+        button_settings.RetargetChoices(target=target.name),
         load("solvers.retargeting").RetargetSettings(),
     )
     scene = blank.context.scene

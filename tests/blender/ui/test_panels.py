@@ -155,8 +155,8 @@ def test_menu_has_the_buttons(draw):
 def test_sidebar_has_the_defaults_of_the_solvers(blank, load, group):
     shown = getattr(blank.context.scene.mocap_assist, group)
     bundle = {
-        "clean": load("mocap_assist.clean.choices").CleanSettings,
-        "check": load("mocap_assist.check.choices").CheckSettings,
+        "clean": load("mocap_assist.clean.button_settings").CleanBundle,
+        "check": load("mocap_assist.check.button_settings").CheckBundle,
     }[group]
 
     for name, kind in typing.get_type_hints(bundle).items():

@@ -7,12 +7,12 @@ from modal_events import event, nothing_is_left, wait
 @pytest.fixture
 def button(load, press_button, walker, monkeypatch):
     """Vary, pressed for two walks; one variant is written between two looks."""
-    choices = load("mocap_assist.variants.choices")
+    button_settings = load("mocap_assist.variants.button_settings")
     monkeypatch.setattr(load("mocap_assist.runtime.solver_operator"), "MAX_SLICE_S", 0.0)
-    settings = choices.VaryBundle(
-        choices.VaryChoices(actions="walk_1; walk_2", n_variants=4, plant_feet=False),
-        choices.VarySettings(),
-        choices.PlantSettings(),
+    settings = button_settings.VaryBundle(
+        button_settings.VaryChoices(actions="walk_1; walk_2", n_variants=4, plant_feet=False),
+        button_settings.VarySettings(),
+        button_settings.PlantSettings(),
     )
     return press_button("vary", settings)
 

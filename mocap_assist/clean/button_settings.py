@@ -82,7 +82,7 @@ class CleanChoices(Settings):
     )
 
 
-class CleanSettings(NamedTuple):
+class CleanBundle(NamedTuple):
     """Settings of the button."""
 
     choices: CleanChoices

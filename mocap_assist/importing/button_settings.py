@@ -139,7 +139,7 @@ class ImportChoices(FloorSettings, ReadingSettings):
         )
 
 
-class ImportSettings(NamedTuple):
+class ImportBundle(NamedTuple):
     """Settings of the button."""
 
     choices: ImportChoices

@@ -38,7 +38,7 @@ class ExportFile(Settings):
     filepath: str = setting("", "File to write", label="File")
 
 
-class ExportSettings(NamedTuple):
+class ExportPanelBundle(NamedTuple):
     """Settings that the sidebar keeps."""
 
     choices: ExportChoices

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from ...solvers.denoising import IssueSettings, QualitySettings
 
 
-class CheckSettings(NamedTuple):
+class CheckBundle(NamedTuple):
     """Settings of the button."""
 
     quality: QualitySettings
