@@ -77,7 +77,7 @@ kills: .venv-4.5/ready zip  ## kill commands at random moments; ARGUMENTS="--kil
 
 # --- What there is to see ---
 
-.PHONY: demo docs pictures pictures-origins bench-denoise bench-first-press bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-import-corpus bench-roles bench-video bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth sensitivity
+.PHONY: demo docs pictures pictures-origins sensitivity
 demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
@@ -115,6 +115,16 @@ body-relation: .venv-4.5/ready  ## learn how joints move together, for limbs tha
 
 failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the weights
 	$(PYTHON_4.5) -m tests.training.learn_failures
+
+BENCHMARKS := denoise first-press feet bvh scene import import-corpus roles video \
+  reliability reconstruct retrieval retarget variation depth physics gestures retarget-rig
+.PHONY: benchmarks $(BENCHMARKS:%=bench-%)
+benchmarks: .venv-4.5/ready  ## run every benchmark, one after another (hours); prints how each ended
+	@mkdir -p build/benchmarks; failed=0; for name in $(BENCHMARKS); do \
+	  start=$$(date +%s); result=ok; \
+	  $(MAKE) --silent bench-$$name > build/benchmarks/$$name.txt 2>&1 || { result=failed; failed=1; }; \
+	  echo "$$name: $$result, $$(( $$(date +%s) - start )) s, build/benchmarks/$$name.txt"; \
+	done; exit $$failed
 
 # Each prints tables; with ARGUMENTS=--docs it rewrites its own part of a page in docs/benchmarks, and
 # ARGUMENTS=--help lists the other options.
