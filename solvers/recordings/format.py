@@ -1,8 +1,9 @@
 """What is known of a supported format."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, unwatched
@@ -11,30 +12,21 @@ from .conventions import Bodies
 Tracked = Motion | Tracks | JointRecording
 
 
-class Reader(Protocol):
-    """Signature of the reader of a format."""
-
-    def __call__(
-        self, path: Path | str, /, *, scale: float | None = None, progress: Progress = unwatched
-    ) -> Tracked:
-        """Read a file."""
-
-
-class BodiesReader(Protocol):
-    """Signature of the reader of a format that may hold several bodies."""
+class Opener(Protocol):
+    """Signature of what opens a file of a format."""
 
     def __call__(
         self, path: Path | str, /, *, scale: float | None = None, progress: Progress = unwatched
     ) -> Bodies[Tracked]:
-        """List the bodies of a file."""
+        """List the bodies of a file, of which each can then be read."""
 
 
 class Format(NamedTuple):
-    """A supported format, with its reader and its detection from the first bytes."""
+    """A supported format, with its detection from the first bytes and its reader."""
 
     name: str
     fits: Callable[[bytes], bool]
-    read: Reader
+    open: Opener
     has_skeleton: bool = False
     """Whether it contains the motion of a skeleton; otherwise points."""
     has_markers: bool = False
@@ -43,5 +35,20 @@ class Format(NamedTuple):
     """Whether it is recognized only for a better sentence."""
     lacks_bones: bool = False
     """Whether it may hold the rotations of a body without lengths (`smpl_body`)."""
-    open: BodiesReader | None = None
-    """Of a format that may hold several bodies."""
+
+
+def one_body(read: Callable[..., Tracked]) -> Opener:
+    """Return what opens files of a format with one body, by its reader."""
+
+    def open_file(
+        path: Path | str,
+        /,
+        *,
+        scale: float | None = None,
+        progress: Progress = unwatched,
+        **about: Any,
+    ) -> Bodies[Tracked]:
+        reader = partial(read, path, scale=scale, **about)
+        return Bodies(str(path), (), lambda _, progress: reader(progress=progress))
+
+    return open_file

@@ -50,7 +50,7 @@ def read_npy(
     path : Path or str
     scale : float, meters per unit of the file, or None
     height : float, meters
-        Stature of an SMPL-X body (`read_smpl`).
+        Stature of an SMPL-X body (`open_smpl`).
     on_floor : bool
         Whether the feet of such a body are put on the floor.
     progress : Progress

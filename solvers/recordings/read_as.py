@@ -72,10 +72,7 @@ def open_as(
             "height": settings.height,
             "on_floor": floor is not Floor.NEVER,
         }
-        format_ = format_._replace(
-            read=partial(format_.read, **about),
-            open=format_.open and partial(format_.open, **about),
-        )
+        format_ = format_._replace(open=partial(format_.open, **about))
     unit = settings.unit.metres if scale is None else scale
     bodies = open_format(path, format_, unit, progress)
 

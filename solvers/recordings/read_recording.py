@@ -119,9 +119,6 @@ def open_format(
     """List the bodies of a file of a detected format as `open_bodies` does; refuse None."""
     if format_ is None:
         raise _unknown_format(path)
-    if format_.open is None:
-        read = partial(format_.read, path, scale=scale)
-        return Bodies(str(path), (), lambda _, progress: _valid(path, read, progress))
     bodies = _valid(path, partial(format_.open, path, scale=scale), progress)
     together = bodies.read_together
     return replace(

@@ -1,26 +1,24 @@
 """Read and write joints of depth cameras and pose estimators."""
 
-from .azure_csv import is_azure_csv, open_azure_csv, read_azure_csv
-from .azure_json import is_azure_json, open_azure_json, read_azure_json
+from .azure_csv import is_azure_csv, open_azure_csv
+from .azure_json import is_azure_json, open_azure_json
 from .freemocap import is_npy, read_freemocap
-from .irds import is_irds, open_irds, read_irds
-from .joint_csv import is_joint_csv, open_joint_csv, read_joint_csv, write_joint_csv
-from .joint_json import is_joint_json, open_joint_json, read_joint_json, write_joint_json
+from .irds import is_irds, open_irds
+from .joint_csv import is_joint_csv, open_joint_csv, write_joint_csv
+from .joint_json import is_joint_json, open_joint_json, write_joint_json
 from .kinect_csv import is_kinect_csv, read_kinect_csv
 from .mediapipe_csv import is_mediapipe_csv, read_mediapipe_csv
 from .mediapipe_json import is_mediapipe_json, read_mediapipe_json
 from .msr_action3d import is_msr_action3d, read_msr_action3d
-from .ntu_skeleton import is_ntu_skeleton, open_ntu_skeleton, read_ntu_skeleton
+from .ntu_skeleton import is_ntu_skeleton, open_ntu_skeleton
 from .nuitrack import (
     is_nuitrack_csv,
     is_nuitrack_json,
     open_nuitrack_csv,
     open_nuitrack_json,
-    read_nuitrack_csv,
-    read_nuitrack_json,
 )
 from .ui_prmd import is_ui_prmd, read_ui_prmd, read_ui_prmd_pair
-from .zed_json import is_zed_json, open_zed_json, read_zed_json
+from .zed_json import is_zed_json, open_zed_json
 
 __all__ = [
     "is_azure_csv",
@@ -47,22 +45,13 @@ __all__ = [
     "open_nuitrack_csv",
     "open_nuitrack_json",
     "open_zed_json",
-    "read_azure_csv",
-    "read_azure_json",
     "read_freemocap",
-    "read_irds",
-    "read_joint_csv",
-    "read_joint_json",
     "read_kinect_csv",
     "read_mediapipe_csv",
     "read_mediapipe_json",
     "read_msr_action3d",
-    "read_ntu_skeleton",
-    "read_nuitrack_csv",
-    "read_nuitrack_json",
     "read_ui_prmd",
     "read_ui_prmd_pair",
-    "read_zed_json",
     "write_joint_csv",
     "write_joint_json",
 ]

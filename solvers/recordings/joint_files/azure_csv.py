@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
-from ...progress import Progress, unwatched, within
+from ...progress import Progress, unwatched
 from ..containers import (
     GrowingTable,
     LineReader,
@@ -54,35 +54,28 @@ def azure_joint(name: str) -> str:
     return SPELLINGS.get(name.strip().replace("_", "").upper(), name.strip())
 
 
-def read_azure_csv(
-    path: Path | str,
-    *,
-    scale: float | None = None,
-    frame_rate: float = DEFAULT_FRAME_RATE,
-    body: str | None = None,
-    progress: Progress = unwatched,
-) -> JointRecording:
-    """Read a table of Azure Kinect joints, in meters, Z up; joints not tracked are NaN.
+def open_azure_csv(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """Open a table of Azure Kinect joints, in meters, Z up; joints not tracked are NaN.
 
     Two layouts are supported. A line per joint has the header `Body ID, Joint #, x, y, z, x, y,
     z, w, Confidence Level`: a new frame of a body begins when its joint numbers restart, and
     a new frame of the recording when a body comes again. A line per frame has the header
-    `PELVIS.x, PELVIS.y, ...`. Neither has times, so `frame_rate` is used. Orientations are not
-    read. Medium and high confidence are state 2, low (predicted) is 1, none is 0.
+    `PELVIS.x, PELVIS.y, ...`. Neither has times; 30 frames per second are assumed.
+    Orientations are not read. Medium and high confidence are state 2, low (predicted) is 1,
+    none is 0.
 
     Parameters
     ----------
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: millimeters.
-    frame_rate : float, hertz
-    body : str, optional
-        Id or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Returns
     -------
-    JointRecording
+    Bodies of JointRecording
         All 32 joints in the SDK's order, or those of the columns; the camera looks along +Y.
         No tracking state from a line per frame.
 
@@ -95,29 +88,16 @@ def read_azure_csv(
     SolveCancelled
         Raised by `progress`.
     """
-    reading = within(progress, 0.0, 0.9)
-    bodies = open_azure_csv(path, scale=scale, frame_rate=frame_rate, progress=reading)
-    return bodies.read_one(body, within(progress, 0.9, 1.0))
-
-
-def open_azure_csv(
-    path: Path | str,
-    *,
-    scale: float | None = None,
-    frame_rate: float = DEFAULT_FRAME_RATE,
-    progress: Progress = unwatched,
-) -> Bodies[JointRecording]:
-    """List the bodies of a table that `read_azure_csv` reads."""
     check_scale(scale)
     reader = LineReader(path)
     headings = [line for line in reader.peek(4) if line.strip()]  # "\r\r\n" leaves blank ones
     names = NAMES
     if PER_JOINT.match(b"\n".join(headings[:2])):
-        listed, values_of = _read_joint_lines(reader, path, frame_rate, progress)
+        listed, values_of = _read_joint_lines(reader, path, progress)
     else:
         names, values = _read_frame_lines(reader, path, progress)
         n_frames = len(values)
-        only = observed_body("1", np.arange(n_frames), n_frames, n_frames / frame_rate)
+        only = observed_body("1", np.arange(n_frames), n_frames, n_frames / DEFAULT_FRAME_RATE)
         listed, values_of = (only,), lambda index: values
 
     def read(index: int, progress: Progress) -> JointRecording:
@@ -129,7 +109,6 @@ def open_azure_csv(
             from_azure_space(values[..., :3]),
             Sensor.AZURE_KINECT,
             states=states,
-            frame_rate=frame_rate,
             scale=scale,
             default_unit=MILLIMETER,
             progress=progress,
@@ -139,7 +118,7 @@ def open_azure_csv(
 
 
 def _read_joint_lines(
-    reader: LineReader, path: Path | str, frame_rate: float, progress: Progress
+    reader: LineReader, path: Path | str, progress: Progress
 ) -> tuple[tuple[Body, ...], Callable[[int], NDArray[np.float64]]]:
     """Return the bodies, and x y z state of one, shape (n_frames, n_joints, 4)."""
     bodies: dict[bytes, _Body] = {}
@@ -169,7 +148,7 @@ def _read_joint_lines(
             printable(key.decode("latin-1")),
             np.array(body.frames),
             n_frames,
-            n_frames / frame_rate,
+            n_frames / DEFAULT_FRAME_RATE,
         )
         for key, body in bodies.items()
     ), lambda index: found[index].values(n_frames)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
-from ...progress import Progress, unwatched, within
+from ...progress import Progress, unwatched
 from ..containers import UniqueNames, array_from_json, json_members, printable
 from ..conventions import (
     DEFAULT_FRAME_RATE,
@@ -33,14 +33,10 @@ def is_azure_json(head: bytes) -> bool:
     return HEAD.match(head) is not None
 
 
-def read_azure_json(
-    path: Path | str,
-    *,
-    scale: float | None = None,
-    body: str | None = None,
-    progress: Progress = unwatched,
-) -> JointRecording:
-    """Read `offline_processor` JSON [1]_, in meters, Z up.
+def open_azure_json(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """Open `offline_processor` JSON [1]_, in meters, Z up.
 
     Bodies are identified by their id, in any order. Frames are resampled to a constant rate by
     their time stamps (30 Hz without them); missing frames, and frames without that body, are
@@ -52,13 +48,11 @@ def read_azure_json(
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: millimeters.
-    body : str, optional
-        Id or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Returns
     -------
-    JointRecording
+    Bodies of JointRecording
         The joints named in the file, otherwise all 32 in the SDK's order; the camera looks
         along +Y.
 
@@ -75,14 +69,6 @@ def read_azure_json(
     ----------
     .. [1] Microsoft, Azure-Kinect-Samples, body-tracking-samples/offline_processor.
     """
-    bodies = open_azure_json(path, scale=scale, progress=within(progress, 0.0, 0.9))
-    return bodies.read_one(body, within(progress, 0.9, 1.0))
-
-
-def open_azure_json(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Bodies[JointRecording]:
-    """List the bodies of a file that `read_azure_json` reads."""
     check_scale(scale)
     frames: list[Frame] = []
     times: list[float] = []

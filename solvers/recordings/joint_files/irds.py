@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
-from ...progress import Progress, unwatched, within
+from ...progress import Progress, unwatched
 from ..containers import printable, read_bytes, read_number, shown
 from ..conventions import (
     Bodies,
@@ -44,14 +44,10 @@ def is_irds(head: bytes) -> bool:
     return HEAD.match(head) is not None
 
 
-def read_irds(
-    path: Path | str,
-    *,
-    scale: float | None = None,
-    body: str | None = None,
-    progress: Progress = unwatched,
-) -> JointRecording:
-    """Read IRDS text [1]_, in meters, Z up; joints that were not tracked are NaN.
+def open_irds(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """Open IRDS text [1]_, in meters, Z up; joints that were not tracked are NaN.
 
     One line per frame: number, body, milliseconds, then `(joint,state,x,y,z,u,v)` for each
     joint; the pixel coordinates u, v are not read. Frames are resampled to a constant rate by
@@ -62,13 +58,11 @@ def read_irds(
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: meters.
-    body : str, optional
-        Name or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Returns
     -------
-    JointRecording
+    Bodies of JointRecording
         All 25 joints of the Kinect v2 in its own order; the camera looks along +Y.
 
     Raises
@@ -85,14 +79,6 @@ def read_irds(
     .. [1] Miron, Sadawi, Ismail, Hussain, Grosan (2021). IntelliRehabDS (IRDS): a dataset of
        physical rehabilitation movements. Data 6(5). doi:10.3390/data6050046
     """
-    bodies = open_irds(path, scale=scale, progress=within(progress, 0.0, 0.9))
-    return bodies.read_one(body, within(progress, 0.9, 1.0))
-
-
-def open_irds(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Bodies[JointRecording]:
-    """List the bodies of a file that `read_irds` reads."""
     check_scale(scale)
     observed: list[Line] = []
     lines = read_bytes(path).splitlines()

@@ -39,14 +39,10 @@ def is_joint_csv(head: bytes) -> bool:
     return head.lstrip().startswith(FORMAT.encode())
 
 
-def read_joint_csv(
-    path: Path | str,
-    *,
-    scale: float | None = None,
-    body: str | None = None,
-    progress: Progress = unwatched,
-) -> JointRecording:
-    """Read our own table of joints, in meters, Z up; missing values are NaN.
+def open_joint_csv(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """Open our own table of joints, in meters, Z up; missing values are NaN.
 
     The first line is `mocap-assist-joints,1,frame_rate=30,units=m,up=z,sensor=other`; only the
     first two words are required. The second line names the columns `time`, `<joint>.x`, `.y`,
@@ -60,13 +56,11 @@ def read_joint_csv(
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: the unit of the file.
-    body : str, optional
-        Name or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Returns
     -------
-    JointRecording
+    Bodies of JointRecording
 
     Raises
     ------
@@ -77,14 +71,6 @@ def read_joint_csv(
     SolveCancelled
         Raised by `progress`.
     """
-    bodies = open_joint_csv(path, scale=scale, progress=within(progress, 0.0, 0.9))
-    return bodies.read_one(body, within(progress, 0.9, 1.0))
-
-
-def open_joint_csv(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Bodies[JointRecording]:
-    """List the bodies of a file that `read_joint_csv` reads."""
     check_scale(scale)
     reader = LineReader(path)
     head = reader.take(2)
@@ -115,7 +101,7 @@ def open_joint_csv(
 def write_joint_csv(
     recording: JointRecording, path: Path | str, *, progress: Progress = unwatched
 ) -> None:
-    """Write joints as `read_joint_csv` reads them, atomically, in meters, Z up.
+    """Write joints as `open_joint_csv` reads them, atomically, in meters, Z up.
 
     Numbers are written with all digits. Missing values are empty; on reading they get the
     tracking state 0.

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...errors import InvalidFileError
 from ...files import write_atomically
 from ...motion import JointRecording
-from ...progress import Progress, unwatched, within
+from ...progress import Progress, unwatched
 from ..containers import array_from_json, json_members, shown
 from ..conventions import Bodies, bodies_of_joints, check_scale
 from .joint_header import FORMAT, VERSION, build_recording, check_names, parse_header
@@ -35,14 +35,10 @@ def is_joint_json(head: bytes) -> bool:
     return HEAD.match(head) is not None
 
 
-def read_joint_json(
-    path: Path | str,
-    *,
-    scale: float | None = None,
-    body: str | None = None,
-    progress: Progress = unwatched,
-) -> JointRecording:
-    """Read our own JSON of joints, in meters, Z up; missing values are NaN.
+def open_joint_json(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """Open our own JSON of joints, in meters, Z up; missing values are NaN.
 
     One object: `format` "mocap-assist-joints", `version` 1, `frame_rate`, `units` ("m"), `up`
     ("z"), `sensor` ("other"), `joints` (names), `frames`; each frame an object with
@@ -56,13 +52,11 @@ def read_joint_json(
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: the unit of the file.
-    body : str, optional
-        Name or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Returns
     -------
-    JointRecording
+    Bodies of JointRecording
 
     Raises
     ------
@@ -73,14 +67,6 @@ def read_joint_json(
     SolveCancelled
         Raised by `progress`.
     """
-    bodies = open_joint_json(path, scale=scale, progress=within(progress, 0.0, 0.9))
-    return bodies.read_one(body, within(progress, 0.9, 1.0))
-
-
-def open_joint_json(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Bodies[JointRecording]:
-    """List the bodies of a file that `read_joint_json` reads."""
     check_scale(scale)
     fields: dict[str, Any] = {}
     names: list[str] = []
@@ -119,7 +105,7 @@ def open_joint_json(
 def write_joint_json(
     recording: JointRecording, path: Path | str, *, progress: Progress = unwatched
 ) -> None:
-    """Write joints as `read_joint_json` reads them, atomically, a line per frame.
+    """Write joints as `open_joint_json` reads them, atomically, a line per frame.
 
     Positions are in meters, Z up, with all digits. Missing positions are null; on reading they
     get the tracking state 0.

@@ -38,14 +38,10 @@ def is_ntu_skeleton(head: bytes) -> bool:
     return HEAD.match(head) is not None
 
 
-def read_ntu_skeleton(
-    path: Path | str,
-    *,
-    scale: float | None = None,
-    body: str | None = None,
-    progress: Progress = unwatched,
-) -> JointRecording:
-    """Read an NTU RGB+D `.skeleton` file [1]_, in meters, Z up; joints not tracked are NaN.
+def open_ntu_skeleton(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """Open an NTU RGB+D `.skeleton` file [1]_, in meters, Z up; joints not tracked are NaN.
 
     Bodies are identified by their id, in any order, and numbered as they appear. Frames
     without the body are gaps. A body that returns under another id counts as two. Image
@@ -57,13 +53,11 @@ def read_ntu_skeleton(
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: meters.
-    body : str, optional
-        Name or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Returns
     -------
-    JointRecording
+    Bodies of JointRecording
         All 25 joints of the Kinect v2 in its own order; the camera looks along +Y.
 
     Raises
@@ -80,14 +74,6 @@ def read_ntu_skeleton(
     .. [1] Shahroudy, Liu, Ng, Wang (2016). NTU RGB+D: a large scale dataset for 3D human
        activity analysis. CVPR. doi:10.1109/CVPR.2016.115
     """
-    bodies = open_ntu_skeleton(path, scale=scale, progress=within(progress, 0.0, 0.5))
-    return bodies.read_one(body, within(progress, 0.5, 1.0))
-
-
-def open_ntu_skeleton(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Bodies[JointRecording]:
-    """List the bodies of a file that `read_ntu_skeleton` reads."""
     check_scale(scale)
     lines = read_bytes(path).splitlines()
     line_indices = [index for index, line in enumerate(lines) if line.strip()]

@@ -11,7 +11,7 @@ from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Sensor
 from ...motion.skeletons import NUITRACK
-from ...progress import Progress, unwatched, within
+from ...progress import Progress, unwatched
 from ..containers import LineReader, decode_text, find_separator, split_cells, stream_cells
 from ..conventions import (
     DEFAULT_FRAME_RATE,
@@ -58,26 +58,20 @@ def is_nuitrack_json(head: bytes) -> bool:
     return JSON_HEAD.match(head) is not None
 
 
-def read_nuitrack_csv(
-    path: Path | str,
-    *,
-    scale: float | None = None,
-    body: str | None = None,
-    progress: Progress = unwatched,
-) -> JointRecording:
-    """Read the CSV of Nuitrack's recorder [1]_, in meters, Z up; missing joints are NaN.
+def open_nuitrack_csv(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """Open the CSV of Nuitrack's recorder [1]_, in meters, Z up; missing joints are NaN.
 
-    Frames are resampled to a constant rate by
-    their time stamps; repeated stamps are skipped. Both collars are one point, which becomes
-    the joint between the shoulders. Joints are called as those of the Azure Kinect.
+    Frames are resampled to a constant rate by their time stamps; repeated stamps are skipped.
+    Both collars are one point, which becomes the joint between the shoulders. Joints are called
+    as those of the Azure Kinect.
 
     Parameters
     ----------
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: meters, unless these do not give a human body.
-    body : str, optional
-        Id or number (`Bodies.choose`); by default the user in most frames.
     progress : Progress
 
     Raises
@@ -93,14 +87,6 @@ def read_nuitrack_csv(
     ----------
     .. [1] 3DiVi, nuitrack-sdk, doc/CSV_Recorder.md.
     """
-    bodies = open_nuitrack_csv(path, scale=scale, progress=within(progress, 0.0, 0.9))
-    return bodies.read_one(body, within(progress, 0.9, 1.0))
-
-
-def open_nuitrack_csv(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Bodies[JointRecording]:
-    """List the users of a file that `read_nuitrack_csv` reads."""
     check_scale(scale)
     reader = LineReader(path)
     reader.skip_blank_lines()
@@ -143,30 +129,18 @@ def open_nuitrack_csv(
     return Bodies(str(path), people, read)
 
 
-def read_nuitrack_json(
-    path: Path | str,
-    *,
-    scale: float | None = None,
-    body: str | None = None,
-    progress: Progress = unwatched,
-) -> JointRecording:
-    """Read skeletons that a program of Nuitrack's interface saved as JSON.
+def open_nuitrack_json(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """Open skeletons that a program of Nuitrack's interface saved as JSON.
 
     Nuitrack has no file format of its own but the CSV. Read are frames with `skeletons` (or
     `users`), each with an id and `joints`: a list of objects with `type`, by number or name,
     or objects by name; in both `real` (millimeters) and `confidence`, as in its interface.
 
-    Parameters, results and errors are those of `read_nuitrack_csv`; without `scale` lengths
+    Parameters, results and errors are those of `open_nuitrack_csv`; without `scale` lengths
     are millimeters, unless these do not give a human body.
     """
-    bodies = open_nuitrack_json(path, scale=scale, progress=within(progress, 0.0, 0.9))
-    return bodies.read_one(body, within(progress, 0.9, 1.0))
-
-
-def open_nuitrack_json(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Bodies[JointRecording]:
-    """List the bodies of a file that `read_nuitrack_json` reads."""
     check_scale(scale)
     frames: list[Frame] = []
     for _, value, done in json_frames(path, KEYS):

@@ -10,7 +10,7 @@ from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Sensor
 from ...motion.skeletons import ZED_BODIES
-from ...progress import Progress, Remark, unwatched, within
+from ...progress import Progress, Remark, unwatched
 from ..containers import array_from_json
 from ..conventions import (
     Bodies,
@@ -43,14 +43,10 @@ def is_zed_json(head: bytes) -> bool:
     return HEAD.match(head) is not None
 
 
-def read_zed_json(
-    path: Path | str,
-    *,
-    scale: float | None = None,
-    body: str | None = None,
-    progress: Progress = unwatched,
-) -> JointRecording:
-    """Read bodies of the ZED SDK [1]_ with 18, 34 or 38 joints, in meters, Z up.
+def open_zed_json(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[JointRecording]:
+    """Open bodies of the ZED SDK [1]_ with 18, 34 or 38 joints, in meters, Z up.
 
     Bodies are identified by their id. Frames are resampled to a constant rate by their time
     stamps. The file states neither axes nor unit: up is the direction from the ankles to the
@@ -64,8 +60,6 @@ def read_zed_json(
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: meters, unless these do not give a human body.
-    body : str, optional
-        Id or number (`Bodies.choose`); by default the body in most frames.
     progress : Progress
 
     Raises
@@ -81,14 +75,6 @@ def read_zed_json(
     ----------
     .. [1] Stereolabs, zed-sdk, body tracking/export/JSON export.
     """
-    bodies = open_zed_json(path, scale=scale, progress=within(progress, 0.0, 0.9))
-    return bodies.read_one(body, within(progress, 0.9, 1.0))
-
-
-def open_zed_json(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Bodies[JointRecording]:
-    """List the bodies of a file that `read_zed_json` reads."""
     check_scale(scale)
     frames: list[Frame] = []
     for key, value, done in json_frames(path, KEYS):

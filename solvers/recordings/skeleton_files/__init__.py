@@ -6,9 +6,9 @@ from .bvh import read_bvh
 from .bvh_writing import write_bvh
 from .kimodo import is_kimodo, read_kimodo
 from .motion_x import is_motion_x, read_motion_x
-from .mvnx import is_mvnx, open_mvnx, read_mvnx
+from .mvnx import is_mvnx, open_mvnx
 from .segments import recording_from_segments
-from .smpl import NAMES_OF_BODY, is_smpl, open_smpl, read_smpl
+from .smpl import NAMES_OF_BODY, is_smpl, open_smpl
 from .smpl_body import STATURE_M
 from .vrma import is_vrma, read_vrma
 
@@ -28,8 +28,6 @@ __all__ = [
     "read_bvh",
     "read_kimodo",
     "read_motion_x",
-    "read_mvnx",
-    "read_smpl",
     "read_vrma",
     "recording_from_segments",
     "write_bvh",

@@ -54,14 +54,10 @@ class Subject(NamedTuple):
     """Numbers of positions and orientations."""
 
 
-def read_mvnx(
-    path: Path | str,
-    *,
-    scale: float | None = None,
-    body: str | None = None,
-    progress: Progress = unwatched,
-) -> Motion:
-    """Read a take of Xsens MVN (`.mvnx`), in meters, Z up.
+def open_mvnx(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[Motion]:
+    """Open a take of Xsens MVN (`.mvnx`), in meters, Z up.
 
     Frames of the types identity, tpose and tpose-isb, which come first, are left out. Bones
     are the mean of the segments' origins seen from their parents.
@@ -71,8 +67,6 @@ def read_mvnx(
     path : Path or str
     scale : float, meters per unit of the file, or None
         None: 1.
-    body : str, optional
-        Label or number of one of several subjects (`Bodies.choose`).
     progress : Progress
 
     Raises
@@ -85,14 +79,6 @@ def read_mvnx(
     SolveCancelled
         Raised by `progress`.
     """
-    bodies = open_mvnx(path, scale=scale, progress=progress)
-    return bodies.read_one(body, progress)
-
-
-def open_mvnx(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Bodies[Motion]:
-    """List the subjects of a file that `read_mvnx` reads."""
     check_scale(scale)
     _refuse_declarations(path)
     subjects = _subjects(path, progress)

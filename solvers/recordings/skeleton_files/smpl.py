@@ -74,16 +74,15 @@ def is_smpl(head: bytes) -> bool:
     return name.removesuffix(".npy") in NAMES
 
 
-def read_smpl(
+def open_smpl(
     path: Path | str,
     *,
     scale: float | None = None,
     height: float = STATURE_M,
-    body: str | None = None,
     on_floor: bool = True,
     progress: Progress = unwatched,
-) -> Motion:
-    """Read the pose parameters of an SMPL, SMPL-H or SMPL-X body from an `.npz` archive.
+) -> Bodies[Motion]:
+    """Open the pose parameters of an SMPL, SMPL-H or SMPL-X body from an `.npz` archive.
 
     Both layouts of AMASS [1]_ are read, as one array `poses` or in parts (`root_orient`,
     `pose_body`, `pose_hand`), and the names that video models use (`global_orient`,
@@ -100,15 +99,13 @@ def read_smpl(
         None: 1, or 1 / `smpl_scaling` where the file has it (AIST++).
     height : float, meters
         Stature of the actor.
-    body : str, optional
-        Number of one of several people (`Bodies.choose`).
     on_floor : bool
         Whether the feet are put on the floor.
     progress : Progress
 
     Returns
     -------
-    Motion
+    Bodies of Motion
         22 joints, and 30 of the fingers where the file has hands that move.
 
     Raises
@@ -125,19 +122,6 @@ def read_smpl(
     .. [1] Mahmood, Ghorbani, Troje, Pons-Moll, Black (2019). AMASS: Archive of motion capture
        as surface shapes. ICCV.
     """
-    bodies = open_smpl(path, scale=scale, height=height, on_floor=on_floor, progress=progress)
-    return bodies.read_one(body, progress)
-
-
-def open_smpl(
-    path: Path | str,
-    *,
-    scale: float | None = None,
-    height: float = STATURE_M,
-    on_floor: bool = True,
-    progress: Progress = unwatched,
-) -> Bodies[Motion]:
-    """List the people of a file that `read_smpl` reads."""
     check_scale(scale)
     if not 0.0 < height < MAX_HEIGHT_M:
         raise InvalidSettingError(f"height is {height:g} m; it must be above 0 and below 10.")

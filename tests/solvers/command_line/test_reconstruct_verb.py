@@ -12,7 +12,7 @@ from solvers import samples
 from solvers.motion import SENSOR_JOINTS, Sensor, Tracks
 from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction import load_posture_library
-from solvers.recordings import read_bvh, read_joint_csv, write_bvh, write_joint_csv, write_trc
+from solvers.recordings import read_bvh, read_recording, write_bvh, write_joint_csv, write_trc
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +43,7 @@ def test_writes_joints_with_their_confidence(call, walk_file, walk, tmp_path):
 
     assert (status, err) == (0, "")
     assert "were rebuilt" in out and "Feet" not in out
-    joints = read_joint_csv(tmp_path / "clean.csv")
+    joints = read_recording(tmp_path / "clean.csv")
     assert joints.names == walk.names
     assert joints.tracks.visible.all()
     assert joints.tracks.confidence.shape == (90, 20)

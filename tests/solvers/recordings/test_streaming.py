@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion import JointRecording, Motion
-from solvers.recordings import read_acclaim, read_bvh, read_joint_csv, read_trc
+from solvers.recordings import read_acclaim, read_bvh, read_recording, read_trc
 from solvers.recordings.containers import line_reader
 from solvers.recordings.containers.growing_table import GrowingTable
 from solvers.recordings.containers.line_reader import Block, LineReader
@@ -138,7 +138,7 @@ def test_a_line_that_never_ends_is_refused(tmp_path, monkeypatch):
     path.write_bytes(b"mocap-assist-joints,1\n" + b"x" * (5 << 20))
 
     with pytest.raises(InvalidFileError, match="a line of more than 1 MB"):
-        read_joint_csv(path)
+        read_recording(path)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 1.0])

@@ -18,7 +18,7 @@ from solvers.motion import (
 )
 from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction import ReconstructSettings
-from solvers.recordings import read_joint_csv, read_recording
+from solvers.recordings import read_recording
 from solvers.workflows import reconstruct_motion, reconstruct_recording
 
 NITE = {  # fifteen joints, as OpenNI's tracker names them, and the first Kinect's name of each
@@ -172,7 +172,7 @@ def test_gap_in_time_stamps_is_estimated_and_reported(walk, tmp_path):
     ]
     path.write_text("\n".join([head, f"time,{columns}", *rows]))
 
-    result = reconstruct_recording(read_joint_csv(path), planting=None)
+    result = reconstruct_recording(read_recording(path), planting=None)
 
     assert result.motion.n_frames == pytest.approx(180, abs=2)
     assert result.motion.observed.all()

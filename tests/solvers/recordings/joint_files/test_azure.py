@@ -4,12 +4,13 @@ import json
 
 import numpy as np
 import pytest
-from joint_files import azure_columns, azure_json, azure_lines, moving
+from joint_files import azure_columns, azure_json, azure_lines, moving, read_with
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError
 from solvers.motion import SENSOR_JOINTS, Sensor
-from solvers.recordings import read_azure_csv, read_azure_json, read_recording
+from solvers.recordings import read_recording
+from solvers.recordings.joint_files import open_azure_csv, open_azure_json
 
 NAMES = SENSOR_JOINTS[Sensor.AZURE_KINECT]
 
@@ -53,7 +54,7 @@ def test_json_selects_the_longest_observed_body_and_keeps_gaps(write, values):
     other = {2: 9000 + values[0]}
     frames = [other | {1: values[0]}, {1: values[1]} | other, {}, {1: values[3]}]
 
-    recording = read_azure_json(write(azure_json(frames, [0, 33333, 66667, 266667])))
+    recording = read_recording(write(azure_json(frames, [0, 33333, 66667, 266667])))
 
     seen = recording.tracks.visible[:, 0]
     assert seen.tolist() == [True] * 2 + [False] * 6 + [True]
@@ -63,7 +64,7 @@ def test_json_selects_the_longest_observed_body_and_keeps_gaps(write, values):
 def test_json_spelt_as_the_manual_spells_it(write, values):
     text = azure_json([{1: frame} for frame in values]).replace("SPINE_NAVEL", "SPINE_NAVAL")
 
-    assert read_azure_json(write(text)).names == NAMES
+    assert read_recording(write(text)).names == NAMES
 
 
 def test_json_without_times(write, values):
@@ -72,7 +73,7 @@ def test_json_without_times(write, values):
         del frame["timestamp_usec"]
 
     assert_allclose(
-        read_azure_json(write(json.dumps(messages))).tracks.positions,
+        read_recording(write(json.dumps(messages))).tracks.positions,
         upright(values),
         atol=1e-9,
     )
@@ -98,7 +99,7 @@ def test_json_without_times(write, values):
 def test_json_damage_is_named(write, values, spoil, sentence):
     text = spoil(azure_json([{1: frame} for frame in values], sorted_keys=False))
     with pytest.raises(InvalidFileError, match=sentence):
-        read_azure_json(write(text))
+        read_with(open_azure_json)(write(text))
 
 
 def test_a_line_per_joint(write, values):
@@ -118,7 +119,7 @@ def test_a_line_per_joint_of_two_bodies(write, values):
     far = values[0] * (2, 2, 2, 1)
     frames = [{7: far}, {7: far, 1: two}, {1: three}, {1: four}]
 
-    recording = read_azure_csv(write(azure_lines(frames)))
+    recording = read_recording(write(azure_lines(frames)))
 
     assert_allclose(recording.tracks.positions[1:], upright(values[1:]))
     assert not recording.tracks.visible[0].any()
@@ -127,7 +128,7 @@ def test_a_line_per_joint_of_two_bodies(write, values):
 def test_a_joint_that_comes_again_begins_a_frame(write, values):
     lines = azure_lines([{1: frame[:1]} for frame in values])
 
-    recording = read_azure_csv(write(lines))
+    recording = read_recording(write(lines))
 
     assert_allclose(recording.tracks.positions[:, 0], upright(values)[:, 0])
     assert recording.tracks.visible.sum() == 4
@@ -154,7 +155,7 @@ def test_lines_may_end_in_any_way(write, values, layout, end):
 
 def test_scale_is_metres_per_unit(write, values):
     assert_allclose(
-        read_azure_csv(write(azure_columns(values)), scale=1.0).tracks.positions,
+        read_recording(write(azure_columns(values)), scale=1.0).tracks.positions,
         1000 * upright(values),
     )
 
@@ -173,7 +174,7 @@ def test_scale_is_metres_per_unit(write, values):
 def test_damage_of_tables_is_named(write, values, layout, spoil, sentence):
     frames = [{1: frame} for frame in values] if layout is azure_lines else values
     with pytest.raises(InvalidFileError, match=sentence):
-        read_azure_csv(write(spoil(layout(frames))))
+        read_with(open_azure_csv)(write(spoil(layout(frames))))
 
 
 def test_a_real_take_sits_upright_and_is_not_mirrored(recordings):

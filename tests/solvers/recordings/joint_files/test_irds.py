@@ -4,11 +4,13 @@ import re
 
 import numpy as np
 import pytest
+from joint_files import read_with
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError
 from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor
-from solvers.recordings import read_irds, read_recording
+from solvers.recordings import read_recording
+from solvers.recordings.joint_files import open_irds
 
 NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
 
@@ -31,7 +33,7 @@ def irds(frames: list[tuple[int, int, dict[str, tuple[str, float, float, float]]
 def read(tmp_path):
     def read_text(text: str, **options):
         (tmp_path / "take.txt").write_text(text, newline="")
-        return read_irds(tmp_path / "take.txt", **options)
+        return read_with(open_irds)(tmp_path / "take.txt", **options)
 
     return read_text
 

@@ -7,8 +7,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor, Tracks
 from solvers.recordings import (
-    read_joint_csv,
-    read_joint_json,
     read_joints,
     read_recording,
     write_c3d,
@@ -111,7 +109,7 @@ def test_times_instead_of_a_rate(write, kind):
 def test_up_axis_is_that_of_the_header(write, up, expected):
     path = write(f"mocap-assist-joints,1,frame_rate=1,up={up}\nA.x,A.y,A.z\n1,2,3\n")
 
-    assert_allclose(read_joint_csv(path).tracks.positions[0, 0], expected)
+    assert_allclose(read_recording(path).tracks.positions[0, 0], expected)
 
 
 @pytest.mark.parametrize("kind", TEXTS)
@@ -148,7 +146,7 @@ def test_the_least_that_a_recorder_must_write(write):
 )
 def test_csv_damage_is_named(write, old, new, sentence):
     with pytest.raises(InvalidFileError, match=sentence):
-        read_joint_csv(write(CSV.replace(old, new, 1)))
+        read_recording(write(CSV.replace(old, new, 1)))
 
 
 @pytest.mark.parametrize(
@@ -169,7 +167,7 @@ def test_csv_damage_is_named(write, old, new, sentence):
 )  # fmt: skip
 def test_json_damage_is_named(write, old, new, sentence):
     with pytest.raises(InvalidFileError, match=sentence):
-        read_joint_json(write(JSON.replace(old, new, 1)))
+        read_recording(write(JSON.replace(old, new, 1)))
 
 
 @pytest.mark.parametrize("write_it", [write_joint_csv, write_joint_json])

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from joint_files import kinect_csv, moving, msr, ntu
+from joint_files import kinect_csv, moving, msr, ntu, read_with
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.errors import InvalidFileError
@@ -10,9 +10,9 @@ from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor
 from solvers.recordings import (
     read_kinect_csv,
     read_msr_action3d,
-    read_ntu_skeleton,
     read_recording,
 )
+from solvers.recordings.joint_files import open_ntu_skeleton
 
 V2 = SENSOR_JOINTS[Sensor.KINECT_V2]
 ONE, TWO = "72057594037931101", "72057594037931691"
@@ -59,7 +59,7 @@ def test_ntu_selects_the_longest_observed_body_in_any_order(write):
     ]
     frames += [{ONE: mine[0]}]
 
-    recording = read_ntu_skeleton(write(ntu(frames)))
+    recording = read_recording(write(ntu(frames)))
 
     seen = [0, 1, 4]
     assert_allclose(recording.tracks.positions[seen], upright(mine[seen]))
@@ -101,10 +101,10 @@ def test_ntu_recognized_when_it_begins_with_empty_frames(write):
 def test_ntu_damage_is_named(write, spoil, sentence):
     path = write(spoil(ntu([{ONE: frame} for frame in moving(3, 25)])))
     if sentence is None:
-        assert read_ntu_skeleton(path).n_frames == 3
+        assert read_recording(path).n_frames == 3
         return
     with pytest.raises(InvalidFileError, match=sentence):
-        read_ntu_skeleton(path)
+        read_with(open_ntu_skeleton)(path)
 
 
 def test_kinect_csv_with_blank_lines_and_without_times(write):
