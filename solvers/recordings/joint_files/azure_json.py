@@ -13,7 +13,15 @@ from ...progress import Progress, unwatched
 from ..containers import UniqueNames, array_from_json, json_members, printable
 from ..conventions import Bodies, check_scale, from_azure_space, joint_recording
 from .azure_csv import MILLIMETER, azure_joint
-from .body_json import Body, Frame, listed, name_of_body, number, open_frames, stacked
+from .body_json import (
+    BodiesFrame,
+    BodyJoints,
+    listed,
+    name_of_body,
+    number,
+    open_frames,
+    stacked,
+)
 
 MICROSECOND = 1e-6
 HEAD = re.compile(rb'\s*\{\s*"(?:[^"]*"[^{}]*")?(k4abt_sdk_version|bone_list|joint_names)"')
@@ -61,7 +69,7 @@ def open_azure_json(
     .. [1] Microsoft, Azure-Kinect-Samples, body-tracking-samples/offline_processor.
     """
     check_scale(scale)
-    frames: list[Frame] = []
+    frames: list[BodiesFrame] = []
     given = UniqueNames()
     names: list[str] = []
     for member in json_members(path):
@@ -95,16 +103,16 @@ def open_azure_json(
     return open_frames(path, frames, MICROSECOND, read)
 
 
-def _read_frame(frame: Any, done: float, location: str) -> Frame:
+def _read_frame(frame: Any, done: float, location: str) -> BodiesFrame:
     """Return the time stamp, or NaN, and the joint positions of each body."""
     if not isinstance(frame, dict):
         raise InvalidFileError(f"{location}: a frame is required. Export the file again.")
-    bodies: dict[str, Body] = {}
+    bodies: dict[str, BodyJoints] = {}
     for count, body in enumerate(listed(frame.get("bodies"), location), start=1):
         positions = array_from_json(
             body.get("joint_positions"), (-1, 3), f"{location}, joint_positions"
         )
-        found = Body(positions, np.full(len(positions), np.nan))
+        found = BodyJoints(positions, np.full(len(positions), np.nan))
         bodies.setdefault(name_of_body(body, ("body_id",), count), found)
     time = number(frame.get("timestamp_usec"), f"{location}, timestamp_usec")
-    return Frame(time, bodies, done)
+    return BodiesFrame(time, bodies, done)
