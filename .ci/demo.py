@@ -193,7 +193,7 @@ def draw(raw: Any, clean: Any, rows: list[tuple[str, str, str]], path: Path) -> 
     both = {"recorded": raw, "cleaned": clean}
     views = [
         pictures.draw_stick_figures(
-            both, pictures.StickFigureSettings(n_figures=9, view=pictures.View(view))
+            both, pictures.StickFigureSettings(n_figures=9, view=pictures.ViewDirection(view))
         )
         for view in ("side", "front")
     ]

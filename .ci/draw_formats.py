@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from solvers.motion import JointRecording
-from solvers.pictures import StickFigureSettings, View, draw_stick_figures
+from solvers.pictures import StickFigureSettings, ViewDirection, draw_stick_figures
 from solvers.recordings import read_recording
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -47,7 +47,7 @@ def main(recordings: Path) -> None:
 
     for page, (file, view) in SAMPLES.items():
         recording = on_the_floor(read_recording(recordings / file))
-        settings = StickFigureSettings(n_figures=8, height=150, view=View(view))
+        settings = StickFigureSettings(n_figures=8, height=150, view=ViewDirection(view))
         label = f"{file.rsplit('/', 1)[-1]}, as it was read"
         draw_stick_figures({label: recording}, settings).save(PICTURES / f"{page}.png")
 

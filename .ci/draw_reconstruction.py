@@ -13,7 +13,7 @@ from draw_formats import on_the_floor
 
 from solvers.denoising import measure_quality
 from solvers.motion import motion_from_points
-from solvers.pictures import StickFigureSettings, View, draw_stick_figures
+from solvers.pictures import StickFigureSettings, ViewDirection, draw_stick_figures
 from solvers.recordings import read_recording
 from solvers.workflows import reconstruct_recording
 
@@ -38,7 +38,7 @@ def main(recordings: Path) -> None:
             "tracked": motion_from_points(recording.tracks, recording.parents),
             "reconstructed": result.motion,
         }
-        style = StickFigureSettings(view=View(view), **settings)
+        style = StickFigureSettings(view=ViewDirection(view), **settings)
         draw_stick_figures(both, style, frames=frames).save(
             PICTURES / f"reconstruction_{name}.png"
         )

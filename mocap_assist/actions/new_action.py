@@ -12,7 +12,7 @@ from ..scene.rig import Placement, read_rig
 from .bone_channels import bone_path
 from .curves import write_first
 from .rotation_modes import channels_from_quaternions, rotation_property
-from .take import Part, basis_rotations, root_locations
+from .take import TakePart, basis_rotations, root_locations
 
 STILL = (1.0, 0.0, 0.0, 0.0)
 
@@ -50,7 +50,7 @@ def write_motion(
     owners = tuple(rig.bones.index(bone) if bone else -1 for bone in bones)
     n_frames = motion.n_frames
     world = Placement(np.tile(STILL, (n_frames, 1)), np.zeros((n_frames, 3)), metres)
-    part = Part(motion, owners, world)
+    part = TakePart(motion, owners, world)
     shift = root_locations(part, rig)
     top = rig.bones[owners[0]]
     write_channels(bag, bone_path(top, "location"), top, frames, shift)

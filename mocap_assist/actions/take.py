@@ -34,7 +34,7 @@ class BoneChannels:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class TakePart:
     """One tree of bones as a Motion; its root may have parents outside the tree."""
 
     motion: Motion
@@ -55,7 +55,7 @@ class ArmatureTake:
 
     rig: Rig
     grid: Grid
-    parts: tuple[Part, ...]
+    parts: tuple[TakePart, ...]
     offsets: Tracks | None
     channels: tuple[BoneChannels, ...]
     rest: Placement
@@ -110,7 +110,7 @@ def part_of(
     carrier: Placement,
     rest: Placement,
     frame_rate: float,
-) -> Steps[Part]:
+) -> Steps[TakePart]:
     """Turn pose-bone channels into local rotations about world axes, L = A B A^-1.
 
     A is the rest orientation of the bone in the world. No forward kinematics is needed, since
@@ -137,7 +137,7 @@ def part_of(
     still = np.tile([1.0, 0.0, 0.0, 0.0], (len(positions), 1))
     rotations += [still] * (len(owners) - len(bones))
     motion = Motion(skeleton, np.stack(rotations, axis=1), positions, frame_rate)
-    return Part(motion, owners, carrier)
+    return TakePart(motion, owners, carrier)
 
 
 def _with_keyed_lengths(
@@ -160,7 +160,7 @@ def _with_keyed_lengths(
     return Skeleton(skeleton.names, skeleton.parents, offsets)
 
 
-def basis_rotations(part: Part, rig: Rig, rest: Placement) -> dict[int, Array]:
+def basis_rotations(part: TakePart, rig: Rig, rest: Placement) -> dict[int, Array]:
     """Undo `part_of`: the pose-bone rotation, shape (n_frames, 4), of each bone."""
     local = np.array(part.motion.rotations)
     carried = multiply(part.carrier.rotations, inverse(rest.rotations[0]))
@@ -173,7 +173,7 @@ def basis_rotations(part: Part, rig: Rig, rest: Placement) -> dict[int, Array]:
     }
 
 
-def root_locations(part: Part, rig: Rig) -> Array:
+def root_locations(part: TakePart, rig: Rig) -> Array:
     """Undo `part_of`: the pose-bone location, shape (n_frames, 3), of the part's root."""
     root = part.bones[0]
     moved = part.carrier.points_back(part.motion.root_positions) - rig.heads[root]

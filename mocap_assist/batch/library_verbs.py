@@ -6,11 +6,10 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any
 
 import bpy
 
-from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.command_line.screen import Screen, printable
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import real_path, write_atomically
@@ -22,6 +21,7 @@ from ..library.sources import asset_folders, background_blender, library_path
 from ..search import searches
 from ..search.finding import list_found, read_finding
 from ..search.solve_finding import Found
+from .bundles import add_bundle_options, bundle_from_arguments
 from .saving import STDOUT
 from .solving import solve_in_subprocess
 
@@ -94,7 +94,7 @@ def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
 def add_find_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `find`; those of the button, and the library."""
     _add_library(parser)
-    arguments_from(parser, *get_type_hints(FindBundle).values())
+    add_bundle_options(parser, FindBundle)
 
 
 def check_find(arguments: argparse.Namespace, subjects: Sequence[bpy.types.Object]) -> None:
@@ -111,10 +111,7 @@ def perform_find(
     progress: Progress,
 ) -> VerbResult:
     """Search for the current motion of the armature or the markers."""
-    classes = get_type_hints(FindBundle)
-    settings = FindBundle(**{
-        name: settings_from_arguments(arguments, each) for name, each in classes.items()
-    })
+    settings = bundle_from_arguments(arguments, FindBundle)
     scene.mocap_assist.library.library_file = arguments.library
     finding = solve_in_subprocess(read_finding(scene, subject, settings), arguments, progress)
     sentence = list_found(scene, subject, settings, finding)

@@ -2,17 +2,17 @@
 
 import argparse
 from dataclasses import replace
-from typing import Any, get_type_hints
+from typing import Any
 
 import bpy
 
-from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress
 from ..blender.name_lists import join_names
 from ..reconstruct.button_settings import Postures, ReconstructBundle
 from ..reconstruct.reconstructing import read_reconstructing, write_reconstructed
 from ..runtime.selection import played_source
 from ..scene import history
+from .bundles import add_bundle_options, bundle_from_arguments
 from .solving import solve_in_subprocess
 
 
@@ -28,7 +28,7 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
         help="clip library, of which postures are taken from what is like the take; short for"
         " --postures library",
     )  # fmt: skip
-    arguments_from(parser, *get_type_hints(ReconstructBundle).values())
+    add_bundle_options(parser, ReconstructBundle)
 
 
 def perform_reconstruct(
@@ -38,10 +38,7 @@ def perform_reconstruct(
     progress: Progress,
 ) -> tuple[str, dict[str, Any]]:
     """Rebuild what the armature plays."""
-    classes = get_type_hints(ReconstructBundle)
-    settings = ReconstructBundle(**{
-        name: settings_from_arguments(arguments, each) for name, each in classes.items()
-    })
+    settings = bundle_from_arguments(arguments, ReconstructBundle)
     if arguments.train:
         choices = replace(
             settings.choices,

@@ -2,17 +2,17 @@
 
 import argparse
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any
 
 import bpy
 
-from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress, within
 from ..variants.button_settings import VaryBundle
 from ..variants.listing import chosen
 from ..variants.reading import read_varying
 from ..variants.sheet import write_sheet
 from ..variants.writing import write_variants
+from .bundles import add_bundle_options, bundle_from_arguments
 from .solving import solve_in_subprocess
 
 HELP = "Generate variations of a few similar actions."
@@ -23,7 +23,7 @@ def add_vary_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--sheet", type=Path, metavar="FILE", help="draw all variants to a PNG file"
     )
-    arguments_from(parser, *get_type_hints(VaryBundle).values())
+    add_bundle_options(parser, VaryBundle)
 
 
 def perform_vary(
@@ -33,10 +33,7 @@ def perform_vary(
     progress: Progress,
 ) -> tuple[str, dict[str, Any]]:
     """Make variants of the armature's actions; it plays the first."""
-    classes = get_type_hints(VaryBundle)
-    settings = VaryBundle(**{
-        name: settings_from_arguments(arguments, each) for name, each in classes.items()
-    })
+    settings = bundle_from_arguments(arguments, VaryBundle)
     varied = solve_in_subprocess(
         read_varying(scene, armature, settings), arguments, within(progress, 0.0, 0.8)
     )

@@ -4,13 +4,12 @@ import argparse
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar, get_type_hints
+from typing import Any
 
 import bpy
 
 from ...solvers.command_line.convert import convert
 from ...solvers.command_line.files import MOTIONS, POINTS_BY_DEFAULT, check_target
-from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.errors import InvalidSettingError
 from ...solvers.progress import Progress
 from ..actions.armature_read import read_take
@@ -22,6 +21,7 @@ from ..clean.button_settings import CleanBundle, Prior
 from ..clean.cleaning import read_cleaning, write_cleaned
 from ..runtime.selection import played_source
 from ..scene import history
+from .bundles import add_bundle_options, bundle_from_arguments
 from .export_verb import HELP as EXPORT_HELP
 from .export_verb import add_export_options, check_export, perform_export
 from .library_verbs import FIND_HELP, add_find_options, check_find, perform_find
@@ -38,7 +38,6 @@ from .solving import solve_in_subprocess
 from .vary_verb import HELP as VARY_HELP
 from .vary_verb import add_vary_options, perform_vary
 
-Bundle = TypeVar("Bundle", bound=NamedTuple)
 VerbResult = tuple[str, dict[str, Any]]
 
 
@@ -82,7 +81,7 @@ def _clean_options(parser: argparse.ArgumentParser) -> None:
         help="clip library, of which what is like the take is learned from; short for --prior"
         " library",
     )  # fmt: skip
-    arguments_from(parser, *get_type_hints(CleanBundle).values())
+    add_bundle_options(parser, CleanBundle)
 
 
 def _clean(
@@ -91,7 +90,7 @@ def _clean(
     arguments: argparse.Namespace,
     progress: Progress,
 ) -> VerbResult:
-    settings = _bundle(arguments, CleanBundle)
+    settings = bundle_from_arguments(arguments, CleanBundle)
     if arguments.train:
         choices = replace(
             settings.choices, prior=Prior.EXAMPLES, examples=join_names(arguments.train)
@@ -107,7 +106,7 @@ def _clean(
 
 
 def _check_options(parser: argparse.ArgumentParser) -> None:
-    arguments_from(parser, *get_type_hints(CheckBundle).values())
+    add_bundle_options(parser, CheckBundle)
 
 
 def _check(
@@ -116,7 +115,7 @@ def _check(
     arguments: argparse.Namespace,
     progress: Progress,
 ) -> VerbResult:
-    settings = _bundle(arguments, CheckBundle)
+    settings = bundle_from_arguments(arguments, CheckBundle)
     checked = solve_in_subprocess(read_checking(scene, armature, settings), arguments, progress)
     sentence = show_checked(scene, armature, settings, checked)
     issues = [issue.sentence for issue in checked.issues]
@@ -169,11 +168,6 @@ def _convert(
     else:
         outcome = convert(read_markers(armature, scene).tracks, target, progress)
     return f"{target}: {outcome.text}", {"output": str(target)} | outcome.figures
-
-
-def _bundle(arguments: argparse.Namespace, bundle: type[Bundle]) -> Bundle:
-    classes = get_type_hints(bundle)
-    return bundle._make(settings_from_arguments(arguments, each) for each in classes.values())
 
 
 VERBS = {

@@ -25,7 +25,7 @@ from .button_settings import CleanBundle, CleanChoices, Limits, Prior
 from .examples import read_prior
 from .markers import MarkerReading
 from .report import clean_report, entry_of
-from .solve_cleaning import Cleaned, Examples, Finish, Problem, Recordings, clean, names_of
+from .solve_cleaning import Cleaned, ExampleSource, Finish, Problem, Recordings, clean, names_of
 
 LOW_CONFIDENCE = 0.5  # confidence below which a key counts as generated
 EASE = 5  # frames over which a cleaned range joins the frames outside it
@@ -97,11 +97,11 @@ def key_types(
 
 def _read(
     here: Subject, choices: CleanChoices
-) -> Steps[tuple[Examples, ArmatureReading | MarkerReading]]:
+) -> Steps[tuple[ExampleSource, ArmatureReading | MarkerReading]]:
     """Read what is to be learned from, and then what is to be cleaned."""
     scene, subject = here.find()
     if choices.prior is Prior.LIBRARY:
-        examples = Examples(library=library_prior(scene, subject))
+        examples = ExampleSource(library=library_prior(scene, subject))
     else:
         examples = yield from read_prior.steps(scene, subject, choices)
     scene, subject = here.find()
@@ -110,7 +110,7 @@ def _read(
 
 
 def _problem(
-    raw: ArmatureTake | MarkerTake, settings: CleanBundle, examples: Examples
+    raw: ArmatureTake | MarkerTake, settings: CleanBundle, examples: ExampleSource
 ) -> Problem:
     choices = settings.choices
     learn_limits = choices.joint_limits is Limits.EXAMPLES and isinstance(raw, ArmatureTake)

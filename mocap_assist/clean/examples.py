@@ -17,7 +17,7 @@ from ..blender.time_slices import Sliced, Steps, should_yield
 from ..runtime.subject import Subject
 from ..scene.linked_clips import Linked, is_blend, linked_clips
 from .button_settings import CleanChoices, Prior
-from .solve_cleaning import Examples
+from .solve_cleaning import ExampleSource
 
 LINKED_AT_ONCE = 8
 """Actions that are linked from another file at once."""
@@ -26,21 +26,21 @@ LINKED_AT_ONCE = 8
 @Sliced
 def read_prior(
     scene: bpy.types.Scene, armature: bpy.types.Object, choices: CleanChoices
-) -> Steps[Examples]:
+) -> Steps[ExampleSource]:
     """Return the examples to learn from, or None; see `read_examples`."""
     if choices.prior is Prior.TAKE:
-        return Examples()
+        return ExampleSource()
     if choices.prior is Prior.LEARNED:
         if not choices.learned_file:
             raise InvalidMotionError("Choose the motion model file, or another motion model.")
-        return Examples(bases_file=bpy.path.abspath(choices.learned_file))
+        return ExampleSource(bases_file=bpy.path.abspath(choices.learned_file))
     return (yield from read_examples.steps(scene, armature, choices.examples))
 
 
 @Sliced
 def read_examples(
     scene: bpy.types.Scene, armature: bpy.types.Object, examples: str
-) -> Steps[Examples]:
+) -> Steps[ExampleSource]:
     """Read the actions named in a list; leave recordings to be read where it is solved.
 
     Of a .blend file in the list all actions are read that fit an armature there.
@@ -72,7 +72,7 @@ def read_examples(
         if not is_blend(Path(path)):
             inside = yield from _recordings_of(Path(path))
             recordings += map(str, inside)
-    return Examples(motions=tuple(motions), files=tuple(recordings))
+    return ExampleSource(motions=tuple(motions), files=tuple(recordings))
 
 
 def _recordings_of(path: Path) -> Steps[list[Path]]:

@@ -57,7 +57,7 @@ class Learned(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Examples:
+class ExampleSource:
     """Source of clean motion to learn from; by default the take itself."""
 
     motions: tuple[Motion, ...] = ()
@@ -87,7 +87,7 @@ class Problem:
     recordings: Recordings
     """The body first."""
     settings: DenoiseSettings
-    examples: Examples = Examples()
+    examples: ExampleSource = ExampleSource()
     learn_limits: bool = False
     """Whether joint limits are learned from the examples too."""
     unswap: bool = False

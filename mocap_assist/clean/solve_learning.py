@@ -3,11 +3,11 @@
 from ...solvers.denoising import FilterBases, FilterBasesSettings, learn_filter_bases
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.recordings import read_motion_or_tracks
-from .solve_cleaning import Examples
+from .solve_cleaning import ExampleSource
 
 
 def learn(
-    examples: Examples, settings: FilterBasesSettings, *, progress: Progress = unwatched
+    examples: ExampleSource, settings: FilterBasesSettings, *, progress: Progress = unwatched
 ) -> FilterBases:
     """Read the files among the examples, and learn from all of them."""
     files = []

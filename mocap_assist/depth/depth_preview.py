@@ -13,7 +13,7 @@ from bpy.app import handlers
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from ...solvers.depth_scene import DepthRecording, Floor
+from ...solvers.depth_scene import DepthRecording, FloorPlane
 from ...solvers.errors import MocapAssistError
 from ...solvers.faults import Failure, attempt
 from ...solvers.recordings import CameraOrientation, DepthSettings, read_depth
@@ -94,7 +94,7 @@ def build_preview(
     name: str,
     recording: DepthRecording,
     shown: Shown,
-    camera_floor: Floor,
+    camera_floor: FloorPlane,
     scale: float,
 ) -> bpy.types.Object:
     """Add an animated point cloud of a recording, and make it active.
@@ -108,7 +108,7 @@ def build_preview(
     recording : DepthRecording
         Read from `shown.path` with `shown.settings`.
     shown : Shown
-    camera_floor : Floor
+    camera_floor : FloorPlane
         Defines the pose of the camera.
     scale : scene units per meter
     """

@@ -64,7 +64,7 @@ class Trails:
         return lines[observed]
 
 
-class Played(NamedTuple):
+class ComparedMarkers(NamedTuple):
     """Markers, and what they play in one of the two takes to compare."""
 
     markers: tuple[bpy.types.Object, ...]
@@ -74,7 +74,7 @@ class Played(NamedTuple):
 _cache: dict[tuple[tuple[tuple[int, int, int], ...], range], Trails] = {}
 
 
-def raw_and_clean(holder: bpy.types.Object) -> tuple[Played, Played]:
+def raw_and_clean(holder: bpy.types.Object) -> tuple[ComparedMarkers, ComparedMarkers]:
     """Return the markers below an object with their recorded action and with their result.
 
     The result is the one that a marker plays. If it plays the recorded action, it is the newest
@@ -106,11 +106,13 @@ def _same_slot(action: bpy.types.Action | None, like: Source) -> Source | None:
     return None if matching is None else (action, matching)
 
 
-def _together(pairs: list[tuple[bpy.types.Object, Source]]) -> Played:
-    return Played(tuple(marker for marker, _ in pairs), tuple(source for _, source in pairs))
+def _together(pairs: list[tuple[bpy.types.Object, Source]]) -> ComparedMarkers:
+    return ComparedMarkers(
+        tuple(marker for marker, _ in pairs), tuple(source for _, source in pairs)
+    )
 
 
-def lines_at(played: Played, scene: bpy.types.Scene) -> Array:
+def lines_at(played: ComparedMarkers, scene: bpy.types.Scene) -> Array:
     """Return the lines of markers at the scene's frame, in the world: (n_lines, 2, 3)."""
     if not played.markers:
         return np.zeros((0, 2, 3))
@@ -121,7 +123,7 @@ def lines_at(played: Played, scene: bpy.types.Scene) -> Array:
     return trails_at(played, frame, reach).segments(frame, reach, size, np.array(spaces))
 
 
-def trails_at(played: Played, frame: float, reach: int) -> Trails:
+def trails_at(played: ComparedMarkers, frame: float, reach: int) -> Trails:
     """Return the trails around a frame; each block is read once and cached until `forget`.
 
     Only the blocks near the frame are read, so that long takes and distant keys cost nothing.
@@ -142,7 +144,7 @@ def trails_at(played: Played, frame: float, reach: int) -> Trails:
     return _cache[key]
 
 
-def read_trails(played: Played, within: range) -> Trails:
+def read_trails(played: ComparedMarkers, within: range) -> Trails:
     """Read the location keys of markers at integer frames of their actions."""
     frames = np.arange(within.start, within.stop, dtype=np.float64)
     positions = []

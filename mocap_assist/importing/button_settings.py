@@ -6,14 +6,14 @@ from typing import NamedTuple
 from ...solvers.recordings import (
     CameraOrientation,
     DepthSettings,
-    FloorSettings,
+    FloorPlacementSettings,
     ReadingSettings,
 )
 from ...solvers.settings import Choice, setting
 from ..scene.scene_rate import FrameRate
 
 
-class Target(Choice):
+class ImportTarget(Choice):
     """What joints become."""
 
     ARMATURE = "armature", "Create an armature; each joint becomes a bone"
@@ -37,11 +37,11 @@ class Rotation(Choice):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ImportChoices(FloorSettings, ReadingSettings):
+class ImportChoices(FloorPlacementSettings, ReadingSettings):
     """How recordings come into the scene."""
 
-    target: Target = setting(
-        Target.ARMATURE,
+    target: ImportTarget = setting(
+        ImportTarget.ARMATURE,
         "What the joints of a depth camera become; markers always become empties",
     )
     body: str = setting(

@@ -8,7 +8,7 @@ from mathutils import Matrix, Quaternion
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import FileConventions
-from ...solvers.recordings import Axis, Floor, FloorSettings, Unit
+from ...solvers.recordings import Axis, FloorPlacement, FloorPlacementSettings, Unit
 from ...solvers.recordings.conventions import floor_level, turn_between, with_axes
 from ...solvers.settings import setting
 from ..actions.armature_read import read_take
@@ -27,7 +27,7 @@ OWN_CHANNELS = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class AxesChange(FloorSettings):
+class AxesChange(FloorPlacementSettings):
     """How the file of something imported is to be read instead."""
 
     up: Axis = setting(Axis.AUTO, "Axis of the file that points up; Auto keeps it")
@@ -77,7 +77,7 @@ def noted_change(owner: bpy.types.Object) -> AxesChange:
         up=Axis.of(noted.up),
         forward=Axis.of(noted.forward),
         global_scale=_scale_of(origin),
-        place_on_floor=Floor.AUTO,
+        place_on_floor=FloorPlacement.AUTO,
     )
 
 
@@ -104,7 +104,9 @@ def change_axes(context: bpy.types.Context, owner: bpy.types.Object, change: Axe
     owner.matrix_basis = owner.matrix_basis @ turn @ Matrix.Scale(factor, 4)
     note_origin(owner, origin | asdict(after) | {"scale": scale})
     floor = change.place_on_floor
-    if floor is Floor.ALWAYS or (floor is Floor.AUTO and not before.has_floor):
+    if floor is FloorPlacement.ALWAYS or (
+        floor is FloorPlacement.AUTO and not before.has_floor
+    ):
         _put_on_floor(context, owner)
     context.view_layer.update()
     return f"{owner.name}: {after.sentence()}, scaled by {scale:g}."

@@ -1,7 +1,6 @@
 """Files that are read in a process of its own and then come into the scene one by one."""
 
 from collections import deque
-from collections.abc import Iterable, Iterator
 from functools import partial
 from pathlib import Path
 
@@ -9,6 +8,7 @@ import bpy
 
 from ...solvers.errors import InvalidFileError, MocapAssistError, OutOfMemoryError
 from ...solvers.faults import Failure, attempt
+from ..jobs.batches import batches_by_size
 from ..jobs.job import Job, ProcessDied
 from ..runtime.watch import Watch
 from .button_settings import ImportChoices
@@ -39,7 +39,7 @@ class ImportJob:
         self.transaction = ImportTransaction(context, choices)
         paths = self._readable(context, paths, choices)
         self._wanted = conversion_from_choices(context, self.transaction.choices)
-        self._batches = deque(batches(paths))
+        self._batches = deque(batches_by_size(paths, _size, BYTES_AT_ONCE))
         self._n_files, self._n_read, self._n_in = len(paths), 0, 0
         self._shown = 0.0
         self._states: list[State] = []
@@ -133,19 +133,8 @@ class ImportJob:
         self.watch.show(context, self._shown, message)
 
 
-def batches(paths: Iterable[Path]) -> Iterator[list[Path]]:
-    """Part files into as many as are read at once: several small ones, or a large one."""
-    batch: list[Path] = []
-    room = BYTES_AT_ONCE
-    for path in paths:
-        size = path.stat().st_size if path.is_file() else 0
-        if batch and size > room:
-            yield batch
-            batch, room = [], BYTES_AT_ONCE
-        batch.append(path)
-        room -= size
-    if batch:
-        yield batch
+def _size(path: Path) -> int:
+    return path.stat().st_size if path.is_file() else 0
 
 
 def _refusal(path: Path, error: ProcessDied | OutOfMemoryError) -> MocapAssistError:

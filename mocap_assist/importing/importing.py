@@ -8,7 +8,7 @@ from ...solvers.depth_scene import DepthRecording
 from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.faults import Failure, attempt
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.recordings import SCENE_SUFFIXES, Floor
+from ...solvers.recordings import SCENE_SUFFIXES, FloorPlacement
 from ...solvers.recordings.conventions import conventions_of
 from ..blender.path_properties import absolute, chosen_files
 from ..jobs.in_blender import is_scene_file
@@ -63,7 +63,7 @@ def preview(context: bpy.types.Context, paths: list[Path]) -> str:
         size = path.stat().st_size
         if size > QUICKLY_READ or is_scene_file(path):
             return f"{path.name}: {size / 1e6:.1f} MB; {plays}"
-        content = read_again(path, Conversion(floor=Floor.AUTO))[0]
+        content = read_again(path, Conversion(floor=FloorPlacement.AUTO))[0]
     except MocapAssistError as error:
         return str(error)
     except OSError as error:

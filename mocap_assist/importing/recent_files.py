@@ -6,7 +6,7 @@ from ...solvers.depth_scene import DepthRecording
 from ...solvers.errors import InvalidFileError
 from ...solvers.motion import JointRecording, Motion
 from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings import Body, Floor, ReadingSettings
+from ...solvers.recordings import Body, FloorPlacement, ReadingSettings
 from ...solvers.recordings.skeleton_files import find_skeleton
 from .solve_reading import Conversion, ReadRecording, read_takes
 
@@ -14,7 +14,7 @@ MOST = 20_000_000  # numbers that are kept
 BYTES = 8  # of a number
 
 State = tuple[tuple[str, int, int], ...]
-Reading = tuple[ReadingSettings, Floor, str, bool]
+Reading = tuple[ReadingSettings, FloorPlacement, str, bool]
 _read: dict[tuple[State, Reading], list[ReadRecording]] = {}
 
 

@@ -21,7 +21,7 @@ from ..jobs.in_blender import BackgroundBlender
 from ..scene.origin import note_origin, origin_of_file
 from ..scene.scene_rate import FrameRate, scene_rate, timing
 from ..scene.units import unit_of
-from .button_settings import ImportChoices, Target
+from .button_settings import ImportChoices, ImportTarget
 from .marker_objects import Timed, make_markers, observed_points
 from .sensor_samples import SensorSamples
 from .solve_reading import (
@@ -55,7 +55,7 @@ def conversion_from_choices(context: bpy.types.Context, choices: ImportChoices) 
     """Return the conversion that the choices define."""
     resampled = choices.frame_rate is FrameRate.RESAMPLE
     return Conversion(
-        choices.target is Target.ARMATURE,
+        choices.target is ImportTarget.ARMATURE,
         choices.global_scale,
         scene_rate(context.scene) if resampled else None,
         choices.reading,
@@ -99,7 +99,7 @@ def make_objects(
         timed = Timed(moving, frames, sensor_samples)
         made = _make_empties(context, name, recording, timed, progress)
     what = made.what
-    if choices.target is not Target.ARMATURE or not isinstance(recording, JointRecording):
+    if choices.target is not ImportTarget.ARMATURE or not isinstance(recording, JointRecording):
         pass
     elif not isinstance(moving, Motion):
         what += ", since the parents of the joints are unknown"

@@ -13,7 +13,7 @@ from ..jobs.in_blender import BlendClip, BlendRead
 
 
 @dataclass(frozen=True, eq=False)
-class Take:
+class SkeletonAction:
     """One of several actions of a skeleton."""
 
     name: str
@@ -22,7 +22,7 @@ class Take:
     """Name of the armature in the file."""
 
 
-def bodies_of_scene(path: str, found: BlendRead) -> Bodies[tuple[Take, ...]]:
+def bodies_of_scene(path: str, found: BlendRead) -> Bodies[tuple[SkeletonAction, ...]]:
     """Return the armatures of a file that Blender has read, each with its takes.
 
     Raises InvalidFileError if there is none.
@@ -35,12 +35,13 @@ def bodies_of_scene(path: str, found: BlendRead) -> Bodies[tuple[Take, ...]]:
     longest = max(clip.motion.n_frames for group in groups for clip in group)
     listed = tuple(_body(name, group, longest) for name, group in _named(groups))
     takes = [
-        tuple(Take(clip.item, clip.motion, clip.armature) for clip in group) for group in groups
+        tuple(SkeletonAction(clip.item, clip.motion, clip.armature) for clip in group)
+        for group in groups
     ]
     return Bodies(path, listed, lambda index, progress: takes[index])
 
 
-def choice_in_scene(wanted: str, bodies: Bodies[tuple[Take, ...]]) -> list[int]:
+def choice_in_scene(wanted: str, bodies: Bodies[tuple[SkeletonAction, ...]]) -> list[int]:
     """Return the indices of the wanted armatures: all, unless another is named."""
     if wanted.strip().lower() in {"", ALL_BODIES}:
         return list(range(len(bodies.listed)))

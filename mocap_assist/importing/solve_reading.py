@@ -23,7 +23,7 @@ from ...solvers.recordings import (
     DEFAULT_READING,
     Body,
     DepthSettings,
-    Floor,
+    FloorPlacement,
     ReadingSettings,
     is_depth_recording,
     open_as,
@@ -37,7 +37,7 @@ from ...solvers.recordings.conventions import (
 )
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
 from ..jobs.in_blender import BackgroundBlender, SkinnedMeshes, is_scene_file, read_blends
-from .solve_bodies import Take, bodies_of_scene, choice_in_scene
+from .solve_bodies import SkeletonAction, bodies_of_scene, choice_in_scene
 
 TrackedRecording = Motion | Tracks | JointRecording
 """Joints or markers over time."""
@@ -58,7 +58,7 @@ class Conversion(NamedTuple):
     """What the files may not say about themselves."""
     depth: DepthSettings = DEFAULT_DEPTH_SETTINGS
     """Interpretation of depth images."""
-    floor: Floor = Floor.NEVER
+    floor: FloorPlacement = FloorPlacement.NEVER
     """Whether takes are put on the floor."""
     meshes: bool = False
     """Whether skinned meshes are read too."""
@@ -78,7 +78,7 @@ class ReadRecording(NamedTuple):
     """Name of the recording in a file with several takes."""
     body: str = ""
     """Name in a file with several bodies."""
-    others: tuple[Take, ...] = ()
+    others: tuple[SkeletonAction, ...] = ()
     """Further takes of the same skeleton."""
     bodies: tuple[Body, ...] = ()
     """Bodies to choose from in its file."""
@@ -122,7 +122,9 @@ def _convert(path: Path, content: ReadRecording, conversion: Conversion) -> Read
     return Read(content, moving)
 
 
-def convert_takes(takes: Sequence[Take], conversion: Conversion) -> tuple[Take, ...]:
+def convert_takes(
+    takes: Sequence[SkeletonAction], conversion: Conversion
+) -> tuple[SkeletonAction, ...]:
     """Convert the further takes of a skeleton for the scene."""
     return tuple(
         replace(take, motion=motion)

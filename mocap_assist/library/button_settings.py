@@ -55,7 +55,7 @@ class FindBundle(NamedTuple):
     finding: FindSettings
 
 
-class Part(Choice):
+class ClipPart(Choice):
     """What of the clip is taken."""
 
     MATCH = "what matches", "Only the frames that match the query", "Matching Frames"
@@ -66,7 +66,7 @@ class Part(Choice):
 class LoadChoices(Settings):
     """How a clip comes to the armature."""
 
-    part: Part = setting(Part.MATCH, "Frames of the clip to append")
+    part: ClipPart = setting(ClipPart.MATCH, "Frames of the clip to append")
     result_as: Output = setting(
         Output.ACTION,
         "Assign the clip as a new action, or add it to the NLA at the current frame, matched"

@@ -14,7 +14,7 @@ from ...solvers.retrieval import Origin
 from ...solvers.rotations import IDENTITY
 from ..importing.solve_reading import Conversion, convert_recording, read_file
 from ..jobs.in_blender import BackgroundBlender, is_read_in_blender, read_blends
-from ..retarget.solve_retargeting import Clip, RetargetProblem, Start, retarget_clips
+from ..retarget.solve_retargeting import RetargetProblem, StagedMotion, Start, retarget_clips
 from ..scene.controls import BoneKeys, TargetRig
 
 AS_ARMATURE = Conversion(armature=True, scale=1.0, frame_rate=None)
@@ -102,7 +102,7 @@ def fetch_clip(problem: FetchProblem, *, progress: Progress = unwatched) -> Fetc
     if problem.frames is not None:
         motion = _part(motion, problem.frames, problem.origin)
     motion = resample(motion, problem.frame_rate)
-    clip = Clip(motion, np.zeros(3), np.array(IDENTITY), problem.start)
+    clip = StagedMotion(motion, np.zeros(3), np.array(IDENTITY), problem.start)
     roles = find_humanoid_map(motion.skeleton)
     retargeting = RetargetProblem((clip,), roles, problem.target, problem.settings)
     (keys,) = retarget_clips(retargeting, progress=within(progress, 0.3, 1.0))

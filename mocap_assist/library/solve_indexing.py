@@ -22,6 +22,7 @@ from ...solvers.retrieval import (
 from ...solvers.retrieval.library import refuse_other_suffix
 from ...solvers.version import version
 from ...solvers.workflows import index_files
+from ..jobs.batches import batches_by_size
 from ..jobs.in_blender import (
     BackgroundBlender,
     BlendClip,
@@ -176,7 +177,7 @@ class _Indexing:
             elif not known:
                 changed.append(blend)
         done = 0
-        for batch in _batches(changed):
+        for batch in batches_by_size(changed, lambda blend: blend.state[0], BYTES_AT_ONCE):
             start, stop = done / len(changed), (done + len(batch)) / len(changed)
             for blend, read in self._read(batch, blender, within(progress, start, stop)):
                 self._replace(blend, read)
@@ -258,17 +259,3 @@ def _refusal(name: str, error: ProcessDied | OutOfMemoryError) -> str:
     if isinstance(error, OutOfMemoryError):
         return f"{name} needs more memory than there is."
     return f"{name} made Blender end, {error.cause}."
-
-
-def _batches(blends: list[_Blend]) -> Iterator[list[_Blend]]:
-    batch: list[_Blend] = []
-    room = BYTES_AT_ONCE
-    for blend in blends:
-        size = blend.state[0]
-        if batch and size > room:
-            yield batch
-            batch, room = [], BYTES_AT_ONCE
-        batch.append(blend)
-        room -= size
-    if batch:
-        yield batch

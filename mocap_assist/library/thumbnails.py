@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from ...solvers.arrays import Array
 from ...solvers.motion.humanoid import PARENTS, POSTURE_JOINTS
-from ...solvers.pictures import SERIES, Canvas, View, lighten_color, project_to_view
+from ...solvers.pictures import SERIES, Canvas, ViewDirection, lighten_color, project_to_view
 
 Pixels = NDArray[np.uint8]
 
@@ -31,7 +31,7 @@ def thumbnail(postures: Array) -> Pixels:
     canvas = Canvas(SIZE, SIZE)
     moments = np.linspace(0, len(postures) - 1, 2 * N_FIGURES + 1).round().astype(int)[1::2]
     scale = (SIZE - 2.0 * MARGIN) / TALL
-    figures = project_to_view(postures[moments], np.zeros(len(moments)), View.QUARTER)
+    figures = project_to_view(postures[moments], np.zeros(len(moments)), ViewDirection.QUARTER)
     color = SERIES[1]
     for index, figure in enumerate(figures):
         middle = SIZE * (index + 0.5) / N_FIGURES

@@ -9,7 +9,7 @@ from ...solvers.progress import Progress, unwatched
 from ..clean.solve_cleaning import differing
 
 
-class Take(NamedTuple):
+class SimulatedTake(NamedTuple):
     """What is simulated; its strength is 1."""
 
     body: Motion
@@ -24,13 +24,13 @@ class Resimulated(NamedTuple):
     moved: frozenset[str]
 
 
-def take_of(body: Motion, settings: SimulateSettings) -> Take:
+def take_of(body: Motion, settings: SimulateSettings) -> SimulatedTake:
     """Return what must be simulated, whatever the strength."""
-    return Take(body, replace(settings, strength=1.0))
+    return SimulatedTake(body, replace(settings, strength=1.0))
 
 
 def simulate_take(
-    take: Take,
+    take: SimulatedTake,
     strength: float,
     simulated: Simulated | None = None,
     *,

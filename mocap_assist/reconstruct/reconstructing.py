@@ -23,7 +23,7 @@ from ..blender.time_slices import Sliced, Steps
 from ..clean.cleaning import ease_of
 from ..clean.examples import read_examples
 from ..clean.report import figures
-from ..clean.solve_cleaning import Examples
+from ..clean.solve_cleaning import ExampleSource
 from ..jobs.job import ShortSolve
 from ..library.library_prior import library_prior
 from ..runtime import redo
@@ -140,7 +140,7 @@ def _problem(
     armature: bpy.types.Object,
     reading: _Reading,
     settings: ReconstructBundle,
-    examples: Examples | None,
+    examples: ExampleSource | None,
 ) -> RebuildProblem:
     body = reading.body
     choices, postures, library = settings.choices, None, None

@@ -26,7 +26,7 @@ from ...solvers.workflows import (
     posture_library_from_clips,
     reconstruct_motion,
 )
-from ..clean.solve_cleaning import Examples, toward
+from ..clean.solve_cleaning import ExampleSource, toward
 from ..library.solve_prior import LibraryPrior
 
 
@@ -44,7 +44,7 @@ class RebuildProblem:
     resize: bool
     """Whether location keys can give bones other lengths."""
     settings: ReconstructSettings
-    examples: Examples | None
+    examples: ExampleSource | None
     """Clips of natural postures; None for those that are shipped, or of a file."""
     postures_file: tuple[str, int] | None = None
     """The file of a posture library, and its date."""

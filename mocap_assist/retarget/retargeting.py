@@ -30,13 +30,18 @@ from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
 from .bone_map import SIDES, BoneMaps, is_finger, maps_for
 from .button_settings import RetargetBundle, RetargetChoices, Takes
-from .solve_retargeting import Clip, ReportedRetargeting, RetargetProblem, retarget_and_report
+from .solve_retargeting import (
+    ReportedRetargeting,
+    RetargetProblem,
+    StagedMotion,
+    retarget_and_report,
+)
 
 N_QUICK = 5000
 """Frames that are solved in half a second: less than it takes to start another process."""
 
 
-class Reading(NamedTuple):
+class RetargetScene(NamedTuple):
     """What Retarget found in the scene."""
 
     target: bpy.types.Object
@@ -105,7 +110,7 @@ def remarks_on_target(source: bpy.types.Object, target: bpy.types.Object) -> tup
     return tuple(map(str, entries[-1].get("remarks", ())))
 
 
-def _low_confidence(source: bpy.types.Object, found: Reading) -> dict[str, str]:
+def _low_confidence(source: bpy.types.Object, found: RetargetScene) -> dict[str, str]:
     """Return a sentence about bones with low confidence, or an empty text, for each side."""
     armatures = (source, found.target)
     return {
@@ -193,7 +198,7 @@ def _fitting_slot(
     return None
 
 
-def _read(here: Subject, settings: RetargetBundle) -> Steps[Reading]:
+def _read(here: Subject, settings: RetargetBundle) -> Steps[RetargetScene]:
     choices = settings.choices
     scene, source = here.find()
     target_called(scene, choices.target, source)  # or it cannot be used, and all is in vain
@@ -210,7 +215,7 @@ def _read(here: Subject, settings: RetargetBundle) -> Steps[Reading]:
     roles = _wanted(maps)
     rig, switches = read_target(scene, target, roles, choices.limbs, on_root)
     problem = RetargetProblem(tuple(map(_clip, takes)), known, rig, settings.retargeting)
-    return Reading(target, sources, tuple(takes), switches, maps, problem)
+    return RetargetScene(target, sources, tuple(takes), switches, maps, problem)
 
 
 def _read_clip(
@@ -241,9 +246,9 @@ def _roles(
     return maps, body_bones(known, source.data.bones) if shows else known
 
 
-def _clip(take: ArmatureTake) -> Clip:
+def _clip(take: ArmatureTake) -> StagedMotion:
     origin = take.rest.origins[0] * (1.0, 1.0, 0.0)
-    return Clip(take.parts[0].motion, origin, vertical_part(take.rest.rotations[0]))
+    return StagedMotion(take.parts[0].motion, origin, vertical_part(take.rest.rotations[0]))
 
 
 def _wanted(maps: BoneMaps) -> HumanoidMap:
@@ -262,7 +267,7 @@ def _known(roles: HumanoidMap, source: bpy.types.Object) -> HumanoidMap:
 
 
 def _entry(
-    source: bpy.types.Object, found: Reading, settings: RetargetBundle
+    source: bpy.types.Object, found: RetargetScene, settings: RetargetBundle
 ) -> dict[str, object]:
     """Return what the action remembers of how it was made."""
     return {

@@ -27,7 +27,7 @@ class Start(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Clip:
+class StagedMotion:
     """A motion in the world, and the stage that it is played on."""
 
     motion: Motion
@@ -54,7 +54,7 @@ class Clip:
 class RetargetProblem:
     """All that Retarget depends on."""
 
-    clips: tuple[Clip, ...]
+    clips: tuple[StagedMotion, ...]
     roles: HumanoidMap
     """Of the source's joints."""
     target: TargetRig
@@ -91,7 +91,7 @@ def retarget_clips(problem: RetargetProblem, *, progress: Progress = unwatched) 
 
 
 def _retarget(
-    clip: Clip, problem: RetargetProblem, progress: Progress
+    clip: StagedMotion, problem: RetargetProblem, progress: Progress
 ) -> Mapping[str, BoneKeys]:
     target, settings = problem.target, problem.settings
     on_root = settings.root_motion is RootMotion.ROOT_BONE

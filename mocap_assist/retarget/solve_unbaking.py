@@ -49,7 +49,7 @@ class BoneShape:
 
 
 @dataclass(frozen=True, eq=False)
-class Tree:
+class KeyedMotion:
     """A motion, and the bones of its joints; None for joints that are none."""
 
     motion: Motion
@@ -65,7 +65,7 @@ class Tree:
 class UnbakeProblem:
     """All that Unbake depends on."""
 
-    trees: tuple[Tree, ...]
+    trees: tuple[KeyedMotion, ...]
     tolerance: float
     settings: UnbakeSettings
 
@@ -99,7 +99,7 @@ def unbake(problem: UnbakeProblem, *, progress: Progress = unwatched) -> Unbaked
 
 
 def _unbake_tree(
-    tree: Tree, problem: UnbakeProblem, progress: Progress
+    tree: KeyedMotion, problem: UnbakeProblem, progress: Progress
 ) -> tuple[dict[str, SparseKeys], float]:
     tolerance = problem.tolerance
     for attempt in range(N_TRIES):
@@ -185,7 +185,7 @@ def _curve_errors(curve: KeyCurve, rotations: Array, mode: str) -> Array:
     return np.asarray(angle_between(played, rotations))
 
 
-def _location_curve(tree: Tree, curve: KeyCurve) -> KeyCurve:
+def _location_curve(tree: KeyedMotion, curve: KeyCurve) -> KeyCurve:
     shape = tree.shapes[0]
     assert shape is not None
     back = inverse(shape.axes)
@@ -196,7 +196,7 @@ def _location_curve(tree: Tree, curve: KeyCurve) -> KeyCurve:
     )
 
 
-def _error(tree: Tree, curves: Sequence[KeyCurve | None], root: KeyCurve) -> float:
+def _error(tree: KeyedMotion, curves: Sequence[KeyCurve | None], root: KeyCurve) -> float:
     """Return by how much any end is off when Blender plays the curves, meters."""
     motion, frames = tree.motion, np.arange(tree.motion.n_frames)
     rotations = np.tile(IDENTITY, (*motion.rotations.shape[:2], 1))
@@ -210,7 +210,7 @@ def _error(tree: Tree, curves: Sequence[KeyCurve | None], root: KeyCurve) -> flo
     return float(np.linalg.norm(played - points.positions(truth), axis=-1).max())
 
 
-def _pruned(tree: Tree) -> Tree:
+def _pruned(tree: KeyedMotion) -> KeyedMotion:
     """Leave out bones that never move; a control rig has hundreds of helpers."""
     motion = tree.motion
     skeleton = motion.skeleton

@@ -10,13 +10,13 @@ from ...solvers.rotations import inverse, multiply
 from ..actions.armature_read import read_take
 from ..actions.armature_write import Output, check_writable, put_to_use
 from ..actions.bone_channels import animated_curves
-from ..actions.take import ArmatureTake, Part
+from ..actions.take import ArmatureTake, TakePart
 from ..blender.time_slices import Sliced, Steps
 from ..runtime.selection import played_source
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
 from .button_settings import UnbakeBundle
-from .solve_unbaking import BoneShape, Tree, Unbaked, UnbakeProblem, unbake
+from .solve_unbaking import BoneShape, KeyedMotion, Unbaked, UnbakeProblem, unbake
 from .sparse_write import count_keys, write_sparse
 
 
@@ -66,7 +66,7 @@ def _problem(take: ArmatureTake, settings: UnbakeBundle) -> UnbakeProblem:
     return UnbakeProblem(trees, settings.choices.tolerance, settings.unbaking)
 
 
-def _tree(take: ArmatureTake, part: Part) -> Tree:
+def _tree(take: ArmatureTake, part: TakePart) -> KeyedMotion:
     """Return a part as it moves within what carries it, which keeps its own keys."""
     rig, rest, root = take.rig, take.rest, part.bones[0]
     rotation = rest.rotations[0]
@@ -84,7 +84,7 @@ def _tree(take: ArmatureTake, part: Part) -> Tree:
         )
         for bone in part.bones
     )
-    return Tree(
+    return KeyedMotion(
         Motion(motion.skeleton, rotations, positions, motion.frame_rate),
         shapes,
         take.channels[root].location_keyed,

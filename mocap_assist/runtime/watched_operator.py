@@ -14,7 +14,7 @@ from .solver_operator import SolverOperator
 logger = logging.getLogger(__name__)
 
 
-class View(Protocol):
+class PreviewDisplay(Protocol):
     """Display of the previews of a solve."""
 
     def show(
@@ -29,7 +29,7 @@ class View(Protocol):
 class WatchedOperator(SolverOperator):
     """Mix in like SolverOperator if `read_scene` returns a `PreviewSolve`."""
 
-    open_view: ClassVar[Callable[..., View | None]]
+    open_view: ClassVar[Callable[..., PreviewDisplay | None]]
     """Return a view for a scene, subject and settings; None without previews."""
     rescue: ClassVar[Callable[..., Callable[[list[Any]], Any] | None]] = staticmethod(
         lambda scene, target, settings: None
@@ -38,7 +38,7 @@ class WatchedOperator(SolverOperator):
 
     It is called with scene, subject and settings. None, the default, keeps no result.
     """
-    _view: View | None = None
+    _view: PreviewDisplay | None = None
 
     def _solve(self, solve: "partial[Any]") -> Generator[tuple[float, str], None, Any]:
         self._view = type(self).open_view(*self._read_arguments())

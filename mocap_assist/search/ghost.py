@@ -5,17 +5,17 @@ from numpy.typing import NDArray
 
 from ...solvers.arrays import Array
 from ...solvers.motion.humanoid import PARENTS, resize_postures, rotate_about_vertical
-from .solve_finding import Found, Stage
+from .solve_finding import Found, QueryPath
 
 BONES = np.array([(parent, joint) for joint, parent in enumerate(PARENTS) if parent >= 0])
 
 
-def ghost_lines(stage: Stage, found: Found, query_frame: float) -> Array:
+def ghost_lines(stage: QueryPath, found: Found, query_frame: float) -> Array:
     """Return what the clip does when the query is at a frame: where it is, with its build.
 
     Parameters
     ----------
-    stage : Stage
+    stage : QueryPath
     found : Found
     query_frame : float
         It stands still before the first and after the last one.

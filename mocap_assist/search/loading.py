@@ -13,7 +13,7 @@ from ..actions.action_write import write_action
 from ..actions.armature_write import Output, check_writable
 from ..blender import compat
 from ..blender.stored_json import store_json
-from ..library.button_settings import LoadBundle, LoadChoices, Part
+from ..library.button_settings import ClipPart, LoadBundle, LoadChoices
 from ..library.solve_fetching import Fetched, FetchProblem, fetch_clip
 from ..library.sources import background_blender
 from ..retarget.solve_retargeting import Start
@@ -125,7 +125,7 @@ def problem_of(
     rig, switches = read_target(scene, armature, find_roles(armature), limbs, on_root)
     problem = FetchProblem(
         origin=found.entry.origin,
-        frames=found.match.frames if choices.part is Part.MATCH else None,
+        frames=found.match.frames if choices.part is ClipPart.MATCH else None,
         frame_rate=scene_rate(scene),
         start=_start(armature, search, found) if choices.at_query else None,
         target=rig,

@@ -44,7 +44,7 @@ class FindProblem:
 
 
 @dataclass(frozen=True, eq=False)
-class Stage:
+class QueryPath:
     """Position of the query in each frame, and the proportions of the actor."""
 
     positions: Array
@@ -79,7 +79,7 @@ class Finding:
     """What a search has found."""
 
     found: tuple[Found, ...]
-    stage: Stage
+    stage: QueryPath
     n_clips: int
     """In the library."""
 
@@ -127,7 +127,7 @@ def _shown(match: Match, number: int, library: ClipLibrary) -> Found:
     return Found(entry, match, part, postures.frame_rate, thumbnail(part.astype(np.float64)))
 
 
-def stage_of(query: Recording) -> Stage:
+def stage_of(query: Recording) -> QueryPath:
     """Return the position of a recording and the proportions of its actor.
 
     Raises InvalidMotionError where no body is recognized in it.
@@ -139,4 +139,4 @@ def stage_of(query: Recording) -> Stage:
         positions = posture_positions(tracks)
     body = normalize_postures(positions, tracks.frame_rate)
     lengths = estimate_bone_lengths(body.postures)
-    return Stage(body.hip_positions, np.unwrap(body.headings), lengths, tracks.frame_rate)
+    return QueryPath(body.hip_positions, np.unwrap(body.headings), lengths, tracks.frame_rate)

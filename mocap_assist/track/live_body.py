@@ -21,7 +21,7 @@ MAX_TIME_FRACTION = 0.3
 """Maximum fraction of the time for frame changes, however heavy the scene is."""
 
 
-class Stage(NamedTuple):
+class BodyDisplay(NamedTuple):
     """Position and timing of the displayed body."""
 
     scene_from_camera: Array
@@ -29,13 +29,13 @@ class Stage(NamedTuple):
     shown: Shown
 
 
-StageOf = Callable[[bpy.types.Object], Stage]
+StageOf = Callable[[bpy.types.Object], BodyDisplay]
 """Return the stage of the subject in its current state."""
 
 
-def stage_of_preview(preview: bpy.types.Object) -> Stage:
+def stage_of_preview(preview: bpy.types.Object) -> BodyDisplay:
     """Return the stage of a recording's points; raises MocapAssistError if there are none."""
-    return Stage(np.array(preview.matrix_world), shown_by(preview.data))
+    return BodyDisplay(np.array(preview.matrix_world), shown_by(preview.data))
 
 
 class LiveBody:

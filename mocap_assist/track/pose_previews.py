@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
 
-from ...solvers.depth_scene import Floor
+from ...solvers.depth_scene import FloorPlane
 from ...solvers.depth_tracking.body import BodyModel
 from ...solvers.depth_tracking.tracking import PosePreview
 
@@ -17,7 +17,7 @@ def no_preview(preview: Any) -> None:
 class FloorPreview(NamedTuple):
     """First preview: the floor under the actor."""
 
-    floor: Floor | None
+    floor: FloorPlane | None
 
 
 class PosePreviewSender:
@@ -39,7 +39,7 @@ class PosePreviewReceiver:
     """Rebuilds poses from the previews of a sender."""
 
     def __init__(self) -> None:
-        self.floor: Floor | None = None
+        self.floor: FloorPlane | None = None
         self._body: BodyModel | None = None
 
     def poses(self, previews: Iterable[Any]) -> Iterator[PosePreview]:

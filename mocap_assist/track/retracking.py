@@ -18,9 +18,9 @@ from ..runtime.selection import played_source, selected_armature
 from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
 from .hand_pose import HandPose
-from .live_body import LiveBody, Stage
+from .live_body import BodyDisplay, LiveBody
 from .low_confidence import list_low_confidence
-from .solve_retracking import Correction, Played, retrack_recording
+from .solve_retracking import Correction, TrackedActor, retrack_recording
 from .solve_tracking import LowConfidenceRange, low_confidence_ranges, mean_cm
 from .tracked_body import TrackedBody, armature_from_motion, is_tracked
 from .tracked_checks import check_in_time
@@ -97,12 +97,12 @@ class _View(LiveBody):
         self._pose.restore()
 
 
-def _stage_of(armature: bpy.types.Object) -> Stage:
+def _stage_of(armature: bpy.types.Object) -> BodyDisplay:
     tracked = TrackedBody.read(armature)
     armature_from_camera = armature_from_motion(armature, tracked.body) @ scene_from_camera(
         tracked.floor
     )
-    return Stage(np.array(armature.matrix_world) @ armature_from_camera, tracked.shown)
+    return BodyDisplay(np.array(armature.matrix_world) @ armature_from_camera, tracked.shown)
 
 
 @Sliced
@@ -142,14 +142,14 @@ def write_retracked(
     return f"{source_new[0].name}: {report}"
 
 
-def _played(armature: bpy.types.Object) -> Steps[tuple[TrackedTake, Played]]:
+def _played(armature: bpy.types.Object) -> Steps[tuple[TrackedTake, TrackedActor]]:
     """Return the take of an armature, and the same with the data for tracking."""
     tracked = TrackedBody.read(armature)
     recording = open_recording(tracked.shown)
     take = yield from read_tracked_take.steps(
         armature, played_source(armature), recording.n_frames, recording.frame_rate
     )
-    return take, Played(
+    return take, TrackedActor(
         recording, tracked.actor, tracked.body, tracked.floor, take.first, take.motion
     )
 

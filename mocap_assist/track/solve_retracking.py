@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...solvers.depth_scene import DepthRecording, Floor, ForegroundSettings, find_actor
+from ...solvers.depth_scene import DepthRecording, FloorPlane, ForegroundSettings, find_actor
 from ...solvers.depth_tracking import BodyModel, Retracked, RetrackSettings, retrack
 from ...solvers.depth_tracking.tracking import offset_frames
 from ...solvers.motion import Motion
@@ -16,13 +16,13 @@ ACTOR_FRACTION = 0.3
 """Fraction of the work for the separation of the actor from the room."""
 
 
-class Played(NamedTuple):
+class TrackedActor(NamedTuple):
     """Motion of an armature, with the recording and body of its actor."""
 
     recording: DepthRecording
     actor: ForegroundSettings
     body: BodyModel
-    floor: Floor | None
+    floor: FloorPlane | None
     first: int
     """Index of the depth image at the start of the motion."""
     motion: Motion
@@ -40,7 +40,7 @@ class Correction(NamedTuple):
 
 
 def retrack_recording(
-    played: Played,
+    played: TrackedActor,
     correction: Correction,
     settings: RetrackSettings,
     *,

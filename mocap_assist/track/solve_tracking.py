@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.denoising import PlantSettings
-from ...solvers.depth_scene import DepthRecording, Floor, ForegroundSettings, find_actor
+from ...solvers.depth_scene import DepthRecording, FloorPlane, ForegroundSettings, find_actor
 from ...solvers.depth_tracking.body import BodyModel
 from ...solvers.depth_tracking.capturing import Capture, CaptureSettings, unfinished_capture
 from ...solvers.motion import Motion
@@ -41,7 +41,7 @@ class Tracked(NamedTuple):
     """Index of the depth image at the start of the motion."""
     motion: Motion
     body: BodyModel
-    floor: Floor | None
+    floor: FloorPlane | None
     confidence: dict[str, NDArray[np.float64]]
     """Of each joint, shape (n_frames,), 0 to 1."""
     residual: NDArray[np.float64]
@@ -95,7 +95,7 @@ def _build_tracked(
     first: int,
     motion: Motion,
     captured: Capture,
-    floor: Floor | None,
+    floor: FloorPlane | None,
     remarks: tuple[str, ...],
 ) -> Tracked:
     joints = captured.joints

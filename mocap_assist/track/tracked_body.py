@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from ...solvers.arrays import Array
-from ...solvers.depth_scene import Floor, ForegroundMethod, ForegroundSettings
+from ...solvers.depth_scene import FloorPlane, ForegroundMethod, ForegroundSettings
 from ...solvers.depth_tracking.body import CAPSULES, LENGTHS, SEGMENTS, BodyModel, rest_frames
 from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.rotations import fit_similarity
@@ -31,7 +31,7 @@ class TrackedBody:
 
     body: BodyModel
     shown: Shown
-    floor: Floor | None
+    floor: FloorPlane | None
     actor: ForegroundSettings
 
     def write(self, armature: bpy.types.Object, bones: Mapping[str, str]) -> None:
@@ -71,7 +71,7 @@ def _parsed(text: str) -> TrackedBody:
             np.array([stored["radii"][name] for name in CAPSULES]),
         ),
         Shown.of(stored["shown"]),
-        None if floor is None else Floor(np.array(floor[:3]), float(floor[3])),
+        None if floor is None else FloorPlane(np.array(floor[:3]), float(floor[3])),
         ForegroundSettings(**actor | {"way": ForegroundMethod[actor["way"]]}),
     )
 

@@ -14,7 +14,7 @@ from ...solvers.motion import Motion
 from ..actions.bone_channels import animated_curves, read_bone, rotation_curves
 from ..actions.curves import Channel
 from ..actions.frames import Grid
-from ..actions.take import ArmatureTake, BoneChannels, Part, part_of
+from ..actions.take import ArmatureTake, BoneChannels, TakePart, part_of
 from ..blender.block_references import BlockReference, SourceReference
 from ..blender.compat import Source
 from ..blender.time_slices import Sliced, Steps, should_yield
@@ -82,10 +82,10 @@ class TrackedTake:
         carrier = self._carrier(last + 1 - first)
         frames = self.frames[rows]
         grid = Grid(frames, self.tracked.shown.step, (True, True))
-        parts = (Part(segment, part.bones, carrier),)
+        parts = (TakePart(segment, part.bones, carrier),)
         return ArmatureTake(self.rig, grid, parts, None, self.channels, self.space)
 
-    def _part(self, channels: tuple[BoneChannels, ...], n_frames: int) -> Part:
+    def _part(self, channels: tuple[BoneChannels, ...], n_frames: int) -> TakePart:
         root = self.rig.bones.index(self.bones["hips"])
         bones, carrier = self.rig.subtree(root), self._carrier(n_frames)
         return part_of(self.rig, bones, channels, carrier, self.space, self.rate)
@@ -96,12 +96,12 @@ class TrackedTake:
         )
         return Placement(rotations, positions, self.space.scale)
 
-    def _joints(self, part: Part) -> list[int]:
+    def _joints(self, part: TakePart) -> list[int]:
         """Return the index of each of the `SEGMENTS` among the joints of a part."""
         owners = [self.rig.bones[bone] if bone >= 0 else "" for bone in part.bones]
         return [owners.index(self.bones[name]) for name in SEGMENTS]
 
-    def _of_body(self, part: Part) -> Motion:
+    def _of_body(self, part: TakePart) -> Motion:
         motion = part.motion
         rotations = np.tile(IDENTITY, (motion.n_frames, len(JOINTS), 1))
         rotations[:, : len(SEGMENTS)] = motion.rotations[:, self._joints(part)]

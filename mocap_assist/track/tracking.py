@@ -10,7 +10,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ...solvers.denoising import PlantSettings
-from ...solvers.depth_scene import Floor, ForegroundSettings
+from ...solvers.depth_scene import FloorPlane, ForegroundSettings
 from ...solvers.depth_tracking.body import scene_from_camera
 from ...solvers.depth_tracking.capturing import CaptureSettings
 from ...solvers.settings import Settings, setting
@@ -155,7 +155,7 @@ def write_tracked(
     return f"{armature.name}: {_report(result)}"
 
 
-def _scene_from_motion(preview: bpy.types.Object, floor: Floor | None) -> Matrix:
+def _scene_from_motion(preview: bpy.types.Object, floor: FloorPlane | None) -> Matrix:
     """Return the transform (4, 4) from the motion to the scene, where the points are."""
     motion_from_camera = scene_from_camera(floor)
     return preview.matrix_world @ Matrix(np.linalg.inv(motion_from_camera).tolist())

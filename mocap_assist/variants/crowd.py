@@ -18,7 +18,7 @@ from .tags import is_variant
 NO_ARMATURE = "The armature of the variants was deleted. Press Vary again."
 
 
-class Member(NamedTuple):
+class CrowdMember(NamedTuple):
     """Variant and placement of one armature of a crowd."""
 
     variant: int
@@ -30,12 +30,12 @@ class Member(NamedTuple):
     """Radians."""
 
 
-def draw_members(n_members: int, n_variants: int, choices: CrowdChoices) -> list[Member]:
+def draw_members(n_members: int, n_variants: int, choices: CrowdChoices) -> list[CrowdMember]:
     """Draw a crowd: each variant is used once before any is repeated.
 
     The first members do not depend on the number of members.
     """
-    members: list[Member] = []
+    members: list[CrowdMember] = []
     orders: list[int] = []
     for member_index in range(n_members):
         rng = np.random.default_rng([choices.crowd_seed, member_index])
@@ -45,7 +45,7 @@ def draw_members(n_members: int, n_variants: int, choices: CrowdChoices) -> list
         distance, angle, delay, rotation = rng.uniform(size=4)
         radius = choices.spread * np.sqrt(distance)  # even over the disc
         members.append(
-            Member(
+            CrowdMember(
                 orders.pop(0),
                 float(choices.delay * delay),
                 (
@@ -117,7 +117,7 @@ def _clear(armature: bpy.types.Object, ours: set[bpy.types.Action]) -> None:
             animation.nla_tracks.remove(track)
 
 
-def _stand(armature: bpy.types.Object, member: Member, meters_per_unit: float) -> None:
+def _stand(armature: bpy.types.Object, member: CrowdMember, meters_per_unit: float) -> None:
     armature.delta_location = (*(each / meters_per_unit for each in member.offset), 0.0)
     rotation = Euler((0.0, 0.0, member.angle))
     armature.delta_rotation_euler = rotation

@@ -12,7 +12,7 @@ from ...solvers.arrays import Array
 from ...solvers.motion import Motion
 from ..actions.bone_channels import animated_curves
 from ..actions.curves import CONSTANT, deselect, write_first
-from ..actions.take import ArmatureTake, Part, basis_rotations, root_locations
+from ..actions.take import ArmatureTake, TakePart, basis_rotations, root_locations
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene.controls import BoneKeys
@@ -31,7 +31,7 @@ class Held(NamedTuple):
     value: float
 
 
-class Stage(NamedTuple):
+class BaseExample(NamedTuple):
     """The first example; it supplies every channel except the body's motion."""
 
     take: ArmatureTake
@@ -42,7 +42,7 @@ class Stage(NamedTuple):
     @classmethod
     def of(
         cls, takes: Sequence[ArmatureTake], first: Source, movers: Collection[str] = ()
-    ) -> "Stage":
+    ) -> "BaseExample":
         """Take it from the examples, but for the channels of some bones."""
         rotated = {
             index
@@ -69,7 +69,7 @@ class Stage(NamedTuple):
         carrier = Placement(
             body.carrier.rotations[:1], body.carrier.origins[:1], body.carrier.scale
         )
-        part = Part(motion, body.bones, carrier)
+        part = TakePart(motion, body.bones, carrier)
         rotations_by_bone = basis_rotations(part, rig, self.take.rest)
         root = body.bones[0]
         return {
@@ -107,7 +107,9 @@ def _once_if_still(rotations: Array) -> Array:
     return first_only
 
 
-def hold_others(action: bpy.types.Action, slot: bpy.types.ActionSlot, stage: Stage) -> None:
+def hold_others(
+    action: bpy.types.Action, slot: bpy.types.ActionSlot, stage: BaseExample
+) -> None:
     """Add one key for each channel of the example that the action lacks."""
     bag = compat.ensure_channelbag(action, slot)
     there = {curve.data_path for curve in bag.fcurves}

@@ -35,7 +35,7 @@ _shown: dict[str, ArmatureTake] = {}
 milliseconds, and what was solved is read again before it is written."""
 
 
-class Reading(NamedTuple):
+class VaryScene(NamedTuple):
     """What Vary found in the scene."""
 
     sources: tuple[Source, ...]
@@ -95,7 +95,7 @@ def read_varying(
 @Sliced
 def read(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: VaryBundle
-) -> Steps[Reading]:
+) -> Steps[VaryScene]:
     """Read the chosen actions; of a control rig what its body does."""
     here = Subject.of(scene, armature)
     lasting = [SourceReference.of(each) for each in chosen_sources(armature, settings.choices)]
@@ -120,7 +120,7 @@ def read(
     )
     rig, body = takes[0].rig, takes[0].parts[0]
     shown = [rig.bones[bone] for bone in body.bones] if controls is not None else []
-    return Reading(sources, tuple(takes), problem, switches, movers_of(armature, shown))
+    return VaryScene(sources, tuple(takes), problem, switches, movers_of(armature, shown))
 
 
 def _read_once(here: Subject, source: SourceReference) -> Steps[ArmatureTake]:

@@ -17,7 +17,12 @@ from ...solvers.rotations import multiply, rotate
 from ...solvers.variation import VarySettings, resample_loop
 from ...solvers.workflows import vary_motions
 from ..library.thumbnails import Pixels, thumbnail
-from ..retarget.solve_retargeting import Clip, Retargeted, RetargetProblem, retarget_clips
+from ..retarget.solve_retargeting import (
+    Retargeted,
+    RetargetProblem,
+    StagedMotion,
+    retarget_clips,
+)
 from ..scene.controls import TargetRig
 
 SIMILAR_VARIANTS = "Variants are nearly identical: add source actions or raise Amount."
@@ -94,7 +99,9 @@ def _keyed(
     """Return the channels of a control rig's bones for each motion of its body."""
     if controls is None:
         return ()
-    clips = tuple(Clip(motion, controls.origin, controls.rotation) for motion in motions)
+    clips = tuple(
+        StagedMotion(motion, controls.origin, controls.rotation) for motion in motions
+    )
     names = motions[0].skeleton.names
     roles = HumanoidMap({name: name for name in names if name in HUMANOID_ROLES})
     problem = RetargetProblem(clips, roles, controls.rig, controls.settings)

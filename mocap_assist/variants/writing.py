@@ -15,8 +15,8 @@ from ..scene import history
 from ..search.previews import give_picture
 from . import listing
 from .button_settings import VaryBundle
-from .keys import Stage, hold_others, without_still
-from .reading import Reading, Switches, read
+from .keys import BaseExample, hold_others, without_still
+from .reading import Switches, VaryScene, read
 from .solve_varying import Varied
 from .tags import names_for, tag
 
@@ -75,19 +75,19 @@ class _Writer(NamedTuple):
     examples: tuple[str, ...]
     slot: str
     """Identifier of the first example's."""
-    stage: Stage
+    stage: BaseExample
     switches: Switches
     names: list[str]
 
     @classmethod
-    def of(cls, found: Reading, settings: VaryBundle, varied: Varied) -> "_Writer":
+    def of(cls, found: VaryScene, settings: VaryBundle, varied: Varied) -> "_Writer":
         first = found.sources[0]
         return cls(
             settings,
             varied,
             tuple(action.name for action, _ in found.sources),
             first[1].identifier,
-            Stage.of(found.takes, first, found.movers),
+            BaseExample.of(found.takes, first, found.movers),
             found.switches,
             names_for(first[0], len(varied.motions)),
         )

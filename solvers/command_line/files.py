@@ -11,7 +11,7 @@ from ..files import real_path
 from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, within
 from ..recordings import (
-    Floor,
+    FloorPlacement,
     ReadingSettings,
     detect_format,
     open_bodies,
@@ -81,7 +81,7 @@ def read(
     path: Path,
     arguments: argparse.Namespace,
     progress: Progress,
-    floor: Floor = Floor.NEVER,
+    floor: FloorPlacement = FloorPlacement.NEVER,
 ) -> Motion | Tracks:
     """Read a recording as `read_recorded` does; return the joints of a camera as points."""
     recording = read_recorded(path, arguments, progress, floor)
@@ -92,7 +92,7 @@ def read_recorded(
     path: Path,
     arguments: argparse.Namespace,
     progress: Progress,
-    floor: Floor = Floor.NEVER,
+    floor: FloorPlacement = FloorPlacement.NEVER,
 ) -> Motion | Tracks | JointRecording:
     """Read a recording with the options of `add_reading_options`."""
     return read_as(

@@ -25,7 +25,7 @@ from .verb import Outcome, Task
 CENTIMETER = 0.01
 
 
-class Target(NamedTuple):
+class RetargetTarget(NamedTuple):
     """The target of all motions of a run."""
 
     skeleton: Skeleton
@@ -52,7 +52,7 @@ def add_retarget_options(parser: argparse.ArgumentParser) -> None:
     arguments_from(parser, RetargetSettings)
 
 
-def read_target(arguments: argparse.Namespace, progress: Progress) -> Target:
+def read_target(arguments: argparse.Namespace, progress: Progress) -> RetargetTarget:
     """Read the target skeleton for all motions of a run.
 
     Raises
@@ -65,13 +65,13 @@ def read_target(arguments: argparse.Namespace, progress: Progress) -> Target:
     recording = read(arguments.to, with_body(arguments, ""), progress)
     if not isinstance(recording, Motion):
         raise InvalidMotionError(f"{arguments.to} holds points without a skeleton.")
-    target = Target(recording.skeleton, _map(recording.skeleton, arguments.target_map))
+    target = RetargetTarget(recording.skeleton, _map(recording.skeleton, arguments.target_map))
     if arguments.write_target_map is not None:
         write_humanoid_map(target.humanoid, arguments.write_target_map)
     return target
 
 
-def perform_retarget(task: Task, target: Target, progress: Progress) -> Outcome:
+def perform_retarget(task: Task, target: RetargetTarget, progress: Progress) -> Outcome:
     """Retarget one motion and write it."""
     motion = _read_motion(task, "retargeted", within(progress, 0.0, 0.3))
     source_map = _map(motion.skeleton, task.arguments.source_map)

@@ -10,7 +10,7 @@ from ..denoising import (
     measure_quality,
 )
 from ..progress import Progress, within
-from ..recordings import FloorSettings, depth_takes_in
+from ..recordings import FloorPlacementSettings, depth_takes_in
 from .capture_verb import add_capture_options, perform_capture, read_body
 from .convert import convert
 from .denoise_verb import add_denoise_options, learn_prior, perform_denoise
@@ -75,12 +75,12 @@ def _quality(task: Task, prepared: None, progress: Progress) -> Outcome:
 
 def _convert_options(parser: argparse.ArgumentParser) -> None:
     add_reading_options(parser)
-    arguments_from(parser, FloorSettings)
+    arguments_from(parser, FloorPlacementSettings)
 
 
 def _convert(task: Task, prepared: None, progress: Progress) -> Outcome:
     reading = within(progress, 0.0, 0.7)
-    floor = settings_from_arguments(task.arguments, FloorSettings).place_on_floor
+    floor = settings_from_arguments(task.arguments, FloorPlacementSettings).place_on_floor
     recording = read(task.source, task.arguments, reading, floor)
     return convert(recording, task.target, within(progress, 0.7, 1.0))
 

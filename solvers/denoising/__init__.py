@@ -13,7 +13,7 @@ True
 'RightArm is missing for 1.00 s.'
 """
 
-from .denoise import Denoised, DenoiseSettings, Method, denoise
+from .denoise import Denoised, DenoiseMethod, DenoiseSettings, denoise
 from .feet import Planted, PlantSettings, plant_feet
 from .limits import JointLimitsSettings, clamp_to_limits, learn_joint_limits, limit_excess
 from .quality import (
@@ -33,6 +33,7 @@ from .window_priors import (
 )
 
 __all__ = [
+    "DenoiseMethod",
     "DenoiseSettings",
     "Denoised",
     "FilterBases",
@@ -40,7 +41,6 @@ __all__ = [
     "Issue",
     "IssueSettings",
     "JointLimitsSettings",
-    "Method",
     "PlantSettings",
     "Planted",
     "Quality",

@@ -34,7 +34,7 @@ HALF_CONFIDENCE_DEVIATION = 5.0
 the confidence."""
 
 
-class Method(Choice):
+class DenoiseMethod(Choice):
     """Methods of denoising."""
 
     DEFAULT = "default", "Estimate the noise of the take and weight all patterns"
@@ -45,8 +45,8 @@ class Method(Choice):
 class DenoiseSettings(Settings):
     """Settings of `denoise`."""
 
-    method: Method = setting(
-        Method.DEFAULT,
+    method: DenoiseMethod = setting(
+        DenoiseMethod.DEFAULT,
         "Denoising method; the default measured best",
         advanced=True,
     )
@@ -230,7 +230,7 @@ def _fill_gaps(
     segment: Motion | Tracks, settings: DenoiseSettings, progress: Progress
 ) -> FilledMarkers | None:
     """Fill gaps of points, so that the filter treats predicted samples as observed."""
-    if isinstance(segment, Tracks) and settings.method is Method.DEFAULT:
+    if isinstance(segment, Tracks) and settings.method is DenoiseMethod.DEFAULT:
         return fill_markers(segment, progress)
     return None
 
@@ -248,7 +248,7 @@ def _estimate(
     settings: DenoiseSettings,
     progress: Progress,
 ) -> tuple[Estimate, str]:
-    if settings.method is Method.PUBLISHED:
+    if settings.method is DenoiseMethod.PUBLISHED:
         return filter_as_published(channels, frame_rate, bases, progress)
     return apply_default_method(channels, frame_rate, bases, progress)
 

@@ -3,7 +3,7 @@
 from .actor import Actor, find_actor
 from .camera import Camera
 from .camera_checks import check_intrinsics
-from .floor import LEVEL, Floor, find_floor
+from .floor import LEVEL, FloorPlane, find_floor
 from .foreground import ForegroundMethod, ForegroundSettings
 from .recording import ColorImage, DepthImage, DepthRecording
 
@@ -14,7 +14,7 @@ __all__ = [
     "ColorImage",
     "DepthImage",
     "DepthRecording",
-    "Floor",
+    "FloorPlane",
     "ForegroundMethod",
     "ForegroundSettings",
     "check_intrinsics",

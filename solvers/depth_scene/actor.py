@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..progress import Progress, unwatched, within
-from .bodies import Bodies, find_bodies
+from .bodies import LabeledBodies, find_bodies
 from .camera_checks import check_intrinsics
-from .floor import LEVEL, Floor, find_floor
+from .floor import LEVEL, FloorPlane, find_floor
 from .foreground import (
     ActorImages,
     Background,
@@ -50,7 +50,7 @@ class Actor:
     ----------
     recording : DepthRecording
         Contains only the actor; still read frame by frame.
-    floor : Floor, or None
+    floor : FloorPlane, or None
         None if no floor is visible.
     method : ForegroundMethod
         Method that separated the actor from the room.
@@ -63,7 +63,7 @@ class Actor:
     """
 
     recording: DepthRecording
-    floor: Floor | None
+    floor: FloorPlane | None
     method: ForegroundMethod
     visible: NDArray[np.bool_]
     feet_visible: bool
@@ -185,7 +185,7 @@ class _PersonFinder:
         self._is_cropped: list[bool] = []
         self._heights: list[float] = []
 
-    def __call__(self, frame: int) -> Bodies:
+    def __call__(self, frame: int) -> LabeledBodies:
         """Return the people in a frame: bodies of plausible size, without furniture."""
         step, settings = self._step, self._actor.settings
         depth = self._actor.recording.frame(frame)[::step, ::step]
@@ -241,7 +241,7 @@ def _track_people(
 ) -> People:
     n_observed = 0
 
-    def observe(frame: int) -> Bodies:
+    def observe(frame: int) -> LabeledBodies:
         nonlocal n_observed
         n_observed += 1
         progress(n_observed / len(frames), "Finding the actor")

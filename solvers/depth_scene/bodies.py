@@ -31,7 +31,7 @@ POINT_STEP = 12
 
 
 @dataclass(frozen=True, eq=False)
-class Bodies:
+class LabeledBodies:
     """The bodies in a depth image.
 
     Attributes
@@ -71,7 +71,7 @@ class Bodies:
         return mask
 
 
-def find_bodies(depth: Depth, camera: Camera, min_area: float) -> Bodies:
+def find_bodies(depth: Depth, camera: Camera, min_area: float) -> LabeledBodies:
     """Segment a depth image into bodies of at least `min_area` square meters of surface.
 
     Neighboring pixels are connected if their depths differ by no more than the sensor noise.
@@ -96,7 +96,7 @@ def find_bodies(depth: Depth, camera: Camera, min_area: float) -> Bodies:
     surfaces = np.zeros(n_bodies + 1)
     np.add.at(surfaces, body_of_component[1:], areas)
     centers = [np.median(each, axis=0) for each in _bodies(body_of_component, points)]
-    return Bodies(
+    return LabeledBodies(
         depth,
         step,
         body_of_component[components],

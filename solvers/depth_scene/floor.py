@@ -25,7 +25,7 @@ rooms with a table top larger than the visible floor."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class FloorSettings(Settings):
+class FloorPlaneSettings(Settings):
     """Settings of the floor detection."""
 
     tilt: float = setting(
@@ -52,7 +52,7 @@ class FloorSettings(Settings):
 
 
 @dataclass(frozen=True, eq=False)
-class Floor:
+class FloorPlane:
     """A plane in the frame of a camera.
 
     Attributes
@@ -83,16 +83,16 @@ class Floor:
         return rotation, np.array([0.0, 0.0, self.height])
 
 
-LEVEL = Floor(LEVEL_UP, 0.0)
+LEVEL = FloorPlane(LEVEL_UP, 0.0)
 """Default without a visible floor: a level camera at height 0."""
 
 
 def find_floor(
     recording: DepthRecording,
-    settings: FloorSettings = FloorSettings(),
+    settings: FloorPlaneSettings = FloorPlaneSettings(),
     *,
     progress: Progress = unwatched,
-) -> Floor | None:
+) -> FloorPlane | None:
     """Find the floor of a recording: the largest upward plane with few points below it.
 
     RANSAC [1]_ tests planes through three random points of images spread over the recording.
@@ -103,12 +103,12 @@ def find_floor(
     ----------
     recording : DepthRecording
         With its background, or at least the floor around the feet.
-    settings : FloorSettings
+    settings : FloorPlaneSettings
     progress : Progress
 
     Returns
     -------
-    Floor or None
+    FloorPlane or None
         None without a visible floor, as in images that contain only the actor.
 
     References
@@ -132,7 +132,7 @@ def find_floor(
     steep = float(up @ LEVEL_UP) < np.cos(np.radians(settings.tilt))
     if steep or extent < settings.extent or len(inliers) < settings.share * len(points):
         return None
-    return Floor(up, height)
+    return FloorPlane(up, height)
 
 
 def _points(recording: DepthRecording, rng: np.random.Generator, progress: Progress) -> Array:
@@ -152,7 +152,7 @@ def _points(recording: DepthRecording, rng: np.random.Generator, progress: Progr
 
 
 def _best_plane(
-    points: Array, settings: FloorSettings, rng: np.random.Generator
+    points: Array, settings: FloorPlaneSettings, rng: np.random.Generator
 ) -> tuple[Array, float] | None:
     first, second, third = points[rng.integers(len(points), size=(3, settings.n_trials))]
     normals = np.cross(second - first, third - first)

@@ -12,9 +12,9 @@ from ..errors import InvalidMotionError
 from ..progress import Progress, unwatched
 from ..settings import Choice, Settings, setting
 from ..signals import MAD_TO_SIGMA
-from .bodies import Bodies, find_bodies
+from .bodies import LabeledBodies, find_bodies
 from .camera import Camera
-from .floor import Floor
+from .floor import FloorPlane
 from .recording import DepthImage, DepthRecording
 
 MAX_BACKGROUND_FRAMES = 60
@@ -177,7 +177,7 @@ class ActorImages:
     settings : ForegroundSettings
     background : Background, or None
         Pixels that are not in front of it are removed.
-    floor : Floor, or None
+    floor : FloorPlane, or None
         Pixels that are not above it are removed.
     trajectory : float array, shape (n_frames, 3), meters, or None
         Expected position of the actor; NaN while the actor is missing. Without it the body
@@ -187,7 +187,7 @@ class ActorImages:
     recording: DepthRecording
     settings: ForegroundSettings
     background: Background | None = None
-    floor: Floor | None = None
+    floor: FloorPlane | None = None
     trajectory: Array | None = None
 
     def __call__(self, index: int) -> DepthImage:
@@ -199,7 +199,7 @@ class ActorImages:
         label = self._label(bodies, index)
         return np.where(bodies.mask(label), depth, np.float32(0.0)) if label else 0.0 * depth
 
-    def _label(self, bodies: Bodies, index: int) -> int:
+    def _label(self, bodies: LabeledBodies, index: int) -> int:
         """Return the label of the actor's body, 0 for none."""
         candidates = np.flatnonzero(bodies.areas <= self._max_area)
         if not len(candidates):
@@ -237,7 +237,7 @@ def cut_out_actor(
     settings: ForegroundSettings = ForegroundSettings(way=ForegroundMethod.CUT),
     *,
     background: Background | None = None,
-    floor: Floor | None = None,
+    floor: FloorPlane | None = None,
     trajectory: Array | None = None,
 ) -> DepthRecording:
     """Return the recording with only the actor in it, still read frame by frame.
@@ -275,7 +275,7 @@ def is_in_front(depth: DepthImage, background: Background, margin: float) -> NDA
 
 
 def above_floor_mask(
-    depth: DepthImage, camera: Camera, floor: Floor, min_height: float
+    depth: DepthImage, camera: Camera, floor: FloorPlane, min_height: float
 ) -> NDArray[np.bool_]:
     """Return the mask of pixels more than `min_height` meters above the floor."""
     return np.asarray(depth * _upward_rays(camera, tuple(floor.up)) + floor.height > min_height)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from .bodies import Bodies
+from .bodies import LabeledBodies
 
 MAX_SPEED_M_S = 4.0
 """Maximum speed of a body's center. It guards recordings of several people: a runner stays one
@@ -54,7 +54,7 @@ class People:
 
 
 def follow_people(
-    observe: Callable[[int], Bodies],
+    observe: Callable[[int], LabeledBodies],
     frames: NDArray[np.intp],
     n_frames: int,
     frame_rate: float,
@@ -90,7 +90,7 @@ def follow_people(
 
 def _assign(
     people: list[_PersonTrack],
-    bodies: Bodies,
+    bodies: LabeledBodies,
     sample: int,
     frames: NDArray[np.intp],
     frame_rate: float,

@@ -33,7 +33,7 @@ class WorldBody(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class MarkerBody:
     """Joints and markers with their offsets."""
 
     joints: tuple[JointPrior, ...]
@@ -92,7 +92,7 @@ class Body:
         arms = np.einsum("fmij,mj->fmi", frames[:, self.bones], self.marker_offsets)
         return WorldBody(frames, joints, joints[:, self.anchors] + arms)
 
-    def with_offsets(self, offsets: Array, marker_offsets: Array) -> "Body":
+    def with_offsets(self, offsets: Array, marker_offsets: Array) -> "MarkerBody":
         """Return the body with other offsets."""
         return replace(self, offsets=offsets, marker_offsets=marker_offsets)
 

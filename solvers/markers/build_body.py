@@ -5,7 +5,7 @@ from collections.abc import Collection, Mapping
 import numpy as np
 
 from ..arrays import Array
-from .body import Body, local_rotations
+from .body import MarkerBody, local_rotations
 from .body_tables import (
     CENTRE,
     CENTRE_MARKERS,
@@ -87,7 +87,9 @@ def _to_side(offset: Triple, sign: float) -> Triple:
     return (sign * offset[0], offset[1], offset[2])
 
 
-def build_body(centers: JointCenters, landmarks: Mapping[str, Array]) -> tuple[Body, Array]:
+def build_body(
+    centers: JointCenters, landmarks: Mapping[str, Array]
+) -> tuple[MarkerBody, Array]:
     """Return the initial body, and the local rotations of its bones in all frames.
 
     Lengths are medians over frames and sides. The rotations have shape (n_frames, n_joints,
@@ -101,7 +103,7 @@ def build_body(centers: JointCenters, landmarks: Mapping[str, Array]) -> tuple[B
     offsets = _symmetric(offsets, names)
     offsets[0] = [0.0, 0.0, _hips_height(offsets, names, centers.scale)]
     marker_offsets = [_marker_offset(marker, centers, frames, landmarks) for marker in markers]
-    body = Body(joints, markers, offsets, np.array(marker_offsets))
+    body = MarkerBody(joints, markers, offsets, np.array(marker_offsets))
     return body, local_rotations(frames, joints, len(landmarks["LASI"]))
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from .body import Body, Poses
+from .body import MarkerBody, Poses
 from .fit_poses import compute_residuals
 
 FRAMES_PER_BLOCK = 256
@@ -18,7 +18,9 @@ REGULARIZATION = 1e-9
 """Weight that is added to the diagonal of the normal equations. It guards a factorization."""
 
 
-def find_determined_joints(body: Body, observed: Array, poses: Poses) -> NDArray[np.bool_]:
+def find_determined_joints(
+    body: MarkerBody, observed: Array, poses: Poses
+) -> NDArray[np.bool_]:
     """Return whether each joint is determined in each frame, shape (n_frames, n_joints).
 
     A joint is determined if a marker on its bone or a descendant is observed, and if markers
@@ -45,7 +47,7 @@ def find_determined_joints(body: Body, observed: Array, poses: Poses) -> NDArray
     return determined
 
 
-def _standard_deviations(body: Body, observed: Array, poses: Poses) -> Array:
+def _standard_deviations(body: MarkerBody, observed: Array, poses: Poses) -> Array:
     """Return standard deviations of the root position, meters, and all rotations, radians.
 
     Shape (n_frames, 1 + n_rotating_joints); the largest of three coordinates.

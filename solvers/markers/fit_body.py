@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..progress import Progress, unwatched
-from .body import Body, Poses, WorldBody
+from .body import MarkerBody, Poses, WorldBody
 from .fit_poses import DAMPING, apply_step, compute_residuals, cost_of
 
 N_INDEPENDENT_FRAMES = 10.0
@@ -34,8 +34,8 @@ class Measures(NamedTuple):
 
 
 def fit_body(
-    body: Body, observed: Array, poses: Poses, *, progress: Progress = unwatched
-) -> tuple[Body, Poses]:
+    body: MarkerBody, observed: Array, poses: Poses, *, progress: Progress = unwatched
+) -> tuple[MarkerBody, Poses]:
     """Fit joint offsets, marker offsets and poses together.
 
     Joints become the centers of rotation of the complete chain, as in [1]_ and [2]_; a joint
@@ -44,7 +44,7 @@ def fit_body(
 
     Parameters
     ----------
-    body : Body
+    body : MarkerBody
     observed : shape (n_frames, n_markers, 3), meters
     poses : Poses
         Initial poses of the same frames.
@@ -80,7 +80,7 @@ def fit_body(
     return body, poses
 
 
-def measures_of(body: Body) -> Measures:
+def measures_of(body: MarkerBody) -> Measures:
     """Return the free dimensions of a body, with the priors of its joints and markers."""
     joints, joint_play = [], []
     for index, joint in enumerate(body.joints):
@@ -99,12 +99,12 @@ def measures_of(body: Body) -> Measures:
     return Measures(joints, np.array(joint_play), markers, marker_play)
 
 
-def _cost(body: Body, observed: Array, poses: Poses, deviations: Array) -> float:
+def _cost(body: MarkerBody, observed: Array, poses: Poses, deviations: Array) -> float:
     return float(cost_of(body, observed, poses).sum() + (deviations**2).sum())
 
 
 def _step(
-    body: Body,
+    body: MarkerBody,
     observed: Array,
     poses: Poses,
     measures: Measures,
@@ -134,7 +134,7 @@ def _step(
     return step, -solved[..., -1] - solved[..., :-1] @ step
 
 
-def body_slopes(body: Body, world: WorldBody, measures: Measures) -> Array:
+def body_slopes(body: MarkerBody, world: WorldBody, measures: Measures) -> Array:
     """Return the Jacobian of the markers, (n_frames, n_markers, 3, n_measures)."""
     n_frames, n_markers = world.markers.shape[:2]
     slopes = np.zeros((n_frames, n_markers, 3, len(measures.play)))
@@ -150,7 +150,7 @@ def body_slopes(body: Body, world: WorldBody, measures: Measures) -> Array:
     return slopes
 
 
-def _body_from_values(prior: Body, measures: Measures, values: Array) -> Body:
+def _body_from_values(prior: MarkerBody, measures: Measures, values: Array) -> MarkerBody:
     offsets, marker_offsets = prior.offsets.copy(), prior.marker_offsets.copy()
     for affected, value in zip(measures.joints, values, strict=False):
         for joint, axis, sign in affected:

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import Array
 from ..progress import Progress, unwatched
 from ..rotations import quaternion_from_matrix, rotation_vector_from_quaternion
-from .body import Body, Poses, WorldBody
+from .body import MarkerBody, Poses, WorldBody
 from .vectors import matrix_from_rotation_vector, skew_matrices
 
 FRAMES_PER_BLOCK = 256
@@ -39,7 +39,7 @@ class Residuals(NamedTuple):
 
 
 def fit_poses(
-    body: Body,
+    body: MarkerBody,
     observed: Array,
     poses: Poses,
     *,
@@ -53,7 +53,7 @@ def fit_poses(
 
     Parameters
     ----------
-    body : Body
+    body : MarkerBody
     observed : shape (n_frames, n_markers, 3), meters
         In the order of the body's markers; NaN: missing.
     poses : Poses
@@ -76,7 +76,7 @@ def fit_poses(
     return Poses(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
 
-def _fit(body: Body, observed: Array, poses: Poses, most_steps: int) -> Poses:
+def _fit(body: MarkerBody, observed: Array, poses: Poses, most_steps: int) -> Poses:
     damping = np.full(len(observed), DAMPING)
     cost = cost_of(body, observed, poses)
     for _ in range(most_steps):
@@ -102,7 +102,7 @@ def _fit(body: Body, observed: Array, poses: Poses, most_steps: int) -> Poses:
     return poses
 
 
-def apply_step(body: Body, poses: Poses, step: Array) -> Poses:
+def apply_step(body: MarkerBody, poses: Poses, step: Array) -> Poses:
     """Return poses after a step, shape (n_frames, 3 + 3 per rotating joint)."""
     rotations = poses.rotations.copy()
     vectors = step[:, 3:].reshape(len(step), -1, 3)
@@ -114,7 +114,7 @@ def apply_step(body: Body, poses: Poses, step: Array) -> Poses:
     return Poses(rotations, poses.roots + step[:, :3])
 
 
-def cost_of(body: Body, observed: Array, poses: Poses) -> Array:
+def cost_of(body: MarkerBody, observed: Array, poses: Poses) -> Array:
     """Return the cost of each pose, shape (n_frames,)."""
     residuals_of_markers = _marker_residuals(body, observed, body.body_in_pose(poses))
     square = (residuals_of_markers**2).sum(axis=-1) / CAUCHY_SCALE**2
@@ -124,7 +124,7 @@ def cost_of(body: Body, observed: Array, poses: Poses) -> Array:
     )
 
 
-def compute_residuals(body: Body, observed: Array, poses: Poses) -> Residuals:
+def compute_residuals(body: MarkerBody, observed: Array, poses: Poses) -> Residuals:
     """Return the weighted residuals of markers, then those of the joint priors."""
     world = body.body_in_pose(poses)
     residuals_of_markers = _marker_residuals(body, observed, world)
@@ -145,12 +145,12 @@ def compute_residuals(body: Body, observed: Array, poses: Poses) -> Residuals:
     )
 
 
-def _marker_residuals(body: Body, observed: Array, world: WorldBody) -> Array:
+def _marker_residuals(body: MarkerBody, observed: Array, world: WorldBody) -> Array:
     """Return the residual of each marker, in units of its noise; 0 where it is missing."""
     return np.nan_to_num((world.markers - observed) / body.noise[:, None])
 
 
-def marker_slopes(body: Body, world: WorldBody) -> Array:
+def marker_slopes(body: MarkerBody, world: WorldBody) -> Array:
     """Return the Jacobian of the markers, shape (n_frames, n_markers, 3, n_unknowns).
 
     The rotation of a joint is a small rotation vector in its parent's axes.
@@ -168,7 +168,7 @@ def marker_slopes(body: Body, world: WorldBody) -> Array:
     return slopes.reshape(n_frames, n_markers, 3, -1)
 
 
-def _prior_residuals(body: Body, poses: Poses) -> tuple[Array, Array]:
+def _prior_residuals(body: MarkerBody, poses: Poses) -> tuple[Array, Array]:
     """Return residuals and derivatives of the joint priors."""
     n_unknowns = 3 + 3 * len(body.rotating_joints)
     residuals, slopes = [], []

@@ -12,7 +12,7 @@ from ..motion import Motion, Skeleton, Tracks
 from ..progress import Progress, unwatched, within
 from ..rotations import quaternion_from_matrix, unroll
 from ..settings import Settings, setting
-from .body import Body, Poses
+from .body import MarkerBody, Poses
 from .build_body import build_body
 from .determined_joints import find_determined_joints
 from .fit_body import fit_body
@@ -176,12 +176,12 @@ def _extend_to_all_frames(rotations: Array, roots: Array, observed: Array) -> Po
 
 
 def _fit_dimensions(
-    body: Body,
+    body: MarkerBody,
     observed: Array,
     initial_poses: Poses,
     settings: SolveSettings,
     progress: Progress,
-) -> Body:
+) -> MarkerBody:
     """Return the body fitted to frames with most markers, evenly spaced over time."""
     count = np.isfinite(observed).all(axis=-1).sum(axis=1)
     complete = np.flatnonzero(count >= MIN_MARKER_FRACTION * count.max())
@@ -192,7 +192,7 @@ def _fit_dimensions(
     return fit_body(body, observed[frames], fitted, progress=progress)[0]
 
 
-def _refit_outliers(body: Body, observed: Array, poses: Poses) -> Poses:
+def _refit_outliers(body: MarkerBody, observed: Array, poses: Poses) -> Poses:
     """Fit outlier poses again from the nearest good pose, and use the better result."""
     error = _mean_error(body, observed, poses)
     bad = error > max(MIN_REFIT_ERROR_M, MAX_ERROR_FACTOR * float(np.nanmedian(error)))
@@ -212,7 +212,7 @@ def _refit_outliers(body: Body, observed: Array, poses: Poses) -> Poses:
     return Poses(rotations, roots)
 
 
-def _mean_error(body: Body, observed: Array, poses: Poses) -> Array:
+def _mean_error(body: MarkerBody, observed: Array, poses: Poses) -> Array:
     """Return the mean distance of the observed markers, shape (n_frames,); 0 without any."""
     distances = np.linalg.norm(body.body_in_pose(poses).markers - observed, axis=-1)
     is_valid = np.isfinite(distances)
@@ -222,7 +222,7 @@ def _mean_error(body: Body, observed: Array, poses: Poses) -> Array:
 
 
 def _build_result(
-    body: Body, observed: Array, poses: Poses, tracks: Tracks, found: MarkerSet
+    body: MarkerBody, observed: Array, poses: Poses, tracks: Tracks, found: MarkerSet
 ) -> SolvedSkeleton:
     """Build the result; undetermined joints become NaN."""
     world = body.body_in_pose(poses)

@@ -11,7 +11,12 @@
 from .canvas import SERIES, Canvas, lighten_color
 from .curves import CurveSettings, draw_curves
 from .picture import Picture, stack_pictures
-from .stick_figures import StickFigureSettings, View, draw_stick_figures, project_to_view
+from .stick_figures import (
+    StickFigureSettings,
+    ViewDirection,
+    draw_stick_figures,
+    project_to_view,
+)
 from .table import draw_table
 
 __all__ = [
@@ -20,7 +25,7 @@ __all__ = [
     "CurveSettings",
     "Picture",
     "StickFigureSettings",
-    "View",
+    "ViewDirection",
     "draw_curves",
     "draw_stick_figures",
     "draw_table",

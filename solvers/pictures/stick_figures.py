@@ -36,7 +36,7 @@ AVERAGING_S = 0.5
 """Seconds over which the heading of the figure is averaged."""
 
 
-class View(Choice):
+class ViewDirection(Choice):
     """Direction of the view, which rotates with the body."""
 
     SIDE = "side", "See the body from its side"
@@ -44,7 +44,11 @@ class View(Choice):
     QUARTER = "quarter", "See the body from between side and front"
 
 
-AZIMUTH = {View.SIDE: 0.0, View.FRONT: np.pi / 2, View.QUARTER: np.pi / 4}
+AZIMUTH = {
+    ViewDirection.SIDE: 0.0,
+    ViewDirection.FRONT: np.pi / 2,
+    ViewDirection.QUARTER: np.pi / 4,
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +58,7 @@ class StickFigureSettings(Settings):
     n_figures: int = setting(
         8, "Number of figures, evenly spaced in time", minimum=1, maximum=200
     )
-    view: View = setting(View.SIDE, "Direction of the view")
+    view: ViewDirection = setting(ViewDirection.SIDE, "Direction of the view")
     height: int = setting(
         260, "Height of a figure; higher shows more detail", unit="px", minimum=40, maximum=2000
     )
@@ -133,7 +137,7 @@ def draw_stick_figures(
     return canvas.picture()
 
 
-def project_to_view(positions: Array, heading: Array, view: View) -> Array:
+def project_to_view(positions: Array, heading: Array, view: ViewDirection) -> Array:
     """Return coordinates in the view: to the right, up, and away, in meters.
 
     Parameters
@@ -142,7 +146,7 @@ def project_to_view(positions: Array, heading: Array, view: View) -> Array:
     heading : shape (n_frames,), radians
         Heading of the body about Z; 0 is -Y. In the side view it faces right; in the front view
         its left side (+X at heading 0) is on the right.
-    view : View
+    view : ViewDirection
     """
     forward = np.stack([np.sin(heading), -np.cos(heading), 0.0 * heading], axis=-1)
     left = np.stack([np.cos(heading), np.sin(heading), 0.0 * heading], axis=-1)

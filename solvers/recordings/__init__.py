@@ -45,8 +45,8 @@ from .read_recording import (
 from .reading_settings import (
     DEFAULT_READING,
     Axis,
-    Floor,
-    FloorSettings,
+    FloorPlacement,
+    FloorPlacementSettings,
     ReadingSettings,
     Unit,
 )
@@ -63,8 +63,8 @@ __all__ = [
     "Body",
     "CameraOrientation",
     "DepthSettings",
-    "Floor",
-    "FloorSettings",
+    "FloorPlacement",
+    "FloorPlacementSettings",
     "ReadingSettings",
     "Unit",
     "depth_takes_in",

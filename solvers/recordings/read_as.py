@@ -20,7 +20,7 @@ from .conventions import (
 from .format import Tracked
 from .formats import detect_format
 from .read_recording import OPENING_FRACTION, open_format
-from .reading_settings import DEFAULT_READING, Floor, ReadingSettings
+from .reading_settings import DEFAULT_READING, FloorPlacement, ReadingSettings
 
 Recording = TypeVar("Recording", bound=Motion | Tracks | JointRecording)
 
@@ -31,7 +31,7 @@ def read_as(
     *,
     scale: float | None = None,
     body: str | None = None,
-    floor: Floor = Floor.NEVER,
+    floor: FloorPlacement = FloorPlacement.NEVER,
     progress: Progress = unwatched,
 ) -> Tracked:
     """Read a recording as `read_tracked` does, by settings for what the file may not say.
@@ -47,7 +47,7 @@ def read_as(
         None: the unit of the settings.
     body : str, optional
         Which of several bodies (`read_recording`).
-    floor : Floor
+    floor : FloorPlacement
         Whether the take is moved onto the floor.
     progress : Progress
     """
@@ -62,7 +62,7 @@ def open_as(
     settings: ReadingSettings = DEFAULT_READING,
     *,
     scale: float | None = None,
-    floor: Floor = Floor.NEVER,
+    floor: FloorPlacement = FloorPlacement.NEVER,
     progress: Progress = unwatched,
 ) -> Bodies[Tracked]:
     """List the bodies of a recording, each of which is read as `read_as` does."""
@@ -70,7 +70,7 @@ def open_as(
     if format_ is not None and format_.lacks_bones:
         about: dict[str, Any] = {
             "height": settings.height,
-            "on_floor": floor is not Floor.NEVER,
+            "on_floor": floor is not FloorPlacement.NEVER,
         }
         format_ = format_._replace(open=partial(format_.open, **about))
     unit = settings.unit.metres if scale is None else scale
@@ -90,22 +90,22 @@ def open_as(
     )
 
 
-def settle(recording: Recording, settings: ReadingSettings, floor: Floor) -> Recording:
+def settle(recording: Recording, settings: ReadingSettings, floor: FloorPlacement) -> Recording:
     """Return what was read in the axes of the settings, and on the floor where it has none."""
     if settings.up.axis or settings.forward.axis:
         recording = reinterpreted(recording, settings.up.axis, settings.forward.axis)
-    if floor is Floor.AUTO and lacks_floor(recording):
+    if floor is FloorPlacement.AUTO and lacks_floor(recording):
         conventions = replace(conventions_of(recording), has_floor=False)
         recording = put_on_floor(with_conventions(recording, conventions))
-    return put_on_floor(recording) if floor is Floor.ALWAYS else recording
+    return put_on_floor(recording) if floor is FloorPlacement.ALWAYS else recording
 
 
-def questions_of(recording: Tracked, floor: Floor) -> list[str]:
+def questions_of(recording: Tracked, floor: FloorPlacement) -> list[str]:
     """Ask whether size and height of an actor are right, where they are odd.
 
     Heights are not asked about where they are kept on request.
     """
     found = [question_of_size(recording)]
-    if floor is not Floor.NEVER:
+    if floor is not FloorPlacement.NEVER:
         found.append(question_of_floor(recording))
     return [question for question in found if question]

@@ -55,7 +55,7 @@ METRES = {
 }  # fmt: skip
 
 
-class Floor(Choice):
+class FloorPlacement(Choice):
     """Whether a take is moved up or down onto the floor."""
 
     AUTO = (
@@ -94,11 +94,11 @@ class ReadingSettings(Settings):
 
 
 @dataclass(frozen=True, kw_only=True)
-class FloorSettings(Settings):
+class FloorPlacementSettings(Settings):
     """Where a take stands."""
 
-    place_on_floor: Floor = setting(
-        Floor.AUTO,
+    place_on_floor: FloorPlacement = setting(
+        FloorPlacement.AUTO,
         "Move the take so that the lowest level the actor stands on is height 0",
         label="Place on Floor",
     )

@@ -15,7 +15,7 @@ FEET = ("leftFoot", "rightFoot", "leftToes", "rightToes")
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class HumanoidBody:
     """Joints with a role, their ancestors, and the ends of feet and toes.
 
     Attributes
@@ -63,7 +63,7 @@ class Body:
         return valid if len(valid) == len(roles) else [self.joints["hips"]]
 
 
-def find_body(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> Body:
+def find_body(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> HumanoidBody:
     """Return the body of a skeleton.
 
     Raises
@@ -83,7 +83,7 @@ def find_body(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> Body:
     ends = {child for foot in feet for child in skeleton.children[foot][:1]}
     joint_indices = tuple(sorted({*joints.values(), *ancestors, *ends, 0}))
     new_index = {joint: index for index, joint in enumerate(joint_indices)}
-    return Body(
+    return HumanoidBody(
         skeleton.select(joint_indices),
         joint_indices,
         {role: new_index[joint] for role, joint in joints.items()},
@@ -101,7 +101,7 @@ def hips_of(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> int:
     return hips
 
 
-def without_gaps(motion: Motion, body: Body) -> tuple[Motion, NDArray[np.bool_]]:
+def without_gaps(motion: Motion, body: HumanoidBody) -> tuple[Motion, NDArray[np.bool_]]:
     """Return the body's motion with gaps filled by the last pose, and a mask of the gaps.
 
     Frames before the first observed pose get that pose; a joint without one gets its rest pose.

@@ -9,7 +9,7 @@ from ..rotations import IDENTITY, rotate
 from ..signals import smoothstep
 from .body import SIDES
 from .hand_distance import distance_to_reach
-from .leg_lengths import Leg, level_ankles
+from .leg_lengths import TargetLeg, level_ankles
 from .limbs import Limb, Transfer, limb_extension, limb_pairs, reach_with_limb
 from .placement import rests_on_ground
 from .planting import planting_shift
@@ -102,7 +102,7 @@ def _level_ankles(
     source_leg = np.array([source.limb_length(leg) for leg, _ in pairs])
     excess = placement.rise * (source_leg - source_leg.mean())
     legs = zip(hips, ankles, distances, contacts.T, excess, strict=True)
-    return level_ankles(*(Leg(*leg) for leg in legs))
+    return level_ankles(*(TargetLeg(*leg) for leg in legs))
 
 
 def _keep_above_ground(

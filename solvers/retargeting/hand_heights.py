@@ -7,7 +7,7 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ..arrays import Array
 from ..signals import smooth_gaussian, smoothstep
-from .placement import Placement
+from .placement import HipPlacement
 
 LOW_WRIST_FRACTION, HIGH_WRIST_FRACTION = 0.2, 0.4
 """Heights of the wrist, as fractions of the leg length. Below the first, the height above
@@ -38,10 +38,10 @@ ROUNDING_FRACTION = 0.05
 hands of a body that lies down, which would sink lower than the source's."""
 
 
-class Ground(NamedTuple):
+class GroundHeights(NamedTuple):
     """The ground of source and target."""
 
-    placement: Placement
+    placement: HipPlacement
     floors: tuple[float, float]
     """Height of the ground of source and target, meters."""
     leg: float
@@ -50,7 +50,7 @@ class Ground(NamedTuple):
 
 
 def pull_to_ground(
-    hand: Array, source_hand: Array, shoulder: Array, length: float, ground: Ground
+    hand: Array, source_hand: Array, shoulder: Array, length: float, ground: GroundHeights
 ) -> Array:
     """Return the hand, moved to the source's height above ground where that is low.
 
@@ -64,7 +64,7 @@ def pull_to_ground(
         Start of the arm.
     length : float, meters
         Length of the arm.
-    ground : Ground
+    ground : GroundHeights
 
     Returns
     -------
@@ -96,7 +96,7 @@ def pull_to_ground(
     return np.asarray(hand + shift)
 
 
-def keep_above_ground(hand: Array, source_hand: Array, ground: Ground) -> Array:
+def keep_above_ground(hand: Array, source_hand: Array, ground: GroundHeights) -> Array:
     """Return the hand, shape (n_frames, 3), not below the scaled height of the source's.
 
     A hand above `LOW_WRIST_FRACTION` in the source stays above that height. The lift eases in

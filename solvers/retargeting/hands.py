@@ -8,7 +8,7 @@ from ..arrays import Array
 from ..motion import world_poses
 from .body import SIDES
 from .hand_distance import Arms, match_meeting_hands
-from .hand_heights import Ground, ease_into_extension, keep_above_ground, pull_to_ground
+from .hand_heights import GroundHeights, ease_into_extension, keep_above_ground, pull_to_ground
 from .limbs import Transfer, limb_pairs, reach_with_limb
 from .placement import leg_length
 
@@ -55,10 +55,10 @@ def place_hands(transfer: Transfer, rotations: Array, root_positions: Array) -> 
     return rotations
 
 
-def _ground(transfer: Transfer) -> Ground | None:
+def _ground(transfer: Transfer) -> GroundHeights | None:
     """Return the ground as hands need it; None without legs to estimate it."""
     placement = transfer.placement
     if placement.floors is None:
         return None
     leg = leg_length(transfer.source)
-    return Ground(placement, placement.floors, leg, transfer.frame_rate)
+    return GroundHeights(placement, placement.floors, leg, transfer.frame_rate)

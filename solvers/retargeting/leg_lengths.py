@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import Array, Flags
 
 
-class Leg(NamedTuple):
+class TargetLeg(NamedTuple):
     """One leg of the target, with the extension and contacts of the source's."""
 
     hip: Array
@@ -22,7 +22,7 @@ class Leg(NamedTuple):
     """Length of the source's leg minus the mean of both, scaled, meters."""
 
 
-def level_ankles(left: Leg, right: Leg) -> list[Array]:
+def level_ankles(left: TargetLeg, right: TargetLeg) -> list[Array]:
     """Return corrected positions of the left and right ankle, shape (n_frames, 3), meters.
 
     Sensors measure one leg a little shorter than the other, so that its foot stays higher. On
@@ -39,7 +39,7 @@ def level_ankles(left: Leg, right: Leg) -> list[Array]:
     return [left.ankle + shift, right.ankle - shift]
 
 
-def _missing_height(leg: Leg) -> float:
+def _missing_height(leg: TargetLeg) -> float:
     """Return the correction of height that the standing ankle needs, meters."""
     leg_vector = leg.ankle - leg.hip
     horizontal_square = (leg_vector[:, :2] ** 2).sum(axis=1)

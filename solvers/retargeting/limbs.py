@@ -6,8 +6,8 @@ import numpy as np
 
 from ..arrays import Array, Flags
 from ..motion import Motion, ReachSettings, Skeleton, WorldPoses, reach
-from .body import SIDES, Body
-from .placement import Placement
+from .body import SIDES, HumanoidBody
+from .placement import HipPlacement
 from .stances import Stance
 
 Limb = tuple[int, int, int]
@@ -17,11 +17,11 @@ Limb = tuple[int, int, int]
 class Transfer:
     """Source, target and measured quantities for placing limbs."""
 
-    source: Body
-    target: Body
+    source: HumanoidBody
+    target: HumanoidBody
     source_poses: WorldPoses
     """World poses of the source."""
-    placement: Placement
+    placement: HipPlacement
     frame_rate: float
     contacts: Flags | None
     """Contacts of the source's feet, shape (n_frames, 2)."""
@@ -29,7 +29,9 @@ class Transfer:
     """Stances of the source's feet, if the rest pose does not show them."""
 
 
-def limb_pairs(source: Body, target: Body, part: str) -> list[tuple[Limb, Limb]]:
+def limb_pairs(
+    source: HumanoidBody, target: HumanoidBody, part: str
+) -> list[tuple[Limb, Limb]]:
     """Return the limbs of both bodies in pairs, the source's first."""
     limbs = [(source.limb(side, part), target.limb(side, part)) for side in SIDES]
     return [
@@ -39,14 +41,14 @@ def limb_pairs(source: Body, target: Body, part: str) -> list[tuple[Limb, Limb]]
     ]
 
 
-def limb_extension(body: Body, world: WorldPoses, limb: Limb) -> Array:
+def limb_extension(body: HumanoidBody, world: WorldPoses, limb: Limb) -> Array:
     """Return the extension of a limb: 1 for fully straight, shape (n_frames,)."""
     path = world.positions[:, limb[2]] - world.positions[:, limb[0]]
     return np.asarray(np.linalg.norm(path, axis=1) / body.limb_length(limb))
 
 
 def reach_with_limb(
-    body: Body, rotations: Array, world: WorldPoses, limb: Limb, targets: Array
+    body: HumanoidBody, rotations: Array, world: WorldPoses, limb: Limb, targets: Array
 ) -> Array:
     """Return the body's local rotations with a limb's end at the targets.
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Flags
-from .body import SIDES, Body
+from .body import SIDES, HumanoidBody
 
 UP = np.array([0.0, 0.0, 1.0])
 ANKLE_HEIGHT_FRACTION = 0.08
@@ -23,7 +23,7 @@ that are mostly danced on tiptoe, and frames in which an ankle is too low."""
 
 
 @dataclass(frozen=True, eq=False)
-class Placement:
+class HipPlacement:
     """Map of the source's hip joints and ankles to positions of the target.
 
     Attributes
@@ -53,19 +53,19 @@ class Placement:
 
 
 def find_placement(
-    source: Body,
-    target: Body,
+    source: HumanoidBody,
+    target: HumanoidBody,
     positions: Array,
     height: float | None,
     *,
     travel: float,
     to_ground: bool,
-) -> Placement:
+) -> HipPlacement:
     """Return the placement from leg lengths and ankle heights of both bodies.
 
     Parameters
     ----------
-    source, target : Body
+    source, target : HumanoidBody
     positions : shape (n_frames, n_source_joints, 3), meters
     height : float, meters
         Height of the source's ankles in contact; None without contacts.
@@ -78,7 +78,7 @@ def find_placement(
     hips = positions[0, source.hip_joints()].mean(axis=0)
     start = hips * (1.0, 1.0, 0.0)
     if not (leg_length(source) and leg_length(target)):
-        return Placement(travel or scale, scale, start, (0.0, 0.0), None)
+        return HipPlacement(travel or scale, scale, start, (0.0, 0.0), None)
     source_ankle, target_ankle = standing_ankle(source), standing_ankle(target)
     height = source_ankle if height is None else height
     ground = height - source_ankle
@@ -87,15 +87,17 @@ def find_placement(
     if is_near_zero and not rests_on_ground(source):
         ground = 0.0
     ankles = height, floor + target_ankle
-    return Placement(travel or scale, scale, start, ankles, (ground, floor))
+    return HipPlacement(travel or scale, scale, start, ankles, (ground, floor))
 
 
-def ankle_height(source: Body, positions: Array, contacts: Flags | None) -> float | None:
+def ankle_height(
+    source: HumanoidBody, positions: Array, contacts: Flags | None
+) -> float | None:
     """Return the height of the ankles in contact, meters; None without contacts.
 
     Parameters
     ----------
-    source : Body
+    source : HumanoidBody
     positions : shape (n_frames, n_source_joints, 3), meters
     contacts : bool, shape (n_frames, 2), or None for bodies without feet
     """
@@ -105,13 +107,13 @@ def ankle_height(source: Body, positions: Array, contacts: Flags | None) -> floa
     return float(np.percentile(ankles[contacts], FLAT_FOOT_PERCENTILE))
 
 
-def leg_length(body: Body) -> float:
+def leg_length(body: HumanoidBody) -> float:
     """Return the mean length of the legs, meters; 0 without legs."""
     legs = [limb for side in SIDES if (limb := body.limb(side, "Leg"))]
     return float(np.mean([body.limb_length(leg) for leg in legs])) if legs else 0.0
 
 
-def standing_ankle(body: Body) -> float:
+def standing_ankle(body: HumanoidBody) -> float:
     """Return the height of the ankles of a flat foot above the ground, meters.
 
     Rigs that rest on height 0 show it. In others, the lowest joint of the foot is above the
@@ -126,7 +128,7 @@ def standing_ankle(body: Body) -> float:
     return max(ankle - _lowest(body, feet), ANKLE_HEIGHT_FRACTION * leg)
 
 
-def rests_on_ground(body: Body) -> bool:
+def rests_on_ground(body: HumanoidBody) -> bool:
     """Return whether the rest pose stands on height 0, approximately."""
     feet, leg = _feet(body), leg_length(body)
     if not feet or leg == 0.0:
@@ -138,7 +140,7 @@ def rests_on_ground(body: Body) -> bool:
     )
 
 
-def trunk_length(body: Body) -> float:
+def trunk_length(body: HumanoidBody) -> float:
     """Return the distance from hips to head, or to neck, meters; 0 without either."""
     top = body.joints.get("head", body.joints.get("neck"))
     if top is None:
@@ -146,16 +148,16 @@ def trunk_length(body: Body) -> float:
     return float(np.linalg.norm(body.rest[top] - body.rest[body.joints["hips"]]))
 
 
-def _feet(body: Body) -> list[int]:
+def _feet(body: HumanoidBody) -> list[int]:
     return [body.joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in body.joints]
 
 
-def _lowest(body: Body, feet: list[int]) -> float:
+def _lowest(body: HumanoidBody, feet: list[int]) -> float:
     """Return the height of the lowest joint of the feet in the rest pose, meters."""
     return float(min(body.rest[body.skeleton.subtree(foot), 2].min() for foot in feet))
 
 
-def _size_ratio(source: Body, target: Body) -> float:
+def _size_ratio(source: HumanoidBody, target: HumanoidBody) -> float:
     """Return the ratio of the legs; of the trunks if a body has no legs; 1 without either."""
     for measure in (leg_length, trunk_length):
         source_length, target_length = measure(source), measure(target)

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import Array, Flags
 from ..motion import WorldPoses
 from ..rotations import IDENTITY, inverse, multiply, slerp
-from .body import Body
+from .body import HumanoidBody
 from .trunk_lean import leaning_swings
 
 TRUNK = ("spine", "chest", "upperChest")
@@ -24,7 +24,7 @@ class WorldRotation(NamedTuple):
 
 
 def transfer_pose(
-    source: Body, source_poses: WorldPoses, missing: Flags, target: Body
+    source: HumanoidBody, source_poses: WorldPoses, missing: Flags, target: HumanoidBody
 ) -> tuple[Array, Flags]:
     """Return local rotations of the target that match the orientations of the source.
 
@@ -36,7 +36,7 @@ def transfer_pose(
 
     Parameters
     ----------
-    source, target : Body
+    source, target : HumanoidBody
     source_poses : WorldPoses
     missing : bool, shape (n_frames, n_source_joints)
         Where the source's local rotations are missing.
@@ -70,7 +70,9 @@ def transfer_pose(
     return local, target_missing
 
 
-def _target_rotations(source: Body, world: Array, target: Body) -> dict[int, WorldRotation]:
+def _target_rotations(
+    source: HumanoidBody, world: Array, target: HumanoidBody
+) -> dict[int, WorldRotation]:
     """Return the canonical world rotation of each target joint that has one."""
     by_role = {
         role: _canonical_rotation(source, world, joint) for role, joint in source.joints.items()
@@ -92,7 +94,10 @@ def _target_rotations(source: Body, world: Array, target: Body) -> dict[int, Wor
 
 
 def _apply_lean(
-    source: Body, source_poses: WorldPoses, target: Body, targets: dict[int, WorldRotation]
+    source: HumanoidBody,
+    source_poses: WorldPoses,
+    target: HumanoidBody,
+    targets: dict[int, WorldRotation],
 ) -> dict[int, WorldRotation]:
     """Return the rotations with a swing of the trunk that matches the source's lean."""
     trunk = [target.joints[role] for role in TRUNK if target.joints.get(role) in targets]
@@ -108,7 +113,7 @@ def _apply_lean(
     }
 
 
-def _canonical_rotation(source: Body, world: Array, joint: int) -> WorldRotation:
+def _canonical_rotation(source: HumanoidBody, world: Array, joint: int) -> WorldRotation:
     sources = frozenset((joint, *source.skeleton.ancestors(joint)))
     return WorldRotation(multiply(world[:, joint], source.alignment[joint]), sources)
 

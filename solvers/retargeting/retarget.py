@@ -19,7 +19,7 @@ from ..motion.humanoid import with_standing_rest
 from ..progress import Progress, Remark, unwatched
 from ..rotations import IDENTITY
 from ..settings import Choice, Settings, setting
-from .body import SIDES, Body, find_body, without_gaps
+from .body import SIDES, HumanoidBody, find_body, without_gaps
 from .foot_paths import place_feet
 from .hands import place_hands
 from .limbs import Transfer
@@ -185,8 +185,8 @@ def _find_contacts(motion: Motion, humanoid: HumanoidMap) -> Flags | None:
 
 
 def _compare_bodies(
-    source: Body,
-    target: Body,
+    source: HumanoidBody,
+    target: HumanoidBody,
     source_poses: WorldPoses,
     contacts: Flags | None,
     motion: Motion,

@@ -8,8 +8,8 @@ from ..arrays import Array
 from ..motion import WorldPoses
 from ..rotations import IDENTITY, inverse, multiply, rotate, rotation_between
 from ..signals import smoothstep
-from .body import Body
-from .placement import Placement, leg_length, rests_on_ground
+from .body import HumanoidBody
+from .placement import HipPlacement, leg_length, rests_on_ground
 from .stances import foot_bone
 from .toes import lift_toes, smooth_envelope
 
@@ -48,7 +48,7 @@ class Sole(NamedTuple):
 
 
 def allowed_depths(
-    source: Body, source_poses: WorldPoses, side: str, placement: Placement
+    source: HumanoidBody, source_poses: WorldPoses, side: str, placement: HipPlacement
 ) -> Depths:
     """Return the allowed depths of a foot: those of the source, if its ground is known.
 
@@ -69,7 +69,7 @@ def allowed_depths(
 
 
 def sole_above_ground(
-    target: Body,
+    target: HumanoidBody,
     world: WorldPoses,
     side: str,
     ankle: Array,
@@ -86,7 +86,7 @@ def sole_above_ground(
 
     Parameters
     ----------
-    target : Body
+    target : HumanoidBody
     world : WorldPoses
         World poses of the target, for the rotations of the feet.
     side : "left" or "right"
@@ -124,7 +124,7 @@ def sole_above_ground(
 
 
 def with_sole(
-    target: Body, rotations: Array, world: WorldPoses, side: str, sole: Sole
+    target: HumanoidBody, rotations: Array, world: WorldPoses, side: str, sole: Sole
 ) -> Array:
     """Return local rotations, shape (n_frames, n_joints, 4), with new feet and toes."""
     foot, ball = foot_bone(target, side)
@@ -138,12 +138,12 @@ def with_sole(
     return result
 
 
-def tip_of(body: Body, ball: int) -> int | None:
+def tip_of(body: HumanoidBody, ball: int) -> int | None:
     """Return the end of the toes; None without one."""
     return next(iter(body.skeleton.children[ball]), None)
 
 
-def _heel(body: Body, world: WorldPoses, foot: int) -> Array:
+def _heel(body: HumanoidBody, world: WorldPoses, foot: int) -> Array:
     """Return the ankle height for which the heel is at height 0, shape (n_frames,)."""
     upright = rotate(world.rotations[:, foot], UP)[:, 2]
     return np.asarray(

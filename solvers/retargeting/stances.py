@@ -15,7 +15,7 @@ from ..rotations import (
     rotation_vector_from_quaternion,
 )
 from ..signals import smooth_gaussian
-from .body import SIDES, Body
+from .body import SIDES, HumanoidBody
 from .placement import leg_length, rests_on_ground
 
 SPEED_SMOOTHING_S = 0.05
@@ -47,8 +47,8 @@ class Stance(NamedTuple):
 
 
 def find_stances(
-    source: Body,
-    target: Body,
+    source: HumanoidBody,
+    target: HumanoidBody,
     source_poses: WorldPoses,
     contacts: Flags | None,
     frame_rate: float,
@@ -80,7 +80,7 @@ def find_stances(
     return left, right
 
 
-def with_level_soles(source: Body, stances: tuple[Stance, Stance]) -> Body:
+def with_level_soles(source: HumanoidBody, stances: tuple[Stance, Stance]) -> HumanoidBody:
     """Return the source with the alignment of its feet corrected to their stances."""
     alignment = source.alignment.copy()
     for side, stance in zip(SIDES, stances, strict=True):
@@ -91,7 +91,11 @@ def with_level_soles(source: Body, stances: tuple[Stance, Stance]) -> Body:
 
 
 def _stance(
-    source: Body, source_poses: WorldPoses, side: str, in_contact: Flags, frame_rate: float
+    source: HumanoidBody,
+    source_poses: WorldPoses,
+    side: str,
+    in_contact: Flags,
+    frame_rate: float,
 ) -> Stance | None:
     foot, ball = foot_bone(source, side)
     bone = source.rest[ball] - source.rest[foot]
@@ -108,7 +112,7 @@ def _stance(
     return Stance(float(np.median(slopes[flat]) - _slope(bone)), float(ankle))
 
 
-def foot_bone(body: Body, side: str) -> tuple[int, int]:
+def foot_bone(body: HumanoidBody, side: str) -> tuple[int, int]:
     """Return ankle and ball; without toes the end of the foot, or else the ankle again."""
     foot = body.joints[f"{side}Foot"]
     skeleton: Skeleton = body.skeleton

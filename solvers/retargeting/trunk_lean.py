@@ -13,7 +13,7 @@ from ..rotations import (
     rotation_vector_from_quaternion,
 )
 from ..signals import smoothstep
-from .body import Body
+from .body import HumanoidBody
 
 CHEST_FRACTION = 0.5
 """Fraction of the swing that is applied to the chest, which otherwise matches the source's.
@@ -29,8 +29,8 @@ N_ITERATIONS = 6
 
 
 def leaning_swings(
-    source: Body,
-    target: Body,
+    source: HumanoidBody,
+    target: HumanoidBody,
     source_poses: WorldPoses,
     hips: Array,
     rotations: dict[int, Array],
@@ -45,7 +45,7 @@ def leaning_swings(
 
     Parameters
     ----------
-    source, target : Body
+    source, target : HumanoidBody
     source_poses : WorldPoses
     hips : shape (n_frames, 4)
         World rotations of the hips, from the canonical T-pose.
@@ -91,7 +91,7 @@ def _bend_weight(hips: Array, vector: Array, rest: Array) -> Array:
 
 
 def _target_vector(
-    source: Body, target: Body, source_poses: WorldPoses, hips: Array, top: str
+    source: HumanoidBody, target: HumanoidBody, source_poses: WorldPoses, hips: Array, top: str
 ) -> Array:
     """Return the direction that the target's neck should have from its hips, (n_frames, 3)."""
     rest_vectors = [_rest_vector(body, top) for body in (source, target)]
@@ -101,13 +101,13 @@ def _target_vector(
     return np.asarray(rotate(hips, rotate(rotation_between(*rest_vectors), upright)))
 
 
-def _rest_vector(body: Body, top: str) -> Array:
+def _rest_vector(body: HumanoidBody, top: str) -> Array:
     """Return the vector from hips to neck in the canonical T-pose, shape (3,), meters."""
     low, high = body.joints["hips"], body.joints[top]
     return np.asarray(rotate(inverse(body.alignment[low]), body.rest[high] - body.rest[low]))
 
 
-def _trunk_vector(target: Body, rotations: dict[int, Array], top: int) -> Array:
+def _trunk_vector(target: HumanoidBody, rotations: dict[int, Array], top: int) -> Array:
     """Return the vector from hips to neck, shape (n_frames, 3), meters."""
     skeleton, hips = target.skeleton, target.joints["hips"]
     chain = [top, *skeleton.ancestors(top)]

@@ -98,7 +98,7 @@ def find_similar(
         )
     n_matches = settings.n_matches or len(ranking.clips)
     matches = _build_matches(ranking, n_matches, entries)
-    alignment = _Alignment(described, vocabulary, tracks.n_frames, tracks.frame_rate)
+    alignment = _ClipAligner(described, vocabulary, tracks.n_frames, tracks.frame_rate)
     aligning = within(progress, 0.3, 1.0)
     for rank in range(min(settings.n_aligned, len(matches))):
         aligning(rank / settings.n_aligned, "Aligning")
@@ -135,7 +135,7 @@ def _clip_frames(
     return np.where(frames >= last, n_frames - 1, np.minimum(recording_frames, n_frames - 1))
 
 
-class _Alignment:
+class _ClipAligner:
     """Align a query with clips."""
 
     def __init__(

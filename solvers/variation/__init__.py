@@ -15,13 +15,13 @@ from .loops import extract_middle_cycle, repeat_loop, resample_loop
 from .measure_variation import measure_variation
 from .synthesize import Variant, draw_variants, synthesize
 from .variation_model import VariationModel, load_variation_model
-from .vary_settings import Method, VarySettings
+from .vary_settings import VaryMethod, VarySettings
 
 __all__ = [
-    "Method",
     "Partition",
     "Variant",
     "VariationModel",
+    "VaryMethod",
     "VarySettings",
     "borrow_variation",
     "draw_variants",

@@ -30,7 +30,7 @@ hand: x0.5 gains 0.5 %, x2 costs nothing."""
 
 
 @dataclass(frozen=True, eq=False)
-class Alignment:
+class AlignedExamples:
     """Examples in common time.
 
     Attributes
@@ -65,7 +65,7 @@ def positions_in_body_frame(motion: Motion, headings: Array | None = None) -> Ar
     return np.stack([cos * x + sin * y, cos * y - sin * x, z], axis=-1)
 
 
-def align_examples(motions: Sequence[Motion], headings: Sequence[Array]) -> Alignment:
+def align_examples(motions: Sequence[Motion], headings: Sequence[Array]) -> AlignedExamples:
     """Align examples in time with their medoid by dynamic time warping."""
     steps = [
         max(
@@ -107,7 +107,7 @@ def align_examples(motions: Sequence[Motion], headings: Sequence[Array]) -> Alig
             motion.n_frames,
             motions[center].frame_rate,
         )
-    return Alignment(times, distances, center)
+    return AlignedExamples(times, distances, center)
 
 
 def _smooth_times(

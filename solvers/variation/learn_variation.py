@@ -11,7 +11,7 @@ from ..errors import InvalidMotionError
 from ..motion import Motion, resample
 from ..progress import Progress, unwatched, within
 from ..rotations import inverse, mean_rotation, multiply, rotation_vector_from_quaternion
-from .align_examples import Alignment, align_examples
+from .align_examples import AlignedExamples, align_examples
 from .contact_state import measure_contact_state
 from .curves import (
     HEIGHT_COLUMN,
@@ -28,7 +28,7 @@ from .mixing_kernel import MixingKernel
 from .moving_references import REFERENCE_SMOOTHING_S, split_moving_references
 from .published import learn_stepwise
 from .variation_model import VariationModel
-from .vary_settings import DEFAULT_SETTINGS, Method, VarySettings
+from .vary_settings import DEFAULT_SETTINGS, VaryMethod, VarySettings
 
 MAX_DISTANCE_RATIO = 2.0
 """Distance to the other examples, relative to the median, beyond which an example is reported
@@ -106,8 +106,8 @@ def learn_variation_model(
         filter(None, (*map(_describe_flip, motions, count(1)), _describe_outlier(alignment)))
     )
     stepwise = None
-    if settings.method is not Method.MIXTURE:
-        published = settings.method is Method.PUBLISHED
+    if settings.method is not VaryMethod.MIXTURE:
+        published = settings.method is VaryMethod.PUBLISHED
         stepwise = learn_stepwise(
             motions[0].skeleton,
             joints,
@@ -198,7 +198,7 @@ def _describe_flip(motion: Motion, number: int) -> str:
     )
 
 
-def _describe_outlier(alignment: Alignment) -> str:
+def _describe_outlier(alignment: AlignedExamples) -> str:
     """Return a message about an example that differs from the others; empty without one."""
     n = len(alignment.distances)
     if n < 3:

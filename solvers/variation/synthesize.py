@@ -18,7 +18,7 @@ from .mixtures import draw_mixing_weights, mix_deviations
 from .published import draw_stepwise_deviations
 from .time_warp import apply_time_warp
 from .variation_model import VariationModel
-from .vary_settings import DEFAULT_SETTINGS, Method, VarySettings
+from .vary_settings import DEFAULT_SETTINGS, VaryMethod, VarySettings
 
 RANGE_MARGIN = 0.15
 """Fraction of a channel's range in the examples by which a variant may exceed it. Chosen by
@@ -99,8 +99,8 @@ def draw_variants(
             f"There is no example {settings.base}; the model has {model.n_examples}."
         )
     stepwise = model.stepwise
-    needs_published = settings.method is Method.PUBLISHED
-    if settings.method is not Method.MIXTURE and (
+    needs_published = settings.method is VaryMethod.PUBLISHED
+    if settings.method is not VaryMethod.MIXTURE and (
         stepwise is None or stepwise.published != needs_published
     ):
         raise InvalidMotionError(
@@ -122,12 +122,12 @@ def draw_variants(
 
 
 def _draw_deviations(
-    model: VariationModel, method: Method, n_variants: int, rng: np.random.Generator
+    model: VariationModel, method: VaryMethod, n_variants: int, rng: np.random.Generator
 ) -> tuple[Array, Array, Array, Array]:
     """Return deviations of n variants: joints, root, log warp rates and contact state."""
     weights = draw_mixing_weights(model, n_variants, rng)
     mixed = mix_deviations(model, weights)
-    if method is Method.MIXTURE or model.stepwise is None:
+    if method is VaryMethod.MIXTURE or model.stepwise is None:
         return mixed
     return draw_stepwise_deviations(model.stepwise, mixed, weights, rng)
 
@@ -193,7 +193,7 @@ def _build_variant(
         MotionCurves(root, joints, contact_state, model.moving_references),
         np.exp(log_warp_rates) * settings.length,
     )
-    if settings.method is Method.PUBLISHED:
+    if settings.method is VaryMethod.PUBLISHED:
         return Variant(motion_from_curves(curves, *rig), None)
     if model.loops:
         may_change = np.array([not settings.pin_start, not settings.pin_end], dtype=np.float64)

@@ -9,7 +9,7 @@ from ..settings import Choice, Settings, setting
 from .curves import Partition
 
 
-class Method(Choice):
+class VaryMethod(Choice):
     """Method that draws variants."""
 
     MIXTURE = "mixture", "Mix time-aligned examples with weights from Gaussian processes"
@@ -28,8 +28,8 @@ class Method(Choice):
 class VarySettings(Settings):
     """Strength and kind of variation."""
 
-    method: Method = setting(
-        Method.MIXTURE, "How variants are generated; the default measured best",
+    method: VaryMethod = setting(
+        VaryMethod.MIXTURE, "How variants are generated; the default measured best",
         advanced=True,
     )  # fmt: skip
     amount: float = setting(

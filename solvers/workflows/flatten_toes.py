@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..denoising.feet import SIDES, Leg, find_legs
+from ..denoising.feet import SIDES, LegJoints, find_legs
 from ..motion import Motion, WorldPoses, forward_kinematics
 from ..rotations import IDENTITY, inverse, multiply, rotate, rotation_between, slerp
 from ..signals import smooth_gaussian
@@ -69,7 +69,7 @@ def flatten_toes(motion: Motion, reliability: Array, contacts: NDArray[np.bool_]
 
 
 def _flat_foot(
-    motion: Motion, poses: WorldPoses, leg: Leg, foot: Array, reliable: NDArray[np.bool_]
+    motion: Motion, poses: WorldPoses, leg: LegJoints, foot: Array, reliable: NDArray[np.bool_]
 ) -> Array:
     """Return the vector from ankle to toes of a flat foot; NaN without a heading."""
     shin = poses.rotations[:, leg.knee]

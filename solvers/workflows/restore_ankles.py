@@ -4,7 +4,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from ..arrays import Array, Flags
-from ..denoising.feet import SIDES, Leg, find_legs
+from ..denoising.feet import SIDES, LegJoints, find_legs
 from ..motion import Motion, forward_kinematics
 from ..motion.skeletons import ReachSettings, reach
 from ..rotations import inverse, multiply, rotation_between
@@ -74,7 +74,7 @@ def _spread(ankle: Array, width: float) -> Array:
     return np.asarray(np.linalg.norm(highest - lowest, axis=-1))
 
 
-def _restore_toes(motion: Motion, leg: Leg, positions: Array, frames: Flags) -> Motion:
+def _restore_toes(motion: Motion, leg: LegJoints, positions: Array, frames: Flags) -> Motion:
     """Rotate the foot so that its toes return to these positions, in these frames."""
     if leg.toe is None:
         return motion

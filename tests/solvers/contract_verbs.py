@@ -12,9 +12,9 @@ import numpy as np
 from marked_bodies import markers_on
 
 from solvers.denoising import (
+    DenoiseMethod,
     DenoiseSettings,
     FilterBases,
-    Method,
     clamp_to_limits,
     denoise,
     find_worst_issues,
@@ -89,7 +89,7 @@ VERBS = {
         lambda motion, progress: denoise(
             motion,
             bases(),
-            settings=DenoiseSettings(method=Method.PUBLISHED),
+            settings=DenoiseSettings(method=DenoiseMethod.PUBLISHED),
             progress=progress,
         ),
         recording=lambda result: result.recording,

@@ -26,7 +26,7 @@ BODY_POSITION = "place"
 ORIGIN = np.zeros(3)
 
 
-class Rig(NamedTuple):
+class EncodedJoints(NamedTuple):
     """The encoded joints, and how their rest pose differs from the T-pose."""
 
     joints: list[int]
@@ -128,7 +128,7 @@ def decode_motion(motion: Motion, channels: Channels, values: Array) -> Motion:
     return motion.with_poses(rotations, root_positions)
 
 
-def _rig(motion: Motion) -> Rig:
+def _rig(motion: Motion) -> EncodedJoints:
     skeleton = motion.skeleton
     humanoid = find_humanoid_map(skeleton)
     heading = find_heading_joint(motion, humanoid)
@@ -138,7 +138,7 @@ def _rig(motion: Motion) -> Rig:
     joints = [joint for joint in range(skeleton.n_joints) if not skeleton.is_end_site(joint)]
     names = [skeleton.names[joint] for joint in joints]
     keys = tuple(humanoid.role(name) or f"joint {name}" for name in names)
-    return Rig(
+    return EncodedJoints(
         joints,
         keys,
         parent_alignment[joints],
@@ -148,7 +148,7 @@ def _rig(motion: Motion) -> Rig:
     )
 
 
-def _conversion_between_rigs(rig: Rig, references_used: Array) -> tuple[Array, Array]:
+def _conversion_between_rigs(rig: EncodedJoints, references_used: Array) -> tuple[Array, Array]:
     """Return the factors that convert local rotations to those of the references' rig.
 
     With B and A the alignments of parent and joint, a local rotation L of this rig is

@@ -15,7 +15,7 @@ from ...rotations import (
     rotation_vector_from_quaternion,
 )
 from ...signals import find_runs, smooth_correction
-from .legs import Leg
+from .legs import LegJoints
 from .sole import SMOOTHING_S, estimate_loads, measure_standing_heights, sole_points
 
 ADULT_LEG_M = 0.9
@@ -43,7 +43,7 @@ class FootTrajectory:
 
     Attributes
     ----------
-    leg : Leg
+    leg : LegJoints
     contact : bool, shape (n_frames,)
     foot_rotation : shape (n_frames, 4)
         World rotation to add to the foot's own.
@@ -57,7 +57,7 @@ class FootTrajectory:
         Fraction of the load on each point of the sole.
     """
 
-    leg: Leg
+    leg: LegJoints
     contact: Flags
     foot_rotation: Array
     toe_rotation: Array
@@ -76,7 +76,7 @@ class FootTrajectory:
 def plan_foot_trajectory(
     motion: Motion,
     poses: WorldPoses,
-    leg: Leg,
+    leg: LegJoints,
     contact: Flags,
     *,
     blend: float,
@@ -91,7 +91,7 @@ def plan_foot_trajectory(
     motion : Motion
     poses : WorldPoses
         Of the motion.
-    leg : Leg
+    leg : LegJoints
     contact : bool, shape (n_frames,)
     blend : float, seconds
         Time over which corrections fade.

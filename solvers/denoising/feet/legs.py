@@ -12,7 +12,7 @@ SIDES = ("left", "right")
 
 
 @dataclass(frozen=True)
-class Leg:
+class LegJoints:
     """Joint indices of one leg."""
 
     side: str
@@ -33,7 +33,9 @@ class Leg:
         return float(np.linalg.norm(np.diff(joints, axis=0), axis=1).sum())
 
 
-def find_legs(skeleton: Skeleton, humanoid_map: HumanoidMap | None = None) -> tuple[Leg, ...]:
+def find_legs(
+    skeleton: Skeleton, humanoid_map: HumanoidMap | None = None
+) -> tuple[LegJoints, ...]:
     """Return the legs that have hip, knee and ankle, left first."""
     joints = (humanoid_map or find_humanoid_map(skeleton)).indices(skeleton)
     legs = []
@@ -45,7 +47,7 @@ def find_legs(skeleton: Skeleton, humanoid_map: HumanoidMap | None = None) -> tu
         if knee in skeleton.subtree(hip)[1:] and ankle in skeleton.subtree(knee)[1:]:
             toe = joints.get(f"{side}Toes")
             toe = toe if toe in skeleton.subtree(ankle)[1:] else None
-            legs.append(Leg(side, hip, knee, ankle, toe))
+            legs.append(LegJoints(side, hip, knee, ankle, toe))
     return tuple(legs)
 
 

@@ -21,7 +21,7 @@ from ...rotations import inverse, multiply
 from ...settings import Settings, setting
 from .foot_trajectory import FootTrajectory, plan_foot_trajectory
 from .knee_smoothing import smooth_knees
-from .legs import SIDES, Leg, find_legs
+from .legs import SIDES, LegJoints, find_legs
 from .root_offset import compute_root_offset
 from .standing_feet import detect_standing_feet
 
@@ -158,7 +158,7 @@ def plant_feet(
 
 def _plant_segment(
     motion: Motion,
-    legs: Sequence[Leg],
+    legs: Sequence[LegJoints],
     contacts: Flags,
     settings: PlantSettings,
     progress: Progress,
@@ -208,7 +208,7 @@ def _join_segments(motion: Motion, results: Sequence[Planted]) -> Planted:
 def _plan_trajectories(
     motion: Motion,
     poses: WorldPoses,
-    legs: Sequence[Leg],
+    legs: Sequence[LegJoints],
     contacts: Flags,
     settings: PlantSettings,
 ) -> list[FootTrajectory]:
@@ -271,7 +271,7 @@ def _apply_trajectory(
     return result
 
 
-def _require_legs(motion: Motion, humanoid_map: HumanoidMap) -> tuple[Leg, ...]:
+def _require_legs(motion: Motion, humanoid_map: HumanoidMap) -> tuple[LegJoints, ...]:
     legs = find_legs(motion.skeleton, humanoid_map)
     if not legs:
         raise InvalidMotionError(

@@ -7,7 +7,7 @@ from scipy.ndimage import gaussian_filter1d
 from ...arrays import Array
 from ...motion import Skeleton, WorldPoses
 from ...rotations import rotate
-from .legs import Leg
+from .legs import LegJoints
 
 HEEL_FRACTION = 0.2
 """Distance of the heel behind the ankle, relative to the distance from ankle to ball. Chosen by
@@ -27,7 +27,7 @@ SMOOTHING_S = 0.03
 x0.5 costs 2.6 %, x2 gains 2.7 %."""
 
 
-def sole_points(skeleton: Skeleton, poses: WorldPoses, leg: Leg) -> Array:
+def sole_points(skeleton: Skeleton, poses: WorldPoses, leg: LegJoints) -> Array:
     """Return heel, ball and toe tip in the world, shape (n_frames, 2 or 3, 3), meters.
 
     No rig has a heel joint: the heel is assumed below and slightly behind the ankle, as high in

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ...motion import Motion, forward_kinematics
 from ...motion.humanoid import HumanoidMap, detect_contacts, foot_points
 from ...rotations import angle_between
-from .legs import SIDES, Leg
+from .legs import SIDES, LegJoints
 
 MAX_STILL_RAD = np.radians(0.02)
 """Rotation of the joints of a leg, in radians, below which the leg was not captured: who stands
@@ -23,7 +23,7 @@ by hand, as for the detection of contacts."""
 
 
 def detect_standing_feet(
-    motion: Motion, humanoid_map: HumanoidMap, legs: Sequence[Leg]
+    motion: Motion, humanoid_map: HumanoidMap, legs: Sequence[LegJoints]
 ) -> NDArray[np.bool_]:
     """Return the contacts of both feet, without those of a leg that was not captured.
 
@@ -44,7 +44,7 @@ def detect_standing_feet(
 
 
 def _rests_on_hips(
-    motion: Motion, humanoid_map: HumanoidMap, legs: Sequence[Leg]
+    motion: Motion, humanoid_map: HumanoidMap, legs: Sequence[LegJoints]
 ) -> NDArray[np.bool_]:
     """Return when the hips are on the floor, shape (n_frames, 1)."""
     heights = forward_kinematics(motion).positions[..., 2]

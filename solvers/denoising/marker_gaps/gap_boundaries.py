@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Flags
 from ...signals import DIFFERENCE_GAIN, DIFFERENCE_ORDER, find_runs
-from .predict_marker import Prediction
+from .predict_marker import PredictedMarker
 
 MAX_TRAINING_FRAMES = 200
 """Number of training frames, in addition to those at the boundaries of gaps. It bounds the run
@@ -88,7 +88,7 @@ def extrapolate_boundary_errors(
     return np.asarray(cross_covariance @ np.linalg.solve(covariance, errors_near))
 
 
-def estimate_gap_error(prediction: Prediction, gap: Flags) -> Array:
+def estimate_gap_error(prediction: PredictedMarker, gap: Flags) -> Array:
     """Return the expected error of a coordinate in all frames of the gaps, meters."""
     n_frames = len(gap)
     frames = np.arange(n_frames)

@@ -15,7 +15,7 @@ VARIANTS = ((3, 8), (3, 16), (8, 24), (3, 5), (5, 12))
 x0.5 costs 15.3 %, x2 costs 17.0 %."""
 
 
-class Kernel(NamedTuple):
+class FrameKernel(NamedTuple):
     """Covariance of two frames; variances are relative to that of the marker in its frame."""
 
     linear_variance: float
@@ -29,19 +29,19 @@ class Kernel(NamedTuple):
 
 
 KERNELS = (
-    Kernel(1.0, 0.0, 1.0, 0.01, 0.3, 1e-3),
-    Kernel(1.0, 0.3, 1.0, 0.01, 0.3, 1e-2),
-    Kernel(1.0, 0.3, 0.5, 0.01, 0.1, 3e-2),
-    Kernel(0.05, 0.02, 1.0, 0.02, 0.1, 1e-2),
-    Kernel(1.0, 1.0, 2.0, 0.1, 0.03, 1e-4),
-    Kernel(1.0, 1.0, 2.0, 0.1, 0.1, 1e-4),
+    FrameKernel(1.0, 0.0, 1.0, 0.01, 0.3, 1e-3),
+    FrameKernel(1.0, 0.3, 1.0, 0.01, 0.3, 1e-2),
+    FrameKernel(1.0, 0.3, 0.5, 0.01, 0.1, 3e-2),
+    FrameKernel(0.05, 0.02, 1.0, 0.02, 0.1, 1e-2),
+    FrameKernel(1.0, 1.0, 2.0, 0.1, 0.03, 1e-4),
+    FrameKernel(1.0, 1.0, 2.0, 0.1, 0.1, 1e-4),
 )
 MIN_SQUARED_ERROR = 1e-9
 """Square meters: positions closer than 0.03 mm are the same. Guards a division. Guards a
 division."""
 
 
-class Prediction(NamedTuple):
+class PredictedMarker(NamedTuple):
     """A predicted marker, meters."""
 
     positions: Array
@@ -69,7 +69,7 @@ class RegressionProblem(NamedTuple):
 
 def predict_marker(
     positions: Array, point: int, references: ReferenceMarkers, frame_rate: float, length: int
-) -> Prediction:
+) -> PredictedMarker:
     """Average the predictions of several frames and kernels, weighted by held-out errors.
 
     In a frame that travels with its reference markers, a marker is a smooth function of their
@@ -111,7 +111,7 @@ def predict_marker(
             errors.append(np.einsum("fij,fj->fi", problem.rotations[: len(error)], error))
     weights = blend_weights(errors)
     predicted = np.tensordot(weights, estimates, 1)
-    return Prediction(predicted, np.tensordot(weights, errors, 1), held_out_depth)
+    return PredictedMarker(predicted, np.tensordot(weights, errors, 1), held_out_depth)
 
 
 def _variants(n_companions: int) -> list[tuple[int, int]]:
@@ -143,7 +143,7 @@ def _build_problem(
 
 
 def _solve(
-    problem: RegressionProblem, kernel: Kernel, blocks: list[NDArray[np.intp]]
+    problem: RegressionProblem, kernel: FrameKernel, blocks: list[NDArray[np.intp]]
 ) -> tuple[Array, Array]:
     """Return the prediction in all frames, and the errors of held-out blocks."""
     targets, n_learned = problem.targets, len(problem.targets)

@@ -17,7 +17,7 @@ MAX_BLOCK_WINDOWS = 512
 """Windows processed at a time: this bounds the memory, however long the take."""
 
 
-class _Gains(NamedTuple):
+class _JointFilters(NamedTuple):
     """The filters of one joint, one for each component."""
 
     inverse: Array
@@ -100,7 +100,7 @@ def _smooth(samples: Array, noise: Array, windows: Windows, mixture: MotionMixtu
     return Smoothed(values, (samples - values) / (1.0 - leverage), leverage * noise**2)
 
 
-def _gains(mixture: MotionMixture, scale: Array, basis: Array) -> _Gains:
+def _gains(mixture: MotionMixture, scale: Array, basis: Array) -> _JointFilters:
     """Return the filters for this noise of each coefficient; the basis is orthonormal."""
     noisy = mixture.covariances + np.diag(scale**2)
     inverse = np.linalg.inv(noisy)
@@ -108,4 +108,4 @@ def _gains(mixture: MotionMixture, scale: Array, basis: Array) -> _Gains:
     blocks = gain.reshape(len(gain), N_CHANNELS, mixture.window, N_CHANNELS, mixture.window)
     own = np.einsum("kcicj->kcij", blocks)
     leverage = np.einsum("ti,kcij,tj->ktc", basis, own, basis, optimize=True)
-    return _Gains(inverse, -0.5 * np.linalg.slogdet(noisy)[1], leverage)
+    return _JointFilters(inverse, -0.5 * np.linalg.slogdet(noisy)[1], leverage)

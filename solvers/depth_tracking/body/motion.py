@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...arrays import Array
-from ...depth_scene import Floor
+from ...depth_scene import FloorPlane
 from ...motion import Motion, Skeleton
 from ...rotations import (
     inverse,
@@ -51,7 +51,7 @@ def body_skeleton(body: BodyModel) -> Skeleton:
 
 
 def body_motion(
-    body: BodyModel, poses: Array, frame_rate: float, floor: Floor | None = None
+    body: BodyModel, poses: Array, frame_rate: float, floor: FloorPlane | None = None
 ) -> Motion:
     """Return the motion of a body in poses (n_frames, 36).
 
@@ -60,7 +60,7 @@ def body_motion(
     body : BodyModel
     poses : shape (n_frames, 36)
     frame_rate : float, hertz
-    floor : Floor, optional
+    floor : FloorPlane, optional
         Becomes the plane z = 0, and its normal Z. Default: a level camera at the origin.
     """
     frames = segment_frames(body, poses)
@@ -84,7 +84,7 @@ def rest_frames(body: BodyModel) -> Array:
     return frames
 
 
-def motion_frames(body: BodyModel, motion: Motion, floor: Floor | None = None) -> Array:
+def motion_frames(body: BodyModel, motion: Motion, floor: FloorPlane | None = None) -> Array:
     """Invert `body_motion`: return the segment transforms of a body in a motion.
 
     Parameters
@@ -92,7 +92,7 @@ def motion_frames(body: BodyModel, motion: Motion, floor: Floor | None = None) -
     body : BodyModel
     motion : Motion
         On the skeleton of the body; coordinates need not reach its poses.
-    floor : Floor, optional
+    floor : FloorPlane, optional
         The plane z = 0.
 
     Returns
@@ -114,11 +114,11 @@ def motion_frames(body: BodyModel, motion: Motion, floor: Floor | None = None) -
     return frames
 
 
-def scene_from_camera(floor: Floor | None) -> Array:
+def scene_from_camera(floor: FloorPlane | None) -> Array:
     """Return the transform (4, 4) from the camera's frame to a scene with Z up.
 
-    A rolled camera does not look exactly along +Y, unlike in `Floor.world_from_camera`. Convert
-    between the two through the camera frame.
+    A rolled camera does not look exactly along +Y, unlike in `FloorPlane.world_from_camera`.
+    Convert between the two through the camera frame.
     """
     scene = np.eye(4)
     scene[:3, :3] = SCENE_FROM_CAMERA

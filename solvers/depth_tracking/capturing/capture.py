@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Integers
-from ...depth_scene import DepthRecording, Floor
+from ...depth_scene import DepthRecording, FloorPlane
 from ...errors import InvalidMotionError
 from ...motion import Motion, Tracks
 from ...progress import Progress, unwatched, within
@@ -103,7 +103,7 @@ def capture(
     forest: PixelForest | None = None,
     motion_prior: MotionPrior | None = None,
     *,
-    floor: Floor | None = None,
+    floor: FloorPlane | None = None,
     settings: CaptureSettings = DEFAULT_CAPTURE,
     tracker: TrackerSettings = DEFAULT_TRACKER,
     on_pose: PoseCallback = ignore_pose,
@@ -128,7 +128,7 @@ def capture(
     motion_prior : MotionPrior, optional
         Recorded motions similar to this one; the tracker pulls poses toward them. Default:
         the shipped motions if `settings.recorded`, otherwise none.
-    floor : Floor, optional
+    floor : FloorPlane, optional
         Becomes z = 0. Default: a level camera.
     settings : CaptureSettings
     tracker : TrackerSettings
@@ -209,7 +209,7 @@ def assemble_capture(
     body: BodyModel,
     tracked: TrackedMotion,
     restarts: tuple[int, ...],
-    floor: Floor | None,
+    floor: FloorPlane | None,
     settings: CaptureSettings,
 ) -> Capture:
     """Assemble the result from tracked poses."""

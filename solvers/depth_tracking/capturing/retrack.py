@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ...depth_scene import DepthRecording, Floor
+from ...depth_scene import DepthRecording, FloorPlane
 from ...errors import InvalidMotionError
 from ...motion import Motion, Tracks
 from ...progress import Progress, unwatched, within
@@ -59,7 +59,7 @@ def retrack(
     motion: Motion,
     frame: int,
     *,
-    floor: Floor | None = None,
+    floor: FloorPlane | None = None,
     fixed: Collection[int] = (),
     settings: RetrackSettings = DEFAULT_RETRACK,
     tracker: TrackerSettings = DEFAULT_TRACKER,
@@ -83,7 +83,7 @@ def retrack(
         On the skeleton of the body, one frame for each of the recording; the pose of `frame`
         is the corrected one.
     frame : int
-    floor : Floor, optional
+    floor : FloorPlane, optional
         The plane z = 0 of the motion.
     fixed : collection of int
         Other frames to keep, such as frames corrected earlier.

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...depth_scene import Floor
+from ...depth_scene import FloorPlane
 from ...errors import InvalidMotionError
 from ..body import N_COORDINATES
 from ..tracking import PosePreview, assemble_motion
@@ -16,7 +16,7 @@ def unfinished_capture(
     previews: Sequence[PosePreview],
     frame_rate: float,
     *,
-    floor: Floor | None = None,
+    floor: FloorPlane | None = None,
     settings: CaptureSettings = DEFAULT_CAPTURE,
 ) -> tuple[int, Capture]:
     """Return the part of a capture that was tracked before it was cancelled.
@@ -30,7 +30,7 @@ def unfinished_capture(
     previews : sequence of PosePreview
         All previews of `capture`, in order; previews of one body share the object.
     frame_rate : float, hertz
-    floor : Floor, optional
+    floor : FloorPlane, optional
     settings : CaptureSettings
 
     Returns

@@ -63,7 +63,7 @@ class Structure(NamedTuple):
     """Of the person whose bones are as long, in meters; 0 without two legs."""
 
 
-class _Match(NamedTuple):
+class _BestLimbs(NamedTuple):
     """Legs, arms and height that fit best, and how badly."""
 
     legs: MirroredLimbs
@@ -94,7 +94,7 @@ def roles_by_structure(skeleton: Skeleton) -> Structure:
         (_match(skeleton, each.legs, each.arms, HEIGHT_FACTORS) for each in rough[:N_REFINED]),
         key=lambda match: match.misfit,
     )
-    roles = _Body(skeleton, match).roles()
+    roles = _LimbedSkeleton(skeleton, match).roles()
     n_others = _count_other_limbs(skeleton, match, pairs)
     return Structure(
         {role: skeleton.names[joint] for role, joint in roles.items()},
@@ -111,13 +111,13 @@ def _are_separate(skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs) 
 
 def _match(
     skeleton: Skeleton, legs: MirroredLimbs, arms: MirroredLimbs | None, factors: Array
-) -> _Match:
+) -> _BestLimbs:
     """Return these legs and arms with the height that fits them best."""
     guess = np.mean([path_length(skeleton, leg) for leg in legs.limbs]) / LEG_PATH_FRACTION
     heights = np.maximum(guess, 1e-9) * factors
     misfits = [_misfit(skeleton, legs, arms, height) for height in heights]
     best = int(np.argmin(misfits))
-    return _Match(legs, arms, float(heights[best]), misfits[best])
+    return _BestLimbs(legs, arms, float(heights[best]), misfits[best])
 
 
 def _misfit(
@@ -158,7 +158,7 @@ def _is_folded(skeleton: Skeleton, limbs: MirroredLimbs, height: float) -> bool:
 
 
 def _count_other_limbs(
-    skeleton: Skeleton, match: _Match, pairs: Sequence[MirroredLimbs]
+    skeleton: Skeleton, match: _BestLimbs, pairs: Sequence[MirroredLimbs]
 ) -> int:
     """Return how many pairs of long limbs the trunk has beside legs and arms."""
     used = match.legs.joints(skeleton)
@@ -175,10 +175,10 @@ def _count_other_limbs(
     )
 
 
-class _Body:
+class _LimbedSkeleton:
     """A skeleton whose legs and arms are known."""
 
-    def __init__(self, skeleton: Skeleton, match: _Match) -> None:
+    def __init__(self, skeleton: Skeleton, match: _BestLimbs) -> None:
         self.skeleton = skeleton
         self.match = match
         self.positions: Array = skeleton.rest_positions

@@ -33,7 +33,7 @@ MIN_EXAMPLES = 20
 
 
 @dataclass(frozen=True, eq=False)
-class Take:
+class TrainingTake:
     """One take: smoothed poses of mean size without gaps, and true minus observed positions.
 
     Both have shape (n_frames, 20, 3) and no heading; errors are NaN where unknown.
@@ -46,7 +46,7 @@ class Take:
 
 
 def learn_movement_process(
-    takes: Sequence[Take], frame_rate: float, n_points: int, mirror: bool
+    takes: Sequence[TrainingTake], frame_rate: float, n_points: int, mirror: bool
 ) -> MovementProcess | None:
     """Return the movement process, or None with too few examples.
 
@@ -93,7 +93,7 @@ def learn_movement_process(
 
 
 def _gather_examples(
-    takes: Sequence[Take], frame_rate: float
+    takes: Sequence[TrainingTake], frame_rate: float
 ) -> tuple[Array, Array, Numbers, Numbers]:
     """Return parts and errors of sampled frames, with their take and actor indices."""
     names = sorted({one.actor for one in takes})

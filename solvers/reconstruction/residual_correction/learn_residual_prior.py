@@ -21,7 +21,7 @@ from ...progress import Progress, unwatched
 from ...settings import Choice, Settings, setting
 from .inputs import fill_missing, neighborhood_features, smooth_postures
 from .kernel import Kernel, learn_kernel
-from .learn_movement_process import Take, learn_movement_process
+from .learn_movement_process import TrainingTake, learn_movement_process
 from .residual_prior import ResidualPrior, posture_components
 from .sparse_process import basis_functions, inducing_points, posterior, shared_design
 
@@ -88,7 +88,7 @@ class ResidualPriorSettings(Settings):
 
 
 @dataclass(frozen=True, eq=False)
-class _Examples:
+class _TrainingFrames:
     """Training frames: features, errors, take and actor indices."""
 
     features: Array
@@ -197,20 +197,20 @@ def _check_pairs(
 
 def _read_takes(
     pairs: Sequence[tuple[JointRecording, Tracks]], actor_names: Sequence[str], smoothing: float
-) -> list[Take]:
+) -> list[TrainingTake]:
     """Smooth all recordings; errors are relative to the heading."""
     takes = []
     for (observed, true), actor in zip(pairs, actor_names, strict=True):
         smoothed = smooth_postures(observed, smoothing)
         off = posture_positions(true) - smoothed.positions
         errors = rotate_about_vertical(off, -smoothed.normalized.headings)
-        takes.append(Take(smoothed.features, errors, observed.frame_rate, actor))
+        takes.append(TrainingTake(smoothed.features, errors, observed.frame_rate, actor))
     return takes
 
 
 def _gather_examples(
-    all_takes: Sequence[Take], settings: ResidualPriorSettings
-) -> tuple[_Examples, Array]:
+    all_takes: Sequence[TrainingTake], settings: ResidualPriorSettings
+) -> tuple[_TrainingFrames, Array]:
     """Subsample and concatenate all takes; also return the mean pose."""
     features, errors, takes = [], [], []
     for number, one in enumerate(all_takes):
@@ -231,13 +231,13 @@ def _gather_examples(
     mean_pose = np.where(known[..., None], all_features, 0.0).sum(axis=0)
     mean_pose /= np.maximum(known.sum(axis=0), 1)[:, None]
     examples = fill_missing(all_features, mean_pose)
-    return _Examples(
+    return _TrainingFrames(
         examples, np.concatenate(errors), np.array(takes), np.array(actors)
     ), mean_pose
 
 
 def _learn_joint(
-    examples: _Examples,
+    examples: _TrainingFrames,
     joint: int,
     known: NDArray[np.bool_],
     pose_features: Array,

@@ -16,7 +16,7 @@ SPACE = re.compile(r"[ \t\r\n]*")
 DECODER = json.JSONDecoder()
 
 
-class Member(NamedTuple):
+class JsonMember(NamedTuple):
     """A member of the outermost object, or one element of a list member."""
 
     key: str
@@ -25,7 +25,7 @@ class Member(NamedTuple):
     """Fraction of the file up to its end."""
 
 
-def json_members(path: Path | str, *, lists: bool = False) -> Iterator[Member]:
+def json_members(path: Path | str, *, lists: bool = False) -> Iterator[JsonMember]:
     """Yield the members of the outermost object, lists element by element.
 
     With `lists`, the outermost value may be a list, whose elements have an empty key.
@@ -47,7 +47,7 @@ def json_members(path: Path | str, *, lists: bool = False) -> Iterator[Member]:
         ) from None
 
 
-def _members(text: str) -> Iterator[Member]:
+def _members(text: str) -> Iterator[JsonMember]:
     at = _skip_mark(text, 0, "{")
     more = text[at] != "}"
     while more:
@@ -57,19 +57,19 @@ def _members(text: str) -> Iterator[Member]:
             at = yield from _elements(text, at, str(key))
         else:
             value, at = DECODER.raw_decode(text, at)
-            yield Member(str(key), value, at / len(text))
+            yield JsonMember(str(key), value, at / len(text))
         at = _skip_space(text, at)
         more = text[at] != "}"
         if more:
             at = _skip_mark(text, at, ",")
 
 
-def _elements(text: str, at: int, key: str) -> Generator[Member, None, int]:
+def _elements(text: str, at: int, key: str) -> Generator[JsonMember, None, int]:
     at = _skip_mark(text, at, "[")
     more = text[at] != "]"
     while more:
         value, at = DECODER.raw_decode(text, at)
-        yield Member(key, value, at / len(text))
+        yield JsonMember(key, value, at / len(text))
         at = _skip_space(text, at)
         more = text[at] != "]"
         if more:

@@ -95,7 +95,7 @@ def judge_up_axis(motion: Motion, expected: Mapping[UpAxisName, float] | None = 
     ).positions
     positions = positions[np.isfinite(positions).all(axis=(1, 2))]
     roles = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    body = _Body.from_roles(roles)
+    body = _StandingJoints.from_roles(roles)
     if body is None or not len(positions):
         return _judge_by_extent(motion.skeleton, positions)
     rest = motion.skeleton.rest_positions[None]
@@ -123,7 +123,7 @@ def judge_up_of_joints(
     """
     observed = positions[np.isfinite(positions).all(axis=(1, 2))]
     step = max(1, len(observed) // N_SAMPLED_FRAMES)
-    body = _Body.from_roles(roles)
+    body = _StandingJoints.from_roles(roles)
     if body is None or not len(observed):
         best = max(expected, key=lambda axis: expected[axis])
         return UpAxis(best, best, is_clear=True)
@@ -132,7 +132,7 @@ def judge_up_of_joints(
 
 def _weigh(
     positions: Array,
-    body: "_Body",
+    body: "_StandingJoints",
     in_rest: Mapping[UpAxisName, float],
     expected: Mapping[UpAxisName, float] | None,
 ) -> UpAxis:
@@ -202,7 +202,7 @@ def rotate_to_z_up(motion: Motion, axis: UpAxisName, rest_axis: UpAxisName) -> M
     return turn_motion(motion, rotation_to_z_up(axis), rotation_to_z_up(rest_axis))
 
 
-class _Body(NamedTuple):
+class _StandingJoints(NamedTuple):
     """The joints that show where a body stands."""
 
     hips: int
@@ -212,7 +212,7 @@ class _Body(NamedTuple):
     """All with a role."""
 
     @classmethod
-    def from_roles(cls, roles: Mapping[str, int]) -> "_Body | None":
+    def from_roles(cls, roles: Mapping[str, int]) -> "_StandingJoints | None":
         feet = [roles[role] for role in ("leftFoot", "rightFoot") if role in roles]
         top = next((roles[role] for role in ("head", "neck", "chest") if role in roles), None)
         if top is None or "hips" not in roles or not feet:
@@ -235,7 +235,7 @@ def _judge_by_extent(skeleton: Skeleton, positions: Array) -> UpAxis:
     return UpAxis(axis, axis, is_clear=True)
 
 
-def _is_unfolded(rest: Array, body: _Body) -> bool:
+def _is_unfolded(rest: Array, body: _StandingJoints) -> bool:
     """Whether the rest pose shows a body, with its legs beside each other."""
     spread = np.linalg.norm(rest[body.feet[0]] - rest[body.feet[-1]])
     return len(body.feet) < 2 or bool(
@@ -243,7 +243,7 @@ def _is_unfolded(rest: Array, body: _Body) -> bool:
     )
 
 
-def _standing(positions: Array, body: _Body) -> dict[UpAxisName, float]:
+def _standing(positions: Array, body: _StandingJoints) -> dict[UpAxisName, float]:
     """Return how far each axis points from feet to hips to head in most frames, -1 to 1."""
     trunk = positions[:, body.head] - positions[:, body.hips]
     legs = positions[:, body.hips] - positions[:, body.feet].mean(axis=1)
@@ -257,7 +257,7 @@ def _standing(positions: Array, body: _Body) -> dict[UpAxisName, float]:
     }
 
 
-def _floor(positions: Array, body: _Body) -> dict[UpAxisName, float]:
+def _floor(positions: Array, body: _StandingJoints) -> dict[UpAxisName, float]:
     """Return how near the lowest joint is to zero along each axis, 0 to 1."""
     return {
         axis: max(
@@ -270,7 +270,7 @@ def _floor(positions: Array, body: _Body) -> dict[UpAxisName, float]:
     }
 
 
-def _travel(positions: Array, body: _Body) -> dict[UpAxisName, float]:
+def _travel(positions: Array, body: _StandingJoints) -> dict[UpAxisName, float]:
     """Return how far the actor travels at right angles to each axis, 0 to 1."""
     travel = np.ptp(positions[:, body.hips], axis=0)
     length = float(np.linalg.norm(travel))
@@ -279,6 +279,6 @@ def _travel(positions: Array, body: _Body) -> dict[UpAxisName, float]:
     return {axis: 1.0 - float(travel @ np.abs(AXES[axis])) / length for axis in AXES}
 
 
-def _height(positions: Array, body: _Body) -> float:
+def _height(positions: Array, body: _StandingJoints) -> float:
     extents = np.ptp(positions[:, body.joints], axis=1).max(axis=1)
     return max(float(np.median(extents)), 1e-9)

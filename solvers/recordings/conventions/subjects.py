@@ -28,7 +28,7 @@ MAX_PAIRED = 50
 """Markers of a subject whose distances are compared."""
 
 
-class Subject(NamedTuple):
+class MarkerSubject(NamedTuple):
     """Points of one person or prop."""
 
     name: str
@@ -37,7 +37,7 @@ class Subject(NamedTuple):
     """Of its points, without its own name."""
 
 
-def split_subjects(labels: Sequence[str]) -> list[Subject]:
+def split_subjects(labels: Sequence[str]) -> list[MarkerSubject]:
     """Return the subjects that begin labels, such as Anna in `Anna:LFHD`; or one of all points.
 
     Points of no subject come last.
@@ -47,21 +47,21 @@ def split_subjects(labels: Sequence[str]) -> list[Subject]:
         found.setdefault(label.rpartition(SEPARATOR)[0], []).append(column)
     unlabeled = found.pop("", [])
     if len(found) < 2:
-        return [Subject("1", list(range(len(labels))), point_names(labels))]
+        return [MarkerSubject("1", list(range(len(labels))), point_names(labels))]
     subjects = [
-        Subject(name, columns, point_names([labels[each] for each in columns]))
+        MarkerSubject(name, columns, point_names([labels[each] for each in columns]))
         for name, columns in found.items()
     ]
     if unlabeled:
         names = point_names([labels[each] for each in unlabeled])
-        subjects.append(Subject(UNLABELED, unlabeled, names))
+        subjects.append(MarkerSubject(UNLABELED, unlabeled, names))
     return subjects
 
 
 def bodies_of_markers(path: object, tracks: Tracks, labels: Sequence[str]) -> Bodies[Tracks]:
     """Return the subjects of labeled markers; where only one is a person, all are together."""
 
-    def is_person(subject: Subject) -> bool:
+    def is_person(subject: MarkerSubject) -> bool:
         if subject.name == UNLABELED or len(subject.columns) < MIN_PERSON_MARKERS:
             return False
         return not _is_rigid(tracks.positions[:, subject.columns])
@@ -72,7 +72,7 @@ def bodies_of_markers(path: object, tracks: Tracks, labels: Sequence[str]) -> Bo
 def bodies_of_joints(path: object, recording: JointRecording) -> Bodies[JointRecording]:
     """Return the subjects of named joints; where only one is a person, all are together."""
 
-    def is_person(subject: Subject) -> bool:
+    def is_person(subject: MarkerSubject) -> bool:
         return subject.name != UNLABELED and len(subject.columns) >= MIN_BODY_JOINTS
 
     tracks = recording.tracks
@@ -84,9 +84,9 @@ def _bodies(
     path: object,
     recording: Recording,
     tracks: Tracks,
-    subjects: list[Subject],
-    is_person: Callable[[Subject], bool],
-    select: Callable[[Recording, Subject], Recording],
+    subjects: list[MarkerSubject],
+    is_person: Callable[[MarkerSubject], bool],
+    select: Callable[[Recording, MarkerSubject], Recording],
 ) -> Bodies[Recording]:
     duration_s = tracks.n_frames / tracks.frame_rate
     visible = tracks.visible
@@ -107,7 +107,7 @@ def _bodies(
     return Bodies(str(path), listed, read, lambda progress: recording)
 
 
-def _marker_columns(tracks: Tracks, subject: Subject) -> Tracks:
+def _marker_columns(tracks: Tracks, subject: MarkerSubject) -> Tracks:
     columns, confidence = subject.columns, tracks.confidence
     return Tracks(
         subject.names,
@@ -117,7 +117,7 @@ def _marker_columns(tracks: Tracks, subject: Subject) -> Tracks:
     )
 
 
-def _joint_columns(recording: JointRecording, subject: Subject) -> JointRecording:
+def _joint_columns(recording: JointRecording, subject: MarkerSubject) -> JointRecording:
     states = recording.tracking_state
     return JointRecording(
         _marker_columns(recording.tracks, subject),

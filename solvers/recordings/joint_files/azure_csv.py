@@ -121,7 +121,7 @@ def _read_joint_lines(
     reader: LineReader, path: Path | str, progress: Progress
 ) -> tuple[tuple[Body, ...], Callable[[int], NDArray[np.float64]]]:
     """Return the bodies, and x y z state of one, shape (n_frames, n_joints, 4)."""
-    bodies: dict[bytes, _Body] = {}
+    bodies: dict[bytes, _BodyTable] = {}
     frame, seen = 0, set[bytes]()
     for block in reader.rest():
         for count, line in enumerate(block.lines, start=block.first):
@@ -130,7 +130,7 @@ def _read_joint_lines(
             if not key[:1].isdigit():
                 continue  # header or blank line
             joint, values = _joint(words, f"{path}, line {count}")
-            body = bodies.setdefault(key, _Body())
+            body = bodies.setdefault(key, _BodyTable())
             if body.begins_frame(joint):
                 if key in seen:
                     frame += 1
@@ -154,7 +154,7 @@ def _read_joint_lines(
     ), lambda index: found[index].values(n_frames)
 
 
-class _Body:
+class _BodyTable:
     """The observations of one body by frame."""
 
     def __init__(self) -> None:

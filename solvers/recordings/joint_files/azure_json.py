@@ -5,27 +5,26 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched
 from ..containers import UniqueNames, array_from_json, json_members, printable
-from ..conventions import (
-    DEFAULT_FRAME_RATE,
-    Bodies,
-    bodies_of_frames,
-    check_scale,
-    from_azure_space,
-    joint_recording,
-    recorded_seconds,
-    stack_body_frames,
-)
+from ..conventions import Bodies, check_scale, from_azure_space, joint_recording
 from .azure_csv import MILLIMETER, azure_joint
+from .body_json import (
+    BodiesFrame,
+    BodyJoints,
+    listed,
+    name_of_body,
+    number,
+    open_frames,
+    stacked,
+)
 
 MICROSECOND = 1e-6
 HEAD = re.compile(rb'\s*\{\s*"(?:[^"]*"[^{}]*")?(k4abt_sdk_version|bone_list|joint_names)"')
-Frame = dict[str, NDArray[np.float64]]
 
 
 def is_azure_json(head: bytes) -> bool:
@@ -70,61 +69,50 @@ def open_azure_json(
     .. [1] Microsoft, Azure-Kinect-Samples, body-tracking-samples/offline_processor.
     """
     check_scale(scale)
-    frames: list[Frame] = []
-    times: list[float] = []
+    frames: list[BodiesFrame] = []
     given = UniqueNames()
     names: list[str] = []
     for member in json_members(path):
         if member.key == "frames":
             location = f"{path}, frame {len(frames) + 1}"
-            time, bodies = _read_frame(member.value, location)
-            frames.append(bodies)
-            times.append(time)
+            frames.append(_read_frame(member.value, member.done, location))
             progress(member.done, "Reading")
         elif member.key == "joint_names":
             names.append(given.give(printable(azure_joint(str(member.value)))))
-    if not any(frames):
-        raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
     joints = names or list(SENSOR_JOINTS[Sensor.AZURE_KINECT])
-    n_positions = {len(positions) for frame in frames for positions in frame.values()}
-    if n_positions != {len(joints)}:
+    observed = [body for frame in frames for body in frame.bodies.values()]
+    if any(len(body.positions) != len(joints) for body in observed):
         raise InvalidFileError(
             f"{path}: not every body has a position for each of the {len(joints)} joints. The"
             " file is damaged; export it again."
         )
-    stamps = None if np.isnan(times).all() else MICROSECOND * np.array(times)
-    untimed = len(frames) / DEFAULT_FRAME_RATE
-    keys, listed = bodies_of_frames(
-        frames, untimed if stamps is None else recorded_seconds(stamps)
-    )
 
-    def read(index: int, progress: Progress) -> JointRecording:
+    def read(body: str, times: Array | None, progress: Progress) -> JointRecording:
+        positions, _ = stacked(body, frames)
         return joint_recording(
             path,
             joints,
-            from_azure_space(stack_body_frames(keys[index], frames)),
+            from_azure_space(positions),
             Sensor.AZURE_KINECT,
-            times=stamps,
+            times=times,
             scale=scale,
             default_unit=MILLIMETER,
             progress=progress,
         )
 
-    return Bodies(str(path), listed, read)
+    return open_frames(path, frames, MICROSECOND, read)
 
 
-def _read_frame(frame: Any, location: str) -> tuple[float, Frame]:
+def _read_frame(frame: Any, done: float, location: str) -> BodiesFrame:
     """Return the time stamp, or NaN, and the joint positions of each body."""
-    listed = frame.get("bodies", []) if isinstance(frame, dict) else None
-    if not isinstance(listed, list) or not all(isinstance(body, dict) for body in listed):
-        raise InvalidFileError(
-            f"{location}: a list of bodies is required. The file is damaged; export it again."
-        )
-    bodies: Frame = {}
-    for count, body in enumerate(listed, start=1):
+    if not isinstance(frame, dict):
+        raise InvalidFileError(f"{location}: a frame is required. Export the file again.")
+    bodies: dict[str, BodyJoints] = {}
+    for count, body in enumerate(listed(frame.get("bodies"), location), start=1):
         positions = array_from_json(
             body.get("joint_positions"), (-1, 3), f"{location}, joint_positions"
         )
-        bodies.setdefault(str(body.get("body_id", count)), positions)
-    time = array_from_json(frame.get("timestamp_usec"), (), f"{location}, timestamp_usec")
-    return float(time), bodies
+        found = BodyJoints(positions, np.full(len(positions), np.nan))
+        bodies.setdefault(name_of_body(body, ("body_id",), count), found)
+    time = number(frame.get("timestamp_usec"), f"{location}, timestamp_usec")
+    return BodiesFrame(time, bodies, done)

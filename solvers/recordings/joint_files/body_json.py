@@ -16,7 +16,7 @@ from ..conventions import DEFAULT_FRAME_RATE, Bodies, bodies_of_frames, recorded
 MAX_CONFIDENCE = 100.0
 
 
-class Body(NamedTuple):
+class BodyJoints(NamedTuple):
     """Joints of one person in one frame."""
 
     positions: Array
@@ -25,12 +25,12 @@ class Body(NamedTuple):
     """Shape (n_joints,), NaN where the file has none."""
 
 
-class Frame(NamedTuple):
+class BodiesFrame(NamedTuple):
     """One frame of a file."""
 
     time: float
     """In the unit of the file; NaN if it is not stated."""
-    bodies: dict[str, Body]
+    bodies: dict[str, BodyJoints]
     done: float
     """Fraction of the file up to its end."""
 
@@ -47,7 +47,7 @@ def json_frames(path: Path | str, keys: frozenset[str]) -> Iterator[tuple[str, A
 
 def open_frames(
     path: Path | str,
-    frames: list[Frame],
+    frames: list[BodiesFrame],
     second: float,
     read: Callable[[str, Array | None, Progress], JointRecording],
 ) -> Bodies[JointRecording]:
@@ -56,7 +56,7 @@ def open_frames(
     Parameters
     ----------
     path : Path or str
-    frames : list of Frame
+    frames : list of BodiesFrame
     second : float
         Seconds per unit of the time stamps.
     read : callable
@@ -106,14 +106,16 @@ def point(value: Any, location: str) -> Array:
     return array_from_json(value, (3,), location)
 
 
-def stacked(body: str, frames: list[Frame]) -> tuple[Array, Array | None]:
+def stacked(body: str, frames: list[BodiesFrame]) -> tuple[Array, Array | None]:
     """Return positions and confidence, 0 to 1, of a body; NaN and 0 in frames without it.
 
     Raises ValueError if it has different joints in different frames.
     """
     found = [frame.bodies.get(body) for frame in frames]
     empty = next(each for each in found if each is not None)
-    gap = Body(np.full_like(empty.positions, np.nan), np.full_like(empty.confidence, np.nan))
+    gap = BodyJoints(
+        np.full_like(empty.positions, np.nan), np.full_like(empty.confidence, np.nan)
+    )
     positions = np.stack([(each or gap).positions for each in found])
     confidence = np.stack([(each or gap).confidence for each in found])
     if np.isnan(confidence).all():

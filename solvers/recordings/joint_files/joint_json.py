@@ -21,7 +21,7 @@ HEAD = re.compile(rb'\s*\{[^{}\[\]]*"format"\s*:\s*"' + FORMAT.encode() + rb'"')
 NOT_OBSERVED = (np.nan, np.nan, np.nan)
 
 
-class Frame(NamedTuple):
+class JointValues(NamedTuple):
     """Positions, shape (n_joints, 3), states and confidence, shape (n_joints,), and seconds."""
 
     positions: NDArray[np.float64]
@@ -70,7 +70,7 @@ def open_joint_json(
     check_scale(scale)
     fields: dict[str, Any] = {}
     names: list[str] = []
-    frames: list[Frame] = []
+    frames: list[JointValues] = []
     for member in json_members(path):
         if member.key == "frames":
             frames.append(_frame(member.value, f"{path}, frame {len(frames) + 1}"))
@@ -150,7 +150,7 @@ def write_joint_json(
         file.write("\n]}\n")
 
 
-def _frame(frame: Any, location: str) -> Frame:
+def _frame(frame: Any, location: str) -> JointValues:
     listed = frame.get("positions") if isinstance(frame, dict) else None
     if not isinstance(listed, list):
         raise InvalidFileError(
@@ -167,10 +167,10 @@ def _frame(frame: Any, location: str) -> Frame:
         for key in ("states", "confidence")
     )
     time = float(array_from_json(frame.get("time"), (), f"{location}, time"))
-    return Frame(positions.reshape(-1, 3), states, confidence, time)
+    return JointValues(positions.reshape(-1, 3), states, confidence, time)
 
 
-def _check(names: list[str], frames: list[Frame], path: Path | str) -> None:
+def _check(names: list[str], frames: list[JointValues], path: Path | str) -> None:
     """Raise InvalidFileError unless each frame has a position for each joint."""
     if not names or not frames:
         raise InvalidFileError(f"{path} has no joints or no frames.")

@@ -95,16 +95,7 @@ def read_mediapipe_csv(
     if not len(rows):
         raise InvalidFileError(f"{path} has a header but no frames. Export it again.")
     table = _from_long(titles, rows, index, path) if index >= 0 else _from_wide(titles, rows)
-    visibility = table.points[..., 3]
-    return recording_from_landmarks(
-        path,
-        table.points[..., :3],
-        None if np.isnan(visibility).all() else np.clip(np.nan_to_num(visibility), 0.0, 1.0),
-        table.times,
-        None,
-        scale,
-        progress,
-    )
+    return recording_from_landmarks(path, table.points, table.times, None, scale, progress)
 
 
 def _from_wide(titles: list[str], rows: Array) -> _Table:

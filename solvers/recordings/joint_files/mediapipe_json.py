@@ -81,14 +81,11 @@ def read_mediapipe_json(
             progress(0.9 * member.done, "Reading")
     if not frames:
         raise InvalidFileError(f"{path} has no frames with landmarks. Export it again.")
-    points = np.stack(frames)
     stamps = np.array(times)
     usable = np.isfinite(stamps).sum() > 1
-    visibility = points[..., 3]
     return recording_from_landmarks(
         path,
-        points[..., :3],
-        None if np.isnan(visibility).all() else np.clip(np.nan_to_num(visibility), 0.0, 1.0),
+        np.stack(frames),
         seconds(stamps) if usable else None,
         rate if rate is not None and 0.0 < rate < np.inf else None,
         scale,

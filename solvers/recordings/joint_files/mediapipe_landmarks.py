@@ -42,8 +42,7 @@ def is_world(points: Array) -> bool:
 
 def recording_from_landmarks(
     path: Path | str,
-    points: Array,
-    visibility: Array | None,
+    landmarks: Array,
     times: Array | None,
     frame_rate: float | None,
     scale: float | None,
@@ -55,8 +54,8 @@ def recording_from_landmarks(
     ----------
     path : Path or str
         For error messages.
-    points : shape (n_frames, 33, 3), meters; NaN in frames without a body
-    visibility : shape (n_frames, 33), 0 to 1, or None
+    landmarks : shape (n_frames, 33, 4)
+        x, y and z in meters, NaN in frames without a body; visibility from 0 to 1, or NaN.
     times : seconds, shape (n_frames,), or None
     frame_rate : hertz, or None
     scale : meters per unit of the file, or None
@@ -67,6 +66,7 @@ def recording_from_landmarks(
     InvalidFileError
         The landmarks are those of a picture, or none is observed.
     """
+    points, visibility = landmarks[..., :3], np.clip(landmarks[..., 3], 0.0, 1.0)
     if np.isnan(points).all():
         raise InvalidFileError(f"{path} has {len(points)} frames but no body in any of them.")
     if not is_world(points):
@@ -87,7 +87,11 @@ def recording_from_landmarks(
         (*BODY_POINTS, *COMPUTED_JOINTS),
         _with_means(from_azure_space(points), pairs),
         Sensor.MEDIAPIPE,
-        confidence=None if visibility is None else _with_means(visibility, pairs),
+        confidence=(
+            None
+            if np.isnan(visibility).all()
+            else _with_means(np.nan_to_num(visibility), pairs)
+        ),
         times=times,
         frame_rate=frame_rate or DEFAULT_FRAME_RATE,
         nan_only=True,

@@ -22,8 +22,8 @@ from ..conventions import (
     recorded_seconds,
 )
 from .body_json import (
-    Body,
-    Frame,
+    BodiesFrame,
+    BodyJoints,
     json_frames,
     listed,
     name_of_body,
@@ -142,7 +142,7 @@ def open_nuitrack_json(
     are millimeters, unless these do not give a human body.
     """
     check_scale(scale)
-    frames: list[Frame] = []
+    frames: list[BodiesFrame] = []
     for _, value, done in json_frames(path, KEYS):
         frames.append(_read_frame(value, done, f"{path}, frame {len(frames) + 1}"))
         progress(done, "Reading")
@@ -157,16 +157,16 @@ def open_nuitrack_json(
     return open_frames(path, frames, MICROSECOND, read)
 
 
-def _read_frame(value: Mapping[str, Any], done: float, location: str) -> Frame:
-    bodies: dict[str, Body] = {}
+def _read_frame(value: Mapping[str, Any], done: float, location: str) -> BodiesFrame:
+    bodies: dict[str, BodyJoints] = {}
     for count, body in enumerate(listed(_first(value, tuple(KEYS)), location)):
         joints = _first(body, ("joints", "Joints"))
         found = _read_joints(body if joints is None else joints, location)
         bodies.setdefault(name_of_body(body, IDS, count), found)
-    return Frame(number(_first(value, TIMES), f"{location}, timestamp"), bodies, done)
+    return BodiesFrame(number(_first(value, TIMES), f"{location}, timestamp"), bodies, done)
 
 
-def _read_joints(joints: Any, location: str) -> Body:
+def _read_joints(joints: Any, location: str) -> BodyJoints:
     """Return all joints of `NUITRACK`; NaN where the file has none."""
     positions, confidence = np.full((len(NUITRACK), 3), np.nan), np.full(len(NUITRACK), np.nan)
     named = joints.items() if isinstance(joints, Mapping) else enumerate(joints or ())
@@ -182,7 +182,7 @@ def _read_joints(joints: Any, location: str) -> Body:
         confidence[index] = number(known, f"{location}, confidence")
         if confidence[index] == 0.0:
             positions[index] = np.nan
-    return Body(positions, confidence)
+    return BodyJoints(positions, confidence)
 
 
 def _index(type_: Any, key: Any) -> int:

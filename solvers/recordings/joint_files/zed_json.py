@@ -20,8 +20,8 @@ from ..conventions import (
     stand_along,
 )
 from .body_json import (
-    Body,
-    Frame,
+    BodiesFrame,
+    BodyJoints,
     json_frames,
     listed,
     name_of_body,
@@ -76,7 +76,7 @@ def open_zed_json(
     .. [1] Stereolabs, zed-sdk, body tracking/export/JSON export.
     """
     check_scale(scale)
-    frames: list[Frame] = []
+    frames: list[BodiesFrame] = []
     for key, value, done in json_frames(path, KEYS):
         frames.append(_read_frame(key, value, done, f"{path}, frame {len(frames) + 1}"))
         progress(done, "Reading")
@@ -87,7 +87,7 @@ def open_zed_json(
 
 def _recording(
     path: Path | str,
-    frames: list[Frame],
+    frames: list[BodiesFrame],
     scale: float | None,
     body: str,
     times: Array | None,
@@ -141,8 +141,8 @@ def _with_means(
     return positions, confidence
 
 
-def _read_frame(key: str, value: dict[str, Any], done: float, location: str) -> Frame:
-    bodies: dict[str, Body] = {}
+def _read_frame(key: str, value: dict[str, Any], done: float, location: str) -> BodiesFrame:
+    bodies: dict[str, BodyJoints] = {}
     for count, body in enumerate(listed(value.get("body_list"), location)):
         if not body.get("keypoint"):
             continue
@@ -153,8 +153,8 @@ def _read_frame(key: str, value: dict[str, Any], done: float, location: str) -> 
             confidence = array_from_json(
                 known, (len(positions),), f"{location}, keypoint_confidence"
             )
-        bodies.setdefault(name_of_body(body, ("id",), count), Body(positions, confidence))
+        bodies.setdefault(name_of_body(body, ("id",), count), BodyJoints(positions, confidence))
     time = number(value.get("timestamp"), f"{location}, timestamp")
     if np.isnan(time) and key.isdigit() and len(key) < 20:
         time = 1e6 * float(key)  # milliseconds
-    return Frame(time, bodies, done)
+    return BodiesFrame(time, bodies, done)

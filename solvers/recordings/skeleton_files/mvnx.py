@@ -44,7 +44,7 @@ def is_mvnx(head: bytes) -> bool:
     return re.search(rb"<mvnx[\s>]", head) is not None
 
 
-class Subject(NamedTuple):
+class MvnxSubject(NamedTuple):
     """An actor as in the file."""
 
     label: str
@@ -101,9 +101,9 @@ def open_mvnx(
     return Bodies(str(path), listed, read)
 
 
-def _subjects(path: Path | str, progress: Progress) -> list[Subject]:
+def _subjects(path: Path | str, progress: Progress) -> list[MvnxSubject]:
     """Return all subjects; one without frames if there is none."""
-    subjects: list[Subject] = []
+    subjects: list[MvnxSubject] = []
     names: list[str] = []
     frames: list[tuple[Array, Array]] = []
     try:
@@ -117,16 +117,16 @@ def _subjects(path: Path | str, progress: Progress) -> list[Subject]:
                     progress(0.5, "Reading")
             elif tag == "subject":
                 rate = common_rate(float(element.get("frameRate", DEFAULT_RATE_HZ)))
-                subjects.append(Subject(element.get("label", ""), rate, names, frames))
+                subjects.append(MvnxSubject(element.get("label", ""), rate, names, frames))
                 names, frames = [], []
     except (ParseError, ValueError, LookupError):
         raise InvalidFileError(f"{path} is damaged or cut short. Export it again.") from None
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
-    return subjects or [Subject("", DEFAULT_RATE_HZ, names, frames)]
+    return subjects or [MvnxSubject("", DEFAULT_RATE_HZ, names, frames)]
 
 
-def _motion(path: Path | str, subject: Subject, scale: float) -> Motion:
+def _motion(path: Path | str, subject: MvnxSubject, scale: float) -> Motion:
     names, frames = subject.segments, subject.frames
     known = [index for index, name in enumerate(names) if name in PARENTS]
     kept = sorted(known, key=lambda index: list(PARENTS).index(names[index]))

@@ -22,7 +22,7 @@ from threadpoolctl import threadpool_limits
 
 from solvers.arrays import Array, Flags
 from solvers.denoising import denoise, learn_filter_bases, plant_feet
-from solvers.denoising.feet.legs import Leg, find_legs
+from solvers.denoising.feet.legs import LegJoints, find_legs
 from solvers.motion import Motion, ReachSettings, detect_contacts, forward_kinematics, reach
 from solvers.rotations.representations import IDENTITY, angle_between
 from solvers.samples import CorruptionSettings, corrupt
@@ -172,7 +172,7 @@ INPUTS: tuple[tuple[str, Callable[[str, Motion], Motion], int, bool], ...] = (
 )
 
 
-def _feet(motion: Motion, legs: Sequence[Leg]) -> Array:
+def _feet(motion: Motion, legs: Sequence[LegJoints]) -> Array:
     """Ankle and toe joints, (n_frames, 2 feet, 2, 3)."""
     joints = np.array([[leg.ankle, leg.toe] for leg in legs])
     return forward_kinematics(motion).positions[:, joints]
@@ -192,7 +192,7 @@ def _hips_moved(a: Motion, b: Motion) -> float:
     return float(np.linalg.norm(a.root_positions - b.root_positions, axis=-1).max())
 
 
-def _bends(motion: Motion, leg: Leg) -> Array:
+def _bends(motion: Motion, leg: LegJoints) -> Array:
     """Angle of the knee's rotation, degrees."""
     return np.asarray(np.degrees(angle_between(motion.rotations[:, leg.knee], IDENTITY)))
 

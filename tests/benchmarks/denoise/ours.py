@@ -7,10 +7,10 @@ from functools import lru_cache
 from solvers.arrays import Array
 from solvers.denoising import (
     Denoised,
+    DenoiseMethod,
     DenoiseSettings,
     FilterBases,
     FilterBasesSettings,
-    Method,
     denoise,
     learn_filter_bases,
 )
@@ -25,7 +25,7 @@ WINDOW = FilterBasesSettings().window
 class Ours:
     """`denoise` with bases from the training clips, or (`prior` false) from the take itself."""
 
-    method: Method = DenoiseSettings().method
+    method: DenoiseMethod = DenoiseSettings().method
     prior: bool = True
     window: float = WINDOW
 
@@ -48,6 +48,6 @@ def learned(training: tuple[Motion, ...], window: float) -> FilterBases:
 OURS = {
     "ours": Ours(),
     "ours, no prior": Ours(prior=False),
-    "[LC10] as published": Ours(method=Method.PUBLISHED),
+    "[LC10] as published": Ours(method=DenoiseMethod.PUBLISHED),
 }
 SHORT_NAMES = {"ours": "ours", "published": "[LC10] as published", "alone": "ours, no prior"}

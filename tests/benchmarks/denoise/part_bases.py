@@ -12,10 +12,10 @@ import numpy as np
 
 from solvers.arrays import Array
 from solvers.denoising import (
+    DenoiseMethod,
     DenoiseSettings,
     FilterBases,
     FilterBasesSettings,
-    Method,
     denoise,
     learn_filter_bases,
 )
@@ -50,7 +50,7 @@ SEQUENCES = {
 """Seconds of the three rows of jumps, and of the jumps in them."""
 ARMS = ("leftShoulder", "rightShoulder")
 MISSING_S = 1.0
-PUBLISHED = DenoiseSettings(method=Method.PUBLISHED)
+PUBLISHED = DenoiseSettings(method=DenoiseMethod.PUBLISHED)
 
 
 def compare_counts(names: Sequence[str]) -> list[Scores | str]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.arrays import Array
-from solvers.denoising import Method
+from solvers.denoising import DenoiseMethod
 from solvers.motion import Motion
 from solvers.rotations.representations import slerp, unroll
 
@@ -162,7 +162,7 @@ FILLERS: Mapping[str, Filler] = {
     "soft-impute of the take, tuned on the truth": _soft_impute,
     "Gaussian over poses of the training clips": _conditional,
     "data-driven Kalman RTS": _learned_dynamics,
-    "[LC10] as published": ours(Ours(method=Method.PUBLISHED)),
+    "[LC10] as published": ours(Ours(method=DenoiseMethod.PUBLISHED)),
     "ours": ours(Ours()),
     "ours, no prior": ours(Ours(prior=False)),
 }

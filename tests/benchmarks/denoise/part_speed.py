@@ -7,7 +7,7 @@ from time import perf_counter
 
 import numpy as np
 
-from solvers.denoising import DenoiseSettings, Method, denoise, learn_filter_bases
+from solvers.denoising import DenoiseMethod, DenoiseSettings, denoise, learn_filter_bases
 from solvers.motion import Motion
 
 from ..peers import kalman, smoothers
@@ -43,7 +43,11 @@ def measure_speed() -> str:
     for title, settings, examples in (
         ("ours: denoise 1,000 frames", DenoiseSettings(), bases),
         ("ours: denoise 1,000 frames, no prior", DenoiseSettings(), None),
-        ("[LC10] as published, 1,000 frames", DenoiseSettings(method=Method.PUBLISHED), bases),
+        (
+            "[LC10] as published, 1,000 frames",
+            DenoiseSettings(method=DenoiseMethod.PUBLISHED),
+            bases,
+        ),
     ):
         timed = _timed(lambda e=examples, s=settings: denoise(noisy, e, settings=s))
         _row(rows, title, timed, peer)

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from solvers.denoising import Method as DenoiseMethod
+from solvers.denoising import DenoiseMethod as DenoiseMethod
 from solvers.motion import Motion
 
 from ..shared import clips

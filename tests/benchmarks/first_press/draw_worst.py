@@ -22,7 +22,7 @@ from solvers.pictures import (
     Canvas,
     Picture,
     StickFigureSettings,
-    View,
+    ViewDirection,
     draw_stick_figures,
     stack_pictures,
 )
@@ -47,7 +47,7 @@ MEASURES = {"position": "distance", "speed_kept": "speed", "reach_lost": "reach"
 """The figures besides the angle error, and the names of their pictures."""
 AROUND_S, FIGURES_S = 1.0, 0.2
 """Seconds before and after the worst moment that the curves and the figures show."""
-FIGURES = StickFigureSettings(n_figures=7, height=110, view=View.QUARTER)
+FIGURES = StickFigureSettings(n_figures=7, height=110, view=ViewDirection.QUARTER)
 WIDTH, HEIGHT, LEFT, TOP, BOTTOM, RIGHT = 780.0, 190.0, 60.0, 34.0, 30.0, 200.0
 RECORDED = (205, 205, 205)
 N_COLORS = 48

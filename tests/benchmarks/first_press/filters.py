@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.arrays import Array
-from solvers.denoising import DenoiseSettings, Method, denoise
+from solvers.denoising import DenoiseMethod, DenoiseSettings, denoise
 from solvers.motion import Motion
 from solvers.signals import fill_channel_gaps
 
@@ -39,7 +39,7 @@ class Result:
 Filter = Callable[[Case], Result]
 
 
-def _denoised(case: Case, method: Method = Method.DEFAULT) -> Result:
+def _denoised(case: Case, method: DenoiseMethod = DenoiseMethod.DEFAULT) -> Result:
     result = denoise(case.given, settings=DenoiseSettings(method=method))
     assert isinstance(result.recording, Motion)
     body = slice(result.recording.n_joints - case.truth.n_joints, None)
@@ -84,6 +84,6 @@ PEERS: dict[str, Filter] = {
 }
 METHODS: dict[str, Filter] = {
     OURS: _denoised,
-    PUBLISHED: partial(_denoised, method=Method.PUBLISHED),
+    PUBLISHED: partial(_denoised, method=DenoiseMethod.PUBLISHED),
     **PEERS,
 }

@@ -67,10 +67,10 @@ def read(path: Path, truth: Truth | None) -> list[tuple[str, list[str], list[str
     """Return name, row and faults of each take of a file, or of its refusal."""
     from mocap_ext.mocap_assist.importing.solve_reading import Conversion, read_takes
     from mocap_ext.solvers.errors import MocapAssistError
-    from mocap_ext.solvers.recordings import Floor
+    from mocap_ext.solvers.recordings import FloorPlacement
 
     try:
-        contents = read_takes(path, Conversion(floor=Floor.AUTO))
+        contents = read_takes(path, Conversion(floor=FloorPlacement.AUTO))
     except MocapAssistError as error:
         sentence = str(error).replace(str(path), path.name).replace("|", "/")
         faults = ["refused"] * bool(truth and not truth.refused and truth.height_m)

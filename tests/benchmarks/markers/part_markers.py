@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from solvers.arrays import Array
-from solvers.denoising import DenoiseSettings, Method, denoise
+from solvers.denoising import DenoiseMethod, DenoiseSettings, denoise
 from solvers.motion import Tracks
 from solvers.recordings import read_c3d, read_recording
 
@@ -94,7 +94,9 @@ def _cut(tracks: Tracks, take: str, n_markers: int, seconds: float, draw: int) -
     return gapped
 
 
-def ours(gapped: Array, frame_rate: float, method: Method = Method.DEFAULT) -> Array:
+def ours(
+    gapped: Array, frame_rate: float, method: DenoiseMethod = DenoiseMethod.DEFAULT
+) -> Array:
     """Denoise without examples; observed samples count fully."""
     names = tuple(f"marker {number}" for number in range(gapped.shape[1]))
     settings = DenoiseSettings(method=method)
@@ -115,6 +117,6 @@ FILLERS: dict[str, Filler] = {
         marker_fillers.principal_markers
     ),
     "model averaging (after the authors' program)": marker_fillers.centred(model_averaging),
-    "[LC10] as published, no examples": partial(ours, method=Method.PUBLISHED),
+    "[LC10] as published, no examples": partial(ours, method=DenoiseMethod.PUBLISHED),
     "ours": ours,
 }

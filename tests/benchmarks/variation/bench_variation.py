@@ -17,9 +17,9 @@ from threadpoolctl import threadpool_limits
 
 from solvers.motion import Motion
 from solvers.variation import (
-    Method,
     Variant,
     VariationModel,
+    VaryMethod,
     VarySettings,
     borrow_variation,
     draw_variants,
@@ -107,9 +107,9 @@ def methods() -> dict[str, tuple[Callable[..., VariationModel] | None, Maker]]:
     """Return what learns, if anything does, and what makes variants."""
     found: dict[str, tuple[Callable[..., VariationModel] | None, Maker]] = {}
     for method, label in (
-        (Method.MIXTURE, OURS),
-        (Method.COREGIONALISED, "coregionalised"),
-        (Method.PUBLISHED, "published"),
+        (VaryMethod.MIXTURE, OURS),
+        (VaryMethod.COREGIONALISED, "coregionalised"),
+        (VaryMethod.PUBLISHED, "published"),
     ):
         settings = VarySettings(method=method)
         learn = partial(learn_variation_model, settings=settings)

@@ -175,16 +175,10 @@ def test_undo_is_one_step(walk, blank):
     assert not blank.data.actions
 
 
-def test_small_files_are_read_together_and_large_ones_alone(load, tmp_path, monkeypatch):
-    job = load("mocap_assist.importing.import_job")
-    monkeypatch.setattr(job, "BYTES_AT_ONCE", 100)
-    paths = []
-    for number, size in enumerate([40, 60, 1, 300, 0, 99]):
-        paths.append(tmp_path / str(number))
-        paths[-1].write_bytes(b"x" * size)
-    paths.append(tmp_path / "gone")
+def test_small_files_are_read_together_and_large_ones_alone(load):
+    batches_by_size = load("mocap_assist.jobs.batches").batches_by_size
 
-    parted = [[path.name for path in batch] for batch in job.batches(paths)]
+    parted = list(batches_by_size([40, 60, 1, 300, 0, 99, 0], int, 100))
 
-    assert parted == [["0", "1"], ["2"], ["3"], ["4", "5", "gone"]]
-    assert list(job.batches([])) == []
+    assert parted == [[40, 60], [1], [300], [0, 99, 0]]
+    assert list(batches_by_size([], int, 100)) == []

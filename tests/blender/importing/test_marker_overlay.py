@@ -137,7 +137,9 @@ def test_only_so_much_is_kept(overlay, holder, monkeypatch):
     monkeypatch.setattr(overlay, "MAX_CACHED", 3)
     raw, _ = overlay.raw_and_clean(holder)
     for count in range(1, N_MARKERS + 1):
-        overlay.trails_at(overlay.Played(raw.markers[:count], raw.sources[:count]), 1.0, 12)
+        overlay.trails_at(
+            overlay.ComparedMarkers(raw.markers[:count], raw.sources[:count]), 1.0, 12
+        )
 
     assert len(overlay._cache) == overlay.MAX_CACHED
 

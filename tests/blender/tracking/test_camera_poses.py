@@ -14,7 +14,7 @@ def stood(load):
     """The floor below a camera that was rolled and tilted, in degrees."""
 
     def stood(roll, tilt):
-        floor = load("solvers.depth_scene.floor").Floor
+        floor = load("solvers.depth_scene.floor").FloorPlane
         roll, tilt = np.radians([roll, tilt])
         up = (np.sin(roll) * np.cos(tilt), -np.cos(roll) * np.cos(tilt), -np.sin(tilt))
         return floor(np.array(up), 1.3)

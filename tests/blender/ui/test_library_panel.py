@@ -20,7 +20,7 @@ def matched(load, blank):
         )
         for name in ("walk", "run")
     )
-    stage = finding.Stage(np.zeros((10, 3)), np.zeros(10), np.ones(20), 20.0)
+    stage = finding.QueryPath(np.zeros((10, 3)), np.zeros(10), np.ones(20), 20.0)
     search = searches.keep("take", (1.0, 1.0), 1.0, finding.Finding(found, stage, 5))
     load("mocap_assist.search.finding").fill_list(blank.context, search)
     return search

@@ -7,8 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.denoising import (
+    DenoiseMethod,
     DenoiseSettings,
-    Method,
     denoise,
     learn_filter_bases,
     learn_joint_limits,
@@ -23,7 +23,7 @@ from solvers.samples import GaitSettings, walking_gait
 WALKS = ("32_01", "07_01", "07_02", "07_04", "10_04")  # the take, then its examples
 
 
-@pytest.mark.parametrize("method", Method)
+@pytest.mark.parametrize("method", DenoiseMethod)
 @pytest.mark.parametrize("with_examples", [True, False])
 def test_removes_most_of_the_noise(swinging_leg, rng, method, with_examples):
     bases = learn_filter_bases([swinging_leg]) if with_examples else None
@@ -34,10 +34,11 @@ def test_removes_most_of_the_noise(swinging_leg, rng, method, with_examples):
     before = angle_between(noisy.rotations, swinging_leg.rotations)[:, :3].mean()
     after = angle_between(result.recording.rotations, swinging_leg.rotations)[:, :3].mean()
     # Without examples the published method keeps 99 % of a noisy take: mostly its noise.
-    assert after < (0.95 if method is Method.PUBLISHED and not with_examples else 0.6) * before
+    is_kept = method is DenoiseMethod.PUBLISHED and not with_examples
+    assert after < (0.95 if is_kept else 0.6) * before
 
 
-@pytest.mark.parametrize("method", Method)
+@pytest.mark.parametrize("method", DenoiseMethod)
 def test_fills_every_gap_with_low_confidence(swinging_leg, rng, method):
     noisy = shaken(swinging_leg, rng, np.radians(1))
     noisy.rotations[30:50, 1] = np.nan
@@ -155,7 +156,7 @@ def test_beats_the_published_filter_on_a_real_walk(recordings, rng):
     noisy = shaken(truth, rng, np.radians(3), n_still=0)
 
     result = error(denoise(noisy, bases), truth)
-    published_settings = DenoiseSettings(method=Method.PUBLISHED)
+    published_settings = DenoiseSettings(method=DenoiseMethod.PUBLISHED)
 
     assert result < 0.9 * error(denoise(noisy, bases, settings=published_settings), truth)
     assert (
@@ -169,12 +170,8 @@ def test_limb_wrong_for_a_fifth_of_a_second_is_corrected(recordings, rng):
     truth, bases = clips[0], learn_filter_bases(clips[1:])
     noisy = shaken(truth, rng, np.radians(3), n_still=0)
     is_wrong = np.zeros(noisy.rotations.shape[:2], dtype=bool)
-    for start, name in (
-        (20, "LeftForeArm"),
-        (40, "RightArm"),
-        (60, "LeftArm"),
-        (80, "LeftLeg"),
-    ):
+    names = ("LeftForeArm", "RightArm", "LeftArm", "LeftLeg")
+    for start, name in zip((20, 40, 60, 80), names, strict=True):
         is_wrong[start : start + 6, noisy.skeleton.index(name)] = True
     rotation = quaternion_from_rotation_vector([0.5, -0.5, 0.5])
     noisy.rotations[is_wrong] = multiply(rotation, noisy.rotations[is_wrong])

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
-from solvers.denoising import DenoiseSettings, Method, denoise, learn_filter_bases
+from solvers.denoising import DenoiseMethod, DenoiseSettings, denoise, learn_filter_bases
 from solvers.denoising.published import (
     PATTERN_WEIGHT,
     WELSCH_SCALE_DEG,
@@ -80,7 +80,7 @@ def test_every_round_lowers_the_cost(patterns, noisy, monkeypatch):
 
 
 def test_reports_why_it_does_not_use_the_examples(swinging_leg, leg):
-    settings = DenoiseSettings(method=Method.PUBLISHED)
+    settings = DenoiseSettings(method=DenoiseMethod.PUBLISHED)
     names = dict(zip(leg.names, ("hip", "knee", "foot", "end"), strict=True))
     other = replace(leg, names=tuple(names.values()))
     foreign = learn_filter_bases([replace(swinging_leg, skeleton=other)])

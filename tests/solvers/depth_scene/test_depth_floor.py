@@ -6,7 +6,7 @@ from depth_rooms import in_room, room, tilted
 from numpy.testing import assert_allclose
 
 from solvers.depth_scene.camera import Camera
-from solvers.depth_scene.floor import LEVEL, Floor, find_floor
+from solvers.depth_scene.floor import LEVEL, FloorPlane, find_floor
 from solvers.depth_scene.recording import DepthRecording
 from solvers.recordings import read_depth
 
@@ -18,7 +18,7 @@ def empty_recording(camera: Camera = KINECT) -> DepthRecording:
     return DepthRecording(camera, 5, 30.0, lambda _: np.zeros(shape, np.float32))
 
 
-def angle_between(floor: Floor, up: np.ndarray) -> float:
+def angle_between(floor: FloorPlane, up: np.ndarray) -> float:
     return float(np.degrees(np.arccos(np.clip(floor.up @ up, -1.0, 1.0))))
 
 
@@ -79,7 +79,7 @@ def test_find_floor_returns_none_for_an_empty_recording_and_a_wall():
 
 
 def test_world_from_camera_matches_the_camera_pose(rng):
-    floor = Floor(tilted(25.0, 10.0), 1.3)
+    floor = FloorPlane(tilted(25.0, 10.0), 1.3)
 
     rotation, translation = floor.world_from_camera()
 

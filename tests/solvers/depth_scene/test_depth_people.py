@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solvers.depth_scene.bodies import Bodies
+from solvers.depth_scene.bodies import LabeledBodies
 from solvers.depth_scene.people import follow_people
 
 RATE = 30.0
@@ -14,14 +14,14 @@ FRAMES = np.arange(0, 151, 5)
 def track(*people, n_frames=151):
     """Track people, each an area and a function from seconds to a position or None."""
 
-    def observe(frame: int) -> Bodies:
+    def observe(frame: int) -> LabeledBodies:
         visible = [(area, position(frame / RATE)) for area, position in people]
         visible = sorted(
             ((area, at) for area, at in visible if at is not None), key=lambda one: -one[0]
         )
         centers = np.array([at for _, at in visible], dtype=np.float64).reshape(-1, 3)
         areas = np.array([area for area, _ in visible])
-        return Bodies(np.zeros((1, 1)), 1, np.zeros((1, 1), np.intp), areas, centers)
+        return LabeledBodies(np.zeros((1, 1)), 1, np.zeros((1, 1), np.intp), areas, centers)
 
     return follow_people(observe, FRAMES, n_frames, RATE)
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solvers.depth_scene.floor import Floor
+from solvers.depth_scene.floor import FloorPlane
 from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_tracking.body.coordinates import COORDINATES
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
@@ -136,7 +136,7 @@ def test_floor_levels_a_tilted_camera():
     """The camera looks down by 20 degrees from 1.5 m; an upright actor stays upright."""
     tilt = np.radians(20.0)
     up = np.array([0.0, -np.cos(tilt), -np.sin(tilt)])
-    floor = Floor(up, 1.5)
+    floor = FloorPlane(up, 1.5)
     pose = posed(pitch=tilt)
 
     motion = body_motion(BODY, pose[np.newaxis], 30.0, floor)

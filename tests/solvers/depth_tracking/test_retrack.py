@@ -8,7 +8,7 @@ import pytest
 from drawn_bodies import recorded, waving
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solvers.depth_scene.floor import Floor
+from solvers.depth_scene.floor import FloorPlane
 from solvers.depth_tracking.body.coordinates import COORDINATES
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import default_body
@@ -29,7 +29,7 @@ from solvers.rotations.representations import (
 )
 
 BODY = default_body()
-FLOOR = Floor(np.array([0.1, -0.99, -0.1]) / np.linalg.norm([0.1, -0.99, -0.1]), 0.9)
+FLOOR = FloorPlane(np.array([0.1, -0.99, -0.1]) / np.linalg.norm([0.1, -0.99, -0.1]), 0.9)
 N_FRAMES, CORRECTED, WRONG = 40, 20, slice(10, 30)
 ARM = [JOINTS.index(name) for name in ("rightLowerArm", "rightHand")]
 

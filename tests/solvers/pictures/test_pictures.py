@@ -11,7 +11,7 @@ from solvers.pictures import (
     CurveSettings,
     Picture,
     StickFigureSettings,
-    View,
+    ViewDirection,
     draw_curves,
     draw_stick_figures,
     draw_table,
@@ -64,7 +64,7 @@ def test_line_breaks_at_nan():
 
 @pytest.mark.parametrize(
     ("view", "expected"),
-    [(View.SIDE, (2.0, 3.0, 1.0)), (View.FRONT, (1.0, 3.0, -2.0))],
+    [(ViewDirection.SIDE, (2.0, 3.0, 1.0)), (ViewDirection.FRONT, (1.0, 3.0, -2.0))],
 )
 def test_project_to_view_maps_left_forward_and_up(view, expected):
     """A point one meter to the left, two ahead and three up, for two directions of facing."""
@@ -115,7 +115,9 @@ def test_left_side_is_drawn_lighter():
     )
     still = Motion(skeleton, np.tile([1.0, 0, 0, 0], (1, 3, 1)), np.array([[0, 0, 1.0]]), 30.0)
 
-    pixels = draw_stick_figures({"a": still}, StickFigureSettings(view=View.FRONT)).pixels[44:]
+    pixels = draw_stick_figures(
+        {"a": still}, StickFigureSettings(view=ViewDirection.FRONT)
+    ).pixels[44:]
     columns = np.flatnonzero(is_color(pixels, CLEAN).any(axis=0))
     drawn = np.flatnonzero((pixels[:-60] < 250).any(axis=(0, 2)))
 

@@ -15,7 +15,7 @@ from solvers.reconstruction.residual_correction.learn_movement_process import (
     ACTOR_VARIANCE,
     MEAN_VARIANCE,
     TAKE_VARIANCE,
-    Take,
+    TrainingTake,
     learn_movement_process,
 )
 from solvers.reconstruction.residual_correction.movement_process import (
@@ -30,12 +30,12 @@ from solvers.reconstruction.residual_correction.movement_process import (
 RATE = 30.0
 
 
-def take(speed: float, actor: str) -> Take:
+def take(speed: float, actor: str) -> TrainingTake:
     """A walk with errors that depend on posture and speed."""
     features = truth(speed)
     features = features - features[:, :1]
     errors = 0.1 * np.roll(features, 1, axis=1) + 0.02 * np.gradient(features, axis=0) * RATE
-    return Take(features, errors, RATE, actor)
+    return TrainingTake(features, errors, RATE, actor)
 
 
 TAKES = (take(0.9, "a"), take(1.2, "a"), take(1.6, "b"))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solvers.motion import FileConventions, Motion, Skeleton, world_poses
-from solvers.recordings import Axis, Floor, ReadingSettings, Unit, read_as, write_bvh
+from solvers.recordings import Axis, FloorPlacement, ReadingSettings, Unit, read_as, write_bvh
 from solvers.recordings.conventions import conventions_of, floor_level, stature
 from solvers.recordings.skeleton_files.smpl_body import smpl_joints
 from solvers.rotations import multiply, quaternion_from_euler
@@ -39,7 +39,7 @@ def read(motion: Motion, path, **settings):
     """Write a take as BVH in centimeters and read it; return it and what was said."""
     write_bvh(motion, path)
     said: list[str] = []
-    floor = settings.pop("floor", Floor.NEVER)
+    floor = settings.pop("floor", FloorPlacement.NEVER)
     motion = read_as(
         path,
         ReadingSettings(**settings),
@@ -112,7 +112,7 @@ def test_a_handstand_is_put_on_its_hands(tmp_path):
     for side, sign in (("left", 1.0), ("right", -1.0)):
         rotations = quaternion_from_euler(np.radians([[0.0, -90.0 * sign, 0.0]]), "XYZ")
         upside_down.rotations[:, NAMES.index(f"{side}_shoulder")] = rotations
-    motion, _ = read(upside_down, tmp_path / "a.bvh", floor=Floor.ALWAYS, up=Axis.Y)
+    motion, _ = read(upside_down, tmp_path / "a.bvh", floor=FloorPlacement.ALWAYS, up=Axis.Y)
 
     wrist = places(motion)["left_wrist"][:, 2]
     assert wrist.min() == pytest.approx(0.03, abs=0.02)
@@ -123,7 +123,7 @@ def test_a_first_frame_far_above_the_take_is_no_floor(tmp_path):
     take.root_positions[0] += (0.0, 0.0, 5.0)
     take.rotations[0, 1:] = (1.0, 0.0, 0.0, 0.0)
 
-    motion, _ = read(take, tmp_path / "a.bvh", floor=Floor.ALWAYS)
+    motion, _ = read(take, tmp_path / "a.bvh", floor=FloorPlacement.ALWAYS)
 
     assert places(motion)["left_foot"][1:, 2] == pytest.approx(0.02, abs=0.02)
     assert is_standing(motion)
@@ -145,13 +145,13 @@ def test_a_platform_stays_where_it_is(tmp_path):
     """Somebody who stands on a table of a measured room."""
     take = plain_names(body(hips=(0.0, 0.0, 0.96 + 0.7)))
 
-    motion, _ = read(take, tmp_path / "a.bvh", floor=Floor.AUTO)
+    motion, _ = read(take, tmp_path / "a.bvh", floor=FloorPlacement.AUTO)
 
     assert motion.root_positions[0, 2] == pytest.approx(1.66, abs=0.01)
 
 
 def test_hips_at_the_origin_are_put_on_the_floor(tmp_path):
-    motion, _ = read(body(hips=(0.0, 0.0, 0.0)), tmp_path / "a.bvh", floor=Floor.AUTO)
+    motion, _ = read(body(hips=(0.0, 0.0, 0.0)), tmp_path / "a.bvh", floor=FloorPlacement.AUTO)
 
     assert places(motion)["left_foot"][:, 2] == pytest.approx(0.02, abs=0.03)
     assert not conventions_of(motion).has_floor
@@ -251,7 +251,11 @@ def test_an_actor_far_above_the_floor_is_a_question(tmp_path):
     """Nobody comes near the floor: a platform, or a floor that is elsewhere."""
     take = plain_names(body(hips=(0.0, 0.0, 0.96 + 0.7)))
 
-    for floor, asks in ((Floor.AUTO, True), (Floor.NEVER, False), (Floor.ALWAYS, False)):
+    for floor, asks in (
+        (FloorPlacement.AUTO, True),
+        (FloorPlacement.NEVER, False),
+        (FloorPlacement.ALWAYS, False),
+    ):
         _, said = read(take, tmp_path / "a.bvh", floor=floor)
         assert ("The actor stays 0.7 m above the floor" in said) == asks
 
@@ -260,7 +264,7 @@ def test_an_actor_far_below_the_floor_is_put_on_it(tmp_path):
     """A camera at chest height is the origin of the take, and the hips are below it."""
     take = plain_names(body(hips=(0.0, 2.0, -0.35)))
 
-    motion, said = read(take, tmp_path / "a.bvh", floor=Floor.AUTO)
+    motion, said = read(take, tmp_path / "a.bvh", floor=FloorPlacement.AUTO)
 
     assert places(motion)["b_left_foot"][:, 2] == pytest.approx(0.02, abs=0.03)
     assert "the floor" not in said
@@ -271,7 +275,7 @@ def test_steps_down_are_no_wrong_floor(tmp_path):
     take = plain_names(body())
     take.root_positions[70:, 2] -= 1.5
 
-    motion, said = read(take, tmp_path / "a.bvh", floor=Floor.AUTO)
+    motion, said = read(take, tmp_path / "a.bvh", floor=FloorPlacement.AUTO)
 
     assert motion.root_positions[:60, 2] == pytest.approx(0.96, abs=0.01)
     assert "the floor" not in said

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from solvers.motion import Motion
-from solvers.recordings import Floor, questions_of, read_bvh, write_bvh
+from solvers.recordings import FloorPlacement, questions_of, read_bvh, write_bvh
 from solvers.samples import GaitSettings, walking_gait
 
 
@@ -24,7 +24,7 @@ def walk_with_offsets(folder: Path, factor: float) -> Motion:
 
 
 def test_offsets_in_meters_and_positions_in_centimeters_are_asked_about(tmp_path):
-    asked = questions_of(walk_with_offsets(tmp_path, 0.01), Floor.AUTO)
+    asked = questions_of(walk_with_offsets(tmp_path, 0.01), FloorPlacement.AUTO)
 
     assert any(
         "positions and bone lengths of the file have different units" in a for a in asked
@@ -32,4 +32,4 @@ def test_offsets_in_meters_and_positions_in_centimeters_are_asked_about(tmp_path
 
 
 def test_a_walk_in_one_unit_asks_nothing(tmp_path):
-    assert questions_of(walk_with_offsets(tmp_path, 1.0), Floor.AUTO) == []
+    assert questions_of(walk_with_offsets(tmp_path, 1.0), FloorPlacement.AUTO) == []

@@ -9,7 +9,7 @@ from solvers.motion import Motion, Skeleton, find_humanoid_map, forward_kinemati
 from solvers.motion import motion_from_points as from_points
 from solvers.recordings import read_recording
 from solvers.retargeting import RetargetSettings, retarget
-from solvers.retargeting.leg_lengths import Leg, level_ankles
+from solvers.retargeting.leg_lengths import TargetLeg, level_ankles
 from solvers.samples import GaitSettings, walking_gait
 
 STANDS = np.ones(1, dtype=np.bool_)
@@ -77,9 +77,9 @@ def test_standing_kinect_actor_keeps_straight_knees(recordings, file, maximum):
         )
 
 
-def standing_leg(*, ankle: float, excess: float) -> Leg:
+def standing_leg(*, ankle: float, excess: float) -> TargetLeg:
     hip = np.array([[0.0, 0.0, 1.0]])
-    return Leg(hip, np.array([[0.0, 0.0, ankle]]), np.ones(1), STANDS, excess)
+    return TargetLeg(hip, np.array([[0.0, 0.0, ankle]]), np.ones(1), STANDS, excess)
 
 
 def shortened(rig: Skeleton, divisor: float) -> Skeleton:

@@ -12,12 +12,12 @@ from solvers.retargeting.body import find_body
 from solvers.retargeting.foot_paths import pelvis_drop
 from solvers.retargeting.hand_distance import Arms, match_meeting_hands
 from solvers.retargeting.hand_heights import (
-    Ground,
+    GroundHeights,
     ease_into_extension,
     pull_to_ground,
 )
 from solvers.retargeting.placement import (
-    Placement,
+    HipPlacement,
     ankle_height,
     find_placement,
     leg_length,
@@ -33,7 +33,9 @@ from solvers.rotations.representations import (
 )
 
 RATE = 120.0
-GROUND = Ground(Placement(1.0, 1.0, np.zeros(3), (0.0, 0.0), (0.0, 0.0)), (0.0, 0.0), 0.9, RATE)
+GROUND = GroundHeights(
+    HipPlacement(1.0, 1.0, np.zeros(3), (0.0, 0.0), (0.0, 0.0)), (0.0, 0.0), 0.9, RATE
+)
 ASIDE = np.array([0.0, 0.2, 0.0])
 TILTS = np.radians(np.arange(0.0, 181.0))
 

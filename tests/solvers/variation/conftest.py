@@ -4,7 +4,7 @@ import pytest
 
 from solvers.motion import Motion
 from solvers.samples import GaitSettings, walking_gait
-from solvers.variation import Method, VariationModel, VarySettings, learn_variation_model
+from solvers.variation import VariationModel, VaryMethod, VarySettings, learn_variation_model
 
 
 @pytest.fixture(scope="session")
@@ -28,7 +28,7 @@ def model(walks) -> VariationModel:
     return learn_variation_model(walks)
 
 
-@pytest.fixture(scope="session", params=Method, ids=lambda method: method.value)
+@pytest.fixture(scope="session", params=VaryMethod, ids=lambda method: method.value)
 def learned(request, walks) -> tuple[VariationModel, VarySettings]:
     """Return a model for each method, and the settings that go with it."""
     settings = VarySettings(method=request.param)

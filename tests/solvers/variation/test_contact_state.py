@@ -10,7 +10,7 @@ from solvers.motion import Motion
 from solvers.motion.humanoid.foot_contacts import detect_contacts
 from solvers.rotations.representations import IDENTITY
 from solvers.variation import (
-    Method,
+    VaryMethod,
     VarySettings,
     borrow_variation,
     draw_variants,
@@ -58,7 +58,7 @@ def test_touch_down_is_halfway_when_examples_mix_equally(model):
     assert_array_equal(contacts, np.repeat((samples > 36)[:, None], 2, axis=1))
 
 
-@pytest.mark.parametrize("method", [Method.MIXTURE, Method.COREGIONALISED])
+@pytest.mark.parametrize("method", [VaryMethod.MIXTURE, VaryMethod.COREGIONALISED])
 def test_contacts_equal_those_of_the_example_at_zero_amount(method, walks):
     settings = VarySettings(method=method, amount=0.0)
     model = learn_variation_model(walks, settings=settings)
@@ -86,7 +86,7 @@ def test_variants_keep_the_mean_contact_duration(walks, model):
 
 
 def test_contacts_are_unknown_with_the_published_method(walks):
-    settings = VarySettings(method=Method.PUBLISHED)
+    settings = VarySettings(method=VaryMethod.PUBLISHED)
     model = learn_variation_model(walks, settings=settings)
     assert draw_variants(model, 1, settings=settings)[0].contacts is None
 

@@ -8,7 +8,7 @@ import pytest
 from solvers.motion import forward_kinematics, resample
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.variation import (
-    Method,
+    VaryMethod,
     VarySettings,
     draw_variants,
     learn_variation_model,
@@ -17,7 +17,7 @@ from solvers.variation import (
 from solvers.variation.align_examples import positions_in_body_frame
 from solvers.variation.curves.motion_curves import headings_from_motion
 
-EVERY = [Method.MIXTURE, Method.COREGIONALISED]
+EVERY = [VaryMethod.MIXTURE, VaryMethod.COREGIONALISED]
 
 
 def about(axis, angles):
@@ -85,7 +85,7 @@ def test_variants_do_not_flip_arms_that_point_up(method, walks):
 
     variants = [one.motion for one in drawn]
     # The latent factor model is faster at the start of a clip; a flip is ten times as fast.
-    times = 1.3 if method is Method.MIXTURE else 3.0
+    times = 1.3 if method is VaryMethod.MIXTURE else 3.0
     assert fastest(variants, "LeftHand") < times * fastest(raised, "LeftHand")
 
 
@@ -144,7 +144,7 @@ def test_model_is_the_same_at_twice_the_frame_rate(walks):
     assert path_lengths[1] == pytest.approx(path_lengths[0], rel=0.05)
 
 
-@pytest.mark.parametrize("method", Method)
+@pytest.mark.parametrize("method", VaryMethod)
 def test_learning_accepts_twenty_thousand_frames(method, walks):
     """A repeated walk: many frames and their kernels are equal."""
     walk = walks[0]

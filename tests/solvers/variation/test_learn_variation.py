@@ -10,7 +10,7 @@ from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion import Motion, Skeleton, resample
 from solvers.rotations.representations import IDENTITY, multiply
 from solvers.variation import (
-    Method,
+    VaryMethod,
     VarySettings,
     borrow_variation,
     learn_variation_model,
@@ -110,10 +110,10 @@ def test_learning_raises_without_a_body(leg):
 @pytest.mark.parametrize(
     ("n_frames", "method"),
     [
-        (2, Method.MIXTURE),
-        (3, Method.MIXTURE),
-        (2, Method.COREGIONALISED),
-        (3, Method.PUBLISHED),
+        (2, VaryMethod.MIXTURE),
+        (3, VaryMethod.MIXTURE),
+        (2, VaryMethod.COREGIONALISED),
+        (3, VaryMethod.PUBLISHED),
     ],
 )
 def test_clips_of_a_few_frames(walks, n_frames, method):

@@ -8,7 +8,7 @@ import pytest
 from solvers.motion import warp
 from solvers.recordings import read_recording
 from solvers.variation import (
-    Method,
+    VaryMethod,
     VarySettings,
     learn_variation_model,
     measure_variation,
@@ -43,7 +43,7 @@ def test_variants_are_near_the_examples_but_not_copies(clips):
 def test_the_latent_factor_model_neither_drifts_nor_jerks(recordings):
     files = sorted((recordings / "mocap" / "hdm05").glob("HDM_bk_hopBothLegs1hops_*.amc"))
     clips = [read_recording(file) for file in files]
-    settings = VarySettings(method=Method.COREGIONALISED)
+    settings = VarySettings(method=VaryMethod.COREGIONALISED)
 
     variants = synthesize(learn_variation_model(clips, settings=settings), 8, settings=settings)
 

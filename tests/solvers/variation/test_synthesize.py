@@ -10,8 +10,8 @@ from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.motion import forward_kinematics, warp
 from solvers.rotations.representations import inverse, multiply, rotation_vector_from_quaternion
 from solvers.variation import (
-    Method,
     Partition,
+    VaryMethod,
     VarySettings,
     learn_variation_model,
     measure_variation,
@@ -53,7 +53,7 @@ def test_variant_is_the_example_at_zero_amount(learned, walks):
     assert_allclose(positions_in_body_frame(copy), positions_in_body_frame(center), atol=1e-5)
 
 
-@pytest.mark.parametrize("method", [Method.MIXTURE, Method.COREGIONALISED])
+@pytest.mark.parametrize("method", [VaryMethod.MIXTURE, VaryMethod.COREGIONALISED])
 def test_variation_grows_with_the_amount(method, walks):
     model = learn_variation_model(walks, settings=VarySettings(method=method))
     found = [
@@ -117,7 +117,7 @@ def test_joints_stay_near_the_range_of_the_examples(amount, learned):
     model, settings = learned
     low, high = model.joints.min(axis=(0, 1)), model.joints.max(axis=(0, 1))
     # Between moments splines overshoot a little; those through white noise, as published, far.
-    times = 6.0 if settings.method is Method.PUBLISHED else 1.2
+    times = 6.0 if settings.method is VaryMethod.PUBLISHED else 1.2
     slack = times * RANGE_MARGIN * (high - low) + 1e-6
 
     for variant in synthesize(model, 5, settings=replace(settings, amount=amount)):
@@ -166,7 +166,7 @@ def test_errors_say_what_to_do(model):
     with pytest.raises(InvalidMotionError, match="There is no example 9; the model has 4"):
         synthesize(model, 1, settings=VarySettings(base=9))
     with pytest.raises(InvalidMotionError, match="not learned for the method published"):
-        synthesize(model, 1, settings=VarySettings(method=Method.PUBLISHED))
+        synthesize(model, 1, settings=VarySettings(method=VaryMethod.PUBLISHED))
 
 
 def test_progress_reaches_one_and_can_cancel(model):

@@ -2,12 +2,12 @@
 
 from solvers.denoising import learn_joint_limits
 from solvers.motion import JointLimits, Motion
-from solvers.variation import Method, VarySettings, draw_variants, learn_variation_model
+from solvers.variation import VaryMethod, VarySettings, draw_variants, learn_variation_model
 
 from ..takes import hdm05
 from .variation import N_VARIANTS, variant_figures
 
-SETTINGS = VarySettings(method=Method.COREGIONALISED, seed=5)
+SETTINGS = VarySettings(method=VaryMethod.COREGIONALISED, seed=5)
 
 
 def prepare() -> dict[str, object]:
