@@ -13,7 +13,7 @@ from ..motion.skeletons import describe_shots, find_shot_boundaries, is_short_sh
 from ..progress import Progress, unwatched, within
 from ..settings import Choice, Settings, setting
 from .channels import CENTIMETERS, Channels, Estimate, decode, encode
-from .default_method import apply_default_method
+from .default_method import OUTLIER_THRESHOLD, apply_default_method
 from .edge_poses import (
     describe_edge_poses,
     find_edge_poses,
@@ -26,8 +26,8 @@ from .observed_samples import max_per_joint, observed_mask, restore_observed
 from .published import filter_as_published
 from .window_priors import FilterBases
 
-MIN_OUTLIER_ERROR = 2.0
-"""Degrees or centimeters: a sample closer to the estimate is not reported as an outlier. Chosen
+MIN_REPORTED_SPIKE = 2.0
+"""Degrees or centimeters: a sample closer to the estimate is not reported as a spike. Chosen
 by hand: x0.5 costs nothing, x2 gains 1.3 %."""
 HALF_CONFIDENCE_DEVIATION = 5.0
 """Standard deviation, degrees or centimeters, at which confidence is one half. By definition of
@@ -192,7 +192,9 @@ def _denoise_segment(
                 possible_channels, segment.frame_rate, bases, settings, second_progress
             )
     noisy, observed = channels.flat, np.isfinite(channels.flat)
-    spikes = (estimate.inliers < 0.5) & (np.abs(noisy - estimate.values) > MIN_OUTLIER_ERROR)
+    spikes = (estimate.inliers < OUTLIER_THRESHOLD) & (
+        np.abs(noisy - estimate.values) > MIN_REPORTED_SPIKE
+    )
     blended = noisy + settings.strength * (estimate.values - noisy)
     values = np.where(observed, blended, estimate.values)
     cleaned = decode(complete, channels, values.reshape(channels.values.shape))

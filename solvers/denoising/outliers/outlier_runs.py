@@ -19,11 +19,11 @@ from ..window_priors import Windows
 from .predictive_density import PredictiveDensity
 from .single_outliers import OUTLIER_DENSITY
 
-PRIOR_SAMPLES = 1e6
+SPIKE_PRIOR_PSEUDOCOUNT = 1e6
 """The number of samples, one of them a spike, in addition to the take's own: a clean take has
 hardly one in ten minutes (60 channels, 30 Hz). Chosen by hand on the development takes of the
 first press: with 1e3 a kick is taken for an error."""
-PRIOR_SAMPLES_OF_BURSTS = 1e9
+BURST_PRIOR_PSEUDOCOUNT = 1e9
 """The number of samples, one of them the start of a burst, which only its shape makes
 suspicious. Chosen by hand on the development takes of the first press: with 1e6 nine runs of
 clean takes are taken for errors, with 1e9 one; of 446 true bursts 3 % are lost."""
@@ -141,7 +141,9 @@ def _select(
             gains.append(as_error - as_movement)
             runs.append(run)
             first_channels.append(first)
-    n_samples = observed.sum() + (PRIOR_SAMPLES if are_suspected else PRIOR_SAMPLES_OF_BURSTS)
+    n_samples = observed.sum() + (
+        SPIKE_PRIOR_PSEUDOCOUNT if are_suspected else BURST_PRIOR_PSEUDOCOUNT
+    )
     return kept | _likeliest(np.array(gains), runs, first_channels, observed, n_samples)
 
 

@@ -7,9 +7,9 @@ from ...arrays import Array
 OUTLIER_DENSITY = 1.0 / 120.0
 """Density of an outlier's error, per degree or centimeter: uniform within +-60. Chosen by hand:
 x0.5 costs 4.5 %, x2 costs 4.0 %."""
-MIN_OUTLIER_ERROR = 0.5
-"""Degrees or centimeters: a sample closer to the estimate is hardly an outlier. Chosen by hand:
-x0.5 costs 8.5 %, x2 gains 9.4 %."""
+INLIER_STD_FLOOR = 0.5
+"""Degrees or centimeters: standard deviation of an inlier, in addition to noise and prediction.
+Chosen by hand: x0.5 costs 8.5 %, x2 gains 9.4 %."""
 INITIAL_OUTLIER_RATE = 0.03
 """Fraction of outliers before the first estimate. Chosen by hand: x0.5 costs nothing, x2 costs
 5.7 %."""
@@ -27,7 +27,7 @@ def compute_inlier_probability(error: Array, variance: Array, rate: float) -> Ar
     rate : float
         Fraction of outliers.
     """
-    variance = variance + MIN_OUTLIER_ERROR**2
+    variance = variance + INLIER_STD_FLOOR**2
     inlier_density = (1.0 - rate) * np.exp(-0.5 * error**2 / variance)
     inlier_density /= np.sqrt(2 * np.pi * variance)
     return np.asarray(inlier_density / (inlier_density + rate * OUTLIER_DENSITY))
