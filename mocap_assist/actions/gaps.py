@@ -12,14 +12,18 @@ WIDEST_HOLE = 1.5  # distances between neighbors, in median ones, that are no ga
 
 
 def unobserved(
-    channels: Sequence[Array], frames: Array, step: float | None = None
+    channels: Sequence[Array],
+    frames: Array,
+    step: float | None = None,
+    *,
+    redundant_change: float = 0.0,
 ) -> NDArray[np.bool_]:
     """Return the frames at which a bone was not captured, shape (n_frames,).
 
     A recorded take has keys on every frame; where *all* channels of a bone have none, before
     the first and after the last key too, the sensor had lost it. No gap is seen in curves that
     are keyed by hand, which are meant to be interpolated, nor where the values on both sides of
-    the hole are the same: such keys were removed as redundant.
+    the hole differ by no more than `redundant_change`: exporters remove such keys.
 
     Parameters
     ----------
@@ -29,20 +33,22 @@ def unobserved(
     step : float
         Frames from one sample to the next, where the action is known to be a recording: then
         even few or widely spaced keys count as captured.
+    redundant_change : float
+        In the unit of the channels.
     """
     gap = np.ones(len(frames), bool)
     held = np.ones(len(frames), bool)
     for keys in channels:
-        missing, same = _holes(keys, frames, step)
+        missing, same = _holes(keys, frames, step, redundant_change)
         gap &= missing
         held &= same
     return np.asarray(gap & ~held)
 
 
 def _holes(
-    keys: Array, frames: Array, step: float | None
+    keys: Array, frames: Array, step: float | None, redundant_change: float
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Frames that lie in a hole of one channel, and those with equal values on both sides."""
+    """Frames that lie in a hole of one channel, and those where both sides nearly agree."""
     times, values = keys[:, 0], keys[:, 1]
     spacing = step or (np.median(np.diff(times)) if len(times) > 2 else np.inf)
     if step is None and spacing > WIDEST_STEP:
@@ -53,4 +59,4 @@ def _holes(
     inside = (after > 0) & (after < len(times))
     wide = ~inside | (times[right] - times[left] > WIDEST_HOLE * spacing)
     missing = wide & (nearest > 0.25 * spacing)
-    return missing, inside & (values[left] == values[right])
+    return missing, inside & (np.abs(values[left] - values[right]) <= redundant_change)

@@ -156,6 +156,24 @@ def test_held_pose_with_removed_keys_is_no_gap(make_armature, animate, scene_io,
     assert motion.observed.all()
 
 
+@pytest.mark.parametrize("change", [0.004, 0.04])
+def test_keys_that_an_exporter_removed_are_no_gap(
+    make_armature, animate, scene_io, blank, change
+):
+    armature = make_armature()
+    action = animate(armature)
+    for index in range(4):
+        curve = curve_of(action, 'pose.bones["Head"].rotation_quaternion', index)
+        for key in curve.keyframe_points:
+            if 20 <= key.co.x <= 30:
+                key.co.y = 0.5 + (key.co.x == 30) * change
+    remove_keys(action, "Head", 21, 29)
+
+    motion = scene_io.reading.read_take(armature, blank.context.scene).parts[0].motion
+
+    assert motion.observed.all() == (change < 0.01)
+
+
 def test_one_channel_without_keys_is_no_gap(make_armature, animate, scene_io, blank):
     armature = make_armature(mode="XYZ")
     action = animate(armature)
