@@ -1,7 +1,7 @@
 """Reading BVH: ours against Blender's own importer and against plain Python.
 
     make bench-bvh
-    make bench-bvh ARGUMENTS=--docs    # into docs/benchmarks/denoising.md
+    make bench-bvh ARGUMENTS=--docs    # into docs/benchmarks/importing.md
 
 30 joints x 5000 frames. Ours reads, checks, turns every angle into a quaternion and checks
 again. Blender's importer also makes an armature and its F-curves. Plain Python only turns the
@@ -24,7 +24,7 @@ from solvers.motion import Motion, Skeleton
 from solvers.recordings import read_bvh, write_bvh
 from solvers.rotations.representations import quaternion_from_rotation_vector
 
-from ..shared.report import Report
+from ..shared.report import DOCS, Report
 from ..shared.tables import table
 from ..shared.timing import run_times
 
@@ -38,7 +38,7 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument(
-        "--docs", action="store_true", help="rewrite docs/benchmarks/denoising.md"
+        "--docs", action="store_true", help="rewrite docs/benchmarks/importing.md"
     )
     chosen = parser.parse_args()
     started = perf_counter()
@@ -58,7 +58,8 @@ def main() -> None:
         for name, time in seconds.items()
     }
     text = f"**{title}**\n\n{table(['reader', 'seconds', 'times ours'], rows)}\n"
-    Report(chosen.docs).part("bvh", [text], perf_counter() - started)
+    report = Report(chosen.docs, DOCS / "benchmarks" / "importing.md")
+    report.part("bvh", [text], perf_counter() - started)
 
 
 def _take() -> Motion:

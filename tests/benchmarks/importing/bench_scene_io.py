@@ -2,7 +2,7 @@
 
     make bench-scene
     make bench-scene ARGUMENTS="--bones 60 --mode XYZ"
-    make bench-scene ARGUMENTS=--docs    # into docs/benchmarks/denoising.md
+    make bench-scene ARGUMENTS=--docs    # into docs/benchmarks/importing.md
 
 Beside it, in the same run and on the same curves, the fastest bare way that Blender's API
 offers (`foreach_get`, `foreach_set`, no meaning attached). Each time is the median of three.
@@ -19,7 +19,7 @@ from time import perf_counter
 import bpy
 import numpy as np
 
-from ..shared.report import Report
+from ..shared.report import DOCS, Report
 from ..shared.tables import table
 from ..shared.timing import run_times
 
@@ -34,7 +34,7 @@ def main() -> None:
     parser.add_argument("--frames", type=int, default=10_000)
     parser.add_argument("--mode", default="QUATERNION", help="rotation mode of the bones")
     parser.add_argument(
-        "--docs", action="store_true", help="rewrite docs/benchmarks/denoising.md"
+        "--docs", action="store_true", help="rewrite docs/benchmarks/importing.md"
     )
     arguments = parser.parse_args()
     started = perf_counter()
@@ -69,7 +69,8 @@ def main() -> None:
         rows[name] = [f"{seconds:.2f}", f"{1e6 * seconds / keys:.2f}", f"{seconds / bare:.1f}"]
     header = ["what", "seconds", "microseconds per key", "relative to a bare loop"]
     text = f"**{title}**, median of {REPEATS} runs\n\n{table(header, rows)}\n"
-    Report(arguments.docs).part("scene", [text], perf_counter() - started)
+    report = Report(arguments.docs, DOCS / "benchmarks" / "importing.md")
+    report.part("scene", [text], perf_counter() - started)
 
 
 def bare_read(curves: list[bpy.types.FCurve]) -> None:

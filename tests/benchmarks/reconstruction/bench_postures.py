@@ -1,9 +1,9 @@
 """Postures from a library: parts used, energies, missing joints; large libraries.
 
-    python -m tests.benchmarks.reconstruction.bench_postures          # about five minutes
-    python -m tests.benchmarks.reconstruction.bench_postures --dev    # clips to tune on
-    python -m tests.benchmarks.reconstruction.bench_postures --docs   # benchmarks/denoising.md
-    python -m tests.benchmarks.reconstruction.bench_postures --search # large libraries alone
+    make bench-postures                       # about five minutes
+    make bench-postures ARGUMENTS=--dev       # clips to tune on
+    make bench-postures ARGUMENTS=--docs      # into docs/benchmarks/reconstruction.md
+    make bench-postures ARGUMENTS=--search    # large libraries alone
 
 Libraries are of other persons than the clips: CMU walkers for development and one actor of
 HDM05. "Missing" joints are taken out of the capture; all methods get the mask. Interpolation
@@ -31,7 +31,7 @@ from solvers.reconstruction.pose_library.neighbors import (
 from solvers.reconstruction.pose_library.posture_groups import group_postures
 from solvers.reconstruction.pose_library.posture_library import PostureLibrary
 
-from ..shared.report import Report
+from ..shared.report import DOCS, Report
 from ..shared.tables import Scores, number, table
 from . import part_postures as part
 
@@ -44,16 +44,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--dev", action="store_true", help="clips to tune on instead")
     parser.add_argument(
-        "--docs", action="store_true", help="rewrite docs/benchmarks/denoising.md"
+        "--docs", action="store_true", help="rewrite docs/benchmarks/reconstruction.md"
     )
     parser.add_argument("--search", action="store_true", help="search in large libraries")
     chosen = parser.parse_args()
+    report = Report(chosen.docs, DOCS / "benchmarks" / "reconstruction.md")
     started = perf_counter()
     tables: list[Scores | str] = []
     if chosen.search:
         with threadpool_limits(1):
             found_tables = [growth()]
-        Report(chosen.docs).part("posture search", found_tables, perf_counter() - started)
+        report.part("posture search", found_tables, perf_counter() - started)
         return
     with threadpool_limits(1):
         optical, kinect = part.optical_clips(chosen.dev), part.kinect_clips(chosen.dev)
@@ -65,7 +66,7 @@ def main() -> None:
         for title, found in zip(titles, (optical, kinect), strict=True):
             tables += part.missing_joints(title, found)
             _say(f"missing joints, {title}")
-    Report(chosen.docs).part("postures", tables, perf_counter() - started)
+    report.part("postures", tables, perf_counter() - started)
 
 
 def growth() -> str:
