@@ -25,7 +25,7 @@ SUBMAKE := $(MAKE) --no-print-directory --jobs=2
 
 .PHONY: help
 help:  ## this list
-	@awk -F ':.*## ' '/^[a-z][a-z0-9.-]*:.*## / { printf "  %-19s%s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z][a-z0-9.-]*:.*## / { printf "  %-21s%s\n", $$1, $$2 }' Makefile
 
 # --- Tests ---
 
@@ -82,7 +82,7 @@ demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: 
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
 
-docs: .venv-4.5/ready  ## the tables of settings and of buttons in README.md and docs
+docs: .venv-4.5/ready  ## the tables of settings and of buttons in docs
 	PYTHONPATH=. $(PYTHON_4.5) .ci/write_docs.py
 
 pictures: .venv-4.5/ready  ## the pictures of docs/formats and of Reconstruct, from ../shared/data
@@ -116,8 +116,8 @@ body-relation: .venv-4.5/ready  ## learn how joints move together, for limbs tha
 failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the weights
 	$(PYTHON_4.5) -m tests.training.learn_failures
 
-BENCHMARKS := denoise first-press feet bvh scene import import-corpus roles video \
-  reliability reconstruct retrieval retarget variation depth physics gestures retarget-rig
+BENCHMARKS := denoise first-press feet markers bvh scene import import-corpus roles video \
+  reliability reconstruct postures retrieval retarget variation depth physics gestures retarget-rig
 .PHONY: benchmarks $(BENCHMARKS:%=bench-%)
 benchmarks: .venv-4.5/ready  ## run every benchmark, one after another (hours); prints how each ended
 	@mkdir -p build/benchmarks; failed=0; for name in $(BENCHMARKS); do \
@@ -136,6 +136,9 @@ bench-first-press: .venv-4.5/ready  ## measure Clean without examples against fi
 
 bench-feet: .venv-4.5/ready  ## measure foot planting against pinning
 	$(PYTHON_4.5) -m tests.benchmarks.denoise.bench_feet $(ARGUMENTS)
+
+bench-markers: .venv-4.5/ready  ## measure labels, rigid clusters and skeletons of optical markers
+	$(PYTHON_4.5) -m tests.benchmarks.markers.bench_markers $(ARGUMENTS)
 
 bench-bvh: .venv-4.5/ready  ## measure reading of BVH against Blender's importer
 	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_bvh_import $(ARGUMENTS)
@@ -160,6 +163,9 @@ bench-reliability: .venv-4.5/ready  ## measure the detection of joint errors of 
 
 bench-reconstruct: .venv-4.5/ready  ## measure reconstruction of Kinect joints against peers
 	$(PYTHON_4.5) -m tests.benchmarks.reconstruction.bench_reconstruct $(ARGUMENTS)
+
+bench-postures: .venv-4.5/ready  ## measure the completion of poses from the pose library
+	$(PYTHON_4.5) -m tests.benchmarks.reconstruction.bench_postures $(ARGUMENTS)
 
 bench-retrieval: .venv-4.5/ready  ## measure retrieval of similar clips against peers
 	$(PYTHON_4.5) -m tests.benchmarks.retrieval.bench_retrieval $(ARGUMENTS)

@@ -1,8 +1,8 @@
 """Labels, rigid clusters and skeletons from optical markers, compared with simpler methods.
 
-    python -m tests.benchmarks.markers.bench_markers                  # some minutes
-    python -m tests.benchmarks.markers.bench_markers --docs  # into docs/benchmarks/markers.md
-    python -m tests.benchmarks.markers.bench_markers --part skeleton
+    make bench-markers                                # some minutes
+    make bench-markers ARGUMENTS=--docs               # into docs/benchmarks/markers.md
+    make bench-markers ARGUMENTS="--part skeleton"
 
 Gaps of markers are measured by bench_denoise --part markers.
 """
