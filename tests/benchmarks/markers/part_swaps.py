@@ -74,10 +74,9 @@ def compare_swaps(draws: int, hard: bool) -> str:
         print(f"  {take}: swaps", flush=True)
     rows = {name: [counts[name][kind].cell() for kind in MISTAKES] for name in METHODS}
     title = (
-        f"**Exchanged labels, {'30 Hz, with gaps' if hard else '120 Hz, nothing missing'},"
+        f"**Swapped labels, {'30 Hz, with gaps' if hard else '120 Hz, nothing missing'},"
         f" {draws} draws of each kind in each of {len(TAKES)} takes**"
-        " (percent of changed samples that were wrong and are right now / of wrong samples put"
-        " right / of draws without a fault left)\n\n"
+        " (percent: precision / recall / draws without a remaining error)\n\n"
     )
     return title + table(["method", *MISTAKES], rows) + "\n"
 
