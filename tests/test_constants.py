@@ -89,7 +89,6 @@ def listed_constants(family: str) -> set[str]:
     document = (ROOT / "docs" / "benchmarks" / "sensitivity.md").read_text(encoding="utf-8")
     section = document.partition(title)[2].partition("\n## ")[0]
     listed = set(re.findall(r"`(\w+\.\w+)`", section))
-    for part in re.findall(r"[:;] (\w+ `\w+`(?:, `\w+`)*)", section):
-        module, _, names = part.partition(" ")
+    for module, names in re.findall(r"^\| (\w+) \| (.*`\w+`.*) \|$", section, re.MULTILINE):
         listed |= {f"{module}.{name}" for name in re.findall(r"`(\w+)`", names)}
     return listed

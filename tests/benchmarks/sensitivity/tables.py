@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ..shared.tables import wrapped
 from .constants import ROOT, Constant, constants_of
 from .evaluate import Outcome
 from .not_tuning import reason
@@ -86,6 +87,7 @@ def family_text(family: str, rows: Sequence[Row]) -> str:
     shown = [row for row in moving if _size(row) >= SHOWN_PERCENT]
     hardly = [row for row in moving if _size(row) < SHOWN_PERCENT]
     still = [row for row in rows if not row.moves and not row.failures]
+    modules = sorted({_module(row) for row in [*hardly, *still]})
     errors = len(rows[0].baseline.figures)
     n_varied = sum(not reason(each.key) for each in constants_of(family))
     unmeasured = f", {len(rows)} of them measured" if len(rows) < n_varied else ""
@@ -98,12 +100,22 @@ def family_text(family: str, rows: Sequence[Row]) -> str:
         "|---|---|---|---|---|---|",
         *(_line(row) for row in shown),
         "",
-        f"Move one error, but the mean by less than {SHOWN_PERCENT:g} % ({len(hardly)}):"
-        f" {_listed(hardly)}. Move none ({len(still)}): {_listed(still)}.",
+        f"{len(hardly)} constants move one error, but the mean by less than"
+        f" {SHOWN_PERCENT:g} %; {len(still)} move none.",
     ]
+    if modules:
+        lines += [
+            "",
+            f"| module | move the mean by less than {SHOWN_PERCENT:g} % | move no error |",
+            "|---|---|---|",
+            *(
+                f"| {each} | {_named(hardly, each)} | {_named(still, each)} |"
+                for each in modules
+            ),
+        ]
     failed = [row for row in rows if row.failures]
     if failed:
-        lines += ["", f"Failed: {'; '.join(map(_failure, failed))}."]
+        lines += ["", "Failed:", "", *(wrapped(f"- {_failure(row)}") for row in failed)]
     return "\n".join(lines) + "\n"
 
 
@@ -146,16 +158,15 @@ def _line(row: Row) -> str:
 
 def _failure(row: Row) -> str:
     what = "; ".join(f"{factor}: {failure}" for factor, failure in row.failures.items())
-    return f"`{_short(row.constant)}` ({what})"
+    return f"`{_short(row.constant)}` ({what.replace(f'{ROOT}/', '')})."
 
 
-def _listed(rows: Sequence[Row]) -> str:
-    by_module: dict[str, list[str]] = {}
-    for row in rows:
-        module, _, name = _short(row.constant).rpartition(".")
-        by_module.setdefault(module, []).append(f"`{name}`")
-    parts = [f"{module} {', '.join(names)}" for module, names in by_module.items()]
-    return "; ".join(parts) or "none"
+def _module(row: Row) -> str:
+    return _short(row.constant).rpartition(".")[0]
+
+
+def _named(rows: Sequence[Row], module: str) -> str:
+    return ", ".join(f"`{row.constant.name}`" for row in rows if _module(row) == module)
 
 
 def _size(row: Row) -> float:

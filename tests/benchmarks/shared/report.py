@@ -1,4 +1,4 @@
-"""Print tables on the terminal and, on request, write them to docs/benchmarks/denoising.md.
+"""Print tables on the terminal and, on request, write them to a page of docs.
 
 A part's tables replace what stands between its two marks in the document; everything else in
 it is written by hand.
@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from .plots import draw_scores
-from .tables import Scores
+from .tables import LINE_WIDTH, Scores, wrapped
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 DOCUMENT = DOCS / "benchmarks" / "denoising.md"
@@ -35,7 +35,7 @@ class Report:
         if self._to_document:
             text = [_run(seconds)]
             for number, scores in enumerate(tables):
-                text.append(_text(scores))
+                text.append(wrapped(_text(scores)))
                 if isinstance(scores, Scores):
                     path = BENCHMARK_PICTURES / self._document.stem / f"{name}_{number}.png"
                     draw_scores(scores, path)
@@ -57,7 +57,10 @@ def _run(seconds: float) -> str:
     module = Path(sys.argv[0]).resolve().relative_to(DOCS.parent).with_suffix("")
     words = ["python -m", ".".join(module.parts), *sys.argv[1:]]
     machine = f"{platform.system()} {platform.machine()}, Python {platform.python_version()}"
-    return f"`{' '.join(words)}`, {now}, {machine}, one BLAS thread, {seconds:.0f} s.\n"
+    command = f"`{' '.join(words)}`,"
+    circumstances = f"{now}, {machine}, one BLAS thread, {seconds:.0f} s.\n"
+    fits = len(command) + len(circumstances) <= LINE_WIDTH
+    return f"{command}{' ' if fits else chr(10)}{circumstances}"
 
 
 def _replace(path: Path, name: str, text: str) -> None:

@@ -1,10 +1,14 @@
 """Scores of many methods on many clips, as tables in Markdown."""
 
+import textwrap
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
+
+LINE_WIDTH = 140
+"""Characters in a line of a page, tables aside."""
 
 
 class Scores:
@@ -101,6 +105,22 @@ def table(header: Sequence[str], rows: dict[str, list[str]]) -> str:
     ]
     rule = "|" + "|".join("-" * (w + 2) for w in widths) + "|"
     return "\n".join([padded[0], rule, *padded[1:]])
+
+
+def wrapped(text: str) -> str:
+    """Return Markdown with its sentences wrapped; tables and pictures stay on one line."""
+    return "\n".join(
+        line
+        if line.startswith(("|", "!["))
+        else textwrap.fill(
+            line,
+            LINE_WIDTH,
+            subsequent_indent="  " if line.startswith("- ") else "",
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+        for line in text.split("\n")
+    )
 
 
 def number(value: float) -> str:
