@@ -25,10 +25,18 @@ ORIGINS = [page for page in DOORS if page.parent.name == "origins" and page.name
 """A page for each maker of recordings."""
 GUIDES = [ROOT / "CONTRIBUTING.md", ROOT / "docs" / "architecture.md"]
 """What names files of the code: after a move they are renamed here, too."""
+PROSE = [
+    page
+    for page in DOCUMENTS
+    if page.parent != ROOT or page.name in {"README.md", "CONTRIBUTING.md"}
+]
+CODE = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)
+LINKED = re.compile(r"!?\[[^]]*\]\([^)]*\)")
 COMMAND = re.compile(r"^ *python -m solvers ([\w-]+)(.*)$", re.MULTILINE)
 LINK = re.compile(r"\]\(([^)#\s]+)[^)]*\)")
 ANCHOR = re.compile(r"\]\(([^):#\s]*)#([^)\s]+)\)")
 README_LINES = 130
+MAX_LINE_CHARACTERS = 160
 
 
 def name_of(document: Path) -> str:
@@ -73,6 +81,19 @@ def test_links_into_pages_point_to_a_heading(document):
 def anchor_of(heading: str) -> str:
     """Return what GitHub makes of a heading."""
     return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
+
+
+@pytest.mark.parametrize("document", PROSE, ids=name_of)
+def test_lines_of_prose_are_short(document):
+    """Tables, code, headings, and lines of nothing but links or a picture may be longer."""
+    text = CODE.sub("", document.read_text(encoding="utf-8"))
+    lines = [line for line in text.splitlines() if not line.lstrip().startswith(("|", "#"))]
+
+    assert not [
+        line
+        for line in lines
+        if len(line) > MAX_LINE_CHARACTERS and re.search(r"\w", LINKED.sub("", line))
+    ]
 
 
 def test_every_picture_is_on_a_page():
