@@ -93,7 +93,7 @@ pictures-origins: .venv-4.5/ready  ## takes of many makers, imported, cleaned, o
 	PYTHONPATH=.:.ci $(PYTHON_4.5) .ci/draw_origins.py ../shared/data build/origins $(TAKES)
 
 # Each writes what is shipped from recordings of ../shared/data; ARGUMENTS="--out FILE" writes
-# elsewhere, and each script says which clips, bodies and licences. The forest takes half an hour.
+# elsewhere, and tests/training/README.md says from which recordings, and how long it takes.
 .PHONY: forest postures residuals motion-prior motion-mixture body-relation failures
 forest: .venv-4.5/ready  ## train the shipped forest that classifies body parts in depth images
 	$(PYTHON_4.5) -m tests.training.train_forest $(ARGUMENTS)
@@ -101,7 +101,7 @@ forest: .venv-4.5/ready  ## train the shipped forest that classifies body parts 
 postures: .venv-4.5/ready  ## thin out the shipped library of postures
 	$(PYTHON_4.5) -m tests.training.train_postures $(ARGUMENTS)
 
-residuals: .venv-4.5/ready  ## learn the shipped errors of a Kinect, and how sure they are
+residuals: .venv-4.5/ready  ## learn the shipped errors of a Kinect, and their confidence
 	$(PYTHON_4.5) -m tests.training.train_residuals $(ARGUMENTS)
 
 motion-prior: .venv-4.5/ready  ## learn the shipped motion prior of the depth tracker

@@ -42,7 +42,7 @@ def compare_markers(fillers: Mapping[str, Filler], draws: int, dev: bool) -> lis
     takes = _development() if dev else _scored()
     scores = Scores(
         f"Gaps of optical markers, {draws} in each of {len(takes)} takes",
-        "mean distance, millimetres; spread over gaps",
+        "mean distance, millimeters; spread over gaps",
     )
     for take, tracks in takes.items():
         for n_markers, seconds in GAPS:
