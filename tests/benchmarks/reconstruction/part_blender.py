@@ -183,8 +183,8 @@ def rest(n_repetitions: int) -> list[str]:
         for name, errors in found.items()
     }
     head = (
-        f"**Missing joints, at rest and moving** ({rested.sum()} and {(~rested).sum()} losses of"
-        " .5 to 2 s; offset-free; a joint rests if it stays within 5 cm)\n\n"
+        f"**Missing joints, at rest and moving** ({rested.sum()} and {(~rested).sum()} losses"
+        " of .5 to 2 s; offset-free; a joint rests if it stays within 5 cm)\n\n"
     )
     return [head + table(["method", *LOST], rows) + "\n"]
 
