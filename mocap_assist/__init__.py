@@ -6,7 +6,7 @@ Blender is imported only on `register`: a solve in a process of its own passes t
 
 def register() -> None:
     """Make properties, commands and panels known to Blender."""
-    from . import batch, scene_properties, ui
+    from . import batch, former_settings, scene_properties, ui
     from .actions import contact_keys
     from .depth import depth_preview
     from .library import auto_update, background
@@ -16,6 +16,7 @@ def register() -> None:
     from .track import body_overlay
 
     scene_properties.register()
+    former_settings.register()
     properties.register()
     ghost_drawing.register()
     background.register()
@@ -32,7 +33,7 @@ def register() -> None:
 
 def unregister() -> None:
     """Take them away again."""
-    from . import batch, scene_properties, ui
+    from . import batch, former_settings, scene_properties, ui
     from .actions import contact_keys
     from .depth import depth_preview
     from .library import auto_update, background
@@ -53,4 +54,5 @@ def unregister() -> None:
     background.unregister()
     ghost_drawing.unregister()
     properties.unregister()
+    former_settings.unregister()
     scene_properties.unregister()

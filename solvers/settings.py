@@ -4,6 +4,7 @@ From the same description come Blender's properties with their tooltips, the com
 flags and the table in the documentation.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from enum import Enum
 from math import inf
@@ -27,6 +28,8 @@ class Described:
     """Folded away in the user interface."""
     label: str = ""
     """Label in the user interface; by default made from the name."""
+    former: str = ""
+    """Name in older versions; still an option, and read from their files."""
 
 
 class Choice(Enum):
@@ -57,6 +60,23 @@ def setting(default: Any, help: str, **limits: Any) -> Any:
     `limits` are the further attributes of `Described`. The help says what *more* does.
     """
     return field(default=default, metadata={"described": Described(help, **limits)})
+
+
+def former_names(settings_class: type["Settings"]) -> dict[str, str]:
+    """Return the present names of settings that older versions stored under other names."""
+    return {
+        item.metadata["described"].former: item.name
+        for item in fields(settings_class)
+        if item.metadata["described"].former
+    }
+
+
+def with_present_names(
+    settings_class: type["Settings"], stored: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return values that any version stored, by the present names of their settings."""
+    present = former_names(settings_class)
+    return {present.get(name, name): value for name, value in stored.items()}
 
 
 def label_of(item: Any) -> str:

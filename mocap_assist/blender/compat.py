@@ -3,6 +3,8 @@
 One function per difference; the oldest branch comes first, to be deleted first.
 """
 
+from typing import Any
+
 import bpy
 
 Source = tuple[bpy.types.Action, bpy.types.ActionSlot]
@@ -21,6 +23,11 @@ def select_bone(bone: bpy.types.PoseBone, selected: bool = True) -> None:
         bone.bone.select = selected
     else:
         bone.select = selected
+
+
+def stored_properties(group: bpy.types.PropertyGroup) -> Any:
+    """Return what a file holds for a group, by name; Blender 5.0 moved it out of the group."""
+    return group if bpy.app.version < (5, 0) else group.bl_system_properties_get()
 
 
 def find_slot(action: bpy.types.Action, identifier: str) -> bpy.types.ActionSlot | None:

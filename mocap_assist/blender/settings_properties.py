@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, TypeVar, get_type_hints
 import bpy
 import numpy as np
 
-from ...solvers.settings import Choice, Described, Settings, label_of
+from ...solvers.settings import Choice, Described, Settings, former_names, label_of
 from .path_properties import path_property
 
 Class = TypeVar("Class", bound=type)
@@ -22,8 +22,9 @@ def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
     """Decorate an operator or property group with a property for each setting of a bundle.
 
     A bundle is a NamedTuple of settings classes. The decorated class gets `settings()`, which
-    returns the bundle with the checked values of the properties, and `setting_names`. Settings
-    of the same name in two classes become one property.
+    returns the bundle with the checked values of the properties, `setting_names`, and
+    `former_names`, from the names of older versions to the present ones. Settings of the same
+    name in two classes become one property.
     """
     classes = get_type_hints(bundle)
     described = {item.name: item for each in classes.values() for item in fields(each)}
@@ -47,6 +48,9 @@ def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
         decorated.settings = settings
         decorated.set_properties = set_properties
         decorated.setting_names = tuple(described)
+        decorated.former_names = {
+            old: new for each in classes.values() for old, new in former_names(each).items()
+        }
         return cls
 
     return decorate

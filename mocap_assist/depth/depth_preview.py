@@ -17,6 +17,7 @@ from ...solvers.depth_scene import DepthRecording, FloorPlane
 from ...solvers.errors import MocapAssistError
 from ...solvers.faults import Failure, attempt
 from ...solvers.recordings import CameraOrientation, DepthSettings, read_depth
+from ...solvers.settings import with_present_names
 from ..blender.data_names import fitting_name
 from ..blender.path_properties import absolute
 from ..blender.permissions import allow_recording, recording_allowed
@@ -74,7 +75,8 @@ class Shown:
     @classmethod
     def of(cls, data: dict[str, Any]) -> "Shown":
         """Invert `as_dict`; raises ValueError, TypeError or KeyError for invalid data."""
-        settings = {**data["settings"], "held": CameraOrientation[data["settings"]["held"]]}
+        settings = with_present_names(DepthSettings, data["settings"])
+        settings["held"] = CameraOrientation[settings["held"]]
         start, step, every = float(data["start"]), float(data["step"]), int(data["every"])
         if not (isfinite(start) and isfinite(step) and step > 0.0 and every > 0):
             raise ValueError(f"start {start}, step {step}, every {every}")

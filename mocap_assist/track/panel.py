@@ -13,7 +13,7 @@ from .tracking import why_not_track
 
 TRACK, RETRACK = "mocap_assist.track_depth", "mocap_assist.retrack"
 HOW = "Correct the pose at a wrong frame, then press Track from Here."
-CUT = ("nearest", "farthest")
+CUT = ("min_distance", "max_distance")
 SHOWN = ("backward", "refine", "smoothing", "recorded", "plant_feet", "watch", "keep_on_esc")
 
 
@@ -41,8 +41,8 @@ def _draw_tracking(layout: bpy.types.UILayout, context: bpy.types.Context) -> No
     """Draw the settings and button that track an armature."""
     track = context.scene.mocap_assist.track
     column = split_column(layout)
-    column.prop(track, "way")
-    if track.way == ForegroundMethod.CUT.name:
+    column.prop(track, "actor_mask")
+    if track.actor_mask == ForegroundMethod.CUT.name:
         for name in CUT:
             column.prop(track, name)
     for name in SHOWN:

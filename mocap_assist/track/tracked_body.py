@@ -12,6 +12,7 @@ from ...solvers.depth_scene import FloorPlane, ForegroundMethod, ForegroundSetti
 from ...solvers.depth_tracking.body import CAPSULES, LENGTHS, SEGMENTS, BodyModel, rest_frames
 from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.rotations import fit_similarity
+from ...solvers.settings import with_present_names
 from ..blender.stored_json import parse_stored, store_json
 from ..depth.depth_preview import Shown
 
@@ -44,7 +45,7 @@ class TrackedBody:
             "radii": dict(zip(CAPSULES, radii, strict=True)),
             "shown": self.shown.as_dict(),
             "floor": None if floor is None else [*floor.up.tolist(), floor.height],
-            "actor": {**asdict(self.actor), "way": self.actor.way.name},
+            "actor": {**asdict(self.actor), "actor_mask": self.actor.actor_mask.name},
         }
         store_json(armature.data, KEY, stored)
         for joint, bone in bones.items():
@@ -64,7 +65,8 @@ class TrackedBody:
 @lru_cache(maxsize=MAX_CACHED)
 def _parsed(text: str) -> TrackedBody:
     stored = parse_stored(text, dict)
-    floor, actor = stored["floor"], stored["actor"]
+    floor = stored["floor"]
+    actor = with_present_names(ForegroundSettings, stored["actor"])
     return TrackedBody(
         BodyModel(
             np.array([stored["lengths"][name] for name in LENGTHS]),
@@ -72,7 +74,7 @@ def _parsed(text: str) -> TrackedBody:
         ),
         Shown.of(stored["shown"]),
         None if floor is None else FloorPlane(np.array(floor[:3]), float(floor[3])),
-        ForegroundSettings(**actor | {"way": ForegroundMethod[actor["way"]]}),
+        ForegroundSettings(**actor | {"actor_mask": ForegroundMethod[actor["actor_mask"]]}),
     )
 
 

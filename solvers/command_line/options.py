@@ -7,7 +7,7 @@ from enum import Enum
 from math import degrees, isfinite, radians
 from typing import Any, NoReturn, TypeVar
 
-from ..settings import Described, Settings
+from ..settings import Described, Settings, former_names
 
 SettingsClass = TypeVar("SettingsClass", bound=Settings)
 MAX_LISTED = 32
@@ -35,8 +35,17 @@ def arguments_from(parser: argparse._ActionsContainer, *classes: type[Settings])
     """
     described = {item.name: item for each in classes for item in reversed(fields(each))}
     for name, item in sorted(described.items()):
-        option = f"--{name.replace('_', '-')}"
-        parser.add_argument(option, **_kind(item), help=_help(item), default=argparse.SUPPRESS)
+        parser.add_argument(
+            _option(name), **_kind(item), help=_help(item), default=argparse.SUPPRESS
+        )
+    former = {old: new for each in classes for old, new in former_names(each).items()}
+    for old, new in sorted(former.items()):
+        hidden = _kind(described[new]) | {"dest": new, "help": argparse.SUPPRESS}
+        parser.add_argument(_option(old), **hidden, default=argparse.SUPPRESS)
+
+
+def _option(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
 
 
 def settings_from_arguments(

@@ -105,7 +105,7 @@ def find_actor(
     """
     frames = _sample_frames(recording)
     method = _choose_method(recording, settings, empty, frames)
-    settings = replace(settings, way=method)
+    settings = replace(settings, actor_mask=method)
     floor, background = None, None
     if method is not ForegroundMethod.RECORDED:
         floor = find_floor(recording, progress=within(progress, 0.0, 0.1))
@@ -150,8 +150,8 @@ def _choose_method(
     frames: NDArray[np.intp],
 ) -> ForegroundMethod:
     """Choose the method: `RECORDED` if one body fills a small part of the images."""
-    if settings.way is not ForegroundMethod.AUTOMATIC:
-        return settings.way
+    if settings.actor_mask is not ForegroundMethod.AUTOMATIC:
+        return settings.actor_mask
     if len(empty):
         return ForegroundMethod.BACKGROUND
     is_only_body, step = [], _coarse_step(recording)
@@ -159,7 +159,7 @@ def _choose_method(
         depth = recording.frame(frame)[::step, ::step]
         if not (depth > 0.0).any():
             continue
-        bodies = find_bodies(depth, recording.camera.every(step), settings.smallest_body)
+        bodies = find_bodies(depth, recording.camera.every(step), settings.min_body_area)
         fractions = np.bincount(bodies.labels[depth > 0.0], minlength=2) / (depth > 0.0).sum()
         is_only_body.append(
             (depth > 0.0).mean() < MAX_BODY_COVERAGE and 1.0 - fractions[0] >= MIN_BODY_FRACTION
@@ -190,10 +190,10 @@ class _PersonFinder:
         step, settings = self._step, self._actor.settings
         depth = self._actor.recording.frame(frame)[::step, ::step]
         depth = self._actor.foreground(depth, step)
-        bodies = find_bodies(depth, self._camera, settings.smallest_body)
+        bodies = find_bodies(depth, self._camera, settings.min_body_area)
         is_person = np.ones(len(bodies.areas), dtype=bool)
-        if settings.way is not ForegroundMethod.RECORDED:
-            is_person &= bodies.areas <= settings.largest_body
+        if settings.actor_mask is not ForegroundMethod.RECORDED:
+            is_person &= bodies.areas <= settings.max_body_area
         if self._room is not None:
             room = Background(
                 self._room.depth[::step, ::step], self._room.spread[::step, ::step]

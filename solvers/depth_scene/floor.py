@@ -37,10 +37,10 @@ class FloorPlaneSettings(Settings):
         "Minimum spread of the visible floor in its narrow direction; higher rejects small"
         " patches", unit="m", minimum=0.01, maximum=10.0,
     )  # fmt: skip
-    share: float = setting(
+    min_fraction: float = setting(
         0.03,
         "Minimum fraction of the visible points on the floor; higher rejects small patches",
-        minimum=0.0, maximum=1.0,
+        minimum=0.0, maximum=1.0, former="share",
     )  # fmt: skip
     n_trials: int = setting(
         600, "Number of planes to try; more finds floors that are barely visible",
@@ -130,7 +130,7 @@ def find_floor(
             return None
         up, height, extent = _fitted(inliers)
     steep = float(up @ LEVEL_UP) < np.cos(np.radians(settings.tilt))
-    if steep or extent < settings.extent or len(inliers) < settings.share * len(points):
+    if steep or extent < settings.extent or len(inliers) < settings.min_fraction * len(points):
         return None
     return FloorPlane(up, height)
 

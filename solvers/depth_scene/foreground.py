@@ -56,26 +56,29 @@ class ForegroundMethod(Choice):
 class ForegroundSettings(Settings):
     """Settings of the segmentation of the actor."""
 
-    way: ForegroundMethod = setting(
+    actor_mask: ForegroundMethod = setting(
         ForegroundMethod.AUTOMATIC,
         "How the actor is separated from the background",
         label="Actor Mask",
+        former="way",
     )
-    nearest: float = setting(
+    min_distance: float = setting(
         0.3,
         "Remove points nearer to the camera than this",
         unit="m",
         minimum=0.0,
         maximum=50.0,
         label="Min Distance",
+        former="nearest",
     )
-    farthest: float = setting(
+    max_distance: float = setting(
         6.0,
         "Remove points farther from the camera than this",
         unit="m",
         minimum=0.1,
         maximum=50.0,
         label="Max Distance",
+        former="farthest",
     )
     above_floor: float = setting(
         0.03, "Remove points lower above the floor; higher cuts off feet",
@@ -85,13 +88,13 @@ class ForegroundSettings(Settings):
         0.05, "Remove points less far in front of the empty room; higher cuts off feet",
         unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
-    smallest_body: float = setting(
+    min_body_area: float = setting(
         0.08, "Minimum visible surface of a person; higher misses partly hidden people",
-        unit="m²", minimum=0.001, maximum=5.0, label="Min Body Area",
+        unit="m²", minimum=0.001, maximum=5.0, label="Min Body Area", former="smallest_body",
     )  # fmt: skip
-    largest_body: float = setting(
+    max_body_area: float = setting(
         2.0, "Maximum visible surface of a person; larger bodies count as walls",
-        unit="m²", minimum=0.1, maximum=50.0, label="Max Body Area",
+        unit="m²", minimum=0.1, maximum=50.0, label="Max Body Area", former="largest_body",
     )  # fmt: skip
 
 
@@ -195,7 +198,7 @@ class ActorImages:
         if self.trajectory is not None and np.isnan(self.trajectory[index]).any():
             return np.zeros((self.recording.camera.height, self.recording.camera.width), "f4")
         depth = self.foreground(self.recording.frame(index))
-        bodies = find_bodies(depth, self.recording.camera, self.settings.smallest_body)
+        bodies = find_bodies(depth, self.recording.camera, self.settings.min_body_area)
         label = self._label(bodies, index)
         return np.where(bodies.mask(label), depth, np.float32(0.0)) if label else 0.0 * depth
 
@@ -212,15 +215,15 @@ class ActorImages:
 
     @property
     def _max_area(self) -> float:
-        recorded = self.settings.way is ForegroundMethod.RECORDED
-        return np.inf if recorded else self.settings.largest_body
+        recorded = self.settings.actor_mask is ForegroundMethod.RECORDED
+        return np.inf if recorded else self.settings.max_body_area
 
     def foreground(self, depth: DepthImage, step: int = 1) -> DepthImage:
         """Return the depth image without background; every `step`-th column and row."""
         settings = self.settings
-        if settings.way is ForegroundMethod.RECORDED:
+        if settings.actor_mask is ForegroundMethod.RECORDED:
             return depth
-        mask = (depth >= settings.nearest) & (depth <= settings.farthest)
+        mask = (depth >= settings.min_distance) & (depth <= settings.max_distance)
         if self.background is not None:
             room = Background(
                 self.background.depth[::step, ::step], self.background.spread[::step, ::step]
@@ -234,7 +237,7 @@ class ActorImages:
 
 def cut_out_actor(
     recording: DepthRecording,
-    settings: ForegroundSettings = ForegroundSettings(way=ForegroundMethod.CUT),
+    settings: ForegroundSettings = ForegroundSettings(actor_mask=ForegroundMethod.CUT),
     *,
     background: Background | None = None,
     floor: FloorPlane | None = None,
@@ -253,7 +256,7 @@ def cut_out_actor(
         The background is missing, or of another size.
     """
     size = (recording.camera.height, recording.camera.width)
-    needs_background = settings.way is ForegroundMethod.BACKGROUND
+    needs_background = settings.actor_mask is ForegroundMethod.BACKGROUND
     if (needs_background and background is None) or (
         background is not None and background.depth.shape != size
     ):

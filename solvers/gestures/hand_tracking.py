@@ -77,7 +77,7 @@ class HandEstimator:
         confidence : shape (20,), 0 to 1
         """
         observed = np.isfinite(positions).all(axis=-1)
-        observed &= confidence >= self._settings.least_confidence
+        observed &= confidence >= self._settings.min_confidence
         for joint in np.flatnonzero(observed):
             if time - self._observed_at[joint] > self._settings.patience:
                 self._samples[joint].clear()

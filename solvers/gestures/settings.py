@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from ..settings import Settings, setting
 
 
-def _length(default: float, help: str) -> float:
-    length: float = setting(default, help, unit="arms", minimum=0.0, maximum=3.0, advanced=True)
+def _length(default: float, help: str, former: str = "") -> float:
+    length: float = setting(
+        default, help, unit="arms", minimum=0.0, maximum=3.0, advanced=True, former=former
+    )
     return length
 
 
@@ -21,12 +23,13 @@ def _time(default: float, help: str, maximum: float = 10.0) -> float:
 class GestureSettings(Settings):
     """Thresholds of the gestures."""
 
-    least_confidence: float = setting(
+    min_confidence: float = setting(
         0.25,
         "Minimum confidence of an observed joint; higher ignores more of the sensor's data",
         minimum=0.0,
         maximum=1.0,
         advanced=True,
+        former="least_confidence",
     )
     patience: float = _time(0.25, "How long a missing hand keeps its last position", 2.0)
     raised: float = _length(0.45, "Height of the raised wrist above its shoulder")
@@ -41,8 +44,8 @@ class GestureSettings(Settings):
     waves_need_hand_up: bool = setting(
         True, "Count waves only while the library is shown", advanced=True
     )
-    apart: float = _length(
-        0.85, "Minimum sideways distance of the hands at the start of a clap"
+    hand_distance: float = _length(
+        0.85, "Minimum sideways distance of the hands at the start of a clap", "apart"
     )
     together: float = _length(0.4, "Maximum distance of touching hands")
     clap_within: float = _time(0.8, "Maximum time in which the hands close in a clap", 2.0)

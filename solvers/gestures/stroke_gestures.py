@@ -68,7 +68,7 @@ class Clap:
         if isnan(hands.latest_gap):
             self.mark_missing(hands.time)
             return None
-        if hands.sideways >= self._settings.apart and _is_clap_start(hands):
+        if hands.sideways >= self._settings.hand_distance and _is_clap_start(hands):
             self._open_hands = hands
         elif (
             self._open_hands is not None

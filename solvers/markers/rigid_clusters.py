@@ -41,9 +41,9 @@ class ClusterSettings(Settings):
         "Distance variation allowed within a rigid cluster; higher makes larger clusters",
         unit="m", minimum=0.0005, maximum=0.05,
     )  # fmt: skip
-    widest: float = setting(
+    max_distance: float = setting(
         0.5, "Largest distance between markers of one cluster", unit="m", minimum=0.01,
-        maximum=10.0, advanced=True,
+        maximum=10.0, advanced=True, former="widest",
     )  # fmt: skip
 
 
@@ -130,7 +130,7 @@ def _groups(median: Array, spread: Array, settings: ClusterSettings) -> list[lis
     if not len(pairwise) or np.median(pairwise) < MIN_TAKE_SPREAD_M:
         return []
     distances = np.where(
-        median <= settings.widest, np.nan_to_num(spread, nan=UNLINKED_M), UNLINKED_M
+        median <= settings.max_distance, np.nan_to_num(spread, nan=UNLINKED_M), UNLINKED_M
     )
     distances = np.round(distances, 6)  # Rounding errors must not decide between ties.
     np.fill_diagonal(distances, 0.0)

@@ -96,9 +96,9 @@ class ReconstructSettings(Settings):
         0.05, "Remove jitter shorter than about this; higher is smoother but blurs motion",
         unit="s", minimum=0.0, maximum=1.0,
     )  # fmt: skip
-    n_neighbours: int = setting(
+    n_neighbors: int = setting(
         30, "Number of clean poses that each rebuilt pose is made of; more vary more",
-        minimum=2, maximum=200, label="Neighbors",
+        minimum=2, maximum=200, label="Neighbors", former="n_neighbours",
     )  # fmt: skip
     inferred: float = setting(
         0.5, "Weight of joints that the sensor only guessed; 0 rebuilds them all",
@@ -268,7 +268,7 @@ def _blend_tracks(tracks: Tracks, rebuilt: Tracks, replacement: Array) -> Tracks
 
 
 def _posture_settings(settings: ReconstructSettings) -> PostureSettings:
-    return PostureSettings(causal=settings.causal, n_neighbours=settings.n_neighbours)
+    return PostureSettings(causal=settings.causal, n_neighbors=settings.n_neighbors)
 
 
 def _correction_settings(

@@ -28,10 +28,10 @@ class CorruptionSettings(Settings):
         0.0, "Fraction of the samples of each rotation channel that become spikes",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
-    spike_least: float = setting(
+    min_spike: float = setting(
         20.0, "Size of the smallest spike", unit="deg", minimum=0.0, maximum=180.0
     )
-    spike_most: float = setting(
+    max_spike: float = setting(
         60.0, "Size of the largest spike", unit="deg", minimum=0.0, maximum=180.0
     )
     root_jitter: float = setting(
@@ -79,7 +79,7 @@ def corrupt(
     """
     rng = np.random.default_rng(settings.seed)
     noise = rng.normal(0.0, 1.0, (motion.n_frames, motion.n_joints, 3)) * settings.jitter
-    magnitude = rng.uniform(settings.spike_least, settings.spike_most, noise.shape)
+    magnitude = rng.uniform(settings.min_spike, settings.max_spike, noise.shape)
     sign = rng.choice((-1.0, 1.0), noise.shape)
     noise += (rng.random(noise.shape) < settings.spikes) * sign * magnitude
     end_sites = [motion.skeleton.is_end_site(joint) for joint in range(motion.n_joints)]

@@ -87,7 +87,7 @@ class PerformanceSettings(Settings):
     hidden: float = setting(
         0.0, "Occlusions of each joint per second", minimum=0.0, maximum=10.0
     )
-    lost: float = setting(0.0, "Fraction of dropped frames", minimum=0.0, maximum=0.9)
+    dropped: float = setting(0.0, "Fraction of dropped frames", minimum=0.0, maximum=0.9)
     lateness: float = setting(
         0.0, "Standard deviation of the time stamps", unit="s", minimum=0.0, maximum=0.05
     )
@@ -168,7 +168,7 @@ def perform_gestures(
         scale=0.15, size=(int((confidence < 0.5).sum()), 3)
     )
     time_stamps = np.sort(times + rng.normal(scale=settings.lateness, size=len(times)))
-    is_received = rng.random(len(times)) >= settings.lost
+    is_received = rng.random(len(times)) >= settings.dropped
     return Performance(
         time_stamps[is_received], positions[is_received], confidence[is_received], tuple(made)
     )

@@ -18,7 +18,7 @@ Fetch = Callable[[ClipEntry], Recording]
 CONTEXT_S = 0.5
 """Seconds before and after a match that are included."""
 MAX_NAMED_CLIPS = 5
-FIND_SETTINGS = FindSettings(n_matches=12, n_aligned=12, n_alike=0, warping=1.0, busy=0.0)
+FIND_SETTINGS = FindSettings(n_matches=12, n_aligned=12, n_neighbors=0, warping=1.0, busy=0.0)
 """Ranks by similarity of the complete body to the take, without re-ranking: the best clips of a
 library without similar motion are still similar to each other."""
 MIN_BEST_SCORE = 0.16

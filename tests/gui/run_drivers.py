@@ -110,9 +110,9 @@ def passes(name: str, zip_path: Path) -> bool:
     else:
         status, said = own_window.run(zip_path, driver, given, picture)
     (out / "run.txt").write_text(said, encoding="utf-8")
-    n_pictures = len(list(out.glob("*.png")))
+    n_images = len(list(out.glob("*.png")))
     ending = "passed" if status == 0 else f"FAILED with status {status}, see {out / 'run.txt'}"
-    print(f"{name}: {ending}; {n_pictures} pictures.", flush=True)
+    print(f"{name}: {ending}; {n_images} pictures.", flush=True)
     return status == 0
 
 

@@ -22,7 +22,7 @@ from ..benchmarks.depth.forest_sources import WORDS, all_bodies, taught_motions
 from .arguments import output_parser, print_progress
 
 SETTINGS = PixelForestSettings(
-    n_trees=4, n_pictures=12_000, n_pixels=120, levels=18, n_candidates=100, least_pixels=50
+    n_trees=4, n_images=12_000, n_pixels=120, levels=18, n_candidates=100, min_pixels=50
 )
 
 
@@ -37,11 +37,11 @@ def grown(settings: PixelForestSettings, number: int) -> tuple[Tree, ...]:
 def main() -> None:
     """Grow the trees and save them where they are shipped."""
     parser = output_parser(__doc__, SHIPPED)
-    parser.add_argument("--pictures", type=int, default=SETTINGS.n_pictures)
+    parser.add_argument("--pictures", type=int, default=SETTINGS.n_images)
     parser.add_argument("--trees", type=int, default=SETTINGS.n_trees)
     parser.add_argument("--jobs", type=int, default=2)
     given = parser.parse_args()
-    settings = replace(SETTINGS, n_pictures=given.pictures)
+    settings = replace(SETTINGS, n_images=given.pictures)
     with ProcessPoolExecutor(given.jobs) as pool:
         trees = pool.map(partial(grown, settings), range(given.trees))
     forest = PixelForest(tuple(tree for each in trees for tree in each), WORDS)

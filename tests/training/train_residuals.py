@@ -23,7 +23,7 @@ from solvers.reconstruction.residual_correction.learn_confidence import calibrat
 from ..benchmarks.reconstruction.kinect_pairs import read_pairs
 from .arguments import output_parser, print_progress
 
-SETTINGS = ResidualPriorSettings(local_points=30, whole_points=60)
+SETTINGS = ResidualPriorSettings(local_points=30, pose_points=60)
 WORDS = "UI-PRMD: ten exercises by five actors, Kinect v2 against markers"
 
 
@@ -52,7 +52,7 @@ def main() -> None:
 
 def small(prior: ResidualPrior) -> ResidualPrior:
     """Return the same in single precision, and the many points in half of it."""
-    names = ("mean_pose", "components", "local_points", "whole_points", "means", "covariances")
+    names = ("mean_pose", "components", "local_points", "pose_points", "means", "covariances")
     return replace(
         prior,
         source=np.array(WORDS),

@@ -32,21 +32,23 @@ class QualitySettings(Settings):
         minimum=2.0,
         maximum=50.0,
     )
-    smallest_turn: float = setting(
+    min_rotation_jump: float = setting(
         np.radians(8.0),
         "Ignore rotation jumps below this angle; higher finds fewer spikes",
         unit="rad",
         minimum=0.0,
         maximum=np.pi,
         label="Min Rotation Jump",
+        former="smallest_turn",
     )
-    smallest_move: float = setting(
+    min_position_jump: float = setting(
         0.02,
         "Ignore position jumps below this distance; higher finds fewer spikes",
         unit="m",
         minimum=0.0,
         maximum=10.0,
         label="Min Position Jump",
+        former="smallest_move",
     )
 
 
@@ -164,7 +166,9 @@ def measure_quality(
     SolveCancelled
         Raised by `progress`.
     """
-    rule = SpikeRule(settings.spike_threshold, settings.smallest_turn, settings.smallest_move)
+    rule = SpikeRule(
+        settings.spike_threshold, settings.min_rotation_jump, settings.min_position_jump
+    )
     if isinstance(recording, Motion):
         names, positions = recording.skeleton.names, forward_kinematics(recording).positions
         bones: tuple[BoneDrift, ...] = ()

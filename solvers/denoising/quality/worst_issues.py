@@ -27,20 +27,22 @@ reported."""
 class IssueSettings(Settings):
     """Thresholds of the issues to list."""
 
-    n_spots: int = setting(
+    max_issues: int = setting(
         100,
         "Maximum number of issues to list; more shows milder ones",
         minimum=1,
         maximum=10000,
         label="Max Issues",
+        former="n_spots",
     )
-    smallest_slide: float = setting(
+    min_slide: float = setting(
         0.02,
         "Ignore planted feet that slide less; higher shows fewer issues",
         unit="m",
         minimum=0.001,
         maximum=1.0,
         label="Min Foot Slide",
+        former="smallest_slide",
     )
     shake_ratio: float = setting(
         3.0,
@@ -49,7 +51,7 @@ class IssueSettings(Settings):
         maximum=100.0,
         label="Jitter Ratio",
     )
-    smallest_shake_turn: float = setting(
+    min_rotation_jitter: float = setting(
         np.radians(1.0),
         "Ignore rotation jitter below this angle; higher shows fewer issues",
         unit="rad",
@@ -57,8 +59,9 @@ class IssueSettings(Settings):
         maximum=np.pi,
         advanced=True,
         label="Min Rotation Jitter",
+        former="smallest_shake_turn",
     )
-    smallest_shake_move: float = setting(
+    min_position_jitter: float = setting(
         0.002,
         "Ignore position jitter below this distance; higher shows fewer issues",
         unit="m",
@@ -66,6 +69,7 @@ class IssueSettings(Settings):
         maximum=1.0,
         advanced=True,
         label="Min Position Jitter",
+        former="smallest_shake_move",
     )
     pause: float = setting(
         0.2,
@@ -136,7 +140,7 @@ def find_worst_issues(
     ]
     issues.sort(key=lambda issue: (-issue.severity, issue.start_frame, issue.joint))
     progress(1.0, "Found the worst issues")
-    return tuple(islice(issues, settings.n_spots))
+    return tuple(islice(issues, settings.max_issues))
 
 
 def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
@@ -172,8 +176,8 @@ def _gaps(quality: Quality) -> Iterator[Issue]:
 
 def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[Issue]:
     for is_rotation, min_noise in (
-        (True, settings.smallest_shake_turn),
-        (False, settings.smallest_shake_move),
+        (True, settings.min_rotation_jitter),
+        (False, settings.min_position_jitter),
     ):
         signals = [signal for signal in quality.signals if signal.is_rotation is is_rotation]
         if not signals:
@@ -198,13 +202,13 @@ def _slides(quality: Quality, settings: IssueSettings) -> Iterator[Issue]:
     for foot in quality.feet:
         for start, stop in find_runs(foot.contact):
             slide = float(np.linalg.norm(np.nansum(foot.steps[start:stop], axis=0)))
-            if slide >= settings.smallest_slide:
+            if slide >= settings.min_slide:
                 yield Issue(
                     foot.joint,
                     start,
                     stop,
                     "foot slide",
-                    slide / settings.smallest_slide,
+                    slide / settings.min_slide,
                     f"{foot.joint} slides {100 * slide:.1f} cm while it stands.",
                 )
 

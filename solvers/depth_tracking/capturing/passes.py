@@ -121,7 +121,7 @@ class TrackingContext:
         weights = np.full(N_COORDINATES, _DETECTION_WEIGHT)
         weights[:6] = 0.0
         prior = NextPose(detection.pose, weights, detection.pose)
-        observation = observe(self.depth, frame, self.tracker.picture_width)
+        observation = observe(self.depth, frame, self.tracker.image_width)
         return track_frame(self.body, prior, observation, self.tracker)
 
 
@@ -154,7 +154,7 @@ def track_with_restarts(
     trajectory: list[Array] = [] if start is None else [start]
     restarts = []
     for done, frame in enumerate(frames):
-        observation = observe(actor.depth, frame, actor.tracker.picture_width)
+        observation = observe(actor.depth, frame, actor.tracker.image_width)
         score, quality = np.nan, quality_without_actor()
         if trajectory and not observation.empty:
             prior = next_pose_prior(trajectory[-2:], actor.tracker, actor.motion_prior)

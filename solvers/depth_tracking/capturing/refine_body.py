@@ -116,7 +116,7 @@ def refine_body(
             f"The poses have shape {np.shape(poses)}, not {(depth.n_frames, N_COORDINATES)}."
         )
     sampled = _evenly_spaced(depth.n_frames, settings.n_frames) if frames is None else frames
-    observations = [observe(depth, int(frame), tracker.picture_width) for frame in sampled]
+    observations = [observe(depth, int(frame), tracker.image_width) for frame in sampled]
     non_empty = [i for i, one in enumerate(observations) if not one.empty]
     if not non_empty:
         raise InvalidMotionError(

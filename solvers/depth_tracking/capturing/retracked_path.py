@@ -93,7 +93,7 @@ def track_from_correction(
     n_required = max(_MIN_AGREEING_FRAMES, round(settings.blend * actor.depth.frame_rate))
     trajectory, cumulative_gains, n_agreeing = [start], [0.0], 0
     for done, frame in enumerate(frames, start=1):
-        observation = observe(actor.depth, frame, actor.tracker.picture_width)
+        observation = observe(actor.depth, frame, actor.tracker.image_width)
         prior = next_pose_prior(trajectory[-2:], actor.tracker, actor.motion_prior)
         pose, quality = track_frame(actor.body, prior, observation, actor.tracker)
         previous = previous_pose(frame)

@@ -26,9 +26,9 @@ class CylinderSettings(Settings):
         7, "Refinement rounds around the best cylinder; higher is finer and slower",
         minimum=0, maximum=100,
     )  # fmt: skip
-    most_pixels: int = setting(
+    max_pixels: int = setting(
         1500, "Pixels that a cylinder is held to; more is finer and slower",
-        minimum=50, maximum=1_000_000,
+        minimum=50, maximum=1_000_000, former="most_pixels",
     )  # fmt: skip
     seed: int = setting(0, "Seed of the random samples", minimum=0)
 
@@ -90,7 +90,7 @@ def sample_cylinder(
     points = camera.back_project(depth)[part_mask & (depth > 0.0)]
     if len(points) < 4:
         return None
-    rays, is_part = _rays_around(part_mask, camera, settings.most_pixels)
+    rays, is_part = _rays_around(part_mask, camera, settings.max_pixels)
     directions = points / points[:, 2:]
     surface = _surface_plane(points)
     ends = directions[rng.integers(len(points), size=(settings.n_samples, 2))]

@@ -85,7 +85,7 @@ def smooth_window(
                 np.zeros(N_COORDINATES),
             ))
             continue
-        observation = observe(actor.depth, first + index, tracker.picture_width)
+        observation = observe(actor.depth, first + index, tracker.image_width)
         registered = _equations_at_pose(actor, pose, observation).equations
         equations.append((registered.matrix, registered.vector))
     return smooth_take(poses, equations, stiffness)
@@ -111,7 +111,7 @@ def _equations_at_pose(
 
 def measure_fit(actor: TrackingContext, pose: Array, frame: int) -> FitQuality:
     """Return the fit quality of a pose in a frame."""
-    observation = observe(actor.depth, frame, actor.tracker.picture_width)
+    observation = observe(actor.depth, frame, actor.tracker.image_width)
     if observation.empty:
         return quality_without_actor()
     smoothed = _equations_at_pose(actor, pose, observation)

@@ -21,12 +21,16 @@ from .robust_parts import FoundParts, RobustPartsSettings, find_parts
 class DetectorSettings(RobustPartsSettings):
     """Settings of the pose detector."""
 
-    most_pixels: int = setting(
+    max_pixels: int = setting(
         2500, "Maximum pixels of the body after subsampling; higher is slower",
-        minimum=100, maximum=1_000_000,
+        minimum=100, maximum=1_000_000, former="most_pixels",
     )  # fmt: skip
-    fewest_pixels: int = setting(
-        60, "Minimum pixels of a person", minimum=10, maximum=1_000_000
+    min_pixels: int = setting(
+        60,
+        "Minimum pixels of a person",
+        minimum=10,
+        maximum=1_000_000,
+        former="fewest_pixels",
     )
     n_refined: int = setting(
         3, "Number of candidate poses refined by the tracker; higher is more robust and slower",
@@ -110,9 +114,9 @@ def detect_pose(
     ----------
     .. [1] Wei, Zhang, Chai (2012), section 4.
     """
-    observation, step = subsample_image(depth_frame, camera, settings.most_pixels)
+    observation, step = subsample_image(depth_frame, camera, settings.max_pixels)
     pixels = classify_pixels(observation.depth.astype(np.float32), observation.camera, forest)
-    if len(pixels.rows) < settings.fewest_pixels:
+    if len(pixels.rows) < settings.min_pixels:
         raise InvalidMotionError(
             f"No person is detected: {len(pixels.rows)} pixels have a depth. Go to a frame with"
             " a person, or correct the background settings."
@@ -156,10 +160,10 @@ class _Candidate:
 
 
 def subsample_image(
-    depth: DepthImage, camera: Camera, most_pixels: int
+    depth: DepthImage, camera: Camera, max_pixels: int
 ) -> tuple[Observation, int]:
-    """Subsample an image to at most about `most_pixels` pixels of the body; return the step."""
-    step = max(1, int(np.ceil(np.sqrt(np.count_nonzero(depth) / most_pixels))))
+    """Subsample an image to at most about `max_pixels` pixels of the body; return the step."""
+    step = max(1, int(np.ceil(np.sqrt(np.count_nonzero(depth) / max_pixels))))
     return Observation(camera, np.asarray(depth, dtype=np.float64)).every(step), step
 
 

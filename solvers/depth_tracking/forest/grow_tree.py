@@ -44,7 +44,7 @@ class TreeSettings(Settings):
         100, "Features tested per level; more give better splits and take longer",
         minimum=1, maximum=100_000,
     )  # fmt: skip
-    least_pixels: int = setting(
+    min_pixels: int = setting(
         40, "Minimum pixels of a split node; higher gives a smaller tree",
         minimum=2, maximum=1_000_000,
     )  # fmt: skip
@@ -103,7 +103,7 @@ def grow_tree(
     histograms = [np.empty((0, N_PARTS), dtype=np.uint8)]
     for level in range(settings.levels + 1):
         counts = _counts(node, parts, n_nodes)
-        open_nodes = (counts.sum(axis=1) >= settings.least_pixels) & (
+        open_nodes = (counts.sum(axis=1) >= settings.min_pixels) & (
             counts.max(axis=1) < counts.sum(axis=1)
         )
         if level == settings.levels:

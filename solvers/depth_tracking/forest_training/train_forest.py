@@ -89,7 +89,7 @@ def train_pixel_forest(
        doi:10.1145/2366145.2366207
     """
     source = image_source(poses, bodies, settings, settings.seed)
-    images = draw_images(source, range(-(-settings.n_pictures // IMAGES_PER_BODY)))
+    images = draw_images(source, range(-(-settings.n_images // IMAGES_PER_BODY)))
     progress(0.2, "Growing trees")
     grown = []
     for number in range(settings.n_trees):

@@ -34,7 +34,7 @@ by hand; used in training only."""
 class TrainingImagesSettings(Settings):
     """Settings of poses, shapes and views of the training images."""
 
-    n_pictures: int = setting(
+    n_images: int = setting(
         4000, "Number of training images; more cover more poses and views, and take longer",
         minimum=10, maximum=1_000_000,
     )  # fmt: skip
@@ -57,14 +57,14 @@ class TrainingImagesSettings(Settings):
         0.035, "Maximum thickness of clothes; higher covers looser clothes",
         unit="m", minimum=0.0, maximum=0.2,
     )  # fmt: skip
-    lost_feet: float = setting(
+    missing_feet: float = setting(
         0.3, "Fraction of images where up to 12 cm above the floor is removed",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
-    nearest: float = setting(
+    min_distance: float = setting(
         1.3, "Minimum distance of the camera", unit="m", minimum=0.3, maximum=20.0
     )
-    farthest: float = setting(
+    max_distance: float = setting(
         4.5, "Maximum distance of the camera", unit="m", minimum=0.3, maximum=20.0
     )
     noise: float = setting(
@@ -95,7 +95,7 @@ class ImageSource:
     ) -> RenderedMesh:
         vertices, _ = body.pose(pose, np.zeros(3))
         triangles = body.triangles
-        if rng.random() < self.settings.lost_feet:
+        if rng.random() < self.settings.missing_feet:
             above = vertices[:, 2] > vertices[:, 2].min() + rng.uniform(0.0, FLOOR)
             triangles = triangles[above[triangles].all(axis=1)]
         vertices = _before_camera(vertices, rng, self.settings)
@@ -175,7 +175,7 @@ def _before_camera(
     middle = np.array([0.0, 0.0, (lowest + highest) / 2.0])
     points = (vertices - middle) @ rotation.T
     camera_points = np.stack([points[:, 0], -points[:, 2], points[:, 1]], axis=1)
-    distance = rng.uniform(settings.nearest, settings.farthest)
+    distance = rng.uniform(settings.min_distance, settings.max_distance)
     height = rng.uniform(-0.6, 1.1)
     tilt = np.arctan2(height, distance) * rng.uniform(0.3, 1.1) + 0.05 * rng.standard_normal()
     camera_points += [0.0, height, distance]

@@ -40,13 +40,13 @@ SURFACE_WEIGHT, EDGE_WEIGHT = 4.0, 40.0
 """Weights of the terms, per square meter. Those of [LOU12], times 4: a pixel covers a quarter
 of the reference area."""
 EDGE_TRACKER = TrackerSettings(
-    picture_width=320, iterations=10, coarse_iterations=0,
+    image_width=320, iterations=10, coarse_iterations=0,
     closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
     depth_weight=0.0, extra_weight=0.0, silhouette_weight=0.0,
     similar_weight=0.001 * PER_DEGREE,
-    shift_weight=1e-5, turn_weight=1e-5 * PER_DEGREE, trust=0.0,
+    shift_weight=1e-5, turn_weight=1e-5 * PER_DEGREE, prediction=0.0,
     limit_weight=0.0, natural_weight=0.0, ankle_weight=NO_ANKLES, damping=1e-6,
-    longest_step=10.0, accept_only_better=False,
+    max_step=10.0, accept_only_better=False,
 )  # fmt: skip
 """Weights of [LOU12] sections 3.4 to 3.6: surface 1, edges 10, motion prior 0.001, smoothness
 0.00001 (a pixel of 320 columns covers about a quarter of the reference area).
@@ -84,9 +84,9 @@ def track_pose_by_edges(
     """
     poses, qualities, previous = [checked_pose(initial_pose)], [], None
     for frame in range(depth.n_frames):
-        observation = observe(depth, frame, EDGE_TRACKER.picture_width)
+        observation = observe(depth, frame, EDGE_TRACKER.image_width)
         prior = next_pose_prior(poses[1:] or poses, EDGE_TRACKER, motion_prior)
-        intensities = read_intensities(depth, frame, EDGE_TRACKER.picture_width)
+        intensities = read_intensities(depth, frame, EDGE_TRACKER.image_width)
         colored = ColoredFrame(observation, intensities)
         edges = edge_pixels(observation.depth, observation.nearest_pixel)
         likelihood = _Likelihood(colored, edges, previous)

@@ -10,9 +10,9 @@ REGISTRATION_TRACKER = TrackerSettings(
     closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
     depth_weight=4.0, extra_weight=4.0 / 0.29**2, silhouette_weight=4.0 / 100.0**2,
     shift_weight=1.0 / 14.3**2, turn_weight=1.0 / 14.3**2,
-    trust=1.0, start_ahead=False,
+    prediction=1.0, start_ahead=False,
     limit_weight=0.0, natural_weight=0.0, ankle_weight=NO_ANKLES, damping=1e-6,
-    longest_step=10.0, accept_only_better=False,
+    max_step=10.0, accept_only_better=False,
 )  # fmt: skip
 """Terms and standard deviations of [WZC12] appendix A, in meters and radians; each pixel
 here counts as four of their pixels (320 columns)."""

@@ -32,9 +32,9 @@ class ColoredFrame:
     intensities: Array
 
 
-def read_intensities(depth: DepthRecording, frame: int, picture_width: int) -> Array:
+def read_intensities(depth: DepthRecording, frame: int, image_width: int) -> Array:
     """Return the brightness (n,) of the pixels that `observe` keeps; NaN without color."""
-    step = subsampling_step(depth.camera, picture_width)
+    step = subsampling_step(depth.camera, image_width)
     color = depth.color(frame)
     if color is None:
         camera = depth.camera.every(step)

@@ -88,15 +88,15 @@ class Observation:
         return Observation(self.camera.every(step), self.depth[::step, ::step])
 
 
-def observe(depth: DepthRecording, frame: int, picture_width: int) -> Observation:
-    """Return the observation of a frame, subsampled to about `picture_width` columns."""
+def observe(depth: DepthRecording, frame: int, image_width: int) -> Observation:
+    """Return the observation of a frame, subsampled to about `image_width` columns."""
     full = Observation(depth.camera, depth.frame(frame).astype(np.float64))
-    return full.every(subsampling_step(depth.camera, picture_width))
+    return full.every(subsampling_step(depth.camera, image_width))
 
 
-def subsampling_step(camera: Camera, picture_width: int) -> int:
-    """Return the step in columns and rows that leaves about `picture_width` columns."""
-    return max(1, round(camera.width / picture_width))
+def subsampling_step(camera: Camera, image_width: int) -> int:
+    """Return the step in columns and rows that leaves about `image_width` columns."""
+    return max(1, round(camera.width / image_width))
 
 
 def rays_through_pixels(camera: Camera, pixels: Integers) -> Array:

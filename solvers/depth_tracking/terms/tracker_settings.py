@@ -18,9 +18,9 @@ class TrackerSettings(Settings):
     resolution.
     """
 
-    picture_width: int = setting(
+    image_width: int = setting(
         160, "Columns of the subsampled depth image; higher is finer and slower",
-        minimum=20, maximum=4096,
+        minimum=20, maximum=4096, former="picture_width",
     )  # fmt: skip
     iterations: int = setting(
         6, "Maximum steps per frame; higher follows faster motion", minimum=1, maximum=100
@@ -58,9 +58,9 @@ class TrackerSettings(Settings):
         "Smoothness of the joint rotations; higher is smoother and follows slower",
         "1/rad2",
     )
-    trust: float = setting(
+    prediction: float = setting(
         0.7, "Fraction of the last movement used for prediction; higher follows faster motion",
-        minimum=0.0, maximum=1.0, advanced=True,
+        minimum=0.0, maximum=1.0, advanced=True, former="trust",
     )  # fmt: skip
     start_ahead: bool = setting(
         True, "Start each frame at the predicted pose instead of the previous pose",
@@ -80,9 +80,9 @@ class TrackerSettings(Settings):
         1.0, "Minimum damping of each step; higher is more stable and slower",
         minimum=0.0, maximum=1e6, advanced=True,
     )  # fmt: skip
-    longest_step: float = setting(
+    max_step: float = setting(
         0.35, "Maximum joint rotation in one step; higher is faster and less stable",
-        unit="rad", minimum=0.01, maximum=10.0, advanced=True,
+        unit="rad", minimum=0.01, maximum=10.0, advanced=True, former="longest_step",
     )  # fmt: skip
     accept_only_better: bool = setting(
         True, "Reject steps that increase the cost", advanced=True

@@ -148,5 +148,5 @@ def _descend(objective: _Objective, pose: Array, iterations: int) -> Registered:
 
 def _limited(change: Array, settings: TrackerSettings) -> Array:
     largest_step = max(np.abs(change[3:]).max(), np.abs(change[:3]).max() / _METRES_PER_RADIAN)
-    limited: Array = change * min(1.0, settings.longest_step / max(largest_step, 1e-12))
+    limited: Array = change * min(1.0, settings.max_step / max(largest_step, 1e-12))
     return limited

@@ -91,7 +91,7 @@ def track_pose(
     """
     poses, qualities = [checked_pose(initial_pose)], []
     for frame in range(depth.n_frames):
-        observation = observe(depth, frame, settings.picture_width)
+        observation = observe(depth, frame, settings.image_width)
         prior = next_pose_prior(poses[1:] or poses, settings, motion_prior)
         pose, quality = track_frame(body, prior, observation, settings)
         poses.append(pose)
@@ -145,7 +145,7 @@ def next_pose_prior(
     weights = np.full(N_COORDINATES, settings.turn_weight)
     weights[:3] = settings.shift_weight
     similar = None if motion_prior is None else local_pca(motion_prior, poses[-1])
-    expected = predict_pose(poses, settings.trust)
+    expected = predict_pose(poses, settings.prediction)
     return NextPose(expected, weights, poses[-1], similar, settings.similar_weight)
 
 

@@ -146,10 +146,10 @@ def mean_twists(
 
     Parameters
     ----------
-    twists : shape (n_frames, n_neighbours, 4)
+    twists : shape (n_frames, n_neighbors, 4)
     postures : shape (n_frames, 20, 3), meters
         Synthesized poses.
-    neighbors : shape (n_frames, n_neighbours, 60), meters
+    neighbors : shape (n_frames, n_neighbors, 60), meters
     reliability : shape (n_frames, 20)
 
     Returns

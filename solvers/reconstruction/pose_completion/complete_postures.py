@@ -169,7 +169,7 @@ def _measure_errors(
     def synthesize(frames: NDArray[np.intp], reliability: Array) -> Array:
         observed = take.postures[frames]
         query = PostureQuery(observed, speeds[frames], reliability, settings.pace)
-        indices, _ = nearest_postures(index, query, settings.n_neighbours)
+        indices, _ = nearest_postures(index, query, settings.n_neighbors)
         spaces = local_pca(body.positions[indices].astype(np.float64), settings.n_dimensions)
         targets = EnergyTargets(observed, reliability, spaces.neighbors, take.lengths)
         return probable_postures(spaces, targets)[0]
@@ -192,7 +192,7 @@ def synthesize(
     speeds = _speeds(take, settings)
     query = PostureQuery(take.postures, speeds, take.reliability, settings.pace)
     indices, _ = nearest_postures(
-        index, query, settings.n_neighbours, progress=within(progress, 0.0, 0.4)
+        index, query, settings.n_neighbors, progress=within(progress, 0.0, 0.4)
     )
     values, spread = np.empty_like(take.postures), np.empty_like(take.reliability)
     twists = np.zeros((len(values), N_TWISTED_LIMBS), np.complex128)

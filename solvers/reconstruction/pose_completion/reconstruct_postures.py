@@ -184,6 +184,6 @@ def _describe_method(method: str, settings: PostureSettings, library: PostureLib
     causality = ", causal" if settings.causal else ""
     source = f" ({library.trained_on})" if library.trained_on else ""
     return (
-        f"{method} among {settings.n_neighbours} neighbors of"
+        f"{method} among {settings.n_neighbors} neighbors of"
         f" {library.n_postures}{source}{causality}"
     )

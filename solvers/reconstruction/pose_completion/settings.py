@@ -10,9 +10,9 @@ class PostureSettings(Settings):
     """Settings of `reconstruct_postures`."""
 
     causal: bool = setting(False, "Use only earlier frames, as in a live system; less smooth")
-    n_neighbours: int = setting(
+    n_neighbors: int = setting(
         30, "Number of library poses that each pose is made of; more vary more",
-        minimum=2, maximum=200, label="Neighbors",
+        minimum=2, maximum=200, label="Neighbors", former="n_neighbours",
     )  # fmt: skip
     n_dimensions: int = setting(
         20, "Dimensions in which a pose may differ from the mean of its neighbors",

@@ -29,7 +29,7 @@ class EnergyTargets:
     observed : shape (n_frames, 20, 3), meters
         NaN: not tracked.
     reliability : shape (n_frames, 20)
-    neighbors : shape (n_frames, n_neighbours, 60), meters
+    neighbors : shape (n_frames, n_neighbors, 60), meters
     lengths : shape (20,), meters
     expected : shape (n_frames, 20, 3), meters, or None
         Positions by linear extrapolation; NaN where unknown.

@@ -22,7 +22,7 @@ class PostureSpaces:
         Orthonormal, the strongest first; zero beyond the rank of the neighbors.
     spreads : shape (n_frames, n_dimensions), square meters
         Variance of the neighbors along each axis.
-    neighbors : shape (n_frames, n_neighbours, 60), meters
+    neighbors : shape (n_frames, n_neighbors, 60), meters
     """
 
     means: Array
@@ -53,7 +53,7 @@ def local_pca(neighbors: Array, n_dimensions: int = 20) -> PostureSpaces:
 
     Parameters
     ----------
-    neighbors : shape (n_frames, n_neighbours, 20, 3), meters
+    neighbors : shape (n_frames, n_neighbors, 20, 3), meters
     n_dimensions : int
 
     References

@@ -39,7 +39,7 @@ class ThreeTermSettings(Settings):
 
     spatial: float = setting(0.6, "Weight of the predicted offsets", minimum=0.0, maximum=10.0)
     temporal: float = setting(0.2, "Weight of constant velocities", minimum=0.0, maximum=10.0)
-    trust: float = setting(
+    reliable: float = setting(
         0.2, "Weight of staying at reliable observations", minimum=0.0, maximum=10.0
     )
     causal: bool = setting(False, "Measure reliability from earlier frames only")
@@ -116,7 +116,7 @@ def minimize_terms(
     observed = fill_gaps(posture_positions(recording)) * CM_PER_M
     offsets = predicted * CM_PER_M - observed
     spatial = settings.spatial / (2.0 * variances * CM_PER_M**2)
-    measured = settings.trust * weights**2
+    measured = settings.reliable * weights**2
     result = observed.copy()
     step = max(round(recording.frame_rate / REFERENCE_RATE_HZ), 1)
     for frame in range(len(observed)):

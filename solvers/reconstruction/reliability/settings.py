@@ -38,21 +38,21 @@ class ReliabilitySettings(Settings):
         0.05, "Position error that still counts as right; higher rates joints as more reliable",
         unit="m", minimum=0.005, maximum=0.5,
     )  # fmt: skip
-    slowest: float = setting(
+    min_vibration_speed: float = setting(
         0.9, "Speed below which a joint never counts as vibrating; higher flags fewer joints",
-        unit="m/s", minimum=0.0, maximum=100.0, advanced=True,
+        unit="m/s", minimum=0.0, maximum=100.0, advanced=True, former="slowest",
     )  # fmt: skip
     vibration_window: float = setting(
         0.1, "Time over which turns of the path are averaged; longer ignores single jumps",
         unit="s", minimum=0.01, maximum=1.0, advanced=True,
     )  # fmt: skip
-    vibration_floor: float = setting(
+    min_vibration_angle: float = setting(
         90.0, "Mean turn of the path that is still normal; higher flags fewer joints",
-        unit="degrees", minimum=0.0, maximum=179.0, advanced=True,
+        unit="degrees", minimum=0.0, maximum=179.0, advanced=True, former="vibration_floor",
     )  # fmt: skip
-    vibration_roof: float = setting(
-        135.0, "Mean turn of the path at which reliability is 0; must be above the floor",
-        unit="degrees", minimum=1.0, maximum=180.0, advanced=True,
+    max_vibration_angle: float = setting(
+        135.0, "Mean turn of the path at which reliability is 0; must be above the minimum",
+        unit="degrees", minimum=1.0, maximum=180.0, advanced=True, former="vibration_roof",
     )  # fmt: skip
     window: float = setting(
         0.2, "Time over which reliability is averaged; longer recovers more slowly",
@@ -61,10 +61,10 @@ class ReliabilitySettings(Settings):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.vibration_roof <= self.vibration_floor:
+        if self.max_vibration_angle <= self.min_vibration_angle:
             raise InvalidSettingError(
-                f"vibration_roof is {self.vibration_roof:g} degrees; it must lie above"
-                f" vibration_floor, {self.vibration_floor:g}."
+                f"max_vibration_angle is {self.max_vibration_angle:g} degrees; it must lie"
+                f" above min_vibration_angle, {self.min_vibration_angle:g}."
             )
 
 

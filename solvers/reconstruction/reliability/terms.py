@@ -30,14 +30,14 @@ def behavior_term(positions: Array, frame_rate: float, settings: ReliabilitySett
     settings : ReliabilitySettings
     """
     step = frame_count(1.0 / SENSOR_RATE_HZ, frame_rate)
-    angles = path_angles(positions, step, settings.slowest * step / frame_rate)
+    angles = path_angles(positions, step, settings.min_vibration_speed * step / frame_rate)
     n_averaged = frame_count(settings.vibration_window, frame_rate)
     if settings.causal:
         angles = np.concatenate([np.zeros_like(angles[:step]), angles[:-step]])[: len(angles)]
     if not settings.causal:
         n_averaged = 2 * (n_averaged // 2) + 1
     angles = _weighted_mean(angles, np.ones(n_averaged), settings.causal)
-    floor, roof = settings.vibration_floor, settings.vibration_roof
+    floor, roof = settings.min_vibration_angle, settings.max_vibration_angle
     return 1.0 - np.clip((angles - floor) / (roof - floor), 0.0, 1.0)  # eq. 4
 
 

@@ -58,9 +58,9 @@ class ResidualPriorSettings(Settings):
         60, "Inducing points of each joint and its neighbors; more is finer and slower",
         minimum=5, maximum=500, advanced=True,
     )  # fmt: skip
-    whole_points: int = setting(
+    pose_points: int = setting(
         100, "Inducing points of complete poses; more is finer and slower",
-        minimum=5, maximum=500, advanced=True,
+        minimum=5, maximum=500, advanced=True, former="whole_points",
     )  # fmt: skip
     movement_points: int = setting(
         1500, "Movements to compare errors with; more is finer, slower and larger",
@@ -77,9 +77,9 @@ class ResidualPriorSettings(Settings):
     mirror: bool = setting(
         True, "Also learn each error with left and right swapped; off for a sensor at the side"
     )  # fmt: skip
-    calm: float = setting(
+    smoothing: float = setting(
         1 / 30, "Width of the Gaussian that smooths recordings first; 0 as published",
-        unit="s", minimum=0.0, maximum=0.5, advanced=True,
+        unit="s", minimum=0.0, maximum=0.5, advanced=True, former="calm",
     )  # fmt: skip
     seed: int = setting(
         0, "Random seed of frames and first clusters", minimum=0, maximum=2**31 - 1,
@@ -134,13 +134,13 @@ def learn_residual_prior(
        representation and Gaussian processes. PhD thesis, City University of Hong Kong, 5.2.1.
     """
     actor_names = _check_pairs(pairs, actors)
-    takes = _read_takes(pairs, actor_names, settings.calm)
+    takes = _read_takes(pairs, actor_names, settings.smoothing)
     examples, mean_pose = _gather_examples(takes, settings)
     centered = (examples.features - mean_pose)[:, 1:].reshape(len(examples.takes), -1)
     n_components = min(N_COMPONENTS, *centered.shape)
     components = np.linalg.svd(centered, full_matrices=False)[2][:n_components].T
     pose_features = posture_components(examples.features, mean_pose, components)
-    whole_points = inducing_points(pose_features, settings.whole_points, settings.seed)
+    pose_points = inducing_points(pose_features, settings.pose_points, settings.seed)
     learned: dict[int, tuple[Array, Kernel, Array, Array]] = {}
     for joint in range(N_JOINTS):
         progress(joint / N_JOINTS, "Learning sensor errors")
@@ -148,7 +148,7 @@ def learn_residual_prior(
         is_mirror_image = settings.mirror and MIRROR_JOINTS[joint] < joint
         if known.sum() >= MIN_FRAMES and not is_mirror_image:
             learned[joint] = _learn_joint(
-                examples, joint, known, pose_features, whole_points, settings
+                examples, joint, known, pose_features, pose_points, settings
             )
     if not learned:
         raise InvalidMotionError(
@@ -166,11 +166,11 @@ def learn_residual_prior(
         mean_pose,
         components,
         np.stack([points for points, *_ in learned.values()]),
-        whole_points,
+        pose_points,
         np.array([_kernel_row(kernel) for _, kernel, *_ in learned.values()]),
         np.stack([mean for *_, mean, _ in learned.values()]),
         np.stack([covariance for *_, covariance in learned.values()]),
-        np.array(settings.calm),
+        np.array(settings.smoothing),
         np.array(settings.mirror),
         np.array(f"{len(pairs)} takes of {len(set(actor_names))} actors"),
         movement,
@@ -241,7 +241,7 @@ def _learn_joint(
     joint: int,
     known: NDArray[np.bool_],
     pose_features: Array,
-    whole_points: Array,
+    pose_points: Array,
     settings: ResidualPriorSettings,
 ) -> tuple[Array, Kernel, Array, Array]:
     """Return inducing points, hyper-parameters, and mean and covariance of the weights."""
@@ -264,7 +264,7 @@ def _learn_joint(
     points = np.pad(points, ((0, settings.local_points - len(points)), (0, 0)), mode="edge")
     bases = (
         basis_functions(local, points, kernel.lengths[0]),
-        basis_functions(pose_features, whole_points, kernel.lengths[1]),
+        basis_functions(pose_features, pose_points, kernel.lengths[1]),
     )
     repeats = 1.0 if published else max(CORRELATION_TIME_S * settings.frame_rate, 1.0)
     mean, covariance = posterior(bases, errors, takes, actors, kernel, repeats)

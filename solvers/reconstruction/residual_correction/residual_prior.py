@@ -47,7 +47,7 @@ LAYOUT = ArchiveLayout(
     holds="a damaged prior",
     remedy="Learn it again.",
 )
-KEYS = {"mean_pose": "usual", "smoothing": "calm"}
+KEYS = {"mean_pose": "usual", "pose_points": "whole_points", "smoothing": "calm"}
 """Keys of fields in a file, where they differ."""
 MOVEMENT_FRACTION = 0.6
 """Fraction of the movement process in a prediction; the rest comes from joints and poses.
@@ -76,7 +76,7 @@ class ResidualPrior:
         Principal components of the complete pose without the hips.
     local_points : shape (n, n_local, 15)
         Inducing points of each joint and its neighbors.
-    whole_points : shape (n_whole, n_components)
+    pose_points : shape (n_whole, n_components)
         Inducing points of complete poses.
     kernels : shape (n, 9)
         Hyper-parameters (`Kernel`): lengths, shared, personal, take, actor, noise.
@@ -99,7 +99,7 @@ class ResidualPrior:
     mean_pose: Array
     components: Array
     local_points: Array
-    whole_points: Array
+    pose_points: Array
     kernels: Array
     means: Array
     covariances: Array
@@ -127,7 +127,7 @@ class ResidualPrior:
         roots = []
         for index, points in enumerate(self.local_points):
             near, far = self.kernel(index).lengths
-            roots.append((cholesky_root(points, near), cholesky_root(self.whole_points, far)))
+            roots.append((cholesky_root(points, near), cholesky_root(self.pose_points, far)))
         return roots
 
     def kernel(self, index: int) -> Kernel:
@@ -200,13 +200,13 @@ class ResidualPrior:
         offsets, variances = np.zeros(shape), np.full(shape[:2], np.inf)
         coverage = np.zeros(shape[:2])
         pose_features = posture_components(features, self.mean_pose, self.components)
-        near = proximity(pose_features, self.whole_points, POSTURE_COVERAGE_M)
+        near = proximity(pose_features, self.pose_points, POSTURE_COVERAGE_M)
         for index, name in enumerate(self.joints):
             joint, kernel = POSTURE_JOINTS.index(str(name)), self.kernel(index)
             local, roots = neighborhood_features(features, joint), self._cholesky_roots[index]
             bases = (
                 basis_functions(local, self.local_points[index], kernel.lengths[0], roots[0]),
-                basis_functions(pose_features, self.whole_points, kernel.lengths[1], roots[1]),
+                basis_functions(pose_features, self.pose_points, kernel.lengths[1], roots[1]),
             )
             columns = shared_design(bases, kernel)
             offsets[:, joint] = columns @ self.means[index]

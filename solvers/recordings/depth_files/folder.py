@@ -83,7 +83,7 @@ def read_depth_folder(
         shape,
         meters,
         layout.confidence,
-        settings.least_confidence,
+        settings.min_confidence,
     )
     recording = DepthRecording(
         camera,

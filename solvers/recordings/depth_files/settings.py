@@ -71,9 +71,9 @@ class DepthSettings(Settings):
     mirrored: bool = setting(
         False, "The images are mirrored: the actor's right hand is on the right"
     )
-    least_confidence: int = setting(
+    min_confidence: int = setting(
         1, "Ignore readings of lower recorded confidence: 0 low, 1 medium, 2 high", minimum=0,
-        maximum=2, advanced=True,
+        maximum=2, advanced=True, former="least_confidence",
     )  # fmt: skip
 
     def camera(self, width: int, height: int, stored: Camera | None = None) -> Camera | None:

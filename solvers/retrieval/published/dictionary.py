@@ -28,7 +28,7 @@ class DictionarySettings(Settings):
     n_nonzeros: int = setting(
         35, "Atoms per posture; more are more accurate", minimum=1, maximum=57
     )
-    centred: bool = setting(
+    centered: bool = setting(
         False, "Subtract the mean posture first, so that atoms represent deviations from it"
     )
     n_rounds: int = setting(
@@ -109,7 +109,7 @@ def learn_dictionary(
        doi:10.1109/TSP.2006.881199
     """
     examples = _examples(clips, settings)
-    mean = examples.mean(axis=0) if settings.centred else np.zeros(examples.shape[1])
+    mean = examples.mean(axis=0) if settings.centered else np.zeros(examples.shape[1])
     examples = examples - mean
     random = np.random.default_rng(settings.seed)
     sizes = np.linalg.norm(examples, axis=1)

@@ -28,7 +28,7 @@ class PyramidSettings(Settings):
     n_levels: int = setting(
         3, "Pyramid levels; each halves the time segments", minimum=1, maximum=8
     )
-    normalise_cubes: bool = setting(
+    normalize_cubes: bool = setting(
         False,
         "Normalize the entries of each cube to the sum 1, so that all segments and blocks of"
         " atoms have equal weight",
@@ -56,7 +56,7 @@ def pyramid_descriptor(
     indices, values, first = [], [], 0
     for level in range(settings.n_levels):
         level_indices, sizes = _pool_codes(codes, 2**level, n_atoms)
-        if settings.normalise_cubes:
+        if settings.normalize_cubes:
             sizes = sizes / _cube_sums(level_indices, sizes, level, n_atoms)
         indices.append(first + level_indices)
         values.append(sizes / 2**level)

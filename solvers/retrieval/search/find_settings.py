@@ -36,9 +36,9 @@ class FindSettings(Settings):
     """Settings of `find_similar`.
 
     `stance`, `busy` and the tracked joints of the query weight the comparison of the query with
-    the clips. The distances between clips (`n_alike`) do not depend on the query if all parts
-    are compared and the library has at most `search_index.MAX_PAIRWISE_SPANS` segments: they
-    are then computed once for all queries, with the default stance and equal part weights.
+    the clips. The distances between clips (`n_neighbors`) do not depend on the query if all
+    parts are compared and the library has at most `search_index.MAX_PAIRWISE_SPANS` segments:
+    they are then computed once for all queries, with the default stance and equal part weights.
     Otherwise they use the weights of the query.
     """
 
@@ -73,9 +73,9 @@ class FindSettings(Settings):
         3.0, "Weight of timing against poses",
         minimum=0.0, maximum=100.0, advanced=True, label="Timing Weight",
     )  # fmt: skip
-    n_alike: int = setting(
+    n_neighbors: int = setting(
         8, "Similar clips that also vote on each result; at most one in twenty clips",
-        minimum=0, maximum=100, advanced=True, label="Neighbors",
+        minimum=0, maximum=100, advanced=True, label="Neighbors", former="n_alike",
     )  # fmt: skip
     n_aligned: int = setting(
         8, "Number of best matches to align frame by frame with the query",

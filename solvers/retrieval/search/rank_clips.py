@@ -71,7 +71,7 @@ def rank_clips(
     costs = warping_costs(frame_distances(query_sequence, sequences))[0]
     scale = np.float32(2.0 / (1.0 + settings.warping))
     combined = scale * (histogram_distances[candidates] + np.float32(settings.warping) * costs)
-    n_neighbors = min(settings.n_alike, len(segments) // CLIPS_PER_NEIGHBOR)
+    n_neighbors = min(settings.n_neighbors, len(segments) // CLIPS_PER_NEIGHBOR)
     if 0 < n_neighbors < len(candidates):
         pairwise = (
             index.pairwise_distances(segments[candidates])

@@ -66,7 +66,7 @@ WITHOUT = {
     "no silhouette": {"silhouette_weight": 0.0},
     "no closest surface": {"closest_weight": 0.0},
     "no free space (off actor, too near)": {"off_actor_weight": 0.0, "too_near_weight": 0.0},
-    "no prediction": {"trust": 0.0},
+    "no prediction": {"prediction": 0.0},
     "no smoothness": {"turn_weight": 0.0, "shift_weight": 0.0},
     "no natural stance": {"natural_weight": 0.0},
     "no joint limits": {"limit_weight": 0.0},
@@ -248,7 +248,7 @@ def resolution() -> list[str]:
     """Look at fewer or more columns."""
     scores = Scores("Selected columns", UNIT, "")
     for width in (80, 160, 320):
-        settings = replace(DEFAULT_TRACKER, picture_width=width)
+        settings = replace(DEFAULT_TRACKER, image_width=width)
         for name in HARD:
             one = sequence(name)
             found, speed = measured(partial(ours, settings), one, one.body)

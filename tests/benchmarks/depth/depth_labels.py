@@ -87,7 +87,7 @@ def truth_bodies(take: str, every: int = 1) -> tuple[SkinnedBody, Iterator[tuple
 
 def held_out_frames(n_blocks: int = 30, loose: float = 0.0) -> Iterator[LabelledFrame]:
     """Yield pictures of HDM05's actors, whom no forest here has learned from."""
-    settings = TrainingImagesSettings(loose=loose, nearest=2.0, farthest=4.0)
+    settings = TrainingImagesSettings(loose=loose, min_distance=2.0, max_distance=4.0)
     source = image_source(held_out_motions(), all_bodies(), settings, 5)
     rendered = draw_images(source, range(n_blocks))
     for number, (picture, labels) in enumerate(zip(*rendered, strict=True)):

@@ -27,7 +27,7 @@ WRONG = 0.1
 TRACKERS: dict[str, tuple[TrackerSettings, int]] = {
     "ours": (DEFAULT_TRACKER, 1),
     "ours, every third frame": (DEFAULT_TRACKER, 3),
-    "ours, no prediction": (replace(DEFAULT_TRACKER, trust=0.0), 2),
+    "ours, no prediction": (replace(DEFAULT_TRACKER, prediction=0.0), 2),
     "WZC12 preset": (REGISTRATION_TRACKER, 1),
 }
 """Settings, and every how manieth frame is looked at: some of them fail often."""
@@ -65,7 +65,7 @@ def _tracked(
 ) -> Iterable[tuple[Array, float]]:
     poses = [one.first_pose(body)]
     for frame in range(0, one.depth.n_frames, step):
-        observation = observe(one.depth, frame, settings.picture_width)
+        observation = observe(one.depth, frame, settings.image_width)
         prior = next_pose_prior(poses[1:] or poses, settings)
         with np.errstate(all="ignore"):
             pose, quality = track_frame(body, prior, observation, settings)

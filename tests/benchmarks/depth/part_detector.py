@@ -165,7 +165,7 @@ def peer_rows(every: int) -> list[str]:
     """Return how scikit-learn and a small forest of ours tell the same pixels."""
     from sklearn.ensemble import RandomForestClassifier
 
-    settings = PixelForestSettings(n_pictures=PEER_PICTURES, n_pixels=PEER_PIXELS)
+    settings = PixelForestSettings(n_images=PEER_PICTURES, n_pixels=PEER_PIXELS)
     source = image_source(taught_motions(), all_bodies(), settings, 0)
     images = draw_images(source, range(PEER_PICTURES // IMAGES_PER_BODY))
     views, parts = draw_pixels(images, PEER_PIXELS, np.random.default_rng(0))
@@ -178,7 +178,7 @@ def peer_rows(every: int) -> list[str]:
         3, max_depth=18, min_samples_split=40, max_features=100, criterion="entropy",
         random_state=0,
     ).fit(table.astype(np.float32), parts)  # fmt: skip
-    same_settings = PixelForestSettings(levels=18, n_candidates=100, least_pixels=40)
+    same_settings = PixelForestSettings(levels=18, n_candidates=100, min_pixels=40)
     ours = PixelForest(
         tuple(
             grow_tree(views, parts, same_settings, np.random.default_rng(n)) for n in range(3)
@@ -212,7 +212,7 @@ def body_rows(every: int) -> list[str]:
     Every training body is resized and dressed at random, and mixed with another one.
     """
     held_out = ("male_heavy", "female_slim")
-    small = PixelForestSettings(n_pictures=PEER_PICTURES, n_pixels=PEER_PIXELS, levels=15)
+    small = PixelForestSettings(n_images=PEER_PICTURES, n_pixels=PEER_PIXELS, levels=15)
     few = [body for body in all_bodies() if body.name not in held_out]
     rows = ["| small forest of | pixels right on the two others |", "|---|---|"]
     for name, bodies in (("four bodies", all_bodies()), ("two bodies", few)):

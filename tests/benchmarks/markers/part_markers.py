@@ -109,14 +109,14 @@ FILLERS: dict[str, Filler] = {
     "linear interpolation": marker_fillers.each_coordinate(gap_fillers.linear),
     "PCHIP": marker_fillers.each_coordinate(gap_fillers.pchip),
     "cubic spline": marker_fillers.each_coordinate(gap_fillers.cubic),
-    "soft-impute, relative to the mean marker": marker_fillers.centred(
+    "soft-impute, relative to the mean marker": marker_fillers.centered(
         marker_fillers.soft_impute
     ),
-    "subspace Kalman (from the paper)": marker_fillers.centred(marker_fillers.subspace_kalman),
-    "PMA-R2 (after the authors' program)": marker_fillers.centred(
+    "subspace Kalman (from the paper)": marker_fillers.centered(marker_fillers.subspace_kalman),
+    "PMA-R2 (after the authors' program)": marker_fillers.centered(
         marker_fillers.principal_markers
     ),
-    "model averaging (after the authors' program)": marker_fillers.centred(model_averaging),
+    "model averaging (after the authors' program)": marker_fillers.centered(model_averaging),
     "[LC10] as published, no examples": partial(ours, method=DenoiseMethod.PUBLISHED),
     "ours": ours,
 }

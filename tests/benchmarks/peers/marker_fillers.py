@@ -30,7 +30,7 @@ def each_coordinate(filler: Callable[[Array, float], Array]) -> Callable[[Array,
     return fill
 
 
-def centred(filler: Callable[[Array, float], Array]) -> Callable[[Array, float], Array]:
+def centered(filler: Callable[[Array, float], Array]) -> Callable[[Array, float], Array]:
     """Return the filler working relative to the mean of the markers that are never missing."""
 
     def fill(gapped: Array, frame_rate: float) -> Array:
@@ -57,7 +57,7 @@ def principal_markers(gapped: Array, frame_rate: float) -> Array:
     """PMA-R2: weighted principal components of the nearby markers.
 
     Gløersen and Federolf (2016), doi:10.1371/journal.pone.0152616, with the parameters given
-    there. Works relative to the mean marker; see `centred`.
+    there. Works relative to the mean marker; see `centered`.
     """
     filled = gapped.copy()
     missing = np.isnan(gapped).any(axis=2)

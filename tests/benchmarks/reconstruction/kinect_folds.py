@@ -31,7 +31,7 @@ SUBJECTS = ("s01", "s02", "s03", "s04", "s05")
 PRIORS = {
     ResidualMethod.HIERARCHICAL: ResidualPriorSettings(),
     ResidualMethod.PUBLISHED: ResidualPriorSettings(
-        method=ResidualMethod.PUBLISHED, calm=0.0, mirror=False
+        method=ResidualMethod.PUBLISHED, smoothing=0.0, mirror=False
     ),
 }
 

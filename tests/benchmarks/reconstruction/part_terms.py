@@ -82,7 +82,7 @@ def terms(n_repetitions: int) -> list[str]:
 
 
 def _published(spatial: float, temporal: float, reliability: float) -> Method:
-    settings = ThreeTermSettings(spatial=spatial, temporal=temporal, trust=reliability)
+    settings = ThreeTermSettings(spatial=spatial, temporal=temporal, reliable=reliability)
     return joints(by_published_residuals, settings=settings)
 
 

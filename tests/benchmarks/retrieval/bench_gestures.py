@@ -77,10 +77,10 @@ SENSORS = {
     "1 cm noise": {"noise": 0.01},
     "2 cm noise": {"noise": 0.02},
     "1 cm; each joint hidden every 2 s; 10 % of frames dropped": {
-        "noise": 0.01, "hidden": 0.5, "lost": 0.1, "lateness": 0.005,
+        "noise": 0.01, "hidden": 0.5, "dropped": 0.1, "lateness": 0.005,
     },
     "1 cm; every second; 30 % dropped": {
-        "noise": 0.01, "hidden": 1.0, "lost": 0.3, "lateness": 0.01,
+        "noise": 0.01, "hidden": 1.0, "dropped": 0.3, "lateness": 0.01,
     },
     "1 cm, 15 Hz": {"noise": 0.01, "frame_rate": 15.0},
     "1 cm, 60 Hz": {"noise": 0.01, "frame_rate": 60.0},

@@ -23,13 +23,13 @@ EVERY = 2
 """Every so many-th clip is a query."""
 START = Pyramids(
     DictionarySettings(n_atoms=32, n_nonzeros=3),
-    PyramidSettings(gap=0.1, normalise_cubes=True),
+    PyramidSettings(gap=0.1, normalize_cubes=True),
     frame_rate=30.0,
 )
 TRIED: tuple[dict[str, tuple[Any, ...]], ...] = (
     {"parts": (BODY, PARTS), "n_atoms": (16, 32, 64), "n_nonzeros": (1, 2, 3, 5)},
     {"gap": (0.033, 0.067, 0.1, 0.15), "n_levels": (1, 2, 3, 4)},
-    {"normalise_cubes": (False, True), "cosine": (False, True), "centred": (False, True)},
+    {"normalize_cubes": (False, True), "cosine": (False, True), "centered": (False, True)},
     {"filled": (False, True), "n_atoms": (24, 32, 48)},
 )
 """Settings that are chosen together; one set after the other, with the best of those before."""
@@ -112,8 +112,8 @@ def _words(method: Pyramids) -> str:
     return (
         f"{'parts, ' if method.parts == PARTS else ''}"
         f"{atoms.n_atoms} atoms, {atoms.n_nonzeros} non-zeros"
-        f"{', centred' if atoms.centred else ''}, gap {pyramid.gap:.3f} s,"
-        f" {pyramid.n_levels} levels{', cubes' if pyramid.normalise_cubes else ''}"
+        f"{', centered' if atoms.centered else ''}, gap {pyramid.gap:.3f} s,"
+        f" {pyramid.n_levels} levels{', cubes' if pyramid.normalize_cubes else ''}"
         f"{', cosine' if method.cosine else ''}{', filled' if method.filled else ''}"
     )
 

@@ -20,7 +20,7 @@ RANKED = "all three, manifold ranking"
 
 CHOSEN = Pyramids(
     DictionarySettings(n_atoms=32, n_nonzeros=1),
-    PyramidSettings(gap=1 / 30, n_levels=4, normalise_cubes=True),
+    PyramidSettings(gap=1 / 30, n_levels=4, normalize_cubes=True),
     frame_rate=30.0,
     parts=PARTS,
     filled=True,
@@ -31,10 +31,10 @@ N_NEIGHBOURS = 3
 
 METHODS: dict[str, Method] = {
     OURS: Default(),
-    "ours, without re-ranking": Default(FindSettings(n_alike=0)),
-    "ours, codewords alone": Default(FindSettings(n_alike=0, n_warped=0)),
+    "ours, without re-ranking": Default(FindSettings(n_neighbors=0)),
+    "ours, codewords alone": Default(FindSettings(n_neighbors=0, n_warped=0)),
     PUBLISHED: Pyramids(),
-    CUBES: Pyramids(pyramid=PyramidSettings(normalise_cubes=True)),
+    CUBES: Pyramids(pyramid=PyramidSettings(normalize_cubes=True)),
     "pyramids, settings chosen": CHOSEN,
     "DTW of 12 components": WARPED,
     "covariances": Covariances(),

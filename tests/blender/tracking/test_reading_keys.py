@@ -111,7 +111,7 @@ def test_keys_of_other_channels_do_not_extend_the_take(made, read_take, blank):
     animation.action = made.source[0]
     animation.action_slot = made.source[0].slots.new("OBJECT", "other")
     other.keyframe_insert("location", frame=200)
-    take = read_take(made, n_pictures=400)
+    take = read_take(made, n_images=400)
     assert take.frames == pytest.approx(1.0 + 0.8 * np.arange(20)) and take.first == 0
 
 

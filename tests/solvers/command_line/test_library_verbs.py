@@ -63,7 +63,7 @@ def test_index_removes_deleted_files(call, walks, tmp_path):
 
 
 def test_find_prints_a_table_best_first(call, walks, library):
-    status, printed, _ = call("find", walks / "walk_140.bvh", library, "--n-alike", 0)
+    status, printed, _ = call("find", walks / "walk_140.bvh", library, "--n-neighbors", 0)
     header, *rows = printed.splitlines()
     assert status == 0
     assert header.split() == ["clip", "score", "frames", "seconds", "tags"]
@@ -74,7 +74,7 @@ def test_find_prints_a_table_best_first(call, walks, library):
 
 
 def test_find_searches_with_frames_and_parts_of_the_body(call, walks, library):
-    words = ("find", walks / "walk_100.bvh", library, "--json", "--n-alike", 0)
+    words = ("find", walks / "walk_100.bvh", library, "--json", "--n-neighbors", 0)
     messages = json.loads(call(*words, "--frames", "30:60", "--no-left-arm")[1])
     best = messages["matches"][0]
     assert best["clip"] == "walk_100"

@@ -8,7 +8,7 @@ import pytest
 
 from solvers.command_line.options import SentenceParser, arguments_from, settings_from_arguments
 from solvers.errors import InvalidSettingError
-from solvers.settings import Settings, setting
+from solvers.settings import Settings, setting, with_present_names
 
 
 class Method(Enum):
@@ -23,7 +23,8 @@ class BowSettings(Settings):
     n_shots: int = setting(3, "More is louder", minimum=1, maximum=10)
     wet: bool = setting(True, "Whether it rains")
     method: Method = setting(Method.FAST, "How")
-    label: str = setting("x", "What to call it")
+    label: str = setting("x", "What to call it", former="tag")
+    n_arrows: int = setting(6, "More last longer", minimum=1, maximum=60, former="n_alike")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,3 +92,22 @@ def test_invalid_option_gives_one_sentence_on_stderr_and_status_2(
     assert stopped.value.code == 2
     assert error_output.startswith(sentence)
     assert error_output.count("\n") == 1
+
+
+def test_former_name_is_still_an_option_and_not_in_the_help(parser):
+    given = parser.parse_args(["--n-alike", "12", "--tag", "y"])
+
+    settings = settings_from_arguments(given, BowSettings)
+
+    assert (settings.n_arrows, settings.label) == (12, "y")
+    assert "alike" not in parser.format_help()
+
+
+def test_stored_values_get_their_present_names():
+    stored = {"n_alike": 9, "wet": False, "unknown": 1}
+
+    assert with_present_names(BowSettings, stored) == {
+        "n_arrows": 9,
+        "wet": False,
+        "unknown": 1,
+    }

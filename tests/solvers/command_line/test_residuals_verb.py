@@ -11,7 +11,7 @@ from solvers.samples import GaitSettings, walking_gait
 
 NAMES = SENSOR_JOINTS[Sensor.KINECT_V1]
 KNEE = NAMES.index("KneeLeft")
-SMALL_PRIOR = ["--local-points", "10", "--whole-points", "10", "--sample", "50"]
+SMALL_PRIOR = ["--local-points", "10", "--pose-points", "10", "--sample", "50"]
 
 
 @pytest.fixture

@@ -100,7 +100,7 @@ def test_worst_issue_is_first_and_the_number_is_limited(swinging_leg, rng):
         rotations[frame, 1] = multiply(rotations[frame, 1], jump)
 
     issues = find_worst_issues(
-        swinging_leg.with_poses(rotations), settings=IssueSettings(n_spots=2)
+        swinging_leg.with_poses(rotations), settings=IssueSettings(max_issues=2)
     )
 
     assert [issue.start_frame for issue in issues] == [50, 80]

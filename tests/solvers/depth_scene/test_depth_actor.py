@@ -107,7 +107,9 @@ def test_find_actor_uses_frames_of_the_empty_room(takes):
     found = agreement(actor.recording.frame(70) > 0.0, take.frame(40) > 0.0)
     assert found > 0.8
     with pytest.raises(InvalidMotionError, match="Select frames without the actor"):
-        find_actor(recording, ForegroundSettings(way=ForegroundMethod.BACKGROUND), empty=[])
+        find_actor(
+            recording, ForegroundSettings(actor_mask=ForegroundMethod.BACKGROUND), empty=[]
+        )
 
 
 def test_find_actor_keeps_a_recording_of_the_actor_alone(recordings):
@@ -149,7 +151,7 @@ def test_find_actor_follows_the_same_person_when_two_pass(takes, in_a_room):
     if in_a_room:
         both = in_room(both, room(KINECT, UP, floor_of(take) + 0.01, 7.5), 0.0005)
 
-    actor = find_actor(both, ForegroundSettings(farthest=7.0))
+    actor = find_actor(both, ForegroundSettings(max_distance=7.0))
 
     assert "2 people are visible" in actor.remarks[0]
     assert actor.visible.all()
@@ -209,6 +211,6 @@ def test_find_actor_reports_the_height_from_a_wrong_focal_length(takes, factor):
     take = takes["walk_front"]
     wrong = Camera(285.63 / factor, 285.63 / factor, 159.5, 119.5, 320, 240)
 
-    actor = find_actor(replace(take, camera=wrong), ForegroundSettings(smallest_body=0.01))
+    actor = find_actor(replace(take, camera=wrong), ForegroundSettings(min_body_area=0.01))
 
     assert f"The actor would be {1.62 * factor:.1f} m tall: check" in actor.remarks[-1]

@@ -24,8 +24,8 @@ from solvers.recordings import read_depth
 
 KINECT = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
 UP = tilted(0.0)
-SUBTRACTED = ForegroundSettings(way=ForegroundMethod.BACKGROUND)
-AS_RECORDED = ForegroundSettings(way=ForegroundMethod.RECORDED)
+SUBTRACTED = ForegroundSettings(actor_mask=ForegroundMethod.BACKGROUND)
+AS_RECORDED = ForegroundSettings(actor_mask=ForegroundMethod.RECORDED)
 
 
 @pytest.fixture
@@ -54,7 +54,7 @@ def test_cut_out_actor_uses_distance_and_floor(actor):
 
     actor_only = cut_out_actor(
         recording,
-        ForegroundSettings(way=ForegroundMethod.CUT, farthest=4.2),
+        ForegroundSettings(actor_mask=ForegroundMethod.CUT, max_distance=4.2),
         floor=find_floor(recording),
     )
 

@@ -65,7 +65,7 @@ def test_detect_pose_subsamples_a_finer_camera(forest):
     _, depth = capsule_person(leftHumerusZ=1.0, rightHumerusZ=1.0)
     fine = np.repeat(np.repeat(depth, 4, axis=0), 4, axis=1)
     camera = Camera(4 * 142.8, 4 * 142.8, 4 * 79.5, 4 * 59.5, 640, 480)
-    settings = DetectorSettings(most_pixels=int(np.count_nonzero(depth)))
+    settings = DetectorSettings(max_pixels=int(np.count_nonzero(depth)))
     small = detect_pose(depth, CAMERA, BODY, forest, settings)
     large = detect_pose(fine, camera, BODY, forest, settings)
     assert large.step == 4 * small.step

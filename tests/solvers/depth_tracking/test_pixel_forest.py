@@ -43,12 +43,12 @@ from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.samples import GaitSettings, walking_gait
 
 SMALL = PixelForestSettings(
-    n_pictures=80,
+    n_images=80,
     n_pixels=100,
     n_trees=2,
     levels=8,
     n_candidates=30,
-    least_pixels=20,
+    min_pixels=20,
     loose=0.0,
 )
 

@@ -31,7 +31,13 @@ from solvers.rotations.representations import (
 from solvers.samples import GaitSettings, walking_gait
 
 PLAIN = TrainingImagesSettings(
-    loose=0.0, noise=0.0, shape=0.0, clothes=0.0, lost_feet=0.0, nearest=2.5, farthest=3.0
+    loose=0.0,
+    noise=0.0,
+    shape=0.0,
+    clothes=0.0,
+    missing_feet=0.0,
+    min_distance=2.5,
+    max_distance=3.0,
 )
 
 
@@ -130,7 +136,7 @@ def test_feet_are_removed_with_the_requested_frequency(person, gait):
     foot = [PARTS.index("leftFoot"), PARTS.index("rightFoot")]
 
     def feet(missing):
-        source = image_source([gait], [person], replace(PLAIN, lost_feet=missing), 0)
+        source = image_source([gait], [person], replace(PLAIN, missing_feet=missing), 0)
         images = source.render(0) + source.render(1)
         return sum(np.isin(image.labels, foot).sum() for image in images)
 

@@ -54,7 +54,9 @@ def test_each_gesture_is_reported_once_and_in_time(frame_rate):
 
 @pytest.mark.parametrize("seed", range(5))
 def test_recognition_tolerates_noise_dropouts_and_late_frames(seed):
-    corrupted = PerformanceSettings(noise=0.01, hidden=0.5, lost=0.1, lateness=0.005, seed=seed)
+    corrupted = PerformanceSettings(
+        noise=0.01, hidden=0.5, dropped=0.1, lateness=0.005, seed=seed
+    )
 
     gestures = recognized(perform_gestures([*BROWSING, "clap", "rest", "clap"], corrupted))
 
@@ -65,7 +67,9 @@ def test_recognition_tolerates_noise_dropouts_and_late_frames(seed):
 
 @pytest.mark.parametrize("seed", range(20))
 def test_standing_with_noise_gives_no_gesture(seed):
-    corrupted = PerformanceSettings(noise=0.02, hidden=1.0, lost=0.2, lateness=0.01, seed=seed)
+    corrupted = PerformanceSettings(
+        noise=0.02, hidden=1.0, dropped=0.2, lateness=0.01, seed=seed
+    )
 
     assert recognized(perform_gestures(["rest"] * 30, corrupted)) == []
 

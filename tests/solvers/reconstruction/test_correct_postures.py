@@ -242,7 +242,7 @@ def test_learn_residual_prior_repeats_for_the_same_pairs(prior):
 def test_published_prior_uses_neighbors_only():
     published = learn_residual_prior(
         [pair(truth(speed)) for speed in (0.9, 1.6)],
-        settings=replace(SMALL_PRIOR, method=ResidualMethod.PUBLISHED, calm=0.0),
+        settings=replace(SMALL_PRIOR, method=ResidualMethod.PUBLISHED, smoothing=0.0),
     )
     kernel = published.kernel(KNEE)
     assert kernel.shared[1] < 1e-3 * kernel.shared[0]

@@ -55,8 +55,8 @@ def test_steps_below_three_centimeters_are_not_vibration(length, expected):
 
 
 def test_settings_raise_for_a_roof_below_the_floor():
-    with pytest.raises(InvalidSettingError, match="it must lie above vibration_floor, 90"):
-        ReliabilitySettings(vibration_roof=80.0)
+    with pytest.raises(InvalidSettingError, match="it must lie above min_vibration_angle, 90"):
+        ReliabilitySettings(max_vibration_angle=80.0)
 
 
 def test_the_floor_is_a_speed_at_any_frame_rate():

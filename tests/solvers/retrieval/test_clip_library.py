@@ -145,7 +145,7 @@ def test_clips_with_few_frames_are_accepted(n_frames):
     library = build_clip_library([*short, *clips()])
 
     assert len(ranking(library)) == len(ACTS) * (1 + len(SPEEDS))
-    requested = FindSettings(n_alike=0)  # Of five clips the best five are all.
+    requested = FindSettings(n_neighbors=0)  # Of five clips the best five are all.
     found = find_similar(short[0].recording, build_clip_library(short), settings=requested)
     assert found[0].clip == ACTS[0]
     assert set(found[0].frames) <= set(range(n_frames))

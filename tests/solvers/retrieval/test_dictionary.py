@@ -67,7 +67,7 @@ def test_single_atom_is_the_first_singular_vector(rng):
 
 def test_centering_removes_the_mean(rng):
     signals = 5.0 + rng.normal(size=(100, 60))
-    settings = DictionarySettings(n_atoms=10, n_nonzeros=3, centred=True)
+    settings = DictionarySettings(n_atoms=10, n_nonzeros=3, centered=True)
 
     learned = learn_dictionary([as_clip(signals)], settings)
 

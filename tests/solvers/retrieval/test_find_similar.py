@@ -53,7 +53,7 @@ def test_same_action_is_found_first_in_any_variation(library, name, done):
 
 
 def test_query_itself_is_the_best_match(library):
-    best = find_similar(act("kick"), library, settings=FindSettings(n_alike=0))[0]
+    best = find_similar(act("kick"), library, settings=FindSettings(n_neighbors=0))[0]
     assert best.clip == "kick 0"
     assert best.score > 0.98
     assert best.frames == range(60)

@@ -82,7 +82,7 @@ def dense_kernel(a, b, n_levels, normalise):
 @pytest.mark.parametrize("n_levels", [1, 2, 3, 4])
 @pytest.mark.parametrize("gap", [1, 2, 7])
 def test_kernel_equals_the_equations(rng, dictionary, gap, n_levels, normalise):
-    settings = PyramidSettings(gap=gap / 30.0, n_levels=n_levels, normalise_cubes=normalise)
+    settings = PyramidSettings(gap=gap / 30.0, n_levels=n_levels, normalize_cubes=normalise)
     clips = [clip_of(rng, n_frames) for n_frames in (40, 23, 2)]
     rows = [pyramid_descriptor(clip, dictionary, settings) for clip in clips]
     slices = [dense_slices(dense_codes(clip, dictionary), gap) for clip in clips]
@@ -142,7 +142,7 @@ def test_sparse_kernel_equals_the_dense_one(seed):
 
 
 def test_each_normalized_cube_has_sum_one(rng, dictionary):
-    settings = PyramidSettings(gap=1 / 30.0, normalise_cubes=True)
+    settings = PyramidSettings(gap=1 / 30.0, normalize_cubes=True)
     row = pyramid_descriptor(clip_of(rng, 200), dictionary, settings)
 
     # Level l has 2^l (l + 1)^2 cubes, of weight 1 / 2^l, and 200 frames leave none empty.
@@ -161,7 +161,7 @@ def test_other_actors_hops_are_nearer_than_squats(recordings):
     settings = DictionarySettings(n_atoms=16, n_nonzeros=2, n_rounds=5)
     dictionary = learn_dictionary(clips, settings)
     rows = [
-        pyramid_descriptor(clip, dictionary, PyramidSettings(gap=0.1, normalise_cubes=True))
+        pyramid_descriptor(clip, dictionary, PyramidSettings(gap=0.1, normalize_cubes=True))
         for clip in clips
     ]
 

@@ -122,7 +122,7 @@ def test_near_duplicate_of_the_query_stays_first():
 
 
 @pytest.mark.parametrize(
-    "settings", [{}, {"n_warped": 0}, {"n_warped": 7}, {"n_alike": 0}, {"n_alike": 100}]
+    "settings", [{}, {"n_warped": 0}, {"n_warped": 7}, {"n_neighbors": 0}, {"n_neighbors": 100}]
 )
 def test_number_of_ranked_clips_is_a_setting(settings):
     library = build_clip_library([

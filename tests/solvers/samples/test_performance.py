@@ -49,7 +49,7 @@ def test_actor_faces_the_camera():
 
 
 def test_noise_is_reproducible():
-    settings = PerformanceSettings(noise=0.01, hidden=1.0, lost=0.2, lateness=0.01, seed=3)
+    settings = PerformanceSettings(noise=0.01, hidden=1.0, dropped=0.2, lateness=0.01, seed=3)
 
     one, two = perform_gestures(["clap"], settings), perform_gestures(["clap"], settings)
 

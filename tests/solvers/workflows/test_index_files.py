@@ -65,7 +65,7 @@ def test_folder_becomes_clips_named_by_their_paths(folder, library):
     assert (origin.item, origin.size, origin.modified) == ("", stat.st_size, stat.st_mtime_ns)
     assert found["a/fast"].tags == ("walk",)
     with load_clip_library(library) as opened:
-        best = find_similar(walk(140), opened, settings=FindSettings(n_alike=0))[0]
+        best = find_similar(walk(140), opened, settings=FindSettings(n_neighbors=0))[0]
     assert best.clip == "a/fast"
 
 

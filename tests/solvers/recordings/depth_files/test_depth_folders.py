@@ -97,7 +97,7 @@ def test_stray_scanner_tells_its_camera_and_time(tmp_path, depth):
     assert_allclose((camera.cx, camera.cy), (960.5 * 8 / 1920 - 0.5, 720.5 * 6 / 1440 - 0.5))
     sure = depth % 3 >= 1
     assert_allclose(all_frames(recording), np.where(sure, depth, 0) * 0.001, rtol=1e-6)
-    all_of_them = read_depth(folder, DepthSettings(least_confidence=0))
+    all_of_them = read_depth(folder, DepthSettings(min_confidence=0))
     assert_allclose(all_frames(all_of_them), depth * 0.001, rtol=1e-6)
 
 
@@ -121,7 +121,7 @@ def test_a_telephone_that_was_held_upright_on_its_side_or_on_its_head(
         1 - 2 * (x * x + z * z),
     ])  # in the camera: x right, y down
     folder = stray(tmp_path, depth, (0.0, 1.0, 0.0, *turn))
-    all_of_them = DepthSettings(least_confidence=0)
+    all_of_them = DepthSettings(min_confidence=0)
 
     frame = read_depth(folder, all_of_them).frame(4)
 

@@ -1,0 +1,37 @@
+"""Read settings that an older version stored in a .blend file under other names."""
+
+from typing import Any
+
+import bpy
+from bpy.app import handlers
+
+from .blender.compat import stored_properties
+
+
+@handlers.persistent
+def read_former_names(*_: object) -> None:
+    """Give each setting of the opened file its present name."""
+    for scene in bpy.data.scenes:
+        stored = scene.mocap_assist
+        for item in stored.bl_rna.properties:
+            group = getattr(stored, item.identifier)
+            if scene.library is None and hasattr(group, "former_names"):
+                _rename(group)
+
+
+def _rename(group: Any) -> None:
+    properties = stored_properties(group)
+    for former, present in group.former_names.items():
+        if properties is not None and former in properties:
+            stored_properties(group)[present] = properties[former]
+            del properties[former]
+
+
+def register() -> None:
+    """Read former names from each file that is opened."""
+    handlers.load_post.append(read_former_names)
+
+
+def unregister() -> None:
+    """Stop reading them."""
+    handlers.load_post.remove(read_former_names)
