@@ -108,12 +108,12 @@ class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
     """Bones of source and target that play one part of the body; `name` is the role's."""
 
     source: bpy.props.StringProperty(
-        name="Source bone",
+        name="Source Bone",
         description="Bone of the source that plays this part",
         update=explain_edited("source"),
     )
     target: bpy.props.StringProperty(
-        name="Target bone",
+        name="Target Bone",
         description="Bone or control of the target that plays this part",
         update=explain_edited("target"),
     )
@@ -128,8 +128,8 @@ class MOCAP_PG_bone_map(bpy.types.PropertyGroup):
 
     source: bpy.props.StringProperty(name="Source")
     target: bpy.props.StringProperty(name="Target")
-    source_score: bpy.props.FloatProperty(name="Source matched", subtype="FACTOR")
-    target_score: bpy.props.FloatProperty(name="Target matched", subtype="FACTOR")
+    source_score: bpy.props.FloatProperty(name="Source Matched", subtype="FACTOR")
+    target_score: bpy.props.FloatProperty(name="Target Matched", subtype="FACTOR")
     rows: bpy.props.CollectionProperty(type=MOCAP_PG_bone_pair)
     active_row: bpy.props.IntProperty(name="Row", description="Selected row")
 
@@ -137,8 +137,8 @@ class MOCAP_PG_bone_map(bpy.types.PropertyGroup):
 class MOCAP_PG_issue(bpy.types.PropertyGroup):
     """An issue of the list of Check; `name` is the bone's."""
 
-    start: bpy.props.FloatProperty(name="First frame")
-    stop: bpy.props.FloatProperty(name="Last frame")
+    start: bpy.props.FloatProperty(name="First Frame")
+    stop: bpy.props.FloatProperty(name="Last Frame")
     kind: bpy.props.StringProperty(name="Issue")
     severity: bpy.props.FloatProperty(name="Severity")
     sentence: bpy.props.StringProperty(name="Text")
@@ -169,8 +169,8 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
         name="Checked", description="Action whose issues are listed"
     )
     issues: bpy.props.CollectionProperty(type=MOCAP_PG_issue)
-    active_issue: bpy.props.IntProperty(name="Spot", description="Selected issue of the list")
-    report: bpy.props.StringProperty(name="Report", description="Figures of the last check")
+    active_issue: bpy.props.IntProperty(name="Issue", description="Selected issue of the list")
+    report: bpy.props.StringProperty(name="Report", description="Results of the last check")
 
 
 class MOCAP_PG_job(bpy.types.PropertyGroup):
