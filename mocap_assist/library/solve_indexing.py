@@ -257,5 +257,5 @@ def _reader(assets_only: bool) -> str:
 
 def _refusal(name: str, error: ProcessDied | OutOfMemoryError) -> str:
     if isinstance(error, OutOfMemoryError):
-        return f"{name} needs more memory than there is."
-    return f"{name} made Blender end, {error.cause}."
+        return f"{name} needs more memory than is available."
+    return f"Blender crashed while reading {name}: {error.cause}."

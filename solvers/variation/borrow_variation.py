@@ -88,7 +88,7 @@ def borrow_variation(motion: Motion, others: Sequence[VariationModel] = ()) -> V
             model.log_warp_rates + log_warp_rates,
         ]),
         contact_state=np.repeat(model.contact_state, 1 + len(joints), axis=0),
-        warning="There is one example; how it varies is borrowed.",
+        warning="There is only one example; its variation is borrowed from other motions.",
     )
 
 

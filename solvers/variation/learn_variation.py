@@ -147,7 +147,7 @@ def _validate_examples(motions: list[Motion]) -> list[Motion]:
         sum(motion.n_frames for motion in motions) * len(motions) * first.skeleton.n_joints
         > MAX_VALUES
     ):
-        raise InvalidMotionError("The examples are too long to vary; cut out what is to vary.")
+        raise InvalidMotionError("The examples are too long to vary; cut out the part to vary.")
     return [_match_first(motion, first) for motion in motions]
 
 

@@ -136,7 +136,10 @@ def test_single_clip_varies_only_by_borrowed_variation(walks):
     assert found[0] < 1e-6
     assert 0.2 < found[1] / measure_variation(walks) < 2.0
     assert 0.2 < found[2] / measure_variation(walks) < 2.0
-    assert generic.warning == "There is one example; how it varies is borrowed."
+    assert (
+        generic.warning
+        == "There is only one example; its variation is borrowed from other motions."
+    )
     assert_allclose(generic.joints.mean(axis=0), separate.joints[0], atol=1e-12)
 
 
