@@ -76,7 +76,7 @@ class MOCAP_PG_reconstruct(bpy.types.PropertyGroup):
 
 @settings_from(LibraryBundle)
 class MOCAP_PG_library(bpy.types.PropertyGroup):
-    """Settings of the button Index."""
+    """Settings of the button Build Library."""
 
 
 @settings_from(FindBundle)
@@ -109,12 +109,12 @@ class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
 
     source: bpy.props.StringProperty(
         name="Source Bone",
-        description="Bone of the source that plays this part",
+        description="Bone of the source for this part of the body",
         update=explain_edited("source"),
     )
     target: bpy.props.StringProperty(
         name="Target Bone",
-        description="Bone or control of the target that plays this part",
+        description="Bone or control of the target for this part of the body",
         update=explain_edited("target"),
     )
     source_confidence: bpy.props.FloatProperty(name="Source Confidence", default=1.0)

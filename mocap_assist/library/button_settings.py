@@ -1,4 +1,4 @@
-"""What an animator chooses for Index and Find Similar, besides the settings of the search."""
+"""What an animator chooses for Build Library and Find Similar, besides how to search."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -32,7 +32,7 @@ class LibraryChoices(Settings):
 
 
 class LibraryBundle(NamedTuple):
-    """All that the button Index offers."""
+    """All that the button Build Library offers."""
 
     choices: LibraryChoices
 

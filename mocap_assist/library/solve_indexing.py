@@ -1,4 +1,4 @@
-"""What the button Index has done for it: files and .blend files become clips of a library."""
+"""What the button Build Library has done for it: files become clips of a library."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -134,7 +134,7 @@ def _validate_examples(motions: list[Motion]) -> list[Motion]:
             motion.skeleton.parents != first.skeleton.parents
         ):
             raise InvalidMotionError(
-                f"Example {index + 1} is of another rig than the first. Retarget it first."
+                f"Example {index + 1} has a different rig than the first. Retarget it first."
             )
         if motion.n_frames < 2:
             raise InvalidMotionError(f"Example {index + 1} has one frame; it shows no motion.")
