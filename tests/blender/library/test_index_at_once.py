@@ -78,4 +78,4 @@ def test_file_that_ends_its_blender_is_refused_and_the_others_become_clips(
 
     assert len(entries()) == 3
     (said,) = done.refused
-    assert said.startswith(str(twin))
+    assert str(twin) in said
