@@ -76,7 +76,7 @@ class MOCAP_PG_reconstruct(bpy.types.PropertyGroup):
 
 @settings_from(LibraryBundle)
 class MOCAP_PG_library(bpy.types.PropertyGroup):
-    """Settings of the button Index."""
+    """Settings of the button Build Library."""
 
 
 @settings_from(FindBundle)
@@ -108,13 +108,13 @@ class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
     """Bones of source and target that play one part of the body; `name` is the role's."""
 
     source: bpy.props.StringProperty(
-        name="Source bone",
-        description="Bone of the source that plays this part",
+        name="Source Bone",
+        description="Bone of the source for this part of the body",
         update=explain_edited("source"),
     )
     target: bpy.props.StringProperty(
-        name="Target bone",
-        description="Bone or control of the target that plays this part",
+        name="Target Bone",
+        description="Bone or control of the target for this part of the body",
         update=explain_edited("target"),
     )
     source_confidence: bpy.props.FloatProperty(name="Source Confidence", default=1.0)
@@ -128,8 +128,8 @@ class MOCAP_PG_bone_map(bpy.types.PropertyGroup):
 
     source: bpy.props.StringProperty(name="Source")
     target: bpy.props.StringProperty(name="Target")
-    source_score: bpy.props.FloatProperty(name="Source matched", subtype="FACTOR")
-    target_score: bpy.props.FloatProperty(name="Target matched", subtype="FACTOR")
+    source_score: bpy.props.FloatProperty(name="Source Matched", subtype="FACTOR")
+    target_score: bpy.props.FloatProperty(name="Target Matched", subtype="FACTOR")
     rows: bpy.props.CollectionProperty(type=MOCAP_PG_bone_pair)
     active_row: bpy.props.IntProperty(name="Row", description="Selected row")
 
@@ -137,8 +137,8 @@ class MOCAP_PG_bone_map(bpy.types.PropertyGroup):
 class MOCAP_PG_issue(bpy.types.PropertyGroup):
     """An issue of the list of Check; `name` is the bone's."""
 
-    start: bpy.props.FloatProperty(name="First frame")
-    stop: bpy.props.FloatProperty(name="Last frame")
+    start: bpy.props.FloatProperty(name="First Frame")
+    stop: bpy.props.FloatProperty(name="Last Frame")
     kind: bpy.props.StringProperty(name="Issue")
     severity: bpy.props.FloatProperty(name="Severity")
     sentence: bpy.props.StringProperty(name="Text")
@@ -169,8 +169,8 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
         name="Checked", description="Action whose issues are listed"
     )
     issues: bpy.props.CollectionProperty(type=MOCAP_PG_issue)
-    active_issue: bpy.props.IntProperty(name="Spot", description="Selected issue of the list")
-    report: bpy.props.StringProperty(name="Report", description="Figures of the last check")
+    active_issue: bpy.props.IntProperty(name="Issue", description="Selected issue of the list")
+    report: bpy.props.StringProperty(name="Report", description="Results of the last check")
 
 
 class MOCAP_PG_job(bpy.types.PropertyGroup):

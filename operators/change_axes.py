@@ -21,8 +21,8 @@ from ..solvers.errors import InvalidMotionError
 @settings_from(AxesBundle)
 class MOCAP_OT_change_axes(SettingsMixin, ActOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.change_axes"
-    bl_label = "Change Up Axis, Forward, Scale"
-    bl_description = "Turn or scale the imported take if its file was read wrong"
+    bl_label = "Change Axes and Scale"
+    bl_description = "Rotate or scale the imported take if its axes or unit are wrong"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
     why_not = why_fixed
 

@@ -13,7 +13,9 @@ from ..mocap_assist.runtime.solver_operator import SolverOperator
 class MOCAP_OT_denoise(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.denoise"
     bl_label = "Clean"
-    bl_description = "Remove jitter and spikes, fill gaps and pin the feet. Writes a new action"
+    bl_description = (
+        "Remove jitter and spikes, fill gaps and plant the feet; writes a new action"
+    )
 
     settings_group = "clean"
     why_not, read_scene, write_scene = why_not_clean, read_cleaning, write_cleaned

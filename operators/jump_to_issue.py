@@ -20,7 +20,7 @@ class MOCAP_OT_jump_to_issue(bpy.types.Operator):
     )
     step: bpy.props.IntProperty(
         name="Step",
-        description="Number of issues to go on from the selected one",
+        description="Number of issues to move forward from the selected one",
         options={"SKIP_SAVE"},
     )
 

@@ -12,7 +12,7 @@ from ..mocap_assist.search.searches import why_none
 class MOCAP_OT_learn_from_matches(ActOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.learn_from_matches"
     bl_label = "Learn from Matches"
-    bl_description = "Replace the list of examples by the best of these clips"
+    bl_description = "Replace the list of examples with the best of these clips"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
     why_not = why_none
 
@@ -27,7 +27,7 @@ class MOCAP_OT_learn_from_matches(ActOperator, bpy.types.Operator):
     )
     n_best: bpy.props.IntProperty(
         name="Clips",
-        description="Number of best matches to use; more clips are less similar",
+        description="Number of best matches to use; more adds less similar clips",
         default=5,
         min=1,
         max=48,

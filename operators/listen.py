@@ -9,5 +9,6 @@ class MOCAP_OT_listen(ListenButton, bpy.types.Operator):
     bl_idname = "mocap_assist.listen"
     bl_label = "Listen for Gestures"
     bl_description = (
-        "Search by performing before a depth camera that streams joints; press again to stop"
+        "Search by performing in front of a depth camera that streams joints; press again to"
+        " stop"
     )

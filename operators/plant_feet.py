@@ -13,7 +13,7 @@ class MOCAP_OT_plant_feet(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.plant_feet"
     bl_label = "Plant Feet"
     bl_description = (
-        "Keep planted feet from sliding, at keyed or detected contacts. Writes a new action"
+        "Keep planted feet from sliding, at keyed or detected contacts; writes a new action"
     )
     settings_group = "clean"
     why_not, read_scene, write_scene = why_not_change, read_planting, write_planted

@@ -17,7 +17,7 @@ class MOCAP_OT_reconstruct(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.reconstruct"
     bl_label = "Reconstruct"
     bl_description = (
-        "Rebuild the missing and wrong joints of a depth camera take. Writes a new action"
+        "Rebuild the missing and wrong joints of a depth camera take; writes a new action"
     )
     settings_group = "reconstruct"
     why_not, read_scene, write_scene = (

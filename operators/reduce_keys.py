@@ -14,7 +14,7 @@ class MOCAP_OT_reduce_keys(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.reduce_keys"
     bl_label = "Unbake"
     bl_description = (
-        "Replace a key on every frame by few keys with handles. Writes a new action"
+        "Replace a key on every frame with a few keys with handles; writes a new action"
     )
     settings_group = "unbake"
     why_not, read_scene, write_scene = why_not_change, read_unbaking, write_unbaked

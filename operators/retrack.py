@@ -19,7 +19,7 @@ class MOCAP_OT_retrack(WatchedOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.retrack"
     bl_label = "Track from Here"
     bl_description = (
-        "Re-track from the corrected pose at the current frame. Writes a new action"
+        "Re-track from the corrected pose at the current frame; writes a new action"
     )
     settings_group = "retrack"
     selected, why_not = selected_armature, why_not_retrack

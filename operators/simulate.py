@@ -13,7 +13,7 @@ class MOCAP_OT_simulate(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.simulate"
     bl_label = "Simulate"
     bl_description = (
-        "Simulate a body with mass that follows the motion on solid ground. Writes a new action"
+        "Simulate a body with mass that follows the motion on solid ground; writes a new action"
     )
     settings_group = "simulate"
     why_not, read_scene, write_scene = why_not_change, read_simulating, write_simulated

@@ -20,7 +20,7 @@ class MOCAP_OT_track_depth(WatchedOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.track_depth"
     bl_label = "Track"
     bl_description = (
-        "Find the actor in a depth recording and track the body. Creates an animated armature"
+        "Find the actor in a depth recording and track the body; creates an animated armature"
     )
     settings_group = "track"
     selected, why_not = selected_preview, why_not_track

@@ -30,6 +30,6 @@ class OutOfMemoryError(MocapAssistError):
 
     def __init__(
         self,
-        sentence: str = "This needs more memory than there is. Work on a part of the take.",
+        sentence: str = "This needs more memory than is available. Work on a part of the take.",
     ) -> None:
         super().__init__(sentence)

@@ -93,7 +93,7 @@ def _failure(subject: Path | str, error: Exception) -> Failure:
     if isinstance(error, OSError):
         return Failure(escaped(f"{error.filename or subject}: {reason_of(error)}."))
     if isinstance(error, MemoryError):
-        sentence = f"{subject} needs more memory than there is; work on a part of the take."
+        sentence = f"{subject} needs more memory than is available; work on a part of the take."
         return Failure(escaped(sentence))
     sentence = (
         f"{subject}: this is a bug in Mocap Assist ({type(error).__name__} at"

@@ -167,7 +167,7 @@ def member_header(archive: zipfile.ZipFile, name: str) -> ArrayHeader:
     with archive.open(member) as file:
         header = array_header(file)
         if header.n_bytes != member.file_size - header.start:
-            raise ValueError(f"{name} has not the size that it announces")
+            raise ValueError(f"{name} does not have its stated size")
     return header
 
 
@@ -214,7 +214,7 @@ def _check_total(archive: zipfile.ZipFile, n_bytes: int, bound: SizeLimit) -> No
     file = archive.fp
     size = 0 if file is None else os.fstat(file.fileno()).st_size
     if n_bytes > min(MAX_BYTES, max(bound.always, bound.ratio * size)):
-        raise ValueError(f"{n_bytes} bytes were announced by a file of {size}")
+        raise ValueError(f"{n_bytes} bytes stated in a file of {size}")
 
 
 def _check_headers(headers: Mapping[str, ArrayHeader], members: Mapping[str, Values]) -> None:
@@ -252,7 +252,7 @@ def _check_values(name: str, array: NDArray[Any], values: Values) -> None:
     if values.least_eigenvalue is not None and not _are_covariances(
         array.astype(np.float64), values.least_eigenvalue
     ):
-        raise DamagedMemberError(f"{name} holds a matrix that is no covariance")
+        raise DamagedMemberError(f"{name} holds a matrix that is not a covariance")
 
 
 def _are_covariances(matrices: NDArray[np.float64], least_eigenvalue: float) -> bool:

@@ -125,7 +125,7 @@ def check_writable(armature: bpy.types.Object) -> None:
     if armature.library is not None:
         raise InvalidMotionError(
             f"{armature.name} is linked from {armature.library.name}. Make a library override"
-            " of it, then it can play the result."
+            " of it, so that the result can be assigned."
         )
     if armature.animation_data is not None and armature.animation_data.use_tweak_mode:
         raise InvalidMotionError(

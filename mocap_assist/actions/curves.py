@@ -98,8 +98,8 @@ def _fault(times: NDArray[np.float32]) -> str:
         )
     if (beyond := times[np.abs(times) > LAST_FRAME]).size:
         return (
-            f"a key at frame {beyond[0]:.3g}; Blender plays none beyond {LAST_FRAME:,}. Delete"
-            " that key."
+            f"a key at frame {beyond[0]:.3g}; Blender plays no key beyond {LAST_FRAME:,}."
+            " Delete that key."
         )
     if (np.diff(times) < 0.0).any():
         return (

@@ -28,10 +28,10 @@ SPACING_TOLERANCE = 0.1  # fraction by which times between keys may differ
 class FrameRange(Choice):
     """Frames to work on."""
 
-    ACTION = "action", "All frames of the action", "Whole Action"
-    SCENE = "scene", "Frames from the start to the end of the scene"
-    PREVIEW = "preview", "Frames of the preview range of the timeline", "Preview Range"
-    SELECTED_KEYS = "selected keys", "Frames between the first and the last selected key"
+    ACTION = "action", "Use all frames of the action", "Whole Action"
+    SCENE = "scene", "Use the frames from the start to the end of the scene"
+    PREVIEW = "preview", "Use the frames of the preview range of the timeline", "Preview Range"
+    SELECTED_KEYS = "selected keys", "Use the frames from the first to the last selected key"
 
 
 def range_bounds(

@@ -118,7 +118,7 @@ class _Markers(NamedTuple):
     def of(cls, holder: bpy.types.Object, recorded: bool) -> "_Markers":
         markers = markers_of(holder)
         if not markers:
-            raise InvalidMotionError(f"{holder.name} holds no empties whose location is keyed.")
+            raise InvalidMotionError(f"{holder.name} has no empties with keyed locations.")
         sources = tuple(_source(marker, recorded) for marker in markers)
         return cls(markers, sources, tuple(animated_curves(*source) for source in sources))
 

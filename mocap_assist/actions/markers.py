@@ -54,7 +54,7 @@ def source_of(marker: bpy.types.Object) -> Source:
     """Return what a marker plays; raise InvalidMotionError where it plays nothing."""
     played = played_by(marker)
     if played is None:
-        raise InvalidMotionError(f"{marker.name} plays no action. Assign one to it.")
+        raise InvalidMotionError(f"{marker.name} has no action. Assign one to it.")
     return played
 
 

@@ -26,14 +26,14 @@ from .pictures import draw_result
 from .saving import report_figures, save, target_file
 from .solving import solve_in_subprocess
 
-HELP = "Track the actors of recordings of depth: armatures with actions in the .blend file."
+HELP = "Track the actors of depth recordings: armatures with actions in the .blend file."
 
 
 def add_capture_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `capture`: those of the button, and of the files."""
     parser.add_argument(
         "files", nargs="+", type=Path, metavar="FILE",
-        help="recordings of depth: files, folders of pictures, or folders of such takes",
+        help="depth recordings: files, folders of depth images, or folders of such takes",
     )  # fmt: skip
     arguments_from(parser, ImportChoices, *button_settings().values())
 
@@ -92,7 +92,7 @@ def _tracked(
         raise InvalidFileError(imported.failed[0])
     preview = selected_preview(bpy.context)
     if preview is None:
-        raise InvalidFileError("It holds no depth. Bring it in with import.")
+        raise InvalidFileError("It has no depth images. Use import.")
     scene = bpy.context.scene
     result = solve_in_subprocess(
         read_tracking(scene, preview, settings), arguments, screen.progress

@@ -112,8 +112,8 @@ def _parser() -> SentenceParser:
         described.add_argument(
             "--armature",
             metavar="NAME",
-            help="work on this one, or on the markers below this empty [default: all armatures"
-            " that are animated; where there are none, all markers]",
+            help="armature to work on, or the empty above the markers to work on [default: all"
+            " animated armatures; if there are none, all markers]",
         )
         add_output_options(described, saves=verb.writes)
         if verb.solves:

@@ -74,7 +74,8 @@ def lock_target(target: Path) -> Iterator[None]:
     while (lock := try_lock(path)) is None:
         if monotonic() > until:
             raise InvalidFileError(
-                f"Another Blender is making {target}; wait until it is done, or end it."
+                f"Another Blender process is writing {target}; wait until it is done, or end"
+                " it."
             )
         Event().wait(POLL_INTERVAL_S)
     try:

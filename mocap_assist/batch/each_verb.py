@@ -32,7 +32,7 @@ from ...solvers.recordings.containers import check_folder_access, files_below, i
 from ..importing.depth_folders import all_recordings_in, depth_recordings_in
 from .each_child import OPTION, run_child
 
-HELP = "Do another verb to each of many files: each FILE... --output-folder DIR -- VERB ..."
+HELP = "Run another verb on each of many files: each FILE... --output-folder DIR -- VERB ..."
 BLEND = ".blend"
 IMPORT_VERBS = {"import": all_recordings_in, "capture": depth_recordings_in}
 """Verbs that import recordings, and their functions to list those in a folder."""
@@ -65,12 +65,12 @@ def add_each_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--output-folder", type=Path, required=True, metavar="DIR",
-        help="save a .blend file for each there. A second run goes on where the first stopped",
+        help="folder for one .blend file per input; a second run resumes the first",
     )  # fmt: skip
-    parser.add_argument("--again", action="store_true", help="redo what is there already")
+    parser.add_argument("--again", action="store_true", help="redo existing results")
     parser.add_argument(
         "--jobs", type=int, default=1, metavar="N",
-        help="how many Blenders work at a time [default 1]",
+        help="number of Blender processes in parallel [default 1]",
     )  # fmt: skip
     parser.add_argument(
         "--report", action="store_true",
@@ -81,7 +81,9 @@ def add_each_options(parser: argparse.ArgumentParser) -> None:
 def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
     """Start a Blender for each file, report, and raise InvalidFileError if any failed."""
     if not arguments.words:
-        raise InvalidSettingError("Say what to do to each file after --, as in: -- denoise.")
+        raise InvalidSettingError(
+            "Give the verb for each file after --, for example: -- denoise."
+        )
     opened = [bpy.data.filepath] if arguments.words[0] in IMPORT_VERBS else []
     arguments.depends_on = _named_files([*opened, *arguments.words])
     if arguments.jobs < 1:
@@ -133,7 +135,7 @@ def _tasks(arguments: argparse.Namespace) -> list[Task]:
             )
         target = arguments.output_folder / relative_path
         if real_path(target) == real_path(source):
-            raise InvalidSettingError(f"{source} would be written over; choose another folder.")
+            raise InvalidSettingError(f"{source} would be overwritten; choose another folder.")
         tasks.append(Task((source,), target, arguments, _refusal(source, target)))
     return tasks
 
@@ -221,7 +223,7 @@ def _perform(task: Task, stopped: Event) -> FinishedTask:
             return FinishedTask(task, Outcome("Done.", _figures(figures)))
     error_lines = [line for line in ended.errors.splitlines() if line.strip()]
     sentence = (
-        error_lines[-1] if ended.status == 2 and error_lines else "the Blender for it has died."
+        error_lines[-1] if ended.status == 2 and error_lines else "its Blender process crashed."
     )
     named = task.source.name in sentence
     return FinishedTask(task, None, sentence if named else f"{task.source}: {sentence}")

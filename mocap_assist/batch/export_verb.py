@@ -16,7 +16,10 @@ from ..exporting.export_target import ENDINGS, target_of
 from ..exporting.exporting import read_export, write_exported
 from .solving import solve_in_subprocess
 
-HELP = "Write what armatures play, raw or clean, as FBX, GLB or BVH at the scene's rate."
+HELP = (
+    "Export the current actions of armatures, raw or clean, as FBX, GLB or BVH at the scene's"
+    " rate."
+)
 VerbResult = tuple[str, dict[str, Any]]
 
 
@@ -24,8 +27,8 @@ def add_export_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `export`; those of the button, and the file."""
     parser.add_argument(
         "target", type=Path, metavar="OUT",
-        help="file to write, such as walk.fbx, walk.glb or walk.bvh; or a folder that exists,"
-        " for a file of each armature's name",
+        help="file to write, such as walk.fbx, walk.glb or walk.bvh; or an existing folder,"
+        " for one file named after each armature",
     )  # fmt: skip
     arguments_from(parser, ExportChoices)
 

@@ -15,7 +15,7 @@ from ..importing.importing import import_files
 from .pictures import draw_result
 from .saving import report_figures, save, target_file
 
-HELP = "Bring recordings of motion into the .blend file: armatures, and empties for markers."
+HELP = "Import recordings into the .blend file: motion as armatures, markers as empties."
 
 
 def add_import_options(parser: argparse.ArgumentParser) -> None:

@@ -25,8 +25,8 @@ from .bundles import add_bundle_options, bundle_from_arguments
 from .saving import STDOUT
 from .solving import solve_in_subprocess
 
-INDEX_HELP = "Put the clips of recordings, .blend files and asset libraries into a library."
-FIND_HELP = "List the clips of a library that are like what armatures or markers play."
+INDEX_HELP = "Add the clips of recordings, .blend files and asset libraries to a library."
+FIND_HELP = "List library clips similar to the current motion of armatures or markers."
 VerbResult = tuple[str, dict[str, Any]]
 
 
@@ -39,11 +39,11 @@ def add_index_options(parser: argparse.ArgumentParser) -> None:
     _add_library(parser)
     parser.add_argument(
         "--asset-libraries", action="store_true",
-        help="also the actions that are assets in the asset libraries of the preferences",
+        help="also index the action assets of all asset libraries in the preferences",
     )  # fmt: skip
     parser.add_argument(
         "--rig", default="", metavar="FILE",
-        help=".blend file with the rig of actions that lie in a file without one",
+        help=".blend file with the rig for actions stored without one",
     )  # fmt: skip
     parser.add_argument("--tag", action="append", default=[], help="a tag for these clips")
     parser.add_argument(
@@ -64,7 +64,7 @@ def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
     if arguments.asset_libraries:
         sources += [Source(folder, assets_only=True) for folder in asset_folders()]
     if not sources:
-        raise InvalidFileError("Nothing was named to index: name files or folders.")
+        raise InvalidFileError("No sources given: name files or folders to index.")
     path = library_path(LibraryChoices(library_file=arguments.library))
     screen.title = "Index"
     blender = background_blender(arguments.rig)

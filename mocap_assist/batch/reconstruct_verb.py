@@ -20,13 +20,13 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `reconstruct`; those of the button."""
     parser.add_argument(
         "--train", nargs="+", default=[], metavar="FILE",
-        help="clean recordings, or folders of them, to learn postures from; short for"
-        " --postures examples --examples",
+        help="clean recordings, or folders of them, to take poses from (same as --postures"
+        " examples --examples)",
     )  # fmt: skip
     parser.add_argument(
         "--library", metavar="FILE",
-        help="clip library, of which postures are taken from what is like the take; short for"
-        " --postures library",
+        help="clip library; take poses from its clips most similar to the take (same as"
+        " --postures library)",
     )  # fmt: skip
     add_bundle_options(parser, ReconstructBundle)
 

@@ -23,8 +23,7 @@ def add_output_options(parser: argparse.ArgumentParser, *, saves: bool) -> None:
         type=Path,
         const=STDOUT,
         metavar="FILE",
-        help="write one line of JSON for each armature, and nothing else, to FILE; without FILE"
-        " print the lines, each of which begins with {, among what Blender prints",
+        help="write one line of JSON per armature to FILE, or to standard output without FILE",
     )
     parser.add_argument(
         "--picture", type=Path, metavar="FILE",
@@ -41,7 +40,7 @@ def target_file(arguments: argparse.Namespace) -> Path:
     """Return the file to save; raise InvalidFileError where there is none, or no folder."""
     target = arguments.output or (Path(bpy.data.filepath) if bpy.data.filepath else None)
     if target is None:
-        raise InvalidFileError("No file is open: say which one to save with --output FILE.")
+        raise InvalidFileError("No file is open: name the file to save with --output FILE.")
     return check_folder(target)
 
 

@@ -74,12 +74,12 @@ class Verb:
 def _clean_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--train", nargs="+", default=[], metavar="FILE",
-        help="clean recordings to learn from; short for --prior examples --examples",
+        help="clean recordings to learn from (same as --prior examples --examples)",
     )  # fmt: skip
     parser.add_argument(
         "--library", metavar="FILE",
-        help="clip library, of which what is like the take is learned from; short for --prior"
-        " library",
+        help="clip library; learn from its clips most similar to the take (same as --prior"
+        " library)",
     )  # fmt: skip
     add_bundle_options(parser, CleanBundle)
 
@@ -126,8 +126,8 @@ def _check(
 def _convert_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "target", type=Path, metavar="OUT",
-        help=f"file to write, such as walk{MOTIONS}; or a folder that exists, for a file of"
-        " each armature's name",
+        help=f"file to write, such as walk{MOTIONS}; or an existing folder, for one file named"
+        " after each armature",
     )  # fmt: skip
 
 
@@ -180,7 +180,8 @@ VERBS = {
         "Measure jitter, spikes, gaps and sliding feet.", _check_options, _check, writes=False
     ),
     "convert": Verb(
-        "Write what armatures play, raw or clean, as BVH in centimeters, Y up; markers as TRC.",
+        "Export the current actions of armatures, raw or clean, as BVH in centimeters, Y up;"
+        " markers as TRC.",
         _convert_options,
         _convert,
         writes=False,
@@ -215,7 +216,7 @@ VERBS = {
         on_markers=False,
     ),
     "unbake": Verb(
-        "Replace a key on every frame by few keys with handles.",
+        "Replace a key on every frame with a few keys with handles.",
         add_unbake_options,
         perform_unbake,
         on_markers=False,

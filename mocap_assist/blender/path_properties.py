@@ -39,7 +39,9 @@ def file_to_write(path: str, ending: str) -> Path:
     """Return the chosen file with its ending; raise InvalidFileError if there is none."""
     chosen = absolute(path)
     if not chosen.name or path.endswith(("/", "\\")):
-        raise InvalidFileError(f"{path!r} names no file. Choose the {ending} file to write.")
+        raise InvalidFileError(
+            f"{path!r} does not name a file. Choose the {ending} file to write."
+        )
     return chosen.with_suffix(ending)
 
 

@@ -115,7 +115,7 @@ def _gltf_content(path: str) -> dict[str, Any]:
     except ValueError:
         content = None
     if not isinstance(content, dict) or "asset" not in content:
-        raise InvalidFileError(f"{path} is no glTF file, whatever its name says.")
+        raise InvalidFileError(f"{path} is not a glTF file despite its extension.")
     return content
 
 

@@ -77,7 +77,7 @@ def _summary(checked: Checked) -> str:
 
 
 def jump_to(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> None:
-    """Move the playhead to the start of a issue and select its bone, or its marker, alone."""
+    """Set the current frame to the start of an issue and select only its bone or its marker."""
     frame, subframe = divmod(issue.start, 1.0)
     context.scene.frame_set(int(frame), subframe=subframe)
     subject = selected_subject(context)

@@ -15,7 +15,8 @@ def why_not_revert(context: bpy.types.Context) -> str:
         return "Select an animated armature or marker set."
     if played_result(subject) is None:
         return (
-            f"{subject.name} plays no result of Mocap Assist with its raw action in this file."
+            f"The action of {subject.name} is not a result of Mocap Assist, or its raw action"
+            " is not in this file."
         )
     return ""
 

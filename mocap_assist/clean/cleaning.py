@@ -116,7 +116,7 @@ def _problem(
     learn_limits = choices.joint_limits is Limits.EXAMPLES and isinstance(raw, ArmatureTake)
     if learn_limits and choices.prior is not Prior.EXAMPLES:
         raise InvalidMotionError(
-            "Joint limits can only be learned from examples: choose those to learn from."
+            "Joint limits can only be learned from examples. Choose examples to learn from."
         )
     return Problem(
         recordings=raw.recordings,

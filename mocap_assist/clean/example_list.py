@@ -104,7 +104,7 @@ class MOCAP_OT_add_example(bpy.types.Operator):
     bl_idname = ADD
     bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Add Action"
-    bl_description = "Also learn from this clean action; it may be of another rig"
+    bl_description = "Also learn from this clean action; it may have a different rig"
 
     example: bpy.props.StringProperty(
         name="Action", description="Name of the action", options={"SKIP_SAVE"}

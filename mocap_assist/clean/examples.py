@@ -53,7 +53,8 @@ def read_examples(
     names = split_names(examples)
     if not names:
         raise InvalidMotionError(
-            "Pick clean actions or recordings to learn from, or let the take guide itself."
+            "Pick clean actions or recordings to learn from, or set Motion Model to From This"
+            " Take."
         )
     actions = [name for name in names if name in bpy.data.actions]
     files = [bpy.path.abspath(name) for name in names if name not in actions]
@@ -127,7 +128,9 @@ def _read_blend(here: Subject, path: Path) -> Steps[list[Motion]]:
         with linked_clips(path, some, rigs) as clips:
             motions += _read_linked(here, clips, waiting)
         if not clips.actions:
-            raise InvalidFileError(f"{path} was changed while it was read. Press again.")
+            raise InvalidFileError(
+                f"{path} was changed while it was read. Press the button again."
+            )
     if not motions:
         raise InvalidMotionError(
             f"{path} has no armature with an action for it."

@@ -129,8 +129,8 @@ def _pictures(files: list[Path], shape: tuple[int, ...]) -> Iterator[Depth]:
         depth = _picture(path)
         if depth.shape != shape:
             raise InvalidFileError(
-                f"{path} has {depth.shape[1]} x {depth.shape[0]} pixels, the first picture"
-                f" {shape[1]} x {shape[0]}. Take it out of the folder."
+                f"{path} has {depth.shape[1]} x {depth.shape[0]} pixels, the first image"
+                f" {shape[1]} x {shape[0]}. Remove it from the folder."
             )
         yield depth
 
@@ -147,8 +147,8 @@ def _picture(path: Path) -> Depth:
         width, height = image.size
         if not (width and height and image.has_data | bool(len(image.pixels))):
             raise InvalidFileError(
-                f"{path} is no image that Blender can read: it is damaged, or has several"
-                " layers. Write depth as a file of its own."
+                f"{path} is not an image that Blender can read: it is damaged, or has several"
+                " layers. Write depth to its own file."
             )
         pixels = np.empty(width * height * image.channels, np.float32)
         image.pixels.foreach_get(pixels)

@@ -15,14 +15,18 @@ from .view_drawing import ViewDrawing, redraw, visible_active
 WIDTH_FACTOR = 2.0
 """Line width relative to the comparison overlay, so that bones do not hide the lines."""
 TERMS = (
-    (Term.COMBINED, "Combined", "Overall probability that each joint is right"),
-    (Term.BEHAVIOR, "Movement", "Red joints vibrate in a way that no limb does"),
+    (Term.COMBINED, "Combined", "Show the overall probability that each joint is right"),
+    (Term.BEHAVIOR, "Movement", "Show in red the joints that vibrate as no limb does"),
     (
         Term.KINEMATICS,
         "Lengths",
-        "Red joints are at bones whose length differs from the body's",
+        "Show in red the joints of bones whose length differs from the body's",
     ),
-    (Term.TRACKING, "Sensor", "Red joints were missing or inferred by the sensor"),
+    (
+        Term.TRACKING,
+        "Sensor",
+        "Show in red the joints that were missing or inferred by the sensor",
+    ),
 )
 MISSING = {
     Term.KINEMATICS: ("Lengths: needs the imported file and an unedited action."),
@@ -101,8 +105,8 @@ def register() -> None:
     bpy.types.WindowManager.mocap_assist_heat = bpy.props.BoolProperty(
         name="Show Confidence",
         description=(
-            "Color the bones by the confidence in their joints at the current frame: blue is"
-            " high, red is low"
+            "Color bones by the confidence in their joints at this frame; blue is high, red is"
+            " low"
         ),
         update=_switched,
     )

@@ -21,7 +21,7 @@ def register() -> None:
     bpy.types.WindowManager.mocap_assist_overlay = bpy.props.BoolProperty(
         name="Compare Overlay",
         description=(
-            "Draw the recorded and the cleaned motion over the 3D View. Constraints are not"
+            "Draw the recorded and the cleaned motion over the 3D View; constraints are not"
             " evaluated"
         ),
         update=_switched,

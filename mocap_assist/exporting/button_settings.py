@@ -14,20 +14,18 @@ class ExportChoices(Settings):
 
     file_format: FileFormat = setting(
         FileFormat.FBX,
-        "File to write; a name with another known ending decides",
+        "Format of the file; a known file extension in the name overrides it",
         label="Format",
     )
     frame_range: FrameRange = setting(FrameRange.ACTION, "Frames of the action to export")
-    exported_bones: ExportedBones = setting(
-        ExportedBones.ALL, "Bones that come into the file", label="Bones"
-    )
+    exported_bones: ExportedBones = setting(ExportedBones.ALL, "Bones to export", label="Bones")
     meshes: bool = setting(
         False,
         "Include the meshes that the armature deforms; BVH has none",
         label="Skinned Meshes",
     )
     overwrite_recording: bool = setting(
-        False, "Allow to replace the file that the take was imported from"
+        False, "Allow overwriting the file that the take was imported from"
     )
 
 

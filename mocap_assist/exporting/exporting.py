@@ -113,8 +113,8 @@ def _refuse_gaps(take: ArmatureTake, action: str) -> None:
         first = min(take.frames[np.flatnonzero(missing[name])[0]] for name in names)
         listed = ", ".join(names[:MAX_NAMED]) + (", ..." if len(names) > MAX_NAMED else "")
         raise InvalidMotionError(
-            f"{action} has gaps ({listed}; the first at frame {first:g}), which the file cannot"
-            " have. Fill them with Clean, then export."
+            f"{action} has gaps ({listed}; the first at frame {first:g}), which exported files"
+            " cannot store. Fill them with Clean, then export."
         )
 
 

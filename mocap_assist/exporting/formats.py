@@ -6,9 +6,9 @@ from ...solvers.settings import Choice
 class FileFormat(Choice):
     """File to write."""
 
-    FBX = "fbx", "For Unreal, Unity, Maya and MotionBuilder; centimeters, Y up", "FBX"
-    GLB = "glb", "For glTF viewers, the web and game engines; meters, Y up", "GLB"
-    BVH = "bvh", "The body alone, for every motion tool; centimeters, Y up", "BVH"
+    FBX = "fbx", "Write for Unreal, Unity, Maya and MotionBuilder; centimeters, Y up", "FBX"
+    GLB = "glb", "Write for glTF viewers, the web and game engines; meters, Y up", "GLB"
+    BVH = "bvh", "Write only the body, for any motion tool; centimeters, Y up", "BVH"
 
     @property
     def ending(self) -> str:
@@ -22,7 +22,11 @@ class FileFormat(Choice):
 
 
 class ExportedBones(Choice):
-    """Bones that come into the file."""
+    """Bones to export."""
 
-    ALL = "all", "All bones; of a rig by Rigify only those that deform", "All Bones"
-    DEFORM = "deform", "Only bones that deform a mesh, for other control rigs", "Deform Bones"
+    ALL = "all", "Export all bones; for Rigify rigs, only the deform bones", "All Bones"
+    DEFORM = (
+        "deform",
+        "Export only bones that deform a mesh, for other control rigs",
+        "Deform Bones",
+    )

@@ -6,8 +6,8 @@ from ...solvers.recordings import ALL_BODIES, Body
 from .recent_files import bodies_of
 
 Item = tuple[str, str, str, str, int]
-BEST = ("best", "Most Frames", "Import the person that is in most frames", "NONE", 0)
-EVERY = ("all", "All", "Import every body as an armature of its own", "NONE", 1)
+BEST = ("best", "Most Frames", "Import the person who is in most frames", "NONE", 0)
+EVERY = ("all", "All", "Import every body as its own armature", "NONE", 1)
 FIRST = 2
 """Number of the item of the first body."""
 _items: dict[tuple[Body, ...], list[Item]] = {}

@@ -42,11 +42,11 @@ class ImportChoices(FloorPlacementSettings, ReadingSettings):
 
     target: ImportTarget = setting(
         ImportTarget.ARMATURE,
-        "What the joints of a depth camera become; markers always become empties",
+        "Create bones or empties for depth-camera joints; markers always become empties",
     )
     body: str = setting(
         "",
-        "Which body of a file with several: name, number or all; empty is the one seen most",
+        "Body to import by name, number or all; leave empty for the person in most frames",
         label="Body",
     )
     global_scale: float = setting(
@@ -73,7 +73,7 @@ class ImportChoices(FloorPlacementSettings, ReadingSettings):
     )
     frame_rate: FrameRate = setting(
         FrameRate.AUTO,
-        "What to do when the frame rates of recording and scene differ",
+        "Choose how to handle different frame rates of recording and scene",
         label="Frame Rate",
     )
     update_scene_duration: bool = setting(
@@ -83,40 +83,39 @@ class ImportChoices(FloorPlacementSettings, ReadingSettings):
     )
     focal_length: float = setting(
         0.0,
-        "Focal length of the depth camera in pixels; more narrows the actor, 0 reads the file",
+        "Focal length in pixels; higher makes the actor narrower; 0 reads it from the file",
         minimum=0.0,
         maximum=100_000.0,
     )
     focal_length_y: float = setting(
         0.0,
-        "Vertical focal length in pixels if it differs; more shortens the actor, 0 reads the"
-        " file",
+        "Vertical focal length, if different; higher makes the actor shorter; 0 reads the file",
         minimum=0.0,
         maximum=100_000.0,
         label="Focal Length Y",
     )
     center_x: float = setting(
         0.0,
-        "Column where the camera axis meets the picture; 0 reads the file or uses the middle",
+        "Column where the camera axis meets the image; 0 reads the file or uses the middle",
         minimum=0.0,
         maximum=100_000.0,
         label="Center X",
     )
     center_y: float = setting(
         0.0,
-        "Row where the camera axis meets the picture; 0 reads the file or uses the middle",
+        "Row where the camera axis meets the image; 0 reads the file or uses the middle",
         minimum=0.0,
         maximum=100_000.0,
         label="Center Y",
     )
     held: CameraOrientation = setting(
         CameraOrientation.KNOWN,
-        "How the depth camera was held",
+        "Set how the depth camera was held",
         label="Camera Orientation",
     )
     mirrored: bool = setting(
         False,
-        "The depth pictures are mirrored: the actor's right hand is on the right",
+        "Treat the depth images as mirrored: the actor's right hand is on the right",
     )
 
     @property

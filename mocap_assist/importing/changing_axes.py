@@ -37,7 +37,7 @@ class AxesChange(FloorPlacementSettings):
     unit: Unit = setting(Unit.GUESS, "Length unit of the file; Auto keeps it")
     global_scale: float = setting(
         0.0,
-        "Scale the recording by this value; 1 leaves it in meters, 0 keeps what it is",
+        "Scale the recording by this value; 1 leaves it in meters, 0 keeps the current scale",
         minimum=0.0,
         maximum=1e6,
         label="Scale",
@@ -124,7 +124,7 @@ def _refuse_animated(owner: bpy.types.Object) -> None:
     bag = compat.channelbag(animation.action, animation.action_slot)
     if bag and any(curve.data_path in OWN_CHANNELS for curve in bag.fcurves):
         raise InvalidMotionError(
-            f"{owner.name} is itself animated, so turning it would not last. Import the file"
+            f"{owner.name} is itself animated, so its rotation would not last. Import the file"
             " again with other axes."
         )
 

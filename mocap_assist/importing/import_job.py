@@ -142,6 +142,6 @@ def _refusal(path: Path, error: ProcessDied | OutOfMemoryError) -> MocapAssistEr
     if isinstance(error, OutOfMemoryError):
         return InvalidFileError(f"{path} does not fit into memory. Import a part of the take.")
     return InvalidFileError(
-        f"{path} made its reader end early, {error.cause}. Import a part of the take, or"
-        f" export it again.{error.last_output}"
+        f"Reading {path} crashed: {error.cause}. Import a part of the take, or export it"
+        f" again.{error.last_output}"
     )

@@ -31,7 +31,7 @@ class FilesOperator(SettingsMixin):
     note: StringProperty(options=HIDDEN)
     body_choice: EnumProperty(
         name="Body",
-        description="Which body of the file to import",
+        description="Body of the file to import",
         items=lambda self, context: body_items(chosen_paths(self)),
         get=lambda self: number_of(self.body, chosen_paths(self)),
         set=lambda self, number: setattr(self, "body", text_of(number, chosen_paths(self))),

@@ -36,7 +36,7 @@ class ProcessDied(MocapAssistError):
     Parameters
     ----------
     cause : str
-        How it ended: "with status 1".
+        How it ended: "exit status 1".
     last_output : str
         The last line that it printed, if any.
     """
@@ -45,7 +45,7 @@ class ProcessDied(MocapAssistError):
         self.cause = cause
         self.last_output = f" Last output: {last_output}" if last_output else ""
         super().__init__(
-            f"The solver process ended early, {cause}. Nothing was changed.{self.last_output}"
+            f"The solver process ended early: {cause}. Nothing was changed.{self.last_output}"
         )
 
 
@@ -245,7 +245,7 @@ def isolated_command(script: Path) -> tuple[str, ...]:
 
 def _python() -> str:
     if not sys.executable:
-        raise MocapAssistError("This Blender does not say where its Python is; reinstall it.")
+        raise MocapAssistError("Blender's Python executable was not found. Reinstall Blender.")
     return sys.executable
 
 
@@ -260,9 +260,9 @@ def _search_path() -> str:
 
 
 def _cause(status: int) -> str:
-    cause = f"with status {status}"
+    cause = f"exit status {status}"
     if status < 0:
-        cause = f"by signal {signal.Signals(-status).name}"
+        cause = f"signal {signal.Signals(-status).name}"
         if -status == signal.SIGKILL:
             cause += ", which often means that memory ran out"
     return cause

@@ -28,7 +28,7 @@ from .catalogs import NONE, catalog_file, read_catalogs
 
 ROUNDING = 1e-3
 """Relative error of lengths that were stored in 32 bits."""
-NAME_ONE = "name a file with its rig, or index the file that has both."
+NAME_ONE = "choose a rig file, or index the file that contains action and rig."
 
 
 def read_files(

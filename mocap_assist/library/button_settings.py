@@ -1,4 +1,4 @@
-"""What an animator chooses for Index and Find Similar, besides the settings of the search."""
+"""What an animator chooses for Build Library and Find Similar, besides how to search."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -32,7 +32,7 @@ class LibraryChoices(Settings):
 
 
 class LibraryBundle(NamedTuple):
-    """All that the button Index offers."""
+    """All that the button Build Library offers."""
 
     choices: LibraryChoices
 
@@ -58,8 +58,8 @@ class FindBundle(NamedTuple):
 class ClipPart(Choice):
     """What of the clip is taken."""
 
-    MATCH = "what matches", "Only the frames that match the query", "Matching Frames"
-    WHOLE = "whole clip", "All frames of the clip"
+    MATCH = "what matches", "Append only the frames that match the query", "Matching Frames"
+    WHOLE = "whole clip", "Append all frames of the clip"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,8 +69,8 @@ class LoadChoices(Settings):
     part: ClipPart = setting(ClipPart.MATCH, "Frames of the clip to append")
     result_as: Output = setting(
         Output.ACTION,
-        "Assign the clip as a new action, or add it to the NLA at the current frame, matched"
-        " in length",
+        "Assign the clip as an action, or add it to the NLA at this frame, in the query's"
+        " timing",
         label="Output",
     )
     at_query: bool = setting(
@@ -83,7 +83,7 @@ class UseChoices(Settings):
     """Which matches become examples of Vary."""
 
     n_best: int = setting(
-        5, "Number of best matches to use; more shows more of how the motion varies",
+        5, "Number of best matches to use; more gives more variation",
         minimum=1, maximum=10, label="Clips",
     )  # fmt: skip
 

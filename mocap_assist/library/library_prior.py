@@ -19,8 +19,8 @@ def library_prior(scene: bpy.types.Scene, subject: bpy.types.Object) -> LibraryP
     path = library_path(choices)
     if not path.is_file():
         raise InvalidFileError(
-            "There is no clip library to learn from. Make one on the panel Library: add"
-            " folders, and press Index."
+            "There is no clip library to learn from. In the Library panel, add folders, then"
+            " press Build Library."
         )
     found = path.stat()
     state = (found.st_size, found.st_mtime_ns)

@@ -1,4 +1,4 @@
-"""What the button Index has done for it: files and .blend files become clips of a library."""
+"""What the button Build Library has done for it: files become clips of a library."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -257,5 +257,5 @@ def _reader(assets_only: bool) -> str:
 
 def _refusal(name: str, error: ProcessDied | OutOfMemoryError) -> str:
     if isinstance(error, OutOfMemoryError):
-        return f"{name} needs more memory than there is."
-    return f"{name} made Blender end, {error.cause}."
+        return f"{name} needs more memory than is available."
+    return f"Blender crashed while reading {name}: {error.cause}."

@@ -34,7 +34,7 @@ def figure_rows(entries: Sequence[Mapping[str, Any]]) -> list[Row]:
 
 
 def frames_text(start: float, stop: float) -> str:
-    """Return the frames of a issue: 12, or 12 – 15."""
+    """Return the frames of an issue: 12, or 12 – 15."""
     first, last = f"{start:g}", f"{stop:g}"
     return first if first == last else f"{first} – {last}"
 

@@ -11,9 +11,9 @@ from ..rigs.control_plan import Limbs
 class Takes(Choice):
     """Actions of the source that are retargeted."""
 
-    PLAYED = "played", "Only the current action of the source armature", "Current"
-    LISTED = "listed", "The actions that are selected in the list", "Selected Actions"
-    ALL = "all", "All actions that have keys for bones of the source", "All Matching"
+    PLAYED = "played", "Retarget only the current action of the source armature", "Current"
+    LISTED = "listed", "Retarget the actions that are selected in the list", "Selected Actions"
+    ALL = "all", "Retarget all actions that have keys for bones of the source", "All Matching"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,12 +34,12 @@ class RetargetChoices(Settings):
     )
     source_map_file: str = setting(
         "",
-        "Bone map of the source; empty for the list below, or names and rest pose",
+        "Bone map of the source; if empty, the list below or the names and rest pose are used",
         label="Source Bone Map",
     )
     target_map_file: str = setting(
         "",
-        "Bone map of the target: which bone or control is keyed for which part",
+        "Bone map of the target: the bone or control to key for each part",
         label="Target Bone Map",
     )
 

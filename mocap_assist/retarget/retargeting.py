@@ -95,7 +95,7 @@ def write_retargeted(
     return (
         f"{made}: retargeted {n_frames} frames to {n_bones} bones of {found.target.name}"
         f" (bones matched {score:.0%})."
-        + (" It is linked: let its library override play the action." if linked else "")
+        + (" It is linked: assign the action to its library override." if linked else "")
         + "".join(f" {each}" for each in low.values() if each)
         + "".join(f" {each}." for each in results.remarks)
     )

@@ -94,8 +94,8 @@ def read_target(
         )
     if armature.data.pose_position == "REST":
         raise InvalidMotionError(
-            f"{armature.name} is shown in its rest position, in which nothing moves. Switch it"
-            " to Pose Position in its data properties."
+            f"{armature.name} is in Rest Position, so nothing moves. Switch it to Pose Position"
+            " in its data properties."
         )
     plan = _plan(rig, joints, limbs, on_root)
     stage, _ = stage_of(armature)
@@ -140,7 +140,7 @@ def _check_movers(rig: Rig, plan: RigPlan, armature: str) -> None:
         if each.moves and rig.connected[rig.bones.index(each.bone)]:
             raise InvalidMotionError(
                 f"{each.bone} of {armature} is connected to the bone above it and cannot be"
-                " moved. Take Connected off in Edit Mode, or choose another bone."
+                " moved. Turn off Connected in Edit Mode, or choose another bone."
             )
 
 
@@ -148,8 +148,8 @@ def _carrier(plan: Plan, names: list[str], carriers: Mapping[str, str | None]) -
     found = carriers[plan.bone]
     if found is None:
         raise InvalidMotionError(
-            f"What moves {plan.bone} could not be found out. Take it out of the list of bones,"
-            " or mute the constraints above it."
+            f"Could not determine what drives {plan.bone}. Remove it from the bone list, or"
+            " mute the constraints above it."
         )
     return names.index(found) if found else NO_CONTROL
 

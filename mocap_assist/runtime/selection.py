@@ -15,8 +15,8 @@ from ..scene import history
 class Bones(Choice):
     """Bones that a button changes."""
 
-    ALL = "all", "All bones of the armature, or all markers"
-    SELECTED = "selected", "The selected bones or markers only"
+    ALL = "all", "Use all bones of the armature, or all markers"
+    SELECTED = "selected", "Use only the selected bones or markers"
 
 
 def selected_armature(context: bpy.types.Context) -> bpy.types.Object | None:

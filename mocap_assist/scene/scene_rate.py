@@ -17,7 +17,7 @@ class FrameRate(Choice):
 
     AUTO = (
         "auto",
-        "Take over rate and length if nothing else is animated, else resample to the scene",
+        "Adopt the recording's rate and length if nothing else is animated; otherwise resample",
     )
     SCALE = "scale FPS", "Keep every sample at its time; keys may lie between frames"
     RESAMPLE = "resample to scene FPS", "Keep the timing and put one key on each scene frame"

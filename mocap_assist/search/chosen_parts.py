@@ -32,8 +32,8 @@ def parts_of_bones(
     parts = {_part(roles[bone]) for bone in bones if bone in roles} - {""}
     if not parts:
         raise InvalidMotionError(
-            "The selected bones are not known to be part of trunk, arms or legs. Select others,"
-            " or choose the parts themselves."
+            "The selected bones do not belong to the trunk, arms or legs. Select others, or"
+            " choose body parts."
         )
     chosen: dict[str, Any] = {name: name in parts for name in ("trunk", *LIMBS)}
     return replace(settings, **chosen)

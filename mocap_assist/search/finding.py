@@ -112,6 +112,8 @@ def _parts(subject: bpy.types.Object, query: Query, settings: FindBundle) -> Fin
     if settings.choices.bones is Bones.ALL:
         return settings.finding
     if not isinstance(query.recording, Motion):
-        raise InvalidMotionError("Markers are no parts of a body. Choose the parts themselves.")
+        raise InvalidMotionError(
+            "Markers do not belong to body parts. Choose body parts instead."
+        )
     bones = chosen_bones(subject, Bones.SELECTED)
     return parts_of_bones(query.recording.skeleton, bones, settings.finding)

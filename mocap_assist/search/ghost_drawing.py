@@ -44,8 +44,7 @@ def register() -> None:
     bpy.types.WindowManager.mocap_assist_ghost = bpy.props.BoolProperty(
         name="Ghost",
         description=(
-            "Draw the selected clip as a stick figure at the query; the ghost follows the"
-            " query's timing"
+            "Draw the selected clip as a stick figure at the query, in the query's timing"
         ),
         update=_switched,
     )

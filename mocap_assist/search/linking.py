@@ -57,7 +57,7 @@ def take_action(found: Found, link: bool) -> bpy.types.Action:
     """
     origin = found.entry.origin
     if origin is None or not is_action(found):
-        raise InvalidMotionError(f"{found.entry.name} is no action of a .blend file.")
+        raise InvalidMotionError(f"{found.entry.name} is not an action of a .blend file.")
     path = Path(origin.path)
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == path:
         here = [each for each in bpy.data.actions if each.library is None]

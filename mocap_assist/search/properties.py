@@ -7,8 +7,8 @@ class MOCAP_PG_match(bpy.types.PropertyGroup):
     """A clip that is like the query; `name` is the clip's."""
 
     score: bpy.props.FloatProperty(name="Score", subtype="FACTOR", min=0.0, max=1.0)
-    start: bpy.props.IntProperty(name="First frame", description="Frame of the clip")
-    stop: bpy.props.IntProperty(name="Last frame", description="Frame of the clip")
+    start: bpy.props.IntProperty(name="First Frame", description="Frame of the clip")
+    stop: bpy.props.IntProperty(name="Last Frame", description="Frame of the clip")
     tags: bpy.props.StringProperty(name="Tags")
 
 
@@ -27,7 +27,9 @@ class MOCAP_PG_indexing(bpy.types.PropertyGroup):
     running: bpy.props.BoolProperty(name="Running")
     fraction: bpy.props.FloatProperty(name="Done", subtype="FACTOR", min=0.0, max=1.0)
     message: bpy.props.StringProperty(name="Message")
-    said: bpy.props.StringProperty(name="Said", description="Result of the last Build Library")
+    said: bpy.props.StringProperty(
+        name="Report", description="Result of the last Build Library"
+    )
 
 
 CLASSES = (MOCAP_PG_match, MOCAP_PG_matches, MOCAP_PG_indexing)

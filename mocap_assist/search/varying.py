@@ -61,8 +61,8 @@ def write_best(
         note_clip(action, found)
         names.append(action.name)
     scene.mocap_assist.vary.actions = join_names(names)
-    clips = "1 clip" if len(names) == 1 else f"{len(names)} clips"
-    message = f"Vary has {clips} of the library as examples."
+    clips = "1 library clip" if len(names) == 1 else f"{len(names)} library clips"
+    message = f"Vary now uses {clips} as examples."
     if n_missing := len(reading.found) - len(names):
         message += f" {n_missing} could not be loaded: {fetched.trouble}"
     return message

@@ -72,8 +72,7 @@ def register() -> None:
     bpy.types.WindowManager.mocap_assist_body = bpy.props.BoolProperty(
         name="Body Overlay",
         description=(
-            "Draw the tracked body in the pose of the armature; blue joints have high"
-            " confidence, red ones low"
+            "Draw the tracked body in the armature's pose; blue is high confidence, red is low"
         ),
         update=_switched,
     )

@@ -32,6 +32,6 @@ def list_low_confidence(
         item.start, item.stop = np.round(frames[[interval.first, interval.last]], 2)
         item.severity = float(interval.last - interval.first + 1)
         item.sentence = (
-            f"{interval.joint} is hidden or fits badly from frame {item.start:g} to"
+            f"{interval.joint} is hidden or fits poorly from frame {item.start:g} to"
             f" {item.stop:g}; its pose is estimated."
         )

@@ -189,10 +189,10 @@ def _report(take: TrackedTake, result: Retracked) -> str:
     message = f"re-tracked frames {first:g} to {last:g} from frame {frame:g}."
     open_ends = [side for side, met in zip(SIDES, result.met, strict=True) if not met]
     if not open_ends:
-        return f"{message} It joins the old motion on both sides."
+        return f"{message} It meets the old motion on both sides."
     return (
-        f"{message} {' and '.join(open_ends).capitalize()} it the new motion does not join the"
-        " old one: the take or the reach ends, or the old motion fits better."
+        f"{message} The new motion does not meet the old one {' and '.join(open_ends)} this"
+        " range: the take or the time range ends, or the old motion fits better."
     )
 
 

@@ -156,6 +156,7 @@ def _sample_times(
     last = min(int(np.floor(stop + MAX_OFF_GRID)), n_images - 1)
     if last < first:
         raise InvalidMotionError(
-            f"{name} has no keys within the recording. Move its keys back in time."
+            f"{name} has no keys within the recording. Move its keys back to their original"
+            " frames."
         )
     return shown.start + shown.step * np.arange(first, last + 1), first

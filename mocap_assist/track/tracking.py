@@ -51,8 +51,7 @@ class WatchChoices(Settings):
 
     watch: bool = setting(
         True,
-        "Draw the body while tracking and follow in time; other objects' unkeyed changes are"
-        " lost",
+        "Draw the tracked body and follow its frame; unkeyed changes to other objects are lost",
         label="Live Preview",
     )
 

@@ -45,11 +45,11 @@ class CrowdChoices(Settings):
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
     turn: float = setting(
-        0.0, "Largest angle that each armature is turned to either side", unit="rad",
+        0.0, "Largest angle that each armature is rotated to either side", unit="rad",
         minimum=0.0, maximum=pi,
     )  # fmt: skip
     crowd_seed: int = setting(
-        0, "Another seed arranges the same variants differently", minimum=0,
+        0, "Random seed; a different seed arranges the same variants differently", minimum=0,
         maximum=2**31 - 1, label="Seed",
     )  # fmt: skip
 

@@ -40,7 +40,7 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--feet", action=argparse.BooleanOptionalAction, default=True,
-        help="Whether to plant standing feet [default: yes, where they are visible]",
+        help="Plant standing feet [default: yes, where they are visible]",
     )  # fmt: skip
     for title, settings in (
         ("reading", DepthSettings), ("the actor", ForegroundSettings),

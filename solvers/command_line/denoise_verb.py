@@ -62,7 +62,7 @@ def add_denoise_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--feet", action=argparse.BooleanOptionalAction,
-        help="Whether to plant standing feet [default: where there are feet]",
+        help="Plant standing feet [default: where there are feet]",
     )  # fmt: skip
     for title, settings in (
         ("denoising", DenoiseSettings),

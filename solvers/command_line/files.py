@@ -55,8 +55,8 @@ def add_body_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--body",
         metavar="WHICH",
-        help="Which body of input files with several: its name or number, several with commas,"
-        " or all [default: the person seen in most frames]",
+        help="Body to read from input files with several: its name or number, several with"
+        " commas, or all [default: the person seen in most frames]",
     )
 
 

@@ -68,7 +68,7 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--feet", action=argparse.BooleanOptionalAction, default=True,
-        help="Whether to plant standing feet [default: yes, where there are feet]",
+        help="Plant standing feet [default: yes, where there are feet]",
     )  # fmt: skip
     for title, settings in (
         ("reconstruction", ReconstructSettings), ("planting feet", PlantSettings),

@@ -180,7 +180,7 @@ VERBS = {
         OutputKind.WORDS,
     ),
     "unbake": Verb(
-        "Replace a key on every frame by few keys with handles.",
+        "Replace a key on every frame with a few keys with handles.",
         add_unbake_options,
         perform_unbake,
     ),

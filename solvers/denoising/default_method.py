@@ -91,11 +91,11 @@ def _describe(n_smoothed: int, n_predicted: int) -> str:
     sentences = []
     if n_smoothed:
         joints = _joints(n_smoothed)
-        sentences.append(
-            f"Plain smoothing and a model of how people move predict {joints} better."
-        )
+        sentences.append(f"Smoothing and the motion mixture were weighted higher for {joints}.")
     if n_predicted:
-        sentences.append(f"Long gaps of {_joints(n_predicted)} are filled by how people move.")
+        sentences.append(
+            f"Filled long gaps of {_joints(n_predicted)} from the rest of the body."
+        )
     return " ".join(sentences)
 
 

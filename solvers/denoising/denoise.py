@@ -47,7 +47,7 @@ class DenoiseSettings(Settings):
 
     method: DenoiseMethod = setting(
         DenoiseMethod.DEFAULT,
-        "Denoising method; the default measured best",
+        "Denoising method; the default performed best in tests",
         advanced=True,
     )
     strength: float = setting(

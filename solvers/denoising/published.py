@@ -173,7 +173,7 @@ def _reason_against(channels: Channels, takes: list[Array], bases: FilterBases |
     n_missing = len(set(channels.keys) - set(map(str, bases.keys)))
     if n_missing:
         joints = "one joint" if n_missing == 1 else f"{n_missing} joints"
-        return f"the examples lack {joints} of it, and all are needed"
+        return f"the examples lack {joints} of the take; all are required"
     if len(takes[-1]) < bases.window:
-        return "it is shorter than those of the examples"
+        return "the take is shorter than the example patterns"
     return ""

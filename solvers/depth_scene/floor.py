@@ -47,7 +47,7 @@ class FloorPlaneSettings(Settings):
         minimum=1, maximum=100_000, advanced=True,
     )  # fmt: skip
     seed: int = setting(
-        0, "Another seed tries other random points", minimum=0, maximum=2**31 - 1
+        0, "Random seed; a different seed tries different points", minimum=0, maximum=2**31 - 1
     )
 
 

@@ -58,7 +58,7 @@ class ForegroundSettings(Settings):
 
     actor_mask: ForegroundMethod = setting(
         ForegroundMethod.AUTOMATIC,
-        "How the actor is separated from the background",
+        "Choose how to separate the actor from the background",
         label="Actor Mask",
         former="way",
     )
@@ -81,11 +81,12 @@ class ForegroundSettings(Settings):
         former="farthest",
     )
     above_floor: float = setting(
-        0.03, "Remove points lower above the floor; higher cuts off feet",
+        0.03, "Remove points below this height above the floor; higher cuts off feet",
         unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     before_background: float = setting(
-        0.05, "Remove points less far in front of the empty room; higher cuts off feet",
+        0.05, "Remove points less than this far in front of the empty room; higher cuts off"
+        " feet",
         unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     min_body_area: float = setting(

@@ -31,15 +31,15 @@ class GestureSettings(Settings):
         advanced=True,
         former="least_confidence",
     )
-    patience: float = _time(0.25, "How long a missing hand keeps its last position", 2.0)
+    patience: float = _time(0.25, "Time for which a missing hand keeps its last position", 2.0)
     raised: float = _length(0.45, "Height of the raised wrist above its shoulder")
-    raised_for: float = _time(1.0, "How long the raised hand must be held still")
+    raised_for: float = _time(1.0, "Time for which the raised hand must be held still")
     still: float = _length(0.22, "Maximum movement of a hand held still")
     wave: float = _length(0.5, "Minimum length of a wave; higher needs wider waves")
     wave_within: float = _time(0.6, "Maximum duration of a wave", 2.0)
     wave_pause: float = _time(0.7, "Pause after a wave in which others are ignored")
     browse_for: float = _time(
-        15.0, "How long waves count after the raised hand or the last wave", 600.0
+        15.0, "Time for which waves count after the raised hand or the last wave", 600.0
     )
     waves_need_hand_up: bool = setting(
         True, "Count waves only while the library is shown", advanced=True
@@ -57,7 +57,7 @@ class GestureSettings(Settings):
         60.0, "Time after which a performance without a second clap is dropped", 600.0
     )
     engage_for: float = _time(
-        0.7, "How long hands must be still before they zoom or turn the view", 5.0
+        0.7, "Time for which hands must be still before they zoom or turn the view", 5.0
     )
     dead_zone: float = setting(
         0.04,

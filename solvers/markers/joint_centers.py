@@ -82,8 +82,8 @@ def joint_centers(landmarks: Mapping[str, Array]) -> JointCenters:
     ]
     if not np.isfinite(legs).any():
         raise InvalidMotionError(
-            "The markers of the pelvis lie in one place or on one line in every frame."
-            " Check their labels and the scale."
+            "The markers of the pelvis lie at one point or on one line in every frame. Check"
+            " their labels and the scale."
         )
     scale = float(np.nanmedian(legs) / ADULT_LEG_M)
     for side in SIDES:

@@ -133,8 +133,8 @@ def _landmark_positions(tracks: Tracks, found: MarkerSet) -> dict[str, Array]:
         hint = f" It looks like {found.name}." if found.name else ""
         raise InvalidMotionError(
             "A skeleton needs the labeled markers of pelvis and legs of the Plug-in-Gait or"
-            f" CMU set; missing or never seen with the pelvis: {', '.join(missing)}.{hint}"
-            " Label them first."
+            " CMU set; missing or never observed together with the pelvis:"
+            f" {', '.join(missing)}.{hint} Label them first."
         )
     _refuse_if_never_together(landmarks)
     return landmarks

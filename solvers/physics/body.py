@@ -149,7 +149,7 @@ def check_size(body: PhysicsBody, frame_rate: float) -> None:
     leg = HUMAN_LEG_LENGTH_M * body.size
     if not MIN_SIZE <= body.size <= MAX_SIZE:
         raise InvalidMotionError(
-            f"A leg of {leg:.3g} m is no plausible size; set the scale of the recording."
+            f"A leg of {leg:.3g} m is not plausible; set the scale of the recording."
         )
     if frame_rate < MIN_FRAME_RATE_HZ:
         raise InvalidMotionError(

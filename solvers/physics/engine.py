@@ -30,7 +30,7 @@ def load_engine() -> ModuleType:
         import mujoco
     except (ImportError, OSError) as error:
         raise NoPhysicsError(
-            f"Simulate needs MuJoCo, which does not load here ({error}). Install the extension"
+            f"Simulate needs MuJoCo, which cannot be loaded ({error}). Install the extension"
             " with its wheels, or the package mujoco."
         ) from error
     finally:

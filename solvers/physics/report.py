@@ -46,7 +46,7 @@ def describe_ground(ground: float, under_feet: float, size: float, given: float 
     if given is not None and not is_near_ground(given, ground, size):
         return (
             f" The take stands at a height of {ground:.2f} m, far from {given:.2f} m: the"
-            " ground is assumed under its feet."
+            " ground is assumed to be under its feet."
         )
     if is_near_ground(ground, under_feet, size):
         return ""

@@ -10,7 +10,7 @@ class Ground(Choice):
 
     LIKELY = (
         "likely",
-        "Use the given height where the take stands near it, else the feet",
+        "Use the given height if the take stands near it; otherwise the height of the feet",
         "Auto",
     )
     """At the given height where the take stands near it, or else under the feet."""
@@ -28,15 +28,15 @@ class SimulateSettings(Settings):
     )  # fmt: skip
     ground: Ground = setting(
         Ground.LIKELY,
-        "Where the ground is",
+        "Choose where the ground is",
     )
     ground_height: float = setting(
-        0.0, "Height of the ground, unless it is under the feet",
+        0.0, "Height of the ground, unless Ground is Under Feet",
         unit="m", minimum=-1e4, maximum=1e4,
     )  # fmt: skip
     response: float = setting(
         5.0,
-        "How quickly joints follow the captured pose; higher follows closer, lower is softer",
+        "Set how quickly joints follow the captured pose; higher is closer, lower is softer",
         unit="Hz", minimum=0.5, maximum=15.0,
     )  # fmt: skip
     smoothing: float = setting(
@@ -48,8 +48,8 @@ class SimulateSettings(Settings):
         minimum=0.0, maximum=5.0,
     )  # fmt: skip
     plant: bool = setting(
-        True, "Keep planted feet from slipping; off leaves them to friction alone",
-        label="Pin Feet",
+        True, "Keep planted feet from slipping; off relies on friction alone",
+        label="Plant Feet",
     )  # fmt: skip
     support: float = setting(
         0.4, "Balancing force, as fraction of the body weight; lower relies more on the legs",

@@ -25,7 +25,7 @@ MIN_RANGE_DEG = 2.0
 class CurveSettings(Settings):
     """Size of the plots."""
 
-    width: int = setting(1100, "Width of the picture", unit="px", minimum=200, maximum=8000)
+    width: int = setting(1100, "Width of the image", unit="px", minimum=200, maximum=8000)
     height: int = setting(
         140, "Height of the plot of one joint", unit="px", minimum=40, maximum=2000
     )

@@ -40,8 +40,8 @@ def add_threads_option(parser: argparse.ArgumentParser) -> None:
     """Add `--threads`; without it the attribute is missing, see `threads_from`."""
     parser.add_argument(
         OPTION, type=_count, metavar="N", default=argparse.SUPPRESS,
-        help="Threads of linear algebra in each process, whatever the environment says; with"
-        " more than one the last digits of results may differ [default 1]",
+        help="Threads of linear algebra in each process, regardless of environment variables;"
+        " with more than one the last digits of results may differ [default 1]",
     )  # fmt: skip
 
 

@@ -90,14 +90,14 @@ class ReconstructSettings(Settings):
 
     method: ReconstructMethod = setting(
         ReconstructMethod.BOTH,
-        "What to rebuild, and how",
+        "Choose what to rebuild, and how",
     )
     smoothing: float = setting(
         0.05, "Remove jitter shorter than about this; higher is smoother but blurs motion",
         unit="s", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     n_neighbors: int = setting(
-        30, "Number of clean poses that each rebuilt pose is made of; more vary more",
+        30, "Number of clean poses that each rebuilt pose is made of; more gives more variety",
         minimum=2, maximum=200, label="Neighbors", former="n_neighbours",
     )  # fmt: skip
     inferred: float = setting(
@@ -106,7 +106,8 @@ class ReconstructSettings(Settings):
     )  # fmt: skip
     causal: bool = setting(False, "Use only earlier frames, as in a live system; less smooth")
     shift: bool = setting(
-        True, "Correct the constant joint offsets of a known sensor; off keeps its mean joints",
+        True, "Correct the constant joint offsets of a known sensor; off keeps its mean joint"
+        " positions",
         label="Sensor Offset",
     )  # fmt: skip
 

@@ -11,12 +11,12 @@ class Axis(Choice):
     """An axis of a file."""
 
     AUTO = "auto", "Judge the axis from the file and from the body in it", "Auto"
-    X = "x", "The file's +X axis", "X"
-    Y = "y", "The file's +Y axis", "Y"
-    Z = "z", "The file's +Z axis", "Z"
-    MINUS_X = "-x", "The file's -X axis", "-X"
-    MINUS_Y = "-y", "The file's -Y axis", "-Y"
-    MINUS_Z = "-z", "The file's -Z axis", "-Z"
+    X = "x", "Use the file's +X axis", "X"
+    Y = "y", "Use the file's +Y axis", "Y"
+    Z = "z", "Use the file's +Z axis", "Z"
+    MINUS_X = "-x", "Use the file's -X axis", "-X"
+    MINUS_Y = "-y", "Use the file's -Y axis", "-Y"
+    MINUS_Z = "-z", "Use the file's -Z axis", "-Z"
 
     @property
     def axis(self) -> AxisName | None:
@@ -39,10 +39,10 @@ class Unit(Choice):
     """What the lengths of files are measured in."""
 
     GUESS = "guess", "Read the unit from the file, or estimate it from the body size", "Auto"
-    METRES = "metres", "Lengths in the files are in meters", "Meters"
-    CENTIMETRES = "centimetres", "Lengths in the files are in centimeters", "Centimeters"
-    MILLIMETRES = "millimetres", "Lengths in the files are in millimeters", "Millimeters"
-    INCHES = "inches", "Lengths in the files are in inches", "Inches"
+    METRES = "metres", "Read lengths in the files as meters", "Meters"
+    CENTIMETRES = "centimetres", "Read lengths in the files as centimeters", "Centimeters"
+    MILLIMETRES = "millimetres", "Read lengths in the files as millimeters", "Millimeters"
+    INCHES = "inches", "Read lengths in the files as inches", "Inches"
 
     @property
     def metres(self) -> float | None:
@@ -60,7 +60,7 @@ class FloorPlacement(Choice):
 
     AUTO = (
         "auto",
-        "Where the floor was not measured: depth cameras, video models, hips at the origin",
+        "Place takes without a measured floor: depth cameras, video models, hips at the origin",
         "Auto",
     )
     ALWAYS = "always", "Put the lowest level that the body rests on at height 0", "On"
@@ -82,11 +82,11 @@ class ReadingSettings(Settings):
         label="Forward",
     )
     unit: Unit = setting(
-        Unit.GUESS, "Length unit of the files; the import message says what Auto found"
+        Unit.GUESS, "Length unit of the files; the import message reports what Auto found"
     )
     height: float = setting(
         STATURE_M,
-        "Stature of the actor for SMPL files, which have no bone lengths; more is taller",
+        "Stature of the actor for SMPL files, which have no bone lengths",
         unit="m",
         minimum=0.1,
         maximum=9.0,

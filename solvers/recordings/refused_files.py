@@ -125,8 +125,8 @@ REFUSALS = (
     Refusal(
         "2D keypoints",
         _is_flat,
-        "holds the keypoints of a picture, without depth. Import the triangulated TRC of"
-        " Pose2Sim, or the 3D output of your tracker.",
+        "holds 2D keypoints of images, without depth. Import the triangulated TRC of Pose2Sim,"
+        " or the 3D output of your tracker.",
     ),
     Refusal(
         "OpenSim motion",

@@ -90,7 +90,7 @@ def _check_sides(skeleton: Skeleton, joints: Joints, whose: str) -> None:
     if legs @ arms < 0.0:
         raise InvalidMotionError(
             f"Left arm and left leg of the {whose} skeleton are on different sides of the body."
-            " Exchange left and right of the arms, or of the legs, in the map."
+            " Swap left and right of the arms, or of the legs, in the map."
         )
 
 
@@ -111,8 +111,8 @@ def check_feet(alignment: Array, joints: Joints, whose: str) -> None:
     angles = angle_between(alignment[feet], alignment[joints["hips"]])
     if len(feet) == len(SIDES) and (angles > MIN_BACKWARD_ANGLE_RAD).all():
         raise InvalidMotionError(
-            f"The feet of the {whose} skeleton point backwards in the rest pose. Exchange left"
-            " and right in the map, as for a mirrored recording, or give the toes their role."
+            f"The feet of the {whose} skeleton point backwards in the rest pose. Swap left and"
+            " right in the map, as for a mirrored recording, or give the toes their role."
         )
 
 

@@ -38,7 +38,7 @@ LAYOUT = ArchiveLayout(
         "moving": numbers("places", 3),
         "length": numbers(3),
     },
-    holds="no whole set of keys",
+    holds="an incomplete set of keys",
     remedy="Unbake again.",
 )
 
@@ -150,10 +150,10 @@ def _motion_from_arrays(arrays: dict[str, NDArray[Any]]) -> SparseMotion:
     ):
         raise InvalidMotionError("The keys do not fit the joints.")
     if not 0 < n_frames <= MAX_FRAMES or frame_rate <= 0.0 or not counts[-1]:
-        raise InvalidMotionError("The length of the motion makes no sense.")
+        raise InvalidMotionError("The motion length is invalid.")
     frames = np.split(arrays["frames"], np.cumsum(counts)[:-1])
     if any((np.diff(keys) <= 0).any() for keys in frames):
-        raise InvalidMotionError("The frames of the keys do not rise.")
+        raise InvalidMotionError("The frames of the keys are not in ascending order.")
     stops = np.cumsum(arrays["counts"][:-1] * widths)[:-1]
     parts = zip(
         frames[:-1],

@@ -43,7 +43,7 @@ class RetargetSettings(Settings):
     """How a motion is retargeted to another rig."""
 
     root_motion: RootMotion = setting(
-        RootMotion.KEEP, "Where the travel of the body goes"
+        RootMotion.KEEP, "Choose where to put the travel of the body"
     )  # fmt: skip
     travel_scale: float = setting(
         0.0,
@@ -55,12 +55,12 @@ class RetargetSettings(Settings):
     )  # fmt: skip
     keep_hands: bool = setting(
         True,
-        "Let hands reach as far as the source's for the arm length, and meet where those do",
+        "Scale hand reach to the arm length; hands that meet in the source also meet here",
         label="Match Hand Reach",
     )  # fmt: skip
     to_ground: bool = setting(
         False,
-        "Put the ground of the source at height 0, for sensors that measure from themselves",
+        "Put the ground of the source at height 0, for sensors that are their own origin",
         label="Place on Floor",
     )  # fmt: skip
     softness: float = setting(
@@ -81,8 +81,8 @@ class RetargetSettings(Settings):
 
 
 BACKWARD_KNEES = Remark(
-    "The knees of the source bend backward. If its left and right are the viewer's, exchange"
-    " them in the map"
+    "The knees of the source bend backward. If left and right are mirrored, swap them in the"
+    " map"
 )
 
 

@@ -43,7 +43,7 @@ class CorruptionSettings(Settings):
         unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     seed: int = setting(
-        0, "Random seed; another one gives other noise", minimum=0, maximum=2**31 - 1
+        0, "Random seed; a different seed gives different noise", minimum=0, maximum=2**31 - 1
     )
 
 

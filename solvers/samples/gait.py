@@ -46,7 +46,10 @@ class GaitSettings(Settings):
         116.0, "Steps per minute; more makes shorter steps", minimum=60.0, maximum=160.0
     )
     seed: int = setting(
-        0, "Random seed; another one is another walker", minimum=0, maximum=2**31 - 1
+        0,
+        "Random seed; a different seed gives a different walker",
+        minimum=0,
+        maximum=2**31 - 1,
     )
 
 

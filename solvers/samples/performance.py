@@ -96,7 +96,7 @@ class PerformanceSettings(Settings):
     )
     size: float = setting(1.0, "Size of the actor; 1 is an adult", minimum=0.3, maximum=2.0)
     seed: int = setting(
-        0, "Random seed; another one gives other noise", minimum=0, maximum=2**31
+        0, "Random seed; a different seed gives different noise", minimum=0, maximum=2**31
     )
 
 

@@ -70,7 +70,7 @@ def borrow_variation(motion: Motion, others: Sequence[VariationModel] = ()) -> V
     for index, other in enumerate(others):
         if other.skeleton.names != model.skeleton.names:
             raise InvalidMotionError(
-                f"Model {index + 1} to borrow from is of another rig than the clip. Retarget"
+                f"Model {index + 1} to borrow from has a different rig than the clip. Retarget"
                 " its examples first."
             )
     deviations = [_borrow_deviations(model, other) for other in others if other.n_examples > 1]
@@ -88,7 +88,7 @@ def borrow_variation(motion: Motion, others: Sequence[VariationModel] = ()) -> V
             model.log_warp_rates + log_warp_rates,
         ]),
         contact_state=np.repeat(model.contact_state, 1 + len(joints), axis=0),
-        warning="There is one example; how it varies is borrowed.",
+        warning="There is only one example; its variation is borrowed from other motions.",
     )
 
 

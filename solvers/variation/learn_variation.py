@@ -134,7 +134,7 @@ def _validate_examples(motions: list[Motion]) -> list[Motion]:
             motion.skeleton.parents != first.skeleton.parents
         ):
             raise InvalidMotionError(
-                f"Example {index + 1} is of another rig than the first. Retarget it first."
+                f"Example {index + 1} has a different rig than the first. Retarget it first."
             )
         if motion.n_frames < 2:
             raise InvalidMotionError(f"Example {index + 1} has one frame; it shows no motion.")
@@ -147,7 +147,7 @@ def _validate_examples(motions: list[Motion]) -> list[Motion]:
         sum(motion.n_frames for motion in motions) * len(motions) * first.skeleton.n_joints
         > MAX_VALUES
     ):
-        raise InvalidMotionError("The examples are too long to vary; cut out what is to vary.")
+        raise InvalidMotionError("The examples are too long to vary; cut out the part to vary.")
     return [_match_first(motion, first) for motion in motions]
 
 

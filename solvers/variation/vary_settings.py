@@ -29,11 +29,13 @@ class VarySettings(Settings):
     """Strength and kind of variation."""
 
     method: VaryMethod = setting(
-        VaryMethod.MIXTURE, "How variants are generated; the default measured best",
+        VaryMethod.MIXTURE, "Choose how to generate variants; the default performed best in"
+        " tests",
         advanced=True,
     )  # fmt: skip
     amount: float = setting(
-        1.0, "0 copies an example, 1 varies as much as the examples do, 2 exaggerates",
+        1.0, "Amount of variation; 0 copies an example, 1 varies as the examples do, 2"
+        " exaggerates",
         minimum=0.0, maximum=2.0,
     )  # fmt: skip
     timing: float = setting(
@@ -66,7 +68,10 @@ class VarySettings(Settings):
         minimum=0, maximum=10_000, advanced=True, label="Base Example",
     )  # fmt: skip
     seed: int = setting(
-        0, "Another seed generates other variants", minimum=0, maximum=2**31 - 1
+        0,
+        "Random seed; a different seed generates different variants",
+        minimum=0,
+        maximum=2**31 - 1,
     )
 
     def amounts(self) -> Array:

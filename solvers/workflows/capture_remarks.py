@@ -33,8 +33,8 @@ def capture_remarks(actor: Actor, captured: Capture, *, fitted: bool) -> tuple[s
     occluded = float(captured.low_confidence.mean())
     if occluded > MAX_OCCLUDED_FRACTION:
         remarks.append(
-            f"{100 * occluded:.0f} % of the joints were occluded or fitted badly;"
-            " they are estimated from the frames before and after."
+            f"{100 * occluded:.0f} % of the joints were occluded or fitted poorly; they are"
+            " estimated from the frames before and after."
         )
     tracked = np.isfinite(captured.residual)
     if actor.visible.all() and not tracked.all():
@@ -58,9 +58,9 @@ def _fit_remarks(overlap: float, offset: float) -> list[str]:
     if overlap >= MIN_OVERLAP and offset <= MAX_DEPTH_OFFSET_M:
         return []
     return [
-        f"Body and depth images agree badly ({100 * overlap:.0f} % overlap, {100 * offset:.1f}"
-        " cm distance in depth). Check the focal length, the scale, and whether the images show"
-        " anything but the actor."
+        f"Body and depth images match poorly ({100 * overlap:.0f} % overlap, {100 * offset:.1f}"
+        " cm distance in depth). Check the focal length, the scale, and whether the images"
+        " show anything but the actor."
     ]
 
 

@@ -68,7 +68,7 @@ def read_origin(entry: ClipEntry) -> Recording:
     """
     origin = entry.origin
     if origin is None or is_action(origin):
-        raise MocapAssistError(f"{entry.name} came from no file that can be read here.")
+        raise MocapAssistError(f"The source file of {entry.name} cannot be read here.")
     return read_tracked(Path(origin.path), body=origin.item)
 
 

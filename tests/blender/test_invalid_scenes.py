@@ -82,7 +82,7 @@ def test_key_beyond_the_frame_limit_is_refused(walker, refused, button, frame):
 
     sentence = refused(button)
 
-    assert "Blender plays none beyond 1,048,574" in sentence
+    assert "Blender plays no key beyond 1,048,574" in sentence
     assert len(sentence) < 150
 
 

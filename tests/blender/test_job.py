@@ -84,7 +84,7 @@ def test_crashed_process_is_reported_in_one_sentence(job, load, problem):
     os.kill(running._process.pid, signal.SIGKILL)
 
     with pytest.raises(
-        load("solvers.errors").MocapAssistError, match="by signal SIGKILL, which"
+        load("solvers.errors").MocapAssistError, match="early: signal SIGKILL, which"
     ):
         running.result()
     assert folders() == before

@@ -98,7 +98,9 @@ def test_out_of_memory_is_one_sentence(module, load, call):
         "ShortSolve": lambda: module.run(module.ShortSolve(eval(solve.text))),
     }
 
-    with pytest.raises(load("solvers.errors").OutOfMemoryError, match="more memory than there"):
+    with pytest.raises(
+        load("solvers.errors").OutOfMemoryError, match="more memory than is available"
+    ):
         calls[call]()
 
 

@@ -207,7 +207,7 @@ def test_total_size_is_limited(tmp_path):
     np.savez_compressed(tmp_path / "big.npz", kind="tests", version=4, a=np.zeros((n + 1, 3)),
                         b=np.zeros(n + 1, int))  # fmt: skip
 
-    with pytest.raises(InvalidFileError, match="64000032 bytes were announced by a file of"):
+    with pytest.raises(InvalidFileError, match="64000032 bytes stated in a file of"):
         LAYOUT.read(tmp_path / "big.npz")
 
 

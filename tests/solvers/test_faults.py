@@ -32,7 +32,7 @@ def test_attempt_returns_what_the_work_returns():
         (OSError(5, "Input/output error"), f"{SUBJECT}: Input/output error.", False),
         (OSError(28, "No space left", "out.bvh"), "out.bvh: the disk is full.", False),
         (OSError("odd"), f"{SUBJECT}: odd.", False),
-        (MemoryError(), f"{SUBJECT} needs more memory than there is; work on a part of the"
+        (MemoryError(), f"{SUBJECT} needs more memory than is available; work on a part of the"
          " take.", False),
     ],
 )  # fmt: skip

@@ -1,5 +1,6 @@
 """Every setting and every choice has a help text that fits a tooltip."""
 
+import re
 from dataclasses import fields
 from enum import Enum
 from importlib import import_module
@@ -11,9 +12,10 @@ import pytest
 from solvers.settings import Choice, Settings
 
 SOLVERS = Path(__file__).parents[2] / "solvers"
-MAX_HELP = 110
+MAX_HELP = 90
 """Characters of a tooltip."""
-CHOICE_HELP = range(10, 91)
+MIN_CHOICE_HELP = 10
+TWO_SENTENCES = re.compile(r"[.!?] [A-Z]")
 
 
 def settings_classes() -> list[type[Settings]]:
@@ -44,13 +46,15 @@ def test_help_of_a_setting_fits_a_tooltip(name):
 
     assert 0 < len(help) <= MAX_HELP
     assert not help.endswith(".")
+    assert not TWO_SENTENCES.search(help)
 
 
 @pytest.mark.parametrize("enum", sorted(ENUMS, key=str))
 def test_every_choice_has_a_help_text_and_a_label(enum):
     assert issubclass(enum, Choice)
     for choice in enum:
-        assert len(choice.help) in CHOICE_HELP, choice
+        assert MIN_CHOICE_HELP <= len(choice.help) <= MAX_HELP, choice
         assert not choice.help.endswith("."), choice
+        assert not TWO_SENTENCES.search(choice.help), choice
         assert choice.label, choice
         assert enum(choice.value) is choice

@@ -209,7 +209,7 @@ def _slides(quality: Quality, settings: IssueSettings) -> Iterator[Issue]:
                     stop,
                     "foot slide",
                     slide / settings.min_slide,
-                    f"{foot.joint} slides {100 * slide:.1f} cm while it stands.",
+                    f"{foot.joint} slides {100 * slide:.1f} cm while it is planted.",
                 )
 
 

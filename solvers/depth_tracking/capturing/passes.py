@@ -40,7 +40,7 @@ class RecoverySettings(Settings):
     """Settings of the failure test and of the restarts."""
 
     failure_test: FailureTest = setting(
-        FailureTest.LEARNED, "How the tracker detects a wrong pose",
+        FailureTest.LEARNED, "Choose how the tracker detects a wrong pose",
     )  # fmt: skip
     failing_chance: float = setting(
         0.5, "Learned probability that a pose is wrong; lower runs the detector more often",

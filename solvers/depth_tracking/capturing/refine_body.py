@@ -61,8 +61,8 @@ class RefineBodySettings(Settings):
         6, "Gauss-Newton steps of body and poses; higher is slower", minimum=1, maximum=100
     )
     length_spread: float = setting(
-        0.08, "Relative standard deviation of lengths from the initial body; higher values"
-        " follow the images more", minimum=1e-3, maximum=1.0,
+        0.08, "Relative standard deviation of lengths from the initial body; higher follows"
+        " images more", minimum=1e-3, maximum=1.0,
     )  # fmt: skip
     radius_spread: float = setting(
         0.2, "Relative standard deviation of radii from the initial body",

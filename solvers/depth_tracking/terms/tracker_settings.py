@@ -72,8 +72,8 @@ class TrackerSettings(Settings):
         "1/rad2",
     )  # fmt: skip
     ankle_weight: float = _weight(
-        30.0, "Weight that keeps feet perpendicular to the shanks; 1e6 locks the ankles, as in"
-        " the 34 coordinates of [WZC12]", "1/rad2",
+        30.0, "Weight that keeps feet perpendicular to the shanks; 1e6 locks the ankles as"
+        " in [WZC12]", "1/rad2",
     )  # fmt: skip
     limit_weight: float = _weight(2000.0, "Weight of the joint limits", "1/rad2")
     damping: float = setting(

@@ -78,7 +78,7 @@ def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """Refuse JSON with duplicate keys, of which the last one would silently win."""
     names = [name for name, _ in pairs]
     if duplicates := sorted({name for name in names if names.count(name) > 1}):
-        raise ValueError(f"it says {', '.join(duplicates)} more than once")
+        raise ValueError(f"it contains {', '.join(duplicates)} more than once")
     return dict(pairs)
 
 

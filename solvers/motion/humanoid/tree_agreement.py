@@ -169,9 +169,7 @@ def role_faults(skeleton: Skeleton, joints: Mapping[str, str]) -> dict[str, str]
     for limb in LIMBS:
         if _has_odd_lengths(skeleton, roles, (limb,)):
             odd = {f"{side}{part}" for side in SIDES for part in limb} & roles.keys()
-            faults |= dict.fromkeys(
-                odd - faults.keys(), "the lengths of this limb are no person's"
-            )
+            faults |= dict.fromkeys(odd - faults.keys(), "the limb proportions are not human")
     return faults
 
 

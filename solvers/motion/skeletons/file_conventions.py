@@ -34,7 +34,7 @@ class FileConventions:
 
     def sentence(self) -> str:
         """Return what was judged, for a report: without a period."""
-        sure = f" ({self.confidence:.0%} sure)" if self.confidence < CERTAIN else ""
+        sure = f" ({self.confidence:.0%} confidence)" if self.confidence < CERTAIN else ""
         added = ", positions added to offsets" if self.offset_added else ""
         rest = (
             f", {self.rest_up} in the rest pose" if self.rest_up not in {None, self.up} else ""

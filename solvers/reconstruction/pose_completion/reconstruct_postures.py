@@ -166,7 +166,7 @@ def _check_observed(recording: JointRecording, positions: Array, reliability: Ar
     if (state == INFERRED).any():
         raise InvalidMotionError(
             f"No frame has {MIN_JOINTS} tracked joints; the tracker infers the others. Raise"
-            " the setting `inferred` to use inferred joints."
+            " Weight of Inferred Joints (--inferred) to use those."
         )
     raise InvalidMotionError(
         f"No frame has {MIN_JOINTS} joints with the tracking state `tracked`, although"

@@ -11,7 +11,7 @@ class PostureSettings(Settings):
 
     causal: bool = setting(False, "Use only earlier frames, as in a live system; less smooth")
     n_neighbors: int = setting(
-        30, "Number of library poses that each pose is made of; more vary more",
+        30, "Number of library poses that each pose is made of; more gives more variety",
         minimum=2, maximum=200, label="Neighbors", former="n_neighbours",
     )  # fmt: skip
     n_dimensions: int = setting(
@@ -27,11 +27,12 @@ class PostureSettings(Settings):
         minimum=0.0, maximum=2.0,
     )  # fmt: skip
     memory: float = setting(
-        0.5, "How long a missing joint remembers where it was observed", unit="s",
+        0.5, "Time for which a missing joint remembers where it was last observed", unit="s",
         minimum=0.02, maximum=10.0, advanced=True,
     )  # fmt: skip
     pace: float = setting(
-        0.2, "Weight of velocity against pose when searching similar poses; 0 as published",
+        0.2, "Weight of velocity relative to pose in the search for similar poses; 0 as"
+        " published",
         unit="s", minimum=0.0, maximum=2.0, advanced=True,
     )  # fmt: skip
     rounds: int = setting(

@@ -15,7 +15,7 @@ class ReliabilityMethod(Choice):
     DEFAULT = "default", "Estimate from measured errors the probability that a joint is right"
     PUBLISHED = (
         "published",
-        "Take the least of the three terms of Shum et al. (2013)",
+        "Use the smallest of the three terms of Shum et al. (2013)",
         "Shum et al. 2013",
     )
 
@@ -26,7 +26,7 @@ class ReliabilitySettings(Settings):
 
     method: ReliabilityMethod = setting(
         ReliabilityMethod.DEFAULT,
-        "How the reliability of a joint is computed",
+        "Choose how to compute the reliability of a joint",
         advanced=True,
     )
     causal: bool = setting(False, "Use only earlier frames, as in a live system")
@@ -43,15 +43,18 @@ class ReliabilitySettings(Settings):
         unit="m/s", minimum=0.0, maximum=100.0, advanced=True, former="slowest",
     )  # fmt: skip
     vibration_window: float = setting(
-        0.1, "Time over which turns of the path are averaged; longer ignores single jumps",
+        0.1, "Time over which direction changes of the path are averaged; longer ignores"
+        " single jumps",
         unit="s", minimum=0.01, maximum=1.0, advanced=True,
     )  # fmt: skip
     min_vibration_angle: float = setting(
-        90.0, "Mean turn of the path that is still normal; higher flags fewer joints",
+        90.0, "Mean direction change of the path that is still normal; higher flags fewer"
+        " joints",
         unit="degrees", minimum=0.0, maximum=179.0, advanced=True, former="vibration_floor",
     )  # fmt: skip
     max_vibration_angle: float = setting(
-        135.0, "Mean turn of the path at which reliability is 0; must be above the minimum",
+        135.0, "Mean direction change of the path at which reliability is 0; must be above the"
+        " minimum",
         unit="degrees", minimum=1.0, maximum=180.0, advanced=True, former="vibration_roof",
     )  # fmt: skip
     window: float = setting(

@@ -44,7 +44,7 @@ class CorrectionSettings(Settings):
 
     method: CorrectionMethod = setting(
         CorrectionMethod.WHOLE_TAKE,
-        "How offsets, smoothness and reliability are combined",
+        "Choose how to combine offsets, smoothness and reliability",
     )
     smoothing: float = setting(
         0.05, "Remove jitter shorter than about this; higher is smoother but blurs motion",

@@ -52,7 +52,7 @@ class ResidualPriorSettings(Settings):
     """Settings of `learn_residual_prior`."""
 
     method: ResidualMethod = setting(
-        ResidualMethod.HIERARCHICAL, "How sensor errors are learned"
+        ResidualMethod.HIERARCHICAL, "Choose how to learn sensor errors"
     )
     local_points: int = setting(
         60, "Inducing points of each joint and its neighbors; more is finer and slower",
@@ -152,7 +152,7 @@ def learn_residual_prior(
             )
     if not learned:
         raise InvalidMotionError(
-            "No joint is known in both recordings of any pair. Check the joint names."
+            "No joint is observed in both recordings of any pair. Check the joint names."
         )
     movement = None
     if settings.method is ResidualMethod.HIERARCHICAL:

@@ -183,8 +183,8 @@ def stand_upright(
 def describe_guessed_axis(axis: UpAxisName) -> str:
     """Say which axis is taken for up where the evidence disagrees."""
     return (
-        f"{axis} is taken for up, but the take does not show it clearly; set Up if the actor is"
-        " on the side"
+        f"{axis} is interpreted as up, but the take does not show it clearly; set Up if the"
+        " actor lies on its side"
     )
 
 

@@ -38,7 +38,7 @@ def check_exr(path: Path) -> None:
     if sum(map(prod, parts)) > MAX_VALUES:
         raise InvalidFileError(
             f"{path} has {sum(n_channels for *_, n_channels in parts)} channels, too many to"
-            " read at this size. Write depth to a file of its own."
+            " read at this size. Write depth to its own file."
         )
 
 

@@ -68,7 +68,7 @@ def read_depth_raw(
     if rest or not n_frames:
         raise InvalidFileError(
             f"{path} has {size} bytes, which is not a multiple of an image of {camera.width} x"
-            f" {camera.height} pixels: it is cut short, or the camera is another one."
+            f" {camera.height} pixels: it is cut short, or comes from a different camera."
         )
     stack = DepthStack(
         PlainBytes(path, 0, size),

@@ -11,23 +11,23 @@ class CameraOrientation(Choice):
 
     KNOWN = (
         "known",
-        "Read the orientation from the file; upright where it has none",
+        "Read the orientation from the file; upright if it has none",
         "From File",
     )
     """Orientation stored in the file; upright if there is none."""
-    UPRIGHT = "upright", "The camera stood upright"
+    UPRIGHT = "upright", "Treat the camera as upright"
     LEFT = (
         "left",
-        "The camera was turned left; heads are at the left of the image",
+        "Treat the camera as turned left; heads are at the left of the image",
         "Turned Left",
     )
     """Turned left: the left of the scene is at the top of the image."""
     RIGHT = (
         "right",
-        "The camera was turned right; heads are at the right of the image",
+        "Treat the camera as turned right; heads are at the right of the image",
         "Turned Right",
     )
-    UPSIDE_DOWN = "upside down", "The camera hung upside down"
+    UPSIDE_DOWN = "upside down", "Treat the camera as upside down"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +39,8 @@ class DepthSettings(Settings):
         unit="m", minimum=0.0, maximum=10.0,
     )  # fmt: skip
     fx: float = setting(
-        0.0, "Horizontal focal length; more narrows the actor; 0 reads the file", unit="pixels",
+        0.0, "Horizontal focal length; higher makes the actor narrower; 0 reads it from the"
+        " file", unit="pixels",
         minimum=0.0, maximum=1e5,
     )  # fmt: skip
     fy: float = setting(
@@ -67,9 +68,9 @@ class DepthSettings(Settings):
         0.0, "Images per second; 0 reads the file or uses 30", unit="Hz", minimum=0.0,
         maximum=10_000.0,
     )  # fmt: skip
-    held: CameraOrientation = setting(CameraOrientation.KNOWN, "How the camera was held")
+    held: CameraOrientation = setting(CameraOrientation.KNOWN, "Set how the camera was held")
     mirrored: bool = setting(
-        False, "The images are mirrored: the actor's right hand is on the right"
+        False, "Treat the images as mirrored: the actor's right hand is on the right"
     )
     min_confidence: int = setting(
         1, "Ignore readings of lower recorded confidence: 0 low, 1 medium, 2 high", minimum=0,

@@ -71,8 +71,8 @@ def recording_from_landmarks(
         raise InvalidFileError(f"{path} has {len(points)} frames but no body in any of them.")
     if not is_world(points):
         raise InvalidFileError(
-            f"{path} has the landmarks of a picture, without true depth. Save the"
-            " pose_world_landmarks of MediaPipe instead."
+            f"{path} has image landmarks, without true depth. Save the pose_world_landmarks of"
+            " MediaPipe instead."
         )
     if times is None and frame_rate is None:
         progress(

@@ -158,7 +158,7 @@ def _body(value: Any) -> int:
 def _sensor(value: Any) -> Sensor:
     sensors = {sensor.value: sensor for sensor in Sensor}
     if not isinstance(value, str) or value not in sensors:
-        raise InvalidMotionError(f"A frame's sensor is none of {', '.join(sensors)}.")
+        raise InvalidMotionError(f"A frame's sensor is not one of {', '.join(sensors)}.")
     return sensors[value]
 
 

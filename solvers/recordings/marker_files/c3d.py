@@ -115,13 +115,17 @@ def _up(file: C3dFile, points: NDArray[np.float64], progress: Progress) -> str:
     up = screen[0].strip().upper() if screen else ""
     if is_upside_down(points, up):
         progress(
-            0.8, Remark(f"Y_SCREEN says {up}, which hangs the actor below the floor; not used")
+            0.8,
+            Remark(
+                f"Y_SCREEN states {up}, which would put the actor below the floor; it"
+                " was ignored"
+            ),
         )
         return f"+{up[-1]}"
     if other := other_standing_axis(points, up):
         progress(
             0.8,
-            Remark(f"Y_SCREEN says {up}, but the actor stands along {other}, which is used"),
+            Remark(f"Y_SCREEN states {up}, but the actor stands along {other}, which is used"),
         )
         return other
     return up

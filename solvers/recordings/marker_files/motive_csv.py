@@ -75,7 +75,7 @@ def read_motive_csv(
     unit = scale or meters_from_unit_name(header.fields.get("length units", ""))
     if unit is None:
         raise InvalidFileError(
-            f"{path} states no length unit that is known. Give the unit, or export it again."
+            f"{path} does not state a known length unit. Give the unit, or export it again."
         )
     rows = stream_cells(
         reader, header.separator, header.width, path, within(progress, 0.0, 0.7)
@@ -207,7 +207,7 @@ def _rotations(
     order = "WXYZ" if n_axes == 4 else kind.upper()
     if n_axes == 3 and not EULER_ORDER.fullmatch(kind):
         raise InvalidFileError(
-            f"{path} states no rotation type that is known. Export it with quaternions."
+            f"{path} does not state a known rotation type. Export it with quaternions."
         )
     if any(axis not in bone.rotation for bone in bones for axis in order):
         raise InvalidFileError(

@@ -50,8 +50,8 @@ def read_motive_header(reader: LineReader, path: Path | str) -> MotiveHeader:
     kinds = next((row for row in above if _is_row_of_types(row)), None)
     if kinds is None or above.index(kinds) + 1 >= len(above):
         raise InvalidFileError(
-            f"{path} has no row that says what its columns are, such as Marker or Bone. Export"
-            " it from Motive with headers."
+            f"{path} has no row that states what its columns are, such as Marker or Bone."
+            " Export it from Motive with headers."
         )
     names = above[above.index(kinds) + 1]
     parents = next((row for row in above if row[1].lower() == "parent"), None)

@@ -189,7 +189,7 @@ def _read_header(reader: LineReader, path: Path | str) -> _Header:
         reader.take()
     if fields.get("DATA_INCLUDED", [""])[0].upper() == "2D":
         raise InvalidFileError(
-            f"{path} has the pictures of markers in each camera. Export 3D data from QTM."
+            f"{path} has the 2D positions of markers in each camera. Export 3D data from QTM."
         )
     return _Header(fields, titles)
 

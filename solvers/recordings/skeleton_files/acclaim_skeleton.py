@@ -208,7 +208,7 @@ class _SkeletonFile:
 
     def _refuse(self, what: str) -> NoReturn:
         raise InvalidFileError(
-            f"{self.path}, near line {self.line}: {what}. The skeleton file is damaged; take"
+            f"{self.path}, near line {self.line}: {what}. The skeleton file is damaged; use"
             " another copy."
         )
 

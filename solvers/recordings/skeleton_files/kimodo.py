@@ -92,7 +92,7 @@ def read_kimodo(
     finite = np.isfinite(joints).all(axis=(1, 2)) & np.isfinite(matrices).all(axis=(1, 2, 3))
     if (np.linalg.det(matrices[finite]) < MIN_DETERMINANT).any():
         raise InvalidFileError(
-            f"{path} has matrices in global_rot_mats that are no rotations. Export it as BVH."
+            f"{path} has matrices in global_rot_mats that are not rotations. Export it as BVH."
         )
     rotations = np.full((*joints.shape[:2], 4), np.nan)
     rotations[finite] = quaternion_from_matrix(matrices[finite])

@@ -211,5 +211,6 @@ def _refuse_declarations(path: Path | str) -> None:
         pass  # the reader reports it
     if "declaration" in found[:1]:
         raise InvalidFileError(
-            f"{path} declares a document type, which is not read. Export it from MVN without."
+            f"{path} declares a document type, which is not read. Export it from MVN without"
+            " one."
         )

@@ -30,8 +30,8 @@ class PyramidSettings(Settings):
     )
     normalize_cubes: bool = setting(
         False,
-        "Normalize the entries of each cube to the sum 1, so that all segments and blocks of"
-        " atoms have equal weight",
+        "Normalize each cube to sum to 1, so that all segments and blocks of atoms weigh the"
+        " same",
     )
 
 

@@ -43,7 +43,7 @@ class FindSettings(Settings):
     """
 
     method: FindMethod = setting(
-        FindMethod.WORDS, "Search method; the default is faster and measured best",
+        FindMethod.WORDS, "Search method; the default is faster and performed best in tests",
         advanced=True,
     )  # fmt: skip
 
@@ -62,7 +62,7 @@ class FindSettings(Settings):
     )  # fmt: skip
     stance: float = setting(
         MEAN_POSTURE_WEIGHT,
-        "Weight of the mean pose against the motion; at most 0.4 for sensor recordings",
+        "Weight of the mean pose relative to the motion; at most 0.4 for sensor recordings",
         minimum=0.0, maximum=1.0, advanced=True, label="Pose Weight",
     )  # fmt: skip
     n_warped: int = setting(
@@ -70,7 +70,7 @@ class FindSettings(Settings):
         minimum=0, maximum=2_000, advanced=True, label="Time-Aligned Clips",
     )  # fmt: skip
     warping: float = setting(
-        3.0, "Weight of timing against poses",
+        3.0, "Weight of timing relative to poses",
         minimum=0.0, maximum=100.0, advanced=True, label="Timing Weight",
     )  # fmt: skip
     n_neighbors: int = setting(

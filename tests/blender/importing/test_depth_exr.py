@@ -107,14 +107,14 @@ def test_without_a_camera_it_is_asked_for(folder, blank):
 @pytest.mark.parametrize(
     ("name", "content", "sentence"),
     [
-        ("depth10.exr", b"no picture", r"depth10\.exr .*(cannot be read|is no picture)"),
-        ("depth10.exr", b"", r"depth10\.exr .*(cannot be read|is no picture)"),
+        ("depth10.exr", b"no picture", r"depth10\.exr .*(cannot be read|is not an image)"),
+        ("depth10.exr", b"", r"depth10\.exr .*(cannot be read|is not an image)"),
         (
             "depth10.exr",
             exr_header(12_000, 12_000),
             r"depth10\.exr has .* 12000 x 12000 pixels",
         ),
-        ("depth10.exr", None, r"depth10\.exr has 6 x 4 pixels, the first picture 32 x 20"),
+        ("depth10.exr", None, r"depth10\.exr has 6 x 4 pixels, the first image 32 x 20"),
     ],
 )
 def test_a_picture_that_is_none_is_named(folder, lens, blank, name, content, sentence):

@@ -24,7 +24,7 @@ def test_index_refuses_actions_without_their_rig(index, entries, alone):
 
     assert len(done.refused) == 2 and entries() == {}
     assert all("no armature in the file has the bones" in said for said in done.refused)
-    assert all("name a file with its rig" in said for said in done.refused)
+    assert all("choose a rig file" in said for said in done.refused)
 
 
 def test_actions_become_clips_with_a_rig_file(
@@ -78,7 +78,7 @@ def test_match_is_appended_with_its_rig(alone, find, index, blend_file, newcomer
     listed = blank.context.window_manager.mocap_assist_matches
     listed.active = [row.name for row in listed.rows].index("alone/walk_0")
 
-    with pytest.raises(RuntimeError, match="name a file with its rig"):
+    with pytest.raises(RuntimeError, match="choose a rig file"):
         blank.ops.mocap_assist.load_match()
     library.rig_file = str(alone.parent / "gone.blend")
     with pytest.raises(RuntimeError, match=r"gone.blend, does not exist"):

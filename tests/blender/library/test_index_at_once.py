@@ -63,7 +63,7 @@ def test_file_that_ends_its_blender_is_refused_and_the_others_become_clips(
     indexing = load("mocap_assist.library.solve_indexing")
     real, job = indexing.read_blends, load("mocap_assist.jobs.job")
     errors = {
-        "ProcessDied": lambda: job.ProcessDied("by signal SIGABRT", ""),
+        "ProcessDied": lambda: job.ProcessDied("signal SIGABRT", ""),
         "OutOfMemoryError": lambda: job.OutOfMemoryError(),
     }
 
@@ -78,4 +78,4 @@ def test_file_that_ends_its_blender_is_refused_and_the_others_become_clips(
 
     assert len(entries()) == 3
     (said,) = done.refused
-    assert said.startswith(str(twin))
+    assert str(twin) in said

@@ -56,7 +56,7 @@ def test_unreadable_files_are_reported_and_others_are_indexed(command, clip_file
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["index"], "Nothing was named to index"),
+        (["index"], "No sources given"),
         (["index", "nowhere"], "There is no file or folder"),
         (["find", "--library", "none.library"], "There is no clip library"),
     ],

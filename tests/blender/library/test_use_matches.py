@@ -35,7 +35,7 @@ def test_variants_are_made_from_matches(find, newcomer, use, blank, at_once, cap
     assert [each.name for each in examples] == [f"{n}.{armature.name}" for n in listed[:2]]
     assert json.loads(examples[0]["mocap_assist_clip"])["clip"] == listed[0]
     assert armature.animation_data.action == query
-    assert "Vary has 2 clips of the library as examples." in capfd.readouterr().out
+    assert "Vary now uses 2 library clips as examples." in capfd.readouterr().out
     assert blank.ops.mocap_assist.vary(
         actions=blank.context.scene.mocap_assist.vary.actions, n_variants=2
     ) == {"FINISHED"}

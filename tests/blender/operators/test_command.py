@@ -85,7 +85,7 @@ def test_quality_command_measures(bad_arm, command):
             ["denoise", "--armature", "Nobody"],
             "There is no armature Nobody; the scene has Actor.\n",
         ),
-        (["denoise"], "No file is open: say which one to save with --output FILE.\n"),
+        (["denoise"], "No file is open: name the file to save with --output FILE.\n"),
         (
             ["denoise", "--output", "/nowhere/x.blend"],
             "There is no folder /nowhere to save in.\n",

@@ -89,7 +89,7 @@ def test_each_command_imports_cleans_and_resumes(blank, command, takes, tmp_path
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["each", "{takes}", "--output-folder", "{out}"], "Say what to do to each"),
+        (["each", "{takes}", "--output-folder", "{out}"], "Give the verb for each"),
         (["each", "{takes}", "--output-folder", "{out}", "--", "denoise"], "no .blend file in"),
         (["each", "{takes}/one.bvh", "--output-folder", "{out}", "--", "denoise"],
          "only import and capture read others"),

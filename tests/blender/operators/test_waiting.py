@@ -72,7 +72,7 @@ def test_out_of_memory_is_one_sentence_in_a_window_and_in_a_script(
     assert wait(button, window) == {"CANCELLED"}
     assert button.execute(window.context) == {"CANCELLED"}
 
-    sentence = "This needs more memory than there is. Work on a part of the take."
+    sentence = "This needs more memory than is available. Work on a part of the take."
     assert window.reports == [({"ERROR"}, sentence)] * 2
     assert folders() == set()
 

@@ -216,7 +216,7 @@ def test_out_of_memory_gives_one_sentence(call, bvh, tmp_path, monkeypatch):
     status, _, error_output = call("denoise", bvh(), tmp_path / "out.bvh")
 
     assert status == 2
-    assert "in.bvh needs more memory than there is" in error_output
+    assert "in.bvh needs more memory than is available" in error_output
 
 
 def test_interrupt_leaves_only_complete_files(swinging_leg, tmp_path):

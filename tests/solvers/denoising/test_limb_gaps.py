@@ -230,7 +230,7 @@ def test_one_frame(rng):
 def test_says_that_the_body_predicted_the_limb(rng):
     cleaned = denoise(_without_arm(_swings(rng), GAP))
 
-    assert "Long gaps of 3 joints are filled by how people move." in cleaned.prior_used
+    assert "Filled long gaps of 3 joints from the rest of the body." in cleaned.prior_used
 
 
 @pytest.mark.skipif(not WALK.exists(), reason="recordings of ../shared/data are absent")

@@ -95,7 +95,7 @@ def test_reports_why_it_does_not_use_the_examples(swinging_leg, leg):
 
     assert messages == [
         "The take's own patterns: no examples were given.",
-        "The take's own patterns: the examples lack one joint of it, and all are needed.",
-        "The take's own patterns: it is shorter than those of the examples.",
+        "The take's own patterns: the examples lack one joint of the take; all are required.",
+        "The take's own patterns: the take is shorter than the example patterns.",
         "Patterns of 1 example clip.",
     ]

@@ -113,7 +113,7 @@ def test_take_in_camera_space_keeps_its_height(walk, simulated, height):
     result = simulate(raised(walk, height))
 
     assert_allclose(result.ground, height, atol=0.02)
-    assert "far from 0.00 m: the ground is assumed under its feet" in result.message
+    assert "far from 0.00 m: the ground is assumed to be under its feet" in result.message
     assert distance(raised(simulated.motion, height), result.motion) < 2.5 * CENTIMETER
     assert "far from" not in simulated.message
     assert simulated.ground == simulate(raised(walk, 0.1)).ground == 0.0

@@ -81,7 +81,7 @@ def test_simulate_raises_for_a_wrong_unit():
     skeleton = WALK.skeleton
     ant = Skeleton(skeleton.names, skeleton.parents, 0.01 * skeleton.offsets)
 
-    with pytest.raises(InvalidMotionError, match="no plausible size; set the scale of the"):
+    with pytest.raises(InvalidMotionError, match="is not plausible; set the scale of the"):
         simulate(Motion(ant, WALK.rotations, 0.01 * WALK.root_positions, 30.0))
 
 

@@ -279,7 +279,7 @@ def test_blend_motions_is_exact_at_weights_zero_and_one(walk):
 def test_missing_engine_raises_a_readable_error(monkeypatch):
     monkeypatch.setitem(sys.modules, "mujoco", None)
 
-    with pytest.raises(NoPhysicsError, match="Simulate needs MuJoCo, which does not load here"):
+    with pytest.raises(NoPhysicsError, match="Simulate needs MuJoCo, which cannot be loaded"):
         load_engine()
 
 

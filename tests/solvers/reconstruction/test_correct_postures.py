@@ -281,5 +281,5 @@ def test_learn_residual_prior_raises_for_mismatched_pairs():
     with pytest.raises(InvalidMotionError, match="1 pairs but 2 actors"):
         learn_residual_prior([(observed, true)], actors=["a", "b"])
     unobserved = Tracks(NAMES, np.full((90, 20, 3), np.nan), 30.0)
-    with pytest.raises(InvalidMotionError, match="No joint is known in both"):
+    with pytest.raises(InvalidMotionError, match="No joint is observed in both"):
         learn_residual_prior([(observed, unobserved)], settings=SMALL_PRIOR)

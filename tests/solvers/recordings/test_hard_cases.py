@@ -95,7 +95,7 @@ def test_who_lies_all_the_time_lies_or_is_a_question(tmp_path, hips, degrees):
     motion, said = read(body(root=turn(degrees), hips=hips), tmp_path / "a.bvh")
 
     lies = np.ptp(np.stack(list(places(motion).values()))[..., 2]) < 1.0
-    assert lies or "is taken for up, but the take does not show it clearly" in said
+    assert lies or "is interpreted as up, but the take does not show it clearly" in said
 
 
 def test_a_handstand_stays_one(tmp_path):
@@ -197,7 +197,7 @@ def test_unnamed_points_with_y_up_stand(tmp_path):
     points = read_as(tmp_path / "a.npy")
 
     assert np.ptp(points.positions[0, :, 2]) > 1.3
-    assert conventions_of(points).sentence().startswith("Y is up (90% sure)")
+    assert conventions_of(points).sentence().startswith("Y is up (90% confidence)")
 
 
 @pytest.mark.parametrize("axis", [Axis.X, Axis.Z, Axis.MINUS_Y])

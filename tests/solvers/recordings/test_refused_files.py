@@ -13,7 +13,7 @@ import pytest
 
 from solvers.errors import InvalidFileError
 
-FLAT = "keypoints of a picture, without depth"
+FLAT = "2D keypoints of images, without depth"
 OPENSIM = "results of OpenSim, which need its model"
 PICKLE = "is a pickle, which is never opened"
 

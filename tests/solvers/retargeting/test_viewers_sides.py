@@ -40,7 +40,7 @@ def remarks_on(walk: Motion) -> list[Remark]:
 def test_knees_that_bend_backward_are_reported():
     (remark,) = remarks_on(with_sides_of_the_viewer(walk_without_toes()))
 
-    assert "If its left and right are the viewer's, exchange them" in remark
+    assert "If left and right are mirrored, swap them" in remark
 
 
 def test_a_body_without_toes_is_retargeted_without_a_word():

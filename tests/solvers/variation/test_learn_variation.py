@@ -89,7 +89,7 @@ def test_errors_name_the_example_and_the_remedy(walks, leg):
     with pytest.raises(InvalidMotionError, match="Example 2 has gaps; clean it first"):
         learn_variation_model([walks[0], replace(walks[1], rotations=hole)])
     still = Motion(leg, np.tile(IDENTITY, (9, 4, 1)), np.zeros((9, 3)), 60.0)
-    with pytest.raises(InvalidMotionError, match="Example 2 is of another rig"):
+    with pytest.raises(InvalidMotionError, match="Example 2 has a different rig"):
         learn_variation_model([walks[0], still])
     with pytest.raises(InvalidMotionError, match="at least two"):
         measure_variation(walks[:1])
@@ -136,7 +136,10 @@ def test_single_clip_varies_only_by_borrowed_variation(walks):
     assert found[0] < 1e-6
     assert 0.2 < found[1] / measure_variation(walks) < 2.0
     assert 0.2 < found[2] / measure_variation(walks) < 2.0
-    assert generic.warning == "There is one example; how it varies is borrowed."
+    assert (
+        generic.warning
+        == "There is only one example; its variation is borrowed from other motions."
+    )
     assert_allclose(generic.joints.mean(axis=0), separate.joints[0], atol=1e-12)
 
 
@@ -154,7 +157,7 @@ def test_borrowing_raises_for_another_rig(walks):
     skeleton = walks[0].skeleton
     names = tuple(name.replace("Spine2", "Ribs") for name in skeleton.names)
     other = replace(walks[1], skeleton=Skeleton(names, skeleton.parents, skeleton.offsets))
-    with pytest.raises(InvalidMotionError, match="Model 1 to borrow from is of another rig"):
+    with pytest.raises(InvalidMotionError, match="Model 1 to borrow from has a different rig"):
         borrow_variation(walks[0], [learn_variation_model([other])])
 
 

@@ -192,7 +192,7 @@ def test_object_that_is_no_actor_has_low_agreement():
 
     found = caught(recording, None)
 
-    assert any("Body and depth images agree badly" in message for message in found.remarks)
+    assert any("Body and depth images match poorly" in message for message in found.remarks)
 
 
 def peak_of(n_frames: int, read) -> int:

@@ -169,7 +169,7 @@ def test_clips_are_read_from_their_files_and_missing_files_reported(tmp_path):
 def test_clips_without_a_file_are_reported(library):
     learned = bases_from_library(walk(115), library)
     assert learned.bases is None
-    assert "walk 110 was left out: walk 110 came from no file" in learned.message
+    assert "walk 110 was left out: The source file of walk 110" in learned.message
 
 
 def test_clip_of_an_action_is_not_read_from_its_file():

@@ -55,7 +55,7 @@ def test_error_is_one_sentence_with_the_file(clip_request, tmp_path, monkeypatch
     assert describe_file(gone).sentence == f"There is no file {tmp_path / 'gone.bvh'}."
 
     for error, ending in (
-        (MemoryError(), "needs more memory than there is; work on a part of the take."),
+        (MemoryError(), "needs more memory than is available; work on a part of the take."),
         (OSError(5, "Input/output error"), ": Input/output error."),
     ):
 

@@ -76,4 +76,6 @@ def test_progress_rises_from_0_to_1(walks):
 def test_single_example_gets_shipped_variation_with_a_remark(walks):
     variants = vary_motions(walks[:1], 3, planting=None)
     assert measure_variation(variants.motions) > 0.003
-    assert variants.remarks == ("There is one example; how it varies is borrowed.",)
+    assert variants.remarks == (
+        "There is only one example; its variation is borrowed from other motions.",
+    )

@@ -170,7 +170,7 @@ def test_blank_cells_of_a_csv_are_gaps(read_any):
     ],
 )
 def test_landmarks_of_a_picture_are_refused_with_what_would_serve(read_any, text):
-    with pytest.raises(InvalidFileError, match=r"of a picture, .* pose_world_landmarks"):
+    with pytest.raises(InvalidFileError, match=r"image landmarks, .* pose_world_landmarks"):
         read_any(text)
 
 

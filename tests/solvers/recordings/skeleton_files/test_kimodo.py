@@ -74,8 +74,8 @@ def test_positions_and_rotations_alone_give_the_same_joints_standing(tmp_path, r
 @pytest.mark.parametrize(
     ("member", "factor", "sentence"),
     [
-        ("global_rot_mats", 0.0, "that are no rotations"),
-        ("global_rot_mats", -1.0, "that are no rotations"),
+        ("global_rot_mats", 0.0, "that are not rotations"),
+        ("global_rot_mats", -1.0, "that are not rotations"),
         ("global_rot_mats", 1e300, "damaged"),
         ("posed_joints", 1e300, "damaged"),
     ],
