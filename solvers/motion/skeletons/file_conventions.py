@@ -9,7 +9,7 @@ UNIT_NAMES = {
     1.0: "meters", 0.1: "decimeters", 0.01: "centimeters", 0.001: "millimeters",
     0.0254: "inches", 0.3048: "feet",
 }  # fmt: skip
-CERTAIN = 0.995
+MIN_CERTAIN_CONFIDENCE = 0.995
 """Confidence, a probability, from which rounding to whole percents gives 100. By definition."""
 
 
@@ -34,7 +34,9 @@ class FileConventions:
 
     def sentence(self) -> str:
         """Return what was judged, for a report: without a period."""
-        sure = f" ({self.confidence:.0%} sure)" if self.confidence < CERTAIN else ""
+        sure = (
+            f" ({self.confidence:.0%} sure)" if self.confidence < MIN_CERTAIN_CONFIDENCE else ""
+        )
         added = ", positions added to offsets" if self.offset_added else ""
         rest = (
             f", {self.rest_up} in the rest pose" if self.rest_up not in {None, self.up} else ""

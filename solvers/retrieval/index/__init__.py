@@ -6,10 +6,10 @@ from .index_block import IndexBlock, block_arrays, block_from_arrays, build_bloc
 from .reranking import pairwise_warping_costs, rerank_by_neighbors
 from .search_index import SearchIndex
 from .segments import (
+    CLIP_RATE_HZ,
     HISTOGRAM_SCALE,
     MEAN_POSTURE_WEIGHT,
     N_CUBES,
-    RATE,
     Segments,
     describe_all_segments,
     describe_segments,
@@ -25,11 +25,11 @@ from .vocabulary import (
 )
 
 __all__ = [
+    "CLIP_RATE_HZ",
     "HISTOGRAM_SCALE",
     "MEAN_POSTURE_WEIGHT",
     "N_AXES",
     "N_CUBES",
-    "RATE",
     "Clip",
     "ClipEntry",
     "DescribedClip",
