@@ -12,8 +12,10 @@ from .new_action import write_channels
 
 POINT = "mocap_assist_point"
 """Custom property of an empty: the name of its point, which Blender may have to change."""
-SIZE = 0.015  # meters: radius of the sphere that shows a marker
-CROSS = 0.2  # meters: half the length of the cross that shows their parent
+MARKER_RADIUS_M = 0.015
+"""Radius in meters of the sphere that shows a marker."""
+CROSS_RADIUS_M = 0.2
+"""Half the length, in meters, of the cross that shows the parent of the markers."""
 
 
 def build_empties(
@@ -38,13 +40,13 @@ def build_empties(
     """
     in_object_mode(context)
     holder = bpy.data.objects.new(fitting_name(name), None)
-    holder.empty_display_size = CROSS / metres
+    holder.empty_display_size = CROSS_RADIUS_M / metres
     holder.instance_type, holder.show_instancer_for_viewport = "COLLECTION", False
     made = []
     for point in points:
         empty = bpy.data.objects.new(fitting_name(point), None)
         empty.empty_display_type = "SPHERE"
-        empty.empty_display_size = SIZE / metres
+        empty.empty_display_size = MARKER_RADIUS_M / metres
         empty[POINT] = point
         empty.parent = holder
         made.append(empty)

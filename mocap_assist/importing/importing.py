@@ -20,7 +20,8 @@ from .recent_files import read_again
 from .recording_objects import conversion_from_choices
 from .solve_reading import Conversion
 
-QUICKLY_READ = 2_000_000  # bytes
+MAX_PREVIEW_BYTES = 2_000_000
+"""Bytes of a file up to which the dialog reads it, so that it opens without delay."""
 
 
 EXTENSIONS = (
@@ -61,7 +62,7 @@ def preview(context: bpy.types.Context, paths: list[Path]) -> str:
     plays = f"the scene plays at {scene:g} FPS"
     try:
         size = path.stat().st_size
-        if size > QUICKLY_READ or is_scene_file(path):
+        if size > MAX_PREVIEW_BYTES or is_scene_file(path):
             return f"{path.name}: {size / 1e6:.1f} MB; {plays}"
         content = read_again(path, Conversion(floor=FloorPlacement.AUTO))[0]
     except MocapAssistError as error:

@@ -37,8 +37,8 @@ from .solve_retargeting import (
     retarget_and_report,
 )
 
-N_QUICK = 5000
-"""Frames that are solved in half a second: less than it takes to start another process."""
+MAX_SHORT_SOLVE_FRAMES = 5000
+"""Frames that are solved in half a second, the time to start another process."""
 
 
 class RetargetScene(NamedTuple):
@@ -60,7 +60,9 @@ def read_retarget(
     found = yield from _read(Subject.of(scene, source), settings)
     problem = found.problem
     n_frames = sum(clip.motion.n_frames for clip in problem.clips)
-    return (ShortSolve if n_frames <= N_QUICK else partial)(retarget_and_report, problem)
+    return (ShortSolve if n_frames <= MAX_SHORT_SOLVE_FRAMES else partial)(
+        retarget_and_report, problem
+    )
 
 
 @Sliced

@@ -17,7 +17,7 @@ from . import searches
 from .loading import note_clip, problem_of, why_not_load
 from .solve_finding import Found
 
-FIRST = 1.0
+FIRST_FRAME = 1.0
 """Scene frame at which the clips begin."""
 
 
@@ -55,7 +55,7 @@ def write_best(
     for found, clip in zip(reading.found, fetched.clips, strict=True):
         if clip is None:
             continue
-        frames = FIRST + np.arange(clip.n_frames, dtype=np.float64)
+        frames = FIRST_FRAME + np.arange(clip.n_frames, dtype=np.float64)
         name = f"{_short(found)}.{armature.name}".replace(SEPARATOR, ",")
         action, _ = write_action(armature, name, frames, clip.keys, reading.switches)
         note_clip(action, found)

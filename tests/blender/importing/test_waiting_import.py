@@ -232,7 +232,7 @@ def test_a_script_too_keeps_pose_mode_and_selection_where_all_fails(
 def test_the_dialog_does_not_wait_for_a_large_file(load, walks, monkeypatch, blank):
     importing = load("mocap_assist.importing.importing")
     small = importing.preview(blank.context, [walks / "first.bvh"])
-    monkeypatch.setattr(importing, "QUICKLY_READ", 1000)
+    monkeypatch.setattr(importing, "MAX_PREVIEW_BYTES", 1000)
     monkeypatch.setattr(importing, "read_again", None)
     blank.context.scene.render.fps = 24
 
