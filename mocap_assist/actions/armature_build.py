@@ -110,7 +110,7 @@ def _tips(skeleton: Skeleton) -> set[int]:
 
 
 def _tails(skeleton: Skeleton, tips: set[int]) -> Array:
-    """Where the bone of each joint ends, shape (n_joints, 3), meters."""
+    """Return the tails of the bones of the joints, shape (n_joints, 3), meters."""
     heads = skeleton.rest_positions
     extent = skeleton.extent
     tails = heads.copy()

@@ -1,4 +1,4 @@
-"""Where a densely keyed bone has no keys: there the capture did not see it."""
+"""Find gaps of a densely keyed bone: there it was not observed."""
 
 from collections.abc import Sequence
 

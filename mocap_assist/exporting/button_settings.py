@@ -1,4 +1,4 @@
-"""What an animator chooses for Export."""
+"""Settings of the button Export."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from .formats import ExportedBones, FileFormat
 
 @dataclass(frozen=True, kw_only=True)
 class ExportChoices(Settings):
-    """How a take comes into a file."""
+    """Settings of the export of a take."""
 
     file_format: FileFormat = setting(
         FileFormat.FBX,
@@ -33,7 +33,7 @@ class ExportChoices(Settings):
 
 @dataclass(frozen=True, kw_only=True)
 class ExportFile(Settings):
-    """Where the file lies."""
+    """Location of the exported file."""
 
     filepath: str = setting("", "File to write", label="File")
 

@@ -1,4 +1,4 @@
-"""What the operator of Export adds to a solve: the file browser before it."""
+"""Mix-in of the operator Export: a file browser before the solve."""
 
 import re
 from pathlib import Path

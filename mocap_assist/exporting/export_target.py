@@ -1,4 +1,4 @@
-"""Which file Export writes, and whether it may."""
+"""Choose the file that Export writes, and check that it may."""
 
 import os
 from pathlib import Path

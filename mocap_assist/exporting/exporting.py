@@ -1,4 +1,4 @@
-"""What the button Export reads from the scene, and the file that it writes."""
+"""Read the scene for the button Export, and write the file."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

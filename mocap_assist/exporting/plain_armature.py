@@ -36,7 +36,7 @@ class BoneTree:
 
 @dataclass(frozen=True, eq=False)
 class SampledPoses:
-    """How bones move, without their scale.
+    """Sampled movement of bones, without their scale.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the button Export has done for it: a background Blender writes the file."""
+"""Solve of the button Export: a background Blender writes the file."""
 
 import importlib
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ TAKE = "take"
 
 @dataclass(frozen=True)
 class ExportRequest:
-    """What is exported of a .blend file, and how."""
+    """Content to export from a .blend file, and its settings."""
 
     armature: str
     action: str
@@ -50,12 +50,12 @@ class ExportProblem:
 
 @dataclass(frozen=True)
 class WrittenTake:
-    """What a file has."""
+    """Content of a written file."""
 
     n_frames: int
     n_bones: int
     notes: tuple[str, ...] = ()
-    """What the file does not have, a sentence each."""
+    """Content that the file lacks, a sentence each."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What kinds of recordings were chosen, so that Import shows only what fits them."""
+"""Find the kinds of the chosen recordings, so that Import shows only their settings."""
 
 from collections.abc import Collection, Iterable
 from pathlib import Path

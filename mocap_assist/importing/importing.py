@@ -1,4 +1,4 @@
-"""What the button Import makes of files."""
+"""Import files for the button Import."""
 
 from pathlib import Path
 
@@ -29,7 +29,7 @@ EXTENSIONS = (
     ".bvh", ".amc", ".asf", ".c3d", ".trc", ".skeleton", ".csv", ".json", ".txt", ".npy",
     ".npz", ".mkv", ".mat", ".mvnx", ".tsv", ".vrma",
 )  # fmt: skip
-"""What files of a format known here may be called; what they hold decides."""
+"""File extensions of all supported formats; the content of a file decides."""
 PICTURES = (".png", ".exr")
 """File endings of depth images; a folder of them is a recording."""
 FILTER = ";".join(f"*{extension}" for extension in (*EXTENSIONS, *PICTURES))
@@ -38,9 +38,8 @@ FILTER = ";".join(f"*{extension}" for extension in (*EXTENSIONS, *PICTURES))
 def chosen_paths(operator: bpy.types.Operator) -> list[Path]:
     """Return the files that an operator was given, as a list in a folder or as one path.
 
-    The skeleton that an AMC file needs may be among them: it is found anyway. A folder of
-    pictures of depth may be given itself, by being the one that is looked at, or by files in
-    it.
+    The skeleton of an AMC file may be among them: it is found anyway. A folder of depth images
+    may be given itself, as the folder that is shown, or by files in it.
     """
     paths = chosen_files(operator)
     if not paths and operator.filepath:

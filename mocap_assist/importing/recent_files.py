@@ -34,7 +34,7 @@ def read_again(
 
 
 def bodies_of(path: Path) -> tuple[Body, ...]:
-    """Return the bodies to choose from in a file that was read last; else nothing."""
+    """Return the bodies to choose from in a recent file; empty for any other."""
     state = state_of(path)
     known = [takes for (its_state, _), takes in _read.items() if its_state == state]
     return known[-1][0].bodies if state and known else ()

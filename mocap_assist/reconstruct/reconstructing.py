@@ -38,7 +38,7 @@ SUFFIX = ".reconstructed"
 
 
 class _Reading(NamedTuple):
-    """What an armature plays, and what was recorded for it."""
+    """Action of an armature, and the recording of its joints."""
 
     played: Source
     recorded: Source

@@ -1,4 +1,4 @@
-"""Which bones of source and target play which part: found, edited, or from presets."""
+"""Roles of the bones of source and target: found, edited, or from presets."""
 
 from collections.abc import Callable
 from typing import NamedTuple

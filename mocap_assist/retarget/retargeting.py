@@ -42,7 +42,7 @@ MAX_SHORT_SOLVE_FRAMES = 5000
 
 
 class RetargetScene(NamedTuple):
-    """What Retarget found in the scene."""
+    """Source, target and bone maps that Retarget read from the scene."""
 
     target: bpy.types.Object
     sources: tuple[Source, ...]
@@ -104,7 +104,7 @@ def write_retargeted(
 
 
 def remarks_on_target(source: bpy.types.Object, target: bpy.types.Object) -> tuple[str, ...]:
-    """Return what was reported when the action that the target plays was made of the source."""
+    """Return the remarks stored with the target's retargeted action."""
     played = target.animation_data and target.animation_data.action
     entries = history.history(played) if played else []
     if not entries or entries[-1].get("source_armature") != source.name:
@@ -254,7 +254,7 @@ def _clip(take: ArmatureTake) -> StagedMotion:
 
 
 def _wanted(maps: BoneMaps) -> HumanoidMap:
-    """Return the target's roles, without fingers of which the source knows nothing."""
+    """Return the target's roles, without fingers that the source lacks."""
     joints = maps.target.joints.items()
     kept = {role: bone for role, bone in joints if maps.source.has(role) or not is_finger(role)}
     return HumanoidMap(kept, maps.target.score)

@@ -1,4 +1,4 @@
-"""What the button Unbake has solved for it: few keys for each bone, in its own channels."""
+"""Solve of the button Unbake: sparse keys for each bone, in its own channels."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -38,7 +38,7 @@ AXIS_ANGLE, QUATERNION = "AXIS_ANGLE", "QUATERNION"
 
 @dataclass(frozen=True, eq=False)
 class BoneShape:
-    """How a joint's bone is keyed."""
+    """Channels and rotation mode of a joint's bone."""
 
     bone: str
     mode: str

@@ -1,4 +1,4 @@
-"""Which bones of a rig are keyed for which humanoid role."""
+"""Plan of the rig bones to key for each humanoid role."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -46,7 +46,7 @@ class Plan(NamedTuple):
 
 @dataclass(frozen=True)
 class RigPlan:
-    """How a rig is keyed.
+    """Bones of a rig to key, and their roles.
 
     Attributes
     ----------

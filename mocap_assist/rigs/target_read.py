@@ -23,7 +23,7 @@ SIDES = ("left", "right")
 
 
 def find_roles(armature: bpy.types.Object) -> HumanoidMap:
-    """Find out which bone of a rig is to be keyed for which role.
+    """Find the bone of a rig to key for each role.
 
     Of rigs by Rigify only the controls are asked.
     """

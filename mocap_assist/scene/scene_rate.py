@@ -14,7 +14,7 @@ RATE_ROUNDING = 1e-6
 
 
 class FrameRate(Choice):
-    """What happens where the recording has another rate than the scene."""
+    """Conversion of recordings with another frame rate than the scene."""
 
     AUTO = (
         "auto",

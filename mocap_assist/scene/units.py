@@ -1,4 +1,4 @@
-"""How long one of Blender's units is, in meters."""
+"""Length of one of Blender's units, in meters."""
 
 import bpy
 

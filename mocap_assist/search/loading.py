@@ -1,4 +1,4 @@
-"""What becomes of a match: an action for the active armature, or a strip of its NLA."""
+"""Load a match as an action of the active armature, or as a strip of its NLA."""
 
 from functools import partial
 

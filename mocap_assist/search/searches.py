@@ -1,4 +1,4 @@
-"""What was found last, kept for as long as Blender runs: too much to keep in a .blend file."""
+"""Cache of the last searches while Blender runs; they are too large for a .blend file."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ MAX_CACHED = 8
 
 
 class Search(NamedTuple):
-    """What was found, and for what."""
+    """A query, and the matches that were found."""
 
     number: int
     query: str

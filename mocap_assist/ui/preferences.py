@@ -26,7 +26,7 @@ def _redraw(self: bpy.types.AddonPreferences, context: bpy.types.Context) -> Non
 
 
 class MOCAP_AP_preferences(bpy.types.AddonPreferences):
-    """What holds for every file."""
+    """Preferences for all files."""
 
     bl_idname = EXTENSION
 

@@ -24,7 +24,7 @@ class ConstrainedMarkers:
 
     tracks: Tracks
     filled: NDArray[np.bool_]
-    """Where a missing marker was filled in, shape (n_frames, n_markers)."""
+    """True where a missing marker was filled in, shape (n_frames, n_markers)."""
     moved: Array
     """Displacement of each marker, same shape, meters; 0 where unchanged."""
 

@@ -50,7 +50,7 @@ class Trials(NamedTuple):
 
 
 class AdaptedRelation(NamedTuple):
-    """How a limb follows the rest of the body in this take."""
+    """Relation of a limb to the rest of the body in this take."""
 
     regression: Array
     """From features to deviations, shape (n_features, n_channels)."""

@@ -1,4 +1,4 @@
-"""How the joints of people move together while one of them bridges a gap: learned, shipped."""
+"""Covariance of the joints of people across gaps: learned, shipped."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

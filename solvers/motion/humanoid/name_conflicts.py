@@ -1,4 +1,4 @@
-"""Where names of joints contradict the lengths of the bones, and what to believe then."""
+"""Find names of joints that contradict the lengths of the bones, and choose between both."""
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise

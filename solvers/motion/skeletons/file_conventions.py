@@ -15,7 +15,7 @@ MIN_CERTAIN_CONFIDENCE = 0.995
 
 @dataclass(frozen=True)
 class FileConventions:
-    """How the numbers of a file were interpreted; stated by it, or judged from the body."""
+    """Interpretation of the numbers of a file; stated by it, or judged from the body."""
 
     up: AxisName = "Z"
     """Axis of the file that became +Z."""

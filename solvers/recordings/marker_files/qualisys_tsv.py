@@ -21,7 +21,7 @@ HEAD = re.compile(rb'[\s"]*(FILE_VERSION|NO_OF_FRAMES)\b')
 KEY = re.compile(r"[A-Z][A-Z_]+")
 TAB = b"\t"
 MAX_HEADER_LINES = 2000
-"""Of the header, in which each event has a line."""
+"""Maximum lines of the header; each event has one."""
 MILLIMETER = 0.001
 MARKERS, BODIES, REFERENCE = "MARKER_NAMES", "BODY_NAMES", "REFERENCE"
 COLUMNS_OF_BODY = 16

@@ -35,7 +35,7 @@ MIN_SINGULAR_RATIO = 0.05
 """Singular value, as a ratio to the largest, below which the motion does not determine a
 direction."""
 LEFT_RIGHT = ("UpperLeg", "UpperArm", "Shoulder")
-"""Parts of the body whose left joint is beside the right one."""
+"""Roles whose left and right joints are on opposite sides of the body."""
 
 
 def recording_from_segments(
