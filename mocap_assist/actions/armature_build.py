@@ -23,7 +23,7 @@ def build_armature(
     context: bpy.types.Context,
     name: str,
     skeleton: Skeleton,
-    metres: float,
+    meters: float,
     mode: str,
     *,
     connected: bool = True,
@@ -41,7 +41,7 @@ def build_armature(
     context : bpy.types.Context
     name : of the object and the armature
     skeleton : Skeleton
-    metres : float
+    meters : float
         Length of one of the scene's units.
     mode : rotation mode of the bones
     connected : bool
@@ -58,9 +58,9 @@ def build_armature(
     armature = bpy.data.objects.new(name, bpy.data.armatures.new(name))
     armature.data.display_type, armature.show_in_front = "STICK", True
     add_object(context, armature)
-    heads = skeleton.rest_positions / metres
+    heads = skeleton.rest_positions / meters
     tips = _tips(skeleton)
-    tails = _tails(skeleton, tips) / metres
+    tails = _tails(skeleton, tips) / meters
     bone_names = _add_bones(armature, skeleton, tips, heads, tails, connected)
     for joint, bone in enumerate(bone_names):
         if not bone:

@@ -192,14 +192,14 @@ def _check_captured(markers: _Markers) -> None:
         )
 
 
-def _space(marker: bpy.types.Object, metres: float) -> Placement:
+def _space(marker: bpy.types.Object, meters: float) -> Placement:
     """Return the world placement of the space of the marker's location."""
     check_finite(marker.matrix_basis, marker.name)
     if not marker.matrix_basis.determinant():
         raise InvalidMotionError(f"{marker.name} has scale 0. Give it a scale above 0.")
     around = marker.matrix_world @ marker.matrix_basis.inverted()
     rotation, origin, scale = placement_of(around, marker.name)
-    return Placement(rotation[None], origin[None], scale).in_unit(metres)
+    return Placement(rotation[None], origin[None], scale).in_unit(meters)
 
 
 def _locations(marker: bpy.types.Object, curves: Curves, grid: Grid) -> Array:

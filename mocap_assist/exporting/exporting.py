@@ -69,7 +69,7 @@ def read_export(
         frames=_scene_frames(take, source[0].name),
         fps=scene.render.fps,
         fps_base=scene.render.fps_base,
-        metres=take.rest.scale / scale,
+        meters=take.rest.scale / scale,
         body=take.parts[0].motion.skeleton.names[0],
         file_format=file_format,
         bones=choices.exported_bones,

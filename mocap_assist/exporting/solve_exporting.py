@@ -31,7 +31,7 @@ class ExportRequest:
     """Scene frames, one after the other."""
     fps: int
     fps_base: float
-    metres: float
+    meters: float
     """Length of one unit of the scene."""
     body: str
     """Bone that the body begins with."""

@@ -66,7 +66,7 @@ def write_take(folder: Path, request: ExportRequest, progress: Progress) -> Writ
     )
     scene, armature = bpy.context.scene, bpy.data.objects[request.armature]
     _show(scene, armature, request)
-    units = request.metres / _unit_of(request.file_format)
+    units = request.meters / _unit_of(request.file_format)
     is_rigify = is_control_rig(armature)
     tree = exported_tree(armature.data.bones, request.bones, is_control_rig=is_rigify)
     made = build_plain_armature(armature, tree, units)

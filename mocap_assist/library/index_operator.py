@@ -45,7 +45,7 @@ class WaitingIndex(SettingsMixin):
         """Index while a script waits."""
         self.prepare(context)
         try:
-            return self._tell(run(self._solve()))
+            return self._report(run(self._solve()))
         except MocapAssistError as error:
             return self._give_up(error)
 
@@ -81,7 +81,7 @@ class WaitingIndex(SettingsMixin):
             indexing.end(context, "")
             return self._give_up(error)
         indexing.end(context, message_of(indexed))
-        return self._tell(indexed)
+        return self._report(indexed)
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the operator: another file is loaded, or the window closes."""
@@ -95,7 +95,7 @@ class WaitingIndex(SettingsMixin):
     def _stop_looking(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)
 
-    def _tell(self, indexed: Indexed) -> set[str]:
+    def _report(self, indexed: Indexed) -> set[str]:
         for sentence in indexed.refused:
             logger.warning("%s", sentence)
         more = len(indexed.refused) - MAX_NAMED_FILES

@@ -76,7 +76,7 @@ def draw_job(layout: bpy.types.UILayout, context: bpy.types.Context, *owners: st
 def settings_column(
     layout: bpy.types.UILayout, context: bpy.types.Context, *owners: str
 ) -> bpy.types.UILayout:
-    """Draw the running solve of these owners; return a column that is grey while any runs."""
+    """Draw the running solve of these owners; return a column that is gray while any runs."""
     running = draw_job(layout, context, *owners)
     column = split_column(layout)
     column.enabled = not running

@@ -59,7 +59,7 @@ class KeyedMotion:
     """Whether the location of the topmost bone is keyed."""
     head: Array
     """Rest position of the bone, meters."""
-    metres: float
+    meters: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,8 +197,8 @@ def _location_curve(tree: KeyedMotion, curve: KeyCurve) -> KeyCurve:
     back = inverse(shape.axes)
     return KeyCurve(
         curve.frames,
-        rotate(back, curve.values - tree.head) / tree.metres,
-        rotate(back, curve.slopes) / tree.metres,
+        rotate(back, curve.values - tree.head) / tree.meters,
+        rotate(back, curve.slopes) / tree.meters,
     )
 
 

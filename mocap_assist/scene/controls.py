@@ -69,14 +69,14 @@ class TargetRig:
         The joints that play roles, in the stage, meters.
     humanoid : HumanoidMap
     controls : tuple of Control
-    metres : float
+    meters : float
         Length of the armature's own unit.
     """
 
     skeleton: Skeleton
     humanoid: HumanoidMap
     controls: tuple[Control, ...]
-    metres: float
+    meters: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +125,7 @@ def keys_of(target: TargetRig, poses: WorldPoses, travel: Carried) -> Mapping[st
         carrier = still if control.carrier == NO_CONTROL else moved[control.carrier]
         found[control.bone] = BoneKeys(
             _basis_rotations(control, carrier, delta) if control.rotates else None,
-            _basis_shifts(control, carrier, delta) / target.metres if control.moves else None,
+            _basis_shifts(control, carrier, delta) / target.meters if control.moves else None,
         )
     return found
 

@@ -72,9 +72,9 @@ class Placement:
     """Shape (n_frames, 3), meters."""
     scale: float
 
-    def in_unit(self, metres: float) -> "Placement":
+    def in_unit(self, meters: float) -> "Placement":
         """Return the placement with its meters taken for units of so many meters."""
-        return Placement(self.rotations, metres * self.origins, metres * self.scale)
+        return Placement(self.rotations, meters * self.origins, meters * self.scale)
 
     def points(self, points: Array) -> Array:
         """Take points, shape (n_frames, 3) or (3,), from the space to the world."""

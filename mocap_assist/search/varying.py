@@ -21,7 +21,7 @@ FIRST_FRAME = 1.0
 """Scene frame at which the clips begin."""
 
 
-class _Reading(NamedTuple):
+class _MatchesToVary(NamedTuple):
     found: tuple[Found, ...]
     switches: dict[tuple[str, str], float]
     problems: FetchProblems
@@ -68,7 +68,9 @@ def write_best(
     return message
 
 
-def _read(scene: bpy.types.Scene, armature: bpy.types.Object, settings: UseBundle) -> _Reading:
+def _read(
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: UseBundle
+) -> _MatchesToVary:
     search, _ = searches.chosen(bpy.context)
     usable = [each for each in search.finding.found if each.entry.origin is not None]
     best = tuple(usable[: settings.choices.n_best])
@@ -79,7 +81,7 @@ def _read(scene: bpy.types.Scene, armature: bpy.types.Object, settings: UseBundl
     taken = LoadChoices(part=scene.mocap_assist.load.settings().choices.part)
     pairs = [problem_of(scene, armature, taken, search, found) for found in best]
     problems = FetchProblems(tuple(problem for problem, _ in pairs), tuple(map(_short, best)))
-    return _Reading(best, pairs[0][1], problems)
+    return _MatchesToVary(best, pairs[0][1], problems)
 
 
 def _short(found: Found) -> str:

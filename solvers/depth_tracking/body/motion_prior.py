@@ -133,8 +133,8 @@ def local_pca(prior: MotionPrior, pose: Array) -> LocalPca:
     .. [LOU12] Lou (2012). Acquiring 3D full-body motion from noisy and ambiguous input. PhD
        dissertation, Texas A&M University, section 3.5.
     """
-    n_neighbours = min(N_NEIGHBORS, len(prior.poses))
-    _, nearest = prior.tree.query(pose[N_ROOT:], k=n_neighbours)
+    n_neighbors = min(N_NEIGHBORS, len(prior.poses))
+    _, nearest = prior.tree.query(pose[N_ROOT:], k=n_neighbors)
     successors = following_poses(prior, np.atleast_1d(nearest), N_FOLLOWING)
     mean = successors.mean(axis=0)
     values, vectors = np.linalg.eigh(np.cov(successors.T, bias=True))

@@ -97,7 +97,7 @@ def index_postures(body: BodyPostures, groups: NDArray[np.int32]) -> PostureInde
 def nearest_postures(
     index: PostureIndex,
     query: PostureQuery,
-    n_neighbours: int = 30,
+    n_neighbors: int = 30,
     *,
     n_looked_at: int = 8000,
     progress: Progress = unwatched,
@@ -124,18 +124,18 @@ def nearest_postures(
         Into the library, the nearest first; fewer where the library has fewer.
     distances : shape (n_frames, n_neighbours), square meters
     """
-    n_neighbours = min(n_neighbours, len(index.order))
+    n_neighbors = min(n_neighbors, len(index.order))
     n_frames = len(query.postures)
-    indices = np.empty((n_frames, n_neighbours), dtype=np.intp)
-    distances = np.empty((n_frames, n_neighbours))
+    indices = np.empty((n_frames, n_neighbors), dtype=np.intp)
+    distances = np.empty((n_frames, n_neighbors))
     search_all = len(index.starts) == 2 or len(index.order) <= n_looked_at
     for start in range(0, n_frames, BLOCK_FRAMES):
         part = slice(start, min(start + BLOCK_FRAMES, n_frames))
         points, weights = _as_points(query.slice(part.start, part.stop))
         if search_all:
-            indices[part], distances[part] = _search_all(index, points, weights, n_neighbours)
+            indices[part], distances[part] = _search_all(index, points, weights, n_neighbors)
         else:
-            found = _search_groups(index, points, weights, n_neighbours, n_looked_at)
+            found = _search_groups(index, points, weights, n_neighbors, n_looked_at)
             indices[part], distances[part] = found
         progress(part.stop / n_frames, "Searching similar poses")
     return index.order[indices], distances
@@ -159,12 +159,12 @@ def _relative_distances(
 
 
 def _search_all(
-    index: PostureIndex, points: Single, weights: Single, n_neighbours: int
+    index: PostureIndex, points: Single, weights: Single, n_neighbors: int
 ) -> tuple[Integers, Array]:
     relative = _relative_distances(points, weights, index.points, index.squares)
-    n_taken = min(int(CANDIDATE_FACTOR * n_neighbours), len(index.order))
+    n_taken = min(int(CANDIDATE_FACTOR * n_neighbors), len(index.order))
     candidates = np.argpartition(relative, n_taken - 1, axis=1)[:, :n_taken]
-    return _sort_candidates(index, points, weights, candidates, n_neighbours)
+    return _sort_candidates(index, points, weights, candidates, n_neighbors)
 
 
 def _sort_candidates(
@@ -172,19 +172,19 @@ def _sort_candidates(
     points: Single,
     weights: Single,
     candidates: Integers,
-    n_neighbours: int,
+    n_neighbors: int,
 ) -> tuple[Integers, Array]:
     """Sort candidates by their exact distance."""
     differences = index.points[candidates] - points[:, None]
     squares = np.einsum("fnik,fnik,fi->fn", differences, differences, weights, optimize=False)
-    best = np.argsort(squares, axis=1, kind="stable")[:, :n_neighbours]
+    best = np.argsort(squares, axis=1, kind="stable")[:, :n_neighbors]
     return np.take_along_axis(candidates, best, axis=1), np.take_along_axis(
         squares, best, axis=1
     )
 
 
 def _search_groups(
-    index: PostureIndex, points: Single, weights: Single, n_neighbours: int, n_looked_at: int
+    index: PostureIndex, points: Single, weights: Single, n_neighbors: int, n_looked_at: int
 ) -> tuple[Integers, Array]:
     sizes = np.diff(index.starts)
     ranked = np.argsort(_expected_distances(index, points, weights), axis=1, kind="stable")
@@ -193,7 +193,7 @@ def _search_groups(
     chosen = np.zeros((len(points), len(sizes)), dtype=bool)
     is_promising = np.arange(len(sizes))[None] < n_groups[:, None]
     np.put_along_axis(chosen, ranked, is_promising, axis=1)
-    n_taken = int(CANDIDATE_FACTOR * n_neighbours)
+    n_taken = int(CANDIDATE_FACTOR * n_neighbors)
     best = np.full((len(points), 2 * n_taken), np.inf, dtype=np.float32)
     candidates = np.zeros(best.shape, dtype=np.intp)
     for group in np.flatnonzero(chosen.any(axis=0)):
@@ -203,7 +203,7 @@ def _search_groups(
             points[frames], weights[frames], index.points[rows], index.squares[rows]
         )
         _merge_best(best, candidates, frames, relative, int(rows.start), n_taken)
-    return _sort_candidates(index, points, weights, candidates[:, :n_taken], n_neighbours)
+    return _sort_candidates(index, points, weights, candidates[:, :n_taken], n_neighbors)
 
 
 def _merge_best(

@@ -30,17 +30,17 @@ def each_coordinate(filler: Callable[[Array, float], Array]) -> Callable[[Array,
     return fill
 
 
-def centred(filler: Callable[[Array, float], Array]) -> Callable[[Array, float], Array]:
+def centered(filler: Callable[[Array, float], Array]) -> Callable[[Array, float], Array]:
     """Return the filler working relative to the mean of the markers that are never missing."""
 
     def fill(gapped: Array, frame_rate: float) -> Array:
-        centre = centre_of(gapped)
-        return filler(gapped - centre, frame_rate) + centre
+        center = center_of(gapped)
+        return filler(gapped - center, frame_rate) + center
 
     return fill
 
 
-def centre_of(gapped: Array) -> Array:
+def center_of(gapped: Array) -> Array:
     """Mean of the markers that are never missing, shape (n_frames, 1, 3)."""
     complete = np.isfinite(gapped).all(axis=(0, 2))
     return np.asarray(gapped[:, complete].mean(axis=1, keepdims=True))
@@ -57,7 +57,7 @@ def principal_markers(gapped: Array, frame_rate: float) -> Array:
     """PMA-R2: weighted principal components of the nearby markers.
 
     Gløersen and Federolf (2016), doi:10.1371/journal.pone.0152616, with the parameters given
-    there. Works relative to the mean marker; see `centred`.
+    there. Works relative to the mean marker; see `centered`.
     """
     filled = gapped.copy()
     missing = np.isnan(gapped).any(axis=2)

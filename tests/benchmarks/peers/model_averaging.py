@@ -26,7 +26,7 @@ SHELL = (0.01, 0.99)
 
 
 def model_averaging(gapped: Array, frame_rate: float) -> Array:
-    """Fill every gap; works relative to the mean marker (see `marker_fillers.centred`)."""
+    """Fill every gap; works relative to the mean marker (see `marker_fillers.centered`)."""
     filled = gapped.copy()
     missing = np.isnan(gapped).any(axis=2)
     by_components = principal_markers(gapped, frame_rate)

@@ -104,9 +104,9 @@ def blender(n_repetitions: int) -> list[str]:
         together = [np.concatenate(each) for each in kinds]
         subjects = np.array(whose)
         rows[name] = [
-            *map(_centimetres, together),
+            *map(_centimeters, together),
             number(float(np.nanmean(np.concatenate(jerks)))),
-            *(_centimetres(together[2][subjects == one]) for one in SUBJECTS),
+            *(_centimeters(together[2][subjects == one]) for one in SUBJECTS),
         ]
         print(name, *rows[name], flush=True)
     head = (
@@ -197,7 +197,7 @@ def _compare(
     rests: list[bool],
     lengths: list[int],
 ) -> None:
-    """Add the error of each method on one lost joint, metres."""
+    """Add the error of each method on one lost joint, meters."""
     lost, truth = damaged.where[:, joint], truth_of(damaged.pair)[:, joint]
     if not np.isfinite(truth[lost]).all():
         return
@@ -227,5 +227,5 @@ def _lost_row(
     ]
 
 
-def _centimetres(errors: Array) -> str:
+def _centimeters(errors: Array) -> str:
     return f"{100.0 * np.nanmean(errors):.2f}"

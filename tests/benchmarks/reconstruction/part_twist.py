@@ -53,7 +53,7 @@ def untwisted(result: Reconstruction) -> LimbTwists:
     )
 
 
-def neighbours(result: Reconstruction) -> LimbTwists:
+def neighbors(result: Reconstruction) -> LimbTwists:
     """As [SHJT13]: the neighbors' mean alone."""
     assert result.twists is not None
     return LimbTwists(result.twists.vectors, ignore_flexion=True)
@@ -62,7 +62,7 @@ def neighbours(result: Reconstruction) -> LimbTwists:
 METHODS: dict[str, Callable[[Reconstruction], LimbTwists | None]] = {
     "no twist": untwisted,
     "flexion alone": lambda result: None,
-    "mean of neighbors, as [SHJT13]": neighbours,
+    "mean of neighbors, as [SHJT13]": neighbors,
     "flexion and neighbors (ours)": lambda result: result.twists,
 }
 

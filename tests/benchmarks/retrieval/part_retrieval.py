@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 
 from ..shared.report import BENCHMARK_PICTURES, show
 from ..shared.tables import number, table
-from .retrieval_clips import MISFILED, TRAINING, LabelledClip, library
+from .retrieval_clips import MISFILED, TRAINING, LabeledClip, library
 from .retrieval_damage import DAMAGES
 from .retrieval_default import DefaultLibrary
 from .retrieval_fusion import FusedLibrary
@@ -108,7 +108,7 @@ def found_by(name: str) -> Found:
     return found
 
 
-def _kinect(clips: Sequence[LabelledClip]) -> list[Query]:
+def _kinect(clips: Sequence[LabeledClip]) -> list[Query]:
     return list(queries(clips, kinect_queries(), DAMAGES["clean"], other_actors=True))
 
 

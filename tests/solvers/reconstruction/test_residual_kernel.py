@@ -78,8 +78,8 @@ def test_learning_increases_the_likelihood_of_the_examples(examples):
     local, complete, errors, takes, actors = examples
     learned = learn_kernel((local, complete), errors, takes, actors, simple=False)
     assert (
-        negative_log_likelihood(logs_of(learned), examples, centred=True)[0]
-        < negative_log_likelihood(logs_of(KERNEL), examples, centred=True)[0]
+        negative_log_likelihood(logs_of(learned), examples, centered=True)[0]
+        < negative_log_likelihood(logs_of(KERNEL), examples, centered=True)[0]
     )
 
 
@@ -156,10 +156,10 @@ def logs_of(kernel):
     ])
 
 
-def negative_log_likelihood(logs, examples, centred=False):
+def negative_log_likelihood(logs, examples, centered=False):
     local, complete, errors, takes, actors = examples
     distances = tuple(squared_distances(one, one) for one in (local, complete))
     same = tuple((one[:, None] == one).astype(float) for one in (takes, actors))
     return _negative_log_likelihood(
-        logs, distances, same, errors - errors.mean(axis=0) * centred
+        logs, distances, same, errors - errors.mean(axis=0) * centered
     )

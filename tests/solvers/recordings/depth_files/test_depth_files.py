@@ -148,7 +148,7 @@ def test_archive_defines_camera_rate_and_color(write, rng):
     assert_allclose(messages.frame(1), 10.0 * recording.frame(1), rtol=1e-6)
 
 
-def test_numbers_with_a_point_are_metres(write):
+def test_numbers_with_a_point_are_meters(write):
     depth = pictures().astype(np.float32) / 1000
     depth[2, 3] = np.nan
 

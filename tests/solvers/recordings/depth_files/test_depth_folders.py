@@ -34,7 +34,7 @@ def heard():
     return text, lambda fraction, message="": text.append(message)
 
 
-def test_tum_is_five_thousandths_of_a_metre_and_has_its_colors(tmp_path, depth):
+def test_tum_is_five_thousandths_of_a_meter_and_has_its_colors(tmp_path, depth):
     folder = tum(tmp_path, depth, 100.0 + np.arange(9) / 30.0)
 
     recording = read_depth(folder, LENS)

@@ -153,7 +153,7 @@ def test_lines_may_end_in_any_way(write, values, layout, end):
     assert_allclose(recording.tracks.positions, upright(values))
 
 
-def test_scale_is_metres_per_unit(write, values):
+def test_scale_is_meters_per_unit(write, values):
     assert_allclose(
         read_recording(write(azure_columns(values)), scale=1.0).tracks.positions,
         1000 * upright(values),

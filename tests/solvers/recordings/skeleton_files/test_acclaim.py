@@ -110,12 +110,12 @@ def test_joints_agree_with_the_model_recorded_beside_the_markers(recordings):
     motion = read_acclaim(recordings / "mocap" / "05_13.amc")
 
     positions = forward_kinematics(motion).positions
-    for label, joint in CENTRES.items():
+    for label, joint in CENTERS.items():
         seen = positions[:, motion.skeleton.index(joint)]
         assert_allclose(seen, centers[f"Dance:{label}0"], atol=0.0005, err_msg=joint)
 
 
-CENTRES = {
+CENTERS = {
     "PEL": "root", "LHJ": "lfemur", "RHJ": "rfemur", "LFE": "ltibia", "RFE": "rtibia",
     "LTI": "lfoot", "RTI": "rfoot", "LBK": "upperback", "UBK": "thorax", "TRX": "lowerneck",
     "LNK": "upperneck", "UNK": "head", "HED": "head_end", "LCL": "lhumerus", "RCL": "rhumerus",
