@@ -11,7 +11,7 @@ from solvers.depth_scene.camera import Camera
 from solvers.motion import Motion
 from solvers.rotations.representations import quaternion_from_rotation_vector
 from tests.benchmarks.depth.blender_depth import blender_depth, difference, our_depth
-from tests.benchmarks.depth.depth_more import (
+from tests.benchmarks.depth.depth_extra_sequences import (
     TAKES,
     before_camera,
     body_of,
@@ -83,7 +83,7 @@ def test_actors_rotate_sit_and_cross_arms_as_described():
 
 @pytest.mark.usefixtures("recordings")
 def test_joints_of_a_sequence_are_inside_the_visible_body(monkeypatch, tmp_path):
-    monkeypatch.setattr("tests.benchmarks.depth.depth_more.BUILD", tmp_path)
+    monkeypatch.setattr("tests.benchmarks.depth.depth_extra_sequences.BUILD", tmp_path)
     sequence = more_sequence.__wrapped__("seated, side")
 
     depth = sequence.depth.frame(10)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from ...solvers.settings import Settings, setting
 from ..actions.frames import FrameRange
-from .formats import ExportedBones, FileFormat
+from .export_formats import ExportedBones, FileFormat
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ from ...solvers.processes import ScratchFolder
 from ...solvers.progress import Progress, unwatched
 from ..jobs.in_blender import BackgroundBlender
 from ..jobs.job import EXTENSION, run
-from .formats import ExportedBones, FileFormat
+from .export_formats import ExportedBones, FileFormat
 
 WRITER = "mocap_assist.exporting.write_file"
 TAKE = "take"

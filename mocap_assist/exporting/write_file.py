@@ -16,7 +16,7 @@ from ...solvers.rotations import IDENTITY, inverse, multiply
 from ..actions.take import skeleton_of
 from ..blender import compat
 from ..scene.rig import Placement, read_rig
-from .formats import FileFormat
+from .export_formats import FileFormat
 from .plain_armature import (
     BoneTree,
     SampledPoses,

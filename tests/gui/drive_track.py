@@ -15,8 +15,8 @@ from time import perf_counter
 
 import bgui
 import bpy
+from driver_scene import empty_scene, settle, unfold_alone
 from mathutils import Quaternion
-from stage import empty_scene, settle, unfold_alone
 
 FOLDER = Path(__file__).parent
 WALK = FOLDER / "walk.npz"

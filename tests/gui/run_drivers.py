@@ -48,7 +48,7 @@ RECORDINGS = {
     "reconstruct": {"kinect.txt": "kinect/irds/217_18_0_3_1_wheelchair.txt"},
     "retarget": {},
     "skin": {"walking.glb": "corpus/glb/mixamo_blender/walking.glb"},
-    "stands": {
+    "import_framing": {
         "walk.bvh": "mocap/cmu_walk/07_01.bvh",
         "mixamo.fbx": "corpus/fbx/mixamo_web/Walking.fbx",
         "kinect.txt": "kinect/irds/215_18_0_5_1_stand.txt",
@@ -126,7 +126,7 @@ def lay_out(name: str, folder: Path) -> list[Path]:
             _cut(SHARED / "data" / source, path, FIRST_FRAMES[name])
         else:
             shutil.copy(SHARED / "data" / source, path)
-    return [FOLDER / "stage.py", *sorted(folder.iterdir())]
+    return [FOLDER / "driver_scene.py", *sorted(folder.iterdir())]
 
 
 def _cut(source: Path, path: Path, n_frames: int) -> None:

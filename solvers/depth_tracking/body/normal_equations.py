@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Integers
-from .kinematics import N_SEGMENTS
+from .segment_kinematics import N_SEGMENTS
 from .tables import CAPSULE_SEGMENTS
 
 

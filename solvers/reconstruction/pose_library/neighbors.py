@@ -113,16 +113,16 @@ def nearest_postures(
     ----------
     index : PostureIndex
     query : Query
-    n_neighbours : int
+    n_neighbors : int
     n_looked_at : int
         Minimum number of poses compared with each frame; more find more of the true nearest.
     progress : Progress
 
     Returns
     -------
-    indices : shape (n_frames, n_neighbours)
+    indices : shape (n_frames, n_neighbors)
         Into the library, the nearest first; fewer where the library has fewer.
-    distances : shape (n_frames, n_neighbours), square meters
+    distances : shape (n_frames, n_neighbors), square meters
     """
     n_neighbors = min(n_neighbors, len(index.order))
     n_frames = len(query.postures)

@@ -6,7 +6,7 @@ from ...errors import InvalidMotionError
 from ...motion import JointRecording
 from ..postures import ClipPostures, clip_postures
 from .clip import Clip, ClipEntry
-from .segments import CLIP_RATE_HZ
+from .clip_segments import CLIP_RATE_HZ
 
 
 @dataclass(frozen=True, eq=False)

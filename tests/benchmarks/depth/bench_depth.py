@@ -25,7 +25,7 @@ from ..peers.icp_trackers import articulated_icp, ray_constrained_icp
 from ..shared.report import BENCHMARK_PICTURES, DOCS, Report, show
 from ..shared.tables import Scores
 from .colored_sequences import colored, others_motions
-from .depth_more import more_sequence
+from .depth_extra_sequences import more_sequence
 from .depth_sequences import (
     SCORED,
     TRUTH,

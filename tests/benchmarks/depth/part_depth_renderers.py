@@ -6,7 +6,7 @@ import numpy as np
 
 from ..shared.tables import table
 from .blender_depth import blender_depth, difference, our_depth
-from .depth_more import KINECT, TAKES, before_camera, body_of, view_center
+from .depth_extra_sequences import KINECT, TAKES, before_camera, body_of, view_center
 
 FRAMES = 3
 """Of each sequence."""

@@ -10,7 +10,6 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from solvers.depth_scene.recording import DepthRecording
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.body.normal_equations import (
     SurfaceRows,
@@ -22,6 +21,7 @@ from solvers.depth_tracking.body.normal_equations import (
     sum_equations,
 )
 from solvers.depth_tracking.body.pose_priors import joint_limits, predict_pose, stay_near
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.terms.hypothesis import Hypothesis, render_hypothesis
 from solvers.depth_tracking.terms.observation import Observation, observe, rays_through_pixels
 

@@ -43,7 +43,7 @@ from solvers.retrieval import (
     load_clip_library,
     open_clip_library,
 )
-from solvers.retrieval.index.segments import CLIP_RATE_HZ, describe_segments
+from solvers.retrieval.index.clip_segments import CLIP_RATE_HZ, describe_segments
 from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
 from solvers.rotations.representations import (
     IDENTITY,

@@ -7,7 +7,7 @@ from typing import Any
 
 from .constants import ROOT, Constant, constants_of
 from .evaluate import Outcome
-from .not_tuning import reason
+from .fixed_constants import reason
 
 DOCUMENT = ROOT / "docs" / "benchmarks" / "sensitivity.md"
 MOVES_PERCENT = 0.5

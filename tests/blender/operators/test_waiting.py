@@ -194,9 +194,9 @@ def test_closing_its_window_ends_the_solve(noisy, press_clean, window, blank):
 @pytest.fixture
 def real_manager(window, blank, load, monkeypatch):
     """Let what ends by itself, without the button's context, find the pretended window."""
-    found = SimpleNamespace(**vars(load("mocap_assist.runtime.ends_with_file").bpy))
+    found = SimpleNamespace(**vars(load("mocap_assist.runtime.file_change_handlers").bpy))
     found.context = window.context
-    monkeypatch.setattr(load("mocap_assist.runtime.ends_with_file"), "bpy", found)
+    monkeypatch.setattr(load("mocap_assist.runtime.file_change_handlers"), "bpy", found)
 
 
 def test_opening_another_file_ends_the_solve(noisy, press_clean, window, blank, real_manager):

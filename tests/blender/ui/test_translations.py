@@ -55,7 +55,7 @@ def test_every_translated_text_is_in_a_panel(blank, load, draw, actor, translati
     elsewhere = {"Motion Model", "Left Foot Contact", "Right Foot Contact", "Made from {raw}"}
     elsewhere |= {"Previous", "Next"}
     # An unknown figure, as for feet that never stand, is not shown.
-    elsewhere |= {label for label, *_ in load("mocap_assist.panels.figures").FIGURES}
+    elsewhere |= {label for label, *_ in load("mocap_assist.panels.figure_rows").FIGURES}
 
     assert set(translations.TEXTS) - shown - elsewhere == set()
 

@@ -10,8 +10,8 @@ from drawn_bodies import CAMERA, drawn, recorded, waving
 
 from solvers.depth_scene.camera import Camera
 from solvers.depth_scene.recording import DepthRecording
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import BodyModel, default_body
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.capture import CaptureSettings
 from solvers.errors import InvalidMotionError
