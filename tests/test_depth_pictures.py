@@ -43,9 +43,9 @@ def test_blender_renders_the_same_depth_images():
     assert (ours > 0.0).sum(axis=(1, 2)).min() > 1000
     found = difference(ours, blender)
     assert found.covered < 0.005
-    assert np.quantile(found.millimetres, 0.99) < 0.5
+    assert np.quantile(found.millimeters, 0.99) < 0.5
     moved = difference(np.roll(ours, 1, axis=2), blender)
-    assert moved.covered > 0.02 and np.quantile(moved.millimetres, 0.99) > 5.0
+    assert moved.covered > 0.02 and np.quantile(moved.millimeters, 0.99) > 5.0
 
 
 def test_differences_compare_pixels_of_both_images():
@@ -54,7 +54,7 @@ def test_differences_compare_pixels_of_both_images():
 
     found = difference(ours, others)
 
-    assert_allclose(found.millimetres, [5.0, 5.0])
+    assert_allclose(found.millimeters, [5.0, 5.0])
     assert found.covered == pytest.approx(0.5)
 
 

@@ -90,7 +90,7 @@ class CleanBundle(NamedTuple):
     planting: PlantSettings
 
 
-QUICK = (
+FINISHING_SETTINGS = (
     "strength",
     "bones",
     "result_as",

@@ -73,5 +73,5 @@ class ReconstructBundle(NamedTuple):
     planting: PlantSettings
 
 
-QUICK = ("result_as", "plant_feet", *(item.name for item in fields(PlantSettings)))
+FINISHING_SETTINGS = ("result_as", "plant_feet", *(item.name for item in fields(PlantSettings)))
 """Names of the settings that can be changed without solving again."""

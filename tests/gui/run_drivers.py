@@ -106,10 +106,10 @@ def passes(name: str, zip_path: Path) -> bool:
         ended = subprocess.run(
             command, env=os.environ | options, capture_output=True, text=True, check=False
         )
-        status, said = ended.returncode, ended.stdout + ended.stderr
+        status, output = ended.returncode, ended.stdout + ended.stderr
     else:
-        status, said = own_window.run(zip_path, driver, given, picture)
-    (out / "run.txt").write_text(said, encoding="utf-8")
+        status, output = own_window.run(zip_path, driver, given, picture)
+    (out / "run.txt").write_text(output, encoding="utf-8")
     n_pictures = len(list(out.glob("*.png")))
     ending = "passed" if status == 0 else f"FAILED with status {status}, see {out / 'run.txt'}"
     print(f"{name}: {ending}; {n_pictures} pictures.", flush=True)

@@ -40,7 +40,7 @@ def compare(cases: list[Case], methods: Mapping[str, Method], title: str) -> lis
     found = [
         Scores(f"{title}: angle channels", "mean absolute error, degrees"),
         Scores(f"{title}: local rotations", "geodesic angle, degrees"),
-        Scores(f"{title}: root position", "mean absolute error per axis, millimetres"),
+        Scores(f"{title}: root position", "mean absolute error per axis, millimeters"),
     ]
     for case in cases:
         started = perf_counter()

@@ -30,7 +30,7 @@ DEV_TAKES = {
 }
 """Settings are chosen on these alone. By file, the number of points that are markers: what
 follows them is computed."""
-LONGEST = 0.5
+MAX_GAP_FRACTION = 0.5
 """Of a take: longer gaps leave too little to learn from."""
 GAPS = ((1, 0.5), (1, 2.0), (5, 0.5), (5, 2.0))
 """Number of markers and seconds."""
@@ -42,11 +42,11 @@ def compare_markers(fillers: Mapping[str, Filler], draws: int, dev: bool) -> lis
     takes = _development() if dev else _scored()
     scores = Scores(
         f"Gaps of optical markers, {draws} in each of {len(takes)} takes",
-        "mean distance, millimetres; spread over gaps",
+        "mean distance, millimeters; spread over gaps",
     )
     for take, tracks in takes.items():
         for n_markers, seconds in GAPS:
-            if seconds > LONGEST * tracks.n_frames / tracks.frame_rate:
+            if seconds > MAX_GAP_FRACTION * tracks.n_frames / tracks.frame_rate:
                 continue
             for draw in range(draws):
                 gapped = _cut(tracks, take, n_markers, seconds, draw)

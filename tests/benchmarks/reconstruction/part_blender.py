@@ -179,7 +179,7 @@ def rest(n_repetitions: int) -> list[str]:
                     _compare(each, joint, made, found, rests, lengths)
     rested, weights = np.array(rests), np.array(lengths)
     rows = {
-        name: _lost_row(np.array(errors), found, rested, weights)
+        name: _missing_row(np.array(errors), found, rested, weights)
         for name, errors in found.items()
     }
     head = (
@@ -209,7 +209,7 @@ def _compare(
         found[name].append(float(np.linalg.norm(off, axis=-1).mean()))
 
 
-def _lost_row(
+def _missing_row(
     errors: Array,
     found: dict[str, list[float]],
     rest: NDArray[np.bool_],

@@ -234,10 +234,10 @@ def _searched(path: Path, n_queries: int) -> tuple[float, ...]:
         "--search",
         str(path),
     ]
-    said = subprocess.run(
+    output = subprocess.run(
         [*words, "--queries", str(n_queries)], check=True, capture_output=True, text=True
     ).stdout
-    return tuple(json.loads(said).values())
+    return tuple(json.loads(output).values())
 
 
 def _megabytes(path: Path) -> float:

@@ -145,7 +145,7 @@ def damaged(found: Mapping[str, Found]) -> str:
     return f"{title}\n\n{table(['method', *DAMAGES], rows)}\n"
 
 
-def seen_by_kinect(found: Mapping[str, Found]) -> str:
+def accuracy_on_kinect(found: Mapping[str, Found]) -> str:
     """Return MAP of Kinect takes, set by set."""
     sets = np.array([clip.actor for clip in kinect_queries()])
     names = list(dict.fromkeys(sets))

@@ -78,7 +78,7 @@ def test_markers_of_no_known_set_are_refused_in_a_sentence(blank, bring, load, t
     assert set(blank.data.objects) == before
 
 
-def test_without_markers_the_button_says_why(blank):
+def test_button_gives_a_reason_without_markers(blank):
     with pytest.raises(RuntimeError, match="Select a marker set"):
         blank.ops.mocap_assist.solve_skeleton()
 

@@ -144,7 +144,7 @@ def test_only_so_much_is_kept(overlay, holder, monkeypatch):
     assert len(overlay._cache) == overlay.MAX_CACHED
 
 
-def test_a_stray_key_far_out_is_drawn_without_what_lies_between(blank, overlay, holder):
+def test_distant_key_is_drawn_without_frames_between(blank, overlay, holder):
     raw, _ = overlay.raw_and_clean(holder)
     marker, (action, _) = raw.markers[0], raw.sources[0]
     curve = action.layers[0].strips[0].channelbags[0].fcurves[0]

@@ -101,9 +101,9 @@ def test_all_that_can_be_read_comes_in(press, window, load, monkeypatch, blank, 
         "first",
         "second",
     ]
-    ((kind, said),) = window.reports
+    ((kind, message),) = window.reports
     assert kind == {"ERROR"}
-    assert said.startswith("1 of 3 files failed.") and "cut.bvh" in said
+    assert message.startswith("1 of 3 files failed.") and "cut.bvh" in message
     assert operator.note.startswith("first: an armature of 31 bones, 317 frames at 120 Hz.")
     assert nothing_is_left(window)
     percentages = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
@@ -194,9 +194,9 @@ def test_a_fault_over_the_only_file_is_a_sentence_and_leaves_nothing(
 
     assert everything() == before
     assert nothing_is_left(window)
-    ((kind, said),) = window.reports
+    ((kind, message),) = window.reports
     assert kind == {"ERROR"}
-    assert "first.bvh: this is a bug in Mocap Assist (ZeroDivisionError at" in said
+    assert "first.bvh: this is a bug in Mocap Assist (ZeroDivisionError at" in message
 
 
 def test_one_at_a_time(press, window, blank):

@@ -77,8 +77,8 @@ def bring(blank):
 
     def press(*paths):
         for path in paths:
-            said = blank.ops.mocap_assist.import_recording(filepath=str(path))
-            assert said == {"FINISHED"}
+            status = blank.ops.mocap_assist.import_recording(filepath=str(path))
+            assert status == {"FINISHED"}
         return blank.context.object
 
     return press

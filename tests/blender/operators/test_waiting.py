@@ -156,8 +156,8 @@ def test_changes_during_the_solve_are_not_overwritten(
     assert wait(button, window) == {"CANCELLED"}
 
     assert noisy.animation_data.action == action and blank.data.actions.keys() == actions
-    kind, said = window.reports[-1]
-    assert kind == {"ERROR"} and "Actor was changed during the solve; nothing was" in said
+    kind, message = window.reports[-1]
+    assert kind == {"ERROR"} and "Actor was changed during the solve; nothing was" in message
 
 
 def test_armature_deleted_during_the_solve_is_reported(noisy, press_clean, window, blank):

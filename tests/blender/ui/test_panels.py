@@ -19,7 +19,7 @@ def test_every_panel_is_on_the_mocap_tab(blank, panel, suffix):
     assert kind.bl_category == "Mocap"
 
 
-def test_clean_panel_says_what_to_select_without_an_armature(draw):
+def test_clean_panel_names_what_to_select_without_an_armature(draw):
     shown = draw("MOCAP_PT_clean")
 
     assert "mocap_assist.denoise" in shown

@@ -173,10 +173,10 @@ def test_very_thick_body_is_reported_as_a_possible_wrong_focal_length():
 
 
 def test_wrong_scale_is_refused_or_reported():
-    in_millimetres = changed(recorded(waving(3)), lambda _, depth: 1000.0 * depth)
+    in_millimeters = changed(recorded(waving(3)), lambda _, depth: 1000.0 * depth)
 
     try:
-        message = " ".join(caught(in_millimetres).remarks)
+        message = " ".join(caught(in_millimeters).remarks)
     except InvalidMotionError as error:
         message = str(error)
     assert "scale" in message or "depth is in meters" in message

@@ -97,7 +97,7 @@ def test_turns_are_about_the_axes_of_each_bone(read):
     assert_allclose(elbow[2], [10, 0, 20], atol=1e-12)
 
 
-def test_joints_agree_with_the_model_recorded_beside_the_markers(recordings):
+def test_joints_agree_with_the_model_recorded_with_the_markers(recordings):
     """CMU's 05_13.c3d holds the joint centers that the same software computed.
 
     Its axes are turned by a quarter. The toes are left out: see `read_acclaim`.
