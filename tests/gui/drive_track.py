@@ -85,7 +85,7 @@ def key_wrongly(armature):
         bone.keyframe_insert("rotation_quaternion", frame=frame)
 
 
-def look(number, name, frames):
+def show_frames(number, name, frames):
     for frame in frames:
         bpy.context.scene.frame_set(frame)
         yield from settle()
@@ -118,7 +118,7 @@ def correct(armature):
     assert scene.frame_current == CORRECTED
     after = armature.animation_data.action
     assert after is not before and after.name.endswith(".retracked"), after.name
-    yield from look(6, "mended", (11, 15, 19))
+    yield from show_frames(6, "mended", (11, 15, 19))
     with bgui.override("WINDOW"):
         bpy.ops.object.mode_set(mode="OBJECT")
 
@@ -156,12 +156,12 @@ def steps():
     armature = next(each for each in bpy.data.objects if each.type == "ARMATURE")
     points = bpy.data.objects[name]
     bpy.context.window_manager.mocap_assist_body = True
-    yield from look(2, "body", (1, 15))
+    yield from show_frames(2, "body", (1, 15))
     cost = time_of_a_redraw(armature)
     print(f"bgui: the body costs {1000 * cost:.1f} ms per redraw")
     assert cost < MAX_REDRAW_S
     key_wrongly(armature)
-    yield from look(3, "wrong", (11, 15))
+    yield from show_frames(3, "wrong", (11, 15))
     yield from correct(armature)
     yield from keep_on_esc(points)
 

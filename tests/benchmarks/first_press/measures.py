@@ -30,7 +30,7 @@ class TurningPoint:
     direction: tuple[float, float, float]
 
     @property
-    def place(self) -> str:
+    def label(self) -> str:
         """The end and the frame."""
         return f"{ENDS[self.end]} frame {self.frame}"
 
@@ -43,7 +43,7 @@ class Figures:
     position: float
     speed_kept: float
     """Fastest speed of hands and feet, relative to the truth's."""
-    reach_lost: float
+    excursion_loss: float
     worst: TurningPoint | None
 
 

@@ -9,7 +9,7 @@ from modal_events import event, nothing_is_left, wait
 def everything(blank):
     """What an import that comes to nothing must leave as it was."""
 
-    def look():
+    def scene_state():
         view, scene = blank.context.view_layer, blank.context.scene
         kinds = (blank.data.objects, blank.data.armatures, blank.data.actions)
         active = view.objects.active
@@ -21,7 +21,7 @@ def everything(blank):
             (scene.frame_start, scene.frame_end, scene.frame_current),
         )
 
-    return look
+    return scene_state
 
 
 @pytest.fixture

@@ -82,7 +82,7 @@ def test_actor_who_sways_by_millimeters_is_no_rigid_cluster(rng):
     assert find_rigid_clusters(tracks_of(swaying)) == ()
 
 
-def test_level_of_a_foot_on_tiptoe_or_with_one_place_for_both_markers_is_limited():
+def test_level_of_a_foot_on_tiptoe_or_with_coinciding_markers_is_limited():
     toe = np.zeros((20, 3))
     for heel in (toe, toe + 0.2 * UP, toe + 0.02 * UP):
         leveling = _leveling_matrix(heel, toe)

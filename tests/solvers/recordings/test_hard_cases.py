@@ -49,13 +49,13 @@ def read(motion: Motion, path, **settings):
     return motion, " ".join(messages)
 
 
-def places(motion) -> dict[str, np.ndarray]:
+def positions_of(motion) -> dict[str, np.ndarray]:
     positions = world_poses(motion.skeleton, motion.rotations, motion.root_positions).positions
     return {name: positions[:, k] for k, name in enumerate(motion.skeleton.names)}
 
 
 def is_standing(motion) -> bool:
-    found = places(motion)
+    found = positions_of(motion)
     return bool(((found["head"] - found["pelvis"])[:, 2] > 0.2 * stature(motion)).all())
 
 
@@ -96,14 +96,14 @@ def test_small_child_or_adult_in_inches_is_reported(tmp_path):
 def test_who_lies_all_the_time_lies_or_is_a_question(tmp_path, hips, degrees):
     motion, messages = read(body(root=turn(degrees), hips=hips), tmp_path / "a.bvh")
 
-    lies = np.ptp(np.stack(list(places(motion).values()))[..., 2]) < 1.0
+    lies = np.ptp(np.stack(list(positions_of(motion).values()))[..., 2]) < 1.0
     assert lies or "is taken for up, but the take does not show it clearly" in messages
 
 
 def test_a_handstand_stays_one(tmp_path):
     motion, messages = read(body(root=turn(180.0), hips=(0.0, 0.0, 1.2)), tmp_path / "a.bvh")
 
-    found = places(motion)
+    found = positions_of(motion)
     assert ((found["head"] - found["pelvis"])[:, 2] < -0.4).all()
     assert "does not show it clearly" in messages
 
@@ -116,7 +116,7 @@ def test_a_handstand_is_put_on_its_hands(tmp_path):
         upside_down.rotations[:, NAMES.index(f"{side}_shoulder")] = rotations
     motion, _ = read(upside_down, tmp_path / "a.bvh", floor=FloorPlacement.ALWAYS, up=Axis.Y)
 
-    wrist = places(motion)["left_wrist"][:, 2]
+    wrist = positions_of(motion)["left_wrist"][:, 2]
     assert wrist.min() == pytest.approx(0.03, abs=0.02)
 
 
@@ -127,7 +127,7 @@ def test_a_first_frame_far_above_the_take_is_no_floor(tmp_path):
 
     motion, _ = read(take, tmp_path / "a.bvh", floor=FloorPlacement.ALWAYS)
 
-    assert places(motion)["left_foot"][1:, 2] == pytest.approx(0.02, abs=0.02)
+    assert positions_of(motion)["left_foot"][1:, 2] == pytest.approx(0.02, abs=0.02)
     assert is_standing(motion)
 
 
@@ -155,7 +155,7 @@ def test_a_platform_stays_where_it_is(tmp_path):
 def test_hips_at_the_origin_are_put_on_the_floor(tmp_path):
     motion, _ = read(body(hips=(0.0, 0.0, 0.0)), tmp_path / "a.bvh", floor=FloorPlacement.AUTO)
 
-    assert places(motion)["left_foot"][:, 2] == pytest.approx(0.02, abs=0.03)
+    assert positions_of(motion)["left_foot"][:, 2] == pytest.approx(0.02, abs=0.03)
     assert not conventions_of(motion).has_floor
 
 
@@ -179,7 +179,7 @@ def test_wrapper_root_is_no_evidence(tmp_path):
 
 @pytest.mark.parametrize("up", ["Y", "Z", "-Y"])
 def test_joints_in_an_array_stand_whatever_is_up(tmp_path, up):
-    joints = np.stack(list(places(body()).values()), axis=1)
+    joints = np.stack(list(positions_of(body()).values()), axis=1)
     axes = {"Z": joints, "Y": joints[..., [0, 2, 1]] * (1, 1, -1), "-Y": None}
     axes["-Y"] = axes["Y"] * (1, -1, -1)
     np.save(tmp_path / "a.npy", axes[up])
@@ -193,7 +193,7 @@ def test_joints_in_an_array_stand_whatever_is_up(tmp_path, up):
 
 
 def test_unnamed_points_with_y_up_stand(tmp_path):
-    joints = np.stack(list(places(body()).values()), axis=1)[:, :17]
+    joints = np.stack(list(positions_of(body()).values()), axis=1)[:, :17]
     np.save(tmp_path / "a.npy", joints[..., [0, 2, 1]] * (1, 1, -1))
 
     points = read_as(tmp_path / "a.npy")
@@ -212,9 +212,9 @@ def test_axes_that_are_given_are_taken_for_every_kind(tmp_path, axis):
     up = {"X": 0, "Y": 1, "Z": 2}[axis.axis[-1]]
     sign = -1.0 if axis.axis[0] == "-" else 1.0
     plain, _ = read(body(), tmp_path / "b.bvh")
-    x, y, z = np.moveaxis(places(plain)["head"], -1, 0)
+    x, y, z = np.moveaxis(positions_of(plain)["head"], -1, 0)
     in_file = np.stack([x, z, -y], axis=-1)
-    assert places(motion)["head"][:, 2] == pytest.approx(sign * in_file[:, up], abs=1e-3)
+    assert positions_of(motion)["head"][:, 2] == pytest.approx(sign * in_file[:, up], abs=1e-3)
 
 
 def test_bones_along_one_axis_at_rest_stand(tmp_path):
@@ -268,7 +268,7 @@ def test_an_actor_far_below_the_floor_is_put_on_it(tmp_path):
 
     motion, messages = read(take, tmp_path / "a.bvh", floor=FloorPlacement.AUTO)
 
-    assert places(motion)["b_left_foot"][:, 2] == pytest.approx(0.02, abs=0.03)
+    assert positions_of(motion)["b_left_foot"][:, 2] == pytest.approx(0.02, abs=0.03)
     assert "the floor" not in messages
 
 

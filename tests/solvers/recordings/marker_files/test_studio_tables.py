@@ -141,7 +141,7 @@ def test_qualisys_columns_are_found_without_stamps_or_titles(read_any, stamps, t
     assert_allclose(tracks.positions, points / 1000.0, atol=1e-6)
 
 
-def test_frames_without_any_marker_keep_their_place(read_any):
+def test_frames_without_any_marker_keep_their_index(read_any):
     points = POINTS.copy()
     points[2] = np.nan
 
