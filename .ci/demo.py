@@ -111,8 +111,8 @@ def make_sample(path: Path) -> Any:
 def import_clip(bpy: Any, path: Path) -> Any:
     """Import a BVH file in meters with Blender's own importer; return the armature."""
     read_bvh = installed("solvers.recordings").read_bvh
-    in_metres, as_written = read_bvh(path), read_bvh(path, scale=1.0)
-    reach = [np.abs(motion.skeleton.offsets).sum() for motion in (in_metres, as_written)]
+    in_meters, as_written = read_bvh(path), read_bvh(path, scale=1.0)
+    reach = [np.abs(motion.skeleton.offsets).sum() for motion in (in_meters, as_written)]
     bpy.ops.import_anim.bvh(
         filepath=str(path),
         global_scale=reach[0] / reach[1],

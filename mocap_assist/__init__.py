@@ -32,7 +32,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take them away again."""
+    """Unregister all parts of the extension."""
     from . import batch, former_settings, scene_properties, ui
     from .actions import contact_keys
     from .depth import depth_preview

@@ -124,7 +124,7 @@ class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
 
 
 class MOCAP_PG_bone_map(bpy.types.PropertyGroup):
-    """Which bones play which part, and of which armatures."""
+    """Roles of the bones of a source and a target armature."""
 
     source: bpy.props.StringProperty(name="Source")
     target: bpy.props.StringProperty(name="Target")
@@ -174,7 +174,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
 
 
 class MOCAP_PG_job(bpy.types.PropertyGroup):
-    """How far the running solve is."""
+    """Progress of the running solve."""
 
     running: bpy.props.BoolProperty(name="Running")
     fraction: bpy.props.FloatProperty(name="Done", subtype="FACTOR", min=0.0, max=1.0)

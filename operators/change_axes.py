@@ -28,10 +28,10 @@ class MOCAP_OT_change_axes(SettingsMixin, ActOperator, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.set_properties(noted_change(imported_object(context)))
-        asked: set[str] = context.window_manager.invoke_props_dialog(
+        status: set[str] = context.window_manager.invoke_props_dialog(
             self, width=WIDTH, confirm_text="Change"
         )
-        return asked
+        return status
 
     def act(self, context: bpy.types.Context) -> str:
         owner = imported_object(context)

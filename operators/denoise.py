@@ -3,7 +3,7 @@
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.clean.button_settings import QUICK, CleanBundle
+from ..mocap_assist.clean.button_settings import FINISHING_SETTINGS, CleanBundle
 from ..mocap_assist.clean.cleaning import read_cleaning, write_cleaned
 from ..mocap_assist.runtime.selection import why_not_clean
 from ..mocap_assist.runtime.solver_operator import SolverOperator
@@ -23,5 +23,5 @@ class MOCAP_OT_denoise(SolverOperator, bpy.types.Operator):
     def draw(self, context: bpy.types.Context) -> None:
         """Offer only settings without a new solve in the redo panel; a solve would block."""
         self.layout.use_property_split = True
-        for name in QUICK:
+        for name in FINISHING_SETTINGS:
             self.layout.prop(self, name)

@@ -25,23 +25,23 @@ class MOCAP_OT_import_recording(FilesOperator, bpy.types.Operator):
     bl_options: ClassVar = {"REGISTER", "PRESET"}
 
     filter_glob: StringProperty(default=FILTER, options=HIDDEN)
-    _asked = False
+    _was_invoked = False
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        if not self._asked or in_background():
+        if not self._was_invoked or in_background():
             return super().execute(context)
         # Blender frees an operator that the file browser has executed, so another one waits.
         bpy.ops.mocap_assist.import_job("INVOKE_DEFAULT", **self.given())
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        self._asked = True
+        self._was_invoked = True
         if not chosen_paths(self):
             context.window_manager.fileselect_add(self)
             return {"RUNNING_MODAL"}
         paths = chosen_paths(self)
         self.note, self.kinds = preview(context, paths), kinds_of(paths)
-        asked: set[str] = context.window_manager.invoke_props_dialog(
+        status: set[str] = context.window_manager.invoke_props_dialog(
             self, width=WIDTH, confirm_text="Import"
         )
-        return asked
+        return status

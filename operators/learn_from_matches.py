@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ..mocap_assist.blender.act_operator import ActOperator
-from ..mocap_assist.search.learning import CLEAN, RECONSTRUCT, learn_from_best
+from ..mocap_assist.search.examples_from_matches import CLEAN, RECONSTRUCT, learn_from_best
 from ..mocap_assist.search.searches import why_none
 
 

@@ -3,7 +3,7 @@
 import bpy
 
 from ..mocap_assist.blender.settings_properties import settings_from
-from ..mocap_assist.reconstruct.button_settings import QUICK, ReconstructBundle
+from ..mocap_assist.reconstruct.button_settings import FINISHING_SETTINGS, ReconstructBundle
 from ..mocap_assist.reconstruct.reconstructing import (
     read_reconstructing,
     why_not_reconstruct,
@@ -27,5 +27,5 @@ class MOCAP_OT_reconstruct(SolverOperator, bpy.types.Operator):
     def draw(self, context: bpy.types.Context) -> None:
         """Offer only settings without a new solve in the redo panel; a solve would block."""
         self.layout.use_property_split = True
-        for name in QUICK:
+        for name in FINISHING_SETTINGS:
             self.layout.prop(self, name)

@@ -41,9 +41,9 @@ class Choice(Enum):
     """
 
     help: str
-    """What choosing it does, for the tooltip."""
+    """Effect of the choice, for the tooltip."""
     label: str
-    """What the user interface calls it."""
+    """Name in the user interface."""
 
     def __new__(cls, value: str, help: str, label: str = "") -> Self:
         """Give a member its value, and to the value its help and label."""

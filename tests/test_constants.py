@@ -32,7 +32,7 @@ def has_float(constant: Constant) -> bool:
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_tuned_floats_say_their_unit_and_source(family):
+def test_tuned_floats_have_a_unit_and_a_source(family):
     without_source = [
         constant.key
         for constant in constants_of(family)

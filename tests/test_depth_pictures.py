@@ -11,7 +11,7 @@ from solvers.depth_scene.camera import Camera
 from solvers.motion import Motion
 from solvers.rotations.representations import quaternion_from_rotation_vector
 from tests.benchmarks.depth.blender_depth import blender_depth, difference, our_depth
-from tests.benchmarks.depth.depth_more import (
+from tests.benchmarks.depth.depth_extra_sequences import (
     TAKES,
     before_camera,
     body_of,
@@ -43,9 +43,9 @@ def test_blender_renders_the_same_depth_images():
     assert (ours > 0.0).sum(axis=(1, 2)).min() > 1000
     found = difference(ours, blender)
     assert found.covered < 0.005
-    assert np.quantile(found.millimetres, 0.99) < 0.5
+    assert np.quantile(found.millimeters, 0.99) < 0.5
     moved = difference(np.roll(ours, 1, axis=2), blender)
-    assert moved.covered > 0.02 and np.quantile(moved.millimetres, 0.99) > 5.0
+    assert moved.covered > 0.02 and np.quantile(moved.millimeters, 0.99) > 5.0
 
 
 def test_differences_compare_pixels_of_both_images():
@@ -54,7 +54,7 @@ def test_differences_compare_pixels_of_both_images():
 
     found = difference(ours, others)
 
-    assert_allclose(found.millimetres, [5.0, 5.0])
+    assert_allclose(found.millimeters, [5.0, 5.0])
     assert found.covered == pytest.approx(0.5)
 
 
@@ -83,7 +83,7 @@ def test_actors_rotate_sit_and_cross_arms_as_described():
 
 @pytest.mark.usefixtures("recordings")
 def test_joints_of_a_sequence_are_inside_the_visible_body(monkeypatch, tmp_path):
-    monkeypatch.setattr("tests.benchmarks.depth.depth_more.BUILD", tmp_path)
+    monkeypatch.setattr("tests.benchmarks.depth.depth_extra_sequences.BUILD", tmp_path)
     sequence = more_sequence.__wrapped__("seated, side")
 
     depth = sequence.depth.frame(10)

@@ -53,32 +53,32 @@ def test_boast_is_found_and_so_is_modesty(rng):
     assert (boast.right < boast.reported).all()
 
 
-def test_sure_counts_what_was_reported_nine_tenths_or_more():
+def test_high_confidence_counts_reports_of_nine_tenths_or_more():
     bins = _bins(np.array([0.5, 0.9, 0.95, 1.0]), np.array([True, True, False, True]))
 
-    assert bins.sure == pytest.approx((0.75, 2 / 3))
+    assert bins.high_confidence == pytest.approx((0.75, 2 / 3))
 
 
-def test_missing_samples_are_kept_apart(case):
+def test_missing_samples_are_counted_separately(case):
     calibration, reported = Calibration(), np.full(case.truth.rotations.shape[:2], 0.95)
 
     calibration.add(case, _missing_turned(case, degrees=20.0), reported)
 
     n_missing = case.truth.rotations[case.missing_frames][:, case.missing_joints].shape[:2]
     n_all = case.truth.n_frames * int(case.channels.joints.sum())
-    assert calibration.kind(GOOD).sure == pytest.approx((1.0, 1.0))
-    assert calibration.kind(MISSING).sure == pytest.approx((1.0, 0.0))
+    assert calibration.kind(GOOD).high_confidence == pytest.approx((1.0, 1.0))
+    assert calibration.kind(MISSING).high_confidence == pytest.approx((1.0, 0.0))
     both = calibration.kind(GOOD).joined([calibration.kind(MISSING)])
-    assert both.sure[1] == pytest.approx(1.0 - np.prod(n_missing) / n_all)
+    assert both.high_confidence[1] == pytest.approx(1.0 - np.prod(n_missing) / n_all)
 
 
-def test_outliers_are_kept_apart(case):
+def test_outliers_are_counted_separately(case):
     case, calibration = replace(case, condition=BURSTS), Calibration()
 
     calibration.add(case, case.recording, np.ones(case.truth.rotations.shape[:2]))
 
-    assert calibration.kind(GOOD).sure[1] == 1.0
-    assert calibration.kind(OUTLIERS).sure[1] < 0.1
+    assert calibration.kind(GOOD).high_confidence[1] == 1.0
+    assert calibration.kind(OUTLIERS).high_confidence[1] < 0.1
 
 
 def test_tables_and_curve_are_written(case, tmp_path):

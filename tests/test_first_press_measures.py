@@ -25,21 +25,21 @@ def kick(monkeypatch) -> Case:
 def test_turning_point_is_the_top_of_the_kick(kick):
     points = turning_points(kick.truth)
 
-    assert [point.place for point in points] == [f"leftFoot frame {KICK_FRAME}"]
+    assert [point.label for point in points] == [f"leftFoot frame {KICK_FRAME}"]
 
 
 def test_truth_loses_nothing(kick):
     figures = measure(kick, kick.truth)
 
     assert figures.angle == pytest.approx(0.0, abs=1e-6)
-    assert figures.reach_lost == pytest.approx(0.0, abs=1e-6)
+    assert figures.excursion_loss == pytest.approx(0.0, abs=1e-6)
     assert figures.speed_kept == pytest.approx(1.0)
 
 
 def test_shortened_kick_loses_reach_and_speed(kick):
     figures = measure(kick, _swing(45.0))
 
-    assert figures.reach_lost > 5.0
+    assert figures.excursion_loss > 5.0
     assert figures.speed_kept < 1.0
 
 

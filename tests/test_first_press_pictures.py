@@ -30,7 +30,7 @@ def walk(monkeypatch) -> Motion:
     return motion
 
 
-@pytest.mark.parametrize("measured", ["angle", "position", "reach_lost"])
+@pytest.mark.parametrize("measured", ["angle", "position", "excursion_loss"])
 def test_the_worst_joint_and_frame_are_found(walk, measured):
     case = Case(TAKES[3], CLEAN)
 

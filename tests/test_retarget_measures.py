@@ -7,7 +7,7 @@ from solvers.motion import Motion, Skeleton, find_humanoid_map
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 from tests.benchmarks.retarget.part_unbake import to_and_fro
-from tests.benchmarks.retarget.retarget_measures import acted, ik_figures, seen_figures
+from tests.benchmarks.retarget.retarget_measures import acted, ik_figures, world_figures
 
 WALK = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
 ROLES = find_humanoid_map(WALK.skeleton)
@@ -26,7 +26,7 @@ def grown(by: float, sunk: float = 0.0, rotations=None) -> Motion:
 def test_scaled_body_has_no_error():
     given = acted(grown(1.3), ROLES)
 
-    figures, reached = seen_figures(SOURCE, given), ik_figures(SOURCE, given)
+    figures, reached = world_figures(SOURCE, given), ik_figures(SOURCE, given)
 
     ratios = {"knee acceleration", "elbow acceleration"}
     assert [figures[name] for name in ratios] == pytest.approx([1.0, 1.0])
@@ -40,7 +40,7 @@ def test_sunken_body_is_measured_although_its_limbs_reach():
     given = acted(grown(1.0, sunk=0.3), ROLES)
     lowest = 100.0 * SOURCE.poses.positions[..., 2].min()
 
-    figures, reached = seen_figures(SOURCE, given), ik_figures(SOURCE, given)
+    figures, reached = world_figures(SOURCE, given), ik_figures(SOURCE, given)
 
     assert reached["IK: foot cm"] == pytest.approx(0.0, abs=1e-9)
     assert figures["hand cm"] == pytest.approx(30.0) and figures["head cm"] == pytest.approx(
@@ -57,7 +57,7 @@ def test_leaning_trunk_is_measured():
     lean = quaternion_from_rotation_vector([np.radians(10.0), 0.0, 0.0])
     rotations[:, spine] = multiply(rotations[:, spine], lean)
 
-    figures = seen_figures(SOURCE, acted(grown(1.0, rotations=rotations), ROLES))
+    figures = world_figures(SOURCE, acted(grown(1.0, rotations=rotations), ROLES))
 
     assert 5.0 < figures["trunk at most"] <= 10.1
     assert figures["head cm"] > 2.0

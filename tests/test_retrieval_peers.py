@@ -14,7 +14,7 @@ from tests.benchmarks.peers.complete_postures import learn_complete_postures, re
 from tests.benchmarks.peers.motion_volumes import volume
 from tests.benchmarks.peers.string_matching import common_fraction
 from tests.benchmarks.retrieval.pyramid_methods import BODY, PARTS, only
-from tests.benchmarks.retrieval.retrieval_clips import LabelledClip
+from tests.benchmarks.retrieval.retrieval_clips import LabeledClip
 from tests.benchmarks.retrieval.retrieval_damage import DAMAGES
 from tests.benchmarks.retrieval.retrieval_fusion import Fused, manifold_ranking
 from tests.benchmarks.retrieval.retrieval_methods import CUBES, METHODS, PUBLISHED, RANKED
@@ -52,17 +52,17 @@ class ByNumber:
         return np.array(self.fixed_distances, dtype=float)
 
 
-def labelled(rng, labels, actors=None):
+def labeled(rng, labels, actors=None):
     actors = actors or ["a"] * len(labels)
     return [
-        LabelledClip(str(index), label, actor, moving(rng))
+        LabeledClip(str(index), label, actor, moving(rng))
         for index, (label, actor) in enumerate(zip(labels, actors, strict=True))
     ]
 
 
 def test_precision_equals_that_of_a_hand_computed_order(rng):
     """Right, wrong, right, wrong: average precision (1 + 2/3) / 2; one of the first two."""
-    library = labelled(rng, ["x", "y", "x", "y", "x"])
+    library = labeled(rng, ["x", "y", "x", "y", "x"])
     requested = list(queries(library, library[4:], DAMAGES["clean"]))
 
     (found,) = answer(ByNumber([1, 2, 3, 4, 0]), library, requested)
@@ -74,7 +74,7 @@ def test_precision_equals_that_of_a_hand_computed_order(rng):
 
 
 def test_queries_exclude_their_own_clip_and_actor(rng):
-    library = labelled(rng, ["x", "x", "x", "y"], ["a", "a", "b", "c"])
+    library = labeled(rng, ["x", "x", "x", "y"], ["a", "a", "b", "c"])
 
     alone = list(queries(library, library, DAMAGES["clean"]))
     others = list(queries(library, library, DAMAGES["clean"], other_actors=True))

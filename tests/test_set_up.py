@@ -69,7 +69,7 @@ WORKING = [
 
 
 @pytest.mark.parametrize("path", WORKING)
-def test_python_is_found_in_every_usual_folder(machine, path):
+def test_python_is_found_in_every_default_folder(machine, path):
     machine.add(path)
 
     assert machine.find_python() == sys.executable

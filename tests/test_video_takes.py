@@ -52,7 +52,7 @@ def test_each_fault_shows_in_its_figure(walk, rng, faults, column, least):
     assert after > before + least
 
 
-def test_swapped_legs_exchange_the_feet_for_a_few_frames(walk):
+def test_swapped_legs_swap_the_feet_for_a_few_frames(walk):
     damaged = damage(walk, Faults(swaps_per_s=3.0), np.random.default_rng(1))
 
     ankles = foot_joints(walk)[:, 0]

@@ -60,9 +60,17 @@ the manual, and every text of the code: docstrings, labels, tooltips, help, mess
 A phrase of several words is one entry."""
 RETIRED_IN_NAMES = {
     "calmed": "smoothed",
+    "calms": "smooths",
+    "centimetre": "centimeter",
+    "centimetres": "centimeters",
+    "centre": "center",
+    "centred": "centered",
+    "centres": "centers",
     "colour": "color",
     "colours": "colors",
     "companion": "reference marker",
+    "companions": "reference markers",
+    "coregionalised": "coregionalized",
     "doubt": "low confidence",
     "doubtful": "low confidence",
     "doubts": "low confidence, error scores",
@@ -73,6 +81,8 @@ RETIRED_IN_NAMES = {
     "foretells": "predicts",
     "foretold": "predicted",
     "girdle": "clavicle",
+    "girdles": "clavicles",
+    "grey": "gray",
     "haste": "time-warp rate, speed gain",
     "lest": "until, unless",
     "licence": "license",
@@ -80,8 +90,15 @@ RETIRED_IN_NAMES = {
     "likes": "neighbors",
     "loud": "weight",
     "mended": "corrected, repaired",
+    "metre": "meter",
+    "metres": "meters",
+    "millimetre": "millimeter",
+    "millimetres": "millimeters",
     "neighbour": "neighbor",
+    "neighbours": "neighbors",
     "nobody": "empty, no person",
+    "normalise": "normalize",
+    "normalised": "normalized",
     "onlooker": "observer",
     "reckon": "compute",
     "somebody": "user, actor, any",
@@ -96,6 +113,17 @@ RETIRED_IN_NAMES = {
 }
 """What no module, class, function, argument, attribute or variable of the code and its tests is
 called any more, as a word of its name, and what is used instead."""
+STORED_NAMES = {
+    "CENTIMETRES", "COREGIONALISED", "METRES", "MILLIMETRES", "grey_opening",
+    "metres",
+}  # fmt: skip
+"""Settings fields and items of their choices, which presets and command lines have stored, and
+`metres`, which belongs to such a choice. `grey_opening` is a function of SciPy."""
+RETIRED_FIRST_WORDS = {
+    "FARTHEST", "FEWEST", "FINEST", "LARGEST", "LEAST", "LONGEST", "MOST", "NARROWEST",
+    "SHORTEST", "SMALLEST", "TALLEST", "WIDEST",
+}  # fmt: skip
+"""No constant of a module begins with these; MAX_ or MIN_, a noun and a unit say more."""
 WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
 
 
@@ -131,6 +159,8 @@ def names() -> dict[str, str]:
         for part in path.with_suffix("").parts:
             found |= {word.lower(): f"{path}" for word in WORD.findall(part)}
         for line, name in names_of(tree):
+            if name in STORED_NAMES:
+                continue
             where = f"{path}:{line} {name}"
             found |= {word.lower(): where for word in WORD.findall(name)}
     return found
@@ -160,6 +190,16 @@ def names_of(tree: ast.Module) -> Iterator[tuple[int, str]]:
             yield node.lineno, node.attr
 
 
+def constants_of(tree: ast.Module) -> Iterator[str]:
+    """Names in capitals that a module assigns."""
+    for node in tree.body:
+        if isinstance(node, ast.Assign | ast.AnnAssign):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            for target in targets:
+                names = (each.id for each in ast.walk(target) if isinstance(each, ast.Name))
+                yield from (name for name in names if name.isupper())
+
+
 @pytest.mark.parametrize("retired", RETIRED_IN_TEXTS)
 def test_texts_for_users_have_no_retired_word(retired):
     pattern = re.compile(rf"(?<![\w-]){re.escape(retired)}(?![\w-])", re.IGNORECASE)
@@ -181,6 +221,24 @@ def test_names_have_no_retired_word(retired):
     )
 
 
+@pytest.mark.parametrize("folders", [CODE, TESTS], ids=["code", "tests"])
+def test_constants_begin_with_no_superlative(folders):
+    superlatives = [
+        f"{module.relative_to(ROOT)}: {name}"
+        for module, tree in modules(folders)
+        for name in constants_of(tree)
+        if name.strip("_").partition("_")[0] in RETIRED_FIRST_WORDS
+    ]
+
+    assert not superlatives, "write MAX_ or MIN_, a noun, and a unit"
+
+
+def test_stored_names_are_in_use():
+    used = {name for _, tree in modules(CODE) for _, name in names_of(tree)}
+
+    assert used >= STORED_NAMES
+
+
 def test_texts_and_names_are_collected():
     """What the other tests look through is there at all."""
     assert any("Clean" in text for where, text in texts() if where.startswith("operators"))
@@ -189,3 +247,4 @@ def test_texts_and_names_are_collected():
     assert found == ["Doc.", "text"]
     named = {name for _, name in names_of(ast.parse("def f(a): b.c = d"))}
     assert named == {"f", "a", "b", "c", "d"}
+    assert [*constants_of(ast.parse("A, B = 1, 2\nC: int = 3\nd = 4"))] == ["A", "B", "C"]

@@ -47,7 +47,7 @@ def _paths(animated: bpy.types.Object, more: Iterable[Source]) -> set[str]:
 
 
 class _Value(NamedTuple):
-    """What one of Blender's own properties, or a custom one, holds."""
+    """Value of one of Blender's own properties, or of a custom one."""
 
     owner: str
     """Data path of what has the property; nothing for the object itself."""

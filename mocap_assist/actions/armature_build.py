@@ -9,17 +9,21 @@ from ..blender.data_names import fitting_name
 from ..scene.rig import END
 from ..scene.scene_objects import add_object, in_object_mode
 
-SHORT = 1e-3  # of the body's extent: a bone that short has no direction to speak of
-STUB = 0.05  # fraction of the body's extent: length of a bone without a direction
-LAST = 0.4  # of its parent's length: length of a bone whose tail was never captured
-STRAIGHT = 0.5  # cosine of the angle up to which a child continues its parent bone
+MIN_BONE_FRACTION = 1e-3
+"""Length of a bone, as a fraction of the body's extent, below which it has no direction."""
+STUB_FRACTION = 0.05
+"""Length of a bone without a direction, as a fraction of the body's extent."""
+LAST_BONE_RATIO = 0.4
+"""Length of a bone whose tail was never captured, as a ratio to its parent's length."""
+MIN_CONTINUATION_COSINE = 0.5
+"""Cosine of the angle up to which a child continues its parent bone."""
 
 
 def build_armature(
     context: bpy.types.Context,
     name: str,
     skeleton: Skeleton,
-    metres: float,
+    meters: float,
     mode: str,
     *,
     connected: bool = True,
@@ -37,7 +41,7 @@ def build_armature(
     context : bpy.types.Context
     name : of the object and the armature
     skeleton : Skeleton
-    metres : float
+    meters : float
         Length of one of the scene's units.
     mode : rotation mode of the bones
     connected : bool
@@ -54,9 +58,9 @@ def build_armature(
     armature = bpy.data.objects.new(name, bpy.data.armatures.new(name))
     armature.data.display_type, armature.show_in_front = "STICK", True
     add_object(context, armature)
-    heads = skeleton.rest_positions / metres
+    heads = skeleton.rest_positions / meters
     tips = _tips(skeleton)
-    tails = _tails(skeleton, tips) / metres
+    tails = _tails(skeleton, tips) / meters
     bone_names = _add_bones(armature, skeleton, tips, heads, tails, connected)
     for joint, bone in enumerate(bone_names):
         if not bone:
@@ -101,29 +105,29 @@ def _tips(skeleton: Skeleton) -> set[int]:
         and skeleton.is_end_site(joint)
         and skeleton.names[joint] == f"{skeleton.names[parent]}_end"
         and len(skeleton.children[parent]) == 1
-        and vectors[joint] > SHORT * skeleton.extent
+        and vectors[joint] > MIN_BONE_FRACTION * skeleton.extent
     }
 
 
 def _tails(skeleton: Skeleton, tips: set[int]) -> Array:
-    """Where the bone of each joint ends, shape (n_joints, 3), meters."""
+    """Return the tails of the bones of the joints, shape (n_joints, 3), meters."""
     heads = skeleton.rest_positions
     extent = skeleton.extent
     tails = heads.copy()
     for joint, parent in enumerate(skeleton.parents):
         vector = _bone_vector(skeleton, joint)
-        if np.linalg.norm(vector) <= SHORT * extent:
+        if np.linalg.norm(vector) <= MIN_BONE_FRACTION * extent:
             above = tails[parent] - heads[parent] if parent >= 0 else np.array([0.0, 0.0, 1.0])
             length = np.linalg.norm(above)
-            size = LAST * length if parent >= 0 else STUB * extent
-            vector = above / length * max(size, SHORT * extent)
+            size = LAST_BONE_RATIO * length if parent >= 0 else STUB_FRACTION * extent
+            vector = above / length * max(size, MIN_BONE_FRACTION * extent)
         tails[joint] = heads[joint] + vector
     return tails
 
 
 def _bone_vector(skeleton: Skeleton, joint: int) -> Array:
     """Return the vector from a joint to its child, straightest child, or mean of all."""
-    distant = SHORT * skeleton.extent
+    distant = MIN_BONE_FRACTION * skeleton.extent
     lengths = np.linalg.norm(skeleton.offsets, axis=-1)
     children = [child for child in skeleton.children[joint] if lengths[child] > distant]
     if not children:
@@ -136,6 +140,6 @@ def _bone_vector(skeleton: Skeleton, joint: int) -> Array:
     cosines = (
         vectors @ skeleton.offsets[joint] / lengths[children] / max(lengths[joint], distant)
     )
-    if len(children) == 1 or cosines.max() > STRAIGHT:
+    if len(children) == 1 or cosines.max() > MIN_CONTINUATION_COSINE:
         return np.asarray(vectors[int(np.argmax(cosines))])
     return np.asarray(vectors.mean(axis=0))

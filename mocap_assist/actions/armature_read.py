@@ -14,7 +14,7 @@ from ..scene.body import body_root
 from ..scene.history import playing_strips, was_thinned
 from ..scene.origin import origin_of
 from ..scene.rig import Placement, Rig, read_rig
-from ..scene.units import metres_per_unit
+from ..scene.units import meters_per_unit
 from .bone_channels import animated_curves, bone_path, read_bone, read_space
 from .curves import Channel
 from .frames import FrameRange, Grid, key_grid, range_bounds
@@ -84,7 +84,7 @@ def read_take(
     space = read_space(keyed.armature, keyed.curves, grid.frames)
     travels = [each.travels for each in channels]
     top = rig.bones.index(root) if root in rig.bones else body_root(rig, travels)
-    space = space.in_unit(metres_per_unit(keyed.scene, rig, top, space.scale))
+    space = space.in_unit(meters_per_unit(keyed.scene, rig, top, space.scale))
     rate = keyed.scene.render.fps / keyed.scene.render.fps_base / grid.step
     return (yield from _assembled(rig, top, grid, tuple(channels), space, rate))
 

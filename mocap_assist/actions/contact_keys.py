@@ -83,7 +83,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Do so no longer."""
+    """Remove the handler."""
     handlers.load_post.remove(_give_back)
 
 

@@ -5,7 +5,8 @@ from typing import Any, NamedTuple
 
 import bpy
 
-FAR = 1048574.0  # Blender's last frame
+LAST_FRAME = 1048574.0
+"""Blender's MAXFRAME, frames."""
 # Cycles repeats the keys before the first and after the last, and changes none of them.
 HARMLESS = {"CYCLES"}
 
@@ -52,7 +53,9 @@ def _acts(modifier: bpy.types.FModifier) -> bool:
 def _pieces(settings: dict[str, Any], written: Written) -> Iterator[dict[str, Any]]:
     """Restrict a modifier to the frames before, and to those after the new keys."""
     limited = settings["use_restricted_range"]
-    start, stop = (settings["frame_start"], settings["frame_end"]) if limited else (-FAR, FAR)
+    start, stop = -LAST_FRAME, LAST_FRAME
+    if limited:
+        start, stop = settings["frame_start"], settings["frame_end"]
     if written.key_before is not None and start < written.first:
         piece = {"use_restricted_range": True, "frame_start": start, "frame_end": stop}
         if stop > written.key_before:
@@ -69,11 +72,11 @@ def _pieces(settings: dict[str, Any], written: Written) -> Iterator[dict[str, An
 
 def _steps(settings: dict[str, Any], written: Written) -> Iterator[dict[str, Any]]:
     """Do the same for Stepped, which has a range of its own, and nothing to fade."""
-    start = settings["frame_start"] if settings["use_frame_start"] else -FAR
-    stop = settings["frame_end"] if settings["use_frame_end"] else FAR
+    start = settings["frame_start"] if settings["use_frame_start"] else -LAST_FRAME
+    stop = settings["frame_end"] if settings["use_frame_end"] else LAST_FRAME
     for low, high in (
-        (start, min(stop, -FAR if written.key_before is None else written.key_before)),
-        (max(start, FAR if written.key_after is None else written.key_after), stop),
+        (start, min(stop, -LAST_FRAME if written.key_before is None else written.key_before)),
+        (max(start, LAST_FRAME if written.key_after is None else written.key_after), stop),
     ):
         if low < high:
             yield {"use_frame_start": True, "frame_start": low,
@@ -104,7 +107,7 @@ def _add(curve: bpy.types.FCurve, kind: str, settings: dict[str, Any]) -> None:
         # memory behind it as the address of a curve, and now and then crashes.
         for name, values in zip(("min", "max"), limits, strict=True):
             modifier.control_points.foreach_set(name, values)
-    modifier.frame_start = -FAR  # Blender keeps the start before the end at every step
+    modifier.frame_start = -LAST_FRAME  # Blender keeps the start before the end at every step
     for name in ("frame_end", "frame_start"):
         setattr(modifier, name, settings.pop(name))
     for name, value in settings.items():

@@ -146,7 +146,7 @@ def write_values(
     old = _column(points, "co")
     times = old[:, 0]
     first, last = np.searchsorted(times, [frames[0] - ON_FRAME, frames[-1] + ON_FRAME])
-    keep_outside(curve, Written(frames[0], frames[-1], *_neighbours(times, first, last)))
+    keep_outside(curve, Written(frames[0], frames[-1], *_adjacent_keys(times, first, last)))
     new = {
         "co": np.stack([frames, values], axis=1, dtype=np.float32, casting="same_kind"),
         "interpolation": interpolation,
@@ -195,7 +195,7 @@ def _chosen(
     return np.asarray(np.abs(marked[indices] - frames) <= ON_FRAME)
 
 
-def _neighbours(
+def _adjacent_keys(
     times: NDArray[Any], first: int, last: int
 ) -> tuple[float | None, float | None]:
     """Return the frames of the keys before `first` and after `last`, if they exist."""

@@ -12,15 +12,17 @@ from .new_action import write_channels
 
 POINT = "mocap_assist_point"
 """Custom property of an empty: the name of its point, which Blender may have to change."""
-SIZE = 0.015  # meters: radius of the sphere that shows a marker
-CROSS = 0.2  # meters: half the length of the cross that shows their parent
+MARKER_RADIUS_M = 0.015
+"""Radius in meters of the sphere that shows a marker."""
+CROSS_RADIUS_M = 0.2
+"""Half the length, in meters, of the cross that shows the parent of the markers."""
 
 
 def build_empties(
     context: bpy.types.Context,
     name: str,
     points: tuple[str, ...],
-    metres: float,
+    meters: float,
     collection: bpy.types.Collection | None = None,
 ) -> tuple[bpy.types.Object, tuple[bpy.types.Object, ...]]:
     """Add an empty for each point, and a parent empty, which becomes active.
@@ -33,18 +35,18 @@ def build_empties(
     context : bpy.types.Context
     name : of the one that holds them
     points : names
-    metres : length of one of the scene's units
+    meters : length of one of the scene's units
     collection : bpy.types.Collection, optional
     """
     in_object_mode(context)
     holder = bpy.data.objects.new(fitting_name(name), None)
-    holder.empty_display_size = CROSS / metres
+    holder.empty_display_size = CROSS_RADIUS_M / meters
     holder.instance_type, holder.show_instancer_for_viewport = "COLLECTION", False
     made = []
     for point in points:
         empty = bpy.data.objects.new(fitting_name(point), None)
         empty.empty_display_type = "SPHERE"
-        empty.empty_display_size = SIZE / metres
+        empty.empty_display_size = MARKER_RADIUS_M / meters
         empty[POINT] = point
         empty.parent = holder
         made.append(empty)
@@ -64,7 +66,7 @@ def write_tracks(
     empties: tuple[bpy.types.Object, ...],
     tracks: Tracks,
     frames: Array,
-    metres: float,
+    meters: float,
     *,
     progress: Progress = unwatched,
 ) -> bpy.types.Action:
@@ -76,7 +78,7 @@ def write_tracks(
     empties : one for each point
     tracks : Tracks
     frames : shape (n_frames,), scene frames
-    metres : length of one of the scene's units
+    meters : length of one of the scene's units
     progress : Progress
 
     Returns
@@ -89,7 +91,7 @@ def write_tracks(
         progress(point / len(empties), "Writing keys")
         slot = action.slots.new("OBJECT", fitting_name(tracks.names[point]))
         bag = compat.ensure_channelbag(action, slot)
-        positions = tracks.positions[:, point] / metres
+        positions = tracks.positions[:, point] / meters
         write_channels(bag, "location", "Location", frames, positions)
         compat.assign(empty, action, slot)
     return action

@@ -1,4 +1,4 @@
-"""Which armature an action was made for."""
+"""Find the armature that an action was made for."""
 
 import bpy
 

@@ -11,18 +11,20 @@ from ...solvers.errors import InvalidMotionError
 from ...solvers.settings import Choice
 from .curves import ON_FRAME, Channel
 
-WIDEST_STEP = (
-    2.5  # frames between keys up to which a take counts as recorded, not keyed by hand
-)
-MIN_ON_GRID = 0.9  # fraction of keys of each curve that must be on the grid
-OFF_GRID = 0.05  # of a step from it at most
-MIN_FILLED = 0.5
+MAX_RECORDED_STEP_FRAMES = 2.5
+"""Frames between keys up to which a take counts as recorded, not keyed by hand."""
+MIN_GRID_KEYS_FRACTION = 0.9
+"""Minimum fraction of the keys of each curve that are on the grid."""
+MAX_GRID_OFFSET_STEPS = 0.05
+"""Offset of a key from the grid, in steps, up to which it is on the grid."""
+MIN_FILLED_FRACTION = 0.5
 """Fraction of the grid that has keys. Exporters add keys between frames where motion is fast;
 these do not make the grid finer."""
 MAX_FRAMES_PER_KEY = 20
 MAX_FRAMES_OF_FEW_KEYS = 10_000
 """A range with this many times more frames than keys is no take: one key lies far outside."""
-SPACING_TOLERANCE = 0.1  # fraction by which times between keys may differ
+SPACING_TOLERANCE = 0.1
+"""Maximum relative difference of regular times between keys."""
 
 
 class FrameRange(Choice):
@@ -96,7 +98,7 @@ def key_grid(
     longest = max((channel.keys[:, 0] for channel in keyed), key=len)
     start = min(channel.keys[:, 0].min() for channel in keyed)
     stop = max(channel.keys[:, 0].max() for channel in keyed)
-    step, phase = _grid_of(longest, np.inf if recorded else WIDEST_STEP)
+    step, phase = _grid_of(longest, np.inf if recorded else MAX_RECORDED_STEP_FRAMES)
     first, last = max(start, bounds[0]), min(stop, bounds[1])
     lowest = np.ceil((first - phase - ON_FRAME) / step)
     n_frames = np.floor((last - phase + ON_FRAME) / step) + 1 - lowest
@@ -119,9 +121,9 @@ def _grid_of(times: Array, widest: float) -> tuple[float, float]:
     span, spacing = times[-1] - times[0], _spacing(times)
     step = float(span / max(np.round(span / spacing), 1.0))
     grid_positions = (times - times[0]) / step
-    on_grid = np.abs(grid_positions - np.round(grid_positions)) < OFF_GRID
-    filled = len(times) >= MIN_FILLED * (span / step + 1)
-    if step <= widest and on_grid.mean() >= MIN_ON_GRID and filled:
+    on_grid = np.abs(grid_positions - np.round(grid_positions)) < MAX_GRID_OFFSET_STEPS
+    filled = len(times) >= MIN_FILLED_FRACTION * (span / step + 1)
+    if step <= widest and on_grid.mean() >= MIN_GRID_KEYS_FRACTION and filled:
         return step, float(times[0])
     return 1.0, float(np.ceil(times[0] - ON_FRAME))
 

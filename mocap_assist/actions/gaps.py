@@ -1,4 +1,4 @@
-"""Where a densely keyed bone has no keys: there the capture did not see it."""
+"""Find gaps of a densely keyed bone: there it was not observed."""
 
 from collections.abc import Sequence
 
@@ -7,8 +7,10 @@ from numpy.typing import NDArray
 
 from ...solvers.arrays import Array
 
-WIDEST_STEP = 2.5  # a median distance of keys, in frames, above which an animator set them
-WIDEST_HOLE = 1.5  # distances between neighbors, in median ones, that are no gap
+MAX_RECORDED_STEP_FRAMES = 2.5
+"""Median frames between keys above which an animator set them, and no sensor."""
+MAX_KEY_SPACING_RATIO = 1.5
+"""Time between adjacent keys, as a ratio to the median, above which it is a gap."""
 
 
 def unobserved(
@@ -51,12 +53,12 @@ def _holes(
     """Frames that lie in a hole of one channel, and those where both sides nearly agree."""
     times, values = keys[:, 0], keys[:, 1]
     spacing = step or (np.median(np.diff(times)) if len(times) > 2 else np.inf)
-    if step is None and spacing > WIDEST_STEP:
+    if step is None and spacing > MAX_RECORDED_STEP_FRAMES:
         return np.zeros(len(frames), bool), np.zeros(len(frames), bool)
     after = np.searchsorted(times, frames)
     left, right = (after - 1).clip(min=0), after.clip(max=len(times) - 1)
     nearest = np.minimum(np.abs(frames - times[left]), np.abs(frames - times[right]))
     inside = (after > 0) & (after < len(times))
-    wide = ~inside | (times[right] - times[left] > WIDEST_HOLE * spacing)
+    wide = ~inside | (times[right] - times[left] > MAX_KEY_SPACING_RATIO * spacing)
     missing = wide & (nearest > 0.25 * spacing)
     return missing, inside & (np.abs(values[left] - values[right]) <= redundant_change)

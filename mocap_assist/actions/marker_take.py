@@ -36,7 +36,7 @@ class MarkerTake:
     tracks: Tracks
     """In the world, meters; NaN where a marker has no keys though it has them all around."""
     spaces: tuple[Placement, ...]
-    """Where each marker's own space lies in the world."""
+    """World placement of each marker's own space."""
 
     @property
     def frames(self) -> Array:
@@ -45,7 +45,7 @@ class MarkerTake:
 
     @property
     def recordings(self) -> tuple[Tracks, ...]:
-        """What is to be solved."""
+        """Recordings to solve."""
         return (self.tracks,)
 
     def with_recordings(self, recordings: tuple[Motion | Tracks, ...]) -> "MarkerTake":
@@ -192,14 +192,14 @@ def _check_captured(markers: _Markers) -> None:
         )
 
 
-def _space(marker: bpy.types.Object, metres: float) -> Placement:
-    """Where the space lies in which the marker's location is measured."""
+def _space(marker: bpy.types.Object, meters: float) -> Placement:
+    """Return the world placement of the space of the marker's location."""
     check_finite(marker.matrix_basis, marker.name)
     if not marker.matrix_basis.determinant():
         raise InvalidMotionError(f"{marker.name} has scale 0. Give it a scale above 0.")
     around = marker.matrix_world @ marker.matrix_basis.inverted()
     rotation, origin, scale = placement_of(around, marker.name)
-    return Placement(rotation[None], origin[None], scale).in_unit(metres)
+    return Placement(rotation[None], origin[None], scale).in_unit(meters)
 
 
 def _locations(marker: bpy.types.Object, curves: Curves, grid: Grid) -> Array:

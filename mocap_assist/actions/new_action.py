@@ -22,7 +22,7 @@ def write_motion(
     bones: tuple[str, ...],
     motion: Motion,
     frames: Array,
-    metres: float,
+    meters: float,
     *,
     name: str = "",
     progress: Progress = unwatched,
@@ -36,7 +36,7 @@ def write_motion(
     motion : Motion
         Where it was not observed there are no keys. A joint that never turns has none at all.
     frames : shape (n_frames,), scene frames
-    metres : length of one of the scene's units
+    meters : length of one of the scene's units
     name : of the action; by default that of the armature
     progress : Progress
 
@@ -49,12 +49,12 @@ def write_motion(
     rig = read_rig(armature)
     owners = tuple(rig.bones.index(bone) if bone else -1 for bone in bones)
     n_frames = motion.n_frames
-    world = Placement(np.tile(STILL, (n_frames, 1)), np.zeros((n_frames, 3)), metres)
+    world = Placement(np.tile(STILL, (n_frames, 1)), np.zeros((n_frames, 3)), meters)
     part = TakePart(motion, owners, world)
     shift = root_locations(part, rig)
     top = rig.bones[owners[0]]
     write_channels(bag, bone_path(top, "location"), top, frames, shift)
-    basis = basis_rotations(part, rig, Placement(np.array([STILL]), np.zeros((1, 3)), metres))
+    basis = basis_rotations(part, rig, Placement(np.array([STILL]), np.zeros((1, 3)), meters))
     for done, (bone, rotations) in enumerate(basis.items()):
         progress(done / len(basis), "Writing keys")
         joint = owners.index(bone)

@@ -14,7 +14,7 @@ from .curves import write_first
 
 
 class Term(Enum):
-    """What reliability is made of; the value is the custom property of a bone, 0 to 1."""
+    """Term of the reliability; its value names the custom property of a bone, 0 to 1."""
 
     COMBINED = "mocap_reliability"
     BEHAVIOR = "mocap_reliability_behaviour"
@@ -39,7 +39,7 @@ def write_reliability(
     reliability: Mapping[str, Array],
     term: Term = Term.COMBINED,
 ) -> None:
-    """Key the property on each bone of which something is known, linear between changes."""
+    """Key the property on each bone with finite reliability, linear between changes."""
     bag = compat.ensure_channelbag(action, slot)
     for bone, values in reliability.items():
         if bone not in armature.pose.bones or not np.isfinite(values).all():
@@ -68,7 +68,7 @@ def reliability_at(
 
 
 def stored_terms(source: Source) -> frozenset[Term]:
-    """Return of which terms something is kept on any bone."""
+    """Return the reliability terms stored on any bone."""
     bag = compat.channelbag(*source)
     if bag is None:
         return frozenset()

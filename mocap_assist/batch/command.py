@@ -168,10 +168,10 @@ def _subjects(
     name: str | None, excluded_armature: str, *, on_markers: bool
 ) -> list[bpy.types.Object]:
     """Return the armatures, or parents of markers, to process."""
-    things = list(bpy.context.scene.objects)
-    armatures = [each for each in things if each.type == "ARMATURE"]
+    objects = list(bpy.context.scene.objects)
+    armatures = [each for each in objects if each.type == "ARMATURE"]
     holders = [
-        each for each in things if on_markers and each.type == "EMPTY" and markers_of(each)
+        each for each in objects if on_markers and each.type == "EMPTY" and markers_of(each)
     ]
     if name is None:
         found = [

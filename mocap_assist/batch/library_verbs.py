@@ -33,7 +33,7 @@ VerbResult = tuple[str, dict[str, Any]]
 def add_index_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `index`."""
     parser.add_argument(
-        "places", nargs="*", type=Path, metavar="FILE",
+        "sources", nargs="*", type=Path, metavar="FILE",
         help="recordings, .blend files and folders of them",
     )  # fmt: skip
     _add_library(parser)
@@ -60,7 +60,7 @@ def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
     InvalidFileError
         Something could not be read, or nothing was named.
     """
-    sources = [Source(str(real_path(path))) for path in arguments.places]
+    sources = [Source(str(real_path(path))) for path in arguments.sources]
     if arguments.asset_libraries:
         sources += [Source(folder, assets_only=True) for folder in asset_folders()]
     if not sources:

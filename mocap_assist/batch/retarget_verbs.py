@@ -19,7 +19,8 @@ from ..retarget.unbaking import read_unbaking, write_unbaked
 from ..scene import history
 from .solving import solve_in_subprocess
 
-CENTIMETRE = 0.01
+CENTIMETER = 0.01
+"""Meters, by definition."""
 VerbResult = tuple[str, dict[str, Any]]
 
 
@@ -68,7 +69,7 @@ def perform_unbake(
 ) -> VerbResult:
     """Thin out the keys of what the armature plays."""
     settings = UnbakeBundle(
-        UnbakeChoices(tolerance=CENTIMETRE * arguments.tolerance),
+        UnbakeChoices(tolerance=CENTIMETER * arguments.tolerance),
         settings_from_arguments(arguments, UnbakeSettings),
     )
     result = solve_in_subprocess(read_unbaking(scene, armature, settings), arguments, progress)

@@ -24,7 +24,7 @@ def perform_simulate(
     arguments: argparse.Namespace,
     progress: Progress,
 ) -> tuple[str, dict[str, Any]]:
-    """Let a body with mass and muscles make what the armature plays."""
+    """Simulate the motion of the armature with a physical body."""
     settings = SimulateBundle(settings_from_arguments(arguments, SimulateSettings))
     result = solve_in_subprocess(
         read_simulating(scene, armature, settings), arguments, progress

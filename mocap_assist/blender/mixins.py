@@ -1,4 +1,4 @@
-"""What Blender's base classes give to the classes of ours that are mixed in before them."""
+"""Attributes that Blender's base classes give to our mix-ins."""
 
 from typing import TYPE_CHECKING, Any
 

@@ -5,7 +5,7 @@ import bpy
 from ..blender.mixins import PanelMixin
 from ..exporting.export_menu import EXPORT, draw_export
 from ..panels.drawing import exists
-from ..panels.preferred import preferences
+from ..panels.preference_values import preferences
 from ..runtime.selection import played_result, selected_subject
 from ..scene import history
 

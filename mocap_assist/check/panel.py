@@ -7,7 +7,7 @@ import bpy
 from ...solvers.errors import InvalidMotionError
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_job, draw_sentence, exists, is_wide
-from ..panels.figures import figure_rows, frames_text
+from ..panels.figure_rows import figure_rows, frames_text
 from ..runtime.selection import played_result, played_source, selected_subject
 from ..scene import history
 

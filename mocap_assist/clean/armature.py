@@ -1,4 +1,4 @@
-"""What Clean finds on an armature, and how its result is written there."""
+"""Read an armature for Clean, and write the result."""
 
 from typing import Any, NamedTuple
 
@@ -55,7 +55,7 @@ class ArmatureReading(NamedTuple):
         return animators_contacts(self.played, self.raw.frames)
 
     def present(self, chosen: frozenset[str]) -> Steps[Recordings | None]:
-        """What an earlier result shows of the bones that stay, if it differs from the raw."""
+        """Return an earlier result for the unchanged bones, if it differs from raw."""
         everything = len(chosen) == len(self.raw.rig.bones)
         if everything or self.played == self.recorded:
             return None

@@ -1,4 +1,4 @@
-"""What an animator chooses for Clean, besides the settings of the solvers themselves."""
+"""Settings of the button Clean, in addition to those of the solvers."""
 
 from dataclasses import dataclass, fields
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from ..runtime.selection import Bones
 
 
 class Prior(Choice):
-    """Where the patterns of clean motion come from."""
+    """Source of the patterns of clean motion."""
 
     TAKE = (
         "this take",
@@ -90,7 +90,7 @@ class CleanBundle(NamedTuple):
     planting: PlantSettings
 
 
-QUICK = (
+FINISHING_SETTINGS = (
     "strength",
     "bones",
     "result_as",

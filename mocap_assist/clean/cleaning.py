@@ -27,8 +27,10 @@ from .markers import MarkerReading
 from .report import clean_report, entry_of
 from .solve_cleaning import Cleaned, ExampleSource, Finish, Problem, Recordings, clean, names_of
 
-LOW_CONFIDENCE = 0.5  # confidence below which a key counts as generated
-EASE = 5  # frames over which a cleaned range joins the frames outside it
+MIN_OBSERVED_CONFIDENCE = 0.5
+"""Confidence below which a key counts as generated."""
+EASE_FRAMES = 5
+"""Frames over which a cleaned range is blended into the frames outside it."""
 
 
 @Sliced
@@ -88,7 +90,7 @@ def key_types(
     types: dict[str, NDArray[np.uint8]] = {}
     for recording, result in zip(recordings, denoised, strict=True):
         observed = recording.visible if isinstance(recording, Tracks) else recording.observed
-        flagged = ~observed | result.outliers | (result.confidence < LOW_CONFIDENCE)
+        flagged = ~observed | result.outliers | (result.confidence < MIN_OBSERVED_CONFIDENCE)
         for name, flags in zip(names_of(recording), flagged.T, strict=True):
             painted = np.where(flags, GENERATED, MEASURED).astype(np.uint8)
             types[name] = np.maximum(painted, types.get(name, MEASURED))
@@ -130,6 +132,6 @@ def _problem(
 def ease_of(grid: Grid) -> NDArray[np.float64]:
     """Return weights that rise from 0 and fall to 0 where the action continues outside."""
     n_frames = len(grid.frames)
-    ramp = np.minimum((np.arange(n_frames) + 1.0) / (EASE + 1.0), 1.0)
+    ramp = np.minimum((np.arange(n_frames) + 1.0) / (EASE_FRAMES + 1.0), 1.0)
     before, after = grid.joins
     return np.minimum(ramp if before else 1.0, ramp[::-1] if after else np.ones(n_frames))

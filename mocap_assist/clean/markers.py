@@ -1,4 +1,4 @@
-"""What Clean finds on the markers of a take, and how its result is written there."""
+"""Read the markers of a take for Clean, and write the result."""
 
 from typing import Any, NamedTuple
 
@@ -36,13 +36,13 @@ class MarkerReading(NamedTuple):
         return cls(scene, holder, raw)
 
     def limits(self, choices: CleanChoices, chosen: frozenset[str]) -> None:
-        """Markers are no joints."""
+        """Return None: markers have no joint limits."""
 
     def contacts(self) -> None:
-        """Nor are they feet."""
+        """Return None: markers have no foot contacts."""
 
     def present(self, chosen: frozenset[str]) -> Steps[Recordings | None]:
-        """What an earlier result shows of the markers that stay."""
+        """Return an earlier result for the unchanged markers."""
         if len(chosen) == self.raw.tracks.n_points:
             return None
         played = yield from read_markers.steps(self.holder, self.scene, grid=self.raw.grid)

@@ -16,8 +16,8 @@ from ..runtime.subject import Subject, check_unchanged
 from ..scene import history
 from .solve_planting import Replanted, plant
 
-N_QUICK = 5000
-"""Frames that are solved in half a second: less than it takes to start another process."""
+MAX_SHORT_SOLVE_FRAMES = 5000
+"""Frames that are solved in half a second, the time to start another process."""
 
 
 class FeetBundle(NamedTuple):
@@ -36,7 +36,7 @@ def read_planting(
     take = yield from read_take.steps(armature, scene, source=played_source(armature))
     _, armature = here.find()
     contacts = animators_contacts(played_source(armature), take.frames)
-    kind = ShortSolve if len(take.frames) <= N_QUICK else partial
+    kind = ShortSolve if len(take.frames) <= MAX_SHORT_SOLVE_FRAMES else partial
     return kind(plant, take.parts[0].motion, contacts, settings.planting)
 
 

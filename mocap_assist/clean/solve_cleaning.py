@@ -1,4 +1,4 @@
-"""What the button Clean has solved for it: each part of a take denoised, then feet planted.
+"""Solve of the button Clean: denoise each part of a take, then plant feet.
 
 The slow part, `solve`, depends neither on how strongly the result is applied nor on the feet:
 what it returns is kept, so that the redo panel has only `finish` to repeat.
@@ -48,7 +48,7 @@ MIN_CHANGE = 1e-6  # radians or meters; smaller changes by planting are ignored
 
 
 class Learned(NamedTuple):
-    """What examples teach."""
+    """Patterns and limits learned from examples."""
 
     bases: FilterBases | None
     limits: JointLimits | None
@@ -96,7 +96,7 @@ class Problem:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Finish:
-    """How a solution is applied to the take."""
+    """Settings that apply a solution to the take."""
 
     strength: float
     """Share of the estimate, 0 to 1; gaps are filled with it all the same."""

@@ -1,4 +1,4 @@
-"""What the button Plant Feet has solved for it."""
+"""Solve of the button Plant Feet."""
 
 from dataclasses import dataclass
 

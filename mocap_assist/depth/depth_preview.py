@@ -1,4 +1,4 @@
-"""A recording of depth as an object: points that follow the timeline, read when shown."""
+"""A depth recording as an object: an animated point cloud, read when shown."""
 
 import logging
 from dataclasses import asdict, dataclass

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..actions.reliability_curves import Term
 from ..panels.drawing import draw_sentence
-from ..panels.preferred import preferred
+from ..panels.preference_values import preferred
 from .confidence_colors import ColoredBones, available_terms, colored_bones_at
 from .view_drawing import ViewDrawing, redraw, visible_active
 

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..panels.preferred import preferred
+from ..panels.preference_values import preferred
 from . import overlay_drawing
 
 

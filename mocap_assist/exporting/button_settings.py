@@ -1,16 +1,16 @@
-"""What an animator chooses for Export."""
+"""Settings of the button Export."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...solvers.settings import Settings, setting
 from ..actions.frames import FrameRange
-from .formats import ExportedBones, FileFormat
+from .export_formats import ExportedBones, FileFormat
 
 
 @dataclass(frozen=True, kw_only=True)
 class ExportChoices(Settings):
-    """How a take comes into a file."""
+    """Settings of the export of a take."""
 
     file_format: FileFormat = setting(
         FileFormat.FBX,
@@ -31,7 +31,7 @@ class ExportChoices(Settings):
 
 @dataclass(frozen=True, kw_only=True)
 class ExportFile(Settings):
-    """Where the file lies."""
+    """Location of the exported file."""
 
     filepath: str = setting("", "File to write", label="File")
 

@@ -1,4 +1,4 @@
-"""What the operator of Export adds to a solve: the file browser before it."""
+"""Mix-in of the operator Export: a file browser before the solve."""
 
 import re
 from pathlib import Path
@@ -11,8 +11,8 @@ from ...solvers.errors import InvalidMotionError
 from ..blender.path_properties import HIDDEN, absolute, path_property
 from ..runtime.selection import played_source, selected_armature
 from ..runtime.solver_operator import SolverOperator, in_background
+from .export_formats import FileFormat
 from .export_target import ENDINGS, with_ending
-from .formats import FileFormat
 
 FORBIDDEN = re.compile(r'[\\/:*?"<>|\x00-\x1f]')
 """Characters that file names cannot have on some system."""

@@ -1,4 +1,4 @@
-"""Which file Export writes, and whether it may."""
+"""Choose the file that Export writes, and check that it may."""
 
 import os
 from pathlib import Path
@@ -13,7 +13,7 @@ from ..blender.path_properties import absolute
 from ..scene import history
 from ..scene.origin import origin_of
 from .button_settings import ExportChoices
-from .formats import FileFormat
+from .export_formats import FileFormat
 
 ENDINGS = {each.ending: each for each in FileFormat}
 

@@ -1,4 +1,4 @@
-"""What the button Export reads from the scene, and the file that it writes."""
+"""Read the scene for the button Export, and write the file."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -22,8 +22,8 @@ from ..runtime.selection import played_source, selected_armature, why_not_read
 from ..scene.rig import placement_of
 from ..scene.scene_rate import scene_rate
 from .button_settings import ExportBundle
+from .export_formats import FileFormat
 from .export_target import format_of, refuse_recording, target_of
-from .formats import FileFormat
 from .solve_exporting import ExportedTake, ExportProblem, ExportRequest, export_take
 
 MAX_NAMED = 5
@@ -69,7 +69,7 @@ def read_export(
         frames=_scene_frames(take, source[0].name),
         fps=scene.render.fps,
         fps_base=scene.render.fps_base,
-        metres=take.rest.scale / scale,
+        meters=take.rest.scale / scale,
         body=take.parts[0].motion.skeleton.names[0],
         file_format=file_format,
         bones=choices.exported_bones,

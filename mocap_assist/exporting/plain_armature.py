@@ -15,7 +15,7 @@ from ..actions.new_action import write_channels
 from ..blender import compat
 from ..rigs.rigify import is_rigify
 from ..scene.rig import END, placement_of
-from .formats import ExportedBones
+from .export_formats import ExportedBones
 
 MIN_LENGTH_M = 1e-3
 """Blender deletes bones without a length."""
@@ -36,7 +36,7 @@ class BoneTree:
 
 @dataclass(frozen=True, eq=False)
 class SampledPoses:
-    """How bones move, without their scale.
+    """Sampled movement of bones, without their scale.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the button Export has done for it: a background Blender writes the file."""
+"""Solve of the button Export: a background Blender writes the file."""
 
 import importlib
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from ...solvers.processes import ScratchFolder
 from ...solvers.progress import Progress, unwatched
 from ..jobs.in_blender import BackgroundBlender
 from ..jobs.job import EXTENSION, run
-from .formats import ExportedBones, FileFormat
+from .export_formats import ExportedBones, FileFormat
 
 WRITER = "mocap_assist.exporting.write_file"
 TAKE = "take"
@@ -19,7 +19,7 @@ TAKE = "take"
 
 @dataclass(frozen=True)
 class ExportRequest:
-    """What is exported of a .blend file, and how."""
+    """Content to export from a .blend file, and its settings."""
 
     armature: str
     action: str
@@ -31,7 +31,7 @@ class ExportRequest:
     """Scene frames, one after the other."""
     fps: int
     fps_base: float
-    metres: float
+    meters: float
     """Length of one unit of the scene."""
     body: str
     """Bone that the body begins with."""
@@ -50,12 +50,12 @@ class ExportProblem:
 
 @dataclass(frozen=True)
 class WrittenTake:
-    """What a file has."""
+    """Content of a written file."""
 
     n_frames: int
     n_bones: int
     notes: tuple[str, ...] = ()
-    """What the file does not have, a sentence each."""
+    """Content that the file lacks, a sentence each."""
 
 
 @dataclass(frozen=True)

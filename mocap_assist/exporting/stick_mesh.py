@@ -3,13 +3,14 @@
 import bpy
 import numpy as np
 
-WIDEST = 0.15
-"""Of the length of a bone: where its stick is widest."""
-WIDTH = 0.06
-"""Half the width of a stick there, of the length of its bone."""
+BULGE_FRACTION = 0.15
+"""Position along a bone where its stick is widest, as a fraction of the bone's length."""
+RADIUS_FRACTION = 0.06
+"""Half the width of a stick there, as a fraction of the bone's length."""
 CORNERS = np.array([
-    (0.0, 0.0, 0.0), (WIDTH, WIDEST, 0.0), (0.0, WIDEST, WIDTH), (-WIDTH, WIDEST, 0.0),
-    (0.0, WIDEST, -WIDTH), (0.0, 1.0, 0.0),
+    (0.0, 0.0, 0.0), (RADIUS_FRACTION, BULGE_FRACTION, 0.0),
+    (0.0, BULGE_FRACTION, RADIUS_FRACTION), (-RADIUS_FRACTION, BULGE_FRACTION, 0.0),
+    (0.0, BULGE_FRACTION, -RADIUS_FRACTION), (0.0, 1.0, 0.0),
 ])  # fmt: skip
 FACES = ((0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1), (5, 2, 1), (5, 3, 2), (5, 4, 3), (5, 1, 4))
 

@@ -16,7 +16,7 @@ from ...solvers.rotations import IDENTITY, inverse, multiply
 from ..actions.take import skeleton_of
 from ..blender import compat
 from ..scene.rig import Placement, read_rig
-from .formats import FileFormat
+from .export_formats import FileFormat
 from .plain_armature import (
     BoneTree,
     SampledPoses,
@@ -66,7 +66,7 @@ def write_take(folder: Path, request: ExportRequest, progress: Progress) -> Writ
     )
     scene, armature = bpy.context.scene, bpy.data.objects[request.armature]
     _show(scene, armature, request)
-    units = request.metres / _unit_of(request.file_format)
+    units = request.meters / _unit_of(request.file_format)
     is_rigify = is_control_rig(armature)
     tree = exported_tree(armature.data.bones, request.bones, is_control_rig=is_rigify)
     made = build_plain_armature(armature, tree, units)

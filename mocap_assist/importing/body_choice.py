@@ -8,7 +8,7 @@ from .recent_files import bodies_of
 Item = tuple[str, str, str, str, int]
 BEST = ("best", "Most Frames", "Import the person who is in most frames", "NONE", 0)
 EVERY = ("all", "All", "Import every body as its own armature", "NONE", 1)
-FIRST = 2
+FIRST_BODY_NUMBER = 2
 """Number of the item of the first body."""
 _items: dict[tuple[Body, ...], list[Item]] = {}
 """Blender does not keep the texts of items, so they must live here."""
@@ -31,7 +31,7 @@ def body_items(paths: list[Path]) -> list[Item]:
             EVERY,
             *(
                 (f"body{number}", body.summary, "Import only this one", "NONE", number)
-                for number, body in enumerate(offered, start=FIRST)
+                for number, body in enumerate(offered, start=FIRST_BODY_NUMBER)
             ),
         ]
     return _items[offered]
@@ -42,7 +42,7 @@ def number_of(text: str, paths: list[Path]) -> int:
     if text.strip().lower() == ALL_BODIES:
         return EVERY[-1]
     names = [body.name for body in bodies_to_choose(paths)] if len(paths) == 1 else []
-    return FIRST + names.index(text) if text in names else BEST[-1]
+    return FIRST_BODY_NUMBER + names.index(text) if text in names else BEST[-1]
 
 
 def text_of(number: int, paths: list[Path]) -> str:
@@ -50,4 +50,5 @@ def text_of(number: int, paths: list[Path]) -> str:
     bodies = bodies_to_choose(paths)
     if number == EVERY[-1]:
         return ALL_BODIES
-    return bodies[number - FIRST].name if FIRST <= number < FIRST + len(bodies) else ""
+    index = number - FIRST_BODY_NUMBER
+    return bodies[index].name if 0 <= index < len(bodies) else ""

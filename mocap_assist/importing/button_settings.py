@@ -1,4 +1,4 @@
-"""What an animator chooses for Import; the words are those of Blender's BVH importer."""
+"""Settings of the button Import, named as those of Blender's BVH importer."""
 
 from dataclasses import dataclass, fields
 from typing import NamedTuple
@@ -14,7 +14,7 @@ from ..scene.scene_rate import FrameRate
 
 
 class ImportTarget(Choice):
-    """What joints become."""
+    """Type of object that joints become."""
 
     ARMATURE = "armature", "Create an armature; each joint becomes a bone"
     OBJECT = (
@@ -38,7 +38,7 @@ class Rotation(Choice):
 
 @dataclass(frozen=True, kw_only=True)
 class ImportChoices(FloorPlacementSettings, ReadingSettings):
-    """How recordings come into the scene."""
+    """Settings of the import of recordings."""
 
     target: ImportTarget = setting(
         ImportTarget.ARMATURE,
@@ -120,13 +120,13 @@ class ImportChoices(FloorPlacementSettings, ReadingSettings):
 
     @property
     def reading(self) -> ReadingSettings:
-        """What the files may not say about themselves."""
+        """Conventions that the files may not state."""
         names = [item.name for item in fields(ReadingSettings)]
         return ReadingSettings(**{name: getattr(self, name) for name in names})
 
     @property
     def depth(self) -> DepthSettings:
-        """What this means for pictures of depth."""
+        """Settings for depth images."""
         return DepthSettings(
             scale=self.unit.metres or 0.0,
             fx=self.focal_length,

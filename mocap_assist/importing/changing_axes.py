@@ -28,7 +28,7 @@ OWN_CHANNELS = {
 
 @dataclass(frozen=True, kw_only=True)
 class AxesChange(FloorPlacementSettings):
-    """How the file of something imported is to be read instead."""
+    """Axes for another reading of an imported file."""
 
     up: Axis = setting(Axis.AUTO, "Axis of the file that points up; Auto keeps it")
     forward: Axis = setting(

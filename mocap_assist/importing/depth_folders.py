@@ -29,7 +29,7 @@ PICTURES = (".png", ".exr", ".jpg", ".jpeg")
 
 
 def is_take(folder: Path) -> bool:
-    """Whether a folder is a recording of depth; not if it cannot be looked into."""
+    """Whether a folder is a depth recording; not if it cannot be read."""
     if not is_folder(folder):
         return False
     return (
@@ -38,12 +38,12 @@ def is_take(folder: Path) -> bool:
 
 
 def depth_recordings_in(folder: Path) -> list[Path]:
-    """Return the recordings of depth in a folder and below; the folder itself if it is one."""
+    """Return the depth recordings in a folder and below; the folder itself if it is one."""
     return depth_takes_in(folder, lambda each: bool(exr_files(each)) or is_depth_folder(each))
 
 
 def all_recordings_in(folder: Path) -> list[Path]:
-    """Return the recordings in a folder and below, of motion and of depth, by name."""
+    """Return the motion and depth recordings in a folder and below, by name."""
     takes = depth_recordings_in(folder)
     others = [path for path in recordings_in(folder) if not {*path.parents} & {*takes}]
     return sorted({*takes, *others})

@@ -1,4 +1,4 @@
-"""A recording of depth as an object of the scene."""
+"""A depth recording as an object of the scene."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What kinds of recordings were chosen, so that Import shows only what fits them."""
+"""Find the kinds of the chosen recordings, so that Import shows only their settings."""
 
 from collections.abc import Collection, Iterable
 from pathlib import Path
@@ -11,8 +11,8 @@ from .depth_folders import is_take
 DEPTH, SKELETON, JOINTS, MARKERS, SMPL = "depth", "skeleton", "joints", "markers", "smpl"
 SCENE = "scene"
 MOVING = {SKELETON, JOINTS, MARKERS, SMPL}
-MAX_LOOKED_AT = 50
-"""Files of which the first bytes are read, so that the dialog comes at once."""
+MAX_PREVIEWED_FILES = 50
+"""Number of files whose first bytes are read, so that the dialog opens without delay."""
 FOR_KINDS: dict[str, set[str]] = {
     "target": {JOINTS},
     "up": MOVING, "forward": MOVING, "place_on_floor": MOVING,
@@ -28,7 +28,7 @@ FOR_KINDS: dict[str, set[str]] = {
 def kinds_of(paths: Iterable[Path]) -> str:
     """Return the kinds of recordings, separated by spaces."""
     return " ".join(
-        sorted({kind for path in [*paths][:MAX_LOOKED_AT] for kind in _kinds(path)})
+        sorted({kind for path in [*paths][:MAX_PREVIEWED_FILES] for kind in _kinds(path)})
     )
 
 

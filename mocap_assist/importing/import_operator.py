@@ -1,4 +1,4 @@
-"""What the two operators of Import have in common, and how the second one waits."""
+"""Mix-ins of the two operators of Import, and the wait of the second one."""
 
 from typing import Any
 

@@ -35,9 +35,9 @@ from .solve_reading import ReadRecording, Recording, in_one_tree
 
 logger = logging.getLogger(__name__)
 
-MAX_WARNINGS = 2  # of what a reader said
+MAX_WARNINGS = 2  # of a reader
 MAX_LISTED = 3  # recordings that the redo panel lists
-READING_FRACTION = 0.6  # share of the time that goes into reading
+READING_FRACTION = 0.6  # fraction of the time that reading takes
 
 
 class Imported(NamedTuple):

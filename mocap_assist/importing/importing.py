@@ -1,4 +1,4 @@
-"""What the button Import makes of files."""
+"""Import files for the button Import."""
 
 from pathlib import Path
 
@@ -20,7 +20,8 @@ from .recent_files import read_again
 from .recording_objects import conversion_from_choices
 from .solve_reading import Conversion
 
-QUICKLY_READ = 2_000_000  # bytes
+MAX_PREVIEW_BYTES = 2_000_000
+"""Bytes of a file up to which the dialog reads it, so that it opens without delay."""
 
 
 EXTENSIONS = (
@@ -28,7 +29,7 @@ EXTENSIONS = (
     ".bvh", ".amc", ".asf", ".c3d", ".trc", ".skeleton", ".csv", ".json", ".txt", ".npy",
     ".npz", ".mkv", ".mat", ".mvnx", ".tsv", ".vrma",
 )  # fmt: skip
-"""What files of a format known here may be called; what they hold decides."""
+"""File extensions of all supported formats; the content of a file decides."""
 PICTURES = (".png", ".exr")
 """File endings of depth images; a folder of them is a recording."""
 FILTER = ";".join(f"*{extension}" for extension in (*EXTENSIONS, *PICTURES))
@@ -37,9 +38,8 @@ FILTER = ";".join(f"*{extension}" for extension in (*EXTENSIONS, *PICTURES))
 def chosen_paths(operator: bpy.types.Operator) -> list[Path]:
     """Return the files that an operator was given, as a list in a folder or as one path.
 
-    The skeleton that an AMC file needs may be among them: it is found anyway. A folder of
-    pictures of depth may be given itself, by being the one that is looked at, or by files in
-    it.
+    The skeleton of an AMC file may be among them: it is found anyway. A folder of depth images
+    may be given itself, as the folder that is shown, or by files in it.
     """
     paths = chosen_files(operator)
     if not paths and operator.filepath:
@@ -61,7 +61,7 @@ def preview(context: bpy.types.Context, paths: list[Path]) -> str:
     plays = f"the scene plays at {scene:g} FPS"
     try:
         size = path.stat().st_size
-        if size > QUICKLY_READ or is_scene_file(path):
+        if size > MAX_PREVIEW_BYTES or is_scene_file(path):
             return f"{path.name}: {size / 1e6:.1f} MB; {plays}"
         content = read_again(path, Conversion(floor=FloorPlacement.AUTO))[0]
     except MocapAssistError as error:

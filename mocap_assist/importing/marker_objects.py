@@ -82,9 +82,9 @@ def _make(
     progress: Progress,
     collection: bpy.types.Collection | None = None,
 ) -> tuple[bpy.types.Object, tuple[bpy.types.Object, ...], bpy.types.Action]:
-    tracks, metres = timed.tracks, unit_of(context.scene)
-    holder, empties = build_empties(context, name, tracks.names, metres, collection)
-    action = write_tracks(name, empties, tracks, timed.frames, metres, progress=progress)
+    tracks, meters = timed.tracks, unit_of(context.scene)
+    holder, empties = build_empties(context, name, tracks.names, meters, collection)
+    action = write_tracks(name, empties, tracks, timed.frames, meters, progress=progress)
     for point, empty in zip(tracks.names, empties, strict=True):
         write_sensor_values(
             compat.channelbag(action, empty.animation_data.action_slot),

@@ -10,8 +10,10 @@ from ...solvers.recordings import Body, FloorPlacement, ReadingSettings
 from ...solvers.recordings.skeleton_files import find_skeleton
 from .solve_reading import Conversion, ReadRecording, read_takes
 
-MOST = 20_000_000  # numbers that are kept
-BYTES = 8  # of a number
+MAX_CACHED_NUMBERS = 20_000_000
+"""Numbers in all cached recordings together, 160 MB; it bounds the memory."""
+BYTES_PER_NUMBER = 8
+"""Bytes of a number in double precision, by definition."""
 
 State = tuple[tuple[str, int, int], ...]
 Reading = tuple[ReadingSettings, FloorPlacement, str, bool]
@@ -32,7 +34,7 @@ def read_again(
 
 
 def bodies_of(path: Path) -> tuple[Body, ...]:
-    """Return the bodies to choose from in a file that was read last; else nothing."""
+    """Return the bodies to choose from in a recent file; empty for any other."""
     state = state_of(path)
     known = [takes for (its_state, _), takes in _read.items() if its_state == state]
     return known[-1][0].bodies if state and known else ()
@@ -49,7 +51,7 @@ def remember(path: Path, state: State, takes: list[ReadRecording], reading: Read
         return
     if state and state == state_of(path):
         _read[state, reading] = takes
-    while sum(_size(take) for takes in _read.values() for take in takes) > MOST:
+    while sum(_size(take) for takes in _read.values() for take in takes) > MAX_CACHED_NUMBERS:
         _read.pop(next(iter(_read)))
 
 
@@ -66,7 +68,7 @@ def state_of(path: Path) -> State:
 def _size(take: ReadRecording) -> int:
     recording = take.recording
     others = sum(other.motion.rotations.size for other in take.others)
-    others += len(take.meshes.content) // BYTES if take.meshes else 0
+    others += len(take.meshes.content) // BYTES_PER_NUMBER if take.meshes else 0
     if isinstance(recording, DepthRecording):
         return 0  # never kept
     if isinstance(recording, Motion):

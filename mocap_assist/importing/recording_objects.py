@@ -105,17 +105,17 @@ def make_objects(
         what += ", since the parents of the joints are unknown"
     elif n_loose := recording.n_joints - len(connected_joints(recording)):
         what += f", without {n_loose} points that have no joint"
-    return made._replace(what=what + _never_seen(recording, made.top.type == "ARMATURE"))
+    return made._replace(what=what + _never_observed(recording, made.top.type == "ARMATURE"))
 
 
-def _never_seen(recording: TrackedRecording, in_armature: bool) -> str:
+def _never_observed(recording: TrackedRecording, in_armature: bool) -> str:
     """Name the joints or markers that were left out or added."""
     if isinstance(recording, Motion):
         return ""
     if in_armature and isinstance(recording, JointRecording):
         completed = fill_missing_hips(recording)
         if completed is not recording:
-            return f", with hips added between the legs{_never_seen(completed, True)}"
+            return f", with hips added between the legs{_never_observed(completed, True)}"
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording
     never_observed = [
         tracks.names[point] for point in np.flatnonzero(~tracks.visible.any(axis=0))
@@ -137,11 +137,11 @@ def _make_armature(
     progress: Progress,
 ) -> CreatedObjects:
     """Add an armature; Reconstruct can change the lengths of bones that a camera tracked."""
-    metres = unit_of(context.scene)
+    meters = unit_of(context.scene)
     armature, bones = build_armature(
-        context, name, motion.skeleton, metres, mode, connected=not is_tracked
+        context, name, motion.skeleton, meters, mode, connected=not is_tracked
     )
-    action, slot = write_motion(armature, bones, motion, frames, metres, progress=progress)
+    action, slot = write_motion(armature, bones, motion, frames, meters, progress=progress)
     bag = compat.channelbag(action, slot)
     if is_tracked:
         key_lengths(action, slot, {bone: np.zeros(3) for bone in bones[1:] if bone}, frames[0])
@@ -164,7 +164,7 @@ def add_takes(
     Actions are called like their takes.
     """
     assert made.action is not None
-    scene, metres = context.scene, unit_of(context.scene)
+    scene, meters = context.scene, unit_of(context.scene)
     made.action.name = fitting_name(content.take)
     slot, last, names = made.top.animation_data.action_slot, made.last_frame, [content.take]
     conversion = conversion_from_choices(context, choices)
@@ -175,7 +175,7 @@ def add_takes(
         samples = timing(scene, choices.frame_rate, rate, choices.frame_start)
         frames = samples.frames(take.motion.n_frames)
         action, _ = write_motion(
-            made.top, made.bones, take.motion, frames, metres, name=fitting_name(take.name)
+            made.top, made.bones, take.motion, frames, meters, name=fitting_name(take.name)
         )
         scale, body = choices.global_scale, content.body
         note_origin(action, origin_of_file(path, take.motion, scale, body))

@@ -1,4 +1,4 @@
-"""What a sensor reported of its joints or markers, on scene frames."""
+"""Samples of a sensor's joints or markers, on scene frames."""
 
 from typing import NamedTuple
 

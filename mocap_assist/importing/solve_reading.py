@@ -55,7 +55,7 @@ class Conversion(NamedTuple):
     frame_rate: float | None = None
     """Frames per second to resample to; None leaves each recording its own."""
     reading: ReadingSettings = DEFAULT_READING
-    """What the files may not say about themselves."""
+    """Conventions that the files may not state."""
     depth: DepthSettings = DEFAULT_DEPTH_SETTINGS
     """Interpretation of depth images."""
     floor: FloorPlacement = FloorPlacement.NEVER

@@ -6,7 +6,7 @@ import bpy
 
 from ..drawing.view_drawing import redraw
 from ..jobs.job import Job
-from ..runtime.ends_with_file import ends_with_file
+from ..runtime.file_change_handlers import ends_with_file
 from .solve_indexing import Indexed
 
 RUNNING = "The library is being built. Wait until it is done, or press Esc."

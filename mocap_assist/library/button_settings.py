@@ -1,4 +1,4 @@
-"""What an animator chooses for Build Library and Find Similar, besides how to search."""
+"""Settings of Build Library and Find Similar, in addition to those of the search."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from ..runtime.selection import Bones
 
 @dataclass(frozen=True, kw_only=True)
 class LibraryChoices(Settings):
-    """Which library, and what is in it."""
+    """File of the library, and the sources of its clips."""
 
     library_file: str = setting(
         "", "File of the motion library; empty for the one that all your files share"
@@ -32,14 +32,14 @@ class LibraryChoices(Settings):
 
 
 class LibraryBundle(NamedTuple):
-    """All that the button Build Library offers."""
+    """Settings of the button Build Library."""
 
     choices: LibraryChoices
 
 
 @dataclass(frozen=True, kw_only=True)
 class FindChoices(Settings):
-    """What of the action is looked for."""
+    """Part of the action that is the query."""
 
     frame_range: FrameRange = setting(FrameRange.ACTION, "Frames of the action to search for")
     bones: Bones = setting(
@@ -56,7 +56,7 @@ class FindBundle(NamedTuple):
 
 
 class ClipPart(Choice):
-    """What of the clip is taken."""
+    """Part of the clip that is loaded."""
 
     MATCH = "what matches", "Append only the frames that match the query", "Matching Frames"
     WHOLE = "whole clip", "Append all frames of the clip"
@@ -64,7 +64,7 @@ class ClipPart(Choice):
 
 @dataclass(frozen=True, kw_only=True)
 class LoadChoices(Settings):
-    """How a clip comes to the armature."""
+    """Settings of the loading of a clip."""
 
     part: ClipPart = setting(ClipPart.MATCH, "Frames of the clip to append")
     result_as: Output = setting(
@@ -80,7 +80,7 @@ class LoadChoices(Settings):
 
 @dataclass(frozen=True, kw_only=True)
 class UseChoices(Settings):
-    """Which matches become examples of Vary."""
+    """Choice of the matches that become examples of Vary."""
 
     n_best: int = setting(
         5, "Number of best matches to use; more gives more variation",

@@ -15,9 +15,10 @@ from .sources import index_problem
 
 logger = logging.getLogger(__name__)
 
-BETWEEN_LOOKS = 0.25  # seconds
-MOST_NAMED = 3
-"""Unusable files that are named in the window; the log has all."""
+POLL_INTERVAL_S = 0.25
+"""Seconds between two queries of the background job."""
+MAX_NAMED_FILES = 3
+"""Number of unusable files that a message names; the log has all."""
 
 
 class WaitingIndex(SettingsMixin):
@@ -44,7 +45,7 @@ class WaitingIndex(SettingsMixin):
         """Index while a script waits."""
         self.prepare(context)
         try:
-            return self._tell(run(self._solve()))
+            return self._report(run(self._solve()))
         except MocapAssistError as error:
             return self._give_up(error)
 
@@ -57,7 +58,7 @@ class WaitingIndex(SettingsMixin):
         except MocapAssistError as error:
             return self._give_up(error)
         manager = context.window_manager
-        self._timer = manager.event_timer_add(BETWEEN_LOOKS, window=context.window)
+        self._timer = manager.event_timer_add(POLL_INTERVAL_S, window=context.window)
         manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -80,7 +81,7 @@ class WaitingIndex(SettingsMixin):
             indexing.end(context, "")
             return self._give_up(error)
         indexing.end(context, message_of(indexed))
-        return self._tell(indexed)
+        return self._report(indexed)
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the operator: another file is loaded, or the window closes."""
@@ -94,11 +95,11 @@ class WaitingIndex(SettingsMixin):
     def _stop_looking(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)
 
-    def _tell(self, indexed: Indexed) -> set[str]:
+    def _report(self, indexed: Indexed) -> set[str]:
         for sentence in indexed.refused:
             logger.warning("%s", sentence)
-        more = len(indexed.refused) - MOST_NAMED
-        named = [*indexed.refused[:MOST_NAMED], *[f"And {more} more."] * (more > 0)]
+        more = len(indexed.refused) - MAX_NAMED_FILES
+        named = [*indexed.refused[:MAX_NAMED_FILES], *[f"And {more} more."] * (more > 0)]
         level = {"WARNING"} if indexed.refused else {"INFO"}
         self.report(level, " ".join([message_of(indexed), *named]))
         return {"FINISHED"}

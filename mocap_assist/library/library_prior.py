@@ -29,7 +29,7 @@ def library_prior(scene: bpy.types.Scene, subject: bpy.types.Object) -> LibraryP
 
 
 def own_origins(subject: bpy.types.Object) -> Own:
-    """Return where what the subject plays is from, as a library would name it."""
+    """Return the origins of the subject's action, as a library names them."""
     action = played_source(subject)[0]
     origin: dict[str, Any] = origin_of(action)
     own = [(str(Path(str(origin["file"])).resolve()), "")] if origin.get("file") else []

@@ -1,4 +1,4 @@
-"""What is done for the button that gives a clip to a rig: it is read again and retargeted."""
+"""Solve of the buttons that load a clip: read it again, and retarget it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ Keys = Mapping[str, BoneKeys]
 
 @dataclass(frozen=True, eq=False)
 class FetchProblem:
-    """A clip, and who is to make its motion."""
+    """A clip, and the rig to retarget it to."""
 
     origin: Origin
     frames: range | None
@@ -54,7 +54,7 @@ class FetchProblems:
 
 @dataclass(frozen=True, eq=False)
 class FetchedClips:
-    """Those that could be had, None for others, and what was wrong with the first of these."""
+    """Clips that could be read, None for others, and the first error."""
 
     clips: tuple[Fetched | None, ...]
     trouble: str

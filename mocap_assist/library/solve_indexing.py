@@ -1,4 +1,4 @@
-"""What the button Build Library has done for it: files become clips of a library."""
+"""Solve of the button Build Library: index recordings and .blend files as clips."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ from ..jobs.in_blender import (
 from ..jobs.job import ProcessDied
 
 BYTES_AT_ONCE = 100_000_000
-"""Of .blend files that one Blender reads: what it has read is kept if the next one crashes."""
+"""Bytes of .blend files that one Blender reads; a crash loses only its own clips."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Source:
 
 @dataclass(frozen=True)
 class IndexProblem:
-    """What is to be indexed."""
+    """Sources to index, and the library that receives their clips."""
 
     library: str
     sources: tuple[Source, ...]
@@ -58,13 +58,13 @@ class IndexProblem:
 
 @dataclass(frozen=True)
 class Indexed:
-    """What became of it."""
+    """Result of an indexing: counts of clips, and errors."""
 
     n_clips: int
     """In the library now."""
     n_added: int = 0
     n_kept: int = 0
-    """That were indexed before, and have not changed."""
+    """Clips that were indexed before, and have not changed."""
     n_removed: int = 0
     refused: tuple[str, ...] = ()
     """A sentence for each file or action that could not be read."""
@@ -72,7 +72,7 @@ class Indexed:
 
 @dataclass(frozen=True)
 class _Blend:
-    """A .blend file, and by which name its clips begin."""
+    """A .blend file, and the prefix of its clips' names."""
 
     path: Path
     name: str

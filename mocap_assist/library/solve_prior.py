@@ -25,13 +25,13 @@ Own = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True)
 class LibraryPrior:
-    """Which library, and how its clips are read again."""
+    """A library, and the means to read its clips again."""
 
     path: str
     state: tuple[int, int]
     """Size and time of the file: what is learned of it holds until it changes."""
     own: Own
-    """Where the take itself is from, which teaches nothing."""
+    """Origin of the take itself, which is left out of the examples."""
     blender: BackgroundBlender
 
     def bases(self, body: Motion | Tracks, progress: Progress) -> LibraryBases:

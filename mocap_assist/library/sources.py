@@ -1,4 +1,4 @@
-"""Where the library is, and where its clips come from."""
+"""Locations of the library and of its clips' sources."""
 
 from pathlib import Path
 

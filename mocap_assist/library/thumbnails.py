@@ -9,14 +9,15 @@ from ...solvers.pictures import SERIES, Canvas, ViewDirection, lighten_color, pr
 
 Pixels = NDArray[np.uint8]
 
-SIZE = 128
-"""Pixels of a side: what Blender keeps of an asset's preview."""
+CARD_SIZE_PX = 128
+"""Pixels per side: the size in which Blender stores an asset's preview."""
 N_FIGURES = 3
-MARGIN = 6.0
-TALL = 2.3
-"""Meters that a card is high: a standing body with a raised hand."""
-FOOT = 1.05
-"""Meters from the middle of the card's body, the hips, down to the floor."""
+MARGIN_PX = 6.0
+"""Pixels between the figures and the border of the card."""
+CARD_HEIGHT_M = 2.3
+"""Height of a card in meters: a standing body with a raised hand."""
+FLOOR_DISTANCE_M = 1.05
+"""Meters from the hips, the origin of each figure, down to the floor."""
 LEFT = np.array([name.startswith("left") for name in POSTURE_JOINTS])
 
 
@@ -28,14 +29,17 @@ def thumbnail(postures: Array) -> Pixels:
     postures : shape (n_frames, 20, 3), meters
         Relative to the hips, facing -Y; NaN where not tracked.
     """
-    canvas = Canvas(SIZE, SIZE)
+    canvas = Canvas(CARD_SIZE_PX, CARD_SIZE_PX)
     moments = np.linspace(0, len(postures) - 1, 2 * N_FIGURES + 1).round().astype(int)[1::2]
-    scale = (SIZE - 2.0 * MARGIN) / TALL
+    scale = (CARD_SIZE_PX - 2.0 * MARGIN_PX) / CARD_HEIGHT_M
     figures = project_to_view(postures[moments], np.zeros(len(moments)), ViewDirection.QUARTER)
     color = SERIES[1]
     for index, figure in enumerate(figures):
-        middle = SIZE * (index + 0.5) / N_FIGURES
-        points_2d = figure[:, :2] * (scale, -scale) + (middle, SIZE - MARGIN - FOOT * scale)
+        middle = CARD_SIZE_PX * (index + 0.5) / N_FIGURES
+        points_2d = figure[:, :2] * (scale, -scale) + (
+            middle,
+            CARD_SIZE_PX - MARGIN_PX - FLOOR_DISTANCE_M * scale,
+        )
         for joint, parent in enumerate(PARENTS):
             if parent >= 0:
                 shade = lighten_color(color, 0.5) if LEFT[joint] else color

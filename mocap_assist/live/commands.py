@@ -1,4 +1,4 @@
-"""What Blender does on each gesture.
+"""Commands that Blender runs on gestures.
 
 Each function returns the message to show. Zoom and turn affect the 3D Views of the window of
 the button.

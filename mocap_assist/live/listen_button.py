@@ -6,7 +6,7 @@ import bpy
 
 from ...solvers.errors import MocapAssistError
 from ..blender.mixins import OperatorMixin
-from ..panels.preferred import preferred
+from ..panels.preference_values import preferred
 from . import listening
 
 NO_WINDOW = "Listening needs Blender's window."

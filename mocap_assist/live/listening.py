@@ -56,7 +56,7 @@ class Listening:
 
     @property
     def heard(self) -> StreamCounts:
-        """How many frames came in, and how many were dropped."""
+        """Return a text with the numbers of received and dropped frames."""
         return self.session.heard
 
     def state(self) -> str:

@@ -4,7 +4,7 @@ import bpy
 
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists
-from ..panels.preferred import preferences
+from ..panels.preference_values import preferences
 from .listening import current
 
 LISTEN = "mocap_assist.listen"

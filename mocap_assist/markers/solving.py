@@ -1,4 +1,4 @@
-"""What the button Make Skeleton reads from the scene, and the armature that it adds."""
+"""Read markers for the button Make Skeleton, and add its armature."""
 
 from functools import partial
 from typing import NamedTuple

@@ -1,1 +1,1 @@
-"""What several panels draw."""
+"""Drawing code that several panels share."""

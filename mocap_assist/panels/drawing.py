@@ -7,10 +7,14 @@ import bpy
 
 from ...solvers.settings import Settings
 
-LETTER = 6.2  # width of a letter of the interface, in pixels at scale 1, on average
-BORDER = 50  # of a panel, likewise
-WIDE = 340  # pixels; Blender's sidebars are narrower at first
-MIN_LETTERS = 24  # in a line
+LETTER_WIDTH_PX = 6.2
+"""Mean width of a letter of the interface, in pixels at scale 1."""
+BORDER_WIDTH_PX = 50
+"""Width of both borders of a panel, in pixels at scale 1."""
+MIN_WIDE_SIDEBAR_PX = 340
+"""Pixels from which a sidebar has space for two columns; Blender's default one is narrower."""
+MIN_LINE_LETTERS = 24
+"""Letters of a line below which text is not wrapped further."""
 
 
 def exists(idname: str) -> bool:
@@ -41,12 +45,12 @@ def draw_lines(layout: bpy.types.UILayout, text: str, width: float, icon: str = 
 
 def column_lines(text: str, width: float) -> list[str]:
     """Break a sentence into lines for a panel of that width."""
-    return wrap(text, max(int((width - BORDER) / LETTER), MIN_LETTERS))
+    return wrap(text, max(int((width - BORDER_WIDTH_PX) / LETTER_WIDTH_PX), MIN_LINE_LETTERS))
 
 
 def is_wide(context: bpy.types.Context) -> bool:
     """Whether the sidebar has room for another column."""
-    return sidebar_width(context) >= WIDE
+    return sidebar_width(context) >= MIN_WIDE_SIDEBAR_PX
 
 
 def sidebar_width(context: bpy.types.Context) -> float:
@@ -72,7 +76,7 @@ def draw_job(layout: bpy.types.UILayout, context: bpy.types.Context, *owners: st
 def settings_column(
     layout: bpy.types.UILayout, context: bpy.types.Context, *owners: str
 ) -> bpy.types.UILayout:
-    """Draw the running solve of these owners; return a column that is grey while any runs."""
+    """Draw the running solve of these owners; return a column that is gray while any runs."""
     running = draw_job(layout, context, *owners)
     column = split_column(layout)
     column.enabled = not running

@@ -10,14 +10,14 @@ from ..clean.solve_cleaning import differing
 
 
 class SimulatedTake(NamedTuple):
-    """What is simulated; its strength is 1."""
+    """Input of a simulation at full strength."""
 
     body: Motion
     settings: SimulateSettings
 
 
 class Resimulated(NamedTuple):
-    """What was simulated at full strength, what the body gets of it, and what moved by it."""
+    """Simulation at full strength, the blended motion, and the names of changed joints."""
 
     simulated: Simulated
     body: Motion
@@ -25,7 +25,7 @@ class Resimulated(NamedTuple):
 
 
 def take_of(body: Motion, settings: SimulateSettings) -> SimulatedTake:
-    """Return what must be simulated, whatever the strength."""
+    """Return the input of a simulation, which does not depend on the strength."""
     return SimulatedTake(body, replace(settings, strength=1.0))
 
 

@@ -1,4 +1,4 @@
-"""What an animator chooses for Reconstruct, besides the settings of the solvers themselves."""
+"""Settings of the button Reconstruct, in addition to those of the solvers."""
 
 from dataclasses import dataclass, fields
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from ..actions.frames import FrameRange
 
 
 class Postures(Choice):
-    """Where postures of natural bodies come from."""
+    """Source of the postures of natural bodies."""
 
     SHIPPED = "shipped", "Use the poses that come with Mocap Assist", "Built-In"
     EXAMPLES = (
@@ -73,5 +73,5 @@ class ReconstructBundle(NamedTuple):
     planting: PlantSettings
 
 
-QUICK = ("result_as", "plant_feet", *(item.name for item in fields(PlantSettings)))
+FINISHING_SETTINGS = ("result_as", "plant_feet", *(item.name for item in fields(PlantSettings)))
 """Names of the settings that can be changed without solving again."""

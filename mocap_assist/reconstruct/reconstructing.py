@@ -37,8 +37,8 @@ from .solve_reconstructing import RebuildFinish, RebuildProblem, Rebuilt, rebuil
 SUFFIX = ".reconstructed"
 
 
-class _Reading(NamedTuple):
-    """What an armature plays, and what was recorded for it."""
+class _ReconstructScene(NamedTuple):
+    """Action of an armature, and the recording of its joints."""
 
     played: Source
     recorded: Source
@@ -47,7 +47,7 @@ class _Reading(NamedTuple):
     @classmethod
     def of(
         cls, scene: bpy.types.Scene, armature: bpy.types.Object, settings: ReconstructBundle
-    ) -> "Steps[_Reading]":
+    ) -> "Steps[_ReconstructScene]":
         check_writable(armature)
         here = Subject.of(scene, armature)
         played = played_source(armature)
@@ -123,22 +123,24 @@ def write_reconstructed(
         write_contacts(armature, action, slot, take.frames, contacts, detected=detected)
     history.record(action, reading.recorded, _entry(settings, rebuilt))
     put_to_use(armature, action, slot, settings.choices.result_as)
-    return _said(action.name, rebuilt, n_modified)
+    return _message_of(action.name, rebuilt, n_modified)
 
 
-def _read(here: Subject, settings: ReconstructBundle) -> Steps[tuple[_Reading, RebuildProblem]]:
+def _read(
+    here: Subject, settings: ReconstructBundle
+) -> Steps[tuple[_ReconstructScene, RebuildProblem]]:
     """Read what is to be learned from, and then what was recorded."""
     examples, choices = None, settings.choices
     if choices.postures is Postures.EXAMPLES:
         examples = yield from read_examples.steps(*here.find(), choices.examples)
-    reading = yield from _Reading.of(*here.find(), settings)
+    reading = yield from _ReconstructScene.of(*here.find(), settings)
     return reading, _problem(*here.find(), reading, settings, examples)
 
 
 def _problem(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
-    reading: _Reading,
+    reading: _ReconstructScene,
     settings: ReconstructBundle,
     examples: ExampleSource | None,
 ) -> RebuildProblem:
@@ -208,7 +210,7 @@ def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
     }
 
 
-def _said(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
+def _message_of(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
     """Return what a status bar has room for, and what the animator must know."""
     percent = 100 * rebuilt.solution.rebuilt_fraction
     short = f"{name}: rebuilt {percent:.1f} % of joint samples"

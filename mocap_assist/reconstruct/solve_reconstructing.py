@@ -1,4 +1,4 @@
-"""What the button Reconstruct has solved for it: poses rebuilt, then feet planted.
+"""Solve of the button Reconstruct: rebuild poses, then plant feet.
 
 The slow part, `solve`, does not depend on the feet: what it returns is kept, so that the redo
 panel has only `finish` to repeat.
@@ -56,7 +56,7 @@ class RebuildProblem:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RebuildFinish:
-    """How the solution is applied to the take."""
+    """Settings that apply the solution to the take."""
 
     ease: Array
     """Blend weights, shape (n_frames,): below 1 only next to unchanged frames."""

@@ -79,7 +79,7 @@ class _BoneButton(OperatorMixin):
         return not reason
 
     def done(self, act: Callable[[], None]) -> set[str]:
-        """Do it; an error is said in a sentence."""
+        """Run an action, and report an error as a sentence."""
         try:
             act()
         except MocapAssistError as error:

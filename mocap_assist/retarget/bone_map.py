@@ -1,4 +1,4 @@
-"""Which bones of source and target play which part: found, edited, or from presets."""
+"""Roles of the bones of source and target: found, edited, or from presets."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -111,12 +111,12 @@ def explain_edited(side: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Co
         listed = row.id_data.mocap_assist.bone_map
         if listed.source and listed.target:
             explain_rows(listed)
-            setattr(listed, f"{side}_score", share_of_certain_roles(listed, side))
+            setattr(listed, f"{side}_score", fraction_of_certain_roles(listed, side))
 
     return explain
 
 
-def share_of_certain_roles(listed: bpy.types.PropertyGroup, side: str) -> float:
+def fraction_of_certain_roles(listed: bpy.types.PropertyGroup, side: str) -> float:
     """Return the fraction of the essential roles whose bone has no low confidence."""
     certain = [
         row

@@ -1,4 +1,4 @@
-"""What an animator chooses for Retarget and Unbake, besides the solvers' own settings."""
+"""Settings of Retarget and Unbake, in addition to those of the solvers."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -53,7 +53,7 @@ class RetargetBundle(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class UnbakeChoices(Settings):
-    """How exact the sparse keys are."""
+    """Settings of the accuracy of sparse keys."""
 
     tolerance: float = setting(
         0.01,

@@ -37,12 +37,12 @@ from .solve_retargeting import (
     retarget_and_report,
 )
 
-N_QUICK = 5000
-"""Frames that are solved in half a second: less than it takes to start another process."""
+MAX_SHORT_SOLVE_FRAMES = 5000
+"""Frames that are solved in half a second, the time to start another process."""
 
 
 class RetargetScene(NamedTuple):
-    """What Retarget found in the scene."""
+    """Source, target and bone maps that Retarget read from the scene."""
 
     target: bpy.types.Object
     sources: tuple[Source, ...]
@@ -60,7 +60,9 @@ def read_retarget(
     found = yield from _read(Subject.of(scene, source), settings)
     problem = found.problem
     n_frames = sum(clip.motion.n_frames for clip in problem.clips)
-    return (ShortSolve if n_frames <= N_QUICK else partial)(retarget_and_report, problem)
+    return (ShortSolve if n_frames <= MAX_SHORT_SOLVE_FRAMES else partial)(
+        retarget_and_report, problem
+    )
 
 
 @Sliced
@@ -102,7 +104,7 @@ def write_retargeted(
 
 
 def remarks_on_target(source: bpy.types.Object, target: bpy.types.Object) -> tuple[str, ...]:
-    """Return what was reported when the action that the target plays was made of the source."""
+    """Return the remarks stored with the target's retargeted action."""
     played = target.animation_data and target.animation_data.action
     entries = history.history(played) if played else []
     if not entries or entries[-1].get("source_armature") != source.name:
@@ -252,7 +254,7 @@ def _clip(take: ArmatureTake) -> StagedMotion:
 
 
 def _wanted(maps: BoneMaps) -> HumanoidMap:
-    """Return the target's roles, without fingers of which the source knows nothing."""
+    """Return the target's roles, without fingers that the source lacks."""
     joints = maps.target.joints.items()
     kept = {role: bone for role, bone in joints if maps.source.has(role) or not is_finger(role)}
     return HumanoidMap(kept, maps.target.score)

@@ -1,4 +1,4 @@
-"""What the button Retarget has solved for it: motions as the target's controls make them."""
+"""Solve of the button Retarget: motions of the target's controls."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

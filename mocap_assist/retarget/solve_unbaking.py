@@ -1,4 +1,4 @@
-"""What the button Unbake has solved for it: few keys for each bone, in its own channels."""
+"""Solve of the button Unbake: sparse keys for each bone, in its own channels."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -25,19 +25,20 @@ from ..actions.rotation_modes import (
     rotation_property,
 )
 
-MOVES = 1e-6  # radians
-FINEST = 0.1
-"""Radians for each meter of tolerance that angles between keys may always be off."""
+MIN_ROTATION_RAD = 1e-6
+"""Radians: a joint that rotates less does not move. It guards against rounding."""
+MIN_TOLERANCE_RAD_PER_M = 0.1
+"""Radians of error per meter of tolerance that angles between keys may always have."""
 MIN_KEYS = 2  # keys without which nothing moves
-TIGHTER, N_TRIES = 0.6, 6
-"""Axes and angles do not go between keys as quaternions do: where that brings an end too far
-away, the keys are chosen for less than the tolerance, so many times at most."""
+TIGHTENING_FACTOR, N_TRIES = 0.6, 6
+"""Factor on the tolerance, and maximum number of repetitions: axes and angles are interpolated
+differently from quaternions. If an end deviates too far, the keys are chosen again."""
 AXIS_ANGLE, QUATERNION = "AXIS_ANGLE", "QUATERNION"
 
 
 @dataclass(frozen=True, eq=False)
 class BoneShape:
-    """How a joint's bone is keyed."""
+    """Channels and rotation mode of a joint's bone."""
 
     bone: str
     mode: str
@@ -58,7 +59,7 @@ class KeyedMotion:
     """Whether the location of the topmost bone is keyed."""
     head: Array
     """Rest position of the bone, meters."""
-    metres: float
+    meters: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,7 +115,12 @@ def _unbake_tree(
         rotation_curves = [
             None
             if shape is None
-            else _bone_curve(tree.motion.rotations[:, joint], shape, curve, FINEST * tolerance)
+            else _bone_curve(
+                tree.motion.rotations[:, joint],
+                shape,
+                curve,
+                MIN_TOLERANCE_RAD_PER_M * tolerance,
+            )
             for joint, (shape, curve) in enumerate(
                 zip(tree.shapes, sparse.rotations, strict=True)
             )
@@ -122,7 +128,7 @@ def _unbake_tree(
         off = _error(tree, rotation_curves, sparse.root)
         if off <= problem.tolerance:
             break
-        tolerance *= TIGHTER
+        tolerance *= TIGHTENING_FACTOR
     keys = {
         shape.bone: SparseKeys(
             curve if shape.rotates else None,
@@ -191,8 +197,8 @@ def _location_curve(tree: KeyedMotion, curve: KeyCurve) -> KeyCurve:
     back = inverse(shape.axes)
     return KeyCurve(
         curve.frames,
-        rotate(back, curve.values - tree.head) / tree.metres,
-        rotate(back, curve.slopes) / tree.metres,
+        rotate(back, curve.values - tree.head) / tree.meters,
+        rotate(back, curve.slopes) / tree.meters,
     )
 
 
@@ -215,7 +221,7 @@ def _pruned(tree: KeyedMotion) -> KeyedMotion:
     motion = tree.motion
     skeleton = motion.skeleton
     angles = angle_between(motion.rotations, IDENTITY)
-    moves = ~(np.nan_to_num(angles, nan=1.0).max(axis=0) <= MOVES)
+    moves = ~(np.nan_to_num(angles, nan=1.0).max(axis=0) <= MIN_ROTATION_RAD)
     moves[0] = True
     needed = moves.copy()
     for joint in range(skeleton.n_joints - 1, 0, -1):

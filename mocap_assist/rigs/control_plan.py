@@ -1,4 +1,4 @@
-"""Which bones of a rig are keyed for which humanoid role."""
+"""Plan of the rig bones to key for each humanoid role."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,7 +8,8 @@ from ...solvers.settings import Choice
 
 ROOT = "root"
 """Role name of the travel over the ground."""
-CENTRE = ("hips", "spine", "chest", "upperChest", "neck", "head")
+CENTRAL_ROLES = ("hips", "spine", "chest", "upperChest", "neck", "head")
+"""Roles without a side, each the child of the one before."""
 LIMB = {
     "Shoulder": "upperChest", "UpperArm": "Shoulder", "LowerArm": "UpperArm",
     "Hand": "LowerArm", "UpperLeg": "hips", "LowerLeg": "UpperLeg", "Foot": "LowerLeg",
@@ -45,7 +46,7 @@ class Plan(NamedTuple):
 
 @dataclass(frozen=True)
 class RigPlan:
-    """How a rig is keyed.
+    """Bones of a rig to key, and their roles.
 
     Attributes
     ----------
@@ -82,12 +83,12 @@ def _root_plan(root_bone: str) -> list[Plan]:
 
 
 def _above(role: str) -> str:
-    if role in CENTRE:
-        return CENTRE[CENTRE.index(role) - 1] if role != CENTRE[0] else ""
+    if role in CENTRAL_ROLES:
+        return CENTRAL_ROLES[CENTRAL_ROLES.index(role) - 1] if role != CENTRAL_ROLES[0] else ""
     side = "left" if role.startswith("left") else "right"
     part = role.removeprefix(side)
     if part in LIMB:
-        return LIMB[part] if LIMB[part] in CENTRE else side + LIMB[part]
+        return LIMB[part] if LIMB[part] in CENTRAL_ROLES else side + LIMB[part]
     end = next(each for each in FINGER_PARTS if part.endswith(each))
     index = FINGER_PARTS.index(end)
     return side + (part.removesuffix(end) + FINGER_PARTS[index - 1] if index else "Hand")

@@ -1,4 +1,4 @@
-"""Which bones of a rig can move others: by parenthood and by constraints."""
+"""Find bones of a rig that move others: as parents or by constraints."""
 
 from collections.abc import Iterable, Iterator
 

@@ -10,10 +10,15 @@ from mathutils import Euler, Matrix
 from ...solvers.arrays import Array
 
 N_POSES = 3
-MAX_ROTATION_RAD = 0.35  # radians
-LARGEST_SHIFT = 0.03  # of the rig's height
-MAX_ROTATION_DIFFERENCE = 2e-3  # difference between entries of rotation matrices
-MAX_POSITION_DIFFERENCE = 2e-3  # of the rig's height
+"""Number of random poses in which a control is tested."""
+MAX_ROTATION_RAD = 0.35
+"""Radians: largest rotation of a tested bone about each axis, below most limits of rigs."""
+MAX_SHIFT_FRACTION = 0.03
+"""Largest shift of a tested bone along each axis, as a fraction of the rig's height."""
+MAX_ROTATION_DIFFERENCE = 2e-3
+"""Difference between entries of rotation matrices up to which two poses are the same."""
+MAX_POSITION_DIFFERENCE = 2e-3
+"""Likewise of positions, as a fraction of the rig's height."""
 Switches = Mapping[tuple[str, str], float]
 
 
@@ -108,7 +113,7 @@ def _carried_and_moved(
             Euler(rng.uniform(-MAX_ROTATION_RAD, MAX_ROTATION_RAD, 3)).to_matrix().to_4x4()
         )
         if name in movers:
-            rotation.translation = rng.uniform(-1.0, 1.0, 3) * LARGEST_SHIFT * height
+            rotation.translation = rng.uniform(-1.0, 1.0, 3) * MAX_SHIFT_FRACTION * height
         copy.pose.bones[name].matrix_basis = rotation
     scene.view_layers[0].update()
     posed = copy.evaluated_get(depsgraph).pose.bones

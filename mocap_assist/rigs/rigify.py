@@ -1,4 +1,4 @@
-"""How Rigify's control rigs are keyed."""
+"""Plan of the keys of Rigify's control rigs."""
 
 import re
 from collections.abc import Collection, Mapping

@@ -1,4 +1,4 @@
-"""How certain the roles of a rig's bones are, and why."""
+"""Confidence of the roles of a rig's bones, with reasons."""
 
 import bpy
 

@@ -13,7 +13,7 @@ from ...solvers.rotations import inverse, multiply, quaternion_from_matrix, rota
 from ..actions.take import skeleton_of
 from ..scene.controls import NO_CONTROL, Control, TargetRig
 from ..scene.rig import Placement, Rig, placement_of, read_rig
-from ..scene.units import metres_per_unit
+from ..scene.units import meters_per_unit
 from .control_plan import ROOT, Limbs, Plan, RigPlan, plain_plan, role_above
 from .probing import find_carriers, location_axes
 from .rigify import is_rigify, rigify_plan, rigify_roles
@@ -23,7 +23,7 @@ SIDES = ("left", "right")
 
 
 def find_roles(armature: bpy.types.Object) -> HumanoidMap:
-    """Find out which bone of a rig is to be keyed for which role.
+    """Find the bone of a rig to key for each role.
 
     Of rigs by Rigify only the controls are asked.
     """
@@ -100,8 +100,8 @@ def read_target(
     plan = _plan(rig, joints, limbs, on_root)
     stage, _ = stage_of(armature)
     root = rig.bones.index(plan.joint_bones["hips"])
-    metres = metres_per_unit(scene, rig, _top_of(rig, root), stage.scale)
-    stage = stage.in_unit(metres)
+    meters = meters_per_unit(scene, rig, _top_of(rig, root), stage.scale)
+    stage = stage.in_unit(meters)
     _check_movers(rig, plan, armature.name)
     bones_to_probe = [(each.bone, each.moves) for each in plan.plans]
     carriers = find_carriers(scene, armature, bones_to_probe, plan.switches)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import bpy
 
 from ..drawing.view_drawing import redraw
-from .ends_with_file import ends_with_file
+from .file_change_handlers import ends_with_file
 
 TIMER_INTERVAL_S = 0.05
 BUSY = "Another solve is running. Wait until it is done, or press Esc in its window."

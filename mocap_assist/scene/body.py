@@ -1,4 +1,4 @@
-"""Which of an armature's bones carries the body."""
+"""Find the bone of an armature that carries the body."""
 
 from collections.abc import Sequence
 

@@ -16,8 +16,8 @@ from ...solvers.motion import HumanoidMap, Skeleton, WorldPoses
 from ...solvers.rotations import inverse, multiply, rotate
 
 NO_CONTROL = -1
-STRAIGHT, BENT = 0.001, 0.005
-"""Distance of a hinge from the line of its limb, as a fraction of the limb's length. Below the
+MIN_FLEXION_FRACTION, FULL_FLEXION_FRACTION = 0.001, 0.005
+"""Distances of a hinge from the line of its limb, as fractions of the limb's length. Below the
 first, the upper bone defines the direction of the hinge; above the second, its flexion does."""
 
 
@@ -69,14 +69,14 @@ class TargetRig:
         The joints that play roles, in the stage, meters.
     humanoid : HumanoidMap
     controls : tuple of Control
-    metres : float
+    meters : float
         Length of the armature's own unit.
     """
 
     skeleton: Skeleton
     humanoid: HumanoidMap
     controls: tuple[Control, ...]
-    metres: float
+    meters: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +125,7 @@ def keys_of(target: TargetRig, poses: WorldPoses, travel: Carried) -> Mapping[st
         carrier = still if control.carrier == NO_CONTROL else moved[control.carrier]
         found[control.bone] = BoneKeys(
             _basis_rotations(control, carrier, delta) if control.rotates else None,
-            _basis_shifts(control, carrier, delta) / target.metres if control.moves else None,
+            _basis_shifts(control, carrier, delta) / target.meters if control.moves else None,
         )
     return found
 
@@ -164,7 +164,12 @@ def _pole_positions(control: Control, rest: Array, poses: WorldPoses, upper: Car
     straight = upper.points(control.head) - hinge
     axis = line / np.maximum(np.linalg.norm(line, axis=1, keepdims=True), 1e-9)
     straight -= axis * (straight * axis).sum(axis=1, keepdims=True)
-    weight = np.clip((depth / length - STRAIGHT) / (BENT - STRAIGHT), 0.0, 1.0)
+    weight = np.clip(
+        (depth / length - MIN_FLEXION_FRACTION)
+        / (FULL_FLEXION_FRACTION - MIN_FLEXION_FRACTION),
+        0.0,
+        1.0,
+    )
     ahead = weight * _unit(bend) + (1.0 - weight) * _unit(straight)
     distance = np.linalg.norm(control.head - rest[control.limb[1]])
     return np.asarray(hinge + distance * _unit(ahead))

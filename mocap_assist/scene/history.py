@@ -26,7 +26,7 @@ def record(
     *,
     of_another_rig: bool = False,
 ) -> None:
-    """Note in `action` what was done to `made_from`, and by which version.
+    """Note in `action` the operation on `made_from`, and the version.
 
     An action that was made from a result keeps the result's entries and its raw source. One
     made from an action `of_another_rig` is raw itself: it cannot be reverted to that.

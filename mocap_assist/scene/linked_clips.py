@@ -13,7 +13,7 @@ ENDING = ".blend"
 
 
 class Linked(NamedTuple):
-    """What another file holds."""
+    """Actions and armatures of another file."""
 
     actions: tuple[bpy.types.Action, ...]
     armatures: tuple[bpy.types.Object, ...]

@@ -1,4 +1,4 @@
-"""Where a recording came from, kept on what was made of it."""
+"""Origin of a recording, stored on its objects and actions."""
 
 from dataclasses import asdict, fields
 from pathlib import Path

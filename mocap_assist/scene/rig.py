@@ -10,7 +10,9 @@ from ...solvers.arrays import Array
 from ...solvers.errors import InvalidMotionError
 from ...solvers.rotations import inverse, multiply, quaternion_from_matrix, rotate
 
-EVEN = 1e-3
+MAX_SKEW = 1e-3
+"""Difference of a matrix times its transpose from identity up to which it is a rotation; it
+allows rounding of scales in single precision."""
 MAX_COORDINATE = 1e12
 """Units of the scene; Blender keeps 3.4e38 where infinity is set."""
 END = "mocap_assist_end"
@@ -70,9 +72,9 @@ class Placement:
     """Shape (n_frames, 3), meters."""
     scale: float
 
-    def in_unit(self, metres: float) -> "Placement":
+    def in_unit(self, meters: float) -> "Placement":
         """Return the placement with its meters taken for units of so many meters."""
-        return Placement(self.rotations, metres * self.origins, metres * self.scale)
+        return Placement(self.rotations, meters * self.origins, meters * self.scale)
 
     def points(self, points: Array) -> Array:
         """Take points, shape (n_frames, 3) or (3,), from the space to the world."""
@@ -124,7 +126,7 @@ def placement_of(matrix: Matrix, name: str) -> tuple[Array, Array, float]:
     if volume > 0.0:
         scale = float(np.cbrt(volume))
         rotation = linear / scale
-        if np.abs(rotation @ rotation.T - np.eye(3)).max() <= EVEN:
+        if np.abs(rotation @ rotation.T - np.eye(3)).max() <= MAX_SKEW:
             return quaternion_from_matrix(rotation), array[:3, 3], scale
     sizes = ", ".join(f"{size:.3g}" for size in np.linalg.norm(linear, axis=0))
     fault = f"is scaled unevenly or sheared ({sizes} along X, Y, Z)"

@@ -14,7 +14,7 @@ KINDS = ("objects", "armatures", "meshes", "node_groups", "actions", "collection
 
 
 def in_object_mode(context: bpy.types.Context) -> None:
-    """Leave Pose or Edit Mode, in which no other object can become active."""
+    """Leave Pose or Edit Mode, so that another object can become active."""
     active = context.view_layer.objects.active
     switch = bpy.ops.object.mode_set
     if active is not None and active.mode != "OBJECT" and switch.poll():

@@ -9,11 +9,12 @@ import numpy as np
 from ...solvers.arrays import Array
 from ...solvers.settings import Choice
 
-SAME = 1e-6  # relative difference of rates that is only rounding
+RATE_ROUNDING = 1e-6
+"""Relative difference of two frame rates that is only rounding in single precision."""
 
 
 class FrameRate(Choice):
-    """What happens where the recording has another rate than the scene."""
+    """Conversion of recordings with another frame rate than the scene."""
 
     AUTO = (
         "auto",
@@ -46,7 +47,7 @@ def scene_rate(scene: bpy.types.Scene) -> float:
     """Return the scene's frames per second."""
     rate = scene.render.fps / scene.render.fps_base
     rounded = round(rate)
-    return float(rounded) if abs(rate - rounded) < SAME * rate else rate
+    return float(rounded) if abs(rate - rounded) < RATE_ROUNDING * rate else rate
 
 
 def set_scene_rate(scene: bpy.types.Scene, frame_rate: float) -> None:
@@ -65,12 +66,12 @@ def timing(scene: bpy.types.Scene, choice: FrameRate, frame_rate: float, start: 
 
 def is_same_rate(one: float, other: float) -> bool:
     """Whether two rates differ by rounding only."""
-    return abs(one - other) < SAME * other
+    return abs(one - other) < RATE_ROUNDING * other
 
 
 def set_duration(scene: bpy.types.Scene, first_frame: int, last_frame: float) -> None:
     """Set the scene's range; the current frame moves into it."""
-    scene.frame_start, scene.frame_end = first_frame, ceil(last_frame - SAME)
+    scene.frame_start, scene.frame_end = first_frame, ceil(last_frame - RATE_ROUNDING)
     inside = min(max(scene.frame_current, scene.frame_start), scene.frame_end)
     if inside != scene.frame_current:
         scene.frame_set(inside)
@@ -78,4 +79,4 @@ def set_duration(scene: bpy.types.Scene, first_frame: int, last_frame: float) ->
 
 def extend_duration(scene: bpy.types.Scene, last_frame: float) -> None:
     """Let the scene last until a frame; it is never made shorter."""
-    scene.frame_end = max(scene.frame_end, ceil(last_frame - SAME))
+    scene.frame_end = max(scene.frame_end, ceil(last_frame - RATE_ROUNDING))

@@ -1,4 +1,4 @@
-"""What must be as it was where an import fails: the selection, and the scene's time."""
+"""Restore the selection and the scene's time after a failed import."""
 
 from typing import NamedTuple
 

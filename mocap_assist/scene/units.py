@@ -1,4 +1,4 @@
-"""How long one of Blender's units is, in meters."""
+"""Length of one of Blender's units, in meters."""
 
 import bpy
 
@@ -16,7 +16,7 @@ def unit_of(scene: bpy.types.Scene) -> float:
     return float(settings.scale_length) if settings.system != "NONE" else 1.0
 
 
-def metres_per_unit(scene: bpy.types.Scene, rig: Rig, root: int, scale: float) -> float:
+def meters_per_unit(scene: bpy.types.Scene, rig: Rig, root: int, scale: float) -> float:
     """Return the scene's unit, or the likely one of the file where the body would be absurd.
 
     Parameters

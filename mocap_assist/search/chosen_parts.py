@@ -1,4 +1,4 @@
-"""Which parts of the body bones belong to. Knows nothing about Blender."""
+"""Find the body parts that bones belong to. Knows nothing about Blender."""
 
 from collections.abc import Collection
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What the button Find Similar reads from the scene, and the list that it fills."""
+"""Read the query of the button Find Similar from the scene, and fill the list of matches."""
 
 from functools import partial
 from typing import NamedTuple
@@ -24,7 +24,7 @@ from .solve_finding import Finding, FindProblem, find_clips
 
 
 class Query(NamedTuple):
-    """What is looked for."""
+    """Motion or markers to search for, on a grid of frames."""
 
     recording: Motion | Tracks
     grid: Grid

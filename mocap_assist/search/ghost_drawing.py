@@ -23,7 +23,7 @@ def ghost_now(context: bpy.types.Context) -> Array | None:
     except InvalidMotionError:
         return None
     frame = (context.scene.frame_current_final - search.start) / search.step
-    lines: Array = ghost_lines(search.finding.stage, found, frame) / search.metres
+    lines: Array = ghost_lines(search.finding.stage, found, frame) / search.meters
     return lines
 
 

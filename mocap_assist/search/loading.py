@@ -1,4 +1,4 @@
-"""What becomes of a match: an action for the active armature, or a strip of its NLA."""
+"""Load a match as an action of the active armature, or as a strip of its NLA."""
 
 from functools import partial
 
@@ -140,7 +140,7 @@ def _start(armature: bpy.types.Object, search: Search, found: Found) -> Start:
     stage, first = search.finding.stage, found.pairs[0, 0]
     rotation, origin, _ = placement_of(armature.matrix_world, armature.name)
     about = vertical_part(rotation)
-    position: NDArray[np.float64] = stage.positions[first] - search.metres * origin
+    position: NDArray[np.float64] = stage.positions[first] - search.meters * origin
     angle = 2.0 * np.arctan2(about[3], about[0])
     local = rotate(inverse(about), position)
     return Start(local[:2], float(stage.headings[first] - angle))

@@ -1,4 +1,4 @@
-"""What the buttons that make assets of actions ask for."""
+"""Mix-in of the buttons that mark actions as assets: the dialog."""
 
 import bpy
 

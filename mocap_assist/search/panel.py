@@ -8,7 +8,7 @@ from ...solvers.retrieval import FindSettings
 from ..blender.mixins import PanelMixin
 from ..library.auto_update_list import choices_are_kept
 from ..panels.drawing import draw_sentence, exists, folded, is_wide, settings_column
-from ..panels.figures import frames_text
+from ..panels.figure_rows import frames_text
 from ..runtime.selection import Bones
 from . import searches
 from .finding import why_not_find

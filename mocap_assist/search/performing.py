@@ -50,13 +50,13 @@ def search_with(context: bpy.types.Context, query: JointRecording) -> str:
         return "There is no library yet. Add folders, then press Build Library."
     settings = scene.mocap_assist.find.settings().finding
     solve = partial(find_clips, FindProblem(query, str(library), settings))
-    start, metres = float(scene.frame_current), unit_of(scene)
+    start, meters = float(scene.frame_current), unit_of(scene)
     step = scene.render.fps / scene.render.fps_base / query.frame_rate
     if in_background():
-        return _list_matches(run(solve), (start, step), metres)
+        return _list_matches(run(solve), (start, step), meters)
     job: Job[Finding] = Job(solve)
     timers.register(
-        partial(_poll_search, job, (start, step), metres), first_interval=POLL_INTERVAL_S
+        partial(_poll_search, job, (start, step), meters), first_interval=POLL_INTERVAL_S
     )
     return f"Searching with {query.n_frames} frames..."
 
@@ -71,18 +71,18 @@ def chosen_sentence() -> str:
     return f"{index + 1} of {len(listed.rows)}: {row.name} ({row.score:.0%})."
 
 
-def _poll_search(job: Job[Finding], grid: tuple[float, float], metres: float) -> float | None:
+def _poll_search(job: Job[Finding], grid: tuple[float, float], meters: float) -> float | None:
     """Fill the list once the job has ended; otherwise return the seconds to the next call."""
     if not job.done():
         return POLL_INTERVAL_S
     try:
-        _list_matches(job.result(), grid, metres)
+        _list_matches(job.result(), grid, meters)
     except MocapAssistError as error:
         bpy.context.window_manager.mocap_assist_indexing.said = str(error)
     redraw(bpy.context)
     return None
 
 
-def _list_matches(finding: Finding, grid: tuple[float, float], metres: float) -> str:
-    fill_list(bpy.context, searches.keep(PERFORMED, grid, metres, finding))
+def _list_matches(finding: Finding, grid: tuple[float, float], meters: float) -> str:
+    fill_list(bpy.context, searches.keep(PERFORMED, grid, meters, finding))
     return chosen_sentence()

@@ -13,7 +13,7 @@ class MOCAP_PG_match(bpy.types.PropertyGroup):
 
 
 class MOCAP_PG_matches(bpy.types.PropertyGroup):
-    """What was found last."""
+    """Result of the last search."""
 
     search: bpy.props.IntProperty(name="Search", description="Number of the search")
     query: bpy.props.StringProperty(name="Query", description="Action that was searched for")
@@ -22,7 +22,7 @@ class MOCAP_PG_matches(bpy.types.PropertyGroup):
 
 
 class MOCAP_PG_indexing(bpy.types.PropertyGroup):
-    """How far the running Index is, and what the last one has said."""
+    """Progress of the running Build Library, and the result of the last one."""
 
     running: bpy.props.BoolProperty(name="Running")
     fraction: bpy.props.FloatProperty(name="Done", subtype="FACTOR", min=0.0, max=1.0)

@@ -1,4 +1,4 @@
-"""What was found last, kept for as long as Blender runs: too much to keep in a .blend file."""
+"""Cache of the last searches while Blender runs; they are too large for a .blend file."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ MAX_CACHED = 8
 
 
 class Search(NamedTuple):
-    """What was found, and for what."""
+    """A query, and the matches that were found."""
 
     number: int
     query: str
@@ -20,7 +20,7 @@ class Search(NamedTuple):
     """Scene frame of the query's first frame."""
     step: float
     """Scene frames from one of its frames to the next."""
-    metres: float
+    meters: float
     """Length of one of the scene's units."""
     finding: Finding
 
@@ -33,10 +33,10 @@ _cache: dict[int, Search] = {}
 _last: list[int] = [0]
 
 
-def keep(query: str, grid: tuple[float, float], metres: float, finding: Finding) -> Search:
+def keep(query: str, grid: tuple[float, float], meters: float, finding: Finding) -> Search:
     """Keep what was found; what was found long before is forgotten."""
     _last[0] += 1
-    search = Search(_last[0], query, *grid, metres, finding)
+    search = Search(_last[0], query, *grid, meters, finding)
     _cache[search.number] = search
     while len(_cache) > MAX_CACHED:
         del _cache[next(iter(_cache))]

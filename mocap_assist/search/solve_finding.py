@@ -1,4 +1,4 @@
-"""What the button Find Similar has done for it: the best clips, and all there is to show."""
+"""Solve of the button Find Similar: the best clips, and their details."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -34,7 +34,7 @@ MAX_MATCHES = 48
 
 @dataclass(frozen=True, eq=False)
 class FindProblem:
-    """What is looked for, and where."""
+    """A query, and the library to search."""
 
     query: Recording
     library: str
@@ -76,7 +76,7 @@ class Found:
 
 @dataclass(frozen=True, eq=False)
 class Finding:
-    """What a search has found."""
+    """Matches of a search."""
 
     found: tuple[Found, ...]
     stage: QueryPath

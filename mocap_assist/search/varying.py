@@ -17,11 +17,11 @@ from . import searches
 from .loading import note_clip, problem_of, why_not_load
 from .solve_finding import Found
 
-FIRST = 1.0
+FIRST_FRAME = 1.0
 """Scene frame at which the clips begin."""
 
 
-class _Reading(NamedTuple):
+class _MatchesToVary(NamedTuple):
     found: tuple[Found, ...]
     switches: dict[tuple[str, str], float]
     problems: FetchProblems
@@ -55,7 +55,7 @@ def write_best(
     for found, clip in zip(reading.found, fetched.clips, strict=True):
         if clip is None:
             continue
-        frames = FIRST + np.arange(clip.n_frames, dtype=np.float64)
+        frames = FIRST_FRAME + np.arange(clip.n_frames, dtype=np.float64)
         name = f"{_short(found)}.{armature.name}".replace(SEPARATOR, ",")
         action, _ = write_action(armature, name, frames, clip.keys, reading.switches)
         note_clip(action, found)
@@ -68,7 +68,9 @@ def write_best(
     return message
 
 
-def _read(scene: bpy.types.Scene, armature: bpy.types.Object, settings: UseBundle) -> _Reading:
+def _read(
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: UseBundle
+) -> _MatchesToVary:
     search, _ = searches.chosen(bpy.context)
     usable = [each for each in search.finding.found if each.entry.origin is not None]
     best = tuple(usable[: settings.choices.n_best])
@@ -79,7 +81,7 @@ def _read(scene: bpy.types.Scene, armature: bpy.types.Object, settings: UseBundl
     taken = LoadChoices(part=scene.mocap_assist.load.settings().choices.part)
     pairs = [problem_of(scene, armature, taken, search, found) for found in best]
     problems = FetchProblems(tuple(problem for problem, _ in pairs), tuple(map(_short, best)))
-    return _Reading(best, pairs[0][1], problems)
+    return _MatchesToVary(best, pairs[0][1], problems)
 
 
 def _short(found: Found) -> str:

@@ -23,7 +23,7 @@ from .tracked_body import TrackedBody, armature_from_motion, bones_of
 from .tracked_checks import check_keyed, check_posed
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
-MAX_OFF_GRID = 0.05
+MAX_GRID_OFFSET_STEPS = 0.05
 """Maximum offset between the ends of an action and a depth image, in steps."""
 
 
@@ -152,8 +152,8 @@ def _sample_times(
     shown = tracked.shown
     ends = np.concatenate([channel.keys[[0, -1], 0] for channel in keyed])
     start, stop = ((frame - shown.start) / shown.step for frame in (ends.min(), ends.max()))
-    first = max(int(np.ceil(start - MAX_OFF_GRID)), 0)
-    last = min(int(np.floor(stop + MAX_OFF_GRID)), n_images - 1)
+    first = max(int(np.ceil(start - MAX_GRID_OFFSET_STEPS)), 0)
+    last = min(int(np.floor(stop + MAX_GRID_OFFSET_STEPS)), n_images - 1)
     if last < first:
         raise InvalidMotionError(
             f"{name} has no keys within the recording. Move its keys back to their original"

@@ -1,4 +1,4 @@
-"""What the animator sees: panels in the sidebar, menus, preferences and the overlay."""
+"""User interface: panels in the sidebar, menus, preferences and the overlay."""
 
 from ..clean import example_list
 from ..drawing import confidence_switch, overlay_switch

@@ -10,7 +10,7 @@ from ...solvers.recordings.live import PORT
 from ..actions.armature_write import Output
 from ..drawing import overlay_drawing
 from ..library.auto_update_list import auto_updated_libraries, stop_keeping
-from ..panels.preferred import EXTENSION, preferences, preferred
+from ..panels.preference_values import EXTENSION, preferences, preferred
 
 STOP = "mocap_assist.stop_keeping"
 
@@ -26,7 +26,7 @@ def _redraw(self: bpy.types.AddonPreferences, context: bpy.types.Context) -> Non
 
 
 class MOCAP_AP_preferences(bpy.types.AddonPreferences):
-    """What holds for every file."""
+    """Preferences for all files."""
 
     bl_idname = EXTENSION
 

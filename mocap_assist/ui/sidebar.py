@@ -9,7 +9,7 @@ from ..clean.panel import CleanPanel
 from ..importing.panel import ImportPanel
 from ..live.panel import PerformPanel
 from ..markers.panel import MarkersPanel
-from ..panels.preferred import preferred
+from ..panels.preference_values import preferred
 from ..physics.panel import PhysicsPanel
 from ..reconstruct.panel import ReconstructPanel
 from ..retarget.panel import RetargetPanel

@@ -1,4 +1,4 @@
-"""What an animator chooses for Vary and for a crowd, besides the solvers' own settings."""
+"""Settings of Vary and of crowds, in addition to those of the solvers."""
 
 from dataclasses import dataclass
 from math import pi
@@ -11,7 +11,7 @@ from ...solvers.variation import VarySettings
 
 @dataclass(frozen=True, kw_only=True)
 class VaryChoices(Settings):
-    """Of which actions, and how many variants."""
+    """Source actions, and the number of variants."""
 
     actions: str = setting(
         "",
@@ -34,7 +34,7 @@ class VaryBundle(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class CrowdChoices(Settings):
-    """How the members of a crowd differ in time and place."""
+    """Differences of the members of a crowd in time and position."""
 
     delay: float = setting(
         1.0, "Latest start after the current frame", unit="s",

@@ -18,7 +18,8 @@ from ..blender.compat import Source
 from ..scene.controls import BoneKeys
 from ..scene.rig import Placement
 
-STILL = 1e-6
+MIN_CHANGE = 1e-6
+"""Change of a quaternion component that is only rounding: the bone does not move."""
 BONE = re.compile(r'pose\.bones\["(.+?)"\]')
 
 
@@ -100,7 +101,7 @@ def _moves(path: str, movers: Collection[str]) -> bool:
 
 def _once_if_still(rotations: Array) -> Array:
     """Return rotations, (n_frames, 4), or only the first one if they are constant."""
-    if np.abs(rotations - rotations[:1]).max() > STILL:
+    if np.abs(rotations - rotations[:1]).max() > MIN_CHANGE:
         return rotations
     first_only = np.full_like(rotations, np.nan)
     first_only[0] = rotations[0]

@@ -17,7 +17,7 @@ class MOCAP_PG_variant(bpy.types.PropertyGroup):
 
 
 class MOCAP_PG_variants(bpy.types.PropertyGroup):
-    """What Vary made last, and for which armature."""
+    """Last variants, and their armature."""
 
     armature: bpy.props.PointerProperty(type=bpy.types.Object)
     rows: bpy.props.CollectionProperty(type=MOCAP_PG_variant)

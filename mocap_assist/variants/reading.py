@@ -1,4 +1,4 @@
-"""What the button Vary reads from the scene."""
+"""Read example actions for the button Vary."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -36,7 +36,7 @@ milliseconds, and what was solved is read again before it is written."""
 
 
 class VaryScene(NamedTuple):
-    """What Vary found in the scene."""
+    """Examples and armature that Vary read from the scene."""
 
     sources: tuple[Source, ...]
     takes: tuple[ArmatureTake, ...]

@@ -11,7 +11,8 @@ from . import listing
 from .reading import read_body
 from .solve_varying import draw_sheet
 
-MOST = 50
+MAX_DRAWN_VARIANTS = 50
+"""Number of rows in a picture; it bounds the height of the file."""
 
 
 def write_sheet(scene: bpy.types.Scene, path: Path) -> str:
@@ -30,8 +31,12 @@ def write_sheet(scene: bpy.types.Scene, path: Path) -> str:
             action.name,
             read_body(scene, armature, listing.source_for(armature, action)).parts[0].motion,
         )
-        for action in actions[:MOST]
+        for action in actions[:MAX_DRAWN_VARIANTS]
     ]
     n_drawn = run(partial(draw_sheet, motions, str(path)))
-    rest = f"; the first {MOST} of {len(actions)}" if len(actions) > MOST else ""
+    rest = (
+        f"; the first {MAX_DRAWN_VARIANTS} of {len(actions)}"
+        if len(actions) > MAX_DRAWN_VARIANTS
+        else ""
+    )
     return f"{n_drawn} variants in {path.name}{rest}."

@@ -7,7 +7,7 @@ import bpy
 from ..blender.stored_json import load_json, store_json
 
 VARIANT = "mocap_assist_variant"
-"""Custom property of actions that Vary made: of which, its number, and the seed."""
+"""Custom property of variants: their source actions, number and seed."""
 BETWEEN = ".variant "
 NUMBER = re.compile(re.escape(BETWEEN) + r"(\d+)(\.\d{3,})?$")
 MIN_DIGITS = 2

@@ -1,4 +1,4 @@
-"""What the button Vary writes into the scene, one variant at a time."""
+"""Write variants into the scene, one at a time."""
 
 from typing import NamedTuple
 
@@ -68,7 +68,7 @@ def write_variants(
 
 
 class _Writer(NamedTuple):
-    """What all variants have in common."""
+    """Data that all variants share."""
 
     settings: VaryBundle
     varied: Varied

@@ -10,8 +10,8 @@ from typing import Any, NoReturn, TypeVar
 from ..settings import Described, Settings, former_names
 
 SettingsClass = TypeVar("SettingsClass", bound=Settings)
-MAX_LISTED = 32
-"""Letters of choices that a usage line lists; help lists longer ones."""
+MAX_LISTED_LETTERS = 32
+"""Number of letters of the choices that a usage line lists; help lists longer ones."""
 
 
 class SentenceParser(argparse.ArgumentParser):
@@ -70,7 +70,7 @@ def _kind(item: "Field[Any]") -> dict[str, Any]:
         return {"action": argparse.BooleanOptionalAction}
     if issubclass(kind, Enum):
         choices = "|".join(str(one.value) for one in kind)
-        metavar = f"{{{choices}}}" if len(choices) <= MAX_LISTED else item.name.upper()
+        metavar = f"{{{choices}}}" if len(choices) <= MAX_LISTED_LETTERS else item.name.upper()
         return {"type": _choice_of(kind), "metavar": metavar}
     if item.metadata["described"].unit == "rad":
         return {"type": _angle, "metavar": "DEGREES"}
@@ -113,7 +113,7 @@ def _help(item: "Field[Any]") -> str:
         facts.append(f"default {'yes' if default else 'no'}")
     elif issubclass(kind, Enum):
         choices = [str(one.value) for one in kind]
-        if len("|".join(choices)) > MAX_LISTED:
+        if len("|".join(choices)) > MAX_LISTED_LETTERS:
             facts.append(", ".join(choices))
         facts.append(f"default {default.value}")
     else:

@@ -41,7 +41,7 @@ class Task(NamedTuple):
 
     @property
     def key(self) -> tuple[Any, ...]:
-        """What makes it different from other tasks."""
+        """Key that distinguishes it from other tasks."""
         return self.sources, self.target, getattr(self.arguments, "body", None)
 
     @property

@@ -64,14 +64,14 @@ class Denoised:
     """Same joints or points, same frames. NaN remains only for points that neither the take nor
     the examples show."""
     outliers: NDArray[np.bool_]
-    """Where a sample of the input was classified as a spike, shape (n_frames, n_joints)."""
+    """True for samples of the input classified as spikes, shape (n_frames, n_joints)."""
     confidence: Array
     """0 (a guess) to 1 (certain) for each cleaned joint, shape (n_frames, n_joints). It is
     one half where the standard deviation is 5 degrees or centimeters."""
     iterations: int
     converged: bool
     prior_used: str
-    """Which patterns guided the estimate, and why; also which cuts were found."""
+    """Patterns that guided the estimate, and the reason; also the cuts that were found."""
     cuts: tuple[int, ...] = ()
     """First frame of each segment of a joined take, except the first segment."""
 

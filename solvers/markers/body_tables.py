@@ -8,11 +8,11 @@ from typing import NamedTuple
 
 from .marker_sets import HEAD, PELVIS, TRUNK
 
-LOOSE_M, FIRM_M, TIGHT_M = 0.03, 0.012, 0.006
+LOOSE_STD_M, FIRM_STD_M, TIGHT_STD_M = 0.03, 0.012, 0.006
 """Standard deviations, in meters, of a joint's or marker's offset from its mean. Chosen by
 hand: first, x0.5 gains 2.7 %, x2 gains 0.7 %; second, x0.5 gains 6.7 %, x2 costs 8.1 %; third,
 x0.5 costs 3.4 %, x2 gains 6.6 %."""
-FREE_M = 1.0
+FREE_STD_M = 1.0
 """Standard deviation of an offset that only the markers determine. By definition wider than any
 error. It guards leg lengths that start wrong, as of a knee marker placed too low."""
 Triple = tuple[float, float, float]
@@ -50,46 +50,46 @@ class MarkerPrior(NamedTuple):
 TRUNK_FLEXION_RAD: Triple = (0.4, 0.4, 0.4)
 """Standard deviation of the rotation of a trunk joint, radians. Chosen by hand: x0.5 gains
 0.3 %, x2 gains 0.8 %."""
-CENTRE = (
+CENTRAL_JOINTS = (
     JointPrior("hips", ""),
-    JointPrior("spine", "hips", (0.0, TIGHT_M, TIGHT_M), TRUNK_FLEXION_RAD),
-    JointPrior("chest", "spine", (0.0, TIGHT_M, TIGHT_M), TRUNK_FLEXION_RAD),
-    JointPrior("neck", "chest", (0.0, TIGHT_M, TIGHT_M), TRUNK_FLEXION_RAD),
-    JointPrior("head", "neck", (0.0, TIGHT_M, FIRM_M), TRUNK_FLEXION_RAD),
+    JointPrior("spine", "hips", (0.0, TIGHT_STD_M, TIGHT_STD_M), TRUNK_FLEXION_RAD),
+    JointPrior("chest", "spine", (0.0, TIGHT_STD_M, TIGHT_STD_M), TRUNK_FLEXION_RAD),
+    JointPrior("neck", "chest", (0.0, TIGHT_STD_M, TIGHT_STD_M), TRUNK_FLEXION_RAD),
+    JointPrior("head", "neck", (0.0, TIGHT_STD_M, FIRM_STD_M), TRUNK_FLEXION_RAD),
     JointPrior("head_end", "head", rotates=False),
 )
 SIDE = (
-    JointPrior("Shoulder", "chest", (TIGHT_M, TIGHT_M, TIGHT_M), (0.05, 0.5, 0.5)),
-    JointPrior("UpperArm", "Shoulder", (FIRM_M, FIRM_M, FIRM_M)),
-    JointPrior("LowerArm", "UpperArm", (FIRM_M, 0.0, 0.0), hinge=(0.0, 0.0, 0.5)),
-    JointPrior("Hand", "LowerArm", (FIRM_M, 0.0, 0.0), (0.15, 1.0, 1.0)),
+    JointPrior("Shoulder", "chest", (TIGHT_STD_M, TIGHT_STD_M, TIGHT_STD_M), (0.05, 0.5, 0.5)),
+    JointPrior("UpperArm", "Shoulder", (FIRM_STD_M, FIRM_STD_M, FIRM_STD_M)),
+    JointPrior("LowerArm", "UpperArm", (FIRM_STD_M, 0.0, 0.0), hinge=(0.0, 0.0, 0.5)),
+    JointPrior("Hand", "LowerArm", (FIRM_STD_M, 0.0, 0.0), (0.15, 1.0, 1.0)),
     JointPrior("Hand_end", "Hand", rotates=False),
-    JointPrior("UpperLeg", "hips", (LOOSE_M, LOOSE_M, LOOSE_M)),
-    JointPrior("LowerLeg", "UpperLeg", (0.0, 0.0, FREE_M), hinge=(0.0, 0.1, 0.1)),
-    JointPrior("Foot", "LowerLeg", (0.0, 0.0, FREE_M), (1.0, 1.0, 1.0)),
+    JointPrior("UpperLeg", "hips", (LOOSE_STD_M, LOOSE_STD_M, LOOSE_STD_M)),
+    JointPrior("LowerLeg", "UpperLeg", (0.0, 0.0, FREE_STD_M), hinge=(0.0, 0.1, 0.1)),
+    JointPrior("Foot", "LowerLeg", (0.0, 0.0, FREE_STD_M), (1.0, 1.0, 1.0)),
     JointPrior("Toes", "Foot", rotates=False),
     JointPrior("Toes_end", "Toes", rotates=False),
 )
-CENTRE_MARKERS = (
-    *(MarkerPrior(landmark, "hips", "hips", TIGHT_M) for landmark in PELVIS),
-    *(MarkerPrior(landmark, "chest", "neck", TIGHT_M) for landmark in TRUNK),
-    *(MarkerPrior(landmark, "head", "head", TIGHT_M) for landmark in HEAD),
+CENTRAL_MARKERS = (
+    *(MarkerPrior(landmark, "hips", "hips", TIGHT_STD_M) for landmark in PELVIS),
+    *(MarkerPrior(landmark, "chest", "neck", TIGHT_STD_M) for landmark in TRUNK),
+    *(MarkerPrior(landmark, "head", "head", TIGHT_STD_M) for landmark in HEAD),
 )  # fmt: skip
 SIDE_MARKERS = (
-    MarkerPrior("SHO", "Shoulder", "UpperArm", FIRM_M, (0.0, 0.0, 0.05)),
-    MarkerPrior("UPA", "UpperArm", "UpperArm", LOOSE_M, noise=0.015),
-    MarkerPrior("ELB", "UpperArm", "LowerArm", FIRM_M, (0.0, 0.0, 0.045)),
-    MarkerPrior("FRM", "LowerArm", "LowerArm", LOOSE_M, noise=0.015),
-    MarkerPrior("WRA", "LowerArm", "Hand", TIGHT_M),
-    MarkerPrior("WRB", "LowerArm", "Hand", TIGHT_M),
-    MarkerPrior("FIN", "Hand", "Hand", TIGHT_M),
-    MarkerPrior("THI", "UpperLeg", "UpperLeg", LOOSE_M, noise=0.015),
-    MarkerPrior("KNE", "UpperLeg", "LowerLeg", FIRM_M, (0.06, 0.0, 0.0)),
-    MarkerPrior("TIB", "LowerLeg", "LowerLeg", LOOSE_M, noise=0.015),
-    MarkerPrior("ANK", "LowerLeg", "Foot", FIRM_M, (0.045, 0.0, 0.0)),
-    MarkerPrior("HEE", "Foot", "Foot", TIGHT_M),
-    MarkerPrior("TOE", "Foot", "Foot", TIGHT_M),
-    MarkerPrior("MT5", "Foot", "Foot", TIGHT_M),
+    MarkerPrior("SHO", "Shoulder", "UpperArm", FIRM_STD_M, (0.0, 0.0, 0.05)),
+    MarkerPrior("UPA", "UpperArm", "UpperArm", LOOSE_STD_M, noise=0.015),
+    MarkerPrior("ELB", "UpperArm", "LowerArm", FIRM_STD_M, (0.0, 0.0, 0.045)),
+    MarkerPrior("FRM", "LowerArm", "LowerArm", LOOSE_STD_M, noise=0.015),
+    MarkerPrior("WRA", "LowerArm", "Hand", TIGHT_STD_M),
+    MarkerPrior("WRB", "LowerArm", "Hand", TIGHT_STD_M),
+    MarkerPrior("FIN", "Hand", "Hand", TIGHT_STD_M),
+    MarkerPrior("THI", "UpperLeg", "UpperLeg", LOOSE_STD_M, noise=0.015),
+    MarkerPrior("KNE", "UpperLeg", "LowerLeg", FIRM_STD_M, (0.06, 0.0, 0.0)),
+    MarkerPrior("TIB", "LowerLeg", "LowerLeg", LOOSE_STD_M, noise=0.015),
+    MarkerPrior("ANK", "LowerLeg", "Foot", FIRM_STD_M, (0.045, 0.0, 0.0)),
+    MarkerPrior("HEE", "Foot", "Foot", TIGHT_STD_M),
+    MarkerPrior("TOE", "Foot", "Foot", TIGHT_STD_M),
+    MarkerPrior("MT5", "Foot", "Foot", TIGHT_STD_M),
 )
 SIDES = {"left": ("L", 1.0), "right": ("R", -1.0)}
 """First letter of a side's markers, and the sign of its X coordinate."""

@@ -7,8 +7,8 @@ import numpy as np
 from ..arrays import Array
 from .body import MarkerBody, local_rotations
 from .body_tables import (
-    CENTRE,
-    CENTRE_MARKERS,
+    CENTRAL_JOINTS,
+    CENTRAL_MARKERS,
     REQUIRED_MARKERS,
     SIDE,
     SIDE_MARKERS,
@@ -44,7 +44,7 @@ def joints_with(landmarks: Collection[str]) -> tuple[JointPrior, ...]:
     if "chest" in excluded:
         excluded.add("spine")
     selected: dict[str, JointPrior] = {}
-    for joint in (*CENTRE, *_mirrored()):
+    for joint in (*CENTRAL_JOINTS, *_mirrored()):
         if joint.name not in excluded and (not joint.parent or joint.parent in selected):
             selected[joint.name] = joint
     return tuple(selected.values())
@@ -78,7 +78,7 @@ def markers_with(
     ]
     return tuple(
         marker
-        for marker in (*CENTRE_MARKERS, *side_markers)
+        for marker in (*CENTRAL_MARKERS, *side_markers)
         if marker.landmark in landmarks and {marker.bone, marker.anchor} <= set(joints)
     )
 

@@ -11,7 +11,7 @@ from ..errors import InvalidMotionError
 from ..motion import Tracks
 from ..progress import Progress, unwatched
 from .rigid_clusters import Cluster
-from .rigid_fit import fit_rigid_transform, transform_shape
+from .rigid_transform import fit_rigid_transform, transform_shape
 
 MIN_THICKNESS_M = 0.004
 """Minimum rms distance of markers from their common line to determine the pose of a shape. It
@@ -24,7 +24,7 @@ class ConstrainedMarkers:
 
     tracks: Tracks
     filled: NDArray[np.bool_]
-    """Where a missing marker was filled in, shape (n_frames, n_markers)."""
+    """True where a missing marker was filled in, shape (n_frames, n_markers)."""
     moved: Array
     """Displacement of each marker, same shape, meters; 0 where unchanged."""
 

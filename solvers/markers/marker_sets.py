@@ -1,4 +1,4 @@
-"""What optical marker sets call their markers, and which set a take was captured with."""
+"""Names of the markers of optical marker sets; find the set of a take."""
 
 import re
 from collections import defaultdict

@@ -12,7 +12,7 @@ from ..progress import Progress, unwatched
 from ..settings import Settings, setting
 from ..signals import MAD_TO_SIGMA
 from .distances import nan_median
-from .rigid_fit import fit_rigid_transform
+from .rigid_transform import fit_rigid_transform
 
 UNLINKED_M = 1.0
 """Linkage distance of pairs that are never observed together. A guard: farther than any cluster

@@ -31,7 +31,7 @@ guards clean takes: without it they get jitter of 2,300 instead of 950 m/s3 at m
 
 @dataclass(frozen=True, kw_only=True)
 class SolveSettings(Settings):
-    """How a skeleton is solved from markers."""
+    """Settings of the solve of a skeleton from markers."""
 
     subject: str = setting(
         "",

@@ -6,7 +6,7 @@ from ..settings import Choice, Settings, setting
 
 
 class Ground(Choice):
-    """Where the ground is."""
+    """Height of the ground."""
 
     LIKELY = (
         "likely",

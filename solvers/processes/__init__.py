@@ -1,4 +1,4 @@
-"""What processes of Mocap Assist share: threads, workers, locks and scratch folders.
+"""Threads, workers, locks and scratch folders that all processes share.
 
 Nothing here imports numpy: `threads` must act before that is imported.
 """

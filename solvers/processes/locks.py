@@ -20,7 +20,7 @@ else:
 
 
 HELD = {errno.EACCES, errno.EAGAIN, errno.EDEADLK}
-"""What systems report where another process holds a lock."""
+"""Error codes of systems for a lock that another process holds."""
 
 
 class FileLock:

@@ -1,6 +1,6 @@
 """Folders for temporary files that do not outlive their process for long.
 
-Each has a lock beside it that the operating system releases when its owner ends. A later
+Each has a lock file next to it that the operating system releases when its owner ends. A later
 process removes folders whose lock is free: those of processes that were killed.
 """
 

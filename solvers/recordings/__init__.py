@@ -51,7 +51,7 @@ from .reading_settings import (
     Unit,
 )
 from .recording_figures import recording_figures
-from .refused_files import SCENE_SUFFIXES, refuse_stand_ins
+from .refuse_stand_ins import SCENE_SUFFIXES, refuse_stand_ins
 from .skeleton_files import read_acclaim, read_acclaim_limits, read_bvh, write_bvh
 
 __all__ = [

@@ -1,4 +1,4 @@
-"""What is known of a supported format."""
+"""Description of a supported format."""
 
 from collections.abc import Callable
 from functools import partial
@@ -18,7 +18,7 @@ class Opener(Protocol):
     def __call__(
         self, path: Path | str, /, *, scale: float | None = None, progress: Progress = unwatched
     ) -> Bodies[Tracked]:
-        """List the bodies of a file, of which each can then be read."""
+        """List the bodies of a file; each can then be read."""
 
 
 class Format(NamedTuple):

@@ -54,7 +54,7 @@ from .marker_files import (
     read_vicon_csv,
 )
 from .numpy_files import read_npy
-from .refused_files import REFUSALS
+from .refuse_stand_ins import REFUSALS
 from .skeleton_files import (
     is_kimodo,
     is_mvnx,

@@ -65,7 +65,7 @@ def open_as(
     floor: FloorPlacement = FloorPlacement.NEVER,
     progress: Progress = unwatched,
 ) -> Bodies[Tracked]:
-    """List the bodies of a recording, each of which is read as `read_as` does."""
+    """List the bodies of a recording; each is read as `read_as` does."""
     format_ = detect_format(path)
     if format_ is not None and format_.lacks_bones:
         about: dict[str, Any] = {

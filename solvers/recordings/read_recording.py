@@ -103,7 +103,7 @@ def read_tracked(
 def open_bodies(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> Bodies[Tracked]:
-    """List the bodies of a recording, of which each can then be read.
+    """List the bodies of a recording; each can then be read.
 
     Raises
     ------

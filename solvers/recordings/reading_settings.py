@@ -36,7 +36,7 @@ AXES: dict[Axis, AxisName] = {
 
 
 class Unit(Choice):
-    """What the lengths of files are measured in."""
+    """Unit of the lengths in files."""
 
     GUESS = "guess", "Read the unit from the file, or estimate it from the body size", "Auto"
     METRES = "metres", "Read lengths in the files as meters", "Meters"
@@ -69,7 +69,7 @@ class FloorPlacement(Choice):
 
 @dataclass(frozen=True, kw_only=True)
 class ReadingSettings(Settings):
-    """What a file may not say about itself."""
+    """Conventions that a file may not state."""
 
     up: Axis = setting(
         Axis.AUTO,
@@ -95,7 +95,7 @@ class ReadingSettings(Settings):
 
 @dataclass(frozen=True, kw_only=True)
 class FloorPlacementSettings(Settings):
-    """Where a take stands."""
+    """Placement of a take relative to the floor."""
 
     place_on_floor: FloorPlacement = setting(
         FloorPlacement.AUTO,

@@ -45,7 +45,7 @@ LAYOUT = ArchiveLayout(
 
 @dataclass(frozen=True, kw_only=True)
 class UnbakeSettings(Settings):
-    """How keys are reduced."""
+    """Settings of the reduction of keys."""
 
     key_poses: bool = setting(
         False,

@@ -40,7 +40,7 @@ class RootMotion(Choice):
 
 @dataclass(frozen=True, kw_only=True)
 class RetargetSettings(Settings):
-    """How a motion is retargeted to another rig."""
+    """Settings of the retargeting of a motion to another rig."""
 
     root_motion: RootMotion = setting(
         RootMotion.KEEP, "Choose where to put the travel of the body"

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..motion import JointRecording, Tracks
 from ..progress import Progress, unwatched, within
-from .index import RATE, ClipEntry, Match, Vocabulary
+from .index import CLIP_RATE_HZ, ClipEntry, Match, Vocabulary
 from .library import ClipLibrary
 from .postures import ClipPostures, Recording, clip_postures
 from .published import rank_pyramids
@@ -81,7 +81,7 @@ def find_similar(
        retrieval. CVPR. doi:10.1109/CVPR.2012.6248018
     """
     progress(0.0, "Searching")
-    postures = clip_postures(query, RATE)
+    postures = clip_postures(query, CLIP_RATE_HZ)
     vocabulary, entries = library.vocabulary, library.numbered()
     if vocabulary is None or not entries:
         return ()
@@ -130,8 +130,10 @@ def _clip_frames(
     frames: NDArray[np.integer[Any]], n_frames: int | Frames, frame_rate: float | Array
 ) -> Frames:
     """Convert index frames to frames of a recording; the last frames correspond."""
-    last = np.asarray((n_frames - 1) * RATE / frame_rate + ROUNDING_FRAMES).astype(np.intp)
-    recording_frames = np.round(frames / RATE * frame_rate).astype(np.intp)
+    last = np.asarray((n_frames - 1) * CLIP_RATE_HZ / frame_rate + ROUNDING_FRAMES).astype(
+        np.intp
+    )
+    recording_frames = np.round(frames / CLIP_RATE_HZ * frame_rate).astype(np.intp)
     return np.where(frames >= last, n_frames - 1, np.minimum(recording_frames, n_frames - 1))
 
 

@@ -23,7 +23,7 @@ from .representations import (
     unwrap_euler,
     unwrap_rotation_vectors,
 )
-from .rigid_fit import fit_rotations, fit_similarity, nearest_rotations
+from .rotation_fit import fit_rotations, fit_similarity, nearest_rotations
 
 __all__ = [
     "FULL_TURN_RAD",

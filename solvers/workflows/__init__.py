@@ -6,7 +6,7 @@ from .index_files import IndexReport, index_files
 from .live_session import LiveSession
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
 from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
-from .posture_library import posture_library_from_clips
+from .postures_from_clips import posture_library_from_clips
 from .reconstruct_from_library import (
     LibraryPostures,
     postures_from_library,

@@ -24,7 +24,7 @@ NO_END = "No second clap ended the performance, so it was dropped."
 
 @dataclass(frozen=True, eq=False)
 class SessionUpdate:
-    """What a session received since the last call."""
+    """Events that a session received since the last call."""
 
     frame: LiveFrame | None
     """The newest frame."""

@@ -43,7 +43,7 @@ IN_ONE_BLENDER = {
     "importing/test_joint_recordings.py": (5, 2),
     "importing/test_make_skeleton.py": (5, 2),
     "importing/test_several_bodies.py": (5, 2),
-    "importing/test_to_the_rig.py": (4, 5),
+    "importing/test_import_to_retarget.py": (4, 5),
     "importing/test_units.py": (5, 2),
     "importing/test_waiting_import.py": (5, 2),
     "library/test_actions_without_rig.py": (4, 5),

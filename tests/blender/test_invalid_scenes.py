@@ -192,11 +192,11 @@ def test_take_read_in_time_slices_is_the_same(walker, press_slowly, window, blan
     button = press_slowly()
     counter = SimpleNamespace(reading=0)
 
-    def look():
+    def poll():
         counter.reading += is_reading(button)
         return False
 
-    assert wait(button, window, look) == {"FINISHED"}
+    assert wait(button, window, poll) == {"FINISHED"}
 
     assert counter.reading > len(walker.data.bones)
     assert list(keys_of(walker.animation_data.action).values()) == at_once

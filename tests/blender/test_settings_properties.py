@@ -125,7 +125,7 @@ def test_every_button_offers_every_setting_with_a_tooltip(load):
         "denoise": load("mocap_assist.clean.button_settings").CleanBundle,
         "measure_quality": load("mocap_assist.check.button_settings").CheckBundle,
         "plant_feet": load("mocap_assist.clean.planting").FeetBundle,
-        "learn_patterns": load("mocap_assist.clean.learning").LearnBundle,
+        "learn_patterns": load("mocap_assist.clean.pattern_learning").LearnBundle,
         "simulate": load("mocap_assist.physics.simulating").SimulateBundle,
     }
     for button, bundle in bundles.items():

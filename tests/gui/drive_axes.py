@@ -9,7 +9,7 @@ from pathlib import Path
 
 import bgui
 import bpy
-from stage import empty_scene, settle, until_done
+from driver_scene import empty_scene, settle, until_done
 
 FOLDER = Path(__file__).parent
 WALK, JOINTS = FOLDER / "walk.bvh", FOLDER / "joints.txt"
@@ -31,7 +31,7 @@ def head_above_hips(armature):
     return heights[0] - heights[1]
 
 
-def look_at_joints():
+def show_joints_dialog():
     """Open the dialog for joints of a camera, and close it."""
     bgui.move(500, 500)
     drop(JOINTS)
@@ -44,7 +44,7 @@ def look_at_joints():
 def steps():
     empty_scene()
     yield from bgui.open_sidebar("Mocap")
-    yield from look_at_joints()
+    yield from show_joints_dialog()
     drop(WALK)
     yield 1.5
     bgui.shot("2-walk-dialog.png")

@@ -15,7 +15,7 @@ from urllib.parse import unquote, urlparse
 
 import bgui
 import bpy
-from stage import empty_scene
+from driver_scene import empty_scene
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
 SECONDS = 8.0  # of the take

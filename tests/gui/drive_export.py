@@ -11,7 +11,7 @@ from pathlib import Path
 
 import bgui
 import bpy
-from stage import empty_scene, settle
+from driver_scene import empty_scene, settle
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
 FOLDER = Path(tempfile.mkdtemp())

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import bgui
 import bpy
-from stage import UNTIL_DONE, empty_scene, settle, until_done
+from driver_scene import UNTIL_DONE, empty_scene, settle, until_done
 
 FOLDER = Path(__file__).parent
 WALK, JOINTS, MARKERS = (FOLDER / name for name in ("walk.bvh", "joints.txt", "markers.trc"))

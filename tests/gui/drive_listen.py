@@ -11,7 +11,7 @@ import time
 from importlib import import_module
 
 import bgui
-from stage import empty_scene, unfold_alone
+from driver_scene import empty_scene, unfold_alone
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import bgui
 import bpy
-from stage import empty_scene, settle
+from driver_scene import empty_scene, settle
 
 FOLDER = Path(__file__).parent
 MARKERS = FOLDER / "markers.trc"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import bgui
 import bpy
-from stage import empty_scene, settle, unfold_alone
+from driver_scene import empty_scene, settle, unfold_alone
 
 FOLDER = Path(__file__).parent
 TAKE = next(iter(sorted(FOLDER.glob("kinect*"))))

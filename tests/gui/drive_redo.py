@@ -9,7 +9,7 @@ from pathlib import Path
 
 import bgui
 import bpy
-from stage import empty_scene, settle, until_done
+from driver_scene import empty_scene, settle, until_done
 
 FOLDER = Path(__file__).parent
 REDO_PANEL, SCALE = (78, 112), (270, 210)

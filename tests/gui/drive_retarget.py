@@ -11,7 +11,7 @@ from pathlib import Path
 
 import bgui
 import bpy
-from stage import empty_scene, unfold_alone
+from driver_scene import empty_scene, unfold_alone
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
 SECONDS = 240.0  # of the walk: more than is solved at once

@@ -12,7 +12,7 @@ import addon_utils
 import bgui
 import bpy
 import numpy as np
-from stage import empty_scene, settle, until_done
+from driver_scene import empty_scene, settle, until_done
 
 FOLDER = Path(__file__).parent
 TAKE = FOLDER / "skinned.fbx"

@@ -15,8 +15,8 @@ from time import perf_counter
 
 import bgui
 import bpy
+from driver_scene import empty_scene, settle, unfold_alone
 from mathutils import Quaternion
-from stage import empty_scene, settle, unfold_alone
 
 FOLDER = Path(__file__).parent
 WALK = FOLDER / "walk.npz"
@@ -25,7 +25,7 @@ SIDE = (0.70, 0.66, 0.18, 0.20)
 ARM, WRONG, CORRECTED = "rightUpperArm", range(8, 24), 15
 AWAY = Quaternion((0.0, 1.0, 0.0), 1.1)
 WATCHED = {"Trying": "1-looking.png", "Tracking": "1-tracking.png", "Measuring": "1-last.png"}
-MOST = 0.03
+MAX_REDRAW_S = 0.03
 """Seconds that a redraw may take."""
 
 
@@ -85,7 +85,7 @@ def key_wrongly(armature):
         bone.keyframe_insert("rotation_quaternion", frame=frame)
 
 
-def look(number, name, frames):
+def show_frames(number, name, frames):
     for frame in frames:
         bpy.context.scene.frame_set(frame)
         yield from settle()
@@ -118,7 +118,7 @@ def correct(armature):
     assert scene.frame_current == CORRECTED
     after = armature.animation_data.action
     assert after is not before and after.name.endswith(".retracked"), after.name
-    yield from look(6, "mended", (11, 15, 19))
+    yield from show_frames(6, "mended", (11, 15, 19))
     with bgui.override("WINDOW"):
         bpy.ops.object.mode_set(mode="OBJECT")
 
@@ -156,12 +156,12 @@ def steps():
     armature = next(each for each in bpy.data.objects if each.type == "ARMATURE")
     points = bpy.data.objects[name]
     bpy.context.window_manager.mocap_assist_body = True
-    yield from look(2, "body", (1, 15))
+    yield from show_frames(2, "body", (1, 15))
     cost = time_of_a_redraw(armature)
     print(f"bgui: the body costs {1000 * cost:.1f} ms per redraw")
-    assert cost < MOST
+    assert cost < MAX_REDRAW_S
     key_wrongly(armature)
-    yield from look(3, "wrong", (11, 15))
+    yield from show_frames(3, "wrong", (11, 15))
     yield from correct(armature)
     yield from keep_on_esc(points)
 

@@ -12,7 +12,7 @@ from time import monotonic
 
 import bgui
 import bpy
-from stage import empty_scene, settle, unfold_alone
+from driver_scene import empty_scene, settle, unfold_alone
 
 FOLDER = Path(__file__).parent
 KICKS = FOLDER / "kicks"

@@ -48,7 +48,7 @@ RECORDINGS = {
     "reconstruct": {"kinect.txt": "kinect/irds/217_18_0_3_1_wheelchair.txt"},
     "retarget": {},
     "skin": {"walking.glb": "corpus/glb/mixamo_blender/walking.glb"},
-    "stands": {
+    "import_framing": {
         "walk.bvh": "mocap/cmu_walk/07_01.bvh",
         "mixamo.fbx": "corpus/fbx/mixamo_web/Walking.fbx",
         "kinect.txt": "kinect/irds/215_18_0_5_1_stand.txt",
@@ -106,10 +106,10 @@ def passes(name: str, zip_path: Path) -> bool:
         ended = subprocess.run(
             command, env=os.environ | options, capture_output=True, text=True, check=False
         )
-        status, said = ended.returncode, ended.stdout + ended.stderr
+        status, output = ended.returncode, ended.stdout + ended.stderr
     else:
-        status, said = own_window.run(zip_path, driver, given, picture)
-    (out / "run.txt").write_text(said, encoding="utf-8")
+        status, output = own_window.run(zip_path, driver, given, picture)
+    (out / "run.txt").write_text(output, encoding="utf-8")
     n_images = len(list(out.glob("*.png")))
     ending = "passed" if status == 0 else f"FAILED with status {status}, see {out / 'run.txt'}"
     print(f"{name}: {ending}; {n_images} pictures.", flush=True)
@@ -126,7 +126,7 @@ def lay_out(name: str, folder: Path) -> list[Path]:
             _cut(SHARED / "data" / source, path, FIRST_FRAMES[name])
         else:
             shutil.copy(SHARED / "data" / source, path)
-    return [FOLDER / "stage.py", *sorted(folder.iterdir())]
+    return [FOLDER / "driver_scene.py", *sorted(folder.iterdir())]
 
 
 def _cut(source: Path, path: Path, n_frames: int) -> None:

@@ -159,15 +159,15 @@ def every_second(recording: Motion | Tracks) -> Motion | Tracks:
     )
 
 
-def assert_same(one: Motion | Tracks, other: Motion | Tracks, degrees: float, metres: float):
-    """Mean over frames of the worst joint within `degrees`, or the worst point in `metres`."""
+def assert_same(one: Motion | Tracks, other: Motion | Tracks, degrees: float, meters: float):
+    """Mean over frames of the worst joint within `degrees`, or the worst point in `meters`."""
     if isinstance(one, Tracks):
         distances = np.linalg.norm(one.positions - other.positions, axis=-1)
-        assert np.nanmean(distances, axis=0).max() < metres
+        assert np.nanmean(distances, axis=0).max() < meters
         return
     angles = np.degrees(angle_between(one.rotations, other.rotations))
     assert np.nanmean(angles, axis=0).max() < degrees
-    assert np.abs(one.root_positions - other.root_positions).mean() < metres
+    assert np.abs(one.root_positions - other.root_positions).mean() < meters
 
 
 def values_in(result: Any) -> list[Any]:

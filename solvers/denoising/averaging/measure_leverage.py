@@ -1,4 +1,4 @@
-"""How much a smoother follows the noise of the take that it smooths."""
+"""Measure how much a smoother follows the noise of its own take."""
 
 import math
 from collections.abc import Callable

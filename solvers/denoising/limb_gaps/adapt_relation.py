@@ -15,7 +15,7 @@ development takes of the first press."""
 OWN_RIDGE = 100.0
 """Evidence for the general relation, in frames at RATE, each counted N_TRIALS times. Chosen by
 hand on the development takes of the first press: x0.5 and x2 move 0.5 %."""
-RATE = 30.0
+TRIAL_RATE_HZ = 30.0
 """Hertz: trial gaps of faster recordings are described at about this rate. By definition that
 of the patterns of Clean."""
 N_TRIALS = 6
@@ -50,7 +50,7 @@ class Trials(NamedTuple):
 
 
 class AdaptedRelation(NamedTuple):
-    """How a limb follows the rest of the body in this take."""
+    """Relation of a limb to the rest of the body in this take."""
 
     regression: Array
     """From features to deviations, shape (n_features, n_channels)."""
@@ -80,7 +80,7 @@ def try_gaps(
     length : int, frames
     frame_rate : float, Hz
     """
-    step = max(round(frame_rate / RATE), 1)
+    step = max(round(frame_rate / TRIAL_RATE_HZ), 1)
     bridges, n_independent = [], 0.0
     for start, stop in find_runs(known):
         tried = min(length, stop - start - 2)

@@ -1,4 +1,4 @@
-"""How the joints of people move together while one of them bridges a gap: learned, shipped."""
+"""Covariance of the joints of people across gaps: learned, shipped."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -21,9 +21,9 @@ SHIPPED = Path(__file__).parent / "bodies.npz"
 RIDGE = 10.0
 """Square degrees: what other people's movement does not tell of this body's. Chosen by hand on
 the development takes of the first press: x10 costs 5 %."""
-LEAST_EIGENVALUE = -1e-6
+MIN_EIGENVALUE_RATIO = -1e-6
 """Fraction of the largest moment: rounding in single precision. By definition."""
-MAX_MOMENT = -0.5 * RIDGE / LEAST_EIGENVALUE
+MAX_MOMENT = -0.5 * RIDGE / MIN_EIGENVALUE_RATIO
 """Square degrees. By definition the largest whose rounding is below the ridge, so that every
 regression has a solution; people's are 500."""
 LAYOUT = ArchiveLayout(
@@ -36,7 +36,7 @@ LAYOUT = ArchiveLayout(
             "features",
             minimum=-MAX_MOMENT,
             maximum=MAX_MOMENT,
-            least_eigenvalue=LEAST_EIGENVALUE,
+            least_eigenvalue=MIN_EIGENVALUE_RATIO,
         ),
         "trained_on": words(),
     },

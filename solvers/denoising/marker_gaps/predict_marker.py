@@ -114,10 +114,10 @@ def predict_marker(
     return PredictedMarker(predicted, np.tensordot(weights, errors, 1), held_out_depth)
 
 
-def _variants(n_companions: int) -> list[tuple[int, int]]:
+def _variants(n_references: int) -> list[tuple[int, int]]:
     """Return the distinct variants for this number of reference markers."""
     possible = [
-        (min(n_frame, n_companions), min(n_pose, n_companions)) for n_frame, n_pose in VARIANTS
+        (min(n_frame, n_references), min(n_pose, n_references)) for n_frame, n_pose in VARIANTS
     ]
     return list(dict.fromkeys(possible))
 

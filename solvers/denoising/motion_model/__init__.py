@@ -1,4 +1,4 @@
-"""How joints of people move within half a second: a mixture learned from many recordings."""
+"""Model of joint movement within half a second: a mixture learned from many recordings."""
 
 from .channel_noise import MAX_CONSTANT_RANGE, estimate_channel_noise
 from .learn_mixture import learn_motion_mixture

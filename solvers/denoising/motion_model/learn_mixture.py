@@ -12,12 +12,12 @@ from ...progress import Progress, unwatched
 from ..channels import encode
 from .motion_mixture import N_CHANNELS, MotionMixture
 
-WINDOW = 16
+WINDOW_FRAMES = 16
 """Frames of a window, of half a second at 30 Hz. Chosen by hand on the development takes of the
 first press: longer ones cost more time."""
 FRAME_RATE = 30.0
 """Hertz, by definition the rate of the patterns of Clean."""
-HOP = 7
+HOP_FRAMES = 7
 """Frames from a window to the next."""
 N_COMPONENTS = 40
 """Number of Gaussians. On the development takes of the first press 12 cost 2 %."""
@@ -35,7 +35,7 @@ components that few windows belong to."""
 
 
 def extract_windows(motions: Sequence[Motion]) -> Array:
-    """Return the DCT coefficients of all moving joints, shape (n_windows, 3 * WINDOW).
+    """Return the DCT coefficients of all moving joints, shape (n_windows, 3 * WINDOW_FRAMES).
 
     Parameters
     ----------
@@ -44,15 +44,15 @@ def extract_windows(motions: Sequence[Motion]) -> Array:
     """
     found = []
     for motion in motions:
-        if motion.n_frames < WINDOW:
+        if motion.n_frames < WINDOW_FRAMES:
             continue
         values = encode(motion, None).values
         values = values[:, values.std(axis=0).max(axis=-1) > MIN_MOVEMENT]
-        starts = np.arange(0, len(values) - WINDOW + 1, HOP)
-        windows = np.stack([values[start : start + WINDOW] for start in starts])
+        starts = np.arange(0, len(values) - WINDOW_FRAMES + 1, HOP_FRAMES)
+        windows = np.stack([values[start : start + WINDOW_FRAMES] for start in starts])
         coefficients = dct(windows - values.mean(axis=0), axis=1, norm="ortho")
-        found.append(coefficients.transpose(0, 2, 3, 1).reshape(-1, N_CHANNELS * WINDOW))
-    return np.concatenate(found) if found else np.zeros((0, N_CHANNELS * WINDOW))
+        found.append(coefficients.transpose(0, 2, 3, 1).reshape(-1, N_CHANNELS * WINDOW_FRAMES))
+    return np.concatenate(found) if found else np.zeros((0, N_CHANNELS * WINDOW_FRAMES))
 
 
 def learn_motion_mixture(

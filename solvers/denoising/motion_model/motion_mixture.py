@@ -13,7 +13,7 @@ from ...npz_members import covariances, integers, numbers, words
 MAX_COVARIANCE = 180.0**2 * 1000.0
 """Square degrees: of coefficients of a window of a thousand frames. By definition: a rotation
 vector is at most 180 degrees long."""
-LEAST_EIGENVALUE = 1e-9
+MIN_EIGENVALUE_RATIO = 1e-9
 """Fraction of the largest element, so that a covariance can be inverted. By definition of
 double precision; learned ones have 3e-7."""
 LAYOUT = ArchiveLayout(
@@ -27,7 +27,7 @@ LAYOUT = ArchiveLayout(
             "3*coefficients",
             minimum=-MAX_COVARIANCE,
             maximum=MAX_COVARIANCE,
-            least_eigenvalue=LEAST_EIGENVALUE,
+            least_eigenvalue=MIN_EIGENVALUE_RATIO,
         ),
         "frame_rate": numbers(minimum=1.0, maximum=1000.0),
         "n_coefficients": integers(minimum=1, maximum=1000),

@@ -1,4 +1,4 @@
-"""How likely samples of a joint are, given the other samples of their window."""
+"""Likelihood of samples of a joint, given the other samples of their window."""
 
 from functools import lru_cache
 

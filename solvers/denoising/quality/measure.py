@@ -90,12 +90,12 @@ class Quality:
 
     @cached_property
     def spikes(self) -> Flags:
-        """Where a joint has a spike, shape (n_frames, n_joints)."""
+        """True where a joint has a spike, shape (n_frames, n_joints)."""
         return self._by_joint([signal.spikes for signal in self.signals])
 
     @cached_property
     def gaps(self) -> Flags:
-        """Where a joint was not observed, shape (n_frames, n_joints)."""
+        """True where a joint was not observed, shape (n_frames, n_joints)."""
         return self._by_joint([signal.gaps for signal in self.signals])
 
     @property

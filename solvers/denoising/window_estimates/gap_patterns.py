@@ -21,7 +21,7 @@ class GapPattern:
     channels: NDArray[np.intp]
     """Channels with gaps; empty for complete windows."""
     observed_mask: NDArray[np.bool_]
-    """Where these channels are observed, shape (length, n_gap_channels)."""
+    """True where these channels are observed, shape (length, n_gap_channels)."""
     indices: NDArray[np.intp]
     """Of the slow coefficients of these channels among all, coefficients outermost."""
     missing_projection: Array

@@ -28,7 +28,7 @@ MIN_VARIANCE = 1e-3
 """Smallest variance of a mean, square degrees or centimeters. It guards a division."""
 DEFAULT_DEVIATION = 8.0
 """Standard deviation of mean poses, degrees or centimeters, if there are too few examples.
-It guards a single example, from which an actor's posture would seem certain."""
+It guards a single example, which would make an actor's posture seem certain."""
 VARIANCE_INFLATION = 2.0
 """Expected variance of an unknown actor's mean pose, relative to that of the examples. It
 guards actors unlike all examples, whose posture would be pulled to that of the examples."""

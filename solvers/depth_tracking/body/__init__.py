@@ -2,7 +2,6 @@
 
 from .capsule_surface import BodySurface, capsule_surface
 from .coordinates import COORDINATES, N_COORDINATES, N_ROOT
-from .kinematics import N_SEGMENTS, joint_positions, segment_frames, segment_twists
 from .learn_motion_prior import learn_motion_prior
 from .model import BodyModel, default_body, load_body_model
 from .motion import body_motion, body_skeleton, motion_frames, rest_frames, scene_from_camera
@@ -25,6 +24,7 @@ from .normal_equations import (
 from .pose_from_joints import pose_from_frames
 from .pose_priors import joint_limits, natural_stance, predict_pose, stay_near
 from .ray_capsules import BodyImage, cast_rays
+from .segment_kinematics import N_SEGMENTS, joint_positions, segment_frames, segment_twists
 from .shape import MEASURES, N_LENGTHS, resize_body, shape_jacobian
 from .tables import (
     CAPSULE_SEGMENTS,

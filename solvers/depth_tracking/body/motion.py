@@ -12,8 +12,8 @@ from ...rotations import (
     quaternion_from_matrix,
     unroll,
 )
-from .kinematics import N_SEGMENTS, matrix_from_rotation_vector, segment_frames
 from .model import BodyModel
+from .segment_kinematics import N_SEGMENTS, matrix_from_rotation_vector, segment_frames
 from .tables import END_SEGMENTS, JOINTS, PARENTS, SEGMENTS
 
 SCENE_FROM_CAMERA = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Integers
-from .kinematics import N_SEGMENTS
+from .segment_kinematics import N_SEGMENTS
 from .tables import CAPSULE_SEGMENTS
 
 
@@ -50,7 +50,7 @@ class SurfaceRows(NamedTuple):
     directions: Array
     """Shape (n, 3); a direction's length scales its residual."""
     residuals: Array
-    """What direction . (movement of the point) should be, shape (n,)."""
+    """Target values of direction . (movement of the point), shape (n,)."""
     weights: Array
     """Weights of the squares, shape (n,)."""
     capsules: Integers

@@ -4,7 +4,6 @@ import numpy as np
 
 from ...arrays import Array, Integers
 from .coordinates import COORDINATES, N_COORDINATES, N_ROOT
-from .kinematics import segment_frames, segment_twists
 from .model import BodyModel
 from .normal_equations import (
     equations_in_coordinates,
@@ -13,6 +12,7 @@ from .normal_equations import (
     sum_equations,
 )
 from .pose_priors import joint_limits, stay_near
+from .segment_kinematics import segment_frames, segment_twists
 from .tables import END_SEGMENTS, JOINTS, SEGMENTS
 
 _CARRIERS = np.array([*range(len(SEGMENTS)), *END_SEGMENTS])

@@ -3,9 +3,9 @@
 import numpy as np
 
 from ...arrays import Array, Integers
-from .kinematics import N_SEGMENTS
 from .model import BodyModel
 from .normal_equations import SurfaceRows
+from .segment_kinematics import N_SEGMENTS
 from .tables import (
     CAPSULE_ENDS,
     CAPSULE_ROWS,

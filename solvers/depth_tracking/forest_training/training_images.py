@@ -21,11 +21,11 @@ CAMERA = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
 """Half the resolution of a Kinect v1."""
 CLOTHED = np.array([0.3 if part.endswith(("Hand", "neck")) else 1.0 for part in PARTS])
 """Relative thickness of clothes (or hair) on each part."""
-FLOOR = 0.12
+MAX_FLOOR_HEIGHT_M = 0.12
 """Maximum height in meters removed with the floor. Chosen by hand; used in training only."""
 IMAGES_PER_BODY = 10
 """Number of images per random body."""
-AHEAD = 1.1
+MAX_HEADING_RAD = 1.1
 """Maximum heading offset, radians, for half of the bodies; the others have any heading. Chosen
 by hand; used in training only."""
 
@@ -96,7 +96,7 @@ class ImageSource:
         vertices, _ = body.pose(pose, np.zeros(3))
         triangles = body.triangles
         if rng.random() < self.settings.missing_feet:
-            above = vertices[:, 2] > vertices[:, 2].min() + rng.uniform(0.0, FLOOR)
+            above = vertices[:, 2] > vertices[:, 2].min() + rng.uniform(0.0, MAX_FLOOR_HEIGHT_M)
             triangles = triangles[above[triangles].all(axis=1)]
         vertices = _before_camera(vertices, rng, self.settings)
         image = render_mesh(vertices, triangles, body.vertex_parts, CAMERA)
@@ -169,7 +169,11 @@ def _before_camera(
     The camera has a random height and looks near the center of the body, with a small random
     tilt and roll.
     """
-    yaw = rng.uniform(-AHEAD, AHEAD) if rng.random() < 0.5 else rng.uniform(-np.pi, np.pi)
+    yaw = (
+        rng.uniform(-MAX_HEADING_RAD, MAX_HEADING_RAD)
+        if rng.random() < 0.5
+        else rng.uniform(-np.pi, np.pi)
+    )
     rotation = _turn(yaw, 2)
     lowest, highest = vertices[:, 2].min(), vertices[:, 2].max()
     middle = np.array([0.0, 0.0, (lowest + highest) / 2.0])

@@ -58,7 +58,7 @@ class Hypothesis:
 
     @cached_property
     def twists(self) -> Array:
-        """How each coordinate moves each segment, shape (17, 6, 36)."""
+        """Twist of each segment per unit of each coordinate, shape (17, 6, 36)."""
         return segment_twists(self.pose, self.frames)
 
     @cached_property

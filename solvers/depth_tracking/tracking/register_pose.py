@@ -36,7 +36,7 @@ _DAMPING_INCREASE, _DAMPING_DECREASE = 5.0, 0.3
 """Factors of the damping after a step that is refused, and that is accepted. Chosen by hand:
 first, x0.5 costs nothing, x2 costs 27.1 %. The second bounds the run time: how soon steps are
 long again after a refusal."""
-_METRES_PER_RADIAN = 0.5
+_METERS_PER_RADIAN = 0.5
 """Ratio of the limits of a step: of the hips in meters, and of rotations. By definition half a
 meter, the length of a thigh or upper body, so that both move the next joints equally far."""
 
@@ -147,6 +147,6 @@ def _descend(objective: _Objective, pose: Array, iterations: int) -> Registered:
 
 
 def _limited(change: Array, settings: TrackerSettings) -> Array:
-    largest_step = max(np.abs(change[3:]).max(), np.abs(change[:3]).max() / _METRES_PER_RADIAN)
+    largest_step = max(np.abs(change[3:]).max(), np.abs(change[:3]).max() / _METERS_PER_RADIAN)
     limited: Array = change * min(1.0, settings.max_step / max(largest_step, 1e-12))
     return limited

@@ -1,4 +1,4 @@
-"""Where names of joints contradict the lengths of the bones, and what to believe then."""
+"""Find names of joints that contradict the lengths of the bones, and choose between both."""
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
@@ -22,7 +22,7 @@ recordings, and names shifted by one joint begin at 0.39."""
 MAX_NAMED_MISFIT = 0.4
 """Misfit, the logarithm of a length, up to which each limb as named is human enough to be
 believed without a search for others. Chosen by hand like `MIN_MISFIT_MARGIN`."""
-SHORTEST = 1e-4
+MIN_LENGTH_FRACTION = 1e-4
 """Fraction of the height that stands for a bone without length; guards against a logarithm of
 zero."""
 
@@ -95,7 +95,7 @@ def odd_limbs(skeleton: Skeleton, joints: Mapping[str, str], structure: Structur
         and _misfit(
             _bone_lengths(skeleton, [joints[side + part] for part in HINGES[limb]]),
             limb,
-            max(structure.height, SHORTEST),
+            max(structure.height, MIN_LENGTH_FRACTION),
         )
         > MAX_NAMED_MISFIT
         for part in HINGES[limb]
@@ -168,5 +168,5 @@ def _bone_lengths(skeleton: Skeleton, names: Sequence[str]) -> Array:
 
 def _misfit(bones: Array, limb: str, height: float) -> float:
     """Return the sum of the absolute log ratios of two bones to those of a person."""
-    fractions = np.maximum(bones / height, SHORTEST)
+    fractions = np.maximum(bones / height, MIN_LENGTH_FRACTION)
     return float(np.abs(np.log(fractions / np.array(LENGTHS[limb]))).sum())

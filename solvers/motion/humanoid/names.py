@@ -132,12 +132,12 @@ def _shared_word(split: Sequence[Sequence[str]], end: int) -> str:
 
 
 class _Spelling(NamedTuple):
-    """How a skeleton spells its sides."""
+    """Spelling of the sides in a skeleton's names."""
 
     names: frozenset[str]
     """All names, in lower case and without separators."""
     letter_positions: frozenset[int]
-    """Which words of its names are "l" or "r" for a side."""
+    """Positions, in its names, of the words "l" and "r" that stand for a side."""
 
 
 def _find_spelling(names: Sequence[str]) -> _Spelling:

@@ -75,7 +75,7 @@ def read_humanoid_map(path: Path | str, skeleton: Skeleton | None = None) -> Hum
 
 
 def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Refuse JSON with duplicate keys, of which the last one would silently win."""
+    """Refuse JSON with duplicate keys; the last one would silently win."""
     names = [name for name, _ in pairs]
     if duplicates := sorted({name for name in names if names.count(name) > 1}):
         raise ValueError(f"it contains {', '.join(duplicates)} more than once")

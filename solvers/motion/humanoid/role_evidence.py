@@ -27,7 +27,7 @@ MIN_CONFIDENCE = 0.5
 
 
 class Reason(Enum):
-    """What supports the role of a joint: a text for the panel, and a confidence.
+    """Evidence for the role of a joint: a text for the panel, and a confidence.
 
     The confidence is set by hand, at most the fraction of right roles that `make bench-roles`
     measured on rigs without a joint and with names on wrong joints; comments give that of
@@ -54,7 +54,7 @@ class Reason(Enum):
 
 @dataclass(frozen=True)
 class RoleEvidence:
-    """How certain it is that a joint plays a role."""
+    """Confidence in the role of a joint, and its evidence."""
 
     reason: Reason
     text: str
@@ -62,7 +62,7 @@ class RoleEvidence:
 
     @property
     def confidence(self) -> float:
-        """That of the reason, 0 to 1."""
+        """Confidence of the reason, 0 to 1."""
         return self.reason.confidence
 
     @property

@@ -28,7 +28,7 @@ ESSENTIAL_ROLES = (
     *(f"{side}{role}" for side in ("left", "right")
       for role in ("UpperLeg", "LowerLeg", "Foot", "UpperArm", "LowerArm", "Hand")),
 )  # fmt: skip
-"""What VRM requires of every humanoid."""
+"""Roles that VRM requires of every humanoid."""
 
 BODY_ROLES = (
     *CENTRAL_ROLES,

@@ -1,4 +1,4 @@
-"""Give a motion a rest pose in which the body stands, if its file has another."""
+"""Give a motion a standing rest pose, if its file has another."""
 
 import numpy as np
 

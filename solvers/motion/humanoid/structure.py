@@ -58,7 +58,7 @@ class Structure(NamedTuple):
     joints: dict[str, str]
     """Joint names by role; empty without two legs."""
     humanness: float
-    """How human the proportions are, 0 to 1."""
+    """Similarity of the proportions to those of a person, 0 to 1."""
     height: float
     """Of the person whose bones are as long, in meters; 0 without two legs."""
 

@@ -184,7 +184,7 @@ def _missing_middles(roles: Mapping[str, int]) -> dict[str, str]:
 
 
 def missing_ends(joints: Mapping[str, str]) -> dict[str, str]:
-    """Return a clause for the parts of each limb of which the first or last has no joint.
+    """Return a clause for the parts of each limb whose first or last part has no joint.
 
     That is a fault only if nothing else supports them: some rigs have no hands or feet.
     """

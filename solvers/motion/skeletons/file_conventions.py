@@ -9,13 +9,13 @@ UNIT_NAMES = {
     1.0: "meters", 0.1: "decimeters", 0.01: "centimeters", 0.001: "millimeters",
     0.0254: "inches", 0.3048: "feet",
 }  # fmt: skip
-CERTAIN = 0.995
+MIN_CERTAIN_CONFIDENCE = 0.995
 """Confidence, a probability, from which rounding to whole percents gives 100. By definition."""
 
 
 @dataclass(frozen=True)
 class FileConventions:
-    """How the numbers of a file were interpreted; stated by it, or judged from the body."""
+    """Interpretation of the numbers of a file; stated by it, or judged from the body."""
 
     up: AxisName = "Z"
     """Axis of the file that became +Z."""
@@ -34,7 +34,8 @@ class FileConventions:
 
     def sentence(self) -> str:
         """Return what was judged, for a report: without a period."""
-        sure = f" ({self.confidence:.0%} confidence)" if self.confidence < CERTAIN else ""
+        is_certain = self.confidence >= MIN_CERTAIN_CONFIDENCE
+        sure = "" if is_certain else f" ({self.confidence:.0%} confidence)"
         added = ", positions added to offsets" if self.offset_added else ""
         rest = (
             f", {self.rest_up} in the rest pose" if self.rest_up not in {None, self.up} else ""

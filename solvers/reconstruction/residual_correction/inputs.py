@@ -39,7 +39,7 @@ class SmoothedPostures:
     ----------
     positions : shape (n_frames, 20, 3), meters, world
         Smoothed and without gaps; joints that are never observed are NaN.
-    normalized : Normalised
+    normalized : NormalizedPostures
         The same without heading and position.
     features : shape (n_frames, 20, 3)
         The same for a body of mean size; NaN where `normalized` is.

@@ -64,9 +64,9 @@ def learn_movement_process(
     rows = rows[np.linspace(0, len(rows) - 1, min(n_points, len(rows))).round().astype(int)]
     parts, errors = parts[:, rows], np.nan_to_num(errors[rows])
     mirror_images = mirror_postures(parts) if mirror else parts
-    centre, axes = _principal_axes(np.concatenate([parts[0], mirror_images[0]])[:, joints])
+    center, axes = _principal_axes(np.concatenate([parts[0], mirror_images[0]])[:, joints])
     points, mirrored_points = (
-        project_parts(one, joints, centre, axes) for one in (parts, mirror_images)
+        project_parts(one, joints, center, axes) for one in (parts, mirror_images)
     )
     covariance = _covariance(points, take[rows], actor[rows])
     if mirror:
@@ -87,7 +87,7 @@ def learn_movement_process(
         mean = MEAN_VARIANCE * weights.sum(axis=0)
     flat = weights[:, joints].reshape(len(rows), -1)
     return MovementProcess(
-        joints, centre, axes, points, flat.astype(np.float32), mean[joints].reshape(-1),
+        joints, center, axes, points, flat.astype(np.float32), mean[joints].reshape(-1),
         np.array(mirror),
     )  # fmt: skip
 
@@ -124,9 +124,9 @@ def _predictable_joints(errors: Array, mirror: bool) -> Numbers:
 def _principal_axes(postures: Array) -> tuple[Array, Array]:
     """Return mean and principal axes of poses."""
     flat = postures.reshape(len(postures), -1)
-    centre = flat.mean(axis=0)
-    axes = np.linalg.svd(flat - centre, full_matrices=False)[2][:N_COMPONENTS].T
-    return centre, np.ascontiguousarray(axes)
+    center = flat.mean(axis=0)
+    axes = np.linalg.svd(flat - center, full_matrices=False)[2][:N_COMPONENTS].T
+    return center, np.ascontiguousarray(axes)
 
 
 def _covariance(points: Single, take: Numbers, actor: Numbers) -> Array:

@@ -38,6 +38,8 @@ N_PARTS = 5
 BLOCK = 512
 
 
+KEYS = {"center": "centre"}
+"""Stored names that differ from the attributes: files keep them."""
 MEMBERS = {
     "joints": integers("moving", minimum=0, maximum=N_JOINTS - 1, optional=True),
     "centre": numbers("3*moving", optional=True),
@@ -90,8 +92,8 @@ class MovementProcess:
     ----------
     joints : shape (n,), int
         Which of the 20 joints are used and predicted.
-    centre : shape (3 n,), meters
-        The mean pose.
+    center : shape (3 n,), meters
+        The mean pose, stored as "centre".
     axes : shape (3 n, n_components)
         Principal components of poses.
     points : float32, shape (n_points, 5, n_components)
@@ -103,7 +105,7 @@ class MovementProcess:
     """
 
     joints: NDArray[np.int64]
-    centre: Array
+    center: Array
     axes: Array
     points: Single
     weights: Single
@@ -112,7 +114,7 @@ class MovementProcess:
 
     def arrays(self) -> dict[str, NDArray[np.generic]]:
         """Return the arrays to store in a file."""
-        return {one.name: getattr(self, one.name) for one in fields(self)}
+        return {KEYS.get(one.name, one.name): getattr(self, one.name) for one in fields(self)}
 
     def predict(
         self, features: Array, frame_rate: float, frames: NDArray[np.intp]
@@ -164,7 +166,7 @@ class MovementProcess:
 
     def project(self, parts: Array) -> Single:
         """Return principal components of `movement_parts`, (n, 5, n_components)."""
-        return project_parts(parts, self.joints, self.centre, self.axes)
+        return project_parts(parts, self.joints, self.center, self.axes)
 
 
 def movement_parts(features: Array, frame_rate: float) -> Array:
@@ -183,11 +185,11 @@ def movement_parts(features: Array, frame_rate: float) -> Array:
 
 
 def project_parts(
-    parts: Array, joints: NDArray[np.int64], centre: Array, axes: Array
+    parts: Array, joints: NDArray[np.int64], center: Array, axes: Array
 ) -> Single:
     """Return principal components of the parts, (n, 5, n_components); poses are centered."""
     flat = parts[:, :, joints].reshape(*parts.shape[:2], -1)
-    flat[:3] -= centre
+    flat[:3] -= center
     return np.ascontiguousarray((flat @ axes).swapaxes(0, 1), dtype=np.float32)
 
 
@@ -230,9 +232,9 @@ def movement_from_arrays(arrays: dict[str, NDArray[Any]]) -> tuple[str, Movement
     joints = arrays["joints"].astype(np.int64)
     if not len(joints) or not arrays["axes"].size or not len(arrays["points"]):
         return "the movement process is empty", None
-    centre, axes, mean = (
+    center, axes, mean = (
         arrays[name].astype(np.float64) for name in ("centre", "axes", "mean")
     )
     points, weights = (arrays[name].astype(np.float32) for name in ("points", "weights"))
     is_mirrored = arrays["mirrored"].astype(np.bool_)
-    return "", MovementProcess(joints, centre, axes, points, weights, mean, is_mirrored)
+    return "", MovementProcess(joints, center, axes, points, weights, mean, is_mirrored)

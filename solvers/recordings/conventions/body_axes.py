@@ -1,4 +1,4 @@
-"""Which way is up in a recording, judged from the body in it."""
+"""Judge the up axis of a recording from the body in it."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -61,7 +61,7 @@ MIN_SPREAD_FRACTION = 0.03
 
 
 class UpAxis(NamedTuple):
-    """Which axis of a file is up."""
+    """Up axis of a file."""
 
     axis: UpAxisName
     rest_axis: UpAxisName
@@ -236,7 +236,7 @@ def _judge_by_extent(skeleton: Skeleton, positions: Array) -> UpAxis:
 
 
 def _is_unfolded(rest: Array, body: _StandingJoints) -> bool:
-    """Whether the rest pose shows a body, with its legs beside each other."""
+    """Whether the rest pose shows a body with separate legs, not all joints at one point."""
     spread = np.linalg.norm(rest[body.feet[0]] - rest[body.feet[-1]])
     return len(body.feet) < 2 or bool(
         spread > 2 * MIN_SPREAD_FRACTION * np.ptp(rest[body.joints], axis=0).max()

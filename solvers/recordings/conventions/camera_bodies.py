@@ -10,7 +10,7 @@ from ...motion import AxisName
 from .points import points_z_up
 
 MIN_MIRRORED_FRACTION = 0.8
-"""Fraction of the frames in which left and right are exchanged, of mirrored axes."""
+"""Fraction of frames with swapped left and right from which axes are mirrored."""
 
 
 def up_along(points: Array, high: Sequence[int], low: Sequence[int]) -> AxisName:
@@ -41,8 +41,8 @@ def is_mirrored(points: Array, left: int, right: int, back: int, front: int) -> 
     Parameters
     ----------
     points : shape (n_frames, n_points, 3), Z up
-    left, right : indices of points beside each other, such as the shoulders
-    back, front : indices of points one before the other, such as an ear and the nose
+    left, right : indices of points on the left and the right, such as the shoulders
+    back, front : indices of points behind and in front, such as an ear and the nose
     """
     across, ahead = (
         points[:, one, :2] - points[:, other, :2]

@@ -20,7 +20,7 @@ METERS = {
 """Meters per unit, by its name without the plural s."""
 ROLLED_FORWARD: dict[AxisName, AxisName] = {"X": "-Z", "-X": "Z"}
 """Axis that becomes -Y where points are rotated cyclically."""
-GUESSED = 0.9
+GUESSED_CONFIDENCE = 0.9
 """Confidence in an up axis that is judged from the extent of markers: right in all of the test
 files that state theirs, but they are few."""
 BODY_EXTENT_M = 1.5
@@ -70,7 +70,7 @@ def judge_axes_of_points(
         return axes_of_points(up, unit)
     guessed = "+Y" if _looks_y_up(points) else "+Z"
     axes = axes_of_points(other_standing_axis(points, guessed) or guessed, unit)
-    return replace(axes, confidence=GUESSED)
+    return replace(axes, confidence=GUESSED_CONFIDENCE)
 
 
 def stand_markers(

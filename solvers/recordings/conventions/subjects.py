@@ -22,10 +22,10 @@ single segments, boxes and balls have fewer."""
 MAX_RIGID_CHANGE_M = 0.02
 """Maximum change of nine in ten distances between markers of a rigid prop, meters. In Vicon's
 example the largest change is 0.07 cm for a box and 60 cm for the person who holds it."""
-MAX_COMPARED = 500
-"""Frames that are compared to find props."""
-MAX_PAIRED = 50
-"""Markers of a subject whose distances are compared."""
+MAX_COMPARED_FRAMES = 500
+"""Number of frames that are compared to find props; it bounds the run time."""
+MAX_PAIRED_MARKERS = 50
+"""Number of markers of a subject whose distances are compared; it bounds the run time."""
 
 
 class MarkerSubject(NamedTuple):
@@ -128,8 +128,8 @@ def _joint_columns(recording: JointRecording, subject: MarkerSubject) -> JointRe
 
 def _is_rigid(points: NDArray[np.float64]) -> bool:
     """Return whether points move, but never relative to each other; (n_frames, n_points, 3)."""
-    points = points[:: max(1, len(points) // MAX_COMPARED)]
-    observed = points[:, np.isfinite(points).all(axis=-1).any(axis=0)][:, :MAX_PAIRED]
+    points = points[:: max(1, len(points) // MAX_COMPARED_FRAMES)]
+    observed = points[:, np.isfinite(points).all(axis=-1).any(axis=0)][:, :MAX_PAIRED_MARKERS]
     if observed.shape[1] < 2:
         return False
     moved = np.nanmax(observed, axis=0) - np.nanmin(observed, axis=0)

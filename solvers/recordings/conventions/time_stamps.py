@@ -31,7 +31,7 @@ MAX_LENGTH_RATIO, MAX_EXTRA_FRAMES = 10, 1000
 
 
 def common_rate(rate: float) -> float:
-    """Return the common rate that a rate such as 120.00004 Hz means, else the rate itself.
+    """Return the common rate nearest to a rate such as 120.00004 Hz, or the rate itself.
 
     Raises InvalidMotionError where a file states a rate that is none, such as 0.
     """

@@ -1,8 +1,8 @@
 """Read depth images from folders, Matroska, MATLAB, NumPy and raw files."""
 
+from .depth_formats import detect_depth_format, read_depth
 from .exr_header import check_exr
 from .folder import is_depth_folder
-from .formats import detect_depth_format, read_depth
 from .image_frames import sort_naturally
 from .settings import DEFAULT_DEPTH_SETTINGS, CameraOrientation, DepthSettings
 

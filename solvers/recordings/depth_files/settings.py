@@ -7,7 +7,7 @@ from ...settings import Choice, Settings, setting
 
 
 class CameraOrientation(Choice):
-    """How the camera was held when it recorded."""
+    """Orientation of the camera during the recording."""
 
     KNOWN = (
         "known",

@@ -33,7 +33,7 @@ TIME_TITLES = {
 
 
 class _Table(NamedTuple):
-    """What was read: landmarks of each frame, and the stamps of the frames."""
+    """Landmarks of each frame, and the stamps of the frames."""
 
     points: Array
     """Shape (n_frames, 33, 4): x, y, z and visibility."""

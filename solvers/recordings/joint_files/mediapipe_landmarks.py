@@ -1,4 +1,4 @@
-"""What the readers of MediaPipe's landmarks share: names, axes and the check for flat ones."""
+"""Names, axes and the check for flat landmarks for all readers of MediaPipe's landmarks."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -10,7 +10,8 @@ from ...progress import Progress, unwatched, within
 from ..containers import read_bytes, read_rows
 from ..conventions import check_scale, from_kinect_space, joint_recording
 
-RATE = 15.0
+FRAME_RATE_HZ = 15.0
+"""Frame rate of the data set, hertz; its files do not state it."""
 NAMES = SENSOR_JOINTS[Sensor.KINECT_V1]
 ORDER = (
     "ShoulderLeft", "ShoulderRight", "ShoulderCenter", "Spine", "HipLeft", "HipRight",
@@ -40,7 +41,7 @@ def read_msr_action3d(
     path: Path | str,
     *,
     scale: float | None = None,
-    frame_rate: float = RATE,
+    frame_rate: float = FRAME_RATE_HZ,
     progress: Progress = unwatched,
 ) -> JointRecording:
     """Read MSR Action3D text [1]_ (real-world coordinates), in meters, Z up.

@@ -1,4 +1,4 @@
-"""What readers of marker tables share: missing markers and the rate of rows."""
+"""Missing markers and the rate of rows, for all readers of marker tables."""
 
 from pathlib import Path
 

@@ -23,7 +23,7 @@ class MotiveItem(NamedTuple):
 
 
 class MotiveHeader(NamedTuple):
-    """What stands above the frames."""
+    """Header above the frames."""
 
     fields: dict[str, str]
     """Such as `length units`, in lower case."""

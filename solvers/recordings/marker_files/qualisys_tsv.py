@@ -21,7 +21,7 @@ HEAD = re.compile(rb'[\s"]*(FILE_VERSION|NO_OF_FRAMES)\b')
 KEY = re.compile(r"[A-Z][A-Z_]+")
 TAB = b"\t"
 MAX_HEADER_LINES = 2000
-"""Of the header, in which each event has a line."""
+"""Maximum lines of the header; each event has one."""
 MILLIMETER = 0.001
 MARKERS, BODIES, REFERENCE = "MARKER_NAMES", "BODY_NAMES", "REFERENCE"
 COLUMNS_OF_BODY = 16
@@ -32,7 +32,7 @@ LOCAL = "LOCAL"
 TITLES = {"frame", "time"}
 
 
-class _Header(NamedTuple):
+class _QualisysHeader(NamedTuple):
     """Contents of the lines above the frames."""
 
     fields: dict[str, list[str]]
@@ -90,7 +90,7 @@ def read_qualisys_tsv(
 
 
 def _points(
-    header: _Header, rows: Array, unit: float, path: Path | str, progress: Progress
+    header: _QualisysHeader, rows: Array, unit: float, path: Path | str, progress: Progress
 ) -> Tracks:
     """Return the markers, or the origins of rigid bodies."""
     key = MARKERS if MARKERS in header.fields else BODIES
@@ -118,7 +118,9 @@ def _points(
     return stand_markers(labels, points * unit, rate, unit, "+Z")
 
 
-def _columns_per_item(header: _Header, width: int, n_items: int, key: str) -> tuple[int, int]:
+def _columns_per_item(
+    header: _QualisysHeader, width: int, n_items: int, key: str
+) -> tuple[int, int]:
     """Return the number of columns of stamps, and of each item; 0 if none fits."""
     titled = [title.lower() for title in header.titles[:2] if title.lower() in TITLES]
     for n_stamps in (len(titled),) if header.titles else (0, 2, 1):
@@ -129,7 +131,7 @@ def _columns_per_item(header: _Header, width: int, n_items: int, key: str) -> tu
 
 
 def _skeleton(
-    header: _Header, rows: Array, unit: float, path: Path | str, progress: Progress
+    header: _QualisysHeader, rows: Array, unit: float, path: Path | str, progress: Progress
 ) -> Motion | Tracks:
     if header.fields[REFERENCE][:1] == [LOCAL]:
         raise InvalidFileError(
@@ -161,7 +163,7 @@ def _skeleton(
 
 
 def _resampled(
-    header: _Header, values: Array, stamps: Array, path: Path | str
+    header: _QualisysHeader, values: Array, stamps: Array, path: Path | str
 ) -> tuple[Array, float]:
     """Resample by the columns Frame and Time, if there are any."""
     unknown = np.full(len(values), np.nan)
@@ -174,7 +176,7 @@ def _resampled(
     return at_constant_rate(values, frames, times, rate if rate > 0.0 else None, path)
 
 
-def _read_header(reader: LineReader, path: Path | str) -> _Header:
+def _read_header(reader: LineReader, path: Path | str) -> _QualisysHeader:
     """Read up to the first line that begins with neither a key nor the name of a column."""
     fields: dict[str, list[str]] = {}
     titles: list[str] = []
@@ -191,7 +193,7 @@ def _read_header(reader: LineReader, path: Path | str) -> _Header:
         raise InvalidFileError(
             f"{path} has the 2D positions of markers in each camera. Export 3D data from QTM."
         )
-    return _Header(fields, titles)
+    return _QualisysHeader(fields, titles)
 
 
 def _is_line_of_titles(cells: Sequence[str]) -> bool:

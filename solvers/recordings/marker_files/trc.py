@@ -32,7 +32,7 @@ MAX_BLANK_RATIO = 10
 MAX_UNCHECKED_CELLS = 1_000_000
 
 
-class _Header(NamedTuple):
+class _TrcHeader(NamedTuple):
     """Contents of the header."""
 
     rate: float | None
@@ -100,7 +100,7 @@ def read_trc(
     return tracks
 
 
-def _read_header(lines: list[bytes], path: Path | str) -> _Header:
+def _read_header(lines: list[bytes], path: Path | str) -> _TrcHeader:
     """Read the header up to the names, which are in the line that begins with `Frame#`."""
     texts = [decode_text(line) for line in lines]
     commas = any(re.match(COMMA_TITLE, text) for text in texts)
@@ -123,7 +123,7 @@ def _read_header(lines: list[bytes], path: Path | str) -> _Header:
     rate = None
     if word := fields.get("datarate"):
         rate = read_number(word.encode(), f"{path}, line {(keys or 0) + 2}, DataRate")
-    return _Header(
+    return _TrcHeader(
         rate=rate if rate is not None and MIN_RATE_HZ < rate < MAX_RATE_HZ else None,
         unit=fields.get("units", "").partition(" ")[0],
         up=up[1].upper() if up else "",
@@ -248,7 +248,7 @@ def _columns_from_rows(
     return table[:, 0].copy(), table[:, 1].copy(), points
 
 
-def _unit(header: _Header, points: NDArray[np.float64], path: Path | str) -> float:
+def _unit(header: _TrcHeader, points: NDArray[np.float64], path: Path | str) -> float:
     """Return meters per unit of the file."""
     unit = meters_from_unit_name(header.unit)
     if unit is None:

@@ -33,7 +33,7 @@ AXES = ("x", "y", "z")
 MILLIMETER = 0.001
 
 
-class _Header(NamedTuple):
+class _ViconHeader(NamedTuple):
     """The five lines above the frames of trajectories."""
 
     rate: float
@@ -115,7 +115,7 @@ def _first_cell(line: bytes) -> bytes:
     return split_cells(line, find_separator(line))[0].lower()
 
 
-def _read_header(reader: LineReader, path: Path | str) -> _Header:
+def _read_header(reader: LineReader, path: Path | str) -> _ViconHeader:
     """Skip to the trajectories, and read the lines above their frames."""
     while (line := reader.peek()) and _first_cell(line[0]) != SECTIONS[0]:
         reader.take()
@@ -134,7 +134,7 @@ def _read_header(reader: LineReader, path: Path | str) -> _Header:
         )
     names += [b""] * (len(axes) - len(names))
     units += [b""] * (len(axes) - len(units))
-    return _Header(
+    return _ViconHeader(
         rate=read_number(rate[0], f"{path}, line {reader.n_taken - 3}, rate"),
         separator=separator,
         labels=[decode_text(names[at]) for at in columns],

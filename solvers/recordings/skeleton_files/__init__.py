@@ -7,7 +7,7 @@ from .bvh_writing import write_bvh
 from .kimodo import is_kimodo, read_kimodo
 from .motion_x import is_motion_x, read_motion_x
 from .mvnx import is_mvnx, open_mvnx
-from .segments import recording_from_segments
+from .segment_recordings import recording_from_segments
 from .smpl import NAMES_OF_BODY, is_smpl, open_smpl
 from .smpl_body import STATURE_M
 from .vrma import is_vrma, read_vrma

@@ -1,4 +1,4 @@
-"""Which segment of a body hangs on which, for files that name segments without a hierarchy."""
+"""Parents of body segments, for files that name segments without a hierarchy."""
 
 from collections.abc import Sequence
 

@@ -1,20 +1,20 @@
 """Index clips by codewords of their segments, and compare them."""
 
 from .clip import Clip, ClipEntry, Match, Origin, find_tags_fault, find_text_fault
-from .describe_clip import DescribedClip, describe_clip
-from .index_block import IndexBlock, block_arrays, block_from_arrays, build_block, merge_blocks
-from .reranking import pairwise_warping_costs, rerank_by_neighbors
-from .search_index import SearchIndex
-from .segments import (
+from .clip_segments import (
+    CLIP_RATE_HZ,
     HISTOGRAM_SCALE,
     MEAN_POSTURE_WEIGHT,
     N_CUBES,
-    RATE,
     Segments,
     describe_all_segments,
     describe_segments,
     weight_mean_posture,
 )
+from .describe_clip import DescribedClip, describe_clip
+from .index_block import IndexBlock, block_arrays, block_from_arrays, build_block, merge_blocks
+from .reranking import pairwise_warping_costs, rerank_by_neighbors
+from .search_index import SearchIndex
 from .time_warping import frame_distances, warping_costs
 from .vocabulary import (
     N_AXES,
@@ -25,11 +25,11 @@ from .vocabulary import (
 )
 
 __all__ = [
+    "CLIP_RATE_HZ",
     "HISTOGRAM_SCALE",
     "MEAN_POSTURE_WEIGHT",
     "N_AXES",
     "N_CUBES",
-    "RATE",
     "Clip",
     "ClipEntry",
     "DescribedClip",

@@ -6,7 +6,7 @@ from ...errors import InvalidMotionError
 from ...motion import JointRecording
 from ..postures import ClipPostures, clip_postures
 from .clip import Clip, ClipEntry
-from .segments import RATE
+from .clip_segments import CLIP_RATE_HZ
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +29,7 @@ def describe_clip(clip: Clip) -> DescribedClip:
     recording = clip.recording
     frames = recording.tracks if isinstance(recording, JointRecording) else recording
     try:
-        postures = clip_postures(recording, RATE)
+        postures = clip_postures(recording, CLIP_RATE_HZ)
     except InvalidMotionError as error:
         raise InvalidMotionError(f"{clip.name}: {error}") from None
     return DescribedClip(

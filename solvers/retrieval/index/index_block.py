@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..postures import N_PARTS
+from .clip_segments import N_CUBES, N_STEPS, Segments
 from .posting_lists import PostingLists, build_posting_lists
-from .segments import N_CUBES, N_STEPS, Segments
 from .vocabulary import N_AXES
 
 MAX_POSTINGS = 1_000_000

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Single
+from .clip_segments import MEAN_POSTURE_WEIGHT, weight_mean_posture
 from .index_block import IndexBlock
 from .reranking import pairwise_warping_costs
-from .segments import MEAN_POSTURE_WEIGHT, weight_mean_posture
 
 Numbers = NDArray[np.int64]
 

@@ -52,7 +52,8 @@ SHAPES = {
     "covariance": (N_COORDINATES, N_COORDINATES),
     "n_frames": (),
 }
-LEARNED = ("centre", "axes", "words", "spread")
+LEARNED = {"centre": "center", "axes": "axes", "words": "words", "spread": "spread"}
+"""Stored names of the learned arrays, and their attributes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +62,7 @@ class Vocabulary:
 
     Attributes
     ----------
-    centre, axes : shapes (5, 22) and (5, 22, 8)
+    center, axes : shapes (5, 22) and (5, 22, 8)
         Mean and principal components of the features of each part.
     words : shape (5, n_words, 8)
     spread : shape (5,), squared meters
@@ -72,7 +73,7 @@ class Vocabulary:
         Number of frames in the training clips.
     """
 
-    centre: Array
+    center: Array
     axes: Array
     words: Array
     spread: Array
@@ -87,7 +88,7 @@ class Vocabulary:
         """Return the features of each part, shape (n_frames, 5, 8), meters."""
         filled = self.posture_distribution.fill_gaps(postures)
         features = part_features(filled.positions, filled.root_velocity, filled.frame_rate)
-        return np.asarray(np.einsum("fpd,pdk->fpk", features - self.centre, self.axes))
+        return np.asarray(np.einsum("fpd,pdk->fpk", features - self.center, self.axes))
 
     def activity(self, features: Array) -> Array:
         """Return the movement of each part in a clip relative to the average, shape (5,)."""
@@ -129,8 +130,8 @@ def learn_vocabulary(clips: list[ClipPostures], seed: int = 0) -> Vocabulary:
         ]
         for clip in map(posture_distribution.fill_gaps, clips)
     ])  # fmt: skip
-    centre = samples.mean(axis=0)
-    deviations = samples - centre
+    center = samples.mean(axis=0)
+    deviations = samples - center
     _, axes = np.linalg.eigh(np.einsum("fpd,fpe->pde", deviations, deviations) / len(samples))
     axes = axes[..., ::-1][..., :N_AXES]
     features = np.einsum("fpd,pdk->fpk", deviations, axes)
@@ -141,7 +142,7 @@ def learn_vocabulary(clips: list[ClipPostures], seed: int = 0) -> Vocabulary:
         for part in range(N_PARTS)
     ])  # fmt: skip
     spread = np.maximum(np.median(nearest, axis=-1), MIN_SPREAD_M2)
-    return Vocabulary(centre, axes, words, spread, posture_distribution, n_frames)
+    return Vocabulary(center, axes, words, spread, posture_distribution, n_frames)
 
 
 def _learn_words(features: Array, n_words: int, rng: np.random.Generator) -> Array:
@@ -161,7 +162,7 @@ def vocabulary_arrays(vocabulary: Vocabulary) -> dict[str, bytes]:
         "mean": vocabulary.posture_distribution.mean,
         "covariance": vocabulary.posture_distribution.covariance,
         "n_frames": np.array(vocabulary.n_frames),
-    } | {name: getattr(vocabulary, name) for name in LEARNED}
+    } | {name: getattr(vocabulary, attribute) for name, attribute in LEARNED.items()}
     return {name: values.astype("<f8").tobytes() for name, values in numbers.items()}
 
 
@@ -180,7 +181,7 @@ def vocabulary_from_arrays(stored: dict[str, bytes]) -> Vocabulary:
     if not _is_learned(read):
         raise ValueError("The vocabulary has implausible values.")
     return Vocabulary(
-        **{name: read[name] for name in LEARNED},
+        **{attribute: read[name] for name, attribute in LEARNED.items()},
         posture_distribution=PostureDistribution(read["mean"], read["covariance"]),
         n_frames=int(read["n_frames"]),
     )

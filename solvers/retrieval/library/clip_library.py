@@ -15,7 +15,7 @@ from ...errors import InvalidMotionError
 from ...files import write_atomically
 from ...progress import Progress, unwatched, within
 from ..index import (
-    RATE,
+    CLIP_RATE_HZ,
     Clip,
     ClipEntry,
     DescribedClip,
@@ -260,7 +260,7 @@ class ClipLibrary:
 
     def _needs_new_vocabulary(self, n_frames: int) -> bool:
         """Whether a library of this size needs a new vocabulary."""
-        stored = sum(entry.seconds for entry in self._entries.values()) * RATE
+        stored = sum(entry.seconds for entry in self._entries.values()) * CLIP_RATE_HZ
         return self._vocabulary is None or self._vocabulary.is_outgrown(stored + n_frames)
 
     def _index_all(self, progress: Progress) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 from ...errors import InvalidMotionError
 from ...json_text import parse_json
 from ...motion.skeletons import check_frame_rate
-from ..index import RATE, ClipEntry, DescribedClip, Origin
+from ..index import CLIP_RATE_HZ, ClipEntry, DescribedClip, Origin
 from ..postures import ClipPostures, half_precision
 from .database_errors import report_damage
 from .values import MAX_BYTES, check_number, check_printable, check_text, read_row_numbers
@@ -173,4 +173,4 @@ def read_postures(database: sqlite3.Connection, number: int, n_frames: int = 0) 
             raise ValueError("A position or velocity is infinite.")
         if len(positions) < n_frames:
             raise ValueError("The index points beyond the end of the clip.")
-        return ClipPostures(positions, root_velocity, RATE)
+        return ClipPostures(positions, root_velocity, CLIP_RATE_HZ)

@@ -9,7 +9,7 @@ from .body_parts import JOINTS, N_PARTS, ROOTS
 from .mean_postures import MIN_OBSERVED_FRACTION, POSITION_NOISE_M, PostureDistribution
 
 MIN_RELIABILITY = 0.02
-"""Lower bound of the reliability of a part. It guards queries of which no part is observed."""
+"""Lower bound of the reliability of a part. It guards queries without an observed part."""
 MIN_VARIANCE_M2 = 1e-9
 """Minimum variance that is divided by. It guards a division."""
 

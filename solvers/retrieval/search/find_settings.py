@@ -25,7 +25,7 @@ queries that move one hand: any clip that moves this hand would answer them."""
 
 
 class FindMethod(Choice):
-    """How clips are compared."""
+    """Method of the comparison of clips."""
 
     WORDS = "words and warping", "Compare pose words of each body part, then align in time"
     PUBLISHED = "published", "Compare pyramids of sparse codes; slower and less accurate"

@@ -130,8 +130,8 @@ def cycles(chosen: argparse.Namespace) -> list[Scores]:
 
 def priors(chosen: argparse.Namespace) -> list[Scores | str]:
     """Right and wrong examples."""
-    scores, said = compare_priors(_walks(chosen)[:PRIOR_CLIPS])
-    sentences = {what: [sentence] for what, sentence in said.items()}
+    scores, priors_used = compare_priors(_walks(chosen)[:PRIOR_CLIPS])
+    sentences = {what: [sentence] for what, sentence in priors_used.items()}
     return [*scores, table(["target, examples", "prior in the report"], sentences)]
 
 

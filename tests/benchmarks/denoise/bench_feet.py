@@ -95,7 +95,7 @@ def locked(motion: Motion, contacts: Flags) -> Motion:
     return _pinned(motion, contacts, lambda ankle, start, stop: ankle[start] - ankle, 0.0)
 
 
-def eased(motion: Motion, contacts: Flags) -> Motion:
+def pinned_with_fades(motion: Motion, contacts: Flags) -> Motion:
     """Keep each ankle at its mean in contact; fade linearly before and after."""
     return _pinned(
         motion,
@@ -136,7 +136,7 @@ PLANTERS: dict[str, Planter] = {
     "planted": lambda motion, contacts: plant_feet(motion, contacts).motion,
     "as given": lambda motion, contacts: motion,
     "locked, no easing": locked,
-    "locked, linear easing": eased,
+    "locked, linear easing": pinned_with_fades,
 }
 
 

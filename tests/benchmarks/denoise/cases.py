@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from solvers.motion import Motion
 
 from ..shared.noise import (
-    METRES_PER_DEGREE,
+    METERS_PER_DEGREE,
     Array,
     Channels,
     channel_error,
@@ -57,7 +57,7 @@ class Case:
 
     @cached_property
     def clean(self) -> Array:
-        """True angle channels, degrees, and root position in units of METRES_PER_DEGREE."""
+        """True angle channels, degrees, and root position in units of METERS_PER_DEGREE."""
         return with_root(self.channels.values(self.truth), self.truth)
 
     @cached_property
@@ -93,7 +93,7 @@ class Case:
     def motion(self, values: Array) -> Motion:
         """Return the motion with these channels, root included."""
         moved = self.channels.motion(values[:, :-3], self.truth)
-        return moved.with_poses(root_positions=values[:, -3:] * METRES_PER_DEGREE)
+        return moved.with_poses(root_positions=values[:, -3:] * METERS_PER_DEGREE)
 
     def values(self, motion: Motion) -> Array:
         """Return the channels of a motion, root included."""
@@ -105,8 +105,8 @@ class Case:
 
 
 def with_root(values: Array, motion: Motion) -> Array:
-    """Append the root's position in units of METRES_PER_DEGREE."""
-    return np.hstack([values, motion.root_positions / METRES_PER_DEGREE])
+    """Append the root's position in units of METERS_PER_DEGREE."""
+    return np.hstack([values, motion.root_positions / METERS_PER_DEGREE])
 
 
 def without_heading(values: Array) -> Array:

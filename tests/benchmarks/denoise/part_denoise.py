@@ -5,7 +5,7 @@ from time import perf_counter
 
 from solvers.motion import Motion
 
-from ..shared.noise import METRES_PER_DEGREE, angle_error, learn_channels
+from ..shared.noise import METERS_PER_DEGREE, angle_error, learn_channels
 from ..shared.tables import Scores
 from .cases import Case, Level
 from .methods import PEERS, Blender, Method
@@ -47,7 +47,7 @@ def compare(cases: list[Case], methods: Mapping[str, Method], title: str) -> lis
         for name, method in methods.items():
             estimate = method(case)
             angles = angle_error(case.motion(estimate), case.truth, case.channels.joints)
-            root = abs(estimate[:, -3:] - case.clean[:, -3:]).mean() * METRES_PER_DEGREE
+            root = abs(estimate[:, -3:] - case.clean[:, -3:]).mean() * METERS_PER_DEGREE
             figures = (case.error(estimate), angles.mean(), 1000.0 * root)
             for scores, figure in zip(found, figures, strict=True):
                 scores.add(name, case.level, case.name, float(figure), case.level.follows)

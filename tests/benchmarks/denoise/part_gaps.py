@@ -12,7 +12,7 @@ from solvers.motion import Motion
 from solvers.rotations.representations import slerp, unroll
 
 from ..peers import gap_fillers, kalman, smoothers
-from ..shared.noise import METRES_PER_DEGREE, angle_error, seeded
+from ..shared.noise import METERS_PER_DEGREE, angle_error, seeded
 from ..shared.tables import Scores
 from .cases import Case, without_heading
 from .ours import Ours
@@ -137,7 +137,7 @@ def gapped_motion(case: Case, gapped: Array) -> Motion:
     for joint in np.flatnonzero(case.channels.joints):
         missing = ~np.isfinite(gapped[:, case.channels.of_joints([joint])]).all(axis=1)
         rotations[missing, joint] = np.nan
-    root = gapped[:, -3:] * METRES_PER_DEGREE
+    root = gapped[:, -3:] * METERS_PER_DEGREE
     return case.truth.with_poses(rotations, root)
 
 

@@ -56,7 +56,7 @@ def compare_priors(names: Sequence[str]) -> tuple[list[Scores], dict[str, str]]:
         Scores(f"Right and wrong examples, {level}", "mean absolute error, degrees", "right")
         for level in LEVELS
     ]
-    said: dict[str, str] = {}
+    priors_used: dict[str, str] = {}
     for target, (takes, right, wrong) in _targets(names).items():
         for name, truth in takes.items():
             own = tuple(motion for other, motion in right.items() if other != name)
@@ -68,10 +68,10 @@ def compare_priors(names: Sequence[str]) -> tuple[list[Scores], dict[str, str]]:
                     target,
                     Case(name, level, truth, own, learn_channels(own)),
                     priors,
-                    said,
+                    priors_used,
                 )
         print(f"  {target} with right and wrong examples", flush=True)
-    return found, said
+    return found, priors_used
 
 
 def _add(
@@ -79,20 +79,20 @@ def _add(
     target: str,
     case: Case,
     priors: Mapping[str, tuple[Motion, ...]],
-    said: dict[str, str],
+    priors_used: dict[str, str],
 ) -> None:
     for prior, training in priors.items():
         done = Ours().denoised(case.noisy_motion, training)
         error = case.error(case.values(done.recording))
         scores.add(prior, target, case.name, error, follows=False)
-        said[f"{target}, {prior}"] = done.prior_used
+        priors_used[f"{target}, {prior}"] = done.prior_used
         published = Ours(method=DenoiseMethod.PUBLISHED)
         done = published.denoised(case.noisy_motion, training)
         error = case.error(case.values(done.recording))
         scores.add(f"[LC10] as published, {prior}", target, case.name, error, follows=False)
     alone = Ours(prior=False).denoised(case.noisy_motion, ())
     scores.add("none", target, case.name, case.error(case.values(alone.recording)))
-    said[f"{target}, none"] = alone.prior_used
+    priors_used[f"{target}, none"] = alone.prior_used
     for peer in ("Gaussian, width tuned on the truth", "Hampel + GCV spline"):
         scores.add(peer, target, case.name, case.error(PEERS[peer](case)))
 

@@ -25,7 +25,7 @@ from ..peers.icp_trackers import articulated_icp, ray_constrained_icp
 from ..shared.report import BENCHMARK_PICTURES, DOCS, Report, show
 from ..shared.tables import Scores
 from .colored_sequences import colored, others_motions
-from .depth_more import more_sequence
+from .depth_extra_sequences import more_sequence
 from .depth_sequences import (
     SCORED,
     TRUTH,
@@ -57,7 +57,7 @@ HARDER = (
     "run in a circle", "kick, side", "throw", "crossed arms, side", "seated, side",
 )  # fmt: skip
 """Of `depth_more`, the same, without the walk that rotates: every tracker fails on it."""
-LEAST = 50.0
+MIN_BAR_PERCENT = 50.0
 """Per cent at which the bars of a picture begin."""
 WITHOUT = {
     "all terms (default)": {},
@@ -181,7 +181,7 @@ def terms() -> list[str]:
     sequences = [sequence(name) for name in HARD] + [more_sequence(name) for name in HARDER]
     scores = _without(sequences, "Without each part")
     picture = BENCHMARK_PICTURES / "depth" / "terms.png"
-    draw_bars(scores, {"cm": 0.0, "% < 10 cm": LEAST}, picture)
+    draw_bars(scores, {"cm": 0.0, "% < 10 cm": MIN_BAR_PERCENT}, picture)
     return [scores.markdown(), f"{show(picture, 'What each part is worth')}\n"]
 
 

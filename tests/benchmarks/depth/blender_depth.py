@@ -19,7 +19,7 @@ SCRIPT = Path(__file__).with_name("render_in_blender.py")
 class Difference(NamedTuple):
     """Differences between two depth images."""
 
-    millimetres: np.ndarray
+    millimeters: np.ndarray
     """Absolute difference of each pixel that both see."""
     covered: float
     """Fraction of the pixels of either image that only one has."""
@@ -76,5 +76,5 @@ def our_depth(
 def difference(ours: np.ndarray, others: np.ndarray) -> Difference:
     """Compare pictures of one size."""
     both, either = (ours > 0.0) & (others > 0.0), (ours > 0.0) | (others > 0.0)
-    millimetres = 1000.0 * np.abs(ours - others)[both]
-    return Difference(millimetres, 1.0 - both.sum() / either.sum())
+    millimeters = 1000.0 * np.abs(ours - others)[both]
+    return Difference(millimeters, 1.0 - both.sum() / either.sum())

@@ -24,7 +24,7 @@ from solvers.depth_tracking.forest_training.training_images import (
 )
 from solvers.recordings import read_bvh
 
-from .forest_sources import CMU_METRES, DATA, TRUTH, all_bodies, held_out_motions
+from .forest_sources import CMU_METERS, DATA, TRUTH, all_bodies, held_out_motions
 
 SAME_DEPTH = 0.08
 """Difference of both renderings in meters above which a pixel has no label."""
@@ -36,7 +36,7 @@ CMU_JOINTS = {
 """Joints of the body model and those of the truth; clavicles differ and are left out."""
 
 
-class LabelledFrame(NamedTuple):
+class LabeledFrame(NamedTuple):
     """One picture and what is true in it."""
 
     take: str
@@ -49,7 +49,7 @@ class LabelledFrame(NamedTuple):
     """The `JOINTS` of the body model; NaN where the truth has no such joint."""
 
 
-def truth_frames(take: str, every: int = 1, step: int = 2) -> Iterator[LabelledFrame]:
+def truth_frames(take: str, every: int = 1, step: int = 2) -> Iterator[LabeledFrame]:
     """Yield every so manieth frame of a take, every `step`-th column and row of it."""
     body, laid = truth_bodies(take, every)
     with np.load(DATA / "depth" / "truth" / f"{take}.npz") as archive:
@@ -63,7 +63,7 @@ def truth_frames(take: str, every: int = 1, step: int = 2) -> Iterator[LabelledF
         rendered = render_mesh(vertices, body.triangles, body.vertex_parts, camera)
         same = (rendered.depth > 0.0) & (np.abs(rendered.depth - depth) < SAME_DEPTH)
         labels = np.where(same, rendered.labels, np.uint8(NO_PART))
-        yield LabelledFrame(
+        yield LabeledFrame(
             take, frame, camera, depth, labels, _ours(truth["joint_names"].tolist(), joints)
         )
 
@@ -72,7 +72,7 @@ def truth_bodies(take: str, every: int = 1) -> tuple[SkinnedBody, Iterator[tuple
     """Return the body of a take, and frames with its vertices there, camera frame, meters."""
     clip, first, body_name = TRUTH[take]
     body = load_skinned_body(DATA / "body" / f"{body_name}.npz")
-    poses = body.rotations_of(read_bvh(DATA / "mocap" / clip, scale=CMU_METRES))
+    poses = body.rotations_of(read_bvh(DATA / "mocap" / clip, scale=CMU_METERS))
     with np.load(DATA / "depth" / "truth" / f"{take}.npz") as archive:
         truth = archive["joints"].astype(float)
 
@@ -85,7 +85,7 @@ def truth_bodies(take: str, every: int = 1) -> tuple[SkinnedBody, Iterator[tuple
     return body, laid()
 
 
-def held_out_frames(n_blocks: int = 30, loose: float = 0.0) -> Iterator[LabelledFrame]:
+def held_out_frames(n_blocks: int = 30, loose: float = 0.0) -> Iterator[LabeledFrame]:
     """Yield pictures of HDM05's actors, whom no forest here has learned from."""
     settings = TrainingImagesSettings(loose=loose, min_distance=2.0, max_distance=4.0)
     source = image_source(held_out_motions(), all_bodies(), settings, 5)
@@ -94,7 +94,7 @@ def held_out_frames(n_blocks: int = 30, loose: float = 0.0) -> Iterator[Labelled
         inner = picture[1:-1, 1:-1]
         depth = (np.where(inner == BACKGROUND_MM, 0, inner) / MM_PER_M).astype(np.float32)
         unknown = np.full((len(JOINTS), 3), np.nan)
-        yield LabelledFrame("HDM05", number, CAMERA, depth, labels, unknown)
+        yield LabeledFrame("HDM05", number, CAMERA, depth, labels, unknown)
 
 
 def _ours(names: list[str], joints: Array) -> Array:

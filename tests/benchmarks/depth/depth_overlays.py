@@ -70,9 +70,9 @@ def _tinted(depth_image: np.ndarray, drawn: np.ndarray) -> np.ndarray:
     nearest, depth_range = (
         (near.min(), max(float(np.ptp(near)), 0.1)) if len(near) else (0.0, 1.0)
     )
-    grey = np.where(
+    gray = np.where(
         depth_image > 0.0, 250.0 - 180.0 * (depth_image - nearest) / depth_range, 0.0
     )
-    picture = np.repeat(grey[..., np.newaxis], 3, axis=2)
+    picture = np.repeat(gray[..., np.newaxis], 3, axis=2)
     picture[drawn > 0.0] = 0.6 * picture[drawn > 0.0] + [90.0, 40.0, 0.0]
     return picture.clip(0.0, 255.0).astype(np.uint8)

@@ -23,7 +23,7 @@ from solvers.motion import Motion
 from solvers.recordings import read_acclaim, read_bvh
 
 from .depth_sequences import CMU_NAMES, Sequence
-from .forest_sources import CMU_METRES, DATA, all_bodies
+from .forest_sources import CMU_METERS, DATA, all_bodies
 from .painted_bodies import ColoredPicture, colored_picture, vertex_materials
 
 KINECT = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
@@ -116,7 +116,7 @@ def clip(name: str) -> Motion:
     """Read a clip of data/mocap."""
     path = DATA / "mocap" / name
     if path.suffix == ".bvh":
-        return read_bvh(path, scale=CMU_METRES)
+        return read_bvh(path, scale=CMU_METERS)
     skeleton = DATA / "mocap" / "05.asf"
     if "HDM" in name:
         skeleton = path.with_name(f"{path.name[:6]}.asf")

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.arrays import Array
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import BodyModel
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.published.registration_tracker import REGISTRATION_TRACKER
 from solvers.depth_tracking.terms.observation import observe
 from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, TrackerSettings

@@ -18,7 +18,7 @@ from solvers.signals.linear_gaps import fill_gaps
 from ..reconstruction.kinect_pairs import read_pairs
 
 DATA = Path(__file__).parents[4] / "shared/data"
-CMU_METRES = 0.0254 / 0.45
+CMU_METERS = 0.0254 / 0.45
 FRAME_RATE = 15.0
 """Poses looked at per second."""
 
@@ -57,7 +57,7 @@ def cmu_motions(folder: Path = DATA, but: tuple[str, ...] = ()) -> list[Motion]:
         *sorted((mocap / "cmu_hop").glob("*")),
     ]
     motions = [
-        _without_t_pose(read_bvh(path, scale=CMU_METRES))
+        _without_t_pose(read_bvh(path, scale=CMU_METERS))
         for path in paths
         if _is_taught(path) and not path.stem.startswith(but)
     ]

@@ -5,8 +5,8 @@ from time import process_time
 
 import numpy as np
 
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import BodyModel
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.capture import Capture, CaptureSettings, capture
 from solvers.depth_tracking.capturing.passes import RecoverySettings, TrackingContext
@@ -17,7 +17,7 @@ from solvers.depth_tracking.tracking.track_pose import track_pose
 from solvers.errors import InvalidMotionError
 
 from ..shared.tables import Scores
-from .depth_more import TAKES, more_sequence
+from .depth_extra_sequences import TAKES, more_sequence
 from .depth_sequences import ENOUGH, SCORED, Sequence, errors, length_error, sequence
 
 FPS = "frames/s"

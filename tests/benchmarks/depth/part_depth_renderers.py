@@ -6,7 +6,7 @@ import numpy as np
 
 from ..shared.tables import table
 from .blender_depth import blender_depth, difference, our_depth
-from .depth_more import KINECT, TAKES, before_camera, body_of, view_center
+from .depth_extra_sequences import KINECT, TAKES, before_camera, body_of, view_center
 
 FRAMES = 3
 """Of each sequence."""
@@ -26,8 +26,8 @@ def renderers() -> list[str]:
         )
         given = body, motion, rotations[some], view_center(take), KINECT
         found = difference(our_depth(*given), blender_depth(*given))
-        rows[name] = _row(found.millimetres, found.covered)
-        differences.append(found.millimetres)
+        rows[name] = _row(found.millimeters, found.covered)
+        differences.append(found.millimeters)
         uncovered.append(found.covered)
     rows["all"] = _row(np.concatenate(differences), float(np.mean(uncovered)))
     header = ["sequence", "pixels", "mean mm", "95 % mm", "largest mm", "% in one image only"]
@@ -35,12 +35,12 @@ def renderers() -> list[str]:
     return [f"{title}\n\n{table(header, rows)}\n"]
 
 
-def _row(millimetres: np.ndarray, uncovered: float) -> list[str]:
-    worst = f"{millimetres.max():.2f}"
-    quantile = f"{np.quantile(millimetres, 0.95):.3f}"
+def _row(millimeters: np.ndarray, uncovered: float) -> list[str]:
+    worst = f"{millimeters.max():.2f}"
+    quantile = f"{np.quantile(millimeters, 0.95):.3f}"
     return [
-        str(len(millimetres)),
-        f"{millimetres.mean():.3f}",
+        str(len(millimeters)),
+        f"{millimeters.mean():.3f}",
         quantile,
         worst,
         f"{100.0 * uncovered:.3f}",

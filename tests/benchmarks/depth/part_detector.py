@@ -40,7 +40,7 @@ from solvers.depth_tracking.forest_training.train_forest import (
 )
 from solvers.depth_tracking.forest_training.training_images import IMAGES_PER_BODY, image_source
 
-from .depth_labels import LabelledFrame, held_out_frames, truth_frames
+from .depth_labels import LabeledFrame, held_out_frames, truth_frames
 from .forest_sources import TRUTH, all_bodies, taught_motions
 from .part_detector_kinect import kinect_rows
 
@@ -71,7 +71,7 @@ def detector() -> list[str]:
     return [f"**{title}**\n\n" + "\n".join(rows) for title, rows in tables.items()]
 
 
-def confusion(frames: Iterable[LabelledFrame], forest: PixelForest) -> tuple[Array, float]:
+def confusion(frames: Iterable[LabeledFrame], forest: PixelForest) -> tuple[Array, float]:
     """Count pixels by true and classified part, and measure milliseconds per frame."""
     counts, times = np.zeros((N_PARTS, N_PARTS)), []
     for frame in frames:
@@ -135,7 +135,7 @@ def pose_rows(
 
 
 def found_joints(
-    frames: Sequence[LabelledFrame],
+    frames: Sequence[LabeledFrame],
     body: BodyModel,
     forest: PixelForest,
     settings: DetectorSettings,

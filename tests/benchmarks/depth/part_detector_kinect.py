@@ -122,10 +122,10 @@ def draw(take: KinectTake, body: BodyModel, number: int) -> NDArray[np.uint8]:
     """Draw depth, classified parts and the detected body next to each other."""
     pose, frame = take.found[number], take.camera_frames[number]
     depth = take.depth.frame(frame)[:: pose.step, :: pose.step]
-    grey = np.where(
+    gray = np.where(
         depth > 0, np.clip(255 - 130 * (depth - depth[depth > 0].min()), 60, 255), 0
     )
-    pictures = [np.repeat(grey[..., None], 3, axis=2)]
+    pictures = [np.repeat(gray[..., None], 3, axis=2)]
     labels = pictures[0].copy()
     labels[pose.pixels.rows, pose.pixels.columns] = COLORS[pose.pixels.labels]
     picture = render_hypothesis(body, pose.pose, take.depth.camera.every(pose.step)).image

@@ -6,9 +6,9 @@ import numpy as np
 
 from solvers.arrays import Array
 from solvers.depth_tracking.body.coordinates import COORDINATES
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.motion import body_motion, motion_frames
 from solvers.depth_tracking.body.pose_from_joints import pose_from_joints
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.capture import CaptureSettings, capture
 from solvers.depth_tracking.capturing.retrack import retrack

@@ -35,7 +35,7 @@ TITLES = {
     "angle": "Angle error, degrees, mean over takes",
     "position": "Distance of hands and feet from the truth, cm, mean over takes",
     "speed_kept": "Peak speed of hands and feet, relative to the truth's, mean over takes",
-    "reach_lost": "Worst reach lost at a turning point, cm, of all takes",
+    "excursion_loss": "Worst reach lost at a turning point, cm, of all takes",
 }
 
 
@@ -54,7 +54,7 @@ class Scores:
         """Return a table for each figure, and one of what is only asked of ours."""
         texts = []
         for column, title in TITLES.items():
-            statistic = np.max if column == "reach_lost" else np.mean
+            statistic = np.max if column == "excursion_loss" else np.mean
             rows = {
                 method: [
                     number(float(statistic([getattr(each, column) for each in takes.values()])))
@@ -110,11 +110,11 @@ class Scores:
         for one in map(str, CONDITIONS):
             worse = sorted(self._worse(one).items(), key=lambda each: -each[1][0])[:3]
             ours = self.figures[OURS][one].items()
-            lost = sorted(ours, key=lambda each: -each[1].reach_lost)[:3]
+            lost = sorted(ours, key=lambda each: -each[1].excursion_loss)[:3]
             rows[one] = [
                 "; ".join(f"{take} x{ratio:.2f} of {peer}" for take, (ratio, peer) in worse),
                 "; ".join(
-                    f"{take} {each.worst.place} {each.reach_lost:.1f}"
+                    f"{take} {each.worst.label} {each.excursion_loss:.1f}"
                     for take, each in lost
                     if each.worst
                 ),

@@ -19,12 +19,12 @@ from .conditions import CONDITIONS, Case
 NEAR_DEG = 5.0
 """A joint nearer to the truth than this counts as right."""
 N_BINS = 10
-SURE = 0.9
+HIGH_CONFIDENCE = 0.9
 """The confidence from which on nine in ten are promised to be right."""
 KINDS = GOOD, OUTLIERS, MISSING = "good", "outliers", "missing"
 """Samples that only noise touched, that are wrong, and that are not there."""
 MIN_SHARE = 1e-4
-"""Bins with a smaller share of the samples are not drawn: chance rules them."""
+"""Bins with a smaller fraction of the samples are not drawn: chance rules them."""
 SIZE, LEFT, TOP, BOTTOM, RIGHT = 420.0, 70.0, 50.0, 60.0, 190.0
 
 
@@ -51,7 +51,7 @@ class Bins:
         return joined
 
     @property
-    def share(self) -> Array:
+    def fraction(self) -> Array:
         """Fraction of all samples in each bin."""
         return np.asarray(self._n / max(self._n.sum(), 1.0))
 
@@ -68,15 +68,15 @@ class Bins:
     @property
     def expected_error(self) -> float:
         """Mean difference of confidence and fraction right, over samples (Guo et al. 2017)."""
-        return float(np.nansum(self.share * np.abs(self.reported - self.right)))
+        return float(np.nansum(self.fraction * np.abs(self.reported - self.right)))
 
     @property
-    def sure(self) -> tuple[float, float]:
-        """Fraction of the samples reported SURE or more, and of these the fraction right."""
-        last = round(SURE * N_BINS)
+    def high_confidence(self) -> tuple[float, float]:
+        """Fraction of samples at HIGH_CONFIDENCE or more, and of these the fraction right."""
+        last = round(HIGH_CONFIDENCE * N_BINS)
         n = self._n[last:].sum()
         right = self._right[last:].sum() / n if n else np.nan
-        return float(self.share[last:].sum()), float(right)
+        return float(self.fraction[last:].sum()), float(right)
 
 
 class Calibration:
@@ -106,7 +106,7 @@ class Calibration:
         lower = np.arange(N_BINS) / N_BINS
         rows = {
             f"{low:.1f} to {low + 1 / N_BINS:.1f}": [
-                f"{100 * everything.share[index]:.2f}",
+                f"{100 * everything.fraction[index]:.2f}",
                 _percent(everything.reported[index]),
                 *(_percent(each.right[index]) for each in (everything, *kinds)),
             ]
@@ -115,15 +115,19 @@ class Calibration:
         rows["expected calibration error"] = [
             "-", "-", *(_percent(each.expected_error) for each in (everything, *kinds))
         ]  # fmt: skip
-        header = ["confidence", "share of samples", "mean confidence", "right, all", *KINDS]
+        header = ["confidence", "fraction of samples", "mean confidence", "right, all", *KINDS]
         title = f"**Confidence: joints within {NEAR_DEG:g} degrees of the truth, %**"
         return [f"{title}\n\n{table(header, rows)}\n", self._by_condition()]
 
     def _by_condition(self) -> str:
         found = [Bins().joined(self._bins[str(one)].values()) for one in CONDITIONS]
         rows = {
-            f"reported {SURE:g} or more": [_percent(bins.sure[0]) for bins in found],
-            f"of these within {NEAR_DEG:g} degrees": [_percent(bins.sure[1]) for bins in found],
+            f"reported {HIGH_CONFIDENCE:g} or more": [
+                _percent(bins.high_confidence[0]) for bins in found
+            ],
+            f"of these within {NEAR_DEG:g} degrees": [
+                _percent(bins.high_confidence[1]) for bins in found
+            ],
             "expected calibration error": [_percent(bins.expected_error) for bins in found],
         }
         header = ["", *map(str, CONDITIONS)]
@@ -139,20 +143,20 @@ def draw_curve(kinds: Mapping[str, Bins], path: Path) -> None:
     canvas = Canvas(LEFT + SIZE + RIGHT, TOP + SIZE + BOTTOM)
     canvas.text(LEFT, 20.0, f"Joints within {NEAR_DEG:g} degrees of the truth, %")
     for mark in np.linspace(0.0, 1.0, 6):
-        canvas.line([_place(0.0, mark), _place(1.0, mark)], GRID)
-        canvas.text(LEFT - 8.0, _place(0.0, mark)[1], f"{100 * mark:.0f}", INK, "rm")
-        canvas.text(_place(mark, 0.0)[0], TOP + SIZE + 16.0, f"{mark:.1f}", INK, "mm")
+        canvas.line([_pixel(0.0, mark), _pixel(1.0, mark)], GRID)
+        canvas.text(LEFT - 8.0, _pixel(0.0, mark)[1], f"{100 * mark:.0f}", INK, "rm")
+        canvas.text(_pixel(mark, 0.0)[0], TOP + SIZE + 16.0, f"{mark:.1f}", INK, "mm")
     canvas.text(LEFT + SIZE / 2.0, TOP + SIZE + 42.0, "confidence reported", INK, "mm")
-    canvas.line([_place(0.0, 0.0), _place(1.0, 1.0)], FAINT)
+    canvas.line([_pixel(0.0, 0.0), _pixel(1.0, 1.0)], FAINT)
     for row, ((name, bins), color) in enumerate(zip(kinds.items(), SERIES, strict=False)):
         drawn = _drawn(bins)
         points = [
-            _place(*each) for each in zip(bins.reported[drawn], bins.right[drawn], strict=True)
+            _pixel(*each) for each in zip(bins.reported[drawn], bins.right[drawn], strict=True)
         ]
         if points:
             canvas.line(points, color, 2.0)
-        for point, share in zip(points, bins.share[drawn], strict=True):
-            canvas.dot(point, color, 3.0 + 9.0 * float(np.sqrt(share)))
+        for point, fraction in zip(points, bins.fraction[drawn], strict=True):
+            canvas.dot(point, color, 3.0 + 9.0 * float(np.sqrt(fraction)))
         y = TOP + 22.0 * row
         canvas.line([(LEFT + SIZE + 24.0, y), (LEFT + SIZE + 48.0, y)], color, 3.0)
         canvas.text(LEFT + SIZE + 56.0, y, name)
@@ -161,10 +165,10 @@ def draw_curve(kinds: Mapping[str, Bins], path: Path) -> None:
 
 
 def _drawn(bins: Bins) -> NDArray[np.bool_]:
-    return np.asarray(bins.share > MIN_SHARE)
+    return np.asarray(bins.fraction > MIN_SHARE)
 
 
-def _place(reported: float, right: float) -> tuple[float, float]:
+def _pixel(reported: float, right: float) -> tuple[float, float]:
     return LEFT + SIZE * reported, TOP + SIZE * (1.0 - right)
 
 

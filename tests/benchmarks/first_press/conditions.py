@@ -12,7 +12,7 @@ from solvers.motion import Motion, find_humanoid_map
 from solvers.rotations import IDENTITY, unwrap_rotation_vectors
 
 from ..shared.noise import (
-    METRES_PER_DEGREE,
+    METERS_PER_DEGREE,
     Channels,
     corrupt,
     corrupt_in_bursts,
@@ -93,7 +93,7 @@ class Case:
         curves = replace(self.channels, kept=np.ones_like(kept)).values(self.truth)
         vectors = np.radians(curves[:, 1:]).reshape(len(curves), -1, 3)
         curves[:, 1:] = np.degrees(unwrap_rotation_vectors(vectors)).reshape(len(curves), -1)
-        return np.hstack([curves[:, kept], self.truth.root_positions / METRES_PER_DEGREE])
+        return np.hstack([curves[:, kept], self.truth.root_positions / METERS_PER_DEGREE])
 
     @cached_property
     def corrupted(self) -> Array:
@@ -167,7 +167,7 @@ class Case:
     def motion(self, curves: Array) -> Motion:
         """Return the take with these curves; joints with a NaN are missing."""
         moved = self.channels.motion(curves[:, :-3], self.truth)
-        return moved.with_poses(root_positions=curves[:, -3:] * METRES_PER_DEGREE)
+        return moved.with_poses(root_positions=curves[:, -3:] * METERS_PER_DEGREE)
 
     @property
     def _groups(self) -> Sequence[NDArray[np.intp]]:

@@ -43,7 +43,7 @@ from .measures import ENDS, Figures, positions_of_ends
 from .takes import Take
 
 N_WORST = 3
-MEASURES = {"position": "distance", "speed_kept": "speed", "reach_lost": "reach"}
+MEASURES = {"position": "distance", "speed_kept": "speed", "excursion_loss": "reach"}
 """The figures besides the angle error, and the names of their pictures."""
 AROUND_S, FIGURES_S = 1.0, 0.2
 """Seconds before and after the worst moment that the curves and the figures show."""
@@ -158,7 +158,7 @@ def _worst_end(case: Case, measure: str, ours: Motion) -> tuple[int, int]:
         )
         end = int((speed.max(axis=0) / np.maximum(true_speed.max(axis=0), 1e-9)).argmin())
         return end, int(true_speed[:, end].argmax())
-    if measure == "reach_lost":
+    if measure == "excursion_loss":
         about_root = (cleaned - truth) - (ours.root_positions - case.truth.root_positions)[
             :, None
         ]

@@ -30,7 +30,7 @@ class TurningPoint:
     direction: tuple[float, float, float]
 
     @property
-    def place(self) -> str:
+    def label(self) -> str:
         """The end and the frame."""
         return f"{ENDS[self.end]} frame {self.frame}"
 
@@ -43,7 +43,7 @@ class Figures:
     position: float
     speed_kept: float
     """Fastest speed of hands and feet, relative to the truth's."""
-    reach_lost: float
+    excursion_loss: float
     worst: TurningPoint | None
 
 
@@ -57,7 +57,7 @@ def measure(case: Case, motion: Motion) -> Figures:
     truth, estimate = positions_of_ends(case.truth), positions_of_ends(motion)
     position = float(np.linalg.norm(estimate - truth, axis=-1)[frames].mean())
     rate = case.truth.frame_rate
-    lost, worst = _reach_lost(case.truth, motion)
+    lost, worst = _excursion_loss(case.truth, motion)
     speeds = _peak_speed(estimate[scored], rate) / _peak_speed(truth[scored], rate)
     speed = float(np.mean(speeds))
     return Figures(angle, CENTIMETERS * position, speed, lost, worst)
@@ -75,7 +75,7 @@ def _peak_speed(positions: Array, rate: float) -> Array:
     return np.asarray(rate * np.maximum(steps.max(axis=0), 1e-6))
 
 
-def _reach_lost(truth: Motion, motion: Motion) -> tuple[float, TurningPoint | None]:
+def _excursion_loss(truth: Motion, motion: Motion) -> tuple[float, TurningPoint | None]:
     """Return the largest loss of excursion at a turning point, centimeters."""
     rate = truth.frame_rate
     true_path, path = (_about_root(each) for each in (truth, motion))

@@ -53,7 +53,7 @@ def main() -> None:
         rows[walk.name] = measured(walk, start)
         rows["walk.fbx, Blender's own importer"] = [*timed(lambda: blenders_own(walk)), "-"]
         rows["start of a background Blender"] = [*start, "-"]
-    shown = {name: [*map(in_words, cells)] for name, cells in rows.items()}
+    shown = {name: [*map(cell_text, cells)] for name, cells in rows.items()}
     header = ["recording", "seconds", "processor seconds", "read back, at most off, mm"]
     title = f"Blender {bpy.app.version_string}, takes of {arguments.seconds:g} s"
     ratio = rows["walk.fbx"][1] / rows["walk.fbx, Blender's own importer"][1]
@@ -72,7 +72,7 @@ class Seconds(NamedTuple):
     processor: float
 
 
-def in_words(cell: float | str) -> str:
+def cell_text(cell: float | str) -> str:
     """Return a cell of the table."""
     return cell if isinstance(cell, str) else f"{cell:.2f}"
 

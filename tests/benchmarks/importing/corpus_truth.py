@@ -129,7 +129,7 @@ def truth_of(name: str) -> Truth | None:
 
 
 def faults_of(
-    figures: Mapping[str, float], joints: Mapping[str, str], truth: Truth | None, said: str
+    figures: Mapping[str, float], joints: Mapping[str, str], truth: Truth | None, message: str
 ) -> list[str]:
     """Return what differs from the truth and is not said.
 
@@ -138,7 +138,7 @@ def faults_of(
     figures : of a take
     joints : name of the joint of each role
     truth : of the file; None if nothing is known
-    said : the warnings of the reader
+    message : the warnings of the reader
     """
     if truth is None:
         faults = ["lies"] * (figures.get("upright", 1.0) < 0.0)
@@ -149,7 +149,9 @@ def faults_of(
     else:
         faults = _faults_of_person(figures, truth)
         faults += ["roles"] * (joints != {**joints, **true_joints(truth, joints)})
-    return [fault for fault in faults if not re.search(EXCUSES.get(fault, "^$"), said or "-")]
+    return [
+        fault for fault in faults if not re.search(EXCUSES.get(fault, "^$"), message or "-")
+    ]
 
 
 def _faults_of_person(figures: Mapping[str, float], truth: Truth) -> list[str]:

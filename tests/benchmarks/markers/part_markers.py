@@ -30,7 +30,7 @@ DEV_TAKES = {
 }
 """Settings are chosen on these alone. By file, the number of points that are markers: what
 follows them is computed."""
-LONGEST = 0.5
+MAX_GAP_FRACTION = 0.5
 """Of a take: longer gaps leave too little to learn from."""
 GAPS = ((1, 0.5), (1, 2.0), (5, 0.5), (5, 2.0))
 """Number of markers and seconds."""
@@ -46,7 +46,7 @@ def compare_markers(fillers: Mapping[str, Filler], draws: int, dev: bool) -> lis
     )
     for take, tracks in takes.items():
         for n_markers, seconds in GAPS:
-            if seconds > LONGEST * tracks.n_frames / tracks.frame_rate:
+            if seconds > MAX_GAP_FRACTION * tracks.n_frames / tracks.frame_rate:
                 continue
             for draw in range(draws):
                 gapped = _cut(tracks, take, n_markers, seconds, draw)

@@ -39,8 +39,8 @@ C3D_FROM_AMC = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
 def _solved(tracks: Tracks) -> Mapping[str, Array]:
-    centres = solve_skeleton(tracks).joint_centers
-    return {name: centres.positions[:, point] for point, name in enumerate(centres.names)}
+    centers = solve_skeleton(tracks).joint_centers
+    return {name: centers.positions[:, point] for point, name in enumerate(centers.names)}
 
 
 def _regressed(tracks: Tracks) -> Mapping[str, Array]:

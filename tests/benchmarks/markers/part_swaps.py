@@ -122,7 +122,7 @@ def _stretch(take: Tracks, rng: np.random.Generator, seconds: float) -> tuple[in
     return start, start + length
 
 
-def _exchanged(seconds: float) -> Callable[[Tracks, np.random.Generator], tuple[Array, Array]]:
+def _swapped(seconds: float) -> Callable[[Tracks, np.random.Generator], tuple[Array, Array]]:
     def mistake(take: Tracks, rng: np.random.Generator) -> tuple[Array, Array]:
         swapped, pair = take.positions.copy(), _pair(take, rng)
         start, stop = _stretch(take, rng, seconds)
@@ -178,9 +178,9 @@ def _swapped_with_missing(take: Tracks, rng: np.random.Generator) -> tuple[Array
 
 
 MISTAKES = {
-    "1 frame": _exchanged(0.0),
-    "0.5 s": _exchanged(0.5),
-    "2 s": _exchanged(2.0),
+    "1 frame": _swapped(0.0),
+    "0.5 s": _swapped(0.5),
+    "2 s": _swapped(2.0),
     "to the end": _to_the_end,
     "five at once": _several,
     "three in turn": _three,

@@ -10,7 +10,6 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from solvers.depth_scene.recording import DepthRecording
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.body.normal_equations import (
     SurfaceRows,
@@ -22,12 +21,13 @@ from solvers.depth_tracking.body.normal_equations import (
     sum_equations,
 )
 from solvers.depth_tracking.body.pose_priors import joint_limits, predict_pose, stay_near
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.terms.hypothesis import Hypothesis, render_hypothesis
 from solvers.depth_tracking.terms.observation import Observation, observe, rays_through_pixels
 
 ITERATIONS = 10
-FARTHEST = 0.2
-"""Metres; pairs with a larger distance are left out."""
+MAX_DISTANCE_M = 0.2
+"""Meters; pairs with a larger distance are left out."""
 DAMPING, LIMIT_WEIGHT, ROTATION_WEIGHT = 0.05, 1.0, 0.02
 PREDICTION_WEIGHT = 0.7
 Pairs = Callable[[Hypothesis, Observation], SurfaceRows]
@@ -55,7 +55,7 @@ def ray_constrained_icp(depth: DepthRecording, body: BodyModel, pose: np.ndarray
 
 def _closest_points(hypothesis: Hypothesis, observation: Observation) -> SurfaceRows:
     distances, nearest = cKDTree(hypothesis.points).query(observation.points)
-    near = distances < FARTHEST
+    near = distances < MAX_DISTANCE_M
     moved = nearest[near]
     return rows_toward_targets(
         hypothesis.points[moved], observation.points[near], np.full(len(moved), 1.0),
@@ -74,7 +74,7 @@ def _with_rays(hypothesis: Hypothesis, observation: Observation) -> SurfaceRows:
     targets[before] = hypothesis.rays[before] * depths[before][:, np.newaxis]
     broken = np.flatnonzero(off | before)
     weights = np.full(len(broken), 1.0)
-    far = np.linalg.norm(targets[broken] - points[broken], axis=1) > FARTHEST
+    far = np.linalg.norm(targets[broken] - points[broken], axis=1) > MAX_DISTANCE_M
     weights[far] = 0.0
     rays = rows_toward_targets(
         points[broken], targets[broken], weights, hypothesis.image.capsules[broken]

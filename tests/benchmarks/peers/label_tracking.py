@@ -18,7 +18,7 @@ def by_continuity(positions: Array) -> Array:
 
     Parameters
     ----------
-    positions : shape (n_frames, n_markers, 3), metres; NaN where not observed
+    positions : shape (n_frames, n_markers, 3), meters; NaN where not observed
     """
     result = positions.copy()
     last, step = positions[0].copy(), np.zeros_like(positions[0])

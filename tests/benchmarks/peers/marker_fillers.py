@@ -34,13 +34,13 @@ def centered(filler: Callable[[Array, float], Array]) -> Callable[[Array, float]
     """Return the filler working relative to the mean of the markers that are never missing."""
 
     def fill(gapped: Array, frame_rate: float) -> Array:
-        centre = centre_of(gapped)
-        return filler(gapped - centre, frame_rate) + centre
+        center = center_of(gapped)
+        return filler(gapped - center, frame_rate) + center
 
     return fill
 
 
-def centre_of(gapped: Array) -> Array:
+def center_of(gapped: Array) -> Array:
     """Mean of the markers that are never missing, shape (n_frames, 1, 3)."""
     complete = np.isfinite(gapped).all(axis=(0, 2))
     return np.asarray(gapped[:, complete].mean(axis=1, keepdims=True))

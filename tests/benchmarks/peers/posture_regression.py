@@ -21,7 +21,7 @@ Predict = Callable[[Array], Array]
 RIDGE = 10.0
 N_TREES, LEAF = 60, 5
 GP_POINTS, GP_TUNED_ON = 1000, 250
-N_NEIGHBOURS, N_COMPONENTS = 30, 20
+N_NEIGHBORS, N_COMPONENTS = 30, 20
 
 
 def constant(features: Array, offsets: Array) -> Predict:
@@ -68,7 +68,7 @@ def gaussian_process(features: Array, offsets: Array) -> Predict:
 
 def nearest_mean(examples: Array) -> Predict:
     """Mean of the examples nearest to the observed joints."""
-    search = NearestNeighbors(n_neighbors=N_NEIGHBOURS).fit(examples)
+    search = NearestNeighbors(n_neighbors=N_NEIGHBORS).fit(examples)
     return lambda new: examples[search.kneighbors(new, return_distance=False)].mean(axis=1)
 
 

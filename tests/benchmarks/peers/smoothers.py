@@ -45,11 +45,11 @@ def butterworth(noisy: Array, frame_rate: float, cutoff: float = 6.0) -> Array:
 def hampel(noisy: Array, frame_rate: float) -> Array:
     """Replace what is far from the median of its neighbors by that median."""
     size = (2 * HAMPEL_HALF_WIDTH + 1, 1)
-    centre = median_filter(noisy, size=size, mode="nearest")
+    center = median_filter(noisy, size=size, mode="nearest")
     padded = np.pad(noisy, [(HAMPEL_HALF_WIDTH,) * 2, (0, 0)], mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, size[0], axis=0)
-    spread = 1.4826 * np.median(np.abs(windows - centre[..., None]), axis=-1)
-    return np.where(np.abs(noisy - centre) > HAMPEL_THRESHOLD * spread + 1e-9, centre, noisy)
+    spread = 1.4826 * np.median(np.abs(windows - center[..., None]), axis=-1)
+    return np.where(np.abs(noisy - center) > HAMPEL_THRESHOLD * spread + 1e-9, center, noisy)
 
 
 def gcv_spline(noisy: Array, frame_rate: float) -> Array:

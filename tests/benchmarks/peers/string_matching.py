@@ -68,8 +68,8 @@ class StringLibrary:
 def strings_of(frames: Array, patterns: list[Array]) -> list[String]:
     """Return the string of each part: its sequence of patterns, repetitions once."""
     strings = []
-    for joints, centres in zip(PARTS, patterns, strict=True):
-        nearest = cdist(_of(frames, joints), centres).argmin(axis=1)
+    for joints, centers in zip(PARTS, patterns, strict=True):
+        nearest = cdist(_of(frames, joints), centers).argmin(axis=1)
         strings.append(tuple(nearest[np.flatnonzero(np.diff(nearest, prepend=-1))].tolist()))
     return strings
 

@@ -49,7 +49,7 @@ DATA = Path(__file__).resolve().parents[4] / "shared" / "data"
 CARRIES = 0.1
 """Fraction of the weight."""
 STRENGTHS = (0.25, 0.5, 1.0)
-LONGEST = 600
+MAX_FRAMES = 600
 """Frames of a take."""
 
 COLUMNS = (
@@ -107,7 +107,7 @@ def clips(title: str, at_most: int) -> Iterator[Motion]:
     files = [file for file in files if file.name.startswith(beginnings)]
     for index in np.linspace(0, len(files) - 1, min(at_most, len(files))).astype(int):
         motion = motion_of(files[index])
-        yield motion.slice(1, min(motion.n_frames, LONGEST))
+        yield motion.slice(1, min(motion.n_frames, MAX_FRAMES))
 
 
 def motion_of(path: Path) -> Motion:

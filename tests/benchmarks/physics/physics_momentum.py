@@ -17,7 +17,7 @@ TOUCHING = 0.03
 FRICTION = 1.0
 
 
-def centre_of_mass(body: PhysicsBody, motion: Motion) -> Array:
+def center_of_mass(body: PhysicsBody, motion: Motion) -> Array:
     """Return where the mass is on average, shape (n_frames, 3), meters."""
     posed = forward_kinematics(motion)
     total = sum(
@@ -39,10 +39,10 @@ def impossible_force(body: PhysicsBody, motion: Motion, ground: float) -> float:
     fifth of a second at either end is ignored, since the motion is unknown before
     and after.
     """
-    centre = gaussian_filter1d(
-        centre_of_mass(body, motion), STEADY * motion.frame_rate, axis=0, mode="nearest"
+    center = gaussian_filter1d(
+        center_of_mass(body, motion), STEADY * motion.frame_rate, axis=0, mode="nearest"
     )
-    acceleration = np.diff(centre, 2, axis=0) * motion.frame_rate**2
+    acceleration = np.diff(center, 2, axis=0) * motion.frame_rate**2
     force = (acceleration - GRAVITY) / 9.81
     touches = measure_clearance(body, motion, ground)[1:-1] < TOUCHING
     left = np.where(touches, outside_cone(force), np.linalg.norm(force, axis=-1))

@@ -62,10 +62,10 @@ def main() -> None:
         for title, found in zip(titles, (optical, kinect), strict=True):
             tables.append(part.parts_used(title, found))
         tables.append(part.energies(optical[::3]))
-        _say("parts, energies")
+        _report_done("parts, energies")
         for title, found in zip(titles, (optical, kinect), strict=True):
             tables += part.missing_joints(title, found)
-            _say(f"missing joints, {title}")
+            _report_done(f"missing joints, {title}")
     report.part("postures", tables, perf_counter() - started)
 
 
@@ -122,7 +122,7 @@ def _query(body: BodyPostures, random: np.random.Generator) -> PostureQuery:
     return PostureQuery(*wide, reliability, 0.2)
 
 
-def _say(what: str) -> None:
+def _report_done(what: str) -> None:
     print(f"Done: {what}", file=sys.stderr, flush=True)
 
 

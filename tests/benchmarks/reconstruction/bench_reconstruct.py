@@ -23,7 +23,7 @@ from . import (
     part_terms,
     part_twist,
 )
-from .bench_reliability import tell_reliability
+from .bench_reliability import report_reliability
 
 Part = Callable[[int], Sequence[str]]
 
@@ -56,7 +56,7 @@ def main() -> None:
     report = Report(chosen.docs, DOCS / "benchmarks" / "reconstruction.md")
     for name in chosen.part or parts:
         if name == RELIABILITY:
-            tell_reliability(chosen.docs)
+            report_reliability(chosen.docs)
             continue
         started = perf_counter()
         with threadpool_limits(1):

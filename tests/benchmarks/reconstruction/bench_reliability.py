@@ -57,10 +57,10 @@ def main() -> None:
     if chosen.fit:
         print_models(read_pairs(KINECT / "ui_prmd"))
         return
-    tell_reliability(chosen.docs)
+    report_reliability(chosen.docs)
 
 
-def tell_reliability(docs: bool) -> None:
+def report_reliability(docs: bool) -> None:
     """Print the tables; into docs/technical/reliability.md, with its picture, if so."""
     started = perf_counter()
     with threadpool_limits(1):

@@ -104,9 +104,9 @@ def blender(n_repetitions: int) -> list[str]:
         together = [np.concatenate(each) for each in kinds]
         subjects = np.array(whose)
         rows[name] = [
-            *map(_centimetres, together),
+            *map(_centimeters, together),
             number(float(np.nanmean(np.concatenate(jerks)))),
-            *(_centimetres(together[2][subjects == one]) for one in SUBJECTS),
+            *(_centimeters(together[2][subjects == one]) for one in SUBJECTS),
         ]
         print(name, *rows[name], flush=True)
     head = (
@@ -179,7 +179,7 @@ def rest(n_repetitions: int) -> list[str]:
                     _compare(each, joint, made, found, rests, lengths)
     rested, weights = np.array(rests), np.array(lengths)
     rows = {
-        name: _lost_row(np.array(errors), found, rested, weights)
+        name: _missing_row(np.array(errors), found, rested, weights)
         for name, errors in found.items()
     }
     head = (
@@ -197,7 +197,7 @@ def _compare(
     rests: list[bool],
     lengths: list[int],
 ) -> None:
-    """Add the error of each method on one lost joint, metres."""
+    """Add the error of each method on one lost joint, meters."""
     lost, truth = damaged.where[:, joint], truth_of(damaged.pair)[:, joint]
     if not np.isfinite(truth[lost]).all():
         return
@@ -209,7 +209,7 @@ def _compare(
         found[name].append(float(np.linalg.norm(off, axis=-1).mean()))
 
 
-def _lost_row(
+def _missing_row(
     errors: Array,
     found: dict[str, list[float]],
     rest: NDArray[np.bool_],
@@ -227,5 +227,5 @@ def _lost_row(
     ]
 
 
-def _centimetres(errors: Array) -> str:
+def _centimeters(errors: Array) -> str:
     return f"{100.0 * np.nanmean(errors):.2f}"

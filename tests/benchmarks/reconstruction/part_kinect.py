@@ -119,13 +119,13 @@ def accuracy(n_repetitions: int) -> list[str]:
         means = [found.absolute, found.relative, found.free, worst]
         taken = f"{1e3 * found.seconds / len(found.free):.2f}"
         label = f"{name} *" if name in SLOW else name
-        rows[label] = [*map(_centimetres, means), number(found.jerk), taken]
+        rows[label] = [*map(_centimeters, means), number(found.jerk), taken]
         otherwise[label] = _otherwise(found, before)
         by_subject[label] = [
-            _centimetres(found.free[found.subjects == one]) for one in SUBJECTS
+            _centimeters(found.free[found.subjects == one]) for one in SUBJECTS
         ]
         by_exercise[label] = [
-            _centimetres(found.absolute[found.exercises == one]) for one in EXERCISES
+            _centimeters(found.absolute[found.exercises == one]) for one in EXERCISES
         ]
         print(label, *rows[label], *otherwise[label], flush=True)
     takes = [pair for one in SUBJECTS for pair in takes_of(one, n_repetitions)]
@@ -150,7 +150,7 @@ def _worst(raw: Array) -> NDArray[np.bool_]:
     return np.asarray(raw >= np.nanquantile(raw, 1.0 - WORST))
 
 
-def _centimetres(errors: Array) -> str:
+def _centimeters(errors: Array) -> str:
     return f"{100.0 * np.nanmean(errors):.2f}"
 
 
@@ -159,12 +159,12 @@ def _otherwise(found: Errors, before: Errors) -> list[str]:
     sound = found.matched
     worst = sound[:, None] & (before.free >= np.nanquantile(before.free[sound], 1.0 - WORST))
     return [
-        _centimetres(found.absolute[sound]),
-        _centimetres(found.free[sound]),
-        _centimetres(found.free[worst]),
-        _centimetres(found.relative),
-        _centimetres(found.directions),
-        _centimetres(found.directions[_worst(before.directions)]),
+        _centimeters(found.absolute[sound]),
+        _centimeters(found.free[sound]),
+        _centimeters(found.free[worst]),
+        _centimeters(found.relative),
+        _centimeters(found.directions),
+        _centimeters(found.directions[_worst(before.directions)]),
     ]
 
 

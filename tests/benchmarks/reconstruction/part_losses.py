@@ -34,7 +34,7 @@ from .kinect_methods import (
 )
 from .kinect_pairs import Pair
 
-N_NEIGHBOURS, N_COMPONENTS = 30, 20
+N_NEIGHBORS, N_COMPONENTS = 30, 20
 NOISE = 0.02
 """Distance that observed joints may have from the space of components, meters."""
 REPETITIONS = (1, 1)
@@ -87,7 +87,7 @@ def nearest_mean(examples: Array, values: Array, observed: Array, wanted: Array)
     """Mean of the nearest examples."""
     known_examples = examples[:, observed]
     far = (known_examples**2).sum(axis=1) - 2.0 * values @ known_examples.T
-    nearest = np.argpartition(far, N_NEIGHBOURS, axis=1)[:, :N_NEIGHBOURS]
+    nearest = np.argpartition(far, N_NEIGHBORS, axis=1)[:, :N_NEIGHBORS]
     return examples[:, wanted][nearest].mean(axis=1)
 
 
@@ -237,7 +237,7 @@ def errors_table(title: str, found: dict[str, list[Found]], by: Callable[[Found]
         cells = [_mean([one for one in all_found if by(one) == column]) for column in columns]
         overall = _mean(all_found)
         rows[name] = [
-            *map(_centimetres, [*cells, overall]),
+            *map(_centimeters, [*cells, overall]),
             f"{overall / baseline - 1.0:+.0%}",
         ]
     n = sum(len(one.errors) for one in found[base])
@@ -249,5 +249,5 @@ def _mean(found: list[Found]) -> float:
     return float(np.nanmean(np.concatenate([one.errors for one in found])))
 
 
-def _centimetres(metres: float) -> str:
-    return f"{100.0 * metres:.2f}"
+def _centimeters(meters: float) -> str:
+    return f"{100.0 * meters:.2f}"

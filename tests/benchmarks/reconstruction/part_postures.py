@@ -161,7 +161,7 @@ def interpolated(
     return result
 
 
-def from_neighbours(
+def from_neighbors(
     project: bool, postures: Array, missing: Flags, library: PostureLibrary
 ) -> Array:
     """Take missing joints from the mean of 30 neighbors, or from 20 components of all."""
@@ -200,8 +200,8 @@ METHODS: dict[str, Method] = {
     "PCHIP in the body's frame": partial(interpolated, "PCHIP", True),
     "cubic in the body's frame": partial(interpolated, "cubic", True),
     "hold": partial(interpolated, "hold", False),
-    "PCA projection": partial(from_neighbours, True),
-    "kNN mean": partial(from_neighbours, False),
+    "PCA projection": partial(from_neighbors, True),
+    "kNN mean": partial(from_neighbors, False),
 }
 
 
@@ -255,7 +255,7 @@ def parts_used(title: str, found: tuple[Clip, ...]) -> Scores:
             missing = np.ones(clip.postures.shape[:2], bool)
             missing[:, [0, *parts]] = False
             missing[0] = False
-            methods = {"ours": ours, "kNN mean": partial(from_neighbours, False)}
+            methods = {"ours": ours, "kNN mean": partial(from_neighbors, False)}
             for name, method in methods.items():
                 made = method(clip.postures, missing, clip.library)
                 off = (made - made[:, PARENT_INDICES]) - (

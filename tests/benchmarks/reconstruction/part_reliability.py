@@ -23,7 +23,7 @@ from . import kinect_pairs
 
 LIMITS = (0.05, 0.10)
 """Metres from the truth that are wrong."""
-FEWEST = 20
+MIN_SAMPLES = 20
 """Wrong and right ones that there must be for a curve."""
 FRACTIONS = (0.1, 0.15, 0.2, 0.3, 0.5)
 FLOORS = (0.0002, 0.0003, 0.0005, 0.001, 0.002)
@@ -58,7 +58,7 @@ def read_pairs(folder: Path) -> list[Pair]:
 def area_under_curve(score: Array, wrong: Flags) -> float:
     """Return the probability that a wrong one has the higher score than a right one."""
     n_wrong, n_right = int(wrong.sum()), int((~wrong).sum())
-    if min(n_wrong, n_right) < FEWEST:
+    if min(n_wrong, n_right) < MIN_SAMPLES:
         return float("nan")
     ranks = rankdata(score)[wrong].sum() - n_wrong * (n_wrong + 1) / 2.0
     return float(ranks / (n_wrong * n_right))

@@ -34,7 +34,7 @@ Group = tuple[list[Motion], PostureLibrary]
 
 STRAIGHT = np.radians(15.0)
 """Bends below this are those of straight limbs."""
-LONGEST = 300
+MAX_FRAMES = 300
 """Frames of a clip that are looked at."""
 ACTOR, OTHER_ACTORS = "dg", ("bd", "bk")
 SUBJECTS = ("05", "06", "13", "29", "35", "49")
@@ -53,7 +53,7 @@ def untwisted(result: Reconstruction) -> LimbTwists:
     )
 
 
-def neighbours(result: Reconstruction) -> LimbTwists:
+def neighbors(result: Reconstruction) -> LimbTwists:
     """As [SHJT13]: the neighbors' mean alone."""
     assert result.twists is not None
     return LimbTwists(result.twists.vectors, ignore_flexion=True)
@@ -62,7 +62,7 @@ def neighbours(result: Reconstruction) -> LimbTwists:
 METHODS: dict[str, Callable[[Reconstruction], LimbTwists | None]] = {
     "no twist": untwisted,
     "flexion alone": lambda result: None,
-    "mean of neighbors, as [SHJT13]": neighbours,
+    "mean of neighbors, as [SHJT13]": neighbors,
     "flexion and neighbors (ours)": lambda result: result.twists,
 }
 
@@ -107,7 +107,7 @@ def _cmu(subject: str, n_clips: int) -> list[Motion]:
 
 
 def _short(motion: Motion) -> Motion:
-    return motion.slice(0, min(motion.n_frames, LONGEST))
+    return motion.slice(0, min(motion.n_frames, MAX_FRAMES))
 
 
 def _table(title: str, groups: list[Group]) -> str:

@@ -20,7 +20,7 @@ from solvers.signals.linear_gaps import fill_gaps
 from .kinect_pairs import Pair
 
 MOCAP = Path(__file__).parents[4] / "shared/data/mocap"
-CMU_METRES = 0.0254 / 0.45
+CMU_METERS = 0.0254 / 0.45
 FOLDERS = ("cmu_walk", "cmu_hop")
 EXERCISES = ("13_29", "13_30")
 """Jumping jacks, twists, bends and squats."""
@@ -36,7 +36,7 @@ UI_PRMD = PostureLibrarySettings(spacing=0.012, n_postures=2000)
 def cmu_library(folder: Path = MOCAP, without: str = "none") -> PostureLibrary:
     """Return postures of the CMU captures, but for those of one subject."""
     motions = [
-        _without_t_pose(read_bvh(path, scale=CMU_METRES))
+        _without_t_pose(read_bvh(path, scale=CMU_METERS))
         for part in FOLDERS
         for path in sorted((folder / part).glob("*.bvh"))
         if not path.stem.startswith(without)

@@ -54,7 +54,7 @@ def solve_sequentially(
 
     Returns
     -------
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
     energies : shape (n_frames,)
     """
 

@@ -26,7 +26,7 @@ from ..shared import clips
 from ..shared.report import DOCS, Report
 from ..shared.tables import Scores, table
 from .part_unbake import STEP, on_fingered_rig, to_and_fro, unbaked
-from .retarget_measures import acted, ik_figures, seen_figures
+from .retarget_measures import acted, ik_figures, world_figures
 
 Giver = Callable[[Motion, HumanoidMap, Skeleton, HumanoidMap], Motion]
 
@@ -86,7 +86,7 @@ def _retargeted(title: str, motions: list[tuple[str, Motion]]) -> list[Scores]:
             roles = find_humanoid_map(target)
             for method, give in METHODS.items():
                 given = acted(give(motion, source.humanoid, target, roles), roles)
-                figures = seen_figures(source, given)
+                figures = world_figures(source, given)
                 _add(pose_scores, method, f"{name} {family}", figures)
                 if method == OURS:
                     _add(by_rig, family, name, figures)

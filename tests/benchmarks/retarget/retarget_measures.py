@@ -75,7 +75,7 @@ def ik_figures(source: Acted, given: Acted) -> dict[str, float]:
     }  # fmt: skip
 
 
-def seen_figures(source: Acted, given: Acted) -> dict[str, float]:
+def world_figures(source: Acted, given: Acted) -> dict[str, float]:
     """Return how far the body is, in the world, from the source scaled by the legs."""
     growth = _growth(source, given)
     hands, paths = zip(

@@ -51,16 +51,16 @@ def main() -> None:
         report.part(name, tables, perf_counter() - started)
         return
     names = [name for name in METHODS if chosen.method.lower() in name.lower()]
-    part.find_all(names, chosen.jobs, _say)
+    part.find_all(names, chosen.jobs, _report_done)
     found = part.cached_results()
-    tables = [part.accuracy(found), part.damaged(found), part.seen_by_kinect(found),
+    tables = [part.accuracy(found), part.damaged(found), part.accuracy_on_kinect(found),
               part.each_class(found)]  # fmt: skip
     if chosen.docs:
         tables.append(part.pictures(found))
     report.part("retrieval", tables, perf_counter() - started)
 
 
-def _say(what: str) -> None:
+def _report_done(what: str) -> None:
     print(f"Done: {what}", file=sys.stderr, flush=True)
 
 

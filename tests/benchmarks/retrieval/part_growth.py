@@ -43,7 +43,7 @@ from solvers.retrieval import (
     load_clip_library,
     open_clip_library,
 )
-from solvers.retrieval.index.segments import RATE, describe_segments
+from solvers.retrieval.index.clip_segments import CLIP_RATE_HZ, describe_segments
 from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
 from solvers.rotations.representations import (
     IDENTITY,
@@ -125,7 +125,7 @@ def run(sizes: Sequence[int] = SIZES, n_queries: int = N_QUERIES) -> list[Row]:
 def described(number: int) -> DescribedClip:
     """Return the clip of this number."""
     postures = varied(number)
-    entry = ClipEntry(f"{number:06d}", (), None, postures.n_frames, RATE)
+    entry = ClipEntry(f"{number:06d}", (), None, postures.n_frames, CLIP_RATE_HZ)
     return DescribedClip(entry, postures)
 
 
@@ -145,7 +145,7 @@ def varied(number: int) -> ClipPostures:
     if rng.integers(2):
         posed = posed[:, MIRROR_JOINTS] * (-1.0, 1.0, 1.0)
         root_velocity = root_velocity * (-1.0, 1.0, 1.0, -1.0)
-    return ClipPostures(posed, speed * root_velocity, RATE)
+    return ClipPostures(posed, speed * root_velocity, CLIP_RATE_HZ)
 
 
 def rotate_bones(positions: Array, vectors: Array) -> Array:
@@ -165,12 +165,12 @@ def query_tracks(number: int) -> Tracks:
     """Return what is searched with: a clip of the library, shaken and at another speed."""
     rng = np.random.default_rng([number, 1])
     clip = varied(number)
-    headings = np.cumsum(clip.root_velocity[:, 3]) / RATE
+    headings = np.cumsum(clip.root_velocity[:, 3]) / CLIP_RATE_HZ
     rotations = quaternion_from_rotation_vector(headings[:, None] * (0.0, 0.0, 1.0))
-    path = np.cumsum(rotate(rotations, clip.root_velocity[:, :3]), axis=0) / RATE
+    path = np.cumsum(rotate(rotations, clip.root_velocity[:, :3]), axis=0) / CLIP_RATE_HZ
     positions = rotate(rotations[:, None], clip.positions) + path[:, None]
     positions += QUERY_NOISE * rng.normal(size=positions.shape)
-    return Tracks(POSTURE_JOINTS, positions, RATE * rng.uniform(0.95, 1.05))
+    return Tracks(POSTURE_JOINTS, positions, CLIP_RATE_HZ * rng.uniform(0.95, 1.05))
 
 
 def originals() -> list[ClipPostures]:
@@ -179,7 +179,7 @@ def originals() -> list[ClipPostures]:
         motions = list(clips.walks().values())
         for name in clips.hdm05_classes():
             motions += clips.hdm05(name).values()
-        _ORIGINALS.extend(clip_postures(motion, RATE) for motion in motions)
+        _ORIGINALS.extend(clip_postures(motion, CLIP_RATE_HZ) for motion in motions)
     return _ORIGINALS
 
 
@@ -215,7 +215,7 @@ def _search(library: ClipLibrary, number: int) -> tuple[float, float, bool, bool
     vocabulary = library.vocabulary
     assert vocabulary is not None
     began = process_time()
-    features = vocabulary.features(clip_postures(query, RATE))
+    features = vocabulary.features(clip_postures(query, CLIP_RATE_HZ))
     describe_segments(features, np.array([[0, len(features)]], dtype=np.int32), vocabulary)
     start = process_time()
     matches = find_similar(query, library, settings=FindSettings(n_matches=N_MATCHES))
@@ -234,10 +234,10 @@ def _searched(path: Path, n_queries: int) -> tuple[float, ...]:
         "--search",
         str(path),
     ]
-    said = subprocess.run(
+    output = subprocess.run(
         [*words, "--queries", str(n_queries)], check=True, capture_output=True, text=True
     ).stdout
-    return tuple(json.loads(said).values())
+    return tuple(json.loads(output).values())
 
 
 def _megabytes(path: Path) -> float:

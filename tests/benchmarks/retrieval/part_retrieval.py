@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 
 from ..shared.report import BENCHMARK_PICTURES, show
 from ..shared.tables import number, table
-from .retrieval_clips import MISFILED, TRAINING, LabelledClip, library
+from .retrieval_clips import MISFILED, TRAINING, LabeledClip, library
 from .retrieval_damage import DAMAGES
 from .retrieval_default import DefaultLibrary
 from .retrieval_fusion import FusedLibrary
@@ -108,7 +108,7 @@ def found_by(name: str) -> Found:
     return found
 
 
-def _kinect(clips: Sequence[LabelledClip]) -> list[Query]:
+def _kinect(clips: Sequence[LabeledClip]) -> list[Query]:
     return list(queries(clips, kinect_queries(), DAMAGES["clean"], other_actors=True))
 
 
@@ -145,7 +145,7 @@ def damaged(found: Mapping[str, Found]) -> str:
     return f"{title}\n\n{table(['method', *DAMAGES], rows)}\n"
 
 
-def seen_by_kinect(found: Mapping[str, Found]) -> str:
+def accuracy_on_kinect(found: Mapping[str, Found]) -> str:
     """Return MAP of Kinect takes, set by set."""
     sets = np.array([clip.actor for clip in kinect_queries()])
     names = list(dict.fromkeys(sets))

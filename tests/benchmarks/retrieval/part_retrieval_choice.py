@@ -81,7 +81,7 @@ def choose() -> tuple[Pyramids, str]:
             print(
                 f"{rows[-1][0]:.4f}",
                 *(f"{one:.3f}" for one in scores),
-                _words(method),
+                _description(method),
                 flush=True,
             )
         rows.sort(key=lambda row: -row[0])
@@ -107,7 +107,7 @@ def changed(method: Pyramids, name: str, value: Any) -> Pyramids:
     return replace(method, **{name: value})
 
 
-def _words(method: Pyramids) -> str:
+def _description(method: Pyramids) -> str:
     atoms, pyramid = method.dictionary, method.pyramid
     return (
         f"{'parts, ' if method.parts == PARTS else ''}"
@@ -120,7 +120,7 @@ def _words(method: Pyramids) -> str:
 
 def _table(rows: Sequence[tuple[float, list[float], Pyramids]]) -> str:
     cells = {
-        _words(method): [f"{mean:.3f}", *(f"{one:.3f}" for one in scores)]
+        _description(method): [f"{mean:.3f}", *(f"{one:.3f}" for one in scores)]
         for mean, scores, method in rows
     }
     return table(["settings", "mean MAP", *KINDS], cells)

@@ -48,7 +48,7 @@ JACK = 1.3
 
 
 @dataclass(frozen=True, eq=False)
-class LabelledClip:
+class LabeledClip:
     """One clip of the library: the twenty joints of postures in the world at 120 Hz."""
 
     name: str
@@ -58,27 +58,27 @@ class LabelledClip:
 
 
 @cache
-def library() -> tuple[LabelledClip, ...]:
+def library() -> tuple[LabeledClip, ...]:
     """All clips: HDM05, and CMU's walks, hops and jumping jacks."""
     return (*_hdm05(), *_walks(), *_hops(), *_jacks())
 
 
 @cache
-def training_library() -> tuple[LabelledClip, ...]:
+def training_library() -> tuple[LabeledClip, ...]:
     """The clips that settings may be chosen on."""
     return (*(clip for clip in library() if clip.label in TRAINING), *_exercises())
 
 
-def _exercises() -> list[LabelledClip]:
+def _exercises() -> list[LabeledClip]:
     found = []
     for exercise in EXERCISES:
         for path in sorted((KINECT_FOLDER / "ui_prmd").glob(f"{exercise}_s*_e0[37].npz")):
             actor = path.stem.split("_")[1]
-            found.append(LabelledClip(path.stem, exercise, actor, sensor_tracks(path)))
+            found.append(LabeledClip(path.stem, exercise, actor, sensor_tracks(path)))
     return found
 
 
-def _hdm05() -> list[LabelledClip]:
+def _hdm05() -> list[LabeledClip]:
     found = []
     for path in sorted(clips.HDM05.glob("HDM_*_120.amc")):
         _, actor, label, number, _ = path.stem.split("_")
@@ -86,7 +86,7 @@ def _hdm05() -> list[LabelledClip]:
     return found
 
 
-def _walks() -> list[LabelledClip]:
+def _walks() -> list[LabeledClip]:
     found = []
     for path in sorted(clips.WALKS.glob("*.bvh")):
         motion = clips.read_cmu(path, step=1)
@@ -98,7 +98,7 @@ def _walks() -> list[LabelledClip]:
     return found
 
 
-def _hops() -> list[LabelledClip]:
+def _hops() -> list[LabeledClip]:
     takes = {
         name: clips.read_cmu(clips.HOPS / f"{name}.bvh", step=1) for name in ("49_02", "49_03")
     }
@@ -110,7 +110,7 @@ def _hops() -> list[LabelledClip]:
     ]
 
 
-def _jacks() -> list[LabelledClip]:
+def _jacks() -> list[LabeledClip]:
     found = []
     for name, last in JACKS.items():
         path = clips.DATA / "mocap" / "cmu_jumping_jack" / f"{name}.amc"
@@ -126,9 +126,9 @@ def _cut(motion: Motion, start: float, seconds: float) -> Motion:
     return motion.slice(first, first + round(seconds * RATE))
 
 
-def _clip(name: str, label: str, actor: str, motion: Motion) -> LabelledClip:
+def _clip(name: str, label: str, actor: str, motion: Motion) -> LabeledClip:
     tracks = Tracks(POSTURE_JOINTS, postures_from_motion(motion), motion.frame_rate)
-    return LabelledClip(name, label, actor, tracks)
+    return LabeledClip(name, label, actor, tracks)
 
 
 def sensor_tracks(path: Path) -> Tracks:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from solvers.arrays import Array, Flags
 from solvers.motion import Tracks
 from solvers.retrieval import Clip, ClipLibrary, FindSettings, build_clip_library
-from solvers.retrieval.index.segments import RATE
+from solvers.retrieval.index.clip_segments import CLIP_RATE_HZ
 from solvers.retrieval.postures.clip_postures import clip_postures
 from solvers.retrieval.search.describe_query import DescribedQuery, describe_query
 from solvers.retrieval.search.rank_clips import rank_clips
@@ -49,7 +49,7 @@ class DefaultLibrary:
     def describe(self, tracks: Tracks) -> QueryWithSettings:
         vocabulary = self.library.vocabulary
         assert vocabulary is not None
-        postures = clip_postures(tracks, RATE)
+        postures = clip_postures(tracks, CLIP_RATE_HZ)
         settings = self.settings if tracks.confidence is None else self.settings.for_sensor()
         return QueryWithSettings(describe_query(postures, vocabulary, settings), settings)
 

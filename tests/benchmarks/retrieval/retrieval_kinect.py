@@ -14,7 +14,7 @@ from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.retrieval.published.observed_signals import observed_signals
 
 from ..shared import clips
-from .retrieval_clips import LabelledClip, sensor_tracks
+from .retrieval_clips import LabeledClip, sensor_tracks
 
 SMOOTH = 0.15
 """Seconds."""
@@ -55,7 +55,7 @@ and walkers stay in place, while those of the library travel."""
 
 
 @cache
-def kinect_queries() -> tuple[LabelledClip, ...]:
+def kinect_queries() -> tuple[LabeledClip, ...]:
     """All takes of the sets; the actor of a clip is its set. Confidences tell of a sensor."""
     found = []
     for each in SETS:
@@ -64,7 +64,7 @@ def kinect_queries() -> tuple[LabelledClip, ...]:
             if each.mirror:
                 tracks = replace(tracks, positions=mirror_postures(tracks.positions))
             tracks = replace(tracks, confidence=np.ones(tracks.positions.shape[:2]))
-            found.append(LabelledClip(path.stem, each.label, each.name, tracks))
+            found.append(LabeledClip(path.stem, each.label, each.name, tracks))
     return tuple(found)
 
 

@@ -27,7 +27,7 @@ CHOSEN = Pyramids(
 )
 """By `part_retrieval_choice`, on the training classes."""
 WARPED, LOGARITHMS = Warped(), Covariances(ridge=1e-4)
-N_NEIGHBOURS = 3
+N_NEIGHBORS = 3
 
 METHODS: dict[str, Method] = {
     OURS: Default(),
@@ -46,6 +46,6 @@ METHODS: dict[str, Method] = {
     "find_similar + log-covariances": Fused((Default(), LOGARITHMS)),
     "DTW + log-covariances": Fused((WARPED, LOGARITHMS)),
     "pyramids + DTW + log-covariances": Fused((CHOSEN, WARPED, LOGARITHMS)),
-    RANKED: Fused((CHOSEN, WARPED, LOGARITHMS), N_NEIGHBOURS),
+    RANKED: Fused((CHOSEN, WARPED, LOGARITHMS), N_NEIGHBORS),
 }
 """Peers with an "as" were written from what can be had of their papers."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from solvers.arrays import Array, Flags
 from solvers.motion import Tracks
 
-from .retrieval_clips import LabelledClip
+from .retrieval_clips import LabeledClip
 from .retrieval_damage import Damage
 
 TOP = 20
@@ -46,7 +46,7 @@ class Method(Protocol):
 class Query(NamedTuple):
     """A clip to look for, and the clips of the library that may answer."""
 
-    clip: LabelledClip
+    clip: LabeledClip
     tracks: Tracks
     allowed: Flags
 
@@ -69,8 +69,8 @@ class Answer:
 
 
 def queries(
-    library: Sequence[LabelledClip],
-    requested: Sequence[LabelledClip],
+    library: Sequence[LabeledClip],
+    requested: Sequence[LabeledClip],
     damage: Damage,
     other_actors: bool = False,
 ) -> Iterator[Query]:
@@ -89,7 +89,7 @@ def queries(
 
 
 def answer(
-    prepared: Prepared, library: Sequence[LabelledClip], requested: Iterable[Query]
+    prepared: Prepared, library: Sequence[LabeledClip], requested: Iterable[Query]
 ) -> list[Answer]:
     """Ask all queries."""
     labels = np.array([clip.label for clip in library])

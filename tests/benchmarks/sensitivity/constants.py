@@ -56,7 +56,7 @@ FAMILIES: dict[str, tuple[str, ...]] = {
         "solvers/markers/mistaken_labels.py",
         "solvers/markers/pair_swaps.py",
         "solvers/markers/rigid_clusters.py",
-        "solvers/markers/rigid_fit.py",
+        "solvers/markers/rigid_transform.py",
         "solvers/markers/unswap.py",
     ),
     "physics": ("solvers/physics",),

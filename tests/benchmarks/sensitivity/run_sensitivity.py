@@ -21,7 +21,7 @@ from typing import Any
 from . import evaluate as children
 from .constants import FAMILIES, ROOT, Constant, constants_of, scaled
 from .evaluate import Outcome
-from .not_tuning import reason
+from .fixed_constants import reason
 from .tables import Row, family_text, write_docs
 
 BUILD = ROOT / "build" / "sensitivity"

@@ -8,7 +8,7 @@ from typing import Any
 from ..shared.tables import wrapped
 from .constants import ROOT, Constant, constants_of
 from .evaluate import Outcome
-from .not_tuning import reason
+from .fixed_constants import reason
 
 DOCUMENT = ROOT / "docs" / "benchmarks" / "sensitivity.md"
 MOVES_PERCENT = 0.5
@@ -16,7 +16,7 @@ MOVES_PERCENT = 0.5
 TINY = 1e-9
 SHOWN_PERCENT = 0.1
 """Change of the mean, percent, from which a constant has a row of its own."""
-MOST_PERCENT = 100.0
+MAX_PERCENT = 100.0
 """An error that rises by more counts as this in the mean."""
 NOT_MEASURED = "Not measured yet: "
 MARK = "<!-- below: make sensitivity ARGUMENTS=--docs -->"
@@ -75,7 +75,7 @@ class Row:
         }
 
     def _mean(self, outcome: Outcome) -> float:
-        changes = [min(change, MOST_PERCENT) for change in self._each(outcome).values()]
+        changes = [min(change, MAX_PERCENT) for change in self._each(outcome).values()]
         return sum(changes) / len(changes) if changes else math.nan
 
 

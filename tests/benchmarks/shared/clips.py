@@ -26,7 +26,7 @@ QUICK_DEV = ("07_03", "10_04", "26_01", "27_01", "32_01", "07_11")
 FRAME_RATE = 30.0
 STEP = 4
 """Recordings are at 120 Hz; every fourth frame is used, as in [LC10]."""
-CMU_METRES = 0.0254 / 0.45
+CMU_METERS = 0.0254 / 0.45
 """CMU lengths are inches times 0.45."""
 
 
@@ -44,7 +44,7 @@ def hops() -> dict[str, Motion]:
 
 def read_cmu(path: Path, step: int = STEP) -> Motion:
     """Read a CMU walk in BVH, which starts with a T-pose that is left out."""
-    motion = read_bvh(path, scale=CMU_METRES)
+    motion = read_bvh(path, scale=CMU_METERS)
     return every(motion.slice(1, motion.n_frames), step)
 
 

@@ -3,7 +3,7 @@
 Channels are, in degrees: the heading of the root; the rotation vector of the root without its
 heading; the rotation vector of every other joint; each about the mean rotation of the training
 clips. Only channels that move by more than STILL in the training clips are used. Noise on the
-root's position is that on the angles times METRES_PER_DEGREE and is scored separately.
+root's position is that on the angles times METERS_PER_DEGREE and is scored separately.
 """
 
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ from solvers.rotations.representations import (
 )
 
 STILL = 0.3
-METRES_PER_DEGREE = 0.005
+METERS_PER_DEGREE = 0.005
 OUTLIERS = (20.0, 60.0)
 """Degrees; outliers lie this far from the truth, to either side."""
 BURSTS = (2, 8)

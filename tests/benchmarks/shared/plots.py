@@ -12,7 +12,7 @@ from solvers.pictures.canvas import FAINT, GRID, INK, Canvas
 from .tables import Scores, number
 
 WIDTH, LEFT, RIGHT, TOP, BOTTOM, ROW = 1180, 60.0, 420.0, 50.0, 50.0, 22.0
-SMALLEST = 420
+MIN_HEIGHT_PX = 420
 CEILING = 2.5
 """The scale ends at this multiple of our worst figure: what is far off runs out at the top."""
 Color = tuple[int, int, int]
@@ -20,7 +20,7 @@ Color = tuple[int, int, int]
 
 def draw_scores(scores: Scores, path: Path) -> None:
     """Write the means over clips to a PNG file; ours are black and gray."""
-    height = max(SMALLEST, TOP + BOTTOM + ROW * len(scores.methods))
+    height = max(MIN_HEIGHT_PX, TOP + BOTTOM + ROW * len(scores.methods))
     canvas = Canvas(WIDTH, height)
     across = np.linspace(LEFT + 20, WIDTH - RIGHT, max(len(scores.columns), 2))
     axis = _Axis(height - BOTTOM, _top(scores))

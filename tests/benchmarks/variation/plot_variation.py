@@ -12,7 +12,7 @@ from solvers.variation.align_examples import positions_in_body_frame
 
 from ..shared.report import BENCHMARK_PICTURES, show
 
-GREY, RED = (165, 170, 180), (200, 40, 40)
+GRAY, RED = (165, 170, 180), (200, 40, 40)
 WIDTH, HEIGHT, MARGIN = 420.0, 240.0, 34.0
 
 
@@ -30,7 +30,7 @@ def draw_components(panels: dict[str, tuple[Sequence[Motion], Sequence[Motion]]]
         for row, curve in enumerate(curves):
             across = left + np.arange(len(curve)) / longest * (WIDTH - 2 * MARGIN)
             up = floor - (curve - low) / (high - low) * (HEIGHT - 2 * MARGIN)
-            color = GREY if row < len(variants) else RED
+            color = GRAY if row < len(variants) else RED
             canvas.line(list(zip(across, up, strict=True)), color, 1.2)
     return _saved(canvas.picture().pixels, "components.png")
 

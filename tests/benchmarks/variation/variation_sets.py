@@ -18,7 +18,7 @@ CLASSES = {
     "jog": "jogLeftCircle4StepsRstart",
     "kick": "kickLFront1Reps",
 }
-MOST = 12
+MAX_CLIPS = 12
 CYCLE = 0.8
 """Seconds that a cycle of walking lasts at least."""
 
@@ -43,7 +43,7 @@ def scored_sets() -> dict[str, list[Motion]]:
 def hdm05(name: str, actor: str) -> list[Motion]:
     """Return clips of an actor, 120 Hz."""
     paths = sorted(clips.HDM05.glob(f"HDM_{actor}_{CLASSES[name]}_*_120.amc"))
-    return [read_acclaim(path) for path in paths[:MOST]]
+    return [read_acclaim(path) for path in paths[:MAX_CLIPS]]
 
 
 def walking_cycles(subject: str) -> list[Motion]:
@@ -56,7 +56,7 @@ def walking_cycles(subject: str) -> list[Motion]:
         peaks, _ = find_peaks(separation, distance=round(CYCLE * motion.frame_rate), height=0.2)
         if len(peaks) > 2:
             found.append(motion.slice(int(peaks[0]), int(peaks[1]) + 1))
-    return found[:MOST]
+    return found[:MAX_CLIPS]
 
 
 HOPS = {

@@ -170,7 +170,7 @@ def test_gaps_are_refused_by_name(walk, export, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_without_armature_or_action_the_button_says_why(blank, make_armature):
+def test_button_gives_a_reason_without_armature_or_action(blank, make_armature):
     poll = blank.ops.mocap_assist.export_take
     with pytest.raises(RuntimeError, match="Select an animated armature"):
         poll(filepath="/tmp/x.fbx")

@@ -50,7 +50,7 @@ def test_a_linked_rig_is_exported(rig_file, blank, export, bring, heads, overrid
     assert_allclose(heads(back, FRAMES, BONES), expected, atol=MILLIMETER)
 
 
-def test_strips_are_refused_with_the_way_to_an_action(walk, blank, export):
+def test_strips_are_refused_with_advice(walk, blank, export):
     animation = walk.animation_data
     action, slot = animation.action, animation.action_slot
     animation.action = None

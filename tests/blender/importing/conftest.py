@@ -15,10 +15,10 @@ def bring(blank):
 
     def press(*paths, **settings):
         files = [{"name": path.name} for path in paths]
-        said = blank.ops.mocap_assist.import_recording(
+        status = blank.ops.mocap_assist.import_recording(
             directory=str(paths[0].parent), files=files, **settings
         )
-        assert said == {"FINISHED"}
+        assert status == {"FINISHED"}
         return blank.context.object
 
     return press

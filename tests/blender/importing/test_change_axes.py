@@ -74,7 +74,7 @@ def test_scale_and_unit_change_the_size(walk, bring, shown, blank):
     assert np.ptp(shown(armature)[..., 2]) > 10.0 * np.ptp(before[..., 2])
 
 
-def test_the_panel_and_the_message_say_what_was_judged(walk, bring, load, capfd):
+def test_panel_and_message_report_the_judged_axes(walk, bring, load, capfd):
     armature = bring(walk)
 
     origin = load("mocap_assist.scene.origin")

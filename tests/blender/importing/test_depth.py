@@ -30,7 +30,7 @@ def test_points_are_where_the_pixels_saw_them(archive, depth, bring, blank, pict
     )
 
 
-def test_only_what_was_seen_is_drawn(archive, depth, bring, blank):
+def test_only_observed_points_are_drawn(archive, depth, bring, blank):
     made = bring(archive)
 
     evaluated = made.evaluated_get(blank.context.evaluated_depsgraph_get())
@@ -70,9 +70,7 @@ def test_it_survives_save_and_load(archive, depth, bring, blank, tmp_path):
     assert points_of(made)[-1, 1] == pytest.approx(2.4, abs=NEAR)
 
 
-def test_where_the_file_has_gone_nothing_is_shown_and_the_panel_says_why(
-    archive, bring, blank, draw
-):
+def test_missing_file_shows_nothing_and_the_panel_gives_a_reason(archive, bring, blank, draw):
     made = bring(archive, frame_rate="ONE")
     moved = archive.rename(archive.with_name("elsewhere.npz"))
 
@@ -103,7 +101,7 @@ def test_a_large_picture_has_no_more_points_than_are_cheap(recordings, bring, lo
     assert np.ptp(seen[:, 2]) == pytest.approx(1.75, abs=0.25)  # A human stands upright.
 
 
-def test_the_floor_is_at_zero_where_it_is_seen(tmp_path, bring, rng):
+def test_observed_floor_is_at_zero(tmp_path, bring, rng):
     """A camera 1.2 m up that looks down by 20 degrees."""
     focal, tilt = 90.0, np.radians(20.0)
     rows, columns = np.mgrid[:60, :80]

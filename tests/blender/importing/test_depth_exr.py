@@ -57,8 +57,8 @@ def lens(blank):
 
 
 def bring(bpy, path, **settings):
-    said = bpy.ops.mocap_assist.import_recording(filepath=str(path), **settings)
-    assert said == {"FINISHED"}
+    status = bpy.ops.mocap_assist.import_recording(filepath=str(path), **settings)
+    assert status == {"FINISHED"}
     return bpy.context.object
 
 
@@ -95,7 +95,7 @@ def test_they_are_copied_once_and_play_from_the_copy(folder, lens, blank, load):
     assert shown.read(bring(blank, folder).data).path != shown.read(first.data).path
 
 
-def test_without_a_camera_it_is_asked_for(folder, blank):
+def test_missing_camera_is_requested(folder, blank):
     with pytest.raises(
         RuntimeError, match="give the focal length in pixels, or give the scene"
     ):

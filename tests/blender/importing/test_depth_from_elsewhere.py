@@ -19,7 +19,7 @@ def elsewhere(load, tmp_path, monkeypatch):
     return move
 
 
-def test_a_recording_that_was_never_opened_here_is_opened_only_when_asked(
+def test_unknown_recording_is_opened_only_on_request(
     archive, bring, blank, draw, elsewhere, load, monkeypatch
 ):
     bring(archive, frame_rate="ONE")

@@ -46,8 +46,8 @@ def test_a_reader_that_dies_once_takes_no_file_along(press, window, blank):
 
     assert wait(operator, window) == {"FINISHED"}
     assert sorted(blank.data.objects.keys()) == ["first", "second"]
-    ((kind, said),) = window.reports
-    assert kind == {"INFO"} and "early" not in said
+    ((kind, message),) = window.reports
+    assert kind == {"INFO"} and "early" not in message
     assert nothing_is_left(window)
 
 
@@ -65,11 +65,11 @@ def test_files_that_end_their_reader_are_named_and_the_others_come(
 
     good = [Path(name).stem for name in names if name not in deadly]
     assert sorted(blank.data.objects.keys()) == good
-    ((kind, said),) = window.reports
-    assert kind == {"ERROR"} and said.startswith(f"{len(deadly)} of 5 files failed.")
+    ((kind, message),) = window.reports
+    assert kind == {"ERROR"} and message.startswith(f"{len(deadly)} of 5 files failed.")
     for name in deadly:
-        assert f"Reading {walks / name} crashed: signal SIGABRT" in said
-    assert said.count("early") == len(deadly) and "Nothing was changed" not in said
+        assert f"Reading {walks / name} crashed: signal SIGABRT" in message
+    assert message.count("early") == len(deadly) and "Nothing was changed" not in message
     assert nothing_is_left(window)
     percentages = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
     assert percentages == sorted(percentages)
@@ -141,9 +141,9 @@ def test_warnings_of_readers_are_reported_in_a_window_and_by_a_script(
 
     assert wait(operator, window) == {"FINISHED"}
 
-    ((_, said),) = window.reports
-    assert "40 frames at 30 Hz. " in said and said.count("Resampled to 30 Hz. ") == 1
-    assert operator.note == said
+    ((_, message),) = window.reports
+    assert "40 frames at 30 Hz. " in message and message.count("Resampled to 30 Hz. ") == 1
+    assert operator.note == message
     figures = operator._job.transaction.end(blank.context).figures
     assert figures[0]["warnings"].startswith("Resampled to 30 Hz.")
     assert not figures[1]["warnings"]

@@ -13,7 +13,7 @@ NEAR = 1e-5  # meters; bones and keys are 32-bit numbers
 
 
 @pytest.mark.parametrize("file", ["cmu_walk/07_01.bvh", "05_13.amc"])
-def test_an_armature_moves_as_the_file_says(file, recordings, bring, load, blank):
+def test_armature_moves_as_in_the_file(file, recordings, bring, load, blank):
     path = recordings / "mocap" / file
     recorded = load("solvers.recordings").read_recording(path)
 

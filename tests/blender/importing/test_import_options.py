@@ -22,7 +22,7 @@ def walk(recordings):
         ("ONE", 1.0, N_FRAMES, N_FRAMES, 24.0),
     ],
 )
-def test_the_scene_keeps_its_rate_unless_it_is_asked_for(
+def test_scene_keeps_its_rate_unless_the_setting_changes_it(
     choice, first, last, n_keys, fps, walk, bring, key_times, blank
 ):
     render = blank.context.scene.render
@@ -118,7 +118,7 @@ def test_one_bad_file_does_not_keep_the_others_out(walk, tmp_path, blank):
     assert len(blank.data.armatures) == 1
 
 
-def test_what_fails_half_way_leaves_nothing(walk, blank, load, monkeypatch):
+def test_failed_import_leaves_nothing(walk, blank, load, monkeypatch):
     objects, errors = load("mocap_assist.importing.recording_objects"), load("solvers.errors")
     before = blank.context.scene.render.fps
 

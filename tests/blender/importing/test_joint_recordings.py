@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 NEAR = 1e-5  # meters; bones and keys are 32-bit numbers
-LARGEST = 0.06  # meters that a bone of constant length may miss a joint by
+MAX_MISS_M = 0.06  # meters that a bone of constant length may miss a joint by
 
 
 @pytest.fixture
@@ -27,7 +27,7 @@ def test_bones_follow_the_joints(lossy, bring, load, poses):
     ]
     assert len(misses) >= 20
     assert np.nanmedian(misses) < 0.01
-    assert np.nanpercentile(misses, 95) < LARGEST
+    assert np.nanpercentile(misses, 95) < MAX_MISS_M
 
 
 @pytest.mark.parametrize("fps", [24, 30, 120])
@@ -165,8 +165,8 @@ def test_a_body_of_freemocap_becomes_an_armature(
     assert {"hips_center", "left_elbow", "right_knee", "left_foot_index"} <= names
     assert ("left_hand_index_3" in names) == (n_points > 33)
     assert not any(name.startswith("face_") for name in names)
-    said = capfd.readouterr().out
-    assert (f"without {n_loose} points that have no joint" in said) == (n_loose > 0)
+    message = capfd.readouterr().out
+    assert (f"without {n_loose} points that have no joint" in message) == (n_loose > 0)
 
 
 def test_points_of_freemocap_that_are_no_body_become_empties(bring, rng, tmp_path):
@@ -194,7 +194,7 @@ def test_joints_of_every_sensor_are_cleaned_with_the_button(file, recordings, br
     assert armature.animation_data.action.name.endswith(".clean")
 
 
-def test_what_is_never_seen_is_said_and_takes_nothing_along(lossy, load, tmp_path, blank):
+def test_never_observed_joints_are_reported_and_others_stay(lossy, load, tmp_path, blank):
     recordings = load("solvers.recordings")
     recording = recordings.read_recording(lossy)
     places = recording.tracks.positions.copy()

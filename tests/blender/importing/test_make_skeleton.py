@@ -24,8 +24,8 @@ def holder(tracks, bring, load, tmp_path, blank):
     return bring(tmp_path / "dance.c3d")
 
 
-def places(blank, armature, bone, frames):
-    """World places of a bone's head, as Blender evaluates them."""
+def head_positions(blank, armature, bone, frames):
+    """World positions of a bone's head, as Blender evaluates them."""
     found = []
     for frame in frames:
         blank.context.scene.frame_set(int(frame))
@@ -54,7 +54,7 @@ def test_a_c3d_becomes_a_cleaned_armature(blank, holder, tracks, load, recording
     }.items():  # fmt: skip
         index = skeleton.skeleton.index(joint)
         expected = joints.positions[frames * STEP, index]
-        found = places(blank, armature, bone, frames + 1)
+        found = head_positions(blank, armature, bone, frames + 1)
         turned = expected[:, [0, 1, 2]] - expected.mean(axis=0)
         moved = np.linalg.norm(found - found.mean(axis=0), axis=1)
         assert np.abs(moved - np.linalg.norm(turned, axis=1)).mean() < 0.05, bone
@@ -78,7 +78,7 @@ def test_markers_of_no_known_set_are_refused_in_a_sentence(blank, bring, load, t
     assert set(blank.data.objects) == before
 
 
-def test_without_markers_the_button_says_why(blank):
+def test_button_gives_a_reason_without_markers(blank):
     with pytest.raises(RuntimeError, match="Select a marker set"):
         blank.ops.mocap_assist.solve_skeleton()
 

@@ -80,7 +80,7 @@ def test_markers_are_read_in_the_world(holder, bad_tracks, read):
     assert_allclose(found, 2.0 * bad_tracks.positions + (1.0, 2.0, 3.0), atol=2 * NEAR)
 
 
-def test_clean_fills_and_calms_markers_and_revert_brings_the_raw_ones_back(
+def test_clean_fills_and_smooths_markers_and_revert_restores_raw(
     holder, true_tracks, bad_tracks, read, keys_of, blank, markers_of
 ):
     raw = markers_of(holder)[0].animation_data.action
@@ -147,7 +147,7 @@ def test_check_lists_issues_and_jumps_to_the_marker(holder, blank):
     assert active["mocap_assist_point"] == issues[gap].name
 
 
-def test_buttons_for_armatures_say_so(holder, blank):
+def test_buttons_for_armatures_give_a_reason(holder, blank):
     with pytest.raises(RuntimeError, match="Select an animated armature"):
         blank.ops.mocap_assist.plant_feet()
 

@@ -38,7 +38,7 @@ def crosses(lines, n_markers=N_MARKERS):
     return lines[: 3 * n_markers].reshape(n_markers, 6, 3).mean(axis=1)
 
 
-def world_places(blank, markers, frame):
+def world_positions(blank, markers, frame):
     blank.context.scene.frame_set(frame)
     return [each.matrix_world.translation for each in markers]
 
@@ -52,12 +52,12 @@ def test_crosses_stand_where_the_empties_do(blank, overlay, holder):
     assert not clean.markers
     assert len(overlay.lines_at(clean, blank.context.scene)) == 0
     for frame in FRAMES:
-        places = world_places(blank, raw.markers, frame)
+        places = world_positions(blank, raw.markers, frame)
         lines = overlay.lines_at(raw, blank.context.scene)
         assert_allclose(crosses(lines), places, atol=10 * NEAR)
 
 
-def test_trails_go_through_the_places_at_the_frames_around(blank, overlay, holder):
+def test_trails_go_through_the_positions_at_adjacent_frames(blank, overlay, holder):
     raw, _ = overlay.raw_and_clean(holder)
     blank.context.scene.frame_set(20)
 
@@ -65,8 +65,8 @@ def test_trails_go_through_the_places_at_the_frames_around(blank, overlay, holde
 
     trails = lines[3 * N_MARKERS :].reshape(-1, N_MARKERS, 2, 3)
     assert len(trails) == 24  # 0.2 s at 60 frames a second, to either side
-    assert_allclose(trails[0, :, 0], world_places(blank, raw.markers, 8), atol=NEAR)
-    assert_allclose(trails[-1, :, 1], world_places(blank, raw.markers, 32), atol=NEAR)
+    assert_allclose(trails[0, :, 0], world_positions(blank, raw.markers, 8), atol=NEAR)
+    assert_allclose(trails[-1, :, 1], world_positions(blank, raw.markers, 32), atol=NEAR)
     assert_allclose(trails[:-1, :, 1], trails[1:, :, 0])
 
 
@@ -81,7 +81,7 @@ def test_a_gap_is_drawn_filled_where_it_was_cleaned_only(blank, overlay, holder)
     whole = N_MARKERS * (3 + 24)
     assert len(raw_lines) == whole - (3 + 24)
     assert len(clean_lines) == whole
-    played = world_places(blank, clean.markers, 56)
+    played = world_positions(blank, clean.markers, 56)
     assert_allclose(crosses(clean_lines), played, atol=NEAR)
 
 
@@ -105,7 +105,7 @@ def test_before_and_after_the_take_its_ends_are_shown(blank, overlay, holder):
 
     lines = overlay.lines_at(raw, blank.context.scene)
 
-    assert_allclose(crosses(lines), world_places(blank, raw.markers, 100), atol=NEAR)
+    assert_allclose(crosses(lines), world_positions(blank, raw.markers, 100), atol=NEAR)
 
 
 def test_keys_are_read_once_until_they_are_edited(blank, load, overlay, holder):
@@ -133,7 +133,7 @@ def test_another_file_makes_it_forget(blank, overlay, holder):
     assert not overlay._cache
 
 
-def test_only_so_much_is_kept(overlay, holder, monkeypatch):
+def test_cache_is_limited(overlay, holder, monkeypatch):
     monkeypatch.setattr(overlay, "MAX_CACHED", 3)
     raw, _ = overlay.raw_and_clean(holder)
     for count in range(1, N_MARKERS + 1):
@@ -144,7 +144,7 @@ def test_only_so_much_is_kept(overlay, holder, monkeypatch):
     assert len(overlay._cache) == overlay.MAX_CACHED
 
 
-def test_a_stray_key_far_out_is_drawn_without_what_lies_between(blank, overlay, holder):
+def test_distant_key_is_drawn_without_frames_between(blank, overlay, holder):
     raw, _ = overlay.raw_and_clean(holder)
     marker, (action, _) = raw.markers[0], raw.sources[0]
     curve = action.layers[0].strips[0].channelbags[0].fcurves[0]

@@ -75,7 +75,7 @@ def test_a_vrm_animation_comes_in_without_a_skin(bring, recordings):
         ("fbx/ue4_mannequin/SK_Mannequin.FBX", "has a skeleton but no animation"),
     ],
 )
-def test_what_a_file_lacks_is_said(bring, recordings, file, sentence):
+def test_missing_content_is_reported(bring, recordings, file, sentence):
     armatures, message = bring(recordings / "corpus" / file)
 
     assert not armatures

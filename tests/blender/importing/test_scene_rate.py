@@ -112,7 +112,7 @@ def key_material(blank):
         key_material,
     ],
 )  # fmt: skip
-def test_animated_scene_keeps_its_rate_and_gets_whole_frames(
+def test_animated_scene_keeps_its_rate_and_gets_integer_frames(
     animate, walk, bring, key_times, blank, time_of, capfd
 ):
     scene = blank.context.scene
@@ -123,8 +123,8 @@ def test_animated_scene_keeps_its_rate_and_gets_whole_frames(
 
     assert time_of(scene) == (24.0, 1, 40)
     assert list(times) == list(range(1, 65))
-    said = capfd.readouterr().out
-    assert "Resampled to the scene's 24 FPS. It ends at frame 64, the scene at 40." in said
+    message = capfd.readouterr().out
+    assert "Resampled to the scene's 24 FPS. It ends at frame 64, the scene at 40." in message
 
 
 def test_second_import_keeps_the_rate_of_the_first(walk, bring, key_times, blank, time_of):
@@ -148,7 +148,7 @@ def test_actions_that_nothing_plays_do_not_count(walk, bring, blank, time_of):
     assert time_of(blank.context.scene) == (RATE, 1, N_FRAMES)
 
 
-def test_several_files_share_the_rate_of_the_first(
+def test_several_files_get_the_rate_of_the_first(
     walk, recordings, bring, key_times, blank, time_of, tmp_path
 ):
     other = recordings / "formats" / "bvh" / "test_mocapbank.bvh"  # 455 frames at 30 Hz
@@ -181,7 +181,7 @@ def test_resampled_bones_rotate_as_the_recorded_ones(walk, bring, poses, blank):
         assert np.median(turned) < ANGLE_DEG, name
 
 
-def test_sensor_values_lie_on_whole_frames(recordings, bring, blank, load):
+def test_sensor_values_lie_on_integer_frames(recordings, bring, blank, load):
     keyed(blank)
     blank.context.scene.render.fps = 24
     path = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"

@@ -60,12 +60,12 @@ def first_key(armature):
     )
 
 
-def test_default_is_the_best_seen_and_names_the_others(blank, crowd, capfd):
+def test_default_is_the_body_in_most_frames_and_others_are_named(blank, crowd, capfd):
     assert bring(blank, crowd) == ["crowd"]
 
-    said = capfd.readouterr().out
-    assert "Body 1 of 2. Left out: 2 (1.0 s, 71 % of the frames)" in said
-    assert "Left out as a false detection: 3" in said
+    message = capfd.readouterr().out
+    assert "Body 1 of 2. Left out: 2 (1.0 s, 71 % of the frames)" in message
+    assert "Left out as a false detection: 3" in message
 
 
 def test_all_are_armatures_on_one_time_line(blank, crowd):
@@ -179,7 +179,7 @@ def test_rigs_of_a_file_are_bodies(blank, two_rigs, suffix, load):
     assert bring(blank, path, body="ben") == ["duo Ben"]
 
 
-def test_takes_play_what_their_names_say(blank, recordings, load):
+def test_takes_play_the_actions_of_their_names(blank, recordings, load):
     """Each action holds its own motion, and the rate of the scene is that of the takes."""
     path = recordings / "corpus" / "glb" / "mixamo_blender" / "walking.glb"
     assert bring(blank, path, frame_rate="UPDATE") == ["walking"]

@@ -39,7 +39,7 @@ def test_a_chosen_unit_is_used_and_a_guess_is_reported(bring, silent, capfd, uni
     assert (SAID in capfd.readouterr().out) == (unit == "GUESS")
 
 
-def test_the_redo_panel_reads_the_file_anew_in_another_unit(bring, silent):
+def test_redo_panel_reads_the_file_again_in_another_unit(bring, silent):
     first = height(bring(silent, unit="GUESS"))
     second = height(bring(silent, unit="METRES"))
     third = height(bring(silent, unit="GUESS"))
@@ -56,7 +56,7 @@ def test_it_counts_for_every_format(bring, recordings):
     assert other == pytest.approx(1000.0 * one, rel=1e-4)
 
 
-def test_the_dialog_says_what_was_guessed(load, silent, blank):
+def test_dialog_reports_estimates(load, silent, blank):
     preview = load("mocap_assist.importing.importing").preview
 
     assert SAID in preview(blank.context, [silent])

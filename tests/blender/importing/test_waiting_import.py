@@ -9,7 +9,7 @@ from modal_events import event, nothing_is_left, wait
 def everything(blank):
     """What an import that comes to nothing must leave as it was."""
 
-    def look():
+    def scene_state():
         view, scene = blank.context.view_layer, blank.context.scene
         kinds = (blank.data.objects, blank.data.armatures, blank.data.actions)
         active = view.objects.active
@@ -21,7 +21,7 @@ def everything(blank):
             (scene.frame_start, scene.frame_end, scene.frame_current),
         )
 
-    return look
+    return scene_state
 
 
 @pytest.fixture
@@ -101,9 +101,9 @@ def test_all_that_can_be_read_comes_in(press, window, load, monkeypatch, blank, 
         "first",
         "second",
     ]
-    ((kind, said),) = window.reports
+    ((kind, message),) = window.reports
     assert kind == {"ERROR"}
-    assert said.startswith("1 of 3 files failed.") and "cut.bvh" in said
+    assert message.startswith("1 of 3 files failed.") and "cut.bvh" in message
     assert operator.note.startswith("first: an armature of 31 bones, 317 frames at 120 Hz.")
     assert nothing_is_left(window)
     percentages = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
@@ -194,9 +194,9 @@ def test_a_fault_over_the_only_file_is_a_sentence_and_leaves_nothing(
 
     assert everything() == before
     assert nothing_is_left(window)
-    ((kind, said),) = window.reports
+    ((kind, message),) = window.reports
     assert kind == {"ERROR"}
-    assert "first.bvh: this is a bug in Mocap Assist (ZeroDivisionError at" in said
+    assert "first.bvh: this is a bug in Mocap Assist (ZeroDivisionError at" in message
 
 
 def test_one_at_a_time(press, window, blank):
@@ -232,7 +232,7 @@ def test_a_script_too_keeps_pose_mode_and_selection_where_all_fails(
 def test_the_dialog_does_not_wait_for_a_large_file(load, walks, monkeypatch, blank):
     importing = load("mocap_assist.importing.importing")
     small = importing.preview(blank.context, [walks / "first.bvh"])
-    monkeypatch.setattr(importing, "QUICKLY_READ", 1000)
+    monkeypatch.setattr(importing, "MAX_PREVIEW_BYTES", 1000)
     monkeypatch.setattr(importing, "read_again", None)
     blank.context.scene.render.fps = 24
 

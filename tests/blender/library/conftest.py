@@ -77,8 +77,8 @@ def bring(blank):
 
     def press(*paths):
         for path in paths:
-            said = blank.ops.mocap_assist.import_recording(filepath=str(path))
-            assert said == {"FINISHED"}
+            status = blank.ops.mocap_assist.import_recording(filepath=str(path))
+            assert status == {"FINISHED"}
         return blank.context.object
 
     return press
@@ -184,7 +184,7 @@ def keep(blank):
 
 
 @pytest.fixture
-def look(load, monkeypatch):
+def poll(load, monkeypatch):
     """Let so many looks pass, each until its end; return how often something was indexed."""
     auto_update = load("mocap_assist.library.auto_update")
     started = []
@@ -194,7 +194,7 @@ def look(load, monkeypatch):
         lambda *given: started.append("Index") or begin(*given),
     )  # fmt: skip
 
-    def look(times):
+    def poll(times):
         started.clear()
         for _ in range(times):
             auto_update.update_libraries()
@@ -205,6 +205,6 @@ def look(load, monkeypatch):
                 watcher._scan.result(timeout=120)
         return len(started)
 
-    yield look
+    yield poll
     auto_update.unregister()
     auto_update.register()

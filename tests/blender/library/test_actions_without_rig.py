@@ -23,8 +23,8 @@ def test_index_refuses_actions_without_their_rig(index, entries, alone):
     done = index(alone)
 
     assert len(done.refused) == 2 and entries() == {}
-    assert all("no armature in the file has the bones" in said for said in done.refused)
-    assert all("choose a rig file" in said for said in done.refused)
+    assert all("no armature in the file has the bones" in message for message in done.refused)
+    assert all("choose a rig file" in message for message in done.refused)
 
 
 def test_actions_become_clips_with_a_rig_file(
@@ -55,7 +55,7 @@ def test_index_reports_a_rig_with_other_bones(
     done = index(alone, rig=other)
 
     assert entries() == {} and len(done.refused) == 2
-    assert all(f"nor in {other}, has the bones" in said for said in done.refused)
+    assert all(f"nor in {other}, has the bones" in message for message in done.refused)
 
 
 def test_unreadable_rig_file_excludes_no_other_clips(

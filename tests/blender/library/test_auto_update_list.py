@@ -7,7 +7,7 @@ import pytest
 pytestmark = pytest.mark.usefixtures("permissions")
 
 
-def test_received_file_starts_and_writes_nothing(look, library, blank, clip_files):
+def test_received_file_starts_and_writes_nothing(poll, library, blank, clip_files):
     """It names sources and a library, as a file saved with Keep Current on."""
     library.library_file = "//startup/x.clips"
     stored = getattr(library, "bl_system_properties_get", lambda: library)()
@@ -21,15 +21,15 @@ def test_received_file_starts_and_writes_nothing(look, library, blank, clip_file
     stored = getattr(settings, "bl_system_properties_get", lambda: settings)()
     assert stored["keep_current"] and settings.sources == str(clip_files)
 
-    assert look(6) == 0
+    assert poll(6) == 0
     assert sorted(clip_files.rglob("*")) == before
 
 
-def test_second_press_ends_the_updates(look, library, keep, clip_files):
+def test_second_press_ends_the_updates(poll, library, keep, clip_files):
     keep()
     keep()
 
-    assert look(4) == 0
+    assert poll(4) == 0
     assert not (clip_files / "my.clips").exists()
 
 

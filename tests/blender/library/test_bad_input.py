@@ -104,9 +104,9 @@ def test_two_blenders_can_index_one_library_at_once(
         subprocess.Popen(each, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         for each in calls
     ]
-    said = [each.communicate(timeout=100) for each in running]
+    outputs = [each.communicate(timeout=100) for each in running]
 
-    assert all("READ" in out for out, _ in said), said
+    assert all("READ" in out for out, _ in outputs), outputs
     found = entries()
     assert {f"{kind}_{n}" for kind in ("walk", "wave", "squat") for n in (0, 1)} <= set(found)
     assert {"other_walk_0", "other_squat_1", "shot/walk_0"} <= set(found)

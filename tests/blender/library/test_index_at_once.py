@@ -43,8 +43,8 @@ def test_action_with_control_characters_is_refused_and_the_others_become_clips(
     done = index(blend_file)
 
     assert sorted(entries()) == ["shot/walk_0", "shot/wave_0"]
-    (said,) = done.refused
-    assert r"x\r\necho pwned\r\nrem" in said and said.isprintable()
+    (message,) = done.refused
+    assert r"x\r\necho pwned\r\nrem" in message and message.isprintable()
 
 
 def test_library_of_another_suffix_is_refused_and_makes_no_folder(
@@ -77,5 +77,5 @@ def test_file_that_ends_its_blender_is_refused_and_the_others_become_clips(
     done = index(blend_file, twin)
 
     assert len(entries()) == 3
-    (said,) = done.refused
-    assert str(twin) in said
+    (message,) = done.refused
+    assert str(twin) in message

@@ -88,8 +88,8 @@ def test_an_invalid_blend_file_is_reported_and_others_are_read(
     done = index(blend_file.parent)
 
     assert len(entries()) == 3
-    (said,) = done.refused
-    assert "broken.blend" in said
+    (message,) = done.refused
+    assert "broken.blend" in message
 
 
 def test_actions_without_a_rig_or_a_body_are_refused(blank, index, entries, blend_file):
@@ -110,8 +110,8 @@ def test_actions_without_a_rig_or_a_body_are_refused(blank, index, entries, blen
     done = index(blend_file)
 
     assert sorted(entries()) == ["shot/squat_0", "shot/wave_0"]
-    (said,) = done.refused
-    assert "walk_0" in said and "no armature" in said
+    (message,) = done.refused
+    assert "walk_0" in message and "no armature" in message
 
 
 def test_a_file_without_motion_is_not_opened_again(index, blank, tmp_path, monkeypatch, load):

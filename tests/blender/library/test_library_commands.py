@@ -32,10 +32,14 @@ def test_find_command_finds_indexed_clips(command, newcomer, blend_file, clip_fi
     newcomer("wave")
     status, out, err = command("find", "--library", library, "--json", "--n-matches", "3")
     assert (status, err) == (0, "")
-    (said,) = lines_of(out)
-    assert len(said["matches"]) == 3
-    assert {match["clip"] for match in said["matches"]} == {"wave_0", "wave_1", "shot/wave_0"}
-    assert said["matches"][0]["tags"][0] == "hall"
+    (message,) = lines_of(out)
+    assert len(message["matches"]) == 3
+    assert {match["clip"] for match in message["matches"]} == {
+        "wave_0",
+        "wave_1",
+        "shot/wave_0",
+    }
+    assert message["matches"][0]["tags"][0] == "hall"
 
     status, out, _ = command("find", "--library", library)
     assert status == 0 and "Most similar to" in out and "shot/wave_0" in out
@@ -54,7 +58,7 @@ def test_unreadable_files_are_reported_and_others_are_indexed(command, clip_file
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["index"], "No sources given"),
         (["index", "nowhere"], "There is no file or folder"),
@@ -62,7 +66,7 @@ def test_unreadable_files_are_reported_and_others_are_indexed(command, clip_file
     ],
 )
 def test_wrong_arguments_give_one_message(
-    command, newcomer, words, said, tmp_path, monkeypatch
+    command, newcomer, words, message, tmp_path, monkeypatch
 ):
     newcomer("walk")
     monkeypatch.chdir(tmp_path)
@@ -71,4 +75,4 @@ def test_wrong_arguments_give_one_message(
 
     status, _, err = command(*words)
 
-    assert status == 2 and said in err and err.count("\n") == 1
+    assert status == 2 and message in err and err.count("\n") == 1

@@ -22,14 +22,14 @@ def test_performance_fills_the_list_and_waves_page_it(
     find()
     listed = blank.context.window_manager.mocap_assist_matches
 
-    said = performing.search_with(blank.context, performance)
+    message = performing.search_with(blank.context, performance)
 
     assert listed.query == "your performance" and len(listed.rows) == 6
-    assert said == performing.chosen_sentence() and said.startswith("1 of 6: ")
+    assert message == performing.chosen_sentence() and message.startswith("1 of 6: ")
     assert performing.page(blank.context, 1).startswith("2 of 6: ")
-    assert performing.page(blank.context, -1) == said
+    assert performing.page(blank.context, -1) == message
     assert performing.page(blank.context, -1).startswith("6 of 6: ")
-    assert performing.page(blank.context, 1) == said
+    assert performing.page(blank.context, 1) == message
 
 
 def test_show_library_turns_on_the_ghost(performing, blank):

@@ -75,8 +75,11 @@ def test_clip_without_its_file_is_skipped_and_reported(
     examples = use(n_best=3)
 
     assert len(examples) == 2
-    said = capfd.readouterr().out
-    assert "1 could not be loaded" in said and f"{listed[0]}.bvh was moved or deleted" in said
+    message = capfd.readouterr().out
+    assert (
+        "1 could not be loaded" in message
+        and f"{listed[0]}.bvh was moved or deleted" in message
+    )
 
 
 def test_vary_raises_and_writes_nothing_when_all_files_are_missing(

@@ -26,8 +26,8 @@ def test_denoise_command_cleans_and_saves(bad_arm, blank, command, tmp_path):
     )
 
     assert (status, err) == (0, "")
-    said = json.loads(out.splitlines()[0])  # Blender itself says that it saved
-    assert (said["armature"], said["action"], said["settings"]["strength"]) == (
+    result = json.loads(out.splitlines()[0])  # Blender itself says that it saved
+    assert (result["armature"], result["action"], result["settings"]["strength"]) == (
         "Actor",
         "walk.clean",
         0.9,
@@ -134,8 +134,8 @@ def test_convert_command_writes_the_played_action(
 
     status, out, _ = command("convert", str(tmp_path / "dance.bvh"), "--json")
 
-    said = json.loads(out)
-    assert (status, said["n_frames"], said["frame_rate_hz"]) == (0, 300, 30.0)
+    result = json.loads(out)
+    assert (status, result["n_frames"], result["frame_rate_hz"]) == (0, 300, 30.0)
     motion = load("solvers.recordings").read_bvh(tmp_path / "dance.bvh")
     positions = (
         load("solvers.motion.skeletons.kinematics").forward_kinematics(motion).positions[::50]

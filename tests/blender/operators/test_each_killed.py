@@ -70,10 +70,10 @@ def test_no_blender_continues_when_each_is_killed(each, tmp_path, scratch):
     assert list(scratch.glob("mocap_assist_*"))
 
     with each("--jobs", "2") as again:
-        said, _ = again.communicate()
+        message, _ = again.communicate()
 
     assert again.returncode == 0
-    assert said.count("Already made.") <= n_made
+    assert message.count("Already made.") <= n_made
     assert len(list(tmp_path.glob("out/*.blend"))) == 4
     assert not list(scratch.glob("mocap_assist_*"))
     assert not [path for path in tmp_path.rglob("out/*") if path.name.startswith(".")]

@@ -94,8 +94,8 @@ def test_simulate_command_simulates_and_saves(walker, load, blank, capsys, tmp_p
 
     out, err = capsys.readouterr()
     assert (status, err) == (0, "")
-    said = json.loads(next(line for line in out.splitlines() if line[:1] == "{"))
-    assert (said["action"], said["settings"]["ground"]) == ("walk.physics", "auto")
+    result = json.loads(next(line for line in out.splitlines() if line[:1] == "{"))
+    assert (result["action"], result["settings"]["ground"]) == ("walk.physics", "auto")
     blank.ops.wm.open_mainfile(filepath=str(target))
     assert "walk.physics" in blank.data.actions
 

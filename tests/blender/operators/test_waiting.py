@@ -156,8 +156,8 @@ def test_changes_during_the_solve_are_not_overwritten(
     assert wait(button, window) == {"CANCELLED"}
 
     assert noisy.animation_data.action == action and blank.data.actions.keys() == actions
-    kind, said = window.reports[-1]
-    assert kind == {"ERROR"} and "Actor was changed during the solve; nothing was" in said
+    kind, message = window.reports[-1]
+    assert kind == {"ERROR"} and "Actor was changed during the solve; nothing was" in message
 
 
 def test_armature_deleted_during_the_solve_is_reported(noisy, press_clean, window, blank):
@@ -194,9 +194,9 @@ def test_closing_its_window_ends_the_solve(noisy, press_clean, window, blank):
 @pytest.fixture
 def real_manager(window, blank, load, monkeypatch):
     """Let what ends by itself, without the button's context, find the pretended window."""
-    found = SimpleNamespace(**vars(load("mocap_assist.runtime.ends_with_file").bpy))
+    found = SimpleNamespace(**vars(load("mocap_assist.runtime.file_change_handlers").bpy))
     found.context = window.context
-    monkeypatch.setattr(load("mocap_assist.runtime.ends_with_file"), "bpy", found)
+    monkeypatch.setattr(load("mocap_assist.runtime.file_change_handlers"), "bpy", found)
 
 
 def test_opening_another_file_ends_the_solve(noisy, press_clean, window, blank, real_manager):

@@ -18,8 +18,8 @@ def bring(blank):
 
     def press(path, **settings):
         blank.context.scene.render.fps = 30
-        said = blank.ops.mocap_assist.import_recording(filepath=str(path), **settings)
-        assert said == {"FINISHED"}
+        status = blank.ops.mocap_assist.import_recording(filepath=str(path), **settings)
+        assert status == {"FINISHED"}
         return blank.context.object
 
     return press

@@ -150,10 +150,10 @@ def test_invalid_examples_give_one_message(content, walk, blank, tmp_path, all_t
 def test_clean_learns_from_a_blend_file(library, stroll, bring, blank):
     bring(stroll)
 
-    said = blank.ops.mocap_assist.denoise(
+    status = blank.ops.mocap_assist.denoise(
         prior="EXAMPLES", examples=str(library), plant_feet=False
     )
 
-    assert said == {"FINISHED"}
+    assert status == {"FINISHED"}
     action = blank.context.object.animation_data.action
     assert action.name == "stroll.clean" and not blank.data.libraries

@@ -92,9 +92,9 @@ def test_a_damaged_model_file_gives_one_message(
         (tmp_path / "text.npz", "is not a readable archive"),
         (other, "holds "),
     ):
-        said = refused(**postures, **{setting: str(path)})
-        assert sentence in said and path.name in said
-        assert said.strip().count("\n") == 0
+        message = refused(**postures, **{setting: str(path)})
+        assert sentence in message and path.name in message
+        assert message.strip().count("\n") == 0
 
 
 def test_missing_posture_file_is_reported(walk, refused):

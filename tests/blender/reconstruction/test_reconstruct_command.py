@@ -22,9 +22,9 @@ def test_reconstruct_command_writes_actions_and_saves(walk, run, tmp_path, blank
 
     assert status == 0
     lines = [line for line in capsys.readouterr().out.splitlines() if line[:1] == "{"]
-    said = json.loads(lines[-1])
-    assert said["armature"] == "walk" and said["action"] == "walk.reconstructed"
-    assert said["operation"] == "reconstruct" and said["settings"]["plant_feet"] is False
+    result = json.loads(lines[-1])
+    assert result["armature"] == "walk" and result["action"] == "walk.reconstructed"
+    assert result["operation"] == "reconstruct" and result["settings"]["plant_feet"] is False
     blank.ops.wm.open_mainfile(filepath=str(tmp_path / "walk.blend"))
     assert "walk.reconstructed" in blank.data.actions
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-CENTIMETRE = 0.01
+CENTIMETER = 0.01
 ROLLING = 0.04
 """Ankles go along where a foot of another length rolls over its planted ball."""
 SOURCE = ("LeftUpLeg", "LeftLeg", "LeftFoot", "LeftArm", "LeftForeArm", "LeftHand")
@@ -48,7 +48,7 @@ def test_hands_and_feet_follow_the_source(case, walker, give, poses):
     assert np.linalg.norm(paths[0] - growth * paths[1], axis=1).max() < ROLLING
     grown = length(ours[:, 3:]) / length(theirs[:, 3:])
     reach = [points[:, 5] - points[:, 3] for points in (ours, theirs)]
-    assert np.linalg.norm(reach[0] - grown * reach[1], axis=1).max() < CENTIMETRE
+    assert np.linalg.norm(reach[0] - grown * reach[1], axis=1).max() < CENTIMETER
 
 
 def test_joints_do_not_flip(case, walker, give, poses):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 pytestmark = pytest.mark.timeout(200)
-CENTIMETRE = 0.01
+CENTIMETER = 0.01
 ROLLING = 0.04
 """Ankles go along where a foot of another length rolls over its planted ball."""
 SOURCE = ("LeftUpLeg", "LeftLeg", "LeftFoot", "LeftArm", "LeftForeArm", "LeftHand")
@@ -44,7 +44,7 @@ def test_hands_and_feet_follow_the_source(limbs, hero, walker, give, poses):
     give(walker, hero, limbs=limbs)
 
     feet, hands = ends_off(poses, hero, walker)
-    assert feet < ROLLING and hands < CENTIMETRE
+    assert feet < ROLLING and hands < CENTIMETER
 
 
 @pytest.mark.parametrize("limbs", ["FK", "IK"])
@@ -99,8 +99,8 @@ def test_fk_and_ik_keys_give_the_same_pose(hero, walker, give, poses, blank):
     by_ik = heads(poses, hero, [f"DEF-{name}" for name in DEFORM])
 
     distances = np.linalg.norm(by_fk - by_ik, axis=-1).max(axis=0)
-    assert distances[[2, 5]].max() < 0.1 * CENTIMETRE
-    assert 0.0 < distances[[1, 4]].max() < 4 * CENTIMETRE  # Rigify's IK limbs stretch a little
+    assert distances[[2, 5]].max() < 0.1 * CENTIMETER
+    assert 0.0 < distances[[1, 4]].max() < 4 * CENTIMETER  # Rigify's IK limbs stretch a little
 
 
 def test_body_rotates_as_solved(hero, walker, give, load, blank):
@@ -159,7 +159,7 @@ def test_travel_is_keyed_on_the_root_bone(hero, walker, give, poses):
     give(walker, hero, root_motion="ROOT_BONE")
 
     root = heads(poses, hero, ["root"])[:, 0]
-    assert np.linalg.norm(heads(poses, hero, names) - before, axis=-1).max() < CENTIMETRE
+    assert np.linalg.norm(heads(poses, hero, names) - before, axis=-1).max() < CENTIMETER
     assert np.abs(root[:, 2]).max() < 1e-5
     hips = heads(poses, hero, ["DEF-spine"])[:, 0]
     assert np.linalg.norm((hips - root)[:, :2], axis=1).max() < 0.3

@@ -18,7 +18,7 @@ def key(hero, bone, values, channel="location"):
             hero.pose.bones[bone].keyframe_insert(f'["{channel}"]', frame=frame)
 
 
-def looks(hero, blank):
+def pose_and_visibility(hero, blank):
     """What all controls hold, and where Blender shows all bones."""
     shown = hero.evaluated_get(blank.context.evaluated_depsgraph_get())
     held = {
@@ -59,13 +59,13 @@ def test_source_rig_with_many_actions_is_unchanged(takes, posed, acted, make_rig
     if posed:  # where the played action has keys, too
         acted.pose.bones["chest"].location = (0.0, 0.3, 0.1)
         blank.context.view_layer.update()
-    held, shown = looks(acted, blank)
+    held, shown = pose_and_visibility(acted, blank)
 
     give(acted, target, takes=takes)
 
     assert acted.animation_data.action.name == "B"
     assert (blank.context.scene.frame_current, blank.context.scene.frame_subframe) == (7, 0.25)
-    held_after, shown_after = looks(acted, blank)
+    held_after, shown_after = pose_and_visibility(acted, blank)
     assert held_after == held
     np.testing.assert_allclose(shown_after, shown, atol=1e-5)
     assert len({each.name for each in blank.data.actions}) == (4 if takes == "ALL" else 3)

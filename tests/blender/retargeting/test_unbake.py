@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 ENDS = ("LeftHand", "RightHand", "LeftToeBase", "RightToeBase", "Head")
-HALF_A_CENTIMETRE = 0.005
+HALF_A_CENTIMETER = 0.005
 
 
 def n_keys(keys):
@@ -22,14 +22,14 @@ def test_hand_and_foot_errors_stay_within_the_tolerance(
     before, frames = keys_of(raw), range(1, 61)
     truth = poses(walker, frames)
 
-    assert blank.ops.mocap_assist.reduce_keys(tolerance=HALF_A_CENTIMETRE) == {"FINISHED"}
+    assert blank.ops.mocap_assist.reduce_keys(tolerance=HALF_A_CENTIMETER) == {"FINISHED"}
 
     action = walker.animation_data.action
     assert action.name == f"{raw.name}.sparse" and keys_of(raw) == before
     assert n_keys(keys_of(action)) < 0.4 * n_keys(before)
     played = poses(walker, frames)
     off = [np.abs(played[name][:, :3, 3] - truth[name][:, :3, 3]).max() for name in ENDS]
-    assert 0.0 < max(off) < HALF_A_CENTIMETRE
+    assert 0.0 < max(off) < HALF_A_CENTIMETER
     entry = json.loads(action["mocap_assist_history"])[-1]
     assert entry["operation"] == "reduce_keys"
     assert entry["keys_after"] == n_keys(keys_of(action))

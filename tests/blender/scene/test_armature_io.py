@@ -222,11 +222,11 @@ def test_a_linked_rig_is_read_and_an_override_gets_the_result(
 
 
 @pytest.mark.parametrize(
-    ("scale", "unit_scale", "metres"),
+    ("scale", "unit_scale", "meters"),
     [(1.0, 1.0, 1.0), (2.0, 1.0, 2.0), (100.0, 1.0, 1.0), (100.0, 0.01, 1.0), (17.7, 1.0, 1.0)],
 )
 def test_bones_have_plausible_lengths_at_any_scale(
-    scale, unit_scale, metres, make_armature, animate, poses, rewrite, scene_io, blank
+    scale, unit_scale, meters, make_armature, animate, poses, rewrite, scene_io, blank
 ):
     """BVH in centimeters or in CMU's unit is often imported as if it were meters."""
     armature, scene = make_armature(), blank.context.scene
@@ -238,7 +238,7 @@ def test_bones_have_plausible_lengths_at_any_scale(
     motion = scene_io.reading.read_take(armature, scene).parts[0].motion
 
     thigh = np.linalg.norm(motion.skeleton.offsets[motion.skeleton.index("LeftLeg")])
-    assert_allclose(thigh, 0.45 * metres, rtol=0.01)
+    assert_allclose(thigh, 0.45 * meters, rtol=0.01)
     rewrite(armature)
     for bone, matrices in poses(armature, range(1, 61)).items():
         assert_allclose(matrices, before[bone], atol=NEAR * scale)

@@ -45,8 +45,8 @@ def points(truth, blank, tmp_path):
     path = tmp_path / "walk.npz"
     np.savez_compressed(path, **truth)
     blank.context.scene.render.fps = 30
-    said = blank.ops.mocap_assist.import_recording(filepath=str(path))
-    assert said == {"FINISHED"}
+    status = blank.ops.mocap_assist.import_recording(filepath=str(path))
+    assert status == {"FINISHED"}
     return blank.context.object
 
 

@@ -28,7 +28,7 @@ def test_armature_and_points_agree_for_any_camera_pose(
     roll, tilt, matrix, stood, write_tracked, given_poses, load, blank
 ):
     made = write_tracked(floor=stood(roll, tilt), matrix=matrix)
-    frames = load("solvers.depth_tracking.body.kinematics").segment_frames(
+    frames = load("solvers.depth_tracking.body.segment_kinematics").segment_frames(
         made.body, given_poses
     )
     shown = load("mocap_assist.track.tracked_body").posed_frames

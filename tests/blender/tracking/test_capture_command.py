@@ -21,8 +21,8 @@ def test_capture_command_makes_armatures_and_names_failed_takes(
     status = run([*words, "--json", str(tmp_path / "report.json")])
 
     report = json.loads((tmp_path / "report.json").read_text())
-    said = capsys.readouterr()
-    assert status == 2 and "no.npz" in said.err
+    message = capsys.readouterr()
+    assert status == 2 and "no.npz" in message.err
     assert report["objects"] == ["walk tracked"] and len(report["failed"]) == 1
     blank.ops.wm.open_mainfile(filepath=str(target))
     armature = blank.data.objects["walk tracked"]

@@ -78,11 +78,11 @@ def test_esc_keeps_tracked_frames_on_request(press, window, blank, truth, load):
 
     assert button.modal(window.context, event("ESC", "PRESS")) == {"FINISHED"}
 
-    ((_, said),) = window.reports
-    assert "Stopped early: " in said and "of 6 frames tracked" in said
+    ((_, message),) = window.reports
+    assert "Stopped early: " in message and "of 6 frames tracked" in message
     armature = blank.context.object
     action = armature.animation_data.action
-    n_frames = int(said.split("Stopped early: ")[1].split()[0])
+    n_frames = int(message.split("Stopped early: ")[1].split()[0])
     assert 3 <= n_frames <= 6 and action.curve_frame_range[0] == 1.0
     assert action.curve_frame_range[1] == pytest.approx(n_frames, abs=1e-3)
     assert json.loads(action["mocap_assist_captured"])["operation"] == "track_depth"
@@ -113,8 +113,8 @@ def test_points_deleted_during_tracking_are_named(press, window, blank, points):
 
     assert wait(button, window) == {"CANCELLED"}
 
-    ((kind, said),) = window.reports
-    assert kind == {"ERROR"} and "was deleted during the solve" in said
+    ((kind, message),) = window.reports
+    assert kind == {"ERROR"} and "was deleted during the solve" in message
     assert nothing_is_left(window)
 
 

@@ -14,7 +14,7 @@ def n_frames():
 
 
 @pytest.fixture
-def centimetres(truth, blank, tmp_path):
+def centimeters(truth, blank, tmp_path):
     """The points of a walk in a scene of centimeters and 24 frames per second."""
     path = tmp_path / "walk.npz"
     np.savez_compressed(path, **truth)
@@ -27,13 +27,13 @@ def centimetres(truth, blank, tmp_path):
 
 
 def test_body_and_retracking_work_in_centimeters_between_frames(
-    centimetres, truth, blank, load
+    centimeters, truth, blank, load
 ):
     assert blank.ops.mocap_assist.track_depth(**FAST_SETTINGS) == {"FINISHED"}
     armature = blank.context.object
     blank.context.scene.frame_set(5)  # picture 5 is at frame 1 + 5 * 0.8
     drawn = load("mocap_assist.track.body_overlay").body_at(armature, 5)
-    matrix = np.array(centimetres.matrix_world)
+    matrix = np.array(centimeters.matrix_world)
     observed = truth["joints"][5] @ matrix[:3, :3].T + matrix[:3, 3]
     assert np.ptp(drawn.points[:, 2]) == pytest.approx(np.ptp(observed[:, 2]), rel=0.2)
     assert np.linalg.norm(drawn.points.mean(axis=0) - observed.mean(axis=0)) < 20.0

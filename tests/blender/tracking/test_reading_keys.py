@@ -14,7 +14,7 @@ def made(write_tracked, blank):
 
 
 @pytest.fixture
-def why_grey(load, blank):
+def why_gray(load, blank):
     why_not = load("mocap_assist.track.retracking").why_not_retrack
     return lambda: why_not(blank.context)
 
@@ -34,12 +34,12 @@ def strip(made, load):
     return strip
 
 
-def test_result_on_an_nla_track_can_be_retracked(strip, why_grey):
-    assert why_grey() == ""
+def test_result_on_an_nla_track_can_be_retracked(strip, why_gray):
+    assert why_gray() == ""
 
 
 @pytest.mark.parametrize("change", ["moved", "scaled", "reversed", "by a curve"])
-def test_shifted_strip_is_refused(change, strip, made, why_grey, load):
+def test_shifted_strip_is_refused(change, strip, made, why_gray, load):
     if change == "moved":
         strip.frame_start, strip.frame_end = 6.0, 21.2
     elif change == "scaled":
@@ -49,7 +49,7 @@ def test_shifted_strip_is_refused(change, strip, made, why_grey, load):
     else:
         strip.use_animated_time = True
     sentence = "The NLA strip of wall tracked.clean does not match its frames"
-    assert why_grey().startswith(sentence)
+    assert why_gray().startswith(sentence)
     retracking = load("mocap_assist.track.retracking")
     settings = retracking.RetrackBundle(load("solvers.depth_tracking").RetrackSettings())
     scene = made.armature.users_scene[0]

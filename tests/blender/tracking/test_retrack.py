@@ -170,6 +170,6 @@ def test_retracking_has_a_preview_and_esc_restores_the_pose(
     assert tracked.animation_data.action is action and nothing_is_left(window)
 
     assert wait(press(), window) == {"FINISHED"}
-    ((_, cancelled), (_, said)) = window.reports
-    assert cancelled == "Cancelled." and "from frame 8" in said
+    ((_, cancelled), (_, message)) = window.reports
+    assert cancelled == "Cancelled." and "from frame 8" in message
     np.testing.assert_allclose(bone.matrix_basis, posed, atol=1e-4)

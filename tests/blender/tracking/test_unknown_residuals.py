@@ -13,14 +13,16 @@ def strict(text):
 
 def test_track_omits_an_unknown_residual(write_tracked):
     made = write_tracked(residual=np.nan)
-    assert "20 frames" in made.said and "nan" not in made.said and " cm" not in made.said
+    assert (
+        "20 frames" in made.message and "nan" not in made.message and " cm" not in made.message
+    )
     assert strict(made.source[0]["mocap_assist_captured"])["mean_residual_cm"] is None
 
 
 def test_track_reports_the_mean_of_known_residuals(write_tracked):
     residual = np.where(np.arange(20) % 2, np.nan, 0.03)
     made = write_tracked(residual=residual)
-    assert "3.0 cm" in made.said
+    assert "3.0 cm" in made.message
     report = strict(made.source[0]["mocap_assist_captured"])
     assert report["mean_residual_cm"] == pytest.approx(3.0)
 

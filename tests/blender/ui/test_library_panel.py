@@ -55,7 +55,7 @@ def test_panel_shows_matches_with_previews_and_buttons(draw, matched, blank):
     assert "frames 0–9 of 20" in " ".join(shown) and "calm" in " ".join(shown)
 
 
-def test_discarded_search_asks_for_a_new_one(draw, matched, blank):
+def test_discarded_search_requests_a_new_one(draw, matched, blank):
     blank.context.window_manager.mocap_assist_matches.search = -1
 
     assert "Press Find Similar again." in " ".join(draw("MOCAP_PT_library"))

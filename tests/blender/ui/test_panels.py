@@ -19,7 +19,7 @@ def test_every_panel_is_on_the_mocap_tab(blank, panel, suffix):
     assert kind.bl_category == "Mocap"
 
 
-def test_clean_panel_says_what_to_select_without_an_armature(draw):
+def test_clean_panel_names_what_to_select_without_an_armature(draw):
     shown = draw("MOCAP_PT_clean")
 
     assert "mocap_assist.denoise" in shown
@@ -166,7 +166,7 @@ def test_sidebar_has_the_defaults_of_the_solvers(blank, load, group):
 
 
 def test_figures_compare_the_raw_take_with_the_last_result(load):
-    rows = load("mocap_assist.panels.figures").figure_rows([
+    rows = load("mocap_assist.panels.figure_rows").figure_rows([
         {"before": {"spikes": 7, "missing_share": 0.013}, "after": {"spikes": 2}},
         {"operation": "other"},
         {"before": {"spikes": 2}, "after": {"spikes": 0, "missing_share": 0.0}},
@@ -176,7 +176,7 @@ def test_figures_compare_the_raw_take_with_the_last_result(load):
 
 
 def test_unknown_figure_is_a_dash(load):
-    rows = load("mocap_assist.panels.figures").figure_rows([
+    rows = load("mocap_assist.panels.figure_rows").figure_rows([
         {"before": {"foot_slide_cm_per_s": None}, "after": {"foot_slide_cm_per_s": 1.25}}
     ])
 
@@ -184,7 +184,7 @@ def test_unknown_figure_is_a_dash(load):
 
 
 def test_frame_ranges_are_formatted_as_text(load):
-    frames_text = load("mocap_assist.panels.figures").frames_text
+    frames_text = load("mocap_assist.panels.figure_rows").frames_text
 
     assert frames_text(12.0, 12.0) == "12"
     assert frames_text(12.0, 15.5) == "12 – 15.5"

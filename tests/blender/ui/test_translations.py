@@ -15,7 +15,7 @@ def translations(load):
     return load("mocap_assist.ui.translations")
 
 
-def said_by(blank, draw, actor):
+def texts_of(blank, draw, actor):
     """Return every label, and the name of every button and property, that panels show."""
     found, clean = set(), blank.context.scene.mocap_assist.clean
     assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
@@ -49,13 +49,13 @@ def names_of(blank, drawn):
 
 
 def test_every_translated_text_is_in_a_panel(blank, load, draw, actor, translations):
-    drawn = said_by(blank, draw, actor)
+    drawn = texts_of(blank, draw, actor)
     shown = drawn | set(names_of(blank, drawn))
     # What the recording layout cannot see: texts given to properties, and filled-in ones.
     elsewhere = {"Motion Model", "Left Foot Contact", "Right Foot Contact", "Made from {raw}"}
     elsewhere |= {"Previous", "Next"}
     # An unknown figure, as for feet that never stand, is not shown.
-    elsewhere |= {label for label, *_ in load("mocap_assist.panels.figures").FIGURES}
+    elsewhere |= {label for label, *_ in load("mocap_assist.panels.figure_rows").FIGURES}
 
     assert set(translations.TEXTS) - shown - elsewhere == set()
 

@@ -24,11 +24,11 @@ def n_variants(blank):
 def test_variants_arrive_one_by_one_and_the_last_ends_the_operator(button, window, blank):
     counts = []
 
-    def look():
+    def poll():
         counts.append(n_variants(blank))
         return False
 
-    assert wait(button, window, look) == {"FINISHED"}
+    assert wait(button, window, poll) == {"FINISHED"}
 
     assert next(n for n in counts if n) == 1 and {1, 2, 3} <= set(counts)
     assert n_variants(blank) == 4 and nothing_is_left(window)

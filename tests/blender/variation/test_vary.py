@@ -139,10 +139,10 @@ def test_vary_command_writes_variants_and_a_contact_sheet(
 
     out, err = capsys.readouterr()
     assert (status, err) == (0, "")
-    said = json.loads(next(line for line in out.splitlines() if line[:1] == "{"))
-    assert said["actions"] == [f"walk_1.variant 0{n}" for n in (1, 2, 3)]
+    result = json.loads(next(line for line in out.splitlines() if line[:1] == "{"))
+    assert result["actions"] == [f"walk_1.variant 0{n}" for n in (1, 2, 3)]
     image = blank.data.images.load(str(sheet))
     assert image.size[1] > 3 * 100
     blank.ops.wm.open_mainfile(filepath=str(target))
     rows = blank.context.scene.mocap_assist.variants.rows
-    assert [row.action.name for row in rows] == said["actions"]
+    assert [row.action.name for row in rows] == result["actions"]

@@ -8,9 +8,9 @@ import pytest
 from depth_folders import open3d, save_png
 from drawn_bodies import CAMERA, NATURAL
 
-from solvers.depth_tracking.body.kinematics import segment_frames
 from solvers.depth_tracking.body.model import default_body, load_body_model
 from solvers.depth_tracking.body.ray_capsules import cast_rays
+from solvers.depth_tracking.body.segment_kinematics import segment_frames
 from solvers.recordings import read_bvh, read_recording
 
 FAST_OPTIONS = ("--no-backward", "--no-refine", "--no-feet", "--check-every", "1000")

@@ -28,12 +28,12 @@ def crowd(tmp_path):
     return path
 
 
-def test_convert_reads_the_best_seen_and_says_so(crowd, tmp_path, capsys):
+def test_convert_reads_and_reports_the_body_in_most_frames(crowd, tmp_path, capsys):
     assert main(["convert", str(crowd), str(tmp_path / "out.trc")]) == 0
 
-    said = capsys.readouterr().out
-    assert "Body 1 of 2. Left out: 2 (1.3 s, 67 % of the frames)" in said
-    assert "--body" in said
+    message = capsys.readouterr().out
+    assert "Body 1 of 2. Left out: 2 (1.3 s, 67 % of the frames)" in message
+    assert "--body" in message
     assert read_recording(tmp_path / "out.trc").visible[0].any()
 
 
@@ -85,8 +85,8 @@ def test_unknown_body_is_one_sentence(crowd, tmp_path, capsys, verb):
 
     assert main([verb, str(crowd), *target, "--body", "Ben"]) == 2
 
-    said = capsys.readouterr().err.strip()
-    assert said.endswith("3 (0.0 s, 2 % of the frames).") and "\n" not in said
+    message = capsys.readouterr().err.strip()
+    assert message.endswith("3 (0.0 s, 2 % of the frames).") and "\n" not in message
     assert not (tmp_path / "out.trc").exists()
 
 

@@ -74,7 +74,7 @@ def test_weights_are_those_of_the_least_error(rng):
     assert_allclose(weights[0], [0.0, *expected], atol=0.05)
 
 
-def test_leverage_factor_is_the_share_of_the_noise_that_is_followed(rng):
+def test_leverage_factor_is_the_fraction_of_followed_noise(rng):
     """A spline chooses its smoothness by the noise, too: it follows more than its leverage."""
     waves = 5.0 * np.sin(np.outer(np.arange(60) / 12.0, np.linspace(0.5, 1.5, 2000)))
     noise = rng.normal(size=waves.shape)
@@ -83,8 +83,8 @@ def test_leverage_factor_is_the_share_of_the_noise_that_is_followed(rng):
     smoothed = smooth_by_spline(samples)
     factor = leverage_factor(smooth_by_spline, samples, good, np.ones(2000))
 
-    said = leverage(samples - smoothed.values, smoothed.leave_one_out_error).sum()
-    followed = (noise * (smoothed.values - waves)).sum() / said
+    predicted = leverage(samples - smoothed.values, smoothed.leave_one_out_error).sum()
+    followed = (noise * (smoothed.values - waves)).sum() / predicted
     assert followed > 1.05
     assert_allclose(factor, followed, rtol=0.05)
 
@@ -167,7 +167,7 @@ def test_clean_take_keeps_its_samples(rng):
     assert_allclose(stacked.values, clean, atol=0.01)
 
 
-def test_noise_factors_tell_movement_from_noise(rng):
+def test_noise_factors_distinguish_movement_from_noise(rng):
     """A spline follows fast movement, whose third differences are as large as noise's."""
     frames = np.arange(200)
     fast = 30.0 * np.sin(np.outer(frames / 2.0, np.linspace(0.8, 1.2, 30)))

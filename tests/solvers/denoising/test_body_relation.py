@@ -82,5 +82,5 @@ def test_damaged_file_is_refused(tmp_path):
         load_body_relation(tmp_path / "bad.npz")
 
 
-def test_shipped_relation_says_what_it_was_trained_on():
+def test_shipped_relation_names_its_training_data():
     assert "CMU" in load_body_relation().trained_on

@@ -63,7 +63,7 @@ def test_arm_in_t_pose_at_an_end_changes_no_other_sample(walk, rng, frames, text
     assert text in result.prior_used
 
 
-def test_real_movement_is_not_kept_apart(walk, rng):
+def test_real_movement_is_not_classified_as_an_edge_pose(walk, rng):
     """A punch at the very start: the elbow extends by 100 degrees within four frames."""
     time = np.arange(-2, walk.n_frames - 2)
     angles = np.radians(50.0) * np.tanh(time / 1.0)

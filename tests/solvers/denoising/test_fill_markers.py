@@ -246,7 +246,7 @@ def test_only_short_jumps_are_transient_outliers(body):
 
 
 @pytest.mark.parametrize("n_seen", [1, 5])
-def test_marker_hardly_ever_seen_is_not_filled_with_certainty(body, n_seen):
+def test_rarely_observed_marker_is_not_filled_with_high_confidence(body, n_seen):
     noisy = body + np.random.default_rng(9).normal(scale=0.003, size=body.shape)
     take = gapped(noisy, 7, np.r_[0:100, 100 + n_seen : 240])
 

@@ -111,7 +111,7 @@ def test_observed_samples_and_their_confidence_never_change(rng):
     assert_array_equal(predicted.deviation[observed], estimate.deviation[observed])
 
 
-def test_two_limbs_that_are_lost_together_do_not_predict_each_other(rng):
+def test_two_limbs_missing_together_do_not_predict_each_other(rng):
     """Whatever stands in the gap of one, the other is the same."""
     recording = _without_arm(_swings(rng), GAP)
     leg = recording.skeleton.index(find_humanoid_map(recording.skeleton).joints["leftUpperLeg"])
@@ -227,7 +227,7 @@ def test_one_frame(rng):
     assert predict_limbs(channels, _interpolated(channels), RATE, load_body_relation())[1] == 0
 
 
-def test_says_that_the_body_predicted_the_limb(rng):
+def test_reports_that_the_body_predicted_the_limb(rng):
     cleaned = denoise(_without_arm(_swings(rng), GAP))
 
     assert "Filled long gaps of 3 joints from the rest of the body." in cleaned.prior_used

@@ -133,5 +133,5 @@ def test_damaged_file_is_refused(tmp_path):
         load_motion_mixture(tmp_path / "bad.npz")
 
 
-def test_shipped_mixture_says_what_it_was_trained_on():
+def test_shipped_mixture_names_its_training_data():
     assert "CMU" in load_motion_mixture().trained_on

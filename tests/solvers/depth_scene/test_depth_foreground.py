@@ -125,7 +125,7 @@ def test_actor_on_the_spot_is_no_noise_of_the_wall_behind_him(rng):
 
 
 @pytest.mark.parametrize(("n_covered", "n_beyond"), [(51, 0), (0, 4)])
-def test_room_is_found_behind_long_stays_and_before_stray_readings(n_covered, n_beyond):
+def test_room_is_found_behind_long_stays_and_before_outliers(n_covered, n_beyond):
     """In most of 60 frames the actor covers the wall, or a few readings lie behind it."""
     images = np.full((60, 6, 6), 4.0, np.float32)
     images[:n_covered] = 2.0

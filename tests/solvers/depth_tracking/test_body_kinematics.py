@@ -6,12 +6,12 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from solvers.depth_tracking.body.coordinates import COORDINATES, ROTATION_AXES
-from solvers.depth_tracking.body.kinematics import (
+from solvers.depth_tracking.body.model import default_body
+from solvers.depth_tracking.body.segment_kinematics import (
     joint_positions,
     segment_frames,
     segment_twists,
 )
-from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.tables import JOINTS, PARENTS, SEGMENTS
 
 

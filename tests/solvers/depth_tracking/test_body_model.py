@@ -7,8 +7,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_tracking.body.coordinates import COORDINATES
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import BodyModel, default_body, load_body_model
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import CAPSULES, JOINTS, LENGTHS, PARENTS, SEGMENTS
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion.humanoid.roles import HUMANOID_ROLES

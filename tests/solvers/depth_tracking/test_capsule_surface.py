@@ -5,8 +5,8 @@ from drawn_bodies import posed
 from numpy.testing import assert_allclose
 
 from solvers.depth_tracking.body.capsule_surface import capsule_surface
-from solvers.depth_tracking.body.kinematics import segment_frames
 from solvers.depth_tracking.body.model import default_body
+from solvers.depth_tracking.body.segment_kinematics import segment_frames
 from solvers.depth_tracking.body.tables import CAPSULES
 from solvers.depth_tracking.terms.hypothesis import capsule_normals, capsule_offsets
 

@@ -12,10 +12,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 from solvers.depth_scene.floor import FloorPlane
 from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_tracking.body.coordinates import COORDINATES
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.motion import SCENE_FROM_CAMERA, body_motion, body_skeleton
 from solvers.depth_tracking.body.motion_prior import load_motion_prior
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.capture import Capture, CaptureSettings, capture
 from solvers.depth_tracking.capturing.choose_poses import choose_poses, nearest_tracked

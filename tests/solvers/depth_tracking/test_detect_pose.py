@@ -5,8 +5,8 @@ import pytest
 
 from solvers.depth_scene.camera import Camera
 from solvers.depth_tracking.body.coordinates import COORDINATES, N_COORDINATES
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import default_body
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.detection.detect_pose import DetectorSettings, detect_pose
 from solvers.depth_tracking.forest.pixel_forest import classify_pixels, load_pixel_forest

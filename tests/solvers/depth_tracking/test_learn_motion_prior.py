@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.learn_motion_prior import (
     camera_joints,
     learn_motion_prior,
@@ -13,6 +12,7 @@ from solvers.depth_tracking.body.learn_motion_prior import (
 from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.motion import body_motion
 from solvers.depth_tracking.body.pose_from_joints import body_from_joints, pose_from_joints
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.errors import InvalidMotionError
 from solvers.samples import GaitSettings, walking_gait

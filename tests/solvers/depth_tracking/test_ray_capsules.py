@@ -4,9 +4,9 @@ import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_scene.camera import Camera
-from solvers.depth_tracking.body.kinematics import segment_frames
 from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.ray_capsules import cast_rays
+from solvers.depth_tracking.body.segment_kinematics import segment_frames
 from solvers.depth_tracking.body.tables import CAPSULE_SEGMENTS, CAPSULES, SEGMENTS
 
 CAMERA = Camera(140.0, 150.0, 39.5, 31.0, 80, 60)

@@ -61,9 +61,9 @@ def test_fine_ball_has_the_depth_of_a_sphere():
     triangles = np.concatenate([np.stack(half, axis=1) for half in halves])
     image = render_mesh(vertices, triangles, np.zeros(len(vertices), np.uint8), camera)
     rays = camera.rays()
-    centre = np.array([0.05, -0.02, 2.0])
-    square, along = (rays**2).sum(-1), rays @ centre
-    inside = along**2 - square * (centre @ centre - 0.3**2)
+    center = np.array([0.05, -0.02, 2.0])
+    square, along = (rays**2).sum(-1), rays @ center
+    inside = along**2 - square * (center @ center - 0.3**2)
     exact = np.where(inside > 0, (along - np.sqrt(np.maximum(inside, 0))) / square, 0.0)
     well_inside = inside > 0.02
     np.testing.assert_allclose(image.depth[well_inside], exact[well_inside], atol=3e-4)

@@ -10,10 +10,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_scene.floor import FloorPlane
 from solvers.depth_tracking.body.coordinates import COORDINATES
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.motion import body_motion, motion_frames
 from solvers.depth_tracking.body.pose_from_joints import pose_from_frames
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing import retracked_path
 from solvers.depth_tracking.capturing.passes import RecoverySettings, TrackingContext

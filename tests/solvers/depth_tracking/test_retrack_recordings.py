@@ -6,10 +6,10 @@ import pytest
 from solvers.depth_scene.camera import Camera
 from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_tracking.body.coordinates import COORDINATES
-from solvers.depth_tracking.body.kinematics import joint_positions
 from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.motion import body_motion, motion_frames
 from solvers.depth_tracking.body.pose_from_joints import body_from_joints, pose_from_joints
+from solvers.depth_tracking.body.segment_kinematics import joint_positions
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.retrack import retrack
 

@@ -5,8 +5,8 @@ import pytest
 
 from solvers.depth_scene.camera import Camera
 from solvers.depth_tracking.body.coordinates import COORDINATES, N_COORDINATES
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import default_body
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import CAPSULE_SEGMENTS, CAPSULES, JOINTS
 from solvers.depth_tracking.detection.labeled_fit import (
     capsule_distances,
@@ -191,11 +191,11 @@ def test_trial_poses_recover_swapped_legs(rng):
 
 
 def test_swap_parts_permutes_centers_and_labels(rng):
-    centres = rng.normal(size=(N_PARTS, 3))
-    parts = FoundParts(centres, np.arange(N_PARTS) / N_PARTS, centres, np.arange(N_PARTS))
+    centers = rng.normal(size=(N_PARTS, 3))
+    parts = FoundParts(centers, np.arange(N_PARTS) / N_PARTS, centers, np.arange(N_PARTS))
     other = parts.swap_parts(MIRRORED_PARTS)
     left, right = PARTS.index("leftFoot"), PARTS.index("rightFoot")
-    np.testing.assert_array_equal(other.centers[left], centres[right])
+    np.testing.assert_array_equal(other.centers[left], centers[right])
     np.testing.assert_array_equal(other.labels[left], right)
 
 

@@ -23,7 +23,7 @@ from solvers.rotations.representations import (
 )
 from solvers.samples import GaitSettings, walking_gait
 
-CMU_METRES = 0.0254 / 0.45
+CMU_METERS = 0.0254 / 0.45
 BODIES = ("female_average", "female_slim", "male_average", "male_heavy")
 
 
@@ -122,7 +122,7 @@ def test_poses_of_another_skeleton_are_matched_by_role(person):
 def test_joints_equal_those_of_another_implementation(recordings, take, clip, first, body):
     """Other code posed the takes of depth/truth from the same clips and bodies."""
     skinned = load_skinned_body(recordings / "body" / f"{body}.npz")
-    poses = skinned.rotations_of(read_bvh(recordings / f"mocap/{clip}.bvh", scale=CMU_METRES))
+    poses = skinned.rotations_of(read_bvh(recordings / f"mocap/{clip}.bvh", scale=CMU_METERS))
     with np.load(recordings / "depth" / "truth" / f"{take}.npz") as truth:
         joints = truth["joints"].astype(float)
     for frame in (0, 40, 70):

@@ -7,7 +7,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_tracking.body.coordinates import COORDINATES, LOWER_LIMITS, UPPER_LIMITS
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.pose_priors import (
     joint_limits,
@@ -15,6 +14,7 @@ from solvers.depth_tracking.body.pose_priors import (
     predict_pose,
     stay_near,
 )
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.published.registration_tracker import REGISTRATION_TRACKER
 from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, TrackerSettings

@@ -32,7 +32,7 @@ def test_reflection_does_not_get_the_label_of_a_missing_marker():
 
 
 @pytest.mark.parametrize(("slow", "fast"), [(0.03, 0.15), (0.00005, 0.008)])
-def test_quick_pass_of_two_markers_and_back_is_no_swap(slow, fast):
+def test_fast_pass_of_two_markers_and_back_is_no_swap(slow, fast):
     """Their relative steps, in meters; nothing else tells them apart."""
     steps = np.full(60, slow)
     steps[48:52] = fast
@@ -64,7 +64,7 @@ def test_marker_that_moves_freely_identifies_no_other(rng):
     assert not len(distances.rigid_neighbors(4))
 
 
-def test_marker_seen_in_two_frames_with_others_joins_no_cluster(rng):
+def test_marker_observed_in_two_frames_with_others_joins_no_cluster(rng):
     path = np.cumsum(rng.normal(scale=0.02, size=(100, 9, 3)), axis=0)
     path[:, :4] = path[:, :1] + SHAPE[:4]
     path[:98, 4] = np.nan
@@ -82,7 +82,7 @@ def test_actor_who_sways_by_millimeters_is_no_rigid_cluster(rng):
     assert find_rigid_clusters(tracks_of(swaying)) == ()
 
 
-def test_level_of_a_foot_on_tiptoe_or_with_one_place_for_both_markers_is_limited():
+def test_level_of_a_foot_on_tiptoe_or_with_coinciding_markers_is_limited():
     toe = np.zeros((20, 3))
     for heel in (toe, toe + 0.2 * UP, toe + 0.02 * UP):
         leveling = _leveling_matrix(heel, toe)
@@ -95,7 +95,7 @@ PELVIS_AND_TRUNK = {"LFWT", "RFWT", "LBWT", "RBWT", "C7", "T10", "CLAV", "STRN",
 
 
 @pytest.mark.parametrize(("thighs", "determined"), [(set(), True), ({"LTHI", "RTHI"}, False)])
-def test_legs_determine_lost_hips_and_shanks_alone_do_not(thighs, determined):
+def test_legs_determine_missing_hips_and_shanks_alone_do_not(thighs, determined):
     take = markers_on(walking_gait(GaitSettings(duration=2.0, frame_rate=30.0)))
     lost = [take.names.index(name) for name in sorted(PELVIS_AND_TRUNK | thighs)]
     positions = take.positions.copy()

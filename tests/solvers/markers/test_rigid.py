@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from solvers.errors import InvalidMotionError
 from solvers.markers import Cluster, ClusterSettings, constrain_clusters, find_rigid_clusters
-from solvers.markers.rigid_fit import fit_rigid_transform
+from solvers.markers.rigid_transform import fit_rigid_transform
 from solvers.motion import Tracks
 from solvers.recordings import read_c3d
 

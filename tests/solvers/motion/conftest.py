@@ -18,7 +18,7 @@ SIDE = (
     ("Hand", "ForeArm", (0.26, 0.0, 0.0)),
     ("Hand_end", "Hand", (0.18, 0.0, 0.0)),
 )
-CENTRE = (
+CENTRAL_JOINTS = (
     ("Hips", "", (0.0, 0.0, 0.98)),
     ("Spine", "Hips", (0.0, 0.01, 0.1)),
     ("Spine1", "Spine", (0.0, 0.01, 0.12)),
@@ -33,7 +33,7 @@ CENTRAL = {"Hips", "Spine2"}
 @pytest.fixture
 def body() -> Skeleton:
     """A Mixamo body of 1.75 m: 27 joints, exact T-pose, flat feet."""
-    rows = list(CENTRE)
+    rows = list(CENTRAL_JOINTS)
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         for name, parent, (x, y, z) in SIDE:
             above = parent if parent in CENTRAL else side + parent

@@ -18,7 +18,7 @@ from solvers.motion import (
 )
 from solvers.recordings import read_recording
 from solvers.rotations.representations import angle_between, quaternion_from_rotation_vector
-from solvers.rotations.rigid_fit import fit_rotations
+from solvers.rotations.rotation_fit import fit_rotations
 
 SENSORS = [Sensor.KINECT_V1, Sensor.KINECT_V2, Sensor.AZURE_KINECT]
 

@@ -84,7 +84,7 @@ def test_movement_too_fast_for_the_new_rate_leaves_no_alias():
     assert np.abs(resampled.positions[20:-20]).max() < 0.002
 
 
-def test_causal_smoothing_lags_by_as_much_as_its_docstring_says():
+def test_causal_smoothing_lags_as_documented():
     ramp = np.arange(200.0)
 
     lag = ramp - smooth_gaussian(ramp, 10.0, ahead=False)

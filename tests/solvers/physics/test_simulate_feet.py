@@ -24,7 +24,7 @@ from solvers.rotations.representations import (
 )
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 
-MILLIMETRE = 0.001
+MILLIMETER = 0.001
 LOADED = 0.5
 """Fraction of the weight."""
 
@@ -64,7 +64,7 @@ def test_loaded_foot_rests_on_a_fixed_point(body, by_friction, planted):
     creep, rest = (steps(body, each.motion)[loaded][slow] for each in (by_friction, planted))
 
     assert rest.mean() < 0.35 * creep.mean()
-    assert np.percentile(rest, 95) < 0.5 * MILLIMETRE
+    assert np.percentile(rest, 95) < 0.5 * MILLIMETER
 
 
 def test_planting_is_horizontal(body, by_friction, planted):
@@ -73,15 +73,15 @@ def test_planting_is_horizontal(body, by_friction, planted):
     )
 
     own = select_foot_ends(body, "left") | select_foot_ends(body, "right")
-    assert_allclose(after[:, own], before[:, own], atol=1.5 * MILLIMETRE)
-    assert planted.penetration_after < by_friction.penetration_after + MILLIMETRE
+    assert_allclose(after[:, own], before[:, own], atol=1.5 * MILLIMETER)
+    assert planted.penetration_after < by_friction.penetration_after + MILLIMETER
     shift = planted.motion.root_positions - by_friction.motion.root_positions
     assert np.abs(shift).max() < 0.01
 
 
 def test_planting_stays_smooth_and_near_the_take(shaking, by_friction, planted):
     assert jerk(planted.motion) < 1.03 * jerk(by_friction.motion)
-    assert planted.distance < by_friction.distance + MILLIMETRE
+    assert planted.distance < by_friction.distance + MILLIMETER
 
 
 def test_planting_keeps_bone_lengths_and_the_input(shaking, planted):
@@ -168,8 +168,8 @@ def test_planted_feet_do_not_move(walk, body, rng):
 
     result = plant_target_feet(body, swaying, held.astype(np.float64), 0.0)
 
-    assert loaded_steps(body, swaying)[held].mean() > 0.5 * MILLIMETRE
-    assert np.percentile(loaded_steps(body, result)[held], 99) < 0.1 * MILLIMETRE
+    assert loaded_steps(body, swaying)[held].mean() > 0.5 * MILLIMETER
+    assert np.percentile(loaded_steps(body, result)[held], 99) < 0.1 * MILLIMETER
     assert (
         vertical_rotations(body, result)[held].mean()
         < 0.5 * vertical_rotations(body, swaying)[held].mean()
@@ -205,7 +205,7 @@ def test_target_feet_are_placed_on_the_ground(walk, body):
         always = moving_minimum(in_contact[inner, column]) == 1.0
         never = moving_minimum(1.0 - in_contact[inner, column]) == 1.0
         assert always.any() and never.any()
-        assert_allclose(lowest[always], -STANCE_DEPTH_M, atol=MILLIMETRE)
+        assert_allclose(lowest[always], -STANCE_DEPTH_M, atol=MILLIMETER)
         assert lowest[never].min() > 0.5 * MIN_SWING_CLEARANCE_M
 
 
@@ -243,7 +243,7 @@ def test_planting_is_equivariant_to_heading(shaking, planted):
     result = simulate(shaking.with_poses(rotations, shaking.root_positions @ about))
 
     differences = result.motion.root_positions - planted.motion.root_positions @ about
-    assert np.abs(differences).mean() < MILLIMETRE
+    assert np.abs(differences).mean() < MILLIMETER
 
 
 def steps(body, motion):

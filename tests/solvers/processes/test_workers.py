@@ -65,7 +65,7 @@ def test_workers_of_a_command_end_when_it_is_killed(verb, swinging_leg, tmp_path
     assert not wait_until_gone(started)
 
 
-def test_workers_have_one_thread_when_the_environment_says_more(monkeypatch):
+def test_workers_have_one_thread_when_the_environment_sets_more(monkeypatch):
     for name in VARIABLES:
         monkeypatch.setenv(name, "4")
     monkeypatch.delenv(VARIABLES[0])

@@ -253,7 +253,7 @@ def test_published_prior_uses_neighbors_only():
     )
 
 
-def test_mirror_setting_shares_errors_of_left_and_right_limbs():
+def test_mirror_setting_pools_errors_of_left_and_right_limbs():
     """Learn from a left knee only; the right knee was never tracked."""
     takes = []
     for speed in (0.9, 1.1, 1.45, 1.6):

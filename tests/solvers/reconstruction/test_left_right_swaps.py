@@ -148,7 +148,7 @@ def standing(walk):
     )
 
 
-def test_turn_of_a_lost_body_is_no_swap(walk):
+def test_turn_of_an_occluded_body_is_no_swap(walk):
     """He faces away when the tracker finds him again, and turns back the same way."""
     positions = standing(walk)
     center = positions[:, [walk.names.index("HipCenter")], :2]

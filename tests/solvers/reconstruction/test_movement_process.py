@@ -83,9 +83,9 @@ def test_movement_process_equals_the_naive_full_process(process):
 def naive_covariance(one: np.ndarray, other: np.ndarray, strengths: tuple) -> np.ndarray:
     """Compute the covariance from its definition, for (5, n, 20, 3) parts."""
     distances = ((one[:, :, None] - other[:, None]) ** 2).sum(axis=(-2, -1))
-    centre = np.concatenate([movement_parts(t.features, RATE)[0, 5::10] for t in TAKES])
-    centre = 0.5 * (centre + mirror_postures(centre)).mean(axis=0)
-    slope = np.einsum("ijk,mjk->im", one[0] - centre, other[0] - centre)
+    center = np.concatenate([movement_parts(t.features, RATE)[0, 5::10] for t in TAKES])
+    center = 0.5 * (center + mirror_postures(center)).mean(axis=0)
+    slope = np.einsum("ijk,mjk->im", one[0] - center, other[0] - center)
     a, b, c, d = strengths
     return (
         a * np.exp(-0.5 * distances[0] / POSTURE_SCALE_M**2)

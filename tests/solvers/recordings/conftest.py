@@ -32,7 +32,7 @@ def read_any(tmp_path):
 
 
 @pytest.fixture
-def said():
+def collected_messages():
     """Return a list, and a progress that collects the messages of a reader in it."""
     messages: list[str] = []
     return messages, lambda fraction, message="": messages.append(message)

@@ -96,7 +96,7 @@ def test_every_body_keeps_the_time_line_of_the_file(tmp_path, crowd):
 
 
 @pytest.mark.parametrize("crowd", CROWDS)
-def test_default_is_the_best_seen_body_and_others_are_reported(tmp_path, crowd):
+def test_default_is_the_body_in_most_frames_and_others_are_reported(tmp_path, crowd):
     path, messages = crowd(tmp_path / "take"), []
 
     found = read_recording(path, progress=lambda fraction, message="": messages.append(message))

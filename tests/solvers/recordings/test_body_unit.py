@@ -113,7 +113,7 @@ def test_our_own_table_counts_by_its_word_and_is_guessed_without(walk, tmp_path)
     assert len(messages.units) == 1
 
 
-def test_a_kinect_file_in_millimetres_is_the_same_take(recordings, tmp_path):
+def test_a_kinect_file_in_millimeters_is_the_same_take(recordings, tmp_path):
     path = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
     true, messages = read_recording(path), KeptMessages()
 
@@ -134,7 +134,7 @@ def test_a_kinect_file_in_millimetres_is_the_same_take(recordings, tmp_path):
     assert len(messages.units) == 1
 
 
-def test_no_recording_of_ours_is_guessed_anew(recordings):
+def test_no_stated_unit_of_our_recordings_is_estimated_again(recordings):
     """A guess is for files in a unit that is not their format's; these all are in it."""
     paths = sorted((recordings / "kinect").glob("*/*"))
     for path in [each for each in paths if each.is_file()][::9]:

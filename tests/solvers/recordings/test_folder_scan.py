@@ -57,7 +57,7 @@ def test_a_file_of_another_kind_is_no_damaged_recording_when_it_is_named(tmp_pat
         read_recording(tmp_path / "odd")
 
 
-def test_a_folder_with_damaged_pictures_is_looked_through_when_nothing_marks_it(takes):
+def test_unmarked_folder_with_damaged_images_is_searched(takes):
     (takes / "thumb.png").write_bytes(odd_pictures()["thumb_1.png"][:-20])
 
     assert names(depth_takes_in(takes), takes) == ["more/twin.npz", "room.npz"]
@@ -109,7 +109,7 @@ def test_links_to_files_count_and_links_to_folders_do_not(takes, tmp_path):
     assert names(recordings_in(takes), takes) == ["leg.bvh", "link.bvh"]
 
 
-def test_pipes_are_passed_over_and_deep_folders_are_looked_into(takes):
+def test_pipes_are_skipped_and_deep_folders_are_searched(takes):
     os.mkfifo(takes / "pipe.bvh")
     deep = takes
     for _ in range(300):

@@ -38,72 +38,74 @@ def turn(degrees: float) -> np.ndarray:
 def read(motion: Motion, path, **settings):
     """Write a take as BVH in centimeters and read it; return it and what was said."""
     write_bvh(motion, path)
-    said: list[str] = []
+    messages: list[str] = []
     floor = settings.pop("floor", FloorPlacement.NEVER)
     motion = read_as(
         path,
         ReadingSettings(**settings),
         floor=floor,
-        progress=lambda _, message="": said.append(message),
+        progress=lambda _, message="": messages.append(message),
     )
-    return motion, " ".join(said)
+    return motion, " ".join(messages)
 
 
-def places(motion) -> dict[str, np.ndarray]:
+def positions_of(motion) -> dict[str, np.ndarray]:
     positions = world_poses(motion.skeleton, motion.rotations, motion.root_positions).positions
     return {name: positions[:, k] for k, name in enumerate(motion.skeleton.names)}
 
 
 def is_standing(motion) -> bool:
-    found = places(motion)
+    found = positions_of(motion)
     return bool(((found["head"] - found["pelvis"])[:, 2] > 0.2 * stature(motion)).all())
 
 
 @pytest.mark.parametrize(("height", "asks"), [(0.9, False), (1.75, False), (2.3, False)])
 def test_people_of_all_sizes_are_no_question(tmp_path, height, asks):
-    motion, said = read(body(height), tmp_path / "a.bvh")
+    motion, messages = read(body(height), tmp_path / "a.bvh")
 
     assert stature(motion) == pytest.approx(height, rel=0.02)
-    assert ("m tall" in said) == asks
+    assert ("m tall" in messages) == asks
     assert is_standing(motion)
 
 
 @pytest.mark.parametrize("height", [3.8, 4.0])
 def test_a_giant_is_a_question(tmp_path, height):
-    motion, said = read(body(height), tmp_path / "a.bvh")
+    motion, messages = read(body(height), tmp_path / "a.bvh")
 
     assert stature(motion) == pytest.approx(height, rel=0.02)
-    assert f"The actor is {height:.2g} m tall; set Unit or Scale if this is not right" in said
+    assert (
+        f"The actor is {height:.2g} m tall; set Unit or Scale if this is not right" in messages
+    )
 
 
 def test_a_doll_is_a_question_once_its_unit_is_given(tmp_path):
-    motion, said = read(body(0.2), tmp_path / "a.bvh", unit=Unit.CENTIMETRES)
+    motion, messages = read(body(0.2), tmp_path / "a.bvh", unit=Unit.CENTIMETRES)
 
     assert stature(motion) == pytest.approx(0.2, rel=0.02)
-    assert "The actor is 0.2 m tall" in said
+    assert "The actor is 0.2 m tall" in messages
 
 
-def test_a_small_child_or_an_adult_in_inches_is_said(tmp_path):
-    _, said = read(body(0.75), tmp_path / "a.bvh")
+def test_small_child_or_adult_in_inches_is_reported(tmp_path):
+    _, messages = read(body(0.75), tmp_path / "a.bvh")
 
-    assert "Lengths are interpreted as inches, by the size of the body" in said
+    assert "Lengths are interpreted as inches, by the size of the body" in messages
 
 
 @pytest.mark.parametrize("hips", [(0.0, 0.0, 0.1), (2.0, 3.0, 0.1)])
 @pytest.mark.parametrize("degrees", [90.0, -90.0])
 def test_who_lies_all_the_time_lies_or_is_a_question(tmp_path, hips, degrees):
-    motion, said = read(body(root=turn(degrees), hips=hips), tmp_path / "a.bvh")
+    motion, messages = read(body(root=turn(degrees), hips=hips), tmp_path / "a.bvh")
 
-    lies = np.ptp(np.stack(list(places(motion).values()))[..., 2]) < 1.0
-    assert lies or "is interpreted as up, but the take does not show it clearly" in said
+    lies = np.ptp(np.stack(list(positions_of(motion).values()))[..., 2]) < 1.0
+    assert lies or "is interpreted as up, but the take does not show it clearly" in messages
 
 
 def test_a_handstand_stays_one(tmp_path):
-    motion, said = read(body(root=turn(180.0), hips=(0.0, 0.0, 1.2)), tmp_path / "a.bvh")
+    motion, messages = read(body(root=turn(180.0), hips=(0.0, 0.0, 1.2)), tmp_path / "a.bvh")
 
-    found = places(motion)
+    found = positions_of(motion)
     assert ((found["head"] - found["pelvis"])[:, 2] < -0.4).all()
-    assert "does not show it clearly" in said
+    assert "does not show it clearly" in messages
 
 
 def test_a_handstand_is_put_on_its_hands(tmp_path):
@@ -114,7 +116,7 @@ def test_a_handstand_is_put_on_its_hands(tmp_path):
         upside_down.rotations[:, NAMES.index(f"{side}_shoulder")] = rotations
     motion, _ = read(upside_down, tmp_path / "a.bvh", floor=FloorPlacement.ALWAYS, up=Axis.Y)
 
-    wrist = places(motion)["left_wrist"][:, 2]
+    wrist = positions_of(motion)["left_wrist"][:, 2]
     assert wrist.min() == pytest.approx(0.03, abs=0.02)
 
 
@@ -125,7 +127,7 @@ def test_a_first_frame_far_above_the_take_is_no_floor(tmp_path):
 
     motion, _ = read(take, tmp_path / "a.bvh", floor=FloorPlacement.ALWAYS)
 
-    assert places(motion)["left_foot"][1:, 2] == pytest.approx(0.02, abs=0.02)
+    assert positions_of(motion)["left_foot"][1:, 2] == pytest.approx(0.02, abs=0.02)
     assert is_standing(motion)
 
 
@@ -153,11 +155,11 @@ def test_a_platform_stays_where_it_is(tmp_path):
 def test_hips_at_the_origin_are_put_on_the_floor(tmp_path):
     motion, _ = read(body(hips=(0.0, 0.0, 0.0)), tmp_path / "a.bvh", floor=FloorPlacement.AUTO)
 
-    assert places(motion)["left_foot"][:, 2] == pytest.approx(0.02, abs=0.03)
+    assert positions_of(motion)["left_foot"][:, 2] == pytest.approx(0.02, abs=0.03)
     assert not conventions_of(motion).has_floor
 
 
-def test_a_wrapper_root_has_no_say(tmp_path):
+def test_wrapper_root_is_no_evidence(tmp_path):
     """A root that stays at the origin above hips that walk away and up a hill."""
     path = np.linspace((0.0, 0.0, 0.96), (9.0, -6.0, 1.4), F)
     take = body()
@@ -177,7 +179,7 @@ def test_a_wrapper_root_has_no_say(tmp_path):
 
 @pytest.mark.parametrize("up", ["Y", "Z", "-Y"])
 def test_joints_in_an_array_stand_whatever_is_up(tmp_path, up):
-    joints = np.stack(list(places(body()).values()), axis=1)
+    joints = np.stack(list(positions_of(body()).values()), axis=1)
     axes = {"Z": joints, "Y": joints[..., [0, 2, 1]] * (1, 1, -1), "-Y": None}
     axes["-Y"] = axes["Y"] * (1, -1, -1)
     np.save(tmp_path / "a.npy", axes[up])
@@ -191,7 +193,7 @@ def test_joints_in_an_array_stand_whatever_is_up(tmp_path, up):
 
 
 def test_unnamed_points_with_y_up_stand(tmp_path):
-    joints = np.stack(list(places(body()).values()), axis=1)[:, :17]
+    joints = np.stack(list(positions_of(body()).values()), axis=1)[:, :17]
     np.save(tmp_path / "a.npy", joints[..., [0, 2, 1]] * (1, 1, -1))
 
     points = read_as(tmp_path / "a.npy")
@@ -210,9 +212,9 @@ def test_axes_that_are_given_are_taken_for_every_kind(tmp_path, axis):
     up = {"X": 0, "Y": 1, "Z": 2}[axis.axis[-1]]
     sign = -1.0 if axis.axis[0] == "-" else 1.0
     plain, _ = read(body(), tmp_path / "b.bvh")
-    x, y, z = np.moveaxis(places(plain)["head"], -1, 0)
+    x, y, z = np.moveaxis(positions_of(plain)["head"], -1, 0)
     in_file = np.stack([x, z, -y], axis=-1)
-    assert places(motion)["head"][:, 2] == pytest.approx(sign * in_file[:, up], abs=1e-3)
+    assert positions_of(motion)["head"][:, 2] == pytest.approx(sign * in_file[:, up], abs=1e-3)
 
 
 def test_bones_along_one_axis_at_rest_stand(tmp_path):
@@ -256,18 +258,18 @@ def test_an_actor_far_above_the_floor_is_a_question(tmp_path):
         (FloorPlacement.NEVER, False),
         (FloorPlacement.ALWAYS, False),
     ):
-        _, said = read(take, tmp_path / "a.bvh", floor=floor)
-        assert ("The actor stays 0.7 m above the floor" in said) == asks
+        _, messages = read(take, tmp_path / "a.bvh", floor=floor)
+        assert ("The actor stays 0.7 m above the floor" in messages) == asks
 
 
 def test_an_actor_far_below_the_floor_is_put_on_it(tmp_path):
     """A camera at chest height is the origin of the take, and the hips are below it."""
     take = plain_names(body(hips=(0.0, 2.0, -0.35)))
 
-    motion, said = read(take, tmp_path / "a.bvh", floor=FloorPlacement.AUTO)
+    motion, messages = read(take, tmp_path / "a.bvh", floor=FloorPlacement.AUTO)
 
-    assert places(motion)["b_left_foot"][:, 2] == pytest.approx(0.02, abs=0.03)
-    assert "the floor" not in said
+    assert positions_of(motion)["b_left_foot"][:, 2] == pytest.approx(0.02, abs=0.03)
+    assert "the floor" not in messages
 
 
 def test_steps_down_are_no_wrong_floor(tmp_path):
@@ -275,10 +277,10 @@ def test_steps_down_are_no_wrong_floor(tmp_path):
     take = plain_names(body())
     take.root_positions[70:, 2] -= 1.5
 
-    motion, said = read(take, tmp_path / "a.bvh", floor=FloorPlacement.AUTO)
+    motion, messages = read(take, tmp_path / "a.bvh", floor=FloorPlacement.AUTO)
 
     assert motion.root_positions[:60, 2] == pytest.approx(0.96, abs=0.01)
-    assert "the floor" not in said
+    assert "the floor" not in messages
 
 
 def plain_names(motion: Motion) -> Motion:

@@ -66,7 +66,7 @@ def object_array() -> bytes:
         ("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", "git lfs pull"),
     ],
 )
-def test_what_would_serve_is_said(read_any, content, sentence):
+def test_refusal_names_a_usable_file(read_any, content, sentence):
     with pytest.raises(InvalidFileError, match=sentence):
         read_any(content)
 

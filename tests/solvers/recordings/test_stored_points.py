@@ -119,7 +119,7 @@ TURNS = {
 
 @pytest.mark.parametrize("unit", [1.0, 0.001])
 @pytest.mark.parametrize("axes", TURNS)
-def test_freemocap_comes_out_upright_in_metres(write, person, unit, axes):
+def test_freemocap_comes_out_upright_in_meters(write, person, unit, axes):
     """In all axes and units that versions of freemocap had; never mirrored."""
     into_file = np.linalg.inv(TURNS[axes])
 

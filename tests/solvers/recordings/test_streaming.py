@@ -41,7 +41,7 @@ def message(tmp_path, monkeypatch):
     monkeypatch.setattr(acclaim, "LINES_OF_HEAD", 3)  # else a small file is all head
     monkeypatch.setattr(trc, "MAX_HEADER_LINES", 8)
 
-    def tell(read, content, size):
+    def read_or_error(read, content, size):
         monkeypatch.setattr(line_reader, "BLOCK_BYTES", size)
         path.write_bytes(content)
         try:
@@ -49,7 +49,7 @@ def message(tmp_path, monkeypatch):
         except (InvalidFileError, InvalidMotionError) as error:
             return str(error)
 
-    return tell
+    return read_or_error
 
 
 def figures(recording):
@@ -84,7 +84,9 @@ def test_refusal_is_independent_of_block_borders(kind, message):
     @given(damaged(complete, tokens), st.integers(1, 200))
     def search(content, size):
         one, other = message(read, content, size), message(read, content, 1 << 22)
-        if kind == "amc" and isinstance(one, str):  # of two faults it may tell the second
+        if kind == "amc" and isinstance(
+            one, str
+        ):  # of two faults it may read_or_error the second
             one = other if isinstance(other, str) else one
         assert one == other
 

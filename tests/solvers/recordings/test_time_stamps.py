@@ -61,7 +61,7 @@ def test_no_observed_frame_is_dropped_next_to_a_gap(rng):
     assert away.max() <= 0.5 * FRAME + 1e-9
 
 
-def test_states_are_the_worse_of_both_neighbours_and_confidence_between_them():
+def test_states_are_the_worse_of_both_neighbors_and_confidence_between_them():
     times = np.array([0.0, 1.0, 2.25, 3.0, 4.0, 9.0, 10.0]) * FRAME
     states = np.array([[2], [2], [1], [2], [2], [2], [0]], dtype=np.int8)
     confidence = np.array([[1.0], [1.0], [0.0], [1.0], [1.0], [1.0], [0.5]])

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from given_motions import every_fourth, given_to, growth
 from numpy.testing import assert_allclose
+from retargeted_motions import every_fourth, given_to, growth
 from rigs import RIGS, child, mixamo
 
 from solvers.motion import (

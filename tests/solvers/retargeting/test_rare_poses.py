@@ -100,7 +100,7 @@ def test_hand_that_sweeps_over_the_ground_is_not_pulled_where_it_turns():
     assert np.abs(found - hand)[:, 1].max() < 0.01
 
 
-def test_hand_that_supports_the_body_is_pulled_to_its_place():
+def test_hand_that_supports_the_body_is_pulled_to_its_position():
     """It rolls by a decimeter per second."""
     source = positions(*[0.05] * 60) + np.linspace(0.0, 0.05, 60)[:, None] * (1.0, 0.0, 0.0)
 

@@ -25,7 +25,7 @@ from solvers.rotations.representations import (
 )
 from solvers.samples import GaitSettings, walking_gait
 
-CMU_METRES = 0.0254 / 0.45
+CMU_METERS = 0.0254 / 0.45
 AS_EVER = RetargetSettings()
 
 
@@ -101,7 +101,7 @@ def test_bones_without_a_source_stay_at_rest(walk, family):
 
 @pytest.mark.parametrize("family", RIGS)
 def test_feet_slide_no_more_than_in_a_real_walk(recordings, family):
-    walk = read_bvh(recordings / "mocap/cmu_walk/05_01.bvh", scale=CMU_METRES)
+    walk = read_bvh(recordings / "mocap/cmu_walk/05_01.bvh", scale=CMU_METERS)
     walk = walk.slice(1, walk.n_frames)
     rig = RIGS[family]()
 

@@ -23,7 +23,7 @@ from solvers.rotations.representations import (
 )
 from solvers.samples import GaitSettings, walking_gait
 
-CMU_METRES = 0.0254 / 0.45
+CMU_METERS = 0.0254 / 0.45
 STAGE = np.array([0.0, 0.0, 3.0])
 SWINGS = "solvers.retargeting.pose_transfer.leaning_swings"
 TRUNK = ("hips", "spine", "chest", "upperChest")
@@ -90,7 +90,7 @@ def test_chest_head_and_hands_rotate_as_in_the_source(family, missing):
 @pytest.mark.parametrize("size", [0.5, 1.0, 2.0])
 def test_standing_feet_are_on_the_ground(recordings, family, size):
     """Rigs stand on height 0 in their rest pose; ankles return to that height."""
-    walk = read_bvh(recordings / "mocap/cmu_walk/05_01.bvh", scale=CMU_METRES)
+    walk = read_bvh(recordings / "mocap/cmu_walk/05_01.bvh", scale=CMU_METERS)
     walk = walk.slice(1, walk.n_frames)
     rig = RIGS[family](size)
     roles = find_humanoid_map(rig)
@@ -107,7 +107,7 @@ def test_standing_feet_are_on_the_ground(recordings, family, size):
 
 def test_body_with_hips_at_the_origin_keeps_its_height(recordings):
     """CMU skeletons have hips at 0 and no soles; a walk keeps its height approximately."""
-    walk = read_bvh(recordings / "mocap/cmu_walk/05_01.bvh", scale=CMU_METRES)
+    walk = read_bvh(recordings / "mocap/cmu_walk/05_01.bvh", scale=CMU_METERS)
     walk = walk.slice(1, walk.n_frames)
     roles = find_humanoid_map(walk.skeleton)
 

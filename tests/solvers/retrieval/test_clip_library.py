@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from acted import ACTS, act
+from acted_clips import ACTS, act
 from numpy.testing import assert_array_equal
 
 from solvers.errors import InvalidMotionError, SolveCancelled
@@ -86,7 +86,7 @@ def test_grown_library_learns_a_new_vocabulary():
     built = build_clip_library(clips(speeds=(2.0, 1.6, 1.8, 2.2, 2.4, 2.6)))
 
     # Postures are stored as half floats, of which the words of the grown one were learned.
-    np.testing.assert_allclose(grown.vocabulary.centre, built.vocabulary.centre, atol=1e-3)
+    np.testing.assert_allclose(grown.vocabulary.center, built.vocabulary.center, atol=1e-3)
     best = ({match[0] for match in ranking(library)[:6]} for library in (grown, built))
     assert [*best] == [{f"kick {seconds}" for seconds in (1.6, 1.8, 2.0, 2.2, 2.4, 2.6)}] * 2
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from acted import act
+from acted_clips import act
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError

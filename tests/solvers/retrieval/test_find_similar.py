@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from acted import ACTS, act
+from acted_clips import ACTS, act
 from numpy.testing import assert_array_equal
 
 from solvers.errors import InvalidMotionError

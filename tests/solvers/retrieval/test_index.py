@@ -4,13 +4,19 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from acted import ACTS, act
+from acted_clips import ACTS, act
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.retrieval.index import index_block
+from solvers.retrieval.index.clip_segments import (
+    HISTOGRAM_SCALE,
+    describe_clip_segments,
+    segment_frames,
+    weight_mean_posture,
+)
 from solvers.retrieval.index.index_block import (
     block_arrays,
     block_from_arrays,
@@ -18,12 +24,6 @@ from solvers.retrieval.index.index_block import (
     merge_blocks,
 )
 from solvers.retrieval.index.posting_lists import build_posting_lists
-from solvers.retrieval.index.segments import (
-    HISTOGRAM_SCALE,
-    describe_clip_segments,
-    segment_frames,
-    weight_mean_posture,
-)
 from solvers.retrieval.index.vocabulary import (
     learn_vocabulary,
     vocabulary_arrays,

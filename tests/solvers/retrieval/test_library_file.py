@@ -10,7 +10,7 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
-from acted import ACTS, act
+from acted_clips import ACTS, act
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -28,7 +28,7 @@ ROOT = Path(__file__).parents[3]
 ADD = """
 import sys
 sys.path += [{fixtures!r}, {root!r}]
-from acted import act
+from acted_clips import act
 from solvers.retrieval import Clip, open_clip_library
 name, path, n_rounds = sys.argv[1], sys.argv[2], int(sys.argv[3])
 with open_clip_library(path) as library:

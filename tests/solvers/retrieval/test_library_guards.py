@@ -6,7 +6,7 @@ import sys
 from contextlib import closing
 
 import pytest
-from acted import act
+from acted_clips import act
 
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.retrieval import (

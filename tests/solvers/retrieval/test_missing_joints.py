@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from acted import ACTS, act
+from acted_clips import ACTS, act
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.motion.humanoid.posture_joints import PARENTS, POSTURE_JOINTS
@@ -130,7 +130,7 @@ def test_parts_never_observed_have_a_low_reliability():
     assert (part_reliability(np.zeros((3, 20), bool), DISTRIBUTION) <= 0.02).all()
 
 
-def test_joints_that_are_lost_one_after_the_other_are_filled():
+def test_joints_missing_one_after_the_other_are_filled():
     """No frame shows all joints that most frames show."""
     postures = clip_postures(act(next(iter(ACTS))), 20.0)
     positions = postures.positions.copy()
@@ -146,7 +146,7 @@ def test_joints_that_are_lost_one_after_the_other_are_filled():
     assert np.isfinite(filled.positions).all()
 
 
-def test_joints_lost_one_after_the_other_leave_the_heading_to_the_others():
+def test_heading_follows_the_other_joints_while_joints_are_missing_in_turn():
     """Hips and shoulders are missing; each arm and leg is lost for a third of the clip."""
     missing = ("chest", "head", "leftUpperArm", "leftUpperLeg", "rightUpperLeg")
     query = clip_postures(with_missing_joints(act("kick", heading=2.0), *missing), 20.0)
@@ -173,7 +173,7 @@ def test_joints_that_all_miss_a_few_frames_are_filled():
     assert np.isfinite(filled.positions).all()
 
 
-def test_trunk_that_leans_aside_keeps_its_heading_while_limbs_are_lost():
+def test_trunk_that_leans_aside_keeps_its_heading_while_limbs_are_missing():
     """Trunks of the library lean forward; limbs, which show the heading, lack 8 frames."""
     query = clip_postures(act("kick"), 20.0)
     trunk = joint_indices("hips", "spine", "chest", "head")

@@ -68,28 +68,28 @@ def cubes(slices, n_levels):
                     yield level, np.abs(cut).max(axis=0, initial=0.0)
 
 
-def dense_kernel(a, b, n_levels, normalise):
+def dense_kernel(a, b, n_levels, normalize):
     """Equation 3.11 with histogram intersection."""
     total = 0.0
     for (level, one), (_, other) in zip(cubes(a, n_levels), cubes(b, n_levels), strict=True):
-        if normalise:
+        if normalize:
             one, other = (each / max(each.sum(), 1e-12) for each in (one, other))
         total += np.minimum(one, other).sum() / 2**level
     return total
 
 
-@pytest.mark.parametrize("normalise", [False, True])
+@pytest.mark.parametrize("normalize", [False, True])
 @pytest.mark.parametrize("n_levels", [1, 2, 3, 4])
 @pytest.mark.parametrize("gap", [1, 2, 7])
-def test_kernel_equals_the_equations(rng, dictionary, gap, n_levels, normalise):
-    settings = PyramidSettings(gap=gap / 30.0, n_levels=n_levels, normalize_cubes=normalise)
+def test_kernel_equals_the_equations(rng, dictionary, gap, n_levels, normalize):
+    settings = PyramidSettings(gap=gap / 30.0, n_levels=n_levels, normalize_cubes=normalize)
     clips = [clip_of(rng, n_frames) for n_frames in (40, 23, 2)]
     rows = [pyramid_descriptor(clip, dictionary, settings) for clip in clips]
     slices = [dense_slices(dense_codes(clip, dictionary), gap) for clip in clips]
 
     kernel = pyramid_kernel(vstack(rows), vstack(rows))
 
-    expected = [[dense_kernel(a, b, n_levels, normalise) for b in slices] for a in slices]
+    expected = [[dense_kernel(a, b, n_levels, normalize) for b in slices] for a in slices]
     assert_allclose(kernel, expected, atol=1e-12)
 
 

@@ -2,21 +2,21 @@
 
 import numpy as np
 import pytest
-from acted import ACTS, act
+from acted_clips import ACTS, act
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
-from plain_warping import plain_cost
+from reference_warping import plain_cost
 from scipy.spatial.distance import cdist
 
 from solvers.motion.humanoid.posture_heading import rotate_about_vertical
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.retrieval import Clip, FindSettings, build_clip_library, find_similar
 from solvers.retrieval.index import reranking, search_index
+from solvers.retrieval.index.clip_segments import MEAN_POSTURE_WEIGHT, weight_mean_posture
 from solvers.retrieval.index.index_block import IndexBlock
 from solvers.retrieval.index.posting_lists import build_posting_lists
 from solvers.retrieval.index.search_index import SearchIndex
-from solvers.retrieval.index.segments import MEAN_POSTURE_WEIGHT, weight_mean_posture
 from solvers.retrieval.index.vocabulary import learn_vocabulary
 from solvers.retrieval.postures.body_parts import BodyPart
 from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from plain_warping import plain_cost
+from reference_warping import plain_cost
 from scipy.spatial.distance import cdist
 
 from solvers.retrieval.index.time_warping import frame_distances, warping_costs

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from acted import act
+from acted_clips import act
 
 from solvers.errors import InvalidFileError
 from solvers.retrieval import (

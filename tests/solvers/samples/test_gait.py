@@ -56,12 +56,12 @@ def test_walk_stays_above_the_floor(walk):
 def test_walk_has_the_requested_speed_and_cadence():
     walk = walking_gait(GaitSettings(duration=20.0, speed=1.1, cadence=100.0))
 
-    travelled = np.diff(walk.root_positions[:, :2], axis=0)
+    traveled = np.diff(walk.root_positions[:, :2], axis=0)
     separation = along(walk, "LeftFoot") - along(walk, "RightFoot")
     n_steps = np.count_nonzero(np.diff(np.sign(separation)))
 
-    assert np.linalg.norm(travelled, axis=1).sum() == pytest.approx(22.0, rel=0.05)
-    assert travelled[:, 1].sum() < -15.0
+    assert np.linalg.norm(traveled, axis=1).sum() == pytest.approx(22.0, rel=0.05)
+    assert traveled[:, 1].sum() < -15.0
     assert n_steps == pytest.approx(20.0 * 100.0 / 60.0, abs=1.5)
 
 

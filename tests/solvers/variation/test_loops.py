@@ -33,7 +33,7 @@ from solvers.variation.loops import (
 )
 from solvers.workflows.vary_motions import plant_variant
 
-CMU_METRES = 0.0254 / 0.45
+CMU_METERS = 0.0254 / 0.45
 FREE = np.ones(2)
 
 
@@ -51,7 +51,7 @@ def cycles(recordings):
     """Return closed cycles of CMU walks, from one extreme of the left foot to the next."""
     found = []
     for path in sorted((recordings / "mocap" / "cmu_walk").glob("35_*.bvh"))[:4]:
-        motion = read_bvh(path, scale=CMU_METRES)
+        motion = read_bvh(path, scale=CMU_METERS)
         motion = motion.slice(1, motion.n_frames)
         names, body = motion.skeleton.names, positions_in_body_frame(motion)
         distance = body[:, names.index("RightFoot"), 1] - body[:, names.index("LeftFoot"), 1]

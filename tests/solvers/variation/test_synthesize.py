@@ -160,7 +160,7 @@ def test_first_variants_keep_their_size_when_more_are_drawn(learned):
     assert len({one.rotations.tobytes() for one in many}) == 7
 
 
-def test_errors_say_what_to_do(model):
+def test_errors_name_a_remedy(model):
     with pytest.raises(InvalidMotionError, match="request at least one"):
         synthesize(model, 0)
     with pytest.raises(InvalidMotionError, match="There is no example 9; the model has 4"):

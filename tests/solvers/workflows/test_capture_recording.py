@@ -10,8 +10,8 @@ from drawn_bodies import CAMERA, drawn, recorded, waving
 
 from solvers.depth_scene.camera import Camera
 from solvers.depth_scene.recording import DepthRecording
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import BodyModel, default_body
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.capture import CaptureSettings
 from solvers.errors import InvalidMotionError
@@ -173,10 +173,10 @@ def test_very_thick_body_is_reported_as_a_possible_wrong_focal_length():
 
 
 def test_wrong_scale_is_refused_or_reported():
-    in_millimetres = changed(recorded(waving(3)), lambda _, depth: 1000.0 * depth)
+    in_millimeters = changed(recorded(waving(3)), lambda _, depth: 1000.0 * depth)
 
     try:
-        message = " ".join(caught(in_millimetres).remarks)
+        message = " ".join(caught(in_millimeters).remarks)
     except InvalidMotionError as error:
         message = str(error)
     assert "scale" in message or "depth is in meters" in message

@@ -20,10 +20,10 @@ def walks():
     ]
 
 
-@pytest.mark.parametrize("behaviour", ["bd_squat1Reps", "bk_kickLFront1Reps"])
-def test_variants_have_the_contacts_of_the_examples_without_slide(behaviour, recordings):
+@pytest.mark.parametrize("behavior", ["bd_squat1Reps", "bk_kickLFront1Reps"])
+def test_variants_have_the_contacts_of_the_examples_without_slide(behavior, recordings):
     folder = recordings / "mocap" / "hdm05"
-    files = sorted(folder.glob(f"HDM_{behaviour}_*.amc"))[:6]
+    files = sorted(folder.glob(f"HDM_{behavior}_*.amc"))[:6]
     examples = [read_recording(file) for file in files]
     variants = vary_motions(examples, 3)
     assert not variants.remarks

@@ -12,10 +12,10 @@ import numpy as np
 from solvers.depth_scene import Camera, DepthRecording
 from solvers.depth_tracking import calibrate_body, refine_body
 from solvers.depth_tracking.body.coordinates import COORDINATES
-from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.motion import body_motion, motion_frames
 from solvers.depth_tracking.body.pose_from_joints import pose_from_joints
+from solvers.depth_tracking.body.segment_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.capturing.calibrate_body import CalibrationSettings
 from solvers.depth_tracking.capturing.find_body import find_body
 from solvers.depth_tracking.capturing.retrack import RetrackSettings, retrack

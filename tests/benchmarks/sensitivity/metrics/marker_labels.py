@@ -57,12 +57,12 @@ def _swaps(clean: Tracks) -> dict[str, tuple[Tracks, Tracks]]:
         slow.positions[first : first + int(rng.integers(3, 12)), marker] = np.nan
     slow.positions[:] += rng.normal(scale=0.001, size=slow.positions.shape)
     return {
-        "swaps 60 Hz": (_exchanged(fast, 12, 4), fast),
-        "swaps 30 Hz, gaps": (_exchanged(slow, 12, 5), slow),
+        "swaps 60 Hz": (_swapped(fast, 12, 4), fast),
+        "swaps 30 Hz, gaps": (_swapped(slow, 12, 5), slow),
     }
 
 
-def _exchanged(tracks: Tracks, n_swaps: int, seed: int) -> Tracks:
+def _swapped(tracks: Tracks, n_swaps: int, seed: int) -> Tracks:
     rng = np.random.default_rng(seed)
     positions = tracks.positions.copy()
     for number, length in enumerate(np.geomspace(0.04, 1.2, n_swaps)):

@@ -4,7 +4,7 @@ from solvers.motion import Motion, Skeleton, find_humanoid_map
 from solvers.retargeting import reduce_keys, retarget
 from tests.fixtures.rigs import RIGS, child
 
-from ...retarget.retarget_measures import acted, ik_figures, seen_figures
+from ...retarget.retarget_measures import acted, ik_figures, world_figures
 from ..takes import hdm05, walk
 
 FAMILIES = ("Mixamo",)
@@ -33,7 +33,7 @@ def measure(motions: dict[str, Motion], rigs: dict[str, Skeleton]) -> dict[str, 
             roles = find_humanoid_map(target)
             given = retarget(motion, source.humanoid, target, roles)
             result = acted(given, roles)
-            found = {**seen_figures(source, result), **ik_figures(source, result)}
+            found = {**world_figures(source, result), **ik_figures(source, result)}
             for what in ("hand cm", "trunk degrees", "below floor cm", "elbow acceleration"):
                 figures[f"{name}, {rig}: {what}"] = found[what] + 0.01
             for what in ("knee acceleration", "IK: foot cm", "slide cm/s"):

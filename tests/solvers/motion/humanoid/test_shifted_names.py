@@ -62,7 +62,7 @@ def test_right_names_of_held_out_rigs_are_believed():
     assert total["false_marks"] <= MAX_FALSE_MARKS_HELD_OUT * total["roles"]
 
 
-def test_a_map_that_lengths_decided_says_so():
+def test_map_decided_by_lengths_is_reported():
     joints = SHIFTS["pelvis called thigh"](joints_of("SMPL"))
     skeleton = skeleton_from(joints)
     humanoid = find_humanoid_map(skeleton)

@@ -39,7 +39,7 @@ def all_frames(recording) -> np.ndarray:
 
 
 @pytest.mark.parametrize("take", ["walk_front", "hop"])
-def test_rendered_archives_hold_the_millimetres_that_numpy_finds(recordings, take):
+def test_rendered_archives_hold_the_millimeters_that_numpy_finds(recordings, take):
     path = recordings / "depth" / "truth" / f"{take}.npz"
     with np.load(path) as archive:
         depth, focal = archive["depth"], archive["fx"]
@@ -52,7 +52,7 @@ def test_rendered_archives_hold_the_millimetres_that_numpy_finds(recordings, tak
 
 
 @pytest.mark.parametrize("take", ["a1_s1_t1", "a22_s7_t1"])
-def test_utd_mhad_is_what_scipy_finds_turned_the_right_way_round(recordings, take):
+def test_utd_mhad_equals_the_transposed_array_of_scipy(recordings, take):
     path = recordings / "depth" / "utd_mhad" / f"{take}_depth.mat"
     depth = io.loadmat(path)["d_depth"]
 
@@ -148,7 +148,7 @@ def test_archive_defines_camera_rate_and_color(write, rng):
     assert_allclose(messages.frame(1), 10.0 * recording.frame(1), rtol=1e-6)
 
 
-def test_numbers_with_a_point_are_metres(write):
+def test_numbers_with_a_point_are_meters(write):
     depth = pictures().astype(np.float32) / 1000
     depth[2, 3] = np.nan
 

@@ -6,7 +6,7 @@ import shutil
 import numpy as np
 import pytest
 from depth_files import pictures
-from depth_folders import colors_of, open3d, plain, stray, tum
+from depth_folders import colors_of, open3d, plain, stray_scanner, tum
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_scene.camera import Camera
@@ -34,7 +34,7 @@ def heard():
     return text, lambda fraction, message="": text.append(message)
 
 
-def test_tum_is_five_thousandths_of_a_metre_and_has_its_colors(tmp_path, depth):
+def test_tum_is_five_thousandths_of_a_meter_and_has_its_colors(tmp_path, depth):
     folder = tum(tmp_path, depth, 100.0 + np.arange(9) / 30.0)
 
     recording = read_depth(folder, LENS)
@@ -86,8 +86,8 @@ def test_times_that_run_backwards_are_refused(tmp_path, depth):
     assert read_depth(folder, DepthSettings(fx=9.0, frame_rate=30.0)).n_frames == 9
 
 
-def test_stray_scanner_tells_its_camera_and_time(tmp_path, depth):
-    folder = stray(tmp_path, depth, LEVEL)
+def test_stray_scanner_states_its_camera_and_time(tmp_path, depth):
+    folder = stray_scanner(tmp_path, depth, LEVEL)
 
     recording = read_recording(folder)
 
@@ -120,7 +120,7 @@ def test_a_telephone_that_was_held_upright_on_its_side_or_on_its_head(
         2 * (x * y + z * w),
         1 - 2 * (x * x + z * z),
     ])  # in the camera: x right, y down
-    folder = stray(tmp_path, depth, (0.0, 1.0, 0.0, *turn))
+    folder = stray_scanner(tmp_path, depth, (0.0, 1.0, 0.0, *turn))
     all_of_them = DepthSettings(min_confidence=0)
 
     frame = read_depth(folder, all_of_them).frame(4)
@@ -138,13 +138,13 @@ def test_a_telephone_that_was_held_upright_on_its_side_or_on_its_head(
 def test_moving_phone_is_reported(tmp_path, depth):
     text, progress = heard()
 
-    read_depth(stray(tmp_path, depth, LEVEL, moved=0.9), progress=progress)
+    read_depth(stray_scanner(tmp_path, depth, LEVEL, moved=0.9), progress=progress)
 
     assert "The camera moved by 0.8 m; it is assumed to be static." in text
 
 
-def test_stray_without_a_course_is_sixty_a_second(tmp_path, depth):
-    folder = stray(tmp_path, depth, LEVEL)
+def test_stray_scanner_without_a_trajectory_has_60_hz(tmp_path, depth):
+    folder = stray_scanner(tmp_path, depth, LEVEL)
     (folder / "odometry.csv").unlink()
     shutil.rmtree(folder / "confidence")
 
@@ -154,7 +154,7 @@ def test_stray_without_a_course_is_sixty_a_second(tmp_path, depth):
     assert_allclose(all_frames(recording), depth * 0.001, rtol=1e-6)
 
 
-def test_open3d_tells_its_camera_by_columns(tmp_path, depth):
+def test_open3d_states_its_camera_by_columns(tmp_path, depth):
     recording = read_recording(open3d(tmp_path, depth))
 
     assert recording.camera == Camera(9.0, 8.0, 3.25, 2.75, 8, 6)
@@ -177,7 +177,7 @@ def test_open3d_tells_its_camera_by_columns(tmp_path, depth):
         ),
     ],
 )
-def test_a_plain_folder_asks_for_scale_and_camera(tmp_path, depth, settings, missing):
+def test_plain_folder_requires_scale_and_camera(tmp_path, depth, settings, missing):
     with pytest.raises(InvalidFileError, match=missing):
         read_depth(plain(tmp_path, depth), settings)
 

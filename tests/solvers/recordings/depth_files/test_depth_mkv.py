@@ -238,7 +238,7 @@ def test_unreadable_recording_is_refused_with_the_reason(write, content, setting
         read_depth(write(content), settings)
 
 
-def test_a_file_without_calibration_asks_for_the_camera(write):
+def test_file_without_calibration_requires_the_camera(write):
     path = write(at_time(0))
 
     with pytest.raises(InvalidFileError, match=r"no calibration of the camera\. Set"):

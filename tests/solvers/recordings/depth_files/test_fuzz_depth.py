@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from damage import damaged, read_or_refuse, searching
 from depth_files import depth_npz, matlab, pictures
-from depth_folders import open3d, stray, tum
+from depth_folders import open3d, stray_scanner, tum
 from hypothesis import given
 from mkv_files import BINNED, bitmap, k4a
 from PIL import Image
@@ -108,7 +108,7 @@ def test_a_damaged_recording_of_a_real_size(tmp_path):
 def test_damaged_files_in_folders(layout, name, tmp_path):
     folder = {
         "open3d": lambda: open3d(tmp_path, DEPTH),
-        "stray": lambda: stray(tmp_path, DEPTH, (0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0)),
+        "stray": lambda: stray_scanner(tmp_path, DEPTH, (0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0)),
         "tum": lambda: tum(tmp_path, DEPTH, np.arange(5) / 30.0),
     }[layout]()
     complete = (folder / name).read_bytes()

@@ -9,7 +9,7 @@ from pathlib import PureWindowsPath
 import numpy as np
 import pytest
 from depth_files import pictures
-from depth_folders import colors_of, open3d, plain, save_png, stray, tum
+from depth_folders import colors_of, open3d, plain, save_png, stray_scanner, tum
 from mkv_files import BINNED, k4a
 from PIL import Image, ImageFile
 
@@ -91,7 +91,7 @@ def test_a_pipe_among_the_images_is_a_missing_one(folder, depth, kind):
     assert recording.color(5).max() > 0
 
 
-def test_a_pipe_or_a_link_does_not_hide_the_takes_beside_it(tmp_path, depth):
+def test_pipe_or_link_does_not_hide_adjacent_takes(tmp_path, depth):
     save_png(tmp_path / "secret.png", depth[0])
     shots = tmp_path / "shots"
     take = open3d(shots / "take", depth)
@@ -147,14 +147,14 @@ def test_depth_that_has_changed_its_size_is_refused_before_it_is_unpacked(
 
 
 def test_confidence_of_another_size_than_depth_is_refused(tmp_path, depth):
-    folder = stray(tmp_path, depth, (0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0))
+    folder = stray_scanner(tmp_path, depth, (0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0))
     save_png(folder / "confidence" / "000004.png", np.zeros((5, 8), np.uint8))
 
     with pytest.raises(InvalidFileError, match=r"000004\.png is no longer a gray image of"):
         read_depth(folder).frame(4)
 
 
-def test_color_in_a_video_is_bounded_by_what_its_track_says(tmp_path, monkeypatch):
+def test_color_in_a_video_is_bounded_by_its_track(tmp_path, monkeypatch):
     file = BytesIO()
     Image.new("RGB", (1281, 720)).save(file, "JPEG")
     content = k4a(pictures(2, *BINNED), color=(b"MJPG", [file.getvalue()] * 2))

@@ -144,7 +144,7 @@ def test_a_line_per_frame(write, values):
 
 @pytest.mark.parametrize("layout", [azure_lines, azure_columns])
 @pytest.mark.parametrize("end", ["\r\n", "\r\r\n", "\r"])
-def test_lines_may_end_in_any_way(write, values, layout, end):
+def test_all_line_endings_are_read(write, values, layout, end):
     """A table that was twice written as text of Windows has a blank line after each."""
     text = layout([{1: frame} for frame in values] if layout is azure_lines else values)
 
@@ -153,7 +153,7 @@ def test_lines_may_end_in_any_way(write, values, layout, end):
     assert_allclose(recording.tracks.positions, upright(values))
 
 
-def test_scale_is_metres_per_unit(write, values):
+def test_scale_is_meters_per_unit(write, values):
     assert_allclose(
         read_recording(write(azure_columns(values)), scale=1.0).tracks.positions,
         1000 * upright(values),

@@ -62,11 +62,11 @@ def test_of_the_zed_gaps_are_nan_and_confidence_is_a_fraction(read_any):
     assert_allclose(recording.tracks.confidence[2], 0.0, atol=0.01)
 
 
-def test_a_body_of_the_zed_in_millimeters_comes_in_true_size(read_any, said):
-    recording = read_any(zed(34, unit=0.001)[0], progress=said[1])
+def test_a_body_of_the_zed_in_millimeters_comes_in_true_size(read_any, collected_messages):
+    recording = read_any(zed(34, unit=0.001)[0], progress=collected_messages[1])
 
     assert np.nanmax(recording.tracks.positions[..., 2]) == pytest.approx(1.69, abs=0.01)
-    assert any("millimeters" in message for message in said[0])
+    assert any("millimeters" in message for message in collected_messages[0])
 
 
 def test_a_user_of_nuitrack_comes_in_from_the_csv(read_any):
@@ -113,7 +113,7 @@ def expected_landmarks(points):
 
 
 @pytest.mark.parametrize("key", ["worldLandmarks", "pose_world_landmarks"])
-def test_world_landmarks_in_json_are_read_beside_those_of_the_picture(read_any, key):
+def test_world_landmarks_in_json_are_read_next_to_image_landmarks(read_any, key):
     points = mediapipe()
     points[2] = np.nan
 
@@ -128,15 +128,15 @@ def test_world_landmarks_in_json_are_read_beside_those_of_the_picture(read_any, 
     assert_allclose(recording.tracks.confidence[2], 0.0)
 
 
-def test_lists_of_lists_without_names_are_read_with_a_message(read_any, said):
+def test_lists_of_lists_without_names_are_read_with_a_message(read_any, collected_messages):
     points = mediapipe()
     frames = [{"landmarks": [body[:, :3].tolist()]} for body in points]
 
-    recording = read_any(json.dumps(frames), progress=said[1])
+    recording = read_any(json.dumps(frames), progress=collected_messages[1])
 
     assert recording.tracks.confidence is None
     assert_allclose(recording.tracks.positions[:, :33], expected_landmarks(points), atol=1e-6)
-    assert "The file has no frame rate; 30 Hz is assumed" in said[0]
+    assert "The file has no frame rate; 30 Hz is assumed" in collected_messages[0]
 
 
 @pytest.mark.parametrize("style", ["names", "numbers", "letters", "world", "long"])

@@ -13,14 +13,14 @@ CMU = {
     "shoulder": "Arm", "elbow": "ForeArm", "wrist": "Hand", "hip": "UpLeg", "knee": "Leg",
     "ankle": "Foot", "foot_index": "ToeBase",
 }  # fmt: skip
-METRES = 0.0254 / 0.45
+METERS = 0.0254 / 0.45
 BESIDE = {"left": (0.08, 0.0, 0.0), "right": (-0.08, 0.0, 0.0)}
 
 
 @pytest.fixture(scope="module")
 def walk(recordings):
     """Points of the body by MediaPipe's names, meters, (n_frames, 3) each."""
-    motion = read_bvh(recordings / "mocap" / "cmu_walk" / "07_01.bvh", scale=METRES)
+    motion = read_bvh(recordings / "mocap" / "cmu_walk" / "07_01.bvh", scale=METERS)
     motion = motion.slice(1, motion.n_frames)
     joints = dict(
         zip(

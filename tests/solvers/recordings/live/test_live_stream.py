@@ -167,7 +167,7 @@ def test_the_receiver_listens_on_loopback_only_and_never_waits(send_to):
     ],
     ids=["short lines", "blank lines", "small datagrams", "long lines", "one line"],
 )
-def test_a_burst_of_junk_is_looked_at_up_to_a_bound_and_counted(junk, monkeypatch):
+def test_burst_of_junk_is_parsed_up_to_a_bound_and_counted(junk, monkeypatch):
     decoded = []
 
     def decode(line):

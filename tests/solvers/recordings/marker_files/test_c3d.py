@@ -40,7 +40,7 @@ def test_other_programs_read_what_is_written(tracks, tmp_path, library):
     assert_allclose(found.points[known], 1000 * tracks.positions[known], atol=1e-3)
 
 
-def test_more_points_and_frames_than_one_number_can_tell(tmp_path, rng):
+def test_more_points_and_frames_than_one_number_holds(tmp_path, rng):
     """Beyond 255 labels and 65,535 frames the format has ways of its own."""
     names = tuple(f"M{number}" for number in range(300))
     many = Tracks(names, rng.normal(size=(2, 300, 3)), 100.0)
@@ -74,7 +74,7 @@ def test_every_kind_of_number(tmp_path, processor, step):
     ("up", "expected"),
     [(b"+Z", (1, 2, 3)), (b"+Y", (1, -3, 2)), (b"+X", (2, 3, 1)), (b"-Z", (1, -2, -3))],
 )
-def test_up_is_where_the_screen_says(tmp_path, up, expected):
+def test_up_follows_the_screen_parameters(tmp_path, up, expected):
     values = np.array([[[1000, 2000, 3000, 0]] * 3])
     path = tmp_path / "take.c3d"
     path.write_bytes(c3d_bytes(values, INTEL, -1.0, up=up))
@@ -188,7 +188,7 @@ def test_every_file_at_hand_is_known(recordings):
 
 
 @pytest.mark.parametrize("kind", [-1, 1, 2, 4])
-def test_a_parameter_that_claims_more_than_any_number_can_tell_is_passed_over(tmp_path, kind):
+def test_oversized_parameter_is_skipped(tmp_path, kind):
     """Found by fuzzing: 127 sizes of 255 made a product that wrapped around."""
     complete = c3d_bytes(np.ones((2, 3, 4)), INTEL, -1.0)
     endless = struct.pack("<bb3sHbB", 3, 1, b"BIG", 132, kind, 127) + b"\xff" * 127 + b"\0"

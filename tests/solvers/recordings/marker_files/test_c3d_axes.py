@@ -9,17 +9,17 @@ from solvers.recordings import read_c3d, read_trc, write_c3d, write_trc
 
 def test_a_screen_that_hangs_the_actor_below_the_floor_is_not_obeyed(recordings):
     """QTM writes Y_SCREEN -Z of data with Z up."""
-    said = []
+    messages = []
 
     tracks = read_c3d(
         recordings / "corpus/lab/c3d_qualisys/Qualisys.c3d",
-        progress=lambda _, message="": said.append(message),
+        progress=lambda _, message="": messages.append(message),
     )
 
     heights = tracks.positions[..., 2]
     assert np.nanpercentile(heights, 1) > 0.0
     assert np.nanmedian(np.nanmax(heights, axis=1)) == pytest.approx(1.47, abs=0.05)
-    assert any("Y_SCREEN states -Z" in message for message in said)
+    assert any("Y_SCREEN states -Z" in message for message in messages)
 
 
 def standing(rng, n_markers=12):
@@ -37,19 +37,20 @@ def read_with_screen(tracks, path, screen):
     content = path.read_bytes()
     start = content.index(b"+Z", content.index(b"Y_SCREEN"))
     path.write_bytes(content[:start] + screen + content[start + 2 :])
-    said = []
-    read = read_c3d(path, progress=lambda _, message="": said.append(message))
-    return read.positions, " ".join(said)
+    messages = []
+    read = read_c3d(path, progress=lambda _, message="": messages.append(message))
+    return read.positions, " ".join(messages)
 
 
 def test_a_screen_upside_down_is_not_obeyed(tmp_path, rng):
     tracks = standing(rng)
 
-    read, said = read_with_screen(tracks, tmp_path / "a.c3d", b"-Z")
+    read, messages = read_with_screen(tracks, tmp_path / "a.c3d", b"-Z")
 
     assert read == pytest.approx(tracks.positions, abs=1e-5)
     assert (
-        "Y_SCREEN states -Z, which would put the actor below the floor; it was ignored" in said
+        "Y_SCREEN states -Z, which would put the actor below the floor; it was ignored"
+        in messages
     )
 
 
@@ -57,10 +58,10 @@ def test_a_body_that_stands_along_another_axis_is_believed(tmp_path, rng):
     tracks = standing(rng)
     along_x = tracks.with_positions(np.roll(tracks.positions, 1, axis=-1))
 
-    read, said = read_with_screen(along_x, tmp_path / "a.c3d", b"+Z")
+    read, messages = read_with_screen(along_x, tmp_path / "a.c3d", b"+Z")
 
     assert read == pytest.approx(tracks.positions, abs=1e-5)
-    assert "Y_SCREEN states +Z, but the actor stands along +X, which is used" in said
+    assert "Y_SCREEN states +Z, but the actor stands along +X, which is used" in messages
 
 
 @pytest.mark.parametrize("pose", ["lies", "spreads the arms over a pit", "below the floor"])
@@ -74,10 +75,10 @@ def test_the_screen_is_obeyed_where_it_may_be_right(tmp_path, rng, pose):
         spread = (4.0, 1.0, 1.0) if "arms" in pose else (1.0, 1.0, 1.0)
         tracks = tracks.with_positions(tracks.positions * spread - (-3.0, -3.0, 0.5))
 
-    read, said = read_with_screen(tracks, tmp_path / "a.c3d", b"+Z")
+    read, messages = read_with_screen(tracks, tmp_path / "a.c3d", b"+Z")
 
     assert read == pytest.approx(tracks.positions, abs=1e-5)
-    assert "Y_SCREEN" not in said
+    assert "Y_SCREEN" not in messages
 
 
 @pytest.mark.parametrize("up", ["X", "Y", "Z"])

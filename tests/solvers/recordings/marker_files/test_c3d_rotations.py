@@ -66,17 +66,17 @@ def test_poses_with_a_negative_residual_are_gaps(path, tmp_path):
     assert np.isfinite(motion.root_positions[[99, 101]]).all()
 
 
-def test_segments_of_no_body_become_points_and_it_is_said(path, tmp_path, said):
+def test_segments_of_no_body_become_points_with_a_report(path, tmp_path, collected_messages):
     content = path.read_bytes()
     for number, label in enumerate((b"thigh", b"shank", b"uarm", b"larm", b"foot", b"hand")):
         content = content.replace(label, (b"q%d" % number).ljust(len(label), b"z"))
     (tmp_path / "props.c3d").write_bytes(content)
 
-    tracks = read_recording(tmp_path / "props.c3d", progress=said[1])
+    tracks = read_recording(tmp_path / "props.c3d", progress=collected_messages[1])
 
     assert isinstance(tracks, Tracks)
     assert tracks.n_points == 21
-    assert any("come in as points" in message for message in said[0])
+    assert any("come in as points" in message for message in collected_messages[0])
     assert_allclose(tracks.positions[100, 1], origins(path)[100, 1], atol=1e-5)
 
 

@@ -72,17 +72,17 @@ def test_euler_angles_of_motive_are_applied_in_their_order(read_any):
     assert_allclose(joints(motion), z_up(positions[:, order]), atol=1e-5)
 
 
-def test_of_two_skeletons_the_one_observed_most_is_read_and_it_is_said(read_any, said):
+def test_skeleton_in_most_frames_is_read_with_a_report(read_any, collected_messages):
     other = motive_bones("Ben:")
     hidden = [(*rest, np.where(np.arange(6) < 3, cells, np.nan)) for *rest, cells in other]
 
-    motion = read_any(motive(hidden + motive_bones("Anna:")), progress=said[1])
+    motion = read_any(motive(hidden + motive_bones("Anna:")), progress=collected_messages[1])
 
     assert np.isfinite(motion.root_positions).all()
-    assert "Only the skeleton Anna is read, not Ben" in said[0]
+    assert "Only the skeleton Anna is read, not Ben" in collected_messages[0]
 
 
-def test_bones_that_come_apart_become_points_and_it_is_said(read_any, said):
+def test_separated_bones_become_points_with_a_report(read_any, collected_messages):
     columns = motive_bones()
     noise = np.random.default_rng(1).normal(size=(len(columns), 6))
     torn = [
@@ -90,10 +90,10 @@ def test_bones_that_come_apart_become_points_and_it_is_said(read_any, said):
         for number, (*rest, cells) in enumerate(columns)
     ]
 
-    tracks = read_any(motive(torn), progress=said[1])
+    tracks = read_any(motive(torn), progress=collected_messages[1])
 
     assert isinstance(tracks, Tracks)
-    assert any("without their rotations" in message for message in said[0])
+    assert any("without their rotations" in message for message in collected_messages[0])
 
 
 def test_a_skeleton_of_qualisys_stands_and_moves_as_recorded(read_any):

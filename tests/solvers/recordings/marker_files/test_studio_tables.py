@@ -141,7 +141,7 @@ def test_qualisys_columns_are_found_without_stamps_or_titles(read_any, stamps, t
     assert_allclose(tracks.positions, points / 1000.0, atol=1e-6)
 
 
-def test_frames_without_any_marker_keep_their_place(read_any):
+def test_frames_without_any_marker_keep_their_index(read_any):
     points = POINTS.copy()
     points[2] = np.nan
 
@@ -159,12 +159,14 @@ def test_marks_and_line_ends_do_not_matter(read_any, start, ending):
     assert_allclose(read_any(start + text).positions, POINTS / 1000.0, atol=1e-9)
 
 
-def test_rigid_bodies_come_in_as_points_and_it_is_said(read_any, said):
-    tracks = read_any(qualisys_bodies(("Head", "Bat"), POINTS[:, :2]), progress=said[1])
+def test_rigid_bodies_become_points_with_a_report(read_any, collected_messages):
+    tracks = read_any(
+        qualisys_bodies(("Head", "Bat"), POINTS[:, :2]), progress=collected_messages[1]
+    )
 
     assert tracks.names == ("Head", "Bat")
     assert_allclose(tracks.positions, POINTS[:, :2] / 1000.0, atol=1e-6)
-    assert "Of rigid bodies the origins are read, not the rotations" in said[0]
+    assert "Of rigid bodies the origins are read, not the rotations" in collected_messages[0]
 
 
 def test_expected_markers_are_read_only_without_measured_ones(read_any):

@@ -204,7 +204,7 @@ def test_the_unit_is_the_header_s_or_gives_a_person_s_size(read, unit, meters):
 
 
 @pytest.mark.parametrize(("names", "up"), [("Y up", 2), ("Z up", 1), ("-z up", -1), ("", 2)])
-def test_up_is_what_the_first_line_says(read, names, up):
+def test_up_axis_is_read_from_the_first_line(read, names, up):
     tracks = read(FILE.replace("take.trc\n", f"take.trc\t{names}\t\t\n"))
 
     assert tracks.positions[1, 0, 2] == pytest.approx({2: 1.501, 1: 0.021, -1: -0.021}[up])

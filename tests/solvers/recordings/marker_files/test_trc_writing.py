@@ -34,7 +34,7 @@ def test_what_is_written_is_read_back_to_the_last_digit(tmp_path_factory, data):
     assert path.read_bytes() == written
 
 
-def test_gaps_are_written_blank_and_no_nan_in_words(tmp_path):
+def test_gaps_are_written_blank_without_the_text_nan(tmp_path):
     positions = np.array([
         [[0.011, -0.021, 1.501], [np.nan] * 3],
         [[np.nan] * 3, [-1e-12, 2, 3]],

@@ -97,7 +97,7 @@ def test_turns_are_about_the_axes_of_each_bone(read):
     assert_allclose(elbow[2], [10, 0, 20], atol=1e-12)
 
 
-def test_joints_agree_with_the_model_recorded_beside_the_markers(recordings):
+def test_joints_agree_with_the_model_recorded_with_the_markers(recordings):
     """CMU's 05_13.c3d holds the joint centers that the same software computed.
 
     Its axes are turned by a quarter. The toes are left out: see `read_acclaim`.
@@ -110,12 +110,12 @@ def test_joints_agree_with_the_model_recorded_beside_the_markers(recordings):
     motion = read_acclaim(recordings / "mocap" / "05_13.amc")
 
     positions = forward_kinematics(motion).positions
-    for label, joint in CENTRES.items():
+    for label, joint in CENTERS.items():
         seen = positions[:, motion.skeleton.index(joint)]
         assert_allclose(seen, centers[f"Dance:{label}0"], atol=0.0005, err_msg=joint)
 
 
-CENTRES = {
+CENTERS = {
     "PEL": "root", "LHJ": "lfemur", "RHJ": "rfemur", "LFE": "ltibia", "RFE": "rtibia",
     "LTI": "lfoot", "RTI": "rfoot", "LBK": "upperback", "UBK": "thorax", "TRX": "lowerneck",
     "LNK": "upperneck", "UNK": "head", "HED": "head_end", "LCL": "lhumerus", "RCL": "rhumerus",

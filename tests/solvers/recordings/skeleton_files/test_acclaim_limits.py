@@ -79,7 +79,7 @@ def test_limits_that_cannot_be_are_refused(leg, wrong, sentence):
         read_acclaim_limits(leg)
 
 
-def test_a_dancer_leaves_the_limits_of_his_file_by_what_the_numbers_say(recordings):
+def test_dancer_exceeds_the_limits_of_his_file_by_known_angles(recordings):
     """Joints with one angle need no geometry: its excess is a subtraction."""
     path = recordings / "mocap" / "05_13.amc"
     beyond = excess(path)

@@ -60,12 +60,14 @@ def test_a_lying_actor_is_left_lying_and_reported(walk, tmp_path):
     rotations[:, 1:] = rotations[:1, 1:]
     places = np.broadcast_to((1.0, 3.0, 0.1), walk.root_positions.shape)
     write_bvh(Motion(walk.skeleton, rotations, places, walk.frame_rate), tmp_path / "lie.bvh")
-    said = []
+    messages = []
 
-    read = read_bvh(tmp_path / "lie.bvh", progress=lambda _, message="": said.append(message))
+    read = read_bvh(
+        tmp_path / "lie.bvh", progress=lambda _, message="": messages.append(message)
+    )
 
     assert np.allclose(read.root_positions, places, atol=1e-3)
-    assert any("Y is taken for up" in message for message in said)
+    assert any("Y is taken for up" in message for message in messages)
 
 
 @pytest.mark.parametrize(

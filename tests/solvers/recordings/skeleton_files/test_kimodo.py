@@ -54,18 +54,18 @@ def saved(path, rng):
 
 
 def test_positions_and_rotations_alone_give_the_same_joints_standing(tmp_path, rng):
-    said = []
+    messages = []
     theirs = saved(tmp_path / "take.npz", rng)
 
     motion = read_recording(
-        tmp_path / "take.npz", progress=lambda _, message="": said.append(message)
+        tmp_path / "take.npz", progress=lambda _, message="": messages.append(message)
     )
 
     ours = world_poses(motion.skeleton, motion.rotations, motion.root_positions).positions
     standing = np.stack([theirs[..., 0], -theirs[..., 2], theirs[..., 1]], axis=-1)
     assert np.abs(ours - standing).max() == pytest.approx(0.0, abs=1e-6)
     assert motion.frame_rate == 30.0
-    assert "The file has no frame rate; 30 Hz is assumed" in said
+    assert "The file has no frame rate; 30 Hz is assumed" in messages
     found = find_humanoid_map(motion.skeleton)
     assert found.joint("leftUpperLeg") == "LeftLeg"
     assert found.joint("leftLowerLeg") == "LeftShin"

@@ -92,12 +92,12 @@ def test_video_model_with_y_up(tmp_path):
         body_pose=vectors[None, :, 1:].reshape(1, F, -1),
         transl=np.cumsum(np.full((1, F, 3), (0.0, 0.0, 0.04)), axis=1),
     )  # fmt: skip
-    said = []
+    messages = []
 
-    motion = read_recording(path, progress=lambda _, message="": said.append(message))
+    motion = read_recording(path, progress=lambda _, message="": messages.append(message))
 
     assert motion.frame_rate == 30.0
-    assert any("no frame rate; 30 Hz" in message for message in said)
+    assert any("no frame rate; 30 Hz" in message for message in messages)
     assert np.ptp(motion.root_positions[:, 1]) == pytest.approx(0.04 * (F - 1))
     check_standing(motion)
 
@@ -181,7 +181,7 @@ def test_features_are_no_points(recordings):
 
 
 @pytest.mark.parametrize("name", ["01_single_text_prompt", "05_root_path"])
-def test_kimodo_stands_and_its_joints_are_where_it_says(recordings, name):
+def test_kimodo_stands_with_joints_at_the_stored_positions(recordings, name):
     path = recordings / "corpus/smpl/kimodo_soma_npz" / f"{name}.npz"
 
     motion = read_recording(path)
@@ -244,11 +244,11 @@ def test_a_lying_actor_of_amass_never_passes_in_silence(tmp_path, root, lies):
         tmp_path / "lie.npz", poses=poses(root=root).reshape(F, -1), mocap_framerate=60.0,
         trans=np.tile((0.0, 0.0, 0.1), (F, 1)),
     )  # fmt: skip
-    said = []
+    messages = []
 
-    motion = read_recording(path, progress=lambda _, message="": said.append(message))
+    motion = read_recording(path, progress=lambda _, message="": messages.append(message))
 
     places = joint_positions(motion)
     rises = np.abs((places["head"] - places["pelvis"])[:, 2]).max()
     assert (rises < 0.3) == lies
-    assert any("is taken for up" in message for message in said)
+    assert any("is taken for up" in message for message in messages)

@@ -27,7 +27,7 @@ from solvers.motion.skeletons.limb_ik import reach
 from solvers.recordings import read_acclaim, read_bvh
 
 from .depth_sequences import Sequence, sequence
-from .forest_sources import CMU_METRES, DATA, all_bodies
+from .forest_sources import CMU_METERS, DATA, all_bodies
 
 KINECT = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
 SHAPES = TrainingImagesSettings(shape=0.05, clothes=0.02)
@@ -231,6 +231,6 @@ def _yaw_matrix(angle: float) -> np.ndarray:
 
 def _clip(name: str) -> Motion:
     if name.endswith(".bvh"):
-        return read_bvh(DATA / "mocap" / name, scale=CMU_METRES)
+        return read_bvh(DATA / "mocap" / name, scale=CMU_METERS)
     folder = DATA / "mocap" / "hdm05"
     return read_acclaim(folder / f"{name}_120.amc", folder / f"{name[:6]}.asf")

@@ -2,7 +2,7 @@
 
 Each comes in framed, in Pose Mode or with its markers selected, with the rate of the take.
 
-    make test-gui DRIVERS=stands
+    make test-gui DRIVERS=import_framing
 
 Runs inside that Blender; `bgui` comes with the tool. The takes are copied next to this script.
 """
@@ -13,7 +13,7 @@ import bgui
 import bpy
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from stage import empty_scene, settle, until_done
+from driver_scene import empty_scene, settle, until_done
 
 FOLDER = Path(__file__).parent
 TAKES = {

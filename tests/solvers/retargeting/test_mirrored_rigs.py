@@ -43,5 +43,5 @@ def test_knees_that_bend_backward_are_reported():
     assert "If left and right are mirrored, swap them" in remark
 
 
-def test_a_body_without_toes_is_retargeted_without_a_word():
+def test_body_without_toes_is_retargeted_without_a_remark():
     assert remarks_on(walk_without_toes()) == []

@@ -31,10 +31,11 @@ MAX_JOINT_DRIFT = 0.003
 body, from which it is at no joint."""
 JOINT_HEIGHT = 0.3
 """Place of that joint on the way to the origin, where the motion leaves it open."""
-MIN_SINGULAR = 0.05
-"""Singular values, relative to the largest, of directions that the motion leaves open."""
+MIN_SINGULAR_RATIO = 0.05
+"""Singular value, as a ratio to the largest, below which the motion does not determine a
+direction."""
 LEFT_RIGHT = ("UpperLeg", "UpperArm", "Shoulder")
-"""Parts of the body whose left joint is beside the right one."""
+"""Roles whose left and right joints are on opposite sides of the body."""
 
 
 def recording_from_segments(
@@ -123,7 +124,7 @@ def _at_joints(positions: Array, rotations: Array, parents: Sequence[int]) -> Ar
         start = np.concatenate([guess, back.mean(axis=0)])
         equations = np.concatenate([above, -own], axis=2).reshape(-1, 6)
         left = between[complete].ravel() - equations @ start
-        point = start + np.linalg.lstsq(equations, left, rcond=MIN_SINGULAR)[0]
+        point = start + np.linalg.lstsq(equations, left, rcond=MIN_SINGULAR_RATIO)[0]
         moved[:, joint] += rotate(rotations[:, joint], point[3:])
     return moved
 

@@ -1,4 +1,4 @@
-"""What a take can be exported as; imported by Blender and by the process without it."""
+"""File formats of Export, for Blender and for the process without it."""
 
 from ...solvers.settings import Choice
 

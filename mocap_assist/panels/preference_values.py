@@ -1,4 +1,4 @@
-"""What the animator has set in the extension's preferences."""
+"""Read the extension's preferences."""
 
 from typing import Any
 

@@ -23,7 +23,7 @@ def walk_with_offsets(folder: Path, factor: float) -> Motion:
     return read_bvh(path)
 
 
-def test_offsets_in_meters_and_positions_in_centimeters_are_asked_about(tmp_path):
+def test_offsets_in_meters_and_positions_in_centimeters_are_queried(tmp_path):
     asked = questions_of(walk_with_offsets(tmp_path, 0.01), FloorPlacement.AUTO)
 
     assert any(
@@ -31,5 +31,5 @@ def test_offsets_in_meters_and_positions_in_centimeters_are_asked_about(tmp_path
     )
 
 
-def test_a_walk_in_one_unit_asks_nothing(tmp_path):
+def test_walk_in_one_unit_is_not_queried(tmp_path):
     assert questions_of(walk_with_offsets(tmp_path, 1.0), FloorPlacement.AUTO) == []

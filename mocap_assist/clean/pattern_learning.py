@@ -1,4 +1,4 @@
-"""What the button Learn reads from the scene, and the file that it writes."""
+"""Read the scene for the button Learn, and write its file."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -20,7 +20,7 @@ ENDING = ".npz"
 
 @dataclass(frozen=True, kw_only=True)
 class LearnChoices(Settings):
-    """What is learned, and where it is kept. The names are those of Clean's settings."""
+    """Settings of the button Learn, named as those of Clean."""
 
     examples: str = setting(
         "", "Clean actions of this file, or recordings on disk, separated by semicolons"
