@@ -6,9 +6,13 @@ import numpy as np
 
 from ..arrays import Array
 from ..progress import Progress, unwatched
-from ..rotations import quaternion_from_matrix, rotation_vector_from_quaternion
+from ..rotations import (
+    quaternion_from_matrix,
+    rotation_vector_from_quaternion,
+    skew_matrices,
+)
 from .body import MarkerBody, Poses, WorldBody
-from .vectors import matrix_from_rotation_vector, skew_matrices
+from .vectors import matrix_from_rotation_vector
 
 FRAMES_PER_BLOCK = 256
 """Frames that are fitted at once. It bounds the memory."""
