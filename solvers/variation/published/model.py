@@ -12,7 +12,7 @@ from .features import (
     N_CONTEXT,
     STEP_RATE_HZ,
     TIME_WEIGHT,
-    Indices,
+    Integers,
     MovingBody,
     compute_step_features,
     find_moving_body,
@@ -128,7 +128,7 @@ def learn_stepwise(
 
 def _build_first_stages(
     body: MovingBody, states: Array
-) -> list[tuple[Array, Array, Indices, Array]]:
+) -> list[tuple[Array, Array, Integers, Array]]:
     """Return features, outputs, columns and weights of frames 1, 2 and 3 (eq. 4.2)."""
     nothing, none = np.zeros_like(states[:, 0]), np.zeros((len(states), 0))
     first, second, third = states[:, 0], states[:, 1], states[:, 2]
