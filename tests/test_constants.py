@@ -48,7 +48,7 @@ def tuned(family: str) -> list[Constant]:
     ]
 
 
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("family", FAMILIES | UNMEASURED)
 def test_tuned_numbers_say_their_unit_and_source(family):
     without_source = [each.key for each in tuned(family) if not SOURCE.search(each.text)]
     without_unit = [each.key for each in tuned(family) if each.unit == "-"]

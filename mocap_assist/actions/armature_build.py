@@ -9,10 +9,18 @@ from ..blender.data_names import fitting_name
 from ..scene.rig import END
 from ..scene.scene_objects import add_object, in_object_mode
 
-SHORT = 1e-3  # of the body's extent: a bone that short has no direction to speak of
-STUB = 0.05  # fraction of the body's extent: length of a bone without a direction
-LAST = 0.4  # of its parent's length: length of a bone whose tail was never captured
-STRAIGHT = 0.5  # cosine of the angle up to which a child continues its parent bone
+SHORT = 1e-3
+"""Length of a bone, relative to the body's extent, below which it has no direction. It guards a
+division."""
+STUB = 0.05
+"""Length of a bone without a direction, relative to the body's extent. Chosen by hand: 9 cm of
+an adult."""
+LAST = 0.4
+"""Length of a bone whose tail was never captured, relative to its parent's. Chosen by hand: 10
+cm after a forearm."""
+STRAIGHT = 0.5
+"""Cosine of the angle up to which a child continues its parent bone. Chosen by hand: 60
+degrees."""
 
 
 def build_armature(

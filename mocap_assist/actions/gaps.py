@@ -7,8 +7,12 @@ from numpy.typing import NDArray
 
 from ...solvers.arrays import Array
 
-WIDEST_STEP = 2.5  # a median distance of keys, in frames, above which an animator set them
-WIDEST_HOLE = 1.5  # distances between neighbors, in median ones, that are no gap
+WIDEST_STEP = 2.5
+"""Median distance of keys, in frames, above which there are no gaps. It guards actions that an
+animator keyed by hand."""
+WIDEST_HOLE = 1.5
+"""Distance between neighbors, relative to the median one, that is no gap. By definition between
+1, no gap, and 2, one missing key."""
 
 
 def unobserved(

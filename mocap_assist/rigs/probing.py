@@ -10,10 +10,19 @@ from mathutils import Euler, Matrix
 from ...solvers.arrays import Array
 
 N_POSES = 3
-MAX_ROTATION_RAD = 0.35  # radians
-LARGEST_SHIFT = 0.03  # of the rig's height
-MAX_ROTATION_DIFFERENCE = 2e-3  # difference between entries of rotation matrices
-MAX_POSITION_DIFFERENCE = 2e-3  # of the rig's height
+"""Number of random poses in which controls are compared. It bounds the run time; with one, two
+controls may agree by chance."""
+MAX_ROTATION_RAD = 0.35
+"""Largest angle of a random rotation, radians. Chosen by hand: 20 degrees."""
+LARGEST_SHIFT = 0.03
+"""Largest random displacement, relative to the rig's height. Chosen by hand: 5 cm of a rig of
+1.8 m."""
+MAX_ROTATION_DIFFERENCE = 2e-3
+"""Difference between entries of rotation matrices, a ratio, of controls that move together.
+Chosen by hand: 0.1 degrees, of rotations of up to 20."""
+MAX_POSITION_DIFFERENCE = 2e-3
+"""The same of positions, relative to the rig's height. Chosen by hand: 4 mm of a rig of 1.8
+m."""
 Switches = Mapping[tuple[str, str], float]
 
 

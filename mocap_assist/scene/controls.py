@@ -18,7 +18,8 @@ from ...solvers.rotations import inverse, multiply, rotate
 NO_CONTROL = -1
 STRAIGHT, BENT = 0.001, 0.005
 """Distance of a hinge from the line of its limb, as a fraction of the limb's length. Below the
-first, the upper bone defines the direction of the hinge; above the second, its flexion does."""
+first, the upper bone defines the direction of the hinge; above the second, its flexion does.
+They guard straight limbs, whose flexion has no direction."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -174,10 +174,16 @@ REASONS: dict[str, tuple[str, ...]] = {
         "mocap_assist/actions/empties_build.*",
         "mocap_assist/drawing/body_drawing.EDGE_BRIGHTNESS",
         "mocap_assist/drawing/confidence_switch.WIDTH_FACTOR",
+        "mocap_assist/drawing/live_figure.*",
         "mocap_assist/drawing/marker_overlay.CROSS_RADIUS_M",
         "mocap_assist/drawing/marker_overlay.TRAIL_S",
+        "mocap_assist/drawing/view_control.*",
         "mocap_assist/retarget/bone_list.ROLE_COLUMN",
         "mocap_assist/track/*.OPACITY",
+    ),
+    "fraction of a bar of progress": (
+        "workflows/capture_recording.FOREGROUND_FRACTION",
+        "mocap_assist/track/solve_*.ACTOR_FRACTION",
     ),
     "length of a list in a message or a panel": (
         "motion/humanoid/role_evidence.MAX_NAMED",
