@@ -103,7 +103,8 @@ UNITS_BY_SUFFIX = {
 }  # fmt: skip
 UNITS_BY_WORDS = {
     r"meters per second": "m/s", r"radians per second": "rad/s", r"\bframes?\b": "frames",
-    r"degrees or centimeters": "deg or cm", r"square meters": "m2", r"\bmeters?\b": "m",
+    r"degrees or centimeters": "deg or cm", r"square degrees": "deg2",
+    r"square meters": "m2", r"\bmeters?\b": "m",
     r"\bseconds?\b": "s", r"\bdegrees?\b": "deg", r"hertz": "Hz", r"\bpixels?\b": "px",
     r"radians": "rad", r"(arm|leg) lengths?": "ratio", r"decibels": "dB",
     r"cosine": "cosine", r"\bsine\b": "sine",
