@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+from solvers.errors import SolveCancelled
 from solvers.motion import Motion, Skeleton
+from solvers.progress import Progress
 from solvers.rotations.representations import quaternion_from_rotation_vector
 
 pytest_plugins = ("common_fixtures",)
@@ -62,6 +64,16 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     ]
     items[:] = [item for item in items if item not in elsewhere]
     config.hook.pytest_deselected(items=elsewhere)
+
+
+@pytest.fixture
+def cancel() -> Progress:
+    """A progress that cancels at its first report."""
+
+    def raise_cancelled(fraction: float, message: str = "") -> None:
+        raise SolveCancelled("Cancelled.")
+
+    return raise_cancelled
 
 
 @pytest.fixture

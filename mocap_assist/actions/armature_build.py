@@ -10,13 +10,17 @@ from ..scene.rig import END
 from ..scene.scene_objects import add_object, in_object_mode
 
 MIN_BONE_FRACTION = 1e-3
-"""Length of a bone, as a fraction of the body's extent, below which it has no direction."""
+"""Length of a bone, relative to the body's extent, below which it has no direction. It guards a
+division."""
 STUB_FRACTION = 0.05
-"""Length of a bone without a direction, as a fraction of the body's extent."""
+"""Length of a bone without a direction, relative to the body's extent. Chosen by hand: 9 cm of
+an adult."""
 LAST_BONE_RATIO = 0.4
-"""Length of a bone whose tail was never captured, as a ratio to its parent's length."""
+"""Length of a bone whose tail was never captured, relative to its parent's. Chosen by hand: 10
+cm after a forearm."""
 MIN_CONTINUATION_COSINE = 0.5
-"""Cosine of the angle up to which a child continues its parent bone."""
+"""Cosine of the angle up to which a child continues its parent bone. Chosen by hand: 60
+degrees."""
 
 
 def build_armature(

@@ -19,9 +19,11 @@ Curves = Mapping[tuple[str, int], Channel]
 
 REDUNDANT_CHANGE_RAD = np.radians(0.5)
 """Radians or quaternion components by which a bone may differ across keys that an exporter
-removed as redundant. Blender's FBX exporter left up to 0.004 in seven takes of five makers."""
+removed as redundant. Chosen by hand: Blender's FBX exporter left up to 0.004 in seven takes of
+five makers."""
 REDUNDANT_CHANGE_FRACTION = 1e-3
-"""Fraction of a location's largest value, likewise: what Blender's FBX exporter tolerates."""
+"""Fraction of a location's largest value, likewise. By definition of Blender's FBX exporter,
+which tolerates as much."""
 
 
 def animated_curves(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> Curves:

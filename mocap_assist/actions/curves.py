@@ -14,7 +14,9 @@ from .curve_modifiers import Written, keep_outside
 CONSTANT, LINEAR = 0, 1  # Blender's numbers for interpolation
 MEASURED, GENERATED = 0, 5  # and for its key types KEYFRAME and GENERATED
 AUTO_CLAMPED = 4  # and for that type of handle
-ON_FRAME = 1e-3  # frames; keys are 32-bit numbers, whose precision at frame 10,000 is this
+ON_FRAME = 1e-3
+"""Frames that are only rounding: keys are 32-bit numbers, whose precision at frame 10,000 is
+this."""
 
 LAST_FRAME = 1_048_574  # Blender's MAXFRAME
 

@@ -12,19 +12,26 @@ from ...solvers.settings import Choice
 from .curves import ON_FRAME, Channel
 
 MAX_RECORDED_STEP_FRAMES = 2.5
-"""Frames between keys up to which a take counts as recorded, not keyed by hand."""
+"""Frames between keys up to which a take counts as recorded. It guards actions that an animator
+keyed by hand: they are read on every frame."""
 MIN_GRID_KEYS_FRACTION = 0.9
-"""Minimum fraction of the keys of each curve that are on the grid."""
+"""Fraction of keys of each curve that must be on the grid. It guards keys that an exporter adds
+between frames."""
 MAX_GRID_OFFSET_STEPS = 0.05
-"""Offset of a key from the grid, in steps, up to which it is on the grid."""
+"""Fraction of a step by which a key is on the grid. Chosen by hand: at 30 Hz 1.7 ms, more than
+times in milliseconds are rounded by."""
 MIN_FILLED_FRACTION = 0.5
-"""Fraction of the grid that has keys. Exporters add keys between frames where motion is fast;
-these do not make the grid finer."""
+"""Fraction of the grid that has keys. It guards takes of exporters that add keys between frames
+where motion is fast; these do not make the grid finer."""
 MAX_FRAMES_PER_KEY = 20
+"""Frames per key, a ratio: a range with more, and with more frames than the next, is no take.
+It guards actions with a key far outside, which would be sampled for minutes."""
 MAX_FRAMES_OF_FEW_KEYS = 10_000
-"""A range with this many times more frames than keys is no take: one key lies far outside."""
+"""Frames up to which a range may have any number of keys. It guards short actions that an
+animator keyed by hand."""
 SPACING_TOLERANCE = 0.1
-"""Maximum relative difference of regular times between keys."""
+"""Fraction by which times between keys may differ. Chosen by hand: at 30 Hz 3 ms, more than
+times in milliseconds are rounded by."""
 
 
 class FrameRange(Choice):

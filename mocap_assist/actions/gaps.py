@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 from ...solvers.arrays import Array
 
 MAX_RECORDED_STEP_FRAMES = 2.5
-"""Median frames between keys above which an animator set them, and no sensor."""
+"""Median distance of keys, in frames, above which there are no gaps. It guards actions that an
+animator keyed by hand."""
 MAX_KEY_SPACING_RATIO = 1.5
-"""Time between adjacent keys, as a ratio to the median, above which it is a gap."""
+"""Distance between neighbors, relative to the median one, that is no gap. By definition between
+1, no gap, and 2, one missing key."""
 
 
 def unobserved(

@@ -12,7 +12,8 @@ from .curves import ON_FRAME
 
 Keys = Mapping[tuple[str, int], NDArray[np.float32]]
 N_ADJACENT = 16
-"""Keys on both sides of a gap that show how densely a bone was recorded."""
+"""Number of keys on both sides of a gap that show how densely a bone was recorded. It bounds
+the memory."""
 
 
 def read_keys(source: Source) -> Keys:

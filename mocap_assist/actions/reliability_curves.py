@@ -23,7 +23,8 @@ class Term(Enum):
 
 
 DIGITS = 2
-"""Stored decimals: finer colors are not visible, and constant intervals need few keys."""
+"""Number of stored decimals: finer colors are not visible. It bounds the number of keys, as
+equal values need none."""
 
 
 def reliability_path(bone: str, term: Term = Term.COMBINED) -> str:

@@ -14,6 +14,7 @@ from ...solvers.rotations import (
 
 PROPERTIES = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 MIN_SINE = 1e-9
+"""Sine of half an angle below which a rotation has no axis. It guards a division."""
 
 
 def rotation_property(mode: str) -> tuple[str, int]:

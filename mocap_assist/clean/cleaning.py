@@ -28,9 +28,11 @@ from .report import clean_report, entry_of
 from .solve_cleaning import Cleaned, ExampleSource, Finish, Problem, Recordings, clean, names_of
 
 MIN_OBSERVED_CONFIDENCE = 0.5
-"""Confidence below which a key counts as generated."""
+"""Confidence below which a key counts as generated. By definition of the confidence, at least
+half of such joints are more than 5 degrees off."""
 EASE_FRAMES = 5
-"""Frames over which a cleaned range is blended into the frames outside it."""
+"""Frames over which a cleaned range joins the frames outside it. Chosen by hand: 0.17 s at 30
+Hz."""
 
 
 @Sliced

@@ -20,7 +20,8 @@ from .button_settings import CleanChoices, Prior
 from .solve_cleaning import ExampleSource
 
 LINKED_AT_ONCE = 8
-"""Actions that are linked from another file at once."""
+"""Actions that are linked from another file at once. It bounds the time in which Blender does
+not answer."""
 
 
 @Sliced

@@ -17,7 +17,8 @@ from ..scene import history
 from .solve_planting import Replanted, plant
 
 MAX_SHORT_SOLVE_FRAMES = 5000
-"""Frames that are solved in half a second, the time to start another process."""
+"""Number of frames up to which no other process is started. Chosen by hand: they are solved in
+0.5 s, less than that takes."""
 
 
 class FeetBundle(NamedTuple):

@@ -2,10 +2,9 @@
 
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...solvers.arrays import Flags
 from ...solvers.denoising import Quality
+from ...solvers.signals import find_runs
 from ..scene import history
 from .button_settings import CleanBundle
 from .solve_cleaning import Cleaned
@@ -50,7 +49,6 @@ def figures(quality: Quality) -> dict[str, Any]:
     return {name: value for name, value in every.items() if isinstance(value, (int, float))}
 
 
-def _count(flags: NDArray[np.bool_]) -> int:
-    """Count the stretches of True along the frames, over all joints."""
-    starts = np.diff(flags.astype(np.int8), axis=0, prepend=0) > 0
-    return int(starts.sum())
+def _count(flags: Flags) -> int:
+    """Count the runs of True along the frames, over all joints."""
+    return sum(len(find_runs(column)) for column in flags.T)

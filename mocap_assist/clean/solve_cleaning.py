@@ -44,7 +44,8 @@ from ..library.solve_prior import LibraryPrior
 
 Recordings = tuple[Motion | Tracks, ...]
 
-MIN_CHANGE = 1e-6  # radians or meters; smaller changes by planting are ignored
+MIN_CHANGE = 1e-6
+"""Radians or meters that are only rounding: planting has not changed such joints."""
 
 
 class Learned(NamedTuple):

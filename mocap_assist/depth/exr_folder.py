@@ -12,8 +12,8 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Single
 from ...solvers.depth_scene import Camera
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import write_atomically
@@ -27,8 +27,6 @@ MAX_DEPTH = 65_000.0
 
 MAX_COPIES, MAX_COPY_BYTES = 16, 8_000_000_000
 """Copies that are kept: those that were used last, and those that the open file shows."""
-
-Depth = NDArray[np.float32]
 
 
 def exr_files(folder: Path) -> list[Path]:
@@ -124,7 +122,7 @@ def size_of(path: Path) -> tuple[int, int]:
     return width, height
 
 
-def _pictures(files: list[Path], shape: tuple[int, ...]) -> Iterator[Depth]:
+def _pictures(files: list[Path], shape: tuple[int, ...]) -> Iterator[Single]:
     for path in files:
         depth = _picture(path)
         if depth.shape != shape:
@@ -135,7 +133,7 @@ def _pictures(files: list[Path], shape: tuple[int, ...]) -> Iterator[Depth]:
         yield depth
 
 
-def _picture(path: Path) -> Depth:
+def _picture(path: Path) -> Single:
     """Return the first channel, the top row first; 0 for the background."""
     check_exr(path)  # Blender unpacks images of any size.
     try:

@@ -12,7 +12,8 @@ from ...solvers.depth_tracking.body import BodySurface
 EDGE_BRIGHTNESS = 0.45
 """Brightness of a surface seen edge-on, as a fraction of one that faces the eye."""
 MIN_NORMAL_LENGTH = 1e-30
-"""Length below which a normal has no direction."""
+"""Length below which a normal has no direction, as that of a capsule without a radius, meters.
+It guards a division."""
 
 
 class Solid(NamedTuple):

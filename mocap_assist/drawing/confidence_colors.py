@@ -4,13 +4,12 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solvers.arrays import Single
 from ..actions.reliability_curves import Term, reliability_at, stored_terms
 from ..blender.compat import Source
 from ..scene import history
 
-Array = NDArray[np.float32]
 COLORS = np.array([
     [0.85, 0.07, 0.10, 1.0],  # unreliable
     [0.98, 0.72, 0.10, 1.0],
@@ -23,13 +22,13 @@ UNKNOWN = np.array([0.5, 0.5, 0.5, 0.6], np.float32)
 class ColoredBones(NamedTuple):
     """Lines of the bones, and the joints as points, in the armature's own space."""
 
-    ends: Array
+    ends: Single
     """Shape (n_bones, 2, 3): head and tail."""
-    colors: Array
+    colors: Single
     """Of these, shape (n_bones, 2, 4)."""
 
 
-def color_from_reliability(reliability: float) -> Array:
+def color_from_reliability(reliability: float) -> Single:
     """Return the color of a reliability, red for 0 to blue for 1; gray for NaN."""
     if not np.isfinite(reliability):
         return UNKNOWN
@@ -75,7 +74,7 @@ def colored_bones_at(
     return ColoredBones(ends, np.stack([head_colors, tail_colors], axis=1))
 
 
-def _at_the_tail(bone: bpy.types.PoseBone, reliabilities: dict[str, float]) -> Array:
+def _at_the_tail(bone: bpy.types.PoseBone, reliabilities: dict[str, float]) -> Single:
     """Return the color of the joint at the tail of a bone; without one, of its own joint."""
     children = [child for child in bone.children if (child.head - bone.tail).length < 1e-4]
     names = [child.name for child in children] or [bone.name]

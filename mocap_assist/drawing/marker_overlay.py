@@ -21,7 +21,7 @@ CROSS_RADIUS_M = 0.006
 BLOCK_FRAMES = 1000
 """Frames that are read at once."""
 MAX_CACHED = 8
-"""Cached blocks; with 41 markers 500 kB each."""
+"""Number of cached blocks. It bounds the memory: with 41 markers a block has 500 kB."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,11 +18,12 @@ from ..scene import history
 from ..scene.rig import Rig, read_rig
 
 BLOCK_POSES = 2**13
-"""Bone poses that are computed at once; more would delay the drawing."""
+"""Number of bone poses that are computed at once. It bounds the delay of the drawing."""
 MAX_CACHED = 128
-"""Cached blocks of 200 kB."""
+"""Number of cached blocks of 200 kB. It bounds the memory."""
 MAX_CACHED_ACTIONS = 4
-"""Actions with cached keys; with 120 bones and 10,000 frames 38 MB each."""
+"""Number of actions with cached keys. It bounds the memory: with 120 bones and 10,000 frames 38
+MB each."""
 
 
 @dataclass(frozen=True, eq=False)

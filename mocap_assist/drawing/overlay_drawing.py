@@ -17,7 +17,8 @@ from .view_drawing import ViewDrawing, redraw, visible_active
 Color = tuple[float, float, float, float]
 
 EDIT_PAUSE_S = 0.3
-"""Time without an edit after which keys are read again."""
+"""Seconds without an edit after which keys are read again. It bounds the work while a key is
+dragged, which is an edit at each step."""
 
 _drawing: list[ViewDrawing] = []
 

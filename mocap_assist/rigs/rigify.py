@@ -14,7 +14,8 @@ LIMB_CONTROLS = {"Arm": ("upper_arm", "hand", "Hand"), "Leg": ("thigh", "foot", 
 SPINE = re.compile(r"spine_fk\.\d+$")
 SPINE_ROLES = ("spine", "chest", "upperChest")
 HELPERS = ("DEF-", "ORG-", "MCH-", "VIS_", "WGT-")
-MAX_HEAD_DISTANCE = 1e-4  # of the rig's unit
+MAX_HEAD_DISTANCE = 1e-4
+"""Distance of two heads, relative to the rig's unit, that is only rounding."""
 IK_PARENT_ROOT = 1
 """Of the properties IK_parent and pole_parent: 0 is no parent, 1 the root."""
 

@@ -17,8 +17,9 @@ from ...solvers.rotations import inverse, multiply, rotate
 
 NO_CONTROL = -1
 MIN_FLEXION_FRACTION, FULL_FLEXION_FRACTION = 0.001, 0.005
-"""Distances of a hinge from the line of its limb, as fractions of the limb's length. Below the
-first, the upper bone defines the direction of the hinge; above the second, its flexion does."""
+"""Distance of a hinge from the line of its limb, as a fraction of the limb's length. Below the
+first, the upper bone defines the direction of the hinge; above the second, its flexion does.
+They guard straight limbs, whose flexion has no direction."""
 
 
 @dataclass(frozen=True, eq=False)

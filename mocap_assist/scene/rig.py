@@ -11,8 +11,7 @@ from ...solvers.errors import InvalidMotionError
 from ...solvers.rotations import inverse, multiply, quaternion_from_matrix, rotate
 
 MAX_SKEW = 1e-3
-"""Difference of a matrix times its transpose from identity up to which it is a rotation; it
-allows rounding of scales in single precision."""
+"""Deviation, a ratio, of a matrix from a rotation and one scale that is only rounding."""
 MAX_COORDINATE = 1e12
 """Units of the scene; Blender keeps 3.4e38 where infinity is set."""
 END = "mocap_assist_end"

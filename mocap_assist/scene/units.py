@@ -8,6 +8,9 @@ from .rig import Rig
 # Meters from foot to hand along the bones: from a cat to a dragon. Beyond it, a recording was
 # imported in the unit of its file, such as centimeters, as happens with BVH every day.
 PLAUSIBLE_REACH = (0.25, 15.0)
+"""Meters from foot to hand along the bones. Chosen by hand: from a cat, 0.25 m, to a dragon.
+Beyond it, a recording was imported in the unit of its file, such as centimeters, as happens
+with BVH every day."""
 
 
 def unit_of(scene: bpy.types.Scene) -> float:

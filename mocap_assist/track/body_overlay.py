@@ -18,6 +18,7 @@ NEUTRAL_COLOR = np.array([0.62, 0.72, 0.85, 1.0])
 OPACITY = 0.65
 """Low enough to show bones and points inside the body."""
 N_BODIES = 8
+"""Number of bodies whose surface is kept. It bounds the memory."""
 
 _drawing: list[ViewDrawing] = []
 _surface = lru_cache(maxsize=N_BODIES)(capsule_surface)

@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 
 POSE_TOLERANCE = 1e-6
+"""Entries of a pose matrix, a ratio or meters, that are only rounding."""
 
 
 class HandPose:

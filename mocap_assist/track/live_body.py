@@ -18,7 +18,8 @@ from .pose_previews import PosePreviewReceiver
 
 OPACITY = 0.9
 MAX_TIME_FRACTION = 0.3
-"""Maximum fraction of the time for frame changes, however heavy the scene is."""
+"""Maximum fraction of the time for frame changes. It guards heavy scenes, which would slow down
+tracking."""
 
 
 class BodyDisplay(NamedTuple):

@@ -31,6 +31,7 @@ from .tracking import WatchChoices
 OPERATION = "retrack"
 SUFFIX = ".retracked"
 DIGITS = 2
+"""Number of decimals of a frame in a message. It bounds the length of the message."""
 SIDES = ("before", "after")
 EXTREME, KEYFRAME = 1, 0
 """Blender's key types: for the corrected frame, and for the others."""

@@ -13,7 +13,7 @@ from ...solvers.progress import Progress, unwatched, within
 from .pose_previews import FloorPreview, PosePreviewSender, Show, no_preview
 
 ACTOR_FRACTION = 0.3
-"""Fraction of the work for the separation of the actor from the room."""
+"""Fraction of the progress for the separation of the actor from the room."""
 
 
 class TrackedActor(NamedTuple):

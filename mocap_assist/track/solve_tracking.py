@@ -23,7 +23,7 @@ from .pose_previews import (
 )
 
 ACTOR_FRACTION = 0.1
-"""Fraction of the work for the separation of the actor from the room."""
+"""Fraction of the progress for the separation of the actor from the room."""
 
 
 class LowConfidenceRange(NamedTuple):

@@ -21,9 +21,12 @@ KEY = "mocap_assist_tracked"
 ROLE = "mocap_assist_joint"
 """Custom property of a bone: its joint of the body, independent of its name."""
 DIGITS = 6
+"""Number of stored decimals of lengths and radii: rounding to a micrometer."""
 MAX_CACHED = 8
+"""Number of parsed bodies that are kept. It bounds the memory."""
 REST_TOLERANCE_M = 0.01
-"""Maximum deviation of bones from the original rest pose."""
+"""Maximum deviation, meters, of bones from the original rest pose. It guards armatures that
+were edited: the pose would be that of another body."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,8 @@ from .tracked_body import (
 )
 
 MAX_STRIP_OFFSET = 0.05
-"""Frames by which a strip may shift an action."""
+"""Frames by which a strip may shift an action. It guards strips that move the action off the
+depth images."""
 MAX_NAMED = 3
 """Bones that a message names."""
 

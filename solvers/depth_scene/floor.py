@@ -12,6 +12,9 @@ from .recording import DepthRecording
 LEVEL_UP = np.array([0.0, -1.0, 0.0])
 """Up direction in the frame of a level camera."""
 MAX_IMAGES, MAX_POINTS = 12, 6000
+"""Number of images, evenly spaced, and of their points together that the plane is fitted to.
+They bound the run time. Chosen by hand: first, x0.5 costs 5.2 %, x2 costs 9.9 %; second, x0.5
+costs 13.7 %, x2 costs 4.9 %."""
 TOLERANCE_M, TOLERANCE_PER_M2 = 0.015, 0.003
 """Inlier distance from the plane: meters, and its growth with squared depth (sensor noise).
 Chosen by hand: first, x0.5 gains 15.1 %, x2 costs 21.3 %; second, x0.5 gains 25.7 %, x2 costs

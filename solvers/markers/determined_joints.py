@@ -8,6 +8,7 @@ from .body import MarkerBody, Poses
 from .fit_poses import compute_residuals
 
 FRAMES_PER_BLOCK = 256
+"""Frames whose matrices are in memory at once. It bounds the memory."""
 MAX_ROTATION_STD_RAD = 0.8
 """Standard deviation above which a joint's rotation is undetermined. Chosen by hand: x0.5 costs
 nothing, x2 gains 15.7 %."""

@@ -6,11 +6,16 @@ import numpy as np
 
 from ..arrays import Array
 from ..progress import Progress, unwatched
-from ..rotations import quaternion_from_matrix, rotation_vector_from_quaternion
+from ..rotations import (
+    quaternion_from_matrix,
+    rotation_vector_from_quaternion,
+    skew_matrices,
+)
 from .body import MarkerBody, Poses, WorldBody
-from .vectors import matrix_from_rotation_vector, skew_matrices
+from .vectors import matrix_from_rotation_vector
 
 FRAMES_PER_BLOCK = 256
+"""Frames that are fitted at once. It bounds the memory."""
 CAUCHY_SCALE = 3.0
 """Scale of the Cauchy weight, in standard deviations of a marker's noise. Chosen by hand: x0.5
 gains 0.5 %, x2 costs 0.8 %."""

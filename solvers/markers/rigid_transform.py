@@ -6,6 +6,8 @@ from ..arrays import Array
 from ..rotations import nearest_rotations
 
 N_REWEIGHTINGS = 8
+"""Iterations of the reweighted least squares. Chosen by hand: x0.5 costs nothing, x2 costs
+nothing."""
 CAUCHY_FACTOR, MIN_CAUCHY_SCALE_M = 3.0, 0.004
 """Scale of the Cauchy weights: a multiple of the median residual, and a lower bound. It guards
 fits with an outlier, which equal weights follow (`test_rigid`)."""

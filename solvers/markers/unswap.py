@@ -11,7 +11,11 @@ from .mistaken_labels import find_mistaken_labels
 from .pair_swaps import PairSwap, find_candidate_pairs, most_likely_swap
 
 MAX_SWAPS = 500
+"""Maximum number of swaps that one pass corrects. It bounds the run time of takes whose labels
+are random."""
 N_PASSES = 3
+"""Maximum number of passes; the distances of each are learned from the labels that the pass
+before corrected. Chosen by hand: x0.5 costs 25.0 %, x2 costs nothing."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 
 from ..arrays import Array
-from ..rotations import normalize
+from ..rotations import normalize, skew_matrices
 
 
 def perpendicular(vectors: Array, axis: Array) -> Array:
@@ -51,16 +51,11 @@ def swing_frames(frames: Array, axis: Array, onto: Array) -> Array:
     return np.asarray(rotation @ frames)
 
 
-def skew_matrices(vectors: Array) -> Array:
-    """Return the skew-symmetric matrices of the cross product, shape (..., 3, 3)."""
-    x, y, z = np.moveaxis(vectors, -1, 0)
-    zero = np.zeros_like(x)
-    rows = [zero, -z, y, z, zero, -x, -y, x, zero]
-    return np.asarray(np.stack(rows, axis=-1).reshape(*vectors.shape, 3))
-
-
 def matrix_from_rotation_vector(vectors: Array) -> Array:
-    """Return the rotation matrices of rotation vectors (Rodrigues), shape (..., 3, 3)."""
+    """Return the rotation matrices of rotation vectors (Rodrigues), shape (..., 3, 3).
+
+    Rounded otherwise than that of depth tracking, which shares terms with its derivative.
+    """
     angle = np.linalg.norm(vectors, axis=-1)[..., None, None]
     skew = skew_matrices(vectors)
     small = angle < 1e-8

@@ -3,12 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
-from ..arrays import Array
-
-Frames = NDArray[np.intp]
+from ..arrays import Array, Integers
 
 SLOPE_WEIGHT = 1e-3
 """Weight of the samples' own slope at the keys, which regularizes the fit. Chosen by hand: x0.5
@@ -33,11 +30,11 @@ class KeyCurve:
     slopes : shape (n_keys, n_channels), per frame
     """
 
-    frames: Frames
+    frames: Integers
     values: Array
     slopes: Array
 
-    def at(self, frames: Frames | Array) -> Array:
+    def at(self, frames: Integers | Array) -> Array:
         """Return the channels at frames, shape (n, n_channels); constant outside the keys."""
         if len(self.frames) < 2:
             return np.broadcast_to(self.values[:1], (len(frames), self.values.shape[1])).copy()
@@ -67,7 +64,7 @@ class KeyCurve:
         return self.frames[:, None] + shifts, values
 
 
-def fit_curve(samples: Array, keys: Frames) -> KeyCurve:
+def fit_curve(samples: Array, keys: Integers) -> KeyCurve:
     """Return the least-squares fit of a curve with these keys to the samples.
 
     Parameters
@@ -100,7 +97,9 @@ def fit_curve(samples: Array, keys: Frames) -> KeyCurve:
     return KeyCurve(keys, solution[0::2], solution[1::2])
 
 
-def _basis(times: Array, segment: Frames, keys: Frames) -> tuple[Array, Array, Array, Array]:
+def _basis(
+    times: Array, segment: Integers, keys: Integers
+) -> tuple[Array, Array, Array, Array]:
     """Return the Hermite basis of start and stop values, then of their slopes."""
     length = (keys[segment + 1] - keys[segment]).astype(np.float64)
     u = (times - keys[segment]) / length

@@ -25,7 +25,8 @@ NOISE_SWING_RAD = np.radians(5.0)
 """Half of a swing of this size is removed, and most of smaller ones: they are noise. Chosen by
 hand: x0.5 gains 3.4 %, x2 costs 4.9 %."""
 N_ITERATIONS = 6
-"""Fixed-point iterations; each leaves less than half of the error."""
+"""Fixed-point iterations; each leaves less than half of the error. Chosen by hand: x0.5 costs
+0.6 %, x2 costs nothing."""
 
 
 def leaning_swings(

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, Integers
 from ..motion import JointRecording, Tracks
 from ..progress import Progress, unwatched, within
 from .index import CLIP_RATE_HZ, ClipEntry, Match, Vocabulary
@@ -24,8 +24,6 @@ from .search import (
     describe_query,
     rank_clips,
 )
-
-Frames = NDArray[np.intp]
 
 SCORE_DECAY = 2.0
 """Factor of the distance in the exponential decay of the score; unrelated clips have a distance
@@ -127,8 +125,8 @@ def _build_matches(
 
 
 def _clip_frames(
-    frames: NDArray[np.integer[Any]], n_frames: int | Frames, frame_rate: float | Array
-) -> Frames:
+    frames: NDArray[np.integer[Any]], n_frames: int | Integers, frame_rate: float | Array
+) -> Integers:
     """Convert index frames to frames of a recording; the last frames correspond."""
     last = np.asarray((n_frames - 1) * CLIP_RATE_HZ / frame_rate + ROUNDING_FRAMES).astype(
         np.intp

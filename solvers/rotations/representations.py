@@ -22,6 +22,10 @@ GIMBAL_LOCK_COSINE = 1e-7
 """Cosine of the middle Euler angle below which the other two share one axis."""
 QUATERNIONS_PER_BLOCK = 8192
 """Quaternions multiplied at a time, so that they fit into the processor's cache."""
+_CROSS_FLAT = np.zeros((3, 9))
+"""v @ _CROSS_FLAT is the matrix [v]x, flat."""
+for _i, _j, _k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+    _CROSS_FLAT[_i, 3 * _k + _j], _CROSS_FLAT[_i, 3 * _j + _k] = 1.0, -1.0
 
 
 def multiply(a: Array, b: Array) -> Array:
@@ -276,6 +280,11 @@ def twist_about(rotations: Array, axis: ArrayLike) -> Array:
     twist = np.concatenate([rotations[..., :1], along * axis], axis=-1)
     norms = np.linalg.norm(twist, axis=-1, keepdims=True)
     return np.where(norms < 1e-12, IDENTITY, twist / np.where(norms < 1e-12, 1.0, norms))
+
+
+def skew_matrices(vectors: Array) -> Array:
+    """Return the matrices [v]x of the cross product, [v]x @ u = v x u, shape (..., 3, 3)."""
+    return np.asarray((vectors @ _CROSS_FLAT).reshape(*vectors.shape, 3))
 
 
 def _cross(a: Array, b: Array) -> Array:

@@ -7,9 +7,9 @@ example to another stays between them and does not exaggerate what both share.
 """
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from ..arrays import Array
+from ..signals import smooth_gaussian
 from .curves import LEG_ROWS, ROOT_ROW, partition_joints, sample_curves
 from .variation_model import VariationModel
 
@@ -88,9 +88,8 @@ def mix_deviations(model: VariationModel, weights: Array) -> tuple[Array, Array,
     """
     n, n_samples = model.n_examples, model.n_samples
     joints = _mix_curves(model.joints, weights[ROOT_ROW])
-    smooth = gaussian_filter1d(
-        model.joints, SMOOTHING_S * model.frame_rate, axis=1, mode="nearest"
-    )
+    width = SMOOTHING_S * model.frame_rate
+    smooth = np.stack([smooth_gaussian(example, width) for example in model.joints])
     for members, partition_weights in zip(
         partition_joints(model.skeleton), weights[:ROOT_ROW], strict=True
     ):

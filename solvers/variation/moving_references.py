@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d  # reflects ends; smooth_gaussian repeats them
 
 from ..arrays import Array
 from ..rotations import (

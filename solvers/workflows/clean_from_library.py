@@ -22,13 +22,18 @@ from .prior_validation import prior_fills_gaps
 
 DENOISE_SETTINGS, LEARN_SETTINGS = DenoiseSettings(), FilterBasesSettings()
 MIN_CONFIDENCE = 0.5
-"""Minimum confidence of a joint in the first estimate; others are left out of the query."""
+"""Minimum confidence of a joint in the first estimate; others are left out of the query. By
+definition of the confidence, at least half of these are more than 5 degrees off."""
 WEIGHT_EXPONENT = 2.0
-"""Exponent from the score of a clip to its weight."""
+"""Exponent from the score of a clip to its weight. Chosen by hand: a clip of half the score has
+a quarter of the weight, see `test_more_similar_clips_have_more_weight`."""
 MIN_WEIGHT_SCORE = 1e-3
+"""Score, a ratio, of the least similar clips, which may be 0. It guards the sum of the weights
+against 0."""
 MIN_CONFIDENT_SCORE = 0.25
-"""Score of the best match above which the clips count as the same movement. Below it, they
-must fill held-out gaps at least as well as the take itself."""
+"""Score, a ratio, of the best match above which the clips count as the same movement. Below it,
+they must fill held-out gaps at least as well as the take itself. Chosen by hand: the same
+movement by another actor scores 0.2 to 0.5."""
 PRIOR_REJECTED = (
     "They are not used: they predict the missing joints worse than the take itself."
 )

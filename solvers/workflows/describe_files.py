@@ -14,7 +14,8 @@ from ..recordings import read_tracked
 from ..retrieval import Clip, DescribedClip, Origin, describe_clip
 
 QUEUED_PER_PROCESS = 2
-"""Files submitted to each process before their results are fetched."""
+"""Number of files submitted to each process before their results are fetched. It bounds the
+memory; with one, a process would wait for the next file."""
 
 
 class ClipRequest(NamedTuple):

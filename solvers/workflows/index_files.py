@@ -14,9 +14,10 @@ from .clip_sources import ClipSource, clip_sources, is_action
 from .describe_files import ClipRequest, FileDescription, describe_files
 
 MAX_BATCH_CLIPS = 100
-"""Clips written in one transaction; an interrupt loses no more."""
+"""Clips written in one transaction. It bounds the loss at an interrupt:
+`test_interrupt_loses_at_most_one_batch`."""
 MAX_BATCH_FRAMES = 200_000
-"""Frames at 20 Hz written in one transaction: 100 megabytes."""
+"""Frames at 20 Hz written in one transaction. It bounds the memory, to 100 megabytes."""
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,17 @@ from ..rotations import fit_similarity
 MAX_DISTANCE_M = 0.002
 """Maximum distance in meters between matching joints, due to the rounding of keys."""
 MIN_SAMPLES = 3
+"""Number of observed samples that both takes need for a comparison. By definition: three points
+determine a rigid transform."""
 MAX_COSINE_DIFFERENCE = 1e-3
-"""Maximum difference of the cosines of half angles of rotations in the preselection."""
+"""Maximum difference of the cosines of half angles of rotations in the preselection, due to the
+rounding of keys."""
 N_PROBES = 5
+"""Number of frames compared in the preselection. It bounds the run time: what passes is
+compared in all frames."""
 MAX_STARTS = 100
-"""Maximum number of candidates to compare; only motionless takes have more."""
+"""Maximum number of candidates to compare. It bounds the run time of motionless takes; only
+these have more."""
 
 
 def joints_from_source(motion: Motion, recording: JointRecording) -> JointRecording | None:

@@ -16,14 +16,16 @@ Fetch = Callable[[ClipEntry], Recording]
 """Returns the recording of a clip."""
 
 CONTEXT_S = 0.5
-"""Seconds before and after a match that are included."""
+"""Seconds before and after a match that are included. Chosen by hand, see
+`test_only_matching_frames_are_learned_from`."""
 MAX_NAMED_CLIPS = 5
 FIND_SETTINGS = FindSettings(n_matches=12, n_aligned=12, n_neighbors=0, warping=1.0, busy=0.0)
 """Ranks by similarity of the complete body to the take, without re-ranking: the best clips of a
 library without similar motion are still similar to each other."""
 MIN_BEST_SCORE = 0.16
-"""Minimum score of the best match. The same movement by another actor scores 0.2 to 0.5 (HDM05,
-CMU walks), other movements at most 0.15. If the best match passes, all matches are used."""
+"""Minimum score, a ratio, of the best match. Chosen by hand: the same movement by another actor
+scores 0.2 to 0.5 (HDM05, CMU walks), other movements at most 0.15. If the best match passes,
+all matches are used."""
 
 
 @dataclass(frozen=True, eq=False)

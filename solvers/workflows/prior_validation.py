@@ -14,14 +14,19 @@ from ..rotations import angle_between
 from ..signals import find_runs
 
 MIN_GAP_S = 0.3
-"""Minimum duration of a gap to validate; shorter ones are interpolated well."""
+"""Minimum duration of a gap to validate, seconds; shorter ones are interpolated well. It bounds
+the run time, see `test_no_validation_runs_without_a_long_gap_or_observed_samples`."""
 MIN_HIDDEN_S = 0.2
-"""Minimum duration of a held-out segment, seconds."""
+"""Minimum duration of a held-out segment, seconds. It guards trials against gaps that a
+straight line fills as well."""
 MAX_HIDDEN_FRACTION = 0.6
-"""Maximum fraction of an observed segment to hold out; the rest is the context."""
+"""Maximum fraction of an observed segment to hold out; the rest is the context. It guards short
+takes, which would have no context."""
 MAX_TRIALS = 2
+"""Maximum number of segments to hold out. It bounds the run time: each is filled twice."""
 CONTEXT_S = 4.0
-"""Seconds of the take before and after the held-out segment of a trial."""
+"""Seconds of the take before and after the held-out segment of a trial. It bounds the run
+time."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,7 +24,8 @@ from .reconstruct_motion import postures_recording
 
 RECONSTRUCT_SETTINGS = ReconstructSettings()
 MIN_RELIABILITY = 0.5
-"""Minimum reliability of a joint in the query."""
+"""Minimum reliability of a joint in the query. By definition that of a joint that a tracker
+inferred, 0.5 at most."""
 
 
 @dataclass(frozen=True, eq=False)

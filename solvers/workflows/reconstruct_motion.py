@@ -42,7 +42,7 @@ from .standard_joints import KINECT_V1, check_size, check_tracked, gap_remarks
 
 RECONSTRUCT_SETTINGS = ReconstructSettings()
 LENGTH_TOLERANCE = 1e-6
-"""Deviation of a length term from 0 or 1 that counts as rounding."""
+"""Deviation of a length term, a ratio, from 0 or 1 that counts as rounding."""
 
 
 @dataclass(frozen=True, eq=False)

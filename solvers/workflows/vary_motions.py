@@ -40,7 +40,8 @@ class Variants:
 
 
 N_CYCLES = 3
-"""Number of cycles of a loop to plant together; the middle one continues at both ends."""
+"""Number of cycles of a loop to plant together. By definition: the middle one of three
+continues at both ends."""
 VARY_SETTINGS, PLANT_SETTINGS = VarySettings(), PlantSettings()
 
 

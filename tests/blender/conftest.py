@@ -200,6 +200,20 @@ def extension() -> ModuleType:
 
 
 @pytest.fixture
+def command(
+    load: Callable[[str], ModuleType], capsys: pytest.CaptureFixture[str]
+) -> Callable[..., tuple[int, str, str]]:
+    """Run `blender FILE --command mocap_assist ...`; return status, stdout and stderr."""
+    run = load("mocap_assist.batch.command").run
+
+    def call(*words: object) -> tuple[int, str, str]:
+        status = run([str(word) for word in words])
+        return status, *capsys.readouterr()
+
+    return call
+
+
+@pytest.fixture
 def blank() -> ModuleType:
     """`bpy`, with an empty scene; the extension stays switched on, and has found nothing."""
     import bpy

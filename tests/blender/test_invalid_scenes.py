@@ -25,14 +25,6 @@ def refused(blank):
     return press
 
 
-@pytest.fixture
-def walker(make_armature, animate):
-    """An armature with a take of two seconds."""
-    armature = make_armature()
-    animate(armature)
-    return armature
-
-
 def curves(armature):
     return armature.animation_data.action.layers[0].strips[0].channelbags[0].fcurves
 
@@ -49,8 +41,8 @@ def curves(armature):
         ((1, 2, 1), "is scaled unevenly or sheared (1, 2, 1 along X, Y, Z)"),
     ],
 )
-def test_a_mirrored_armature_is_refused(walker, refused, blank, button, scale, reason):
-    walker.scale = scale
+def test_a_mirrored_armature_is_refused(actor, refused, blank, button, scale, reason):
+    actor.scale = scale
     blank.context.view_layer.update()
 
     assert f"Actor {reason}. Give it one positive scale" in refused(button)
@@ -58,8 +50,8 @@ def test_a_mirrored_armature_is_refused(walker, refused, blank, button, scale, r
 
 @pytest.mark.parametrize("button", BUTTONS)
 @pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_armature_with_nan_location_is_refused(walker, refused, blank, button, value):
-    walker.location.x = value
+def test_armature_with_nan_location_is_refused(actor, refused, blank, button, value):
+    actor.location.x = value
     blank.context.view_layer.update()
 
     assert (
@@ -69,16 +61,16 @@ def test_armature_with_nan_location_is_refused(walker, refused, blank, button, v
 
 
 @pytest.mark.parametrize("button", BUTTONS)
-def test_key_at_frame_nan_is_refused(walker, refused, button):
-    curves(walker)[0].keyframe_points[-1].co.x = np.nan
+def test_key_at_frame_nan_is_refused(actor, refused, button):
+    curves(actor)[0].keyframe_points[-1].co.x = np.nan
 
     assert "has a key whose frame is not a number (NaN)" in refused(button)
 
 
 @pytest.mark.parametrize("button", BUTTONS)
 @pytest.mark.parametrize("frame", [np.inf, -np.inf, 2e6])
-def test_key_beyond_the_frame_limit_is_refused(walker, refused, button, frame):
-    curves(walker)[0].keyframe_points[-1 if frame > 0 else 0].co.x = frame
+def test_key_beyond_the_frame_limit_is_refused(actor, refused, button, frame):
+    curves(actor)[0].keyframe_points[-1 if frame > 0 else 0].co.x = frame
 
     sentence = refused(button)
 
@@ -87,9 +79,9 @@ def test_key_beyond_the_frame_limit_is_refused(walker, refused, button, frame):
 
 
 @pytest.mark.parametrize("button", BUTTONS)
-def test_keys_out_of_order_are_refused(walker, refused, button):
+def test_keys_out_of_order_are_refused(actor, refused, button):
     """As `foreach_set` leaves them until the curve is updated."""
-    for curve in curves(walker):
+    for curve in curves(actor):
         keys = np.empty(2 * len(curve.keyframe_points), dtype=np.float32)
         curve.keyframe_points.foreach_get("co", keys)
         curve.keyframe_points.foreach_set("co", keys.reshape(-1, 2)[::-1].ravel())
@@ -100,11 +92,11 @@ def test_keys_out_of_order_are_refused(walker, refused, button):
 @pytest.mark.parametrize("button", BUTTONS)
 @pytest.mark.parametrize("frame", [-1_000_000, 20_000, 1_048_574])
 def test_distant_single_key_is_refused_before_sampling(
-    walker, refused, load, monkeypatch, button, frame
+    actor, refused, load, monkeypatch, button, frame
 ):
     channel = load("mocap_assist.actions.curves").Channel
     monkeypatch.setattr(channel, "_evaluated", lambda *_: pytest.fail("It was sampled."))
-    curve = next(each for each in curves(walker) if "LeftArm" in each.data_path)
+    curve = next(each for each in curves(actor) if "LeftArm" in each.data_path)
     curve.keyframe_points.insert(frame, 0.3)
 
     sentence = refused(button)
@@ -113,15 +105,15 @@ def test_distant_single_key_is_refused_before_sampling(
     assert "choose a frame range" in sentence
 
 
-def test_frame_range_excludes_a_distant_key(walker, blank):
-    curves(walker)[0].keyframe_points.insert(500_000, 0.3)
+def test_frame_range_excludes_a_distant_key(actor, blank):
+    curves(actor)[0].keyframe_points.insert(500_000, 0.3)
     blank.context.scene.use_preview_range = True
     blank.context.scene.frame_preview_start, blank.context.scene.frame_preview_end = 1, 50
 
     outcome = blank.ops.mocap_assist.denoise(frame_range="PREVIEW", plant_feet=False)
 
     assert outcome == {"FINISHED"}
-    assert curves(walker)[0].keyframe_points[-1].co.x == 500_000
+    assert curves(actor)[0].keyframe_points[-1].co.x == 500_000
 
 
 def test_sparse_keys_are_read_at_any_distance(make_armature, animate, blank):
@@ -132,15 +124,15 @@ def test_sparse_keys_are_read_at_any_distance(make_armature, animate, blank):
 
 
 @pytest.mark.parametrize("button", BUTTONS)
-def test_extreme_frame_rate_is_refused(walker, refused, blank, button):
+def test_extreme_frame_rate_is_refused(actor, refused, blank, button):
     blank.context.scene.render.fps, blank.context.scene.render.fps_base = 32767, 1e-5
 
     assert "Hz is not that of a recording" in refused(button)
 
 
 @pytest.mark.parametrize("button", BUTTONS)
-def test_take_of_nan_only_is_refused(walker, refused, button):
-    for curve in curves(walker):
+def test_take_of_nan_only_is_refused(actor, refused, button):
+    for curve in curves(actor):
         keys = np.empty(2 * len(curve.keyframe_points), dtype=np.float32)
         curve.keyframe_points.foreach_get("co", keys)
         keys[1::2] = np.nan
@@ -173,7 +165,7 @@ def is_reading(button):
     return not hasattr(button, "_job")
 
 
-def test_esc_cancels_reading_a_take(walker, press_slowly, window, blank):
+def test_esc_cancels_reading_a_take(actor, press_slowly, window, blank):
     button = press_slowly()
     assert is_reading(button) and "Reading" in window.status[-1]
     button.modal(window.context, event("TIMER"))
@@ -183,11 +175,11 @@ def test_esc_cancels_reading_a_take(walker, press_slowly, window, blank):
     assert nothing_is_left(window) and len(blank.data.actions) == 1
 
 
-def test_take_read_in_time_slices_is_the_same(walker, press_slowly, window, blank, keys_of):
-    played = walker.animation_data.action
+def test_take_read_in_time_slices_is_the_same(actor, press_slowly, window, blank, keys_of):
+    played = actor.animation_data.action
     assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
-    at_once = list(keys_of(walker.animation_data.action).values())
-    walker.animation_data.action = played
+    at_once = list(keys_of(actor.animation_data.action).values())
+    actor.animation_data.action = played
 
     button = press_slowly()
     counter = SimpleNamespace(reading=0)
@@ -198,8 +190,8 @@ def test_take_read_in_time_slices_is_the_same(walker, press_slowly, window, blan
 
     assert wait(button, window, poll) == {"FINISHED"}
 
-    assert counter.reading > len(walker.data.bones)
-    assert list(keys_of(walker.animation_data.action).values()) == at_once
+    assert counter.reading > len(actor.data.bones)
+    assert list(keys_of(actor.animation_data.action).values()) == at_once
 
 
 def delete_armature(bpy, armature):
@@ -226,11 +218,11 @@ def undo_like(bpy, armature):
 
 
 @pytest.mark.parametrize("change", [delete_armature, delete_action])
-def test_object_deleted_during_reading_is_named(walker, press_slowly, window, blank, change):
+def test_object_deleted_during_reading_is_named(actor, press_slowly, window, blank, change):
     button = press_slowly()
     button.modal(window.context, event("TIMER"))
     assert is_reading(button)
-    change(blank, walker)
+    change(blank, actor)
 
     assert wait(button, window) == {"CANCELLED"}
 
@@ -239,21 +231,21 @@ def test_object_deleted_during_reading_is_named(walker, press_slowly, window, bl
 
 
 def test_curves_replaced_during_reading_are_found_again(
-    walker, press_slowly, window, blank, keys_of
+    actor, press_slowly, window, blank, keys_of
 ):
-    played = walker.animation_data.action
+    played = actor.animation_data.action
     assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
-    undisturbed = list(keys_of(walker.animation_data.action).values())
-    walker.animation_data.action = played
+    undisturbed = list(keys_of(actor.animation_data.action).values())
+    actor.animation_data.action = played
     button = press_slowly()
     for _ in range(3):
         button.modal(window.context, event("TIMER"))
     assert is_reading(button)
-    undo_like(blank, walker)
+    undo_like(blank, actor)
 
     assert wait(button, window) == {"FINISHED"}
 
     assert nothing_is_left(window)
-    cleaned = walker.animation_data.action
+    cleaned = actor.animation_data.action
     assert cleaned != played
     assert list(keys_of(cleaned).values()) == undisturbed

@@ -15,9 +15,10 @@ from urllib.parse import unquote, urlparse
 
 import bgui
 import bpy
-from driver_scene import empty_scene
+from driver_scene import empty_scene, settle
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
+AWAY = (500, 500)
 SECONDS = 8.0  # of the take
 MISSING = ("RightArm", range(120, 180))
 ROW = 23  # pixels from one row of a panel to the next
@@ -126,7 +127,7 @@ def clean(armature):
     bgui.shot("3-running.png")
     yield from wait_until_done()
     assert armature.animation_data.action.name == f"{raw.name}.clean"
-    yield from settle()
+    yield from settle(pointer=AWAY)
     bgui.shot("4-cleaned.png")
 
 
@@ -178,7 +179,7 @@ def other_editors():
             except TypeError:  # the tabs exist once they have been drawn
                 continue
         assert view.type == kind and sidebar.active_panel_category == "Mocap"
-        yield from settle()
+        yield from settle(pointer=AWAY)
         bgui.shot(f"{number}-{editor.lower()}.png")
     view.ui_type = "VIEW_3D"
     yield 0.5
@@ -200,11 +201,11 @@ def clean_again_with_other_settings(armature):
 def revert_and_compare(armature):
     """Back to the recorded action; the overlay still shows both."""
     yield from press("mocap_assist_overlay")
-    yield from settle()
+    yield from settle(pointer=AWAY)
     bgui.shot("5-overlay.png")
     yield from press("mocap_assist.revert_to_raw")
     assert armature.animation_data.action.name == "walk"
-    yield from settle()
+    yield from settle(pointer=AWAY)
     yield from bgui.scan()
     yield from bgui.hover(*bgui.at("mocap_assist.revert_to_raw"))
     bgui.shot("6-greyed.png")
@@ -215,7 +216,7 @@ def check():
     yield from press("mocap_assist.measure_quality")
     yield from wait_until_done()
     assert found.issues
-    yield from settle()
+    yield from settle(pointer=AWAY)
     yield from bgui.scan(columns=(0.25, 0.75))
     yield from bgui.click(*bgui.at("mocap_assist.jump_to_issue(index=2)"))
     issue = found.issues[2]
@@ -223,10 +224,10 @@ def check():
     assert bpy.context.scene.frame_current == int(issue.start)
     assert bpy.context.active_pose_bone.name == issue.name
     yield from bgui.click(*bgui.at("mocap_assist.jump_to_issue(step=1)"))
-    yield from settle()
+    yield from settle(pointer=AWAY)
     assert found.active_issue == 3
     look_at_figure()
-    yield from settle()
+    yield from settle(pointer=AWAY)
     bgui.shot("7-issues.png")
 
 
@@ -244,7 +245,7 @@ def wide_sidebar_with_examples():
         bgui.move(edge - step, middle)
         yield 0.05
     bgui.x("mouseup", 1)
-    yield from settle()
+    yield from settle(pointer=AWAY)
     yield from bgui.scan()
     bgui.shot("8-wide.png")
     # The pointer cannot ask a menu for its name: it is one row above the file.
@@ -265,14 +266,6 @@ def the_preferences():
         bpy.ops.preferences.addon_expand(module=PACKAGE)
     yield 1.5
     bgui.shot("10-preferences.png")
-
-
-def settle():
-    """Let panels that grow or move come to rest."""
-    bgui.move(500, 500)
-    for _ in range(6):
-        bgui.redraw()
-        yield 0.25
 
 
 def steps():

@@ -11,9 +11,10 @@ from pathlib import Path
 
 import bgui
 import bpy
-from driver_scene import empty_scene, unfold_alone
+from driver_scene import empty_scene, settle, unfold_alone
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
+AWAY = (300, 500)
 SECONDS = 240.0  # of the walk: more than is solved at once
 
 
@@ -42,13 +43,6 @@ def press(button):
     yield from bgui.click(*bgui.at(button))
 
 
-def settle():
-    bgui.move(300, 500)
-    for _ in range(6):
-        bgui.redraw()
-        yield 0.25
-
-
 def running():
     return bpy.context.window_manager.mocap_assist_job.running
 
@@ -65,7 +59,7 @@ def find_the_bones(hero):
     bgui.shot("1-no-target.png")
     bpy.context.scene.mocap_assist.retarget.target = hero.name
     yield from press("mocap_assist.find_bones")
-    yield from settle()
+    yield from settle(pointer=AWAY)
     assert len(bpy.context.scene.mocap_assist.bone_map.rows) > 20
     bgui.shot("2-bones.png")
 
@@ -94,7 +88,7 @@ def retarget(source, hero):
     assert source.animation_data.action == raw
     bpy.context.scene.frame_set(30)
     look_at(source, hero)
-    yield from settle()
+    yield from settle(pointer=AWAY)
     bgui.shot("3-retargeted.png")
 
 
@@ -104,7 +98,7 @@ def take_it_back(name):
     yield 1.0
     assert bpy.data.objects["Hero"].animation_data is None
     assert name not in bpy.data.actions
-    yield from settle()
+    yield from settle(pointer=AWAY)
     bgui.shot("4-undone.png")
 
 
@@ -115,7 +109,7 @@ def steps():
     yield 0.5
     bgui.area().spaces.active.show_region_ui = True
     yield from bgui.open_sidebar("Mocap", 420)
-    yield from settle()
+    yield from settle(pointer=AWAY)
     yield from find_the_bones(hero)
     yield from escape_leaves_all_as_it_was(hero)
     yield from retarget(source, hero)

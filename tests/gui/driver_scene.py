@@ -24,8 +24,10 @@ def unfold_alone(name):
         bpy.utils.register_class(panel)
 
 
-def settle(times=3):
-    """Wait until everything is drawn."""
+def settle(times=3, pointer=None):
+    """Wait until everything is drawn; move the pointer off the buttons before, if given."""
+    if pointer:
+        bgui.move(*pointer)
     for _ in range(times):
         bgui.redraw()
         yield 0.5

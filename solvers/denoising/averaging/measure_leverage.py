@@ -17,9 +17,9 @@ MAX_PROBED_FRAMES = 1024
 """Frames of a long take, in its middle, in which the change is measured. It bounds the run
 time."""
 MIN_PROBED_SAMPLES = 2048
-"""Samples to which noise is added, over all probes: few are probed several times. Over
-100 noisy takes of three channels and 60 frames, the factor lay between 1.0 and 3.4 with one
-probe, and between 1.0 and 1.8 with as many as this takes."""
+"""Samples to which noise is added, over all probes: few are probed several times. Chosen by
+hand: over 100 noisy takes of three channels and 60 frames, the factor lay between 1.0 and 3.4
+with one probe, and between 1.0 and 1.8 with as many as this takes."""
 
 
 def leverage(residual: Array, leave_one_out_error: Array) -> Array:

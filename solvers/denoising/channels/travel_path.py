@@ -20,10 +20,10 @@ SPIKE_TOLERANCE = 3.5
 hand: x0.5 costs 0.1 %, x2 costs nothing."""
 MAX_ANGLE_RAD = np.radians(120.0)
 """Angle to a smooth reference within which rotation vectors are safe: two thirds of the half
-turn at which they jump. A guard."""
+turn at which they jump. It guards takes that turn around, whose vectors would jump."""
 UNWRAP_S = 0.05
 """Standard deviation of the kernel that removes jitter of headings before they are unwrapped,
-seconds. A guard: a sample alone must not decide on a turn."""
+seconds. It guards noisy takes: a sample alone must not decide on a turn."""
 GAP_WEIGHT = 1e-3
 """Weight of a frame that was not observed, relative to one that was. Chosen by hand:
 x1000, which counts gaps as observed, costs 0.3 % on one take; 0 has no solution in a gap wider

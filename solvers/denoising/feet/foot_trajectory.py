@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d  # reflects ends; smooth_gaussian repeats them
 
 from ...arrays import Array, Flags
 from ...motion import Motion, Skeleton, WorldPoses

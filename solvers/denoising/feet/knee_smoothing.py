@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d  # reflects ends; smooth_gaussian repeats them
 
 from ...arrays import Array
 from ...motion import WorldPoses

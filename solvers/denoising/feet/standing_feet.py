@@ -11,8 +11,8 @@ from ...rotations import angle_between
 from .legs import SIDES, LegJoints
 
 MAX_STILL_RAD = np.radians(0.02)
-"""Rotation of the joints of a leg, in radians, below which the leg was not captured: who stands
-still rotates a tenth of a degree. Chosen by hand."""
+"""Rotation of the joints of a leg, in radians, below which the leg was not captured. Chosen by
+hand: it is 0.02 degrees, and who stands still rotates 0.1."""
 MIN_HIP_HEIGHT = 0.2
 """Height of the lower hip joint above the feet, as a ratio to the length of a leg, below which
 the body sits or lies. Chosen by hand: the hips of four HDM05 takes that lie down come to rest

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...progress import Progress, unwatched
 from ...rotations import IDENTITY, inverse, matrix_from_quaternion, rotate
+from ...signals import find_runs
 from ..channels import BODY_POSITION, Channels, Estimate
 from .adapt_relation import (
     MIN_GAP_S,
@@ -127,13 +128,10 @@ def find_joint_gaps(channels: Channels, frame_rate: float) -> list[JointGap]:
     missing = np.isnan(channels.values).any(axis=2)
     missing[:, channels.joints == channels.joints[-1]] = False
     found: dict[tuple[int, int], list[int]] = defaultdict(list)
-    edges = np.diff(missing.astype(int), axis=0)
     for part in np.flatnonzero(missing.any(axis=0)).tolist():
-        starts = np.flatnonzero(edges[:, part] == 1) + 1
-        stops = np.flatnonzero(edges[:, part] == -1) + 1
-        stops = np.append(stops, -1)[np.searchsorted(stops, starts)]
-        for start, stop in zip(starts.tolist(), stops.tolist(), strict=True):
-            if stop - start >= MIN_GAP_S * frame_rate:
+        for start, stop in find_runs(missing[:, part]):
+            is_inside = start > 0 and stop < len(missing)
+            if is_inside and stop - start >= MIN_GAP_S * frame_rate:
                 found[start, stop].append(part)
     return [JointGap(*frames, tuple(parts)) for frames, parts in found.items()]
 

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
+from ...rotations import skew_matrices
 from .coordinates import N_COORDINATES, N_ROOT, ROTATION_AXES
 from .model import BodyModel
 from .tables import END_SEGMENTS, PARENTS, SEGMENTS
@@ -12,10 +13,6 @@ N_SEGMENTS = len(SEGMENTS)
 _PARENT = np.array(PARENTS)
 _SMALL_ANGLE = 1e-4
 """Radians below which a series replaces the quotient. It guards a division."""
-_CROSS_FLAT = np.zeros((3, 9))
-"""v @ _CROSS_FLAT is the matrix [v]x, flat: [v]x @ u = v x u."""
-for _i, _j, _k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-    _CROSS_FLAT[_i, 3 * _k + _j], _CROSS_FLAT[_i, 3 * _j + _k] = 1.0, -1.0
 
 
 def _axis_tables() -> tuple[NDArray[np.intp], Array, Array, Array]:
@@ -133,7 +130,7 @@ def _left_jacobians(vectors: Array) -> Array:
 
 def _angles_and_crosses(vectors: Array) -> tuple[Array, Array]:
     angles = np.sqrt(np.einsum("...i,...i->...", vectors, vectors))
-    return angles, (vectors @ _CROSS_FLAT).reshape(*vectors.shape, 3)
+    return angles, skew_matrices(vectors)
 
 
 def _series(first: Array, second: Array, crosses: Array) -> Array:

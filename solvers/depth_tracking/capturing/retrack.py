@@ -22,7 +22,8 @@ from .smooth_pass import measure_fit, smooth_window
 
 DEFAULT_RETRACK = RetrackSettings()
 _N_CONTEXT_FRAMES = 2
-"""Frames on both sides that give position and velocity of the previous motion."""
+"""Frames on both sides that give position and velocity of the previous motion. By definition: a
+velocity needs two."""
 
 
 @dataclass(frozen=True, eq=False)

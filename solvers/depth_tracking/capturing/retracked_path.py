@@ -18,7 +18,8 @@ _MIN_CONFIDENCE = 0.2
 """Minimum confidence of a joint in the comparison. It guards corrections of an occluded limb:
 old and new motion would agree at once, wherever it is."""
 _MIN_AGREEING_FRAMES = 4
-"""Minimum number of consecutive frames where both motions agree."""
+"""Minimum number of consecutive frames where both motions agree. It guards a blend of less than
+this many frames, a setting: motions that only cross in a frame are not the same."""
 _SCORE_TOLERANCE = 0.015
 """Fraction by which the score of the new path may be lower than that of the previous motion. It
 guards corrections that the images hardly show: the path would end at the first frame that fits

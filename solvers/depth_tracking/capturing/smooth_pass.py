@@ -23,10 +23,11 @@ from .smooth_take import smooth_take
 REFERENCE_RATE_HZ = 30.0
 """Frame rate of the reference for the smoothing weight. By definition."""
 _CONSTRAINT_WEIGHT = 1e8
-"""Weight per square radian of a pose that must not change. A guard: any value as large gives
-the same."""
+"""Weight per square radian of a pose that must not change. By definition of a constraint, any
+value as large gives the same."""
 _WINDOW_FRAMES, _OVERLAP_FRAMES = 600, 60
-"""Frames per window, and overlap with the neighbors; both bound the memory."""
+"""Frames per window, and overlap with the neighbors. It bounds the memory: the normal equations
+of a take grow with its length."""
 
 
 def smooth_poses(

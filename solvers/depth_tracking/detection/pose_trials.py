@@ -19,6 +19,8 @@ STRIDES = (0.35, -0.35)
 """Forward rotation of the left thigh and backward rotation of the right one, radians. It guards
 detections with both legs in front of each other."""
 UNSIDED_ROUNDS = 3
+"""Number of rounds of a fit without side labels. It bounds the run time: most of these trials
+are discarded. Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
 
 
 def trial_poses(

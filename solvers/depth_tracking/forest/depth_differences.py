@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Single
 from ...depth_scene import Camera
 
-DepthImage = NDArray[np.float32]
 BACKGROUND_MM = 10_000
 """Depth of pixels without reading."""
 MM_PER_M = 1000.0
@@ -41,7 +41,7 @@ class PixelFeatures(NamedTuple):
         return self._replace(**{name: getattr(self, name)[chosen] for name in names})
 
 
-def pad_depth_image(depth: DepthImage) -> NDArray[np.uint16]:
+def pad_depth_image(depth: Single) -> NDArray[np.uint16]:
     """Return a depth image (height, width), meters, in millimeters with a background border."""
     padded = np.full((depth.shape[0] + 2, depth.shape[1] + 2), BACKGROUND_MM, dtype=np.uint16)
     millimeters = np.minimum(np.rint(depth * np.float32(MM_PER_M)), BACKGROUND_MM)

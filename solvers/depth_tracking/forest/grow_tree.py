@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Single
 from ...progress import Progress, unwatched
 from ...settings import Settings, setting
 from .depth_differences import PixelFeatures, depth_differences
 from .parts import N_PARTS
 
-Floats = NDArray[np.float32]
 Nodes = NDArray[np.int32]
 
 CM_PER_M = 100.0
@@ -80,7 +80,7 @@ class Tree:
 class _BestTests(NamedTuple):
     """Best test of each node of one level."""
 
-    gain: Floats
+    gain: Single
     feature: Nodes
     edge: Nodes
 
@@ -193,7 +193,7 @@ def _bins(views: PixelFeatures, feature: NDArray[np.int8]) -> NDArray[np.int32]:
     return np.asarray(_BIN_OF_VALUE[np.clip(values, -_CLIP_VALUE, _CLIP_VALUE) + _CLIP_VALUE])
 
 
-def _gains(counts: NDArray[np.int64]) -> tuple[Floats, Nodes]:
+def _gains(counts: NDArray[np.int64]) -> tuple[Single, Nodes]:
     """Return the largest information gain of each node, and the index of its threshold.
 
     The gain is in nats times pixels: the entropy of the node minus that of both children.
@@ -214,7 +214,7 @@ def _gains(counts: NDArray[np.int64]) -> tuple[Floats, Nodes]:
     return gain, edge
 
 
-def _negative_entropy(counts: Floats) -> Floats:
+def _negative_entropy(counts: Single) -> Single:
     """Return minus the entropy times the number of pixels, over the last axis."""
     each = counts * np.log(np.maximum(counts, 1.0))
     total = counts.sum(axis=-1)

@@ -3,7 +3,8 @@
 from ..terms import TrackerSettings
 
 NO_ANKLES = 1e6
-"""`ankle_weight` that locks the ankles. A guard: any value as large gives the same."""
+"""`ankle_weight` that locks the ankles. By definition of a constraint, any value as large gives
+the same."""
 
 REGISTRATION_TRACKER = TrackerSettings(
     iterations=5, coarse_iterations=0, limit=0.08,

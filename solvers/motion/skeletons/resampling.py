@@ -22,13 +22,15 @@ PASSBAND = 0.7
 2.0 %, x2 fails."""
 
 MAX_VALUES_PER_BLOCK = 4_000_000
-"""Limits the memory: two hours of a skeleton have thirty times as many values."""
+"""Values that are interpolated at once. It bounds the memory: two hours of a skeleton have
+thirty times as many."""
 
 ROWS_PER_BLOCK = 32
-"""New frames that one matrix product filters."""
+"""New frames that one matrix product filters. It bounds the run time."""
 
 N_NODES = 4
-"""Frames from which one value is interpolated."""
+"""Frames from which one value is interpolated. Chosen by hand: x0.5 costs 12.7 %, x2 costs 0.9
+%."""
 
 Recording = TypeVar("Recording", Motion, Tracks)
 

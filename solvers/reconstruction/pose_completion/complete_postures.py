@@ -51,8 +51,14 @@ nothing, x2 gains 0.2 %."""
 BLOCK_FRAMES = 256
 """Number of frames whose pose spaces are in memory at once."""
 CORRECTION_FRAMES = 150
+"""Frames of the take, evenly spaced, to which the bone axes of the library are fitted. It
+bounds the run time: x0.5 and x2 change no figure by 0.5 %."""
 CORRECTION_NEIGHBORS = 3
+"""Number of poses of the library that each of these frames is compared with. Chosen by hand:
+x0.5 costs nothing, x2 costs nothing."""
 CORRECTION_ROUNDS = 2
+"""Number of times that the nearest poses are looked up again with the corrected axes. Chosen by
+hand: x0.5 costs nothing, x2 costs nothing."""
 
 
 class CompletedPostures(NamedTuple):

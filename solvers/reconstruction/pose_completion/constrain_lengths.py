@@ -6,6 +6,8 @@ from ...arrays import Array
 from ...motion.humanoid import N_JOINTS, PARENTS, segment_lengths
 
 N_ROUNDS = 30
+"""Number of passes over all bones. It bounds the run time. Chosen by hand: x0.5 costs nothing,
+x2 costs nothing."""
 
 
 def constrain_lengths(

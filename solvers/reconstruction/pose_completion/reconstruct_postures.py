@@ -29,7 +29,8 @@ from .complete_postures import Completer, ObservedTake, complete_postures
 from .settings import DEFAULT_SETTINGS, PostureSettings
 
 MIN_JOINTS = 3
-"""Minimum number of posture joints observed in one frame."""
+"""Minimum number of posture joints observed in one frame. By definition: three points determine
+position and rotation of a rigid body."""
 
 
 class CompletedJoints(NamedTuple):

@@ -12,8 +12,7 @@ INITIAL_WIDTH = 0.5
 """Standard deviation of the first samples, relative to that of the neighbors. Chosen by hand,
 as the paper does not specify it."""
 WIDTH_DECAY = 0.85
-"""Factor of the width after each step. The paper does not specify the sample spread. Chosen by
-hand."""
+"""Factor of the width after each step. Chosen by hand, as the paper gives no sample spread."""
 
 
 def search_postures(

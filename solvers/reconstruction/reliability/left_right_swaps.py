@@ -6,12 +6,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array, Flags
+from ...arrays import Array, Flags, Integers
 from ...motion import JointRecording
 from ...motion.humanoid import SIDES, posture_joint_indices
 from .terms import vector_lengths
-
-Pairs = NDArray[np.intp]
 
 MAX_SWAP_S = 1.0
 """Maximum duration (s) of a swap. It guards an actor who turned around while he was lost: after
@@ -66,7 +64,7 @@ def fix_left_right_swaps(recording: JointRecording) -> JointRecording:
     )
 
 
-def _swap_groups(recording: JointRecording) -> Iterator[tuple[Pairs, Pairs]]:
+def _swap_groups(recording: JointRecording) -> Iterator[tuple[Integers, Integers]]:
     """Yield joints that swap together, largest group first: all pairs, and pairs at the root.
 
     Pairs are columns, shape (n_pairs, 2). Pairs at the root of a group are far apart, so all of
@@ -110,7 +108,7 @@ def _is_below(joint: int, root: int, parents: Sequence[int]) -> bool:
     return joint == root
 
 
-def _swap_edges(positions: Array, pairs: Pairs, first: Pairs, frame_rate: float) -> Array:
+def _swap_edges(positions: Array, pairs: Integers, first: Integers, frame_rate: float) -> Array:
     """Return the excess step length into each frame of a swap, shape (n_frames,), meters.
 
     The mean over pairs; 0 where not all of them step to the other side's position.
@@ -126,7 +124,7 @@ def _swap_edges(positions: Array, pairs: Pairs, first: Pairs, frame_rate: float)
     return np.where(jumps, gain, 0.0)
 
 
-def _step_lengths(positions: Array, pairs: Pairs, longest: float) -> tuple[Array, Array]:
+def _step_lengths(positions: Array, pairs: Integers, longest: float) -> tuple[Array, Array]:
     """Return step lengths with sides unswapped and swapped, each (n_frames, n_pairs).
 
     Steps start at the last frame with both joints observed; NaN without one within `longest`.
@@ -166,7 +164,7 @@ def _swapped_frames(edges: Array, longest: float) -> Flags:
     return frames
 
 
-def _swap_columns(values: NDArray[np.generic], frames: Flags, pairs: Pairs) -> None:
+def _swap_columns(values: NDArray[np.generic], frames: Flags, pairs: Integers) -> None:
     """Swap the columns of pairs in some frames, in place."""
     rows = np.flatnonzero(frames)[:, None]
     left, right = values[rows, pairs[:, 0]], values[rows, pairs[:, 1]]

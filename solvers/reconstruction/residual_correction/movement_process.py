@@ -36,6 +36,7 @@ PACE_S = 0.2
 prior was learned with it."""
 N_PARTS = 5
 BLOCK = 512
+"""Frames whose distances to the examples are in memory at once. It bounds the memory."""
 
 
 KEYS = {"center": "centre"}

@@ -20,8 +20,8 @@ JITTER = 1e-6
 """Added to the diagonal of a covariance, relative to the variance. It guards a
 factorization."""
 MEAN_VARIANCE = 1e4
-"""Prior variance of the mean error in square meters; so large that it is uninformative. A
-guard: any value as large gives the same."""
+"""Prior variance of the mean error in square meters. By definition uninformative: any value as
+large gives the same."""
 
 
 def inducing_points(features: Array, count: int, seed: int) -> Array:

@@ -15,8 +15,17 @@ UNITS = (CENTIMETER, 1.0, 0.001, 0.0254, ACCLAIM_UNIT)
 # The longest path along the bones of an adult, from a hand or the head to a foot: 2.0 to 2.6 m
 # in skeletons of nine makers. Unlike the height it does not depend on the rest pose.
 ADULT_REACH_M = 2.3
+"""The longest path along the bones of an adult, from a hand or the head to a foot, meters.
+Chosen by hand: 2.0 to 2.6 m in skeletons of nine makers. Unlike the height it does not depend
+on the rest pose."""
 PLAUSIBLE_REACH_M = (1.1, 4.6)
+"""Range of that path, meters, in which a file is in centimeters: about half and twice that of
+an adult. Chosen by hand: x0.5 and x2 fail
+`test_the_unit_is_guessed_from_the_length_of_the_bones`."""
 MIN_BODY_JOINTS = 8
+"""Number of joints of a body, from which its size decides on the unit. Chosen by hand: x0.5
+fails `test_any_rotation_order_survives_writing_and_reading`, x2
+`test_the_unit_is_guessed_from_the_length_of_the_bones`."""
 
 
 def check_scale(scale: float | None) -> None:

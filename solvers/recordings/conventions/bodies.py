@@ -17,8 +17,8 @@ Key = TypeVar("Key", bound=Hashable)
 ALL_BODIES = "all"
 """Choice of every body, without false detections."""
 MIN_FRACTION = 0.05
-"""Minimum frames of a person, relative to the person in most frames. Trackers see people in
-furniture for a moment; at 30 Hz it is 1.5 s of a take of 30 s. Chosen by hand."""
+"""Minimum frames of a person, relative to the person in most frames. Chosen by hand: at 30 Hz
+it is 1.5 s of a take of 30 s, and trackers see people in furniture for a moment."""
 MAX_LISTED = 4
 """Bodies that a sentence lists."""
 

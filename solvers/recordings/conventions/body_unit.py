@@ -24,9 +24,11 @@ from ...progress import Progress, Remark
 
 UNITS = (1.0, 0.01, 0.001)
 ODD_STATURE_M = (0.8, 2.6)
-"""From a small child to the tallest of people; outside, the report asks."""
+"""Range of statures, meters, outside which the report asks. Chosen by hand: from a small child,
+0.8 m, to more than the tallest people."""
 HEAD_TO_ANKLE = 0.886
-"""Path along the bones from the head to an ankle, relative to the stature (`smpl_body`)."""
+"""Path along the bones from the head to an ankle, relative to the stature. By definition of the
+body in `smpl_body`."""
 
 
 def convert_to_body_unit(

@@ -21,13 +21,20 @@ METERS = {
 ROLLED_FORWARD: dict[AxisName, AxisName] = {"X": "-Z", "-X": "Z"}
 """Axis that becomes -Y where points are rotated cyclically."""
 GUESSED_CONFIDENCE = 0.9
-"""Confidence in an up axis that is judged from the extent of markers: right in all of the test
-files that state theirs, but they are few."""
+"""Confidence, a ratio, in an up axis that is judged from the extent of markers. Chosen by hand:
+right in all files of tests/solvers/recordings/marker_files that state theirs, but they are
+few."""
 BODY_EXTENT_M = 1.5
+"""Typical extent of the markers of a body, meters, to which the unit brings them nearest.
+Chosen by hand: x2 fails `test_the_unit_is_the_header_s_or_gives_a_person_s_size`."""
 FLOOR_TOLERANCE_M = 0.15
+"""Depth below height 0, meters, of markers that are above a floor. Chosen by hand: x0.5 fails
+`test_the_screen_is_obeyed_where_it_may_be_right`, x2
+`test_real_files_are_what_a_naive_reader_sees`."""
 MIN_STANDING_M, MIN_STANDING_RATIO = 1.2, 1.5
 """Extent of markers on a body that stands, and relative to their extent along the stated axis:
-a body is about three times as tall as wide, and arms may be spread."""
+a body is about three times as tall as wide, and arms may be spread. Chosen by hand: x2 fails
+`test_a_body_that_stands_along_another_axis_is_believed`."""
 
 
 def point_names(labels: Sequence[str]) -> tuple[str, ...]:

@@ -16,9 +16,12 @@ from .stack import MILLIMETER, DepthStack, check_size
 KINECT_V1 = Camera(571.26, 571.26, 319.5, 239.5, 640, 480)
 PIXEL = 2
 MAX_DEPTH_MM = 12_000
-"""Maximum distance of a Kinect's reading, millimeters."""
+"""Maximum distance of a Kinect's reading, millimeters. Chosen by hand: x0.5 and x2 fail no test
+of this module."""
 MIN_OBSERVED_FRACTION, MAX_STEP_MM = 0.02, 40
-"""Minimum fraction of pixels with a reading, and maximum median step between neighbors, mm."""
+"""Minimum fraction of pixels with a reading, and maximum median step between neighbors, mm.
+They are meant for files of other numbers of 16 bits. Chosen by hand: x0.5 and x2 fail no test
+of this module."""
 
 
 def is_depth_raw(path: Path, head: bytes) -> bool:

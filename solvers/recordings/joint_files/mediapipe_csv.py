@@ -21,7 +21,8 @@ SUFFIX = re.compile(r"_(world|m|meters)$")
 NAME_FIRST = re.compile(r"(.+?)_?([xyzv]|vis|visibility)")
 LETTER_FIRST = re.compile(r"([xyzv]|vis|visibility)_?(\d{1,2})")
 MIN_LANDMARKS = 17
-"""Landmarks with a column x, from which a table is one of poses."""
+"""Number of landmarks with a column x, from which a table is one of poses. By definition more
+than half of the 33 of MediaPipe."""
 INDEX_TITLES = ("landmark", "landmark_index", "landmark_id", "landmark_name", "joint", "index",
                 "name")  # fmt: skip
 FRAME_TITLES = ("frame", "frame_number", "frame_id", "frame_idx", "frame_index")

@@ -20,7 +20,8 @@ ORDER = (
 )  # fmt: skip
 WIDTH = 4
 MIN_EXTENT_M, MAX_EXTENT_M = 0.3, 5.0
-"""Minimum and maximum extent of a body on its longest axis, meters."""
+"""Minimum and maximum extent of a body on its longest axis, meters. They guard files of the
+data set that hold screen coordinates, in pixels."""
 
 
 def is_msr_action3d(head: bytes) -> bool:

@@ -11,7 +11,8 @@ from ..conventions import y_up_from_z_up
 
 MILLIMETERS_PER_METER = 1000.0
 NEAR_ORIGIN_MM = 1e-6
-"""Millimeters that replace an exact origin, which readers interpret as missing."""
+"""Millimeters that replace an exact origin, which readers interpret as missing. By definition
+the last of the six decimals that are written."""
 FRAMES_AT_ONCE = 500
 KEYS = (
     "DataRate", "CameraRate", "NumFrames", "NumMarkers", "Units", "OrigDataRate",

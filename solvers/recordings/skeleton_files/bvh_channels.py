@@ -28,7 +28,8 @@ from .bvh_hierarchy import BvhJoint
 
 FRAMES_AT_ONCE = 2000
 MIN_REACH_M = 0.5
-"""Of a small child, from hand to foot: a file in centimeters or in other units then."""
+"""Meters from hand to foot of a small child. Chosen by hand: a file of 0.5 to 1.1 m in
+centimeters may as well be in another unit."""
 
 
 class BvhPoses(NamedTuple):

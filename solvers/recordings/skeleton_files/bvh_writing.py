@@ -16,6 +16,7 @@ from ..conventions import CENTIMETER, rotations_y_up_from_z_up, y_up_from_z_up
 ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 FRAMES_AT_ONCE = 500
 ROTATION_TOLERANCE = 1e-9
+"""Components of a rotation, a ratio, that are only rounding."""
 TAB = "\t"
 
 

@@ -37,8 +37,8 @@ JOINTS: tuple[tuple[str, str], ...] = (
 )  # fmt: skip
 """Names and parents of the 30 joints, in the order of the archives, which name none."""
 MIN_DETERMINANT = 0.5
-"""Of a matrix that rounding has changed. By definition 1 of a rotation, -1 of a mirror
-image."""
+"""Determinant, a ratio, of a matrix that rounding has changed. By definition 1 of a rotation,
+-1 of a mirror image."""
 MEMBERS = ("posed_joints", "global_rot_mats", "fps")
 NAMES = frozenset({"posed_joints", "global_rot_mats", "local_rot_mats", "foot_contacts"})
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 FINGERS = ("index", "middle", "pinky", "ring", "thumb")
 STATURE_M = 1.75
+"""Stature of this body, meters, by definition of the table below."""
 
 BODY: tuple[tuple[str, str, tuple[float, float, float]], ...] = (
     ("pelvis", "", (0.0, 0.96, 0.0)),

@@ -21,6 +21,7 @@ RATES_HZ = (30.0, 24.0, 25.0, 60.0, 50.0, 100.0, 120.0)
 """Rates tried for the keys, which are times without one."""
 DEFAULT_RATE_HZ = 60.0
 KEY_TOLERANCE_S = 1e-3
+"""Seconds by which a key may be off a frame: rounding of the times in a file."""
 MAX_FRAMES = 1_000_000
 MAX_DEPTH, MAX_BONES = 200, 500
 STEP, CUBIC = "STEP", "CUBICSPLINE"

@@ -21,9 +21,11 @@ MAX_SEGMENT_FRACTION = 0.7
 one would describe the clip itself again."""
 N_CUBES = 3
 N_STEPS = 16
-"""Time samples of a segment for dynamic time warping."""
+"""Time samples of a segment for dynamic time warping. Chosen by hand: x0.5 costs 0.3 %, x2
+gains 0.4 %."""
 MAX_FRAMES = 1200
-"""Frames of a segment for its histogram, evenly spaced."""
+"""Frames of a segment for its histogram, evenly spaced. It bounds the run time: at 20 Hz,
+longer segments than a minute are subsampled."""
 MEAN_POSTURE_WEIGHT = 0.8
 """Default weight of the mean posture of a segment, relative to the deviation from it. Chosen by
 hand: x0.5 gains 0.8 %, x2 fails."""

@@ -12,9 +12,10 @@ from .posting_lists import PostingLists, build_posting_lists
 from .vocabulary import N_AXES
 
 MAX_POSTINGS = 1_000_000
-"""Postings of one block that a query reads at most."""
+"""Postings of one block that a query reads at most. It bounds the run time: smaller blocks
+compare all segments."""
 N_EXACT_SEGMENTS = 512
-"""Segments of a large block whose histograms are compared exactly."""
+"""Segments of a large block whose histograms are compared exactly. It bounds the run time."""
 STEP_SHAPE = (N_STEPS, N_PARTS, N_AXES)
 
 

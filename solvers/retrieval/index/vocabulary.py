@@ -25,10 +25,16 @@ from ..postures import (
 )
 
 N_AXES = 8
+"""Number of principal components of a part. Chosen by hand: x0.5 gains 0.5 %, x2 costs 0.5
+%."""
 N_WORDS = 64
+"""Number of codewords of a part. Chosen by hand: x0.5 gains 0.9 %, x2 costs 0.9 %."""
 FRAMES_PER_WORD = 4
+"""Minimum number of training frames of a codeword; fewer frames get fewer words. It guards
+libraries of a few short clips, whose words would be single frames."""
 N_NEAREST = 3
-"""Words with a nonzero weight in one frame."""
+"""Number of words with a nonzero weight in one frame. Chosen by hand: x0.5 costs 0.3 %, x2
+gains 0.3 %."""
 JITTER_M = 1e-6
 """Meters of random noise that separates equal frames: k-means needs distinct points. It guards
 a search for clusters."""
@@ -38,9 +44,12 @@ MAX_VALUE = 1e12
 """Limit of all learned numbers; squared meters and frame counts stay far below. It guards
 against damaged files."""
 MAX_TRAINING_FRAMES = 12000
-"""Training frames; more are slower and not better."""
+"""Number of training frames; more are slower and not better. It bounds the run time of
+indexing. Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
 RELEARNING_RATIO = 4
-"""Ratio of library frames to training frames above which the words are learned again."""
+"""Ratio of library frames to training frames above which the words are learned again. It bounds
+the run time of updates: a library that grows is indexed again each time it is four times as
+long."""
 SUFFICIENT_FRAMES = 8 * MAX_TRAINING_FRAMES
 """Training frames from which on the words are never learned again."""
 SHAPES = {

@@ -1,18 +1,15 @@
 """Align a query with any part of a clip."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
-
-Path = NDArray[np.intp]
+from ...arrays import Array, Integers
 
 STEP_PENALTY = 1.5
 """Cost factor of a step that advances only one of the two sequences. Chosen by hand: x0.5 gains
 6.9 %, x2 costs 0.4 %."""
 
 
-def align_frames(query: Array, clip: Array) -> Path:
+def align_frames(query: Array, clip: Array) -> Integers:
     """Return the best alignment of the complete query with any part of a clip.
 
     Subsequence dynamic time warping (Müller, Information Retrieval for Music and Motion, 2007,
@@ -44,7 +41,7 @@ def align_frames(query: Array, clip: Array) -> Path:
     return _backtrack_path(costs, distances, penalized)
 
 
-def _backtrack_path(costs: Array, distances: Array, penalized: Array) -> Path:
+def _backtrack_path(costs: Array, distances: Array, penalized: Array) -> Integers:
     row, column = len(costs) - 1, int(costs[-1].argmin())
     path = [(row, column)]
     while row:

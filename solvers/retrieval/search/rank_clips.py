@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Single
+from ...arrays import Integers, Single
 from ..index import (
     HISTOGRAM_SCALE,
     N_AXES,
@@ -22,10 +22,9 @@ from ..index import (
 from ..postures import N_PARTS
 from .find_settings import FindSettings
 
-Numbers = NDArray[np.int64]
-
 CLIPS_PER_NEIGHBOR = 20
-"""Clips per neighbor in re-ranking: in a small library the nearest clips are not similar."""
+"""Clips per neighbor in re-ranking: in a small library the nearest clips are not similar.
+Chosen by hand: x0.5 gains 0.3 %, x2 gains 0.1 %."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +41,7 @@ class Ranking:
         0 for the same motion, about 1.5 for unrelated motions.
     """
 
-    clips: Numbers
+    clips: Integers
     frames: NDArray[np.int32]
     distances: Single
 
@@ -112,7 +111,7 @@ def weight_summaries(summaries: Single, weights: NDArray[np.float64]) -> Single:
     return scaled.reshape(*scaled.shape[:2], N_PARTS * N_AXES)
 
 
-def _smallest_indices(values: Single, n: int) -> Numbers:
+def _smallest_indices(values: Single, n: int) -> Integers:
     """Return the indices of the smallest values in ascending order."""
     if n >= len(values):
         return np.argsort(values, kind="stable")

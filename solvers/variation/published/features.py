@@ -8,13 +8,10 @@ Velocities are those of the triples; the paper's are of positions.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...motion import Skeleton
 from ..curves import HEIGHT_COLUMN, partition_joints, sample_curves
-
-Indices = NDArray[np.int64]
 
 STEP_RATE_HZ = 30.0
 """Rate of the steps. Chosen by hand: depth cameras and most video have it."""
@@ -41,9 +38,9 @@ class MovingBody:
     partition : shape (n_triples,)
     """
 
-    joints: Indices
+    joints: Integers
     above: tuple[tuple[int, ...], ...]
-    partition: Indices
+    partition: Integers
 
     @property
     def n_triples(self) -> int:
@@ -133,7 +130,7 @@ def compute_step_features(before: tuple[Array, Array, Array], extra: Array) -> A
 
 def select_feature_columns(
     body: MovingBody, blocks: tuple[int, ...], n_extra: int, own: bool
-) -> Indices:
+) -> Integers:
     """Return the feature columns of each triple, shape (n_triples, n_most), padded with -1.
 
     Parameters

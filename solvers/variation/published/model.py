@@ -5,14 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...motion import Skeleton
 from ...progress import Progress, unwatched, within
 from .features import (
     N_CONTEXT,
     STEP_RATE_HZ,
     TIME_WEIGHT,
-    Indices,
     MovingBody,
     compute_step_features,
     find_moving_body,
@@ -128,7 +127,7 @@ def learn_stepwise(
 
 def _build_first_stages(
     body: MovingBody, states: Array
-) -> list[tuple[Array, Array, Indices, Array]]:
+) -> list[tuple[Array, Array, Integers, Array]]:
     """Return features, outputs, columns and weights of frames 1, 2 and 3 (eq. 4.2)."""
     nothing, none = np.zeros_like(states[:, 0]), np.zeros((len(states), 0))
     first, second, third = states[:, 0], states[:, 1], states[:, 2]

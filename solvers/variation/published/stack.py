@@ -9,11 +9,10 @@ complete function, which returns to the mean of the outputs far from all example
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import cho_solve, solve_triangular
 from scipy.spatial.distance import cdist
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...progress import Progress, unwatched
 from .process import (
     JITTER,
@@ -22,8 +21,6 @@ from .process import (
     compute_kernels,
     learn_hyperparameters,
 )
-
-Indices = NDArray[np.int64]
 
 N_INDUCING = 150
 N_LEARNING = 120
@@ -62,7 +59,7 @@ class ProcessStack:
         K(Z, Z)^-1.
     """
 
-    columns: Indices
+    columns: Integers
     center: Array
     scale: Array
     middle: Array
@@ -139,7 +136,7 @@ class ProcessStack:
 def learn_stack(
     features: Array,
     outputs: Array,
-    columns: Indices,
+    columns: Integers,
     weights: Array,
     published: bool,
     hyperparameters: list[Hyperparameters] | None = None,

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -78,17 +79,32 @@ FAMILIES: dict[str, tuple[str, ...]] = {
 """The modules whose constants each metric varies. Left out as a whole: recordings,
 command_line, pictures, processes, samples and rotations (formats, limits against hostile files,
 display, synthetic data, exact formulas), and workflows, which have no metric yet."""
+UNMEASURED: dict[str, tuple[str, ...]] = {
+    "workflows": ("solvers/workflows",),
+    "recordings": tuple(
+        f"solvers/recordings/{folder}"
+        for folder in (
+            "conventions", "depth_files", "joint_files", "marker_files", "skeleton_files"
+        )
+    ),
+    "mocap_assist": tuple(
+        f"mocap_assist/{folder}"
+        for folder in ("actions", "clean", "drawing", "retarget", "rigs", "scene", "track")
+    ),
+}  # fmt: skip
+"""Modules without a metric, whose tuned constants have a unit and a source nevertheless."""
 UNITS_BY_SUFFIX = {
     "_M_S": "m/s", "_RAD_S": "rad/s", "_PER_M2": "1/m", "_M2": "m2", "_DB": "dB",
     "_COSINE": "cosine", "_SINE": "sine", "_RELIABILITY": "0 to 1", "_CONFIDENCE": "0 to 1",
     "_S": "s", "_M": "m", "_CM": "cm", "_MM": "mm", "_DEG": "deg", "_RAD": "rad",
     "_HZ": "Hz", "_PX": "px", "_KG": "kg", "_FRAMES": "frames", "_FRACTION": "fraction",
     "_SHARE": "fraction", "_RATIO": "ratio", "_FACTOR": "factor", "_SIGMAS": "std. dev.",
-    "_NM": "N m", "_KG_M3": "kg/m3",
+    "_NM": "N m", "_KG_M3": "kg/m3", "_DENSITY": "1/deg",
 }  # fmt: skip
 UNITS_BY_WORDS = {
     r"meters per second": "m/s", r"radians per second": "rad/s", r"\bframes?\b": "frames",
-    r"degrees or centimeters": "deg or cm", r"square meters": "m2", r"\bmeters?\b": "m",
+    r"degrees or centimeters": "deg or cm", r"square degrees": "deg2",
+    r"square meters": "m2", r"\bmeters?\b": "m",
     r"\bseconds?\b": "s", r"\bdegrees?\b": "deg", r"hertz": "Hz", r"\bpixels?\b": "px",
     r"radians": "rad", r"(arm|leg) lengths?": "ratio", r"decibels": "dB",
     r"cosine": "cosine", r"\bsine\b": "sine",
@@ -123,8 +139,16 @@ class Constant:
         return self.path.removesuffix(".py").replace("/", ".")
 
     @property
+    def is_count(self) -> bool:
+        """Whether it is a whole number of something, by its name."""
+        of_what = self.name.removeprefix("_").startswith("N_")
+        return of_what and isinstance(self.value, int) and not self.name.endswith("_FRAMES")
+
+    @property
     def unit(self) -> str:
         """Unit, from the end of the name or the first word of the text that is one."""
+        if self.is_count:
+            return "count"
         for suffix, unit in UNITS_BY_SUFFIX.items():
             if self.name.endswith(suffix):
                 return unit
@@ -141,7 +165,7 @@ def constants_of(family: str) -> tuple[Constant, ...]:
     """Return all constants of a family, in the order of its modules."""
     return tuple(
         each
-        for path in FAMILIES[family]
+        for path in (FAMILIES | UNMEASURED)[family]
         for each in _below(ROOT / path)
         if _belongs(Path(each.path), family)
     )
@@ -166,7 +190,7 @@ def constants_in(module: Path) -> Iterator[Constant]:
     source = module.read_text(encoding="utf-8")
     lines = source.splitlines()
     body = ast.parse(source).body
-    for node, after in zip(body, [*body[1:], None], strict=True):
+    for node, after in zip_longest(body, body[1:]):
         for name, value in _numbers(node):
             path = str(module.relative_to(ROOT))
             yield Constant(path, name, value, _text(node, after, lines), node.lineno)

@@ -133,7 +133,7 @@ def write_docs(families: Mapping[str, Sequence[Row]]) -> None:
             sections.append(family_text(family, rows))
         elif title in old:
             sections.append(f"## {old[title].partition(NOT_MEASURED)[0].strip()}\n")
-        else:
+        elif not all(reason(each.key) for each in constants_of(family)):
             missing.append(_title(family))
     if missing:
         sections.append(f"{NOT_MEASURED}{', '.join(missing)}.\n")

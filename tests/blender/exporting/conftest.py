@@ -5,12 +5,9 @@ import pytest
 
 
 @pytest.fixture
-def walk(make_armature, animate, blank):
+def walk(make_dancer):
     """A figure of 13 bones, 1.7 m tall, in smooth motion for two seconds at 30 Hz."""
-    armature = make_armature()
-    animate(armature, frames=range(1, 61))
-    blank.context.scene.render.fps = 30
-    return armature
+    return make_dancer(60)
 
 
 @pytest.fixture

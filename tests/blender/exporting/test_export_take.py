@@ -9,18 +9,6 @@ from numpy.testing import assert_allclose
 FORMATS = ("fbx", "glb", "bvh")
 
 
-@pytest.fixture
-def command(load, capsys):
-    """Run `blender FILE --command mocap_assist ...`; return status, stdout and stderr."""
-    run = load("mocap_assist.batch.command").run
-
-    def call(*words):
-        status = run([str(word) for word in words])
-        return status, *capsys.readouterr()
-
-    return call
-
-
 def state_of(bpy):
     """Everything of a session that an export could change."""
     scene, active = bpy.context.scene, bpy.context.view_layer.objects.active

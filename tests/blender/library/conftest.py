@@ -208,3 +208,14 @@ def poll(load, monkeypatch):
     yield poll
     auto_update.unregister()
     auto_update.register()
+
+
+@pytest.fixture
+def choose(blank):
+    """Choose a match by the clip's name."""
+
+    def click(name):
+        listed = blank.context.window_manager.mocap_assist_matches
+        listed.active = [row.name for row in listed.rows].index(name)
+
+    return click

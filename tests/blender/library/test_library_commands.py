@@ -5,17 +5,6 @@ import json
 import pytest
 
 
-@pytest.fixture
-def command(load, capsys):
-    run = load("mocap_assist.batch.command").run
-
-    def call(*words):
-        status = run(list(map(str, words)))
-        return status, *capsys.readouterr()
-
-    return call
-
-
 def lines_of(out):
     return [json.loads(line) for line in out.splitlines() if line.startswith("{")]
 

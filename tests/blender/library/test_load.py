@@ -17,17 +17,6 @@ def load_match(blank):
     return press
 
 
-@pytest.fixture
-def choose(blank):
-    """Choose a match by the clip's name."""
-
-    def click(name):
-        listed = blank.context.window_manager.mocap_assist_matches
-        listed.active = [row.name for row in listed.rows].index(name)
-
-    return click
-
-
 def test_loaded_clip_equals_the_recording_on_the_same_body(
     find, newcomer, load_match, choose, poses, bring, clip_files, blank
 ):

@@ -5,17 +5,6 @@ import pytest
 
 
 @pytest.fixture
-def choose(blank):
-    """Choose a match by the clip's name."""
-
-    def click(name):
-        listed = blank.context.window_manager.mocap_assist_matches
-        listed.active = [row.name for row in listed.rows].index(name)
-
-    return click
-
-
-@pytest.fixture
 def ghost(load, blank):
     """The lines of the ghost at a frame."""
     drawing = load("mocap_assist.search.ghost_drawing")

@@ -32,12 +32,9 @@ def clean(blank):
 
 
 @pytest.fixture
-def dancer(make_armature, animate, blank):
+def dancer(make_dancer):
     """A figure of 13 bones in smooth motion for ten seconds at 30 Hz."""
-    armature = make_armature()
-    animate(armature, frames=range(1, 301))
-    blank.context.scene.render.fps = 30
-    return armature
+    return make_dancer(300)
 
 
 @pytest.fixture

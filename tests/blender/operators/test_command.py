@@ -6,18 +6,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 
-@pytest.fixture
-def command(load, capsys):
-    """Run `blender FILE --command mocap_assist ...`; return status, stdout and stderr."""
-    run = load("mocap_assist.batch.command").run
-
-    def call(*words):
-        status = run(list(words))
-        return status, *capsys.readouterr()
-
-    return call
-
-
 def test_denoise_command_cleans_and_saves(bad_arm, blank, command, tmp_path):
     target = tmp_path / "clean.blend"
 

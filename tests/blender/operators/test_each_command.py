@@ -7,18 +7,6 @@ from odd_files import close
 
 
 @pytest.fixture
-def command(load, capsys):
-    """Run `blender FILE --command mocap_assist ...`; return status, stdout and stderr."""
-    run = load("mocap_assist.batch.command").run
-
-    def call(*words):
-        status = run([str(word) for word in words])
-        return status, *capsys.readouterr()
-
-    return call
-
-
-@pytest.fixture
 def takes(load, tmp_path):
     """A folder of three takes, one of them broken, one in a folder of its own."""
     samples = load("solvers.samples")

@@ -6,25 +6,23 @@ import pytest
 
 
 @pytest.fixture
-def command(load, capsys):
+def run_json(command):
     """Run the command; return its status, its lines of JSON, and what it complained about."""
-    run = load("mocap_assist.batch.command").run
 
     def call(*words):
-        status = run(list(words))
-        out, err = capsys.readouterr()
+        status, out, err = command(*words)
         lines = [json.loads(line) for line in out.splitlines() if line[:1] == "{"]
         return status, lines, err
 
     return call
 
 
-def test_retarget_command_writes_actions_and_saves(walker, make_rig, blank, command, tmp_path):
+def test_retarget_command_writes_actions_and_saves(walker, make_rig, blank, run_json, tmp_path):
     make_rig("Mixamo")
     saved = tmp_path / "hero.blend"
 
     for _ in range(2):  # the second time the target is animated too, and left alone
-        status, lines, err = command(
+        status, lines, err = run_json(
             "retarget", "--target", "Mixamo", "--json", "--output", str(saved)
         )
         assert (status, err) == (0, "")
@@ -36,8 +34,8 @@ def test_retarget_command_writes_actions_and_saves(walker, make_rig, blank, comm
     assert action.name == lines[0]["action"]
 
 
-def test_retarget_command_reduces_keys(walker, command, tmp_path):
-    status, lines, err = command(
+def test_retarget_command_reduces_keys(walker, run_json, tmp_path):
+    status, lines, err = run_json(
         "unbake", "--tolerance", "2", "--json", "--output", str(tmp_path / "few.blend")
     )
 
@@ -47,7 +45,7 @@ def test_retarget_command_reduces_keys(walker, command, tmp_path):
     assert lines[0]["settings"]["tolerance"] == 0.02
 
 
-def test_retarget_command_reports_errors_in_one_sentence(walker, command, tmp_path):
+def test_retarget_command_reports_errors_in_one_sentence(walker, run_json, tmp_path):
     output = ("--output", str(tmp_path / "x.blend"))
 
     for words, sentence in (
@@ -55,6 +53,6 @@ def test_retarget_command_reports_errors_in_one_sentence(walker, command, tmp_pa
         (("--target", "Nobody"), "The scene has no armature Nobody."),
         (("--takes", "listed", "--target", walker.name), "is the source itself"),
     ):
-        status, _, err = command("retarget", "--armature", walker.name, *words, *output)
+        status, _, err = run_json("retarget", "--armature", walker.name, *words, *output)
         assert status == 2 and sentence in err
     assert not (tmp_path / "x.blend").exists()

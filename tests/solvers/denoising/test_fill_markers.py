@@ -162,10 +162,7 @@ def test_short_takes_do_not_fail(body, n_frames):
     assert np.isfinite(filled[:, :4]).all()
 
 
-def test_filling_can_be_cancelled(body):
-    def cancel(fraction, _):
-        raise SolveCancelled
-
+def test_filling_can_be_cancelled(body, cancel):
     with pytest.raises(SolveCancelled):
         fill_markers(tracks_of(gapped(body, 2)), cancel)
 

@@ -210,12 +210,9 @@ def test_result_turns_with_the_axes_of_the_rig(rng):
     assert np.ptp(deviation[:, :-1], axis=2).max() > 0.5
 
 
-def test_cancelling_ends_the_prediction(rng):
+def test_cancelling_ends_the_prediction(rng, cancel):
     """Many limbs that are lost one after the other may take seconds."""
     channels = encode(_without_arm(_swings(rng), GAP))
-
-    def cancel(fraction: float, message: str = "") -> None:
-        raise SolveCancelled
 
     with pytest.raises(SolveCancelled):
         predict_limbs(channels, _interpolated(channels), RATE, load_body_relation(), cancel)

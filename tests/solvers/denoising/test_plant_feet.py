@@ -284,14 +284,11 @@ def test_contacts_of_another_clip_are_refused(walk):
         plant_feet(walk, np.ones((7, 2), dtype=bool))
 
 
-def test_progress_rises_to_one_and_can_cancel(walk):
+def test_progress_rises_to_one_and_can_cancel(walk, cancel):
     fractions = []
     plant_feet(walk, progress=lambda fraction, message="": fractions.append(fraction))
 
     assert fractions == sorted(fractions) and fractions[-1] == 1.0
 
-    def stop(fraction, message=""):
-        raise SolveCancelled
-
     with pytest.raises(SolveCancelled):
-        plant_feet(walk, progress=stop)
+        plant_feet(walk, progress=cancel)

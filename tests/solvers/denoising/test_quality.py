@@ -236,7 +236,7 @@ def test_a_threshold_below_the_noise_is_refused():
         QualitySettings(spike_threshold=0.0)
 
 
-def test_progress_rises_to_one_and_can_cancel(swinging_leg):
+def test_progress_rises_to_one_and_can_cancel(swinging_leg, cancel):
     fractions = []
     measure_quality(
         swinging_leg, progress=lambda fraction, message="": fractions.append(fraction)
@@ -244,8 +244,5 @@ def test_progress_rises_to_one_and_can_cancel(swinging_leg):
 
     assert fractions == sorted(fractions) and fractions[-1] == 1.0
 
-    def stop(fraction, message=""):
-        raise SolveCancelled
-
     with pytest.raises(SolveCancelled):
-        measure_quality(swinging_leg, progress=stop)
+        measure_quality(swinging_leg, progress=cancel)

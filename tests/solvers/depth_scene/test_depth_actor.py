@@ -198,10 +198,7 @@ def test_find_bodies_is_consistent_across_resolutions(takes):
     assert agreement(found.mask(1), large > 0.0) > 0.97
 
 
-def test_find_actor_can_be_cancelled(takes):
-    def cancel(fraction: float, message: str = "") -> None:
-        raise SolveCancelled("Cancelled.")
-
+def test_find_actor_can_be_cancelled(takes, cancel):
     with pytest.raises(SolveCancelled):
         find_actor(takes["walk_front"], progress=cancel)
 

@@ -106,7 +106,7 @@ def test_capture_raises_for_an_empty_recording():
             capture(empty, body)
 
 
-def test_capture_reports_progress_and_can_be_cancelled():
+def test_capture_reports_progress_and_can_be_cancelled(cancel):
     fractions = []
     settings = CaptureSettings(backward=False)
     capture(recorded(waving(3)), BODY, settings=settings,
@@ -114,11 +114,8 @@ def test_capture_reports_progress_and_can_be_cancelled():
     assert fractions == sorted(fractions)
     assert_allclose(fractions[-1], 1.0)
 
-    def stop(fraction, message=""):
-        raise SolveCancelled
-
     with pytest.raises(SolveCancelled):
-        capture(recorded(waving(2)), BODY, progress=stop)
+        capture(recorded(waving(2)), BODY, progress=cancel)
 
 
 def test_skeleton_has_a_t_pose():

@@ -184,7 +184,7 @@ def test_first_frame_can_be_corrected(take):
     assert retracked.first == 0 and after[:, ARM].max() < 0.08
 
 
-def test_retrack_previews_poses_and_can_be_cancelled(take):
+def test_retrack_previews_poses_and_can_be_cancelled(take, cancel):
     depth, _, motion = take
     observed, fractions = [], []
     retracked = retrack(depth, BODY, motion, CORRECTED, floor=FLOOR, on_pose=observed.append,
@@ -195,11 +195,8 @@ def test_retrack_previews_poses_and_can_be_cancelled(take):
     )
     assert fractions == sorted(fractions) and fractions[-1] == pytest.approx(1.0)
 
-    def stop(fraction, message=""):
-        raise SolveCancelled
-
     with pytest.raises(SolveCancelled):
-        retrack(depth, BODY, motion, CORRECTED, progress=stop)
+        retrack(depth, BODY, motion, CORRECTED, progress=cancel)
 
 
 def test_retrack_raises_for_mismatched_inputs(take):

@@ -139,16 +139,13 @@ def test_track_pose_bridges_an_empty_frame_with_zero_confidence():
     assert mean_error(tracked.poses, truth) < 0.03
 
 
-def test_track_pose_reports_progress_and_can_be_cancelled():
+def test_track_pose_reports_progress_and_can_be_cancelled(cancel):
     fractions = []
     track_pose(recorded(waving(3)), BODY, NATURAL, progress=lambda f, _="": fractions.append(f))
     assert_allclose(fractions, [1 / 3, 2 / 3, 1.0])
 
-    def stop(fraction, message=""):
-        raise SolveCancelled
-
     with pytest.raises(SolveCancelled):
-        track_pose(recorded(waving(3)), BODY, NATURAL, progress=stop)
+        track_pose(recorded(waving(3)), BODY, NATURAL, progress=cancel)
 
 
 @pytest.mark.parametrize("pose", [np.zeros(33), np.full(36, np.nan)])

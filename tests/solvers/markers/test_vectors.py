@@ -8,9 +8,9 @@ from scipy.spatial.transform import Rotation
 from solvers.markers.vectors import (
     frame,
     matrix_from_rotation_vector,
-    skew_matrices,
     swing_frames,
 )
+from solvers.rotations import skew_matrices
 
 
 @pytest.mark.parametrize(("first", "second"), [(0, 1), (1, 0), (2, 1), (1, 2), (0, 2), (2, 0)])

@@ -217,10 +217,7 @@ def test_short_takes_are_reconstructed(walk_without_leg, library, n_frames):
     assert np.isfinite(result.tracks.positions[:, :12]).all()
 
 
-def test_reconstruction_can_be_cancelled(walk, library):
-    def cancel(fraction, message=""):
-        raise SolveCancelled
-
+def test_reconstruction_can_be_cancelled(walk, library, cancel):
     with pytest.raises(SolveCancelled):
         reconstruct_postures(recorded(walk), library, progress=cancel)
 

@@ -8,27 +8,41 @@ from solvers.recordings import read_bvh, read_recording
 
 
 @pytest.fixture
-def read(tmp_path):
-    """Read a BVH file of this text."""
+def make_writer(tmp_path):
+    """Return a function that writes text or bytes to a file of this name, and its path."""
 
-    def read_text(text: str | bytes, **options):
-        path = tmp_path / "take.bvh"
-        path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return read_bvh(path, **options)
+    def make(name: str):
+        def write(content: str | bytes):
+            path = tmp_path / name
+            path.write_bytes(content if isinstance(content, bytes) else content.encode())
+            return path
 
-    return read_text
+        return write
+
+    return make
 
 
 @pytest.fixture
-def read_any(tmp_path):
+def make_reader(make_writer):
+    """Return a function that reads text or bytes as a file of this name."""
+
+    def make(name: str, reader=read_recording):
+        write = make_writer(name)
+        return lambda content, **options: reader(write(content), **options)
+
+    return make
+
+
+@pytest.fixture
+def read(make_reader):
+    """Read a BVH file of this text."""
+    return make_reader("take.bvh", read_bvh)
+
+
+@pytest.fixture
+def read_any(make_reader):
     """Read a file of this text or these bytes, whose format its content decides."""
-
-    def read_content(content: str | bytes, **options):
-        path = tmp_path / "take.dat"
-        path.write_bytes(content if isinstance(content, bytes) else content.encode())
-        return read_recording(path, **options)
-
-    return read_content
+    return make_reader("take.dat")
 
 
 @pytest.fixture

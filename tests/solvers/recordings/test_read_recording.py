@@ -49,7 +49,9 @@ def test_invalid_scale_is_refused(swinging_leg, tmp_path, ending, scale):
 
 
 @pytest.mark.parametrize("format", ["bvh", "c3d", "trc"])
-def test_progress_rises_to_the_end_and_can_stop_the_work(swinging_leg, tmp_path, format):
+def test_progress_rises_to_the_end_and_can_stop_the_work(
+    swinging_leg, tmp_path, format, cancel
+):
     path = tmp_path / f"leg.{format}"
     tracks = Tracks(("a",), swinging_leg.root_positions[:, None], 60.0)
     calls = {
@@ -67,10 +69,6 @@ def test_progress_rises_to_the_end_and_can_stop_the_work(swinging_leg, tmp_path,
         with pytest.raises(SolveCancelled):
             work(progress=cancel)
         assert sorted(tmp_path.iterdir()) == before
-
-
-def cancel(fraction: float, message: str = "") -> None:
-    raise SolveCancelled("Cancelled.")
 
 
 def test_real_files_of_each_format(recordings):

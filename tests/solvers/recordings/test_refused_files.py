@@ -5,11 +5,11 @@ import io
 import json
 import pickle
 import re
-import zipfile
 import zlib
 
 import numpy as np
 import pytest
+from odd_files import archive
 
 from solvers.errors import InvalidFileError
 
@@ -19,12 +19,8 @@ PICKLE = "is a pickle, which is never opened"
 
 
 def torch_file() -> bytes:
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w") as archive:
-        archive.writestr(
-            "hmr4d_results_of_a_video_with_a_long_name/data.pkl", b"\x80\x02}q\x00."
-        )
-    return buffer.getvalue()
+    name = "hmr4d_results_of_a_video_with_a_long_name/data.pkl"
+    return archive(name, b"\x80\x02}q\x00.")
 
 
 def object_array() -> bytes:

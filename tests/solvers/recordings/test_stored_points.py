@@ -16,12 +16,8 @@ TRIPLE = [NOSE, LEFT_WRIST, RIGHT_WRIST]
 
 
 @pytest.fixture
-def write(tmp_path):
-    def write_bytes(content: bytes):
-        (tmp_path / "take.np").write_bytes(content)
-        return tmp_path / "take.np"
-
-    return write_bytes
+def write(make_writer):
+    return make_writer("take.np")
 
 
 def test_ui_prmd_is_a_pair_in_one_world(recordings):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from retargeted_motions import every_fourth, given_to, growth
+from retargeted_motions import every_fourth, given_to, growth, min_foot_steps
 from rigs import RIGS, child, mixamo
 
 from solvers.motion import (
@@ -161,10 +161,3 @@ def with_feet_drawn_down(motion: Motion) -> Motion:
 
 def path(rng: np.random.Generator) -> np.ndarray:
     return np.cumsum(rng.normal(scale=0.01, size=(90, 3)), axis=0)
-
-
-def min_foot_steps(motion: Motion) -> np.ndarray:
-    """Horizontal steps of the slower of ankle and ball, (n_frames - 1, 2), meters."""
-    feet = foot_points(motion.skeleton, find_humanoid_map(motion.skeleton))
-    steps = np.diff(forward_kinematics(motion).positions[:, feet, :2], axis=0)
-    return np.linalg.norm(steps, axis=-1).min(axis=-1)

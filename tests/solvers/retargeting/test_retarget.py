@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from retargeted_motions import min_foot_steps
 from rigs import RIGS, mixamo, unreal
 
 from solvers.errors import InvalidMotionError
@@ -12,7 +13,6 @@ from solvers.motion import (
     Skeleton,
     detect_contacts,
     find_humanoid_map,
-    foot_points,
     forward_kinematics,
     leg_length,
 )
@@ -206,10 +206,3 @@ def arm_length(motion: Motion, side: str) -> float:
 def assert_equal_flags(found: np.ndarray, expected: np.ndarray) -> None:
     wrong = np.argwhere(found != expected)
     assert not len(wrong), wrong[:5]
-
-
-def min_foot_steps(motion: Motion) -> np.ndarray:
-    """Horizontal steps of the slower of ankle and ball, (n_frames - 1, 2), meters."""
-    feet = foot_points(motion.skeleton, find_humanoid_map(motion.skeleton))
-    steps = np.diff(forward_kinematics(motion).positions[:, feet, :2], axis=0)
-    return np.linalg.norm(steps, axis=-1).min(axis=-1)

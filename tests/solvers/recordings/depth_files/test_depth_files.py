@@ -26,12 +26,8 @@ LENS = DepthSettings(fx=9.0, fy=8.0)
 
 
 @pytest.fixture
-def write(tmp_path):
-    def write_bytes(content: bytes):
-        (tmp_path / "take.depth").write_bytes(content)
-        return tmp_path / "take.depth"
-
-    return write_bytes
+def write(make_writer):
+    return make_writer("take.depth")
 
 
 def all_frames(recording) -> np.ndarray:

@@ -33,12 +33,8 @@ OWN = DepthSettings(fx=9.0, fy=8.0)
 
 
 @pytest.fixture
-def write(tmp_path):
-    def write_bytes(content: bytes):
-        (tmp_path / "take.mkv").write_bytes(content)
-        return tmp_path / "take.mkv"
-
-    return write_bytes
+def write(make_writer):
+    return make_writer("take.mkv")
 
 
 def all_frames(recording) -> np.ndarray:
@@ -246,9 +242,6 @@ def test_file_without_calibration_requires_the_camera(write):
     assert read_depth(path, OWN).n_frames == 1
 
 
-def test_reading_can_be_stopped(write):
-    def cancel(fraction: float, message: str = "") -> None:
-        raise SolveCancelled("Cancelled.")
-
+def test_reading_can_be_stopped(write, cancel):
     with pytest.raises(SolveCancelled):
         read_depth(write(k4a(pictures(5))), OWN, progress=cancel)

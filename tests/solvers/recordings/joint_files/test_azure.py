@@ -21,12 +21,8 @@ def upright(values):
 
 
 @pytest.fixture
-def write(tmp_path):
-    def write_text(text: str):
-        (tmp_path / "take.dat").write_text(text, newline="")
-        return tmp_path / "take.dat"
-
-    return write_text
+def write(make_writer):
+    return make_writer("take.dat")
 
 
 @pytest.fixture

@@ -24,12 +24,8 @@ def upright(values):
 
 
 @pytest.fixture
-def write(tmp_path):
-    def write_text(text: str):
-        (tmp_path / "take.txt").write_text(text, newline="")
-        return tmp_path / "take.txt"
-
-    return write_text
+def write(make_writer):
+    return make_writer("take.txt")
 
 
 def test_ntu_joints_and_states(write):

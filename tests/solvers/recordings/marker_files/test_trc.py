@@ -41,15 +41,9 @@ RATES = {
 
 
 @pytest.fixture
-def read(tmp_path):
+def read(make_reader):
     """Read a TRC file of this text."""
-
-    def read_text(text: str | bytes, **options):
-        path = tmp_path / "take.trc"
-        path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return read_recording(path, **options)
-
-    return read_text
+    return make_reader("take.trc")
 
 
 @pytest.mark.parametrize("name", RATES)
