@@ -5,14 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Integers
 from ...motion import Skeleton
 from ...progress import Progress, unwatched, within
 from .features import (
     N_CONTEXT,
     STEP_RATE_HZ,
     TIME_WEIGHT,
-    Integers,
     MovingBody,
     compute_step_features,
     find_moving_body,
