@@ -11,7 +11,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 import pytest
-from tests.benchmarks.sensitivity.not_tuning import patterns, reason
+from tests.benchmarks.sensitivity.fixed_constants import patterns, reason
 
 from tests.benchmarks.sensitivity.constants import (
     FAMILIES,
