@@ -128,7 +128,7 @@ def _select(
             samples - complete[:, joint].mean(axis=0), noise[joint], windows, mixture
         )
         found_runs = candidates(joint)
-        if len(found_runs) > max_runs:
+        if _n_events(found_runs, len(noisy)) > max_runs:
             kept[:, joint] = suspected[:, joint]
             continue
         for run in found_runs:
@@ -145,6 +145,14 @@ def _select(
         SPIKE_PRIOR_PSEUDOCOUNT if are_suspected else BURST_PRIOR_PSEUDOCOUNT
     )
     return kept | _likeliest(np.array(gains), runs, first_channels, observed, n_samples)
+
+
+def _n_events(runs: Sequence[_Run], n_frames: int) -> int:
+    """Return how often a joint is suspected: runs of its channels that touch are one event."""
+    is_in_run = np.zeros(n_frames, dtype=np.bool_)
+    for run in runs:
+        is_in_run[run.frames] = True
+    return len(find_runs(is_in_run))
 
 
 def _likeliest(

@@ -15,6 +15,11 @@ OFFSET_DEVIATION = 0.5 / OUTLIER_DENSITY / np.sqrt(3.0)
 """Standard deviation of an outlier's error, degrees or centimeters. By the width of its uniform
 density."""
 
+NEW_MOVEMENT_RATE = 1e-3
+"""Fraction of suspected movements that begin out of another kind of movement, such as a kick
+out of standing still. Chosen by hand on 39 takes that are not scored: without it 304 samples of
+clean takes are flagged, with 1e-3 203, with 1e-2 190. It costs 3 and 7 % of the found bursts."""
+
 
 class PredictiveDensity:
     """The density of samples of a joint's channels, given the channels' other samples.
@@ -56,7 +61,8 @@ class PredictiveDensity:
         Returns
         -------
         as_movement : float
-            Log-density if the samples are right.
+            Log-density if the samples are right: the movement around them goes on, or another
+            one begins.
         with_offset : float
             The same if each tested channel is off by a constant during the run.
         """
@@ -69,21 +75,26 @@ class PredictiveDensity:
         inside[max(run.start - start, 0) : min(run.stop - start, length)] = tested
         is_single = run.stop - run.start == 1
         channels = tuple(np.flatnonzero(tested)) if is_single else tuple(range(N_CHANNELS))
-        others = self._log_marginal(frames, channels, everything & ~inside)
-        as_movement = self._log_marginal(frames, channels, everything) - others
+        others = self._log_marginals(frames, channels, everything & ~inside)
+        both = self._log_marginals(frames, channels, everything)
+        continued = logsumexp(both) - logsumexp(others)
+        # The run may be of another kind of movement than the frames around it.
+        log_weights = np.log(self._mixture.weights)
+        begun = np.log(NEW_MOVEMENT_RATE) + logsumexp(log_weights + both - others)
+        as_movement = float(np.logaddexp(continued, begun))
         if is_single:
             return as_movement, -np.inf
-        with_offset = self._log_marginal(frames, channels, everything, inside) - others
-        return as_movement, with_offset
+        with_offset = self._log_marginals(frames, channels, everything, inside)
+        return as_movement, float(logsumexp(with_offset) - logsumexp(others))
 
-    def _log_marginal(
+    def _log_marginals(
         self,
         frames: slice,
         channels: tuple[int, ...],
         observed: NDArray[np.bool_],
         offset: NDArray[np.bool_] | None = None,
-    ) -> float:
-        """Return the log-density of the observed samples of a window's channels.
+    ) -> Array:
+        """Return each component's log-density of the observed samples of a window's channels.
 
         With `offset`, each channel is off by an unknown constant in these frames.
         """
@@ -110,7 +121,7 @@ class PredictiveDensity:
         whitened = np.linalg.solve(factors, repeated)[..., 0]
         diagonals = np.einsum("kss->ks", factors)
         exponents = 0.5 * (whitened**2).sum(axis=1) - np.log(diagonals).sum(axis=1)
-        return float(logsumexp(log_weights + exponents) - 0.5 * constant)
+        return np.asarray(log_weights + exponents - 0.5 * constant)
 
 
 @lru_cache(maxsize=16)

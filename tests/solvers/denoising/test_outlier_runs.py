@@ -36,6 +36,36 @@ def test_burst_is_found_and_nothing_else(rate, duration, rng):
     assert (found == expected).all()
 
 
+def out_of_stillness(pulse: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """A joint that stands still for a second at 30 Hz, but for a movement by 90 degrees."""
+    samples = 90.0 * pulse[:, None] * [1.0, -0.4, 0.3]
+    return np.asarray(samples + 0.1 * rng.normal(size=samples.shape))
+
+
+TIME = np.arange(36) / 30.0 - 0.6
+KICK = np.exp(-0.5 * (TIME / 0.045) ** 2)
+
+
+@pytest.mark.parametrize(("pulse", "is_error"), [(KICK, False), (abs(TIME) < 0.07, True)])
+def test_kick_out_of_standing_still_is_cleared_and_a_burst_is_not(pulse, is_error, rng):
+    samples = out_of_stillness(pulse, rng)
+    suspected = np.tile(abs(TIME)[:, None] < 0.1, 3)
+    complete = np.where(suspected, samples[:1], samples)
+
+    assert confirm_outliers(samples, suspected, complete, 30.0, MIXTURE).any() == is_error
+
+
+@pytest.mark.parametrize("offset", [0, 1])
+def test_channels_that_are_suspected_together_are_one_event(offset, rng):
+    samples = out_of_stillness(KICK, rng)[:24]
+    suspected = np.zeros(samples.shape, dtype=bool)
+    for channel in range(3):
+        suspected[15 + offset * channel : 20, channel] = True
+    complete = np.where(suspected, samples[:1], samples)
+
+    assert not confirm_outliers(samples, suspected, complete, 30.0, MIXTURE).any()
+
+
 def test_gap_is_no_error_and_hides_none(rng):
     samples = walk_like(30.0, rng)
     samples[20:30, 3:] = np.nan
