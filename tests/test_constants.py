@@ -11,7 +11,6 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 import pytest
-from tests.benchmarks.sensitivity.fixed_constants import patterns, reason
 
 from tests.benchmarks.sensitivity.constants import (
     FAMILIES,
@@ -21,6 +20,7 @@ from tests.benchmarks.sensitivity.constants import (
     constants_in,
     constants_of,
 )
+from tests.benchmarks.sensitivity.fixed_constants import patterns, reason
 
 SOURCE = re.compile(
     r"\[[A-Z]\w*\d\d|doi:|eq\. |\bet al\.|learned by|make sensitivity|sweep"
