@@ -40,16 +40,16 @@ _drawing: list[ViewDrawing] = []
 def draw_confidence_switch(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the switch and, while it is on, the sources of confidence and missing ones."""
     manager = context.window_manager
-    layout.prop(manager, "mocap_assist_heat", toggle=True, icon="COLOR")
+    layout.prop(manager, "mocap_assist_confidence", toggle=True, icon="COLOR")
     armature = context.view_layer.objects.active
-    if not manager.mocap_assist_heat or armature is None or armature.type != "ARMATURE":
+    if not manager.mocap_assist_confidence or armature is None or armature.type != "ARMATURE":
         return
     available = available_terms(armature)
     grid = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
     for term, _, _ in TERMS:
         cell = grid.row(align=True)
         cell.enabled = term in available
-        cell.prop_enum(manager, "mocap_assist_heat_term", term.name)
+        cell.prop_enum(manager, "mocap_assist_confidence_term", term.name)
     for sentence in _missing(available):
         draw_sentence(layout, context, sentence, icon="INFO")
 
@@ -68,12 +68,12 @@ def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None
 
 
 def _draw(context: bpy.types.Context) -> None:
-    if not context.window_manager.mocap_assist_heat:
+    if not context.window_manager.mocap_assist_confidence:
         return
     armature = visible_active(context)
     if armature is None or armature.type != "ARMATURE":
         return
-    term = Term[context.window_manager.mocap_assist_heat_term]
+    term = Term[context.window_manager.mocap_assist_confidence_term]
     bones = colored_bones_at(armature, context.scene.frame_current_final, term)
     if bones is not None:
         _draw_colored_bones(
@@ -102,7 +102,7 @@ def _draw_colored_bones(bones: ColoredBones, matrix: Any, width: float) -> None:
 
 def register() -> None:
     """Add the switch, which starts off."""
-    bpy.types.WindowManager.mocap_assist_heat = bpy.props.BoolProperty(
+    bpy.types.WindowManager.mocap_assist_confidence = bpy.props.BoolProperty(
         name="Show Confidence",
         description=(
             "Color bones by the confidence in their joints at this frame; blue is high, red is"
@@ -110,7 +110,7 @@ def register() -> None:
         ),
         update=_switched,
     )
-    bpy.types.WindowManager.mocap_assist_heat_term = bpy.props.EnumProperty(
+    bpy.types.WindowManager.mocap_assist_confidence_term = bpy.props.EnumProperty(
         name="Confidence Source",
         description="Measure of confidence to show",
         items=[
@@ -125,5 +125,5 @@ def register() -> None:
 def unregister() -> None:
     """Remove the switch and the drawing."""
     _drawing.pop().close()
-    del bpy.types.WindowManager.mocap_assist_heat_term
-    del bpy.types.WindowManager.mocap_assist_heat
+    del bpy.types.WindowManager.mocap_assist_confidence_term
+    del bpy.types.WindowManager.mocap_assist_confidence

@@ -21,7 +21,7 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.plant_feet*": "feet",
     "bpy.ops.mocap_assist.reconstruct*": "reconstruct",
     "bpy.types.mocap_pg_reconstruct*": "reconstruct",
-    "bpy.types.windowmanager.mocap_assist_heat*": "reconstruct",
+    "bpy.types.windowmanager.mocap_assist_confidence*": "reconstruct",
     "bpy.ops.mocap_assist.track_depth*": "track",
     "bpy.types.mocap_pg_track*": "track",
     "bpy.ops.mocap_assist.retrack*": "track",

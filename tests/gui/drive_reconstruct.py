@@ -43,10 +43,10 @@ def look_at(armature):
 def choices(armature):
     """Show the reliability terms, and the sources of postures."""
     manager, settings = bpy.context.window_manager, bpy.context.scene.mocap_assist.reconstruct
-    manager.mocap_assist_heat_term = "TRACKING"
+    manager.mocap_assist_confidence_term = "TRACKING"
     yield from settle()
     bgui.shot("2b-sensor.png")
-    manager.mocap_assist_heat_term = "COMBINED"
+    manager.mocap_assist_confidence_term = "COMBINED"
     settings.postures, settings.examples = "EXAMPLES", "walk.clean; /captures/clean"
     yield from settle()
     bgui.shot("3-examples.png")
@@ -78,7 +78,7 @@ def steps():
         if armature.animation_data.action.name.endswith(".reconstructed"):
             break
     assert armature.animation_data.action.name.endswith(".reconstructed")
-    bpy.context.window_manager.mocap_assist_heat = True
+    bpy.context.window_manager.mocap_assist_confidence = True
     bpy.context.scene.frame_set(most_mixed(armature))
     yield from settle()
     bgui.shot("2-reliability.png")

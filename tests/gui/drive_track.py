@@ -24,7 +24,7 @@ UNTIL_DONE = 6000  # tenths of a second
 SIDE = (0.70, 0.66, 0.18, 0.20)
 ARM, WRONG, CORRECTED = "rightUpperArm", range(8, 24), 15
 AWAY = Quaternion((0.0, 1.0, 0.0), 1.1)
-WATCHED = {"Trying": "1-looking.png", "Tracking": "1-tracking.png", "Measuring": "1-last.png"}
+PREVIEWED = {"Trying": "1-looking.png", "Tracking": "1-tracking.png", "Measuring": "1-last.png"}
 MAX_REDRAW_S = 0.03
 """Seconds that a redraw may take."""
 
@@ -149,7 +149,7 @@ def steps():
     name = points.name
     yield from settle()
     bgui.shot("0-points.png")
-    yield from press("track_depth", WATCHED)
+    yield from press("track_depth", PREVIEWED)
     assert bpy.context.scene.frame_current == 1
     assert bpy.context.object.type == "ARMATURE", bpy.context.object
     yield from undo_and_redo(name)

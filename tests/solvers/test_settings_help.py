@@ -4,12 +4,13 @@ import re
 from dataclasses import fields
 from enum import Enum
 from importlib import import_module
+from inspect import get_annotations
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from solvers.settings import Choice, Settings
+from solvers.settings import Choice, Settings, former_names
 
 SOLVERS = Path(__file__).parents[2] / "solvers"
 MAX_HELP = 90
@@ -58,3 +59,11 @@ def test_every_choice_has_a_help_text_and_a_label(enum):
         assert not TWO_SENTENCES.search(choice.help), choice
         assert choice.label, choice
         assert enum(choice.value) is choice
+
+
+@pytest.mark.parametrize("settings", settings_classes(), ids=lambda each: each.__name__)
+def test_no_setting_hides_one_of_its_base(settings):
+    own = set(get_annotations(settings))
+
+    assert not own & {item.name for base in settings.__bases__ for item in fields(base)}
+    assert not former_names(settings).keys() & {item.name for item in fields(settings)}

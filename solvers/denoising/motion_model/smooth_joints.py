@@ -35,7 +35,7 @@ def smooth_by_mixture(
     """Estimate every joint from its own window of half a second.
 
     The estimate of a window is the posterior mean under the mixture [1]_; overlapping windows
-    are averaged. The mixture tells a fast moment from a still one, so that the first is
+    are averaged. The mixture distinguishes a fast moment from a still one, so that the first is
     smoothed less than the second.
 
     Parameters

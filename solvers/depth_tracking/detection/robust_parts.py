@@ -31,7 +31,7 @@ class RobustPartsSettings(Settings):
         1.3, "Maximum distance of a pixel from the part's axis, in radii",
         minimum=1.0, maximum=5.0,
     )  # fmt: skip
-    min_pixels: int = setting(
+    min_part_pixels: int = setting(
         4, "Minimum pixels of a part; higher rejects more false detections",
         minimum=2, maximum=1000, former="least_pixels",
     )  # fmt: skip
@@ -102,11 +102,11 @@ def find_parts(
     is_inlier = np.zeros(len(points), dtype=np.bool_)
     for part in range(N_PARTS):
         part_pixels = np.flatnonzero(labels == part)
-        if len(part_pixels) < settings.min_pixels:
+        if len(part_pixels) < settings.min_part_pixels:
             continue
         length = float(np.linalg.norm(axes[part, 1] - axes[part, 0]))
         inside = _best_capsule(points, rays, part_pixels, length, radii[part], rng, settings)
-        if inside.sum() < settings.min_pixels:
+        if inside.sum() < settings.min_part_pixels:
             continue
         part_inliers = part_pixels[inside[part_pixels]]
         is_inlier[part_inliers] = True
@@ -114,7 +114,7 @@ def find_parts(
         centers[part] = points[part_inliers].mean(axis=0) + surface_depth * rays[
             part_inliers
         ].mean(axis=0)
-        weights[part] = min(1.0, len(part_inliers) / (5.0 * settings.min_pixels))
+        weights[part] = min(1.0, len(part_inliers) / (5.0 * settings.min_part_pixels))
     return FoundParts(centers, weights, points[is_inlier], labels[is_inlier])
 
 

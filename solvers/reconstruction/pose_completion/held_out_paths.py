@@ -27,7 +27,7 @@ def rest_probability(
     """Return the probability that a joint followed its interpolated path across a gap.
 
     Two states are compared. At rest, the library pose differs from the path by its own error.
-    In motion, it differs by the movement as well: the largest difference tells. How often the
+    In motion, it differs by the movement as well: the largest difference decides. How often the
     joint stays on its path is counted where it was observed: windows of the gap's length, or
     shorter ones in a short take, are hidden and interpolated, and those count whose ends move
     most like the gap's.

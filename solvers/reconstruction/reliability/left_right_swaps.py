@@ -13,7 +13,7 @@ from .terms import vector_lengths
 
 MAX_SWAP_S = 1.0
 """Maximum duration (s) of a swap. It guards an actor who turned around while he was lost: after
-a longer time nothing tells which side is correct."""
+a longer time nothing shows which side is correct."""
 MAX_GAP_S = 0.25
 """Maximum gap (s) across which a step of a joint is measured. It guards an actor who turns
 while his body is lost: without it his sides are swapped."""

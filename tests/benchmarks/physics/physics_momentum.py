@@ -10,7 +10,7 @@ from solvers.physics.body_surface import measure_clearance
 from solvers.rotations.representations import rotate
 
 GRAVITY = np.array([0.0, 0.0, -9.81])
-STEADY = 0.05
+SMOOTHING_S = 0.05
 """Seconds of the Gaussian through which the center of mass is looked at."""
 TOUCHING = 0.03
 """Metres over the ground up to which the lowest point may be pushed."""
@@ -40,13 +40,13 @@ def impossible_force(body: PhysicsBody, motion: Motion, ground: float) -> float:
     and after.
     """
     center = gaussian_filter1d(
-        center_of_mass(body, motion), STEADY * motion.frame_rate, axis=0, mode="nearest"
+        center_of_mass(body, motion), SMOOTHING_S * motion.frame_rate, axis=0, mode="nearest"
     )
     acceleration = np.diff(center, 2, axis=0) * motion.frame_rate**2
     force = (acceleration - GRAVITY) / 9.81
     touches = measure_clearance(body, motion, ground)[1:-1] < TOUCHING
     left = np.where(touches, outside_cone(force), np.linalg.norm(force, axis=-1))
-    border = min(round(4.0 * STEADY * motion.frame_rate), len(left) // 3)
+    border = min(round(4.0 * SMOOTHING_S * motion.frame_rate), len(left) // 3)
     return float(left[border : len(left) - border].mean())
 
 

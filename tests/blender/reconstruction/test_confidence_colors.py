@@ -78,7 +78,7 @@ def test_color_switch_does_not_change_the_scene(walk, reconstruct, blank):
     reconstruct()
     bones = [bone.color.palette for bone in walk.pose.bones]
 
-    blank.context.window_manager.mocap_assist_heat = True
+    blank.context.window_manager.mocap_assist_confidence = True
 
     assert [bone.color.palette for bone in walk.pose.bones] == bones
-    blank.context.window_manager.mocap_assist_heat = False
+    blank.context.window_manager.mocap_assist_confidence = False

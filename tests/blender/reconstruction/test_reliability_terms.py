@@ -22,9 +22,9 @@ def colors(load):
 def switch(blank):
     """The switch of the colors, on."""
     manager = blank.context.window_manager
-    manager.mocap_assist_heat = True
+    manager.mocap_assist_confidence = True
     yield manager
-    manager.mocap_assist_heat, manager.mocap_assist_heat_term = False, "COMBINED"
+    manager.mocap_assist_confidence, manager.mocap_assist_confidence_term = False, "COMBINED"
 
 
 def names(terms):

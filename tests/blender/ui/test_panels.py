@@ -201,9 +201,12 @@ def test_long_sentence_is_wrapped_to_the_sidebar(load):
 def test_reconstruct_panel_shows_settings_and_colors(blank, draw, actor):
     shown = draw("MOCAP_PT_reconstruct")
 
-    assert {"postures", "plant_feet", "mocap_assist.reconstruct", "mocap_assist_heat"} <= set(
-        shown
-    )
+    assert {
+        "postures",
+        "plant_feet",
+        "mocap_assist.reconstruct",
+        "mocap_assist_confidence",
+    } <= set(shown)
 
 
 def test_posture_clips_have_a_separate_list(blank, draw, actor):

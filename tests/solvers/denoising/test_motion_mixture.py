@@ -13,6 +13,7 @@ from solvers.denoising.motion_model import (
     smooth_by_mixture,
 )
 from solvers.denoising.outliers import PredictiveDensity
+from solvers.denoising.outliers.predictive_density import NEW_MOVEMENT_RATE
 from solvers.denoising.window_priors import Windows
 from solvers.errors import InvalidFileError, InvalidMotionError
 
@@ -58,19 +59,25 @@ def test_predictive_density_is_the_ratio_of_two_densities(mixture, rng):
     variance = (120.0 / 2.0) ** 2 / 3.0
     off = variance * offsets.T @ offsets
 
-    def density(known: np.ndarray, extra: np.ndarray) -> float:
+    def densities(known: np.ndarray, extra: np.ndarray) -> np.ndarray:
         chosen = known.T.ravel()
-        total = 0.0
-        for component, weight in enumerate(mixture.weights):
+        total = []
+        for component in range(len(mixture.weights)):
             covariance = frame_covariance(mixture, component, noise) + extra
-            total += weight * multivariate_normal.pdf(
-                samples.T.ravel()[chosen], cov=covariance[np.ix_(chosen, chosen)]
+            total.append(
+                multivariate_normal.pdf(
+                    samples.T.ravel()[chosen], cov=covariance[np.ix_(chosen, chosen)]
+                )
             )
-        return float(np.log(total))
+        return np.array(total)
 
-    others = density(valid & ~inside, 0.0 * off)
-    assert_allclose(as_movement, density(valid, 0.0 * off) - others, rtol=1e-6)
-    assert_allclose(with_offset, density(valid, off) - others, rtol=1e-6)
+    weights = mixture.weights
+    both, others = densities(valid, 0.0 * off), densities(valid & ~inside, 0.0 * off)
+    continued = weights @ both / (weights @ others)
+    begun = weights @ (both / others)
+    assert_allclose(as_movement, np.log(continued + NEW_MOVEMENT_RATE * begun), rtol=1e-6)
+    shifted = weights @ densities(valid, off) / (weights @ others)
+    assert_allclose(with_offset, np.log(shifted), rtol=1e-6)
 
 
 def test_one_window_is_smoothed_to_the_posterior_mean(mixture, rng):

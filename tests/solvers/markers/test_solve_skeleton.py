@@ -198,7 +198,7 @@ def test_solve_skeleton_names_missing_markers(walk):
 def test_solve_skeleton_raises_for_a_pelvis_of_size_zero(walk):
     complete = markers_on(walk)
 
-    with pytest.raises(InvalidMotionError, match="one place or on one line"):
+    with pytest.raises(InvalidMotionError, match="one point or on one line"):
         solve_skeleton(complete.with_positions(np.ones_like(complete.positions)))
 
 

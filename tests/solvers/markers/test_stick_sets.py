@@ -176,17 +176,17 @@ def test_sides_have_the_same_chains(title):
 
 
 @pytest.mark.parametrize(
-    ("file", "fewest"),
+    ("file", "min_sticks"),
     [
         ("formats/trc/leg39_swing.trc", 40),
         ("formats/trc/static_walk_1.trc", 25),
         ("corpus/lab/c3d_bts/BTS.c3d", 15),
     ],
 )
-def test_recorded_sets_have_sticks(file, fewest, recordings):
+def test_recorded_sets_have_sticks(file, min_sticks, recordings):
     recording = read_recording(recordings / file)
 
-    assert len(find_marker_sticks(recording.names)) >= fewest
+    assert len(find_marker_sticks(recording.names)) >= min_sticks
 
 
 def swap(label):

@@ -192,12 +192,12 @@ def test_freemocap_bodies_hang_together_and_every_limb_has_its_role(write, perso
 
 
 @pytest.mark.parametrize("right_first", [True, False])
-@pytest.mark.parametrize("unseen", [LEFT_WRIST, RIGHT_WRIST, slice(33, 54), slice(54, 75)])
-def test_freemocap_hands_are_assigned_by_observed_points(write, person, right_first, unseen):
+@pytest.mark.parametrize("missing", [LEFT_WRIST, RIGHT_WRIST, slice(33, 54), slice(54, 75)])
+def test_freemocap_hands_are_assigned_by_observed_points(write, person, right_first, missing):
     points = person.copy()
     if not right_first:
         points[:, 33:54], points[:, 54:] = person[:, 54:], person[:, 33:54]
-    points[:, unseen] = np.nan
+    points[:, missing] = np.nan
 
     names = read_freemocap(write(npy(points))).names
 

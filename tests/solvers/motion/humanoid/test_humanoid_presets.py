@@ -56,7 +56,7 @@ def test_load_restores_names_in_any_script(tmp_path_factory, joints):
         (json.dumps({**HEAD, "joints": {"hips": "Pelvis"}}), "lacks: Pelvis"),
         (
             json.dumps({**HEAD, "joints": {"hips": "Hips"}})[:-2] + ', "hips": "Spine"}}',
-            "says hips more than once",
+            "contains hips more than once",
         ),
     ],
 )

@@ -67,7 +67,7 @@ def test_a_lying_actor_is_left_lying_and_reported(walk, tmp_path):
     )
 
     assert np.allclose(read.root_positions, places, atol=1e-3)
-    assert any("Y is taken for up" in message for message in messages)
+    assert any("Y is interpreted as up" in message for message in messages)
 
 
 @pytest.mark.parametrize(

@@ -251,4 +251,4 @@ def test_a_lying_actor_of_amass_never_passes_in_silence(tmp_path, root, lies):
     places = joint_positions(motion)
     rises = np.abs((places["head"] - places["pelvis"])[:, 2]).max()
     assert (rises < 0.3) == lies
-    assert any("is taken for up" in message for message in messages)
+    assert any("is interpreted as up" in message for message in messages)
