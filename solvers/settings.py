@@ -76,7 +76,7 @@ def with_present_names(
 ) -> dict[str, Any]:
     """Return values that any version stored, by the present names of their settings."""
     present = former_names(settings_class)
-    return {present.get(name, name): value for name, value in stored.items()}
+    return {present.get(name, name): value for name, value in dict(stored).items()}
 
 
 def label_of(item: Any) -> str:

@@ -70,10 +70,10 @@ def read_bone(
     )
     angles = sampled_rotation(bone, rotation_channels, frames)
     rotations = quaternions_from_channels(angles, bone.rotation_mode)
+    is_exported = step is None  # by another program, which may have removed redundant keys
     if gaps:
-        missing = gaps_of(
-            rotation_channels, frames, step, redundant_change=REDUNDANT_CHANGE_RAD
-        )
+        change = REDUNDANT_CHANGE_RAD * is_exported
+        missing = gaps_of(rotation_channels, frames, step, redundant_change=change)
         rotations[missing] = np.nan
     if bone.bone.use_connect and bone.parent:
         return BoneChannels(
@@ -81,7 +81,7 @@ def read_bone(
         )
     locations = sampled(location_channels, bone.location, frames)
     if gaps:
-        change = REDUNDANT_CHANGE_FRACTION * np.abs(locations).max()
+        change = REDUNDANT_CHANGE_FRACTION * np.abs(locations).max() * is_exported
         missing = gaps_of(location_channels, frames, step, redundant_change=change)
         locations[missing] = np.nan
     return BoneChannels(rotations, locations, bool(rotation_channels), bool(location_channels))

@@ -47,7 +47,7 @@ def test_a_reader_that_dies_once_takes_no_file_along(press, window, blank):
     assert wait(operator, window) == {"FINISHED"}
     assert sorted(blank.data.objects.keys()) == ["first", "second"]
     ((kind, message),) = window.reports
-    assert kind == {"INFO"} and "early" not in message
+    assert kind == {"INFO"} and "crashed" not in message
     assert nothing_is_left(window)
 
 
@@ -69,7 +69,7 @@ def test_files_that_end_their_reader_are_named_and_the_others_come(
     assert kind == {"ERROR"} and message.startswith(f"{len(deadly)} of 5 files failed.")
     for name in deadly:
         assert f"Reading {walks / name} crashed: signal SIGABRT" in message
-    assert message.count("early") == len(deadly) and "Nothing was changed" not in message
+    assert message.count("crashed") == len(deadly) and "Nothing was changed" not in message
     assert nothing_is_left(window)
     percentages = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
     assert percentages == sorted(percentages)

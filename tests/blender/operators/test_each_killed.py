@@ -116,7 +116,9 @@ def test_blender_locks_its_file_and_reports_the_holder(module, load, tmp_path, m
     with module.lock_target(target):
         assert module._is_locked(target)
         with (
-            pytest.raises(load("solvers.errors").InvalidFileError, match="Another Blender is"),
+            pytest.raises(
+                load("solvers.errors").InvalidFileError, match="Another Blender process is"
+            ),
             module.lock_target(target),
         ):
             pytest.fail("two work on one file")

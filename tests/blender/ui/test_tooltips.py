@@ -7,6 +7,7 @@ import pytest
 
 MIN_CHOICE_TOOLTIP = 10
 MAX_TOOLTIP = 90
+BLENDERS_OWN = {"rna_type", "bl_idname", "name"}
 TWO_SENTENCES = re.compile(r"[.!?] [A-Z]")
 
 
@@ -35,7 +36,7 @@ def properties(extension):
         f"{owner.identifier}.{each.identifier}": each
         for owner in owners(extension)
         for each in owner.properties
-        if each.identifier not in {"rna_type", "bl_idname"}
+        if each.identifier not in BLENDERS_OWN
     }
     found |= {
         f"WindowManager.{each.identifier}": each
