@@ -17,13 +17,13 @@ from .take import BoneChannels
 
 Curves = Mapping[tuple[str, int], Channel]
 
-REDUNDANT_CHANGE_RAD = np.radians(0.5)
+REDUNDANT_CHANGE_RAD = np.radians(1.0)
 """Radians or quaternion components by which a bone may differ across keys that an exporter
-removed as redundant. Chosen by hand: Blender's FBX exporter left up to 0.004 in seven takes of
-five makers."""
+removed as redundant. Chosen by hand: Blender's FBX exporter left up to 0.01 across three keys
+or more in eight takes of six makers."""
 REDUNDANT_CHANGE_FRACTION = 1e-3
-"""Fraction of a location's largest value, likewise. By definition of Blender's FBX exporter,
-which tolerates as much."""
+"""Fraction of a location's largest value or of the bone's length, likewise. By definition of
+Blender's FBX exporter, which tolerates as much of the value."""
 
 
 def animated_curves(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> Curves:
@@ -81,7 +81,8 @@ def read_bone(
         )
     locations = sampled(location_channels, bone.location, frames)
     if gaps:
-        change = REDUNDANT_CHANGE_FRACTION * np.abs(locations).max() * is_exported
+        size = max(np.abs(locations).max(), bone.bone.length)
+        change = REDUNDANT_CHANGE_FRACTION * size * is_exported
         missing = gaps_of(location_channels, frames, step, redundant_change=change)
         locations[missing] = np.nan
     return BoneChannels(rotations, locations, bool(rotation_channels), bool(location_channels))

@@ -14,6 +14,11 @@ MAX_KEY_SPACING_RATIO = 1.5
 """Distance between neighbors, relative to the median one, that is no gap. By definition between
 1, no gap, and 2, one missing key."""
 
+MAX_EXPORTED_SPACING_RATIO = 3.5
+"""The same where an exporter may have removed keys. By definition between two missing keys,
+whose values interpolation gives, and three. Blender's FBX exporter leaves up to 3 degrees
+across two."""
+
 
 def unobserved(
     channels: Sequence[Array],
@@ -38,7 +43,7 @@ def unobserved(
         Frames from one sample to the next, where the action is known to be a recording: then
         even few or widely spaced keys count as captured.
     redundant_change : float
-        In the unit of the channels.
+        In the unit of the channels; above 0, one or two missing keys are no gap either.
     """
     gap = np.ones(len(frames), bool)
     held = np.ones(len(frames), bool)
@@ -61,6 +66,7 @@ def _holes(
     left, right = (after - 1).clip(min=0), after.clip(max=len(times) - 1)
     nearest = np.minimum(np.abs(frames - times[left]), np.abs(frames - times[right]))
     inside = (after > 0) & (after < len(times))
-    wide = ~inside | (times[right] - times[left] > MAX_KEY_SPACING_RATIO * spacing)
+    ratio = MAX_EXPORTED_SPACING_RATIO if redundant_change else MAX_KEY_SPACING_RATIO
+    wide = ~inside | (times[right] - times[left] > ratio * spacing)
     missing = wide & (nearest > 0.25 * spacing)
     return missing, inside & (np.abs(values[left] - values[right]) <= redundant_change)

@@ -174,6 +174,20 @@ def test_keys_that_an_exporter_removed_are_no_gap(
     assert motion.observed.all() == (change < 0.01)
 
 
+def test_one_or_two_keys_that_are_missing_between_others_are_no_gap(
+    make_armature, animate, scene_io, blank
+):
+    armature = make_armature()
+    action = animate(armature)
+    remove_keys(action, "Head", 20, 21)
+    remove_keys(action, "LeftArm", 30, 30)
+    remove_keys(action, "RightArm", 40, 42)
+
+    motion = scene_io.reading.read_take(armature, blank.context.scene).parts[0].motion
+
+    assert (~motion.observed).sum() == 3
+
+
 def test_one_channel_without_keys_is_no_gap(make_armature, animate, scene_io, blank):
     armature = make_armature(mode="XYZ")
     action = animate(armature)
