@@ -128,7 +128,6 @@ RETIRED_IN_NAMES = {
     "trusted": "reliable",
     "unseen": "missing",
     "unsure": "low confidence, uncertain",
-    "watched": "observed",
     "ways": "directions, methods",
     "whither": "target, heading",
     "whoever": "user, actor",

@@ -34,13 +34,13 @@ def draw_take(pair: Pair, path: Path) -> None:
     top = TOP
     for title, values in panels.items():
         canvas.text(LEFT, top - 16.0, title)
-        _draw_heat(canvas, values, recording.names, top)
+        _draw_colors(canvas, values, recording.names, top)
         _draw_seconds(canvas, recording.n_frames, recording.frame_rate, top + height)
         top += height + GAP
     canvas.picture().save(path)
 
 
-def _draw_heat(canvas: Canvas, values: Array, names: tuple[str, ...], top: float) -> None:
+def _draw_colors(canvas: Canvas, values: Array, names: tuple[str, ...], top: float) -> None:
     wide = WIDTH / len(values)
     for joint, name in enumerate(names):
         up = top + joint * ROW

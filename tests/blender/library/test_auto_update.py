@@ -63,7 +63,7 @@ def test_refusal_is_shown_and_updates_continue(poll, library, keep, blank, clip_
     assert "my.clips" in blank.context.window_manager.mocap_assist_indexing.said
 
 
-def test_source_with_the_library_name_as_prefix_is_watched(poll, library, keep, clip_files):
+def test_source_with_the_library_name_as_prefix_is_checked(poll, library, keep, clip_files):
     library.sources = str(clip_files / "my.clips-takes")
     (clip_files / "my.clips-takes").mkdir()
     (clip_files / "walk_0.bvh").rename(clip_files / "my.clips-takes" / "walk.bvh")

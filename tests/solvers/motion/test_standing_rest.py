@@ -85,9 +85,9 @@ def test_gaps_stay_in_the_same_joints():
 
 
 def test_a_body_never_observed_is_left_as_it_is():
-    unseen = ODD.with_poses(np.full_like(ODD.rotations, np.nan))
+    missing = ODD.with_poses(np.full_like(ODD.rotations, np.nan))
 
-    assert with_standing_rest(unseen, HUMANOID) is unseen
+    assert with_standing_rest(missing, HUMANOID) is missing
 
 
 @pytest.mark.parametrize("role", ["leftFoot", "rightFoot", "leftHand", "head", "hips"])
