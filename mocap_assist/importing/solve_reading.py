@@ -33,6 +33,7 @@ from ...solvers.recordings import (
 )
 from ...solvers.recordings.conventions import (
     conventions_of,
+    describe_guesses,
     with_conventions,
 )
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
@@ -160,7 +161,11 @@ def read_takes(
         take = first.name if others else ""
         name = bodies.listed[index].name if len(bodies.listed) > 1 else ""
         warnings = () if contents else found.refused
-        warnings = (*warnings, *questions_of(first.motion, conversion.floor))
+        warnings = (
+            *warnings,
+            *describe_guesses(first.motion),
+            *questions_of(first.motion, conversion.floor),
+        )
         contents.append(
             ReadRecording(
                 first.motion,

@@ -52,6 +52,7 @@ from .points import (
     points_z_up,
     stand_markers,
 )
+from .scene_bodies import describe_guesses, stand_takes_upright
 from .sensor_axes import from_azure_space, from_kinect_space
 from .subjects import bodies_of_joints, bodies_of_markers
 from .time_stamps import (
@@ -83,6 +84,7 @@ __all__ = [
     "conventions_of",
     "describe_guessed_axis",
     "describe_guessed_unit",
+    "describe_guesses",
     "file_conventions",
     "floor_level",
     "from_azure_space",
@@ -113,6 +115,7 @@ __all__ = [
     "stack_body_frames",
     "stand_along",
     "stand_markers",
+    "stand_takes_upright",
     "stand_upright",
     "stature",
     "turn_between",

@@ -6,6 +6,7 @@ import struct
 import numpy as np
 import pytest
 
+GLB_JSON = 0x4E4F534A
 FIGURES = {
     "fbx/mixamo_web/Walking.fbx": (37, 30.0, 1.9),
     "fbx/mixamo_web/Rolling.fbx": (74, 30.0, 0.9),
@@ -45,6 +46,38 @@ def test_takes_come_in_standing_in_true_size(bring, recordings, blank, file, loa
     assert tall == pytest.approx(height, rel=0.06)
     roles = load("solvers.motion").find_humanoid_map(motion.skeleton)
     assert roles.has("hips", "head", "leftFoot", "rightHand")
+
+
+def on_its_back(path, target):
+    """Write a GLB below a node that is rotated by 90 degrees about X."""
+    data = path.read_bytes()
+    length = struct.unpack("<I", data[12:16])[0]
+    content = json.loads(data[20 : 20 + length])
+    scene, half = content["scenes"][0], 0.5**0.5
+    content["nodes"].append({"rotation": [half, 0.0, 0.0, half], "children": scene["nodes"]})
+    scene["nodes"] = [len(content["nodes"]) - 1]
+    text = json.dumps(content).encode()
+    text += b" " * (-len(text) % 4)
+    rest = data[20 + length :]
+    head = struct.pack("<IIIII", 0x46546C67, 2, 20 + len(text) + len(rest), len(text), GLB_JSON)
+    target.write_bytes(head + text + rest)
+
+
+@pytest.mark.parametrize(("up", "stands"), [("AUTO", True), ("Y", False)])
+def test_a_take_on_its_back_stands_unless_up_is_set(
+    blank, load, recordings, tmp_path, up, stands
+):
+    path = tmp_path / "take.glb"
+    on_its_back(recordings / "corpus/glb/khronos_cesiumman/CesiumMan.glb", path)
+
+    blank.ops.mocap_assist.import_recording(filepath=str(path), up=up)
+
+    read = load("mocap_assist.actions.armature_read").read_take
+    motion = read(blank.context.object, blank.context.scene).parts[0].motion
+    poses = load("solvers.motion").world_poses(
+        motion.skeleton, motion.rotations, motion.root_positions
+    )
+    assert (np.median(np.ptp(poses.positions[..., 2], axis=1)) > 1.0) == stands
 
 
 def test_takes_of_one_skeleton_are_actions_of_one_armature(bring, recordings, blank):
