@@ -215,7 +215,8 @@ def _settled(motion: Motion, conversion: Conversion) -> Motion:
     reading, conventions = conversion.reading, conventions_of(motion)
     if unit := reading.unit.metres:
         motion = with_conventions(
-            scaled(motion, unit / conventions.unit), replace(conventions, unit=unit)
+            scaled(motion, unit / conventions.unit),
+            replace(conventions, unit=unit, is_unit_guessed=False),
         )
     return settle(motion, reading, conversion.floor)
 

@@ -11,7 +11,7 @@ from ...solvers.faults import Failure, attempt
 from ...solvers.files import path_fault
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings.conventions import stand_takes_upright
+from ...solvers.recordings.conventions import correct_stated_unit, stand_takes_upright
 from ..actions.armature_read import read_take
 from ..actions.fitting import fitting_slots, plays, plays_slot
 from ..blender import compat
@@ -212,9 +212,8 @@ def _with_conventions(path: str, armature: bpy.types.Object, motion: Motion) -> 
     """Note the axes and unit of a file of another program, as they were interpreted."""
     if not is_scene_file(path):
         return motion
-    stated = stated_conventions(path)
-    ratio = _unit_ratio(armature, motion)
-    return replace(motion, conventions=replace(stated, unit=stated.unit * ratio))
+    motion = replace(motion, conventions=stated_conventions(path))
+    return correct_stated_unit(motion, _unit_ratio(armature, motion))
 
 
 def _unit_ratio(armature: bpy.types.Object, motion: Motion) -> float:

@@ -52,7 +52,12 @@ from .points import (
     points_z_up,
     stand_markers,
 )
-from .scene_bodies import describe_guesses, stand_takes_upright
+from .scene_bodies import (
+    STATED_REACH_M,
+    correct_stated_unit,
+    describe_guesses,
+    stand_takes_upright,
+)
 from .sensor_axes import from_azure_space, from_kinect_space
 from .subjects import bodies_of_joints, bodies_of_markers
 from .time_stamps import (
@@ -70,6 +75,7 @@ __all__ = [
     "METERS",
     "MIN_BODY_JOINTS",
     "PLAUSIBLE_REACH_M",
+    "STATED_REACH_M",
     "Bodies",
     "Body",
     "ConstantRate",
@@ -82,6 +88,7 @@ __all__ = [
     "common_rate",
     "constant_rate_from_times",
     "conventions_of",
+    "correct_stated_unit",
     "describe_guessed_axis",
     "describe_guessed_unit",
     "describe_guesses",

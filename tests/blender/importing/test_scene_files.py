@@ -48,13 +48,13 @@ def test_takes_come_in_standing_in_true_size(bring, recordings, blank, file, loa
     assert roles.has("hips", "head", "leftFoot", "rightHand")
 
 
-def on_its_back(path, target):
-    """Write a GLB below a node that is rotated by 90 degrees about X."""
+def below_node(path, target, **transform):
+    """Write a GLB with its nodes below another one."""
     data = path.read_bytes()
     length = struct.unpack("<I", data[12:16])[0]
     content = json.loads(data[20 : 20 + length])
-    scene, half = content["scenes"][0], 0.5**0.5
-    content["nodes"].append({"rotation": [half, 0.0, 0.0, half], "children": scene["nodes"]})
+    scene = content["scenes"][0]
+    content["nodes"].append({**transform, "children": scene["nodes"]})
     scene["nodes"] = [len(content["nodes"]) - 1]
     text = json.dumps(content).encode()
     text += b" " * (-len(text) % 4)
@@ -68,7 +68,8 @@ def test_a_take_on_its_back_stands_unless_up_is_set(
     blank, load, recordings, tmp_path, up, stands
 ):
     path = tmp_path / "take.glb"
-    on_its_back(recordings / "corpus/glb/khronos_cesiumman/CesiumMan.glb", path)
+    figure = recordings / "corpus/glb/khronos_cesiumman/CesiumMan.glb"
+    below_node(figure, path, rotation=[0.5**0.5, 0.0, 0.0, 0.5**0.5])
 
     blank.ops.mocap_assist.import_recording(filepath=str(path), up=up)
 
@@ -78,6 +79,20 @@ def test_a_take_on_its_back_stands_unless_up_is_set(
         motion.skeleton, motion.rotations, motion.root_positions
     )
     assert (np.median(np.ptp(poses.positions[..., 2], axis=1)) > 1.0) == stands
+
+
+@pytest.mark.parametrize("size", [0.01, 10.0])
+def test_the_body_overrules_a_wrong_unit(load, recordings, tmp_path, size):
+    path = tmp_path / "take.glb"
+    figure = recordings / "corpus/glb/mixamo_blender/walking.glb"
+    below_node(figure, path, scale=[size] * 3)
+    module = load("mocap_assist.importing.solve_reading")
+
+    (read,) = module.read_takes(path, module.Conversion())
+
+    stature = load("solvers.recordings.conventions").stature
+    assert stature(read.recording) == pytest.approx(1.75, rel=0.02)
+    assert any(each.startswith("Lengths are interpreted as") for each in read.warnings)
 
 
 def test_takes_of_one_skeleton_are_actions_of_one_armature(bring, recordings, blank):

@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from solvers.motion import FileConventions, Motion, Skeleton, world_poses
-from solvers.recordings.conventions import describe_guesses, stand_takes_upright
+from solvers.recordings.conventions import (
+    correct_stated_unit,
+    describe_guesses,
+    stand_takes_upright,
+    stature,
+)
 from solvers.recordings.conventions.file_axes import turn_motion
 from solvers.recordings.skeleton_files.smpl_body import smpl_joints
 from solvers.rotations import quaternion_from_euler
@@ -82,3 +87,42 @@ def test_a_take_that_lies_next_to_one_that_stands_is_not_rotated():
 
     assert abs(trunk_of(kept[1])[2]) < 0.2
     assert not any(map(describe_guesses, kept))
+
+
+def enlarged(factor: float, motion: Motion) -> Motion:
+    skeleton = replace(motion.skeleton, offsets=factor * motion.skeleton.offsets)
+    return replace(motion, skeleton=skeleton, root_positions=factor * motion.root_positions)
+
+
+@pytest.mark.parametrize(
+    ("factor", "name"),
+    [
+        (0.01, "units of 100 m"),
+        (10.0, "decimeters"),
+        (100.0, "centimeters"),
+        (1 / 0.0254, "inches"),
+    ],
+)
+def test_a_wrong_unit_of_a_file_is_corrected_and_reported(factor, name):
+    corrected = correct_stated_unit(enlarged(factor, walk()), 1.0)
+
+    assert stature(corrected) == pytest.approx(stature(walk()))
+    assert corrected.root_positions == pytest.approx(walk().root_positions)
+    (message,) = describe_guesses(corrected)
+    assert message.startswith(f"Lengths are interpreted as {name}, by the size of the body")
+
+
+def test_the_factor_of_the_reader_is_undone():
+    """A scene's reader may take ten times a body for Acclaim units."""
+    acclaim = 0.0254 / 0.45
+    corrected = correct_stated_unit(enlarged(10.0 * acclaim, walk()), acclaim)
+
+    assert stature(corrected) == pytest.approx(stature(walk()))
+
+
+@pytest.mark.parametrize("size", [0.4, 1.0, 3.0])
+def test_children_and_giants_keep_the_unit_of_their_file(size):
+    corrected = correct_stated_unit(enlarged(size, walk()), 1.0)
+
+    assert stature(corrected) == pytest.approx(size * stature(walk()))
+    assert not describe_guesses(corrected)
