@@ -26,6 +26,7 @@ from ...solvers.recordings import (
     FloorPlacement,
     ReadingSettings,
     is_depth_recording,
+    is_scene_file,
     open_as,
     questions_of,
     read_depth,
@@ -37,7 +38,7 @@ from ...solvers.recordings.conventions import (
     with_conventions,
 )
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
-from ..jobs.in_blender import BackgroundBlender, SkinnedMeshes, is_scene_file, read_blends
+from ..jobs.in_blender import BackgroundBlender, SkinnedMeshes, read_blends
 from .solve_bodies import SkeletonAction, bodies_of_scene, choice_in_scene
 
 TrackedRecording = Motion | Tracks | JointRecording

@@ -11,6 +11,7 @@ from ...solvers.faults import Failure, attempt
 from ...solvers.files import path_fault
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
+from ...solvers.recordings import is_scene_file
 from ...solvers.recordings.conventions import correct_stated_unit, stand_takes_upright
 from ..actions.armature_read import read_take
 from ..actions.fitting import fitting_slots, plays, plays_slot
@@ -19,7 +20,7 @@ from ..blender.compat import Source
 from ..blender.scene_files import open_scene_file
 from ..blender.skinned_meshes import pack_skinned_meshes
 from ..blender.stated_conventions import stated_conventions
-from ..jobs.in_blender import BlendClip, BlendRead, is_scene_file
+from ..jobs.in_blender import BlendClip, BlendRead
 from ..rigs.evaluated_body import body_bones, with_body_shown
 from ..rigs.rigify import is_rigify
 from ..rigs.target_read import find_roles

@@ -166,7 +166,55 @@ def test_a_lying_header_of_a_glb_costs_no_memory(bring, tmp_path):
 
     _, message = bring(path)
 
-    assert "damaged GLB" in message
+    assert "is damaged or incomplete. Export it again." in message
+
+
+@pytest.mark.parametrize(
+    ("source", "name", "n_frames"),
+    [
+        ("fbx/mixamo_web/Walking.fbx", "take.glb", 37),
+        ("fbx/mixamo_web/Walking.fbx", "take.bvh", 37),
+        ("glb/khronos_cesiumman/CesiumMan.glb", "take.fbx", 49),
+        ("glb/mixamo_blender/walking.glb", "take.usdc", 30),
+        ("bvh/smpl_momask/momask_out.bvh", "take.fbx", None),
+        ("bvh/smpl_momask/momask_out.bvh", "take.glb", None),
+    ],
+)
+def test_the_content_decides_where_the_suffix_is_wrong(
+    load, recordings, tmp_path, source, name, n_frames
+):
+    path = tmp_path / name
+    path.write_bytes((recordings / "corpus" / source).read_bytes())
+    module = load("mocap_assist.importing.solve_reading")
+
+    (wrong,) = module.read_takes(path, module.Conversion())
+
+    (right,) = module.read_takes(recordings / "corpus" / source, module.Conversion())
+    assert wrong.recording.n_frames == right.recording.n_frames
+    assert n_frames in {None, wrong.recording.n_frames}
+    assert wrong.recording.conventions == right.recording.conventions
+
+
+@pytest.mark.parametrize(
+    ("source", "n_bytes"),
+    [
+        ("fbx/mixamo_web/Walking.fbx", 0),
+        ("fbx/mixamo_web/Walking.fbx", 90_000),
+        ("glb/khronos_cesiumman/CesiumMan.glb", 0),
+        ("glb/khronos_cesiumman/CesiumMan.glb", 400),
+        ("glb/khronos_cesiumman/CesiumMan.glb", 90_000),
+    ],
+)
+def test_a_file_that_was_cut_off_has_to_be_exported_again(
+    bring, recordings, tmp_path, source, n_bytes
+):
+    path = (tmp_path / "take").with_suffix(source[-4:])
+    path.write_bytes((recordings / "corpus" / source).read_bytes()[:n_bytes])
+
+    armatures, message = bring(path)
+
+    assert not armatures
+    assert "is damaged or incomplete. Export it again." in message
 
 
 def test_odd_samplers_do_not_stop_a_file(bring, tmp_path):
