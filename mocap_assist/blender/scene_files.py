@@ -3,6 +3,7 @@
 import re
 import struct
 from collections import Counter
+from os import SEEK_END
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -13,8 +14,7 @@ import bpy
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import open_regular
 from ...solvers.json_text import parse_json
-from ...solvers.recordings import refuse_stand_ins
-from ..jobs.in_blender import is_scene_file
+from ...solvers.recordings import SCENE_SUFFIXES, refuse_stand_ins, suffix_by_content
 from .gltf_skins import dict_of, find_joint_trees, list_of, write_with_skins
 
 COMMON_RATES = (15.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 200.0, 240.0)
@@ -28,6 +28,8 @@ USD_OPTIONS = {
     "import_cameras": False, "import_materials": False,
     "import_textures_mode": "IMPORT_NONE",
 }  # fmt: skip
+DAMAGED_FBX = ("Failed to load", "Empty file", "Truncated file")
+"""Reasons that Blender's importer of FBX gives for files that were cut off."""
 GLB_MAGIC = 0x46546C67
 GLB_JSON = 0x4E4F534A
 
@@ -43,13 +45,13 @@ def open_scene_file(path: str, *, meshes: bool = False) -> None:
     InvalidFileError
         This Blender cannot read the file.
     """
-    suffix = Path(path).suffix.lower()
-    if not is_scene_file(path):
+    suffix = suffix_by_content(path)
+    if suffix not in SCENE_SUFFIXES:
         return _run(path, bpy.ops.wm.open_mainfile, load_ui=False, use_scripts=False)
     refuse_stand_ins(path)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     if suffix == ".fbx":
-        return _run(path, bpy.ops.wm.fbx_import)
+        return _open_fbx(path)
     if suffix == ".dae":
         return _open_collada(path)
     if suffix in {".usd", ".usda", ".usdc", ".usdz"}:
@@ -64,6 +66,19 @@ def _run(path: str, operator: Any, **options: Any) -> None:
         lines = str(error).strip().removeprefix("Error:").strip().splitlines()
         reason = lines[0] if lines else "no reason is given"
         raise InvalidFileError(f"{path} cannot be read: {reason}") from None
+
+
+def _open_fbx(path: str) -> None:
+    try:
+        _run(path, bpy.ops.wm.fbx_import)
+    except InvalidFileError as error:
+        if any(reason in str(error) for reason in DAMAGED_FBX):
+            raise _damaged(path) from None
+        raise
+
+
+def _damaged(path: str) -> InvalidFileError:
+    return InvalidFileError(f"{path} is damaged or incomplete. Export it again.")
 
 
 def _open_collada(path: str) -> None:
@@ -104,12 +119,16 @@ def _gltf_content(path: str) -> dict[str, Any]:
     with open_regular(path) as file:
         head = file.read(20)
         if len(head) == 20 and struct.unpack("<I", head[:4])[0] == GLB_MAGIC:
-            length, kind = struct.unpack("<II", head[12:20])
+            total, length, kind = struct.unpack("<III", head[8:20])
             if kind != GLB_JSON or length > MAX_JSON_BYTES:
-                raise InvalidFileError(f"{path} is a damaged GLB file. Export it again.")
+                raise _damaged(path)
             text = file.read(length)
+            if file.seek(0, SEEK_END) < total:
+                raise _damaged(path)
         else:
             text = head + file.read(MAX_JSON_BYTES)
+    if not text:
+        raise _damaged(path)
     try:
         content = parse_json(text)
     except ValueError:

@@ -2,10 +2,10 @@
 
 import re
 import struct
-from pathlib import Path
 
 from ...solvers.files import open_regular
 from ...solvers.motion import AxisName, FileConventions
+from ...solvers.recordings import suffix_by_content
 
 HEAD_BYTES = 1 << 20
 """Of a file; each of these formats states its axes near its beginning."""
@@ -25,7 +25,7 @@ def stated_conventions(path: str) -> FileConventions:
     """
     with open_regular(path) as file:
         head = file.read(HEAD_BYTES)
-    suffix = Path(path).suffix.lower()
+    suffix = suffix_by_content(path)
     up, unit = "Y", 1.0
     if suffix == ".fbx":
         axis = _fbx_number(head, b"UpAxis")

@@ -8,10 +8,9 @@ from ...solvers.depth_scene import DepthRecording
 from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.faults import Failure, attempt
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.recordings import SCENE_SUFFIXES, FloorPlacement
+from ...solvers.recordings import SCENE_SUFFIXES, FloorPlacement, is_scene_file
 from ...solvers.recordings.conventions import conventions_of
 from ..blender.path_properties import absolute, chosen_files
-from ..jobs.in_blender import is_scene_file
 from ..scene.scene_rate import scene_rate
 from .button_settings import ImportChoices
 from .depth_folders import is_take, readable, take_of

@@ -26,6 +26,7 @@ from ...solvers.recordings import (
     FloorPlacement,
     ReadingSettings,
     is_depth_recording,
+    is_scene_file,
     open_as,
     questions_of,
     read_depth,
@@ -33,10 +34,11 @@ from ...solvers.recordings import (
 )
 from ...solvers.recordings.conventions import (
     conventions_of,
+    describe_guesses,
     with_conventions,
 )
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
-from ..jobs.in_blender import BackgroundBlender, SkinnedMeshes, is_scene_file, read_blends
+from ..jobs.in_blender import BackgroundBlender, SkinnedMeshes, read_blends
 from .solve_bodies import SkeletonAction, bodies_of_scene, choice_in_scene
 
 TrackedRecording = Motion | Tracks | JointRecording
@@ -160,7 +162,11 @@ def read_takes(
         take = first.name if others else ""
         name = bodies.listed[index].name if len(bodies.listed) > 1 else ""
         warnings = () if contents else found.refused
-        warnings = (*warnings, *questions_of(first.motion, conversion.floor))
+        warnings = (
+            *warnings,
+            *describe_guesses(first.motion),
+            *questions_of(first.motion, conversion.floor),
+        )
         contents.append(
             ReadRecording(
                 first.motion,
@@ -210,7 +216,8 @@ def _settled(motion: Motion, conversion: Conversion) -> Motion:
     reading, conventions = conversion.reading, conventions_of(motion)
     if unit := reading.unit.metres:
         motion = with_conventions(
-            scaled(motion, unit / conventions.unit), replace(conventions, unit=unit)
+            scaled(motion, unit / conventions.unit),
+            replace(conventions, unit=unit, is_unit_guessed=False),
         )
     return settle(motion, reading, conversion.floor)
 

@@ -11,7 +11,7 @@ from ...solvers.errors import InvalidFileError
 from ...solvers.faults import attempt
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings import SCENE_SUFFIXES
+from ...solvers.recordings import is_scene_file
 from .job import EXTENSION, isolated_command, run
 
 BLEND_CHILD = Path(__file__).with_name("blend_child.py")
@@ -19,13 +19,8 @@ READER = "mocap_assist.library.blend_clips"
 BLEND = ".blend"
 
 
-def is_scene_file(path: Path | str) -> bool:
-    """Whether a file is one of another program that Blender reads, by its name."""
-    return Path(path).suffix.lower() in SCENE_SUFFIXES
-
-
 def is_read_in_blender(path: Path | str) -> bool:
-    """Whether a background Blender reads a file, by its name."""
+    """Whether a background Blender reads a file, by its content or name."""
     return Path(path).suffix.lower() == BLEND or is_scene_file(path)
 
 

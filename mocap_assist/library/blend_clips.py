@@ -11,6 +11,8 @@ from ...solvers.faults import Failure, attempt
 from ...solvers.files import path_fault
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
+from ...solvers.recordings import is_scene_file
+from ...solvers.recordings.conventions import correct_stated_unit, stand_takes_upright
 from ..actions.armature_read import read_take
 from ..actions.fitting import fitting_slots, plays, plays_slot
 from ..blender import compat
@@ -18,7 +20,7 @@ from ..blender.compat import Source
 from ..blender.scene_files import open_scene_file
 from ..blender.skinned_meshes import pack_skinned_meshes
 from ..blender.stated_conventions import stated_conventions
-from ..jobs.in_blender import BlendClip, BlendRead, is_scene_file
+from ..jobs.in_blender import BlendClip, BlendRead
 from ..rigs.evaluated_body import body_bones, with_body_shown
 from ..rigs.rigify import is_rigify
 from ..rigs.target_read import find_roles
@@ -135,7 +137,7 @@ def _read_file(
         refused += found.refused
     is_empty = not (clips or refused)
     if is_scene_file(path):
-        clips = _with_one_root(path, clips)
+        clips = _stand_upright(_with_one_root(path, clips))
     kept = pack_skinned_meshes() if meshes else None
     return BlendRead(tuple(clips), tuple(refused), is_empty=is_empty, meshes=kept)
 
@@ -163,6 +165,16 @@ def _with_one_root(path: str, clips: list[BlendClip]) -> list[BlendClip]:
             clip = replace(clip, motion=_with_conventions(path, armature, motion))
         same.append(clip)
     return same
+
+
+def _stand_upright(clips: Sequence[BlendClip]) -> list[BlendClip]:
+    """Return the takes of each armature standing if their body shows another up axis."""
+    standing: dict[int, Motion] = {}
+    for armature in dict.fromkeys(clip.armature for clip in clips):
+        own = [index for index, clip in enumerate(clips) if clip.armature == armature]
+        takes = stand_takes_upright([clips[index].motion for index in own])
+        standing.update(zip(own, takes, strict=True))
+    return [replace(clip, motion=standing[index]) for index, clip in enumerate(clips)]
 
 
 def _without_motion(path: str) -> str:
@@ -201,9 +213,8 @@ def _with_conventions(path: str, armature: bpy.types.Object, motion: Motion) -> 
     """Note the axes and unit of a file of another program, as they were interpreted."""
     if not is_scene_file(path):
         return motion
-    stated = stated_conventions(path)
-    ratio = _unit_ratio(armature, motion)
-    return replace(motion, conventions=replace(stated, unit=stated.unit * ratio))
+    motion = replace(motion, conventions=stated_conventions(path))
+    return correct_stated_unit(motion, _unit_ratio(armature, motion))
 
 
 def _unit_ratio(armature: bpy.types.Object, motion: Motion) -> float:

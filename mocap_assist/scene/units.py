@@ -2,15 +2,8 @@
 
 import bpy
 
-from ...solvers.recordings.conventions import guess_unit, longest_bone_path
+from ...solvers.recordings.conventions import STATED_REACH_M, guess_unit, longest_bone_path
 from .rig import Rig
-
-# Meters from foot to hand along the bones: from a cat to a dragon. Beyond it, a recording was
-# imported in the unit of its file, such as centimeters, as happens with BVH every day.
-PLAUSIBLE_REACH = (0.25, 15.0)
-"""Meters from foot to hand along the bones. Chosen by hand: from a cat, 0.25 m, to a dragon.
-Beyond it, a recording was imported in the unit of its file, such as centimeters, as happens
-with BVH every day."""
 
 
 def unit_of(scene: bpy.types.Scene) -> float:
@@ -36,7 +29,7 @@ def meters_per_unit(scene: bpy.types.Scene, rig: Rig, root: int, scale: float) -
     joint_of = {bone: joint for joint, bone in enumerate(bones)}
     parents = [-1, *(joint_of[rig.parents[bone]] for bone in bones[1:])]
     offsets = scale * (rig.heads[bones] - rig.heads[[rig.parents[bone] for bone in bones]])
-    low, high = PLAUSIBLE_REACH
+    low, high = STATED_REACH_M
     if low <= stated * longest_bone_path(parents, offsets) <= high:
         return float(stated)
     guessed = guess_unit(parents, offsets)

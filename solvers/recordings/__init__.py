@@ -51,7 +51,8 @@ from .reading_settings import (
     Unit,
 )
 from .recording_figures import recording_figures
-from .refuse_stand_ins import SCENE_SUFFIXES, refuse_stand_ins
+from .refuse_stand_ins import refuse_stand_ins
+from .scene_files import SCENE_SUFFIXES, is_scene_file, suffix_by_content
 from .skeleton_files import read_acclaim, read_acclaim_limits, read_bvh, write_bvh
 
 __all__ = [
@@ -72,6 +73,7 @@ __all__ = [
     "detect_format",
     "is_depth_folder",
     "is_depth_recording",
+    "is_scene_file",
     "list_bodies",
     "may_contain_motion",
     "open_as",
@@ -97,6 +99,7 @@ __all__ = [
     "recordings_in",
     "refuse_stand_ins",
     "settle",
+    "suffix_by_content",
     "write_bvh",
     "write_c3d",
     "write_joint_csv",

@@ -19,18 +19,6 @@ COMPRESSED = (
 COCO = re.compile(rb'"(image_id|category_id|num_keypoints|keypoint_scores|bbox)"')
 DEEPLABCUT = re.compile(rb"scorer,[^\r\n]*\r?\n(individuals,[^\r\n]*\r?\n)?bodyparts,")
 OPENSIM_BODIES = re.compile(rb"#?\s*times?\s*,\s*(\w+)_x\s*,\s*\1_y\s*,\s*\1_z\s*,\s*\1_rotx")
-SCENE_SUFFIXES = frozenset({
-    ".fbx",
-    ".glb",
-    ".gltf",
-    ".vrm",
-    ".usd",
-    ".usda",
-    ".usdc",
-    ".usdz",
-    ".dae",
-})
-"""Files of other programs, which only Blender's own importers read."""
 
 
 class Refusal(NamedTuple):

@@ -7,7 +7,7 @@ from pathlib import Path
 from ..errors import InvalidFileError
 from ..faults import Failure, attempt
 from ..files import is_missing, path_fault, real_path
-from ..recordings import SCENE_SUFFIXES, open_bodies, recordings_in
+from ..recordings import is_scene_file, open_bodies, recordings_in
 from ..recordings.containers import is_folder
 from ..recordings.skeleton_files import find_skeleton
 from ..retrieval import Origin
@@ -83,8 +83,8 @@ def _skeletons(path: Path) -> list[Path]:
 
 def is_action(origin: Origin) -> bool:
     """Whether a clip is an action of a file that only Blender reads."""
-    suffix = Path(origin.path).suffix.lower()
-    return bool(origin.item) and (suffix == ".blend" or suffix in SCENE_SUFFIXES)
+    path = Path(origin.path)
+    return bool(origin.item) and (path.suffix.lower() == ".blend" or is_scene_file(path))
 
 
 def clip_sources(

@@ -29,6 +29,8 @@ class FileConventions:
     """Whether the position channels of a BVH file were added to the offsets."""
     confidence: float = 1.0
     """In the up axis, 0 to 1; 1 where the file states it."""
+    is_unit_guessed: bool = False
+    """Whether the size of the body overruled the unit that the file states."""
     has_floor: bool = True
     """Whether height 0 is a measured floor: not with depth cameras and video models."""
 

@@ -52,6 +52,12 @@ from .points import (
     points_z_up,
     stand_markers,
 )
+from .scene_bodies import (
+    STATED_REACH_M,
+    correct_stated_unit,
+    describe_guesses,
+    stand_takes_upright,
+)
 from .sensor_axes import from_azure_space, from_kinect_space
 from .subjects import bodies_of_joints, bodies_of_markers
 from .time_stamps import (
@@ -69,6 +75,7 @@ __all__ = [
     "METERS",
     "MIN_BODY_JOINTS",
     "PLAUSIBLE_REACH_M",
+    "STATED_REACH_M",
     "Bodies",
     "Body",
     "ConstantRate",
@@ -81,8 +88,10 @@ __all__ = [
     "common_rate",
     "constant_rate_from_times",
     "conventions_of",
+    "correct_stated_unit",
     "describe_guessed_axis",
     "describe_guessed_unit",
+    "describe_guesses",
     "file_conventions",
     "floor_level",
     "from_azure_space",
@@ -113,6 +122,7 @@ __all__ = [
     "stack_body_frames",
     "stand_along",
     "stand_markers",
+    "stand_takes_upright",
     "stand_upright",
     "stature",
     "turn_between",

@@ -8,10 +8,17 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InvalidSettingError
 from ...motion import AxisName, FileConventions, JointRecording, Motion, Tracks
-from ...rotations import inverse, multiply, quaternion_from_matrix, rotate
+from ...rotations import (
+    inverse,
+    matrix_from_quaternion,
+    multiply,
+    quaternion_from_matrix,
+    rotate,
+)
 
 Recording = TypeVar("Recording", bound=Motion | Tracks | JointRecording)
 
+AXIS_NAMES: tuple[AxisName, ...] = ("X", "Y", "Z", "-X", "-Y", "-Z")
 FORWARD: dict[AxisName, AxisName] = {
     "Y": "Z", "-Y": "-Z", "Z": "-Y", "-Z": "Y", "X": "Z", "-X": "Z",
 }  # fmt: skip
@@ -59,6 +66,18 @@ def with_axes(
 def turn_between(before: FileConventions, after: FileConventions) -> Array:
     """Return the quaternion that turns what was read by `before` as `after` would read it."""
     return np.asarray(quaternion_from_matrix(_matrix(after) @ _matrix(before).T))
+
+
+def rotated_conventions(before: FileConventions, turn: Array) -> FileConventions:
+    """Return the axes of the file that are up and forward after a rotation by a quaternion.
+
+    Parameters
+    ----------
+    before : conventions by which the recording was read
+    turn : rotation to axes of the project, by multiples of 90 degrees
+    """
+    matrix = matrix_from_quaternion(turn) @ _matrix(before)
+    return replace(before, up=_name_axis(matrix[2]), forward=_name_axis(-matrix[1]))
 
 
 def reinterpreted(
@@ -120,6 +139,12 @@ def _matrix(conventions: FileConventions) -> Array:
     """Return the rotation from the axes of the file to ours: -Y is forward and Z is up."""
     up, forward = _direction(conventions.up), _direction(conventions.forward)
     return np.asarray(np.stack([np.cross(up, forward), -forward, up]))
+
+
+def _name_axis(direction: Array) -> AxisName:
+    """Return the axis nearest to a direction in the axes of a file."""
+    index = int(np.argmax(np.abs(direction)))
+    return AXIS_NAMES[index + 3 * bool(direction[index] < 0.0)]
 
 
 def _direction(axis: AxisName) -> Array:

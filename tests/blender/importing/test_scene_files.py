@@ -6,6 +6,7 @@ import struct
 import numpy as np
 import pytest
 
+GLB_JSON = 0x4E4F534A
 FIGURES = {
     "fbx/mixamo_web/Walking.fbx": (37, 30.0, 1.9),
     "fbx/mixamo_web/Rolling.fbx": (74, 30.0, 0.9),
@@ -45,6 +46,53 @@ def test_takes_come_in_standing_in_true_size(bring, recordings, blank, file, loa
     assert tall == pytest.approx(height, rel=0.06)
     roles = load("solvers.motion").find_humanoid_map(motion.skeleton)
     assert roles.has("hips", "head", "leftFoot", "rightHand")
+
+
+def below_node(path, target, **transform):
+    """Write a GLB with its nodes below another one."""
+    data = path.read_bytes()
+    length = struct.unpack("<I", data[12:16])[0]
+    content = json.loads(data[20 : 20 + length])
+    scene = content["scenes"][0]
+    content["nodes"].append({**transform, "children": scene["nodes"]})
+    scene["nodes"] = [len(content["nodes"]) - 1]
+    text = json.dumps(content).encode()
+    text += b" " * (-len(text) % 4)
+    rest = data[20 + length :]
+    head = struct.pack("<IIIII", 0x46546C67, 2, 20 + len(text) + len(rest), len(text), GLB_JSON)
+    target.write_bytes(head + text + rest)
+
+
+@pytest.mark.parametrize(("up", "stands"), [("AUTO", True), ("Y", False)])
+def test_a_take_on_its_back_stands_unless_up_is_set(
+    blank, load, recordings, tmp_path, up, stands
+):
+    path = tmp_path / "take.glb"
+    figure = recordings / "corpus/glb/khronos_cesiumman/CesiumMan.glb"
+    below_node(figure, path, rotation=[0.5**0.5, 0.0, 0.0, 0.5**0.5])
+
+    blank.ops.mocap_assist.import_recording(filepath=str(path), up=up)
+
+    read = load("mocap_assist.actions.armature_read").read_take
+    motion = read(blank.context.object, blank.context.scene).parts[0].motion
+    poses = load("solvers.motion").world_poses(
+        motion.skeleton, motion.rotations, motion.root_positions
+    )
+    assert (np.median(np.ptp(poses.positions[..., 2], axis=1)) > 1.0) == stands
+
+
+@pytest.mark.parametrize("size", [0.01, 10.0])
+def test_the_body_overrules_a_wrong_unit(load, recordings, tmp_path, size):
+    path = tmp_path / "take.glb"
+    figure = recordings / "corpus/glb/mixamo_blender/walking.glb"
+    below_node(figure, path, scale=[size] * 3)
+    module = load("mocap_assist.importing.solve_reading")
+
+    (read,) = module.read_takes(path, module.Conversion())
+
+    stature = load("solvers.recordings.conventions").stature
+    assert stature(read.recording) == pytest.approx(1.75, rel=0.02)
+    assert any(each.startswith("Lengths are interpreted as") for each in read.warnings)
 
 
 def test_takes_of_one_skeleton_are_actions_of_one_armature(bring, recordings, blank):
@@ -118,7 +166,55 @@ def test_a_lying_header_of_a_glb_costs_no_memory(bring, tmp_path):
 
     _, message = bring(path)
 
-    assert "damaged GLB" in message
+    assert "is damaged or incomplete. Export it again." in message
+
+
+@pytest.mark.parametrize(
+    ("source", "name", "n_frames"),
+    [
+        ("fbx/mixamo_web/Walking.fbx", "take.glb", 37),
+        ("fbx/mixamo_web/Walking.fbx", "take.bvh", 37),
+        ("glb/khronos_cesiumman/CesiumMan.glb", "take.fbx", 49),
+        ("glb/mixamo_blender/walking.glb", "take.usdc", 30),
+        ("bvh/smpl_momask/momask_out.bvh", "take.fbx", None),
+        ("bvh/smpl_momask/momask_out.bvh", "take.glb", None),
+    ],
+)
+def test_the_content_decides_where_the_suffix_is_wrong(
+    load, recordings, tmp_path, source, name, n_frames
+):
+    path = tmp_path / name
+    path.write_bytes((recordings / "corpus" / source).read_bytes())
+    module = load("mocap_assist.importing.solve_reading")
+
+    (wrong,) = module.read_takes(path, module.Conversion())
+
+    (right,) = module.read_takes(recordings / "corpus" / source, module.Conversion())
+    assert wrong.recording.n_frames == right.recording.n_frames
+    assert n_frames in {None, wrong.recording.n_frames}
+    assert wrong.recording.conventions == right.recording.conventions
+
+
+@pytest.mark.parametrize(
+    ("source", "n_bytes"),
+    [
+        ("fbx/mixamo_web/Walking.fbx", 0),
+        ("fbx/mixamo_web/Walking.fbx", 90_000),
+        ("glb/khronos_cesiumman/CesiumMan.glb", 0),
+        ("glb/khronos_cesiumman/CesiumMan.glb", 400),
+        ("glb/khronos_cesiumman/CesiumMan.glb", 90_000),
+    ],
+)
+def test_a_file_that_was_cut_off_has_to_be_exported_again(
+    bring, recordings, tmp_path, source, n_bytes
+):
+    path = (tmp_path / "take").with_suffix(source[-4:])
+    path.write_bytes((recordings / "corpus" / source).read_bytes()[:n_bytes])
+
+    armatures, message = bring(path)
+
+    assert not armatures
+    assert "is damaged or incomplete. Export it again." in message
 
 
 def test_odd_samplers_do_not_stop_a_file(bring, tmp_path):
