@@ -29,7 +29,7 @@ from .body_axes import (
     rotate_to_z_up,
     stand_upright,
 )
-from .body_unit import describe_guessed_unit, question_of_size, stature
+from .body_unit import describe_guessed_unit, offsets_of_body, question_of_size, stature
 from .camera_bodies import is_mirrored, stand_along, up_along
 from .file_axes import (
     conventions_of,
@@ -108,6 +108,7 @@ __all__ = [
     "longest_bone_path",
     "meters_from_unit_name",
     "observed_body",
+    "offsets_of_body",
     "other_standing_axis",
     "point_names",
     "points_z_up",

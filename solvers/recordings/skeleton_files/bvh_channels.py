@@ -19,6 +19,7 @@ from ..conventions import (
     file_conventions,
     guess_unit,
     longest_bone_path,
+    offsets_of_body,
     reinterpreted,
     rotations_z_up_from_y_up,
     stand_upright,
@@ -204,13 +205,15 @@ def motion_from_poses(
 ) -> Motion:
     """Return the motion in meters, Z up, as `read_bvh` describes it."""
     parents = tuple(joint.parent for joint in joints)
+    names = tuple(joint.name for joint in joints)
+    skeleton = Skeleton(names, parents, z_up_from_y_up(poses.offsets))
     if scale is None:
-        scale = guess_unit(parents, poses.offsets)
-        reach = CENTIMETER * longest_bone_path(parents, poses.offsets)
+        offsets = offsets_of_body(skeleton)
+        scale = guess_unit(parents, offsets)
+        reach = CENTIMETER * longest_bone_path(parents, offsets)
         if scale != CENTIMETER and MIN_REACH_M < reach < PLAUSIBLE_REACH_M[0]:
             progress(1.0, Remark(describe_guessed_unit(scale)))
-    names = tuple(joint.name for joint in joints)
-    skeleton = Skeleton(names, parents, scale * z_up_from_y_up(poses.offsets))
+    skeleton = replace(skeleton, offsets=scale * skeleton.offsets)
     noted = replace(file_conventions("Y", unit=scale), offset_added=poses.offset_added)
     motion = Motion(skeleton, poses.rotations, scale * poses.root, frame_rate, noted)
     if up is not None:

@@ -1,0 +1,92 @@
+"""The unit of a BVH file follows from the body, whatever else the file contains."""
+
+import pytest
+
+from solvers.recordings.conventions import stature
+
+BODY = {
+    "Hips": ("", (0, 95, 0)), "Spine": ("Hips", (0, 10, 0)), "Spine1": ("Spine", (0, 12, 0)),
+    "Spine2": ("Spine1", (0, 13, 0)), "Neck": ("Spine2", (0, 15, 0)),
+    "Head": ("Neck", (0, 10, 2)),
+}  # fmt: skip
+"""Parent and OFFSET in centimeters, in the proportions of a Mixamo rig."""
+LIMBS = {
+    "Shoulder": ("Spine2", (6, 10, 0)), "Arm": ("Shoulder", (12, 0, 0)),
+    "ForeArm": ("Arm", (28, 0, 0)), "Hand": ("ForeArm", (26, 0, 0)),
+    "UpLeg": ("Hips", (9, -5, 0)), "Leg": ("UpLeg", (0, -42, 0)), "Foot": ("Leg", (0, -42, 0)),
+    "ToeBase": ("Foot", (0, -6, 12)),
+}  # fmt: skip
+
+
+def hierarchy(scale):
+    """Return parent and offset by joint of a body of 1.7 m in units of 1 cm / scale."""
+    joints = dict(BODY)
+    for side, sign in (("Left", 1), ("Right", -1)):
+        for name, (parent, (x, y, z)) in LIMBS.items():
+            above = side + parent if parent in LIMBS else parent
+            joints[side + name] = above, (sign * x, y, z)
+    return {
+        name: (parent, tuple(scale * each for each in offset))
+        for name, (parent, offset) in joints.items()
+    }
+
+
+def bvh_text(joints):
+    """Return a file of one frame; joints move where their parent is the root."""
+    root = next(iter(joints))
+    values = []
+
+    def lines(name):
+        parent, offset = joints[name]
+        moves = parent in ("", root)
+        values.extend([*offset, 0, 0, 0] if moves else [0, 0, 0])
+        position = "Xposition Yposition Zposition " * moves
+        yield f"{'JOINT' if parent else 'ROOT'} {name}\n{{\nOFFSET {' '.join(map(str, offset))}"
+        yield f"CHANNELS {6 if moves else 3} {position}Zrotation Xrotation Yrotation"
+        children = [child for child, (above, _) in joints.items() if above == name]
+        for child in children:
+            yield from lines(child)
+        yield "}" if children else "End Site\n{\nOFFSET 0 0 0\n}\n}"
+
+    head = "\n".join(["HIERARCHY", *lines(root), "MOTION", "Frames: 1", "Frame Time: 0.01"])
+    return f"{head}\n{' '.join(map(str, values))}\n"
+
+
+def wrapped(joints, **others):
+    """Return the joints below a still root, with others next to the hips."""
+    below = {name: (above or "Root", offset) for name, (above, offset) in joints.items()}
+    return {"Root": ("", (0, 0, 0)), **below, **others}
+
+
+@pytest.mark.parametrize("scale", [1, 10, 0.01])
+def test_travel_below_a_wrapper_is_not_size(read, scale):
+    """Hips 20 m from the center of the stage have a long offset to the still root."""
+    joints = hierarchy(scale)
+    joints["Hips"] = "", (2000 * scale, 95 * scale, 0)
+
+    far = read(bvh_text(wrapped(joints)))
+
+    assert stature(far) == pytest.approx(stature(read(bvh_text(hierarchy(scale)))))
+    assert far.conventions.unit == pytest.approx(0.01 / scale)
+
+
+def test_prop_far_away_is_not_size(read):
+    motion = read(bvh_text(wrapped(hierarchy(1), Gun=("Root", (2000, 0, 0)))))
+
+    assert motion.conventions.unit == pytest.approx(0.01)
+
+
+def test_long_prop_in_the_hand_is_not_size(read):
+    motion = read(bvh_text({**hierarchy(1), "Sword": ("RightHand", (0, 800, 0))}))
+
+    assert motion.conventions.unit == pytest.approx(0.01)
+
+
+def test_prop_far_away_from_a_real_file_is_not_size(recordings, read):
+    text = (recordings / "formats" / "bvh" / "milad.bvh").read_text()
+    first, hips, rest = text.partition("OFFSET")
+    prop = "JOINT Gun\n{\nOFFSET 2000 0 0\nCHANNELS 0\nEnd Site\n{\nOFFSET 0 0 0\n}\n}\nJOINT"
+
+    changed = read(first + hips + rest.replace("JOINT", prop, 1))
+
+    assert stature(changed) == pytest.approx(stature(read(text)))
