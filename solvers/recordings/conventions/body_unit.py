@@ -85,7 +85,7 @@ def offsets_of_body(skeleton: Skeleton) -> Array:
     chains = [
         {joint, *skeleton.ancestors(joint)} for role, joint in roles.items() if role != "hips"
     ]
-    body = sorted(set.union(*chains) - set.intersection(*chains))
+    body = sorted(chains[0].union(*chains) - chains[0].intersection(*chains))
     offsets = np.zeros_like(skeleton.offsets)
     offsets[body] = skeleton.offsets[body]
     return offsets
