@@ -34,10 +34,14 @@ class FileConventions:
     has_floor: bool = True
     """Whether height 0 is a measured floor: not with depth cameras and video models."""
 
+    @property
+    def is_certain(self) -> bool:
+        """Whether a report need not mention the confidence in the up axis."""
+        return self.confidence >= MIN_CERTAIN_CONFIDENCE
+
     def sentence(self) -> str:
         """Return what was judged, for a report: without a period."""
-        is_certain = self.confidence >= MIN_CERTAIN_CONFIDENCE
-        sure = "" if is_certain else f" ({self.confidence:.0%} confidence)"
+        sure = "" if self.is_certain else f" ({self.confidence:.0%} confidence)"
         added = ", positions added to offsets" if self.offset_added else ""
         rest = (
             f", {self.rest_up} in the rest pose" if self.rest_up not in {None, self.up} else ""

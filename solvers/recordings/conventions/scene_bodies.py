@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from ...motion import Motion, find_humanoid_map
-from ...motion.skeletons.file_conventions import MIN_CERTAIN_CONFIDENCE
 from .axes import ADULT_REACH_M, MIN_BODY_JOINTS, longest_bone_path, rotation_to_z_up
 from .body_axes import UpAxis, describe_guessed_axis, judge_up_axis, rotate_to_z_up
 from .body_unit import describe_guessed_unit
@@ -28,8 +27,9 @@ definition: two axes are equally likely."""
 def stand_takes_upright(takes: Sequence[Motion]) -> list[Motion]:
     """Rotate the takes of a skeleton that lie because their file states another up axis.
 
-    All takes are rotated alike, and only if each clear judgement (`judge_up_axis`) is for the
-    same other axis: a take that lies next to one that stands was recorded lying. Likewise,
+    All takes are rotated by the same angle, and only if each clear judgement
+    (`judge_up_axis`) is for the same other axis: a take that lies next to one that stands
+    was recorded lying. Likewise,
     a rest pose that stands confirms the axis of the file. Where no judgement is clear, the
     conventions note a lower confidence in that axis.
     """
@@ -55,7 +55,7 @@ def describe_guesses(motion: Motion) -> list[str]:
     """Return a message for each convention of a file that the body does not show clearly."""
     conventions = conventions_of(motion)
     found = []
-    if conventions.confidence < MIN_CERTAIN_CONFIDENCE:
+    if not conventions.is_certain:
         found.append(describe_guessed_axis(conventions.up))
     if conventions.is_unit_guessed:
         found.append(describe_guessed_unit(conventions.unit))
