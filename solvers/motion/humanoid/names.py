@@ -3,7 +3,7 @@
 import re
 import unicodedata
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import accumulate
 from operator import and_, eq
 from typing import NamedTuple
@@ -110,12 +110,20 @@ def _keys(names: Sequence[str]) -> dict[Key, str]:
     keys: dict[Key, str] = {}
     for name, (side, words) in zip(names, split, strict=True):
         keys.setdefault((side, "".join(words)), name)
+    for stripped in _without_shared_words(split):
+        for name, (side, words) in zip(names, stripped, strict=True):
+            keys.setdefault((side, "".join(words)), name)
+    return keys
+
+
+def _without_shared_words(
+    split: list[tuple[str, list[str]]],
+) -> Iterator[list[tuple[str, list[str]]]]:
+    """Yield sides and words without the rig's first or last word, as long as there is one."""
     for end in (0, -1):
         while word := _shared_word([words for _, words in split], end):
             split = [(side, _without_word(words, word, end)) for side, words in split]
-            for name, (side, words) in zip(names, split, strict=True):
-                keys.setdefault((side, "".join(words)), name)
-    return keys
+            yield split
 
 
 def _without_word(words: list[str], word: str, end: int) -> list[str]:
@@ -216,9 +224,13 @@ def _fingers(names: Sequence[str], roles: Mapping[str, str]) -> dict[str, str]:
     """
     candidates_by_finger: dict[tuple[str, str], dict[int, list[str]]] = {}
     spelling = _find_spelling(names)
-    for name in names:
-        side, words = _side_and_words(name, spelling)
-        match = FINGER.search("".join(words))
+    split = [_side_and_words(name, spelling) for name in names]
+    matches = [
+        [(side, FINGER.search("".join(words))) for side, words in stripped]
+        for stripped in (split, *_without_shared_words(split))
+    ]
+    fingers = max(reversed(matches), key=_count_finger_joints)
+    for name, (side, match) in zip(names, fingers, strict=True):
         if side and match and not name.endswith("_end"):
             finger = SPELLINGS.get(match[1], match[1].capitalize())
             part = PARTS[match[2].lstrip("0")] + (finger == "Thumb" and match[2] == "proximal")
@@ -233,6 +245,10 @@ def _fingers(names: Sequence[str], roles: Mapping[str, str]) -> dict[str, str]:
         if len(joints) > 1
         for part, candidates in sorted(joints.items())
     }
+
+
+def _count_finger_joints(matches: Sequence[tuple[str, re.Match[str] | None]]) -> int:
+    return len({(side, *match.groups()) for side, match in matches if match})
 
 
 def _best_match(hand: str, names: Sequence[str]) -> str:

@@ -120,3 +120,24 @@ def mirrored(name: str) -> str:
         if left in name:
             return name.replace(left, right)
     return "r" + name[1:]
+
+
+@pytest.mark.parametrize(
+    "pattern",
+    ["{}_109", "{}.001", "{}_JNT", "jnt_{}_JNT", "{}_bind_01", "Spring_Ring_{}", "Char1:{}_02"],
+)
+def test_fingers_keep_their_roles_where_all_names_share_words(pattern):
+    """An exporter that adds "_109" to every bone hid the number of the finger's joint."""
+    names = [
+        "Hips", "Spine", "Neck", "Head",
+        *(side + limb for side in ("Left", "Right")
+          for limb in ("UpLeg", "Leg", "Foot", "Shoulder", "Arm", "ForeArm", "Hand")),
+        *(f"{side}Hand{finger}{number}" for side in ("Left", "Right")
+          for finger in ("Thumb", "Index", "Middle", "Ring", "Pinky") for number in range(1, 5)),
+    ]  # fmt: skip
+    plain = roles_by_name(names)
+    assert sum("Proximal" in role for role in plain) == 10
+
+    found = roles_by_name([pattern.format(name) for name in names])
+
+    assert found == {role: pattern.format(name) for role, name in plain.items()}
