@@ -225,9 +225,12 @@ def _fingers(names: Sequence[str], roles: Mapping[str, str]) -> dict[str, str]:
     candidates_by_finger: dict[tuple[str, str], dict[int, list[str]]] = {}
     spelling = _find_spelling(names)
     split = [_side_and_words(name, spelling) for name in names]
-    *_, split = [split, *_without_shared_words(split)]
-    for name, (side, words) in zip(names, split, strict=True):
-        match = FINGER.search("".join(words))
+    matches = [
+        [(side, FINGER.search("".join(words))) for side, words in stripped]
+        for stripped in (split, *_without_shared_words(split))
+    ]
+    fingers = max(reversed(matches), key=_count_finger_joints)
+    for name, (side, match) in zip(names, fingers, strict=True):
         if side and match and not name.endswith("_end"):
             finger = SPELLINGS.get(match[1], match[1].capitalize())
             part = PARTS[match[2].lstrip("0")] + (finger == "Thumb" and match[2] == "proximal")
@@ -242,6 +245,10 @@ def _fingers(names: Sequence[str], roles: Mapping[str, str]) -> dict[str, str]:
         if len(joints) > 1
         for part, candidates in sorted(joints.items())
     }
+
+
+def _count_finger_joints(matches: Sequence[tuple[str, re.Match[str] | None]]) -> int:
+    return len({(side, *match.groups()) for side, match in matches if match})
 
 
 def _best_match(hand: str, names: Sequence[str]) -> str:

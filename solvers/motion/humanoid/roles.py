@@ -1,5 +1,6 @@
 """Humanoid maps: the role of each joint, shared by all rigs."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -49,6 +50,10 @@ MIN_AGREEMENT = 0.9
 """Fraction, of the roles that names and structure both assign, so that structure may fill
 others. Chosen by hand on the rigs of `tests/solvers/motion`."""
 
+NO_HAND = re.compile(
+    r"prop|weapon|sword|gun|finger|thumb|index|mid|ring|pinky|little", re.IGNORECASE
+)
+"""Names of what lies beyond a hand."""
 REMEMBERED_MAPS = 8
 """Skeletons whose maps are kept."""
 
@@ -138,9 +143,9 @@ def _find_map(names: tuple[str, ...], parents: tuple[int, ...], offsets: bytes) 
     if is_complete and has_human_limbs(skeleton, by_name.joints):
         return by_name
     structure = roles_by_structure(skeleton)
+    joints = _without_false_hands(structure.joints)
     by_structure = HumanoidMap(
-        structure.joints,
-        MAX_STRUCTURE_SCORE * structure.humanness * _coverage(structure.joints),
+        joints, MAX_STRUCTURE_SCORE * structure.humanness * _coverage(joints)
     )
     by_name = _corrected(skeleton, by_name, structure)
     if by_name.score >= MIN_NAME_SCORE:
@@ -197,9 +202,18 @@ def _side(role: str) -> str:
     return "left" if role.startswith("left") else "right"
 
 
+def _without_false_hands(joints: Mapping[str, str]) -> dict[str, str]:
+    """Return the map without hands whose name is that of a prop or a finger."""
+    return {
+        role: joint
+        for role, joint in joints.items()
+        if not role.endswith("Hand") or not NO_HAND.search(joint)
+    }
+
+
 def _corrected(skeleton: Skeleton, by_name: HumanoidMap, structure: Structure) -> HumanoidMap:
     """Return the map by names with the structure's roles where lengths contradict names."""
-    joints = without_contradictions(skeleton, by_name.joints, structure)
+    joints = _without_false_hands(without_contradictions(skeleton, by_name.joints, structure))
     if joints == dict(by_name.joints):
         return by_name
     joints = _fingers_below_hands(skeleton, joints)

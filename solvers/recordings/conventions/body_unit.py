@@ -23,6 +23,7 @@ from ...motion.humanoid import (
     posture_positions,
 )
 from ...progress import Progress, Remark
+from .marker_bodies import stature_of_markers
 
 UNITS = (1.0, 0.01, 0.001)
 ODD_STATURE_M = (0.8, 2.6)
@@ -102,12 +103,13 @@ def describe_guessed_unit(unit: float) -> str:
 def stature(recording: Motion | Tracks | JointRecording) -> float | None:
     """Return the height of the actor who stands upright, meters, whatever the pose.
 
-    It follows from the bones; None where no body is recognized.
+    It follows from the bones, or from markers of head and feet; None where no body is
+    recognized.
     """
     if isinstance(recording, Motion):
         return _stature_of_skeleton(recording)
     if isinstance(recording, Tracks):
-        return None
+        return stature_of_markers(recording.names, recording.positions)
     try:
         size = estimate_body_scale(posture_positions(recording))
     except InvalidMotionError:  # no hips
@@ -120,7 +122,8 @@ def question_of_size(recording: Motion | Tracks | JointRecording) -> str:
     tall = stature(recording)
     if tall is None or ODD_STATURE_M[0] <= tall <= ODD_STATURE_M[1]:
         return ""
-    return f"The actor is {tall:.2g} m tall; set Unit or Scale if this is not right"
+    size = f"{float(f'{tall:.2g}'):,g}"
+    return f"The actor is {size} m tall; set Unit or Scale if this is not right"
 
 
 def _stature_of_skeleton(motion: Motion) -> float | None:

@@ -11,6 +11,7 @@ from ...motion import AxisName, FileConventions, Tracks
 from ..containers import UniqueNames, printable
 from .axes import MIN_BODY_JOINTS, z_up_from_y_up
 from .file_axes import FORWARD
+from .marker_bodies import axis_of_named_markers
 
 METERS = {
     "mm": 0.001, "millimeter": 0.001, "millimetre": 0.001, "cm": 0.01, "centimeter": 0.01,
@@ -64,19 +65,23 @@ def guess_unit_of_points(points: NDArray[np.float64]) -> float:
 
 
 def judge_axes_of_points(
-    points: NDArray[np.float64], up: str, unit: float, default_up: str = ""
+    points: NDArray[np.float64],
+    up: str,
+    unit: float,
+    default_up: str = "",
+    labels: Sequence[str] = (),
 ) -> FileConventions:
     """Return the axes by which `points_z_up` rotates points, in meters, that state `up`.
 
-    If it is unknown, it is estimated; with too few points for a body it is `default_up`, if
-    that is given.
+    If it is unknown, it is estimated, also from the labels of head and feet; with too few
+    points for a body it is `default_up`, if that is given.
     """
     if up[-1:] not in {"X", "Y", "Z"} and points.shape[1] < MIN_BODY_JOINTS:
         up = default_up
     if up[-1:] in {"X", "Y", "Z"}:
         return axes_of_points(up, unit)
     guessed = "+Y" if _looks_y_up(points) else "+Z"
-    axes = axes_of_points(other_standing_axis(points, guessed) or guessed, unit)
+    axes = axes_of_points(other_standing_axis(points, guessed, labels) or guessed, unit)
     return replace(axes, confidence=GUESSED_CONFIDENCE)
 
 
@@ -97,7 +102,7 @@ def stand_markers(
     unit : meters per unit of the file
     default_up : axis of the program, where there are too few points for a body
     """
-    axes = judge_axes_of_points(points, "", unit, default_up)
+    axes = judge_axes_of_points(points, "", unit, default_up, labels)
     return Tracks(
         point_names(labels), points_z_up(points, axes.up), frame_rate, conventions=axes
     )
@@ -138,17 +143,26 @@ def is_upside_down(points: NDArray[np.float64], up: str) -> bool:
     )
 
 
-def other_standing_axis(points: NDArray[np.float64], up: str) -> str:
+def other_standing_axis(
+    points: NDArray[np.float64], up: str, labels: Sequence[str] = ()
+) -> str:
     """Return the axis along which points, in meters, stand if the stated one cannot be right.
 
     So it is where they are half below the floor along the stated axis, and along another one
-    are all above it and much farther apart. Empty if the stated axis may be right.
+    are all above it and much farther apart. Labels may show that the actor stands along a
+    negative axis, as of cameras with Y down, unless only along the stated one the points rest
+    on a floor at height 0. Empty if the stated axis may be right.
     """
     if up[-1:] not in {"X", "Y", "Z"} or points.shape[1] < MIN_BODY_JOINTS:
         return ""
     lowest = np.nanpercentile(points.reshape(-1, 3), 2, axis=0)
     extents = np.median(_extents(points), axis=0)
     stated = "XYZ".index(up[-1])
+    named = axis_of_named_markers(labels, points) if up[:1] != "-" else ""
+    if named[:1] == "-":
+        highest = np.nanpercentile(points[..., "XYZ".index(named[-1])], 98)
+        if min(abs(highest), FLOOR_TOLERANCE_M) < abs(lowest[stated]):
+            return named
     best = int(np.argmax(np.where(lowest > -FLOOR_TOLERANCE_M, extents, 0.0)))
     is_sunk = lowest[stated] <= -FLOOR_TOLERANCE_M
     is_tall = extents[best] > max(MIN_STANDING_M, MIN_STANDING_RATIO * extents[stated])

@@ -102,14 +102,17 @@ def open_c3d(
     used = [labels[index] for index in columns]
     unit = _unit(file, points) if scale is None else scale
     points *= unit
-    axes = judge_axes_of_points(points, _up(file, points, progress), unit)
+    up = _up(file, points, used, progress)
+    axes = judge_axes_of_points(points, up, unit, labels=used)
     positions = points_z_up(points, axes.up)
     tracks = Tracks(point_names(used), positions, file.frame_rate, conventions=axes)
     progress(1.0, "Reading")
     return bodies_of_markers(path, tracks, used)
 
 
-def _up(file: C3dFile, points: NDArray[np.float64], progress: Progress) -> str:
+def _up(
+    file: C3dFile, points: NDArray[np.float64], labels: list[str], progress: Progress
+) -> str:
     """Return the Y axis of the screen, unless points, in meters, show that it is not up."""
     screen = file.texts("POINT:Y_SCREEN")
     up = screen[0].strip().upper() if screen else ""
@@ -122,7 +125,7 @@ def _up(file: C3dFile, points: NDArray[np.float64], progress: Progress) -> str:
             ),
         )
         return f"+{up[-1]}"
-    if other := other_standing_axis(points, up):
+    if other := other_standing_axis(points, up, labels):
         progress(
             0.8,
             Remark(f"Y_SCREEN states {up}, but the actor stands along {other}, which is used"),

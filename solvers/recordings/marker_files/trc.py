@@ -93,7 +93,7 @@ def read_trc(
     points *= unit
     points, rate = at_constant_rate(points, frames, times, header.rate, path)
     labels = header.labels + [""] * (points.shape[1] - len(header.labels))
-    axes = judge_axes_of_points(points, header.up, unit, "+Y")
+    axes = judge_axes_of_points(points, header.up, unit, "+Y", labels)
     positions = points_z_up(points, axes.up)
     tracks = Tracks(point_names(labels), positions, rate, conventions=axes)
     progress(1.0, "Reading")

@@ -133,7 +133,8 @@ def test_fingers_keep_their_roles_where_all_names_share_words(pattern):
         *(side + limb for side in ("Left", "Right")
           for limb in ("UpLeg", "Leg", "Foot", "Shoulder", "Arm", "ForeArm", "Hand")),
         *(f"{side}Hand{finger}{number}" for side in ("Left", "Right")
-          for finger in ("Thumb", "Index", "Middle", "Ring", "Pinky") for number in (1, 2, 3)),
+          for finger in ("Thumb", "Index", "Middle", "Ring", "Pinky")
+          for number in range(1, 5)),
     ]  # fmt: skip
     plain = roles_by_name(names)
     assert sum("Proximal" in role for role in plain) == 10

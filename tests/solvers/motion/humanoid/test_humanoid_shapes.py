@@ -90,3 +90,37 @@ def by_shape(skeleton: Skeleton) -> dict[str, int]:
         for joint in range(skeleton.n_joints)
     )
     return by_name(Skeleton(names, skeleton.parents, skeleton.offsets))
+
+
+@pytest.mark.parametrize(
+    ("name", "hand", "role"),
+    [
+        ("xsens_walk.bvh", "RightWrist", "rightHand"),
+        ("milad.bvh", "RightHand", "rightHand"),
+        ("milad.bvh", "LeftHand", "leftHand"),
+    ],
+)
+def test_prop_or_finger_is_no_hand_where_that_is_missing(recordings, name, hand, role):
+    skeleton = read_bvh(recordings / "formats" / "bvh" / name).skeleton
+    complete = find_humanoid_map(skeleton)
+
+    lacking = find_humanoid_map(without_joint(skeleton, hand))
+
+    assert complete.joint(role) == hand
+    assert lacking.joint(role) is None
+    assert lacking.score < complete.score
+
+
+def without_joint(skeleton, name):
+    """Return the skeleton whose children of this joint hang on its parent."""
+    gone = skeleton.index(name)
+    offsets, parents = skeleton.offsets.copy(), list(skeleton.parents)
+    for child in skeleton.children[gone]:
+        offsets[child] += offsets[gone]
+        parents[child] = parents[gone]
+    kept = [joint for joint in range(len(parents)) if joint != gone]
+    return Skeleton(
+        tuple(skeleton.names[joint] for joint in kept),
+        tuple(-1 if parents[j] < 0 else kept.index(parents[j]) for j in kept),
+        offsets[kept],
+    )
