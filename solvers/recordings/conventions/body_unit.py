@@ -34,8 +34,8 @@ HEAD_TO_ANKLE = 0.886
 body in `smpl_body`."""
 MIN_MAP_SCORE = 0.5
 """Score of a humanoid map, a fraction, from which its joints alone decide on the unit. Chosen
-by hand: bodies of the corpus have 0.6 and more, and wrong maps of chains without names 0.1 to
-0.3."""
+by hand: in docs/benchmarks/importing.md bodies have 0.6 and more, crab and fox 0.04 and
+0.24."""
 ENDS_OF_REACH = ("head", "leftHand", "rightHand"), ("leftFoot", "rightFoot")
 """Roles at both ends of the longest path along the bones of a body."""
 
