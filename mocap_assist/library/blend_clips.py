@@ -12,7 +12,7 @@ from ...solvers.files import path_fault
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import is_scene_file
-from ...solvers.recordings.conventions import correct_stated_unit, stand_takes_upright
+from ...solvers.recordings.conventions import correct_stated_unit
 from ..actions.armature_read import read_take
 from ..actions.fitting import fitting_slots, plays, plays_slot
 from ..blender import compat
@@ -137,7 +137,7 @@ def _read_file(
         refused += found.refused
     is_empty = not (clips or refused)
     if is_scene_file(path):
-        clips = _stand_upright(_with_one_root(path, clips))
+        clips = _with_one_root(path, clips)
     kept = pack_skinned_meshes() if meshes else None
     return BlendRead(tuple(clips), tuple(refused), is_empty=is_empty, meshes=kept)
 
@@ -165,16 +165,6 @@ def _with_one_root(path: str, clips: list[BlendClip]) -> list[BlendClip]:
             clip = replace(clip, motion=_with_conventions(path, armature, motion))
         same.append(clip)
     return same
-
-
-def _stand_upright(clips: Sequence[BlendClip]) -> list[BlendClip]:
-    """Return the takes of each armature standing if their body shows another up axis."""
-    standing: dict[int, Motion] = {}
-    for armature in dict.fromkeys(clip.armature for clip in clips):
-        own = [index for index, clip in enumerate(clips) if clip.armature == armature]
-        takes = stand_takes_upright([clips[index].motion for index in own])
-        standing.update(zip(own, takes, strict=True))
-    return [replace(clip, motion=standing[index]) for index, clip in enumerate(clips)]
 
 
 def _without_motion(path: str) -> str:

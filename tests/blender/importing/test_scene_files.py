@@ -63,24 +63,6 @@ def below_node(path, target, **transform):
     target.write_bytes(head + text + rest)
 
 
-@pytest.mark.parametrize(("up", "stands"), [("AUTO", True), ("Y", False)])
-def test_a_take_on_its_back_stands_unless_up_is_set(
-    blank, load, recordings, tmp_path, up, stands
-):
-    path = tmp_path / "take.glb"
-    figure = recordings / "corpus/glb/khronos_cesiumman/CesiumMan.glb"
-    below_node(figure, path, rotation=[0.5**0.5, 0.0, 0.0, 0.5**0.5])
-
-    blank.ops.mocap_assist.import_recording(filepath=str(path), up=up)
-
-    read = load("mocap_assist.actions.armature_read").read_take
-    motion = read(blank.context.object, blank.context.scene).parts[0].motion
-    poses = load("solvers.motion").world_poses(
-        motion.skeleton, motion.rotations, motion.root_positions
-    )
-    assert (np.median(np.ptp(poses.positions[..., 2], axis=1)) > 1.0) == stands
-
-
 @pytest.mark.parametrize("size", [0.01, 10.0])
 def test_the_body_overrules_a_wrong_unit(load, recordings, tmp_path, size):
     path = tmp_path / "take.glb"
