@@ -56,7 +56,6 @@ from .scene_bodies import (
     STATED_REACH_M,
     correct_stated_unit,
     describe_guesses,
-    stand_takes_upright,
 )
 from .sensor_axes import from_azure_space, from_kinect_space
 from .subjects import bodies_of_joints, bodies_of_markers
@@ -123,7 +122,6 @@ __all__ = [
     "stack_body_frames",
     "stand_along",
     "stand_markers",
-    "stand_takes_upright",
     "stand_upright",
     "stature",
     "turn_between",

@@ -1,54 +1,21 @@
-"""Check the up axis and the unit that files of other programs state by the body in them."""
+"""Check the unit that files of other programs state by the body in them."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from ...motion import Motion, find_humanoid_map
-from .axes import ADULT_REACH_M, MIN_BODY_JOINTS, longest_bone_path, rotation_to_z_up
-from .body_axes import UpAxis, describe_guessed_axis, judge_up_axis, rotate_to_z_up
+from ...motion import Motion
+from .axes import ADULT_REACH_M, MIN_BODY_JOINTS, longest_bone_path
+from .body_axes import describe_guessed_axis
 from .body_unit import describe_guessed_unit
-from .file_axes import conventions_of, rotated_conventions, with_conventions
+from .file_axes import conventions_of
 
-BODY_ROLES = ("hips", "head", "leftFoot", "rightFoot")
-"""Roles of a body whose up axis is judged: other skeletons keep the axis of their file."""
 STATED_REACH_M = (0.25, 15.0)
 """Range of the longest path along the bones, meters, for which the unit of a file is believed.
 Chosen by hand: from a cat, 0.25 m, to a dragon."""
 STATED_UNITS = (1.0, *(10.0**power for power in (-3, -2, -1, 1, 2, 3)), 0.0254)
 """Factors to meters by which a file may state its unit wrongly: powers of ten, and the inch. By
 definition of the units of length."""
-GUESSED_CONFIDENCE = 0.5
-"""Confidence, a probability, in the axis of a file where the bodies suggest others. By
-definition: two axes are equally likely."""
-
-
-def stand_takes_upright(takes: Sequence[Motion]) -> list[Motion]:
-    """Rotate the takes of a skeleton that lie because their file states another up axis.
-
-    All takes are rotated by the same angle, and only if each clear judgement
-    (`judge_up_axis`) is for the same other axis: a take that lies next to one that stands
-    was recorded lying. Likewise,
-    a rest pose that stands confirms the axis of the file. Where no judgement is clear, the
-    conventions note a lower confidence in that axis.
-    """
-    judged = [judge_up_axis(take) for take in takes if _has_body(take)]
-    clear = [
-        each for each in judged if each.is_clear and (each.axis == "Y" or each.rest_axis != "Y")
-    ]
-    axes = {each.axis for each in clear}
-    if "Y" in axes or not judged:
-        return list(takes)
-    if len(axes) == 1:
-        return [_rotated(take, clear[0]) for take in takes]
-    confidence = min(
-        each.confidence if each.axis == "Y" else GUESSED_CONFIDENCE for each in judged
-    )
-    return [
-        with_conventions(take, replace(conventions_of(take), confidence=confidence))
-        for take in takes
-    ]
 
 
 def describe_guesses(motion: Motion) -> list[str]:
@@ -94,16 +61,3 @@ def _plausible_factor(reach: float) -> float:
         return 1.0
     guessed = min(STATED_UNITS, key=lambda unit: abs(np.log(reach * unit / ADULT_REACH_M)))
     return guessed if low <= guessed * reach <= high else 1.0
-
-
-def _has_body(motion: Motion) -> bool:
-    return find_humanoid_map(motion.skeleton).has(*BODY_ROLES)
-
-
-def _rotated(motion: Motion, judged: UpAxis) -> Motion:
-    before = conventions_of(motion)
-    noted = rotated_conventions(before, rotation_to_z_up(judged.axis))
-    if judged.rest_axis != judged.axis:
-        rest = rotated_conventions(before, rotation_to_z_up(judged.rest_axis))
-        noted = replace(noted, rest_up=rest.up)
-    return with_conventions(rotate_to_z_up(motion, judged.axis, judged.rest_axis), noted)

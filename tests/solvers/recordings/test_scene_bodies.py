@@ -9,10 +9,8 @@ from solvers.motion import FileConventions, Motion, Skeleton, world_poses
 from solvers.recordings.conventions import (
     correct_stated_unit,
     describe_guesses,
-    stand_takes_upright,
     stature,
 )
-from solvers.recordings.conventions.file_axes import turn_motion
 from solvers.recordings.skeleton_files.smpl_body import smpl_joints
 from solvers.rotations import quaternion_from_euler
 
@@ -41,52 +39,6 @@ def trunk_of(motion: Motion) -> np.ndarray:
     positions = world_poses(motion.skeleton, motion.rotations, motion.root_positions).positions
     trunk = positions[:, NAMES.index("head")] - positions[:, NAMES.index("pelvis")]
     return np.median(trunk / np.linalg.norm(trunk, axis=1, keepdims=True), axis=0)
-
-
-@pytest.mark.parametrize("conventions", [Y_UP, Z_UP])
-@pytest.mark.parametrize("turn", [about("X", 90), about("X", -90), about("Y", 90)])
-def test_a_take_on_its_side_stands_and_its_axes_are_noted(conventions, turn):
-    lying = turn_motion(walk(conventions), turn, turn)
-
-    (standing,) = stand_takes_upright([lying])
-
-    assert trunk_of(standing)[2] > 0.95
-    assert standing.skeleton.rest_positions[:, 2].max() > 0.5
-    assert standing.conventions.up != conventions.up
-    assert standing.conventions.confidence == 1.0
-    assert not describe_guesses(standing)
-
-
-def test_the_noted_axes_are_those_of_the_file():
-    turn = about("X", 90)
-
-    (from_y,) = stand_takes_upright([turn_motion(walk(Y_UP), turn, turn)])
-    (from_z,) = stand_takes_upright([turn_motion(walk(Z_UP), turn, turn)])
-
-    assert (from_y.conventions.up, from_y.conventions.forward) == ("Z", "-Y")
-    assert (from_z.conventions.up, from_z.conventions.forward) == ("-Y", "-Z")
-
-
-@pytest.mark.parametrize("hips", [(0.0, 0.0, 0.1), (0.0, 0.0, 1.0), (2.0, 3.0, 0.1)])
-def test_an_actor_who_lies_stays_lying_and_is_reported(hips):
-    lying = turn_motion(walk(), about("X", 90), STILL)
-    lying = replace(lying, root_positions=np.broadcast_to(hips, (60, 3)))
-
-    (kept,) = stand_takes_upright([lying])
-
-    assert abs(trunk_of(kept)[2]) < 0.2
-    (message,) = describe_guesses(kept)
-    assert message.startswith("Y is interpreted as up, but the take does not show it clearly")
-
-
-def test_a_take_that_lies_next_to_one_that_stands_is_not_rotated():
-    turn = about("X", 90)
-    lying = turn_motion(walk(), turn, turn)
-
-    kept = stand_takes_upright([walk(), lying])
-
-    assert abs(trunk_of(kept[1])[2]) < 0.2
-    assert not any(map(describe_guesses, kept))
 
 
 def enlarged(factor: float, motion: Motion) -> Motion:
