@@ -35,6 +35,7 @@ from ...solvers.recordings import (
 from ...solvers.recordings.conventions import (
     conventions_of,
     describe_guesses,
+    describe_lying,
     with_conventions,
 )
 from ...solvers.recordings.depth_files import DEFAULT_DEPTH_SETTINGS
@@ -165,6 +166,7 @@ def read_takes(
         warnings = (
             *warnings,
             *describe_guesses(first.motion),
+            *describe_lying([first.motion, *(other.motion for other in others)]),
             *questions_of(first.motion, conversion.floor),
         )
         contents.append(

@@ -56,6 +56,7 @@ from .scene_bodies import (
     STATED_REACH_M,
     correct_stated_unit,
     describe_guesses,
+    describe_lying,
 )
 from .sensor_axes import from_azure_space, from_kinect_space
 from .subjects import bodies_of_joints, bodies_of_markers
@@ -91,6 +92,7 @@ __all__ = [
     "describe_guessed_axis",
     "describe_guessed_unit",
     "describe_guesses",
+    "describe_lying",
     "file_conventions",
     "floor_level",
     "from_azure_space",

@@ -1,14 +1,15 @@
-"""Check the unit that files of other programs state by the body in them."""
+"""Check the unit and the up axis that files of other programs state by the body in them."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from ...motion import Motion
-from .axes import ADULT_REACH_M, MIN_BODY_JOINTS, longest_bone_path
-from .body_axes import describe_guessed_axis
+from ...motion import Motion, find_humanoid_map
+from .axes import ADULT_REACH_M, MIN_BODY_JOINTS, longest_bone_path, rotation_to_z_up
+from .body_axes import describe_guessed_axis, judge_up_axis
 from .body_unit import describe_guessed_unit
-from .file_axes import conventions_of
+from .file_axes import conventions_of, rotated_conventions
 
 STATED_REACH_M = (0.25, 15.0)
 """Range of the longest path along the bones, meters, for which the unit of a file is believed.
@@ -27,6 +28,27 @@ def describe_guesses(motion: Motion) -> list[str]:
     if conventions.is_unit_guessed:
         found.append(describe_guessed_unit(conventions.unit))
     return found
+
+
+def describe_lying(takes: Sequence[Motion]) -> list[str]:
+    """Return a question where no take of a skeleton stands along the up axis of its file.
+
+    The axis is kept: nothing in a file distinguishes a take recorded lying from one exported
+    with a wrong axis.
+    """
+    judged = [judge_up_axis(take) for take in takes if _has_body(take)]
+    if not judged or any(each.axis == "Y" for each in judged):
+        return []
+    stated = conventions_of(takes[0])
+    other = rotated_conventions(stated, rotation_to_z_up(judged[0].axis)).up
+    return [
+        f"The actor lies or is upside down: the file has {stated.up} up; set Up to {other} if"
+        " that is wrong"
+    ]
+
+
+def _has_body(motion: Motion) -> bool:
+    return find_humanoid_map(motion.skeleton).has("hips", "head", "leftFoot", "rightFoot")
 
 
 def correct_stated_unit(motion: Motion, factor: float) -> Motion:

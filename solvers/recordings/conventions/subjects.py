@@ -115,6 +115,7 @@ def _marker_columns(tracks: Tracks, subject: MarkerSubject) -> Tracks:
         tracks.positions[:, columns],
         tracks.frame_rate,
         None if confidence is None else confidence[:, columns],
+        tracks.conventions,
     )
 
 

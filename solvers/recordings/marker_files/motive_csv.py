@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...errors import InvalidFileError
@@ -12,7 +13,14 @@ from ...motion import Motion, Tracks
 from ...progress import Progress, Remark, unwatched, within
 from ...rotations import multiply, normalize, quaternion_from_euler, rotate, unroll
 from ..containers import LineReader, stream_cells
-from ..conventions import check_scale, meters_from_unit_name, stand_markers
+from ..conventions import (
+    Bodies,
+    bodies_of_markers,
+    check_scale,
+    meters_from_unit_name,
+    observed_body,
+    stand_markers,
+)
 from ..skeleton_files import recording_from_segments
 from .marker_rows import at_constant_rate, mark_missing
 from .motive_header import (
@@ -40,15 +48,15 @@ def is_motive_csv(head: bytes) -> bool:
     return HEAD.match(head) is not None and b"ake" in head[:4096]
 
 
-def read_motive_csv(
+def open_motive_csv(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Motion | Tracks:
-    """Read a CSV of OptiTrack Motive, in meters, Z up; blank cells are missing.
+) -> Bodies[Motion | Tracks]:
+    """List the bodies of a CSV of OptiTrack Motive; read in meters, Z up, blanks are missing.
 
-    Bones of a skeleton become a motion; of several skeletons the one observed most. Their
-    hierarchy is the row `Parent` or, without it, follows from Motive's names of bones
-    (`recording_from_segments`). Otherwise markers and the origins of rigid bodies become
-    points. Markers are measured ones, or the expected ones if there are no others. Motive has
+    Each skeleton is a body, and its bones become a motion. Their hierarchy is the row `Parent`
+    or, without it, follows from Motive's names of bones (`recording_from_segments`). Without
+    skeletons, markers and the origins of rigid bodies become points, and their subjects are
+    bodies. Markers are measured ones, or the expected ones if there are no others. Motive has
     Y up unless the export turned its axes, which the body shows. Frames count from the first
     of the export, and skipped ones are gaps.
 
@@ -88,15 +96,21 @@ def read_motive_csv(
         skeletons.setdefault(_actor_and_bone(bone.name)[0], []).append(bone)
     if not skeletons:
         return _points(header, rows, unit, path, progress)
-    name = max(skeletons, key=lambda name: _n_observed(skeletons[name], rows))
-    others = [other for other in skeletons if other != name]
-    if others:
-        progress(0.8, Remark(f"Only the skeleton {name} is read, not {', '.join(others)}"))
     if len(header.items) > len(bones):
         progress(
             0.8, Remark("Markers and rigid bodies are left out, since the file has a skeleton")
         )
-    return _skeleton(header, skeletons[name], rows, unit, path, progress)
+    duration_s = len(rows) / (_stated_rate(header) or 1.0)
+    listed = tuple(
+        observed_body(name or str(number), _observed(part, rows), len(rows), duration_s)
+        for number, (name, part) in enumerate(skeletons.items(), start=1)
+    )
+    parts = list(skeletons.values())
+
+    def read(index: int, progress: Progress) -> Motion | Tracks:
+        return _skeleton(header, parts[index], rows, unit, path, progress)
+
+    return Bodies(str(path), listed, read)
 
 
 def _actor_and_bone(name: str) -> tuple[str, str]:
@@ -107,14 +121,15 @@ def _actor_and_bone(name: str) -> tuple[str, str]:
     return actor, ROOT if bone == actor else bone
 
 
-def _n_observed(bones: list[MotiveItem], rows: Array) -> int:
-    return int(np.isfinite(rows[:, bones[0].position["X"]]).sum())
+def _observed(bones: list[MotiveItem], rows: Array) -> NDArray[np.intp]:
+    """Return the rows with the first bone of a skeleton."""
+    return np.flatnonzero(np.isfinite(rows[:, bones[0].position["X"]]))
 
 
 def _points(
     header: MotiveHeader, rows: Array, unit: float, path: Path | str, progress: Progress
-) -> Tracks:
-    """Return the markers and the origins of rigid bodies."""
+) -> Bodies[Tracks]:
+    """List the subjects of the markers and the origins of rigid bodies."""
     kinds = {item.kind for item in header.items}
     kept = {MARKER, RIGID_BODY} if MARKER in kinds else {*EXPECTED_MARKERS, RIGID_BODY, BONE}
     items = [item for item in header.items if item.kind in kept]
@@ -128,7 +143,10 @@ def _points(
     mark_missing(points, path)
     points, rate = _resampled(header, points, rows, path)
     progress(1.0, "Reading")
-    return stand_markers([item.name for item in items], points * unit, rate, unit, "+Y")
+    labels = [item.name for item in items]
+    return bodies_of_markers(
+        path, stand_markers(labels, points * unit, rate, unit, "+Y"), labels
+    )
 
 
 def _skeleton(
@@ -222,12 +240,16 @@ def _rotations(
 def _resampled(
     header: MotiveHeader, values: Array, rows: Array, path: Path | str
 ) -> tuple[Array, float]:
+    return at_constant_rate(values, rows[:, 0], rows[:, 1], _stated_rate(header), path)
+
+
+def _stated_rate(header: MotiveHeader) -> float | None:
+    """Return frames per second as the first line states them."""
     rates = (
         _number(header.fields.get(key, ""))
         for key in ("export frame rate", "capture frame rate")
     )
-    rate = next((rate for rate in rates if rate > 0.0), None)
-    return at_constant_rate(values, rows[:, 0], rows[:, 1], rate, path)
+    return next((rate for rate in rates if rate > 0.0), None)
 
 
 def _number(text: str) -> float:

@@ -13,7 +13,13 @@ from ...motion import Motion, Tracks
 from ...progress import Progress, Remark, unwatched, within
 from ...rotations import normalize, unroll
 from ..containers import LineReader, decode_text, split_cells, stream_cells
-from ..conventions import check_scale, point_names, stand_markers
+from ..conventions import (
+    Bodies,
+    bodies_of_markers,
+    check_scale,
+    point_names,
+    stand_markers,
+)
 from ..skeleton_files import recording_from_segments
 from .marker_rows import at_constant_rate, mark_missing
 
@@ -45,10 +51,10 @@ def is_qualisys_tsv(head: bytes) -> bool:
     return HEAD.match(head) is not None
 
 
-def read_qualisys_tsv(
+def open_qualisys_tsv(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Motion | Tracks:
-    """Read a TSV export of Qualisys QTM, in meters, Z up; missing values are NaN.
+) -> Bodies[Motion | Tracks]:
+    """List the bodies of a TSV of Qualisys QTM; read in meters, Z up, missing values are NaN.
 
     A skeleton in global coordinates becomes a motion (`recording_from_segments`); markers, and
     the origins of rigid bodies, become points. A point is missing if a cell is blank or not a
@@ -85,14 +91,15 @@ def read_qualisys_tsv(
     if not len(rows):
         raise InvalidFileError(f"{path} has a header but no frames. Export it again.")
     if REFERENCE in header.fields and MARKERS not in header.fields:
-        return _skeleton(header, rows, unit, path, progress)
+        skeleton = _skeleton(header, rows, unit, path, progress)
+        return Bodies(str(path), (), lambda index, progress: skeleton)
     return _points(header, rows, unit, path, progress)
 
 
 def _points(
     header: _QualisysHeader, rows: Array, unit: float, path: Path | str, progress: Progress
-) -> Tracks:
-    """Return the markers, or the origins of rigid bodies."""
+) -> Bodies[Tracks]:
+    """List the subjects of the markers, or the origins of rigid bodies."""
     key = MARKERS if MARKERS in header.fields else BODIES
     labels = header.fields.get(key, [])
     while labels and not labels[-1]:
@@ -115,7 +122,8 @@ def _points(
     mark_missing(points, path)
     points, rate = _resampled(header, points, rows[:, :n_stamps], path)
     progress(1.0, "Reading")
-    return stand_markers(labels, points * unit, rate, unit, "+Z")
+    tracks = stand_markers(labels, points * unit, rate, unit, "+Z")
+    return bodies_of_markers(path, tracks, labels)
 
 
 def _columns_per_item(

@@ -12,6 +12,8 @@ from ...motion import Tracks
 from ...progress import Progress, unwatched, within
 from ..containers import ROWS_AT_ONCE, LineReader, decode_text, read_number, shown
 from ..conventions import (
+    Bodies,
+    bodies_of_markers,
     check_scale,
     guess_unit_of_points,
     judge_axes_of_points,
@@ -44,7 +46,11 @@ class _TrcHeader(NamedTuple):
 
 
 def read_trc(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    body: str | None = None,
+    progress: Progress = unwatched,
 ) -> Tracks:
     """Read the markers of a TRC file, in meters, Z up; missing markers are NaN.
 
@@ -65,13 +71,16 @@ def read_trc(
     scale : float, meters per unit of the file, or None
         None: the Units of the header or, without them, the unit of meters, centimeters and
         millimeters that gives a person's size.
+    body : str, optional
+        Name or number of a subject (`Bodies.choose`); by default the person in most frames, or
+        all markers of one person and its props.
     progress : Progress
 
     Returns
     -------
     Tracks
         Names are unique (`LFHD_2`), and without the prefix of the actor (`Anna:LFHD`) if there
-        is only one; unnamed markers are called `point_<number>`.
+        is only one, or one is read; unnamed markers are called `point_<number>`.
 
     Raises
     ------
@@ -82,6 +91,13 @@ def read_trc(
     SolveCancelled
         Raised by `progress`.
     """
+    return open_trc(path, scale=scale, progress=progress).read_one(body, progress)
+
+
+def open_trc(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[Tracks]:
+    """List the subjects of a file that `read_trc` reads."""
     check_scale(scale)
     reader = LineReader(path)
     header = _read_header(reader.peek(MAX_HEADER_LINES), path)
@@ -97,7 +113,7 @@ def read_trc(
     positions = points_z_up(points, axes.up)
     tracks = Tracks(point_names(labels), positions, rate, conventions=axes)
     progress(1.0, "Reading")
-    return tracks
+    return bodies_of_markers(path, tracks, labels)
 
 
 def _read_header(lines: list[bytes], path: Path | str) -> _TrcHeader:

@@ -17,7 +17,13 @@ from ..containers import (
     split_cells,
     stream_cells,
 )
-from ..conventions import check_scale, meters_from_unit_name, stand_markers
+from ..conventions import (
+    Bodies,
+    bodies_of_markers,
+    check_scale,
+    meters_from_unit_name,
+    stand_markers,
+)
 from .marker_rows import at_constant_rate, mark_missing
 
 SECTIONS = (b"trajectories", b"devices", b"model outputs", b"joints", b"segments", b"events")
@@ -51,10 +57,10 @@ def is_vicon_csv(head: bytes) -> bool:
     return HEAD.match(head) is not None
 
 
-def read_vicon_csv(
+def open_vicon_csv(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Tracks:
-    """Read the trajectories of a Vicon Nexus CSV, in meters, Z up; missing markers are NaN.
+) -> Bodies[Tracks]:
+    """List the subjects of a Vicon Nexus CSV; read in meters, Z up, missing markers are NaN.
 
     A marker is missing if one of its cells is blank or not a number, or if it is exactly at
     the origin. Skipped frame numbers are gaps. Nexus has Z up; eight or more markers of a file
@@ -69,9 +75,8 @@ def read_vicon_csv(
 
     Returns
     -------
-    Tracks
-        Names are unique, and without the prefix of the actor (`Anna:LFHD`) if there is only
-        one.
+    Bodies of Tracks
+        Names are unique, and without the prefix of the actor (`Anna:LFHD`).
 
     Raises
     ------
@@ -104,7 +109,8 @@ def read_vicon_csv(
     )
     progress(1.0, "Reading")
     unit = header.units[0] if scale is None else scale
-    return stand_markers(header.labels, points, rate, unit, "+Z")
+    tracks = stand_markers(header.labels, points, rate, unit, "+Z")
+    return bodies_of_markers(path, tracks, header.labels)
 
 
 def _begins_section(line: bytes) -> bool:

@@ -9,8 +9,10 @@ from solvers.motion import FileConventions, Motion, Skeleton, world_poses
 from solvers.recordings.conventions import (
     correct_stated_unit,
     describe_guesses,
+    describe_lying,
     stature,
 )
+from solvers.recordings.conventions.file_axes import reinterpreted, turn_motion
 from solvers.recordings.skeleton_files.smpl_body import smpl_joints
 from solvers.rotations import quaternion_from_euler
 
@@ -70,6 +72,28 @@ def test_the_factor_of_the_reader_is_undone():
     corrected = correct_stated_unit(enlarged(10.0 * acclaim, walk()), acclaim)
 
     assert stature(corrected) == pytest.approx(stature(walk()))
+
+
+@pytest.mark.parametrize(
+    ("conventions", "degrees", "up"), [(Y_UP, 90, "Z"), (Z_UP, 90, "-Y"), (Y_UP, 180, "-Y")]
+)
+def test_an_actor_who_never_stands_is_reported_with_the_axis_to_choose(
+    conventions, degrees, up
+):
+    turn = about("X", degrees)
+    lying = turn_motion(walk(conventions), turn, turn)
+
+    (message,) = describe_lying([lying])
+
+    assert f"{conventions.up} up; set Up to {up} if" in message
+    assert trunk_of(reinterpreted(lying, up, None))[2] > 0.9
+
+
+def test_a_take_that_stands_confirms_the_axis_of_the_file():
+    turn = about("X", 90)
+
+    assert not describe_lying([walk()])
+    assert not describe_lying([turn_motion(walk(), turn, turn), walk()])
 
 
 @pytest.mark.parametrize("size", [0.4, 1.0, 3.0])

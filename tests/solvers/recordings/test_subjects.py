@@ -4,10 +4,17 @@ import re
 
 import numpy as np
 import pytest
+from exports.studio_tables import motive, motive_points, qualisys_markers, vicon
 from numpy.testing import assert_allclose
 
 from solvers.motion import Tracks
-from solvers.recordings import list_bodies, open_bodies, read_recording, write_c3d
+from solvers.recordings import (
+    list_bodies,
+    open_bodies,
+    read_recording,
+    write_c3d,
+    write_trc,
+)
 
 
 def person(rng, n_markers=20):
@@ -40,6 +47,33 @@ def test_subjects_of_c3d_are_bodies_and_a_box_is_a_prop(tmp_path, rng):
     assert read_recording(path, body="box").n_points == 14
     assert bodies.choose("all") == [0, 1, 2, 3]
     assert read_recording(path).n_points == 20
+
+
+@pytest.mark.parametrize("program", ["trc", "vicon", "motive", "qualisys"])
+def test_subjects_of_every_marker_format_are_bodies(make_writer, program, rng):
+    points = np.concatenate([person(rng), box(rng), person(rng)], axis=1)
+    labels = [*named("Anna", 20), *named("box", 14), *named("Ben", 20)]
+    path = make_writer("take.dat")("")
+    if program == "trc":
+        write_trc(Tracks(tuple(labels), points, 100.0), path)
+    elif program == "vicon":
+        path.write_text(vicon(labels, 1000.0 * points))
+    elif program == "motive":
+        path.write_text(motive(motive_points("Marker", labels, points[..., [0, 2, 1]])))
+    else:
+        path.write_text(qualisys_markers(labels, 1000.0 * points))
+
+    bodies = open_bodies(path)
+
+    assert [(body.name, body.is_person) for body in bodies.listed] == [
+        ("Anna", True), ("box", False), ("Ben", True)
+    ]  # fmt: skip
+    ben = read_recording(path, body="Ben")
+    assert ben.names == tuple(f"M{number}" for number in range(20))
+    assert ben.conventions == read_recording(path, body="Anna").conventions
+    assert ben.conventions is not None
+    if program == "trc":  # which states its up axis
+        assert_allclose(ben.positions, points[:, -20:], atol=1e-5)
 
 
 def test_one_person_with_a_box_is_one_recording(recordings):

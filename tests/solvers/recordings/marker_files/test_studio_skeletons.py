@@ -6,6 +6,7 @@ from exports.studio_tables import BODY, motive, motive_bones, qualisys_skeleton,
 from numpy.testing import assert_allclose
 
 from solvers.motion import Motion, Tracks, find_humanoid_map, world_poses
+from solvers.recordings import list_bodies, read_recording
 
 
 def z_up(positions):
@@ -79,7 +80,17 @@ def test_skeleton_in_most_frames_is_read_with_a_report(read_any, collected_messa
     motion = read_any(motive(hidden + motive_bones("Anna:")), progress=collected_messages[1])
 
     assert np.isfinite(motion.root_positions).all()
-    assert "Only the skeleton Anna is read, not Ben" in collected_messages[0]
+    (message,) = [each for each in collected_messages[0] if "Left out" in each]
+    assert message.startswith("Body Anna of 2. Left out: Ben (")
+
+
+def test_each_skeleton_of_motive_can_be_chosen(make_writer):
+    path = make_writer("take.csv")(motive(motive_bones("Ben:") + motive_bones("Anna:")))
+
+    assert [body.name for body in list_bodies(path)] == ["Ben", "Anna"]
+    found = [read_recording(path, body=name) for name in ("Ben", "Anna", "2")]
+    assert all(isinstance(each, Motion) for each in found)
+    assert_allclose(joints(found[0]), joints(found[1]))
 
 
 def test_separated_bones_become_points_with_a_report(read_any, collected_messages):
