@@ -1,12 +1,14 @@
 """The supported formats, and which of them a file has."""
 
 import re
+from os import SEEK_END
 from pathlib import Path
 
 from ..errors import InvalidFileError
 from ..files import open_regular, unreadable
 from .containers import (
     BYTE_ORDER_MARK,
+    ZIP_MEMBER,
     check_folder_access,
     is_c3d,
     json_length,
@@ -60,15 +62,17 @@ from .skeleton_files import (
     is_mvnx,
     is_smpl,
     is_vrma,
+    open_kimodo,
     open_mvnx,
     open_smpl,
     read_acclaim,
     read_bvh,
-    read_kimodo,
     read_vrma,
 )
 
 HEAD = 4096
+MAX_DIRECTORY_BYTES = 1 << 16
+"""Of the end of an archive, where the names of its members are."""
 MAX_JSON_BYTES = 1 << 22
 """Of a glTF file, read to see what it holds."""
 
@@ -99,7 +103,7 @@ FORMATS = (
         has_skeleton=True,
         lacks_bones=True,
     ),
-    Format("Kimodo", is_kimodo, one_body(read_kimodo), has_skeleton=True),
+    Format("Kimodo", is_kimodo, open_kimodo, has_skeleton=True),
     Format("Xsens MVNX", is_mvnx, open_mvnx, has_skeleton=True),
     Format("C3D", is_c3d, open_c3d, has_markers=True),
     Format("TRC", _is_trc, open_trc, has_markers=True),
@@ -142,6 +146,9 @@ def detect_format(path: Path | str) -> Format | None:
         with open_regular(path) as file:
             head = file.read(HEAD).removeprefix(BYTE_ORDER_MARK)
             head += file.read(min(json_length(head), MAX_JSON_BYTES))
+            if head.startswith(ZIP_MEMBER):
+                file.seek(max(HEAD, file.seek(0, SEEK_END) - MAX_DIRECTORY_BYTES))
+                head += file.read()
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except OSError as error:

@@ -13,7 +13,7 @@ from ..progress import Progress, unwatched, within
 from .conventions import Bodies, Body, check_scale
 from .depth_files import DepthSettings, detect_depth_format, read_depth
 from .format import Format, Tracked
-from .formats import FORMATS, detect_format
+from .formats import detect_format
 
 OPENING_FRACTION = 0.9
 """Fraction of the time that passes until the bodies are known, in formats with several."""
@@ -146,9 +146,9 @@ def _unknown_format(path: Path | str) -> InvalidFileError:
         return InvalidFileError(
             f"{path} is a folder without depth images. Choose a file in it."
         )
-    names = ", ".join(each.name for each in FORMATS if not each.is_refused)
     return InvalidFileError(
-        f"{path} is of no known format ({names}). Export it as one of these first."
+        f"{path} is of no known format. Export it as BVH, FBX, GLB, C3D, TRC or a table of"
+        " joints."
     )
 
 

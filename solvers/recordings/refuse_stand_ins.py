@@ -16,7 +16,10 @@ COMPRESSED = (
     b"Rar!", b"\x78\x01", b"\x78\x5e", b"\x78\x9c", b"\x78\xda",
 )  # fmt: skip
 """First bytes of gzip, bzip2, xz, zstd, LZ4, 7-Zip, RAR and, of joblib, zlib."""
-COCO = re.compile(rb'"(image_id|category_id|num_keypoints|keypoint_scores|bbox)"')
+COCO = re.compile(
+    rb'"(image_id|category_id|num_keypoints|keypoint_scores|bbox)"'
+    rb'|"keypoints"\s*:\s*\[\s*\[\s*[-+\d.e]+\s*,\s*[-+\d.e]+\s*\]'
+)
 DEEPLABCUT = re.compile(rb"scorer,[^\r\n]*\r?\n(individuals,[^\r\n]*\r?\n)?bodyparts,")
 OPENSIM_BODIES = re.compile(rb"#?\s*times?\s*,\s*(\w+)_x\s*,\s*\1_y\s*,\s*\1_z\s*,\s*\1_rotx")
 
@@ -60,6 +63,13 @@ def _is_flat(head: bytes) -> bool:
     return bool((openpose and not has_depth) or coco or DEEPLABCUT.match(head))
 
 
+def _is_video(head: bytes) -> bool:
+    """Detect MP4, QuickTime and AVI; Matroska may hold depth."""
+    return head[4:8] in {b"ftyp", b"moov", b"mdat"} or (
+        head[:4] == b"RIFF" and head[8:12] == b"AVI "
+    )
+
+
 def _is_opensim(head: bytes) -> bool:
     is_table = b"endheader" in head and (b"inDegrees" in head or b"nColumns" in head)
     return is_table or OPENSIM_BODIES.match(head) is not None
@@ -99,6 +109,18 @@ STAND_INS = (
 """Files that stand where another one should be, whatever the name."""
 REFUSALS = (
     *STAND_INS,
+    Refusal("empty file", lambda head: not head.strip(), "is empty. Export it again."),
+    Refusal(
+        "mocopi packets",
+        lambda head: b"sony motion format" in head[:64],
+        "holds packets that mocopi sent. Record in its app, and import the BVH.",
+    ),
+    Refusal(
+        "video",
+        _is_video,
+        "is a video. Run a video model on it, such as GVHMR or MediaPipe, and import the 3D"
+        " motion that it saves.",
+    ),
     Refusal(
         "Acclaim ASF",
         _is_acclaim_skeleton,

@@ -13,7 +13,15 @@ from .matroska import Matroska, Track, index_matroska, is_matroska
 from .names import MAX_NAME_LENGTH, UniqueNames, printable, shown
 from .png_header import PngHeader, is_png, read_png_header
 from .row_stream import stream_rows
-from .stored_arrays import NPY_MAGIC, NUMBERS, read_archive, read_archive_members, read_array
+from .stored_arrays import (
+    NPY_MAGIC,
+    NUMBERS,
+    ZIP_MEMBER,
+    archive_names,
+    read_archive,
+    read_archive_members,
+    read_array,
+)
 from .stored_bytes import (
     CHUNK,
     MAX_CHECKED_BYTES,
@@ -48,6 +56,7 @@ __all__ = [
     "NPY_MAGIC",
     "NUMBERS",
     "ROWS_AT_ONCE",
+    "ZIP_MEMBER",
     "Block",
     "ByteSlice",
     "C3dFile",
@@ -62,6 +71,7 @@ __all__ = [
     "StoredBytes",
     "Track",
     "UniqueNames",
+    "archive_names",
     "array_from_json",
     "check_folder_access",
     "decode_text",

@@ -1,6 +1,7 @@
 """Read numeric arrays from NumPy files, with the checks of `npz_members`."""
 
 import os
+import re
 import zipfile
 from collections.abc import Collection
 from dataclasses import replace
@@ -15,6 +16,8 @@ from ...files import open_regular
 from ...npz_members import READABLE, RECORDED, Values, array_content, array_header, read_members
 
 NPY_MAGIC = b"\x93NUMPY"
+ZIP_MEMBER, ZIP_ENTRY = b"PK\x03\x04", b"PK\x01\x02"
+"""First bytes of a ZIP archive, and of each entry in its directory."""
 MAX_NUMBER = float(np.finfo(np.float32).max)
 """Without unit. By definition: what sensors and networks store has 32 bits."""
 NUMBERS = Values("fiu", None, finite=False)
@@ -45,6 +48,25 @@ def read_archive(path: Path | str, names: tuple[str, ...]) -> list[NDArray[np.fl
     except READABLE:
         raise _damaged(path) from None
     return [_as_float(arrays[name], path) for name in names]
+
+
+def archive_names(content: bytes) -> tuple[str, ...]:
+    """Return the names of the arrays of a `.npz` archive; none if it is no ZIP archive.
+
+    `content` is its beginning and its end, where the directory is: `detect_format` has both.
+    The name of the first array comes first, and names may repeat.
+    """
+    if content[: len(ZIP_MEMBER)] != ZIP_MEMBER:
+        return ()
+    entries = (found.start() for found in re.finditer(ZIP_ENTRY, content))
+    names = [_named(content, 0, 26, 30), *(_named(content, at, 28, 46) for at in entries)]
+    return tuple(name.decode("ascii", "replace").removesuffix(".npy") for name in names)
+
+
+def _named(content: bytes, start: int, length_at: int, name_at: int) -> bytes:
+    """Return the name in a header of a ZIP archive, by the offsets of its length and itself."""
+    length = int.from_bytes(content[start + length_at : start + length_at + 2], "little")
+    return content[start + name_at : start + name_at + length]
 
 
 def read_archive_members(

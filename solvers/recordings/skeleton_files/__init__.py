@@ -4,7 +4,7 @@ from .acclaim import find_skeleton, read_acclaim
 from .acclaim_limits import read_acclaim_limits
 from .bvh import read_bvh
 from .bvh_writing import write_bvh
-from .kimodo import is_kimodo, read_kimodo
+from .kimodo import is_kimodo, open_kimodo
 from .motion_x import is_motion_x, read_motion_x
 from .mvnx import is_mvnx, open_mvnx
 from .segment_recordings import recording_from_segments
@@ -21,12 +21,12 @@ __all__ = [
     "is_mvnx",
     "is_smpl",
     "is_vrma",
+    "open_kimodo",
     "open_mvnx",
     "open_smpl",
     "read_acclaim",
     "read_acclaim_limits",
     "read_bvh",
-    "read_kimodo",
     "read_motion_x",
     "read_vrma",
     "recording_from_segments",

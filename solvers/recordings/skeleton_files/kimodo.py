@@ -1,41 +1,78 @@
-"""Read the archives of Kimodo: joints and world rotations of the SOMA skeleton."""
+"""Read the archives of Kimodo: joints and world rotations of a SOMA or SMPL-X skeleton."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from ...arrays import Array
 from ...errors import InvalidFileError
 from ...motion import Motion
 from ...progress import Progress, Remark, unwatched
 from ...rotations import quaternion_from_matrix
-from ..containers import read_archive_members
+from ..containers import archive_names, read_archive_members
 from ..conventions import (
     DEFAULT_FRAME_RATE,
+    Bodies,
     check_scale,
     file_conventions,
+    observed_body,
     rotations_z_up_from_y_up,
     stand_upright,
     z_up_from_y_up,
 )
+from .smpl_body import BODY
+from .smpl_people import split_people
 from .world_poses import motion_from_world_poses
 
-JOINTS: tuple[tuple[str, str], ...] = (
-    ("Hips", ""), ("Spine1", "Hips"), ("Spine2", "Spine1"), ("Chest", "Spine2"),
-    ("Neck1", "Chest"), ("Neck2", "Neck1"), ("Head", "Neck2"), ("Jaw", "Head"),
-    ("LeftEye", "Head"), ("RightEye", "Head"),
-    ("LeftShoulder", "Chest"), ("LeftArm", "LeftShoulder"), ("LeftForeArm", "LeftArm"),
-    ("LeftHand", "LeftForeArm"), ("LeftHandThumbEnd", "LeftHand"),
-    ("LeftHandMiddleEnd", "LeftHand"),
-    ("RightShoulder", "Chest"), ("RightArm", "RightShoulder"), ("RightForeArm", "RightArm"),
-    ("RightHand", "RightForeArm"), ("RightHandThumbEnd", "RightHand"),
-    ("RightHandMiddleEnd", "RightHand"),
-    ("LeftLeg", "Hips"), ("LeftShin", "LeftLeg"), ("LeftFoot", "LeftShin"),
-    ("LeftToeBase", "LeftFoot"),
-    ("RightLeg", "Hips"), ("RightShin", "RightLeg"), ("RightFoot", "RightShin"),
-    ("RightToeBase", "RightFoot"),
-)  # fmt: skip
-"""Names and parents of the 30 joints, in the order of the archives, which name none."""
+Tree = tuple[tuple[str, str], ...]
+"""Names and parents of joints, parents first; the parent of the first is empty."""
+
+FINGERS = (("Thumb", 3), ("Index", 4), ("Middle", 4), ("Ring", 4), ("Pinky", 4))
+"""Fingers of SOMA, with their number of joints."""
+
+
+def _soma(has_fingers: bool) -> Tree:
+    """Return the joints of the SOMA skeleton, 77 with fingers and ends, otherwise 30."""
+    head = ("HeadEnd", "Jaw", "LeftEye", "RightEye")[0 if has_fingers else 1 :]
+    return (
+        ("Hips", ""), ("Spine1", "Hips"), ("Spine2", "Spine1"), ("Chest", "Spine2"),
+        ("Neck1", "Chest"), ("Neck2", "Neck1"), ("Head", "Neck2"),
+        *((end, "Head") for end in head),
+        *_arm("Left", has_fingers), *_arm("Right", has_fingers),
+        *_leg("Left", has_fingers), *_leg("Right", has_fingers),
+    )  # fmt: skip
+
+
+def _arm(side: str, has_fingers: bool) -> Tree:
+    parts = ("Chest", *(side + part for part in ("Shoulder", "Arm", "ForeArm", "Hand")))
+    arm = tuple(zip(parts[1:], parts[:-1], strict=True))
+    hand = parts[-1]
+    if not has_fingers:
+        return (*arm, (f"{hand}ThumbEnd", hand), (f"{hand}MiddleEnd", hand))
+    for finger, n_joints in FINGERS:
+        chain = (hand, *(f"{hand}{finger}{end}" for end in (*range(1, n_joints + 1), "End")))
+        arm += tuple(zip(chain[1:], chain[:-1], strict=True))
+    return arm
+
+
+def _leg(side: str, has_toe_end: bool) -> Tree:
+    parts = ("Leg", "Shin", "Foot", "ToeBase", "ToeEnd")[: 5 if has_toe_end else 4]
+    chain = ("Hips", *(side + part for part in parts))
+    return tuple(zip(chain[1:], chain[:-1], strict=True))
+
+
+JOINTS = _soma(has_fingers=False)
+TREES: dict[int, Tree] = {
+    len(tree): tree
+    for tree in (
+        JOINTS,
+        _soma(has_fingers=True),
+        tuple((name, parent) for name, parent, _ in BODY),
+    )
+}
+"""Joints by their number, in the order of the archives, which name none."""
 MIN_DETERMINANT = 0.5
 """Determinant, a ratio, of a matrix that rounding has changed. By definition 1 of a rotation,
 -1 of a mirror image."""
@@ -44,19 +81,19 @@ NAMES = frozenset({"posed_joints", "global_rot_mats", "local_rot_mats", "foot_co
 
 
 def is_kimodo(head: bytes) -> bool:
-    """Return whether the first bytes are an archive that begins with a member of Kimodo."""
-    name = head[30 : 30 + int.from_bytes(head[26:28], "little")].decode("ascii", "replace")
-    return head[:4] == b"PK\x03\x04" and name.removesuffix(".npy") in NAMES
+    """Return whether the first bytes are an archive with a member of Kimodo."""
+    return not NAMES.isdisjoint(archive_names(head))
 
 
-def read_kimodo(
+def open_kimodo(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Motion:
-    """Read a motion of Kimodo, in meters, Z up.
+) -> Bodies[Motion]:
+    """List the motions of an archive of Kimodo; read in meters, Z up.
 
-    The archives hold positions and world rotations of 30 joints, without names, parents or
-    frame rate. Parents are those of the SOMA skeleton; its bones are the mean of the joints
-    seen from their parents; 30 Hz is assumed where no rate is given.
+    The archives hold positions and world rotations of joints, without names, parents or frame
+    rate. Their number shows the skeleton: 30 or 77 of SOMA, 22 of SMPL-X. Bones are the mean
+    of the joints seen from their parents; 30 Hz is assumed where no rate is given. Several
+    samples of one text are bodies.
 
     Parameters
     ----------
@@ -75,20 +112,34 @@ def read_kimodo(
         Raised by `progress`.
     """
     check_scale(scale)
-    arrays = read_archive_members(path, MEMBERS)
+    samples = split_people(read_archive_members(path, MEMBERS), {MEMBERS[0]: ()})
+    unit = 1.0 if scale is None else scale
+    motions = [_motion(path, sample, unit, progress) for sample in samples]
+    listed = tuple(
+        observed_body(str(number), np.arange(n), n, n / each.frame_rate)
+        for number, each in enumerate(motions, start=1)
+        if (n := each.n_frames) and len(motions) > 1
+    )
+    return Bodies(str(path), listed, lambda index, progress: motions[index])
+
+
+def _motion(
+    path: Path | str, arrays: Mapping[str, Array], unit: float, progress: Progress
+) -> Motion:
+    """Return the motion of one sample."""
     joints, matrices = (arrays.get(name) for name in MEMBERS[:2])
     if joints is None or matrices is None or joints.ndim != 3 or not len(joints):
         raise InvalidFileError(
             f"{path} has no posed_joints and global_rot_mats. Save both from Kimodo."
         )
-    expected = (len(joints), len(JOINTS), 3)
-    if joints.shape != expected or matrices.shape != (*expected, 3):
+    tree = TREES.get(joints.shape[1])
+    if tree is None or joints.shape[2] != 3 or matrices.shape != (*joints.shape, 3):
         raise InvalidFileError(
-            f"{path} has joints of shape {joints.shape}; the SOMA skeleton of Kimodo has"
-            f" {len(JOINTS)}. Export it as BVH."
+            f"{path} has joints of shape {joints.shape}; the skeletons of Kimodo have 22, 30 or"
+            " 77 joints with a rotation each. Export it as BVH."
         )
-    names = tuple(name for name, _ in JOINTS)
-    parents = np.array([names.index(parent) if parent else -1 for _, parent in JOINTS])
+    names = tuple(name for name, _ in tree)
+    parents = [names.index(parent) if parent else -1 for _, parent in tree]
     finite = np.isfinite(joints).all(axis=(1, 2)) & np.isfinite(matrices).all(axis=(1, 2, 3))
     if (np.linalg.det(matrices[finite]) < MIN_DETERMINANT).any():
         raise InvalidFileError(
@@ -104,13 +155,12 @@ def read_kimodo(
     try:
         motion = motion_from_world_poses(
             names,
-            parents.tolist(),
-            z_up_from_y_up(joints * (1.0 if scale is None else scale)),
+            parents,
+            z_up_from_y_up(joints * unit),
             rotations_z_up_from_y_up(rotations),
             DEFAULT_FRAME_RATE if rate is None or rate.size != 1 else float(rate.ravel()[0]),
         )
     except InvalidFileError as error:
         raise InvalidFileError(f"{path}: {error}. Export it as BVH.") from None
-    unit = 1.0 if scale is None else scale
     noted = replace(file_conventions("Y", unit=unit), has_floor=False)
     return stand_upright(replace(motion, conventions=noted), progress)

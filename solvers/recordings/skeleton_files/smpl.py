@@ -10,7 +10,7 @@ from ...errors import InvalidFileError, InvalidSettingError
 from ...motion import Motion, Skeleton
 from ...progress import Progress, Remark, unwatched
 from ...rotations import quaternion_from_rotation_vector
-from ..containers import read_archive_members
+from ..containers import archive_names, read_archive_members
 from ..conventions import (
     DEFAULT_FRAME_RATE,
     Bodies,
@@ -24,7 +24,7 @@ from ..conventions import (
     stand_upright,
     z_up_from_y_up,
 )
-from .kimodo import read_kimodo
+from .kimodo import open_kimodo
 from .smpl_body import BODY, FINGERS, STATURE_M, smpl_joints
 from .smpl_people import split_people
 
@@ -44,6 +44,8 @@ NAMES = frozenset(
 READ = (
     *ROTATIONS, *ROOT, *BODY_POSE, *HANDS, *LEFT_HAND, *RIGHT_HAND, *POSITIONS, *RATES, *SCALES,
 )  # fmt: skip
+POSES = frozenset((*ROTATIONS, *ROOT, *BODY_POSE))
+"""Names that no other archives have."""
 NAMES_OF_BODY = tuple(name for name, _, _ in BODY)
 """The 22 joints that all models share."""
 N_BODY = len(BODY)
@@ -51,8 +53,6 @@ N_HAND = 9 * len(FINGERS)
 """Numbers of one hand: three joints of each finger, with an axis and angle each."""
 FIRST_HAND = {52: 22, 55: 25}
 """Index of the first finger joint, by the number of joints: SMPL-H and SMPL-X."""
-FIRST_MEMBER = 30
-"""Byte of a ZIP archive at which the name of its first member begins."""
 N_NUMBERS = {66, 69, 72, 156, 165, 168}
 """Numbers of a pose: 22 joints, SMPL's 23 and 24, SMPL-H's 52, SMPL-X's 55, and with a jaw."""
 N_BODY_POSE = {63, 69}
@@ -66,12 +66,12 @@ and, in the camera's axes, -Y."""
 
 
 def is_smpl(head: bytes) -> bool:
-    """Return whether the first bytes are an archive that begins with a parameter of SMPL."""
-    if head[:4] != b"PK\x03\x04":
-        return False
-    length = int.from_bytes(head[26:28], "little")
-    name = head[FIRST_MEMBER : FIRST_MEMBER + length].decode("ascii", "replace")
-    return name.removesuffix(".npy") in NAMES
+    """Return whether the first bytes are an archive of the parameters of SMPL.
+
+    One name of poses is enough, and so is any parameter at its beginning.
+    """
+    names = archive_names(head)
+    return bool(names) and (names[0] in NAMES or not POSES.isdisjoint(names))
 
 
 def open_smpl(
@@ -127,10 +127,7 @@ def open_smpl(
         raise InvalidSettingError(f"height is {height:g} m; it must be above 0 and below 10.")
     arrays = read_archive_members(path, (*READ, "posed_joints"))
     if "posed_joints" in arrays and not {*ROTATIONS, *ROOT} & arrays.keys():
-        motion = read_kimodo(path, scale=scale, progress=progress)
-        n_frames = motion.n_frames
-        only = observed_body("1", np.arange(n_frames), n_frames, n_frames / motion.frame_rate)
-        return Bodies(str(path), (only,), lambda index, progress: motion)
+        return open_kimodo(path, scale=scale, progress=progress)
     people = split_people(arrays, SIZES)
     vectors = [_rotation_vectors(path, person) for person in people]
     rate = _rate(arrays, unwatched)

@@ -89,7 +89,6 @@ REASONS: dict[str, tuple[str, ...]] = {
         "recordings/marker_files/qualisys_tsv.COLUMNS_*",
         "recordings/marker_files/vicon_csv.HEADER_LINES",
         "recordings/skeleton_files/motion_x.MOTION_X_COLUMNS",
-        "recordings/skeleton_files/smpl.FIRST_MEMBER",
     ),
     "rates of devices, and of files that state none": (
         "recordings/*.COMMON_RATES",

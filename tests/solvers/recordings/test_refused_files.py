@@ -59,6 +59,13 @@ def object_array() -> bytes:
         (b"PK\x03\x04" + bytes(26) + b"take.bvh" + bytes(60), "is compressed. Unpack it"),
         ("<!DOCTYPE html><html><body>Sign in</body></html>", "is a web page"),
         ("\n<!-- saved -->\n<HTML lang='en'>", "is a web page"),
+        (json.dumps({"frames": [{"keypoints": [[412.5, 3.1], [4, 5]]}]}), FLAT),
+        ("", "is empty"),
+        (" \n\n", "is empty"),
+        (b"\x00\x00\x00\x18ftypmp42" + bytes(40), "Run a video model on it"),
+        (b"RIFF\x24\x00\x00\x00AVI LIST" + bytes(40), "Run a video model on it"),
+        (b"\x23\x00\x00\x00head\x12\x00\x00\x00ftypsony motion format", "mocopi sent"),
+        ("a note on the take", "no known format. Export it as BVH, FBX, GLB"),
         ("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", "git lfs pull"),
     ],
 )

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError
 from solvers.motion import find_humanoid_map, world_poses
-from solvers.recordings import read_recording
-from solvers.recordings.skeleton_files.kimodo import JOINTS
+from solvers.recordings import list_bodies, read_recording
+from solvers.recordings.skeleton_files.kimodo import JOINTS, TREES
 from solvers.rotations import (
     matrix_from_quaternion,
     multiply,
@@ -15,7 +16,6 @@ from solvers.rotations import (
 )
 
 F = 50
-NAMES = [name for name, _ in JOINTS]
 BONES = {
     "Spine": (0.0, 0.12, 0.0), "Chest": (0.0, 0.12, 0.0), "Neck": (0.0, 0.1, 0.0),
     "Head": (0.0, 0.1, 0.02), "Shoulder": (0.05, 0.08, 0.0), "Arm": (0.12, 0.0, 0.0),
@@ -25,20 +25,21 @@ BONES = {
 """Y up, facing +Z, meters, by the end of the name; of the left side."""
 
 
-def saved(path, rng):
-    """Write a body that walks 2 m along +Z; return its joints, and the path."""
+def walking(rng, tree=JOINTS):
+    """Return joints and world rotations of a body that walks 2 m along +Z."""
     vectors = (
-        rng.normal(scale=0.15, size=(1, len(JOINTS), 3))
+        rng.normal(scale=0.15, size=(1, len(tree), 3))
         * np.sin(np.arange(F) / 6.0)[:, None, None]
     )
     local = quaternion_from_rotation_vector(vectors)
-    world, joints = np.zeros_like(local), np.zeros((F, len(JOINTS), 3))
-    for joint, (name, parent) in enumerate(JOINTS):
+    world, joints = np.zeros_like(local), np.zeros((F, len(tree), 3))
+    names = [name for name, _ in tree]
+    for joint, (name, parent) in enumerate(tree):
         if not parent:
             world[:, joint] = local[:, joint]
             joints[:, joint] = np.linspace((0.0, 1.0, 0.0), (0.0, 1.0, 2.0), F)
             continue
-        above = NAMES.index(parent)
+        above = names.index(parent)
         longest = max(
             (end for end in BONES if name.rstrip("12").endswith(end)), key=len, default=""
         )
@@ -46,11 +47,47 @@ def saved(path, rng):
         offset *= (-1.0 if name.startswith("Right") else 1.0, 1.0, 1.0)
         world[:, joint] = multiply(world[:, above], local[:, joint])
         joints[:, joint] = joints[:, above] + rotate(world[:, above], offset)
+    return joints, matrix_from_quaternion(world)
+
+
+def saved(path, rng):
+    """Write such a body; return its joints."""
+    joints, matrices = walking(rng)
     np.savez(
-        path, posed_joints=joints, global_rot_mats=matrix_from_quaternion(world),
-        foot_contacts=np.ones((F, 4), bool),
-    )  # fmt: skip
+        path, posed_joints=joints, global_rot_mats=matrices, foot_contacts=np.ones((F, 4), bool)
+    )
     return joints
+
+
+def test_the_full_skeleton_with_fingers_is_read(tmp_path, rng):
+    joints, matrices = walking(rng, TREES[77])
+    np.savez(tmp_path / "take.npz", posed_joints=joints, global_rot_mats=matrices, fps=30.0)
+
+    motion = read_recording(tmp_path / "take.npz")
+
+    assert motion.skeleton.n_joints == 77
+    names = motion.skeleton.names
+    assert names.index("LeftHandPinkyEnd") == 38 and names.index("RightToeEnd") == 76
+    found = find_humanoid_map(motion.skeleton)
+    assert found.joint("leftHand") == "LeftHand" and found.joint("rightToes") == "RightToeBase"
+
+
+def test_samples_of_one_text_are_bodies(tmp_path, rng):
+    one, other = walking(rng), walking(rng)
+    np.savez(
+        tmp_path / "take.npz",
+        foot_contacts=np.ones((2, F, 4), bool),
+        fps=30.0,
+        posed_joints=np.stack([one[0], other[0]]),
+        global_rot_mats=np.stack([one[1], other[1]]),
+    )
+    np.savez(tmp_path / "second.npz", posed_joints=other[0], global_rot_mats=other[1], fps=30.0)
+
+    assert [body.name for body in list_bodies(tmp_path / "take.npz")] == ["1", "2"]
+    second = read_recording(tmp_path / "take.npz", body="2")
+    alone = read_recording(tmp_path / "second.npz")
+    assert_allclose(second.rotations, alone.rotations)
+    assert_allclose(second.root_positions, alone.root_positions)
 
 
 def test_positions_and_rotations_alone_give_the_same_joints_standing(tmp_path, rng):

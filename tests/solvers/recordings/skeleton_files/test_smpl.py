@@ -252,3 +252,16 @@ def test_a_lying_actor_of_amass_never_passes_in_silence(tmp_path, root, lies):
     rises = np.abs((places["head"] - places["pelvis"])[:, 2]).max()
     assert (rises < 0.3) == lies
     assert any("is interpreted as up" in message for message in messages)
+
+
+def test_poses_are_found_in_archives_with_arrays_of_any_order_and_size(tmp_path):
+    about = {
+        "seq_name": np.array("walk"), "vertices": np.random.default_rng(1).random((F, 900)),
+        "poses": poses(root=Z_UP).reshape(F, -1), "trans": np.tile((0.2, 0.1, 0.9), (F, 1)),
+        "mocap_framerate": np.array(60.0),
+    }  # fmt: skip
+
+    motion = read_recording(save(tmp_path / "a.npz", **about))
+
+    assert motion.frame_rate == 60.0
+    check_standing(motion)
