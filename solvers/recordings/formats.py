@@ -62,11 +62,11 @@ from .skeleton_files import (
     is_mvnx,
     is_smpl,
     is_vrma,
+    open_bvh,
     open_kimodo,
     open_mvnx,
     open_smpl,
     read_acclaim,
-    read_bvh,
     read_vrma,
 )
 
@@ -92,7 +92,7 @@ def _is_trc(head: bytes) -> bool:
 
 
 FORMATS = (
-    Format("BVH", _is_bvh, one_body(read_bvh), has_skeleton=True),
+    Format("BVH", _is_bvh, open_bvh, has_skeleton=True),
     Format("Acclaim AMC", _is_acclaim, one_body(read_acclaim), has_skeleton=True),
     Format("VRM animation", is_vrma, one_body(read_vrma), has_skeleton=True),
     *(Format(each.name, each.fits, one_body(each.read), is_refused=True) for each in REFUSALS),

@@ -2,7 +2,7 @@
 
 from .acclaim import find_skeleton, read_acclaim
 from .acclaim_limits import read_acclaim_limits
-from .bvh import read_bvh
+from .bvh import open_bvh, read_bvh
 from .bvh_writing import write_bvh
 from .kimodo import is_kimodo, open_kimodo
 from .motion_x import is_motion_x, read_motion_x
@@ -21,6 +21,7 @@ __all__ = [
     "is_mvnx",
     "is_smpl",
     "is_vrma",
+    "open_bvh",
     "open_kimodo",
     "open_mvnx",
     "open_smpl",

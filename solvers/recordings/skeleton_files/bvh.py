@@ -3,13 +3,22 @@
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 
+import numpy as np
+
 from ...errors import InvalidFileError
 from ...motion import Motion
 from ...progress import Progress, unwatched, within
-from ..containers import LineReader, stream_rows
-from ..conventions import UpAxisName, check_scale
+from ..containers import LineReader, UniqueNames, stream_rows
+from ..conventions import (
+    MIN_BODY_JOINTS,
+    Bodies,
+    UpAxisName,
+    check_scale,
+    conventions_of,
+    observed_body,
+)
 from .bvh_channels import BvhChannels, motion_from_poses
-from .bvh_hierarchy import read_hierarchy
+from .bvh_hierarchy import read_hierarchies
 
 COMMON_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240, 23.976, 29.97, 59.94, 119.88)
 DEFAULT_RATE_HZ = 30.0
@@ -33,7 +42,8 @@ def read_bvh(
     A `Motion` has bones of fixed length, so position channels of joints other than the root
     are approximated. In an unbranched chain below the root they move the root. Their median
     replaces the OFFSET of the joint, and a joint with a single child is rotated towards it.
-    Channels that would shrink the skeleton to a point are added to the OFFSET instead.
+    Channels that would shrink the skeleton to a point are added to the OFFSET instead. Of
+    several ROOTs the first body is read (`open_bvh`).
 
     Parameters
     ----------
@@ -61,18 +71,69 @@ def read_bvh(
         Raised by `progress`.
     """
     check_scale(scale)
+    bodies = _read_bodies(path, scale, up, progress)
+    if len(bodies) == 1:
+        return bodies[0]
+    return _bodies(path, bodies).read_one(None, progress)
+
+
+def open_bvh(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Bodies[Motion]:
+    """List the bodies of a file, one for each ROOT; they are read as `read_bvh` does."""
+    check_scale(scale)
+    if len(read_hierarchies(_hierarchy(LineReader(path), path), path)) > 1:
+        return _bodies(path, _read_bodies(path, scale, None, progress))
+    return Bodies(
+        str(path), (), lambda _, progress: read_bvh(path, scale=scale, progress=progress)
+    )
+
+
+def _bodies(path: Path | str, motions: list[Motion]) -> Bodies[Motion]:
+    """List the bodies of a file with several; small ones are props."""
+    names = UniqueNames()
+    listed = tuple(
+        observed_body(
+            names.give(each.skeleton.names[0]),
+            np.flatnonzero(each.observed.any(axis=1)),
+            each.n_frames,
+            each.n_frames / each.frame_rate,
+            is_person=each.n_joints >= MIN_BODY_JOINTS,
+        )
+        for each in motions
+    )
+    return Bodies(str(path), listed, lambda index, progress: motions[index])
+
+
+def _read_bodies(
+    path: Path | str, scale: float | None, up: UpAxisName | None, progress: Progress
+) -> list[Motion]:
+    """Read each body; the largest one shows unit and axes of all."""
     reader = LineReader(path)
-    joints = read_hierarchy(_hierarchy(reader, path), path)
+    bodies = read_hierarchies(_hierarchy(reader, path), path)
     frame_rate = _frame_rate(reader)
-    width = sum(len(joint.channels) for joint in joints)
-    if not width:
+    widths = [sum(len(joint.channels) for joint in joints) for joints in bodies]
+    if not sum(widths):
         raise InvalidFileError(f"{path} has no CHANNELS, so nothing in it moves.")
-    rows = stream_rows(reader, width, path, within(progress, 0.0, 0.7))
+    rows = stream_rows(reader, sum(widths), path, within(progress, 0.0, 0.7))
     if not len(rows):
         raise InvalidFileError(f"{path} has no frames: nothing follows its Frame Time.")
-    poses = BvhChannels(joints, rows).poses(within(progress, 0.7, 1.0))
+    ends = np.cumsum(widths)
+    columns = np.split(rows, ends[:-1], axis=1)
     del rows
-    return motion_from_poses(joints, poses, frame_rate, scale, up, progress)
+    poses = [
+        BvhChannels(joints, columns.pop(0)).poses(within(progress, 0.7, 1.0))
+        for joints in bodies
+    ]
+    main = max(range(len(bodies)), key=lambda body: len(bodies[body]))
+    first = motion_from_poses(bodies[main], poses[main], frame_rate, scale, up, progress)
+    unit, axis = conventions_of(first).unit, conventions_of(first).up  # of props as well
+    return [
+        first
+        if body == main
+        else motion_from_poses(joints, poses[body], frame_rate, unit, axis, progress)
+        for body, joints in enumerate(bodies)
+    ]
 
 
 def _hierarchy(reader: LineReader, path: Path | str) -> bytes:

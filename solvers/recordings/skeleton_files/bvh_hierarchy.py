@@ -22,8 +22,8 @@ class BvhJoint:
     """For example `xposition` or `zrotation`, in the order of the numbers."""
 
 
-def read_hierarchy(text: bytes, path: Path | str) -> list[BvhJoint]:
-    """Parse the text before the word MOTION; names become unique.
+def read_hierarchies(text: bytes, path: Path | str) -> list[list[BvhJoint]]:
+    """Parse the text before the word MOTION: the joints of each ROOT; names become unique.
 
     A second joint of the same name is called `name_2`, an end site `<parent>_end`. End sites
     at the position of their joint are dropped. Spaces in names become underscores.
@@ -31,7 +31,7 @@ def read_hierarchy(text: bytes, path: Path | str) -> list[BvhJoint]:
     Raises
     ------
     InvalidFileError
-        The text is not a BVH hierarchy, or has more than one root.
+        The text is not a BVH hierarchy.
     """
     return _Hierarchy(text, path).read()
 
@@ -46,9 +46,19 @@ class _Hierarchy:
         self.joints: list[BvhJoint] = []
         self.names = UniqueNames()
 
-    def read(self) -> list[BvhJoint]:
+    def read(self) -> list[list[BvhJoint]]:
         if self._keyword() != "HIERARCHY" or self._keyword() != "ROOT":
             self._refuse("a BVH file begins with HIERARCHY and ROOT")
+        found = [self._read_root()]
+        while (word := next(self.words, "").upper()) == "ROOT":
+            found.append(self._read_root())
+        if word:
+            self._refuse(f"{shown(word)!r} is after the end")
+        return found
+
+    def _read_root(self) -> list[BvhJoint]:
+        """Read the joints of a body, from the name of its root on."""
+        self.joints, self.names = [], UniqueNames()
         self._open(self._name(), -1)
         branch = [0]
         while branch:
@@ -61,14 +71,6 @@ class _Hierarchy:
                 branch.pop()
             else:
                 self._refuse(f"{shown(word)!r} instead of JOINT, End Site or }}")
-        rest = next(self.words, None)
-        if rest is not None:
-            problem = (
-                "there is a second ROOT"
-                if rest == "ROOT"
-                else f"{shown(rest)!r} is after the end"
-            )
-            self._refuse(f"{problem}; one file holds one character")
         return self.joints
 
     def _open(self, name: str, parent: int) -> int:
