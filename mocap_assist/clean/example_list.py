@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 import bpy
 
+from ...solvers.recordings import SCENE_SUFFIXES
 from ..blender.name_lists import SEPARATOR, join_names, split_names
 from ..blender.path_properties import (
     HIDDEN,
@@ -21,7 +22,10 @@ ADD_FOLDER = "mocap_assist.add_example_folder"
 REMOVE = "mocap_assist.remove_example"
 CLEAN, RECONSTRUCT = "clean", "reconstruct"
 """Whose list it is: a property of `scene.mocap_assist`."""
-RECORDINGS = "*.bvh;*.amc;*.c3d;*.trc;*.blend"
+RECORDINGS = ";".join(
+    f"*{suffix}"
+    for suffix in (".bvh", ".amc", ".c3d", ".trc", ".blend", *sorted(SCENE_SUFFIXES))
+)
 CHANGES_A_LIST = {"INTERNAL", "UNDO"}
 MAX_MENU_ENTRIES = 30
 

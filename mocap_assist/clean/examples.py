@@ -7,13 +7,14 @@ import bpy
 
 from ...solvers.errors import InvalidFileError, InvalidMotionError
 from ...solvers.motion import Motion
-from ...solvers.recordings import may_contain_motion
+from ...solvers.recordings import is_scene_file, may_contain_motion
 from ...solvers.recordings.containers import files_below
 from ..actions.armature_read import read_take
 from ..actions.fitting import fits, plays
 from ..blender import compat
 from ..blender.name_lists import split_names
 from ..blender.time_slices import Sliced, Steps, should_yield
+from ..library.sources import background_blender
 from ..runtime.subject import Subject
 from ..scene.linked_clips import Linked, is_blend, linked_clips
 from .button_settings import CleanChoices, Prior
@@ -74,7 +75,9 @@ def read_examples(
         if not is_blend(Path(path)):
             inside = yield from _recordings_of(Path(path))
             recordings += map(str, inside)
-    return ExampleSource(motions=tuple(motions), files=tuple(recordings))
+    return ExampleSource(
+        motions=tuple(motions), files=tuple(recordings), blender=background_blender("")
+    )
 
 
 def _recordings_of(path: Path) -> Steps[list[Path]]:
@@ -85,7 +88,7 @@ def _recordings_of(path: Path) -> Steps[list[Path]]:
     for each in files_below(path):
         if should_yield():
             yield 0.0
-        found += [each] if may_contain_motion(each) else []
+        found += [each] if may_contain_motion(each) or is_scene_file(each) else []
     if not found:
         raise InvalidMotionError(f"The folder {path} has no recordings.")
     return found

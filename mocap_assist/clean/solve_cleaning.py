@@ -28,6 +28,7 @@ from ...solvers.denoising import (
     plant_feet,
 )
 from ...solvers.denoising.feet import find_legs
+from ...solvers.errors import InvalidFileError
 from ...solvers.markers import Swap, unswap_markers
 from ...solvers.motion import (
     JointLimits,
@@ -38,8 +39,9 @@ from ...solvers.motion import (
     find_humanoid_map,
 )
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.recordings import read_motion_or_tracks
+from ...solvers.recordings import is_scene_file, read_motion_or_tracks
 from ...solvers.rotations import angle_between, slerp
+from ..jobs.in_blender import BackgroundBlender, read_blends
 from ..library.solve_prior import LibraryPrior
 
 Recordings = tuple[Motion | Tracks, ...]
@@ -63,8 +65,26 @@ class ExampleSource:
 
     motions: tuple[Motion, ...] = ()
     files: tuple[str, ...] = ()
+    """Recordings, and files that the background Blender reads."""
     bases_file: str = ""
     library: LibraryPrior | None = None
+    blender: BackgroundBlender | None = None
+
+    def read(self, progress: Progress = unwatched) -> list[Motion | Tracks]:
+        """Return the motions and what is in the files; raise InvalidFileError on failure."""
+        scenes = [path for path in self.files if is_scene_file(path)]
+        others = [path for path in self.files if path not in scenes]
+        found: list[Motion | Tracks] = list(self.motions)
+        for index, path in enumerate(others):
+            ends = (each / len(self.files) for each in (index, index + 1))
+            found.append(read_motion_or_tracks(path, progress=within(progress, *ends)))
+        if scenes and self.blender is not None:
+            rest = within(progress, len(others) / len(self.files), 1.0)
+            for file in read_blends(self.blender, scenes, progress=rest):
+                if not file.clips:
+                    raise InvalidFileError(" ".join(file.refused))
+                found += [clip.motion for clip in file.clips]
+        return found
 
     def learned(self, body: Motion | Tracks, limits: bool, progress: Progress) -> Learned:
         """Learn from the examples, or load what was learned."""
@@ -73,10 +93,10 @@ class ExampleSource:
             return Learned(found.bases, None, found.message)
         if self.bases_file:
             return Learned(load_filter_bases(self.bases_file), None)
-        clips = [*self.motions, *map(read_motion_or_tracks, self.files)]
+        clips = self.read(within(progress, 0.0, 0.5))
         if not clips:
             return Learned(None, None)
-        bases = learn_filter_bases(clips, progress=within(progress, 0.0, 0.9))
+        bases = learn_filter_bases(clips, progress=within(progress, 0.5, 0.9))
         bodies = [clip for clip in clips if isinstance(clip, Motion)]
         return Learned(bases, learn_joint_limits(bodies) if limits else None)
 

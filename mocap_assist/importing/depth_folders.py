@@ -11,9 +11,10 @@ from ...solvers.recordings import (
     depth_takes_in,
     detect_depth_format,
     is_depth_folder,
-    recordings_in,
+    is_scene_file,
+    may_contain_motion,
 )
-from ...solvers.recordings.containers import is_folder
+from ...solvers.recordings.containers import files_below, is_folder
 from ..depth.exr_folder import as_archive, exr_files, size_of
 from ..scene.scene_rate import scene_rate
 from .button_settings import ImportChoices
@@ -43,9 +44,13 @@ def depth_recordings_in(folder: Path) -> list[Path]:
 
 
 def all_recordings_in(folder: Path) -> list[Path]:
-    """Return the motion and depth recordings in a folder and below, by name."""
+    """Return all recordings in a folder and below, by name: motion, depth, FBX, glTF, USD."""
     takes = depth_recordings_in(folder)
-    others = [path for path in recordings_in(folder) if not {*path.parents} & {*takes}]
+    others = [
+        path
+        for path in files_below(folder)
+        if (may_contain_motion(path) or is_scene_file(path)) and not {*path.parents} & {*takes}
+    ]
     return sorted({*takes, *others})
 
 

@@ -19,7 +19,7 @@ from ...solvers.reconstruction import (
     load_posture_library,
     load_residual_prior,
 )
-from ...solvers.recordings import read_motion_or_tracks, read_tracked
+from ...solvers.recordings import read_tracked
 from ...solvers.workflows import (
     RebuiltMotion,
     plant_feet_if_possible,
@@ -91,7 +91,7 @@ def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> Rebuilt
         matches = problem.library.postures(problem.body, sharing)
         postures, message = matches.postures, matches.message
     elif problem.examples is not None:
-        clips = [*problem.examples.motions, *map(read_motion_or_tracks, problem.examples.files)]
+        clips = problem.examples.read()
         postures = posture_library_from_clips(clips, progress=sharing)
     rebuilt = reconstruct_motion(
         problem.body,

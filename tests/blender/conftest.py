@@ -42,6 +42,7 @@ IN_ONE_BLENDER = {
     "importing/test_failing_readers.py": (5, 2),
     "importing/test_joint_recordings.py": (5, 2),
     "importing/test_make_skeleton.py": (5, 2),
+    "importing/test_scene_files_in_batches.py": (4, 5),
     "importing/test_several_bodies.py": (5, 2),
     "importing/test_import_to_retarget.py": (4, 5),
     "importing/test_units.py": (5, 2),

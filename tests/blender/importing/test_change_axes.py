@@ -147,5 +147,6 @@ def test_only_what_fits_is_shown(recordings, load):
     walk = "mocap/cmu_walk/07_01.bvh"
     assert of(walk) == ["unit", "up", "rotate_mode"]
     assert of("formats/trc/walk_free_01.trc") == ["unit", "up"]
+    assert of("corpus/fbx/mixamo_web/Idle.fbx") == ["unit", "up", "rotate_mode"]
     assert of("corpus/fbx/mixamo_web/Idle.fbx", walk) == ["unit", "up", "rotate_mode"]
     assert kinds.fitting(names, []) == list(names)
