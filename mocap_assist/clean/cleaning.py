@@ -22,10 +22,11 @@ from ..runtime.selection import Bones, chosen_parts
 from ..runtime.subject import Subject, check_unchanged
 from .armature import ArmatureReading
 from .button_settings import CleanBundle, CleanChoices, Limits, Prior
+from .example_source import ExampleSource
 from .examples import read_prior
 from .markers import MarkerReading
 from .report import clean_report, entry_of
-from .solve_cleaning import Cleaned, ExampleSource, Finish, Problem, Recordings, clean, names_of
+from .solve_cleaning import Cleaned, Finish, Problem, Recordings, clean, names_of
 
 MIN_OBSERVED_CONFIDENCE = 0.5
 """Confidence below which a key counts as generated. By definition of the confidence, at least

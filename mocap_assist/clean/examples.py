@@ -18,7 +18,7 @@ from ..library.sources import background_blender
 from ..runtime.subject import Subject
 from ..scene.linked_clips import Linked, is_blend, linked_clips
 from .button_settings import CleanChoices, Prior
-from .solve_cleaning import ExampleSource
+from .example_source import ExampleSource
 
 LINKED_AT_ONCE = 8
 """Actions that are linked from another file at once. It bounds the time in which Blender does

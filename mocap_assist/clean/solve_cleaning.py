@@ -6,7 +6,6 @@ what it returns is kept, so that the redo panel has only `finish` to repeat.
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,20 +14,15 @@ from ...solvers.arrays import Array
 from ...solvers.denoising import (
     Denoised,
     DenoiseSettings,
-    FilterBases,
     Planted,
     PlantSettings,
     Quality,
     clamp_to_limits,
     denoise,
-    learn_filter_bases,
-    learn_joint_limits,
-    load_filter_bases,
     measure_quality,
     plant_feet,
 )
 from ...solvers.denoising.feet import find_legs
-from ...solvers.errors import InvalidFileError
 from ...solvers.markers import Swap, unswap_markers
 from ...solvers.motion import (
     JointLimits,
@@ -39,66 +33,13 @@ from ...solvers.motion import (
     find_humanoid_map,
 )
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.recordings import is_scene_file, read_motion_or_tracks
 from ...solvers.rotations import angle_between, slerp
-from ..jobs.in_blender import BackgroundBlender, read_blends
-from ..library.solve_prior import LibraryPrior
+from .example_source import ExampleSource
 
 Recordings = tuple[Motion | Tracks, ...]
 
 MIN_CHANGE = 1e-6
 """Radians or meters that are only rounding: planting has not changed such joints."""
-
-
-class Learned(NamedTuple):
-    """Patterns and limits learned from examples."""
-
-    bases: FilterBases | None
-    limits: JointLimits | None
-    message: str = ""
-    """Source of the prior, if it differs from the setting."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class ExampleSource:
-    """Source of clean motion to learn from; by default the take itself."""
-
-    motions: tuple[Motion, ...] = ()
-    files: tuple[str, ...] = ()
-    """Recordings, and files that the background Blender reads."""
-    bases_file: str = ""
-    library: LibraryPrior | None = None
-    blender: BackgroundBlender | None = None
-
-    def read(self, progress: Progress = unwatched) -> list[Motion | Tracks]:
-        """Return the motions and what is in the files; raise InvalidFileError on failure."""
-        scenes = [path for path in self.files if is_scene_file(path)]
-        others = [path for path in self.files if path not in scenes]
-        found: list[Motion | Tracks] = list(self.motions)
-        for index, path in enumerate(others):
-            ends = (each / len(self.files) for each in (index, index + 1))
-            found.append(read_motion_or_tracks(path, progress=within(progress, *ends)))
-        if scenes and self.blender is not None:
-            rest = within(progress, len(others) / len(self.files), 1.0)
-            for file in read_blends(self.blender, scenes, progress=rest):
-                if not file.clips:
-                    raise InvalidFileError(" ".join(file.refused))
-                found += [clip.motion for clip in file.clips]
-        return found
-
-    def learned(self, body: Motion | Tracks, limits: bool, progress: Progress) -> Learned:
-        """Learn from the examples, or load what was learned."""
-        if self.library is not None:
-            found = self.library.bases(body, progress)
-            return Learned(found.bases, None, found.message)
-        if self.bases_file:
-            return Learned(load_filter_bases(self.bases_file), None)
-        clips = self.read(within(progress, 0.0, 0.5))
-        if not clips:
-            return Learned(None, None)
-        bases = learn_filter_bases(clips, progress=within(progress, 0.5, 0.9))
-        bodies = [clip for clip in clips if isinstance(clip, Motion)]
-        return Learned(bases, learn_joint_limits(bodies) if limits else None)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -2,7 +2,7 @@
 
 from ...solvers.denoising import FilterBases, FilterBasesSettings, learn_filter_bases
 from ...solvers.progress import Progress, unwatched, within
-from .solve_cleaning import ExampleSource
+from .example_source import ExampleSource
 
 
 def learn(

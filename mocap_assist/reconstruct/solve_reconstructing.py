@@ -26,7 +26,8 @@ from ...solvers.workflows import (
     posture_library_from_clips,
     reconstruct_motion,
 )
-from ..clean.solve_cleaning import ExampleSource, toward
+from ..clean.example_source import ExampleSource
+from ..clean.solve_cleaning import toward
 from ..library.solve_prior import LibraryPrior
 
 
