@@ -33,6 +33,7 @@ from .names import roles_by_name
 from .points_motion import motion_from_points
 from .points_skeleton import skeleton_from_points
 from .posture_heading import (
+    HALF_LATERAL_JOINTS,
     LATERAL_JOINTS,
     NormalizedPostures,
     mirror_postures,
@@ -70,6 +71,7 @@ __all__ = [
     "CHEST",
     "ESSENTIAL_ROLES",
     "FORWARD",
+    "HALF_LATERAL_JOINTS",
     "HIPS",
     "HUMANOID_ROLES",
     "HUMAN_LEG_LENGTH_M",

@@ -1,5 +1,6 @@
 """Normalize the position and heading of postures [SHJT13, section V-A]."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,12 +11,21 @@ from ...signals import fill_gaps, smooth_gaussian
 from .posture_joints import HIPS, MIRROR_JOINTS, POSTURE_JOINTS
 
 LATERAL_JOINTS = tuple(
-    tuple(
-        POSTURE_JOINTS.index(name) for name in (f"left{half_line}", f"right{half_line}", middle)
-    )
-    for half_line, middle in (("UpperLeg", "hips"), ("UpperArm", "chest"))
+    (POSTURE_JOINTS.index(f"left{part}"), POSTURE_JOINTS.index(f"right{part}"))
+    for part in ("UpperLeg", "UpperArm")
 )
-"""Left and right joints of hips and shoulders, and the joint between them if one is missing."""
+"""Left and right joint of hips and of shoulders."""
+HALF_LATERAL_JOINTS = tuple(
+    (POSTURE_JOINTS.index(left), POSTURE_JOINTS.index(right))
+    for left, right in (
+        ("leftUpperLeg", "hips"),
+        ("hips", "rightUpperLeg"),
+        ("leftUpperArm", "chest"),
+        ("chest", "rightUpperArm"),
+    )
+)
+"""The same with the joint between them, for frames with no pair of left and right joint. They
+are less parallel to the heading: a chest is not in the middle of its shoulders."""
 HEADING_SMOOTHING_S = 0.1
 """Standard deviation of the Gaussian that smooths the heading. It guards hips and shoulders
 with jitter, which would rotate the complete body."""
@@ -75,14 +85,11 @@ def normalize_postures(
     hip_positions = np.nan_to_num(
         fill_gaps(positions[:, HIPS], reliability[:, HIPS] > 0.0, ahead=ahead)
     )
-    lateral = np.zeros((len(positions), 2))
-    for left_joint, right_joint, middle in LATERAL_JOINTS:
-        line, weight = _lateral_line(positions, reliability, left_joint, right_joint)
-        for half in ((left_joint, middle), (middle, right_joint)):
-            half_line, half_weight = _lateral_line(positions, reliability, *half)
-            missing = ~np.isfinite(line[:, 0])
-            line[missing], weight[missing] = 2.0 * half_line[missing], half_weight[missing]
-        lateral += np.where(np.isfinite(line), line, 0.0) * (1e-3 + weight[:, None])
+    lateral = _lateral_lines(positions, reliability, LATERAL_JOINTS)
+    missing = ~lateral.any(axis=1)
+    lateral[missing] = _lateral_lines(
+        positions[missing], reliability[missing], HALF_LATERAL_JOINTS
+    )
     determined = np.linalg.norm(lateral, axis=-1) > MIN_LATERAL_M * 1e-3
     if not determined.any():
         lateral[:], determined = (1.0, 0.0), np.ones(len(lateral), bool)
@@ -99,12 +106,19 @@ def normalize_postures(
     )
 
 
-def _lateral_line(
-    positions: Array, reliability: Array, lateral: int, right: int
-) -> tuple[Array, Array]:
-    """Return the horizontal line from right to left joint, and its reliability."""
-    line = (positions[:, lateral] - positions[:, right])[:, :2]
-    return line, np.minimum(reliability[:, lateral], reliability[:, right])
+def _lateral_lines(
+    positions: Array, reliability: Array, pairs: Sequence[tuple[int, int]]
+) -> Array:
+    """Return the sum of the horizontal lines from right to left joint, (n_frames, 2).
+
+    Each is weighted by its reliability; missing ones are zero.
+    """
+    total = np.zeros((len(positions), 2))
+    for left, right in pairs:
+        line = (positions[:, left] - positions[:, right])[:, :2]
+        weight = np.minimum(reliability[:, left], reliability[:, right])
+        total += np.where(np.isfinite(line), line, 0.0) * (1e-3 + weight[:, None])
+    return total
 
 
 def _is_reversed(unit: Array, frame_rate: float) -> NDArray[np.bool_]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...motion.humanoid import (
     ADULT_BONE_LENGTHS_M,
+    HALF_LATERAL_JOINTS,
     LATERAL_JOINTS,
     N_JOINTS,
     PARENTS,
@@ -132,7 +133,8 @@ class PostureDistribution:
 def _observes_heading(postures: ClipPostures) -> bool:
     """Whether hips or shoulders were observed in any frame, so that the heading is known."""
     observed = np.isfinite(postures.positions).all(axis=-1)
-    return any((observed[:, list(joints)].sum(axis=1) >= 2).any() for joints in LATERAL_JOINTS)
+    pairs = (*LATERAL_JOINTS, *HALF_LATERAL_JOINTS)
+    return any(observed[:, list(pair)].all(axis=1).any() for pair in pairs)
 
 
 def _correct_proportions(positions: Array, observed: NDArray[np.bool_]) -> Array:
