@@ -4,7 +4,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import logsumexp
 
 from ...arrays import Array
 from ..motion_model import N_CHANNELS, MotionMixture
@@ -77,15 +76,16 @@ class PredictiveDensity:
         channels = tuple(np.flatnonzero(tested)) if is_single else tuple(range(N_CHANNELS))
         others = self._log_marginals(frames, channels, everything & ~inside)
         both = self._log_marginals(frames, channels, everything)
-        continued = logsumexp(both) - logsumexp(others)
+        log_others = _log_sum(others)
+        continued = _log_sum(both) - log_others
         # The run may be of another kind of movement than the frames around it.
         log_weights = np.log(self._mixture.weights)
-        begun = np.log(NEW_MOVEMENT_RATE) + logsumexp(log_weights + both - others)
+        begun = np.log(NEW_MOVEMENT_RATE) + _log_sum(log_weights + both - others)
         as_movement = float(np.logaddexp(continued, begun))
         if is_single:
             return as_movement, -np.inf
         with_offset = self._log_marginals(frames, channels, everything, inside)
-        return as_movement, float(logsumexp(with_offset) - logsumexp(others))
+        return as_movement, _log_sum(with_offset) - log_others
 
     def _log_marginals(
         self,
@@ -98,30 +98,40 @@ class PredictiveDensity:
 
         With `offset`, each channel is off by an unknown constant in these frames.
         """
-        n, constant = self._basis.shape[1], 0.0
-        precision, log_weights = _inverse_covariances(self._mixture, channels)
+        n, log_scale = self._basis.shape[1], 0.0
+        inverses, log_weights = _inverse_covariances(self._mixture, channels)
         size = n * len(channels)
         total = size + (0 if offset is None else len(channels))
-        precision = np.pad(precision, ((0, 0), (0, total - size), (0, total - size)))
-        projected = np.zeros(total)
+        # Besides the precision matrix: the projected values, and more than their square can be.
+        added = np.zeros((total + 1, total + 1))
+        added[total, total] = 1.0
         for index, channel in enumerate(channels):
             rows, variance = observed[:, channel], self._noise[channel] ** 2
             basis, values = self._basis[rows], self._samples[frames, channel][rows]
-            indices = np.arange(index * n, (index + 1) * n)
+            block = slice(index * n, (index + 1) * n)
+            added[block, block] = basis.T @ basis / variance
+            added[total, block] = basis.T @ values / variance
             if offset is not None:
-                basis = np.column_stack([basis, offset[rows, channel]])
-                indices = np.append(indices, size + index)
-                precision[:, indices[-1], indices[-1]] += OFFSET_DEVIATION**-2
-                constant += np.log(OFFSET_DEVIATION**2)
-            precision[:, indices[:, None], indices] += basis.T @ basis / variance
-            projected[indices] = basis.T @ values / variance
-            constant += values @ values / variance + len(values) * np.log(2 * np.pi * variance)
-        factors = np.linalg.cholesky(precision)
-        repeated = np.broadcast_to(projected[:, None], (*precision.shape[:2], 1))
-        whitened = np.linalg.solve(factors, repeated)[..., 0]
-        diagonals = np.einsum("kss->ks", factors)
-        exponents = 0.5 * (whitened**2).sum(axis=1) - np.log(diagonals).sum(axis=1)
+                own, is_off = size + index, offset[rows, channel]
+                added[own, block] = is_off @ basis / variance
+                added[own, own] = OFFSET_DEVIATION**-2 + is_off.sum() / variance
+                added[total, own] = is_off @ values / variance
+                log_scale += np.log(OFFSET_DEVIATION**2)
+            added[total, total] += values @ values / variance
+            log_scale += len(values) * np.log(2.0 * np.pi * variance)
+        factored = np.repeat(added[None], len(inverses), axis=0)
+        factored[:, :size, :size] += inverses
+        factors = np.linalg.cholesky(factored)  # of the lower triangles
+        whitened, diagonals = factors[:, total, :total], np.einsum("kss->ks", factors)
+        exponents = 0.5 * np.einsum("ks,ks->k", whitened, whitened)
+        exponents -= np.log(diagonals[:, :total]).sum(axis=1)
+        constant = log_scale + added[total, total] - 1.0
         return np.asarray(log_weights + exponents - 0.5 * constant)
+
+
+def _log_sum(log_densities: Array) -> float:
+    """Return the logarithm of the sum of densities."""
+    return float(np.logaddexp.reduce(log_densities))
 
 
 @lru_cache(maxsize=16)
