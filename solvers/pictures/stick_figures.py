@@ -18,6 +18,7 @@ from ..motion import (
 )
 from ..rotations import rotate
 from ..settings import Choice, Settings, setting
+from .body_parts import head_bone, left_joints
 from .canvas import FAINT, INK, Canvas, Color, lighten_color, series_colors
 from .picture import Picture
 
@@ -28,10 +29,7 @@ MIN_WIDTH = 0.35
 """Minimum width of the cell of one figure, as a fraction of its height."""
 MAX_EXTENT = 1.3
 """Maximum extent of a figure to either side and upwards, in statures."""
-MIN_SIDE_OFFSET = 0.02
-"""Joints farther than this fraction of the stature from the median plane belong to a side."""
-MIN_BODY_JOINTS = 15
-"""A skeleton with at least as many joints counts as a body, and gets a head."""
+SIDES = ("left", "right")
 AVERAGING_S = 0.5
 """Seconds over which the heading of the figure is averaged."""
 
@@ -74,8 +72,7 @@ class _Figure(NamedTuple):
     is_left: NDArray[np.bool_]
     stature: float
     head: tuple[int, int] | None
-    """The highest joint of the rest pose, and its parent, of a skeleton that counts as a
-    body."""
+    """Both ends of the head."""
 
 
 def draw_stick_figures(
@@ -185,17 +182,17 @@ def _figure(recording: Recording, frame_indices: NDArray[np.intp]) -> _Figure:
         sides = np.zeros(recording.n_points, dtype=np.bool_)
         return _Figure(points, (), sides, _height_of_points(recording), None)
     skeleton = recording.skeleton
-    top = int(np.argmax(skeleton.rest_positions[:, 2]))
     shown_poses = recording.with_poses(
         recording.rotations[frame_indices], recording.root_positions[frame_indices]
     )
-    stature = skeleton.extent
+    roles = find_humanoid_map(skeleton).indices(skeleton)
+    above_hips = {roles.get("hips", 0), *skeleton.ancestors(roles.get("hips", 0))}
     return _Figure(
         forward_kinematics(shown_poses).positions,
-        _bones(skeleton.parents),
-        skeleton.rest_positions[:, 0] > MIN_SIDE_OFFSET * stature,
-        stature,
-        (top, skeleton.parents[top]) if skeleton.n_joints >= MIN_BODY_JOINTS else None,
+        tuple(bone for bone in _bones(skeleton.parents) if bone[0] not in above_hips),
+        left_joints(skeleton, roles),
+        skeleton.extent,
+        head_bone(skeleton, roles),
     )
 
 
@@ -232,8 +229,12 @@ def _position_and_facing(recording: Recording) -> tuple[Array, Array]:
         position, _ = _position_and_facing(recording.tracks)
         return position, np.tile((0.0, -1.0), (len(position), 1))
     if isinstance(recording, Motion):
-        hips = find_humanoid_map(recording.skeleton).indices(recording.skeleton).get("hips", 0)
-        poses = forward_kinematics(recording)
+        roles = find_humanoid_map(recording.skeleton).indices(recording.skeleton)
+        hips, poses = roles.get("hips", 0), forward_kinematics(recording)
+        if {"leftUpperLeg", "rightUpperLeg"} <= roles.keys():
+            left, right = (poses.positions[:, roles[f"{side}UpperLeg"]] for side in SIDES)
+            lateral = left - right
+            return poses.positions[:, hips], np.stack([lateral[:, 1], -lateral[:, 0]], axis=1)
         facing = rotate(poses.rotations[:, hips], [0.0, -1.0, 0.0])
         return poses.positions[:, hips], facing[:, :2]
     visible = recording.visible[..., None]
