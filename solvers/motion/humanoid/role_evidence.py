@@ -41,6 +41,7 @@ class Reason(Enum):
     TRUNK = "by name; the structure counts the spine differently", 0.9  # 0.999, 1.000
     STRUCTURE = "by structure only: name unknown", 0.8  # 0.963, 0.990
     TREE_DECIDES = "names disagree with the tree: structure decides", 0.7  # 0.999, 0.991
+    SIDE_GUESSED = "by structure only, and nothing shows which side is left", 0.45  # .5 by chance
     UNCLEAR = "by structure only, but the proportions are hardly human", 0.35  # 0.375, 0.779
     CONTRADICTED = "by name, but the structure suggests {other}", 0.03  # 1.000, 0.030
     FAULT = "by name, but {fault}", 0.4  # 0.998, 0.881
@@ -97,6 +98,7 @@ def explain_roles(skeleton: Skeleton, humanoid: HumanoidMap) -> dict[str, RoleEv
             may_contradict=role in contradicted,
             counts_differ=role in TRUNK,
             is_human=structure.humanness >= MIN_HUMANNESS,
+            guesses_side=structure.guesses_sides and role.startswith(("left", "right")),
         )
         for role, joint in joints.items()
     }
@@ -125,6 +127,7 @@ def _evidence(
     may_contradict: bool,
     counts_differ: bool,
     is_human: bool,
+    guesses_side: bool,
 ) -> RoleEvidence:
     if is_named:
         if fault:
@@ -140,6 +143,8 @@ def _evidence(
         return _because(Reason.NEITHER)
     if not is_human:
         return _because(Reason.UNCLEAR)
+    if guesses_side:
+        return _because(Reason.SIDE_GUESSED)
     return _because(Reason.TREE_DECIDES if has_other_name else Reason.STRUCTURE)
 
 

@@ -61,6 +61,8 @@ class Structure(NamedTuple):
     """Similarity of the proportions to those of a person, 0 to 1."""
     height: float
     """Of the person whose bones are as long, in meters; 0 without two legs."""
+    guesses_sides: bool = False
+    """Whether neither names nor toes show which side is left."""
 
 
 class _BestLimbs(NamedTuple):
@@ -94,12 +96,14 @@ def roles_by_structure(skeleton: Skeleton) -> Structure:
         (_match(skeleton, each.legs, each.arms, HEIGHT_FACTORS) for each in rough[:N_REFINED]),
         key=lambda match: match.misfit,
     )
-    roles = _LimbedSkeleton(skeleton, match).roles()
+    limbed = _LimbedSkeleton(skeleton, match)
+    roles = limbed.roles()
     n_others = _count_other_limbs(skeleton, match, pairs)
     return Structure(
         {role: skeleton.names[joint] for role, joint in roles.items()},
         float(np.exp(-match.misfit)) / (1 + n_others),
         match.height,
+        limbed.forward is None and not any(limbed.sides),
     )
 
 
@@ -208,21 +212,23 @@ class _LimbedSkeleton:
             first_role.setdefault(joint, role)
         return {role: joint for joint, role in first_role.items()}
 
-    def _directions(self) -> tuple[Array, Array]:
-        """Return up and forward in the rest pose; +Z and -Y where it does not show them."""
-        up, forward = np.array([0.0, 0.0, 1.0]), np.array([0.0, -1.0, 0.0])
+    def _directions(self) -> tuple[Array, Array | None]:
+        """Return up and forward in the rest pose; +Z and None where it does not show them."""
+        up = np.array([0.0, 0.0, 1.0])
         legs, height = self.match.legs, self.match.height
         if _is_folded(self.skeleton, legs, height) or not all(self.legs):
-            return up, forward
+            return up, None
         ankles = self.positions[[leg[-1] for leg in self.legs]].mean(axis=0)
         toes = self.positions[[leg[-1] for leg in legs.limbs]].mean(axis=0) - ankles
         trunk = self.positions[legs.branch] - ankles
         if np.linalg.norm(trunk) > MIN_SPREAD_FRACTION * height:
             up = trunk / np.linalg.norm(trunk)
         toes -= (toes @ up) * up
-        if np.linalg.norm(toes) > MIN_SPREAD_FRACTION * height:
-            forward = toes / np.linalg.norm(toes)
-        return up, forward
+        shows_forward = np.linalg.norm(toes) > MIN_SPREAD_FRACTION * height
+        return up, toes / np.linalg.norm(toes) if shows_forward else None
+
+    def _assumed_forward(self) -> Array:
+        return np.array([0.0, -1.0, 0.0]) if self.forward is None else self.forward
 
     def _hips(self) -> int:
         """Return the lowest joint above legs and arms."""
@@ -242,14 +248,14 @@ class _LimbedSkeleton:
             for limb in limbs.limbs
         )
         if first == second or first * second > 0:
-            left = np.cross(self.up, self.forward)
+            left = np.cross(self.up, self._assumed_forward())
             first, second = (self.positions[limb].mean(axis=0) @ left for limb in limbs.limbs)
         return {"left": 0, "right": 1} if first >= second else {"left": 1, "right": 0}
 
     def _toes(self, foot: int) -> int | None:
         """Return the foremost child of the foot, if it is in front of the ankle."""
         children = without_end_sites(self.skeleton, self.skeleton.children[foot])
-        ahead = (self.positions - self.positions[foot]) @ self.forward
+        ahead = (self.positions - self.positions[foot]) @ self._assumed_forward()
         front = max(children, key=lambda joint: ahead[joint], default=foot)
         return front if ahead[front] > 0.0 else None
 

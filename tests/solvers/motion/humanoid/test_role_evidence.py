@@ -85,3 +85,24 @@ def test_a_skeleton_without_a_body_has_no_evidence():
     stick = Skeleton(("a",), (-1,), [[0.0, 0.0, 0.0]])
 
     assert explain_roles(stick, HumanoidMap({})) == {}
+
+
+def test_guessed_sides_are_marked():
+    """Without names and toes, a rest pose does not show which way it faces."""
+    with_toes = skeleton_from(joints_of("Mixamo"))
+    below_feet = {
+        joint
+        for joint in range(with_toes.n_joints)
+        if any(with_toes.names[each].endswith("Foot") for each in with_toes.ancestors(joint))
+    }
+    kept = [joint for joint in range(with_toes.n_joints) if joint not in below_feet]
+    found = []
+    for skeleton in (with_toes, with_toes.select(kept)):
+        names = tuple(f"joint{number}" for number in range(skeleton.n_joints))
+        nameless = replace(skeleton, names=names)
+        found.append(explain_roles(nameless, find_humanoid_map(nameless)))
+
+    assert not any(each.reason is Reason.SIDE_GUESSED for each in found[0].values())
+    assert found[1]["leftLowerLeg"].reason is Reason.SIDE_GUESSED
+    assert found[1]["leftLowerLeg"].has_low_confidence
+    assert found[1]["hips"].reason is Reason.STRUCTURE
