@@ -41,7 +41,7 @@ class Reason(Enum):
     TRUNK = "by name; the structure counts the spine differently", 0.9  # 0.999, 1.000
     STRUCTURE = "by structure only: name unknown", 0.8  # 0.963, 0.990
     TREE_DECIDES = "names disagree with the tree: structure decides", 0.7  # 0.999, 0.991
-    SIDE_GUESSED = "by structure only, and nothing shows which side is left", 0.45  # .5 by chance
+    SIDE_GUESSED = "by structure only, and the side is a guess", 0.45  # 0.5 by chance
     UNCLEAR = "by structure only, but the proportions are hardly human", 0.35  # 0.375, 0.779
     CONTRADICTED = "by name, but the structure suggests {other}", 0.03  # 1.000, 0.030
     FAULT = "by name, but {fault}", 0.4  # 0.998, 0.881
@@ -141,11 +141,16 @@ def _evidence(
         return _because(Reason.TRUNK if counts_differ else Reason.NAME)
     if by_structure != joint:
         return _because(Reason.NEITHER)
+    return _because(_without_name(has_other_name, is_human, guesses_side))
+
+
+def _without_name(has_other_name: bool, is_human: bool, guesses_side: bool) -> Reason:
+    """Return why the structure decides on a joint that no table names so."""
     if not is_human:
-        return _because(Reason.UNCLEAR)
+        return Reason.UNCLEAR
     if guesses_side:
-        return _because(Reason.SIDE_GUESSED)
-    return _because(Reason.TREE_DECIDES if has_other_name else Reason.STRUCTURE)
+        return Reason.SIDE_GUESSED
+    return Reason.TREE_DECIDES if has_other_name else Reason.STRUCTURE
 
 
 def _because(reason: Reason, **words: str) -> RoleEvidence:
