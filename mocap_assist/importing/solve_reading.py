@@ -166,7 +166,7 @@ def read_takes(
         warnings = (
             *warnings,
             *describe_guesses(first.motion),
-            *describe_lying([first.motion, *(other.motion for other in others)]),
+            *_questions_of_axis([first, *others], conversion),
             *questions_of(first.motion, conversion.floor),
         )
         contents.append(
@@ -182,6 +182,13 @@ def read_takes(
             )
         )
     return contents
+
+
+def _questions_of_axis(takes: Sequence[SkeletonAction], conversion: Conversion) -> list[str]:
+    """Ask about takes of a skeleton that lie, unless Up was set."""
+    if conversion.reading.up.axis:
+        return []
+    return describe_lying([take.motion for take in takes])
 
 
 def _read_bodies(path: Path, conversion: Conversion, progress: Progress) -> list[ReadRecording]:

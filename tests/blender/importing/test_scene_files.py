@@ -63,6 +63,19 @@ def below_node(path, target, **transform):
     target.write_bytes(head + text + rest)
 
 
+@pytest.mark.parametrize(("degrees", "asks"), [(0.0, False), (90.0, True), (180.0, True)])
+def test_a_take_that_never_stands_is_asked_about(load, recordings, tmp_path, degrees, asks):
+    path, half = tmp_path / "take.glb", np.radians(degrees) / 2.0
+    figure = recordings / "corpus/glb/mixamo_blender/walking.glb"
+    below_node(figure, path, rotation=[np.sin(half), 0.0, 0.0, np.cos(half)])
+    reading = load("mocap_assist.importing.solve_reading")
+    blender = load("mocap_assist.library.sources").background_blender("")
+
+    (content,) = reading.read_takes(path, reading.Conversion(blender=blender))
+
+    assert any("lies or is upside down" in each for each in content.warnings) == asks
+
+
 @pytest.mark.parametrize("size", [0.01, 10.0])
 def test_the_body_overrules_a_wrong_unit(load, recordings, tmp_path, size):
     path = tmp_path / "take.glb"
