@@ -33,25 +33,32 @@ class ExampleSource:
     motions: tuple[Motion, ...] = ()
     files: tuple[str, ...] = ()
     """Recordings, and files that the background Blender reads."""
+    found: tuple[str, ...] = ()
+    """The same from folders; those that the background Blender finds without motion are left
+    out."""
     bases_file: str = ""
     library: LibraryPrior | None = None
     blender: BackgroundBlender | None = None
 
     def read(self, progress: Progress = unwatched) -> list[Motion | Tracks]:
         """Return the motions and what is in the files; raise InvalidFileError on failure."""
-        scenes = [path for path in self.files if is_scene_file(path)]
-        others = [path for path in self.files if path not in scenes]
-        found: list[Motion | Tracks] = list(self.motions)
+        paths = (*self.files, *self.found)
+        scenes = [path for path in paths if is_scene_file(path)]
+        others = [path for path in paths if path not in scenes]
+        motions: list[Motion | Tracks] = list(self.motions)
         for index, path in enumerate(others):
-            ends = (each / len(self.files) for each in (index, index + 1))
-            found.append(read_motion_or_tracks(path, progress=within(progress, *ends)))
+            ends = (each / len(paths) for each in (index, index + 1))
+            motions.append(read_motion_or_tracks(path, progress=within(progress, *ends)))
         if scenes and self.blender is not None:
-            rest = within(progress, len(others) / len(self.files), 1.0)
-            for file in read_blends(self.blender, scenes, progress=rest):
-                if not file.clips:
+            rest = within(progress, len(others) / len(paths), 1.0)
+            read = read_blends(self.blender, scenes, progress=rest)
+            for path, file in zip(scenes, read, strict=True):
+                if not file.clips and not (file.is_empty and path in self.found):
                     raise InvalidFileError(" ".join(file.refused))
-                found += [clip.motion for clip in file.clips]
-        return found
+                motions += [clip.motion for clip in file.clips]
+        if paths and not motions:
+            raise InvalidFileError("None of the files in the folder of examples has motion.")
+        return motions
 
     def learned(self, body: Motion | Tracks, limits: bool, progress: Progress) -> Learned:
         """Learn from the examples, or load what was learned."""

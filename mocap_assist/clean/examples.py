@@ -68,29 +68,32 @@ def read_examples(
         motion = yield from _read_named(*here.find(), name)
         motions.append(motion)
     for path in filter(is_blend, map(Path, files)):
-        found = yield from _read_blend(here, path)
-        motions += found
-    recordings = list[str]()
+        played = yield from _read_blend(here, path)
+        motions += played
+    recordings, found = list[str](), list[str]()
     for path in files:
-        if not is_blend(Path(path)):
-            inside = yield from _recordings_of(Path(path))
-            recordings += map(str, inside)
+        if Path(path).is_dir():
+            inside = yield from _recordings_in(Path(path))
+            found += map(str, inside)
+        elif not is_blend(Path(path)):
+            recordings.append(path)
     return ExampleSource(
-        motions=tuple(motions), files=tuple(recordings), blender=background_blender("")
+        motions=tuple(motions),
+        files=tuple(recordings),
+        found=tuple(found),
+        blender=background_blender(""),
     )
 
 
-def _recordings_of(path: Path) -> Steps[list[Path]]:
-    """Return a file, or all recordings in a folder and below."""
-    if not path.is_dir():
-        return [path]
+def _recordings_in(folder: Path) -> Steps[list[Path]]:
+    """Return all recordings in a folder and below."""
     found = []
-    for each in files_below(path):
+    for each in files_below(folder):
         if should_yield():
             yield 0.0
         found += [each] if may_contain_motion(each) or is_scene_file(each) else []
     if not found:
-        raise InvalidMotionError(f"The folder {path} has no recordings.")
+        raise InvalidMotionError(f"The folder {folder} has no recordings.")
     return found
 
 

@@ -1,6 +1,8 @@
 """Read BVH files, the common format of capture software and clip libraries."""
 
+from dataclasses import replace
 from decimal import Decimal, InvalidOperation
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +18,9 @@ from ..conventions import (
     check_scale,
     conventions_of,
     observed_body,
+    reinterpreted,
+    rotate_to_z_up,
+    stand_upright,
 )
 from .bvh_channels import BvhChannels, motion_from_poses
 from .bvh_hierarchy import read_hierarchies
@@ -121,19 +126,31 @@ def _read_bodies(
     ends = np.cumsum(widths)
     columns = np.split(rows, ends[:-1], axis=1)
     del rows
+    parts = pairwise(np.linspace(0.7, 1.0, len(bodies) + 1))
     poses = [
-        BvhChannels(joints, columns.pop(0)).poses(within(progress, 0.7, 1.0))
-        for joints in bodies
+        BvhChannels(joints, columns.pop(0)).poses(within(progress, *ends))
+        for joints, ends in zip(bodies, parts, strict=True)
     ]
     main = max(range(len(bodies)), key=lambda body: len(bodies[body]))
-    first = motion_from_poses(bodies[main], poses[main], frame_rate, scale, up, progress)
-    unit, axis = conventions_of(first).unit, conventions_of(first).up  # of props as well
+    first = motion_from_poses(bodies[main], poses[main], frame_rate, scale, progress)
+    unit = conventions_of(first).unit
+    first = stand_upright(first, progress) if up is None else reinterpreted(first, up, None)
     return [
         first
         if body == main
-        else motion_from_poses(joints, poses[body], frame_rate, unit, axis, progress)
+        else _turn_like(
+            first, motion_from_poses(joints, poses[body], frame_rate, unit, progress)
+        )
         for body, joints in enumerate(bodies)
     ]
+
+
+def _turn_like(first: Motion, motion: Motion) -> Motion:
+    """Turn another body of a file, read with Y up, as the first one was turned."""
+    axes = conventions_of(first)
+    turned = rotate_to_z_up(motion, axes.up, axes.rest_up or axes.up)
+    added = conventions_of(motion).offset_added
+    return replace(turned, conventions=replace(axes, offset_added=added))
 
 
 def _hierarchy(reader: LineReader, path: Path | str) -> bytes:

@@ -14,15 +14,12 @@ from ...rotations import inverse, multiply, quaternion_from_euler, rotate, rotat
 from ..conventions import (
     CENTIMETER,
     PLAUSIBLE_REACH_M,
-    UpAxisName,
     describe_guessed_unit,
     file_conventions,
     guess_unit,
     longest_bone_path,
     offsets_of_body,
-    reinterpreted,
     rotations_z_up_from_y_up,
-    stand_upright,
     z_up_from_y_up,
 )
 from .bvh_hierarchy import BvhJoint
@@ -200,10 +197,9 @@ def motion_from_poses(
     poses: BvhPoses,
     frame_rate: float,
     scale: float | None,
-    up: UpAxisName | None,
     progress: Progress,
 ) -> Motion:
-    """Return the motion in meters, Z up, as `read_bvh` describes it."""
+    """Return the motion in meters as `read_bvh` describes it, with Y of the file up."""
     parents = tuple(joint.parent for joint in joints)
     names = tuple(joint.name for joint in joints)
     skeleton = Skeleton(names, parents, z_up_from_y_up(poses.offsets))
@@ -215,10 +211,7 @@ def motion_from_poses(
             progress(1.0, Remark(describe_guessed_unit(scale)))
     skeleton = replace(skeleton, offsets=scale * skeleton.offsets)
     noted = replace(file_conventions("Y", unit=scale), offset_added=poses.offset_added)
-    motion = Motion(skeleton, poses.rotations, scale * poses.root, frame_rate, noted)
-    if up is not None:
-        return reinterpreted(motion, up, None)
-    return stand_upright(motion, progress)
+    return Motion(skeleton, poses.rotations, scale * poses.root, frame_rate, noted)
 
 
 def _median_position(positions: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -16,6 +16,7 @@ from ..conventions import (
     DEFAULT_FRAME_RATE,
     Bodies,
     check_scale,
+    common_rate,
     file_conventions,
     observed_body,
     rotations_z_up_from_y_up,
@@ -114,24 +115,40 @@ def open_kimodo(
     check_scale(scale)
     samples = split_people(read_archive_members(path, MEMBERS), {MEMBERS[0]: ()})
     unit = 1.0 if scale is None else scale
-    motions = [_motion(path, sample, unit, progress) for sample in samples]
     listed = tuple(
-        observed_body(str(number), np.arange(n), n, n / each.frame_rate)
-        for number, each in enumerate(motions, start=1)
-        if (n := each.n_frames) and len(motions) > 1
+        observed_body(str(number), np.arange(n := _n_frames(path, each)), n, n / _rate(each))
+        for number, each in enumerate(samples, start=1)
+        if len(samples) > 1
     )
-    return Bodies(str(path), listed, lambda index, progress: motions[index])
+    return Bodies(
+        str(path), listed, lambda index, progress: _motion(path, samples[index], unit, progress)
+    )
+
+
+def _n_frames(path: Path | str, arrays: Mapping[str, Array]) -> int:
+    """Return the number of frames of one sample."""
+    joints, matrices = (arrays.get(name) for name in MEMBERS[:2])
+    if joints is None or matrices is None or joints.ndim != 3 or not len(joints):
+        raise InvalidFileError(
+            f"{path} has no posed_joints and global_rot_mats. Save both from Kimodo."
+        )
+    return len(joints)
+
+
+def _rate(arrays: Mapping[str, Array]) -> float:
+    """Return the frame rate in hertz."""
+    rate = arrays.get("fps")
+    if rate is None or rate.size != 1:
+        return DEFAULT_FRAME_RATE
+    return common_rate(float(rate.ravel()[0]))
 
 
 def _motion(
     path: Path | str, arrays: Mapping[str, Array], unit: float, progress: Progress
 ) -> Motion:
     """Return the motion of one sample."""
-    joints, matrices = (arrays.get(name) for name in MEMBERS[:2])
-    if joints is None or matrices is None or joints.ndim != 3 or not len(joints):
-        raise InvalidFileError(
-            f"{path} has no posed_joints and global_rot_mats. Save both from Kimodo."
-        )
+    _n_frames(path, arrays)
+    joints, matrices = (arrays[name] for name in MEMBERS[:2])
     tree = TREES.get(joints.shape[1])
     if tree is None or joints.shape[2] != 3 or matrices.shape != (*joints.shape, 3):
         raise InvalidFileError(
@@ -147,8 +164,7 @@ def _motion(
         )
     rotations = np.full((*joints.shape[:2], 4), np.nan)
     rotations[finite] = quaternion_from_matrix(matrices[finite])
-    rate = arrays.get("fps")
-    if rate is None:
+    if "fps" not in arrays:
         progress(
             0.5, Remark(f"The file has no frame rate; {DEFAULT_FRAME_RATE:g} Hz is assumed")
         )
@@ -158,7 +174,7 @@ def _motion(
             parents,
             z_up_from_y_up(joints * unit),
             rotations_z_up_from_y_up(rotations),
-            DEFAULT_FRAME_RATE if rate is None or rate.size != 1 else float(rate.ravel()[0]),
+            _rate(arrays),
         )
     except InvalidFileError as error:
         raise InvalidFileError(f"{path}: {error}. Export it as BVH.") from None

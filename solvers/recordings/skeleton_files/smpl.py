@@ -68,10 +68,10 @@ and, in the camera's axes, -Y."""
 def is_smpl(head: bytes) -> bool:
     """Return whether the first bytes are an archive of the parameters of SMPL.
 
-    One name of poses is enough, and so is any parameter at its beginning.
+    One name of poses is enough; without one, all names are parameters.
     """
-    names = archive_names(head)
-    return bool(names) and (names[0] in NAMES or not POSES.isdisjoint(names))
+    names = {*archive_names(head)}
+    return bool(names) and (names <= NAMES or not POSES.isdisjoint(names))
 
 
 def open_smpl(

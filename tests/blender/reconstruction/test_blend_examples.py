@@ -1,6 +1,7 @@
 """Other .blend files as libraries of clean clips: linked to be read, and gone again."""
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -115,7 +116,7 @@ def test_folder_of_recordings_is_read_in_time_slices(walk, load, blank, stroll, 
     *_, (n_slices, examples) = in_time_slices(load, blank.context.scene, walk, str(folder))
 
     assert n_slices == 10  # one for each file
-    assert examples.files == tuple(str(folder / f"take_{each}.bvh") for each in range(5))
+    assert examples.found == tuple(str(folder / f"take_{each}.bvh") for each in range(5))
 
 
 def test_file_that_is_already_linked_is_read(library, walk, reconstruct, blank, all_there_is):
@@ -157,3 +158,37 @@ def test_clean_learns_from_a_blend_file(library, stroll, bring, blank):
     assert status == {"FINISHED"}
     action = blank.context.object.animation_data.action
     assert action.name == "stroll.clean" and not blank.data.libraries
+
+
+MANNEQUIN = "corpus/fbx/ue4_mannequin/SK_Mannequin.FBX"
+"""A skeleton without animation."""
+
+
+def test_a_file_without_motion_in_a_folder_of_examples_is_left_out(
+    stroll, bring, blank, recordings, tmp_path
+):
+    folder = tmp_path / "takes"
+    folder.mkdir()
+    shutil.copy(stroll, folder / "take.bvh")
+    shutil.copy(recordings / MANNEQUIN, folder)
+    bring(stroll)
+
+    status = blank.ops.mocap_assist.denoise(prior="EXAMPLES", examples=str(folder))
+
+    assert status == {"FINISHED"}
+
+
+@pytest.mark.parametrize("inside", [True, False])
+def test_examples_without_any_motion_are_refused(
+    stroll, bring, blank, recordings, tmp_path, inside
+):
+    folder = tmp_path / "rigs"
+    folder.mkdir()
+    shutil.copy(recordings / MANNEQUIN, folder)
+    bring(stroll)
+
+    with pytest.raises(RuntimeError, match=r"no animation|has motion"):
+        blank.ops.mocap_assist.denoise(
+            prior="EXAMPLES",
+            examples=str(folder if inside else folder / "SK_Mannequin.FBX"),
+        )

@@ -144,6 +144,16 @@ def test_archive_defines_camera_rate_and_color(write, rng):
     assert_allclose(messages.frame(1), 10.0 * recording.frame(1), rtol=1e-6)
 
 
+def test_arrays_may_come_in_any_order(tmp_path):
+    """`frame_rate` is a name of SMPL's archives too."""
+    lens = {"fx": 9.0, "fy": 8.0, "cx": 3.5, "cy": 2.5}
+    np.savez(tmp_path / "take.npz", frame_rate=25.0, **lens, depth=pictures())
+
+    recording = read_recording(tmp_path / "take.npz")
+
+    assert (recording.n_frames, recording.frame_rate) == (len(pictures()), 25.0)
+
+
 def test_numbers_with_a_point_are_meters(write):
     depth = pictures().astype(np.float32) / 1000
     depth[2, 3] = np.nan

@@ -1,9 +1,13 @@
 """A BVH file with several ROOTs has several bodies."""
 
+import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from solvers.motion import Motion
 from solvers.recordings import list_bodies, read_bvh, read_recording
+from solvers.recordings.skeleton_files.bvh_writing import write_bvh
+from solvers.rotations import multiply, rotate
 
 SWORD = """ROOT sword
 {
@@ -29,7 +33,13 @@ def parts(path):
 @pytest.fixture
 def duet(recordings, tmp_path):
     """Two walkers and a sword in one file, and each walker alone."""
-    walks = [parts(recordings / f"mocap/cmu_walk/{name}.bvh") for name in ("05_01", "07_01")]
+    walks = [recordings / f"mocap/cmu_walk/{name}.bvh" for name in ("05_01", "07_01")]
+    return together(walks, tmp_path)
+
+
+def together(walks, folder):
+    """Write two walkers and a sword in one file, and each walker alone; return the folder."""
+    walks = [parts(path) for path in walks]
     for number, (tree, time, frames) in enumerate(walks):
         text = "\n".join([
             "HIERARCHY\n" + tree + "MOTION",
@@ -37,14 +47,14 @@ def duet(recordings, tmp_path):
             time,
             *frames,
         ])
-        (tmp_path / f"{number}.bvh").write_text(text + "\n")
+        (folder / f"{number}.bvh").write_text(text + "\n")
     rows = zip(walks[0][2], [SWORD_FRAME] * N_FRAMES, walks[1][2], strict=True)
     text = [
         "HIERARCHY\n" + walks[0][0] + SWORD + walks[1][0] + "MOTION",
         f"Frames: {N_FRAMES}", walks[0][1], *(" ".join(row) for row in rows),
     ]  # fmt: skip
-    (tmp_path / "duet.bvh").write_text("\n".join(text) + "\n")
-    return tmp_path
+    (folder / "duet.bvh").write_text("\n".join(text) + "\n")
+    return folder
 
 
 def test_each_root_is_a_body_and_a_small_one_a_prop(duet):
@@ -61,6 +71,29 @@ def test_a_body_among_others_moves_as_alone(duet, number, body):
     assert found.skeleton.names == alone.skeleton.names
     assert_allclose(found.rotations, alone.rotations, atol=1e-12)
     assert_allclose(found.root_positions, alone.root_positions, atol=1e-12)
+
+
+def test_rest_poses_with_another_axis_up_turn_alike(recordings, tmp_path):
+    """Z is up in the motion and Y in the rest pose, as some programs write it."""
+    half = np.sqrt(0.5)
+    turn = np.array([half, half, 0.0, 0.0])
+    for name in ("05_01", "07_01"):
+        walk = read_bvh(recordings / f"mocap/cmu_walk/{name}.bvh").slice(1, N_FRAMES + 1)
+        rotations = walk.rotations.copy()
+        rotations[:, 0] = multiply(turn, rotations[:, 0])
+        lying = rotate(turn, walk.root_positions)
+        write_bvh(
+            Motion(walk.skeleton, rotations, lying, walk.frame_rate), tmp_path / f"{name}.bvh"
+        )
+    together([tmp_path / "05_01.bvh", tmp_path / "07_01.bvh"], tmp_path)
+
+    for number, body in enumerate(("Hips", "Hips_2")):
+        found = read_recording(tmp_path / "duet.bvh", body=body)
+        alone = read_recording(tmp_path / f"{number}.bvh")
+        assert alone.conventions.rest_up != alone.conventions.up
+        assert_allclose(found.skeleton.offsets, alone.skeleton.offsets, atol=1e-9)
+        assert_allclose(found.root_positions, alone.root_positions, atol=1e-9)
+        assert found.conventions.rest_up == alone.conventions.rest_up
 
 
 def test_a_prop_has_the_unit_of_the_actor(duet):

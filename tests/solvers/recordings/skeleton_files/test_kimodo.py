@@ -90,6 +90,20 @@ def test_samples_of_one_text_are_bodies(tmp_path, rng):
     assert_allclose(second.root_positions, alone.root_positions)
 
 
+def test_a_remark_is_made_once_for_the_sample_that_is_read(tmp_path, rng, collected_messages):
+    messages, progress = collected_messages
+    samples = [walking(rng) for _ in range(3)]
+    np.savez(
+        tmp_path / "take.npz",
+        posed_joints=np.stack([joints for joints, _ in samples]),
+        global_rot_mats=np.stack([matrices for _, matrices in samples]),
+    )
+
+    read_recording(tmp_path / "take.npz", body="3", progress=progress)
+
+    assert sum("no frame rate" in message for message in messages) == 1
+
+
 def test_positions_and_rotations_alone_give_the_same_joints_standing(tmp_path, rng):
     messages = []
     theirs = saved(tmp_path / "take.npz", rng)
