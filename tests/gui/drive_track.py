@@ -24,7 +24,7 @@ UNTIL_DONE = 6000  # tenths of a second
 SIDE = (0.70, 0.66, 0.18, 0.20)
 ARM, WRONG, CORRECTED = "rightUpperArm", range(8, 24), 15
 AWAY = Quaternion((0.0, 1.0, 0.0), 1.1)
-PREVIEWED = {"Trying": "1-looking.png", "Tracking": "1-tracking.png", "Measuring": "1-last.png"}
+PREVIEWED = {"Trying": "1-looking.png", "Tracking": "1-tracking.png"}
 MAX_REDRAW_S = 0.03
 """Seconds that a redraw may take."""
 
