@@ -1,0 +1,58 @@
+"""Keep the world rotation of a bone: as in the source, or still."""
+
+from dataclasses import dataclass
+
+from ...arrays import Array
+from ...rotations import inverse, multiply, rotation_vector_from_quaternion
+from ..normal_equations import NormalEquations
+from ..variables import FittedMotion
+
+
+@dataclass(frozen=True, eq=False)
+class FollowRotation:
+    """Keep the world rotation of a bone near that of the source.
+
+    Attributes
+    ----------
+    bone : int
+    wanted : quaternions, shape (n_frames, 4)
+    tolerance : float, radians
+    """
+
+    bone: int
+    wanted: Array
+    tolerance: float
+
+    def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
+        """Add residuals and derivatives at the present poses."""
+        turns = multiply(fitted.poses.rotations[:, self.bone], inverse(self.wanted))
+        jacobian = fitted.rotation_jacobian(self.bone)
+        equations.add_frames(
+            rotation_vector_from_quaternion(turns) / self.tolerance, jacobian / self.tolerance
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class StayStill:
+    """Keep a bone from rotating.
+
+    Attributes
+    ----------
+    bone : int
+    weight : shape (n_frames - 1,), 0 to 1
+    tolerance : float, radians per second
+    """
+
+    bone: int
+    weight: Array
+    tolerance: float
+
+    def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
+        """Add residuals and derivatives at the present poses."""
+        rotations = fitted.poses.rotations[:, self.bone]
+        turns = rotation_vector_from_quaternion(multiply(rotations[1:], inverse(rotations[:-1])))
+        scale = self.weight[:, None] * (fitted.motion.frame_rate / self.tolerance)
+        jacobian = fitted.rotation_jacobian(self.bone)
+        equations.add_steps(
+            turns * scale, -jacobian[:-1] * scale[..., None], jacobian[1:] * scale[..., None]
+        )

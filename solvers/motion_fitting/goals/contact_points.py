@@ -1,0 +1,101 @@
+"""Hold the loaded points of a body part in place, and at their height."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import Array
+from ...rotations import rotate
+from ..normal_equations import NormalEquations
+from ..variables import FittedMotion
+
+
+class BonePoint(NamedTuple):
+    """A point that is fixed to a bone."""
+
+    bone: int
+    offset: Array
+    """From the joint, in the axes of the rest pose, shape (3,), meters."""
+
+    def position(self, fitted: FittedMotion) -> Array:
+        """Return where it is in the world, (n_frames, 3)."""
+        poses = fitted.poses
+        return np.asarray(
+            poses.positions[:, self.bone] + rotate(poses.rotations[:, self.bone], self.offset)
+        )
+
+
+def loaded_jacobian(points: Sequence[BonePoint], load: Array, fitted: FittedMotion) -> Array:
+    """Return the derivative of the loaded mean of points, (n_frames, 3, n_variables)."""
+    jacobian = np.zeros((len(load), 3, fitted.n_variables))
+    for index, point in enumerate(points):
+        derivative = fitted.point_jacobian(point.position(fitted), point.bone)
+        jacobian += load[:, index, None, None] * derivative
+    return jacobian
+
+
+@dataclass(frozen=True, eq=False)
+class StayInPlace:
+    """Keep the loaded part of a sole or hand from moving.
+
+    Attributes
+    ----------
+    points : sequence of BonePoint
+    load : shape (n_frames, n_points)
+        Fraction of the load on each point.
+    weight : shape (n_frames - 1, 3), 0 to 1
+        Of each step in each direction.
+    tolerance : float, meters per second
+    """
+
+    points: Sequence[BonePoint]
+    load: Array
+    weight: Array
+    tolerance: float
+
+    def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
+        """Add residuals and derivatives at the present poses."""
+        positions = np.stack([point.position(fitted) for point in self.points], axis=1)
+        load = 0.5 * (self.load[1:] + self.load[:-1])
+        moved = np.einsum("fp,fpi->fi", load, np.diff(positions, axis=0))
+        scale = self.weight * (fitted.motion.frame_rate / self.tolerance)
+        before = after = 0.0
+        for index, point in enumerate(self.points):
+            derivative = fitted.point_jacobian(positions[:, index], point.bone)
+            before = before - load[:, index, None, None] * derivative[:-1]
+            after = after + load[:, index, None, None] * derivative[1:]
+        equations.add_steps(moved * scale, before * scale[..., None], after * scale[..., None])
+
+
+@dataclass(frozen=True, eq=False)
+class StayAtHeight:
+    """Keep the loaded part of a sole at a height.
+
+    Attributes
+    ----------
+    points : sequence of BonePoint
+    load : shape (n_frames, n_points)
+    above : shape (n_points,), meters
+        Height of each point above the floor while the whole sole rests.
+    height : float, meters
+        Of the floor.
+    weight : shape (n_frames,), 0 to 1
+    tolerance : float, meters
+    """
+
+    points: Sequence[BonePoint]
+    load: Array
+    above: Array
+    height: float
+    weight: Array
+    tolerance: float
+
+    def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
+        """Add residuals and derivatives at the present poses."""
+        heights = np.stack([point.position(fitted)[:, 2] for point in self.points], axis=1)
+        error = np.sum(self.load * (heights - self.above), axis=1) - self.height
+        scale = self.weight / self.tolerance
+        jacobian = loaded_jacobian(self.points, self.load, fitted)[:, 2:]
+        equations.add_frames((error * scale)[:, None], jacobian * scale[:, None, None])

@@ -1,0 +1,87 @@
+"""The normal equations of a whole take, block by block of its frames, and their solution."""
+
+import numpy as np
+
+from ..arrays import Array
+from ..signals import second_difference_bands
+
+class NormalEquations:
+    """Weighted least squares whose residuals depend on up to three successive frames.
+
+    The matrix is symmetric and banded, so the solution takes time in proportion to the number
+    of frames.
+
+    Parameters
+    ----------
+    n_frames, n_variables : int
+        `n_variables` of each frame.
+    """
+
+    def __init__(self, n_frames: int, n_variables: int) -> None:
+        self._blocks = np.zeros((n_frames, n_variables, n_variables))
+        self._steps = np.zeros((n_frames - 1, n_variables, n_variables))
+        """Rows are variables of a frame, columns those of the next."""
+        self._second = np.zeros(n_variables)
+        """Weights of second differences, whose part of the matrix is diagonal."""
+        self._gradient = np.zeros((n_frames, n_variables))
+        self.cost = 0.0
+        """Half the sum of the squares of all residuals."""
+
+    def add_frames(self, residuals: Array, jacobian: Array) -> None:
+        """Add residuals of single frames, (n_frames, n), and their (n_frames, n, n_variables)."""
+        self._blocks += jacobian.transpose(0, 2, 1) @ jacobian
+        self._gradient += np.einsum("fn,fnv->fv", residuals, jacobian)
+        self._count(residuals)
+
+    def add_steps(self, residuals: Array, before: Array, after: Array) -> None:
+        """Add residuals of steps between frames, (n_frames - 1, n).
+
+        `before` and `after` are their derivatives with respect to the variables of the earlier
+        and the later frame, (n_frames - 1, n, n_variables).
+        """
+        self._blocks[:-1] += before.transpose(0, 2, 1) @ before
+        self._blocks[1:] += after.transpose(0, 2, 1) @ after
+        self._steps += before.transpose(0, 2, 1) @ after
+        self._gradient[:-1] += np.einsum("fn,fnv->fv", residuals, before)
+        self._gradient[1:] += np.einsum("fn,fnv->fv", residuals, after)
+        self._count(residuals)
+
+    def add_variables(self, residuals: Array, weights: Array) -> None:
+        """Add a residual of each variable, whose derivative is a weight, (n_variables,)."""
+        diagonal = np.arange(len(weights))
+        self._blocks[:, diagonal, diagonal] += weights**2
+        self._gradient += residuals * weights
+        self._count(residuals)
+
+    def add_second_differences(self, residuals: Array, weights: Array) -> None:
+        """Add a residual for each second difference of a variable, (n_frames - 2, n_variables).
+
+        Its derivatives are the weight of the variable times 1, -2 and 1.
+        """
+        n = len(residuals)
+        for first, factor in enumerate((1.0, -2.0, 1.0)):
+            self._gradient[first : first + n] += factor * residuals * weights
+        self._second += weights**2
+        self._count(residuals)
+
+    def _count(self, residuals: Array) -> None:
+        self.cost += 0.5 * float(np.vdot(residuals, residuals))
+
+    def step(self) -> Array:
+        """Return the step to the least sum of squares, (n_frames, n_variables)."""
+        from scipy.linalg import solveh_banded  # slow to import: only when needed
+
+        n_frames, n = self._gradient.shape
+        bands = np.zeros((2 * n + 1, n_frames, n))
+        lower, left = np.tril_indices(n)
+        bands[lower - left, :, left] = self._blocks[:, lower, left].T
+        later, earlier = (index.ravel() for index in np.indices((n, n)))
+        bands[n + later - earlier, : n_frames - 1, earlier] = self._steps[:, earlier, later].T
+        upper = second_difference_bands(n_frames)
+        for ahead in range(3):
+            differences = upper[2 - ahead, ahead:, None]
+            bands[ahead * n, : n_frames - ahead] += differences * self._second
+        solved = solveh_banded(
+            bands.reshape(len(bands), -1), -self._gradient.ravel(), lower=True, check_finite=False
+        )
+        return np.asarray(solved.reshape(n_frames, n))
