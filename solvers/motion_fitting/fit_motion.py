@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..motion import Motion
 from ..progress import Progress, unwatched
 from .goals import Goal
@@ -12,8 +10,8 @@ from .normal_equations import NormalEquations
 from .variables import FittedMotion
 
 MAX_ROUNDS = 8
-SMALL_STEP = 2e-4
-"""Radians, or meters, below which a step ends the fit."""
+SMALL_DECREASE = 1e-2
+"""Relative decrease of the cost that ends the fit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,9 +53,9 @@ def fit_motion(
             damping *= 0.5
         else:
             return Fit(fitted.motion, False, equations.cost, number)
-        largest = float(np.abs(damping * step).max())
+        has_converged = equations.cost - tried.cost <= SMALL_DECREASE * tried.cost
         fitted, equations, damping = trial, tried, min(1.0, 2.0 * damping)
-        if largest < SMALL_STEP:
+        if has_converged:
             return Fit(fitted.motion, True, equations.cost, number)
     return Fit(fitted.motion, False, equations.cost, MAX_ROUNDS)
 

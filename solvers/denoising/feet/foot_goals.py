@@ -9,6 +9,7 @@ from ...motion import Motion, WorldPoses
 from ...motion_fitting import FittedMotion
 from ...motion_fitting.goals import (
     BonePoint,
+    FollowPosition,
     FollowRotation,
     FollowSource,
     Goal,
@@ -27,7 +28,7 @@ from .sole import *
 from ...signals.smooth_correction import FADE_TIME_CONSTANTS
 from ...rotations import rotation_vector_from_quaternion, multiply, inverse
 
-P = dict(root=0.02, hip=np.radians(4), knee=np.radians(6), off=np.radians(2), ankle=np.radians(15), foot=np.radians(4), toe=np.radians(4), limit=np.radians(.3), min_flex=np.radians(4), still=np.radians(2), height=.002, root_tau=2.0, slide=.002)
+P = dict(root=0.02, hip=np.radians(4), knee=np.radians(6), off=np.radians(2), ankle=np.radians(15), foot=np.radians(4), toe=np.radians(4), limit=np.radians(.3), min_flex=np.radians(4), still=np.radians(2), height=.002, root_tau=2.0, slide=.002, pos=.01)
 
 
 def joints_of(legs):
@@ -77,6 +78,7 @@ def goals_of(motion, poses, legs, contacts, blend, hold_rotation, floor, p=P):
             slow = np.clip(2 - 2 * np.linalg.norm(av, axis=1) / MAX_FLAT_RATE, 0, 1)
             bal = np.clip(4 * load[:, 0] * (1 - load[:, 0]), 0, 1)
             goals.append(StayStill(leg.ankle, both_in_contact(contact) * slow * .5 * (bal[1:] + bal[:-1]), p["still"]))
+        goals.append(FollowPosition(BonePoint(leg.ankle, np.zeros(3)), ankle, np.ones(motion.n_frames), p["pos"]))
         goals.append(FollowRotation(leg.ankle, poses.rotations[:, leg.ankle], p["foot"]))
         axis = hinge_axis(start, leg.knee, leg.ankle)
         if axis is not None:

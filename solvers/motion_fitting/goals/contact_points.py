@@ -99,3 +99,29 @@ class StayAtHeight:
         scale = self.weight / self.tolerance
         jacobian = loaded_jacobian(self.points, self.load, fitted)[:, 2:]
         equations.add_frames((error * scale)[:, None], jacobian * scale[:, None, None])
+
+
+@dataclass(frozen=True, eq=False)
+class FollowPosition:
+    """Keep a point of a bone near a path.
+
+    Attributes
+    ----------
+    point : BonePoint
+    wanted : shape (n_frames, 3), meters
+    weight : shape (n_frames,), 0 to 1
+    tolerance : float, meters
+    """
+
+    point: BonePoint
+    wanted: Array
+    weight: Array
+    tolerance: float
+
+    def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
+        """Add residuals and derivatives at the present poses."""
+        position, scale = self.point.position(fitted), self.weight / self.tolerance
+        jacobian = fitted.point_jacobian(position, self.point.bone)
+        equations.add_frames(
+            (position - self.wanted) * scale[:, None], jacobian * scale[:, None, None]
+        )
