@@ -17,6 +17,7 @@ MAY_IMPORT = {
 }
 COMMON_PACKAGES = {
     "archives", "arrays", "depth_scene", "errors", "faults", "files", "json_text", "motion",
+    "motion_fitting",
     "npz_members", "progress", "rotations", "settings", "signals",
 }  # fmt: skip
 FAMILIES = [

@@ -1,6 +1,17 @@
 """Fit motions to goals: effectors in place, reach, limits, with the least smooth change."""
 
 from .fit_motion import Fit, fit_motion
+from .goal import Goal
+from .normal_equations import NormalEquations
+from .pieces import join_pieces, piece_ranges
 from .variables import FittedMotion
 
-__all__ = ["Fit", "FittedMotion", "fit_motion"]
+__all__ = [
+    "Fit",
+    "FittedMotion",
+    "Goal",
+    "NormalEquations",
+    "fit_motion",
+    "join_pieces",
+    "piece_ranges",
+]

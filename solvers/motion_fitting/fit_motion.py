@@ -5,13 +5,17 @@ from dataclasses import dataclass
 
 from ..motion import Motion
 from ..progress import Progress, unwatched
-from .goals import Goal
+from .goal import Goal
 from .normal_equations import NormalEquations
 from .variables import FittedMotion
 
 MAX_ROUNDS = 8
+"""Number of steps. It bounds the time; takes of all kinds need three to five."""
+MAX_HALVINGS = 4
+"""Number of times that a step is halved which makes the cost higher. It bounds the time."""
 SMALL_DECREASE = 1e-2
-"""Relative decrease of the cost that ends the fit."""
+"""Relative decrease of the cost that ends the fit, a ratio. Chosen by hand: x0.5 costs nothing,
+x2 costs nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,18 +38,27 @@ class Fit:
 
 
 def fit_motion(
-    motion: Motion,
-    joints: Sequence[int],
-    goals: Sequence[Goal],
-    progress: Progress = unwatched,
+    start: FittedMotion, goals: Sequence[Goal], progress: Progress = unwatched
 ) -> Fit:
-    """Return the motion with the least weighted sum of squares of its goals."""
-    fitted, damping = FittedMotion(motion, motion, tuple(joints)), 1.0
-    equations = _equations(fitted, goals)
+    """Return the motion with the least sum of squares of its goals' residuals.
+
+    Parameters
+    ----------
+    start : FittedMotion
+        The motion, and what of it may change.
+    goals : sequence of Goal
+    progress : Progress
+
+    Raises
+    ------
+    SolveCancelled
+        Raised by `progress`.
+    """
+    fitted, equations, damping = start, _equations(start, goals), 1.0
     for number in range(1, MAX_ROUNDS + 1):
-        progress(number / MAX_ROUNDS, "Fitting")
+        progress(number / (MAX_ROUNDS + 1), "Planting the feet")
         step = equations.step()
-        for _ in range(4):
+        for _ in range(MAX_HALVINGS):
             trial = fitted.moved(damping * step)
             tried = _equations(trial, goals)
             if tried.cost <= equations.cost:

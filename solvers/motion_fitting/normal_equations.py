@@ -5,6 +5,7 @@ import numpy as np
 from ..arrays import Array
 from ..signals import second_difference_bands
 
+
 class NormalEquations:
     """Weighted least squares whose residuals depend on up to three successive frames.
 
@@ -23,14 +24,18 @@ class NormalEquations:
         """Rows are variables of a frame, columns those of the next."""
         self._second = np.zeros(n_variables)
         """Weights of second differences, whose part of the matrix is diagonal."""
-        self._gradient = np.zeros((n_frames, n_variables))
+        self.gradient = np.zeros((n_frames, n_variables))
+        """Derivatives of `cost`."""
         self.cost = 0.0
         """Half the sum of the squares of all residuals."""
 
     def add_frames(self, residuals: Array, jacobian: Array) -> None:
-        """Add residuals of single frames, (n_frames, n), and their (n_frames, n, n_variables)."""
+        """Add residuals of single frames, (n_frames, n), with their derivatives.
+
+        The derivatives have shape (n_frames, n, n_variables).
+        """
         self._blocks += jacobian.transpose(0, 2, 1) @ jacobian
-        self._gradient += np.einsum("fn,fnv->fv", residuals, jacobian)
+        self.gradient += np.einsum("fn,fnv->fv", residuals, jacobian)
         self._count(residuals)
 
     def add_steps(self, residuals: Array, before: Array, after: Array) -> None:
@@ -42,15 +47,15 @@ class NormalEquations:
         self._blocks[:-1] += before.transpose(0, 2, 1) @ before
         self._blocks[1:] += after.transpose(0, 2, 1) @ after
         self._steps += before.transpose(0, 2, 1) @ after
-        self._gradient[:-1] += np.einsum("fn,fnv->fv", residuals, before)
-        self._gradient[1:] += np.einsum("fn,fnv->fv", residuals, after)
+        self.gradient[:-1] += np.einsum("fn,fnv->fv", residuals, before)
+        self.gradient[1:] += np.einsum("fn,fnv->fv", residuals, after)
         self._count(residuals)
 
     def add_variables(self, residuals: Array, weights: Array) -> None:
         """Add a residual of each variable, whose derivative is a weight, (n_variables,)."""
         diagonal = np.arange(len(weights))
         self._blocks[:, diagonal, diagonal] += weights**2
-        self._gradient += residuals * weights
+        self.gradient += residuals * weights
         self._count(residuals)
 
     def add_second_differences(self, residuals: Array, weights: Array) -> None:
@@ -60,7 +65,7 @@ class NormalEquations:
         """
         n = len(residuals)
         for first, factor in enumerate((1.0, -2.0, 1.0)):
-            self._gradient[first : first + n] += factor * residuals * weights
+            self.gradient[first : first + n] += factor * residuals * weights
         self._second += weights**2
         self._count(residuals)
 
@@ -71,7 +76,7 @@ class NormalEquations:
         """Return the step to the least sum of squares, (n_frames, n_variables)."""
         from scipy.linalg import solveh_banded  # slow to import: only when needed
 
-        n_frames, n = self._gradient.shape
+        n_frames, n = self.gradient.shape
         bands = np.zeros((2 * n + 1, n_frames, n))
         lower, left = np.tril_indices(n)
         bands[lower - left, :, left] = self._blocks[:, lower, left].T
@@ -82,6 +87,10 @@ class NormalEquations:
             differences = upper[2 - ahead, ahead:, None]
             bands[ahead * n, : n_frames - ahead] += differences * self._second
         solved = solveh_banded(
-            bands.reshape(len(bands), -1), -self._gradient.ravel(), lower=True, check_finite=False
+            bands.reshape(len(bands), -1),
+            -self.gradient.ravel(),
+            lower=True,
+            overwrite_ab=True,
+            check_finite=False,
         )
         return np.asarray(solved.reshape(n_frames, n))

@@ -1,6 +1,6 @@
-"""The poses of a motion while it is fitted, and how points and bones move with its variables."""
+"""A motion while it is fitted: its poses, and how points and bones move."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,16 +16,14 @@ from ..rotations import (
     skew_matrices,
 )
 
-N_POSITION = 3
-"""Variables of the root's position, which come first."""
-
 
 @dataclass(frozen=True, eq=False)
 class FittedMotion:
     """A motion between two steps of the fit.
 
-    Its variables are, in each frame, the position of the root in meters and a rotation vector
-    in radians for each joint that may turn, in the axes of the joint's parent.
+    Its variables are, in each frame, the position of the root in meters, if it may move, and
+    then a rotation vector in radians for each joint that may turn, in the axes of the joint's
+    parent.
 
     Attributes
     ----------
@@ -34,16 +32,23 @@ class FittedMotion:
     motion : Motion
     joints : tuple of int
         Joints that may turn.
+    root_moves : bool
     """
 
     source: Motion
     motion: Motion
     joints: tuple[int, ...]
+    root_moves: bool = True
+
+    @property
+    def root_columns(self) -> slice:
+        """Where the variables of the root's position are."""
+        return slice(0, 3 if self.root_moves else 0)
 
     @property
     def n_variables(self) -> int:
         """Number of variables of a frame."""
-        return N_POSITION + 3 * len(self.joints)
+        return 3 * (len(self.joints) + self.root_moves)
 
     @cached_property
     def poses(self) -> WorldPoses:
@@ -60,7 +65,7 @@ class FittedMotion:
 
     def columns(self, joint: int) -> slice:
         """Return where the variables of a joint are."""
-        first = N_POSITION + 3 * self.joints.index(joint)
+        first = self.root_columns.stop + 3 * self.joints.index(joint)
         return slice(first, first + 3)
 
     def deviations(self) -> Array:
@@ -71,7 +76,8 @@ class FittedMotion:
         )
         vectors = rotation_vector_from_quaternion(turns)
         moved = self.motion.root_positions - self.source.root_positions
-        return np.concatenate([moved, vectors.reshape(len(moved), -1)], axis=1)
+        parts = [moved, vectors.reshape(len(moved), -1)]
+        return np.concatenate(parts if self.root_moves else parts[1:], axis=1)
 
     def point_jacobian(self, points: Array, bone: int) -> Array:
         """Return the derivatives of points that are fixed to a bone.
@@ -88,7 +94,8 @@ class FittedMotion:
             Shape (n_frames, 3, n_variables).
         """
         jacobian = np.zeros((len(points), 3, self.n_variables))
-        jacobian[:, :, :N_POSITION] = np.eye(3)
+        if self.root_moves:
+            jacobian[:, :, self.root_columns] = np.eye(3)
         for index, joint in self._carriers(bone):
             levers = points - self.poses.positions[:, joint]
             jacobian[:, :, self.columns(joint)] = -skew_matrices(levers) @ self._axes[:, index]
@@ -113,9 +120,11 @@ class FittedMotion:
         """Return the motion after a step of the variables, shape (n_frames, n_variables)."""
         rotations = self.motion.rotations.copy()
         turns = quaternion_from_rotation_vector(
-            step[:, N_POSITION:].reshape(len(step), len(self.joints), 3)
+            step[:, self.root_columns.stop :].reshape(len(step), len(self.joints), 3)
         )
         chosen = list(self.joints)
         rotations[:, chosen] = multiply(turns, rotations[:, chosen])
-        root = self.motion.root_positions + step[:, :N_POSITION]
-        return FittedMotion(self.source, self.motion.with_poses(rotations, root), self.joints)
+        root = self.motion.root_positions
+        if self.root_moves:
+            root = root + step[:, self.root_columns]
+        return replace(self, motion=self.motion.with_poses(rotations, root))

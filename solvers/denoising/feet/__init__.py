@@ -1,7 +1,8 @@
 """Foot-skate cleanup: hold planted feet in place."""
 
 from .legs import SIDES, LegJoints, find_foot_joints, find_legs
-from .plant_feet import Planted, PlantSettings, plant_feet
+from .plant_feet import Planted, plant_feet
+from .plant_settings import PlantSettings
 
 __all__ = [
     "SIDES",

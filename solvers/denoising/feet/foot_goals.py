@@ -1,18 +1,16 @@
-"""The goals of a fit that plants feet."""
+"""The goals of a fit that holds feet in place with the least change of the motion."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from ...arrays import Array, Flags
 from ...motion import Motion, WorldPoses
-from ...motion_fitting import FittedMotion
+from ...motion_fitting import FittedMotion, Goal
 from ...motion_fitting.goals import (
     BonePoint,
     FollowPosition,
     FollowRotation,
     FollowSource,
-    Goal,
     HingeLimit,
     StayAtHeight,
     StayInPlace,
@@ -20,82 +18,114 @@ from ...motion_fitting.goals import (
     hinge_axis,
     hinge_flexion,
 )
-from .foot_trajectory import *
-from .foot_trajectory import _loaded_displacements, _plausibility, _on_floor, _median_contact_heights, MAX_FLAT_RATE
-from scipy.ndimage import gaussian_filter1d
-from .legs import LegJoints
-from .sole import *
-from ...signals.smooth_correction import FADE_TIME_CONSTANTS
-from ...rotations import rotation_vector_from_quaternion, multiply, inverse
+from ...signals import FADE_TIME_CONSTANTS
+from .foot_contact import FootContact
+from .plant_settings import PlantSettings
 
-P = dict(root=0.02, hip=np.radians(4), knee=np.radians(6), off=np.radians(2), ankle=np.radians(15), foot=np.radians(4), toe=np.radians(4), limit=np.radians(.3), min_flex=np.radians(4), still=np.radians(2), height=.002, root_tau=2.0, slide=.002, pos=.01)
-
-
-def joints_of(legs):
-    return [j for leg in legs for j in (*leg.chain, leg.toe) if j is not None]
-
-
-def goals_of(motion, poses, legs, contacts, blend, hold_rotation, floor, p=P):
-    joints = joints_of(legs)
-    start = FittedMotion(motion, motion, tuple(joints))
-    tol = np.full(start.n_variables, p["root"])
-    tau = np.full(start.n_variables, blend / FADE_TIME_CONSTANTS)
-    tau[:3] *= p["root_tau"]
-    goals = []
-    rate = motion.frame_rate
-    for leg in legs:
-        contact = contacts[:, 0 if leg.side == "left" else 1]
-        tol[start.columns(leg.hip)] = p["hip"]
-        tol[start.columns(leg.ankle)] = p["ankle"]
-        tol[start.columns(leg.knee)] = p["knee"]
-        if leg.toe is not None:
-            tol[start.columns(leg.toe)] = p["toe"]
-        size = leg.length(motion.skeleton) / ADULT_LEG_M
-        points = sole_points(motion.skeleton, poses, leg)
-        standing = measure_standing_heights(points, contact, rate)
-        load = estimate_loads(points[..., 2] - standing, rate, size)
-        height = np.sum(load * (points[..., 2] - standing), axis=1)
-        contact_height = _median_contact_heights(height, contact)
-        disp = _loaded_displacements(points, load)
-        ankle = poses.positions[:, leg.ankle]
-        w = both_in_contact(contact) * _plausibility(disp - np.diff(ankle, axis=0), rate, size)
-        w = np.repeat(w[:, None], 3, axis=1)
-        w[:, 2] *= _on_floor(np.abs(height - contact_height), size)
-        rest = motion.skeleton.rest_positions
-        bp = bone_points(motion.skeleton, leg)
-        goals.append(StayInPlace(bp, load, w, p["slide"]))
-        if floor and contact.any():
-            level = np.median(height[contact])
-            if np.median(np.abs(contact_height[contact] - level)) < MAX_LEVEL_SPREAD_M * size:
-                near = contact & (np.abs(contact_height - level) < MAX_FLOOR_DISTANCE_M * size)
-                hw = np.zeros(motion.n_frames)
-                hw[:-1] = near[:-1] * w[:, 2]
-                goals.append(StayAtHeight(bp, load, standing, level, hw, p["height"]))
-        if hold_rotation and motion.n_frames > 1:
-            rot = poses.rotations[:, leg.ankle]
-            d = rotation_vector_from_quaternion(multiply(rot[1:], inverse(rot[:-1])))
-            av = gaussian_filter1d(d * rate, SMOOTHING_S * rate, axis=0)
-            slow = np.clip(2 - 2 * np.linalg.norm(av, axis=1) / MAX_FLAT_RATE, 0, 1)
-            bal = np.clip(4 * load[:, 0] * (1 - load[:, 0]), 0, 1)
-            goals.append(StayStill(leg.ankle, both_in_contact(contact) * slow * .5 * (bal[1:] + bal[:-1]), p["still"]))
-        goals.append(FollowPosition(BonePoint(leg.ankle, np.zeros(3)), ankle, np.ones(motion.n_frames), p["pos"]))
-        goals.append(FollowRotation(leg.ankle, poses.rotations[:, leg.ankle], p["foot"]))
-        axis = hinge_axis(start, leg.knee, leg.ankle)
-        if axis is not None:
-            flex = hinge_flexion(start, leg.knee, leg.ankle, axis)
-            goals.append(HingeLimit(leg.knee, leg.ankle, axis, np.minimum(flex, p["min_flex"]), p["limit"]))
-    goals.append(FollowSource(tol, tau))
-    return joints, goals
+ROOT_M = 0.01
+"""Meters by which the root may move. Chosen by hand: x0.5 costs 2.5 %, x2 gains 2.1 % and
+lets the hips jerk more."""
+HIP_RAD = np.radians(4.0)
+"""Radians of a hip, and of toes. Chosen by hand: x0.5 gains 1.1 %, x2 costs 1.7 %."""
+KNEE_RAD, LOOSE_KNEE_RAD = np.radians(3.0), np.radians(8.0)
+"""Radians of a knee, with and without Protect Knees. Chosen by hand: x0.5 costs 3.5 %, x2 gains
+0.8 % and makes knees jerk more."""
+ANKLE_RAD = np.radians(15.0)
+"""Radians of an ankle, whose foot follows its own rotation in the world. Chosen by hand: x0.5
+costs 2.3 %, x2 gains 0.1 %."""
+FOOT_RAD = np.radians(2.5)
+"""Radians of a foot in the world. Chosen by hand: x0.5 costs 2.1 %, x2 gains 2.0 % and turns
+feet farther."""
+ANKLE_M = 0.02
+"""Meters by which the ankle may leave its path in contact. Chosen by hand: x0.5 gains 3.7 % and
+makes skating feet creep, x2 costs 9.6 %."""
+FLOOR_M = 0.002
+"""Meters by which a planted sole may be off the floor. Chosen by hand: x0.5 costs 0.4 %, x2
+gains 0.5 %."""
+MAX_TURN_RAD_S = np.radians(2.0)
+"""Radians per second by which a foot may turn while it rests flat. Chosen by hand: x0.5 costs
+nothing, x2 costs nothing."""
+HINGE_RAD = np.radians(1.0)
+"""Radians by which a knee may bend less than its limit. It guards knees against bending the
+wrong way."""
 
 
-def bone_points(skeleton, leg):
-    rest = skeleton.rest_positions
-    ball = leg.toe if leg.toe is not None else next(iter(skeleton.children[leg.ankle]), leg.ankle)
-    foot = rest[ball] - rest[leg.ankle]
-    heel = np.array([0.0, 0.0, foot[2]]) - HEEL_FRACTION * foot * (1.0, 1.0, 0.0)
-    out = [BonePoint(leg.ankle, heel), BonePoint(ball, np.zeros(3))]
-    if leg.toe is not None:
-        tip = next(iter(skeleton.children[leg.toe]), leg.toe)
-        if tip != leg.toe:
-            out.append(BonePoint(tip, np.zeros(3)))
-    return out
+def planting_goals(
+    fitted: FittedMotion, contacts: Sequence[FootContact], settings: PlantSettings
+) -> list[Goal]:
+    """Return the goals for a motion that is not changed yet, from the contacts of its feet."""
+    poses = fitted.poses
+    goals = [
+        goal
+        for contact in contacts
+        for goal in (
+            *_contact_goals(contact, settings),
+            *_source_goals(fitted, poses, contact, settings),
+        )
+    ]
+    return [*goals, _smoothness(fitted, contacts, settings)]
+
+
+def _contact_goals(contact: FootContact, settings: PlantSettings) -> list[Goal]:
+    """Return what the loaded sole has to meet."""
+    creep = ANKLE_M / settings.hold
+    goals: list[Goal] = [StayInPlace(contact.points, contact.load, contact.steps, creep)]
+    if settings.floor and contact.on_floor.any():
+        goals.append(
+            StayAtHeight(
+                contact.points,
+                contact.load,
+                contact.standing_heights,
+                contact.floor,
+                contact.on_floor,
+                FLOOR_M,
+            )
+        )
+    if settings.hold_rotation and contact.flat.any():
+        goals.append(StayStill(contact.leg.ankle, contact.flat, MAX_TURN_RAD_S))
+    return goals
+
+
+def _source_goals(
+    fitted: FittedMotion, poses: WorldPoses, contact: FootContact, settings: PlantSettings
+) -> list[Goal]:
+    """Return what keeps foot and knee as they were recorded."""
+    ankle = contact.leg.ankle
+    everywhere = contact.contact.astype(np.float64)
+    point = BonePoint(ankle, np.zeros(3))
+    goals: list[Goal] = [
+        FollowPosition(point, poses.positions[:, ankle], everywhere, ANKLE_M),
+        FollowRotation(ankle, poses.rotations[:, ankle], FOOT_RAD),
+    ]
+    knee = contact.leg.knee
+    axis = hinge_axis(fitted, knee, ankle)
+    if axis is not None:
+        reserve = _flexion_in_reserve(fitted.motion, contact, settings.softness)
+        recorded = hinge_flexion(fitted, knee, ankle, axis)
+        least = np.minimum(recorded, reserve)
+        goals.append(HingeLimit(knee, ankle, axis, least, HINGE_RAD))
+    return goals
+
+
+def _flexion_in_reserve(motion: Motion, contact: FootContact, softness: float) -> float:
+    """Return the flexion in radians at which a leg is shorter by a fraction of its length."""
+    joints = motion.skeleton.rest_positions[list(contact.leg.chain)]
+    thigh, shin = np.linalg.norm(np.diff(joints, axis=0), axis=1)
+    reach = (1.0 - softness) * (thigh + shin)
+    cosine = (reach**2 - thigh**2 - shin**2) / max(2.0 * thigh * shin, 1e-12)
+    return float(np.arccos(np.clip(cosine, -1.0, 1.0)))
+
+
+def _smoothness(
+    fitted: FittedMotion, contacts: Sequence[FootContact], settings: PlantSettings
+) -> FollowSource:
+    """Return what keeps the change of each variable small and smooth."""
+    tolerances = np.full(fitted.n_variables, ROOT_M)
+    fades = np.full(fitted.n_variables, settings.blend / FADE_TIME_CONSTANTS)
+    knee = KNEE_RAD if settings.spare_knees else LOOSE_KNEE_RAD
+    for leg in (contact.leg for contact in contacts):
+        joints = (leg.hip, leg.knee, leg.ankle, leg.toe)
+        for joint, tolerance in zip(joints, (HIP_RAD, knee, ANKLE_RAD, HIP_RAD), strict=True):
+            if joint is not None:
+                tolerances[fitted.columns(joint)] = tolerance
+    return FollowSource(tolerances, fades)

@@ -5,67 +5,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array, Flags
+from ...arrays import Flags
 from ...errors import InvalidMotionError
-from ...motion import Motion, WorldPoses, forward_kinematics
+from ...motion import Motion, forward_kinematics
 from ...motion.humanoid import HumanoidMap, find_humanoid_map
-from ...motion.skeletons import (
-    ReachSettings,
-    find_shot_boundaries,
-    is_short_shot,
-    reach,
-    shot_ranges,
-)
+from ...motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
+from ...motion_fitting import FittedMotion, fit_motion, join_pieces, piece_ranges
 from ...progress import Progress, unwatched, within
-from ...rotations import inverse, multiply
-from ...settings import Settings, setting
-from .foot_trajectory import FootTrajectory, plan_foot_trajectory
-from .knee_smoothing import smooth_knees
+from .foot_contact import FootContact, find_foot_contact
+from .foot_goals import planting_goals
 from .legs import SIDES, LegJoints, find_legs
-from .root_offset import compute_root_offset
+from .plant_settings import PlantSettings
 from .standing_feet import detect_standing_feet
 
-
-@dataclass(frozen=True, kw_only=True)
-class PlantSettings(Settings):
-    """Settings of `plant_feet`."""
-
-    blend: float = setting(
-        0.3,
-        "Time to blend a planted foot back to its own motion; higher is softer and longer",
-        unit="s", minimum=0.02, maximum=2.0,
-    )  # fmt: skip
-    hold: float = setting(
-        10.0,
-        "Longest time a sliding foot stays fixed before it may creep; higher is stricter",
-        unit="s",
-        minimum=0.5,
-        maximum=1000.0,
-        advanced=True,
-        label="Max Contact Time",
-    )
-    hold_rotation: bool = setting(
-        True,
-        "Also keep feet that stand flat from turning and tilting",
-        label="Lock Foot Rotation",
-    )
-    floor: bool = setting(
-        True,
-        "Level planted feet that are near the floor, all at one height",
-        label="Level Floor",
-    )
-    softness: float = setting(
-        0.01,
-        "Fraction of the leg length held in reserve; higher bends knees and lowers hips more",
-        minimum=0.0, maximum=0.2, advanced=True, label="Leg Stretch Limit",
-    )  # fmt: skip
-    spare_knees: bool = setting(
-        True, "Let the heel of a rolling foot lift so that the knee bends smoothly",
-        label="Protect Knees",
-    )  # fmt: skip
-    move_root: bool = setting(
-        True, "Shift the hips slightly and smoothly where a leg cannot reach", label="Move Hips"
-    )
+DEFAULT_SETTINGS = PlantSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,19 +45,18 @@ def plant_feet(
     contacts: Flags | None = None,
     *,
     humanoid_map: HumanoidMap | None = None,
-    settings: PlantSettings = PlantSettings(),
+    settings: PlantSettings = DEFAULT_SETTINGS,
     progress: Progress = unwatched,
 ) -> Planted:
     """Return the motion with each foot fixed to the floor while in contact.
 
-    As in Kovar et al. [1]_ footplants are met exactly, and the motion is otherwise smooth and
-    close to the original. A foot in contact may roll; only the loaded part of the sole, heel,
-    ball or both, must not move. Subtracting its motion leaves one free offset per contact. One
-    banded linear system (`smooth_correction`) yields the offsets, and the curve between them,
-    with the least displacement and curvature. Where a leg would be too short the root is
-    shifted smoothly; bones never stretch. Then hip and knee rotate so that the ankle follows
-    (`reach`). No joint above the hips rotates. Segments of a joined take are planted
-    separately; a segment of less than a quarter of a second has no contact.
+    As in Kovar et al. [1]_ footplants are met, and the motion is otherwise smooth and close to
+    the original. A foot in contact may roll; only the loaded part of the sole, heel, ball or
+    both, must not move. The rotations of the legs and the position of the root in all frames
+    are found at once: they hold the soles with the least smooth change of knees, feet and root
+    (`planting_goals`, `fit_motion`). Bones never stretch, and no joint above the hips rotates.
+    Segments of a joined take are planted separately; a segment of less than a quarter of a
+    second has no contact.
 
     Parameters
     ----------
@@ -168,30 +120,44 @@ def _plant_segment(
     if not standing:
         progress(1.0, "No foot is in contact")
         return Planted(motion, contacts, 0.0, 0.0)
-    progress(0.2, "Planning the feet")
-    poses = forward_kinematics(motion)
-    trajectories = _plan_trajectories(motion, poses, standing, contacts, settings)
-    progress(0.4, "Moving the hips")
-    root_offset = _root_offset(motion, poses, trajectories, settings)
-    progress(0.6, "Solving the legs")
-    if settings.spare_knees:
-        trajectories, root_offset = smooth_knees(
-            trajectories, poses, root_offset, motion.frame_rate
-        )
-    result = motion.with_poses(root_positions=motion.root_positions + root_offset)
-    for trajectory in trajectories:
-        result = _apply_trajectory(result, poses, trajectory, settings.softness)
-    after = forward_kinematics(result)
+    ranges, fitted = piece_ranges(motion.n_frames, motion.frame_rate), []
+    for start, stop in ranges:
+        piece = motion.slice(start, stop)
+        step = within(progress, start / motion.n_frames, stop / motion.n_frames)
+        fitted.append(_plant_piece(piece, standing, contacts[start:stop], settings, step))
+    result = join_pieces(fitted, ranges)
+    before, after = forward_kinematics(motion), forward_kinematics(result)
+    feet = _foot_contacts(motion, standing, contacts)
     return Planted(
         result,
         contacts,
-        slide_before=sum(
-            trajectory.slide(motion.skeleton, poses) for trajectory in trajectories
-        ),
-        slide_after=sum(
-            trajectory.slide(motion.skeleton, after) for trajectory in trajectories
-        ),
+        slide_before=sum(foot.slide(before) for foot in feet),
+        slide_after=sum(foot.slide(after) for foot in feet),
     )
+
+
+def _plant_piece(
+    motion: Motion,
+    legs: Sequence[LegJoints],
+    contacts: Flags,
+    settings: PlantSettings,
+    progress: Progress,
+) -> Motion:
+    """Return the piece of a take with its feet planted."""
+    joints = [joint for leg in legs for joint in (*leg.chain, leg.toe) if joint is not None]
+    start = FittedMotion(motion, motion, tuple(joints), settings.move_root)
+    feet = _foot_contacts(motion, legs, contacts)
+    return fit_motion(start, planting_goals(start, feet, settings), progress).motion
+
+
+def _foot_contacts(
+    motion: Motion, legs: Sequence[LegJoints], contacts: Flags
+) -> list[FootContact]:
+    poses = forward_kinematics(motion)
+    return [
+        find_foot_contact(motion, poses, leg, contacts[:, SIDES.index(leg.side)])
+        for leg in legs
+    ]
 
 
 def _join_segments(motion: Motion, results: Sequence[Planted]) -> Planted:
@@ -203,72 +169,6 @@ def _join_segments(motion: Motion, results: Sequence[Planted]) -> Planted:
         slide_before=sum(result.slide_before for result in results),
         slide_after=sum(result.slide_after for result in results),
     )
-
-
-def _plan_trajectories(
-    motion: Motion,
-    poses: WorldPoses,
-    legs: Sequence[LegJoints],
-    contacts: Flags,
-    settings: PlantSettings,
-) -> list[FootTrajectory]:
-    """Plan the trajectory of each foot separately."""
-    return [
-        plan_foot_trajectory(
-            motion,
-            poses,
-            leg,
-            contacts[:, SIDES.index(leg.side)],
-            blend=settings.blend,
-            hold=settings.hold,
-            hold_rotation=settings.hold_rotation,
-            floor=settings.floor,
-        )
-        for leg in legs
-    ]
-
-
-def _root_offset(
-    motion: Motion,
-    poses: WorldPoses,
-    trajectories: Sequence[FootTrajectory],
-    settings: PlantSettings,
-) -> Array:
-    """Return the root offset that lets the legs reach, (n_frames, 3); 0 if it may not move."""
-    if not settings.move_root or motion.n_frames == 1:
-        return np.zeros_like(motion.root_positions)
-    return compute_root_offset(
-        motion.skeleton,
-        poses,
-        trajectories,
-        motion.frame_rate,
-        softness=settings.softness,
-        blend=settings.blend,
-    )
-
-
-def _apply_trajectory(
-    motion: Motion, poses: WorldPoses, trajectory: FootTrajectory, softness: float
-) -> Motion:
-    """Return the motion whose ankle, foot and toes follow the trajectory.
-
-    `poses` are those of the unchanged motion.
-    """
-    leg = trajectory.leg
-    result = reach(motion, leg.chain, trajectory.ankle, ReachSettings(softness=softness))
-    for joint, foot_rotation in (
-        (leg.ankle, trajectory.foot_rotation),
-        (leg.toe, trajectory.toe_rotation),
-    ):
-        if joint is not None:
-            parent_rotations = forward_kinematics(result).rotations[
-                :, motion.skeleton.parents[joint]
-            ]
-            rotations = result.rotations.copy()
-            target = multiply(foot_rotation, poses.rotations[:, joint])
-            rotations[:, joint] = multiply(inverse(parent_rotations), target)
-            result = result.with_poses(rotations)
-    return result
 
 
 def _require_legs(motion: Motion, humanoid_map: HumanoidMap) -> tuple[LegJoints, ...]:

@@ -3,7 +3,6 @@
 from .bone_rotations import FollowRotation, StayStill
 from .contact_points import BonePoint, FollowPosition, StayAtHeight, StayInPlace
 from .follow_source import FollowSource
-from .goal import Goal
 from .hinge_limit import HingeLimit, hinge_axis, hinge_flexion
 
 __all__ = [
@@ -11,7 +10,6 @@ __all__ = [
     "FollowPosition",
     "FollowRotation",
     "FollowSource",
-    "Goal",
     "HingeLimit",
     "StayAtHeight",
     "StayInPlace",

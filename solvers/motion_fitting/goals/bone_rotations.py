@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 from ...arrays import Array
 from ...rotations import inverse, multiply, rotation_vector_from_quaternion
-from ..normal_equations import NormalEquations
-from ..variables import FittedMotion
+from .. import FittedMotion, NormalEquations
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +49,9 @@ class StayStill:
     def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
         """Add residuals and derivatives at the present poses."""
         rotations = fitted.poses.rotations[:, self.bone]
-        turns = rotation_vector_from_quaternion(multiply(rotations[1:], inverse(rotations[:-1])))
+        turns = rotation_vector_from_quaternion(
+            multiply(rotations[1:], inverse(rotations[:-1]))
+        )
         scale = self.weight[:, None] * (fitted.motion.frame_rate / self.tolerance)
         jacobian = fitted.rotation_jacobian(self.bone)
         equations.add_steps(

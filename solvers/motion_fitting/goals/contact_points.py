@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
+from ...motion import WorldPoses
 from ...rotations import rotate
-from ..normal_equations import NormalEquations
-from ..variables import FittedMotion
+from .. import FittedMotion, NormalEquations
 
 
 class BonePoint(NamedTuple):
@@ -19,9 +19,8 @@ class BonePoint(NamedTuple):
     offset: Array
     """From the joint, in the axes of the rest pose, shape (3,), meters."""
 
-    def position(self, fitted: FittedMotion) -> Array:
+    def position(self, poses: WorldPoses) -> Array:
         """Return where it is in the world, (n_frames, 3)."""
-        poses = fitted.poses
         return np.asarray(
             poses.positions[:, self.bone] + rotate(poses.rotations[:, self.bone], self.offset)
         )
@@ -31,7 +30,7 @@ def loaded_jacobian(points: Sequence[BonePoint], load: Array, fitted: FittedMoti
     """Return the derivative of the loaded mean of points, (n_frames, 3, n_variables)."""
     jacobian = np.zeros((len(load), 3, fitted.n_variables))
     for index, point in enumerate(points):
-        derivative = fitted.point_jacobian(point.position(fitted), point.bone)
+        derivative = fitted.point_jacobian(point.position(fitted.poses), point.bone)
         jacobian += load[:, index, None, None] * derivative
     return jacobian
 
@@ -57,15 +56,16 @@ class StayInPlace:
 
     def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
         """Add residuals and derivatives at the present poses."""
-        positions = np.stack([point.position(fitted) for point in self.points], axis=1)
+        positions = np.stack([point.position(fitted.poses) for point in self.points], axis=1)
         load = 0.5 * (self.load[1:] + self.load[:-1])
         moved = np.einsum("fp,fpi->fi", load, np.diff(positions, axis=0))
         scale = self.weight * (fitted.motion.frame_rate / self.tolerance)
-        before = after = 0.0
+        before = np.zeros((len(load), 3, fitted.n_variables))
+        after = np.zeros_like(before)
         for index, point in enumerate(self.points):
             derivative = fitted.point_jacobian(positions[:, index], point.bone)
-            before = before - load[:, index, None, None] * derivative[:-1]
-            after = after + load[:, index, None, None] * derivative[1:]
+            before -= load[:, index, None, None] * derivative[:-1]
+            after += load[:, index, None, None] * derivative[1:]
         equations.add_steps(moved * scale, before * scale[..., None], after * scale[..., None])
 
 
@@ -94,7 +94,9 @@ class StayAtHeight:
 
     def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
         """Add residuals and derivatives at the present poses."""
-        heights = np.stack([point.position(fitted)[:, 2] for point in self.points], axis=1)
+        heights = np.stack(
+            [point.position(fitted.poses)[:, 2] for point in self.points], axis=1
+        )
         error = np.sum(self.load * (heights - self.above), axis=1) - self.height
         scale = self.weight / self.tolerance
         jacobian = loaded_jacobian(self.points, self.load, fitted)[:, 2:]
@@ -120,7 +122,7 @@ class FollowPosition:
 
     def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
         """Add residuals and derivatives at the present poses."""
-        position, scale = self.point.position(fitted), self.weight / self.tolerance
+        position, scale = self.point.position(fitted.poses), self.weight / self.tolerance
         jacobian = fitted.point_jacobian(position, self.point.bone)
         equations.add_frames(
             (position - self.wanted) * scale[:, None], jacobian * scale[:, None, None]

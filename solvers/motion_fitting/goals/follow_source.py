@@ -2,11 +2,8 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from ...arrays import Array
-from ..normal_equations import NormalEquations
-from ..variables import FittedMotion
+from .. import FittedMotion, NormalEquations
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,4 +28,5 @@ class FollowSource:
         equations.add_variables(changes * weights, weights)
         if len(changes) > 2:
             smoothness = weights * (self.time_constants * fitted.motion.frame_rate) ** 2
-            equations.add_second_differences(np.diff(changes, 2, axis=0) * smoothness, smoothness)
+            bends = changes[2:] - 2.0 * changes[1:-1] + changes[:-2]
+            equations.add_second_differences(bends * smoothness, smoothness)

@@ -6,8 +6,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...rotations import inverse, rotate
-from ..normal_equations import NormalEquations
-from ..variables import FittedMotion
+from .. import FittedMotion, NormalEquations
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "denoising/marker_gaps/gap_boundaries.MEDIAN_NORM",
         "denoising/denoise.HALF_CONFIDENCE_DEVIATION",
         "denoising/motion_model/motion_mixture.N_CHANNELS",
-        "denoising/feet/foot_trajectory.ADULT_LEG_M",
+        "denoising/feet/foot_contact.ADULT_LEG_M",
         "denoising/quality/bone_drift.*_PERCENTILE",
         "denoising/quality/worst_issues.SEVERE_EXCESS",
         "signals/smooth_correction.FADE_TIME_CONSTANTS",

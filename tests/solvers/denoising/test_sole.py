@@ -10,12 +10,18 @@ from solvers.motion import HumanoidMap, Motion, Skeleton, forward_kinematics
 from solvers.samples import GaitSettings, walking_gait
 
 
+def where(points, motion: Motion) -> np.ndarray:
+    """Return the positions of points, (n_frames, n_points, 3)."""
+    poses = forward_kinematics(motion)
+    return np.stack([point.position(poses) for point in points], axis=1)
+
+
 def test_heel_ball_and_tip_are_level_in_a_flat_footed_rest_pose():
     walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
     rest = walk.with_poses(np.tile([1.0, 0, 0, 0], (30, walk.n_joints, 1)))
 
     for leg in find_legs(walk.skeleton):
-        points = sole_points(walk.skeleton, forward_kinematics(rest), leg)[0]
+        points = where(sole_points(walk.skeleton, leg), rest)[0]
         assert points.shape == (3, 3)
         assert np.ptp(points[:, 2]) < 1e-9
         assert (np.diff(points[:, 1]) < 0).all()  # from heel to tip, facing -Y
@@ -29,7 +35,7 @@ def test_a_foot_without_toes_ends_in_its_end_site():
     roles = {"leftUpperLeg": "thigh_l", "leftLowerLeg": "calf_l", "leftFoot": "foot_l"}
     (leg,) = find_legs(skeleton, HumanoidMap(roles))
 
-    points = sole_points(skeleton, forward_kinematics(still), leg)
+    points = where(sole_points(skeleton, leg), still)
 
     assert_allclose(points[0], [[0.1, 0.03, 0.0], [0.1, -0.15, 0.0]], atol=1e-9)
 

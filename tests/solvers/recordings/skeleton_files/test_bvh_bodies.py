@@ -73,7 +73,7 @@ def test_a_body_among_others_moves_as_alone(duet, number, body):
     assert_allclose(found.root_positions, alone.root_positions, atol=1e-12)
 
 
-def test_rest_poses_with_another_axis_up_turn_alike(recordings, tmp_path):
+def test_all_bodies_turn_as_the_first_whose_rest_pose_is_different(recordings, tmp_path):
     """Z is up in the motion and Y in the rest pose, as some programs write it."""
     half = np.sqrt(0.5)
     turn = np.array([half, half, 0.0, 0.0])

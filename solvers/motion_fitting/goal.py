@@ -2,8 +2,8 @@
 
 from typing import Protocol
 
-from ..normal_equations import NormalEquations
-from ..variables import FittedMotion
+from .normal_equations import NormalEquations
+from .variables import FittedMotion
 
 
 class Goal(Protocol):

@@ -1,0 +1,47 @@
+"""Settings of planting feet."""
+
+from dataclasses import dataclass
+
+from ...settings import Settings, setting
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlantSettings(Settings):
+    """Settings of `plant_feet`."""
+
+    blend: float = setting(
+        0.3,
+        "Time to blend a planted foot back to its own motion; higher is softer and longer",
+        unit="s", minimum=0.02, maximum=2.0,
+    )  # fmt: skip
+    hold: float = setting(
+        10.0,
+        "Longest time a sliding foot stays fixed before it may creep; higher is stricter",
+        unit="s",
+        minimum=0.5,
+        maximum=1000.0,
+        advanced=True,
+        label="Max Contact Time",
+    )
+    hold_rotation: bool = setting(
+        True,
+        "Also keep feet that stand flat from turning and tilting",
+        label="Lock Foot Rotation",
+    )
+    floor: bool = setting(
+        True,
+        "Level planted feet that are near the floor, all at one height",
+        label="Level Floor",
+    )
+    softness: float = setting(
+        0.01,
+        "Fraction of the leg length held in reserve; higher bends knees and lowers hips more",
+        minimum=0.0, maximum=0.2, advanced=True, label="Leg Stretch Limit",
+    )  # fmt: skip
+    spare_knees: bool = setting(
+        True, "Let hips and heels give way so that knees bend smoothly",
+        label="Protect Knees",
+    )  # fmt: skip
+    move_root: bool = setting(
+        True, "Shift the hips slightly and smoothly where a leg cannot reach", label="Move Hips"
+    )

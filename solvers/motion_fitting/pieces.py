@@ -1,0 +1,35 @@
+"""Fit long takes in pieces that overlap, so that memory does not grow with the take."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from ..motion import Motion
+from ..rotations import slerp
+
+MAX_FRAMES = 4000
+"""Frames that are fitted at once. It bounds the memory: about 50 kB for a frame of two legs."""
+OVERLAP_S = 2.0
+"""Seconds in which two pieces overlap, and over which one passes into the next. It guards
+contacts at the end of a piece."""
+
+
+def piece_ranges(n_frames: int, frame_rate: float) -> list[tuple[int, int]]:
+    """Return first frames of the pieces of a take, and the frames after their last ones."""
+    overlap = min(round(OVERLAP_S * frame_rate), MAX_FRAMES // 2)
+    starts = range(0, max(n_frames - overlap, 1), MAX_FRAMES - overlap)
+    return [(start, min(start + MAX_FRAMES, n_frames)) for start in starts]
+
+
+def join_pieces(pieces: Sequence[Motion], ranges: Sequence[tuple[int, int]]) -> Motion:
+    """Return the take, blended linearly from one piece to the next where they overlap."""
+    rotations, roots = pieces[0].rotations, pieces[0].root_positions
+    for piece, ((_, end), (start, _)) in zip(pieces[1:], pairwise(ranges), strict=True):
+        share = np.linspace(0.0, 1.0, end - start + 2)[1:-1]
+        n = end - start
+        turned = slerp(rotations[start:], piece.rotations[:n], share[:, None])
+        moved = roots[start:] + share[:, None] * (piece.root_positions[:n] - roots[start:])
+        rotations = np.concatenate([rotations[:start], turned, piece.rotations[n:]])
+        roots = np.concatenate([roots[:start], moved, piece.root_positions[n:]])
+    return pieces[0].with_poses(rotations, roots)

@@ -1,0 +1,143 @@
+"""Derivatives of goals agree with differences; a goal is met where nothing opposes it."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.motion import Motion, forward_kinematics
+from solvers.motion_fitting import FittedMotion, fit_motion
+from solvers.motion_fitting.goals import (
+    BonePoint,
+    FollowPosition,
+    FollowRotation,
+    FollowSource,
+    HingeLimit,
+    StayAtHeight,
+    StayInPlace,
+    StayStill,
+    hinge_axis,
+    hinge_flexion,
+)
+from solvers.motion_fitting.normal_equations import NormalEquations
+from solvers.rotations import angle_between
+from solvers.samples import GaitSettings, walking_gait
+
+N_FRAMES = 12
+LEG = ("LeftUpLeg", "LeftLeg", "LeftFoot")
+
+
+@pytest.fixture(scope="module")
+def walk() -> Motion:
+    return walking_gait(GaitSettings(duration=1.0, frame_rate=30.0)).slice(0, N_FRAMES)
+
+
+@pytest.fixture
+def start(walk) -> FittedMotion:
+    """The leg and the root may change."""
+    return FittedMotion(walk, walk, tuple(walk.skeleton.index(name) for name in LEG))
+
+
+@pytest.fixture
+def shaken(start, rng) -> FittedMotion:
+    """The same, a few degrees away from its source."""
+    return start.moved(0.05 * rng.normal(size=(N_FRAMES, start.n_variables)))
+
+
+def all_goals(start: FittedMotion, rng) -> dict[str, object]:
+    """One goal of each kind."""
+    _, knee, ankle = start.joints
+    points = (BonePoint(ankle, np.array([0.0, 0.05, -0.06])), BonePoint(knee, np.zeros(3)))
+    load = rng.dirichlet((1.0, 1.0), N_FRAMES)
+    frames, steps = rng.uniform(size=N_FRAMES), rng.uniform(size=(N_FRAMES - 1, 3))
+    axis = hinge_axis(start, knee, ankle)
+    return {
+        "follow source": FollowSource(
+            rng.uniform(0.1, 1.0, start.n_variables), rng.uniform(0.1, 1.0, start.n_variables)
+        ),
+        "in place": StayInPlace(points, load, steps, 0.01),
+        "at height": StayAtHeight(points, load, np.array([0.02, 0.4]), 0.01, frames, 0.01),
+        "position": FollowPosition(points[0], rng.normal(size=(N_FRAMES, 3)), frames, 0.1),
+        "rotation": FollowRotation(ankle, start.poses.rotations[:, ankle], 0.1),
+        "still": StayStill(ankle, steps[:, 0], 0.1),
+        "hinge": HingeLimit(knee, ankle, axis, np.full(N_FRAMES, 1.5), 0.1),
+    }
+
+
+def equations(goal, fitted: FittedMotion) -> NormalEquations:
+    found = NormalEquations(N_FRAMES, fitted.n_variables)
+    goal.add_to(found, fitted)
+    return found
+
+
+KINDS = ("follow source", "in place", "at height", "position", "rotation", "still", "hinge")
+
+
+@pytest.mark.parametrize("root_moves", [True, False])
+@pytest.mark.parametrize("kind", KINDS)
+def test_gradient_agrees_with_differences(start, rng, kind, root_moves):
+    """The derivative of a rotation vector is that of a small one, so the change is small."""
+    start = FittedMotion(start.source, start.motion, start.joints, root_moves)
+    fitted = start.moved(0.003 * rng.normal(size=(N_FRAMES, start.n_variables)))
+    goal = all_goals(start, rng)[kind]
+    direction = rng.normal(size=(N_FRAMES, fitted.n_variables))
+
+    above, below = (
+        equations(goal, fitted.moved(sign * 1e-6 * direction)).cost for sign in (1.0, -1.0)
+    )
+
+    slope = np.vdot(equations(goal, fitted).gradient, direction)
+    assert (above - below) / 2e-6 == pytest.approx(slope, rel=0.05)
+
+
+def test_a_motion_without_goals_but_its_source_comes_back(start, shaken):
+    n = start.n_variables
+    follow = FollowSource(np.full(n, 0.1), np.full(n, 0.1))
+
+    fit = fit_motion(shaken, [follow])
+
+    assert fit.has_converged
+    assert angle_between(fit.motion.rotations, start.source.rotations).max() < 1e-3
+    assert_allclose(fit.motion.root_positions, start.source.root_positions, atol=1e-3)
+
+
+def test_a_point_is_brought_where_it_is_wanted(start):
+    """The ankle moves 3 cm forward, which the leg can reach."""
+    ankle, n = start.joints[-1], start.n_variables
+    wanted = start.poses.positions[:, ankle] + (0.0, -0.03, 0.01)
+    position = FollowPosition(BonePoint(ankle, np.zeros(3)), wanted, np.ones(N_FRAMES), 1e-4)
+
+    fit = fit_motion(start, [position, FollowSource(np.full(n, 0.1), np.full(n, 0.1))])
+
+    assert fit.has_converged
+    found = forward_kinematics(fit.motion).positions[:, ankle]
+    assert_allclose(found, wanted, atol=1e-3)
+
+
+def test_a_point_out_of_reach_is_approached_without_stretching(start):
+    """The root stays, and the leg points at a place 2 m away."""
+    start = FittedMotion(start.source, start.motion, start.joints, root_moves=False)
+    hip, _, ankle = start.joints
+    wanted = start.poses.positions[:, hip] + (0.0, -1.2, -1.6)
+    position = FollowPosition(BonePoint(ankle, np.zeros(3)), wanted, np.ones(N_FRAMES), 0.01)
+    follow = FollowSource(np.full(start.n_variables, 1.0), np.full(start.n_variables, 0.1))
+
+    poses = forward_kinematics(fit_motion(start, [position, follow]).motion)
+
+    reach = poses.positions[:, ankle] - poses.positions[:, hip]
+    length = np.linalg.norm(start.source.skeleton.offsets[list(start.joints[1:])], axis=1).sum()
+    assert (np.linalg.norm(reach, axis=1) > 0.92 * length).all()
+    assert (np.linalg.norm(reach, axis=1) < length + 1e-9).all()
+    assert (reach @ (0.0, -0.6, -0.8) > 0.9 * length).all()
+
+
+def test_a_knee_keeps_its_limit(start):
+    _, knee, ankle = start.joints
+    axis = hinge_axis(start, knee, ankle)
+    limit = HingeLimit(knee, ankle, axis, np.full(N_FRAMES, 0.8), 1e-3)
+    n = start.n_variables
+
+    fit = fit_motion(start, [limit, FollowSource(np.full(n, 0.5), np.full(n, 0.05))])
+
+    after = FittedMotion(start.source, fit.motion, start.joints)
+    assert (hinge_flexion(start, knee, ankle, axis) < 0.8).any()
+    assert (hinge_flexion(after, knee, ankle, axis) > 0.79).all()
