@@ -28,11 +28,11 @@ from solvers.rotations.representations import IDENTITY, angle_between
 from solvers.samples import CorruptionSettings, corrupt
 from solvers.signals.spikes import find_runs
 
+from ..first_press.takes import DEVELOPMENT, SCORED
 from ..shared import clips
 from ..shared.report import Report
 from ..shared.tables import Scores
-
-Planter = Callable[[Motion, Flags], Motion]
+from .part_contacts import Planter, contact_tables
 
 SKATING = 1.15
 """The body travels this much farther than the feet carry it, as after a careless retarget."""
@@ -61,6 +61,8 @@ def main() -> None:
                 measure(scores, name, capture, spoil(name, capture), comparable)
             tables.append(scores.markdown())
             print(f"Done: {title}", file=sys.stderr, flush=True)
+        takes = DEVELOPMENT if chosen.dev else SCORED
+        tables += contact_tables(takes, PLANTERS)
     Report(chosen.docs).part("feet", tables, perf_counter() - started)
 
 

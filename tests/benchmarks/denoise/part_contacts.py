@@ -1,0 +1,126 @@
+"""Planted feet in all kinds of movement: kicks, hops, punches, dances, lying down."""
+
+from collections import defaultdict
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from solvers.arrays import Array, Flags
+from solvers.denoising.feet.foot_contact import find_foot_contact
+from solvers.denoising.feet.legs import SIDES, LegJoints, find_legs
+from solvers.denoising.feet.standing_feet import detect_standing_feet
+from solvers.motion import Motion, find_humanoid_map, forward_kinematics
+from solvers.rotations import angle_between
+from solvers.rotations.representations import IDENTITY
+from solvers.signals import find_runs
+
+from ..first_press.takes import Take, read
+from ..shared.noise import seeded
+from ..shared.tables import number, table
+
+Planter = Callable[[Motion, Flags], Motion]
+
+JITTER_M, JITTER_S = 0.01, 0.1
+"""Meters of slow jitter of the root, and seconds over which it changes."""
+COLUMNS = (
+    "slide, cm/s", "worst drift, mm", "knee, times given", "worst knee",
+    "largest change, deg", "worst change", "hips, times given", "worst hips", "hips moved, cm",
+)  # fmt: skip
+
+
+def contact_tables(takes: Sequence[Take], planters: Mapping[str, Planter]) -> list[str]:
+    """Return a table for each kind of input.
+
+    Slide: mean speed of the loaded sole over the floor in contact. Drift: farthest way of the
+    sole within a contact. Knee and hips: largest acceleration of the knee's angle and of the
+    root, as a ratio to the motion that is planted. Change: largest rotation of any joint.
+    """
+    tables = []
+    for title, spoil in INPUTS.items():
+        figures: dict[str, list[list[float]]] = defaultdict(list)
+        for take in takes:
+            given = spoil(read(take))
+            humanoid = find_humanoid_map(given.skeleton)
+            legs = find_legs(given.skeleton, humanoid)
+            contacts = detect_standing_feet(given, humanoid, legs)
+            if not legs or not contacts.any():
+                continue
+            for name, plant in planters.items():
+                figures[name].append(_figures(given, plant(given, contacts), legs, contacts))
+        rows = {
+            name: [
+                number(float((np.max if "worst" in column else np.mean)(values)))
+                for column, values in zip(COLUMNS, np.transpose(rows), strict=True)
+            ]
+            for name, rows in figures.items()
+        }
+        n_takes = len(next(iter(figures.values())))
+        tables.append(f"**{title}, {n_takes} takes**\n\n{table(['method', *COLUMNS], rows)}\n")
+    return tables
+
+
+def _figures(
+    given: Motion, planted: Motion, legs: Sequence[LegJoints], contacts: Flags
+) -> list[float]:
+    speeds, drifts = _slides(given, planted, legs, contacts)
+    knee = _worst_knee(planted, legs) / max(_worst_knee(given, legs), 1e-9)
+    change = float(np.degrees(angle_between(planted.rotations, given.rotations)).max())
+    hips = _worst_hips(planted) / max(_worst_hips(given), 1e-9)
+    moved = np.linalg.norm(planted.root_positions - given.root_positions, axis=1).max()
+    return [speeds, drifts, knee, knee, change, change, hips, hips, 100.0 * float(moved)]
+
+
+def _slides(
+    given: Motion, planted: Motion, legs: Sequence[LegJoints], contacts: Flags
+) -> tuple[float, float]:
+    """Return the mean speed in cm/s and the longest drift in mm of the loaded soles."""
+    before, after = forward_kinematics(given), forward_kinematics(planted)
+    speeds, drifts = [np.zeros(0)], [0.0]
+    for leg in legs:
+        contact = contacts[:, SIDES.index(leg.side)]
+        foot = find_foot_contact(given, before, leg, contact)
+        positions = np.stack([point.position(after) for point in foot.points], axis=1)
+        load = 0.5 * (foot.load[1:] + foot.load[:-1])
+        steps = np.einsum("fp,fpi->fi", load, np.diff(positions, axis=0))[:, :2]
+        both = contact[1:] & contact[:-1]
+        speeds.append(np.linalg.norm(steps[both], axis=1) * given.frame_rate)
+        drifts += [
+            float(np.linalg.norm(np.cumsum(steps[start:stop], axis=0), axis=1).max())
+            for start, stop in find_runs(both)
+        ]
+    found = np.concatenate(speeds)
+    return 100.0 * float(found.mean()) if len(found) else 0.0, 1000.0 * max(drifts)
+
+
+def _worst_knee(motion: Motion, legs: Sequence[LegJoints]) -> float:
+    bends = angle_between(motion.rotations[:, [leg.knee for leg in legs]], IDENTITY)
+    return float(np.abs(np.diff(bends, 2, axis=0)).max())
+
+
+def _worst_hips(motion: Motion) -> float:
+    return float(np.linalg.norm(np.diff(motion.root_positions, 2, axis=0), axis=1).max())
+
+
+def _as_it_is(motion: Motion) -> Motion:
+    return motion
+
+
+def _jittering(motion: Motion) -> Motion:
+    noise: Array = seeded("contacts").normal(size=motion.root_positions.shape)
+    slow = gaussian_filter1d(noise, JITTER_S * motion.frame_rate, axis=0)
+    slow *= JITTER_M / slow.std()
+    return motion.with_poses(root_positions=motion.root_positions + slow)
+
+
+def _skating(motion: Motion) -> Motion:
+    place = motion.root_positions.copy()
+    place[:, :2] += 0.15 * (place[:, :2] - place[0, :2])
+    return motion.with_poses(root_positions=place)
+
+
+INPUTS: dict[str, Callable[[Motion], Motion]] = {
+    "All kinds of movement, as they are": _as_it_is,
+    "A root that jitters by 1 cm": _jittering,
+    "Travel 15 % too long": _skating,
+}
