@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...arrays import Array
 from ...motion import Motion, WorldPoses
 from ...motion_fitting import FittedMotion, Goal
 from ...motion_fitting.goals import (
@@ -51,16 +52,22 @@ wrong way."""
 
 
 def planting_goals(
-    fitted: FittedMotion, contacts: Sequence[FootContact], settings: PlantSettings
+    fitted: FittedMotion,
+    contacts: Sequence[FootContact],
+    settings: PlantSettings,
+    ankle_weights: Sequence[Array],
 ) -> list[Goal]:
-    """Return the goals for a motion that is not changed yet, from the contacts of its feet."""
+    """Return the goals for a motion that is not changed yet, from the contacts of its feet.
+
+    `ankle_weights` say for each foot how firmly its ankle keeps its path, shape (n_frames,).
+    """
     poses = fitted.poses
     goals = [
         goal
-        for contact in contacts
+        for contact, weights in zip(contacts, ankle_weights, strict=True)
         for goal in (
             *_contact_goals(contact, settings),
-            *_source_goals(fitted, poses, contact, settings),
+            *_source_goals(fitted, poses, contact, settings, weights),
         )
     ]
     return [*goals, _smoothness(fitted, contacts, settings)]
@@ -87,14 +94,17 @@ def _contact_goals(contact: FootContact, settings: PlantSettings) -> list[Goal]:
 
 
 def _source_goals(
-    fitted: FittedMotion, poses: WorldPoses, contact: FootContact, settings: PlantSettings
+    fitted: FittedMotion,
+    poses: WorldPoses,
+    contact: FootContact,
+    settings: PlantSettings,
+    weights: Array,
 ) -> list[Goal]:
     """Return what keeps foot and knee as they were recorded."""
     ankle = contact.leg.ankle
-    everywhere = contact.contact.astype(np.float64)
     point = BonePoint(ankle, np.zeros(3))
     goals: list[Goal] = [
-        FollowPosition(point, poses.positions[:, ankle], everywhere, ANKLE_M),
+        FollowPosition(point, poses.positions[:, ankle], weights * contact.contact, ANKLE_M),
         FollowRotation(ankle, poses.rotations[:, ankle], FOOT_RAD),
     ]
     knee = contact.leg.knee

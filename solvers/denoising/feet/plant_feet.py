@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Flags
+from ...arrays import Array, Flags
 from ...errors import InvalidMotionError
 from ...motion import Motion, forward_kinematics
 from ...motion.humanoid import HumanoidMap, find_humanoid_map
@@ -46,6 +46,7 @@ def plant_feet(
     *,
     humanoid_map: HumanoidMap | None = None,
     settings: PlantSettings = DEFAULT_SETTINGS,
+    ankle_weights: Array | None = None,
     progress: Progress = unwatched,
 ) -> Planted:
     """Return the motion with each foot fixed to the floor while in contact.
@@ -67,6 +68,9 @@ def plant_feet(
     humanoid_map : HumanoidMap
         Identifies the legs; found by name and structure if not given.
     settings : PlantSettings
+    ankle_weights : shape (n_frames, 2), left and right
+        How firmly the ankle of a foot in contact keeps its path: 1 by default, more where it
+        was measured well. A contact in which such an ankle moves is not held.
     progress : Progress
 
     Returns
@@ -89,6 +93,8 @@ def plant_feet(
     humanoid_map = humanoid_map or find_humanoid_map(motion.skeleton)
     legs = _require_legs(motion, humanoid_map)
     contacts = None if contacts is None else _check_contacts(contacts, motion)
+    if ankle_weights is None:
+        ankle_weights = np.ones((motion.n_frames, len(SIDES)))
     cuts, results = find_shot_boundaries(motion), []
     for start, stop in shot_ranges(motion, cuts):
         segment = motion.slice(start, stop) if cuts else motion
@@ -103,7 +109,8 @@ def plant_feet(
             results.append(Planted(segment, standing, 0.0, 0.0))
         else:
             step = within(progress, start / motion.n_frames, stop / motion.n_frames)
-            results.append(_plant_segment(segment, legs, standing, settings, step))
+            weights = ankle_weights[start:stop]
+            results.append(_plant_segment(segment, legs, standing, weights, settings, step))
     progress(1.0, "Planted the feet")
     return _join_segments(motion, results) if cuts else results[0]
 
@@ -112,6 +119,7 @@ def _plant_segment(
     motion: Motion,
     legs: Sequence[LegJoints],
     contacts: Flags,
+    ankle_weights: Array,
     settings: PlantSettings,
     progress: Progress,
 ) -> Planted:
@@ -124,7 +132,10 @@ def _plant_segment(
     for start, stop in ranges:
         piece = motion.slice(start, stop)
         step = within(progress, start / motion.n_frames, stop / motion.n_frames)
-        fitted.append(_plant_piece(piece, standing, contacts[start:stop], settings, step))
+        weights = ankle_weights[start:stop]
+        fitted.append(
+            _plant_piece(piece, standing, contacts[start:stop], weights, settings, step)
+        )
     result = join_pieces(fitted, ranges)
     before, after = forward_kinematics(motion), forward_kinematics(result)
     feet = _foot_contacts(motion, standing, contacts)
@@ -140,6 +151,7 @@ def _plant_piece(
     motion: Motion,
     legs: Sequence[LegJoints],
     contacts: Flags,
+    ankle_weights: Array,
     settings: PlantSettings,
     progress: Progress,
 ) -> Motion:
@@ -147,7 +159,8 @@ def _plant_piece(
     joints = [joint for leg in legs for joint in (*leg.chain, leg.toe) if joint is not None]
     start = FittedMotion(motion, motion, tuple(joints), settings.move_root)
     feet = _foot_contacts(motion, legs, contacts)
-    return fit_motion(start, planting_goals(start, feet, settings), progress).motion
+    weights = [ankle_weights[:, SIDES.index(leg.side)] for leg in legs]
+    return fit_motion(start, planting_goals(start, feet, settings, weights), progress).motion
 
 
 def _foot_contacts(
