@@ -1,4 +1,4 @@
-"""Fit motions to goals: effectors in place, reach, limits, with the least smooth change."""
+"""Fit motions to goals, such as soles in place, with the least and smoothest change."""
 
 from .fit_motion import Fit, fit_motion
 from .goal import Goal

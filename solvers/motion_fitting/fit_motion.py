@@ -11,7 +11,7 @@ from .variables import FittedMotion
 
 MAX_ROUNDS = 8
 """Number of steps. It bounds the time; takes of all kinds need three to five."""
-MAX_HALVINGS = 4
+MAX_HALVINGS = 8
 """Number of times that a step is halved which makes the cost higher. It bounds the time."""
 SMALL_DECREASE = 1e-2
 """Relative decrease of the cost that ends the fit, a ratio. Chosen by hand: x0.5 costs nothing,
@@ -38,7 +38,10 @@ class Fit:
 
 
 def fit_motion(
-    start: FittedMotion, goals: Sequence[Goal], progress: Progress = unwatched
+    start: FittedMotion,
+    goals: Sequence[Goal],
+    progress: Progress = unwatched,
+    message: str = "Fitting the motion",
 ) -> Fit:
     """Return the motion with the least sum of squares of its goals' residuals.
 
@@ -48,6 +51,8 @@ def fit_motion(
         The motion, and what of it may change.
     goals : sequence of Goal
     progress : Progress
+    message : str
+        What is shown as progress.
 
     Raises
     ------
@@ -56,7 +61,7 @@ def fit_motion(
     """
     fitted, equations, damping = start, _equations(start, goals), 1.0
     for number in range(1, MAX_ROUNDS + 1):
-        progress(number / (MAX_ROUNDS + 1), "Planting the feet")
+        progress(number / (MAX_ROUNDS + 1), message)
         step = equations.step()
         for _ in range(MAX_HALVINGS):
             trial = fitted.moved(damping * step)
@@ -66,7 +71,8 @@ def fit_motion(
             damping *= 0.5
         else:
             return Fit(fitted.motion, False, equations.cost, number)
-        has_converged = equations.cost - tried.cost <= SMALL_DECREASE * tried.cost
+        is_small = equations.cost - tried.cost <= SMALL_DECREASE * tried.cost
+        has_converged = is_small and damping == 1.0
         fitted, equations, damping = trial, tried, min(1.0, 2.0 * damping)
         if has_converged:
             return Fit(fitted.motion, True, equations.cost, number)

@@ -17,7 +17,7 @@ contacts at the end of a piece."""
 
 def piece_ranges(n_frames: int, frame_rate: float) -> list[tuple[int, int]]:
     """Return first frames of the pieces of a take, and the frames after their last ones."""
-    overlap = min(round(OVERLAP_S * frame_rate), MAX_FRAMES // 2)
+    overlap = min(max(2, round(OVERLAP_S * frame_rate)), MAX_FRAMES // 2)
     starts = range(0, max(n_frames - overlap, 1), MAX_FRAMES - overlap)
     return [(start, min(start + MAX_FRAMES, n_frames)) for start in starts]
 

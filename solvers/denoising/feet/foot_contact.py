@@ -1,7 +1,7 @@
 """When and where a foot bears on the floor: what of its sole must not move."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d  # reflects ends; smooth_gaussian repeats them
@@ -40,15 +40,17 @@ class FootContact:
     Attributes
     ----------
     leg : LegJoints
+    size : float
+        Length of the leg over that of an adult, 0.9 m.
     contact : bool, shape (n_frames,)
     points : sequence of BonePoint
         Of the sole.
     load : shape (n_frames, n_points)
         Fraction of the load on each point.
     standing_heights : shape (n_points,), meters
-        Height of each point above the floor while the whole sole rests.
+        Height of each point above the ball while the whole sole rests.
     floor : float, meters
-        Median height of the loaded sole in contact.
+        Median height of the ball in contact.
     steps : shape (n_frames - 1, 3), 0 to 1
         How certainly the loaded sole rests from each frame to the next, by direction.
     on_floor : shape (n_frames,), 0 to 1
@@ -58,6 +60,7 @@ class FootContact:
     """
 
     leg: LegJoints
+    size: float
     contact: Flags
     points: Sequence[BonePoint]
     load: Array
@@ -66,6 +69,17 @@ class FootContact:
     steps: Array
     on_floor: Array
     flat: Array
+
+    def slice(self, start: int, stop: int) -> "FootContact":
+        """Return the contact in frames `start` up to but without `stop`."""
+        return replace(
+            self,
+            contact=self.contact[start:stop],
+            load=self.load[start:stop],
+            steps=self.steps[start : stop - 1],
+            on_floor=self.on_floor[start:stop],
+            flat=self.flat[start : stop - 1],
+        )
 
     def slide(self, poses: WorldPoses) -> float:
         """Return the distance in meters that the loaded part of the sole covers in contact."""
@@ -108,7 +122,7 @@ def find_foot_contact(
             near = contact & (distance < MAX_FLOOR_DISTANCE_M * size)
             on_floor[:-1] = near[:-1] * steps[:, 2]
     flat = _flatness(poses.rotations[:, leg.ankle], contact, load, rate)
-    return FootContact(leg, contact, points, load, standing, floor, steps, on_floor, flat)
+    return FootContact(leg, size, contact, points, load, standing, floor, steps, on_floor, flat)
 
 
 def _both_in_contact(contact: Flags) -> Flags:

@@ -24,8 +24,8 @@ from .foot_contact import FootContact
 from .plant_settings import PlantSettings
 
 ROOT_M = 0.01
-"""Meters by which the root may move. Chosen by hand: x0.5 costs 2.5 %, x2 gains 2.1 % and
-lets the hips jerk more."""
+"""Meters, for a leg of 0.9 m, by which the root may move. Chosen by hand: x0.5 costs
+2.5 %, x2 gains 2.1 % and lets the hips jerk more."""
 HIP_RAD = np.radians(4.0)
 """Radians of a hip, and of toes. Chosen by hand: x0.5 gains 1.1 %, x2 costs 1.7 %."""
 KNEE_RAD, LOOSE_KNEE_RAD = np.radians(3.0), np.radians(8.0)
@@ -38,11 +38,11 @@ FOOT_RAD = np.radians(2.5)
 """Radians of a foot in the world. Chosen by hand: x0.5 costs 2.1 %, x2 gains 2.0 % and turns
 feet farther."""
 ANKLE_M = 0.02
-"""Meters by which the ankle may leave its path in contact. Chosen by hand: x0.5 gains 3.7 % and
-makes skating feet creep, x2 costs 9.6 %."""
+"""Meters, for a leg of 0.9 m, by which the ankle may leave its path in contact. Chosen by
+hand: x0.5 gains 3.7 % and makes skating feet creep, x2 costs 9.6 %."""
 FLOOR_M = 0.002
-"""Meters by which a planted sole may be off the floor. Chosen by hand: x0.5 costs 0.4 %, x2
-gains 0.5 %."""
+"""Meters, for a leg of 0.9 m, by which a planted sole may be off the floor. Chosen by hand:
+x0.5 costs 0.4 %, x2 gains 0.5 %."""
 MAX_TURN_RAD_S = np.radians(2.0)
 """Radians per second by which a foot may turn while it rests flat. Chosen by hand: x0.5 costs
 nothing, x2 costs nothing."""
@@ -75,7 +75,7 @@ def planting_goals(
 
 def _contact_goals(contact: FootContact, settings: PlantSettings) -> list[Goal]:
     """Return what the loaded sole has to meet."""
-    creep = ANKLE_M / settings.hold
+    creep = ANKLE_M * contact.size / settings.hold
     goals: list[Goal] = [StayInPlace(contact.points, contact.load, contact.steps, creep)]
     if settings.floor and contact.on_floor.any():
         goals.append(
@@ -85,7 +85,7 @@ def _contact_goals(contact: FootContact, settings: PlantSettings) -> list[Goal]:
                 contact.standing_heights,
                 contact.floor,
                 contact.on_floor,
-                FLOOR_M,
+                FLOOR_M * contact.size,
             )
         )
     if settings.hold_rotation and contact.flat.any():
@@ -104,7 +104,9 @@ def _source_goals(
     ankle = contact.leg.ankle
     point = BonePoint(ankle, np.zeros(3))
     goals: list[Goal] = [
-        FollowPosition(point, poses.positions[:, ankle], weights * contact.contact, ANKLE_M),
+        FollowPosition(
+            point, poses.positions[:, ankle], weights * contact.contact, ANKLE_M * contact.size
+        ),
         FollowRotation(ankle, poses.rotations[:, ankle], FOOT_RAD),
     ]
     knee = contact.leg.knee
@@ -130,7 +132,8 @@ def _smoothness(
     fitted: FittedMotion, contacts: Sequence[FootContact], settings: PlantSettings
 ) -> FollowSource:
     """Return what keeps the change of each variable small and smooth."""
-    tolerances = np.full(fitted.n_variables, ROOT_M)
+    size = float(np.mean([contact.size for contact in contacts]))
+    tolerances = np.full(fitted.n_variables, ROOT_M * size)
     fades = np.full(fitted.n_variables, settings.blend / FADE_TIME_CONSTANTS)
     knee = KNEE_RAD if settings.spare_knees else LOOSE_KNEE_RAD
     for leg in (contact.leg for contact in contacts):

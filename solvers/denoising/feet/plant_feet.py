@@ -128,49 +128,48 @@ def _plant_segment(
     if not standing:
         progress(1.0, "No foot is in contact")
         return Planted(motion, contacts, 0.0, 0.0)
+    poses = forward_kinematics(motion)
+    feet = [
+        find_foot_contact(motion, poses, leg, contacts[:, SIDES.index(leg.side)])
+        for leg in standing
+    ]
     ranges, fitted = piece_ranges(motion.n_frames, motion.frame_rate), []
-    for start, stop in ranges:
-        piece = motion.slice(start, stop)
-        step = within(progress, start / motion.n_frames, stop / motion.n_frames)
-        weights = ankle_weights[start:stop]
+    for number, (start, stop) in enumerate(ranges):
         fitted.append(
-            _plant_piece(piece, standing, contacts[start:stop], weights, settings, step)
+            _plant_piece(
+                motion.slice(start, stop),
+                [foot.slice(start, stop) for foot in feet],
+                ankle_weights[start:stop],
+                settings,
+                within(progress, number / len(ranges), (number + 1) / len(ranges)),
+            )
         )
     result = join_pieces(fitted, ranges)
-    before, after = forward_kinematics(motion), forward_kinematics(result)
-    feet = _foot_contacts(motion, standing, contacts)
+    after = forward_kinematics(result)
     return Planted(
         result,
         contacts,
-        slide_before=sum(foot.slide(before) for foot in feet),
+        slide_before=sum(foot.slide(poses) for foot in feet),
         slide_after=sum(foot.slide(after) for foot in feet),
     )
 
 
 def _plant_piece(
     motion: Motion,
-    legs: Sequence[LegJoints],
-    contacts: Flags,
+    feet: Sequence[FootContact],
     ankle_weights: Array,
     settings: PlantSettings,
     progress: Progress,
 ) -> Motion:
     """Return the piece of a take with its feet planted."""
+    legs = [foot.leg for foot in feet]
     joints = [joint for leg in legs for joint in (*leg.chain, leg.toe) if joint is not None]
     start = FittedMotion(motion, motion, tuple(joints), settings.move_root)
-    feet = _foot_contacts(motion, legs, contacts)
     weights = [ankle_weights[:, SIDES.index(leg.side)] for leg in legs]
-    return fit_motion(start, planting_goals(start, feet, settings, weights), progress).motion
-
-
-def _foot_contacts(
-    motion: Motion, legs: Sequence[LegJoints], contacts: Flags
-) -> list[FootContact]:
-    poses = forward_kinematics(motion)
-    return [
-        find_foot_contact(motion, poses, leg, contacts[:, SIDES.index(leg.side)])
-        for leg in legs
-    ]
+    goals = planting_goals(start, feet, settings, weights)
+    fit = fit_motion(start, goals, progress, "Planting the feet")
+    progress(1.0, "Planted the feet")
+    return fit.motion
 
 
 def _join_segments(motion: Motion, results: Sequence[Planted]) -> Planted:
