@@ -17,7 +17,7 @@ MIN_RELIABILITY = 0.6
 """Reliability of an ankle, 0 to 1, above which its observed position is right. Chosen by hand:
 x2 fails `test_reliable_ankle_is_planted_near_its_rest_position`."""
 RELIABLE_WEIGHT = 5.0
-"""Weight of the path of such an ankle, relative to that of others. Chosen by hand: x0.5 fails
+"""Weight of the path of such an ankle, relative to that of others. Chosen by hand: 1 fails
 `test_reliable_ankle_is_planted_near_its_rest_position`."""
 
 

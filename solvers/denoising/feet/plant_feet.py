@@ -70,7 +70,7 @@ def plant_feet(
     settings : PlantSettings
     ankle_weights : shape (n_frames, 2), left and right
         How firmly the ankle of a foot in contact keeps its path: 1 by default, more where it
-        was measured well. A contact in which such an ankle moves is not held.
+        was measured well. A contact in which such an ankle moves is held less.
     progress : Progress
 
     Returns

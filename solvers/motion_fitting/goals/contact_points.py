@@ -111,7 +111,7 @@ class FollowPosition:
     ----------
     point : BonePoint
     wanted : shape (n_frames, 3), meters
-    weight : shape (n_frames,), 0 to 1
+    weight : shape (n_frames,), 0 or more
     tolerance : float, meters
     """
 
