@@ -3,7 +3,7 @@
 from .fit_motion import Fit, fit_motion
 from .goal import Goal
 from .normal_equations import NormalEquations
-from .pieces import join_pieces, piece_ranges
+from .pieces import fit_in_pieces
 from .variables import FittedMotion
 
 __all__ = [
@@ -11,7 +11,6 @@ __all__ = [
     "FittedMotion",
     "Goal",
     "NormalEquations",
+    "fit_in_pieces",
     "fit_motion",
-    "join_pieces",
-    "piece_ranges",
 ]

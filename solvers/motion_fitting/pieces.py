@@ -1,11 +1,12 @@
 """Fit long takes in pieces that overlap, so that memory does not grow with the take."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
 
 from ..motion import Motion
+from ..progress import Progress, unwatched, within
 from ..rotations import slerp
 
 MAX_FRAMES = 4000
@@ -13,6 +14,26 @@ MAX_FRAMES = 4000
 OVERLAP_S = 2.0
 """Seconds in which two pieces overlap, and over which one passes into the next. It guards
 contacts at the end of a piece."""
+
+
+def fit_in_pieces(
+    motion: Motion,
+    fit_piece: Callable[[int, int, Progress], Motion],
+    progress: Progress = unwatched,
+) -> Motion:
+    """Return the motion, fitted piece by piece.
+
+    `fit_piece` gets the first frame of a piece, the frame after its last one, and where to
+    report progress; it returns the fitted piece.
+    """
+    ranges = piece_ranges(motion.n_frames, motion.frame_rate)
+    pieces = [
+        fit_piece(
+            start, stop, within(progress, number / len(ranges), (number + 1) / len(ranges))
+        )
+        for number, (start, stop) in enumerate(ranges)
+    ]
+    return join_pieces(pieces, ranges)
 
 
 def piece_ranges(n_frames: int, frame_rate: float) -> list[tuple[int, int]]:

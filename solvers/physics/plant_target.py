@@ -1,45 +1,66 @@
 """Keep standing feet from creeping and slipping."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ..arrays import Array
-from ..motion import Motion, WorldPoses, forward_kinematics, reach
+from ..motion import Motion
 from ..motion.humanoid import UP
-from ..rotations import (
-    inverse,
-    multiply,
-    quaternion_from_rotation_vector,
-    rotate,
-    rotation_vector_from_quaternion,
+from ..motion_fitting import FittedMotion, Goal, fit_in_pieces, fit_motion
+from ..motion_fitting.goals import (
+    BonePoint,
+    FollowPosition,
+    FollowSource,
+    StayAbove,
+    StayInPlace,
+    StayStill,
+    hinge_limits,
 )
-from ..signals import smooth_correction
+from ..progress import Progress
+from ..rotations import inverse, multiply, rotation_vector_from_quaternion
+from ..signals import FADE_TIME_CONSTANTS
 from .body import PhysicsBody
-from .body_surface import SIDES, find_leg_chain, lowest_points, select_foot_ends
+from .body_surface import SIDES, find_leg_chain, joints_of_ends, lowest_points, select_foot_ends
 from .foot_support import distribute_load
-from .pelvis_offset import LegGoal, solve_pelvis_offset
 
-MIN_FRAMES = 4
-"""Minimum frames in which a foot can stand. It guards takes too short for a second
-difference."""
-
-BLEND_S = 0.3
+BLEND_S = 0.35
 """Seconds over which a released foot blends to its own motion, and a simulated body to the take
-next to a failure. Chosen by hand: x0.5 costs
-0.9 %, x2 costs 0.6 %."""
+next to a failure. Chosen by hand: x0.5 costs 0.2 %, x2 costs 2.3 %."""
 
 MAX_TURN_RATE_RAD_S = 0.6
 """Radians per second: a foot that rotates faster on the ground does so on purpose. Chosen by
-hand: x0.5 costs 1.5 %, x2 gains 1.0 %."""
+hand: x0.5 costs 2.7 %, x2 gains 1.1 %."""
 
+CREEP_M_S = 0.001
+"""Meters per second, for legs of 0.9 m, by which the loaded part of a held sole may creep.
+Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
 
-class FootPlan(NamedTuple):
-    """A leg's goal, and the rotation of its foot."""
+TURN_RAD_S = np.radians(2.0)
+"""Radians per second by which a held foot may turn. Chosen by hand: x0.5 and x2 change the
+mean by less than 0.1 %."""
 
-    goal: LegGoal
-    rotations: Array
-    """World rotation about the vertical to add to the foot's own, shape (n_frames, 4)."""
+HEIGHT_M = 0.001
+"""Meters, for legs of 0.9 m, by which an end of the sole may leave its height. Chosen by
+hand: x0.5 gains 0.4 %, x2 costs 0.9 %."""
+
+ROOT_M = 0.006
+"""Meters, for legs of 0.9 m, by which the root may move. Chosen by hand: x0.5 and x2
+change the mean by less than 0.1 %."""
+
+HIP_RAD, KNEE_RAD, ANKLE_RAD = np.radians([2.5, 6.0, 15.0])
+"""Radians by which the joints of a leg may turn. Chosen by hand: knees of x0.5 let walking feet
+slide 1 % farther."""
+
+RESERVE_RAD = 0.05
+"""Radians of flexion: a knee that is bent less may not straighten. It guards straight legs
+against bending the wrong way."""
+
+NEAR_M = 0.1
+"""Meters, for legs of 0.9 m, above the ground: other parts of the body that come nearer may not
+sink. It bounds the time."""
+
+HINGE_RAD = np.radians(1.0)
+"""Radians by which a knee may bend less than that. It guards knees against bending the wrong
+way."""
 
 
 def plant_target_feet(
@@ -47,10 +68,9 @@ def plant_target_feet(
 ) -> Motion:
     """Return the motion with feet that do not move over the ground while they are held.
 
-    The loaded part of the sole (heel, ball or toes) keeps its position. The displacement and
-    rotation that this requires fade while the foot is free. Corrections are horizontal and
-    about the vertical only, so that no foot sinks or rises. Inverse kinematics moves hips and
-    knees, and the pelvis is offset a little where a knee would overextend.
+    The loaded part of the sole (heel, ball or toes) keeps its position, the foot its heading,
+    and all parts of the sole their height, so that no foot sinks or rises. The least smooth
+    change of the legs and of the root with that is found for all frames at once.
 
     Parameters
     ----------
@@ -60,76 +80,82 @@ def plant_target_feet(
         How firmly each foot is held from each frame to the next.
     ground : float, meters
     """
-    if motion.n_frames < MIN_FRAMES:
+    chains = {side: find_leg_chain(body, side) for side in SIDES}
+    held = {
+        side: chain
+        for side, chain in chains.items()
+        if chain and hold_weights[:, SIDES.index(side)].any()
+    }
+    if not held:
         return motion
-    poses, points, feet = forward_kinematics(motion), lowest_points(body, motion), []
-    for column, side in enumerate(SIDES):
-        chain = find_leg_chain(body, side)
-        if chain and hold_weights[:, column].any():
-            sole, frame_rate = points[:, select_foot_ends(body, side)], motion.frame_rate
-            load_fractions = distribute_load(sole[..., 2] - ground, frame_rate, body.size)
-            feet.append(
-                _plan_foot(
-                    sole, load_fractions, poses, chain, hold_weights[:, column], frame_rate
-                )
+    joints = tuple(joint for chain in held.values() for joint in chain)
+
+    def plant_piece(start: int, stop: int, progress: Progress) -> Motion:
+        piece = motion.slice(start, stop)
+        fitted, weights = FittedMotion(piece, piece, joints), hold_weights[start : stop - 1]
+        goals: list[Goal] = [
+            FollowSource.of_joints(
+                fitted,
+                ROOT_M * body.size,
+                {
+                    joint: tolerance
+                    for chain in held.values()
+                    for joint, tolerance in zip(
+                        chain, (HIP_RAD, KNEE_RAD, ANKLE_RAD), strict=True
+                    )
+                },
+                BLEND_S / FADE_TIME_CONSTANTS,
             )
-    if not feet:
-        return motion
-    goals = [foot.goal for foot in feet]
-    shift = solve_pelvis_offset(poses, goals, motion.frame_rate, body.size)
-    result = motion.with_poses(root_positions=motion.root_positions + shift)
-    for foot in feet:
-        result = _apply_foot_plan(result, poses, foot)
-    return result
+        ]
+        for side, chain in held.items():
+            goals += _foot_goals(body, fitted, side, weights[:, SIDES.index(side)], ground)
+            goals += hinge_limits(fitted, *chain[1:], RESERVE_RAD, HINGE_RAD)
+        goals += _ground_goals(body, fitted, ground)
+        return fit_motion(fitted, goals, progress).motion
+
+    return fit_in_pieces(motion, plant_piece)
 
 
-def _plan_foot(
-    sole: Array,
-    load_fractions: Array,
-    poses: WorldPoses,
-    chain: tuple[int, int, int],
-    hold_weights: Array,
-    frame_rate: float,
-) -> FootPlan:
-    """Plan the trajectory of a foot from its hold weights, shape (n_frames - 1,).
-
-    `sole` are points, shape (n_frames, n_points, 3), and `load_fractions` their fractions of
-    the load.
-    """
-    ankle = poses.positions[:, chain[-1]]
-    rotations = _counter_rotations(poses.rotations[:, chain[-1]], hold_weights, frame_rate)
-    points = ankle[:, None] + rotate(rotations[:, None], sole - ankle[:, None])
-    mean_fractions = 0.5 * (load_fractions[1:] + load_fractions[:-1])
-    steps = np.einsum("fp,fpi->fi", mean_fractions, np.diff(points, axis=0))
-    shift = smooth_correction(-steps * frame_rate, hold_weights, frame_rate, BLEND_S) * (
-        1.0,
-        1.0,
-        0.0,
+def _foot_goals(
+    body: PhysicsBody, fitted: FittedMotion, side: str, hold_weights: Array, ground: float
+) -> list[Goal]:
+    """Return what the sole of a foot has to meet; weights of shape (n_frames - 1,)."""
+    motion, poses, ends = fitted.motion, fitted.poses, select_foot_ends(body, side)
+    ankle = next(joint for joint, role in body.roles.items() if role == f"{side}Foot")
+    offsets = np.concatenate([each.ends for each in body.ground_capsules])[ends]
+    points = [
+        BonePoint(int(joint), offset)
+        for joint, offset in zip(joints_of_ends(body)[ends], offsets, strict=True)
+    ]
+    heights = lowest_points(body, motion)[:, ends, 2] - ground
+    load = distribute_load(heights, motion.frame_rate, body.size)
+    turns = rotation_vector_from_quaternion(
+        multiply(poses.rotations[1:, ankle], inverse(poses.rotations[:-1, ankle]))
     )
-    return FootPlan(LegGoal(chain, ankle + shift), rotations)
+    rates = np.abs(turns[:, 2]) * motion.frame_rate
+    slow = np.clip(2.0 - 2.0 * rates / MAX_TURN_RATE_RAD_S, 0.0, 1.0)
+    in_place = np.sqrt(hold_weights)[:, None] * (1.0 - UP)
+    still = np.sqrt(hold_weights * slow)[:, None] * UP
+    upward = np.tile(UP, (motion.n_frames, 1))
+    return [
+        StayInPlace(points, load, in_place, CREEP_M_S * body.size),
+        StayStill(ankle, still, TURN_RAD_S),
+        *(
+            FollowPosition(point, point.position(poses), upward, HEIGHT_M * body.size)
+            for point in points
+        ),
+    ]
 
 
-def _counter_rotations(rotations: Array, hold_weights: Array, frame_rate: float) -> Array:
-    """Return rotations about the vertical, (n_frames, 4), that cancel slow rotation of a
-    foot."""
-    steps = rotation_vector_from_quaternion(multiply(rotations[1:], inverse(rotations[:-1])))
-    speeds = np.abs(steps[:, 2:]) * frame_rate
-    slow = np.clip(2.0 - 2.0 * speeds[:, 0] / MAX_TURN_RATE_RAD_S, 0.0, 1.0)
-    angles = smooth_correction(
-        -steps[:, 2:] * frame_rate, hold_weights * slow, frame_rate, BLEND_S
-    )
-    return quaternion_from_rotation_vector(angles * UP)
-
-
-def _apply_foot_plan(motion: Motion, poses: WorldPoses, foot: FootPlan) -> Motion:
-    """Return the motion with the ankle on its trajectory and the foot rotated as planned.
-
-    `poses` are those of the motion before any correction.
-    """
-    ankle = foot.goal.chain[-1]
-    result = reach(motion, foot.goal.chain, foot.goal.ankle)
-    parent_rotations = forward_kinematics(result).rotations[:, motion.skeleton.parents[ankle]]
-    rotations = result.rotations.copy()
-    foot_rotations = multiply(foot.rotations, poses.rotations[:, ankle])
-    rotations[:, ankle] = multiply(inverse(parent_rotations), foot_rotations)
-    return result.with_poses(rotations)
+def _ground_goals(body: PhysicsBody, fitted: FittedMotion, ground: float) -> list[Goal]:
+    """Return what keeps other parts of the body from sinking: the knee of a low squat."""
+    goals: list[Goal] = []
+    is_sole = np.any([select_foot_ends(body, side) for side in SIDES], axis=0)
+    heights = lowest_points(body, fitted.motion)[..., 2]
+    is_near = heights.min(axis=0) < ground + NEAR_M * body.size
+    for end in np.flatnonzero(is_near & ~is_sole):
+        capsule = body.ground_capsules[end // 2]
+        point = BonePoint(capsule.joint, capsule.ends[end % 2])
+        least = capsule.radius + np.minimum(heights[:, end], ground)
+        goals.append(StayAbove(point, least, HEIGHT_M * body.size))
+    return goals

@@ -28,8 +28,8 @@ from .foot_support import (
     detect_target_contacts,
     weights_between_frames,
 )
-from .plant_target import BLEND_S, plant_target_feet
-from .target import blend_motions, fade_around, smooth_target
+from .plant_target import plant_target_feet
+from .target import smooth_target
 from .world import build_world
 
 MAX_STEP_S = 1.0 / 239.0
@@ -49,10 +49,6 @@ MIN_FRICTION_FACTOR = 0.05
 """Fraction of the friction under a swinging foot. Chosen by hand: x0.5 costs nothing, x2 gains
 0.1 %."""
 
-
-MAX_EXTRA_SINK_M = 0.001
-"""Meters, for legs of 0.9 m: planting is dropped where the body would sink deeper by this.
-It guards low squats, in which the knee of the planted leg is near the ground."""
 
 RETRY_SMOOTHINGS_S = (0.04, 0.08, 0.16)
 """Smoothing in seconds of the next attempts, where it is more than requested. They guard takes
@@ -142,20 +138,12 @@ def _retry_smoothings(requested: float) -> list[float]:
 def _plant_segment(
     body: PhysicsBody, segment: SimulatedSegment, ground: float
 ) -> SimulatedSegment:
-    """Return the segment with planted feet, where the body does not sink for it."""
+    """Return the segment with planted feet."""
     support = compute_support_weights(
         body, segment.motion, segment.loads, segment.stance_weights, ground
     )
     support *= segment.followed[:, None]
     motion = plant_target_feet(body, segment.motion, weights_between_frames(support), ground)
-    before, after = (
-        np.minimum(measure_clearance(body, each, ground), 0.0)
-        for each in (segment.motion, motion)
-    )
-    weights = fade_around(
-        after < before - MAX_EXTRA_SINK_M * body.size, BLEND_S * motion.frame_rate
-    )
-    motion = blend_motions(segment.motion, motion, body.joints, weights)
     return replace(segment, motion=motion, contacts=detect_touching_feet(body, motion, ground))
 
 

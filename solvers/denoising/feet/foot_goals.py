@@ -12,12 +12,10 @@ from ...motion_fitting.goals import (
     FollowPosition,
     FollowRotation,
     FollowSource,
-    HingeLimit,
     StayAtHeight,
     StayInPlace,
     StayStill,
-    hinge_axis,
-    hinge_flexion,
+    hinge_limits,
 )
 from ...signals import FADE_TIME_CONSTANTS
 from .foot_contact import FootContact
@@ -92,7 +90,9 @@ def _contact_goals(contact: FootContact, settings: PlantSettings) -> list[Goal]:
             )
         )
     if settings.hold_rotation and contact.flat.any():
-        goals.append(StayStill(contact.leg.ankle, contact.flat, MAX_TURN_RAD_S))
+        goals.append(
+            StayStill(contact.leg.ankle, _in_all_directions(contact.flat), MAX_TURN_RAD_S)
+        )
     return goals
 
 
@@ -108,18 +108,19 @@ def _source_goals(
     point = BonePoint(ankle, np.zeros(3))
     goals: list[Goal] = [
         FollowPosition(
-            point, poses.positions[:, ankle], weights * contact.contact, ANKLE_M * contact.size
+            point,
+            poses.positions[:, ankle],
+            _in_all_directions(weights * contact.contact),
+            ANKLE_M * contact.size,
         ),
         FollowRotation(ankle, poses.rotations[:, ankle], FOOT_RAD),
     ]
-    knee = contact.leg.knee
-    axis = hinge_axis(fitted, knee, ankle)
-    if axis is not None:
-        reserve = _flexion_in_reserve(fitted.motion, contact, settings.softness)
-        recorded = hinge_flexion(fitted, knee, ankle, axis)
-        least = np.minimum(recorded, reserve)
-        goals.append(HingeLimit(knee, ankle, axis, least, HINGE_RAD))
-    return goals
+    reserve = _flexion_in_reserve(fitted.motion, contact, settings.softness)
+    return [*goals, *hinge_limits(fitted, contact.leg.knee, ankle, reserve, HINGE_RAD)]
+
+
+def _in_all_directions(weight: Array) -> Array:
+    return np.repeat(weight[:, None], 3, axis=1)
 
 
 def _flexion_in_reserve(motion: Motion, contact: FootContact, softness: float) -> float:
@@ -136,12 +137,14 @@ def _smoothness(
 ) -> FollowSource:
     """Return what keeps the change of each variable small and smooth."""
     size = float(np.mean([contact.size for contact in contacts]))
-    tolerances = np.full(fitted.n_variables, ROOT_M * size)
-    fades = np.full(fitted.n_variables, settings.blend / FADE_TIME_CONSTANTS)
     knee = KNEE_RAD if settings.spare_knees else LOOSE_KNEE_RAD
-    for leg in (contact.leg for contact in contacts):
-        joints = (leg.hip, leg.knee, leg.ankle, leg.toe)
-        for joint, tolerance in zip(joints, (HIP_RAD, knee, ANKLE_RAD, HIP_RAD), strict=True):
-            if joint is not None:
-                tolerances[fitted.columns(joint)] = tolerance
-    return FollowSource(tolerances, fades)
+    tolerances = {
+        joint: tolerance
+        for leg in (contact.leg for contact in contacts)
+        for joint, tolerance in zip(
+            (*leg.chain, leg.toe), (HIP_RAD, knee, ANKLE_RAD, HIP_RAD), strict=True
+        )
+        if joint is not None
+    }
+    time_constant = settings.blend / FADE_TIME_CONSTANTS
+    return FollowSource.of_joints(fitted, ROOT_M * size, tolerances, time_constant)

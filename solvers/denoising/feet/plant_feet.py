@@ -10,7 +10,7 @@ from ...errors import InvalidMotionError
 from ...motion import Motion, forward_kinematics
 from ...motion.humanoid import HumanoidMap, find_humanoid_map
 from ...motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
-from ...motion_fitting import FittedMotion, fit_motion, join_pieces, piece_ranges
+from ...motion_fitting import FittedMotion, fit_in_pieces, fit_motion
 from ...progress import Progress, unwatched, within
 from .foot_contact import FootContact, find_foot_contact
 from .foot_goals import planting_goals
@@ -133,18 +133,13 @@ def _plant_segment(
         find_foot_contact(motion, poses, leg, contacts[:, SIDES.index(leg.side)])
         for leg in standing
     ]
-    ranges, fitted = piece_ranges(motion.n_frames, motion.frame_rate), []
-    for number, (start, stop) in enumerate(ranges):
-        fitted.append(
-            _plant_piece(
-                motion.slice(start, stop),
-                [foot.slice(start, stop) for foot in feet],
-                ankle_weights[start:stop],
-                settings,
-                within(progress, number / len(ranges), (number + 1) / len(ranges)),
-            )
-        )
-    result = join_pieces(fitted, ranges)
+
+    def plant_piece(start: int, stop: int, progress: Progress) -> Motion:
+        pieces = [foot.slice(start, stop) for foot in feet]
+        weights = ankle_weights[start:stop]
+        return _plant_piece(motion.slice(start, stop), pieces, weights, settings, progress)
+
+    result = fit_in_pieces(motion, plant_piece, progress)
     after = forward_kinematics(result)
     return Planted(
         result,

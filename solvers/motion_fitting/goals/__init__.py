@@ -1,9 +1,9 @@
 """What a fitted motion is to meet, one kind of goal in each file."""
 
 from .bone_rotations import FollowRotation, StayStill
-from .contact_points import BonePoint, FollowPosition, StayAtHeight, StayInPlace
+from .contact_points import BonePoint, FollowPosition, StayAbove, StayAtHeight, StayInPlace
 from .follow_source import FollowSource
-from .hinge_limit import HingeLimit, hinge_axis, hinge_flexion
+from .hinge_limit import HingeLimit, hinge_limits
 
 __all__ = [
     "BonePoint",
@@ -11,9 +11,9 @@ __all__ = [
     "FollowRotation",
     "FollowSource",
     "HingeLimit",
+    "StayAbove",
     "StayAtHeight",
     "StayInPlace",
     "StayStill",
-    "hinge_axis",
-    "hinge_flexion",
+    "hinge_limits",
 ]

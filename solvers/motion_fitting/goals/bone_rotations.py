@@ -38,7 +38,8 @@ class StayStill:
     Attributes
     ----------
     bone : int
-    weight : shape (n_frames - 1,), 0 to 1
+    weight : shape (n_frames - 1, 3), 0 to 1
+        Of the rotation between frames about each axis of the world.
     tolerance : float, radians per second
     """
 
@@ -52,7 +53,7 @@ class StayStill:
         turns = rotation_vector_from_quaternion(
             multiply(rotations[1:], inverse(rotations[:-1]))
         )
-        scale = self.weight[:, None] * (fitted.motion.frame_rate / self.tolerance)
+        scale = self.weight * (fitted.motion.frame_rate / self.tolerance)
         jacobian = fitted.rotation_jacobian(self.bone)
         equations.add_steps(
             turns * scale, -jacobian[:-1] * scale[..., None], jacobian[1:] * scale[..., None]

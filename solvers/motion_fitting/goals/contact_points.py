@@ -37,7 +37,7 @@ def loaded_jacobian(points: Sequence[BonePoint], load: Array, fitted: FittedMoti
 
 @dataclass(frozen=True, eq=False)
 class StayInPlace:
-    """Keep the loaded part of a sole or hand from moving.
+    """Keep the loaded part of a sole or hand from moving, or let it move as wanted.
 
     Attributes
     ----------
@@ -47,12 +47,15 @@ class StayInPlace:
     weight : shape (n_frames - 1, 3), 0 to 1
         Of each step in each direction.
     tolerance : float, meters per second
+    wanted : shape (n_frames - 1, 3) or a number, meters
+        The displacement from each frame to the next; by default none.
     """
 
     points: Sequence[BonePoint]
     load: Array
     weight: Array
     tolerance: float
+    wanted: Array | float = 0.0
 
     def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
         """Add residuals and derivatives at the present poses."""
@@ -66,6 +69,7 @@ class StayInPlace:
             derivative = fitted.point_jacobian(positions[:, index], point.bone)
             before -= load[:, index, None, None] * derivative[:-1]
             after += load[:, index, None, None] * derivative[1:]
+        moved -= self.wanted
         equations.add_steps(moved * scale, before * scale[..., None], after * scale[..., None])
 
 
@@ -111,7 +115,8 @@ class FollowPosition:
     ----------
     point : BonePoint
     wanted : shape (n_frames, 3), meters
-    weight : shape (n_frames,), 0 or more
+    weight : shape (n_frames, 3), 0 or more
+        In each direction.
     tolerance : float, meters
     """
 
@@ -124,6 +129,28 @@ class FollowPosition:
         """Add residuals and derivatives at the present poses."""
         position, scale = self.point.position(fitted.poses), self.weight / self.tolerance
         jacobian = fitted.point_jacobian(position, self.point.bone)
-        equations.add_frames(
-            (position - self.wanted) * scale[:, None], jacobian * scale[:, None, None]
-        )
+        equations.add_frames((position - self.wanted) * scale, jacobian * scale[..., None])
+
+
+@dataclass(frozen=True, eq=False)
+class StayAbove:
+    """Keep a point of a bone above a height.
+
+    Attributes
+    ----------
+    point : BonePoint
+    minimum : shape (n_frames,), meters
+    tolerance : float, meters
+    """
+
+    point: BonePoint
+    minimum: Array
+    tolerance: float
+
+    def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
+        """Add residuals and derivatives at the present poses."""
+        position = self.point.position(fitted.poses)
+        below = np.minimum(position[:, 2] - self.minimum, 0.0) / self.tolerance
+        jacobian = fitted.point_jacobian(position, self.point.bone)[:, 2:] / self.tolerance
+        jacobian[below == 0.0] = 0.0
+        equations.add_frames(below[:, None], jacobian)

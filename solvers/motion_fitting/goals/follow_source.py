@@ -1,6 +1,9 @@
 """Stay near the source, and leave and reach it smoothly."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+
+import numpy as np
 
 from ...arrays import Array
 from .. import FittedMotion, NormalEquations
@@ -21,6 +24,20 @@ class FollowSource:
 
     tolerances: Array
     time_constants: Array
+
+    @classmethod
+    def of_joints(
+        cls,
+        fitted: FittedMotion,
+        root: float,
+        joints: Mapping[int, float],
+        time_constant: float,
+    ) -> "FollowSource":
+        """Return the goal from tolerances of the root in meters and of joints in radians."""
+        tolerances = np.full(fitted.n_variables, root)
+        for joint, tolerance in joints.items():
+            tolerances[fitted.columns(joint)] = tolerance
+        return cls(tolerances, np.full(fitted.n_variables, time_constant))
 
     def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
         """Add residuals and derivatives at the present poses."""

@@ -40,6 +40,20 @@ class HingeLimit:
         equations.add_frames(below[:, None] / self.tolerance, jacobian)
 
 
+def hinge_limits(
+    fitted: FittedMotion, joint: int, end: int, reserve: float, tolerance: float
+) -> list[HingeLimit]:
+    """Return the goal that a hinge bends no less than recorded, or than `reserve` in radians.
+
+    There is none for a hinge that never bends, whose axis is unknown.
+    """
+    axis = hinge_axis(fitted, joint, end)
+    if axis is None:
+        return []
+    minimum = np.minimum(hinge_flexion(fitted, joint, end, axis), reserve)
+    return [HingeLimit(joint, end, axis, minimum, tolerance)]
+
+
 def bone_directions(fitted: FittedMotion, joint: int, end: int) -> tuple[Array, Array]:
     """Return the directions of upper and lower bone in the axes of the joint's parent."""
     skeleton, poses = fitted.motion.skeleton, fitted.poses

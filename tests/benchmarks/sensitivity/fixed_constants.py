@@ -224,7 +224,6 @@ REASONS: dict[str, tuple[str, ...]] = {
         "mocap_assist/scene/rig.MAX_COORDINATE",
     ),
     "shape of an array": (
-        "physics/*.N_BANDS",
         "denoising/limb_gaps/bridges.N_FEATURES",
         "denoising/window_priors/filter_bases.N_REFERENCE",
         "reconstruction/residual_correction/movement_process.N_PARTS",

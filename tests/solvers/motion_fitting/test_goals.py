@@ -12,12 +12,12 @@ from solvers.motion_fitting.goals import (
     FollowRotation,
     FollowSource,
     HingeLimit,
+    StayAbove,
     StayAtHeight,
     StayInPlace,
     StayStill,
-    hinge_axis,
-    hinge_flexion,
 )
+from solvers.motion_fitting.goals.hinge_limit import hinge_axis, hinge_flexion
 from solvers.motion_fitting.normal_equations import NormalEquations
 from solvers.rotations import angle_between
 from solvers.samples import GaitSettings, walking_gait
@@ -48,17 +48,21 @@ def all_goals(start: FittedMotion, rng) -> dict[str, object]:
     _, knee, ankle = start.joints
     points = (BonePoint(ankle, np.array([0.0, 0.05, -0.06])), BonePoint(knee, np.zeros(3)))
     load = rng.dirichlet((1.0, 1.0), N_FRAMES)
-    frames, steps = rng.uniform(size=N_FRAMES), rng.uniform(size=(N_FRAMES - 1, 3))
+    frames, steps = rng.uniform(size=(N_FRAMES, 3)), rng.uniform(size=(N_FRAMES - 1, 3))
     axis = hinge_axis(start, knee, ankle)
     return {
         "follow source": FollowSource(
             rng.uniform(0.1, 1.0, start.n_variables), rng.uniform(0.1, 1.0, start.n_variables)
         ),
         "in place": StayInPlace(points, load, steps, 0.01),
-        "at height": StayAtHeight(points, load, np.array([0.02, 0.4]), 0.01, frames, 0.01),
+        "wanted steps": StayInPlace(points, load, steps, 0.01, 0.003 * steps),
+        "above": StayAbove(points[0], frames[:, 0], 0.01),
+        "at height": StayAtHeight(
+            points, load, np.array([0.02, 0.4]), 0.01, frames[:, 0], 0.01
+        ),
         "position": FollowPosition(points[0], rng.normal(size=(N_FRAMES, 3)), frames, 0.1),
         "rotation": FollowRotation(ankle, start.poses.rotations[:, ankle], 0.1),
-        "still": StayStill(ankle, steps[:, 0], 0.1),
+        "still": StayStill(ankle, steps, 0.1),
         "hinge": HingeLimit(knee, ankle, axis, np.full(N_FRAMES, 1.5), 0.1),
     }
 
@@ -69,7 +73,10 @@ def equations(goal, fitted: FittedMotion) -> NormalEquations:
     return found
 
 
-KINDS = ("follow source", "in place", "at height", "position", "rotation", "still", "hinge")
+KINDS = (
+    "follow source", "in place", "wanted steps", "above", "at height", "position", "rotation",
+    "still", "hinge",
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("root_moves", [True, False])
@@ -104,7 +111,9 @@ def test_a_point_is_brought_where_it_is_wanted(start):
     """The ankle moves 3 cm forward, which the leg can reach."""
     ankle, n = start.joints[-1], start.n_variables
     wanted = start.poses.positions[:, ankle] + (0.0, -0.03, 0.01)
-    position = FollowPosition(BonePoint(ankle, np.zeros(3)), wanted, np.ones(N_FRAMES), 1e-4)
+    position = FollowPosition(
+        BonePoint(ankle, np.zeros(3)), wanted, np.ones((N_FRAMES, 3)), 1e-4
+    )
 
     fit = fit_motion(start, [position, FollowSource(np.full(n, 0.1), np.full(n, 0.1))])
 
@@ -118,7 +127,9 @@ def test_a_point_out_of_reach_is_approached_without_stretching(start):
     start = FittedMotion(start.source, start.motion, start.joints, root_moves=False)
     hip, _, ankle = start.joints
     wanted = start.poses.positions[:, hip] + (0.0, -1.2, -1.6)
-    position = FollowPosition(BonePoint(ankle, np.zeros(3)), wanted, np.ones(N_FRAMES), 0.01)
+    position = FollowPosition(
+        BonePoint(ankle, np.zeros(3)), wanted, np.ones((N_FRAMES, 3)), 0.01
+    )
     follow = FollowSource(np.full(start.n_variables, 1.0), np.full(start.n_variables, 0.1))
 
     poses = forward_kinematics(fit_motion(start, [position, follow]).motion)

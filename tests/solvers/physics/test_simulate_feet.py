@@ -14,7 +14,6 @@ from solvers.physics.foot_placement import (
     place_feet_on_ground,
 )
 from solvers.physics.foot_support import detect_target_contacts, distribute_load
-from solvers.physics.pelvis_offset import LegGoal, solve_pelvis_offset
 from solvers.physics.plant_target import plant_target_feet
 from solvers.physics.soles_and_ground import add_soles
 from solvers.rotations.representations import (
@@ -207,30 +206,6 @@ def test_target_feet_are_placed_on_the_ground(walk, body):
         assert always.any() and never.any()
         assert_allclose(lowest[always], -STANCE_DEPTH_M, atol=MILLIMETER)
         assert lowest[never].min() > 0.5 * MIN_SWING_CLEARANCE_M
-
-
-def test_pelvis_moves_where_straight_legs_would_stretch(walk, body):
-    """The hips, not the knee, reach a target farther along a straight leg."""
-    straight = quaternion_from_rotation_vector(np.zeros((40, walk.n_joints, 3)))
-    upright = walk.slice(0, 40).with_poses(straight)
-    poses = forward_kinematics(upright)
-    goals = []
-    for side in SIDES:
-        chain = find_leg_chain(body, side)
-        down = poses.positions[:, chain[-1]] - (0.0, 0.0, 0.01)
-        goals.append(LegGoal(chain, down))
-
-    shift = solve_pelvis_offset(poses, goals, 60.0, body.size)
-
-    assert_allclose(shift[:, 2], -0.01, atol=0.002)
-    assert np.abs(shift[:, :2]).max() < 0.002
-
-
-def test_pelvis_stays_where_no_leg_changes(walk, body):
-    poses = forward_kinematics(walk)
-    goals = [LegGoal(chain, poses.positions[:, chain[-1]]) for chain in chains(body)]
-
-    assert_allclose(solve_pelvis_offset(poses, goals, 60.0, body.size), 0.0, atol=1e-12)
 
 
 def test_planting_is_equivariant_to_heading(shaking, planted):
