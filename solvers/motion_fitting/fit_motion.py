@@ -9,8 +9,8 @@ from .goal import Goal
 from .normal_equations import NormalEquations
 from .variables import FittedMotion
 
-MAX_ROUNDS = 8
-"""Number of steps. It bounds the time; takes of all kinds need three to five."""
+MAX_ROUNDS = 16
+"""Number of steps. It bounds the time; takes of all kinds need three to seven."""
 MAX_HALVINGS = 8
 """Number of times that a step is halved which makes the cost higher. It bounds the time."""
 SMALL_DECREASE = 1e-2

@@ -1,5 +1,7 @@
 """The normal equations of a whole take, block by block of its frames, and their solution."""
 
+from functools import cached_property
+
 import numpy as np
 
 from ..arrays import Array
@@ -19,13 +21,15 @@ class NormalEquations:
     """
 
     def __init__(self, n_frames: int, n_variables: int) -> None:
-        self._blocks = np.zeros((n_frames, n_variables, n_variables))
-        self._steps = np.zeros((n_frames - 1, n_variables, n_variables))
-        """Rows are variables of a frame, columns those of the next."""
+        self._shape = n_frames, n_variables
+        self._of_frames: list[tuple[Array, Array]] = []
+        self._of_steps: list[tuple[Array, Array, Array]] = []
+        self._diagonal = np.zeros(n_variables)
+        """Squared weights of the variables themselves."""
         self._second = np.zeros(n_variables)
         """Weights of second differences, whose part of the matrix is diagonal."""
-        self.gradient = np.zeros((n_frames, n_variables))
-        """Derivatives of `cost`."""
+        self._gradient = np.zeros((n_frames, n_variables))
+        """Of what has a diagonal matrix."""
         self.cost = 0.0
         """Half the sum of the squares of all residuals."""
 
@@ -34,8 +38,7 @@ class NormalEquations:
 
         The derivatives have shape (n_frames, n, n_variables).
         """
-        self._blocks += jacobian.transpose(0, 2, 1) @ jacobian
-        self.gradient += np.einsum("fn,fnv->fv", residuals, jacobian)
+        self._of_frames.append((residuals, jacobian))
         self._count(residuals)
 
     def add_steps(self, residuals: Array, before: Array, after: Array) -> None:
@@ -44,18 +47,13 @@ class NormalEquations:
         `before` and `after` are their derivatives with respect to the variables of the earlier
         and the later frame, (n_frames - 1, n, n_variables).
         """
-        self._blocks[:-1] += before.transpose(0, 2, 1) @ before
-        self._blocks[1:] += after.transpose(0, 2, 1) @ after
-        self._steps += before.transpose(0, 2, 1) @ after
-        self.gradient[:-1] += np.einsum("fn,fnv->fv", residuals, before)
-        self.gradient[1:] += np.einsum("fn,fnv->fv", residuals, after)
+        self._of_steps.append((residuals, before, after))
         self._count(residuals)
 
     def add_variables(self, residuals: Array, weights: Array) -> None:
         """Add a residual of each variable, whose derivative is a weight, (n_variables,)."""
-        diagonal = np.arange(len(weights))
-        self._blocks[:, diagonal, diagonal] += weights**2
-        self.gradient += residuals * weights
+        self._diagonal += weights**2
+        self._gradient += residuals * weights
         self._count(residuals)
 
     def add_second_differences(self, residuals: Array, weights: Array) -> None:
@@ -65,30 +63,63 @@ class NormalEquations:
         """
         n = len(residuals)
         for first, factor in enumerate((1.0, -2.0, 1.0)):
-            self.gradient[first : first + n] += factor * residuals * weights
+            self._gradient[first : first + n] += factor * residuals * weights
         self._second += weights**2
         self._count(residuals)
 
     def _count(self, residuals: Array) -> None:
         self.cost += 0.5 * float(np.vdot(residuals, residuals))
 
+    @cached_property
+    def _assembled(self) -> tuple[Array, Array, Array]:
+        """Blocks of frames, blocks of a frame's rows and the next one's columns, gradient.
+
+        All residuals together need one product of matrices for each frame.
+        """
+        n_frames, n = self._shape
+        blocks, gradient = np.zeros((n_frames, n, n)), self._gradient.copy()
+        between = np.zeros((n_frames - 1, n, n))
+        blocks[:, np.arange(n), np.arange(n)] = self._diagonal
+        if self._of_frames:
+            residuals, jacobian = (
+                np.concatenate(parts, axis=1) for parts in zip(*self._of_frames, strict=True)
+            )
+            blocks += jacobian.transpose(0, 2, 1) @ jacobian
+            gradient += np.einsum("fn,fnv->fv", residuals, jacobian)
+        if self._of_steps:
+            residuals, before, after = (
+                np.concatenate(parts, axis=1) for parts in zip(*self._of_steps, strict=True)
+            )
+            blocks[:-1] += before.transpose(0, 2, 1) @ before
+            blocks[1:] += after.transpose(0, 2, 1) @ after
+            between += before.transpose(0, 2, 1) @ after
+            gradient[:-1] += np.einsum("fn,fnv->fv", residuals, before)
+            gradient[1:] += np.einsum("fn,fnv->fv", residuals, after)
+        return blocks, between, gradient
+
+    @property
+    def gradient(self) -> Array:
+        """Derivatives of `cost`, (n_frames, n_variables)."""
+        return self._assembled[2]
+
     def step(self) -> Array:
         """Return the step to the least sum of squares, (n_frames, n_variables)."""
         from scipy.linalg import solveh_banded  # slow to import: only when needed
 
-        n_frames, n = self.gradient.shape
+        blocks, between, gradient = self._assembled
+        n_frames, n = gradient.shape
         bands = np.zeros((2 * n + 1, n_frames, n))
         lower, left = np.tril_indices(n)
-        bands[lower - left, :, left] = self._blocks[:, lower, left].T
+        bands[lower - left, :, left] = blocks[:, lower, left].T
         later, earlier = (index.ravel() for index in np.indices((n, n)))
-        bands[n + later - earlier, : n_frames - 1, earlier] = self._steps[:, earlier, later].T
+        bands[n + later - earlier, : n_frames - 1, earlier] = between[:, earlier, later].T
         upper = second_difference_bands(n_frames)
         for ahead in range(3):
             differences = upper[2 - ahead, ahead:, None]
             bands[ahead * n, : n_frames - ahead] += differences * self._second
         solved = solveh_banded(
             bands.reshape(len(bands), -1),
-            -self.gradient.ravel(),
+            -gradient.ravel(),
             lower=True,
             overwrite_ab=True,
             check_finite=False,

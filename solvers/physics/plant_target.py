@@ -138,7 +138,7 @@ def _foot_goals(
     still = np.sqrt(hold_weights * slow)[:, None] * UP
     upward = np.tile(UP, (motion.n_frames, 1))
     return [
-        StayInPlace(points, load, in_place, CREEP_M_S * body.size),
+        StayInPlace(points, 0.5 * (load[1:] + load[:-1]), in_place, CREEP_M_S * body.size),
         StayStill(ankle, still, TURN_RAD_S),
         *(
             FollowPosition(point, point.position(poses), upward, HEIGHT_M * body.size)

@@ -16,14 +16,14 @@ from ..motion import (
     world_poses,
 )
 from ..motion.humanoid import with_standing_rest
-from ..progress import Progress, Remark, unwatched
+from ..progress import Progress, Remark, unwatched, within
 from ..rotations import IDENTITY
 from ..settings import Choice, Settings, setting
 from .body import SIDES, HumanoidBody, find_body, without_gaps
-from .foot_paths import place_feet
 from .hands import place_hands
 from .limbs import Transfer
 from .map_checks import knees_bend_backward
+from .place_feet import place_feet
 from .placement import ankle_height, find_placement
 from .pose_transfer import transfer_pose
 from .root_motion import in_place, on_root_bone
@@ -101,9 +101,10 @@ def retarget(
     (`t_pose_alignment`). Every body part with a role in both gets the source's world rotation;
     spines with other numbers of joints distribute it. The midpoint of the hip joints travels in
     proportion to the legs, with its height relative to the ankles of standing feet. Then
-    two-bone inverse kinematics [1]_ moves feet and hands to the source's positions, scaled by
-    leg and arm. If a leg is too short, the hips are lowered smoothly. Joints without a role
-    keep their rest rotation relative to their parents: twist bones, face, props.
+    a fit of all frames lets the feet follow the source's, scaled by the leg; if a leg is too
+    short, the hips follow (`place_feet`). Two-bone inverse kinematics [1]_ moves the hands to
+    the source's positions, scaled by the arm. Joints without a role keep their rest rotation
+    relative to their parents: twist bones, face, props.
 
     Parameters
     ----------
@@ -161,7 +162,7 @@ def retarget(
     progress(0.5, "Placing the feet")
     if settings.keep_feet:
         rotations, root_positions = place_feet(
-            transfer, rotations, root_positions, settings.softness
+            transfer, rotations, root_positions, settings.softness, within(progress, 0.5, 0.7)
         )
     progress(0.7, "Placing the hands")
     if settings.keep_hands:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...arrays import Array
-from ...motion import Motion, WorldPoses
+from ...motion import WorldPoses
 from ...motion_fitting import FittedMotion, Goal
 from ...motion_fitting.goals import (
     BonePoint,
@@ -15,6 +15,7 @@ from ...motion_fitting.goals import (
     StayAtHeight,
     StayInPlace,
     StayStill,
+    flexion_in_reserve,
     hinge_limits,
 )
 from ...signals import FADE_TIME_CONSTANTS
@@ -77,7 +78,8 @@ def planting_goals(
 def _contact_goals(contact: FootContact, settings: PlantSettings) -> list[Goal]:
     """Return what the loaded sole has to meet."""
     creep = CREEP_M * contact.size / settings.hold
-    goals: list[Goal] = [StayInPlace(contact.points, contact.load, contact.steps, creep)]
+    step_load = 0.5 * (contact.load[1:] + contact.load[:-1])
+    goals: list[Goal] = [StayInPlace(contact.points, step_load, contact.steps, creep)]
     if settings.floor and contact.on_floor.any():
         goals.append(
             StayAtHeight(
@@ -115,21 +117,13 @@ def _source_goals(
         ),
         FollowRotation(ankle, poses.rotations[:, ankle], FOOT_RAD),
     ]
-    reserve = _flexion_in_reserve(fitted.motion, contact, settings.softness)
+    leg = fitted.motion.skeleton.rest_positions[list(contact.leg.chain)]
+    reserve = flexion_in_reserve(leg, settings.softness)
     return [*goals, *hinge_limits(fitted, contact.leg.knee, ankle, reserve, HINGE_RAD)]
 
 
 def _in_all_directions(weight: Array) -> Array:
     return np.repeat(weight[:, None], 3, axis=1)
-
-
-def _flexion_in_reserve(motion: Motion, contact: FootContact, softness: float) -> float:
-    """Return the flexion in radians at which a leg is shorter by a fraction of its length."""
-    joints = motion.skeleton.rest_positions[list(contact.leg.chain)]
-    thigh, shin = np.linalg.norm(np.diff(joints, axis=0), axis=1)
-    reach = (1.0 - softness) * (thigh + shin)
-    cosine = (reach**2 - thigh**2 - shin**2) / max(2.0 * thigh * shin, 1e-12)
-    return float(np.arccos(np.clip(cosine, -1.0, 1.0)))
 
 
 def _smoothness(

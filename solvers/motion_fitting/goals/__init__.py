@@ -3,9 +3,16 @@
 from .bone_rotations import FollowRotation, StayStill
 from .contact_points import BonePoint, FollowPosition, StayAbove, StayAtHeight, StayInPlace
 from .follow_source import FollowSource
-from .hinge_limit import HingeLimit, hinge_limits
+from .hinge_limit import (
+    BendAboutAxis,
+    HingeLimit,
+    flexion_in_reserve,
+    hinge_flexion,
+    hinge_limits,
+)
 
 __all__ = [
+    "BendAboutAxis",
     "BonePoint",
     "FollowPosition",
     "FollowRotation",
@@ -15,5 +22,7 @@ __all__ = [
     "StayAtHeight",
     "StayInPlace",
     "StayStill",
+    "flexion_in_reserve",
+    "hinge_flexion",
     "hinge_limits",
 ]

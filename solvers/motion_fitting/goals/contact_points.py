@@ -42,8 +42,8 @@ class StayInPlace:
     Attributes
     ----------
     points : sequence of BonePoint
-    load : shape (n_frames, n_points)
-        Fraction of the load on each point.
+    load : shape (n_frames - 1, n_points)
+        Fraction of the load on each point in each step.
     weight : shape (n_frames - 1, 3), 0 to 1
         Of each step in each direction.
     tolerance : float, meters per second
@@ -60,16 +60,14 @@ class StayInPlace:
     def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
         """Add residuals and derivatives at the present poses."""
         positions = np.stack([point.position(fitted.poses) for point in self.points], axis=1)
-        load = 0.5 * (self.load[1:] + self.load[:-1])
-        moved = np.einsum("fp,fpi->fi", load, np.diff(positions, axis=0))
+        moved = np.einsum("fp,fpi->fi", self.load, np.diff(positions, axis=0)) - self.wanted
         scale = self.weight * (fitted.motion.frame_rate / self.tolerance)
-        before = np.zeros((len(load), 3, fitted.n_variables))
+        before = np.zeros((len(moved), 3, fitted.n_variables))
         after = np.zeros_like(before)
         for index, point in enumerate(self.points):
             derivative = fitted.point_jacobian(positions[:, index], point.bone)
-            before -= load[:, index, None, None] * derivative[:-1]
-            after += load[:, index, None, None] * derivative[1:]
-        moved -= self.wanted
+            before -= self.load[:, index, None, None] * derivative[:-1]
+            after += self.load[:, index, None, None] * derivative[1:]
         equations.add_steps(moved * scale, before * scale[..., None], after * scale[..., None])
 
 

@@ -1,11 +1,11 @@
-"""Keep a knee or elbow from bending the wrong way."""
+"""Keep knees, elbows and toes to their hinges."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...arrays import Array
-from ...rotations import inverse, rotate
+from ...rotations import inverse, multiply, rotate, rotation_vector_from_quaternion
 from .. import FittedMotion, NormalEquations
 
 
@@ -38,6 +38,32 @@ class HingeLimit:
         jacobian = np.zeros((len(below), 1, fitted.n_variables))
         jacobian[below < 0.0, 0, fitted.columns(self.joint)] = self.axis / self.tolerance
         equations.add_frames(below[:, None] / self.tolerance, jacobian)
+
+
+@dataclass(frozen=True, eq=False)
+class BendAboutAxis:
+    """Keep the change of a joint to a rotation about one axis.
+
+    Attributes
+    ----------
+    joint : int
+    axis : shape (3,), a unit vector
+        In the axes of the joint's parent.
+    tolerance : float, radians
+    """
+
+    joint: int
+    axis: Array
+    tolerance: float
+
+    def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
+        """Add residuals and derivatives at the present poses."""
+        across = (np.eye(3) - np.outer(self.axis, self.axis)) / self.tolerance
+        before = fitted.source.rotations[:, self.joint]
+        turns = multiply(fitted.motion.rotations[:, self.joint], inverse(before))
+        jacobian = np.zeros((len(turns), 3, fitted.n_variables))
+        jacobian[:, :, fitted.columns(self.joint)] = across
+        equations.add_frames(rotation_vector_from_quaternion(turns) @ across, jacobian)
 
 
 def hinge_limits(
@@ -79,3 +105,14 @@ def hinge_axis(fitted: FittedMotion, joint: int, end: int) -> Array | None:
     axis = np.cross(upper, lower).sum(axis=0)
     length = float(np.linalg.norm(axis))
     return axis / length if length > 1e-6 else None
+
+
+def flexion_in_reserve(limb: Array, fraction: float) -> float:
+    """Return the flexion in radians at which a limb is shorter by a fraction of its length.
+
+    `limb` are the rest positions of its three joints, shape (3, 3).
+    """
+    upper, lower = np.linalg.norm(np.diff(limb, axis=0), axis=1)
+    reach = (1.0 - fraction) * (upper + lower)
+    cosine = (reach**2 - upper**2 - lower**2) / max(2.0 * upper * lower, 1e-12)
+    return float(np.arccos(np.clip(cosine, -1.0, 1.0)))

@@ -150,7 +150,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "markers/pair_swaps.FORBIDDEN_COST",
         "motion/skeletons/motion.*",
         "motion/skeletons/shot_boundaries.MIN_MOTION",
-        "retargeting/planting.MIN_STEP_M",
+        "retargeting/foot_paths.MIN_STEP_M",
         "retargeting/key_thinning.ROUNDING",
         "retrieval/find_similar.ROUNDING_FRAMES",
         "retrieval/index/vocabulary.JITTER_M",

@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose
 from solvers.motion import Motion, forward_kinematics
 from solvers.motion_fitting import FittedMotion, fit_motion
 from solvers.motion_fitting.goals import (
+    BendAboutAxis,
     BonePoint,
     FollowPosition,
     FollowRotation,
@@ -54,8 +55,8 @@ def all_goals(start: FittedMotion, rng) -> dict[str, object]:
         "follow source": FollowSource(
             rng.uniform(0.1, 1.0, start.n_variables), rng.uniform(0.1, 1.0, start.n_variables)
         ),
-        "in place": StayInPlace(points, load, steps, 0.01),
-        "wanted steps": StayInPlace(points, load, steps, 0.01, 0.003 * steps),
+        "in place": StayInPlace(points, load[1:], steps, 0.01),
+        "wanted steps": StayInPlace(points, load[1:], steps, 0.01, 0.003 * steps),
         "above": StayAbove(points[0], frames[:, 0], 0.01),
         "at height": StayAtHeight(
             points, load, np.array([0.02, 0.4]), 0.01, frames[:, 0], 0.01
@@ -63,6 +64,7 @@ def all_goals(start: FittedMotion, rng) -> dict[str, object]:
         "position": FollowPosition(points[0], rng.normal(size=(N_FRAMES, 3)), frames, 0.1),
         "rotation": FollowRotation(ankle, start.poses.rotations[:, ankle], 0.1),
         "still": StayStill(ankle, steps, 0.1),
+        "axis": BendAboutAxis(knee, np.array([0.6, 0.0, 0.8]), 0.1),
         "hinge": HingeLimit(knee, ankle, axis, np.full(N_FRAMES, 1.5), 0.1),
     }
 
@@ -75,7 +77,7 @@ def equations(goal, fitted: FittedMotion) -> NormalEquations:
 
 KINDS = (
     "follow source", "in place", "wanted steps", "above", "at height", "position", "rotation",
-    "still", "hinge",
+    "still", "axis", "hinge",
 )  # fmt: skip
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from retargeted_motions import every_fourth, given_to, growth, min_foot_steps
-from rigs import RIGS, child, mixamo
+from rigs import RIGS, child
 
 from solvers.motion import (
     Motion,
@@ -15,9 +15,6 @@ from solvers.motion import (
     forward_kinematics,
 )
 from solvers.recordings import read_recording
-from solvers.retargeting.body import find_body
-from solvers.retargeting.planting import planting_shift
-from solvers.retargeting.soles import Depths, sole_above_ground
 from solvers.rotations.representations import (
     angle_between,
     multiply,
@@ -87,46 +84,6 @@ def test_body_with_hips_at_the_origin_repeats_its_own_steps(recordings):
     assert angle_between(again.rotations, motion.rotations)[:, feet].max() < 1e-6
 
 
-def test_planted_point_moves_as_far_as_the_source_point(rng):
-    reference = path(rng), path(rng)
-    in_contact = np.zeros(90, dtype=np.bool_)
-    in_contact[30:60] = True
-
-    assert_allclose(
-        planting_shift(
-            reference, (1.3 * reference[0], 1.3 * reference[1]), in_contact, 1.3, 30.0
-        ),
-        np.zeros((90, 3)),
-        atol=1e-9,
-    )
-    dragged = reference[0] + np.linspace(0.0, 0.2, 90)[:, None] * np.array([1.0, 0.0, 0.0])
-    resting = np.tile(reference[0][:1], (90, 1)), reference[1]
-    shift = planting_shift(resting, (dragged, reference[1]), in_contact, 1.0, 30.0)
-    after = np.diff((dragged + shift)[30:60, :2], axis=0)
-    assert np.abs(after).max() < 2e-4
-    assert np.abs(np.diff(dragged[30:60, :2], axis=0)).max() > 2e-3
-    assert np.abs(shift[[0, -1]]).max() < 0.01
-    assert not shift[:, 2].any()
-
-
-@pytest.mark.parametrize("sunk", [0.0, 0.01, 0.03])
-def test_sunken_foot_is_lifted(sunk):
-    rig = mixamo()
-    body = find_body(rig, find_humanoid_map(rig), "target's")
-    pose = Motion(body.skeleton, np.tile([1.0, 0, 0, 0], (1, len(body.joint_indices), 1)),
-                  body.rest[:1], 30.0)  # fmt: skip
-    world = forward_kinematics(pose)
-    foot, ball = body.joints["leftFoot"], body.joints["leftToes"]
-    ankle = body.rest[[foot]] - (0.0, 0.0, sunk)
-
-    sole = sole_above_ground(body, world, "left", ankle, 0.0, Depths(*np.zeros((3, 1))), 30.0)
-
-    direction = rotate(sole.rotation, body.rest[ball] - body.rest[foot])
-    height = (ankle + direction)[0, 2] + sole.lift[0] - body.rest[ball, 2]
-    assert -0.004 <= height <= 1e-9
-    assert -0.004 <= sole.lift[0] - sunk <= 1e-9
-
-
 def standing() -> Motion:
     """Two seconds on both feet, breathing; hips at 0 in the rest pose, as in Acclaim."""
     walker = WALK.skeleton
@@ -157,7 +114,3 @@ def with_feet_drawn_down(motion: Motion) -> Motion:
     return Motion(
         Skeleton(rig.names, rig.parents, offsets), rotations, motion.root_positions, 30.0
     )
-
-
-def path(rng: np.random.Generator) -> np.ndarray:
-    return np.cumsum(rng.normal(scale=0.01, size=(90, 3)), axis=0)

@@ -7,9 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 from rigs import mixamo
 
-from solvers.motion import WorldPoses, find_humanoid_map
+from solvers.motion import find_humanoid_map
 from solvers.retargeting.body import find_body
-from solvers.retargeting.foot_paths import pelvis_drop
 from solvers.retargeting.hand_distance import Arms, match_meeting_hands
 from solvers.retargeting.hand_heights import (
     GroundHeights,
@@ -24,12 +23,8 @@ from solvers.retargeting.placement import (
     rests_on_ground,
     standing_ankle,
 )
-from solvers.retargeting.soles import _heel
-from solvers.retargeting.toes import lift_toes
 from solvers.rotations.representations import (
     quaternion_from_rotation_vector,
-    rotate,
-    rotation_vector_from_quaternion,
 )
 
 RATE = 120.0
@@ -61,12 +56,6 @@ def positions(*heights):
 def tilted_feet():
     """Rotations of a foot from standing over kneeling to a sole that faces up."""
     return quaternion_from_rotation_vector(TILTS[:, None] * (1.0, 0.0, 0.0))
-
-
-def test_foot_out_of_reach_does_not_pull_the_pelvis_to_the_ground():
-    drop = pelvis_drop([positions(*[1.0] * 30)], [positions(*[-1.0] * 30)], [0.9], RATE)
-
-    assert_allclose(drop, 0.15 * 0.9)
 
 
 def test_hands_that_nearly_touch_keep_the_distance_of_the_source():
@@ -149,27 +138,3 @@ def test_ankle_height_is_that_of_flat_feet_if_most_contacts_are_on_tiptoe(body):
     height = ankle_height(body, frames, np.ones((100, 2), bool))
 
     assert_allclose(height, flat, atol=1e-9)
-
-
-def test_heel_moves_behind_the_ankle_steadily_from_standing_to_kneeling(body):
-    foot = body.joints["leftFoot"]
-    rotations = np.tile(tilted_feet()[:, None], (1, len(body.rest), 1))
-
-    heights = _heel(body, WorldPoses(rotations, np.zeros((181, 1, 3))), foot)
-
-    assert_allclose(heights[:60] / body.rest[foot, 2], 1.0)
-    assert_allclose(heights[90:] / body.rest[foot, 2], 0.8)
-    assert np.abs(np.diff(heights)).max() < 0.02 * body.rest[foot, 2]
-
-
-def test_toes_are_lifted_where_soles_face_down_and_steadily_less_up_to_where_they_face_up():
-    rest = np.array([[0.0, 0.0, 0.08], [0.0, -0.12, 0.02], [0.0, -0.18, 0.02]])
-    feet = tilted_feet()
-    toes = rotate(feet, rest[2] - rest[1])
-
-    rotations = lift_toes(rest, feet, toes, np.full(len(feet), 0.02), 1.0)
-
-    angles = np.degrees(np.linalg.norm(rotation_vector_from_quaternion(rotations), axis=1))
-    assert angles[0] > 18.0
-    assert angles[120:].max() < 1e-6
-    assert np.abs(np.diff(angles)).max() < 2.0
