@@ -26,15 +26,10 @@ class Fit:
     ----------
     motion : Motion
     has_converged : bool
-    cost : float
-        Half the sum of squares of all residuals.
-    n_rounds : int
     """
 
     motion: Motion
     has_converged: bool
-    cost: float
-    n_rounds: int
 
 
 def fit_motion(
@@ -70,13 +65,13 @@ def fit_motion(
                 break
             damping *= 0.5
         else:
-            return Fit(fitted.motion, False, equations.cost, number)
+            return Fit(fitted.motion, False)
         is_small = equations.cost - tried.cost <= SMALL_DECREASE * tried.cost
         has_converged = is_small and damping == 1.0
         fitted, equations, damping = trial, tried, min(1.0, 2.0 * damping)
         if has_converged:
-            return Fit(fitted.motion, True, equations.cost, number)
-    return Fit(fitted.motion, False, equations.cost, MAX_ROUNDS)
+            return Fit(fitted.motion, True)
+    return Fit(fitted.motion, False)
 
 
 def _equations(fitted: FittedMotion, goals: Sequence[Goal]) -> NormalEquations:
