@@ -10,7 +10,8 @@ from .normal_equations import NormalEquations
 from .variables import FittedMotion
 
 MAX_ROUNDS = 16
-"""Number of steps. It bounds the time; takes of all kinds need three to seven."""
+"""Number of steps. It bounds the time; takes of all kinds need two to seven;
+feet far out of reach are still not settled after these."""
 MAX_HALVINGS = 8
 """Number of times that a step is halved which makes the cost higher. It bounds the time."""
 SMALL_DECREASE = 1e-2

@@ -1,5 +1,7 @@
 """Keep standing feet from creeping and slipping."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..arrays import Array
@@ -110,7 +112,7 @@ def plant_target_feet(
         for side, chain in held.items():
             goals += _foot_goals(body, fitted, side, weights[:, SIDES.index(side)], ground)
             goals += hinge_limits(fitted, *chain[1:], RESERVE_RAD, HINGE_RAD)
-        goals += _ground_goals(body, fitted, ground)
+        goals += _ground_goals(body, fitted, tuple(held), ground)
         return fit_motion(fitted, goals, progress).motion
 
     return fit_in_pieces(motion, plant_piece)
@@ -147,10 +149,12 @@ def _foot_goals(
     ]
 
 
-def _ground_goals(body: PhysicsBody, fitted: FittedMotion, ground: float) -> list[Goal]:
-    """Return what keeps other parts of the body from sinking: the knee of a low squat."""
+def _ground_goals(
+    body: PhysicsBody, fitted: FittedMotion, held: Sequence[str], ground: float
+) -> list[Goal]:
+    """Return what keeps all but held feet from sinking: the knee of a low squat."""
     goals: list[Goal] = []
-    is_sole = np.any([select_foot_ends(body, side) for side in SIDES], axis=0)
+    is_sole = np.any([select_foot_ends(body, side) for side in held], axis=0)
     heights = lowest_points(body, fitted.motion)[..., 2]
     is_near = heights.min(axis=0) < ground + NEAR_M * body.size
     for end in np.flatnonzero(is_near & ~is_sole):
