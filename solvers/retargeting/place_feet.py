@@ -16,17 +16,20 @@ from ..motion_fitting.goals import (
     StayAbove,
     StayInPlace,
     flexion_in_reserve,
+    hinge_axis,
     hinge_flexion,
-    hinge_limits,
+    hinge_limit,
+    with_bent_hinge,
 )
 from ..progress import Progress, unwatched
+from ..rotations import rotate
 from ..signals import FADE_TIME_CONSTANTS
 from .body import HumanoidBody
 from .foot_paths import FootPath, find_foot_paths
-from .limbs import Transfer
+from .limbs import Limb, Transfer
 from .placement import leg_length
 from .soles import tip_of
-from .stances import foot_bone
+from .stances import LATERAL_AXIS, foot_bone
 
 BLEND_S = 0.5
 """Seconds over which a correction begins and ends. Chosen by hand: x0.5 gains 0.2 %, x2 gains
@@ -109,13 +112,13 @@ def place_feet(
         goals: list[Goal] = [
             FollowSource.of_joints(fitted, ROOT_M * size, joints, time_constant)
         ]
+        start_of_fit = fitted
         for path in paths:
             goals += _foot_goals(transfer, fitted, path, size, slice(start, stop))
-            reserve = flexion_in_reserve(target.rest[list(path.leg)], softness)
-            hinges = hinge_limits(fitted, *path.leg[1:], reserve, HINGE_RAD)
-            goals += hinges
-            goals += [BendAboutAxis(each.joint, each.axis, SIDEWAYS_RAD) for each in hinges]
-        return fit_motion(fitted, goals, progress, "Placing the feet").motion
+            knee = _knee_limit(target, fitted, path.leg, softness)
+            goals += [knee, BendAboutAxis(knee.joint, knee.axis, SIDEWAYS_RAD)]
+            start_of_fit = with_bent_hinge(start_of_fit, knee)
+        return fit_motion(start_of_fit, goals, progress, "Placing the feet").motion
 
     result = fit_in_pieces(motion, fit_piece, progress)
     return result.rotations, result.root_positions
@@ -145,6 +148,20 @@ def _foot_goals(
     if ball in fitted.joints:
         goals += _toe_goals(transfer.target, fitted, foot, ball)
     return goals
+
+
+def _knee_limit(
+    target: HumanoidBody, fitted: FittedMotion, leg: Limb, softness: float
+) -> HingeLimit:
+    """Return what keeps a knee from bending the wrong way.
+
+    A knee that is always straight bends about the axis across the body.
+    """
+    axis = hinge_axis(fitted, *leg[1:])
+    if axis is None:
+        axis = rotate(target.alignment[leg[0]], LATERAL_AXIS)
+    reserve = flexion_in_reserve(target.rest[list(leg)], softness)
+    return hinge_limit(fitted, *leg[1:], axis, reserve, HINGE_RAD)
 
 
 def _toe_goals(target: HumanoidBody, fitted: FittedMotion, foot: int, ball: int) -> list[Goal]:

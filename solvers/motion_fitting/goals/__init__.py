@@ -7,8 +7,11 @@ from .hinge_limit import (
     BendAboutAxis,
     HingeLimit,
     flexion_in_reserve,
+    hinge_axis,
     hinge_flexion,
+    hinge_limit,
     hinge_limits,
+    with_bent_hinge,
 )
 
 __all__ = [
@@ -23,6 +26,9 @@ __all__ = [
     "StayInPlace",
     "StayStill",
     "flexion_in_reserve",
+    "hinge_axis",
     "hinge_flexion",
+    "hinge_limit",
     "hinge_limits",
+    "with_bent_hinge",
 ]

@@ -8,6 +8,13 @@ from ...arrays import Array
 from ...rotations import inverse, multiply, rotate, rotation_vector_from_quaternion
 from .. import FittedMotion, NormalEquations
 
+START_RAD = np.radians(3.0)
+"""Radians by which a straight limb is bent before the fit. It guards limbs that are exactly
+straight."""
+MIN_BEND = 1e-3
+"""Sine of the mean flexion below which the axis of a hinge is unknown. It guards straight
+limbs, whose bones have an angle by rounding only."""
+
 
 @dataclass(frozen=True, eq=False)
 class HingeLimit:
@@ -74,10 +81,27 @@ def hinge_limits(
     There is none for a hinge that never bends, whose axis is unknown.
     """
     axis = hinge_axis(fitted, joint, end)
-    if axis is None:
-        return []
+    return [] if axis is None else [hinge_limit(fitted, joint, end, axis, reserve, tolerance)]
+
+
+def hinge_limit(
+    fitted: FittedMotion, joint: int, end: int, axis: Array, reserve: float, tolerance: float
+) -> HingeLimit:
+    """Return the same goal for a known axis, shape (3,)."""
     minimum = np.minimum(hinge_flexion(fitted, joint, end, axis), reserve)
-    return [HingeLimit(joint, end, axis, minimum, tolerance)]
+    return HingeLimit(joint, end, axis, minimum, tolerance)
+
+
+def with_bent_hinge(fitted: FittedMotion, limit: HingeLimit) -> FittedMotion:
+    """Return a start of the fit in which no frame has a straight limb.
+
+    A straight limb does not get shorter to first order, whichever way it bends.
+    """
+    flexion = hinge_flexion(fitted, limit.joint, limit.end, limit.axis)
+    step = np.zeros((len(flexion), fitted.n_variables))
+    missing = np.maximum(START_RAD - flexion, 0.0)
+    step[:, fitted.columns(limit.joint)] = missing[:, None] * limit.axis
+    return fitted.moved(step)
 
 
 def bone_directions(fitted: FittedMotion, joint: int, end: int) -> tuple[Array, Array]:
@@ -102,9 +126,9 @@ def hinge_flexion(fitted: FittedMotion, joint: int, end: int, axis: Array) -> Ar
 def hinge_axis(fitted: FittedMotion, joint: int, end: int) -> Array | None:
     """Return the mean axis about which a joint bends; None if it never bends."""
     upper, lower = bone_directions(fitted, joint, end)
-    axis = np.cross(upper, lower).sum(axis=0)
+    axis = np.cross(upper, lower).mean(axis=0)
     length = float(np.linalg.norm(axis))
-    return axis / length if length > 1e-6 else None
+    return axis / length if length > MIN_BEND else None
 
 
 def flexion_in_reserve(limb: Array, fraction: float) -> float:

@@ -13,6 +13,7 @@ from solvers.rotations.representations import (
     angle_between,
     quaternion_from_rotation_vector,
     rotate,
+    rotation_vector_from_quaternion,
 )
 from solvers.samples import GaitSettings, walking_gait
 
@@ -243,3 +244,25 @@ def claps(body: Skeleton) -> Motion:
     vectors[:, joints["rightUpperArm"], 2] = angle
     rotations = quaternion_from_rotation_vector(vectors)
     return Motion(body, rotations, np.tile(body.offsets[0], (121, 1)), 60.0)
+
+
+@pytest.mark.parametrize("scale", [0.5, 0.8])
+def test_straight_legs_of_shorter_steps_do_not_bend_sideways(scale):
+    """Legs spread by 20 degrees, without any bend that would show a knee's axis."""
+    rotations = np.zeros_like(WALK.rotations)
+    rotations[..., 0] = 1.0
+    roles, rig = find_humanoid_map(WALK.skeleton).indices(WALK.skeleton), mixamo(1.0)
+    for side, sign in (("left", -1.0), ("right", 1.0)):
+        spread = quaternion_from_rotation_vector([0.0, sign * np.radians(20.0), 0.0])
+        rotations[:, roles[f"{side}UpperLeg"]] = spread
+    marks = np.tile(WALK.root_positions[0], (WALK.n_frames, 1))
+
+    result = retarget(
+        WALK.with_poses(rotations, marks), find_humanoid_map(WALK.skeleton),
+        rig, find_humanoid_map(rig), settings=RetargetSettings(travel_scale=scale),
+    )  # fmt: skip
+
+    knees = find_humanoid_map(rig).indices(rig)
+    for side in ("left", "right"):
+        turned = rotation_vector_from_quaternion(result.rotations[:, knees[f"{side}LowerLeg"]])
+        assert np.degrees(np.abs(turned[:, 1:]).max()) < 1.0
