@@ -10,16 +10,15 @@ from ..motion.humanoid import UP
 from ..motion_fitting import FittedMotion, Goal, fit_in_pieces, fit_motion
 from ..motion_fitting.goals import (
     BonePoint,
-    FollowPosition,
     FollowSource,
     StayAbove,
+    StayAtHeight,
     StayInPlace,
     StayStill,
     hinge_limits,
 )
 from ..progress import Progress
 from ..rotations import inverse, multiply, rotation_vector_from_quaternion
-from ..signals import FADE_TIME_CONSTANTS
 from .body import PhysicsBody
 from .body_surface import SIDES, find_leg_chain, joints_of_ends, lowest_points, select_foot_ends
 from .foot_support import distribute_load
@@ -106,7 +105,7 @@ def plant_target_feet(
                         chain, (HIP_RAD, KNEE_RAD, ANKLE_RAD), strict=True
                     )
                 },
-                BLEND_S / FADE_TIME_CONSTANTS,
+                BLEND_S,
             )
         ]
         for side, chain in held.items():
@@ -138,12 +137,19 @@ def _foot_goals(
     slow = np.clip(2.0 - 2.0 * rates / MAX_TURN_RATE_RAD_S, 0.0, 1.0)
     in_place = np.sqrt(hold_weights)[:, None] * (1.0 - UP)
     still = np.sqrt(hold_weights * slow)[:, None] * UP
-    upward = np.tile(UP, (motion.n_frames, 1))
+    one_point, all_frames = np.ones((motion.n_frames, 1)), np.ones(motion.n_frames)
     return [
         StayInPlace(points, 0.5 * (load[1:] + load[:-1]), in_place, CREEP_M_S * body.size),
         StayStill(ankle, still, TURN_RAD_S),
         *(
-            FollowPosition(point, point.position(poses), upward, HEIGHT_M * body.size)
+            StayAtHeight(
+                [point],
+                one_point,
+                np.zeros(1),
+                point.position(poses)[:, 2],
+                all_frames,
+                HEIGHT_M * body.size,
+            )
             for point in points
         ),
     ]

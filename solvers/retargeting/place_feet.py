@@ -23,7 +23,6 @@ from ..motion_fitting.goals import (
 )
 from ..progress import Progress, unwatched
 from ..rotations import rotate
-from ..signals import FADE_TIME_CONSTANTS
 from .body import HumanoidBody
 from .foot_paths import FootPath, find_foot_paths
 from .limbs import Limb, Transfer
@@ -108,10 +107,7 @@ def place_feet(
     def fit_piece(start: int, stop: int, progress: Progress) -> Motion:
         piece = motion.slice(start, stop)
         fitted = FittedMotion(piece, piece, tuple(joints))
-        time_constant = BLEND_S / FADE_TIME_CONSTANTS
-        goals: list[Goal] = [
-            FollowSource.of_joints(fitted, ROOT_M * size, joints, time_constant)
-        ]
+        goals: list[Goal] = [FollowSource.of_joints(fitted, ROOT_M * size, joints, BLEND_S)]
         start_of_fit = fitted
         for path in paths:
             goals += _foot_goals(transfer, fitted, path, size, slice(start, stop))

@@ -12,14 +12,12 @@ from .noise import (
     shrink_noise,
 )
 from .second_differences import second_difference_bands
-from .smooth_correction import FADE_TIME_CONSTANTS, smooth_correction
 from .smoothstep import smoothstep
 from .spikes import find_runs, fit_lowess
 
 __all__ = [
     "DIFFERENCE_GAIN",
     "DIFFERENCE_ORDER",
-    "FADE_TIME_CONSTANTS",
     "MAD_TO_SIGMA",
     "estimate_noise",
     "fill_channel_gaps",
@@ -30,7 +28,6 @@ __all__ = [
     "remove_outliers",
     "second_difference_bands",
     "shrink_noise",
-    "smooth_correction",
     "smooth_gaussian",
     "smoothstep",
 ]

@@ -18,7 +18,6 @@ from ...motion_fitting.goals import (
     flexion_in_reserve,
     hinge_limits,
 )
-from ...signals import FADE_TIME_CONSTANTS
 from .foot_contact import FootContact
 from .plant_settings import PlantSettings
 
@@ -140,5 +139,4 @@ def _smoothness(
         )
         if joint is not None
     }
-    time_constant = settings.blend / FADE_TIME_CONSTANTS
-    return FollowSource.of_joints(fitted, ROOT_M * size, tolerances, time_constant)
+    return FollowSource.of_joints(fitted, ROOT_M * size, tolerances, settings.blend)

@@ -81,7 +81,7 @@ class StayAtHeight:
     load : shape (n_frames, n_points)
     above : shape (n_points,), meters
         Height of each point above the floor while the whole sole rests.
-    height : float, meters
+    height : float or shape (n_frames,), meters
         Of the floor.
     weight : shape (n_frames,), 0 to 1
     tolerance : float, meters
@@ -90,7 +90,7 @@ class StayAtHeight:
     points: Sequence[BonePoint]
     load: Array
     above: Array
-    height: float
+    height: Array | float
     weight: Array
     tolerance: float
 

@@ -8,6 +8,10 @@ import numpy as np
 from ...arrays import Array
 from .. import FittedMotion, NormalEquations
 
+FADE_TIME_CONSTANTS = np.pi * np.sqrt(2.0)
+"""Time constants after which a free correction has faded to exp(-pi), 4 %. By definition of the
+fade."""
+
 
 @dataclass(frozen=True, eq=False)
 class FollowSource:
@@ -27,17 +31,16 @@ class FollowSource:
 
     @classmethod
     def of_joints(
-        cls,
-        fitted: FittedMotion,
-        root: float,
-        joints: Mapping[int, float],
-        time_constant: float,
+        cls, fitted: FittedMotion, root: float, joints: Mapping[int, float], fade: float
     ) -> "FollowSource":
-        """Return the goal from tolerances of the root in meters and of joints in radians."""
+        """Return the goal from tolerances of the root in meters and of joints in radians.
+
+        A change that nothing else needs fades in `fade` seconds.
+        """
         tolerances = np.full(fitted.n_variables, root)
         for joint, tolerance in joints.items():
             tolerances[fitted.columns(joint)] = tolerance
-        return cls(tolerances, np.full(fitted.n_variables, time_constant))
+        return cls(tolerances, np.full(fitted.n_variables, fade / FADE_TIME_CONSTANTS))
 
     def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
         """Add residuals and derivatives at the present poses."""

@@ -14,7 +14,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "denoising/feet/foot_contact.ADULT_LEG_M",
         "denoising/quality/bone_drift.*_PERCENTILE",
         "denoising/quality/worst_issues.SEVERE_EXCESS",
-        "signals/smooth_correction.FADE_TIME_CONSTANTS",
+        "motion_fitting/goals/follow_source.FADE_TIME_CONSTANTS",
         "*.GRAVITY*",
         "*.MAD_TO_SIGMA",
         "*.CM_PER_M",

@@ -255,10 +255,6 @@ def moving_minimum(values):
     return np.array([values[max(i - 9, 0) : i + 10].min() for i in range(len(values))])
 
 
-def chains(body):
-    return [find_leg_chain(body, side) for side in SIDES]
-
-
 def result_body(motion):
     return build_physics_body(motion, find_humanoid_map(motion.skeleton))
 

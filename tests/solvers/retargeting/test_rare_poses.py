@@ -23,16 +23,12 @@ from solvers.retargeting.placement import (
     rests_on_ground,
     standing_ankle,
 )
-from solvers.rotations.representations import (
-    quaternion_from_rotation_vector,
-)
 
 RATE = 120.0
 GROUND = GroundHeights(
     HipPlacement(1.0, 1.0, np.zeros(3), (0.0, 0.0), (0.0, 0.0)), (0.0, 0.0), 0.9, RATE
 )
 ASIDE = np.array([0.0, 0.2, 0.0])
-TILTS = np.radians(np.arange(0.0, 181.0))
 
 
 @pytest.fixture(scope="module")
@@ -51,11 +47,6 @@ def moved(body, height):
 def positions(*heights):
     """Points at these heights above one place, shape (n, 3)."""
     return np.array([(0.0, 0.0, height) for height in heights])
-
-
-def tilted_feet():
-    """Rotations of a foot from standing over kneeling to a sole that faces up."""
-    return quaternion_from_rotation_vector(TILTS[:, None] * (1.0, 0.0, 0.0))
 
 
 def test_hands_that_nearly_touch_keep_the_distance_of_the_source():
