@@ -99,7 +99,7 @@ def with_bent_hinge(fitted: FittedMotion, limit: HingeLimit) -> FittedMotion:
     """
     flexion = hinge_flexion(fitted, limit.joint, limit.end, limit.axis)
     step = np.zeros((len(flexion), fitted.n_variables))
-    missing = np.maximum(START_RAD - flexion, 0.0)
+    missing = np.where(np.abs(flexion) < START_RAD, START_RAD - flexion, 0.0)
     step[:, fitted.columns(limit.joint)] = missing[:, None] * limit.axis
     return fitted.moved(step)
 

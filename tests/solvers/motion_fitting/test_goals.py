@@ -17,6 +17,8 @@ from solvers.motion_fitting.goals import (
     StayAtHeight,
     StayInPlace,
     StayStill,
+    hinge_limit,
+    with_bent_hinge,
 )
 from solvers.motion_fitting.goals.hinge_limit import hinge_axis, hinge_flexion
 from solvers.motion_fitting.normal_equations import NormalEquations
@@ -154,3 +156,19 @@ def test_a_knee_keeps_its_limit(start):
     after = FittedMotion(start.source, fit.motion, start.joints)
     assert (hinge_flexion(start, knee, ankle, axis) < 0.8).any()
     assert (hinge_flexion(after, knee, ankle, axis) > 0.79).all()
+
+
+@pytest.mark.parametrize("flexion", [0.0, 0.02, 0.5, 2.9, -0.5])
+def test_only_straight_limbs_are_bent_before_a_fit(start, flexion):
+    """A knee that is bent, the wrong way too, starts as it is."""
+    _, knee, ankle = start.joints
+    axis = hinge_axis(start, knee, ankle)
+    turn = flexion - hinge_flexion(start, knee, ankle, axis)
+    step = np.zeros((N_FRAMES, start.n_variables))
+    step[:, start.columns(knee)] = turn[:, None] * axis
+    bent = start.moved(step)
+
+    after = with_bent_hinge(bent, hinge_limit(bent, knee, ankle, axis, 0.1, 0.01))
+
+    expected = np.radians(3.0) if abs(flexion) < np.radians(3.0) else flexion
+    assert_allclose(hinge_flexion(after, knee, ankle, axis), expected, atol=0.02)

@@ -62,7 +62,7 @@ def test_heels_stay_above_ground_and_toes_in_the_foot_plane(recordings, take):
         assert low[:, 1].min() > -0.045
     free = toe_flexion_deg(retargeted_to(motion, settings=RetargetSettings(keep_feet=False)))
     at_rest = toe_flexion_deg(resting(motion.n_frames)).max()
-    assert (toe_flexion_deg(result) < np.maximum(free, at_rest + 32.0) + 5.0).all()
+    assert (toe_flexion_deg(result) < np.maximum(free, at_rest + 32.0) + 8.0).all()
 
 
 def angle(one: np.ndarray, other: np.ndarray) -> np.ndarray:
