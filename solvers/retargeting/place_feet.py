@@ -58,6 +58,9 @@ x0.5 and x2 change the mean by less than 0.1 %."""
 FOOT_RAD = np.radians(3.0)
 """Radians by which a foot may turn in the world. Chosen by hand: x0.5 costs 4.9 %, x2 gains
 4.4 % and turns feet farther."""
+MIN_HINGE_COSINE = 0.5
+"""Cosine of the angle between the axis of a knee and that across the body. It guards straight
+knees, which seem to bend sideways or backward."""
 HINGE_RAD = np.radians(1.0)
 """Radians by which knees and toes may pass their limits. It guards knees against bending the
 wrong way."""
@@ -151,11 +154,13 @@ def _knee_limit(
 ) -> HingeLimit:
     """Return what keeps a knee from bending the wrong way.
 
-    A knee that is always straight bends about the axis across the body.
+    A knee bends about the axis that its motion shows. That of a knee which hardly bends is
+    noise; if it is not about across the body, the axis across the body replaces it.
     """
+    across = rotate(target.alignment[leg[0]], LATERAL_AXIS)
     axis = hinge_axis(fitted, *leg[1:])
-    if axis is None:
-        axis = rotate(target.alignment[leg[0]], LATERAL_AXIS)
+    if axis is None or axis @ across < MIN_HINGE_COSINE:
+        axis = across
     reserve = flexion_in_reserve(target.rest[list(leg)], softness)
     return hinge_limit(fitted, *leg[1:], axis, reserve, HINGE_RAD)
 
