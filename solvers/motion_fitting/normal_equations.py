@@ -108,17 +108,16 @@ class NormalEquations:
 
         blocks, between, gradient = self._assembled
         n_frames, n = gradient.shape
-        bands = np.zeros((2 * n + 1, n_frames, n))
-        lower, left = np.tril_indices(n)
-        bands[lower - left, :, left] = blocks[:, lower, left].T
-        later, earlier = (index.ravel() for index in np.indices((n, n)))
-        bands[n + later - earlier, : n_frames - 1, earlier] = between[:, earlier, later].T
+        bands = np.zeros((n_frames, n, 2 * n + 1))
+        for column in range(n):
+            bands[:, column, : n - column] = blocks[:, column, column:]
+            bands[:-1, column, n - column : 2 * n - column] = between[:, column]
         upper = second_difference_bands(n_frames)
         for ahead in range(3):
             differences = upper[2 - ahead, ahead:, None]
-            bands[ahead * n, : n_frames - ahead] += differences * self._second
+            bands[: n_frames - ahead, :, ahead * n] += differences * self._second
         solved = solveh_banded(
-            bands.reshape(len(bands), -1),
+            bands.reshape(n_frames * n, -1).T,
             -gradient.ravel(),
             lower=True,
             overwrite_ab=True,

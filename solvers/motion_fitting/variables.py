@@ -1,6 +1,7 @@
 """A motion while it is fitted: its poses, and how points and bones move."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,7 +14,6 @@ from ..rotations import (
     multiply,
     quaternion_from_rotation_vector,
     rotation_vector_from_quaternion,
-    skew_matrices,
 )
 
 
@@ -22,8 +22,8 @@ class FittedMotion:
     """A motion between two steps of the fit.
 
     Its variables are, in each frame, the position of the root in meters, if it may move, and
-    then a rotation vector in radians for each joint that may turn, in the axes of the joint's
-    parent.
+    then for each joint that may turn a rotation vector in radians, in the axes of the joint's
+    parent, or the angle of a hinge.
 
     Attributes
     ----------
@@ -33,22 +33,27 @@ class FittedMotion:
     joints : tuple of int
         Joints that may turn.
     root_moves : bool
+    hinges : mapping of joint to shape (3,)
+        Unit vectors about which some of the joints turn, in the axes of their parents; all
+        others turn freely.
     """
 
     source: Motion
     motion: Motion
     joints: tuple[int, ...]
     root_moves: bool = True
-
-    @property
-    def root_columns(self) -> slice:
-        """Where the variables of the root's position are."""
-        return slice(0, 3 if self.root_moves else 0)
+    hinges: Mapping[int, Array] = field(default_factory=dict)
 
     @property
     def n_variables(self) -> int:
         """Number of variables of a frame."""
-        return 3 * (len(self.joints) + self.root_moves)
+        return self._bounds[-1]
+
+    @cached_property
+    def _bounds(self) -> list[int]:
+        """Where the variables of each joint begin, and the end of the last one."""
+        sizes = [1 if joint in self.hinges else 3 for joint in self.joints]
+        return [int(n) for n in np.cumsum([3 * self.root_moves, *sizes])]
 
     @cached_property
     def poses(self) -> WorldPoses:
@@ -56,17 +61,23 @@ class FittedMotion:
         return forward_kinematics(self.motion)
 
     @cached_property
-    def _axes(self) -> Array:
-        """World axes of each joint's variables, (n_frames, n_joints, 3, 3)."""
-        parents = np.array(self.motion.skeleton.parents)[list(self.joints)]
-        axes = matrix_from_quaternion(self.poses.rotations[:, np.maximum(parents, 0)])
-        axes[:, parents < 0] = np.eye(3)
+    def _axes(self) -> list[Array]:
+        """World axes of each joint's variables as columns, (n_frames, 3, 1 or 3)."""
+        axes = []
+        for joint in self.joints:
+            parent, own = self.motion.skeleton.parents[joint], self.axes_of(joint)
+            turns = matrix_from_quaternion(self.poses.rotations[:, parent])
+            axes.append(turns @ own if parent >= 0 else np.broadcast_to(own, turns.shape))
         return axes
+
+    def axes_of(self, joint: int) -> Array:
+        """Return the axes of a joint's variables as columns, in the axes of its parent."""
+        return self.hinges[joint][:, None] if joint in self.hinges else np.eye(3)
 
     def columns(self, joint: int) -> slice:
         """Return where the variables of a joint are."""
-        first = self.root_columns.stop + 3 * self.joints.index(joint)
-        return slice(first, first + 3)
+        index = self.joints.index(joint)
+        return slice(*self._bounds[index : index + 2])
 
     def deviations(self) -> Array:
         """Return the change of each variable since the source, (n_frames, n_variables)."""
@@ -75,9 +86,12 @@ class FittedMotion:
             self.motion.rotations[:, chosen], inverse(self.source.rotations[:, chosen])
         )
         vectors = rotation_vector_from_quaternion(turns)
-        moved = self.motion.root_positions - self.source.root_positions
-        parts = [moved, vectors.reshape(len(moved), -1)]
-        return np.concatenate(parts if self.root_moves else parts[1:], axis=1)
+        changes = np.empty((self.motion.n_frames, self.n_variables))
+        if self.root_moves:
+            changes[:, :3] = self.motion.root_positions - self.source.root_positions
+        for index, joint in enumerate(chosen):
+            changes[:, self.columns(joint)] = vectors[:, index] @ self.axes_of(joint)
+        return changes
 
     def point_jacobian(self, points: Array, bone: int) -> Array:
         """Return the derivatives of points that are fixed to a bone.
@@ -95,17 +109,19 @@ class FittedMotion:
         """
         jacobian = np.zeros((len(points), 3, self.n_variables))
         if self.root_moves:
-            jacobian[:, :, self.root_columns] = np.eye(3)
+            jacobian[:, :, :3] = np.eye(3)
         for index, joint in self._carriers(bone):
             levers = points - self.poses.positions[:, joint]
-            jacobian[:, :, self.columns(joint)] = -skew_matrices(levers) @ self._axes[:, index]
+            jacobian[:, :, self.columns(joint)] = np.cross(
+                self._axes[index], levers[..., None], axis=1
+            )
         return jacobian
 
     def rotation_jacobian(self, bone: int) -> Array:
         """Return the derivative of a bone's world rotation, (n_frames, 3, n_variables)."""
         jacobian = np.zeros((self.motion.n_frames, 3, self.n_variables))
         for index, joint in self._carriers(bone):
-            jacobian[:, :, self.columns(joint)] = self._axes[:, index]
+            jacobian[:, :, self.columns(joint)] = self._axes[index]
         return jacobian
 
     def _carriers(self, bone: int) -> list[tuple[int, int]]:
@@ -118,13 +134,13 @@ class FittedMotion:
 
     def moved(self, step: Array) -> "FittedMotion":
         """Return the motion after a step of the variables, shape (n_frames, n_variables)."""
-        rotations = self.motion.rotations.copy()
-        turns = quaternion_from_rotation_vector(
-            step[:, self.root_columns.stop :].reshape(len(step), len(self.joints), 3)
+        vectors = np.stack(
+            [step[:, self.columns(joint)] @ self.axes_of(joint).T for joint in self.joints], 1
         )
-        chosen = list(self.joints)
+        chosen, rotations = list(self.joints), self.motion.rotations.copy()
+        turns = quaternion_from_rotation_vector(vectors)
         rotations[:, chosen] = multiply(turns, rotations[:, chosen])
         root = self.motion.root_positions
         if self.root_moves:
-            root = root + step[:, self.root_columns]
+            root = root + step[:, :3]
         return replace(self, motion=self.motion.with_poses(rotations, root))

@@ -7,7 +7,6 @@ from ..motion import Motion
 from ..motion.humanoid import HUMAN_LEG_LENGTH_M, UP
 from ..motion_fitting import FittedMotion, Goal, fit_in_pieces, fit_motion
 from ..motion_fitting.goals import (
-    BendAboutAxis,
     BonePoint,
     FollowPosition,
     FollowRotation,
@@ -49,9 +48,6 @@ nothing, x2 costs 0.1 %."""
 HIP_RAD, KNEE_RAD, ANKLE_RAD, TOE_RAD = np.radians([10.0, 10.0, 30.0, 10.0])
 """Radians by which the joints of a leg may turn. Chosen by hand: knees of x0.5 jerk 3 % more
 in walks."""
-SIDEWAYS_RAD = np.radians(1.0)
-"""Radians by which knees and toes may turn about other axes than their hinges. Chosen by
-hand: x0.5 costs nothing, x2 costs nothing."""
 MAX_TOE_FLEXION_RAD = np.radians(32.0)
 """Maximum extension of toes beyond the rest pose to lift their tips. Chosen by hand:
 x0.5 and x2 change the mean by less than 0.1 %."""
@@ -99,23 +95,25 @@ def place_feet(
     paths = find_foot_paths(transfer, motion)
     if not paths:
         return rotations, root_positions
-    joints: dict[int, float] = {}
-    for path in paths:
-        joints |= dict(zip(path.leg, (HIP_RAD, KNEE_RAD, ANKLE_RAD), strict=True))
-        foot, ball = foot_bone(target, path.side)
-        if target.skeleton.parents[ball] == foot and tip_of(target, ball) is not None:
-            joints[ball] = TOE_RAD
     size = leg_length(target) / HUMAN_LEG_LENGTH_M
 
     def fit_piece(start: int, stop: int, progress: Progress) -> Motion:
         piece = motion.slice(start, stop)
-        fitted = FittedMotion(piece, piece, tuple(joints))
+        recorded = FittedMotion(piece, piece, ())
+        knees = {path.leg[1]: _knee_axis(target, recorded, path.leg) for path in paths}
+        toes = {ball: axis for path in paths for ball, axis in _toe_axis(target, path.side)}
+        joints: dict[int, float] = dict.fromkeys(toes, TOE_RAD)
+        for path in paths:
+            joints |= dict(zip(path.leg, (HIP_RAD, KNEE_RAD, ANKLE_RAD), strict=True))
+        fitted = FittedMotion(piece, piece, tuple(joints), hinges=knees | toes)
         goals: list[Goal] = [FollowSource.of_joints(fitted, ROOT_M * size, joints, BLEND_S)]
         start_of_fit = fitted
         for path in paths:
             goals += _foot_goals(transfer, fitted, path, size, slice(start, stop))
-            knee = _knee_limit(target, fitted, path.leg, softness)
-            goals += [knee, BendAboutAxis(knee.joint, knee.axis, SIDEWAYS_RAD)]
+            reserve = flexion_in_reserve(target.rest[list(path.leg)], softness)
+            axis = knees[path.leg[1]]
+            knee = hinge_limit(fitted, *path.leg[1:], axis, reserve, HINGE_RAD)
+            goals.append(knee)
             start_of_fit = with_bent_hinge(start_of_fit, knee)
         return fit_motion(start_of_fit, goals, progress, "Placing the feet").motion
 
@@ -144,41 +142,43 @@ def _foot_goals(
             for sole, height in zip(path.soles, path.heights, strict=True)
         ),
     ]
-    if ball in fitted.joints:
-        goals += _toe_goals(transfer.target, fitted, foot, ball)
+    if ball in fitted.hinges:
+        goals += _toe_limits(transfer.target, fitted, foot, ball)
     return goals
 
 
-def _knee_limit(
-    target: HumanoidBody, fitted: FittedMotion, leg: Limb, softness: float
-) -> HingeLimit:
-    """Return what keeps a knee from bending the wrong way.
+def _knee_axis(target: HumanoidBody, fitted: FittedMotion, leg: Limb) -> Array:
+    """Return the axis about which a knee bends, in the axes of its thigh, shape (3,).
 
-    A knee bends about the axis that its motion shows. That of a knee which hardly bends is
-    noise; if it is not about across the body, the axis across the body replaces it.
+    It is the one that the motion shows. That of a knee which hardly bends is noise; if it is
+    not about across the body, the axis across the body replaces it.
     """
     across = rotate(target.alignment[leg[0]], LATERAL_AXIS)
     axis = hinge_axis(fitted, *leg[1:])
-    if axis is None or axis @ across < MIN_HINGE_COSINE:
-        axis = across
-    reserve = flexion_in_reserve(target.rest[list(leg)], softness)
-    return hinge_limit(fitted, *leg[1:], axis, reserve, HINGE_RAD)
+    return across if axis is None or axis @ across < MIN_HINGE_COSINE else axis
 
 
-def _toe_goals(target: HumanoidBody, fitted: FittedMotion, foot: int, ball: int) -> list[Goal]:
-    """Return what keeps toes in their foot's plane, from curling and from bending too far."""
-    tip = tip_of(target, ball)
+def _toe_axis(target: HumanoidBody, side: str) -> list[tuple[int, Array]]:
+    """Return the joint of the toes and their axis, across the foot; nothing without toes."""
+    foot, ball = foot_bone(target, side)
     across = np.cross(target.rest[ball] - target.rest[foot], UP)
-    if tip is None or not across.any():
+    has_toes = target.skeleton.parents[ball] == foot and tip_of(target, ball) is not None
+    if not has_toes or not across.any():
         return []
-    axis = across / np.linalg.norm(across)
+    return [(ball, across / np.linalg.norm(across))]
+
+
+def _toe_limits(target: HumanoidBody, fitted: FittedMotion, foot: int, ball: int) -> list[Goal]:
+    """Return what keeps toes from curling and from bending too far."""
+    tip, axis = tip_of(target, ball), fitted.hinges[ball]
+    if tip is None:
+        return []
     bones = np.diff(target.rest[[foot, ball, tip]], axis=0)
     at_rest = np.arctan2(np.cross(*bones) @ axis, bones[0] @ bones[1])
     recorded = hinge_flexion(fitted, ball, tip, axis)
     uncurled = np.minimum(recorded, at_rest)
     extended = np.maximum(recorded, at_rest + MAX_TOE_FLEXION_RAD)
     return [
-        BendAboutAxis(ball, axis, SIDEWAYS_RAD),
         HingeLimit(ball, tip, axis, uncurled, HINGE_RAD),
         HingeLimit(ball, tip, -axis, -extended, HINGE_RAD),
     ]

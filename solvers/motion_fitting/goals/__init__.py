@@ -4,7 +4,6 @@ from .bone_rotations import FollowRotation, StayStill
 from .contact_points import BonePoint, FollowPosition, StayAbove, StayAtHeight, StayInPlace
 from .follow_source import FollowSource
 from .hinge_limit import (
-    BendAboutAxis,
     HingeLimit,
     flexion_in_reserve,
     hinge_axis,
@@ -15,7 +14,6 @@ from .hinge_limit import (
 )
 
 __all__ = [
-    "BendAboutAxis",
     "BonePoint",
     "FollowPosition",
     "FollowRotation",

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...rotations import inverse, multiply, rotate, rotation_vector_from_quaternion
+from ...rotations import inverse, rotate
 from .. import FittedMotion, NormalEquations
 
 START_RAD = np.radians(3.0)
@@ -43,34 +43,9 @@ class HingeLimit:
             hinge_flexion(fitted, self.joint, self.end, self.axis) - self.minimum, 0.0
         )
         jacobian = np.zeros((len(below), 1, fitted.n_variables))
-        jacobian[below < 0.0, 0, fitted.columns(self.joint)] = self.axis / self.tolerance
+        slope = self.axis @ fitted.axes_of(self.joint) / self.tolerance
+        jacobian[below < 0.0, 0, fitted.columns(self.joint)] = slope
         equations.add_frames(below[:, None] / self.tolerance, jacobian)
-
-
-@dataclass(frozen=True, eq=False)
-class BendAboutAxis:
-    """Keep the change of a joint to a rotation about one axis.
-
-    Attributes
-    ----------
-    joint : int
-    axis : shape (3,), a unit vector
-        In the axes of the joint's parent.
-    tolerance : float, radians
-    """
-
-    joint: int
-    axis: Array
-    tolerance: float
-
-    def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
-        """Add residuals and derivatives at the present poses."""
-        across = (np.eye(3) - np.outer(self.axis, self.axis)) / self.tolerance
-        before = fitted.source.rotations[:, self.joint]
-        turns = multiply(fitted.motion.rotations[:, self.joint], inverse(before))
-        jacobian = np.zeros((len(turns), 3, fitted.n_variables))
-        jacobian[:, :, fitted.columns(self.joint)] = across
-        equations.add_frames(rotation_vector_from_quaternion(turns) @ across, jacobian)
 
 
 def hinge_limits(
@@ -100,7 +75,9 @@ def with_bent_hinge(fitted: FittedMotion, limit: HingeLimit) -> FittedMotion:
     flexion = hinge_flexion(fitted, limit.joint, limit.end, limit.axis)
     step = np.zeros((len(flexion), fitted.n_variables))
     missing = np.where(np.abs(flexion) < START_RAD, START_RAD - flexion, 0.0)
-    step[:, fitted.columns(limit.joint)] = missing[:, None] * limit.axis
+    step[:, fitted.columns(limit.joint)] = np.outer(
+        missing, limit.axis @ fitted.axes_of(limit.joint)
+    )
     return fitted.moved(step)
 
 

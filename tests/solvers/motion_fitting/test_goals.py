@@ -7,7 +7,6 @@ from numpy.testing import assert_allclose
 from solvers.motion import Motion, forward_kinematics
 from solvers.motion_fitting import FittedMotion, fit_motion
 from solvers.motion_fitting.goals import (
-    BendAboutAxis,
     BonePoint,
     FollowPosition,
     FollowRotation,
@@ -22,7 +21,12 @@ from solvers.motion_fitting.goals import (
 )
 from solvers.motion_fitting.goals.hinge_limit import hinge_axis, hinge_flexion
 from solvers.motion_fitting.normal_equations import NormalEquations
-from solvers.rotations import angle_between
+from solvers.rotations import (
+    angle_between,
+    inverse,
+    multiply,
+    rotation_vector_from_quaternion,
+)
 from solvers.samples import GaitSettings, walking_gait
 
 N_FRAMES = 12
@@ -66,7 +70,6 @@ def all_goals(start: FittedMotion, rng) -> dict[str, object]:
         "position": FollowPosition(points[0], rng.normal(size=(N_FRAMES, 3)), frames, 0.1),
         "rotation": FollowRotation(ankle, start.poses.rotations[:, ankle], 0.1),
         "still": StayStill(ankle, steps, 0.1),
-        "axis": BendAboutAxis(knee, np.array([0.6, 0.0, 0.8]), 0.1),
         "hinge": HingeLimit(knee, ankle, axis, np.full(N_FRAMES, 1.5), 0.1),
     }
 
@@ -79,15 +82,18 @@ def equations(goal, fitted: FittedMotion) -> NormalEquations:
 
 KINDS = (
     "follow source", "in place", "wanted steps", "above", "at height", "position", "rotation",
-    "still", "axis", "hinge",
+    "still", "hinge",
 )  # fmt: skip
 
 
 @pytest.mark.parametrize("root_moves", [True, False])
+@pytest.mark.parametrize("knee_is_hinge", [True, False])
 @pytest.mark.parametrize("kind", KINDS)
-def test_gradient_agrees_with_differences(start, rng, kind, root_moves):
+def test_gradient_agrees_with_differences(start, rng, kind, root_moves, knee_is_hinge):
     """The derivative of a rotation vector is that of a small one, so the change is small."""
-    start = FittedMotion(start.source, start.motion, start.joints, root_moves)
+    _, knee, ankle = start.joints
+    hinges = {knee: hinge_axis(start, knee, ankle)} if knee_is_hinge else {}
+    start = FittedMotion(start.source, start.motion, start.joints, root_moves, hinges)
     fitted = start.moved(0.003 * rng.normal(size=(N_FRAMES, start.n_variables)))
     goal = all_goals(start, rng)[kind]
     direction = rng.normal(size=(N_FRAMES, fitted.n_variables))
@@ -98,6 +104,20 @@ def test_gradient_agrees_with_differences(start, rng, kind, root_moves):
 
     slope = np.vdot(equations(goal, fitted).gradient, direction)
     assert (above - below) / 2e-6 == pytest.approx(slope, rel=0.05)
+
+
+def test_a_hinge_turns_about_its_axis_only(start, rng):
+    _, knee, ankle = start.joints
+    axis = hinge_axis(start, knee, ankle)
+    start = FittedMotion(start.source, start.motion, start.joints, hinges={knee: axis})
+    step = rng.normal(size=(N_FRAMES, start.n_variables))
+
+    moved = start.moved(step)
+
+    before, after = start.motion.rotations[:, knee], moved.motion.rotations[:, knee]
+    turns = rotation_vector_from_quaternion(multiply(after, inverse(before)))
+    assert_allclose(turns, step[:, start.columns(knee)] * axis, atol=1e-9)
+    assert_allclose(moved.deviations()[:, start.columns(knee)] * axis, turns, atol=1e-9)
 
 
 def test_a_motion_without_goals_but_its_source_comes_back(start, shaken):
