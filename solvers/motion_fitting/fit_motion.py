@@ -3,17 +3,21 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..motion import Motion
-from ..progress import Progress, unwatched
+from ..progress import Progress, Remark, unwatched
 from .goal import Goal
 from .normal_equations import NormalEquations
 from .variables import FittedMotion
 
 MAX_ROUNDS = 16
-"""Number of steps. It bounds the time; takes of all kinds need two to seven;
-feet far out of reach are still not settled after these."""
+"""Number of steps. It bounds the time; takes of all kinds need two to seven."""
 MAX_HALVINGS = 8
 """Number of times that a step is halved which makes the cost higher. It bounds the time."""
+MAX_STEP = 1.0
+"""Radians and meters of any variable in one step. It guards limbs that have to go far, which
+would bend the wrong way."""
 SMALL_DECREASE = 1e-2
 """Relative decrease of the cost that ends the fit, a ratio. Chosen by hand: x0.5 costs nothing,
 x2 costs nothing."""
@@ -48,7 +52,7 @@ def fit_motion(
     goals : sequence of Goal
     progress : Progress
     message : str
-        What is shown as progress.
+        What is shown as progress, and begins the remark on a fit that did not converge.
 
     Raises
     ------
@@ -59,6 +63,7 @@ def fit_motion(
     for number in range(1, MAX_ROUNDS + 1):
         progress(number / (MAX_ROUNDS + 1), message)
         step = equations.step()
+        damping = min(damping, MAX_STEP / max(float(np.abs(step).max()), 1e-9))
         for _ in range(MAX_HALVINGS):
             trial = fitted.moved(damping * step)
             tried = _equations(trial, goals)
@@ -66,12 +71,13 @@ def fit_motion(
                 break
             damping *= 0.5
         else:
-            return Fit(fitted.motion, False)
+            break
         is_small = equations.cost - tried.cost <= SMALL_DECREASE * tried.cost
         has_converged = is_small and damping == 1.0
         fitted, equations, damping = trial, tried, min(1.0, 2.0 * damping)
         if has_converged:
             return Fit(fitted.motion, True)
+    progress(1.0, Remark(f"{message} did not settle; look at limbs that are stretched"))
     return Fit(fitted.motion, False)
 
 

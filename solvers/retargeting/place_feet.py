@@ -15,36 +15,35 @@ from ..motion_fitting.goals import (
     StayAbove,
     StayInPlace,
     flexion_in_reserve,
-    hinge_axis,
     hinge_flexion,
     hinge_limit,
     with_bent_hinge,
 )
 from ..progress import Progress, unwatched
-from ..rotations import rotate
 from .body import HumanoidBody
 from .foot_paths import FootPath, find_foot_paths
-from .limbs import Limb, Transfer
+from .hinges import HINGE_RAD, limb_hinge
+from .limbs import Transfer
 from .placement import leg_length
 from .soles import tip_of
 from .stances import LATERAL_AXIS, foot_bone
 
 BLEND_S = 0.5
-"""Seconds over which a correction begins and ends. Chosen by hand: x0.5 gains 0.2 %, x2 gains
-0.1 %, but 0.3 s makes knees jerk a tenth more in walks."""
+"""Seconds over which a correction begins and ends. Chosen by hand: x0.5 gains 0.2 %, x2 costs
+nothing, but 0.3 s makes knees jerk a tenth more in walks."""
 SWING_M, STANCE_M = 0.005, 0.01
 """Meters, for a leg of 0.9 m, by which ankles may leave their paths: of free and of standing
-feet, which must not slide. Chosen by hand: first, x0.5 gains 4.7 %, x2 costs 4.6 %; second,
-x0.5 gains 0.2 %, x2 costs 0.5 %."""
+feet, which must not slide. Chosen by hand: first, x0.5 gains 4.6 %, x2 costs 4.6 %; second,
+x0.5 gains 0.2 %, x2 costs 0.6 %."""
 SLIDE_M_S = 0.005
 """Meters per second, for a leg of 0.9 m, by which a foot may slide more than the source's.
 Chosen by hand: x0.5 costs nothing, x2 costs nothing."""
 DEPTH_M = 0.001
-"""Meters, for a leg of 0.9 m, of a sole below the ground. Chosen by hand: x0.5 costs 1.3 %,
-x2 gains 0.8 %."""
+"""Meters, for a leg of 0.9 m, of a sole below the ground. Chosen by hand: x0.5 gains 1.2 %,
+x2 gains 0.7 %."""
 ROOT_M = 0.02
 """Meters, for a leg of 0.9 m, by which the root may move. Chosen by hand: x0.5 costs
-nothing, x2 costs 0.1 %."""
+nothing, x2 costs 0.2 %."""
 HIP_RAD, KNEE_RAD, ANKLE_RAD, TOE_RAD = np.radians([10.0, 10.0, 30.0, 10.0])
 """Radians by which the joints of a leg may turn. Chosen by hand: knees of x0.5 jerk 3 % more
 in walks."""
@@ -52,14 +51,8 @@ MAX_TOE_FLEXION_RAD = np.radians(32.0)
 """Maximum extension of toes beyond the rest pose to lift their tips. Chosen by hand:
 x0.5 and x2 change the mean by less than 0.1 %."""
 FOOT_RAD = np.radians(3.0)
-"""Radians by which a foot may turn in the world. Chosen by hand: x0.5 costs 4.9 %, x2 gains
+"""Radians by which a foot may turn in the world. Chosen by hand: x0.5 costs 5.0 %, x2 gains
 4.4 % and turns feet farther."""
-MIN_HINGE_COSINE = 0.5
-"""Cosine of the angle between the axis of a knee and that across the body. It guards straight
-knees, which seem to bend sideways or backward."""
-HINGE_RAD = np.radians(1.0)
-"""Radians by which knees and toes may pass their limits. It guards knees against bending the
-wrong way."""
 
 
 def place_feet(
@@ -100,7 +93,9 @@ def place_feet(
     def fit_piece(start: int, stop: int, progress: Progress) -> Motion:
         piece = motion.slice(start, stop)
         recorded = FittedMotion(piece, piece, ())
-        knees = {path.leg[1]: _knee_axis(target, recorded, path.leg) for path in paths}
+        knees = {
+            path.leg[1]: limb_hinge(target, recorded, path.leg, LATERAL_AXIS) for path in paths
+        }
         toes = {ball: axis for path in paths for ball, axis in _toe_axis(target, path.side)}
         joints: dict[int, float] = dict.fromkeys(toes, TOE_RAD)
         for path in paths:
@@ -145,17 +140,6 @@ def _foot_goals(
     if ball in fitted.hinges:
         goals += _toe_limits(transfer.target, fitted, foot, ball)
     return goals
-
-
-def _knee_axis(target: HumanoidBody, fitted: FittedMotion, leg: Limb) -> Array:
-    """Return the axis about which a knee bends, in the axes of its thigh, shape (3,).
-
-    It is the one that the motion shows. That of a knee which hardly bends is noise; if it is
-    not about across the body, the axis across the body replaces it.
-    """
-    across = rotate(target.alignment[leg[0]], LATERAL_AXIS)
-    axis = hinge_axis(fitted, *leg[1:])
-    return across if axis is None or axis @ across < MIN_HINGE_COSINE else axis
 
 
 def _toe_axis(target: HumanoidBody, side: str) -> list[tuple[int, Array]]:

@@ -20,10 +20,10 @@ from ..progress import Progress, Remark, unwatched, within
 from ..rotations import IDENTITY
 from ..settings import Choice, Settings, setting
 from .body import SIDES, HumanoidBody, find_body, without_gaps
-from .hands import place_hands
 from .limbs import Transfer
 from .map_checks import knees_bend_backward
 from .place_feet import place_feet
+from .place_hands import place_hands
 from .placement import ankle_height, find_placement
 from .pose_transfer import transfer_pose
 from .root_motion import in_place, on_root_bone
@@ -102,8 +102,9 @@ def retarget(
     spines with other numbers of joints distribute it. The midpoint of the hip joints travels in
     proportion to the legs, with its height relative to the ankles of standing feet. Then
     a fit of all frames lets the feet follow the source's, scaled by the leg; if a leg is too
-    short, the hips follow (`place_feet`). Two-bone inverse kinematics [1]_ moves the hands to
-    the source's positions, scaled by the arm. Joints without a role keep their rest rotation
+    short, the hips follow (`place_feet`). Another one lets the hands follow the source's,
+    scaled by the arm (`place_hands`). Both are in the spirit of [1]_, least changes of a whole
+    take under constraints. Joints without a role keep their rest rotation
     relative to their parents: twist bones, face, props.
 
     Parameters
@@ -135,10 +136,8 @@ def retarget(
 
     References
     ----------
-    .. [1] Choi, Ko (2000). Online motion retargetting. Journal of Visualization and Computer
-       Animation 11(5), 223-235; and for the two joints of a limb in closed form Tolani,
-       Goswami, Badler (2000). Real-time inverse kinematics techniques for anthropomorphic
-       limbs. Graphical Models 62(5). doi:10.1006/gmod.2000.0528
+    .. [1] Gleicher (1998). Retargetting motion to new characters. SIGGRAPH, 33-42.
+       doi:10.1145/280814.280820
     """
     motion = with_standing_rest(motion, source_map)
     source = find_body(motion.skeleton, source_map, "source's")
@@ -166,7 +165,9 @@ def retarget(
         )
     progress(0.7, "Placing the hands")
     if settings.keep_hands:
-        rotations = place_hands(transfer, rotations, root_positions)
+        rotations = place_hands(
+            transfer, rotations, root_positions, within(progress, 0.7, 0.85)
+        )
     root_positions[~np.isfinite(motion.root_positions).all(axis=1)] = np.nan
     rotations[missing] = np.nan
     all_rotations = np.tile(IDENTITY, (motion.n_frames, target_skeleton.n_joints, 1))

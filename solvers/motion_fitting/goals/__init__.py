@@ -1,7 +1,14 @@
 """What a fitted motion is to meet, one kind of goal in each file."""
 
 from .bone_rotations import FollowRotation, StayStill
-from .contact_points import BonePoint, FollowPosition, StayAbove, StayAtHeight, StayInPlace
+from .contact_points import (
+    BonePoint,
+    FollowPosition,
+    KeepSeparation,
+    StayAbove,
+    StayAtHeight,
+    StayInPlace,
+)
 from .follow_source import FollowSource
 from .hinge_limit import (
     HingeLimit,
@@ -19,6 +26,7 @@ __all__ = [
     "FollowRotation",
     "FollowSource",
     "HingeLimit",
+    "KeepSeparation",
     "StayAbove",
     "StayAtHeight",
     "StayInPlace",

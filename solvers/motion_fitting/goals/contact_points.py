@@ -152,3 +152,33 @@ class StayAbove:
         jacobian = fitted.point_jacobian(position, self.point.bone)[:, 2:] / self.tolerance
         jacobian[below == 0.0] = 0.0
         equations.add_frames(below[:, None], jacobian)
+
+
+@dataclass(frozen=True, eq=False)
+class KeepSeparation:
+    """Keep one point at a displacement from another.
+
+    Attributes
+    ----------
+    point, other : BonePoint
+    wanted : shape (n_frames, 3), meters
+        From the other to the point.
+    weight : shape (n_frames,), 0 to 1
+    tolerance : float, meters
+    """
+
+    point: BonePoint
+    other: BonePoint
+    wanted: Array
+    weight: Array
+    tolerance: float
+
+    def add_to(self, equations: NormalEquations, fitted: FittedMotion) -> None:
+        """Add residuals and derivatives at the present poses."""
+        position, other = (each.position(fitted.poses) for each in (self.point, self.other))
+        scale = self.weight[:, None] / self.tolerance
+        jacobian = fitted.point_jacobian(position, self.point.bone)
+        jacobian -= fitted.point_jacobian(other, self.other.bone)
+        equations.add_frames(
+            (position - other - self.wanted) * scale, jacobian * scale[..., None]
+        )

@@ -9,14 +9,8 @@ from rigs import mixamo
 
 from solvers.motion import find_humanoid_map
 from solvers.retargeting.body import find_body
-from solvers.retargeting.hand_distance import Arms, match_meeting_hands
-from solvers.retargeting.hand_heights import (
-    GroundHeights,
-    ease_into_extension,
-    pull_to_ground,
-)
+from solvers.retargeting.hand_paths import ground_weights
 from solvers.retargeting.placement import (
-    HipPlacement,
     ankle_height,
     find_placement,
     leg_length,
@@ -25,10 +19,7 @@ from solvers.retargeting.placement import (
 )
 
 RATE = 120.0
-GROUND = GroundHeights(
-    HipPlacement(1.0, 1.0, np.zeros(3), (0.0, 0.0), (0.0, 0.0)), (0.0, 0.0), 0.9, RATE
-)
-ASIDE = np.array([0.0, 0.2, 0.0])
+LEG_M = 0.9
 
 
 @pytest.fixture(scope="module")
@@ -49,54 +40,22 @@ def positions(*heights):
     return np.array([(0.0, 0.0, height) for height in heights])
 
 
-def test_hands_that_nearly_touch_keep_the_distance_of_the_source():
-    shoulders = np.array([[[0.2, 0.0, 1.4]], [[-0.2, 0.0, 1.4]]])
-    apart = np.array([[[0.3, -0.3, 1.3]], [[-0.3, -0.3, 1.3]]])
-    separation = np.array([[0.05, 0.0, 0.0]])
-
-    left, right = match_meeting_hands(Arms(shoulders, apart, np.full(2, 0.6)), separation)
-
-    assert_allclose(left - right, separation, atol=1e-12)
-
-
-def test_arms_too_short_for_hands_to_meet_stay_bent():
-    shoulders = np.array([[[0.2, 0.0, 1.4]], [[-0.2, 0.0, 1.4]]])
-    far = np.array([[[0.3, -0.6, 1.4]], [[-0.3, -0.6, 1.4]]])
-    arms = Arms(shoulders, far, np.full(2, 0.5))
-
-    hands = match_meeting_hands(arms, np.zeros((1, 3)))
-
-    assert np.linalg.norm(hands - shoulders, axis=-1).max() < 0.5 * 0.9995
-
-
-def test_hand_that_sweeps_over_the_ground_is_not_pulled_where_it_turns():
+def test_hand_that_sweeps_over_the_ground_does_not_support_where_it_turns():
     """It stands for an instant there, as a hand does that supports the body."""
     time = np.arange(240) / RATE
-    source = np.stack([0.3 * np.sin(4 * np.pi * time), 0 * time, 0 * time + 0.05], axis=1)
-    hand = source + ASIDE
+    hand = np.stack([0.3 * np.sin(4 * np.pi * time), 0 * time, 0 * time + 0.05], axis=1)
 
-    found = pull_to_ground(hand, source, positions(*[0.4] * 240), 0.6, GROUND)
+    weights = ground_weights(hand / LEG_M, hand[:, 2] / LEG_M, RATE)
 
-    assert np.abs(found - hand)[:, 1].max() < 0.01
+    assert weights[:, :2].max() < 0.05
+    assert_allclose(weights[:, 2], 1.0)
 
 
-def test_hand_that_supports_the_body_is_pulled_to_its_position():
+def test_hand_that_rolls_on_the_ground_supports_the_body():
     """It rolls by a decimeter per second."""
-    source = positions(*[0.05] * 60) + np.linspace(0.0, 0.05, 60)[:, None] * (1.0, 0.0, 0.0)
+    hand = positions(*[0.05] * 60) + np.linspace(0.0, 0.05, 60)[:, None] * (1.0, 0.0, 0.0)
 
-    found = pull_to_ground(source + ASIDE, source, positions(*[0.4] * 60), 0.6, GROUND)
-
-    assert_allclose(found, source, atol=1e-9)
-
-
-def test_arm_does_not_snap_straight_where_the_ground_is_out_of_reach():
-    """The elbow of two bones of 0.3 m, with the hand's goal moving away at 1 m/s."""
-    goals = positions(*np.arange(0.4, 0.8, 1.0 / RATE))
-
-    reached = ease_into_extension(goals, positions(*[0.4] * len(goals)), 0.6)
-
-    elbow = 2.0 * np.arcsin(np.linalg.norm(reached, axis=1) / 0.6)
-    assert np.degrees(np.diff(elbow)).max() < 4.0
+    assert_allclose(ground_weights(hand / LEG_M, hand[:, 2] / LEG_M, RATE), 1.0)
 
 
 @pytest.mark.parametrize("height", [-0.015, 0.0, 0.05])

@@ -84,7 +84,7 @@ def test_feet_and_hands_follow_paths_scaled_by_the_limb(walk, family, size):
             for motion in (walk, result)
         ]
         arm_growth = arm_length(result, side) / arm_length(walk, side)
-        assert_allclose(arms[1], arm_growth * arms[0], atol=1e-6)
+        assert_allclose(arms[1], arm_growth * arms[0], atol=2e-4)
 
 
 @pytest.mark.parametrize("family", RIGS)

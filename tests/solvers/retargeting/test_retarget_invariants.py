@@ -111,6 +111,21 @@ def test_hands_that_meet_in_the_source_meet(family):
     assert actual[open_].min() > 0.6
 
 
+def test_arms_too_short_for_hands_to_meet_do_not_snap():
+    """Shoulders half a meter too far apart: the hands come nearer, with elbows still bent."""
+    body, rig = mixamo(), with_broad_shoulders(mixamo(1.0), 0.25)
+    clapping = claps(body, flexion=0.8)
+
+    result = retargeted(clapping, rig)
+    separate = retargeted(clapping, rig, RetargetSettings(keep_hands=False))
+
+    assert hand_distance(result).min() < hand_distance(separate).min() - 0.2
+    for side in ("left", "right"):
+        bend = np.linalg.norm(flexion_axis(result, side, ("UpperArm", *ARM_ENDS)), axis=1)
+        assert np.degrees(np.arcsin(bend)).min() > 3.0
+        assert np.degrees(np.abs(np.diff(np.arcsin(bend)))).max() < 4.0
+
+
 def test_travel_scale_is_a_setting():
     marks = retargeted(WALK, mixamo(1.5), RetargetSettings(travel_scale=1.0))
     result = marks.root_positions[-1, :2] - marks.root_positions[0, :2]
@@ -217,10 +232,10 @@ def hand_distance(motion: Motion) -> np.ndarray:
     return np.linalg.norm(positions["leftHand"] - positions["rightHand"], axis=1)
 
 
-def with_broad_shoulders(rig: Skeleton) -> Skeleton:
+def with_broad_shoulders(rig: Skeleton, by: float = 0.05) -> Skeleton:
     joints = find_humanoid_map(rig).indices(rig)
     offsets = rig.offsets.copy()
-    for role, offset in (("leftUpperArm", 0.05), ("rightUpperArm", -0.05)):
+    for role, offset in (("leftUpperArm", by), ("rightUpperArm", -by)):
         offsets[joints[role], 0] += offset
     return Skeleton(rig.names, rig.parents, offsets)
 
@@ -231,17 +246,19 @@ def arm_length(rig: Skeleton) -> float:
     return float(np.linalg.norm(np.diff(positions, axis=0), axis=1).sum())
 
 
-def claps(body: Skeleton) -> Motion:
-    """Level arms that swing together until the wrists touch, and open."""
+def claps(body: Skeleton, flexion: float = 0.0) -> Motion:
+    """Level arms that swing together until the wrists touch, and open; bent by an angle."""
     joints = HumanoidMap(find_humanoid_map(body).joints).indices(body)
     half_width = body.rest_positions[joints["leftUpperArm"], 0]
     arm = body.rest_positions[joints["leftHand"], 0] - half_width
+    arm *= np.cos(0.5 * flexion)
     inwards = np.arcsin((half_width - 0.02) / arm)
     openness = 0.5 - 0.5 * np.cos(np.linspace(0, 4 * np.pi, 121))
     angle = np.pi / 2 + inwards - (inwards + 0.6) * openness
     vectors = np.zeros((121, body.n_joints, 3))
-    vectors[:, joints["leftUpperArm"], 2] = -angle
-    vectors[:, joints["rightUpperArm"], 2] = angle
+    for side, sign in (("left", -1.0), ("right", 1.0)):
+        vectors[:, joints[f"{side}UpperArm"], 2] = sign * (angle - 0.5 * flexion)
+        vectors[:, joints[f"{side}LowerArm"], 2] = sign * flexion
     rotations = quaternion_from_rotation_vector(vectors)
     return Motion(body, rotations, np.tile(body.offsets[0], (121, 1)), 60.0)
 

@@ -1,0 +1,133 @@
+"""Where the hands have to be: from their shoulders, from the ground, and from each other."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arrays import Array
+from ..motion import WorldPoses
+from ..signals import smooth_gaussian, smoothstep
+from .body import SIDES
+from .limbs import Limb, Transfer
+from .placement import leg_length
+
+LOW_WRIST_FRACTION, HIGH_WRIST_FRACTION = 0.2, 0.4
+"""Heights of the wrist, as fractions of the leg length. Below the first, the height above
+ground is the source's, scaled by the legs; above the second, the ground has no influence.
+Chosen by hand: first, x0.5 costs 0.1 %, x2 gains 4.0 %; second, x0.5 gains 3.4 %, x2 gains
+0.3 %."""
+SUPPORT_HEIGHT_FRACTIONS = (0.12, 0.18)
+"""The same heights, as fractions of the leg length, for hands that support themselves on the
+ground. Chosen by hand: x0.5 costs nothing, x2 costs 0.1 %."""
+SUPPORT_SPEED, PASSING_SPEED = 0.25, 1.0
+"""Speeds in leg lengths per second: low hands slower than the first support themselves on the
+ground; hands faster than the second only pass. They guard hands that sweep over the ground,
+which would be pulled to the place of the source's."""
+SPEED_SMOOTHING_S = 0.1
+"""Standard deviation of the Gaussian that smooths the speed. It guards a hand that turns in a
+sweep over the ground: it stands for an instant, as if it supported the body."""
+REACH_FRACTIONS = (1.0, 0.9)
+"""Distances of a support from the shoulder, in arm lengths, at which it has no influence and
+all of it. They guard supports out of reach."""
+MEETING_FRACTION, INDEPENDENT_FRACTION = 0.15, 0.4
+"""Distances of both hands, as fractions of the arm length: below the first they meet, above the
+second they are independent. The first guards hands that nearly touch, which would keep part of
+the distance from other arms. Second chosen by hand: x0.5 costs nothing, x2 gains 0.3 %."""
+
+
+@dataclass(frozen=True, eq=False)
+class HandPath:
+    """Where the hand of one side has to be.
+
+    Attributes
+    ----------
+    side : str
+    arm : Limb
+        Of the target.
+    length : float, meters
+        Of that arm.
+    wanted : shape (n_frames, 3), meters
+        From the shoulder as in the source, scaled by the arm, or near the ground from there.
+    least_height : shape (n_frames,), meters, or None
+        None without a known ground.
+    """
+
+    side: str
+    arm: Limb
+    length: float
+    wanted: Array
+    least_height: Array | None
+
+
+class Meeting(NamedTuple):
+    """How both hands have to be to each other."""
+
+    separation: Array
+    """From the right hand to the left, scaled by the arms, (n_frames, 3), meters."""
+    weight: Array
+    """1 where they meet, 0 where they are independent, (n_frames,)."""
+
+
+def find_hand_paths(transfer: Transfer, poses: WorldPoses) -> list[HandPath]:
+    """Return the paths of the hands that both bodies have; `poses` are those of the target."""
+    source, target = transfer.source, transfer.target
+    positions, placement = transfer.source_poses.positions, transfer.placement
+    paths = []
+    for side in SIDES:
+        source_arm, arm = source.limb(side, "Arm"), target.limb(side, "Arm")
+        if not (source_arm and arm):
+            continue
+        length, hand = target.limb_length(arm), positions[:, source_arm[2]]
+        scale = length / source.limb_length(source_arm)
+        shoulder = poses.positions[:, arm[0]]
+        wanted = shoulder + scale * (hand - positions[:, source_arm[0]])
+        least_height = None
+        if placement.floors is not None:
+            leg = leg_length(source)
+            height = (hand[:, 2] - placement.floors[0]) / leg
+            support = placement.points(hand)
+            support[:, 2] = placement.floors[1] + placement.rise * leg * height
+            rest = np.linalg.norm(support - shoulder, axis=1) / length
+            weights = ground_weights(hand / leg, height, transfer.frame_rate)
+            weights[:, :2] *= smoothstep(rest, *REACH_FRACTIONS)[:, None]
+            wanted = wanted + weights * (support - wanted)
+            lowest = np.minimum(height, LOW_WRIST_FRACTION)
+            least_height = placement.floors[1] + placement.rise * leg * lowest
+        paths.append(HandPath(side, arm, length, wanted, least_height))
+    return paths
+
+
+def ground_weights(hand: Array, height: Array, frame_rate: float) -> Array:
+    """Return how much the ground decides where a hand is, in each direction, (n_frames, 3).
+
+    The lower the source's hand, the more the height follows the source's; the lower and slower
+    it is, the more the place does. `hand` and `height` are in leg lengths.
+    """
+    velocity = np.gradient(hand, axis=0) * frame_rate if len(hand) > 1 else 0.0 * hand
+    speed = smooth_gaussian(np.linalg.norm(velocity, axis=1), SPEED_SMOOTHING_S * frame_rate)
+    supports = smoothstep(height, *reversed(SUPPORT_HEIGHT_FRACTIONS)) * smoothstep(
+        speed, PASSING_SPEED, SUPPORT_SPEED
+    )
+    is_low = smoothstep(height, HIGH_WRIST_FRACTION, LOW_WRIST_FRACTION)
+    return np.stack([supports, supports, is_low], axis=1)
+
+
+def find_meeting(transfer: Transfer) -> Meeting | None:
+    """Return how the hands meet; None unless both bodies have both arms."""
+    source, target = transfer.source, transfer.target
+    arms = [(source.limb(side, "Arm"), target.limb(side, "Arm")) for side in SIDES]
+    lengths = [
+        (source.limb_length(one), target.limb_length(other))
+        for one, other in arms
+        if one and other
+    ]
+    if len(lengths) < len(SIDES):
+        return None
+    scale = float(np.mean([after / before for before, after in lengths]))
+    left, right = (
+        transfer.source_poses.positions[:, arm[2]] for arm, _ in arms if arm is not None
+    )
+    separation = scale * (left - right)
+    distance = np.linalg.norm(separation, axis=1) / np.mean(lengths, axis=0)[1]
+    return Meeting(separation, smoothstep(distance, INDEPENDENT_FRACTION, MEETING_FRACTION))

@@ -1,0 +1,124 @@
+"""Retarget hands: relative to the shoulders, to the ground, and to each other."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..arrays import Array
+from ..motion import Motion, WorldPoses, forward_kinematics
+from ..motion_fitting import FittedMotion, Goal, fit_in_pieces, fit_motion
+from ..motion_fitting.goals import (
+    BonePoint,
+    FollowPosition,
+    FollowSource,
+    KeepSeparation,
+    StayAbove,
+    hinge_limit,
+    with_bent_hinge,
+)
+from ..progress import Progress, unwatched
+from ..rotations import inverse, multiply
+from .hand_paths import HandPath, find_hand_paths, find_meeting
+from .hinges import HINGE_RAD, limb_hinge
+from .limbs import Transfer
+
+BLEND_S = 0.5
+"""Seconds over which a correction begins and ends. Chosen by hand: x0.5 costs 3.1 %, x2 costs
+nothing."""
+HAND_FRACTION = 0.02
+"""Arm lengths by which hands may leave their paths. Chosen by hand: x0.5 costs 0.8 %, x2 costs
+nothing and lets hands that support the body slide."""
+MEETING_FRACTION = 0.002
+"""Arm lengths by which hands that meet may be off their distance. It guards hands that clap,
+which would stay apart on broad shoulders."""
+DEPTH_FRACTION = 0.002
+"""Arm lengths by which a wrist may be below its least height. It guards hands of a body that
+lies down, which would sink lower than the source's."""
+ARM_RAD = np.radians(20.0)
+"""Radians by which shoulders and elbows may turn. Chosen by hand: x0.5 costs nothing, x2 costs
+0.8 %."""
+RESERVE_RAD = np.radians(5.0)
+"""Radians of flexion kept in an elbow, unless it is straighter already. It guards arms that
+reach for what is too far, which would snap straight."""
+ELBOW_AXES = {"left": np.array([0.0, 0.0, -1.0]), "right": np.array([0.0, 0.0, 1.0])}
+"""In the T-pose, in which forearms bend forward."""
+
+
+def place_hands(
+    transfer: Transfer,
+    rotations: Array,
+    root_positions: Array,
+    progress: Progress = unwatched,
+) -> Array:
+    """Place the hands relative to the shoulders like the source's, scaled by the arm length.
+
+    Hands near the ground keep their height above it, and their place if they support the body;
+    hands that meet in the source keep their distance, scaled by the arms. The arms change as
+    little and as smoothly as possible; the hands keep their rotation in the world.
+
+    Parameters
+    ----------
+    transfer : Transfer
+    rotations : shape (n_frames, n_joints, 4)
+        Local rotations of the target.
+    root_positions : shape (n_frames, 3), meters
+        Positions of its topmost joint.
+    progress : Progress
+
+    Returns
+    -------
+    The rotations with new arms.
+    """
+    target = transfer.target
+    motion = Motion(target.skeleton, rotations, root_positions, transfer.frame_rate)
+    poses = forward_kinematics(motion)
+    paths, meeting = find_hand_paths(transfer, poses), find_meeting(transfer)
+    if not paths:
+        return rotations
+    joints = {joint: ARM_RAD for path in paths for joint in path.arm[:2]}
+
+    def fit_piece(start: int, stop: int, progress: Progress) -> Motion:
+        piece, frames = motion.slice(start, stop), slice(start, stop)
+        recorded = FittedMotion(piece, piece, ())
+        hinges = {
+            path.arm[1]: limb_hinge(target, recorded, path.arm, ELBOW_AXES[path.side])
+            for path in paths
+        }
+        fitted = FittedMotion(piece, piece, tuple(joints), root_moves=False, hinges=hinges)
+        goals: list[Goal] = [FollowSource.of_joints(fitted, 1.0, joints, BLEND_S)]
+        start_of_fit, everywhere = fitted, np.ones((stop - start, 3))
+        for path in paths:
+            hand = BonePoint(path.arm[2], np.zeros(3))
+            goals.append(
+                FollowPosition(
+                    hand, path.wanted[frames], everywhere, HAND_FRACTION * path.length
+                )
+            )
+            if path.least_height is not None:
+                goals.append(
+                    StayAbove(hand, path.least_height[frames], DEPTH_FRACTION * path.length)
+                )
+            axis = hinges[path.arm[1]]
+            elbow = hinge_limit(fitted, *path.arm[1:], axis, RESERVE_RAD, HINGE_RAD)
+            goals.append(elbow)
+            start_of_fit = with_bent_hinge(start_of_fit, elbow)
+        if meeting:
+            left, right = (BonePoint(path.arm[2], np.zeros(3)) for path in paths)
+            tolerance = MEETING_FRACTION * float(np.mean([path.length for path in paths]))
+            separation, weight = meeting.separation[frames], meeting.weight[frames]
+            goals.append(KeepSeparation(left, right, separation, weight, tolerance))
+        return fit_motion(start_of_fit, goals, progress, "Placing the hands").motion
+
+    result = fit_in_pieces(motion, fit_piece, progress)
+    return _with_turned_hands(result, poses, paths)
+
+
+def _with_turned_hands(motion: Motion, before: WorldPoses, paths: Sequence[HandPath]) -> Array:
+    """Return the local rotations with hands that are turned in the world as before."""
+    rotations, after = motion.rotations.copy(), forward_kinematics(motion)
+    for hand in (path.arm[2] for path in paths):
+        parent = motion.skeleton.parents[hand]
+        rotations[:, hand] = multiply(
+            inverse(after.rotations[:, parent]), before.rotations[:, hand]
+        )
+    return rotations
