@@ -49,15 +49,15 @@ class HandPath:
         Of that arm.
     wanted : shape (n_frames, 3), meters
         From the shoulder as in the source, scaled by the arm, or near the ground from there.
-    least_height : shape (n_frames,), meters, or None
-        None without a known ground.
+    least_heights : pair of shape (n_frames,), meters, or None
+        Of elbow and wrist; None without a known ground.
     """
 
     side: str
     arm: Limb
     length: float
     wanted: Array
-    least_height: Array | None
+    least_heights: tuple[Array, Array] | None
 
 
 class Meeting(NamedTuple):
@@ -82,19 +82,22 @@ def find_hand_paths(transfer: Transfer, poses: WorldPoses) -> list[HandPath]:
         scale = length / source.limb_length(source_arm)
         shoulder = poses.positions[:, arm[0]]
         wanted = shoulder + scale * (hand - positions[:, source_arm[0]])
-        least_height = None
+        least_heights = None
         if placement.floors is not None:
-            leg = leg_length(source)
-            height = (hand[:, 2] - placement.floors[0]) / leg
+            (floor, ground), leg = placement.floors, leg_length(source)
+            elbow_height, height = (positions[:, source_arm[1:], 2] - floor).T / leg
+            rise = placement.rise * leg
             support = placement.points(hand)
-            support[:, 2] = placement.floors[1] + placement.rise * leg * height
-            rest = np.linalg.norm(support - shoulder, axis=1) / length
+            support[:, 2] = ground + rise * height
+            distance = np.linalg.norm(support - shoulder, axis=1) / length
             weights = ground_weights(hand / leg, height, transfer.frame_rate)
-            weights[:, :2] *= smoothstep(rest, *REACH_FRACTIONS)[:, None]
+            weights[:, :2] *= smoothstep(distance, *REACH_FRACTIONS)[:, None]
             wanted = wanted + weights * (support - wanted)
-            lowest = np.minimum(height, LOW_WRIST_FRACTION)
-            least_height = placement.floors[1] + placement.rise * leg * lowest
-        paths.append(HandPath(side, arm, length, wanted, least_height))
+            least_heights = (
+                ground + rise * np.minimum(elbow_height, 0.0),
+                ground + rise * np.minimum(height, LOW_WRIST_FRACTION),
+            )
+        paths.append(HandPath(side, arm, length, wanted, least_heights))
     return paths
 
 

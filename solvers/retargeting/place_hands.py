@@ -94,10 +94,12 @@ def place_hands(
                     hand, path.wanted[frames], everywhere, HAND_FRACTION * path.length
                 )
             )
-            if path.least_height is not None:
-                goals.append(
-                    StayAbove(hand, path.least_height[frames], DEPTH_FRACTION * path.length)
+            goals += [
+                StayAbove(
+                    BonePoint(joint, np.zeros(3)), height[frames], DEPTH_FRACTION * path.length
                 )
+                for joint, height in zip(path.arm[1:], path.least_heights or (), strict=False)
+            ]
             axis = hinges[path.arm[1]]
             elbow = hinge_limit(fitted, *path.arm[1:], axis, RESERVE_RAD, HINGE_RAD)
             goals.append(elbow)

@@ -35,14 +35,14 @@ BODIES = {
 
 @pytest.mark.parametrize("clip", CLIPS)
 @pytest.mark.parametrize("body", BODIES)
-def test_wrists_do_not_penetrate_the_floor(recordings, clip, body):
+def test_wrists_and_elbows_do_not_penetrate_the_floor(recordings, clip, body):
     """Without correction, wrists are at -23.5 cm where the source's minimum is -1.2 cm."""
     motion = read_recording(recordings / f"mocap/hdm05/HDM_{clip}_120.amc")
     motion = every_fourth(motion)
 
     result = given_to(motion, BODIES[body])
 
-    for role in WRISTS:
+    for role in (*WRISTS, "leftLowerArm", "rightLowerArm"):
         lowest = growth(motion, BODIES[body]) * role_position(motion, role)[:, 2].min()
         assert role_position(result, role)[:, 2].min() > min(lowest, 0.0) - 0.001
 
