@@ -22,7 +22,7 @@ from ...solvers.denoising import (
     measure_quality,
     plant_feet,
 )
-from ...solvers.denoising.feet import find_legs
+from ...solvers.feet import find_legs
 from ...solvers.markers import Swap, unswap_markers
 from ...solvers.motion import (
     JointLimits,

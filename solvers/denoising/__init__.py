@@ -13,8 +13,8 @@ True
 'RightArm is missing for 1.00 s.'
 """
 
+from ..feet import Planted, PlantSettings, plant_feet
 from .denoise import Denoised, DenoiseMethod, DenoiseSettings, denoise
-from .feet import Planted, PlantSettings, plant_feet
 from .limits import JointLimitsSettings, clamp_to_limits, learn_joint_limits, limit_excess
 from .quality import (
     Issue,

@@ -11,7 +11,7 @@
 from .borrow_variation import borrow_variation
 from .curves import Partition
 from .learn_variation import learn_variation_model
-from .loops import extract_middle_cycle, repeat_loop, resample_loop
+from .loops import resample_loop
 from .measure_variation import measure_variation
 from .synthesize import Variant, draw_variants, synthesize
 from .variation_model import VariationModel, load_variation_model
@@ -25,11 +25,9 @@ __all__ = [
     "VarySettings",
     "borrow_variation",
     "draw_variants",
-    "extract_middle_cycle",
     "learn_variation_model",
     "load_variation_model",
     "measure_variation",
-    "repeat_loop",
     "resample_loop",
     "synthesize",
 ]

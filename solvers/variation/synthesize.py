@@ -8,13 +8,15 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import InvalidMotionError
+from ..feet import PlantSettings
 from ..motion import Motion
-from ..progress import Progress, unwatched
+from ..progress import Progress, unwatched, within
 from ..signals import smoothstep
 from .contact_state import contacts_from_state
 from .curves import LEG_ROWS, MotionCurves, clamp_softly, motion_from_curves, partition_joints
 from .loops import close_loop, is_closed
 from .mixtures import draw_mixing_weights, mix_deviations
+from .plant_variant import plant_variant
 from .published import draw_stepwise_deviations
 from .time_warp import apply_time_warp
 from .variation_model import VariationModel
@@ -29,6 +31,9 @@ animator sees as a blend; no unpinned variant has it."""
 MAX_BATCH_VALUES = 20_000_000
 """Maximum count of values in the curves of the variants that are drawn together. It bounds the
 memory."""
+
+
+PLANTING = PlantSettings()
 
 
 class Variant(NamedTuple):
@@ -47,16 +52,13 @@ def synthesize(
     n_variants: int,
     *,
     settings: VarySettings = DEFAULT_SETTINGS,
+    planting: PlantSettings | None = PLANTING,
     progress: Progress = unwatched,
 ) -> tuple[Motion, ...]:
-    """Draw variants from a model of the examples; see `draw_variants`.
-
-    Returns
-    -------
-    tuple of Motion
-        Their feet are not planted: see `solvers.workflows`.
-    """
-    drawn = draw_variants(model, n_variants, settings=settings, progress=progress)
+    """Draw variants from a model of the examples, and plant their feet; see `draw_variants`."""
+    drawn = draw_variants(
+        model, n_variants, settings=settings, planting=planting, progress=progress
+    )
     return tuple(variant.motion for variant in drawn)
 
 
@@ -65,9 +67,10 @@ def draw_variants(
     n_variants: int,
     *,
     settings: VarySettings = DEFAULT_SETTINGS,
+    planting: PlantSettings | None = PLANTING,
     progress: Progress = unwatched,
 ) -> tuple[Variant, ...]:
-    """Draw variants from a model of the examples, with the contacts of their feet.
+    """Draw variants from a model of the examples, and plant their feet.
 
     A variant deviates from the mean of the examples, in common time. `settings.method` decides
     how its curves are drawn: as a mixture of the examples' deviations (`mixtures`), or frame by
@@ -78,7 +81,10 @@ def draw_variants(
     model : VariationModel
     n_variants : int
     settings : VarySettings
+    planting : PlantSettings or None
+        How feet are planted; None leaves them as they are drawn.
     progress : Progress
+        Gets a remark if feet cannot be planted.
 
     Returns
     -------
@@ -116,8 +122,15 @@ def draw_variants(
     while len(variants) < n_variants:
         n = min(batch_size, n_variants - len(variants))
         for drawn in zip(*_draw_deviations(model, settings.method, n, rng), strict=True):
-            variants.append(_build_variant(model, settings, inputs, drawn))
-            progress(len(variants) / n_variants, f"Variant {len(variants)}")
+            index = len(variants)
+            step = within(progress, index / n_variants, (index + 1) / n_variants)
+            step(0.0, f"Variant {index + 1}")
+            variant = _build_variant(model, settings, inputs, drawn)
+            if planting:
+                motion = plant_variant(*variant, planting, step)
+                variant = variant._replace(motion=motion)
+            variants.append(variant)
+    progress(1.0)
     return tuple(variants)
 
 

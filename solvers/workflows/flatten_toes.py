@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..denoising.feet import SIDES, LegJoints, find_legs
+from ..feet import SIDES, LegJoints, find_legs
 from ..motion import Motion, WorldPoses, forward_kinematics
 from ..rotations import IDENTITY, inverse, multiply, rotate, rotation_between, slerp
 from ..signals import smooth_gaussian

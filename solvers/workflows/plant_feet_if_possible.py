@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..denoising import Planted, PlantSettings, plant_feet
-from ..denoising.feet import SIDES, find_legs
 from ..errors import InvalidMotionError
+from ..feet import SIDES, find_legs
 from ..motion import Motion
 from ..motion.humanoid import detect_contacts
 from ..progress import Progress, unwatched

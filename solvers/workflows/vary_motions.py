@@ -3,22 +3,15 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
-from ..denoising import PlantSettings
+from ..feet import PlantSettings
 from ..motion import Motion
-from ..motion.humanoid import detect_contacts
-from ..progress import Progress, unwatched, within
+from ..progress import Progress, Remark, collect_remarks, unwatched, within
 from ..variation import (
-    Variant,
     VarySettings,
     borrow_variation,
     draw_variants,
-    extract_middle_cycle,
     learn_variation_model,
-    repeat_loop,
 )
-from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,9 +32,6 @@ class Variants:
     remarks: tuple[str, ...]
 
 
-N_CYCLES = 3
-"""Number of cycles of a loop to plant together. By definition: the middle one of three
-continues at both ends."""
 VARY_SETTINGS, PLANT_SETTINGS = VarySettings(), PlantSettings()
 
 
@@ -76,40 +66,16 @@ def vary_motions(
         model = learn_variation_model(
             examples, settings=settings, progress=within(progress, 0.0, 0.3)
         )
+    remarks = [Remark(model.warning)] if model.warning else []
     variants = draw_variants(
-        model, n_variants, settings=settings, progress=within(progress, 0.3, 0.4)
+        model,
+        n_variants,
+        settings=settings,
+        planting=planting,
+        progress=collect_remarks(within(progress, 0.3, 1.0), remarks),
     )
-    remarks = [model.warning] if model.warning else []
-    planted = []
-    for index, variant in enumerate(variants):
-        variant_progress = within(progress, 0.4 + 0.6 * index / n_variants, 1.0)
-        variant_progress(0.0, f"Planting feet of variant {index + 1}")
-        result = plant_variant(variant, planting)
-        remarks += [remark for remark in result.remarks if remark not in remarks]
-        planted.append(result.motion)
-    progress(1.0)
     return Variants(
-        tuple(planted), tuple(variant.loops for variant in variants), tuple(remarks)
+        tuple(variant.motion for variant in variants),
+        tuple(variant.loops for variant in variants),
+        tuple(remarks),
     )
-
-
-def plant_variant(
-    variant: Variant, planting: PlantSettings | None = PLANT_SETTINGS
-) -> PlantingResult:
-    """Plant the feet of a variant where its examples or the variant itself are in contact.
-
-    A loop stays a loop.
-    """
-    motion, contacts, is_loop = variant
-    if planting is None:
-        return plant_feet_if_possible(motion, None)
-    if is_loop:
-        motion = repeat_loop(motion, N_CYCLES)
-        if contacts is not None:
-            contacts = np.concatenate([*[contacts[:-1]] * N_CYCLES, contacts[-1:]])
-    if contacts is not None:
-        contacts = contacts | detect_contacts(motion)
-    result = plant_feet_if_possible(motion, planting, contacts)
-    if is_loop:
-        return result._replace(motion=extract_middle_cycle(result.motion, variant.motion))
-    return result

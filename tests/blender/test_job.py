@@ -69,7 +69,7 @@ def test_cancel_ends_the_job_and_removes_its_files(job, load, problem):
 def test_solver_error_is_raised_with_its_traceback(job, load, problem):
     motion = problem(10)
     contacts = np.zeros((3, 2), bool)
-    solve = partial(load("solvers.denoising.feet.plant_feet").plant_feet, motion, contacts)
+    solve = partial(load("solvers.feet.plant_feet").plant_feet, motion, contacts)
 
     with pytest.raises(load("solvers.errors").InvalidMotionError) as caught:
         job(solve).result()

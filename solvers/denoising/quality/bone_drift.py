@@ -7,9 +7,9 @@ import numpy as np
 from scipy.sparse.csgraph import minimum_spanning_tree
 
 from ...arrays import Array
+from ...feet import SIDES
 from ...motion import Tracks
 from ...motion.humanoid import roles_by_name
-from ..feet import SIDES
 
 MAX_SAMPLED_FRAMES = 1000
 """Frames used to decide which points are rigidly connected; the drift uses all frames. It

@@ -8,12 +8,12 @@ import numpy as np
 
 from ...arrays import Array, Flags
 from ...errors import InvalidMotionError
+from ...feet import SIDES, find_foot_joints
 from ...motion import JointLimits, Motion, Tracks, forward_kinematics
 from ...motion.humanoid import HumanoidMap, contacts_of_points, detect_contacts
 from ...motion.skeletons import find_shot_boundaries
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
-from ..feet import SIDES, find_foot_joints
 from ..limits import limit_excess
 from .bone_drift import BoneDrift, measure_bone_drifts
 from .figures import quality_figures

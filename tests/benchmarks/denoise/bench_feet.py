@@ -22,7 +22,7 @@ from threadpoolctl import threadpool_limits
 
 from solvers.arrays import Array, Flags
 from solvers.denoising import denoise, learn_filter_bases, plant_feet
-from solvers.denoising.feet.legs import LegJoints, find_legs
+from solvers.feet.legs import LegJoints, find_legs
 from solvers.motion import Motion, ReachSettings, detect_contacts, forward_kinematics, reach
 from solvers.rotations.representations import IDENTITY, angle_between
 from solvers.samples import CorruptionSettings, corrupt

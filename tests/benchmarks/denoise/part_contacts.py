@@ -7,9 +7,9 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from solvers.arrays import Array, Flags
-from solvers.denoising.feet.foot_contact import find_foot_contact
-from solvers.denoising.feet.legs import SIDES, LegJoints, find_legs
-from solvers.denoising.feet.standing_feet import detect_standing_feet
+from solvers.feet.foot_contact import find_foot_contact
+from solvers.feet.legs import SIDES, LegJoints, find_legs
+from solvers.feet.standing_feet import detect_standing_feet
 from solvers.motion import Motion, find_humanoid_map, forward_kinematics
 from solvers.rotations import angle_between
 from solvers.rotations.representations import IDENTITY

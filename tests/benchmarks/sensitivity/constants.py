@@ -35,7 +35,7 @@ FAMILIES: dict[str, tuple[str, ...]] = {
     ),
     "limits": ("solvers/denoising/limits",),
     "quality": ("solvers/denoising/quality", "solvers/signals/spikes.py"),
-    "feet": ("solvers/denoising/feet", "solvers/motion_fitting"),
+    "feet": ("solvers/feet", "solvers/motion_fitting"),
     "marker_gaps": ("solvers/denoising/marker_gaps",),
     "reconstruction": ("solvers/reconstruction", "solvers/signals/gaussian_smoothing.py"),
     "motion": ("solvers/motion",),

@@ -11,7 +11,7 @@ REASONS: dict[str, tuple[str, ...]] = {
         "denoising/marker_gaps/gap_boundaries.MEDIAN_NORM",
         "denoising/denoise.HALF_CONFIDENCE_DEVIATION",
         "denoising/motion_model/motion_mixture.N_CHANNELS",
-        "denoising/feet/foot_contact.ADULT_LEG_M",
+        "feet/foot_contact.ADULT_LEG_M",
         "denoising/quality/bone_drift.*_PERCENTILE",
         "denoising/quality/worst_issues.SEVERE_EXCESS",
         "motion_fitting/goals/follow_source.FADE_TIME_CONSTANTS",

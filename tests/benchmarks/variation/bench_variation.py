@@ -15,7 +15,9 @@ from time import perf_counter
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from solvers.feet import PlantSettings
 from solvers.motion import Motion
+from solvers.progress import unwatched
 from solvers.variation import (
     Variant,
     VariationModel,
@@ -24,8 +26,9 @@ from solvers.variation import (
     borrow_variation,
     draw_variants,
     learn_variation_model,
+    synthesize,
 )
-from solvers.workflows.vary_motions import plant_variant
+from solvers.variation.plant_variant import plant_variant
 
 from ..shared.report import DOCS, Report
 from ..shared.tables import Scores, number, table
@@ -98,7 +101,7 @@ def _figures(
 ) -> dict[str, float]:
     variants, seconds, learning = _timed(method_parts, judge.examples)
     drawn = [one.motion for one in variants]
-    planted = [plant_variant(one).motion for one in variants[:N_PLANTED]]
+    planted = [_planted(one) for one in variants[:N_PLANTED]]
     figures = judge.figures(drawn) | judge.contacts_of(drawn[:N_PLANTED], planted)
     return figures | {SECONDS: seconds, LEARNING: learning}
 
@@ -113,10 +116,10 @@ def methods() -> dict[str, tuple[Callable[..., VariationModel] | None, Maker]]:
     ):
         settings = VarySettings(method=method)
         learn = partial(learn_variation_model, settings=settings)
-        found[label] = (learn, partial(draw_variants, settings=settings))
+        found[label] = (learn, partial(draw_variants, settings=settings, planting=None))
     found["one clip, generic"] = (
         lambda examples: borrow_variation(examples[0]),
-        draw_variants,
+        partial(draw_variants, planting=None),
     )
     for label, make in (
         ("copies", peers.copies),
@@ -159,12 +162,17 @@ def by_examples(sets: Sets) -> list[str]:
             if count > len(examples):
                 cells.append("-")
                 continue
-            variants = draw_variants(learn_variation_model(examples[:count]), N_VARIANTS)
+            model = learn_variation_model(examples[:count])
+            variants = draw_variants(model, N_VARIANTS, planting=None)
             figures = judge.figures([one.motion for one in variants])
             cells.append(f"{number(figures['V'])} / {number(figures['coverage'])}")
         rows[name] = cells
     title = "**V in cm / coverage, against the number of examples** (mixture; fig. 4.6)\n\n"
     return [title + table(["set", *map(str, counts)], rows) + "\n"]
+
+
+def _planted(variant: Variant) -> Motion:
+    return plant_variant(*variant, PlantSettings(), unwatched)
 
 
 def discriminated(sets: Sets) -> list[str]:
@@ -183,7 +191,7 @@ def discriminated(sets: Sets) -> list[str]:
             motions = [one.motion for one in variants]
             rows.setdefault(method, []).append(number(classification_accuracy(held, motions)))
             if method == OURS:
-                planted = [plant_variant(one).motion for one in variants]
+                planted = [_planted(one) for one in variants]
                 accuracy = number(classification_accuracy(held, planted))
                 rows.setdefault(f"{OURS}, feet planted", []).append(accuracy)
     title = "**Distinguished from held-out captures** (balanced accuracy, %; 50 is chance)\n\n"
@@ -193,10 +201,7 @@ def discriminated(sets: Sets) -> list[str]:
 def drawn(sets: Sets) -> list[str]:
     """Draw principal components and strips."""
     made = {
-        name: [
-            plant_variant(one).motion
-            for one in draw_variants(learn_variation_model(examples), 15)
-        ]
+        name: list(synthesize(learn_variation_model(examples), 15))
         for name, examples in sets.items()
     }
     texts = [draw_components({name: (sets[name], made[name]) for name in list(sets)[:8]})]

@@ -7,8 +7,8 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from solvers.denoising import learn_joint_limits, limit_excess
-from solvers.denoising.feet.legs import SIDES, find_foot_joints
 from solvers.denoising.quality.foot_slide import measure_foot_slide
+from solvers.feet.legs import SIDES, find_foot_joints
 from solvers.motion import Motion, forward_kinematics, warp
 from solvers.motion.humanoid.foot_contacts import detect_contacts
 from solvers.rotations.representations import inverse, multiply, rotation_vector_from_quaternion

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.arrays import Array, Flags
-from solvers.denoising.feet import find_foot_joints
+from solvers.feet import find_foot_joints
 from solvers.motion import Motion, forward_kinematics
 from solvers.rotations import angle_between
 

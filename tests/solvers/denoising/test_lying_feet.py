@@ -3,7 +3,7 @@
 import numpy as np
 
 from solvers.denoising import plant_feet
-from solvers.denoising.feet.legs import find_legs
+from solvers.feet.legs import find_legs
 from solvers.motion import Motion, detect_contacts, forward_kinematics
 from solvers.recordings import read_acclaim
 from solvers.rotations import IDENTITY, multiply, quaternion_from_rotation_vector

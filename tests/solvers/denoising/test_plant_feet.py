@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from solvers.denoising.feet.legs import find_legs
-from solvers.denoising.feet.plant_feet import PlantSettings, plant_feet
 from solvers.errors import InvalidMotionError, SolveCancelled
+from solvers.feet.legs import find_legs
+from solvers.feet.plant_feet import PlantSettings, plant_feet
 from solvers.motion import Motion, Skeleton, forward_kinematics
 from solvers.motion.humanoid.foot_contacts import detect_contacts
 from solvers.recordings.skeleton_files.bvh import read_bvh

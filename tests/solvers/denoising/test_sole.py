@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.feet.legs import find_legs
-from solvers.denoising.feet.sole import estimate_loads, measure_standing_heights, sole_points
+from solvers.feet.legs import find_legs
+from solvers.feet.sole import estimate_loads, measure_standing_heights, sole_points
 from solvers.motion import HumanoidMap, Motion, Skeleton, forward_kinematics
 from solvers.samples import GaitSettings, walking_gait
 

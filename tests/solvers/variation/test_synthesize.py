@@ -1,11 +1,13 @@
 """Properties of variants, for every method."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+from solvers.denoising import measure_quality
 from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.motion import forward_kinematics, warp
 from solvers.rotations.representations import inverse, multiply, rotation_vector_from_quaternion
@@ -22,6 +24,8 @@ from solvers.variation.curves.motion_curves import curves_from_motion, headings_
 from solvers.variation.curves.partitions import partition_joints
 from solvers.variation.synthesize import RANGE_MARGIN
 
+drawn = partial(synthesize, planting=None)
+
 
 def rotation_between(one, other):
     return np.linalg.norm(
@@ -31,8 +35,8 @@ def rotation_between(one, other):
 
 def test_the_same_seed_gives_the_same_bits(learned):
     model, settings = learned
-    first, again = (synthesize(model, 3, settings=settings) for _ in range(2))
-    other = synthesize(model, 3, settings=replace(settings, seed=5))
+    first, again = (drawn(model, 3, settings=settings) for _ in range(2))
+    other = drawn(model, 3, settings=replace(settings, seed=5))
 
     for one, two in zip(first, again, strict=True):
         assert_array_equal(one.rotations, two.rotations)
@@ -42,11 +46,19 @@ def test_the_same_seed_gives_the_same_bits(learned):
     )
 
 
+def test_feet_are_planted(learned):
+    model, settings = learned
+
+    free, planted = (make(model, 1, settings=settings)[0] for make in (drawn, synthesize))
+
+    assert measure_quality(planted).foot_slide < 0.5 * measure_quality(free).foot_slide
+
+
 def test_variant_is_the_example_at_zero_amount(learned, walks):
     model, settings = learned
     center = walks[model.center]
 
-    copy = synthesize(model, 2, settings=replace(settings, amount=0.0))[1]
+    copy = drawn(model, 2, settings=replace(settings, amount=0.0))[1]
 
     assert copy.n_frames == center.n_frames
     assert rotation_between(copy.rotations[:, 1:], center.rotations[:, 1:]).max() < 1e-5
@@ -57,9 +69,7 @@ def test_variant_is_the_example_at_zero_amount(learned, walks):
 def test_variation_grows_with_the_amount(method, walks):
     model = learn_variation_model(walks, settings=VarySettings(method=method))
     found = [
-        measure_variation(
-            synthesize(model, 8, settings=VarySettings(method=method, amount=amount))
-        )
+        measure_variation(drawn(model, 8, settings=VarySettings(method=method, amount=amount)))
         for amount in (0.25, 0.5, 1.0, 2.0)
     ]
 
@@ -68,7 +78,7 @@ def test_variation_grows_with_the_amount(method, walks):
 
 
 def test_variants_vary_as_much_as_the_examples(walks, model):
-    ratio = measure_variation(synthesize(model, 12)) / measure_variation(walks)
+    ratio = measure_variation(drawn(model, 12)) / measure_variation(walks)
 
     assert 0.7 < ratio < 1.4
 
@@ -80,7 +90,7 @@ def test_frozen_partition_equals_that_of_the_base(partition, learned, walks):
     members = partition_joints(model.skeleton)[list(Partition).index(partition)]
     members[0] = False
 
-    variant = synthesize(model, 1, settings=frozen)[0]
+    variant = drawn(model, 1, settings=frozen)[0]
 
     distances = rotation_between(variant.rotations, walks[model.center].rotations)
     assert distances[:, members].max() < 1e-5
@@ -92,7 +102,7 @@ def test_small_amount_stays_near_the_base(learned, walks):
     farthest = (model.center + 1) % len(walks)
     little = replace(settings, amount=0.02, base=farthest + 1)
 
-    for variant in synthesize(model, 3, settings=little):
+    for variant in drawn(model, 3, settings=little):
         distance = warp(
             positions_in_body_frame(variant), positions_in_body_frame(walks[farthest])
         ).cost
@@ -104,7 +114,7 @@ def test_pins_hold_with_any_timing(learned, walks):
     pinned = replace(settings, pin_start=True, pin_end=True)
     example = positions_in_body_frame(walks[model.center])
 
-    for variant in synthesize(model, 3, settings=pinned):
+    for variant in drawn(model, 3, settings=pinned):
         observed = positions_in_body_frame(variant)
         # Millimeters: `positions_in_body_frame` removes a heading averaged over frames.
         assert_allclose(observed[0], example[0], atol=3e-3)
@@ -120,7 +130,7 @@ def test_joints_stay_near_the_range_of_the_examples(amount, learned):
     times = 6.0 if settings.method is VaryMethod.PUBLISHED else 1.2
     slack = times * RANGE_MARGIN * (high - low) + 1e-6
 
-    for variant in synthesize(model, 5, settings=replace(settings, amount=amount)):
+    for variant in drawn(model, 5, settings=replace(settings, amount=amount)):
         joints = curves_from_motion(
             variant, headings_from_motion(variant), model.reference_rotations
         ).joints[:, 1:]
@@ -130,7 +140,7 @@ def test_joints_stay_near_the_range_of_the_examples(amount, learned):
 
 def test_variant_has_the_requested_length(model, walks):
     reference, slow = (
-        synthesize(model, 1, settings=VarySettings(length=length))[0] for length in (1.0, 2.0)
+        drawn(model, 1, settings=VarySettings(length=length))[0] for length in (1.0, 2.0)
     )
 
     assert abs(slow.n_frames - 2 * reference.n_frames) <= 2
@@ -138,15 +148,15 @@ def test_variant_has_the_requested_length(model, walks):
 
 def test_timing_changes_only_the_length(model):
     """Without timing all variants take the base's time."""
-    same = {one.n_frames for one in synthesize(model, 6, settings=VarySettings(timing=0.0))}
-    different = {one.n_frames for one in synthesize(model, 6)}
+    same = {one.n_frames for one in drawn(model, 6, settings=VarySettings(timing=0.0))}
+    different = {one.n_frames for one in drawn(model, 6)}
 
     assert same == {model.n_samples}
     assert len(different) > 2
 
 
 def test_variants_start_above_the_origin_facing_minus_y(model):
-    for variant in synthesize(model, 3):
+    for variant in drawn(model, 3):
         assert_allclose(variant.root_positions[0, :2], 0.0, atol=0.05)
         assert abs(headings_from_motion(variant)[0]) < 0.2
         assert np.isfinite(forward_kinematics(variant).positions).all()
@@ -154,7 +164,7 @@ def test_variants_start_above_the_origin_facing_minus_y(model):
 
 def test_first_variants_keep_their_size_when_more_are_drawn(learned):
     model, settings = learned
-    many = synthesize(model, 7, settings=settings)
+    many = drawn(model, 7, settings=settings)
 
     assert len(many) == 7
     assert len({one.rotations.tobytes() for one in many}) == 7
@@ -162,16 +172,16 @@ def test_first_variants_keep_their_size_when_more_are_drawn(learned):
 
 def test_errors_name_a_remedy(model):
     with pytest.raises(InvalidMotionError, match="request at least one"):
-        synthesize(model, 0)
+        drawn(model, 0)
     with pytest.raises(InvalidMotionError, match="There is no example 9; the model has 4"):
-        synthesize(model, 1, settings=VarySettings(base=9))
+        drawn(model, 1, settings=VarySettings(base=9))
     with pytest.raises(InvalidMotionError, match="not learned for the method published"):
-        synthesize(model, 1, settings=VarySettings(method=VaryMethod.PUBLISHED))
+        drawn(model, 1, settings=VarySettings(method=VaryMethod.PUBLISHED))
 
 
 def test_progress_reaches_one_and_can_cancel(model):
     fractions = []
-    synthesize(model, 4, progress=lambda fraction, message="": fractions.append(fraction))
+    drawn(model, 4, progress=lambda fraction, message="": fractions.append(fraction))
 
     def cancel(fraction, message=""):
         raise SolveCancelled
@@ -179,4 +189,4 @@ def test_progress_reaches_one_and_can_cancel(model):
     assert fractions == sorted(fractions)
     assert fractions[-1] == 1.0
     with pytest.raises(SolveCancelled):
-        synthesize(model, 4, progress=cancel)
+        drawn(model, 4, progress=cancel)

@@ -4,7 +4,7 @@ import numpy as np
 
 from solvers.arrays import Array, Flags
 from solvers.denoising import plant_feet
-from solvers.denoising.feet.legs import find_legs
+from solvers.feet.legs import find_legs
 from solvers.motion import Motion, detect_contacts, forward_kinematics
 from solvers.rotations.representations import IDENTITY, angle_between
 from solvers.samples import CorruptionSettings, corrupt

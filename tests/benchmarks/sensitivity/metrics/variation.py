@@ -10,8 +10,8 @@ from solvers.variation import (
     draw_variants,
     learn_variation_model,
     measure_variation,
-    repeat_loop,
 )
+from solvers.variation.loops import repeat_loop
 
 from ...variation.variation_measures import angular_velocities
 from ..takes import hdm05, walk
@@ -38,14 +38,16 @@ def measure(
     figures = {}
     for name, examples in sets.items():
         model = learn_variation_model(examples)
-        variants = draw_variants(model, N_VARIANTS, settings=VarySettings(seed=5))
+        variants = draw_variants(
+            model, N_VARIANTS, settings=VarySettings(seed=5), planting=None
+        )
         found = variant_figures([each.motion for each in variants], examples, limits[name])
         figures |= {f"{name}: {key}": what for key, what in found.items()}
-    borrowed = draw_variants(borrow_variation(sets["kick"][0]), N_VARIANTS)
+    borrowed = draw_variants(borrow_variation(sets["kick"][0]), N_VARIANTS, planting=None)
     found = variant_figures([each.motion for each in borrowed], sets["kick"], limits["kick"])
     figures |= {f"borrowed: {key}": what for key, what in found.items()}
     model = learn_variation_model([cycle])
-    loop = draw_variants(model, 1)[0].motion
+    loop = draw_variants(model, 1, planting=None)[0].motion
     figures["loop: seam"] = 0.01 + _seam(repeat_loop(loop, 2), loop.n_frames)
     return figures
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ...settings import Settings, setting
+from ..settings import Settings, setting
 
 
 @dataclass(frozen=True, kw_only=True)

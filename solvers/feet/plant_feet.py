@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array, Flags
-from ...errors import InvalidMotionError
-from ...motion import Motion, forward_kinematics
-from ...motion.humanoid import HumanoidMap, find_humanoid_map
-from ...motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
-from ...motion_fitting import FittedMotion, fit_in_pieces, fit_motion
-from ...progress import Progress, unwatched, within
+from ..arrays import Array, Flags
+from ..errors import InvalidMotionError
+from ..motion import Motion, forward_kinematics
+from ..motion.humanoid import HumanoidMap, find_humanoid_map
+from ..motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
+from ..motion_fitting import FittedMotion, fit_in_pieces, fit_motion
+from ..progress import Progress, unwatched, within
 from .foot_contact import FootContact, find_foot_contact
 from .foot_goals import planting_goals
 from .legs import SIDES, LegJoints, find_legs

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import gaussian_filter1d  # reflects ends; smooth_gaussian repeats them
 
-from ...arrays import Array, Flags
-from ...motion import Motion, WorldPoses
-from ...motion_fitting.goals import BonePoint
-from ...rotations import inverse, multiply, rotation_vector_from_quaternion
-from ...signals import find_runs
+from ..arrays import Array, Flags
+from ..motion import Motion, WorldPoses
+from ..motion_fitting.goals import BonePoint
+from ..rotations import inverse, multiply, rotation_vector_from_quaternion
+from ..signals import find_runs
 from .legs import LegJoints
 from .sole import SMOOTHING_S, estimate_loads, measure_standing_heights, sole_points
 

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...arrays import Array
-from ...motion import WorldPoses
-from ...motion_fitting import FittedMotion, Goal
-from ...motion_fitting.goals import (
+from ..arrays import Array
+from ..motion import WorldPoses
+from ..motion_fitting import FittedMotion, Goal
+from ..motion_fitting.goals import (
     BonePoint,
     FollowPosition,
     FollowRotation,

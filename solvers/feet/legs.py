@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion import Motion, Skeleton, Tracks
-from ...motion.humanoid import HumanoidMap, find_humanoid_map, roles_by_name
+from ..motion import Motion, Skeleton, Tracks
+from ..motion.humanoid import HumanoidMap, find_humanoid_map, roles_by_name
 
 SIDES = ("left", "right")
 

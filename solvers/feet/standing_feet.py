@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion import Motion, forward_kinematics
-from ...motion.humanoid import HumanoidMap, detect_contacts, foot_points
-from ...rotations import angle_between
+from ..motion import Motion, forward_kinematics
+from ..motion.humanoid import HumanoidMap, detect_contacts, foot_points
+from ..rotations import angle_between
 from .legs import SIDES, LegJoints
 
 MAX_STILL_RAD = np.radians(0.02)

@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d  # reflects ends; smooth_gaussian repeats them
 
-from ...arrays import Array
-from ...motion import Skeleton
-from ...motion_fitting.goals import BonePoint
+from ..arrays import Array
+from ..motion import Skeleton
+from ..motion_fitting.goals import BonePoint
 from .legs import LegJoints
 
 HEEL_FRACTION = 0.2
