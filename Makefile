@@ -116,7 +116,7 @@ body-relation: .venv-4.5/ready  ## learn how joints move together, for limbs tha
 failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the weights
 	$(PYTHON_4.5) -m tests.training.learn_failures
 
-BENCHMARKS := denoise first-press feet markers bvh scene import import-corpus roles video \
+BENCHMARKS := denoise first-press contacts markers bvh scene import import-corpus roles video \
   reliability reconstruct postures retrieval retarget variation depth physics gestures retarget-rig
 .PHONY: benchmarks $(BENCHMARKS:%=bench-%)
 benchmarks: .venv-4.5/ready  ## run every benchmark, one after another (hours); prints how each ended
@@ -134,8 +134,8 @@ bench-denoise: .venv-4.5/ready  ## measure denoising and gap filling against pee
 bench-first-press: .venv-4.5/ready  ## measure Clean without examples against filters
 	nice $(PYTHON_4.5) -m tests.benchmarks.first_press.bench_first_press $(ARGUMENTS)
 
-bench-feet: .venv-4.5/ready  ## measure foot planting against pinning
-	$(PYTHON_4.5) -m tests.benchmarks.denoise.bench_feet $(ARGUMENTS)
+bench-contacts: .venv-4.5/ready  ## measure planted and retargeted feet and hands, and each goal left out
+	$(PYTHON_4.5) -m tests.benchmarks.contacts.bench_contacts $(ARGUMENTS)
 
 bench-markers: .venv-4.5/ready  ## measure labels, rigid clusters and skeletons of optical markers
 	$(PYTHON_4.5) -m tests.benchmarks.markers.bench_markers $(ARGUMENTS)

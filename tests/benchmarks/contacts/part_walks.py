@@ -1,24 +1,17 @@
-"""Planting feet against locking them and against leaving them alone, side by side.
-
-    make bench-feet                             # about a minute
-    make bench-feet ARGUMENTS="--full --docs"   # all clips, docs/benchmarks/denoising.md
-    make bench-feet ARGUMENTS=--dev             # clips to tune on
+"""Planted feet of walks against pinned ones and untouched ones, from four kinds of input.
 
 Every method gets the same contacts, detected on what it is given; what is measured in contact
 uses those of the untouched capture. Slide: mean horizontal speed of the slower of ankle and
 toe joint in contact. Knee: mean and largest change of the knee's angular velocity. Moved: how
 far the ankles and, at most, the hips are from where they were given. Error: how far the ankles
-are from the untouched capture while they stand. A lock pins the ankle, planting the sole, about
+are from the untouched capture while they stand. A pin holds the ankle, planting the sole, about
 whose heel the ankle may turn: some of its slide is that.
 """
 
-import argparse
 import sys
 from collections.abc import Callable, Sequence
-from time import perf_counter
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from solvers.arrays import Array, Flags
 from solvers.denoising import denoise, learn_filter_bases, plant_feet
@@ -28,42 +21,26 @@ from solvers.rotations.representations import IDENTITY, angle_between
 from solvers.samples import CorruptionSettings, corrupt
 from solvers.signals.spikes import find_runs
 
-from ..first_press.takes import DEVELOPMENT, SCORED
 from ..shared import clips
-from ..shared.report import Report
 from ..shared.tables import Scores
-from .part_contacts import Planter, contact_tables
+from .part_takes import Planter
 
 SKATING = 1.15
 """The body travels this much farther than the feet carry it, as after a careless retarget."""
 LINEAR_EASE = 0.15
 
 
-def main() -> None:
-    """Print one table for each kind of input."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--full", action="store_true", help="all scored clips")
-    parser.add_argument("--dev", action="store_true", help="clips to tune on instead")
-    parser.add_argument(
-        "--docs", action="store_true", help="rewrite docs/benchmarks/denoising.md"
-    )
-    chosen = parser.parse_args()
-    started = perf_counter()
+def walk_tables(names: Sequence[str]) -> list[str]:
+    """Return one table for each kind of input."""
     tables = []
-    names = (clips.development if chosen.dev else clips.scored)(chosen.full)
-    with threadpool_limits(1):
-        for title, spoil, step, comparable in INPUTS:
-            scores = Scores(
-                f"{title}, {len(names)} CMU walks", "units in the header", "planted"
-            )
-            for name in names:
-                capture = clips.read_cmu(clips.WALKS / f"{name}.bvh", step)
-                measure(scores, name, capture, spoil(name, capture), comparable)
-            tables.append(scores.markdown())
-            print(f"Done: {title}", file=sys.stderr, flush=True)
-        takes = DEVELOPMENT if chosen.dev else SCORED
-        tables += contact_tables(takes, PLANTERS)
-    Report(chosen.docs).part("feet", tables, perf_counter() - started)
+    for title, spoil, step, comparable in INPUTS:
+        scores = Scores(f"{title}, {len(names)} CMU walks", "units in the header", "planted")
+        for name in names:
+            capture = clips.read_cmu(clips.WALKS / f"{name}.bvh", step)
+            measure(scores, name, capture, spoil(name, capture), comparable)
+        tables.append(scores.markdown())
+        print(f"Done: {title}", file=sys.stderr, flush=True)
+    return tables
 
 
 def measure(
@@ -197,7 +174,3 @@ def _hips_moved(a: Motion, b: Motion) -> float:
 def _bends(motion: Motion, leg: LegJoints) -> Array:
     """Angle of the knee's rotation, degrees."""
     return np.asarray(np.degrees(angle_between(motion.rotations[:, leg.knee], IDENTITY)))
-
-
-if __name__ == "__main__":
-    main()

@@ -1,0 +1,1 @@
+"""Contacts of feet and hands with the floor, in Clean, Reconstruct and Retarget."""

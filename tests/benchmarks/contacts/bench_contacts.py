@@ -1,0 +1,103 @@
+"""Contacts with the floor: planted feet, retargeted feet and hands, and what each goal does.
+
+make bench-contacts                            # some minutes
+make bench-contacts ARGUMENTS="--full --docs"  # all walks, into docs/benchmarks/contacts.md
+make bench-contacts ARGUMENTS=--dev            # takes to tune on
+"""
+
+import argparse
+import sys
+from collections.abc import Iterator
+from time import perf_counter
+
+from threadpoolctl import threadpool_limits
+
+from solvers.motion import Motion
+from solvers.recordings import read_acclaim, read_recording
+from solvers.workflows import reconstruct_recording
+from tests.fixtures.rigs import child, mixamo
+
+from ..first_press import takes
+from ..shared import clips
+from ..shared.report import DOCS, Report
+from .part_ablation import planters_without, retarget_table
+from .part_takes import take_tables
+from .part_walks import PLANTERS, walk_tables
+
+SENSORS = {"IRDS": "irds", "UI-PRMD": "ui_prmd", "MSR Action3D": "msr_action3d"}
+OTHER_MAKERS = (
+    "bandai_namco/dataset-1_walk_tired_001", "bandai_namco/dataset-1_byebye_happy_001",
+    "bandai_namco/dataset-1_walk-left_old_001", "dme_xia/neutral_01_000",
+    "mixamo_bvh_joe/Walk-In-Circle", "mixamo_bvh_joe/Salsa-Dancing-6", "xsens_mvn/test_mocap",
+    "olympe_ballet/ballet", "olympe_sprint/sprint", "pybvh_test1/bvh_test1",
+)  # fmt: skip
+SCORED_ACTORS = ("bk", "dg")
+N_ABLATED = 8
+N_OF_A_SENSOR = 8
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--full", action="store_true", help="all scored walks")
+    parser.add_argument("--dev", action="store_true", help="takes to tune on instead")
+    parser.add_argument("--docs", action="store_true", help="rewrite the document")
+    chosen = parser.parse_args()
+    report = Report(chosen.docs, DOCS / "benchmarks" / "contacts.md")
+    movements = takes.DEVELOPMENT if chosen.dev else takes.SCORED
+    names = (clips.development if chosen.dev else clips.scored)(chosen.full)
+    with threadpool_limits(1):
+        started = perf_counter()
+        report.part("walks", walk_tables(names), perf_counter() - started)
+        started = perf_counter()
+        tables = []
+        for title, motions in _groups(movements, chosen.dev):
+            tables += take_tables(title, motions, PLANTERS)
+            print(f"Done: {title}", file=sys.stderr, flush=True)
+        report.part("takes", tables, perf_counter() - started)
+        started = perf_counter()
+        some = [takes.read(take) for take in movements[:N_ABLATED]]
+        tables = take_tables("Planting, each goal left out", some, planters_without())
+        tables.append(
+            retarget_table(
+                "Retarget, each goal left out", some, {"Mixamo": mixamo, "child": child}
+            )
+        )
+        report.part("ablation", tables, perf_counter() - started)
+
+
+def _groups(movements: tuple[takes.Take, ...], dev: bool) -> Iterator[tuple[str, list[Motion]]]:
+    yield "All kinds of movement", [takes.read(take) for take in movements]
+    actors = sorted(clips.DEV_ACTORS) if dev else SCORED_ACTORS
+    paths = [
+        path
+        for actor in actors
+        for kind in clips.hdm05_classes()
+        for path in sorted(clips.HDM05.glob(f"HDM_{actor}_{kind}_*_120.amc"))[:1]
+    ]
+    yield "HDM05, all classes, 120 Hz", [read_acclaim(path) for path in paths]
+    if dev:
+        return
+    yield "Takes of other makers", [_of_corpus(name) for name in OTHER_MAKERS]
+    for title, folder in SENSORS.items():
+        yield f"{title}, reconstructed", list(_reconstructed(folder))
+
+
+def _of_corpus(name: str) -> Motion:
+    motion = read_recording(takes.CORPUS / f"{name}.bvh")
+    assert isinstance(motion, Motion)
+    return motion.slice(0, min(motion.n_frames, 600))
+
+
+def _reconstructed(folder: str) -> Iterator[Motion]:
+    """Return takes of a depth camera, reconstructed, with feet as they are then."""
+    paths = sorted(
+        path for path in (clips.DATA / "kinect" / folder).rglob("*") if path.is_file()
+    )
+    for path in paths[:: max(len(paths) // N_OF_A_SENSOR, 1)][:N_OF_A_SENSOR]:
+        recording = read_recording(path)
+        yield reconstruct_recording(recording, planting=None).motion
+
+
+if __name__ == "__main__":
+    main()
