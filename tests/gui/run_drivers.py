@@ -29,6 +29,14 @@ RECORDINGS = {
         "joints.txt": "kinect/irds/215_18_0_5_1_stand.txt",
     },
     "clean": {},
+    "contacts": {
+        "walking.glb": "corpus/glb/mixamo_blender/walking.glb",
+        "HDM_bd.asf": "mocap/hdm05/HDM_bd.asf",
+        **{
+            f"HDM_bd_{name}_120.amc": f"mocap/hdm05/HDM_bd_{name}_120.amc"
+            for name in ("hopBothLegs1hops_002", "lieDownFloor_002", "kickLFront1Reps_001")
+        },
+    },
     "export": {},
     "depth": {"walk.npz": "depth/truth/walk_front.npz"},
     "import": {
