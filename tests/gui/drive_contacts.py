@@ -2,8 +2,8 @@
 
     make test-gui DRIVERS=contacts
 
-Runs inside a Blender with a window; `bgui` comes with the tool. The pictures show the moments at
-which feet and hands meet the floor.
+Runs inside a Blender with a window; `bgui` comes with the tool. The pictures show the moments
+at which feet and hands meet the floor.
 """
 
 from pathlib import Path
