@@ -16,7 +16,7 @@ from ..motion_fitting.goals import (
     StayInPlace,
     StayStill,
     flexion_in_reserve,
-    hinge_limits,
+    knee_limit,
 )
 from .foot_contact import FootContact
 from .plant_settings import PlantSettings
@@ -119,7 +119,7 @@ def _source_goals(
     ]
     leg = fitted.motion.skeleton.rest_positions[list(contact.leg.chain)]
     reserve = flexion_in_reserve(leg, settings.softness)
-    return [*goals, *hinge_limits(fitted, contact.leg.knee, ankle, reserve, HINGE_RAD)]
+    return [*goals, knee_limit(fitted, contact.leg.knee, ankle, reserve, HINGE_RAD)]
 
 
 def _in_all_directions(weight: Array) -> Array:

@@ -15,7 +15,7 @@ from ..motion_fitting.goals import (
     StayAtHeight,
     StayInPlace,
     StayStill,
-    hinge_limits,
+    knee_limit,
 )
 from ..progress import Progress
 from ..rotations import inverse, multiply, rotation_vector_from_quaternion
@@ -110,7 +110,7 @@ def plant_target_feet(
         ]
         for side, chain in held.items():
             goals += _foot_goals(body, fitted, side, weights[:, SIDES.index(side)], ground)
-            goals += hinge_limits(fitted, *chain[1:], RESERVE_RAD, HINGE_RAD)
+            goals.append(knee_limit(fitted, *chain[1:], RESERVE_RAD, HINGE_RAD))
         goals += _ground_goals(body, fitted, tuple(held), ground)
         return fit_motion(fitted, goals, progress).motion
 

@@ -16,7 +16,7 @@ from .hinge_limit import (
     hinge_axis,
     hinge_flexion,
     hinge_limit,
-    hinge_limits,
+    knee_limit,
     with_bent_hinge,
 )
 
@@ -35,6 +35,6 @@ __all__ = [
     "hinge_axis",
     "hinge_flexion",
     "hinge_limit",
-    "hinge_limits",
+    "knee_limit",
     "with_bent_hinge",
 ]

@@ -5,15 +5,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
+from ...motion import Skeleton
+from ...motion.humanoid import UP
 from ...rotations import inverse, rotate
 from .. import FittedMotion, NormalEquations
 
 START_RAD = np.radians(3.0)
 """Radians by which a straight limb is bent before the fit. It guards limbs that are exactly
 straight."""
-MIN_BEND = 1e-3
+MIN_BEND = np.sin(np.radians(10.0))
 """Sine of the mean flexion below which the axis of a hinge is unknown. It guards straight
-limbs, whose bones have an angle by rounding only."""
+limbs, whose bones have an angle by noise, and knees that bend backward by a few degrees."""
+MIN_FOOT_M = 0.01
+"""Meters: a shorter foot has no direction. It guards feet whose ends are at the ankle."""
+FORWARD = np.array([0.0, -1.0, 0.0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,21 +53,33 @@ class HingeLimit:
         equations.add_frames(below[:, None] / self.tolerance, jacobian)
 
 
-def hinge_limits(
-    fitted: FittedMotion, joint: int, end: int, reserve: float, tolerance: float
-) -> list[HingeLimit]:
-    """Return the goal that a hinge bends no less than recorded, or than `reserve` in radians.
+def knee_limit(
+    fitted: FittedMotion, knee: int, ankle: int, reserve: float, tolerance: float
+) -> HingeLimit:
+    """Return the goal that a knee bends no less than recorded, or than `reserve` in radians.
 
-    There is none for a hinge that never bends, whose axis is unknown.
+    A leg that hardly bends, or backward by a few degrees, does not show its axis: then it is
+    the one across the foot in the rest pose.
     """
-    axis = hinge_axis(fitted, joint, end)
-    return [] if axis is None else [hinge_limit(fitted, joint, end, axis, reserve, tolerance)]
+    axis = hinge_axis(fitted, knee, ankle)
+    if axis is None:
+        axis = _axis_across_foot(fitted.motion.skeleton, ankle)
+    return hinge_limit(fitted, knee, ankle, axis, reserve, tolerance)
+
+
+def _axis_across_foot(skeleton: Skeleton, ankle: int) -> Array:
+    """Return the horizontal axis across a foot of the rest pose, about which its knee bends."""
+    rest, children = skeleton.rest_positions, skeleton.children[ankle]
+    forward = rest[children[0]] - rest[ankle] if children else FORWARD
+    across = np.cross(UP, forward)
+    length = float(np.linalg.norm(across))
+    return np.asarray(across / length if length > MIN_FOOT_M else np.cross(UP, FORWARD))
 
 
 def hinge_limit(
     fitted: FittedMotion, joint: int, end: int, axis: Array, reserve: float, tolerance: float
 ) -> HingeLimit:
-    """Return the same goal for a known axis, shape (3,)."""
+    """Return the goal that a hinge bends no less than recorded, or than `reserve` radians."""
     minimum = np.minimum(hinge_flexion(fitted, joint, end, axis), reserve)
     return HingeLimit(joint, end, axis, minimum, tolerance)
 
@@ -101,7 +118,7 @@ def hinge_flexion(fitted: FittedMotion, joint: int, end: int, axis: Array) -> Ar
 
 
 def hinge_axis(fitted: FittedMotion, joint: int, end: int) -> Array | None:
-    """Return the mean axis about which a joint bends; None if it never bends."""
+    """Return the mean axis about which a joint bends; None if it hardly bends."""
     upper, lower = bone_directions(fitted, joint, end)
     axis = np.cross(upper, lower).mean(axis=0)
     length = float(np.linalg.norm(axis))

@@ -18,6 +18,7 @@ from solvers.motion_fitting.goals import (
     StayInPlace,
     StayStill,
     hinge_limit,
+    knee_limit,
     with_bent_hinge,
 )
 from solvers.motion_fitting.goals.hinge_limit import hinge_axis, hinge_flexion
@@ -26,6 +27,7 @@ from solvers.rotations import (
     angle_between,
     inverse,
     multiply,
+    quaternion_from_rotation_vector,
     rotation_vector_from_quaternion,
 )
 from solvers.samples import GaitSettings, walking_gait
@@ -197,3 +199,18 @@ def test_only_straight_limbs_are_bent_before_a_fit(start, flexion):
 
     expected = np.radians(3.0) if abs(flexion) < np.radians(3.0) else flexion
     assert_allclose(hinge_flexion(after, knee, ankle, axis), expected, atol=0.02)
+
+
+@pytest.mark.parametrize("bend_deg", [-4.0, 0.0])
+def test_a_knee_that_bends_backward_by_a_few_degrees_does_not_bend_farther(walk, bend_deg):
+    """The axis of such a knee would be the reverse of a knee's."""
+    hip, knee, ankle = (walk.skeleton.index(name) for name in LEG)
+    rotations = walk.rotations.copy()
+    rotations[:, knee] = quaternion_from_rotation_vector([np.radians(bend_deg), 0.0, 0.0])
+    straight = walk.with_poses(rotations)
+    start = FittedMotion(straight, straight, (hip, knee, ankle))
+
+    limit = knee_limit(start, knee, ankle, 0.1, 0.01)
+
+    assert limit.axis @ (1.0, 0.0, 0.0) == pytest.approx(1.0, abs=0.01)
+    assert_allclose(limit.minimum, np.radians(bend_deg), atol=np.radians(1.5))
