@@ -135,8 +135,15 @@ def _content(path: Path, member: zipfile.ZipInfo, skipped: int, size: int) -> St
 
 def _camera(path: Path, height: int, width: int, settings: DepthSettings) -> Camera:
     override = settings.camera(width, height)
-    if override is not None and not _has(path, INTRINSICS):
+    missing = [name for name in INTRINSICS if not _has(path, (name,))]
+    if missing and override is not None:
         return override
+    if missing:
+        raise InvalidFileError(
+            f"{path} does not describe its camera: {' and '.join(missing)} must be in it. Add"
+            " them, or set the focal lengths fx and fy in pixels, and the center cx and cy"
+            " unless it is the middle."
+        )
     fx, fy, cx, cy = (_number(path, name) for name in INTRINSICS)
     stored = Camera(fx, fy, cx, cy, width, height)
     return settings.camera(width, height, stored) or stored

@@ -5,6 +5,7 @@ import pytest
 from depth_files import depth_npz
 
 from solvers.depth_scene.camera import Camera
+from solvers.errors import InvalidFileError
 from solvers.recordings import DepthSettings, read_depth
 
 STORED = Camera(90.0, 91.0, 38.0, 28.0, 80, 60)
@@ -37,3 +38,13 @@ def test_center_alone_may_be_set_for_an_archive(tmp_path):
     assert read_depth(path).camera == STORED
     given = read_depth(path, DepthSettings(cx=30.0, cy=20.0)).camera
     assert given == Camera(90.0, 91.0, 30.0, 20.0, 80, 60)
+
+
+def test_archive_without_its_center_is_refused_until_a_camera_is_given(tmp_path):
+    path = tmp_path / "wall.npz"
+    np.savez(path, depth=np.full((2, 60, 80), 2000, np.uint16), fx=90.0, fy=91.0)
+
+    with pytest.raises(InvalidFileError, match="cx and cy must be in it"):
+        read_depth(path)
+    given = read_depth(path, DepthSettings(fx=90.0, fy=91.0)).camera
+    assert given == Camera(90.0, 91.0, *MIDDLE, 80, 60)
