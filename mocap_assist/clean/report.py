@@ -16,7 +16,8 @@ def clean_report(n_frames: int, cleaned: Cleaned, name: str, n_modified: int = 0
     done = [f"{_count(body.outliers)} spikes", f"{_count(cleaned.before.gaps)} gaps"]
     if swaps := cleaned.solution.swaps:
         done.append(f"{len(swaps)} swapped labels")
-    if planted := cleaned.planted:
+    planted = cleaned.planted
+    if planted:
         slides = (100 * planted.slide_before, 100 * planted.slide_after)
         done.append("foot slide {:.1f} → {:.1f} cm".format(*slides))
     message = [f"{name}: cleaned {n_frames} frames: {', '.join(done)}.", body.prior_used]
@@ -24,6 +25,7 @@ def clean_report(n_frames: int, cleaned: Cleaned, name: str, n_modified: int = 0
         message.append(f"Applied the modifiers of {n_modified} curves.")
     if not all(each.converged for each in cleaned.solution.denoised):
         message.append("Stopped before the result converged; try a shorter range.")
+    message += [f"{remark}." for remark in (planted.remarks if planted else ())]
     if cleaned.low_confidence:
         message.append(cleaned.low_confidence)
     return " ".join(message)

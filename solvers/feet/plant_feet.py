@@ -1,7 +1,7 @@
 """Stop feet from sliding: foot-skate cleanup."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ..motion import Motion, forward_kinematics
 from ..motion.humanoid import HumanoidMap, find_humanoid_map
 from ..motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
 from ..motion_fitting import FittedMotion, fit_in_pieces, fit_motion
-from ..progress import Progress, unwatched, within
+from ..progress import Progress, Remark, collect_remarks, unwatched, within
 from .foot_contact import FootContact, find_foot_contact
 from .foot_goals import planting_goals
 from .legs import SIDES, LegJoints, find_legs
@@ -32,12 +32,15 @@ class Planted:
         When each foot is in contact: as given, or as detected.
     slide_before, slide_after : float, meters
         Distance that both soles cover over the floor while in contact.
+    remarks : tuple of str
+        What went wrong, such as feet that no leg can keep where they are.
     """
 
     motion: Motion
     contacts: Flags
     slide_before: float
     slide_after: float
+    remarks: tuple[str, ...] = ()
 
 
 def plant_feet(
@@ -95,6 +98,8 @@ def plant_feet(
     contacts = None if contacts is None else _check_contacts(contacts, motion)
     if ankle_weights is None:
         ankle_weights = np.ones((motion.n_frames, len(SIDES)))
+    remarks: list[Remark] = []
+    progress = collect_remarks(progress, remarks)
     cuts, results = find_shot_boundaries(motion), []
     for start, stop in shot_ranges(motion, cuts):
         segment = motion.slice(start, stop) if cuts else motion
@@ -112,7 +117,8 @@ def plant_feet(
             weights = ankle_weights[start:stop]
             results.append(_plant_segment(segment, legs, standing, weights, settings, step))
     progress(1.0, "Planted the feet")
-    return _join_segments(motion, results) if cuts else results[0]
+    planted = _join_segments(motion, results) if cuts else results[0]
+    return replace(planted, remarks=tuple(remarks))
 
 
 def _plant_segment(

@@ -27,7 +27,7 @@ class PlantingResult(NamedTuple):
     motion: Motion
     planted: Planted | None
     remarks: list[str]
-    """Why planting was not possible."""
+    """Why planting was not possible, or what went wrong."""
 
 
 def plant_feet_if_possible(
@@ -56,7 +56,8 @@ def plant_feet_if_possible(
         )
     except InvalidMotionError as error:
         return PlantingResult(motion, None, [f"Feet were not planted. {error}"])
-    return PlantingResult(planted.motion, planted, [])
+    remarks = [f"{remark}." for remark in planted.remarks]
+    return PlantingResult(planted.motion, planted, remarks)
 
 
 def _ankle_weights(motion: Motion, reliability: NDArray[np.float64]) -> NDArray[np.float64]:
