@@ -26,6 +26,13 @@ class Learned(NamedTuple):
     """Source of the prior, if it differs from the setting."""
 
 
+class Examples(NamedTuple):
+    """Clean motion, and a sentence about files of folders that could not be read."""
+
+    clips: list[Motion | Tracks]
+    remark: str = ""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ExampleSource:
     """Source of clean motion to learn from; by default the take itself."""
@@ -34,21 +41,29 @@ class ExampleSource:
     files: tuple[str, ...] = ()
     """Recordings, and files that the background Blender reads."""
     found: tuple[str, ...] = ()
-    """The same from folders; those that the background Blender finds without motion are left
-    out."""
+    """The same from folders; those that cannot be read or have no motion are left out."""
     bases_file: str = ""
     library: LibraryPrior | None = None
     blender: BackgroundBlender | None = None
 
-    def read(self, progress: Progress = unwatched) -> list[Motion | Tracks]:
-        """Return the motions and what is in the files; raise InvalidFileError on failure."""
+    def read(self, progress: Progress = unwatched) -> Examples:
+        """Return the motions and what is in the files.
+
+        Raises InvalidFileError if a file that was named cannot be read, or if none has motion.
+        """
         paths = (*self.files, *self.found)
         scenes = [path for path in paths if is_scene_file(path)]
         others = [path for path in paths if path not in scenes]
         motions: list[Motion | Tracks] = list(self.motions)
+        left_out: list[InvalidFileError] = []
         for index, path in enumerate(others):
             ends = (each / len(paths) for each in (index, index + 1))
-            motions.append(read_motion_or_tracks(path, progress=within(progress, *ends)))
+            try:
+                motions.append(read_motion_or_tracks(path, progress=within(progress, *ends)))
+            except InvalidFileError as error:
+                if path not in self.found:
+                    raise
+                left_out.append(error)
         if scenes and self.blender is not None:
             rest = within(progress, len(others) / len(paths), 1.0)
             read = read_blends(self.blender, scenes, progress=rest)
@@ -58,7 +73,7 @@ class ExampleSource:
                 motions += [clip.motion for clip in file.clips]
         if paths and not motions:
             raise InvalidFileError("None of the files in the folder of examples has motion.")
-        return motions
+        return Examples(motions, _describe(left_out))
 
     def learned(self, body: Motion | Tracks, limits: bool, progress: Progress) -> Learned:
         """Learn from the examples, or load what was learned."""
@@ -67,9 +82,18 @@ class ExampleSource:
             return Learned(found.bases, None, found.message)
         if self.bases_file:
             return Learned(load_filter_bases(self.bases_file), None)
-        clips = self.read(within(progress, 0.0, 0.5))
+        clips, remark = self.read(within(progress, 0.0, 0.5))
         if not clips:
             return Learned(None, None)
         bases = learn_filter_bases(clips, progress=within(progress, 0.5, 0.9))
         bodies = [clip for clip in clips if isinstance(clip, Motion)]
-        return Learned(bases, learn_joint_limits(bodies) if limits else None)
+        return Learned(bases, learn_joint_limits(bodies) if limits else None, remark)
+
+
+def _describe(left_out: list[InvalidFileError]) -> str:
+    """Return a sentence about files that were left out."""
+    if not left_out:
+        return ""
+    if len(left_out) == 1:
+        return f"A file of the examples was left out: {left_out[0]}"
+    return f"{len(left_out)} files of the examples were left out; the first: {left_out[0]}"

@@ -9,5 +9,5 @@ def learn(
     examples: ExampleSource, settings: FilterBasesSettings, *, progress: Progress = unwatched
 ) -> FilterBases:
     """Read the files among the examples, and learn from all of them."""
-    clips = examples.read(within(progress, 0.0, 0.5))
+    clips = examples.read(within(progress, 0.0, 0.5)).clips
     return learn_filter_bases(clips, settings=settings, progress=within(progress, 0.5, 1.0))

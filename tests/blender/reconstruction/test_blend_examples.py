@@ -178,6 +178,25 @@ def test_a_file_without_motion_in_a_folder_of_examples_is_left_out(
     assert status == {"FINISHED"}
 
 
+def test_a_damaged_file_in_a_folder_of_examples_is_left_out_and_named(
+    stroll, bring, blank, tmp_path
+):
+    folder = tmp_path / "takes"
+    folder.mkdir()
+    shutil.copy(stroll, folder / "take.bvh")
+    (folder / "cut.bvh").write_bytes(stroll.read_bytes()[:400])
+    bring(stroll)
+
+    status = blank.ops.mocap_assist.denoise(prior="EXAMPLES", examples=str(folder))
+
+    assert status == {"FINISHED"}
+    action = blank.context.object.animation_data.action
+    said = json.loads(action["mocap_assist_history"])[-1]["prior_used"]
+    assert "A file of the examples was left out" in said and "cut.bvh" in said
+    with pytest.raises(RuntimeError, match=r"cut\.bvh"):
+        blank.ops.mocap_assist.denoise(prior="EXAMPLES", examples=str(folder / "cut.bvh"))
+
+
 @pytest.mark.parametrize("inside", [True, False])
 def test_examples_without_any_motion_are_refused(
     stroll, bring, blank, recordings, tmp_path, inside
