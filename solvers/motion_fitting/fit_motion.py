@@ -12,15 +12,18 @@ from .normal_equations import NormalEquations
 from .variables import FittedMotion
 
 MAX_ROUNDS = 16
-"""Number of steps. It bounds the time; takes of all kinds need two to seven."""
+"""Number of steps. It bounds the time; most takes need two to seven."""
 MAX_HALVINGS = 8
 """Number of times that a step is halved which makes the cost higher. It bounds the time."""
-MAX_STEP = 1.0
-"""Radians and meters of any variable in one step. It guards limbs that have to go far, which
+MAX_STEP_RAD = 1.0
+"""Radians by which any joint turns in one step. It guards limbs that have to go far, which
 would bend the wrong way."""
 SMALL_DECREASE = 1e-2
-"""Relative decrease of the cost that ends the fit, a ratio. Chosen by hand: x0.5 costs nothing,
-x2 costs nothing."""
+"""Relative decrease of the cost by a whole step that ends the fit, a ratio. Chosen by hand:
+x0.5 costs nothing, x2 costs nothing."""
+NEGLIGIBLE_COST = 1e-4
+"""Decrease of the cost for each frame that ends the fit: that of a residual of a hundredth of
+its tolerance. It guards fits that meet all goals."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,10 +63,12 @@ def fit_motion(
         Raised by `progress`.
     """
     fitted, equations, damping = start, _equations(start, goals), 1.0
+    negligible = NEGLIGIBLE_COST * start.motion.n_frames
     for number in range(1, MAX_ROUNDS + 1):
         progress(number / (MAX_ROUNDS + 1), message)
-        step = equations.step()
-        damping = min(damping, MAX_STEP / max(float(np.abs(step).max()), 1e-9))
+        step = equations.step
+        turns = step[:, 3 * fitted.root_moves :]
+        damping = min(damping, MAX_STEP_RAD / max(float(np.abs(turns).max()), 1e-9))
         for _ in range(MAX_HALVINGS):
             trial = fitted.moved(damping * step)
             tried = _equations(trial, goals)
@@ -71,9 +76,11 @@ def fit_motion(
                 break
             damping *= 0.5
         else:
+            if equations.expected_decrease <= SMALL_DECREASE * equations.cost + negligible:
+                return Fit(fitted.motion, True)
             break
-        is_small = equations.cost - tried.cost <= SMALL_DECREASE * tried.cost
-        has_converged = is_small and damping == 1.0
+        decrease = equations.cost - tried.cost
+        has_converged = decrease <= damping * SMALL_DECREASE * tried.cost + negligible
         fitted, equations, damping = trial, tried, min(1.0, 2.0 * damping)
         if has_converged:
             return Fit(fitted.motion, True)

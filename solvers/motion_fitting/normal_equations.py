@@ -102,8 +102,14 @@ class NormalEquations:
         """Derivatives of `cost`, (n_frames, n_variables)."""
         return self._assembled[2]
 
+    @property
+    def expected_decrease(self) -> float:
+        """Decrease of `cost` by `step`, if the residuals were linear."""
+        return -0.5 * float(np.vdot(self.gradient, self.step))
+
+    @cached_property
     def step(self) -> Array:
-        """Return the step to the least sum of squares, (n_frames, n_variables)."""
+        """The step to the least sum of squares, (n_frames, n_variables)."""
         from scipy.linalg import solveh_banded  # slow to import: only when needed
 
         blocks, between, gradient = self._assembled

@@ -33,7 +33,7 @@ class FittedMotion:
     joints : tuple of int
         Joints that may turn.
     root_moves : bool
-    hinges : mapping of joint to shape (3,)
+    hinges : mapping of joint to shape (3,) or (n_frames, 3)
         Unit vectors about which some of the joints turn, in the axes of their parents; all
         others turn freely.
     """
@@ -67,12 +67,15 @@ class FittedMotion:
         for joint in self.joints:
             parent, own = self.motion.skeleton.parents[joint], self.axes_of(joint)
             turns = matrix_from_quaternion(self.poses.rotations[:, parent])
-            axes.append(turns @ own if parent >= 0 else np.broadcast_to(own, turns.shape))
+            axes.append((turns if parent >= 0 else np.eye(3)) @ own)
         return axes
 
     def axes_of(self, joint: int) -> Array:
-        """Return the axes of a joint's variables as columns, in the axes of its parent."""
-        return self.hinges[joint][:, None] if joint in self.hinges else np.eye(3)
+        """Return the axes of a joint's variables as columns, in the axes of its parent.
+
+        The shape is (3, 3), or (3, 1) or (n_frames, 3, 1) for a hinge.
+        """
+        return self.hinges[joint][..., None] if joint in self.hinges else np.eye(3)
 
     def columns(self, joint: int) -> slice:
         """Return where the variables of a joint are."""
@@ -90,7 +93,8 @@ class FittedMotion:
         if self.root_moves:
             changes[:, :3] = self.motion.root_positions - self.source.root_positions
         for index, joint in enumerate(chosen):
-            changes[:, self.columns(joint)] = vectors[:, index] @ self.axes_of(joint)
+            along = vectors[:, index, None] @ self.axes_of(joint)
+            changes[:, self.columns(joint)] = along[:, 0]
         return changes
 
     def point_jacobian(self, points: Array, bone: int) -> Array:
@@ -135,7 +139,11 @@ class FittedMotion:
     def moved(self, step: Array) -> "FittedMotion":
         """Return the motion after a step of the variables, shape (n_frames, n_variables)."""
         vectors = np.stack(
-            [step[:, self.columns(joint)] @ self.axes_of(joint).T for joint in self.joints], 1
+            [
+                (self.axes_of(joint) @ step[:, self.columns(joint), None])[..., 0]
+                for joint in self.joints
+            ],
+            axis=1,
         )
         chosen, rotations = list(self.joints), self.motion.rotations.copy()
         turns = quaternion_from_rotation_vector(vectors)

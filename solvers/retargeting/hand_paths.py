@@ -68,6 +68,11 @@ class Meeting(NamedTuple):
     weight: Array
     """1 where they meet, 0 where they are independent, (n_frames,)."""
 
+    def wanted(self, left: HandPath, right: HandPath) -> Array:
+        """Return where the left hand has to be from the right one, (n_frames, 3), meters."""
+        free = left.wanted - right.wanted
+        return np.asarray(free + self.weight[:, None] * (self.separation - free))
+
 
 def find_hand_paths(transfer: Transfer, poses: WorldPoses) -> list[HandPath]:
     """Return the paths of the hands that both bodies have; `poses` are those of the target."""

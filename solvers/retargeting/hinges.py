@@ -4,25 +4,32 @@ import numpy as np
 
 from ..arrays import Array
 from ..motion_fitting import FittedMotion
-from ..motion_fitting.goals import hinge_axis
-from ..rotations import rotate
+from ..motion_fitting.goals import bone_directions
+from ..rotations import normalize, rotate
+from ..signals import smooth_gaussian
 from .body import HumanoidBody
 from .limbs import Limb
 
-MIN_HINGE_COSINE = 0.5
-"""Cosine of the angle between the axis of a hinge and that of the T-pose. It guards straight
-limbs, which seem to bend sideways or backward."""
+SMOOTHING_S = 0.1
+"""Standard deviation of the Gaussian that smooths the axis. It guards limbs that are nearly
+straight, whose axis is noise."""
+USUAL_SINE = np.sin(np.radians(10.0))
+"""Sine of the flexion at which a limb's own axis and the usual one have the same weight. It
+guards straight limbs, which seem to bend sideways or backward."""
 HINGE_RAD = np.radians(1.0)
 """Radians by which hinges may pass their limits. It guards knees, elbows and toes against
 bending the wrong way."""
 
 
 def limb_hinge(body: HumanoidBody, fitted: FittedMotion, limb: Limb, usual: Array) -> Array:
-    """Return the axis about which a limb bends, in the axes of its upper bone, shape (3,).
+    """Return the axis about which a limb bends, in the axes of its upper bone, (n_frames, 3).
 
-    It is the one that the motion shows. That of a limb which hardly bends is noise; if it is
-    far from the `usual` one, which is that of the T-pose, the latter replaces it.
+    It is the one that the motion shows, and the more the `usual` one, which is that of the
+    T-pose, the straighter the limb is. A limb that bends backward keeps the usual axis.
     """
     usual = rotate(body.alignment[limb[0]], usual)
-    axis = hinge_axis(fitted, *limb[1:])
-    return usual if axis is None or axis @ usual < MIN_HINGE_COSINE else axis
+    shown = np.cross(*bone_directions(fitted, *limb[1:]))
+    backward = np.minimum(shown @ usual, 0.0)
+    shown = shown - backward[:, None] * usual
+    smooth = smooth_gaussian(shown, SMOOTHING_S * fitted.motion.frame_rate)
+    return normalize(smooth + USUAL_SINE * usual)

@@ -107,8 +107,9 @@ def place_hands(
         if meeting:
             left, right = (BonePoint(path.arm[2], np.zeros(3)) for path in paths)
             tolerance = MEETING_FRACTION * float(np.mean([path.length for path in paths]))
-            separation, weight = meeting.separation[frames], meeting.weight[frames]
-            goals.append(KeepSeparation(left, right, separation, weight, tolerance))
+            wanted = meeting.wanted(*paths)[frames]
+            weight = (meeting.weight[frames] > 0.0).astype(np.float64)
+            goals.append(KeepSeparation(left, right, wanted, weight, tolerance))
         return fit_motion(start_of_fit, goals, progress, "Placing the hands").motion
 
     result = fit_in_pieces(motion, fit_piece, progress)

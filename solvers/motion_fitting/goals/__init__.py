@@ -12,6 +12,7 @@ from .contact_points import (
 from .follow_source import FollowSource
 from .hinge_limit import (
     HingeLimit,
+    bone_directions,
     flexion_in_reserve,
     hinge_axis,
     hinge_flexion,
@@ -31,6 +32,7 @@ __all__ = [
     "StayAtHeight",
     "StayInPlace",
     "StayStill",
+    "bone_directions",
     "flexion_in_reserve",
     "hinge_axis",
     "hinge_flexion",

@@ -30,7 +30,7 @@ class HingeLimit:
     joint : int
     end : int
         Joint at the far end of the lower bone.
-    axis : shape (3,)
+    axis : shape (3,) or (n_frames, 3)
         About which the hinge bends, in the axes of its parent.
     minimum : shape (n_frames,), radians
     tolerance : float, radians
@@ -48,8 +48,9 @@ class HingeLimit:
             hinge_flexion(fitted, self.joint, self.end, self.axis) - self.minimum, 0.0
         )
         jacobian = np.zeros((len(below), 1, fitted.n_variables))
-        slope = self.axis @ fitted.axes_of(self.joint) / self.tolerance
-        jacobian[below < 0.0, 0, fitted.columns(self.joint)] = slope
+        slope = (self.axis[..., None, :] @ fitted.axes_of(self.joint))[..., 0, :]
+        jacobian[:, 0, fitted.columns(self.joint)] = slope / self.tolerance
+        jacobian[below == 0.0] = 0.0
         equations.add_frames(below[:, None] / self.tolerance, jacobian)
 
 
@@ -92,9 +93,8 @@ def with_bent_hinge(fitted: FittedMotion, limit: HingeLimit) -> FittedMotion:
     flexion = hinge_flexion(fitted, limit.joint, limit.end, limit.axis)
     step = np.zeros((len(flexion), fitted.n_variables))
     missing = np.where(np.abs(flexion) < START_RAD, START_RAD - flexion, 0.0)
-    step[:, fitted.columns(limit.joint)] = np.outer(
-        missing, limit.axis @ fitted.axes_of(limit.joint)
-    )
+    own = (limit.axis[..., None, :] @ fitted.axes_of(limit.joint))[..., 0, :]
+    step[:, fitted.columns(limit.joint)] = missing[:, None] * own
     return fitted.moved(step)
 
 
@@ -114,7 +114,8 @@ def bone_directions(fitted: FittedMotion, joint: int, end: int) -> tuple[Array, 
 def hinge_flexion(fitted: FittedMotion, joint: int, end: int, axis: Array) -> Array:
     """Return the signed angle between the bones about an axis, radians, 0 straight."""
     upper, lower = bone_directions(fitted, joint, end)
-    return np.arctan2(np.cross(upper, lower) @ axis, np.sum(upper * lower, axis=1))
+    sine = np.sum(np.cross(upper, lower) * axis, axis=1)
+    return np.asarray(np.arctan2(sine, np.sum(upper * lower, axis=1)))
 
 
 def hinge_axis(fitted: FittedMotion, joint: int, end: int) -> Array | None:

@@ -58,7 +58,7 @@ def both(rng, n_frames: int) -> tuple[NormalEquations, DenseProblem]:
 def test_step_is_that_of_dense_least_squares(rng, n_frames):
     banded, dense = both(rng, n_frames)
 
-    assert_allclose(banded.step(), dense.step(), atol=1e-9)
+    assert_allclose(banded.step, dense.step(), atol=1e-9)
 
 
 def test_cost_is_half_the_sum_of_squares(rng):
