@@ -22,7 +22,7 @@ def plant_variant(
     planting: PlantSettings,
     progress: Progress,
 ) -> Motion:
-    """Return a variant with planted feet; unchanged, with a remark, if it has no legs.
+    """Return a variant with planted feet; unchanged, with a remark, if it has no feet.
 
     Feet stand where those of the examples or of the variant itself do. A loop stays a loop.
     """
