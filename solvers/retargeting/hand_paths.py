@@ -15,7 +15,7 @@ from .placement import leg_length
 LOW_WRIST_FRACTION, HIGH_WRIST_FRACTION = 0.2, 0.4
 """Heights of the wrist, as fractions of the leg length. Below the first, the height above
 ground is the source's, scaled by the legs; above the second, the ground has no influence.
-Chosen by hand: first, x0.5 costs 0.1 %, x2 gains 4.0 %; second, x0.5 gains 3.4 %, x2 gains
+Chosen by hand: first, x0.5 costs 0.1 %, x2 gains 4.1 %; second, x0.5 gains 3.6 %, x2 gains
 0.3 %."""
 SUPPORT_HEIGHT_FRACTIONS = (0.12, 0.18)
 """The same heights, as fractions of the leg length, for hands that support themselves on the
@@ -32,8 +32,8 @@ REACH_FRACTIONS = (1.0, 0.9)
 all of it. They guard supports out of reach."""
 MEETING_FRACTION, INDEPENDENT_FRACTION = 0.15, 0.4
 """Distances of both hands, as fractions of the arm length: below the first they meet, above the
-second they are independent. The first guards hands that nearly touch, which would keep part of
-the distance from other arms. Second chosen by hand: x0.5 costs nothing, x2 gains 0.3 %."""
+second they are independent. The first guards hands that nearly touch, which would keep part
+of the distance from other arms. Second chosen by hand: x0.5 costs nothing, x2 gains 0.4 %."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,7 +26,7 @@ BLEND_S = 0.5
 """Seconds over which a correction begins and ends. Chosen by hand: x0.5 costs 3.1 %, x2 costs
 nothing."""
 HAND_FRACTION = 0.02
-"""Arm lengths by which hands may leave their paths. Chosen by hand: x0.5 costs 0.8 %, x2 costs
+"""Arm lengths by which hands may leave their paths. Chosen by hand: x0.5 costs 0.9 %, x2 costs
 nothing and lets hands that support the body slide."""
 MEETING_FRACTION = 0.002
 """Arm lengths by which hands that meet may be off their distance. It guards hands that clap,
@@ -36,7 +36,7 @@ DEPTH_FRACTION = 0.002
 lies down, which would sink lower than the source's."""
 ARM_RAD = np.radians(20.0)
 """Radians by which shoulders and elbows may turn. Chosen by hand: x0.5 costs nothing, x2 costs
-0.8 %."""
+0.9 %."""
 RESERVE_RAD = np.radians(5.0)
 """Radians of flexion kept in an elbow, unless it is straighter already. It guards arms that
 reach for what is too far, which would snap straight."""

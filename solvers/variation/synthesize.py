@@ -31,9 +31,7 @@ animator sees as a blend; no unpinned variant has it."""
 MAX_BATCH_VALUES = 20_000_000
 """Maximum count of values in the curves of the variants that are drawn together. It bounds the
 memory."""
-
-
-PLANTING = PlantSettings()
+PLANT_SETTINGS = PlantSettings()
 
 
 class Variant(NamedTuple):
@@ -52,7 +50,7 @@ def synthesize(
     n_variants: int,
     *,
     settings: VarySettings = DEFAULT_SETTINGS,
-    planting: PlantSettings | None = PLANTING,
+    planting: PlantSettings | None = PLANT_SETTINGS,
     progress: Progress = unwatched,
 ) -> tuple[Motion, ...]:
     """Draw variants from a model of the examples, and plant their feet; see `draw_variants`."""
@@ -67,7 +65,7 @@ def draw_variants(
     n_variants: int,
     *,
     settings: VarySettings = DEFAULT_SETTINGS,
-    planting: PlantSettings | None = PLANTING,
+    planting: PlantSettings | None = PLANT_SETTINGS,
     progress: Progress = unwatched,
 ) -> tuple[Variant, ...]:
     """Draw variants from a model of the examples, and plant their feet.

@@ -32,7 +32,7 @@ def draw_components(panels: dict[str, tuple[Sequence[Motion], Sequence[Motion]]]
             up = floor - (curve - low) / (high - low) * (HEIGHT - 2 * MARGIN)
             color = GRAY if row < len(variants) else RED
             canvas.line(list(zip(across, up, strict=True)), color, 1.2)
-    return _saved(canvas.picture().pixels, "components.png")
+    return _saved(canvas.picture().pixels, "components", "Components of the variation model")
 
 
 def draw_strips(name: str, examples: Sequence[Motion], variants: Sequence[Motion]) -> str:
@@ -47,7 +47,7 @@ def draw_strips(name: str, examples: Sequence[Motion], variants: Sequence[Motion
         np.pad(one, ((0, 0), (0, width - one.shape[1]), (0, 0)), constant_values=255)
         for one in strips
     ]
-    return _saved(np.concatenate(padded), f"{name.replace(' ', '_')}.png")
+    return _saved(np.concatenate(padded), name.replace(" ", "_"), f"Variants of {name}")
 
 
 def _component(examples: Sequence[Motion], motion: Motion) -> np.ndarray:
@@ -61,8 +61,8 @@ def _flat(motion: Motion) -> np.ndarray:
     return body.reshape(len(body), -1)
 
 
-def _saved(pixels: np.ndarray, name: str) -> str:
-    picture = BENCHMARK_PICTURES / "variation" / name
+def _saved(pixels: np.ndarray, name: str, title: str) -> str:
+    picture = BENCHMARK_PICTURES / "variation" / f"{name}.png"
     picture.parent.mkdir(parents=True, exist_ok=True)
     Image.fromarray(pixels).save(picture, optimize=True)
-    return f"{show(picture, name)}\n"
+    return f"{show(picture, title)}\n"
