@@ -39,8 +39,6 @@ def reach(
     limb: tuple[int, int, int],
     targets: Array,
     settings: ReachSettings = ReachSettings(),
-    *,
-    keep_orientation: bool = True,
 ) -> Motion:
     """Rotate the upper and lower joint of a limb so that its end reaches the targets.
 
@@ -60,14 +58,12 @@ def reach(
     targets : shape (n_frames, 3), meters, world space
         NaN: the pose is unchanged.
     settings : ReachSettings
-    keep_orientation : bool
-        True: the end joint keeps its world rotation. False: it keeps its local rotation.
 
     Returns
     -------
     Motion
-        With new rotations of two or three joints. Unchanged, to rounding, where the end is
-        already at the target.
+        With new rotations of three joints; the end keeps its world rotation. Unchanged, to
+        rounding, where the end is already at the target.
 
     Raises
     ------
@@ -84,9 +80,8 @@ def reach(
     )
     moved_tip = hinge + rotate(hinge_rotation, tip - hinge)
     swing = rotation_between(moved_tip - start, targets - start)
-    changes = [(upper, swing), (lower, hinge_rotation)]
-    if keep_orientation:
-        changes.append((end, inverse(multiply(swing, hinge_rotation))))
+    unturned = inverse(multiply(swing, hinge_rotation))
+    changes = [(upper, swing), (lower, hinge_rotation), (end, unturned)]
     rotations = motion.rotations.copy()
     no_target = ~np.isfinite(targets).all(axis=-1)
     for joint, rotation in changes:

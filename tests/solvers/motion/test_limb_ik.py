@@ -56,10 +56,8 @@ def test_end_joint_keeps_its_world_orientation(body_with_arm):
     targets = forward_kinematics(body).positions[:, limb[2]] + UP
 
     moved = forward_kinematics(reach(body, limb, targets)).rotations[:, limb[2]]
-    loose = reach(body, limb, targets, keep_orientation=False)
 
     assert angle_between(moved, forward_kinematics(body).rotations[:, limb[2]]).max() < 1e-7
-    assert_allclose(loose.rotations[:, limb[2]], body.rotations[:, limb[2]])
 
 
 def test_limb_at_its_target_stays_unchanged(body_with_arm, swinging_leg):
