@@ -23,7 +23,7 @@ class Learned(NamedTuple):
     bases: FilterBases | None
     limits: JointLimits | None
     message: str = ""
-    """Source of the prior, if it differs from the setting."""
+    """Source of the prior, if it differs from the setting, or files that were left out."""
 
 
 class Examples(NamedTuple):
@@ -61,19 +61,26 @@ class ExampleSource:
             try:
                 motions.append(read_motion_or_tracks(path, progress=within(progress, *ends)))
             except InvalidFileError as error:
-                if path not in self.found:
-                    raise
-                left_out.append(error)
+                self._leave_out(path, error, left_out)
         if scenes and self.blender is not None:
             rest = within(progress, len(others) / len(paths), 1.0)
             read = read_blends(self.blender, scenes, progress=rest)
             for path, file in zip(scenes, read, strict=True):
-                if not file.clips and not (file.is_empty and path in self.found):
-                    raise InvalidFileError(" ".join(file.refused))
                 motions += [clip.motion for clip in file.clips]
+                if not file.clips and not (file.is_empty and path in self.found):
+                    refusal = InvalidFileError(" ".join(file.refused))
+                    self._leave_out(path, refusal, left_out)
         if paths and not motions:
             raise InvalidFileError("None of the files in the folder of examples has motion.")
         return Examples(motions, _describe(left_out))
+
+    def _leave_out(
+        self, path: str, error: InvalidFileError, left_out: list[InvalidFileError]
+    ) -> None:
+        """Note a file of a folder that cannot be read; raise the error of a file named."""
+        if path not in self.found:
+            raise error
+        left_out.append(error)
 
     def learned(self, body: Motion | Tracks, limits: bool, progress: Progress) -> Learned:
         """Learn from the examples, or load what was learned."""

@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 import bpy
 
-from ...solvers.denoising import FilterBases, FilterBasesSettings
+from ...solvers.denoising import FilterBasesSettings
 from ...solvers.errors import InvalidFileError
 from ...solvers.settings import Settings, setting
 from ..blender.path_properties import file_to_write
 from ..blender.time_slices import Sliced, Steps
 from .examples import read_examples
-from .solve_learning import learn
+from .solve_learning import Patterns, learn
 
 ENDING = ".npz"
 
@@ -38,7 +38,7 @@ class LearnBundle(NamedTuple):
 @Sliced
 def read_learning(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: LearnBundle
-) -> "Steps[partial[FilterBases]]":
+) -> "Steps[partial[Patterns]]":
     """Read the examples; return the picklable solve."""
     target_of(settings)
     examples = yield from read_examples.steps(scene, armature, settings.choices.examples)
@@ -49,15 +49,17 @@ def write_learned(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
     settings: LearnBundle,
-    bases: FilterBases,
+    learned: Patterns,
     solved_digest: str | None = None,
 ) -> str:
     """Save what was learned; return a sentence about it."""
     target = target_of(settings)
+    bases = learned.bases
     bases.save(target)
-    return (
+    message = (
         f"Learned {len(bases.values)} patterns from {bases.n_clips} clips. Saved as {target}."
     )
+    return f"{message} {learned.remark}".strip()
 
 
 def target_of(settings: LearnBundle) -> Path:

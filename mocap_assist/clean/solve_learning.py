@@ -1,13 +1,23 @@
 """Solve of the button Learn."""
 
+from typing import NamedTuple
+
 from ...solvers.denoising import FilterBases, FilterBasesSettings, learn_filter_bases
 from ...solvers.progress import Progress, unwatched, within
 from .example_source import ExampleSource
 
 
+class Patterns(NamedTuple):
+    """What was learned, and a sentence about files that could not be read."""
+
+    bases: FilterBases
+    remark: str
+
+
 def learn(
     examples: ExampleSource, settings: FilterBasesSettings, *, progress: Progress = unwatched
-) -> FilterBases:
+) -> Patterns:
     """Read the files among the examples, and learn from all of them."""
-    clips = examples.read(within(progress, 0.0, 0.5)).clips
-    return learn_filter_bases(clips, settings=settings, progress=within(progress, 0.5, 1.0))
+    clips, remark = examples.read(within(progress, 0.0, 0.5))
+    bases = learn_filter_bases(clips, settings=settings, progress=within(progress, 0.5, 1.0))
+    return Patterns(bases, remark)

@@ -92,7 +92,7 @@ def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> Rebuilt
         matches = problem.library.postures(problem.body, sharing)
         postures, message = matches.postures, matches.message
     elif problem.examples is not None:
-        clips = problem.examples.read().clips
+        clips, message = problem.examples.read()
         postures = posture_library_from_clips(clips, progress=sharing)
     rebuilt = reconstruct_motion(
         problem.body,

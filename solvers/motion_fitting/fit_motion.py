@@ -84,7 +84,7 @@ def fit_motion(
         fitted, equations, damping = trial, tried, min(1.0, 2.0 * damping)
         if has_converged:
             return Fit(fitted.motion, True)
-    progress(1.0, Remark(f"{message} did not settle; look at limbs that are stretched"))
+    progress(1.0, Remark(f"{message} did not fully succeed; look for stretched limbs"))
     return Fit(fitted.motion, False)
 
 

@@ -178,13 +178,15 @@ def test_a_file_without_motion_in_a_folder_of_examples_is_left_out(
     assert status == {"FINISHED"}
 
 
+@pytest.mark.parametrize("name", ["cut.bvh", "cut.fbx"])
 def test_a_damaged_file_in_a_folder_of_examples_is_left_out_and_named(
-    stroll, bring, blank, tmp_path
+    stroll, bring, blank, recordings, tmp_path, name
 ):
     folder = tmp_path / "takes"
     folder.mkdir()
     shutil.copy(stroll, folder / "take.bvh")
-    (folder / "cut.bvh").write_bytes(stroll.read_bytes()[:400])
+    complete = stroll if name == "cut.bvh" else recordings / MANNEQUIN
+    (folder / name).write_bytes(complete.read_bytes()[:400])
     bring(stroll)
 
     status = blank.ops.mocap_assist.denoise(prior="EXAMPLES", examples=str(folder))
@@ -192,9 +194,9 @@ def test_a_damaged_file_in_a_folder_of_examples_is_left_out_and_named(
     assert status == {"FINISHED"}
     action = blank.context.object.animation_data.action
     said = json.loads(action["mocap_assist_history"])[-1]["prior_used"]
-    assert "A file of the examples was left out" in said and "cut.bvh" in said
-    with pytest.raises(RuntimeError, match=r"cut\.bvh"):
-        blank.ops.mocap_assist.denoise(prior="EXAMPLES", examples=str(folder / "cut.bvh"))
+    assert "A file of the examples was left out" in said and name in said
+    with pytest.raises(RuntimeError, match=name):
+        blank.ops.mocap_assist.denoise(prior="EXAMPLES", examples=str(folder / name))
 
 
 @pytest.mark.parametrize("inside", [True, False])

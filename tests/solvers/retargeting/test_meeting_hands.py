@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from retargeted_motions import flexion_axis, given_to, role_positions
 from rigs import RIGS, mixamo
 
-from solvers.motion import HumanoidMap, Motion, Skeleton, find_humanoid_map, forward_kinematics
-from solvers.retargeting import RetargetSettings, retarget
+from solvers.motion import HumanoidMap, Motion, Skeleton, find_humanoid_map
+from solvers.retargeting import RetargetSettings
 from solvers.retargeting.hand_paths import HandPath, Meeting
 from solvers.rotations.representations import quaternion_from_rotation_vector
 
@@ -20,8 +21,8 @@ def test_hands_that_meet_in_the_source_meet(family):
     body, rig = mixamo(), with_broad_shoulders(RIGS[family](1.1))
     clapping = claps(body)
 
-    result = retargeted(clapping, rig)
-    separate = retargeted(clapping, rig, RetargetSettings(keep_hands=False))
+    result = given_to(clapping, rig)
+    separate = given_to(clapping, rig, RetargetSettings(keep_hands=False))
 
     distances, actual, without = (
         hand_distance(motion) for motion in (clapping, result, separate)
@@ -39,8 +40,8 @@ def test_arms_too_short_for_hands_to_meet_do_not_snap():
     body, rig = mixamo(), with_broad_shoulders(mixamo(1.0), 0.25)
     clapping = claps(body, flexion=0.8)
 
-    result = retargeted(clapping, rig)
-    separate = retargeted(clapping, rig, RetargetSettings(keep_hands=False))
+    result = given_to(clapping, rig)
+    separate = given_to(clapping, rig, RetargetSettings(keep_hands=False))
 
     assert hand_distance(result).min() < hand_distance(separate).min() - 0.2
     for side in ("left", "right"):
@@ -60,28 +61,6 @@ def test_hands_that_only_come_near_each_other_keep_their_paths():
     found = Meeting(wanted, np.array([0.1])).wanted(*paths)
 
     assert_allclose(found, [[0.19, 0.0, 0.0]])
-
-
-def retargeted(motion: Motion, rig: Skeleton, settings: RetargetSettings = AS_EVER) -> Motion:
-    maps = find_humanoid_map(motion.skeleton), find_humanoid_map(rig)
-    return retarget(motion, maps[0], rig, maps[1], settings=settings)
-
-
-def role_positions(motion: Motion) -> dict[str, np.ndarray]:
-    positions = forward_kinematics(motion).positions
-    joints = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    return {role: positions[:, joint] for role, joint in joints.items()}
-
-
-def flexion_axis(motion: Motion, side: str, roles: tuple[str, str, str]) -> np.ndarray:
-    """Flexion axis of a limb; its length is the sine of the angle."""
-    positions = role_positions(motion)
-    upper, hinge, end = (positions[side + role] for role in roles)
-    first, second = (
-        direction / np.linalg.norm(direction, axis=1, keepdims=True)
-        for direction in (hinge - upper, end - hinge)
-    )
-    return np.cross(first, second)
 
 
 def hand_distance(motion: Motion) -> np.ndarray:

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
+from retargeted_motions import flexion_axis, given_to, role_positions
 from rigs import RIGS, mixamo, unreal
 
 from solvers.motion import Motion, Skeleton, find_humanoid_map, forward_kinematics
@@ -34,7 +35,7 @@ def test_rest_pose_of_the_target_has_no_effect(angles, facing):
     rig = mixamo()
     posed = with_rest_pose(rig, dict(zip(LIMBS, angles, strict=True)), facing)
 
-    default, other = retargeted(WALK, rig), retargeted(WALK, posed)
+    default, other = given_to(WALK, rig), given_to(WALK, posed)
 
     assert_allclose(
         forward_kinematics(other).positions, forward_kinematics(default).positions, atol=1e-6
@@ -45,10 +46,10 @@ def test_rest_pose_of_the_target_has_no_effect(angles, facing):
 @given(st.lists(st.floats(-0.7, 0.7), min_size=len(LIMBS), max_size=len(LIMBS)))
 def test_rest_pose_of_the_source_has_no_effect(angles):
     rig = mixamo()
-    source = retargeted(WALK, rig)
-    posed = retargeted(WALK, with_rest_pose(rig, dict(zip(LIMBS, angles, strict=True)), 0.0))
+    source = given_to(WALK, rig)
+    posed = given_to(WALK, with_rest_pose(rig, dict(zip(LIMBS, angles, strict=True)), 0.0))
 
-    default, other = retargeted(source, unreal()), retargeted(posed, unreal())
+    default, other = given_to(source, unreal()), given_to(posed, unreal())
 
     assert_allclose(
         forward_kinematics(other).positions, forward_kinematics(default).positions, atol=1e-6
@@ -58,9 +59,9 @@ def test_rest_pose_of_the_source_has_no_effect(angles):
 @pytest.mark.parametrize("family", RIGS)
 def test_retargeting_back_restores_feet_and_hands(family):
     """Feet and hands are exact; joints between them depend on what the rig represents."""
-    retargeted_walk = retargeted(WALK, RIGS[family](1.3))
+    retargeted_walk = given_to(WALK, RIGS[family](1.3))
 
-    back = retargeted(retargeted_walk, WALK.skeleton)
+    back = given_to(retargeted_walk, WALK.skeleton)
 
     before, again = (forward_kinematics(motion).positions for motion in (WALK, back))
     joints = find_humanoid_map(WALK.skeleton).indices(WALK.skeleton)
@@ -71,7 +72,7 @@ def test_retargeting_back_restores_feet_and_hands(family):
 
 @pytest.mark.parametrize("family", RIGS)
 def test_knees_and_elbows_flex_in_the_source_directions(family):
-    result = retargeted(WALK, RIGS[family](0.8))
+    result = given_to(WALK, RIGS[family](0.8))
 
     for side in ("left", "right"):
         for roles in (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand")):
@@ -84,7 +85,7 @@ def test_knees_and_elbows_flex_in_the_source_directions(family):
 
 @pytest.mark.parametrize("family", RIGS)
 def test_joints_rotate_hardly_more_than_the_source(family):
-    result = retargeted(WALK, RIGS[family](1.2))
+    result = given_to(WALK, RIGS[family](1.2))
 
     reference, actual = (roles_in_world(motion) for motion in (WALK, result))
     for role in set(reference) & set(actual):
@@ -95,7 +96,7 @@ def test_joints_rotate_hardly_more_than_the_source(family):
 @pytest.mark.parametrize("family", RIGS)
 def test_motion_on_its_own_rig_is_unchanged_and_without_remark(family):
     rig = RIGS[family](1.0)
-    own = retargeted(WALK, rig)
+    own = given_to(WALK, rig)
     remarks: list[Remark] = []
 
     again = retarget(
@@ -110,7 +111,7 @@ def test_motion_on_its_own_rig_is_unchanged_and_without_remark(family):
 
 
 def test_travel_scale_is_a_setting():
-    marks = retargeted(WALK, mixamo(1.5), RetargetSettings(travel_scale=1.0))
+    marks = given_to(WALK, mixamo(1.5), RetargetSettings(travel_scale=1.0))
     result = marks.root_positions[-1, :2] - marks.root_positions[0, :2]
 
     assert_allclose(result, (WALK.root_positions[-1] - WALK.root_positions[0])[:2], atol=0.03)
@@ -119,7 +120,7 @@ def test_travel_scale_is_a_setting():
 def test_hips_are_lowered_smoothly_for_steps_beyond_reach():
     """Steps of 1.4 times the length do not fit under hips at their height."""
     usual, far = (
-        retargeted(WALK, mixamo(1.0), RetargetSettings(travel_scale=scale))
+        given_to(WALK, mixamo(1.0), RetargetSettings(travel_scale=scale))
         for scale in (1.0, 1.4)
     )
 
@@ -131,7 +132,7 @@ def test_hips_are_lowered_smoothly_for_steps_beyond_reach():
 
 def test_feet_out_of_reach_do_not_pull_the_hips_to_the_ground():
     usual, torn = (
-        retargeted(WALK, mixamo(1.0), RetargetSettings(travel_scale=scale))
+        given_to(WALK, mixamo(1.0), RetargetSettings(travel_scale=scale))
         for scale in (1.0, 20.0)
     )
 
@@ -156,12 +157,7 @@ def test_ground_path_rotates_with_the_body():
 def test_root_bone_rotation_is_optional():
     unrotated_root = RetargetSettings(root_motion=RootMotion.ROOT_BONE, turn_root=False)
 
-    assert_allclose(retargeted(WALK, unreal(), unrotated_root).rotations[:, 0, 0], 1.0)
-
-
-def retargeted(motion: Motion, rig: Skeleton, settings: RetargetSettings = AS_EVER) -> Motion:
-    maps = find_humanoid_map(motion.skeleton), find_humanoid_map(rig)
-    return retarget(motion, maps[0], rig, maps[1], settings=settings)
+    assert_allclose(given_to(WALK, unreal(), unrotated_root).rotations[:, 0, 0], 1.0)
 
 
 def with_rest_pose(rig: Skeleton, angles: dict[str, float], facing: float) -> Skeleton:
@@ -183,12 +179,6 @@ def with_rest_pose(rig: Skeleton, angles: dict[str, float], facing: float) -> Sk
     return Skeleton(rig.names, rig.parents, offsets)
 
 
-def role_positions(motion: Motion) -> dict[str, np.ndarray]:
-    positions = forward_kinematics(motion).positions
-    joints = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
-    return {role: positions[:, joint] for role, joint in joints.items()}
-
-
 def roles_in_world(motion: Motion) -> dict[str, np.ndarray]:
     rotations = forward_kinematics(motion).rotations
     joints = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
@@ -197,17 +187,6 @@ def roles_in_world(motion: Motion) -> dict[str, np.ndarray]:
 
 def rotation_angles(rotations: np.ndarray) -> np.ndarray:
     return angle_between(rotations[1:], rotations[:-1])
-
-
-def flexion_axis(motion: Motion, side: str, roles: tuple[str, str, str]) -> np.ndarray:
-    """Flexion axis of a limb; its length is the sine of the angle."""
-    positions = role_positions(motion)
-    upper, hinge, end = (positions[side + role] for role in roles)
-    first, second = (
-        direction / np.linalg.norm(direction, axis=1, keepdims=True)
-        for direction in (hinge - upper, end - hinge)
-    )
-    return np.cross(first, second)
 
 
 @pytest.mark.parametrize("scale", [0.5, 0.8])
