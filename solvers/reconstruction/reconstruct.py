@@ -227,7 +227,7 @@ def reconstruct(
         corrected.confidence, np.maximum(1.0 - replacement, rebuilt.confidence)
     )
     return Reconstruction(
-        corrected.tracks, corrected.motion, reliability, confidence,
+        corrected.tracks, reliability, confidence,
         f"{rebuilt.method}; {corrected.method}", rebuilt.twists, corrected.shift,
     )  # fmt: skip
 

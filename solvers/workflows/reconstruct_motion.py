@@ -33,7 +33,6 @@ from ..reconstruction import (
 )
 from ..reconstruction.joint_rotations import (
     fit_motion_to_postures,
-    motion_from_positions,
     resize_skeleton,
 )
 from .changed_joints import find_changed_joints, shift_remarks
@@ -146,10 +145,7 @@ def reconstruct_motion(
         skeleton, combined = motion.skeleton, rebuilt.reliability.combined
         if resize and rebuilt.shift is not None:
             skeleton = resize_skeleton(skeleton, rebuilt.tracks, recording.parents, combined)
-        result = motion_from_positions(
-            rebuilt.tracks, recording.parents, combined, twists=rebuilt.twists,
-            skeleton=skeleton,
-        )  # fmt: skip
+        result = rebuilt.motion_of(skeleton)
     else:
         result = fit_motion_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
     reliability_terms, confidence, changed = _for_skeleton_joints(

@@ -9,7 +9,7 @@ from ..denoising import Planted, PlantSettings
 from ..motion import JointRecording, Motion, Skeleton
 from ..progress import Progress, unwatched, within
 from ..reconstruction import PostureLibrary, ReconstructSettings, ResidualPrior, reconstruct
-from ..reconstruction.joint_rotations import Reconstruction, motion_from_positions
+from ..reconstruction.joint_rotations import Reconstruction
 from .changed_joints import find_changed_joints, shift_remarks
 from .plant_feet_if_possible import plant_feet_if_possible
 from .standard_joints import check_size, gap_remarks, standardize_joint_names
@@ -80,15 +80,7 @@ def reconstruct_recording(
     rebuilt = reconstruct(
         standardized, postures, prior, settings=settings, progress=within(progress, 0.0, 0.8)
     )
-    motion = rebuilt.motion
-    if skeleton is not None:
-        motion = motion_from_positions(
-            rebuilt.tracks,
-            standardized.parents,
-            rebuilt.reliability.combined,
-            twists=rebuilt.twists,
-            skeleton=skeleton,
-        )
+    motion = rebuilt.motion if skeleton is None else rebuilt.motion_of(skeleton)
     planting_result = plant_feet_if_possible(
         motion,
         planting,

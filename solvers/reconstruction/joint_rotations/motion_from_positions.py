@@ -13,9 +13,8 @@ from ...motion.humanoid import (
     posture_positions,
 )
 from ...rotations import IDENTITY, fit_rotations, rotate
-from .approach_joints import approach_joints
 from .clavicles import add_clavicle_joints
-from .reach_ankles import reach_ankles
+from .fit_to_positions import fit_to_positions
 from .rotation_solver import MIN_LENGTH_M, RotationSolver
 from .trunk_twist import LimbTwists, hinges_from_twists
 
@@ -34,12 +33,11 @@ def motion_from_positions(
 ) -> Motion:
     """Fit the motion of a skeleton of constant bone lengths to joint positions.
 
-    The root has its observed position, offset where straight legs require it
-    (`pelvis_offsets`); knees flex until ankles reach their observed positions (`reach_ankles`).
-    A last step brings all joints nearer to theirs at once (`approach_joints`).
-    Pelvis and chest get the best-fit rotations of hips, shoulders, spine and neck
+    Bones are aimed one after another, and then all joints change a little at once, so that they
+    come nearest to their observed positions, ankles above all (`fit_to_positions`). At first,
+    pelvis and chest get the best-fit rotations of hips, shoulders, spine and neck
     (`fit_rotations`); the spine between them shares the twist. Other joints point at their
-    child, so that errors do not accumulate. The flexion plane of elbow or knee
+    child. The flexion plane of elbow or knee
     determines the axial rotation of an upper arm or a thigh. Where the limb is straight,
     flexion before and after, similar library poses and the trunk determine it
     (`rotations_from_flexion`). A thumb determines the axial rotation of its hand, whose palm
@@ -86,28 +84,23 @@ def motion_from_positions(
     if twists is not None:
         body.hinges = hinges_from_twists(posture_positions(tracks), twists)
     body.solve_rotations()
-    if body.legs():
-        body.offset_pelvis()
-        body.solve_rotations()
     rotations = local_rotations(fitted, body.world)
     rotations[:, [not children for children in fitted.children]] = IDENTITY
-    motion = Motion(fitted, rotations, body.at[:, 0], tracks.frame_rate)
-    motion = reach_ankles(motion, body.observed, body.legs())
-    return approach_joints(motion, body.observed, _approach_weights(body))
+    motion = Motion(fitted, rotations, body.observed[:, 0], tracks.frame_rate)
+    return fit_to_positions(motion, body.observed, _position_weights(body))
 
 
-def _approach_weights(body: RotationSolver) -> Array:
+def _position_weights(body: RotationSolver) -> Array:
     """Return the weight of each joint in the last fit: its mean reliability; more for ankles.
 
     A weight that changed from frame to frame would shake joints that pull in turn. Fingers are
     too noisy to turn a hand.
     """
     mean = np.nan_to_num(body.reliability).mean(axis=0)
-    weights = np.tile(mean, (len(body.reliability), 1))
     for hand in body.hands:
-        weights[:, body.skeleton.subtree(hand)[1:]] = 0.0
-    weights[:, [leg.end for leg in body.legs().values()]] *= ANKLE_WEIGHT
-    return weights
+        mean[body.skeleton.subtree(hand)[1:]] = 0.0
+    mean[[leg.end for leg in body.legs().values()]] *= ANKLE_WEIGHT
+    return np.asarray(mean)
 
 
 def resize_skeleton(

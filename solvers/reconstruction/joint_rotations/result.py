@@ -1,12 +1,14 @@
 """Result class of all reconstruction methods."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion import Motion, Tracks
+from ...motion import Motion, Skeleton, Tracks, joint_parents
 from ..reliability import Reliability
+from .motion_from_positions import motion_from_positions
 from .trunk_twist import LimbTwists
 
 
@@ -18,8 +20,6 @@ class Reconstruction:
     ----------
     tracks : Tracks
         All joints of the recording under their names, without missing frames.
-    motion : Motion
-        Motion of a skeleton with constant bone lengths, fitted to these joints.
     reliability : Reliability
         Reliability of each joint of the recording, and its terms.
     confidence : shape (n_frames, n_joints), 0 to 1
@@ -34,9 +34,26 @@ class Reconstruction:
     """
 
     tracks: Tracks
-    motion: Motion
     reliability: Reliability
     confidence: NDArray[np.float64]
     method: str = ""
     twists: LimbTwists | None = None
     shift: NDArray[np.float64] | None = None
+
+    @cached_property
+    def motion(self) -> Motion:
+        """Motion of a skeleton with constant bone lengths, fitted to these joints."""
+        return self.motion_of(None)
+
+    def motion_of(self, skeleton: Skeleton | None) -> Motion:
+        """Return the motion of a given skeleton, fitted to these joints.
+
+        The skeleton and the errors are those of `motion_from_positions`.
+        """
+        return motion_from_positions(
+            self.tracks,
+            joint_parents(self.tracks.names),
+            self.reliability.combined,
+            skeleton=skeleton,
+            twists=self.twists,
+        )

@@ -17,15 +17,10 @@ from .limb_twist import (
     rotations_from_thumb,
     smooth_direction,
 )
-from .reach_ankles import pelvis_offsets
 
 MIN_LENGTH_M = 1e-3
 """Minimum length (m) of bones and offsets that define a direction. It guards joints that a
 device reports at one position up to the rounding of its file: x1000 costs 19 %."""
-FREE_LENGTH_M, AIMED_LENGTH_M = 0.1, 0.2
-"""Bone lengths (m) between which aiming fades in. Shorter bones keep their observed direction;
-longer ones point at the observed position of the child. Chosen by hand: x0.5 of the first costs
-0.2 %, x2 of the second 0.1 %; otherwise both are equal, which fails."""
 GRANDCHILD_WEIGHT = 0.3
 """Weight of a child of zero length for its parent; the child also points by its own rotation.
 Chosen by hand: x0.5 costs 0.1 %, x2 gains 0.2 %."""
@@ -66,10 +61,8 @@ class RotationSolver:
         self.limbs = self._limbs()
         self.hands = {self.roles[role] for role in HANDS if role in self.roles}
         self.world = np.empty((*observed.shape[:2], 4))
-        self.at = np.array(observed)
-        """Positions of the solved joints."""
         self.hinges: dict[str, HingeAxes] = {}
-        """Where like postures have the hinges of limbs, by the roles of their upper joints."""
+        """Where similar poses have the hinges of limbs, by the roles of their upper joints."""
 
     def _limbs(self) -> dict[int, Limb]:
         limbs = {}
@@ -85,22 +78,10 @@ class RotationSolver:
         uppers = [self.roles.get(f"{side}UpperLeg", -1) for side in ("left", "right")]
         return {upper: limb for upper, limb in self.limbs.items() if upper in uppers}
 
-    def offset_pelvis(self) -> None:
-        """Offset the pelvis so that straight legs reach the ankles."""
-        legs = list(self.legs().values())
-        self.at[:, 0] += pelvis_offsets(
-            self.observed, self.at, self.reliability, legs, self.frame_rate
-        )
-
     def solve_rotations(self) -> None:
-        """Rotate every joint and position its children."""
+        """Rotate every joint, parents first."""
         trunk = self._trunk_fractions()
         for joint, parent in enumerate(self.skeleton.parents):
-            if parent >= 0:
-                offset = rotate(self.world[:, parent], self.skeleton.offsets[joint])
-                expected = self.at[:, parent] + offset
-                is_finite = np.isfinite(expected).all(axis=-1, keepdims=True)
-                self.at[:, joint] = np.where(is_finite, expected, self.observed[:, joint])
             above = self._base_rotation(joint, parent, trunk)
             self.world[:, joint] = self._aim_joint(joint, above)
             self.world[:, joint] = self._twist_joint(joint)
@@ -180,24 +161,15 @@ class RotationSolver:
         )
 
     def _child_direction(self, joint: int, child: int) -> Array:
-        """Return the direction to a child: to its observed position if the bone is long."""
-        length = float(np.linalg.norm(self.skeleton.offsets[child]))
+        """Return the observed direction to a child, smoothed in a hand."""
+        tracked = np.asarray(self.observed[:, child] - self.observed[:, joint])
         above = self.skeleton.parents[joint]
         if self.hands & {joint, above}:
-            tracked = self.observed[:, child] - self.observed[:, joint]
             return smooth_direction(
                 tracked, self.world[:, above], self.skeleton.offsets[joint],
                 self.reliability[:, child], self.frame_rate,
             )  # fmt: skip
-        fraction = np.clip(
-            (length - FREE_LENGTH_M) / (AIMED_LENGTH_M - FREE_LENGTH_M), 0.0, 1.0
-        )
-        correction = self.observed[:, joint] - self.at[:, joint]
-        return np.asarray(
-            self.observed[:, child]
-            - self.observed[:, joint]
-            + fraction * np.nan_to_num(correction)
-        )
+        return tracked
 
     def _aim_joint(self, joint: int, above: Array) -> Array:
         """Return the world rotations of a joint, shape (n_frames, 4), that starts from `above`.

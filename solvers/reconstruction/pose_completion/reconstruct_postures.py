@@ -20,7 +20,6 @@ from ..joint_rotations import (
     LimbTwists,
     Reconstruction,
     find_anchors,
-    motion_from_positions,
     positions_from_postures,
 )
 from ..pose_library import PostureLibrary, load_posture_library
@@ -103,12 +102,9 @@ def reconstruct_postures(
         within(progress, 0.1, 0.9),
         complete,
     )
-    motion = motion_from_positions(
-        rebuilt.tracks, recording.parents, reliability.combined, twists=rebuilt.twists
-    )
     progress(1.0, "Reconstructed")
     return Reconstruction(
-        rebuilt.tracks, motion, reliability, rebuilt.confidence, rebuilt.method, rebuilt.twists
+        rebuilt.tracks, reliability, rebuilt.confidence, rebuilt.method, rebuilt.twists
     )
 
 
@@ -120,7 +116,7 @@ def complete_joints(
     progress: Progress,
     complete: Completer = complete_postures,
 ) -> CompletedJoints:
-    """Complete unreliable and missing joints: `reconstruct_postures` without a motion.
+    """Complete unreliable and missing joints.
 
     `combined` is the reliability of the joints, shape (n_frames, n_joints).
     """

@@ -14,7 +14,6 @@ from ..joint_rotations import (
     LimbTwists,
     Reconstruction,
     find_anchors,
-    motion_from_positions,
     positions_from_postures,
 )
 from ..reliability import Reliability, measure_reliability, posture_reliability
@@ -135,7 +134,7 @@ def assemble_correction(
     corrected: CorrectedPostures,
     twists: LimbTwists | None = None,
 ) -> Reconstruction:
-    """Return all joints of a recording, their confidence and their motion."""
+    """Return all joints of a recording, and their confidence."""
     weights = posture_reliability(recording, reliability.combined)
     coverage = corrected.prediction.coverage if corrected.uses_prior else 0.0
     probability = prior.confidence(
@@ -154,15 +153,10 @@ def assemble_correction(
     anchors = find_anchors(tracks.names)
     shift = None if corrected.shift is None else corrected.shift[:, anchors]
     rebuilt = tracks.with_positions(joints)
-    motion = motion_from_positions(
-        rebuilt, recording.parents, reliability.combined, twists=twists
-    )
     method = f"smoothed ({corrected.method})"
     if corrected.uses_prior:
         method += f" with a residual prior of {prior.source}"
-    return Reconstruction(
-        rebuilt, motion, reliability, confidence[:, anchors], method, twists, shift
-    )
+    return Reconstruction(rebuilt, reliability, confidence[:, anchors], method, twists, shift)
 
 
 def predict_postures(

@@ -1,4 +1,4 @@
-"""Legs reach observed ankles: the pelvis is offset, and knees flex for the rest."""
+"""All joints come near their observed positions at once, ankles above all."""
 
 import numpy as np
 import pytest
@@ -14,6 +14,7 @@ from solvers.motion import (
     joint_parents,
 )
 from solvers.motion.humanoid import posture_joints
+from solvers.reconstruction.joint_rotations.fit_to_positions import fit_to_positions
 from solvers.reconstruction.joint_rotations.motion_from_positions import motion_from_positions
 from solvers.recordings import read_recording
 
@@ -97,3 +98,71 @@ def test_matching_ankles_stay_unchanged(walk):
     twice = joint_positions(position_errors(again), names)
 
     assert np.linalg.norm(twice - joint_positions(once, names), axis=-1).max() < 0.02
+
+
+@pytest.fixture
+def gait():
+    return samples.walking_gait(samples.GaitSettings(duration=0.5, frame_rate=30.0))
+
+
+def errors(motion, positions):
+    return np.linalg.norm(forward_kinematics(motion).positions - positions, axis=-1)
+
+
+def turned(gait, rng, size=0.05):
+    """Another motion of the same skeleton: all joints turned by some degrees."""
+    rotations = gait.rotations + size * rng.normal(size=gait.rotations.shape)
+    rotations /= np.linalg.norm(rotations, axis=-1, keepdims=True)
+    return gait.with_poses(rotations, gait.root_positions + 0.02)
+
+
+def test_positions_that_the_skeleton_can_reach_are_reached(gait):
+    positions = forward_kinematics(gait).positions
+    near = turned(gait, np.random.default_rng(0))
+
+    found = fit_to_positions(near, positions, np.ones(positions.shape[1]))
+
+    assert errors(near, positions).mean() > 0.03
+    assert errors(found, positions).mean() < 0.2 * errors(near, positions).mean()
+
+
+def test_a_motion_that_is_there_stays(gait):
+    positions = forward_kinematics(gait).positions
+
+    found = fit_to_positions(gait, positions, np.ones(positions.shape[1]))
+
+    np.testing.assert_allclose(found.rotations, gait.rotations, atol=1e-9)
+    np.testing.assert_allclose(found.root_positions, gait.root_positions, atol=1e-9)
+
+
+def test_heavier_joints_come_nearer(gait):
+    rng = np.random.default_rng(1)
+    positions = forward_kinematics(gait).positions
+    positions = positions + 0.03 * rng.normal(size=positions.shape)
+    joint = gait.skeleton.index("LeftFoot")
+    even = np.ones(positions.shape[1])
+    heavy = even.copy()
+    heavy[joint] = 20.0
+
+    one, other = (
+        errors(fit_to_positions(gait, positions, weights), positions)[:, joint].mean()
+        for weights in (even, heavy)
+    )
+
+    assert other < 0.5 * one
+
+
+def test_missing_joints_and_frames_are_ignored(gait):
+    positions = forward_kinematics(gait).positions.copy()
+    near = turned(gait, np.random.default_rng(2))
+    rotations = near.rotations.copy()
+    rotations[3] = np.nan
+    near = near.with_poses(rotations, near.root_positions)
+    positions[5] = np.nan
+
+    found = fit_to_positions(near, positions, np.ones(positions.shape[1]))
+
+    assert np.isnan(found.rotations[3]).all()
+    assert np.isfinite(found.rotations[5]).all()
+    known = [0, 1, 2, 4, 6]
+    assert errors(found, positions)[known].mean() < 0.2 * errors(near, positions)[known].mean()
