@@ -3,6 +3,7 @@
 from .legs import SIDES, LegJoints, find_foot_joints, find_legs
 from .plant_feet import Planted, plant_feet
 from .plant_settings import PlantSettings
+from .sole import sole_points
 
 __all__ = [
     "SIDES",
@@ -12,4 +13,5 @@ __all__ = [
     "find_foot_joints",
     "find_legs",
     "plant_feet",
+    "sole_points",
 ]

@@ -1,11 +1,14 @@
 """Measure how far planted feet slide."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Flags
+from ...feet import SIDES, find_foot_joints, find_legs, sole_points
+from ...motion import Motion, Tracks, WorldPoses
+from ...motion.humanoid import HumanoidMap
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +29,7 @@ class FootSlide:
 
     side: str
     joint: str
-    contact: NDArray[np.bool_]
+    contact: Flags
     steps: Array
     frame_rate: float
 
@@ -47,32 +50,72 @@ class FootSlide:
         return float(np.nansum(self.speed) / self.frame_rate)
 
 
+class FootPath(NamedTuple):
+    """Points of a foot over time.
+
+    Attributes
+    ----------
+    side : "left" or "right"
+    joint : str
+        Name of the ankle.
+    points : shape (n_frames, n_points, 3), meters
+    """
+
+    side: str
+    joint: str
+    points: Array
+
+
+def foot_paths(tracks: Tracks, humanoid_map: HumanoidMap | None = None) -> tuple[FootPath, ...]:
+    """Return ankle and toe of both feet, named as joints; none if one is missing."""
+    joints = find_foot_joints(tracks, humanoid_map)
+    if joints is None:
+        return ()
+    return tuple(
+        FootPath(side, tracks.names[each[0]], tracks.positions[:, each])
+        for side, each in zip(SIDES, joints, strict=True)
+    )
+
+
+def sole_paths(
+    motion: Motion, poses: WorldPoses, humanoid_map: HumanoidMap | None = None
+) -> tuple[FootPath, ...]:
+    """Return ankle, heel, ball and tip of both feet; none if one is missing."""
+    joints = find_foot_joints(motion, humanoid_map)
+    if joints is None:
+        return ()
+    soles = {leg.ankle: leg for leg in find_legs(motion.skeleton, humanoid_map)}
+    paths = []
+    for side, each in zip(SIDES, joints, strict=True):
+        points = [poses.positions[:, joint] for joint in each]
+        if leg := soles.get(int(each[0])):
+            sole = sole_points(motion.skeleton, leg)
+            points = [points[0], *(point.position(poses) for point in sole)]
+        paths.append(FootPath(side, motion.skeleton.names[each[0]], np.stack(points, axis=1)))
+    return tuple(paths)
+
+
 def measure_foot_slide(
-    side: str,
-    joint: str,
-    points: Array,
-    contact: NDArray[np.bool_],
-    frame_rate: float,
-    cuts: tuple[int, ...] = (),
+    foot: FootPath, contact: Flags, frame_rate: float, cuts: tuple[int, ...] = ()
 ) -> FootSlide:
     """Measure the horizontal speed of the slowest part of the foot.
 
-    A rolling foot rotates about its heel, then its ball. The slide is the motion that all its
-    points share, so the slowest point counts.
+    A rolling foot rotates about its heel, its ball, and then the tip of its toes. The slide is
+    the motion that all its points share, so the slowest point counts.
 
     Parameters
     ----------
-    points : shape (n_frames, n_points, 3), meters
-        Ankle and toe, or the ankle alone.
+    foot : FootPath
     contact : shape (n_frames,)
         A step counts if both of its frames are in contact.
+    frame_rate : float, hertz
     cuts : tuple of int
         First frames of later segments; no step spans a cut.
     """
-    steps = np.full((len(points), 2), np.nan)
-    displacements = np.diff(points[..., :2], axis=0)
+    steps = np.full((len(foot.points), 2), np.nan)
+    displacements = np.diff(foot.points[..., :2], axis=0)
     lengths = np.nan_to_num(np.linalg.norm(displacements, axis=-1), nan=np.inf)
     slowest = displacements[np.arange(len(displacements)), lengths.argmin(axis=1)]
     steps[1:] = np.where((contact[1:] & contact[:-1])[:, None], slowest, np.nan)
     steps[list(cuts)] = np.nan
-    return FootSlide(side, joint, contact, steps, frame_rate)
+    return FootSlide(foot.side, foot.joint, contact, steps, frame_rate)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...arrays import Array, Flags
 from ...errors import InvalidMotionError
-from ...feet import SIDES, find_foot_joints
+from ...feet import SIDES
 from ...motion import JointLimits, Motion, Tracks, forward_kinematics
 from ...motion.humanoid import HumanoidMap, contacts_of_points, detect_contacts
 from ...motion.skeletons import find_shot_boundaries
@@ -17,7 +17,7 @@ from ...settings import Settings, setting
 from ..limits import limit_excess
 from .bone_drift import BoneDrift, measure_bone_drifts
 from .figures import quality_figures
-from .foot_slide import FootSlide, measure_foot_slide
+from .foot_slide import FootPath, FootSlide, foot_paths, measure_foot_slide, sole_paths
 from .joint_signals import Signal, SpikeRule, extract_signals
 from .report import quality_report
 
@@ -170,10 +170,12 @@ def measure_quality(
         settings.spike_threshold, settings.min_rotation_jump, settings.min_position_jump
     )
     if isinstance(recording, Motion):
-        names, positions = recording.skeleton.names, forward_kinematics(recording).positions
+        names, poses = recording.skeleton.names, forward_kinematics(recording)
+        positions, feet = poses.positions, sole_paths(recording, poses, humanoid_map)
         bones: tuple[BoneDrift, ...] = ()
     else:
         names, positions = recording.names, recording.positions
+        feet = foot_paths(recording, humanoid_map)
         bones = measure_bone_drifts(recording)
     cuts = find_shot_boundaries(recording)
     quality = Quality(
@@ -182,7 +184,7 @@ def measure_quality(
         frame_rate=recording.frame_rate,
         jitter=measure_jitter(positions, recording.frame_rate, cuts),
         signals=extract_signals(recording, rule, within(progress, 0.0, 0.8), cuts),
-        feet=_foot_slides(recording, names, positions, contacts, humanoid_map, cuts),
+        feet=_foot_slides(recording, feet, contacts, humanoid_map, cuts),
         bones=bones,
         limit_excess=_excess(recording, limits, humanoid_map),
         cuts=cuts,
@@ -214,8 +216,7 @@ def measure_jitter(positions: Array, frame_rate: float, cuts: tuple[int, ...] = 
 
 def _foot_slides(
     recording: Motion | Tracks,
-    names: tuple[str, ...],
-    positions: Array,
+    feet: tuple[FootPath, ...],
     contacts: Flags | None,
     humanoid_map: HumanoidMap | None,
     cuts: tuple[int, ...],
@@ -224,26 +225,19 @@ def _foot_slides(
         raise InvalidMotionError(
             f"Contacts need shape ({recording.n_frames}, 2), not {np.shape(contacts)}."
         )
-    joints = find_foot_joints(recording, humanoid_map)
-    if joints is None:
+    if not feet:
         return ()
-    points = positions[:, joints]
     if contacts is None:
         contacts = (
             detect_contacts(recording, humanoid_map)
             if isinstance(recording, Motion)
-            else contacts_of_points(points, recording.frame_rate)
+            else contacts_of_points(
+                np.stack([foot.points for foot in feet], axis=1), recording.frame_rate
+            )
         )
     return tuple(
-        measure_foot_slide(
-            side,
-            names[joints[index, 0]],
-            points[:, index],
-            contacts[:, index],
-            recording.frame_rate,
-            cuts,
-        )
-        for index, side in enumerate(SIDES)
+        measure_foot_slide(foot, contacts[:, index], recording.frame_rate, cuts)
+        for index, foot in enumerate(feet)
     )
 
 

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.denoising.quality.bone_drift import measure_bone_drifts
-from solvers.denoising.quality.foot_slide import measure_foot_slide
+from solvers.denoising.quality.foot_slide import FootPath, measure_foot_slide
 from solvers.denoising.quality.measure import QualitySettings, measure_jitter, measure_quality
 from solvers.denoising.quality.report import compare_quality
 from solvers.errors import InvalidMotionError, InvalidSettingError, SolveCancelled
@@ -103,7 +103,7 @@ def test_slide_is_the_distance_in_contact():
     points[:, :, 0] = 0.003 * np.arange(201)[:, None]
     contact = np.arange(201) >= 100
 
-    slide = measure_foot_slide("left", "foot", points, contact, 100.0)
+    slide = measure_foot_slide(FootPath("left", "foot", points), contact, 100.0)
 
     assert_allclose(slide.mean_speed, 0.3, rtol=1e-9)
     assert_allclose(slide.distance, 0.3, rtol=1e-9)
@@ -113,9 +113,31 @@ def test_foot_that_rolls_over_its_toe_does_not_slide():
     points = np.zeros((50, 2, 3))
     points[:, 0, 1] = -0.01 * np.arange(50)
 
-    slide = measure_foot_slide("left", "foot", points, np.ones(50, dtype=bool), 60.0)
+    slide = measure_foot_slide(FootPath("left", "foot", points), np.ones(50, dtype=bool), 60.0)
 
     assert slide.distance == 0.0
+
+
+def test_foot_that_turns_on_the_tips_of_its_toes_does_not_slide():
+    """Only the tip, which no joint of the map marks, stays in place."""
+    walk = walking_gait(GaitSettings(duration=1.0, frame_rate=60.0))
+    skeleton = walk.skeleton
+    toes = skeleton.index("LeftToeBase")
+    assert skeleton.children[toes]
+    tip = skeleton.children[toes][0]
+    standing = np.zeros((walk.n_frames, 2), dtype=bool)
+    standing[:, 0] = True
+    angle = np.linspace(0.0, 1.0, walk.n_frames)
+    turn = np.stack([np.cos(angle), 0 * angle, 0 * angle, np.sin(angle)], axis=-1)
+    rotations = np.repeat(walk.rotations[:1], walk.n_frames, axis=0)
+    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    turning = walk.with_poses(rotations, np.zeros((walk.n_frames, 3)))
+    tips = forward_kinematics(turning).positions[:, tip]
+    turning = turning.with_poses(rotations, turning.root_positions - tips)
+
+    left = measure_quality(turning, contacts=standing).feet[0]
+
+    assert left.distance < 1e-9
 
 
 def test_skating_walk_slides_and_planted_walk_does_not():
