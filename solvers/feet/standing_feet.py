@@ -14,9 +14,9 @@ MAX_STILL_RAD = np.radians(0.02)
 """Rotation of the joints of a leg, in radians, below which the leg was not captured. Chosen by
 hand: it is 0.02 degrees, and who stands still rotates 0.1."""
 MIN_HIP_HEIGHT = 0.2
-"""Height of the lower hip joint above the feet, as a ratio to the length of a leg, below which
-the body sits or lies. Chosen by hand: the hips of four HDM05 takes that lie down come to rest
-at 0.1 and less, those of the deepest squat at 0.28."""
+"""Height of the lowest joint of the pelvis above the feet, as a ratio to the length of a leg,
+below which the body sits or lies. Chosen by hand: the pelvis of four HDM05 takes that lie down
+comes to rest at 0.05, that of the deepest squat at 0.28."""
 GROUND_PERCENTILE = 5.0
 """Percentile of the height of the lower foot that is the ground; lower ones are noise. Chosen
 by hand, as for the detection of contacts."""
@@ -46,13 +46,19 @@ def detect_standing_feet(
 def _rests_on_hips(
     motion: Motion, humanoid_map: HumanoidMap, legs: Sequence[LegJoints]
 ) -> NDArray[np.bool_]:
-    """Return when the hips are on the floor, shape (n_frames, 1)."""
+    """Return when the pelvis is on the floor, shape (n_frames, 1).
+
+    On the back with flexed legs it tilts, so that the hip joints are above its center.
+    """
     heights = forward_kinematics(motion).positions[..., 2]
     feet = foot_points(motion.skeleton, humanoid_map).ravel()
     ground = np.percentile(heights[:, feet].min(axis=1), GROUND_PERCENTILE)
-    hips = heights[:, [leg.hip for leg in legs]].min(axis=1)
+    pelvis = [leg.hip for leg in legs]
+    if (hips := humanoid_map.indices(motion.skeleton).get("hips")) is not None:
+        pelvis.append(hips)
+    lowest = heights[:, pelvis].min(axis=1)
     length = np.mean([leg.length(motion.skeleton) for leg in legs])
-    return np.asarray(hips - ground < MIN_HIP_HEIGHT * length)[:, None]
+    return np.asarray(lowest - ground < MIN_HIP_HEIGHT * length)[:, None]
 
 
 def _is_still(motion: Motion, joint: int) -> bool:

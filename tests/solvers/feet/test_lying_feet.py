@@ -1,12 +1,13 @@
 """Feet of who sits or lies on the floor bear no weight and are not planted."""
 
 import numpy as np
+import pytest
 
 from solvers.denoising import plant_feet
-from solvers.feet.legs import find_legs
-from solvers.motion import Motion, detect_contacts, forward_kinematics
+from solvers.feet.legs import LegJoints, find_legs
+from solvers.motion import Motion, detect_contacts, forward_kinematics, reach
 from solvers.recordings import read_acclaim
-from solvers.rotations import IDENTITY, multiply, quaternion_from_rotation_vector
+from solvers.rotations import IDENTITY, inverse, multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
 
@@ -14,6 +15,30 @@ def ankle_displacements(before: Motion, after: Motion) -> np.ndarray:
     ankles = [leg.ankle for leg in find_legs(before.skeleton)]
     old, new = (forward_kinematics(each).positions[:, ankles] for each in (before, after))
     return np.linalg.norm(new - old, axis=-1)
+
+
+def lie_on_the_back(tilt: float) -> Motion:
+    """Knees up and feet flat on the floor, of which the left one slides; the pelvis tilts."""
+    walk = walking_gait(GaitSettings(duration=2.0, frame_rate=60.0))
+    skeleton = walk.skeleton
+    still = np.tile(IDENTITY, (*walk.rotations.shape[:2], 1))
+    on_the_back = quaternion_from_rotation_vector([-np.pi / 2, 0.0, 0.0])
+    still[:, 0] = quaternion_from_rotation_vector([-np.pi / 2 - tilt, 0.0, 0.0])
+    still[:, skeleton.index("Spine")] = multiply(inverse(still[:, 0]), on_the_back)
+    lying = walk.with_poses(still, np.tile([0.0, 0.0, 0.15], (walk.n_frames, 1)))
+    sliding = 0.1 * (1.0 - np.cos(np.arange(walk.n_frames) / 20.0))
+    for leg, slide in zip(find_legs(skeleton), (sliding, np.zeros_like(sliding)), strict=True):
+        ankle = forward_kinematics(lying).positions[:, leg.hip].copy()
+        ankle[:, 1:] = np.stack([-0.45 - slide, np.full_like(slide, 0.08)], axis=-1)
+        lying = lying.with_poses(flat_feet(lying, leg))
+        lying = reach(lying, leg.chain, ankle)
+    return lying
+
+
+def flat_feet(motion: Motion, leg: LegJoints) -> np.ndarray:
+    rotations = motion.rotations.copy()
+    rotations[:, leg.ankle] = inverse(forward_kinematics(motion).rotations[:, leg.knee])
+    return rotations
 
 
 def test_feet_are_planted_until_the_actor_lies(recordings):
@@ -38,16 +63,10 @@ def test_feet_of_the_deepest_squat_stay_planted(recordings):
     assert (plant_feet(motion).contacts == detect_contacts(motion)).all()
 
 
-def test_body_on_its_back_keeps_its_sliding_heels():
-    walk = walking_gait(GaitSettings(duration=2.0, frame_rate=60.0))
-    still = np.tile(IDENTITY, (*walk.rotations.shape[:2], 1))
-    on_the_back = quaternion_from_rotation_vector([-np.pi / 2, 0.0, 0.0])
-    still[:, 0] = multiply(on_the_back, still[:, 0])
-    knee = find_legs(walk.skeleton)[0].knee
-    bend = 0.1 * (1.0 - np.cos(np.arange(walk.n_frames) / 20.0))
-    still[:, knee] = quaternion_from_rotation_vector(bend[:, None] * (1.0, 0.0, 0.0))
-    hips = np.tile([0.0, 0.0, 0.1], (walk.n_frames, 1))
-    lying = walk.with_poses(still, hips)
+@pytest.mark.parametrize("tilt", [0.0, 70.0])
+def test_body_on_its_back_keeps_its_sliding_feet(tilt):
+    """The hip joints are 5 cm below the hips in the T-pose; a tilted pelvis raises them."""
+    lying = lie_on_the_back(np.radians(tilt))
 
     planted = plant_feet(lying)
 
