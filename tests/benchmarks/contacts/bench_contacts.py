@@ -1,13 +1,14 @@
-"""Contacts with the floor: planted feet, retargeted feet and hands, and what each goal does.
+"""Contacts with the floor: planted, retargeted, and what each goal does.
 
 make bench-contacts                            # some minutes
 make bench-contacts ARGUMENTS="--full --docs"  # all walks, into docs/benchmarks/contacts.md
 make bench-contacts ARGUMENTS=--dev            # takes to tune on
+make bench-contacts ARGUMENTS="--parts walks pins"
 """
 
 import argparse
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from time import perf_counter
 
 from threadpoolctl import threadpool_limits
@@ -20,7 +21,9 @@ from tests.fixtures.rigs import child, mixamo
 from ..first_press import takes
 from ..shared import clips
 from ..shared.report import DOCS, Report
+from ..shared.tables import Scores
 from .part_ablation import planters_without, retarget_table
+from .part_pins import pin_tables
 from .part_takes import take_tables
 from .part_walks import PLANTERS, walk_tables
 
@@ -34,6 +37,7 @@ OTHER_MAKERS = (
 SCORED_ACTORS = ("bk", "dg")
 N_ABLATED = 8
 N_OF_A_SENSOR = 8
+PARTS = ("walks", "takes", "pins", "ablation")
 
 
 def main() -> None:
@@ -42,28 +46,36 @@ def main() -> None:
     parser.add_argument("--full", action="store_true", help="all scored walks")
     parser.add_argument("--dev", action="store_true", help="takes to tune on instead")
     parser.add_argument("--docs", action="store_true", help="rewrite the document")
+    parser.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS)
     chosen = parser.parse_args()
     report = Report(chosen.docs, DOCS / "benchmarks" / "contacts.md")
-    movements = takes.DEVELOPMENT if chosen.dev else takes.SCORED
-    names = (clips.development if chosen.dev else clips.scored)(chosen.full)
     with threadpool_limits(1):
-        started = perf_counter()
-        report.part("walks", walk_tables(names), perf_counter() - started)
-        started = perf_counter()
-        tables = []
-        for title, motions in _groups(movements, chosen.dev):
-            tables += take_tables(title, motions, PLANTERS)
-            print(f"Done: {title}", file=sys.stderr, flush=True)
-        report.part("takes", tables, perf_counter() - started)
-        started = perf_counter()
-        some = [takes.read(take) for take in movements[:N_ABLATED]]
-        tables = take_tables("Planting, each goal left out", some, planters_without())
-        tables.append(
-            retarget_table(
-                "Retarget, each goal left out", some, {"Mixamo": mixamo, "child": child}
-            )
-        )
-        report.part("ablation", tables, perf_counter() - started)
+        for part in chosen.parts:
+            started = perf_counter()
+            tables = list(_tables(part, chosen.dev, chosen.full))
+            report.part(part, tables, perf_counter() - started)
+            print(f"Done: {part}", file=sys.stderr, flush=True)
+
+
+def _tables(part: str, dev: bool, full: bool) -> Iterable[Scores | str]:
+    movements = takes.DEVELOPMENT if dev else takes.SCORED
+    if part == "walks":
+        return walk_tables((clips.development if dev else clips.scored)(full))
+    if part == "takes":
+        return [
+            one
+            for title, motions in _groups(movements, dev)
+            for one in take_tables(title, motions, PLANTERS)
+        ]
+    some = [takes.read(take) for take in movements[:N_ABLATED]]
+    if part == "pins":
+        return pin_tables(some)
+    return [
+        *take_tables("Planting, each goal left out", some, planters_without()),
+        retarget_table(
+            "Retarget, each goal left out", some, {"Mixamo": mixamo, "child": child}
+        ),
+    ]
 
 
 def _groups(movements: tuple[takes.Take, ...], dev: bool) -> Iterator[tuple[str, list[Motion]]]:

@@ -63,7 +63,7 @@ def _table(title: str, inputs: Iterable[Motion], planters: Mapping[str, Planter]
             started = perf_counter()
             planted = plant(given, contacts)
             duration = 1000.0 * (perf_counter() - started) / given.n_frames
-            figures[name].append([*_figures(given, planted, legs, contacts), duration])
+            figures[name].append([*take_figures(given, planted, legs, contacts), duration])
     rows = {
         name: [
             number(float(summary(values)))
@@ -75,9 +75,10 @@ def _table(title: str, inputs: Iterable[Motion], planters: Mapping[str, Planter]
     return f"**{title}, {n_takes} takes**\n\n{table(['method', *COLUMNS], rows)}\n"
 
 
-def _figures(
+def take_figures(
     given: Motion, planted: Motion, legs: Sequence[LegJoints], contacts: Flags
 ) -> list[float]:
+    """Return all figures of `COLUMNS` but the last."""
     slide, drift = _slides(given, planted, legs, contacts)
     roles = find_humanoid_map(given.skeleton).indices(given.skeleton)
     knees = [leg.knee for leg in legs]

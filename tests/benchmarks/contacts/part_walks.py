@@ -15,7 +15,7 @@ import numpy as np
 
 from solvers.arrays import Array, Flags
 from solvers.denoising import denoise, learn_filter_bases, plant_feet
-from solvers.feet.legs import LegJoints, find_legs
+from solvers.feet.legs import SIDES, LegJoints, find_legs
 from solvers.motion import Motion, ReachSettings, detect_contacts, forward_kinematics, reach
 from solvers.rotations.representations import IDENTITY, angle_between
 from solvers.samples import CorruptionSettings, corrupt
@@ -49,14 +49,14 @@ def measure(
     """Plant the feet of one clip in all ways and note the figures."""
     truly, contacts = detect_contacts(capture), detect_contacts(given)
     legs = find_legs(given.skeleton)
-    before, wanted = _feet(given, legs), _feet(capture, legs)
+    before, wanted = feet_joints(given, legs), feet_joints(capture, legs)
     for method, plant in PLANTERS.items():
         planted = plant(given, contacts)
-        after = _feet(planted, legs)
+        after = feet_joints(planted, legs)
         knees = np.stack([_bends(planted, leg) for leg in legs], axis=1)
         change = np.abs(np.diff(knees, n=2, axis=0)) * given.frame_rate**2 / 1000.0
         figures = {
-            "slide cm/s": 100.0 * _slide(after, truly, given.frame_rate),
+            "slide cm/s": 100.0 * joint_slide(after, truly, given.frame_rate),
             "knee mean 1000 deg/s2": change.mean(),
             "knee worst": change.max(),
             "ankle moved cm": 100.0 * _away(after, before).mean(),
@@ -71,12 +71,22 @@ def measure(
 
 def locked(motion: Motion, contacts: Flags) -> Motion:
     """Keep each ankle where its contact begins: what a pin without easing does."""
-    return _pinned(motion, contacts, lambda ankle, start, stop: ankle[start] - ankle, 0.0)
+    return _reaching(motion, locked_ankles(motion, contacts))
+
+
+def locked_ankles(motion: Motion, contacts: Flags) -> Array:
+    """Return the ankles of a pin without easing, (n_frames, n_legs, 3)."""
+    return _ankles(motion, contacts, lambda ankle, start, stop: ankle[start] - ankle, 0.0)
 
 
 def pinned_with_fades(motion: Motion, contacts: Flags) -> Motion:
     """Keep each ankle at its mean in contact; fade linearly before and after."""
-    return _pinned(
+    return _reaching(motion, eased_ankles(motion, contacts))
+
+
+def eased_ankles(motion: Motion, contacts: Flags) -> Array:
+    """Return the ankles of a pin with linear easing, (n_frames, n_legs, 3)."""
+    return _ankles(
         motion,
         contacts,
         lambda ankle, start, stop: ankle[start:stop].mean(axis=0) - ankle,
@@ -84,18 +94,17 @@ def pinned_with_fades(motion: Motion, contacts: Flags) -> Motion:
     )
 
 
-def _pinned(
+def _ankles(
     motion: Motion,
     contacts: Flags,
     shift_to: Callable[[Array, int, int], Array],
     ease: float,
-) -> Motion:
-    result = motion
-    for side, leg in enumerate(find_legs(motion.skeleton)):
-        ankle = forward_kinematics(motion).positions[:, leg.ankle]
+) -> Array:
+    poses, frames, targets = forward_kinematics(motion), np.arange(motion.n_frames), []
+    for leg in find_legs(motion.skeleton):
+        ankle = poses.positions[:, leg.ankle]
         shift = np.zeros_like(ankle)
-        frames = np.arange(motion.n_frames)
-        for start, stop in find_runs(contacts[:, side]):
+        for start, stop in find_runs(contacts[:, SIDES.index(leg.side)]):
             outside = (
                 np.maximum(start - frames, frames - stop + 1).clip(min=0) / motion.frame_rate
             )
@@ -107,8 +116,14 @@ def _pinned(
                 (frames < start)[:, None], held[start], held[stop - 1]
             )[outside > 0]
             shift += fade[:, None] * held
-        result = reach(result, leg.chain, ankle + shift, ReachSettings(softness=0.0))
-    return result
+        targets.append(ankle + shift)
+    return np.stack(targets, axis=1)
+
+
+def _reaching(motion: Motion, ankles: Array) -> Motion:
+    for number, leg in enumerate(find_legs(motion.skeleton)):
+        motion = reach(motion, leg.chain, ankles[:, number], ReachSettings(softness=0.0))
+    return motion
 
 
 PLANTERS: dict[str, Planter] = {
@@ -151,13 +166,14 @@ INPUTS: tuple[tuple[str, Callable[[str, Motion], Motion], int, bool], ...] = (
 )
 
 
-def _feet(motion: Motion, legs: Sequence[LegJoints]) -> Array:
-    """Ankle and toe joints, (n_frames, 2 feet, 2, 3)."""
-    joints = np.array([[leg.ankle, leg.toe] for leg in legs])
+def feet_joints(motion: Motion, legs: Sequence[LegJoints]) -> Array:
+    """Return ankle and toe joints, (n_frames, 2 feet, 2, 3)."""
+    joints = np.array([[leg.ankle, leg.toe or leg.ankle] for leg in legs])
     return forward_kinematics(motion).positions[:, joints]
 
 
-def _slide(feet: Array, contacts: Flags, rate: float) -> float:
+def joint_slide(feet: Array, contacts: Flags, rate: float) -> float:
+    """Return the mean speed of the slower of both joints in contact, m/s."""
     speed = np.linalg.norm(np.diff(feet[..., :2], axis=0), axis=-1).min(axis=-1) * rate
     return float(speed[contacts[1:] & contacts[:-1]].mean())
 
