@@ -1,9 +1,9 @@
-"""Contacts with the floor: planted, retargeted, and what each goal does.
+"""Contacts with the floor: detected, planted, retargeted, and what each goal does.
 
 make bench-contacts                            # some minutes
 make bench-contacts ARGUMENTS="--full --docs"  # all walks, into docs/benchmarks/contacts.md
 make bench-contacts ARGUMENTS=--dev            # takes to tune on
-make bench-contacts ARGUMENTS="--parts walks pins"
+make bench-contacts ARGUMENTS="--parts detection pins"
 """
 
 import argparse
@@ -23,6 +23,7 @@ from ..shared import clips
 from ..shared.report import DOCS, Report
 from ..shared.tables import Scores
 from .part_ablation import planters_without, retarget_table
+from .part_detection import detection_tables
 from .part_pins import pin_tables
 from .part_takes import take_tables
 from .part_walks import PLANTERS, walk_tables
@@ -37,7 +38,7 @@ OTHER_MAKERS = (
 SCORED_ACTORS = ("bk", "dg")
 N_ABLATED = 8
 N_OF_A_SENSOR = 8
-PARTS = ("walks", "takes", "pins", "ablation")
+PARTS = ("detection", "walks", "takes", "pins", "ablation")
 
 
 def main() -> None:
@@ -59,6 +60,8 @@ def main() -> None:
 
 def _tables(part: str, dev: bool, full: bool) -> Iterable[Scores | str]:
     movements = takes.DEVELOPMENT if dev else takes.SCORED
+    if part == "detection":
+        return detection_tables()
     if part == "walks":
         return walk_tables((clips.development if dev else clips.scored)(full))
     if part == "takes":
