@@ -6,7 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, forward_kinematics
-from ..motion.humanoid import HumanoidMap, detect_contacts, foot_points
+from ..motion.humanoid import (
+    ContactSettings,
+    HumanoidMap,
+    detect_contacts,
+    foot_points,
+    without_short_runs,
+)
 from ..rotations import angle_between
 from .legs import SIDES, LegJoints
 
@@ -31,9 +37,12 @@ def detect_standing_feet(
     slides as the hips rotate; to plant it would flex the knee for nothing. Nor do the feet of
     a body that sits or lies on the floor bear its weight: they touch the floor and may move.
     """
-    contacts = detect_contacts(motion, humanoid_map) & ~_rests_on_hips(
-        motion, humanoid_map, legs
-    )
+    contacts = detect_contacts(motion, humanoid_map)
+    rests = _rests_on_hips(motion, humanoid_map, legs)
+    if rests.any():
+        min_frames = ContactSettings().minimum_duration * motion.frame_rate
+        bearing = (contacts & ~rests).T
+        contacts = np.stack([without_short_runs(foot, min_frames) for foot in bearing], axis=1)
     hips = humanoid_map.indices(motion.skeleton).get("hips", 0)
     if _is_still(motion, hips):
         return contacts

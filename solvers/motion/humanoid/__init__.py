@@ -27,6 +27,7 @@ from .foot_contacts import (
     detect_contacts,
     foot_points,
     leg_length,
+    without_short_runs,
 )
 from .missing_hips import UPPER_LEG_ROLES, fill_missing_hips
 from .names import roles_by_name
@@ -127,5 +128,6 @@ __all__ = [
     "t_pose_alignment",
     "transfer_motion",
     "with_standing_rest",
+    "without_short_runs",
     "write_humanoid_map",
 ]

@@ -224,12 +224,15 @@ def _sustained(
 
     labels, _ = label(sustained)
     contact = np.isin(labels, np.unique(labels[certain])) & sustained
-    contact = ~_without_short(~contact, min_frames / 2.0)
-    return _without_short(contact, min_frames)
+    contact = ~without_short_runs(~contact, min_frames / 2.0)
+    return without_short_runs(contact, min_frames)
 
 
-def _without_short(flags: NDArray[np.bool_], min_frames: float) -> NDArray[np.bool_]:
-    """Clear shorter runs of True, except at the ends of the clip, where they may continue."""
+def without_short_runs(flags: NDArray[np.bool_], min_frames: float) -> NDArray[np.bool_]:
+    """Clear shorter runs of True, except at the ends of the clip, where they may continue.
+
+    `flags` have shape (n_frames,).
+    """
     from scipy.ndimage import label  # slow to import: only when needed
 
     labels, n_runs = label(flags)

@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 from solvers.denoising import plant_feet
+from solvers.feet import standing_feet
 from solvers.feet.legs import LegJoints, find_legs
+from solvers.feet.standing_feet import detect_standing_feet
 from solvers.motion import Motion, detect_contacts, forward_kinematics, reach
+from solvers.motion.humanoid import find_humanoid_map
 from solvers.recordings import read_acclaim
 from solvers.rotations import IDENTITY, inverse, multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
@@ -73,3 +76,20 @@ def test_body_on_its_back_keeps_its_sliding_feet(tilt):
     assert detect_contacts(lying).any()
     assert not planted.contacts.any()
     assert (planted.motion.rotations == lying.rotations).all()
+
+
+def test_no_contact_is_shorter_because_the_actor_lies_down(monkeypatch):
+    """The hips leave the floor for two frames, which are too short for a contact."""
+    lying = lie_on_the_back(0.0)
+    still = np.repeat(lying.rotations[:1], lying.n_frames, axis=0)
+    lying = lying.with_poses(still, lying.root_positions)
+    rests = np.ones((lying.n_frames, 1), dtype=np.bool_)
+    rests[20:22] = False
+    monkeypatch.setattr(standing_feet, "_rests_on_hips", lambda *_: rests)
+    legs = find_legs(lying.skeleton)
+
+    assert detect_contacts(lying).all()
+    assert not detect_standing_feet(lying, find_humanoid_map(lying.skeleton), legs).any()
+    rests[20:40] = False
+    standing = detect_standing_feet(lying, find_humanoid_map(lying.skeleton), legs)
+    assert (standing == ~rests).all()
