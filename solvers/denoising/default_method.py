@@ -1,7 +1,6 @@
 """The default method of `denoise`: find outliers, estimate, average with two smoothers."""
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from .averaging import (
 )
 from .channels import Channels, Estimate
 from .limb_gaps import load_body_relation, predict_limbs
-from .motion_model import estimate_channel_noise, load_motion_mixture, smooth_by_mixture
+from .motion_model import MixtureSmoother, estimate_channel_noise, load_motion_mixture
 from .outliers import confirm_outliers, find_bursts
 from .window_estimates import estimate_in_groups
 from .window_priors import FilterBases
@@ -63,12 +62,12 @@ def apply_default_method(
     spline = smooth_by_spline(complete)
     factors = noise_factors(noise, complete, [estimate, spline], is_good)
     noise = np.maximum(noise * factors, MIN_NOISE)
-    by_mixture = partial(smooth_by_mixture, noise=noise, frame_rate=frame_rate, mixture=mixture)
+    by_mixture = MixtureSmoother(noise, frame_rate, mixture)
     averaged, weights = average_estimates(
         noisy,
         estimate,
         [
-            (smoothed, leverage_factor(smooth, complete, is_good, noise))
+            (smoothed, leverage_factor(smooth, smoothed, complete, is_good, noise))
             for smooth, smoothed in (
                 (smooth_by_spline, spline),
                 (by_mixture, by_mixture(complete)),

@@ -31,6 +31,7 @@ def leverage(residual: Array, leave_one_out_error: Array) -> Array:
 
 def leverage_factor(
     smooth: Callable[[Array], Smoothed | None],
+    smoothed: Smoothed | None,
     samples: Array,
     is_good: NDArray[np.bool_],
     noise: Array,
@@ -43,6 +44,8 @@ def leverage_factor(
     Parameters
     ----------
     smooth : function of an array of shape (n_frames, n_channels)
+    smoothed : Smoothed, optional
+        Its result for these samples.
     samples : shape (n_frames, n_channels), without NaN
     is_good : shape (n_frames, n_channels)
         Samples that count.
@@ -59,14 +62,13 @@ def leverage_factor(
        regularization parameters for general denoising algorithms. IEEE Transactions on Image
        Processing 17. doi:10.1109/TIP.2008.2001404
     """
-    first = max(len(samples) - MAX_PROBED_FRAMES, 0) // 2
-    probed = slice(first, first + MAX_PROBED_FRAMES)
-    samples, is_good = samples[probed], is_good[probed]
+    if len(samples) > MAX_PROBED_FRAMES:
+        first = (len(samples) - MAX_PROBED_FRAMES) // 2
+        probed = slice(first, first + MAX_PROBED_FRAMES)
+        samples, is_good = samples[probed], is_good[probed]
+        smoothed = smooth(samples)
     counts = is_good & (np.ptp(samples, axis=0) > MAX_CONSTANT_RANGE)
-    if not counts.any():
-        return 1.0
-    smoothed = smooth(samples)
-    if smoothed is None:
+    if smoothed is None or not counts.any():
         return 1.0
     expected = leverage(samples - smoothed.values, smoothed.leave_one_out_error)[counts].sum()
     if not expected > 0.0:

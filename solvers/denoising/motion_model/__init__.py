@@ -3,15 +3,15 @@
 from .channel_noise import MAX_CONSTANT_RANGE, estimate_channel_noise
 from .learn_mixture import learn_motion_mixture
 from .motion_mixture import N_CHANNELS, SHIPPED, MotionMixture, load_motion_mixture
-from .smooth_joints import smooth_by_mixture
+from .smooth_joints import MixtureSmoother
 
 __all__ = [
     "MAX_CONSTANT_RANGE",
     "N_CHANNELS",
     "SHIPPED",
+    "MixtureSmoother",
     "MotionMixture",
     "estimate_channel_noise",
     "learn_motion_mixture",
     "load_motion_mixture",
-    "smooth_by_mixture",
 ]

@@ -1,8 +1,11 @@
 """Smooth every joint of a complete take by the mixture of windows."""
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg.lapack import dpotrf, dpotri
 
 from ...arrays import Array
 from ..channels import Smoothed
@@ -14,7 +17,7 @@ MAX_LEVERAGE = 1.0 - 1e-9
 N_OVERLAPS = 8
 """Number of windows that start within the length of one. Chosen by hand: x0.5 gains 0.1 %, x2
 costs nothing."""
-MAX_BLOCK_WINDOWS = 512
+MAX_BLOCK_WINDOWS = 64
 """Windows processed at a time: this bounds the memory, however long the take."""
 
 
@@ -23,90 +26,143 @@ class _JointFilters(NamedTuple):
 
     inverse: Array
     """Of the covariance with noise, shape (n_components, size, size)."""
-    log_scale: Array
-    """Log-density at zero, without constants, shape (n_components,)."""
+    log_density: Array
+    """At zero, without constants, with the component's weight, shape (n_components,)."""
     leverage: Array
-    """Weight of each sample in its own estimate, shape (n_components, length, 3)."""
+    """Weight of each sample in its own estimate, shape (n_components, 3 * length)."""
 
 
-def smooth_by_mixture(
-    samples: Array, noise: Array, frame_rate: float, mixture: MotionMixture
-) -> Smoothed | None:
+@dataclass(frozen=True, eq=False)
+class MixtureSmoother:
     """Estimate every joint from its own window of half a second.
 
     The estimate of a window is the posterior mean under the mixture [1]_; overlapping windows
     are averaged. The mixture distinguishes a fast moment from a still one, so that the first is
-    smoothed less than the second.
+    smoothed less than the second. The filters follow from the noise alone: several takes of the
+    same noise share them.
 
-    Parameters
+    Attributes
     ----------
-    samples : shape (n_frames, n_channels), without NaN
-        Degrees, or centimeters of the root; each joint has three channels.
     noise : shape (n_channels,)
-        Standard deviation; see `estimate_channel_noise`.
+        Standard deviation, degrees or centimeters; see `estimate_channel_noise`.
     frame_rate : float, Hz
     mixture : MotionMixture
-
-    Returns
-    -------
-    Smoothed or None
-        None if the take is shorter than a window.
 
     References
     ----------
     .. [1] Zoran, Weiss (2011). From learning models of natural image patches to whole image
        restoration. ICCV. doi:10.1109/ICCV.2011.6126278
     """
-    density = frame_rate / mixture.frame_rate
-    length = round(mixture.window * density)
-    if len(samples) < length:
-        return None
-    mixture = mixture.truncated(length)
-    windows = Windows(len(samples), length, density, N_OVERLAPS)
-    mean = samples.mean(axis=0)
-    smoothed = _smooth(samples - mean, noise, windows, mixture)
-    return smoothed._replace(values=smoothed.values + mean)
+
+    noise: Array
+    frame_rate: float
+    mixture: MotionMixture
+
+    def __call__(self, samples: Array) -> Smoothed | None:
+        """Return the smoothed take; None if it is shorter than a window.
+
+        Parameters
+        ----------
+        samples : shape (n_frames, n_channels), without NaN
+            Degrees, or centimeters of the root; each joint has three channels.
+        """
+        if len(samples) < self._length:
+            return None
+        windows = Windows(len(samples), self._length, self._density, N_OVERLAPS)
+        total, leverage = np.zeros_like(samples), np.zeros_like(samples)
+        weight, average = np.zeros((len(samples), 1)), samples.mean(axis=0)
+        windows.add(weight, np.ones((windows.length, 1)), windows.starts)
+        for first in range(0, len(windows.starts), MAX_BLOCK_WINDOWS):
+            starts = windows.starts[first : first + MAX_BLOCK_WINDOWS]
+            frames = windows.extract(samples - average, starts).transpose(0, 2, 1)
+            coefficients = frames @ self._basis / self._density
+            joints = coefficients.reshape(len(starts), len(self._filters), -1)
+            leverages = np.empty_like(frames)
+            for joint, filters in enumerate(self._filters):
+                channels = slice(N_CHANNELS * joint, N_CHANNELS * (joint + 1))
+                solved, responsibility = _solve(joints[:, joint], filters)
+                coefficients[:, channels] -= self._variance[channels, None] * solved.reshape(
+                    len(starts), N_CHANNELS, -1
+                )
+                leverages[:, channels] = (responsibility @ filters.leverage).reshape(
+                    len(starts), N_CHANNELS, -1
+                )
+            smoothed = coefficients @ self._basis.T
+            windows.add(total, smoothed.transpose(0, 2, 1), starts)
+            windows.add(leverage, leverages.transpose(0, 2, 1), starts)
+        values, leverage = average + total / weight, np.minimum(leverage / weight, MAX_LEVERAGE)
+        return Smoothed(values, (samples - values) / (1.0 - leverage), leverage * self.noise**2)
+
+    @property
+    def _density(self) -> float:
+        """Frames of the take per frame of the mixture."""
+        return self.frame_rate / self.mixture.frame_rate
+
+    @property
+    def _length(self) -> int:
+        """Frames of a window."""
+        return round(self.mixture.window * self._density)
+
+    @property
+    def _variance(self) -> Array:
+        """Of the noise of a coefficient of each channel."""
+        return self.noise**2 / self._density
+
+    @cached_property
+    def _basis(self) -> Array:
+        mixture = self.mixture.truncated(self._length)
+        windows = Windows(self._length, self._length, self._density)
+        return windows.dct_basis(mixture.window)
+
+    @cached_property
+    def _filters(self) -> list[_JointFilters]:
+        """The filters of each joint."""
+        mixture = self.mixture.truncated(self._length)
+        basis = self._basis / np.sqrt(self._density)
+        return [
+            _build_filters(mixture, variance, basis)
+            for variance in self._variance.reshape(-1, N_CHANNELS)
+        ]
 
 
-def _smooth(samples: Array, noise: Array, windows: Windows, mixture: MotionMixture) -> Smoothed:
-    """Smooth samples about their mean, with this noise of each channel."""
-    total, leverage = np.zeros_like(samples), np.zeros_like(samples)
-    weight = np.zeros((len(samples), 1))
-    windows.add(weight, np.ones((windows.length, 1)), windows.starts)
-    basis = windows.dct_basis(mixture.window)
-    log_weights = np.log(mixture.weights)
-    for first in range(0, samples.shape[1], N_CHANNELS):
-        joint = slice(first, first + N_CHANNELS)
-        scale = np.repeat(noise[joint] / np.sqrt(windows.density), mixture.window)
-        gains = _gains(mixture, scale, basis / np.sqrt(windows.density))
-        for block in range(0, len(windows.starts), MAX_BLOCK_WINDOWS):
-            starts = windows.starts[block : block + MAX_BLOCK_WINDOWS]
-            frames = windows.extract(samples[:, joint], starts)
-            coefficients = windows.coefficients_from_frames(frames)[:, : mixture.window]
-            flat = coefficients.transpose(0, 2, 1).reshape(len(starts), -1)
-            solved = flat @ gains.inverse
-            log_density = log_weights + gains.log_scale
-            log_density = log_density - 0.5 * np.einsum("ws,kws->wk", flat, solved)
-            density = np.exp(log_density - log_density.max(axis=1, keepdims=True))
-            responsibility = density / density.sum(axis=1, keepdims=True)
-            mean = flat - scale**2 * np.einsum("wk,kws->ws", responsibility, solved)
-            mean = mean.reshape(len(starts), N_CHANNELS, -1).transpose(0, 2, 1)
-            windows.add(total[:, joint], basis @ mean, starts)
-            windows.add(
-                leverage[:, joint],
-                np.einsum("wk,ktc->wtc", responsibility, gains.leverage),
-                starts,
-            )
-    values, leverage = total / weight, np.minimum(leverage / weight, MAX_LEVERAGE)
-    return Smoothed(values, (samples - values) / (1.0 - leverage), leverage * noise**2)
+def _solve(coefficients: Array, filters: _JointFilters) -> tuple[Array, Array]:
+    """Return the mean inverse times the coefficients, and the components' probabilities.
+
+    Parameters
+    ----------
+    coefficients : shape (n_windows, size)
+        Of one joint.
+    filters : _JointFilters
+    """
+    solved = coefficients @ filters.inverse
+    exponents = np.einsum("kws,ws->wk", solved, coefficients)
+    log_density = filters.log_density - 0.5 * exponents
+    density = np.exp(log_density - log_density.max(axis=1, keepdims=True))
+    responsibility = density / density.sum(axis=1, keepdims=True)
+    return np.einsum("wk,kws->ws", responsibility, solved), responsibility
 
 
-def _gains(mixture: MotionMixture, scale: Array, basis: Array) -> _JointFilters:
-    """Return the filters for this noise of each coefficient; the basis is orthonormal."""
-    noisy = mixture.covariances + np.diag(scale**2)
-    inverse = np.linalg.inv(noisy)
-    gain = np.eye(len(scale)) - scale[:, None] ** 2 * inverse
-    blocks = gain.reshape(len(gain), N_CHANNELS, mixture.window, N_CHANNELS, mixture.window)
-    own = np.einsum("kcicj->kcij", blocks)
-    leverage = np.einsum("ti,kcij,tj->ktc", basis, own, basis, optimize=True)
-    return _JointFilters(inverse, -0.5 * np.linalg.slogdet(noisy)[1], leverage)
+def _build_filters(mixture: MotionMixture, variance: Array, basis: Array) -> _JointFilters:
+    """Return the filters for the noise of the coefficients of each of the three channels.
+
+    Parameters
+    ----------
+    mixture : MotionMixture
+    variance : shape (3,)
+    basis : shape (length, n_coefficients), orthonormal
+    """
+    n = mixture.window
+    inverse = mixture.covariances + np.diag(np.repeat(variance, n))
+    log_density = np.log(mixture.weights)
+    for index, matrix in enumerate(inverse):
+        # In place, one triangle only: half the time of numpy's inverse.
+        dpotrf(matrix.T, lower=1, clean=0, overwrite_a=1)
+        log_density[index] -= np.log(np.diag(matrix)).sum()
+        dpotri(matrix.T, lower=1, overwrite_c=1)
+    rows, columns = np.tril_indices(N_CHANNELS * n, -1)
+    inverse[:, rows, columns] = inverse[:, columns, rows]
+    blocks = inverse.reshape(-1, N_CHANNELS, n, N_CHANNELS, n)
+    own = np.eye(n) - variance[:, None, None] * np.einsum("kcicj->kcij", blocks)
+    products = np.einsum("ti,tj->ijt", basis, basis).reshape(n * n, -1)
+    leverage = own.reshape(-1, n * n) @ products
+    return _JointFilters(inverse, log_density, leverage.reshape(len(inverse), -1))

@@ -81,7 +81,7 @@ def test_leverage_factor_is_the_fraction_of_followed_noise(rng):
     samples, good = waves + noise, np.ones(waves.shape, dtype=bool)
 
     smoothed = smooth_by_spline(samples)
-    factor = leverage_factor(smooth_by_spline, samples, good, np.ones(2000))
+    factor = _spline_factor(samples, good, np.ones(2000))
 
     predicted = leverage(samples - smoothed.values, smoothed.leave_one_out_error).sum()
     followed = (noise * (smoothed.values - waves)).sum() / predicted
@@ -94,7 +94,7 @@ def test_leverage_factor_of_a_fixed_spline_is_one(rng, monkeypatch):
     samples = rng.normal(size=(60, 300))
     good = rng.random(samples.shape) > 0.2
 
-    factor = leverage_factor(smooth_by_spline, samples, good, np.full(300, 2.0))
+    factor = _spline_factor(samples, good, np.full(300, 2.0))
 
     assert_allclose(factor, 1.0, atol=0.02)
 
@@ -105,9 +105,7 @@ def test_leverage_factor_of_a_fixed_spline_is_one_for_a_single_channel(monkeypat
     good = np.ones((60, 1), dtype=bool)
 
     factors = [
-        leverage_factor(
-            smooth_by_spline, np.random.default_rng(seed).normal(size=(60, 1)), good, np.ones(1)
-        )
+        _spline_factor(np.random.default_rng(seed).normal(size=(60, 1)), good, np.ones(1))
         for seed in range(10)
     ]
 
@@ -122,12 +120,7 @@ def test_leverage_factor_does_not_depend_on_the_order_of_the_channels():
     others = np.hstack([still, samples[:, ::-1]])
 
     factors = [
-        leverage_factor(
-            smooth_by_spline,
-            each,
-            np.ones(each.shape, dtype=bool),
-            np.ones(each.shape[1]),
-        )
+        _spline_factor(each, np.ones(each.shape, dtype=bool), np.ones(each.shape[1]))
         for each in (samples, others)
     ]
 
@@ -209,6 +202,11 @@ def test_spike_before_a_kick_is_removed(rng):
     assert np.flatnonzero(cleaned.outliers[:, leg]).tolist() == [20]
     error = angle_between(cleaned.recording.rotations[20, leg], kick.rotations[20, leg])
     assert np.degrees(error) < 3.0
+
+
+def _spline_factor(samples: np.ndarray, good: np.ndarray, noise: np.ndarray) -> float:
+    smoothed = smooth_by_spline(samples)
+    return leverage_factor(smooth_by_spline, smoothed, samples, good, noise)
 
 
 def _noise_factors(samples: np.ndarray) -> np.ndarray:

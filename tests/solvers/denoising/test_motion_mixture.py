@@ -7,10 +7,10 @@ from scipy.fft import idct
 from scipy.stats import multivariate_normal
 
 from solvers.denoising.motion_model import (
+    MixtureSmoother,
     MotionMixture,
     learn_motion_mixture,
     load_motion_mixture,
-    smooth_by_mixture,
 )
 from solvers.denoising.outliers import PredictiveDensity
 from solvers.denoising.outliers.predictive_density import NEW_MOVEMENT_RATE
@@ -84,16 +84,19 @@ def test_one_window_is_smoothed_to_the_posterior_mean(mixture, rng):
     samples, noise = 5.0 * rng.normal(size=(WINDOW, 3)), 0.7
     samples -= samples.mean(axis=0)
 
-    smoothed = smooth_by_mixture(samples, np.full(3, noise), 30.0, mixture)
+    smoothed = MixtureSmoother(np.full(3, noise), 30.0, mixture)(samples)
 
     assert smoothed is not None
-    flat, densities, means = samples.T.ravel(), [], []
+    flat, densities, means, leverages = samples.T.ravel(), [], [], []
     for component, weight in enumerate(mixture.weights):
         covariance = frame_covariance(mixture, component, noise)
         densities.append(weight * multivariate_normal.pdf(flat, cov=covariance))
         means.append(flat - noise**2 * np.linalg.solve(covariance, flat))
+        leverages.append(1.0 - noise**2 * np.diag(np.linalg.inv(covariance)))
     expected = np.average(means, axis=0, weights=densities).reshape(3, WINDOW).T
     assert_allclose(smoothed.values, expected, atol=1e-8)
+    leverage = np.average(leverages, axis=0, weights=densities).reshape(3, WINDOW).T
+    assert_allclose(smoothed.variance, noise**2 * leverage, rtol=1e-8)
 
 
 @pytest.mark.parametrize("rate", [24.0, 30.0, 60.0, 120.0])
@@ -104,7 +107,7 @@ def test_same_movement_at_any_rate(rate):
     wave = 20.0 * np.sin(2.0 * np.pi * time[:, None] * np.array([0.5, 0.7, 0.3]))
     noisy = wave + rng.normal(size=wave.shape)
 
-    smoothed = smooth_by_mixture(noisy, np.ones(3), rate, load_motion_mixture())
+    smoothed = MixtureSmoother(np.ones(3), rate, load_motion_mixture())(noisy)
 
     assert smoothed is not None
     error = np.sqrt(((smoothed.values - wave) ** 2).mean())
@@ -114,7 +117,7 @@ def test_same_movement_at_any_rate(rate):
 
 
 def test_takes_shorter_than_a_window_are_left_to_others(mixture):
-    assert smooth_by_mixture(np.zeros((WINDOW - 1, 3)), np.ones(3), 30.0, mixture) is None
+    assert MixtureSmoother(np.ones(3), 30.0, mixture)(np.zeros((WINDOW - 1, 3))) is None
 
 
 def test_learned_mixture_comes_back_from_its_file(tmp_path, swinging_leg):
