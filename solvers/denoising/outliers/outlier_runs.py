@@ -16,7 +16,7 @@ from ...arrays import Array
 from ...signals import fill_channel_gaps, find_runs
 from ..motion_model import MotionMixture, estimate_channel_noise
 from ..window_priors import Windows
-from .predictive_density import PredictiveDensity
+from .predictive_density import PredictiveDensity, RunDensity
 from .single_outliers import OUTLIER_DENSITY
 
 SPIKE_PRIOR_PSEUDOCOUNT = 1e6
@@ -47,6 +47,31 @@ class _Run(NamedTuple):
 
     frames: slice
     channels: NDArray[np.bool_]
+
+
+class _Test(NamedTuple):
+    """Whether a run is an error."""
+
+    run: _Run
+    first_channel: int
+    """Of its joint."""
+    density: RunDensity
+    n_suspected: int | None
+    """Number of its samples that may be unrelated to the movement, too; None if they may only
+    be off by a constant."""
+
+    @property
+    def gain(self) -> float:
+        """Log-density of the samples as errors, less that as movement."""
+        as_error = self.density.with_offset
+        if self.n_suspected is not None:
+            as_error = max(as_error, self.n_suspected * np.log(OUTLIER_DENSITY))
+        return as_error - self.density.as_movement
+
+    @property
+    def max_gain(self) -> float:
+        """A bound of the gain."""
+        return self.density.max_gain if self.n_suspected is None else np.inf
 
 
 def find_bursts(noisy: Array, frame_rate: float, mixture: MotionMixture) -> NDArray[np.bool_]:
@@ -110,41 +135,37 @@ def _select(
     candidates: Callable[[slice], list[_Run]],
 ) -> NDArray[np.bool_]:
     """Return the samples of the candidates that are likelier to be errors than movement."""
-    density = frame_rate / mixture.frame_rate
-    length, observed = round(mixture.window * density), np.isfinite(noisy)
+    frame_ratio = frame_rate / mixture.frame_rate
+    length, observed = round(mixture.window * frame_ratio), np.isfinite(noisy)
     if len(noisy) < length:
         return suspected
     mixture = mixture.truncated(length)
-    windows = Windows(len(noisy), length, density)
+    windows = Windows(len(noisy), length, frame_ratio)
     noise = estimate_channel_noise(complete, MIN_NOISE)
     kept, max_runs = np.zeros_like(observed), MAX_RUNS_PER_FRAME * len(noisy)
-    gains, runs, first_channels = list[float](), list[_Run](), list[int]()
+    tests = list[_Test]()
     for first in range(0, noisy.shape[1], 3):
         joint = slice(first, first + 3)
+        found_runs = candidates(joint)
+        if _n_events(found_runs, len(noisy)) > max_runs:
+            kept[:, joint] = suspected[:, joint]
+            continue
         is_observed = observed[:, joint]
         is_valid = is_observed & ~suspected[:, joint]
         samples = np.where(is_observed, noisy[:, joint], complete[:, joint])
         predictive = PredictiveDensity(
             samples - complete[:, joint].mean(axis=0), noise[joint], windows, mixture
         )
-        found_runs = candidates(joint)
-        if _n_events(found_runs, len(noisy)) > max_runs:
-            kept[:, joint] = suspected[:, joint]
-            continue
         for run in found_runs:
             is_tested = np.zeros_like(is_observed)
             is_tested[run.frames, run.channels] = is_observed[run.frames, run.channels]
-            as_movement, as_error = predictive.log_densities(*run, is_valid | is_tested)
-            if are_suspected:
-                unrelated = np.count_nonzero(is_tested) * np.log(OUTLIER_DENSITY)
-                as_error = max(as_error, unrelated)
-            gains.append(as_error - as_movement)
-            runs.append(run)
-            first_channels.append(first)
+            n_tested = np.count_nonzero(is_tested) if are_suspected else None
+            density = predictive.of_run(*run, is_valid | is_tested)
+            tests.append(_Test(run, first, density, n_tested))
     n_samples = observed.sum() + (
         SPIKE_PRIOR_PSEUDOCOUNT if are_suspected else BURST_PRIOR_PSEUDOCOUNT
     )
-    return kept | _likeliest(np.array(gains), runs, first_channels, observed, n_samples)
+    return kept | _likeliest(tests, observed, n_samples)
 
 
 def _n_events(runs: Sequence[_Run], n_frames: int) -> int:
@@ -156,38 +177,40 @@ def _n_events(runs: Sequence[_Run], n_frames: int) -> int:
 
 
 def _likeliest(
-    gains: Array,
-    runs: Sequence[_Run],
-    first_channels: Sequence[int],
-    observed: NDArray[np.bool_],
-    n_samples: float,
+    tests: Sequence[_Test], observed: NDArray[np.bool_], n_samples: float
 ) -> NDArray[np.bool_]:
     """Return the samples of the likeliest runs that do not overlap.
 
-    The rate of errors starts at that of a take without any, and rises with those found.
-
     Parameters
     ----------
-    gains : shape (n_runs,)
-        Log-density of the samples as errors, less that as movement.
-    runs : sequence of _Run
-    first_channels : sequence of int
-        Of their joints.
+    tests : sequence of _Test
     observed : shape (n_frames, n_channels)
     n_samples : float
         The take's own and the prior's.
     """
-    n_found, n_before, log_rate = 0, -1, 0.0
-    while n_found > n_before:
-        log_rate = np.log((n_found + 1.0) / n_samples)
-        n_before, n_found = n_found, np.count_nonzero(gains + log_rate > 0.0)
-    found = np.zeros_like(observed)
+    gains = np.array([test.max_gain for test in tests])
+    # Most runs cannot be likely enough, whatever the exact gains of the others are.
+    for index in np.flatnonzero(gains + _log_rate(gains, n_samples) > 0.0):
+        gains[index] = tests[index].gain
+    log_rate, found = _log_rate(gains, n_samples), np.zeros_like(observed)
     for index in np.argsort(-gains):
-        frames, tested = runs[index]
-        channels = first_channels[index] + np.flatnonzero(tested)
+        frames, tested = tests[index].run
+        channels = tests[index].first_channel + np.flatnonzero(tested)
         if gains[index] + log_rate > 0.0 and not found[frames, channels].any():
             found[frames, channels] = observed[frames, channels]
     return found
+
+
+def _log_rate(gains: Array, n_samples: float) -> float:
+    """Return the logarithm of the rate of errors.
+
+    It starts at that of a take without any, and rises with those found.
+    """
+    n_found, n_before, log_rate = 0, -1, 0.0
+    while n_found > n_before:
+        log_rate = float(np.log((n_found + 1.0) / n_samples))
+        n_before, n_found = n_found, np.count_nonzero(gains + log_rate > 0.0)
+    return log_rate
 
 
 def _suspected_runs(suspected: NDArray[np.bool_]) -> list[_Run]:
@@ -206,14 +229,14 @@ def _between_steps(samples: Array, max_frames: int) -> list[_Run]:
     Only channels count that are off the frames before and after by more than these differ.
     """
     edges = np.flatnonzero(np.abs(np.diff(samples, axis=0)).max(axis=1) > MIN_STEP) + 1
-    runs = list[_Run]()
-    for index, start in enumerate(edges):
-        for stop in edges[index + 1 :]:
-            if stop - start > max_frames:
-                break
-            before, after = samples[start - 1], samples[stop]
-            offset = np.abs(samples[start:stop].mean(axis=0) - (before + after) / 2.0)
-            channels = (offset > MIN_STEP) & (np.abs(after - before) < offset)
-            if channels.any() and stop - start > 1:
-                runs.append(_Run(slice(start, stop), channels))
-    return runs
+    lengths = edges - edges[:, None]
+    starts, stops = edges[np.array(np.nonzero((lengths > 1) & (lengths <= max_frames)))]
+    sums = np.cumsum(np.concatenate([np.zeros_like(samples[:1]), samples]), axis=0)
+    means = (sums[stops] - sums[starts]) / (stops - starts)[:, None]
+    before, after = samples[starts - 1], samples[stops]
+    offset = np.abs(means - (before + after) / 2.0)
+    is_off = (offset > MIN_STEP) & (np.abs(after - before) < offset)
+    return [
+        _Run(slice(int(starts[index]), int(stops[index])), is_off[index])
+        for index in np.flatnonzero(is_off.any(axis=1))
+    ]

@@ -1,6 +1,7 @@
 """Likelihood of samples of a joint, given the other samples of their window."""
 
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,9 +43,9 @@ class PredictiveDensity:
         self._samples, self._noise, self._windows = samples, noise, windows
         self._mixture, self._basis = mixture, windows.dct_basis(mixture.window)
 
-    def log_densities(
+    def of_run(
         self, run: slice, tested: NDArray[np.bool_], valid: NDArray[np.bool_]
-    ) -> tuple[float, float]:
+    ) -> "RunDensity":
         """Return how likely the tested samples of a run are, given the valid other ones.
 
         Parameters
@@ -56,77 +57,125 @@ class PredictiveDensity:
             which takes a tenth of the time; a longer run with all channels.
         valid : shape (n_frames, 3)
             Where samples are observed and, outside the run, no outliers.
-
-        Returns
-        -------
-        as_movement : float
-            Log-density if the samples are right: the movement around them goes on, or another
-            one begins.
-        with_offset : float
-            The same if each tested channel is off by a constant during the run.
         """
         length = self._windows.length
         middle = (run.start + run.stop) // 2
-        start = int(np.clip(middle - length // 2, 0, len(self._samples) - length))
-        frames = slice(start, start + length)
-        everything = valid[frames]
+        start = min(max(middle - length // 2, 0), len(self._samples) - length)
         inside = np.zeros((length, N_CHANNELS), dtype=np.bool_)
         inside[max(run.start - start, 0) : min(run.stop - start, length)] = tested
         is_single = run.stop - run.start == 1
-        channels = tuple(np.flatnonzero(tested)) if is_single else tuple(range(N_CHANNELS))
-        others = self._log_marginals(frames, channels, everything & ~inside)
-        both = self._log_marginals(frames, channels, everything)
-        log_others = _log_sum(others)
-        continued = _log_sum(both) - log_others
-        # The run may be of another kind of movement than the frames around it.
-        log_weights = np.log(self._mixture.weights)
-        begun = np.log(NEW_MOVEMENT_RATE) + _log_sum(log_weights + both - others)
-        as_movement = float(np.logaddexp(continued, begun))
-        if is_single:
-            return as_movement, -np.inf
-        with_offset = self._log_marginals(frames, channels, everything, inside)
-        return as_movement, _log_sum(with_offset) - log_others
+        channels = tuple(np.flatnonzero(tested).tolist() if is_single else range(N_CHANNELS))
+        frames = slice(start, start + length)
+        return RunDensity(self, frames, channels, valid[frames], inside, not is_single)
 
-    def _log_marginals(
+    @property
+    def log_weights(self) -> Array:
+        """Logarithm of the weight of each component."""
+        return np.log(self._mixture.weights)
+
+    def log_marginals(
         self,
         frames: slice,
         channels: tuple[int, ...],
         observed: NDArray[np.bool_],
         offset: NDArray[np.bool_] | None = None,
-    ) -> Array:
+    ) -> tuple[Array, Array]:
         """Return each component's log-density of the observed samples of a window's channels.
 
-        With `offset`, each channel is off by an unknown constant in these frames.
+        The second one is that with an unknown constant added to each channel in the frames of
+        `offset`. The constants follow the coefficients, so that one factorization yields both.
         """
-        n, log_scale = self._basis.shape[1], 0.0
         inverses, log_weights = _inverse_covariances(self._mixture, channels)
-        size = n * len(channels)
-        total = size + (0 if offset is None else len(channels))
+        columns, variance = list(channels), self._noise[list(channels)] ** 2
+        n, size = self._basis.shape[1], inverses.shape[1]
+        end = size if offset is None else size + len(columns)
+        precision, values = observed[:, columns].T / variance[:, None], self._samples[frames]
+        values = values[:, columns].T
+        weighted = precision[:, None] * self._basis.T
+        square = float((precision * values**2).sum())
         # Besides the precision matrix: the projected values, and more than their square can be.
-        added = np.zeros((total + 1, total + 1))
-        added[total, total] = 1.0
-        for index, channel in enumerate(channels):
-            rows, variance = observed[:, channel], self._noise[channel] ** 2
-            basis, values = self._basis[rows], self._samples[frames, channel][rows]
-            block = slice(index * n, (index + 1) * n)
-            added[block, block] = basis.T @ basis / variance
-            added[total, block] = basis.T @ values / variance
-            if offset is not None:
-                own, is_off = size + index, offset[rows, channel]
-                added[own, block] = is_off @ basis / variance
-                added[own, own] = OFFSET_DEVIATION**-2 + is_off.sum() / variance
-                added[total, own] = is_off @ values / variance
-                log_scale += np.log(OFFSET_DEVIATION**2)
-            added[total, total] += values @ values / variance
-            log_scale += len(values) * np.log(2.0 * np.pi * variance)
-        factored = np.repeat(added[None], len(inverses), axis=0)
+        added = np.zeros((end + 1, end + 1))
+        added[end, :size] = (weighted @ values[:, :, None]).ravel()
+        added[end, end] = square + 1.0
+        for index, block in enumerate(weighted @ self._basis):
+            added[index * n : (index + 1) * n, index * n : (index + 1) * n] = block
+        if offset is not None:
+            is_off = offset[:, columns].T.astype(float)
+            for index, row in enumerate((weighted @ is_off[:, :, None])[..., 0]):
+                added[size + index, index * n : (index + 1) * n] = row
+            own = np.arange(size, end)
+            added[own, own] = OFFSET_DEVIATION**-2 + (is_off * precision).sum(axis=1)
+            added[end, own] = (is_off * precision * values).sum(axis=1)
+        factored = np.empty((len(inverses), end + 1, end + 1))
+        factored[:] = added
         factored[:, :size, :size] += inverses
         factors = np.linalg.cholesky(factored)  # of the lower triangles
-        whitened, diagonals = factors[:, total, :total], np.einsum("kss->ks", factors)
-        exponents = 0.5 * np.einsum("ks,ks->k", whitened, whitened)
-        exponents -= np.log(diagonals[:, :total]).sum(axis=1)
-        constant = log_scale + added[total, total] - 1.0
-        return np.asarray(log_weights + exponents - 0.5 * constant)
+        exponents = 0.5 * factors[:, end, :end] ** 2
+        exponents -= np.log(np.einsum("kss->ks", factors)[:, :end])
+        log_scale = float(observed[:, columns].sum(axis=0) @ np.log(2.0 * np.pi * variance))
+        without = log_weights + exponents[:, :size].sum(axis=1) - 0.5 * (log_scale + square)
+        of_offsets = exponents[:, size:] - np.log(OFFSET_DEVIATION)
+        return without, without + of_offsets.sum(axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class RunDensity:
+    """The density of the tested samples of a run, given the valid other ones.
+
+    Attributes
+    ----------
+    predictive : PredictiveDensity
+    frames : slice
+        The window around the run.
+    channels : tuple of int
+        Those that are compared.
+    valid, tested : shape (length, 3)
+        Samples of the window.
+    may_be_off : bool
+        Whether each tested channel may be off by a constant during the run.
+    """
+
+    predictive: PredictiveDensity
+    frames: slice
+    channels: tuple[int, ...]
+    valid: NDArray[np.bool_]
+    tested: NDArray[np.bool_]
+    may_be_off: bool
+
+    @property
+    def as_movement(self) -> float:
+        """Log-density if the samples are right: the movement around them goes on, or another
+        one begins."""
+        log_weights, (both, _) = self.predictive.log_weights, self._both
+        continued = _log_sum(both) - _log_sum(self._others)
+        # The run may be of another kind of movement than the frames around it.
+        begun = np.log(NEW_MOVEMENT_RATE) + _log_sum(log_weights + both - self._others)
+        return float(np.logaddexp(continued, begun))
+
+    @property
+    def with_offset(self) -> float:
+        """The same if each tested channel is off by a constant during the run."""
+        return _log_sum(self._both[1]) - _log_sum(self._others) if self.may_be_off else -np.inf
+
+    @property
+    def max_gain(self) -> float:
+        """The most by which `with_offset` can exceed `as_movement`, in half the time.
+
+        It is the difference if the movement around the run can only go on.
+        """
+        both, with_offset = self._both
+        return _log_sum(with_offset) - _log_sum(both)
+
+    @cached_property
+    def _both(self) -> tuple[Array, Array]:
+        """Of the tested and the other samples, for each component; and with an offset."""
+        offset = self.tested if self.may_be_off else None
+        return self.predictive.log_marginals(self.frames, self.channels, self.valid, offset)
+
+    @cached_property
+    def _others(self) -> Array:
+        others = self.valid & ~self.tested
+        return self.predictive.log_marginals(self.frames, self.channels, others)[0]
 
 
 def _log_sum(log_densities: Array) -> float:

@@ -49,7 +49,7 @@ def test_predictive_density_is_the_ratio_of_two_densities(mixture, rng):
         samples, np.full(3, noise), Windows(WINDOW, WINDOW, 1.0), mixture
     )
 
-    as_movement, with_offset = predictive.log_densities(run, tested, valid)
+    density = predictive.of_run(run, tested, valid)
 
     inside = np.zeros((WINDOW, 3), dtype=bool)
     inside[run] = tested
@@ -75,9 +75,12 @@ def test_predictive_density_is_the_ratio_of_two_densities(mixture, rng):
     both, others = densities(valid, 0.0 * off), densities(valid & ~inside, 0.0 * off)
     continued = weights @ both / (weights @ others)
     begun = weights @ (both / others)
-    assert_allclose(as_movement, np.log(continued + NEW_MOVEMENT_RATE * begun), rtol=1e-6)
+    assert_allclose(
+        density.as_movement, np.log(continued + NEW_MOVEMENT_RATE * begun), rtol=1e-6
+    )
     shifted = weights @ densities(valid, off) / (weights @ others)
-    assert_allclose(with_offset, np.log(shifted), rtol=1e-6)
+    assert_allclose(density.with_offset, np.log(shifted), rtol=1e-6)
+    assert_allclose(density.max_gain, np.log(shifted / continued), rtol=1e-6)
 
 
 def test_one_window_is_smoothed_to_the_posterior_mean(mixture, rng):
