@@ -208,17 +208,21 @@ def unwrap_rotation_vectors(vectors: Array) -> Array:
     vectors : shape (n_frames, ..., 3), radians
     """
     result = np.array(vectors, dtype=np.float64)
-    last = np.full(result.shape[1:], np.nan)
-    for vector in result:
-        angle = np.linalg.norm(vector, axis=-1, keepdims=True)
-        # A rotation by nearly nothing has no axis of its own.
-        with_axis = np.where(angle > SMALL_ANGLE_RAD, vector, last)
-        length = np.linalg.norm(with_axis, axis=-1, keepdims=True)
-        axis = with_axis / np.maximum(length, SMALL_ANGLE_RAD)
-        turns = np.round(((last - vector) * axis).sum(axis=-1, keepdims=True) / FULL_TURN_RAD)
-        vector += np.nan_to_num(turns) * FULL_TURN_RAD * np.nan_to_num(axis)
-        last = np.where(np.isfinite(vector), vector, last)
-    return result
+    valid = np.isfinite(result).all(axis=-1)
+    angles = np.linalg.norm(np.where(valid[..., None], result, 0.0), axis=-1, keepdims=True)
+    # A rotation by nearly nothing has no axis of its own.
+    last = np.maximum.accumulate(np.indices(angles.shape)[0] * (angles > SMALL_ANGLE_RAD))
+    directions = np.nan_to_num(result / np.maximum(angles, SMALL_ANGLE_RAD))
+    axes = np.take_along_axis(directions, last, axis=0)
+    agreement = np.einsum("...i,...i->...", axes[1:], axes[:-1])
+    along = np.einsum("...i,...i->...", result, axes)
+    is_first = valid & (np.cumsum(valid, axis=0) == 1)
+    turns, angle = np.zeros(valid.shape), along[:1].sum(axis=0)
+    for frame in range(1, len(result)):
+        change = np.where(is_first[frame], 0.0, angle * agreement[frame - 1] - along[frame])
+        turns[frame] = np.round(change / FULL_TURN_RAD)
+        angle = np.where(valid[frame], along[frame] + FULL_TURN_RAD * turns[frame], angle)
+    return np.asarray(result + FULL_TURN_RAD * turns[..., None] * axes)
 
 
 def slerp(start: Array, stop: Array, fraction: ArrayLike) -> Array:
