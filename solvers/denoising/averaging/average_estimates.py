@@ -88,9 +88,7 @@ def average_estimates(
         freedom = freedom[compared] / scale[compared, None]
         products = products + POOLED_JOINTS * products.mean(axis=0)
         freedom = freedom + POOLED_JOINTS * freedom.mean(axis=0)
-        weights[compared] = [
-            _least_error_weights(*each) for each in zip(products, freedom, strict=True)
-        ]
+        weights[compared] = _least_error_weights(products, freedom)
     return _blend(estimate, smoothed, np.repeat(weights, 3, axis=0).T, is_good), weights
 
 
@@ -98,21 +96,29 @@ def _least_error_weights(products: Array, freedom: Array) -> Array:
     """Return the weights w, not negative and of sum 1, of the least w' products w + freedom w.
 
     The solution is that of the subset of candidates whose weights are positive.
+
+    Parameters
+    ----------
+    products : shape (n_joints, n_candidates, n_candidates)
+    freedom : shape (n_joints, n_candidates)
     """
-    n_candidates = len(products)
-    ridge = RIDGE * (np.trace(products) + freedom.max() + MIN_NOISE)
-    best, least = np.zeros(n_candidates), np.inf
+    n_joints, n_candidates = freedom.shape
+    ridge = np.trace(products, axis1=1, axis2=2) + freedom.max(axis=1) + MIN_NOISE
+    best, least = np.zeros_like(freedom), np.full(n_joints, np.inf)
     for size in range(1, n_candidates + 1):
         for subset in map(list, combinations(range(n_candidates), size)):
-            block, linear = products[np.ix_(subset, subset)], freedom[subset]
-            system = np.ones((size + 1, size + 1))
-            system[:size, :size] = 2.0 * block + ridge * np.eye(size)
-            system[size, size] = 0.0
-            weights = np.linalg.solve(system, np.append(-linear, 1.0))[:size]
-            error = weights @ block @ weights + linear @ weights
-            if (weights >= 0.0).all() and error < least:
-                best, least = np.zeros(n_candidates), error
-                best[subset] = weights
+            block, linear = products[:, subset][:, :, subset], freedom[:, subset]
+            system = np.ones((n_joints, size + 1, size + 1))
+            system[:, :size, :size] = 2.0 * block + RIDGE * ridge[:, None, None] * np.eye(size)
+            system[:, size, size] = 0.0
+            right = np.append(-linear, np.ones((n_joints, 1)), axis=1)[..., None]
+            weights = np.linalg.solve(system, right)[:, :size, 0]
+            error = np.einsum("ji,jik,jk->j", weights, block, weights)
+            error += (linear * weights).sum(axis=1)
+            better = (weights >= 0.0).all(axis=1) & (error < least)
+            least = np.where(better, error, least)
+            best[better] = 0.0
+            best[np.ix_(better, subset)] = weights[better]
     return best
 
 

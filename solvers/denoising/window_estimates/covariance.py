@@ -1,6 +1,7 @@
 """Covariance of a window's DCT coefficients: the prior's, adapted to the take."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -12,19 +13,34 @@ from ..window_priors import WindowPrior
 class WindowCovariance:
     """Covariance of the coefficients of a window."""
 
-    slow: Array
-    """Of the slow coefficients, a square matrix, coefficients outermost."""
-    slow_in_gaps: Array
-    """The same for windows with long gaps."""
+    prior: WindowPrior
+    own: Array | None
+    """Mean second moment of the take's slow coefficients, if it is known."""
     fast: Array
     """Variances of the fast coefficients, shape (length - n_slow, n_channels)."""
+
+    @cached_property
+    def slow(self) -> Array:
+        """Of the slow coefficients, a square matrix, coefficients outermost."""
+        return self._mix(self.prior.own_weight)
+
+    @cached_property
+    def slow_in_gaps(self) -> Array:
+        """The same for windows with long gaps."""
+        return self._mix(self.prior.own_weight_in_gaps)
+
+    def _mix(self, own_weight: float) -> Array:
+        if self.own is None:
+            return self.prior.matrix
+        mixed = own_weight * self.own
+        mixed += (1.0 - own_weight) * self.prior.matrix
+        return mixed
 
 
 def covariance_from_prior(prior: WindowPrior, length: int) -> WindowCovariance:
     """Return the covariance of windows of this many frames under the prior alone."""
-    return WindowCovariance(
-        prior.matrix, prior.matrix, _extend_fast_variances(prior.fast, length - prior.n_slow)
-    )
+    fast = _extend_fast_variances(prior.fast, length - prior.n_slow)
+    return WindowCovariance(prior, None, fast)
 
 
 def adapt_covariance(
@@ -42,22 +58,10 @@ def adapt_covariance(
     noise : shape (n_channels,)
         Standard deviation of a coefficient.
     """
-    complete, in_gaps = (
-        _mix_covariances(prior.matrix, slow, np.tile(own_weight, prior.n_slow))
-        for own_weight in (prior.own_weight, prior.own_weight_in_gaps)
-    )
     power = np.maximum(power - noise**2, 0.0)
     fast = _extend_fast_variances(prior.fast, len(power))
-    return WindowCovariance(
-        complete, in_gaps, fast * (1.0 - prior.own_weight) + power * prior.own_weight
-    )
-
-
-def _mix_covariances(prior: Array, own: Array, own_weight: Array) -> Array:
-    own_scale, prior_scale = np.sqrt(own_weight), np.sqrt(1.0 - own_weight)
-    return np.asarray(
-        prior * np.outer(prior_scale, prior_scale) + own * np.outer(own_scale, own_scale)
-    )
+    fast = fast * (1.0 - prior.own_weight) + power * prior.own_weight
+    return WindowCovariance(prior, slow, fast)
 
 
 def _extend_fast_variances(fast: Array, n_coefficients: int) -> Array:

@@ -48,7 +48,7 @@ def filter_windows(
             slow = (
                 window_filter.gaps.posterior_mean(slow, window_filter.pattern.indices)
                 if window_filter.gaps
-                else slow @ window_filter.gains.slow
+                else window_filter.gains.posterior_mean(slow)
             )
             slow *= scale
             if with_moments:

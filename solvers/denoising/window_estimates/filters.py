@@ -11,6 +11,9 @@ from ..window_priors import Windows
 from .covariance import WindowCovariance
 from .gap_patterns import GapPattern, GapSolution
 
+MAX_BLOCK_ROWS = 64
+"""Rows of a symmetric matrix that are copied at a time. It bounds the run time."""
+
 
 @dataclass(frozen=True, eq=False)
 class Gains:
@@ -22,6 +25,17 @@ class Gains:
     """Factor of each fast coefficient, shape (length - n_slow, n_channels)."""
     noise: Array
     """Standard deviation of a coefficient, shape (n_channels,)."""
+    own: Array | None = None
+    """The blocks of `slow` of each channel, shape (n_channels, n_slow, n_slow), if all others
+    are zero."""
+
+    def posterior_mean(self, coefficients: Array) -> Array:
+        """Return posterior slow coefficients from measured ones, shape (n_windows, size)."""
+        if self.own is None:
+            return coefficients @ self.slow
+        by_channel = coefficients.reshape(len(coefficients), -1, len(self.own))
+        mean = by_channel.transpose(2, 0, 1) @ self.own
+        return mean.transpose(1, 2, 0).reshape(coefficients.shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +51,9 @@ class Filter:
         """Add the posterior covariance of the slow coefficients of these windows to a sum."""
         scale = np.tile(self.gains.noise, len(total) // len(self.gains.noise))
         n_windows = len(self.pattern.starts)
-        total += n_windows * self.gains.slow * np.outer(scale, scale)
+        covariance = self.gains.slow * scale
+        covariance *= n_windows * scale[:, None]
+        total += covariance
         if self.gaps:
             indices = self.pattern.indices
             added = self.gaps.added_covariance * np.outer(scale[indices], scale[indices])
@@ -156,17 +172,32 @@ def compute_gains(slow: Array, fast: Array, noise: Array, density: float) -> Gai
         Frames of the take per frame of the patterns.
     """
     noise_per_coefficient = noise / np.sqrt(density)
-    scale = np.tile(noise_per_coefficient, len(slow) // len(noise))
+    fast_gains = fast / (fast + noise_per_coefficient**2)
+    n_slow, channels = len(slow) // len(noise), np.arange(len(noise))
+    blocks = slow.reshape(n_slow, len(noise), n_slow, len(noise))
+    own = blocks[:, channels, :, channels]
+    if np.count_nonzero(own) == np.count_nonzero(slow):
+        whitened = own / noise_per_coefficient[:, None, None] ** 2 + np.eye(n_slow)
+        own = np.eye(n_slow) - np.linalg.inv(whitened)
+        gain = np.zeros_like(blocks)
+        gain[:, channels, :, channels] = own
+        return Gains(gain.reshape(slow.shape), fast_gains, noise_per_coefficient, own)
+    scale = np.tile(noise_per_coefficient, n_slow)
     size = len(scale)
-    whitened = slow / np.outer(scale, scale)
+    whitened = slow / scale
+    whitened /= scale[:, None]
     whitened[np.diag_indices(size)] += 1.0
-    # LAPACK's inverse takes a third of the time of solving for the identity. With `clean`,
-    # the triangles that it does not compute are zero.
-    lower, _ = dpotrf(whitened, lower=1, clean=1, overwrite_a=1)
-    gain = -dpotri(lower, lower=1, overwrite_c=1)[0]
-    gain += np.tril(gain, -1).T
+    # LAPACK's inverse takes a third of the time of solving for the identity. It is in place,
+    # and only one triangle is complete.
+    dpotrf(whitened.T, lower=1, clean=0, overwrite_a=1)
+    dpotri(whitened.T, lower=1, overwrite_c=1)
+    gain = np.negative(whitened, out=whitened)
+    for first in range(0, size, MAX_BLOCK_ROWS):
+        rows = slice(first, first + MAX_BLOCK_ROWS)
+        gain[rows, :first] = gain[:first, rows].T
+        gain[rows, rows] = np.triu(gain[rows, rows]) + np.triu(gain[rows, rows], 1).T
     gain[np.diag_indices(size)] += 1.0
-    return Gains(gain, fast / (fast + noise_per_coefficient**2), noise_per_coefficient)
+    return Gains(gain, fast_gains, noise_per_coefficient)
 
 
 def _window_variance(covariance: Array, noise: Array, windows: Windows) -> Array:

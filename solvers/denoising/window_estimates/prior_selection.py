@@ -93,16 +93,13 @@ def build_examples_prior(
         bases.clip_means[:, indices], own, n_observed, n_frames, variance / window, noise**2
     )
     slow[0, channels, 0, channels] += window * mean_variance
-    own_weight, own_weight_in_gaps = (
-        np.full(len(columns), weight) for weight in (OWN_WEIGHT, OWN_WEIGHT_IN_GAPS)
-    )
     mean_adaptation = np.minimum(n_observed / n_frames, 1.0)
     return WindowPrior(
         mean,
         slow,
         fast,
-        own_weight,
-        own_weight_in_gaps,
+        OWN_WEIGHT,
+        OWN_WEIGHT_IN_GAPS,
         mean_adaptation,
         replace(smooth, fraction=0.0),
     )

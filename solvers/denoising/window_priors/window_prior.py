@@ -54,10 +54,10 @@ class WindowPrior:
         Covariance of the slow coefficients.
     fast : shape (n_coefficients - n_slow, n_channels)
         Variances of the fast coefficients, independent of all others.
-    own_weight : shape (n_channels,)
+    own_weight : float
         Weight of the take's own covariance in the estimate, 0 to 1. Channels in the examples
         need less of it than others.
-    own_weight_in_gaps : shape (n_channels,)
+    own_weight_in_gaps : float
         The same where channels have long gaps; other channels of the same body fill them best.
     mean_adaptation : shape (n_channels,)
         Weight of the take's own mean in the mean, as the estimate improves.
@@ -66,8 +66,8 @@ class WindowPrior:
     mean: Array
     slow: Array
     fast: Array
-    own_weight: Array
-    own_weight_in_gaps: Array
+    own_weight: float
+    own_weight_in_gaps: float
     mean_adaptation: Array
     smooth: SmoothPrior
     """The part of the covariance that is fitted to the take."""
@@ -97,8 +97,6 @@ class WindowPrior:
             mean=self.mean[channels],
             slow=self.slow[:, channels][:, :, :, channels],
             fast=self.fast[:, channels],
-            own_weight=self.own_weight[channels],
-            own_weight_in_gaps=self.own_weight_in_gaps[channels],
             mean_adaptation=self.mean_adaptation[channels],
             smooth=replace(self.smooth, weights=self.smooth.weights[:, channels]),
         )
@@ -136,16 +134,8 @@ def build_smooth_prior(
     n_slow, channels = count_slow_coefficients(smooth.kernels.shape[1]), np.arange(len(mean))
     slow = np.zeros((n_slow, len(mean), n_slow, len(mean)))
     slow[:, channels, :, channels] = smooth.slow(n_slow)
-    zeros = np.zeros(len(mean))
-    return WindowPrior(
-        mean,
-        slow,
-        smooth.fast(n_slow),
-        zeros + own_weight,
-        zeros + own_weight_in_gaps,
-        zeros,
-        smooth,
-    )
+    fast, adaptation = smooth.fast(n_slow), np.zeros(len(mean))
+    return WindowPrior(mean, slow, fast, own_weight, own_weight_in_gaps, adaptation, smooth)
 
 
 def mix_priors(examples: WindowPrior, own: WindowPrior, fraction: float) -> WindowPrior:

@@ -1,9 +1,10 @@
 """Where theory is exact, the default method must be exact."""
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.window_estimates.covariance import WindowCovariance
+from solvers.denoising.window_estimates.covariance import covariance_from_prior
 from solvers.denoising.window_estimates.filters import (
     Filter,
     build_filters,
@@ -16,7 +17,7 @@ from solvers.denoising.window_estimates.gap_patterns import (
     find_gap_patterns,
     find_long_gaps,
 )
-from solvers.denoising.window_priors import Windows
+from solvers.denoising.window_priors import SmoothPrior, WindowPrior, Windows
 
 LENGTH, N_SLOW, N_CHANNELS = 8, 5, 3
 
@@ -51,6 +52,25 @@ def test_window_with_gaps_equals_the_conditional_gaussian(rng):
     covariance = np.zeros_like(slow)
     filters[0].add_covariance(covariance)
     assert_allclose(frame_variance(windows, covariance)[:, 1:], variance[:, 1:], atol=1e-9)
+
+
+@pytest.mark.parametrize("independent", [False, True])
+def test_gains_are_those_of_the_plain_formula(independent, rng):
+    slow = random_covariance(rng)
+    if independent:
+        slow *= np.tile(np.eye(N_CHANNELS), (N_SLOW, N_SLOW))
+    noise, fast = np.array([0.3, 0.5, 0.4]), np.ones((LENGTH - N_SLOW, N_CHANNELS))
+
+    gains = compute_gains(slow, fast, noise, 4.0)
+
+    variance = np.diag(np.tile(noise, N_SLOW) ** 2 / 4.0)
+    plain = slow @ np.linalg.inv(slow + variance)
+    coefficients = rng.normal(size=(6, len(slow)))
+    scale = np.tile(gains.noise, N_SLOW)
+    assert (gains.own is not None) == independent
+    assert_allclose(gains.slow * scale[:, None] / scale, plain, atol=1e-12)
+    mean = gains.posterior_mean(coefficients / scale) * scale
+    assert_allclose(mean, coefficients @ plain.T, atol=1e-12)
 
 
 def test_filters_of_windows_with_gaps_are_reused_if_given(rng):
@@ -138,8 +158,11 @@ def random_covariance(rng):
 
 
 def window_covariance(rng, fast=0.0):
-    slow = random_covariance(rng)
-    return WindowCovariance(slow, slow, np.full((LENGTH - N_SLOW, N_CHANNELS), fast))
+    slow = random_covariance(rng).reshape(N_SLOW, N_CHANNELS, N_SLOW, N_CHANNELS)
+    fast_variances, zeros = np.full((LENGTH - N_SLOW, N_CHANNELS), fast), np.zeros(N_CHANNELS)
+    smooth = SmoothPrior(np.zeros((1, LENGTH, LENGTH)), zeros[None])
+    prior = WindowPrior(zeros, slow, fast_variances, 0.0, 0.0, zeros, smooth)
+    return covariance_from_prior(prior, LENGTH)
 
 
 def frames_from(windows, coefficients):

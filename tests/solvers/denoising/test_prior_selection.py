@@ -168,7 +168,7 @@ def coupled_channels(rng) -> WindowPrior:
         np.array([1.0, -2.0, 0.5, 3.0, 0.0]),
         np.einsum("kj,cd->kcjd", kernel, together),
         plain.fast * np.diag(together),
-        np.full(5, 0.05), np.full(5, 0.05), np.ones(5), replace(plain.smooth, fraction=0.0),
+        0.05, 0.05, np.ones(5), replace(plain.smooth, fraction=0.0),
     )  # fmt: skip
 
 
