@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from ...arrays import Array
 from ...motion import Motion, Tracks
@@ -111,6 +110,8 @@ def _resample(values: Array, frame_rate: float, target_rate: float) -> list[Arra
         return [values[start :: round(step)] for start in range(round(step))]
     if len(values) < 2:
         return [values]
+    from scipy.interpolate import CubicSpline  # slow to import: only when needed
+
     times = np.arange(0.0, (len(values) - 1) * target_rate / frame_rate + 1e-9) / target_rate
     spline = CubicSpline(np.arange(len(values)) / frame_rate, values, axis=0)
     return [np.asarray(spline(times))]

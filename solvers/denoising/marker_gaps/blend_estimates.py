@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.linalg import solve_triangular
-from scipy.optimize import nnls
 
 from ...arrays import Array
 
@@ -37,6 +36,8 @@ def blend_weights(trials: Sequence[Array]) -> Array:
     .. [1] Bates, Granger (1969). The combination of forecasts. doi:10.1057/jors.1969.103
     .. [2] Breiman (1996). Stacked regressions. doi:10.1007/BF00117832
     """
+    from scipy.optimize import nnls  # slow to import: only when needed
+
     errors = np.array(trials).reshape(len(trials), -1)
     products = errors @ errors.T / len(trials[0])
     squares = np.diag(products) + MIN_SQUARED_ERROR

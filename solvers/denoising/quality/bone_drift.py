@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.sparse.csgraph import minimum_spanning_tree
 
 from ...arrays import Array
 from ...feet import SIDES
@@ -72,6 +71,8 @@ def _bones_from_names(names: tuple[str, ...]) -> list[tuple[int, int]]:
 
 
 def _bones_from_distances(tracks: Tracks) -> list[tuple[int, int]]:
+    from scipy.sparse.csgraph import minimum_spanning_tree  # slow: only when needed
+
     sample = tracks.positions[:: max(1, tracks.n_frames // MAX_SAMPLED_FRAMES)]
     n_points = tracks.n_points
     costs, constant = np.zeros((n_points, n_points)), np.zeros((n_points, n_points), dtype=bool)

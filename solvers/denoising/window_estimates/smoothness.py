@@ -1,7 +1,6 @@
 """Fit how fast the channels of a take move, from the take itself."""
 
 import numpy as np
-from scipy.fft import idct
 
 from ...arrays import Array
 from ..window_priors import Windows
@@ -22,7 +21,7 @@ def build_smooth_kernels(window: int, frame_rate: float) -> Array:
     """Return covariances of the DCT coefficients, shape (n_times, window, window)."""
     steps = np.subtract.outer(np.arange(window), np.arange(window)) / frame_rate
     kernels = np.exp(-0.5 * (steps / np.array(CORRELATION_TIMES_S)[:, None, None]) ** 2)
-    coefficients = idct(np.eye(window), axis=0, norm="ortho")
+    coefficients = Windows(window, window, 1.0).dct_basis(window)
     return np.asarray(coefficients.T @ kernels @ coefficients)
 
 

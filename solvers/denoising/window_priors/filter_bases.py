@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import dct
 
 from ...archives import ArchiveLayout
 from ...arrays import Array
@@ -18,6 +17,7 @@ from ...settings import Settings, setting
 from ..channels import ExampleChannels, Moments
 from .lag_covariance import LagCovariance, find_leading_eigenpairs
 from .window_prior import count_slow_coefficients
+from .windows import Windows
 
 KEPT_ENERGY = 0.99
 """Fraction of the movement that the stored patterns contain, as in [LC10]."""
@@ -261,8 +261,10 @@ def _normalize_weights(
 def _dct_covariance(covariance: Array, window: int) -> tuple[Array, Array]:
     """Return the covariance of the slow DCT coefficients, and the variances of the others."""
     n_channels = len(covariance) // window
-    blocks = covariance.reshape(window, n_channels, window, n_channels)
-    coefficients = np.asarray(dct(dct(blocks, axis=0, norm="ortho"), axis=2, norm="ortho"))
+    blocks = covariance.reshape(window, -1)
+    basis = Windows(window, window, 1.0).dct_basis(window)
+    halfway = (basis.T @ blocks).reshape(window, n_channels, window, n_channels)
+    coefficients = np.asarray(basis.T @ halfway)
     n_slow = count_slow_coefficients(window)
     fast = np.einsum("kckc->kc", coefficients)[n_slow:]
     return coefficients[:n_slow, :, :n_slow].copy(), np.maximum(fast, 0.0)
