@@ -44,7 +44,7 @@ def filter_windows(
                 if window_filter.gaps
                 else coefficients
             )
-            slow = observed[:, :n_slow].reshape(-1, size) / scale
+            slow = (observed[:, :n_slow] / window_filter.gains.noise).reshape(-1, size)
             slow = (
                 window_filter.gaps.posterior_mean(slow, window_filter.pattern.indices)
                 if window_filter.gaps

@@ -78,7 +78,7 @@ class Windows:
         A product with all cosines takes a third of the time of a fast transform: windows are
         short, and channels many.
         """
-        return np.asarray(self._cosines.T @ frames / self.density)
+        return np.asarray((self._cosines.T / self.density) @ frames)
 
     def frames_from_coefficients(self, coefficients: Array) -> Array:
         """Invert `coefficients_from_frames`."""
