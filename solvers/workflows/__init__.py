@@ -2,6 +2,8 @@
 
 from .capture_recording import CapturedMotion, capture_actor, capture_recording
 from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
+from .fix_chains import ChainResult, TakeOrigin, TrackedMotion, find_origin
+from .fix_take import FixedTake, FixSettings, fix_take
 from .index_files import IndexReport, index_files
 from .live_session import LiveSession
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
@@ -14,10 +16,14 @@ from .reconstruct_from_library import (
 )
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
+from .take_figures import TakeFigures, figure_texts, measure_take
 from .vary_motions import Variants, vary_motions
 
 __all__ = [
     "CapturedMotion",
+    "ChainResult",
+    "FixSettings",
+    "FixedTake",
     "IndexReport",
     "LibraryBases",
     "LibraryPostures",
@@ -27,12 +33,19 @@ __all__ = [
     "PlantingResult",
     "RebuiltMotion",
     "ReconstructedMotion",
+    "TakeFigures",
+    "TakeOrigin",
+    "TrackedMotion",
     "Variants",
     "bases_from_library",
     "capture_actor",
     "capture_recording",
     "clean_from_library",
+    "figure_texts",
+    "find_origin",
+    "fix_take",
     "index_files",
+    "measure_take",
     "motion_from_markers",
     "plant_feet_if_possible",
     "posture_library_from_clips",

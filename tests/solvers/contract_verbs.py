@@ -46,7 +46,7 @@ from solvers.physics import simulate
 from solvers.progress import Progress
 from solvers.retargeting import reduce_keys, retarget
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
-from solvers.workflows import motion_from_markers, reconstruct_recording
+from solvers.workflows import fix_take, motion_from_markers, reconstruct_recording
 
 
 @dataclass(frozen=True)
@@ -175,6 +175,12 @@ VERBS = {
         lambda motion, progress: motion_from_markers(marked(motion), progress=progress),
         recording=lambda result: result.motion,
         figures=lambda result: result.solved.markers,
+        any_rate=True,
+    ),
+    "fix_take": Verb(
+        lambda motion, progress: fix_take(motion, progress=progress),
+        recording=lambda result: result.recording,
+        figures=lambda result: result.after.issues,
         any_rate=True,
     ),
     "resample": Verb(

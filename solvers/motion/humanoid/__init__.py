@@ -30,7 +30,7 @@ from .foot_contacts import (
     without_short_runs,
 )
 from .missing_hips import UPPER_LEG_ROLES, fill_missing_hips
-from .names import roles_by_name
+from .names import naming_scheme, roles_by_name
 from .points_motion import motion_from_points
 from .points_skeleton import skeleton_from_points
 from .posture_heading import (
@@ -113,6 +113,7 @@ __all__ = [
     "leg_length",
     "mirror_postures",
     "motion_from_points",
+    "naming_scheme",
     "normalize_postures",
     "positions_from_directions",
     "posture_joint_indices",

@@ -65,6 +65,13 @@ def name_matches(names: Sequence[str]) -> list[dict[str, str]]:
     return [{role: original[name] for role, name in match.items()} for match in matches]
 
 
+def naming_scheme(names: Sequence[str]) -> str:
+    """Return the title of the table of `TABLES` that matches most roles; empty if none does."""
+    matches = dict(zip(TABLES, name_matches(names), strict=True))
+    best = max(matches, key=lambda title: len(matches[title]))
+    return best if matches[best] else ""
+
+
 def with_fingers(names: Sequence[str], found: Mapping[str, str]) -> dict[str, str]:
     """Return the joints by role, with those of the fingers."""
     plain = _without_export_numbers(names)

@@ -1,0 +1,55 @@
+"""`fix`: fix takes of any origin with the steps that suit each."""
+
+import argparse
+
+from ..errors import InvalidMotionError
+from ..motion import Motion
+from ..progress import Progress, within
+from ..workflows import (
+    FixedTake,
+    FixSettings,
+    TakeOrigin,
+    figure_texts,
+    find_origin,
+    fix_take,
+)
+from .files import add_reading_options, read_recorded, write
+from .options import arguments_from, settings_from_arguments
+from .verb import Outcome, Task
+
+
+def add_fix_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `fix`."""
+    add_reading_options(parser)
+    arguments_from(parser, FixSettings)
+
+
+def perform_fix(task: Task, prepared: None, progress: Progress) -> Outcome:
+    """Fix one take, write its motion and report what was done."""
+    recording = read_recorded(task.source, task.arguments, within(progress, 0.0, 0.1))
+    if find_origin(recording) is TakeOrigin.POINTS:
+        raise InvalidMotionError(
+            f"{task.source} holds points of no marker set that a skeleton can be solved from."
+            " Use denoise, which cleans them as points."
+        )
+    settings = settings_from_arguments(task.arguments, FixSettings)
+    fixed = fix_take(recording, settings=settings, progress=within(progress, 0.1, 0.95))
+    write(fixed.recording, task.target, within(progress, 0.95, 1.0))
+    return Outcome(_summary(fixed), _figures(fixed))
+
+
+def _summary(fixed: FixedTake) -> str:
+    figures = fixed.figures()
+    lines = [*fixed.steps, f"{'':<20}{'before':>10}{'after':>10}"]
+    for label, before, after in figure_texts(figures["before"], figures["after"]):
+        lines.append(f"{label:<20}{before:>10}{after:>10}")
+    return "\n".join(lines)
+
+
+def _figures(fixed: FixedTake) -> dict[str, object]:
+    assert isinstance(fixed.recording, Motion)
+    return {
+        "n_frames": fixed.recording.n_frames,
+        "frame_rate_hz": fixed.recording.frame_rate,
+        **fixed.figures(),
+    }

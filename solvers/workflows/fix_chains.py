@@ -1,0 +1,275 @@
+"""Steps of `fix_take` for each origin of a take, in the order in which they help."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Flags
+from ..denoising import Denoised, Planted, PlantSettings, denoise
+from ..markers import Unswapped, find_marker_set, solve_skeleton, unswap_markers
+from ..motion import (
+    JointRecording,
+    Motion,
+    Sensor,
+    Tracks,
+    joint_parents,
+    motion_from_points,
+)
+from ..motion.humanoid import naming_scheme
+from ..progress import Progress, within
+from ..signals import find_runs
+from .motion_from_markers import MarkerMotion, motion_from_markers
+from .plant_feet_if_possible import PlantingResult, plant_feet_if_possible
+from .reconstruct_motion import RebuiltMotion, reconstruct_motion
+from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
+from .standard_joints import standardize_joint_names
+
+VIDEO_SCHEMES = {"SMPL", "SMPL in robotics", "SOMA", "MHR"}
+"""Names of joints that video models write."""
+CM_PER_M = 100.0
+
+
+class TakeOrigin(Enum):
+    """Origin of a take, as its content shows."""
+
+    SKELETON = "suit or file of a skeleton"
+    VIDEO = "video model"
+    CAMERA = "joints of a depth camera"
+    MARKERS = "optical markers"
+    POINTS = "points without a known marker set"
+
+
+@dataclass(frozen=True, eq=False)
+class TrackedMotion:
+    """A motion that was solved from the joints of a depth camera.
+
+    Attributes are those of `reconstruct_motion`.
+    """
+
+    motion: Motion
+    source: JointRecording | None = None
+    tracking_state: NDArray[np.int8] | None = None
+    sensor: Sensor = Sensor.OTHER
+    resize: bool = False
+
+
+Take = Motion | Tracks | JointRecording | TrackedMotion
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ChainResult:
+    """A fixed take, and the result of each step that ran.
+
+    Attributes
+    ----------
+    recording : Motion or Tracks
+        Without gaps.
+    steps : tuple of str
+        Sentences for the animator: what was done, and why.
+    """
+
+    recording: Motion | Tracks
+    steps: tuple[str, ...]
+    planted: Planted | None = None
+    denoised: Denoised | None = None
+    unswapped: Unswapped | None = None
+    rebuilt: RebuiltMotion | ReconstructedMotion | None = None
+    solved: MarkerMotion | None = None
+
+
+def find_origin(take: Take) -> TakeOrigin:
+    """Identify the origin of a take by its kind and the names of its joints or markers."""
+    match take:
+        case JointRecording() | TrackedMotion():
+            return TakeOrigin.CAMERA
+        case Motion():
+            is_video = naming_scheme(take.skeleton.names) in VIDEO_SCHEMES
+            return TakeOrigin.VIDEO if is_video else TakeOrigin.SKELETON
+        case Tracks():
+            known = find_marker_set(take.names)
+            return TakeOrigin.POINTS if known.missing_landmarks() else TakeOrigin.MARKERS
+
+
+def clean_motion(
+    motion: Motion, planting: PlantSettings | None, contacts: Flags | None, progress: Progress
+) -> ChainResult:
+    """Clean a motion and plant its feet."""
+    denoised = denoise(motion, progress=within(progress, 0.0, 0.8))
+    assert isinstance(denoised.recording, Motion)
+    planting_result = plant_feet_if_possible(
+        denoised.recording, planting, contacts, progress=within(progress, 0.8, 1.0)
+    )
+    is_video = find_origin(motion) is TakeOrigin.VIDEO
+    reason = (
+        "Such bodies come from video models: Clean removes their jitter."
+        if is_video
+        else "The take has a skeleton: Clean removes jitter and spikes and fills gaps."
+    )
+    return ChainResult(
+        recording=planting_result.motion,
+        steps=(reason, *_cleaned(motion, denoised), *_planted(planting_result)),
+        planted=planting_result.planted,
+        denoised=denoised,
+    )
+
+
+def clean_points(tracks: Tracks, progress: Progress) -> ChainResult:
+    """Correct swapped labels of points, and clean them."""
+    unswapped = unswap_markers(tracks, progress=within(progress, 0.0, 0.2))
+    denoised = denoise(unswapped.tracks, progress=within(progress, 0.2, 1.0))
+    missing = ", ".join(find_marker_set(tracks.names).missing_landmarks())
+    reason = (
+        "The points were cleaned, but a skeleton needs the Plug-in-Gait or CMU markers; missing"
+        f" are {missing}."
+    )
+    steps = (reason, *_unswapped(len(unswapped.swaps)), *_cleaned(tracks, denoised))
+    return ChainResult(
+        recording=denoised.recording,
+        steps=steps,
+        denoised=denoised,
+        unswapped=unswapped,
+    )
+
+
+def solve_markers(
+    tracks: Tracks, planting: PlantSettings | None, progress: Progress
+) -> ChainResult:
+    """Correct labels, fill gaps, solve the skeleton and plant its feet."""
+    solved = motion_from_markers(tracks, progress=within(progress, 0.0, 0.9))
+    planting_result = plant_feet_if_possible(
+        solved.motion, planting, progress=within(progress, 0.9, 1.0)
+    )
+    error = 1000.0 * np.nanmean(solved.solved.error)
+    n_joints = sum(not name.endswith("_end") for name in solved.motion.skeleton.names)
+    n_filled = int(solved.filled.sum())
+    steps = [
+        f"These are markers of the set {solved.solved.marker_set.name}: a skeleton was solved"
+        " from them.",
+        *_unswapped(len(solved.swaps)),
+        *[f"Filled {n_filled} samples of missing markers."] * bool(n_filled),
+        f"The skeleton has {n_joints} joints, and the mean marker error is {error:.1f} mm.",
+        *_planted(planting_result),
+    ]
+    return ChainResult(
+        recording=planting_result.motion,
+        steps=tuple(steps),
+        planted=planting_result.planted,
+        solved=solved,
+    )
+
+
+def reconstruct_joints(
+    recording: JointRecording, planting: PlantSettings | None, progress: Progress
+) -> ChainResult:
+    """Reconstruct the joints of a camera and plant the feet."""
+    rebuilt = reconstruct_recording(recording, planting=planting, progress=progress)
+    fraction = float(rebuilt.rebuilt.mean())
+    planting_result = PlantingResult(rebuilt.motion, rebuilt.planted, [])
+    return ChainResult(
+        recording=rebuilt.motion,
+        steps=_rebuilt(fraction, rebuilt.remarks, planting_result),
+        planted=rebuilt.planted,
+        rebuilt=rebuilt,
+    )
+
+
+def reconstruct_tracked(
+    tracked: TrackedMotion,
+    planting: PlantSettings | None,
+    contacts: Flags | None,
+    progress: Progress,
+) -> ChainResult:
+    """Reconstruct a motion that was solved from the joints of a camera, and plant the feet."""
+    rebuilt = reconstruct_motion(
+        tracked.motion,
+        source=tracked.source,
+        tracking_state=tracked.tracking_state,
+        sensor=tracked.sensor,
+        resize=tracked.resize,
+        progress=within(progress, 0.0, 0.9),
+    )
+    planting_result = plant_feet_if_possible(
+        rebuilt.motion,
+        planting,
+        contacts,
+        reliability=rebuilt.reliability,
+        progress=within(progress, 0.9, 1.0),
+    )
+    return ChainResult(
+        recording=planting_result.motion,
+        steps=_rebuilt(rebuilt.rebuilt_fraction, rebuilt.remarks, planting_result),
+        planted=planting_result.planted,
+        rebuilt=rebuilt,
+    )
+
+
+def take_before(take: Take, chain: ChainResult, progress: Progress) -> Motion | Tracks:
+    """Return the take as it came, in the form of the result.
+
+    Markers become the skeleton that is solved without correct labels and filled gaps, joints
+    of a camera the skeleton that Import makes of them.
+    """
+    match take:
+        case TrackedMotion():
+            return take.motion
+        case JointRecording():
+            standardized = standardize_joint_names(take)
+            return motion_from_points(standardized.tracks, joint_parents(standardized.names))
+        case Tracks() if chain.solved is not None:
+            if chain.solved.swaps or chain.solved.filled.any():
+                return solve_skeleton(take, progress=progress).motion
+            return chain.solved.solved.motion
+        case _:
+            return take
+
+
+def _cleaned(start: Motion | Tracks, denoised: Denoised) -> list[str]:
+    filled = _observed(denoised.recording) & ~_observed(start)
+    n_spikes, n_gaps = _n_runs(denoised.outliers), _n_runs(filled)
+    done = f"Clean corrected {_counted(n_spikes, 'spike')} and filled"
+    return [f"{done} {_counted(n_gaps, 'gap')}.", denoised.prior_used]
+
+
+def _observed(recording: Motion | Tracks) -> Flags:
+    """Return what was observed of the points, or of the joints that can rotate."""
+    if isinstance(recording, Tracks):
+        return recording.visible
+    skeleton = recording.skeleton
+    rotating = [not skeleton.is_end_site(joint) for joint in range(recording.n_joints)]
+    return np.asarray(recording.observed[:, rotating])
+
+
+def _rebuilt(
+    fraction: float, remarks: Sequence[str], planting_result: PlantingResult
+) -> tuple[str, ...]:
+    return (
+        "A depth camera measured the joints: Reconstruct rebuilds and smooths them, so Clean"
+        " was not needed.",
+        f"Rebuilt {100.0 * fraction:.1f} % of the joint samples.",
+        *remarks,
+        *_planted(planting_result),
+    )
+
+
+def _planted(planting_result: PlantingResult) -> list[str]:
+    planted, remarks = planting_result.planted, planting_result.remarks
+    if planted is None:
+        return remarks
+    before, after = (CM_PER_M * each for each in (planted.slide_before, planted.slide_after))
+    slid = f"Plant Feet: both feet slid {before:.0f} cm in total, now {after:.0f} cm."
+    return [slid, *remarks]
+
+
+def _unswapped(n_swaps: int) -> list[str]:
+    return [f"Corrected {_counted(n_swaps, 'swapped label')}."] if n_swaps else []
+
+
+def _n_runs(flags: Flags) -> int:
+    return sum(len(find_runs(column)) for column in flags.T)
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"1 {noun}" if number == 1 else f"{number} {noun}s"

@@ -1,0 +1,130 @@
+"""Measure a take in the few figures that an animator reads at a glance."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Flags
+from ..denoising import Issue, Quality, find_worst_issues, measure_quality
+from ..motion import JointLimits, Motion, Tracks
+from ..progress import Progress, unwatched, within
+from ..signals import find_runs
+
+UNKNOWN = "–"
+
+
+@dataclass(frozen=True, eq=False)
+class TakeFigures:
+    """Quality of a take, and what Check lists of it.
+
+    Attributes
+    ----------
+    quality : Quality
+    issues : tuple of Issue
+        Worst first, as many as Check lists by default.
+    """
+
+    quality: Quality
+    issues: tuple[Issue, ...]
+
+    @property
+    def jitter(self) -> float:
+        """Mean noise of the joints' rotations, radians; NaN for points, which have none."""
+        noise = [signal.noise for signal in self.quality.signals if signal.is_rotation]
+        return float(np.mean(noise)) if noise else float("nan")
+
+    @property
+    def longest_foot_slide(self) -> float:
+        """Longest horizontal displacement of a foot in one contact, meters; NaN without any."""
+        slides = [
+            float(np.linalg.norm(np.nansum(foot.steps[start:stop], axis=0)))
+            for foot in self.quality.feet
+            for start, stop in find_runs(foot.contact)
+        ]
+        return max(slides, default=float("nan"))
+
+    @property
+    def n_spikes(self) -> int:
+        """Number of spikes of all joints."""
+        return _count([signal.spikes for signal in self.quality.signals])
+
+    @property
+    def n_gaps(self) -> int:
+        """Number of gaps of all joints."""
+        return _count([signal.gaps for signal in self.quality.signals])
+
+    def figures(self) -> dict[str, Any]:
+        """Return the figures as JSON-ready values with units in the names; None is unknown."""
+        return {
+            "jitter_deg": _known(np.degrees(self.jitter)),
+            "longest_foot_slide_cm": _known(100.0 * self.longest_foot_slide),
+            "spikes": self.n_spikes,
+            "gaps": self.n_gaps,
+            "issues": len(self.issues),
+        }
+
+
+def measure_take(
+    recording: Motion | Tracks,
+    *,
+    contacts: Flags | None = None,
+    limits: JointLimits | None = None,
+    progress: Progress = unwatched,
+) -> TakeFigures:
+    """Measure a take and list its issues, as Check does with its defaults.
+
+    Parameters
+    ----------
+    recording : Motion or Tracks; NaN = not observed
+    contacts : bool, shape (n_frames, 2), left and right
+        When each foot is in contact; detected if not given. Give the same contacts to compare
+        a take before and after.
+    limits : JointLimits
+        Limits of the joints; joints beyond them are issues.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidMotionError
+        The contacts do not fit the recording.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    quality = measure_quality(
+        recording, contacts=contacts, limits=limits, progress=within(progress, 0.0, 0.9)
+    )
+    issues = find_worst_issues(recording, quality, progress=within(progress, 0.9, 1.0))
+    return TakeFigures(quality, issues)
+
+
+def figure_texts(
+    before: Mapping[str, Any], after: Mapping[str, Any]
+) -> tuple[tuple[str, str, str], ...]:
+    """Return label, value before and value after of the four figures of `figures`."""
+    first, last = _texts(before), _texts(after)
+    return tuple((label, first[label], last[label]) for label in first)
+
+
+def _texts(figures: Mapping[str, Any]) -> dict[str, str]:
+    spikes, gaps = figures.get("spikes"), figures.get("gaps")
+    faults = None if spikes is None or gaps is None else spikes + gaps
+    return {
+        "Jitter": _amount(figures.get("jitter_deg"), "{:.2f}°"),
+        "Longest foot slide": _amount(figures.get("longest_foot_slide_cm"), "{:.1f} cm"),
+        "Spikes and gaps": _amount(faults, "{}"),
+        "Issues": _amount(figures.get("issues"), "{}"),
+    }
+
+
+def _count(flags: list[Flags]) -> int:
+    return sum(len(find_runs(each)) for each in flags)
+
+
+def _known(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def _amount(value: float | None, form: str) -> str:
+    return UNKNOWN if value is None else form.format(value)
