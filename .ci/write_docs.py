@@ -24,7 +24,8 @@ BUTTONS = re.compile(r"(<!-- buttons -->\n).*?(<!-- end -->)", re.DOTALL)
 NOT_BUTTONS = {"import_job"}
 """Operators that another operator starts: no user sees them."""
 PAGES = {
-    "importing": "import_recording change_axes show_depth",
+    "importing": "import_recording load_sample change_axes show_depth",
+    "fixing": "fix_take accept_fix",
     "tracking": "track_depth retrack",
     "reconstruction": "reconstruct",
     "cleaning": "denoise learn_patterns plant_feet measure_quality jump_to_issue revert_to_raw",

@@ -11,6 +11,7 @@ from .blender.settings_properties import settings_from
 from .check.button_settings import CheckBundle
 from .clean.button_settings import CleanBundle
 from .exporting.button_settings import ExportPanelBundle
+from .fix.fixing import FixBundle
 from .library.button_settings import FindBundle, LibraryBundle, LoadBundle, UseBundle
 from .markers.solving import SolveBundle
 from .physics.simulating import SimulateBundle
@@ -27,6 +28,11 @@ from .variants.properties import MOCAP_PG_variants
 @settings_from(CleanBundle)
 class MOCAP_PG_clean(bpy.types.PropertyGroup):
     """Settings of the button Clean."""
+
+
+@settings_from(FixBundle)
+class MOCAP_PG_fix(bpy.types.PropertyGroup):
+    """Settings of the button Fix My Take."""
 
 
 @settings_from(CheckBundle)
@@ -149,6 +155,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
 
     clean: bpy.props.PointerProperty(type=MOCAP_PG_clean)
     check: bpy.props.PointerProperty(type=MOCAP_PG_check)
+    fix: bpy.props.PointerProperty(type=MOCAP_PG_fix)
     export: bpy.props.PointerProperty(type=MOCAP_PG_export)
     solve: bpy.props.PointerProperty(type=MOCAP_PG_solve)
     reconstruct: bpy.props.PointerProperty(type=MOCAP_PG_reconstruct)
@@ -183,6 +190,7 @@ class MOCAP_PG_job(bpy.types.PropertyGroup):
 
 
 CLASSES = (
+    MOCAP_PG_fix,
     MOCAP_PG_clean,
     MOCAP_PG_check,
     MOCAP_PG_export,
@@ -213,12 +221,21 @@ def register() -> None:
     for each in CLASSES:
         bpy.utils.register_class(each)
     bpy.types.Scene.mocap_assist = bpy.props.PointerProperty(type=MOCAP_PG_scene)
-    bpy.types.WindowManager.mocap_assist_job = bpy.props.PointerProperty(type=MOCAP_PG_job)
+    manager = bpy.types.WindowManager
+    manager.mocap_assist_job = bpy.props.PointerProperty(type=MOCAP_PG_job)
+    manager.mocap_assist_all_panels = bpy.props.BoolProperty(
+        name="All Panels", description="Show all panels, whatever is selected"
+    )
+    manager.mocap_assist_fix_details = bpy.props.BoolProperty(
+        name="Details", description="Show what was done to the take, and why"
+    )
 
 
 def unregister() -> None:
     """Take the properties away again."""
-    del bpy.types.WindowManager.mocap_assist_job
+    manager = bpy.types.WindowManager
+    del manager.mocap_assist_fix_details, manager.mocap_assist_all_panels
+    del manager.mocap_assist_job
     del bpy.types.Scene.mocap_assist
     for each in reversed(CLASSES):
         bpy.utils.unregister_class(each)

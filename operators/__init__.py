@@ -2,12 +2,14 @@
 
 import bpy
 
+from .accept_fix import MOCAP_OT_accept_fix
 from .assign_variants import MOCAP_OT_assign_variants
 from .change_axes import MOCAP_OT_change_axes
 from .denoise import MOCAP_OT_denoise
 from .draw_variants import MOCAP_OT_draw_variants
 from .export_take import MOCAP_OT_export_take
 from .find_similar import MOCAP_OT_find_similar
+from .fix_take import MOCAP_OT_fix_take
 from .import_job import MOCAP_OT_import_job
 from .import_recording import MOCAP_OT_import_recording
 from .index_library import MOCAP_OT_index_library
@@ -19,6 +21,7 @@ from .learn_patterns import MOCAP_OT_learn_patterns
 from .link_match import MOCAP_OT_link_match
 from .listen import MOCAP_OT_listen
 from .load_match import MOCAP_OT_load_match
+from .load_sample import MOCAP_OT_load_sample
 from .mark_asset import MOCAP_OT_mark_asset
 from .mark_variants import MOCAP_OT_mark_variants
 from .measure_quality import MOCAP_OT_measure_quality
@@ -39,6 +42,9 @@ from .vary import MOCAP_OT_vary
 OPERATORS = (
     MOCAP_OT_import_recording,
     MOCAP_OT_import_job,
+    MOCAP_OT_load_sample,
+    MOCAP_OT_fix_take,
+    MOCAP_OT_accept_fix,
     MOCAP_OT_change_axes,
     MOCAP_OT_show_depth,
     MOCAP_OT_track_depth,

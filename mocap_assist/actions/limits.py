@@ -11,6 +11,11 @@ from ...solvers.rotations import multiply
 from .take import ArmatureTake
 
 
+def has_limits(armature: bpy.types.Object) -> bool:
+    """Whether constraints limit the rotation of any bone."""
+    return any(any(_limiting(bone)) for bone in armature.pose.bones)
+
+
 def read_limits(
     armature: bpy.types.Object, take: ArmatureTake, bones: Collection[str]
 ) -> JointLimits | None:

@@ -24,6 +24,7 @@ from ..scene import history
 from .bundles import add_bundle_options, bundle_from_arguments
 from .export_verb import HELP as EXPORT_HELP
 from .export_verb import add_export_options, check_export, perform_export
+from .fix_verb import add_fix_options, perform_fix
 from .library_verbs import FIND_HELP, add_find_options, check_find, perform_find
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct
 from .retarget_verbs import (
@@ -171,6 +172,11 @@ def _convert(
 
 
 VERBS = {
+    "fix": Verb(
+        "Fix takes of any origin with the steps that suit them: clean, solve or reconstruct.",
+        add_fix_options,
+        perform_fix,
+    ),
     "denoise": Verb(
         "Remove jitter and spikes from actions, fill gaps and plant feet.",
         _clean_options,

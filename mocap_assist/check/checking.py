@@ -1,9 +1,12 @@
 """Check: read the scene, list issues, and jump to them."""
 
+from collections.abc import Sequence
 from functools import partial
 
 import bpy
 
+from ...solvers.arrays import Array
+from ...solvers.denoising import Issue
 from ..actions.armature_read import read_take
 from ..actions.contact_keys import read_contacts
 from ..actions.limits import read_limits
@@ -25,7 +28,7 @@ def read_checking(
 ) -> "Steps[partial[Checked]]":
     """Read what a subject plays; return the picklable solve."""
     here = Subject.of(scene, subject)
-    take = yield from _read.steps(scene, subject)
+    take = yield from read_played.steps(scene, subject)
     scene, subject = here.find()
     contacts, limits = None, None
     if isinstance(take, ArmatureTake):
@@ -51,21 +54,31 @@ def show_checked(
 ) -> Steps[str]:
     """List the issues in the scene; return a sentence about them."""
     here = Subject.of(scene, subject)
-    take = yield from _read.steps(scene, subject)
+    take = yield from read_played.steps(scene, subject)
     scene, subject = here.find()
-    shown = scene.mocap_assist
     check_unchanged(subject, solved_digest, take.recordings[0])
-    frames = take.frames
+    list_issues(scene, subject, take.frames, checked.issues, checked.quality.report())
+    return " ".join(filter(None, [_summary(checked), checked.low_confidence]))
+
+
+def list_issues(
+    scene: bpy.types.Scene,
+    subject: bpy.types.Object,
+    frames: Array,
+    issues: Sequence[Issue],
+    report: str,
+) -> None:
+    """List the issues of what a subject plays in the scene; `frames` are those of its take."""
+    shown = scene.mocap_assist
     shown.issues.clear()
     shown.active_issue = 0
     shown.checked = played_source(subject)[0].name
-    shown.report = checked.quality.report()
-    for issue in checked.issues:
+    shown.report = report
+    for issue in issues:
         item = shown.issues.add()
         item.name = issue.joint.removesuffix("_end")
         item.start, item.stop = frames[issue.start_frame], frames[issue.stop_frame - 1]
         item.kind, item.severity, item.sentence = issue.kind, issue.severity, issue.sentence
-    return " ".join(filter(None, [_summary(checked), checked.low_confidence]))
 
 
 def _summary(checked: Checked) -> str:
@@ -101,9 +114,10 @@ def _select_bone(armature: bpy.types.Object, name: str) -> None:
 
 
 @Sliced
-def _read(
+def read_played(
     scene: bpy.types.Scene, subject: bpy.types.Object
 ) -> Steps[ArmatureTake | MarkerTake]:
+    """Read what an armature, or the markers below an object, play now."""
     if subject.type != "ARMATURE":
         return (yield from read_markers.steps(subject, scene))
     return (yield from read_take.steps(subject, scene, source=played_source(subject)))

@@ -8,6 +8,7 @@ from ...solvers.errors import InvalidMotionError
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_job, draw_sentence, exists, is_wide
 from ..panels.figure_rows import figure_rows, frames_text
+from ..panels.visibility import shows_take
 from ..runtime.selection import played_result, played_source, selected_subject
 from ..scene import history
 
@@ -53,7 +54,7 @@ class CheckPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(CHECK)
+        return exists(CHECK) and shows_take(context)
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, shown = self.layout, context.scene.mocap_assist

@@ -7,6 +7,7 @@ import bpy
 from ..actions.contact_keys import PROPERTIES
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists
+from ..panels.visibility import shows_armature
 from ..runtime.selection import selected_armature
 
 PLANT = "mocap_assist.plant_feet"
@@ -22,7 +23,7 @@ class FeetPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(PLANT)
+        return exists(PLANT) and shows_armature(context)
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, armature = self.layout, selected_armature(context)

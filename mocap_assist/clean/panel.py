@@ -5,6 +5,7 @@ import bpy
 from ...solvers.denoising import DenoiseSettings, PlantSettings
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists, folded, settings_column
+from ..panels.visibility import shows_take
 from ..runtime.selection import selected_subject, why_not_clean
 from .button_settings import Prior
 from .example_list import draw_examples
@@ -18,6 +19,10 @@ class CleanPanel(PanelMixin):
     """Settings of Clean, and its button."""
 
     bl_label = "Clean"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return shows_take(context)
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

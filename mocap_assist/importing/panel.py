@@ -1,4 +1,4 @@
-"""Panel: bring recordings in, and where the selected one came from."""
+"""Panel: bring recordings in, the first steps, and where the selected take came from."""
 
 from pathlib import PurePath
 
@@ -7,15 +7,19 @@ import bpy
 from ..blender.mixins import PanelMixin
 from ..depth.depth_preview import NOT_ALLOWED, problem_of
 from ..panels.drawing import draw_job, draw_sentence, exists
+from ..panels.manual_page import MANUAL
+from ..panels.visibility import ALL_PANELS
+from ..runtime.selection import selected_subject
 from ..scene.origin import noted_conventions, origin_of
 from .import_menu import IMPORT
 
 CHANGE = "mocap_assist.change_axes"
 SHOW = "mocap_assist.show_depth"
+SAMPLE = "mocap_assist.load_sample"
 
 
 class ImportPanel(PanelMixin):
-    """The button Import, and the origin of what is selected."""
+    """The button Import, the first steps, and the origin of what is selected."""
 
     bl_label = "Import"
 
@@ -23,12 +27,20 @@ class ImportPanel(PanelMixin):
     def poll(cls, context: bpy.types.Context) -> bool:
         return exists(IMPORT)
 
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        """Offer the panels that the selection does not need."""
+        self.layout.prop(
+            context.window_manager, ALL_PANELS, text="", icon="COLLAPSEMENU", emboss=False
+        )
+
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         draw_job(layout, context, "import")
         layout.operator(IMPORT, text="Import Motion Capture", icon="IMPORT")
         active = context.view_layer.objects.active
         origin = origin_of(active) if active is not None else {}
+        if not origin and selected_subject(context) is None:
+            _draw_first_steps(layout)
         if origin:
             column = layout.column(align=True)
             name = PurePath(str(origin.get("file", ""))).name
@@ -42,6 +54,13 @@ class ImportPanel(PanelMixin):
                 draw_sentence(column, context, problem, icon="ERROR")
                 if problem == NOT_ALLOWED:
                     column.operator(SHOW)
+
+
+def _draw_first_steps(layout: bpy.types.UILayout) -> None:
+    """Draw what a newcomer needs who has no take yet."""
+    if exists(SAMPLE):
+        layout.operator(SAMPLE, icon="ARMATURE_DATA")
+    layout.operator("wm.url_open", text="Open Manual", icon="HELP").url = MANUAL.as_uri()
 
 
 def _figures(origin: dict[str, object]) -> str:

@@ -1,10 +1,13 @@
 """Panel: search by performing before a camera."""
 
+from typing import ClassVar
+
 import bpy
 
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists
 from ..panels.preference_values import preferences
+from ..panels.visibility import shows_take
 from .listening import current
 
 LISTEN = "mocap_assist.listen"
@@ -14,10 +17,12 @@ class PerformPanel(PanelMixin):
     """The button Listen, the port, and what is heard."""
 
     bl_label = "Perform"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(LISTEN)
+        is_listening = current() is not None
+        return exists(LISTEN) and (is_listening or shows_take(context))
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

@@ -9,6 +9,7 @@ from ...solvers.markers import SolveSettings
 from ...solvers.workflows import MarkerMotionSettings
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists, settings_column
+from ..panels.visibility import shows_all
 from ..runtime.selection import selected_subject
 from .solving import why_not_solve
 
@@ -24,7 +25,8 @@ class MarkersPanel(PanelMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         subject = selected_subject(context)
-        return exists(SOLVE) and subject is not None and subject.type != "ARMATURE"
+        is_marked = subject is not None and subject.type != "ARMATURE"
+        return exists(SOLVE) and (is_marked or shows_all(context))
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

@@ -8,6 +8,7 @@ import bpy
 from ...solvers.physics import Ground, SimulateSettings
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists, settings_column
+from ..panels.visibility import shows_armature
 from ..runtime.selection import why_not_change
 
 SIMULATE = "mocap_assist.simulate"
@@ -21,7 +22,7 @@ class PhysicsPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(SIMULATE)
+        return exists(SIMULATE) and shows_armature(context)
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

@@ -10,6 +10,9 @@ from ..blender.mixins import PanelMixin
 from ..clean.example_list import RECONSTRUCT, draw_examples
 from ..drawing.confidence_switch import draw_confidence_switch
 from ..panels.drawing import draw_sentence, exists, folded, settings_column
+from ..panels.visibility import shows_all
+from ..runtime.selection import selected_armature
+from ..scene.origin import origin_of, was_tracked
 from .button_settings import Postures
 from .reconstructing import why_not_reconstruct
 
@@ -24,7 +27,7 @@ class ReconstructPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(BUTTON)
+        return exists(BUTTON) and (shows_all(context) or _suits(selected_armature(context)))
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -44,6 +47,13 @@ class ReconstructPanel(PanelMixin):
         if reason := why_not_reconstruct(context):
             draw_sentence(layout, context, reason, icon="INFO")
         draw_confidence_switch(layout, context)
+
+
+def _suits(armature: bpy.types.Object | None) -> bool:
+    """Whether an armature was imported from joints of a camera, or not by Mocap Assist."""
+    if armature is None:
+        return False
+    return was_tracked(armature) or not origin_of(armature)
 
 
 def _draw_folded(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:

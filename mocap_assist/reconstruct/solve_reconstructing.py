@@ -98,7 +98,7 @@ def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> Rebuilt
         problem.body,
         postures,
         prior,
-        source=_source(problem),
+        source=read_source(problem),
         tracking_state=problem.tracking_state,
         sensor=problem.sensor,
         resize=problem.resize,
@@ -108,7 +108,7 @@ def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> Rebuilt
     return replace(rebuilt, remarks=(message, *rebuilt.remarks)) if message else rebuilt
 
 
-def _source(problem: RebuildProblem) -> JointRecording | None:
+def read_source(problem: RebuildProblem) -> JointRecording | None:
     """Return the recording of a take, if its file is still there and readable."""
     if problem.source is None:
         return None

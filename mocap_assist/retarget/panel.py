@@ -9,6 +9,7 @@ from ...solvers.retargeting import RetargetSettings, RootMotion
 from ..blender.mixins import PanelMixin
 from ..blender.name_lists import SEPARATOR, join_names, split_names
 from ..panels.drawing import draw_sentence, exists, folded, settings_column
+from ..panels.visibility import shows_armature
 from ..rigs.rigify import is_rigify
 from ..runtime.selection import selected_armature, why_not_read, why_not_retarget
 from .bone_list import draw_bones
@@ -30,7 +31,7 @@ class RetargetPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(RETARGET)
+        return exists(RETARGET) and shows_armature(context)
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

@@ -48,6 +48,11 @@ def origin_of_file(
     return origin
 
 
+def was_tracked(made: bpy.types.ID) -> bool:
+    """Whether it was imported from the joints of a depth camera."""
+    return bool(origin_of(made).get("kind") == JointRecording.__name__)
+
+
 def noted_conventions(origin: dict[str, Any]) -> FileConventions | None:
     """Return the axes and unit of a note; None if it has none, or they make no sense."""
     names = [item.name for item in fields(FileConventions)]

@@ -9,6 +9,7 @@ from ..blender.mixins import PanelMixin
 from ..library.auto_update_list import choices_are_kept
 from ..panels.drawing import draw_sentence, exists, folded, is_wide, settings_column
 from ..panels.figure_rows import frames_text
+from ..panels.visibility import shows_take
 from ..runtime.selection import Bones
 from . import searches
 from .finding import why_not_find
@@ -61,7 +62,8 @@ class LibraryPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(FIND)
+        is_listing = bool(context.window_manager.mocap_assist_matches.rows)
+        return exists(FIND) and (is_listing or shows_take(context))
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

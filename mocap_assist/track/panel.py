@@ -7,9 +7,10 @@ import bpy
 from ...solvers.depth_scene import ForegroundMethod
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_job, draw_sentence, exists, split_column
+from ..panels.visibility import shows_all
 from .retracking import why_not_retrack
 from .tracked_body import is_tracked
-from .tracking import why_not_track
+from .tracking import selected_preview, why_not_track
 
 TRACK, RETRACK = "mocap_assist.track_depth", "mocap_assist.retrack"
 HOW = "Correct the pose at a wrong frame, then press Track from Here."
@@ -25,7 +26,10 @@ class TrackPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(TRACK)
+        suits = selected_preview(context) is not None or is_tracked(
+            context.view_layer.objects.active
+        )
+        return exists(TRACK) and (suits or shows_all(context))
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

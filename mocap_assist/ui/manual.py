@@ -1,13 +1,16 @@
 """F1 on a button opens its chapter of the manual that came with the extension."""
 
-from pathlib import Path
-
 import bpy
 
-MANUAL = Path(__file__).with_name("manual.html")
-"""Location of the manual, which needs no network."""
+from ..panels.manual_page import MANUAL
+
 CHAPTERS = {
     "bpy.ops.mocap_assist.import_*": "import",
+    "bpy.ops.mocap_assist.load_sample*": "import",
+    "bpy.types.windowmanager.mocap_assist_all_panels*": "import",
+    "bpy.ops.mocap_assist.*fix*": "fix",
+    "bpy.types.mocap_pg_fix*": "fix",
+    "bpy.types.windowmanager.mocap_assist_fix_details*": "fix",
     "bpy.ops.mocap_assist.change_axes*": "import",
     "bpy.ops.mocap_assist.show_depth*": "import",
     "bpy.ops.mocap_assist.denoise*": "clean",

@@ -5,9 +5,14 @@ import bpy
 from ..panels.drawing import exists
 
 BUTTONS = (
+    "mocap_assist.import_recording",
+    "mocap_assist.load_sample",
+    "mocap_assist.fix_take",
+    "mocap_assist.accept_fix",
     "mocap_assist.track_depth",
     "mocap_assist.retrack",
     "mocap_assist.reconstruct",
+    "mocap_assist.solve_skeleton",
     "mocap_assist.denoise",
     "mocap_assist.measure_quality",
     "mocap_assist.plant_feet",
@@ -16,8 +21,13 @@ BUTTONS = (
     "mocap_assist.reduce_keys",
     "mocap_assist.revert_to_raw",
     "mocap_assist.export_take",
+    "mocap_assist.index_library",
+    "mocap_assist.find_similar",
+    "mocap_assist.vary",
+    "mocap_assist.listen",
 )
 MENUS = (
+    "VIEW3D_MT_object",
     "VIEW3D_MT_pose",
     "VIEW3D_MT_pose_context_menu",
     "GRAPH_MT_key",

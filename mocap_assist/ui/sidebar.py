@@ -6,6 +6,7 @@ from ..check.compare_panel import ComparePanel
 from ..check.panel import CheckPanel, MOCAP_UL_issues
 from ..clean.feet_panel import FeetPanel
 from ..clean.panel import CleanPanel
+from ..fix.panel import FixPanel
 from ..importing.panel import ImportPanel
 from ..live.panel import PerformPanel
 from ..markers.panel import MarkersPanel
@@ -23,29 +24,39 @@ TAB = "Mocap"
 
 def _in_every_editor(body: type) -> list[type[bpy.types.Panel]]:
     """Return a panel class for each editor: Blender ties a class to one kind of editor."""
-    name = f"MOCAP_PT_{body.__name__.removesuffix('Panel').lower()}"
-    shared = {"bl_region_type": "UI", "bl_category": TAB}
-    return [
-        type(f"{name}{suffix}", (body, bpy.types.Panel), {"bl_space_type": editor} | shared)
-        for suffix, editor in EDITORS.items()
-    ]
+    name, shared = _name(body), {"bl_region_type": "UI", "bl_category": TAB}
+    found = []
+    for suffix, editor in EDITORS.items():
+        own = {"bl_space_type": editor, **shared}
+        if body in PARENTS:
+            own["bl_parent_id"] = f"{_name(PARENTS[body])}{suffix}"
+        found.append(type(f"{name}{suffix}", (body, bpy.types.Panel), own))
+    return found
 
 
+def _name(body: type) -> str:
+    return f"MOCAP_PT_{body.__name__.removesuffix('Panel').lower()}"
+
+
+PARENTS = {ComparePanel: CleanPanel, FeetPanel: CleanPanel}
+"""Panels within others."""
 BODIES = (
     ImportPanel,
+    FixPanel,
+    CheckPanel,
     TrackPanel,
+    MarkersPanel,
     ReconstructPanel,
     CleanPanel,
-    CheckPanel,
     ComparePanel,
     FeetPanel,
     PhysicsPanel,
-    MarkersPanel,
     RetargetPanel,
     LibraryPanel,
     VaryPanel,
     PerformPanel,
 )
+"""In the order of the work, each after the one that it is within."""
 PANELS = [panel for body in BODIES for panel in _in_every_editor(body)]
 
 

@@ -10,6 +10,7 @@ from ...solvers.variation import VarySettings
 from ..blender.mixins import PanelMixin
 from ..blender.name_lists import split_names
 from ..panels.drawing import draw_sentence, exists, settings_column
+from ..panels.visibility import shows_armature
 from ..retarget.panel import TICK
 from ..runtime.selection import selected_armature
 from ..search import searches
@@ -67,7 +68,8 @@ class VaryPanel(PanelMixin):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(VARY)
+        has_variants = bool(context.scene.mocap_assist.variants.rows)
+        return exists(VARY) and (has_variants or shows_armature(context))
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

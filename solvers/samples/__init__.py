@@ -9,6 +9,7 @@
 
 from .corruption import CorruptionSettings, corrupt
 from .gait import GaitSettings, walking_gait
+from .noisy_walk import noisy_walk
 from .performance import Performance, PerformanceSettings, perform_gestures
 from .walker import walker_skeleton
 
@@ -18,6 +19,7 @@ __all__ = [
     "Performance",
     "PerformanceSettings",
     "corrupt",
+    "noisy_walk",
     "perform_gestures",
     "walker_skeleton",
     "walking_gait",

@@ -16,10 +16,11 @@ from .reconstruct_from_library import (
 )
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
-from .take_figures import TakeFigures, figure_texts, measure_take
+from .take_figures import UNKNOWN, TakeFigures, figure_texts, measure_take
 from .vary_motions import Variants, vary_motions
 
 __all__ = [
+    "UNKNOWN",
     "CapturedMotion",
     "ChainResult",
     "FixSettings",

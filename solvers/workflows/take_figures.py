@@ -13,6 +13,7 @@ from ..progress import Progress, unwatched, within
 from ..signals import find_runs
 
 UNKNOWN = "–"
+"""Text of a figure that is not known."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,8 +113,8 @@ def _texts(figures: Mapping[str, Any]) -> dict[str, str]:
     faults = None if spikes is None or gaps is None else spikes + gaps
     return {
         "Jitter": _amount(figures.get("jitter_deg"), "{:.2f}°"),
-        "Longest foot slide": _amount(figures.get("longest_foot_slide_cm"), "{:.1f} cm"),
-        "Spikes and gaps": _amount(faults, "{}"),
+        "Longest Slide": _amount(figures.get("longest_foot_slide_cm"), "{:.1f} cm"),
+        "Spikes, Gaps": _amount(faults, "{}"),
         "Issues": _amount(figures.get("issues"), "{}"),
     }
 

@@ -14,6 +14,7 @@ def empty_scene():
 
 def unfold_alone(name):
     """Hide all other panels, and unfold this one, before the tab is first drawn."""
+    bpy.context.window_manager.mocap_assist_all_panels = True
     for each in [other for other in dir(bpy.types) if other.startswith(PANELS)]:
         panel = getattr(bpy.types, each)
         bpy.utils.unregister_class(panel)

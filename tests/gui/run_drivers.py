@@ -39,6 +39,7 @@ RECORDINGS = {
     },
     "export": {},
     "depth": {"walk.npz": "depth/truth/walk_front.npz"},
+    "fix": {},
     "import": {
         "walk.bvh": "mocap/cmu_walk/07_01.bvh",
         "joints.txt": "kinect/irds/215_18_0_5_1_stand.txt",

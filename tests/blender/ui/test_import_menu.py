@@ -44,7 +44,7 @@ def test_file_menu_has_the_import_entry(blank, draw):
     assert len(entries) == 1
 
 
-def test_clean_panel_hides_joint_settings_for_markers(blank, draw, load, rng, tmp_path):
+def test_clean_panel_hides_joint_settings_for_markers(blank, draw, load, actor, rng, tmp_path):
     joints = {"joint_limits", "plant_feet", "contact_height"}
     assert joints - {"contact_height"} <= set(draw("MOCAP_PT_clean"))
     tracks = load("solvers.motion").Tracks(("a", "b"), rng.normal(size=(30, 2, 3)), 24.0)
@@ -61,7 +61,7 @@ def test_panel_shows_the_source_of_the_selected_take(blank, draw, load, tmp_path
     samples = load("solvers.samples")
     walk = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=25.0))
     load("solvers.recordings").write_bvh(walk, tmp_path / "stroll.bvh")
-    assert draw("MOCAP_PT_import") == [IMPORT]
+    assert draw("MOCAP_PT_import") == [IMPORT, "mocap_assist.load_sample", "wm.url_open"]
 
     blank.ops.mocap_assist.import_recording(filepath=str(tmp_path / "stroll.bvh"))
 

@@ -26,6 +26,7 @@ def matched(load, blank):
     return search
 
 
+@pytest.mark.usefixtures("all_panels")
 def test_panel_shows_index_and_find_without_matches(draw, blank):
     blank.context.window_manager.mocap_assist_matches.rows.clear()
 

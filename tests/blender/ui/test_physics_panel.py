@@ -1,5 +1,9 @@
 """The panel of Physics."""
 
+import pytest
+
+pytestmark = pytest.mark.usefixtures("all_panels")
+
 
 def test_physics_panel_shows_every_setting_and_the_button(draw):
     shown = draw("MOCAP_PT_physics")

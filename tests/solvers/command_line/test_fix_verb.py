@@ -38,7 +38,7 @@ def test_fix_prints_four_figures_before_and_after(call, walk_file, tmp_path):
     status, out, _ = call("fix", walk_file, tmp_path / "fixed.bvh")
 
     assert status == 0
-    for label in ("Jitter", "Longest foot slide", "Spikes and gaps", "Issues"):
+    for label in ("Jitter", "Longest Slide", "Spikes, Gaps", "Issues"):
         assert label in out
 
 

@@ -216,7 +216,7 @@ def test_figures_become_texts_with_units():
 
     assert figure_texts(before, after) == (
         ("Jitter", "2.61°", "0.08°"),
-        ("Longest foot slide", "26.3 cm", "–"),
-        ("Spikes and gaps", "61", "0"),
+        ("Longest Slide", "26.3 cm", "–"),
+        ("Spikes, Gaps", "61", "0"),
         ("Issues", "77", "–"),
     )

@@ -1,0 +1,33 @@
+"""The verb `fix`: what the button Fix My Take does."""
+
+import argparse
+from typing import Any
+
+import bpy
+
+from ...solvers.progress import Progress
+from ..fix.fixing import FixBundle, fixed_subject, read_fixing, write_fixed
+from ..runtime.selection import played_source
+from ..scene import history
+from .bundles import add_bundle_options, bundle_from_arguments
+from .solving import solve_in_subprocess
+
+
+def add_fix_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `fix`; those of the button."""
+    add_bundle_options(parser, FixBundle)
+
+
+def perform_fix(
+    scene: bpy.types.Scene,
+    subject: bpy.types.Object,
+    arguments: argparse.Namespace,
+    progress: Progress,
+) -> tuple[str, dict[str, Any]]:
+    """Fix what an armature or markers play."""
+    settings = bundle_from_arguments(arguments, FixBundle)
+    fixed = solve_in_subprocess(read_fixing(scene, subject, settings), arguments, progress)
+    sentence = write_fixed(scene, subject, settings, fixed)
+    action, _ = played_source(fixed_subject(subject, fixed))
+    text = "\n".join([sentence, *fixed.report["steps"]])
+    return text, {"action": action.name} | history.history(action)[-1] | fixed.report

@@ -1,0 +1,52 @@
+"""The card of Fix My Take: what was done to an action, kept in the action until accepted."""
+
+from typing import Any
+
+import bpy
+
+from ...solvers.errors import InvalidMotionError
+from ..blender.stored_json import load_json, store_json
+from ..runtime.selection import played_source, selected_subject
+
+CARD = "mocap_assist_fix"
+"""Custom property of the action: origin, steps and figures, as JSON."""
+
+
+def keep_card(action: bpy.types.Action, report: dict[str, Any]) -> None:
+    """Store the card in an action."""
+    store_json(action, CARD, report)
+
+
+def shown_card(context: bpy.types.Context) -> dict[str, Any]:
+    """Return the card of what the selection plays; empty if it has none."""
+    action = _played_action(context)
+    card = {} if action is None else load_json(action, CARD, dict)
+    is_complete = all(
+        isinstance(card.get(name), kind)
+        for name, kind in (("before", dict), ("after", dict), ("steps", list))
+    )
+    return card if is_complete else {}
+
+
+def why_not_accept(context: bpy.types.Context) -> str:
+    """Return why there is no result to accept, or an empty text."""
+    return "" if shown_card(context) else "Press Fix My Take first."
+
+
+def accept(context: bpy.types.Context) -> str:
+    """Close the card; the result stays."""
+    action = _played_action(context)
+    if action is None or CARD not in action:
+        raise InvalidMotionError(why_not_accept(context))
+    del action[CARD]
+    return f"Accepted {action.name}."
+
+
+def _played_action(context: bpy.types.Context) -> bpy.types.Action | None:
+    subject = selected_subject(context)
+    if subject is None:
+        return None
+    try:
+        return played_source(subject)[0]
+    except InvalidMotionError:
+        return None

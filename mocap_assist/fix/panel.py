@@ -1,0 +1,68 @@
+"""Panel: one button that fixes a take, and the card of what it did."""
+
+from typing import Any
+
+import bpy
+
+from ...solvers.workflows import figure_texts
+from ..blender.mixins import PanelMixin
+from ..check.reverting import why_not_revert
+from ..panels.drawing import draw_job, draw_sentence, exists
+from ..panels.visibility import shows_take
+from ..track.tracking import selected_preview
+from .card import shown_card
+from .fixing import why_not_fix
+
+FIX, ACCEPT, REVERT = (
+    f"mocap_assist.{name}" for name in ("fix_take", "accept_fix", "revert_to_raw")
+)
+DETAILS = "mocap_assist_fix_details"
+UNDO = "To revert, undo: the markers are as they were recorded."
+
+
+class FixPanel(PanelMixin):
+    """The button Fix My Take, and the card."""
+
+    bl_label = "Fix"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        shown = shows_take(context) or selected_preview(context) is not None
+        return exists(FIX) and shown
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        draw_job(layout, context, "fix")
+        button = layout.row()
+        button.scale_y = 2.0
+        button.operator(FIX, icon="SHADERFX")
+        if reason := why_not_fix(context):
+            draw_sentence(layout, context, reason, icon="INFO")
+        elif card := shown_card(context):
+            _draw_card(layout.box(), context, card)
+
+
+def _draw_card(
+    box: bpy.types.UILayout, context: bpy.types.Context, card: dict[str, Any]
+) -> None:
+    """Draw the figures, the three buttons, and the steps if they are unfolded."""
+    table = box.column(align=True)
+    table.scale_y = 0.9
+    rows = figure_texts(card["before"], card["after"])
+    for label, before, after in (("", "Before", "After"), *rows):
+        names = table.split(factor=0.46)
+        names.label(text=label)
+        values = names.split(factor=0.5)
+        values.label(text=before)
+        values.label(text=after)
+    row = box.row(align=True)
+    row.operator(ACCEPT)
+    row.prop(context.window_manager, DETAILS, text="Details", toggle=True)
+    is_revertible = not why_not_revert(context)
+    if is_revertible:
+        row.operator(REVERT, text="Revert")
+    if getattr(context.window_manager, DETAILS):
+        for step in card["steps"]:
+            draw_sentence(box, context, str(step))
+    if not is_revertible:
+        draw_sentence(box, context, UNDO)

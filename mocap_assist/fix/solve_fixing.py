@@ -1,0 +1,124 @@
+"""Solve of the button Fix My Take: `fix_take`, and its result in the form of other buttons."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ...solvers.arrays import Flags
+from ...solvers.denoising import Denoised, Issue, denoise
+from ...solvers.markers import Swap
+from ...solvers.motion import JointLimits, Motion, Tracks
+from ...solvers.progress import Progress, unwatched, within
+from ...solvers.workflows import (
+    FixedTake,
+    FixSettings,
+    MarkerMotion,
+    RebuiltMotion,
+    TrackedMotion,
+    fix_take,
+)
+from ..clean.solve_cleaning import Cleaned, Problem, Solution, names_of
+from ..reconstruct.solve_reconstructing import RebuildProblem, Rebuilt, read_source
+
+TREE_FRACTION = 0.9
+"""Fraction of the time until the body is fixed. It only moves the progress bar: chosen by hand
+for one or two props."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fixed:
+    """A fixed take, and what the card shows."""
+
+    written: Cleaned | Rebuilt | MarkerMotion
+    """What Clean, Reconstruct or Make Skeleton would write."""
+    report: dict[str, Any]
+    """Origin, steps and figures: `FixedTake.figures`."""
+    issues: tuple[Issue, ...]
+    """Issues that are left."""
+    quality: str
+    """Table of the quality of the result."""
+
+
+def fix(
+    problem: Problem | RebuildProblem | Tracks,
+    settings: FixSettings,
+    *,
+    contacts: Flags | None = None,
+    limits: JointLimits | None = None,
+    progress: Progress = unwatched,
+) -> Fixed:
+    """Fix a take: that of Clean, of Reconstruct, or the markers of Make Skeleton."""
+    fixed = fix_take(
+        _take_of(problem),
+        settings=settings,
+        contacts=contacts,
+        limits=limits,
+        progress=within(progress, 0.0, TREE_FRACTION),
+    )
+    match problem:
+        case Problem():
+            written: Cleaned | Rebuilt | MarkerMotion = _cleaned(
+                problem, fixed, within(progress, TREE_FRACTION, 1.0)
+            )
+        case RebuildProblem():
+            written = _rebuilt(fixed)
+        case Tracks():
+            written = _solved(fixed)
+    progress(1.0, "Done")
+    return Fixed(written, fixed.figures(), fixed.after.issues, fixed.after.quality.report())
+
+
+def _take_of(problem: Problem | RebuildProblem | Tracks) -> Motion | Tracks | TrackedMotion:
+    match problem:
+        case Problem():
+            return problem.recordings[0]
+        case RebuildProblem():
+            return TrackedMotion(
+                problem.body,
+                read_source(problem),
+                problem.tracking_state,
+                problem.sensor,
+                problem.resize,
+            )
+        case Tracks():
+            return problem
+
+
+def _cleaned(problem: Problem, fixed: FixedTake, progress: Progress) -> Cleaned:
+    """Clean the other trees of an armature, such as props, too."""
+    body, *other_trees = problem.recordings
+    chain = fixed.chain
+    assert chain.denoised is not None
+    denoised: list[Denoised] = [chain.denoised]
+    for index, tree in enumerate(other_trees):
+        start, stop = (each / len(other_trees) for each in (index, index + 1))
+        denoised.append(
+            denoise(tree, settings=problem.settings, progress=within(progress, start, stop))
+        )
+    swaps: tuple[Swap, ...] = ()
+    if chain.unswapped is not None:
+        body, swaps = chain.unswapped.tracks, chain.unswapped.swaps
+    solution = Solution(tuple(denoised), None, (body, *other_trees), swaps)
+    recordings = (fixed.recording, *(each.recording for each in denoised[1:]))
+    moved = frozenset(name for each in recordings for name in names_of(each))
+    before, after = fixed.before.quality, fixed.after.quality
+    return Cleaned(recordings, moved, solution, chain.planted, before, after)
+
+
+def _rebuilt(fixed: FixedTake) -> Rebuilt:
+    chain, solution = fixed.chain, fixed.chain.rebuilt
+    assert isinstance(solution, RebuiltMotion) and isinstance(fixed.recording, Motion)
+    remarks = chain.planted.remarks if chain.planted else ()
+    return Rebuilt(
+        fixed.recording,
+        solution,
+        chain.planted,
+        (*solution.remarks, *(f"{remark}." for remark in remarks)),
+        fixed.before.quality,
+        fixed.after.quality,
+    )
+
+
+def _solved(fixed: FixedTake) -> MarkerMotion:
+    solved = fixed.chain.solved
+    assert solved is not None and isinstance(fixed.recording, Motion)
+    return replace(solved, motion=fixed.recording)

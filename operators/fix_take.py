@@ -1,0 +1,21 @@
+"""Button: fix a take of any origin with the steps that suit it."""
+
+import bpy
+
+from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.fix.fixing import FixBundle, read_fixing, why_not_fix, write_fixed
+from ..mocap_assist.runtime.solver_operator import SolverOperator
+
+
+@settings_from(FixBundle)
+class MOCAP_OT_fix_take(SolverOperator, bpy.types.Operator):
+    bl_idname = "mocap_assist.fix_take"
+    bl_label = "Fix My Take"
+    bl_description = (
+        "Clean, solve or reconstruct the take, whatever its origin; writes a new action"
+    )
+    settings_group = "fix"
+    why_not, read_scene, write_scene = why_not_fix, read_fixing, write_fixed
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Offer nothing in the redo panel: every change there would solve again."""
