@@ -8,6 +8,7 @@ from ...solvers.errors import InvalidMotionError
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_job, draw_sentence, exists, is_wide
 from ..panels.figure_rows import figure_rows, frames_text
+from ..panels.fix_card import shown_card
 from ..panels.visibility import shows_take
 from ..runtime.selection import played_result, played_source, selected_subject
 from ..scene import history
@@ -69,6 +70,8 @@ class CheckPanel(PanelMixin):
 
 
 def _draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    if shown_card(context):  # which compares the same takes
+        return
     result = played_result(selected_subject(context))
     rows = figure_rows(history.history(result[0])) if result else []
     if not rows:

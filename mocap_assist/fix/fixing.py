@@ -26,6 +26,7 @@ from ..clean.button_settings import CleanBundle, CleanChoices
 from ..clean.cleaning import read_cleaning, write_cleaned
 from ..clean.solve_cleaning import Cleaned
 from ..markers.solving import SolveBundle, read_solving, write_solved
+from ..panels.fix_card import keep_card
 from ..reconstruct.button_settings import ReconstructBundle, ReconstructChoices
 from ..reconstruct.reconstructing import read_reconstructing, write_reconstructed
 from ..reconstruct.solve_reconstructing import Rebuilt
@@ -34,7 +35,6 @@ from ..runtime.subject import Subject
 from ..scene import history
 from ..scene.origin import was_tracked
 from ..track.tracking import selected_preview
-from .card import keep_card
 from .solve_fixing import Fixed, fix
 
 DEPTH = "This is a depth recording. Press Track, then Fix My Take on the armature."

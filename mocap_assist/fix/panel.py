@@ -8,9 +8,9 @@ from ...solvers.workflows import figure_texts
 from ..blender.mixins import PanelMixin
 from ..check.reverting import why_not_revert
 from ..panels.drawing import draw_job, draw_sentence, exists
+from ..panels.fix_card import shown_card
 from ..panels.visibility import shows_take
 from ..track.tracking import selected_preview
-from .card import shown_card
 from .fixing import why_not_fix
 
 FIX, ACCEPT, REVERT = (

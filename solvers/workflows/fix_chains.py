@@ -15,6 +15,9 @@ from ..motion import (
     Motion,
     Sensor,
     Tracks,
+    describe_low_confidence,
+    explain_roles,
+    find_humanoid_map,
     joint_parents,
     motion_from_points,
 )
@@ -29,7 +32,6 @@ from .standard_joints import standardize_joint_names
 
 VIDEO_SCHEMES = {"SMPL", "SMPL in robotics", "SOMA", "MHR"}
 """Names of joints that video models write."""
-CM_PER_M = 100.0
 
 
 class TakeOrigin(Enum):
@@ -110,7 +112,12 @@ def clean_motion(
     )
     return ChainResult(
         recording=planting_result.motion,
-        steps=(reason, *_cleaned(motion, denoised), *_planted(planting_result)),
+        steps=(
+            reason,
+            *_cleaned(motion, denoised),
+            *_planted(planting_result),
+            *(_low_confidence_of_legs(motion) if planting else ()),
+        ),
         planted=planting_result.planted,
         denoised=denoised,
     )
@@ -230,7 +237,22 @@ def _cleaned(start: Motion | Tracks, denoised: Denoised) -> list[str]:
     filled = _observed(denoised.recording) & ~_observed(start)
     n_spikes, n_gaps = _n_runs(denoised.outliers), _n_runs(filled)
     done = f"Clean corrected {_counted(n_spikes, 'spike')} and filled"
-    return [f"{done} {_counted(n_gaps, 'gap')}.", denoised.prior_used]
+    # The first sentence says that there are no examples, which is so for every take here.
+    _, _, remarks = denoised.prior_used.partition(". ")
+    unfinished = "Clean stopped before the result converged; a part of the take may go better."
+    return [
+        f"{done} {_counted(n_gaps, 'gap')}.",
+        *[remarks] * bool(remarks),
+        *[unfinished] * (not denoised.converged),
+    ]
+
+
+def _low_confidence_of_legs(motion: Motion) -> list[str]:
+    """Return what is uncertain about legs whose feet are to be planted."""
+    humanoid = find_humanoid_map(motion.skeleton)
+    evidence = explain_roles(motion.skeleton, humanoid)
+    legs = {r: each for r, each in evidence.items() if "Leg" in r or r.endswith("Foot")}
+    return list(filter(None, [describe_low_confidence(humanoid, legs)]))
 
 
 def _observed(recording: Motion | Tracks) -> Flags:
@@ -258,9 +280,7 @@ def _planted(planting_result: PlantingResult) -> list[str]:
     planted, remarks = planting_result.planted, planting_result.remarks
     if planted is None:
         return remarks
-    before, after = (CM_PER_M * each for each in (planted.slide_before, planted.slide_after))
-    slid = f"Plant Feet: both feet slid {before:.0f} cm in total, now {after:.0f} cm."
-    return [slid, *remarks]
+    return ["Plant Feet holds standing feet in place by legs and hips.", *remarks]
 
 
 def _unswapped(n_swaps: int) -> list[str]:

@@ -62,8 +62,13 @@ class FixedTake:
 
     @property
     def steps(self) -> tuple[str, ...]:
-        """Sentences for the animator: what was done, and why."""
-        return self.chain.steps
+        """Sentences for the animator: what was done, why, and what to look at."""
+        n_left = self.after.n_spikes
+        if self.chain.denoised is None or not n_left:
+            return self.chain.steps
+        left = "1 spike is" if n_left == 1 else f"{n_left} spikes are"
+        sentence = f"{left} left that Clean takes for fast movement; Check lists where."
+        return (*self.chain.steps, sentence)
 
     def figures(self) -> dict[str, Any]:
         """Return the report as JSON-ready values."""

@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Flags
-from ..denoising import Issue, Quality, find_worst_issues, measure_quality
+from ..denoising import Issue, IssueSettings, Quality, find_worst_issues, measure_quality
 from ..motion import JointLimits, Motion, Tracks
 from ..progress import Progress, unwatched, within
 from ..signals import find_runs
 
+MAX_ISSUES = IssueSettings().max_issues
+"""Number of issues at which Check stops to list them, by definition."""
 UNKNOWN = "–"
 """Text of a figure that is not known."""
 
@@ -110,12 +112,13 @@ def figure_texts(
 
 def _texts(figures: Mapping[str, Any]) -> dict[str, str]:
     spikes, gaps = figures.get("spikes"), figures.get("gaps")
+    issues = figures.get("issues")
     faults = None if spikes is None or gaps is None else spikes + gaps
     return {
         "Jitter": _amount(figures.get("jitter_deg"), "{:.2f}°"),
         "Longest Slide": _amount(figures.get("longest_foot_slide_cm"), "{:.1f} cm"),
         "Spikes, Gaps": _amount(faults, "{}"),
-        "Issues": _amount(figures.get("issues"), "{}"),
+        "Issues": _amount(issues, "{}+" if issues == MAX_ISSUES else "{}"),
     }
 
 

@@ -209,6 +209,21 @@ def test_take_without_observations_is_refused(walk):
         fix_take(nothing)
 
 
+def test_spikes_that_are_left_are_reported(noisy):
+    result = fix_take(noisy)
+    n_left = result.after.n_spikes
+
+    assert n_left == 1  # a thigh in the last two frames
+    assert result.steps[-1].startswith("1 spike is left")
+    assert result.figures()["steps"] == list(result.steps)
+
+
+def test_number_of_issues_shows_that_check_lists_no_more():
+    both = [dict.fromkeys(("spikes", "gaps"), 0) | {"issues": number} for number in (100, 99)]
+
+    assert figure_texts(*both)[-1] == ("Issues", "100+", "99")
+
+
 def test_figures_become_texts_with_units():
     before = {"jitter_deg": 2.614, "longest_foot_slide_cm": 26.28, "spikes": 57, "gaps": 4}
     before["issues"] = 77
