@@ -37,6 +37,15 @@ def load_sample():
     armature = bpy.context.view_layer.objects.active
     assert armature.name == "Sample Walk" and armature.mode == "POSE"
     bgui.shot("2-sample.png")
+    with bgui.override("WINDOW"):
+        bpy.ops.ed.undo()
+    yield 0.5
+    assert "Sample Walk" not in bpy.data.objects and not bpy.data.actions
+    with bgui.override("WINDOW"):
+        bpy.ops.ed.redo()
+    yield 0.5
+    armature = bpy.context.view_layer.objects.active
+    assert armature.name == "Sample Walk" and armature.animation_data.action
     return armature
 
 
