@@ -40,8 +40,10 @@ class LowessFit:
     def spikes(self, threshold: float) -> NDArray[np.bool_]:
         """Return the frames of transient outliers larger than `threshold`, shape (n_frames,).
 
-        A fast but genuine movement, such as a foot strike, leaves the fit gradually. A spike
-        begins and ends with steps of half its height or more.
+        A fast but genuine movement, such as a foot strike, leaves the fit gradually, and a
+        fast turn within a few frames continues in the frames beside it. A spike begins and
+        ends with steps of half its height or more, and is as high above the cubic through two
+        frames on either side.
         """
         is_spike = np.zeros(len(self.residual), dtype=np.bool_)
         steps = np.linalg.norm(np.diff(self.residual, axis=0), axis=1)
@@ -49,8 +51,29 @@ class LowessFit:
         height = np.nan_to_num(self.deviation)
         for start, stop in find_runs(height > threshold):
             half = 0.5 * height[start:stop].max()
-            is_spike[start:stop] = steps[start] > half and steps[stop] > half
+            above = self.residual[start:stop] - self._bridge(start, stop)
+            is_high = np.linalg.norm(above, axis=1).max() > threshold
+            is_spike[start:stop] = steps[start] > half and steps[stop] > half and is_high
         return is_spike
+
+    def _bridge(self, start: int, stop: int) -> Array:
+        """Return the polynomial through up to two frames on either side of a run.
+
+        Zero where there is no frame on one side.
+        """
+        knots = np.array([start - 2, start - 1, stop, stop + 1])
+        is_known = (knots >= 0) & (knots < len(self.residual))
+        is_known[is_known] = np.isfinite(self.residual[knots[is_known]]).all(axis=1)
+        frames = np.arange(start, stop)
+        if not (is_known[:2].any() and is_known[2:].any()):
+            return np.zeros((len(frames), self.residual.shape[1]))
+        knots = knots[is_known]
+        powers = np.arange(len(knots))
+        middle = 0.5 * (start + stop)
+        coefficients = np.linalg.solve(
+            (knots - middle)[:, None] ** powers, self.residual[knots]
+        )
+        return np.asarray((frames - middle)[:, None] ** powers @ coefficients)
 
 
 def find_runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:

@@ -59,6 +59,25 @@ def test_fast_movement_is_no_spike():
     assert not fit_lowess(trajectory, 14, min_scale=0.1).spikes(0.1).any()
 
 
+@pytest.mark.parametrize(("swings_per_s", "size"), [(4, 0.3), (5, 0.3)])
+def test_swing_within_a_few_frames_is_no_spike(swings_per_s, size):
+    """A hand waves for half a second, at 30 Hz."""
+    time = np.arange(90) / 30.0
+    swing = np.sin(2.0 * np.pi * swings_per_s * time) * np.exp(-(((time - 1.5) / 0.25) ** 2))
+
+    assert not fit_lowess(size * swing[:, None], 4, min_scale=0.14).spikes(0.14).any()
+
+
+def test_spike_beside_a_gap_and_at_the_end_is_found():
+    trajectory = np.sin(np.arange(60.0) / 10.0)[:, None] * np.ones(3)
+    trajectory[[0, 30, 59]] += [0.8, 0.0, 0.0]
+    trajectory[31:34] = np.nan
+
+    found = fit_lowess(trajectory, 5, min_scale=0.1).spikes(0.3)
+
+    assert find_runs(found) == [(0, 1), (30, 31), (59, 60)]
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_lasting_change_is_no_spike(seed):
     """A cut between two takes jumps and does not return."""
