@@ -7,7 +7,7 @@ import numpy as np
 from bpy.app import handlers
 from numpy.typing import NDArray
 
-from ...solvers.arrays import Flags
+from ...solvers.arrays import Array, Flags
 from ..blender import compat
 from ..blender.compat import Source
 from ..scene import history
@@ -38,6 +38,13 @@ def read_contacts(
     return np.stack(standing, axis=1)
 
 
+def contact_keys(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> list[Array]:
+    """Return frame and value of the keys of each foot, shape (n_keys, 2); none if muted."""
+    curves = animated_curves(action, slot)
+    channels = [curves.get((_path(name), 0)) for name in PROPERTIES]
+    return [np.empty((0, 2)) if each is None else each.keys for each in channels]
+
+
 def animators_contacts(source: Source, frames: NDArray[np.float64]) -> Flags | None:
     """Return the contacts, but only if the animator keyed them or edited those detected."""
     return None if _untouched(*source) else read_contacts(*source, frames)
@@ -62,7 +69,7 @@ def write_contacts(
     one of them is edited, contacts are detected again next time.
     """
     bag = compat.ensure_channelbag(action, slot)
-    detected &= _untouched(action, slot) or not any(_contact_keys(action, slot))
+    detected &= _untouched(action, slot) or not any(map(len, contact_keys(action, slot)))
     for name, standing in zip(PROPERTIES, contacts.T, strict=True):
         _declare(armature, name, int(standing[0]))
         curve = bag.fcurves.find(_path(name), index=0)
@@ -121,14 +128,8 @@ def _untouched(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> bool:
 
 
 def _digest(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> str:
-    return hashlib.sha256(repr(_contact_keys(action, slot)).encode()).hexdigest()
-
-
-def _contact_keys(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> list[list[float]]:
-    """Return frames and values of the keys of each foot; muting counts as an edit."""
-    curves = animated_curves(action, slot)
-    channels = [curves.get((_path(name), 0)) for name in PROPERTIES]
-    return [[] if each is None else each.keys.ravel().tolist() for each in channels]
+    keys = [each.ravel().tolist() for each in contact_keys(action, slot)]
+    return hashlib.sha256(repr(keys).encode()).hexdigest()
 
 
 def _path(name: str) -> str:

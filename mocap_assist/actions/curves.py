@@ -111,6 +111,11 @@ def _fault(times: NDArray[np.float32]) -> str:
     return ""
 
 
+def types_of(curve: bpy.types.FCurve) -> NDArray[np.uint8]:
+    """Return Blender's number for the type of each key, shape (n_keys,)."""
+    return _column(curve.keyframe_points, "type")[:, 0]
+
+
 def write_first(
     curve: bpy.types.FCurve, frames: Array, values: Array, interpolation: int = LINEAR
 ) -> None:

@@ -6,6 +6,7 @@ import bpy
 
 from ...solvers.errors import InvalidMotionError
 from ..blender.mixins import PanelMixin
+from ..drawing.strip_switch import draw_strip_switch
 from ..panels.drawing import draw_job, draw_sentence, exists, is_wide
 from ..panels.figure_rows import figure_rows, frames_text
 from ..panels.fix_card import shown_card
@@ -66,6 +67,7 @@ class CheckPanel(PanelMixin):
         _draw_figures(layout, context)
         if shown.issues:
             _draw_issues(layout, context)
+        draw_strip_switch(layout, context)
         _draw_thresholds(layout, shown.check)
 
 

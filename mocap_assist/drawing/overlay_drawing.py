@@ -11,7 +11,7 @@ from mathutils import Matrix
 from numpy.typing import NDArray
 
 from ..actions.markers import holder_of
-from . import marker_overlay, overlay
+from . import marker_overlay, overlay, strip_drawing
 from .view_drawing import ViewDrawing, redraw, visible_active
 
 Color = tuple[float, float, float, float]
@@ -46,6 +46,7 @@ def forget() -> None:
     """Clear the caches, so that the next drawing reads the actions again."""
     overlay.forget()
     marker_overlay.forget()
+    strip_drawing.forget()
 
 
 def draw(context: bpy.types.Context, colors: tuple[Color, Color], width: float) -> None:
@@ -103,9 +104,10 @@ def _changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 
 
 def refresh() -> None:
-    """Read again, and redraw every 3D View."""
+    """Read again, and redraw every editor of motion."""
     forget()
-    redraw(bpy.context, "VIEW_3D")
+    for editor in ("VIEW_3D", *strip_drawing.EDITORS):
+        redraw(bpy.context, editor)
 
 
 @handlers.persistent

@@ -1,7 +1,7 @@
 """User interface: panels in the sidebar, menus, preferences and the overlay."""
 
 from ..clean import example_list
-from ..drawing import confidence_switch, overlay_switch
+from ..drawing import confidence_switch, overlay_switch, strip_switch
 from ..exporting import export_menu
 from ..importing import import_menu
 from ..retarget import bone_list
@@ -26,6 +26,7 @@ PARTS = (
     export_menu,
     overlay_switch,
     confidence_switch,
+    strip_switch,
     manual,
 )
 

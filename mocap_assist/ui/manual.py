@@ -63,6 +63,7 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.stop_keeping*": "preferences",
     "bpy.types.mocap_pg_clean*": "clean",
     "bpy.types.mocap_pg_check*": "check",
+    "bpy.types.windowmanager.mocap_assist_strip*": "check",
     "bpy.types.windowmanager.mocap_assist_overlay*": "compare",
     "bpy.types.mocap_ap_preferences*": "preferences",
 }

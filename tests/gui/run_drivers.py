@@ -56,6 +56,7 @@ RECORDINGS = {
     "redo": {"walk.bvh": "mocap/cmu_walk/07_01.bvh"},
     "reconstruct": {"kinect.txt": "kinect/irds/217_18_0_3_1_wheelchair.txt"},
     "retarget": {},
+    "strip": {},
     "skin": {"walking.glb": "corpus/glb/mixamo_blender/walking.glb"},
     "import_framing": {
         "walk.bvh": "mocap/cmu_walk/07_01.bvh",

@@ -1,0 +1,174 @@
+"""Draw the strip at the bottom of the Timeline, the Dope Sheet and the Graph Editor."""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import blf
+import bpy
+import gpu
+import numpy as np
+
+from ...solvers.arrays import Single
+from . import strip_reading
+from .strip_ranges import COLORS, Range, Row
+from .strip_reading import Strip
+
+EDITORS = ("DOPESHEET_EDITOR", "GRAPH_EDITOR")
+MODES = {"TIMELINE", "DOPESHEET", "ACTION", "SHAPEKEY", "FCURVES"}
+"""Of these editors, the modes whose keys are those of objects."""
+ROW_HEIGHT_PX, LABEL_PX, GAP_PX = 13, 10, 3
+"""Height of a row, size of its label and distance from the border, in pixels at scale 1."""
+MIN_LABELED_PX, MIN_ROW_PX = 10, 2
+"""Height below which a row has no label, and its minimum, in pixels at scale 1."""
+SCROLLER_PX, MARKERS_PX, RULER_PX = 10, 42, 24
+"""Height of Blender's scroll bar, of its row of markers, and of its ruler at the top, in pixels
+at scale 1."""
+MIN_WIDTH_PX = 2.0
+"""Width of a range of which many lie in one pixel."""
+ROW_INSET = 0.08
+"""Distance between two rows, as a fraction of their height."""
+BACKGROUND, PLATE = (0.06, 0.06, 0.06, 0.7), (0.06, 0.06, 0.06, 0.85)
+LABEL_COLOR = (0.95, 0.95, 0.95, 1.0)
+
+
+class _Batches(NamedTuple):
+    """The ranges, in frames and rows, and what lies behind the labels, one unit wide."""
+
+    ranges: Any
+    plate: Any
+
+
+_batches: dict[tuple[int, float], tuple[Strip, _Batches]] = {}
+
+
+def forget() -> None:
+    """Clear the caches, so that the next drawing reads again."""
+    strip_reading.forget()
+    _batches.clear()
+
+
+def draw_strip(context: bpy.types.Context) -> None:
+    """Draw the rows of the active armature where the editor shows their frames."""
+    if context.space_data.mode not in MODES:
+        return
+    strip = strip_reading.strip_of(context)
+    if strip is None:
+        return
+    scale = context.preferences.system.ui_scale
+    bottom = strip_bottom(context, scale)
+    height = row_height(context.region.height - bottom, len(strip.rows), scale)
+    first, last = visible_frames(context.region)
+    pixels_per_frame = context.region.width / (last - first)
+    batches = _batches_of(strip, min_width(pixels_per_frame, strip.step))
+    corner = (-first * pixels_per_frame, bottom)
+    _draw_batch(batches.ranges, corner, (pixels_per_frame, height))
+    if height >= MIN_LABELED_PX * scale:
+        _draw_labels(strip, batches.plate, bottom, height, scale)
+
+
+def min_width(pixels_per_frame: float, step: float) -> float:
+    """Return the minimum width of a drawn range, in frames: that of some pixels, or a sample.
+
+    It is a power of two, so that the batches are made again only when the zoom has doubled.
+    """
+    return max(step, float(2.0 ** np.ceil(np.log2(MIN_WIDTH_PX / pixels_per_frame))))
+
+
+def visible_frames(region: bpy.types.Region) -> tuple[float, float]:
+    """Return the frames at the left and at the right border of a region."""
+    left, _ = region.view2d.region_to_view(0, 0)
+    right, _ = region.view2d.region_to_view(region.width, 0)
+    return left, right
+
+
+def strip_bottom(context: bpy.types.Context, scale: float) -> float:
+    """Return the height of the strip in its region: above the scroll bar and the markers."""
+    has_markers = context.space_data.show_markers and len(context.scene.timeline_markers)
+    return (GAP_PX + (MARKERS_PX if has_markers else SCROLLER_PX)) * scale
+
+
+def row_height(space: float, n_rows: int, scale: float) -> float:
+    """Return the height of a row: less than usual where a low editor has no more space."""
+    free = (space - RULER_PX * scale) / n_rows
+    return max(min(ROW_HEIGHT_PX * scale, free), MIN_ROW_PX * scale)
+
+
+def _draw_batch(batch: Any, corner: tuple[float, float], unit: tuple[float, float]) -> None:
+    """Draw a batch from a corner, with units of these numbers of pixels."""
+    gpu.state.blend_set("ALPHA")
+    with gpu.matrix.push_pop():
+        gpu.matrix.translate(corner)
+        gpu.matrix.scale(unit)
+        batch.draw(gpu.shader.from_builtin("SMOOTH_COLOR"))
+    gpu.state.blend_set("NONE")
+
+
+def _draw_labels(strip: Strip, plate: Any, bottom: float, height: float, scale: float) -> None:
+    """Name the rows at the left border, on a plate over the ranges."""
+    font, margin = 0, 2 * GAP_PX * scale
+    texts = [bpy.app.translations.pgettext_iface(row.value) for row in strip.rows]
+    blf.size(font, LABEL_PX * scale)
+    blf.color(font, *LABEL_COLOR)
+    width = max(blf.dimensions(font, text)[0] for text in texts) + 2 * margin
+    _draw_batch(plate, (0.0, bottom), (width, height))
+    for index, text in enumerate(reversed(texts)):
+        blf.position(font, margin, bottom + index * height + GAP_PX * scale, 0.0)
+        blf.draw(font, text)
+
+
+def _batches_of(strip: Strip, width: float) -> _Batches:
+    """Return the batches of a strip; they are made once for each doubled zoom."""
+    key = id(strip), width
+    known = _batches.get(key)
+    if known is None or known[0] is not strip:
+        if len(_batches) >= strip_reading.MAX_CACHED:
+            del _batches[next(iter(_batches))]
+        known = _batches[key] = strip, _make_batches(strip, width)
+    return known[1]
+
+
+def _make_batches(strip: Strip, width: float) -> _Batches:
+    from gpu_extras.batch import batch_for_shader
+
+    shader = gpu.shader.from_builtin("SMOOTH_COLOR")
+    corners, colors = rectangles_of(strip, width)
+    first = np.arange(len(corners), dtype=np.int32)[:, None, None] * 4
+    triangles = (first + np.array([[0, 1, 2], [2, 1, 3]], np.int32)).reshape(-1, 3)
+    ranges = {"pos": corners.reshape(-1, 2), "color": colors.reshape(-1, 4)}
+    ends = [(x, y * len(strip.rows)) for x in (0, 1) for y in (0, 1)]
+    plate = {"pos": ends, "color": [PLATE] * len(ends)}
+    return _Batches(
+        batch_for_shader(shader, "TRIS", ranges, indices=triangles),
+        batch_for_shader(shader, "TRI_STRIP", plate),
+    )
+
+
+def rectangles_of(strip: Strip, width: float) -> tuple[Single, Single]:
+    """Return corners, shape (n, 4, 2), and their colors, shape (n, 4, 4).
+
+    Columns are frames, of which the first and the last of a range are covered wholly; rows are
+    counted from the bottom. Rectangles of the background, one for each row, come first. A range
+    is at least `width` frames wide.
+    """
+    found = [(strip.first, strip.last, row, BACKGROUND) for row in _heights(strip)]
+    found += [(each.first, each.last, row, COLORS[each.mark]) for row, each in _ranges(strip)]
+    first, last, bottom = np.array([each[:3] for each in found], np.float32).T
+    middle = 0.5 * (first + last)
+    half = 0.5 * np.maximum(last - first + strip.step, width)
+    left, right = middle - half, middle + half
+    low, high = bottom + ROW_INSET, bottom + 1.0 - ROW_INSET
+    corners = np.stack([left, low, right, low, left, high, right, high], axis=1)
+    colors = np.array([each[3] for each in found], np.float32)
+    painted = np.repeat(colors[:, None], 4, axis=1)
+    return np.ascontiguousarray(corners.reshape(-1, 4, 2), np.float32), painted
+
+
+def _heights(strip: Strip) -> Iterator[float]:
+    yield from range(len(strip.rows) - 1, -1, -1)
+
+
+def _ranges(strip: Strip) -> Iterator[tuple[float, Range]]:
+    rows: list[Row] = list(strip.rows)
+    for height, row in zip(_heights(strip), rows, strict=True):
+        for each in strip.rows[row]:
+            yield height, each

@@ -1,0 +1,140 @@
+"""Ranges of frames of the strip below the keys, as plain arrays."""
+
+from collections.abc import Mapping
+from enum import Enum
+from typing import NamedTuple
+
+import numpy as np
+
+from ...solvers.arrays import Array
+from .confidence_colors import COLORS as CONFIDENCE_COLORS
+
+Color = tuple[float, float, float, float]
+
+MAX_STEPS_APART = 1.5
+"""Frames from one key to the next, relative to the frames between samples, that belong to one
+range. By definition between 1, neighbors, and 2, one frame between them."""
+LOW_CONFIDENCE, HIGH_CONFIDENCE = 0.5, 0.75
+"""Confidence below which a joint is rather wrong than right, and, halfway from there to
+certainty, above which it is reliable."""
+
+
+class Row(Enum):
+    """Row of the strip, from top to bottom; its value is the label in panels and drawings."""
+
+    CONFIDENCE = "Confidence"
+    ISSUES = "Issues"
+    FILLED = "Filled"
+    CORRECTED = "Corrected"
+    LEFT_FOOT = "Left Foot"
+    RIGHT_FOOT = "Right Foot"
+
+
+class Mark(Enum):
+    """Color of a range; its value is its label in the legend."""
+
+    LOW = "Low"
+    MEDIUM = "Medium"
+    HIGH = "High"
+    ISSUE = "Issues"
+    FILLED = "Filled"
+    CORRECTED = "Corrected"
+    LEFT_FOOT = "Left Foot"
+    RIGHT_FOOT = "Right Foot"
+
+
+COLORS: Mapping[Mark, Color] = {
+    Mark.LOW: tuple(CONFIDENCE_COLORS[0].tolist()),
+    Mark.MEDIUM: tuple(CONFIDENCE_COLORS[1].tolist()),
+    Mark.HIGH: tuple(CONFIDENCE_COLORS[2].tolist()),
+    Mark.ISSUE: (1.0, 0.36, 0.18, 0.75),
+    Mark.FILLED: (0.70, 0.45, 0.95, 1.0),
+    Mark.CORRECTED: (0.95, 0.85, 0.45, 1.0),
+    Mark.LEFT_FOOT: (0.35, 0.80, 0.45, 1.0),
+    Mark.RIGHT_FOOT: (0.20, 0.70, 0.75, 1.0),
+}
+MARKS: Mapping[Row, tuple[Mark, ...]] = {
+    Row.CONFIDENCE: (Mark.LOW, Mark.MEDIUM, Mark.HIGH),
+    Row.ISSUES: (Mark.ISSUE,),
+    Row.FILLED: (Mark.FILLED,),
+    Row.CORRECTED: (Mark.CORRECTED,),
+    Row.LEFT_FOOT: (Mark.LEFT_FOOT,),
+    Row.RIGHT_FOOT: (Mark.RIGHT_FOOT,),
+}
+
+
+class Range(NamedTuple):
+    """First and last frame of a range, and what it marks."""
+
+    first: float
+    last: float
+    mark: Mark
+
+
+Rows = Mapping[Row, tuple[Range, ...]]
+
+
+def ranges_of(frames: Array, step: float, mark: Mark) -> tuple[Range, ...]:
+    """Join frames that are at most one sample apart; they need no order.
+
+    Parameters
+    ----------
+    frames : shape (n_frames,)
+    step : float
+        Frames from one sample to the next.
+    mark : Mark
+    """
+    if not len(frames):
+        return ()
+    ordered = np.unique(frames)
+    ends = np.flatnonzero(np.diff(ordered) > MAX_STEPS_APART * step)
+    firsts = ordered[np.append(0, ends + 1)]
+    lasts = ordered[np.append(ends, len(ordered) - 1)]
+    return tuple(
+        Range(float(first), float(last), mark)
+        for first, last in zip(firsts, lasts, strict=True)
+    )
+
+
+def confidence_ranges(lowest: Array, frames: Array, step: float) -> tuple[Range, ...]:
+    """Return the ranges of low, medium and high confidence, in order of their frames.
+
+    Parameters
+    ----------
+    lowest : shape (n_frames,)
+        The lowest confidence of all bones; NaN where it is unknown.
+    frames : shape (n_frames,)
+    step : float
+        Frames from one sample to the next.
+    """
+    levels = {
+        Mark.LOW: lowest < LOW_CONFIDENCE,
+        Mark.MEDIUM: (lowest >= LOW_CONFIDENCE) & (lowest < HIGH_CONFIDENCE),
+        Mark.HIGH: lowest >= HIGH_CONFIDENCE,
+    }
+    found = [each for mark in levels for each in ranges_of(frames[levels[mark]], step, mark)]
+    return tuple(sorted(found, key=lambda each: each.first))
+
+
+def contact_ranges(keys: Array, step: float, mark: Mark) -> tuple[Range, ...]:
+    """Return the frames in which a foot is down.
+
+    Parameters
+    ----------
+    keys : shape (n_keys, 2)
+        Frame and value of keys that hold until the next one: 1 the foot is down, 0 it is not.
+    step : float
+        Frames from one sample to the next.
+    mark : Mark
+    """
+    found: list[Range] = []
+    for index, (frame, value) in enumerate(keys):
+        if value <= 0.5:
+            continue
+        is_last = index == len(keys) - 1
+        last = frame if is_last else max(keys[index + 1, 0] - step, frame)
+        if found and frame - found[-1].last <= MAX_STEPS_APART * step:
+            found[-1] = found[-1]._replace(last=float(last))
+        else:
+            found.append(Range(float(frame), float(last), mark))
+    return tuple(found)

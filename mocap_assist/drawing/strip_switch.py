@@ -1,0 +1,95 @@
+"""Switch of the strip, and its legend; it is on the window manager, not in the scene."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import bpy
+import bpy.utils.previews
+import numpy as np
+from bpy.types import SpaceDopeSheetEditor, SpaceGraphEditor
+
+from ..panels.drawing import draw_sentence
+from .strip_drawing import EDITORS, draw_strip
+from .strip_ranges import COLORS, MARKS, Mark, Row
+from .strip_reading import strip_of
+from .view_drawing import redraw
+
+SWITCH = "mocap_assist_strip"
+SPACES = (SpaceDopeSheetEditor, SpaceGraphEditor)
+ICON_PX = 16
+NOTHING = "Nothing to show yet. Run Clean or Check."
+_handles: list[tuple[Any, Any]] = []
+_icons: list[Any] = []
+
+
+def draw_strip_switch(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the switch and, while it is on, the colors of the rows that the strip has now."""
+    manager = context.window_manager
+    layout.prop(manager, SWITCH)
+    if not manager.mocap_assist_strip:
+        return
+    strip = strip_of(context)
+    if strip is None:
+        draw_sentence(layout, context, NOTHING, icon="INFO")
+        return
+    column = layout.column(align=True)
+    if Row.CONFIDENCE in strip.rows:
+        column.label(text=Row.CONFIDENCE.value)
+        _draw_marks(column, MARKS[Row.CONFIDENCE], columns=3)
+    others = [mark for row in strip.rows if row is not Row.CONFIDENCE for mark in MARKS[row]]
+    _draw_marks(column, others, columns=2)
+
+
+def _draw_marks(layout: bpy.types.UILayout, marks: Iterable[Mark], *, columns: int) -> None:
+    grid = layout.grid_flow(row_major=True, columns=columns, even_columns=True, align=True)
+    for mark in marks:
+        grid.label(text=mark.value, icon_value=_icon_of(mark))
+
+
+def _icon_of(mark: Mark) -> int:
+    """Return the number of an icon that shows the color of a mark."""
+    icons = _icons[0]
+    if mark.name not in icons:
+        icon = icons.new(mark.name)
+        icon.icon_size = (ICON_PX, ICON_PX)
+        pixels = np.zeros((ICON_PX, ICON_PX, 4), np.float32)
+        pixels[2:-2, 2:-2] = (*COLORS[mark][:3], 1.0)
+        icon.icon_pixels_float.foreach_set(pixels.ravel())
+    return int(icons[mark.name].icon_id)
+
+
+def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
+    for editor in EDITORS:
+        redraw(context, editor)
+
+
+def _draw() -> None:
+    context = bpy.context
+    if context.window_manager.mocap_assist_strip:
+        draw_strip(context)
+
+
+def register() -> None:
+    """Add the switch, which starts on: the strip is drawn only where there is a result."""
+    bpy.types.WindowManager.mocap_assist_strip = bpy.props.BoolProperty(
+        name="Timeline Strip",
+        description=(
+            "Show issues, changed frames, confidence and foot contacts below the keys of the"
+            " armature"
+        ),
+        default=True,
+        update=_switched,
+    )
+    _icons.append(bpy.utils.previews.new())
+    _handles.extend(
+        (space, space.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL")) for space in SPACES
+    )
+
+
+def unregister() -> None:
+    """Remove the switch and the drawing."""
+    while _handles:
+        space, handle = _handles.pop()
+        space.draw_handler_remove(handle, "WINDOW")
+    bpy.utils.previews.remove(_icons.pop())
+    del bpy.types.WindowManager.mocap_assist_strip

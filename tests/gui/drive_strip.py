@@ -1,0 +1,197 @@
+"""See the strip below the keys; take pictures.
+
+    make test-gui DRIVERS=strip
+
+Runs inside a Blender with a window; `bgui` comes with the tool. It also prints how long one
+drawing of the strip takes, for an action of 100 bones and 10,000 frames.
+"""
+
+import tempfile
+import time
+from importlib import import_module
+from pathlib import Path
+
+import bgui
+import bpy
+import numpy as np
+from driver_scene import empty_scene, settle, unfold_alone, until_done
+
+PACKAGE = "bl_ext.user_default.mocap_assist"
+MISSING = ("RightArm", range(120, 180))
+N_BONES, N_FRAMES = 100, 10_000
+N_TIMES = 20
+GENERATED = 5
+LOOKED_AT = 151
+
+
+def load(name):
+    return import_module(f"{PACKAGE}.mocap_assist.{name}")
+
+
+def import_walk():
+    """Import a walk with spikes and sliding feet, without its right arm for two seconds."""
+    samples = import_module(f"{PACKAGE}.solvers.samples")
+    write_bvh = import_module(f"{PACKAGE}.solvers.recordings").write_bvh
+    walk = samples.walking_gait(samples.GaitSettings(duration=8.0, frame_rate=30.0))
+    wrong = samples.CorruptionSettings(jitter=3.0, spikes=0.004, root_sway=0.03)
+    path = Path(tempfile.mkdtemp()) / "walk.bvh"
+    write_bvh(samples.corrupt(walk, wrong), path)
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.import_recording(filepath=str(path))
+    yield 0.5
+    yield from until_done()
+    armature = bpy.context.view_layer.objects.active
+    action, slot = armature.animation_data.action, armature.animation_data.action_slot
+    arm = armature.pose.bones[MISSING[0]]
+    names = [arm.name, *(each.name for each in arm.children_recursive)]
+    for curve in action.layers[0].strips[0].channelbag(slot).fcurves:
+        if any(f'bones["{name}"]' in curve.data_path for name in names):
+            for key in reversed(curve.keyframe_points):
+                if round(key.co.x) in MISSING[1]:
+                    curve.keyframe_points.remove(key, fast=True)
+            curve.update()
+
+
+def press(button):
+    with bgui.override("WINDOW"):
+        getattr(bpy.ops.mocap_assist, button)("INVOKE_DEFAULT")
+    yield 0.5
+    yield from until_done()
+    yield from settle()
+
+
+def open_editors():
+    """Show the Timeline below, and the Graph Editor in the lower half of the 3D View."""
+    with bgui.override("WINDOW"):
+        bpy.ops.screen.area_split(direction="HORIZONTAL", factor=0.5)
+    yield 0.5
+    views = [each for each in bgui.window().screen.areas if each.type == "VIEW_3D"]
+    lower = min(views, key=lambda each: each.y)
+    lower.ui_type = "FCURVES"
+    yield 0.5
+    for kind, operator in (
+        ("GRAPH_EDITOR", bpy.ops.graph),
+        ("DOPESHEET_EDITOR", bpy.ops.action),
+    ):
+        with bgui.override("WINDOW", kind):
+            operator.view_all()
+    yield from settle()
+
+
+def look_at(armature):
+    view = bgui.area().spaces.active.region_3d
+    bpy.context.scene.frame_set(LOOKED_AT)
+    view.view_location = armature.matrix_world @ armature.pose.bones[0].head
+    view.view_rotation, view.view_distance = (0.76, 0.6, 0.15, 0.2), 4.0
+
+
+def made_up_confidence(armature):
+    """Key a confidence that falls twice, as *Reconstruct* would."""
+    source = armature.animation_data.action, armature.animation_data.action_slot
+    frames = np.arange(*source[0].frame_range) + 0.0
+    low = 1.0 - 0.8 * np.exp(-(((frames - 60.0) / 12.0) ** 2))
+    medium = 1.0 - 0.4 * np.exp(-(((frames - 200.0) / 15.0) ** 2))
+    load("actions.reliability_curves").write_reliability(
+        armature, *source, frames, {"LeftArm": low, "RightLeg": medium}
+    )
+
+
+def large_action():
+    """Make an armature with an action of 100 bones and 10,000 frames, and 5 % generated."""
+    with bgui.override("WINDOW"):
+        bpy.ops.object.mode_set(mode="OBJECT")
+        armature = bpy.data.objects.new("large", bpy.data.armatures.new("large"))
+        bpy.context.scene.collection.objects.link(armature)
+        bpy.context.view_layer.objects.active = armature
+        bpy.ops.object.mode_set(mode="EDIT")
+        for index in range(N_BONES):
+            bone = armature.data.edit_bones.new(f"bone{index}")
+            bone.head, bone.tail = (index, 0, 0), (index, 0, 1)
+        bpy.ops.object.mode_set(mode="OBJECT")
+    random = np.random.default_rng(1)
+    frames = np.arange(1.0, N_FRAMES + 1.0)
+    keys = np.stack([frames, np.ones(N_FRAMES)], axis=1).astype(np.float32).ravel()
+    compat = load("blender.compat")
+    action, slot = compat.new_action("large", armature)
+    bag = compat.ensure_channelbag(action, slot)
+    for bone in armature.pose.bones:
+        for index in range(4):
+            path = f'pose.bones["{bone.name}"].rotation_quaternion'
+            curve = compat.new_curve(bag, path, index, bone.name)
+            curve.keyframe_points.add(N_FRAMES)
+            curve.keyframe_points.foreach_set("co", keys)
+            types = np.where(random.random(N_FRAMES) < 0.0005, GENERATED, 0).astype(np.uint8)
+            curve.keyframe_points.foreach_set("type", types)
+    compat.assign(armature, action, slot)
+    sure = {bone.name: random.random(N_FRAMES // 20).repeat(20) for bone in armature.pose.bones}
+    load("actions.reliability_curves").write_reliability(armature, action, slot, frames, sure)
+    contacts = random.random((N_FRAMES // 10, 2)).repeat(10, axis=0) > 0.5
+    load("actions.contact_keys").write_contacts(armature, action, slot, frames, contacts)
+    return armature
+
+
+def measure():
+    """Print the time of the first drawing, which reads the action, and of the others."""
+    large_action()
+    as_long = bpy.data.objects.new("as long", None)
+    bpy.context.scene.collection.objects.link(as_long)
+    for frame in (1, N_FRAMES):
+        as_long.keyframe_insert("location", frame=frame)
+    for each in bpy.context.view_layer.objects:
+        each.select_set(each == as_long)  # Blender need not draw millions of keys
+    bpy.context.scene.frame_end = N_FRAMES
+    switch, times, cpu_times = load("drawing.strip_switch"), [], []
+    draw_strip = switch.draw_strip
+
+    def timed(context):
+        started, cpu_started = time.perf_counter(), time.thread_time()
+        draw_strip(context)
+        times.append(1000.0 * (time.perf_counter() - started))
+        cpu_times.append(1000.0 * (time.thread_time() - cpu_started))
+
+    switch.draw_strip = timed
+    graph = bgui.area("GRAPH_EDITOR")
+    graph.ui_type = "DOPESHEET"
+    yield 0.5
+    graph.spaces.active.dopesheet.show_only_selected = True
+    with bgui.override("WINDOW", "DOPESHEET_EDITOR"):
+        bpy.ops.action.view_all()
+    for _ in range(N_TIMES):
+        bgui.redraw()
+        yield 0.2
+    bgui.shot("7-large.png")
+    switch.draw_strip = draw_strip
+    assert len(times) > N_TIMES
+    print(
+        f"bgui: the strip of {N_BONES} bones and {N_FRAMES} frames: first {times[0]:.1f} ms,"
+        f" then median {np.median(times[1:]):.3f} ms, of the processor"
+        f" {np.median(cpu_times[1:]):.3f} ms, best {min(times):.3f} ms, of {len(times)}",
+        flush=True,
+    )
+
+
+def steps():
+    empty_scene()
+    unfold_alone("check")
+    yield from import_walk()
+    armature = bpy.context.view_layer.objects.active
+    with bgui.override("WINDOW"):
+        bpy.ops.object.mode_set(mode="POSE")
+    look_at(armature)
+    yield from open_editors()
+    yield from bgui.open_sidebar("Mocap")
+    yield from settle(pointer=(500, 700))
+    bgui.shot("1-raw.png")
+    yield from press("measure_quality")
+    bgui.shot("1b-raw-checked.png")
+    yield from press("denoise")
+    bgui.shot("2-cleaned.png")
+    yield from press("measure_quality")
+    bgui.shot("3-checked.png")
+    made_up_confidence(armature)
+    yield from settle(5)
+    bgui.shot("4-confidence.png")
+    yield from measure()
+
+
+bgui.run(steps, timeout=600)
