@@ -8,6 +8,7 @@ def register() -> None:
     """Make properties, commands and panels known to Blender."""
     from . import batch, former_settings, scene_properties, ui
     from .actions import contact_keys
+    from .check import raw_view
     from .depth import depth_preview
     from .library import auto_update, background
     from .live import listening
@@ -26,6 +27,7 @@ def register() -> None:
     depth_preview.register()
     body_overlay.register()
     watch.register()
+    raw_view.register()
     listening.register()
     batch.register()
     ui.register()
@@ -35,6 +37,7 @@ def unregister() -> None:
     """Unregister all parts of the extension."""
     from . import batch, former_settings, scene_properties, ui
     from .actions import contact_keys
+    from .check import raw_view
     from .depth import depth_preview
     from .library import auto_update, background
     from .live import listening
@@ -45,6 +48,7 @@ def unregister() -> None:
     ui.unregister()
     batch.unregister()
     listening.unregister()
+    raw_view.unregister()
     watch.unregister()
     body_overlay.unregister()
     depth_preview.unregister()

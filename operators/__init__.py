@@ -32,6 +32,7 @@ from .retarget import MOCAP_OT_retarget
 from .retrack import MOCAP_OT_retrack
 from .revert_to_raw import MOCAP_OT_revert_to_raw
 from .show_depth import MOCAP_OT_show_depth
+from .show_raw import MOCAP_OT_show_raw
 from .simulate import MOCAP_OT_simulate
 from .solve_skeleton import MOCAP_OT_solve_skeleton
 from .stack_variants import MOCAP_OT_stack_variants
@@ -61,6 +62,7 @@ OPERATORS = (
     MOCAP_OT_retarget,
     MOCAP_OT_reduce_keys,
     MOCAP_OT_revert_to_raw,
+    MOCAP_OT_show_raw,
     MOCAP_OT_export_take,
     MOCAP_OT_index_library,
     MOCAP_OT_keep_current,

@@ -8,8 +8,10 @@ from ..panels.drawing import exists
 from ..panels.preference_values import preferences
 from ..runtime.selection import played_result, selected_subject
 from ..scene import history
+from .raw_key import key_text
 
 REVERT = "mocap_assist.revert_to_raw"
+HOLD = "Hold {key} to see the raw take"
 
 
 class ComparePanel(PanelMixin):
@@ -24,10 +26,19 @@ class ComparePanel(PanelMixin):
         column.prop(context.window_manager, "mocap_assist_overlay", toggle=True, icon="OVERLAY")
         if preferences() is not None:
             _draw_colors(column)
+        _draw_key(layout, context)
         if exists(REVERT):
             layout.operator(REVERT, icon="LOOP_BACK")
         if exists(EXPORT):
             draw_export(layout, context)
+
+
+def _draw_key(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Name the key that shows the recorded action, where a result plays."""
+    key = key_text()
+    if key and played_result(selected_subject(context)):
+        text = bpy.app.translations.pgettext_iface(HOLD).format(key=key)
+        layout.label(text=text, icon="HIDE_OFF", translate=False)
 
 
 def _draw_colors(column: bpy.types.UILayout) -> None:

@@ -1,5 +1,6 @@
 """User interface: panels in the sidebar, menus, preferences and the overlay."""
 
+from ..check import raw_key
 from ..clean import example_list
 from ..drawing import confidence_switch, overlay_switch, strip_switch
 from ..exporting import export_menu
@@ -27,6 +28,7 @@ PARTS = (
     overlay_switch,
     confidence_switch,
     strip_switch,
+    raw_key,
     manual,
 )
 

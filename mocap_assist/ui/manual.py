@@ -19,6 +19,7 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.measure_quality*": "check",
     "bpy.ops.mocap_assist.jump_to_issue*": "check",
     "bpy.ops.mocap_assist.revert_to_raw*": "compare",
+    "bpy.ops.mocap_assist.show_raw*": "compare",
     "bpy.ops.mocap_assist.export_take*": "export",
     "bpy.types.mocap_pg_export*": "export",
     "bpy.ops.mocap_assist.plant_feet*": "feet",

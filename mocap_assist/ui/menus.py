@@ -20,6 +20,7 @@ BUTTONS = (
     "mocap_assist.retarget",
     "mocap_assist.reduce_keys",
     "mocap_assist.revert_to_raw",
+    "mocap_assist.show_raw",
     "mocap_assist.export_take",
     "mocap_assist.index_library",
     "mocap_assist.find_similar",

@@ -8,6 +8,7 @@ import bpy
 from ...solvers.errors import MocapAssistError
 from ...solvers.recordings.live import PORT
 from ..actions.armature_write import Output
+from ..check.raw_key import draw_keys
 from ..drawing import overlay_drawing
 from ..library.auto_update_list import auto_updated_libraries, stop_keeping
 from ..panels.preference_values import EXTENSION, preferences, preferred
@@ -91,6 +92,7 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         overlay = layout.column(heading="Overlay")
         for name in ("raw_color", "clean_color", "line_width"):
             overlay.prop(self, name)
+        draw_keys(layout, context)
         folder = bpy.utils.extension_path_user(EXTENSION)
         if Path(folder).is_dir():
             row = layout.row()

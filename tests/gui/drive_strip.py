@@ -1,4 +1,4 @@
-"""See the strip below the keys; take pictures.
+"""See the strip below the keys, and the raw take while its key is held; take pictures.
 
     make test-gui DRIVERS=strip
 
@@ -96,6 +96,35 @@ def made_up_confidence(armature):
     )
 
 
+def hold_the_key(armature):
+    """The raw take plays from the press to the release, in an X window as in any other."""
+    clean = armature.animation_data.action
+    view = bgui.area()
+    bgui.move(view.x + view.width // 3, view.y + view.height // 2)
+    yield 0.3
+    n_steps = len(bpy.context.window_manager.operators)
+    bgui.x("keydown", "y")
+    yield 1.0
+    assert armature.animation_data.action.name == "walk", armature.animation_data.action
+    yield from settle(2)
+    bgui.shot("5-raw-held.png")
+    bgui.x("keyup", "y")
+    yield 0.5
+    assert armature.animation_data.action == clean
+    assert len(bpy.context.window_manager.operators) == n_steps
+    yield from settle(2)
+    bgui.shot("6-released.png")
+    bgui.x("keydown", "y")
+    yield 0.5
+    assert armature.animation_data.action != clean
+    yield from bgui.key("Escape")
+    yield 0.3
+    assert armature.animation_data.action == clean
+    bgui.x("keyup", "y")
+    yield 0.3
+    assert armature.animation_data.action == clean
+
+
 def large_action():
     """Make an armature with an action of 100 bones and 10,000 frames, and 5 % generated."""
     with bgui.override("WINDOW"):
@@ -170,6 +199,19 @@ def measure():
     )
 
 
+def the_preferences():
+    """The key can be changed in the preferences of the extension."""
+    bpy.ops.screen.userpref_show("INVOKE_DEFAULT")
+    yield 1.0
+    window = bpy.context.window_manager.windows[-1]
+    bpy.context.preferences.active_section = "ADDONS"
+    bpy.context.window_manager.addon_search = "mocap"
+    with bpy.context.temp_override(window=window):
+        bpy.ops.preferences.addon_expand(module=PACKAGE)
+    yield 1.5
+    bgui.shot("8-preferences.png")
+
+
 def steps():
     empty_scene()
     unfold_alone("check")
@@ -191,7 +233,9 @@ def steps():
     made_up_confidence(armature)
     yield from settle(5)
     bgui.shot("4-confidence.png")
+    yield from hold_the_key(armature)
     yield from measure()
+    yield from the_preferences()
 
 
 bgui.run(steps, timeout=600)

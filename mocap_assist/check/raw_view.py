@@ -1,0 +1,126 @@
+"""Let an armature or markers play the recorded action for a while, and then the result again.
+
+The recorded action is really assigned, so meshes, constraints and children follow it. What was
+played before returns on every ending: also before a file is saved or loaded, before undo, and
+before a render.
+"""
+
+from contextlib import suppress
+from typing import Any, NamedTuple
+
+import bpy
+from bpy.app import handlers
+
+from ...solvers.errors import InvalidMotionError
+from ..blender import compat
+from ..blender.block_references import BlockReference, SourceReference
+from ..runtime.selection import animated_objects, selected_subject
+from ..runtime.watch import why_busy
+from ..scene import history
+from .reverting import why_not_revert
+
+POSE = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
+"""Values of an object or a bone that only the recorded action may animate."""
+TWEAKED = "Leave Tweak Mode in the NLA Editor first."
+
+
+class _Shown(NamedTuple):
+    """An object that plays its recorded action for now; references outlive undo."""
+
+    player: BlockReference
+    raw: SourceReference
+    before: SourceReference | None
+    """Action that was assigned; None where only NLA tracks play."""
+    pose: dict[str, dict[str, Any]]
+    """By bone, the values before; those of the object have an empty name."""
+
+
+_shown: list[_Shown] = []
+
+
+def why_not_show_raw(context: bpy.types.Context) -> str:
+    """Return why the recorded action cannot be shown, or an empty text."""
+    if reason := why_busy() or why_not_revert(context):
+        return reason
+    players = animated_objects(selected_subject(context))
+    tweaked = any(
+        each.animation_data and each.animation_data.use_tweak_mode for each in players
+    )
+    return TWEAKED if tweaked else ""
+
+
+def show_raw(context: bpy.types.Context) -> str:
+    """Assign the recorded action to the selection; return a message for the status bar."""
+    restore()
+    message = ""
+    for player in animated_objects(selected_subject(context)):
+        played = history.played_result(player)
+        raw = played and history.raw_of(*played)
+        if raw:
+            _shown.append(_remember(player, raw))
+            compat.assign(player, *raw)
+            message = message or f"{raw[0].name} (raw)"
+    return message
+
+
+def is_shown() -> bool:
+    """Whether a recorded action plays for now."""
+    return bool(_shown)
+
+
+@handlers.persistent
+def restore(*_: object) -> None:
+    """Assign again what was played before; a second call has no effect."""
+    while _shown:
+        with suppress(InvalidMotionError):  # deleted meanwhile
+            _restore(_shown.pop())
+
+
+def _remember(player: bpy.types.Object, raw: compat.Source) -> _Shown:
+    animation = player.animation_data
+    before = animation.action and SourceReference.of((animation.action, animation.action_slot))
+    posed = {"": player} | (
+        {bone.name: bone for bone in player.pose.bones} if player.pose else {}
+    )
+    pose = {
+        name: {each: _copied(getattr(holder, each)) for each in POSE}
+        for name, holder in posed.items()
+    }
+    return _Shown(BlockReference.of(player), SourceReference.of(raw), before or None, pose)
+
+
+def _copied(value: Any) -> Any:
+    return value.copy() if hasattr(value, "copy") else tuple(value)
+
+
+def _restore(shown: _Shown) -> None:
+    """Assign what was played, unless another action was assigned in the meantime."""
+    player = shown.player.find()
+    animation = player.animation_data
+    if animation is None or animation.action != shown.raw.find()[0]:
+        return
+    if shown.before is None:
+        animation.action = None
+    else:
+        compat.assign(player, *shown.before.find())
+    for name, values in shown.pose.items():
+        holder = player if not name else player.pose.bones.get(name)
+        if holder is not None:
+            for each, value in values.items():
+                setattr(holder, each, value)
+
+
+_BEFORE = ("load_pre", "save_pre", "undo_pre", "redo_pre", "render_init")
+
+
+def register() -> None:
+    """Restore before anything that would keep what is shown only for now."""
+    for name in _BEFORE:
+        getattr(handlers, name).append(restore)
+
+
+def unregister() -> None:
+    """Restore, and remove the handlers."""
+    restore()
+    for name in _BEFORE:
+        getattr(handlers, name).remove(restore)
