@@ -55,7 +55,7 @@ def draw_strip(context: bpy.types.Context) -> None:
     if strip is None:
         return
     scale = context.preferences.system.ui_scale
-    bottom = strip_bottom(context, scale)
+    bottom = strip_bottom(context, len(strip.rows), scale)
     height = row_height(context.region.height - bottom, len(strip.rows), scale)
     first, last = visible_frames(context.region)
     pixels_per_frame = context.region.width / (last - first)
@@ -81,10 +81,15 @@ def visible_frames(region: bpy.types.Region) -> tuple[float, float]:
     return left, right
 
 
-def strip_bottom(context: bpy.types.Context, scale: float) -> float:
-    """Return the height of the strip in its region: above the scroll bar and the markers."""
+def strip_bottom(context: bpy.types.Context, n_rows: int, scale: float) -> float:
+    """Return the height of the strip in its region.
+
+    It lies above the scroll bar and the markers; in a low editor it covers the markers.
+    """
     has_markers = context.space_data.show_markers and len(context.scene.timeline_markers)
-    return (GAP_PX + (MARKERS_PX if has_markers else SCROLLER_PX)) * scale
+    needed = RULER_PX + MARKERS_PX + n_rows * ROW_HEIGHT_PX
+    is_high = context.region.height >= needed * scale
+    return (GAP_PX + (MARKERS_PX if has_markers and is_high else SCROLLER_PX)) * scale
 
 
 def row_height(space: float, n_rows: int, scale: float) -> float:
