@@ -28,8 +28,8 @@ PAGES = {
     "fixing": "fix_take accept_fix",
     "tracking": "track_depth retrack",
     "reconstruction": "reconstruct",
-    "cleaning": "denoise learn_patterns plant_feet measure_quality jump_to_issue revert_to_raw"
-    " show_raw",
+    "cleaning": "denoise learn_patterns plant_feet measure_quality jump_to_issue mark_issues"
+    " revert_to_raw show_raw",
     "export": "export_take",
     "physics": "simulate",
     "markers": "solve_skeleton",

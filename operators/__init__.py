@@ -23,6 +23,7 @@ from .listen import MOCAP_OT_listen
 from .load_match import MOCAP_OT_load_match
 from .load_sample import MOCAP_OT_load_sample
 from .mark_asset import MOCAP_OT_mark_asset
+from .mark_issues import MOCAP_OT_mark_issues
 from .mark_variants import MOCAP_OT_mark_variants
 from .measure_quality import MOCAP_OT_measure_quality
 from .plant_feet import MOCAP_OT_plant_feet
@@ -54,6 +55,7 @@ OPERATORS = (
     MOCAP_OT_reconstruct,
     MOCAP_OT_measure_quality,
     MOCAP_OT_jump_to_issue,
+    MOCAP_OT_mark_issues,
     MOCAP_OT_plant_feet,
     MOCAP_OT_learn_patterns,
     MOCAP_OT_simulate,

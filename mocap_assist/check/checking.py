@@ -90,7 +90,10 @@ def _summary(checked: Checked) -> str:
 
 
 def jump_to(context: bpy.types.Context, issue: bpy.types.PropertyGroup) -> None:
-    """Set the current frame to the start of an issue and select only its bone or its marker."""
+    """Set the current frame to the start of an issue and select only its bone or its marker.
+
+    An armature in Object Mode enters Pose Mode, where the selected bone is visible.
+    """
     frame, subframe = divmod(issue.start, 1.0)
     context.scene.frame_set(int(frame), subframe=subframe)
     subject = selected_subject(context)
@@ -111,6 +114,8 @@ def _select_bone(armature: bpy.types.Object, name: str) -> None:
     for bone in armature.pose.bones:
         compat.select_bone(bone, bone.name == name)
     armature.data.bones.active = armature.data.bones[name]
+    if armature.mode == "OBJECT" and armature.library is None:
+        bpy.ops.object.mode_set(mode="POSE")
 
 
 @Sliced

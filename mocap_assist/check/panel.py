@@ -13,8 +13,10 @@ from ..panels.fix_card import shown_card
 from ..panels.visibility import shows_take
 from ..runtime.selection import played_result, played_source, selected_subject
 from ..scene import history
+from .issue_markers import has_issue_markers
 
 CHECK, JUMP = "mocap_assist.measure_quality", "mocap_assist.jump_to_issue"
+MARK = "mocap_assist.mark_issues"
 ICONS = {
     "spike": "IPO_ELASTIC",
     "gap": "REMOVE",
@@ -67,6 +69,7 @@ class CheckPanel(PanelMixin):
         _draw_figures(layout, context)
         if shown.issues:
             _draw_issues(layout, context)
+        _draw_markers(layout, context.scene)
         draw_strip_switch(layout, context)
         _draw_thresholds(layout, shown.check)
 
@@ -103,6 +106,18 @@ def _draw_issues(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     if subject is not None and is_stale(shown.checked, subject):
         message = bpy.app.translations.pgettext_iface(STALE).format(action=shown.checked)
         draw_sentence(layout, context, message, icon="INFO")
+
+
+def _draw_markers(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
+    """Offer to mark the issues, and to remove the markers that are there."""
+    if not has_issue_markers(scene):
+        if scene.mocap_assist.issues:
+            layout.operator(MARK, icon="MARKER_HLT")
+        return
+    row = layout.row(align=True)
+    if scene.mocap_assist.issues:
+        row.operator(MARK, text="Update Markers", icon="MARKER_HLT")
+    row.operator(MARK, text="Remove Markers", icon="X").remove = True
 
 
 def is_stale(checked: str, subject: bpy.types.Object) -> bool:

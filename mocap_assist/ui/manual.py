@@ -18,6 +18,7 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.*_example*": "clean",
     "bpy.ops.mocap_assist.measure_quality*": "check",
     "bpy.ops.mocap_assist.jump_to_issue*": "check",
+    "bpy.ops.mocap_assist.mark_issues*": "check",
     "bpy.ops.mocap_assist.revert_to_raw*": "compare",
     "bpy.ops.mocap_assist.show_raw*": "compare",
     "bpy.ops.mocap_assist.export_take*": "export",

@@ -15,6 +15,7 @@ BUTTONS = (
     "mocap_assist.solve_skeleton",
     "mocap_assist.denoise",
     "mocap_assist.measure_quality",
+    "mocap_assist.mark_issues",
     "mocap_assist.plant_feet",
     "mocap_assist.simulate",
     "mocap_assist.retarget",

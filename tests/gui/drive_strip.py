@@ -226,6 +226,11 @@ def steps():
     bgui.shot("1-raw.png")
     yield from press("measure_quality")
     bgui.shot("1b-raw-checked.png")
+    yield from press("mark_issues")
+    bgui.shot("1c-markers.png")
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.mark_issues(remove=True)
+    assert not bpy.context.scene.timeline_markers
     yield from press("denoise")
     bgui.shot("2-cleaned.png")
     yield from press("measure_quality")

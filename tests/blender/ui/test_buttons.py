@@ -14,6 +14,8 @@ def test_next_continues_from_a_clicked_issue(blank, actor):
     assert jump(step=1) == {"FINISHED"}
 
     assert (found.active_issue, blank.context.scene.frame_current) == (2, 30)
+    assert actor.mode == "POSE"
+    assert blank.context.active_pose_bone.name == "LeftLeg"
 
 
 def test_button_properties_are_not_reused_at_the_next_press(blank):
