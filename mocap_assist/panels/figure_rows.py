@@ -4,10 +4,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 FIGURES = (
-    ("Jitter (m/s³)", "mean_jitter_m_per_s3", 1.0, ".0f"),
+    ("Jitter (°)", "mean_rotation_noise_deg", 1.0, ".2f"),
+    ("Jitter (mm)", "mean_position_noise_mm", 1.0, ".1f"),
     ("Spikes", "spikes", 1.0, ".0f"),
     ("Missing (%)", "missing_share", 100.0, ".1f"),
-    ("Foot Slide (cm/s)", "foot_slide_cm_per_s", 1.0, ".1f"),
+    ("Longest Slide (cm)", "longest_foot_slide_cm", 1.0, ".1f"),
 )
 UNKNOWN = "–"
 
@@ -26,10 +27,12 @@ def figure_rows(entries: Sequence[Mapping[str, Any]]) -> list[Row]:
     if not cleaned:
         return []
     before, after = cleaned[0]["before"], cleaned[-1]["after"]
+    has_rotations = before.get("mean_rotation_noise_deg") is not None
+    hidden = "mean_position_noise_mm" if has_rotations else "mean_rotation_noise_deg"
     return [
         Row(label, *(_figure(each.get(key), factor, form) for each in (before, after)))
         for label, key, factor, form in FIGURES
-        if key in before or key in after
+        if key != hidden and (key in before or key in after)
     ]
 
 

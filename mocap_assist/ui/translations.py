@@ -33,11 +33,12 @@ TEXTS = {
     "Esc cancels": ("Escで中止", "按 Esc 取消", "Échap annule", "Esc cancela"),
     "Before": ("前", "之前", "Avant", "Antes"),
     "After": ("後", "之后", "Après", "Después"),
-    "Jitter (m/s³)": ("揺れ (m/s³)", "抖动 (m/s³)", "Tremblement (m/s³)", "Temblor (m/s³)"),
+    "Jitter (°)": ("揺れ (°)", "抖动 (°)", "Tremblement (°)", "Temblor (°)"),
+    "Jitter (mm)": ("揺れ (mm)", "抖动 (mm)", "Tremblement (mm)", "Temblor (mm)"),
     "Spikes": ("スパイク", "尖峰", "Pics", "Picos"),
     "Missing (%)": ("欠損 (%)", "缺失 (%)", "Manquant (%)", "Ausente (%)"),
-    "Foot Slide (cm/s)": (
-        "足の滑り (cm/s)", "脚滑动 (cm/s)", "Glissement (cm/s)", "Deslizamiento (cm/s)",
+    "Longest Slide (cm)": (
+        "最大の滑り (cm)", "最长滑动 (cm)", "Glissement max. (cm)", "Deslizamiento máx. (cm)",
     ),
     "Previous": ("前へ", "上一个", "Précédent", "Anterior"),
     "Next": ("次へ", "下一个", "Suivant", "Siguiente"),

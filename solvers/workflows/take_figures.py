@@ -33,22 +33,6 @@ class TakeFigures:
     issues: tuple[Issue, ...]
 
     @property
-    def jitter(self) -> float:
-        """Mean noise of the joints' rotations, radians; NaN for points, which have none."""
-        noise = [signal.noise for signal in self.quality.signals if signal.is_rotation]
-        return float(np.mean(noise)) if noise else float("nan")
-
-    @property
-    def longest_foot_slide(self) -> float:
-        """Longest horizontal displacement of a foot in one contact, meters; NaN without any."""
-        slides = [
-            float(np.linalg.norm(np.nansum(foot.steps[start:stop], axis=0)))
-            for foot in self.quality.feet
-            for start, stop in find_runs(foot.contact)
-        ]
-        return max(slides, default=float("nan"))
-
-    @property
     def n_spikes(self) -> int:
         """Number of spikes of all joints."""
         return _count([signal.spikes for signal in self.quality.signals])
@@ -61,8 +45,8 @@ class TakeFigures:
     def figures(self) -> dict[str, Any]:
         """Return the figures as JSON-ready values with units in the names; None is unknown."""
         return {
-            "jitter_deg": _known(np.degrees(self.jitter)),
-            "longest_foot_slide_cm": _known(100.0 * self.longest_foot_slide),
+            "jitter_deg": _known(np.degrees(self.quality.rotation_noise)),
+            "longest_foot_slide_cm": _known(100.0 * self.quality.longest_foot_slide),
             "spikes": self.n_spikes,
             "gaps": self.n_gaps,
             "issues": len(self.issues),

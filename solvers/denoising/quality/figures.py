@@ -17,9 +17,12 @@ def quality_figures(quality: "Quality") -> dict[str, Any]:
         "n_frames": quality.n_frames,
         "frame_rate_hz": quality.frame_rate,
         "mean_jitter_m_per_s3": _json_number(quality.mean_jitter),
+        "mean_rotation_noise_deg": _json_number(np.degrees(quality.rotation_noise)),
+        "mean_position_noise_mm": _json_number(1000.0 * quality.position_noise),
         "spikes": sum(len(find_runs(signal.spikes)) for signal in quality.signals),
         "missing_share": float(np.mean([signal.gaps for signal in quality.signals])),
         "foot_slide_cm_per_s": _json_number(100.0 * quality.foot_slide),
+        "longest_foot_slide_cm": _json_number(100.0 * quality.longest_foot_slide),
         "joints": {
             name: {"jitter_m_per_s3": _json_number(jitter)}
             for name, jitter in zip(quality.names, quality.jitter.tolist(), strict=True)

@@ -9,6 +9,7 @@ from ...arrays import Array, Flags
 from ...feet import SIDES, find_foot_joints, find_legs, sole_points
 from ...motion import Motion, Tracks, WorldPoses
 from ...motion.humanoid import HumanoidMap
+from ...signals import find_runs
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +44,15 @@ class FootSlide:
         """Mean horizontal speed in contact, m/s; NaN where the foot is never in contact."""
         observed = self.speed[np.isfinite(self.speed)]
         return float(observed.mean()) if len(observed) else float("nan")
+
+    @property
+    def longest(self) -> float:
+        """Longest displacement in one contact, meters; 0 without contact."""
+        slides = (
+            float(np.linalg.norm(np.nansum(self.steps[start:stop], axis=0)))
+            for start, stop in find_runs(self.contact)
+        )
+        return max(slides, default=0.0)
 
     @property
     def distance(self) -> float:

@@ -111,6 +111,21 @@ class Quality:
         observed = np.concatenate(speeds) if speeds else np.empty(0)
         return float(observed.mean()) if len(observed) else float("nan")
 
+    @property
+    def rotation_noise(self) -> float:
+        """Mean noise of the joints' rotations, radians; NaN for points, which have none."""
+        return _mean_noise(self.signals, is_rotation=True)
+
+    @property
+    def position_noise(self) -> float:
+        """Mean noise of the points, or that of the root, meters."""
+        return _mean_noise(self.signals, is_rotation=False)
+
+    @property
+    def longest_foot_slide(self) -> float:
+        """Longest horizontal displacement of a foot in one contact, meters; NaN without any."""
+        return max((foot.longest for foot in self.feet if foot.contact.any()), default=np.nan)
+
     def report(self) -> str:
         """Return a table for animators, in degrees and centimeters."""
         return quality_report(self)
@@ -125,6 +140,11 @@ class Quality:
         for signal, flag in zip(self.signals, flags, strict=True):
             flags_by_joint[:, column_of[signal.joint]] |= flag
         return flags_by_joint
+
+
+def _mean_noise(signals: tuple[Signal, ...], *, is_rotation: bool) -> float:
+    noise = [signal.noise for signal in signals if signal.is_rotation is is_rotation]
+    return float(np.mean(noise)) if noise else float("nan")
 
 
 def measure_quality(

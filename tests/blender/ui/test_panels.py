@@ -178,10 +178,20 @@ def test_figures_compare_the_raw_take_with_the_last_result(load):
 
 def test_unknown_figure_is_a_dash(load):
     rows = load("mocap_assist.panels.figure_rows").figure_rows([
-        {"before": {"foot_slide_cm_per_s": None}, "after": {"foot_slide_cm_per_s": 1.25}}
+        {"before": {"longest_foot_slide_cm": None}, "after": {"longest_foot_slide_cm": 1.25}}
     ])
 
-    assert rows == [("Foot Slide (cm/s)", "–", "1.2")]
+    assert rows == [("Longest Slide (cm)", "–", "1.2")]
+
+
+@pytest.mark.parametrize(("degrees", "unit"), [(2.5, "°"), (None, "mm")])
+def test_jitter_of_joints_is_in_degrees_and_that_of_markers_in_millimeters(load, degrees, unit):
+    figures = {"mean_rotation_noise_deg": degrees, "mean_position_noise_mm": 4.25}
+    rows = load("mocap_assist.panels.figure_rows").figure_rows([
+        {"before": figures, "after": figures}
+    ])
+
+    assert [row.label for row in rows] == [f"Jitter ({unit})"]
 
 
 def test_frame_ranges_are_formatted_as_text(load):

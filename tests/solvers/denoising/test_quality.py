@@ -107,6 +107,7 @@ def test_slide_is_the_distance_in_contact():
 
     assert_allclose(slide.mean_speed, 0.3, rtol=1e-9)
     assert_allclose(slide.distance, 0.3, rtol=1e-9)
+    assert_allclose(slide.longest, 0.3, rtol=1e-9)
 
 
 def test_foot_that_rolls_over_its_toe_does_not_slide():

@@ -93,7 +93,7 @@ def test_longest_slide_is_that_of_one_contact():
 
     taken = measure_take(walk.with_poses(rotations, positions), contacts=contacts)
 
-    assert taken.longest_foot_slide == pytest.approx(0.03, abs=1e-9)
+    assert taken.quality.longest_foot_slide == pytest.approx(0.03, abs=1e-9)
 
 
 def test_steps_report_what_was_done(fixed):
@@ -130,7 +130,7 @@ def test_skeleton_without_legs_is_cleaned_all_the_same():
 
     assert result.chain.planted is None
     assert any(step.startswith("Feet were not planted.") for step in result.steps)
-    assert result.after.jitter < 0.2 * result.before.jitter
+    assert result.after.quality.rotation_noise < 0.2 * result.before.quality.rotation_noise
     assert result.figures()["after"]["longest_foot_slide_cm"] is None
 
 
@@ -155,7 +155,7 @@ def test_joints_of_a_camera_are_reconstructed_and_not_cleaned_again(camera_walk)
     expected = reconstruct_recording(camera_walk).motion
     assert result.origin is TakeOrigin.CAMERA and result.chain.denoised is None
     assert_allclose(result.recording.rotations, expected.rotations, atol=1e-9)
-    assert result.after.jitter < 0.3 * result.before.jitter
+    assert result.after.quality.rotation_noise < 0.3 * result.before.quality.rotation_noise
 
 
 def test_armature_of_a_camera_is_reconstructed_on_its_skeleton(camera_walk):
