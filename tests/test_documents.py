@@ -168,7 +168,13 @@ def test_commands_in_the_documents_exist_and_all_are_shown():
         shown["blender"] |= set(re.findall(r"--command mocap_assist ([a-z]\w*)", text))
 
     assert shown["solvers"] == set(VERBS)
-    assert shown["blender"] == blender_verbs() | {"import", "capture", "index", "each"}
+    assert shown["blender"] == blender_verbs() | {
+        "import",
+        "capture",
+        "index",
+        "each",
+        "report",
+    }
 
 
 def blender_verbs() -> set[str]:

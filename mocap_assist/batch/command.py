@@ -24,6 +24,8 @@ from .import_verb import HELP as IMPORT_HELP
 from .import_verb import add_import_options, perform_import
 from .library_verbs import INDEX_HELP, add_index_options, perform_index
 from .pictures import draw_result
+from .report_verb import HELP as REPORT_HELP
+from .report_verb import add_report_options, perform_report
 from .saving import STDOUT, add_output_options, check_folder, save, target_file
 from .verbs import VERBS
 
@@ -133,6 +135,9 @@ def _parser() -> SentenceParser:
     add_threads_option(described)
     add_index_options(described)
     described.set_defaults(work=perform_index)
+    described = choices.add_parser("report", help=REPORT_HELP, description=REPORT_HELP)
+    add_report_options(described)
+    described.set_defaults(work=perform_report)
     described = choices.add_parser("each", help=EACH_HELP, description=EACH_HELP)
     add_each_options(described)
     described.set_defaults(work=perform_each)

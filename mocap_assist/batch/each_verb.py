@@ -11,17 +11,26 @@ from typing import Any
 
 import bpy
 
-from ...solvers.command_line.batch import FinishedTask, OutputRecord
-from ...solvers.command_line.files import check_name_length, find_recordings, unique_targets
+from ...solvers.command_line.batch import (
+    FinishedTask,
+    already_made,
+    has_called_hook,
+    made_record,
+    share,
+    task_entries,
+    verb_name,
+)
+from ...solvers.command_line.files import check_name_length, unique_targets
+from ...solvers.command_line.options import add_sharing_options
 from ...solvers.command_line.report import (
     PICTURE,
-    Entry,
     has_picture,
     picture_file,
     remove_picture,
     write_report,
 )
 from ...solvers.command_line.screen import Screen
+from ...solvers.command_line.tasks import check_output_folder, find_inputs, shared_tasks
 from ...solvers.command_line.verb import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
 from ...solvers.faults import Failure, attempt, escaped
@@ -59,7 +68,7 @@ os._exit(status)
 def add_each_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `each`."""
     parser.add_argument(
-        "files", nargs="+", type=Path, metavar="FILE",
+        "files", nargs="*", type=Path, metavar="FILE",
         help=".blend files, or folders of them; for import and capture, recordings or folders"
         " of them",
     )  # fmt: skip
@@ -76,6 +85,7 @@ def add_each_options(parser: argparse.ArgumentParser) -> None:
         "--report", action="store_true",
         help="write DIR/report.html and report.json about all files, with pictures",
     )  # fmt: skip
+    add_sharing_options(parser)
 
 
 def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
@@ -89,21 +99,21 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
     if arguments.jobs < 1:
         raise InvalidSettingError(f"jobs is {arguments.jobs}; it must be at least 1.")
     folder: Path = arguments.output_folder
-    tasks = _tasks(arguments)
-    made = OutputRecord(folder)
-    entries = {task.key: Entry(task, None) for task in tasks}
+    every = _tasks(arguments)
+    tasks = shared_tasks(every, arguments)
+    failed: list[str] = []
     faults: tuple[str, ...] = ()
     try:
-        for finished in _worked(tasks, arguments, made):
-            figures = finished.outcome.figures if finished.outcome else None
-            entries[finished.task.key] = Entry(finished.task, figures, finished.failure)
+        for finished in _worked(tasks, arguments):
             text = finished.outcome.text if finished.outcome else finished.failure
             sys.stdout.write(escaped(f"{finished.task.source}: {text}") + "\n")
             sys.stdout.flush()
+            failed += finished.outcome.failures if finished.outcome else [finished.failure]
+            check_output_folder(folder)
     finally:
-        if arguments.report:
-            faults = write_report(folder, " ".join(arguments.words), list(entries.values()))
-    failed = [entry.failure for entry in entries.values() if entry.failure]
+        if arguments.report and not is_missing(folder):
+            name = verb_name(every[0])
+            faults = write_report(folder, name, lambda: task_entries(every))
     if failed:
         raise InvalidFileError(f"{len(failed)} of {len(tasks)} files failed. {failed[0]}")
     if faults:
@@ -120,15 +130,13 @@ def _tasks(arguments: argparse.Namespace) -> list[Task]:
     """Return one task for each input file."""
     folder: Path = real_path(arguments.output_folder)
     list_recordings = IMPORT_VERBS.get(arguments.words[0])
-    if list_recordings is None:
-        pairs = _blends(arguments.files, folder)
-    else:
-        pairs = find_recordings(arguments.files, folder, list_recordings)
+    inputs = find_inputs(arguments, folder, list_recordings or _blends_in)
     targets = unique_targets(
-        [relative_path for _, relative_path in pairs], [BLEND] * len(pairs)
+        [each.output or each.name for each in inputs], [BLEND] * len(inputs)
     )
     tasks = []
-    for (source, _), relative_path in zip(pairs, targets, strict=True):
+    for each, relative_path in zip(inputs, targets, strict=True):
+        source = each.path
         if list_recordings is None and not is_folder(source) and source.suffix.lower() != BLEND:
             raise InvalidSettingError(
                 f"{source} is not a .blend file; only import and capture read others."
@@ -136,7 +144,8 @@ def _tasks(arguments: argparse.Namespace) -> list[Task]:
         target = arguments.output_folder / relative_path
         if real_path(target) == real_path(source):
             raise InvalidSettingError(f"{source} would be overwritten; choose another folder.")
-        tasks.append(Task((source,), target, arguments, _refusal(source, target)))
+        refusal = _refusal(source, target)
+        tasks.append(Task((source,), target, arguments, refusal, each.name.as_posix()))
     return tasks
 
 
@@ -155,54 +164,41 @@ def _prepare_target(source: Path, target: Path) -> None:
     target.parent.mkdir(parents=True, exist_ok=True)
 
 
-def _blends(paths: Sequence[Path], excluded: Path) -> list[tuple[Path, Path]]:
-    found = []
-    for path in paths:
-        if not is_folder(path):
-            found.append((path, Path(path.name)))
-            continue
-        resolved = real_path(path)
-        inside = [
-            file for file in files_below(resolved) if file.suffix == BLEND or is_folder(file)
-        ]
-        above = resolved.parent if len(paths) > 1 or inside == [resolved] else resolved
-        kept = [file for file in inside if excluded not in file.parents]
-        found += [(file, file.relative_to(above)) for file in kept]
+def _blends_in(folder: Path) -> list[Path]:
+    """Return the .blend files in a folder and below, and the folders that cannot be opened."""
+    found = [file for file in files_below(folder) if file.suffix == BLEND or is_folder(file)]
     if not found:
-        raise InvalidFileError(f"There is no .blend file in {paths[0]}.")
+        raise InvalidFileError(f"There is no .blend file in {folder}.")
     return found
 
 
-def _worked(
-    tasks: Sequence[Task], arguments: argparse.Namespace, made: OutputRecord
-) -> Iterator[FinishedTask]:
+def _worked(tasks: Sequence[Task], arguments: argparse.Namespace) -> Iterator[FinishedTask]:
     """Yield existing results, then each task when it finishes, and record it."""
-    made.clear_up(tasks)
-    there = [
-        task
-        for task in tasks
-        if not arguments.again
-        and made.has(task)
-        and (has_picture(task) or not arguments.report)
-    ]
-    for task in there:
-        yield FinishedTask(task, Outcome("Already made.", made.figures(task)))
+    remaining = []
+    for task in tasks:
+        record = made_record(task)
+        if record is None:
+            remaining.append(task)
+        elif arguments.again or (arguments.report and not has_picture(task)):
+            remaining.append(task._replace(replaced=record.identifier))
+        elif has_called_hook(task, record):
+            yield FinishedTask(task, already_made(record))
+        else:
+            remaining.append(task)
     stopped = Event()
-    attempt = partial(_attempt, stopped=stopped)
     with ThreadPoolExecutor(arguments.jobs) as pool:
-        waiting = [pool.submit(attempt, task) for task in tasks if task not in there]
+        waiting = [
+            pool.submit(share, task, partial(_attempt, task, stopped)) for task in remaining
+        ]
         try:
             for done in as_completed(waiting):
-                finished = done.result()
-                if finished.outcome is not None:
-                    made.add(finished.task, finished.outcome.figures)
-                yield finished
+                yield done.result()
         finally:
             stopped.set()
             pool.shutdown(cancel_futures=True)
 
 
-def _attempt(task: Task, *, stopped: Event) -> FinishedTask:
+def _attempt(task: Task, stopped: Event) -> FinishedTask:
     """Run the verb on one file in another Blender."""
     finished = attempt(task.source, _perform, task, stopped)
     if isinstance(finished, Failure):

@@ -1,26 +1,27 @@
 """Process many files, sequentially or in parallel, and resume after a stop."""
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from time import monotonic
 from typing import Any, NamedTuple
 
+from ..errors import InvalidFileError
 from ..faults import Failure, attempt
-from ..files import is_missing, real_path, remove_leftovers, write_atomically
-from ..json_text import parse_json
+from ..files import is_missing
+from ..pictures import StickFigureSettings, draw_stick_figures
 from ..processes import threads_from, worker_pool
 from ..progress import Progress, Remark, collect_remarks, unwatched
-from ..version import version
-from .report import FIGURES, PAGE, draw_task, picture_file, remove_picture
+from ..recordings import is_depth_recording, read_motion_or_tracks
+from .files import read
+from .report import Entry, output_of, picture_file, picture_of, remove_picture, write_report
 from .screen import Screen
+from .sharing import Record, Records, claimed, fingerprint, hook_remark, run_hook
 from .verb import Outcome, Task, Verb
-
-RECORD = "mocap_assist.json"
-IRRELEVANT_OPTIONS = {"again", "files", "jobs", "json", "output_folder", "report", "work"}
-"""Options that do not change the result."""
 
 
 class FinishedTask(NamedTuple):
@@ -56,7 +57,7 @@ def run_tasks(
         else:
             yield finished
     for task in suspects:  # A crash ends all tasks of the pool; run alone, the cause is known.
-        yield from _run_in_pool(verb, [task], prepared, 1)
+        yield from map(record_end, _run_in_pool(verb, [task], prepared, 1))
 
 
 def _run_in_pool(
@@ -92,6 +93,10 @@ def _submit(
 
 
 def _attempt(verb: Verb, task: Task, prepared: Any, progress: Progress) -> FinishedTask:
+    return share(task, partial(_work, verb, task, prepared, progress))
+
+
+def _work(verb: Verb, task: Task, prepared: Any, progress: Progress) -> FinishedTask:
     outcome = attempt(task.subject, _perform, verb, task, prepared, progress)
     if isinstance(outcome, Failure):
         return FinishedTask(task, None, outcome.sentence)
@@ -103,7 +108,8 @@ def _perform(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Outco
     remarks: list[Remark] = []
     outcome = verb.perform(task, prepared, collect_remarks(progress, remarks))
     added = [f"{remark.rstrip('.')}." for remark in remarks if remark not in outcome.text]
-    outcome = replace(outcome, text="\n".join([outcome.text, *added]))
+    text = "\n".join([outcome.text, *added])
+    outcome = replace(outcome, text=text, remarks=(*outcome.remarks, *added))
     json.dumps(outcome.figures, allow_nan=False)
     if getattr(task.arguments, "output_folder", None) is not None:
         remove_picture(task)
@@ -112,90 +118,179 @@ def _perform(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Outco
     return outcome
 
 
-class OutputRecord:
-    """The record of the outputs in a folder: their inputs, options and figures.
+def draw_task(task: Task) -> str:
+    """Draw input and result over each other, as stick figures.
 
-    The file `mocap_assist.json` stores for each output the verb, its options, the version of
-    Mocap Assist, the size and date of the input files, and the figures.
+    If drawing fails there is no picture: a report must not fail after the work is done.
+
+    Returns
+    -------
+    str
+        The message of a bug in Mocap Assist; empty if there was none.
     """
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.path = folder / RECORD
-        self.notes: dict[str, Any] = {}
-        try:
-            notes = parse_json(self.path.read_bytes())
-        except (OSError, ValueError):
-            notes = None  # Missing or unreadable: every output is made again.
-        if isinstance(notes, dict):
-            self.notes = {name: note for name, note in notes.items() if isinstance(note, dict)}
-
-    def clear_up(self, tasks: Sequence[Task]) -> None:
-        """Remove temporary files that a killed batch left for these outputs."""
-        targets = [task.target for task in tasks if task.target is not None]
-        pictures = [picture_file(task) for task in tasks if task.target is not None]
-        own = [self.path, self.folder / PAGE, self.folder / FIGURES]
-        remove_leftovers([*own, *targets, *pictures])
-
-    def has(self, task: Task) -> bool:
-        """Return whether the output exists and is up to date."""
-        if task.refusal or task.target is None or is_missing(task.target):
-            return False
-        note = dict(self.notes.get(self._name(task), {}))
-        note.pop("figures", None)
-        return note == task_fingerprint(task)
-
-    def figures(self, task: Task) -> dict[str, Any]:
-        """Return the figures of an existing output."""
-        found = self.notes[self._name(task)].get("figures")
-        return found if isinstance(found, dict) else {}
-
-    def add(self, task: Task, figures: dict[str, Any]) -> None:
-        """Record a new output."""
-        if task.target is not None:
-            self.notes[self._name(task)] = {**task_fingerprint(task), "figures": figures}
-            with write_atomically(self.path) as part:
-                part.write_text(json.dumps(self.notes, indent=1), encoding="utf-8")
-
-    def _name(self, task: Task) -> str:
-        return "" if task.target is None else task.target.relative_to(self.folder).as_posix()
+    outcome = attempt(task.subject, _draw, task)
+    if not isinstance(outcome, Failure):
+        return ""
+    remove_picture(task)
+    return outcome.sentence if outcome.is_fault else ""
 
 
-def task_fingerprint(task: Task) -> dict[str, Any]:
-    """Return everything that the result depends on, as JSON; files by size and date."""
-    options = {
-        name: _json_value(value)
-        for name, value in sorted(vars(task.arguments).items())
-        if name not in IRRELEVANT_OPTIONS
+def _draw(task: Task) -> None:
+    assert task.target is not None
+    picture = picture_file(task)
+    result = read_motion_or_tracks(task.target)
+    motions = {"result": result}
+    if not is_depth_recording(task.source):
+        given = read(task.source, task.arguments, unwatched)
+        motions = {"given": given, **motions} if given.n_frames == result.n_frames else motions
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    draw_stick_figures(motions, StickFigureSettings(n_figures=9, height=150)).save(picture)
+
+
+def share(task: Task, work: Callable[[], FinishedTask]) -> FinishedTask:
+    """Do the work on a task unless another process does or has done it; record the result.
+
+    A task without an output folder is not shared.
+    """
+    if getattr(task.arguments, "output_folder", None) is None:
+        return work()
+    finished = attempt(task.subject, _share, task, work)
+    if isinstance(finished, Failure):
+        return FinishedTask(task, None, finished.sentence)
+    return finished
+
+
+def record_end(finished: FinishedTask) -> FinishedTask:
+    """Record a task that failed before or after its work, such as a crashed one."""
+    return finished if finished.outcome else share(finished.task, lambda: finished)
+
+
+def _share(task: Task, work: Callable[[], FinishedTask]) -> FinishedTask:
+    assert task.target is not None
+    records, output = Records(task.arguments.output_folder), output_of(task)
+    with claimed(records.claim(output)) as claim:
+        if claim.holder:
+            text = f"taken by {claim.holder}"
+            return FinishedTask(task, Outcome(f"Skipped: {text}.", {"skipped": text}))
+        if claim.taken_over:
+            records.clear_up(output, task.target, picture_file(task))
+        record = made_record(task)
+        if record is not None and record.identifier != task.replaced:
+            finished = FinishedTask(task, already_made(record))
+        else:
+            began = monotonic()
+            finished = work()
+            record = _record(finished, monotonic() - began)
+            records.write(record)
+        return _call_hook(finished, record, records)
+
+
+def _record(finished: FinishedTask, duration_s: float) -> Record:
+    task, outcome = finished.task, finished.outcome
+    return Record(
+        verb=verb_name(task),
+        inputs=[str(source) for source in task.sources],
+        output=output_of(task),
+        fingerprint=fingerprint(task.source, task.arguments),
+        figures=outcome.figures if outcome is not None else {},
+        error=finished.failure,
+        remarks=[*outcome.remarks] if outcome is not None else [],
+        duration_s=round(duration_s, 3),
+    )
+
+
+def _call_hook(finished: FinishedTask, record: Record, records: Records) -> FinishedTask:
+    """Run the command of `--after`, unless the take failed or the command has run."""
+    task, outcome = finished.task, finished.outcome
+    if outcome is None or task.target is None or has_called_hook(task, record):
+        return finished
+    files = {
+        "input": task.source,
+        "output": task.target,
+        "record": records.file(record.output),
     }
-    return {
-        "version": version(),
-        "source": _stamp(task.source),
-        "skeletons": _nearby_skeletons(task.source),
-        "options": options,
-    }
+    after = run_hook(task.arguments.after, files)
+    former, sentence = hook_remark(record.after), hook_remark(after)
+    remarks = [remark for remark in record.remarks if remark != former]
+    records.write(replace(record, after=after, remarks=[*remarks, *filter(None, [sentence])]))
+    if not sentence:
+        return finished
+    failure = f"{task.subject}: {sentence}"
+    return FinishedTask(task, replace(outcome, failures=(*outcome.failures, failure)))
 
 
-def _nearby_skeletons(source: Path) -> list[Any]:
-    """Return the skeleton files that an Acclaim recording may use."""
-    if source.suffix.lower() != ".amc":
-        return []
-    return [_stamp(path) for path in sorted(source.parent.glob("*.[aA][sS][fF]"))]
+def has_called_hook(task: Task, record: Record) -> bool:
+    """Return whether nothing is left to do by the command of `--after`."""
+    command = task.arguments.after
+    return command is None or (
+        record.after.get("command") == command and record.after.get("status") == 0
+    )
 
 
-def _json_value(value: Any) -> Any:
-    """Return an option as JSON; a file by size and date."""
-    if isinstance(value, list):
-        return [_json_value(each) for each in value]
-    return _stamp(value) if isinstance(value, Path) else str(value)
+def already_made(record: Record) -> Outcome:
+    """Return the outcome of a task whose output is up to date."""
+    return Outcome("Already made.", {**record.figures, "already_made": True})
 
 
-def _stamp(file: Path) -> list[Any]:
-    """Return name, size and date of a file, or of all files in a folder."""
-    try:
-        if file.is_dir():
-            return [_stamp(each) for each in sorted(file.rglob("*")) if each.is_file()]
-        found = file.stat()
-    except OSError:  # The reader reports the error.
-        return [str(file)]
-    return [str(real_path(file)), found.st_size, found.st_mtime_ns]
+def made_record(task: Task) -> Record | None:
+    """Return the record of an output that exists and is up to date."""
+    if task.refusal or task.target is None or is_missing(task.target):
+        return None
+    record = current_record(task)
+    return None if record is None or record.error else record
+
+
+def current_record(task: Task) -> Record | None:
+    """Return the record of a task with the same input and options, also of one that failed."""
+    record = Records(task.arguments.output_folder).read(output_of(task))
+    same = record is not None and record.fingerprint == fingerprint(task.source, task.arguments)
+    return record if same else None
+
+
+def verb_name(task: Task) -> str:
+    """Return the verb as reports name it; of `each`, with its options."""
+    return " ".join(getattr(task.arguments, "words", ())) or str(task.arguments.verb)
+
+
+def task_entries(tasks: Sequence[Task]) -> list[Entry]:
+    """Return what a report says of the tasks of a run, on whichever machine they ran."""
+    return [_task_entry(task, current_record(task)) for task in tasks]
+
+
+def _task_entry(task: Task, record: Record | None) -> Entry:
+    entry = Entry(str(task.source), str(task.target), picture_of(output_of(task)))
+    return entry if record is None else entry.with_record(record)
+
+
+def report_folder(task: Task, prepared: None, progress: Progress) -> Outcome:
+    """Write the reports on an output folder from the records of all machines.
+
+    Raises
+    ------
+    InvalidFileError
+        The folder has no records.
+    """
+    folder = task.source
+    records = Records(folder).all()
+    if not records:
+        raise InvalidFileError(f"There are no records of a batch in the folder {folder}.")
+    verb = ", ".join(dict.fromkeys(record.verb for record in records))
+    faults = write_report(folder, verb, lambda: _folder_entries(folder))
+    entries = _folder_entries(folder)
+    lines = [f"{'failed' if each.failure else 'done':7} {each.target}" for each in entries]
+    n_failed = sum(bool(each.failure) for each in entries)
+    text = "\n".join([*lines, f"{len(entries) - n_failed} done, {n_failed} failed"])
+    failures = tuple(each.failure for each in entries if each.failure)
+    figures = {"done": len(entries) - n_failed, "failed": n_failed}
+    return Outcome(text, figures, (*failures, *faults))
+
+
+def _folder_entries(folder: Path) -> list[Entry]:
+    return [
+        Entry(
+            (record.inputs or [record.output])[0],
+            str(folder / record.output),
+            picture_of(record.output),
+        ).with_record(record)
+        for record in Records(folder).all()
+    ]

@@ -5,9 +5,11 @@ from collections.abc import Callable
 from dataclasses import Field, fields
 from enum import Enum
 from math import degrees, isfinite, radians
+from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
 from ..settings import Described, Settings, former_names
+from .sharing import parse_hook, parse_shard
 
 SettingsClass = TypeVar("SettingsClass", bound=Settings)
 MAX_LISTED_LETTERS = 32
@@ -21,6 +23,24 @@ class SentenceParser(argparse.ArgumentParser):
         """Print the sentence on stderr, without the usage."""
         sentence = message[:1].upper() + message[1:].rstrip(".")
         self.exit(2, f"{sentence}. See: {self.prog} --help\n")
+
+
+def add_sharing_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options for batches of many machines and many takes."""
+    parser.add_argument(
+        "--manifest", type=Path, metavar="FILE",
+        help='Read the inputs from FILE: a path, or {"input": PATH, "output": PATH}, per line;'
+        " *.json has a list of them",
+    )  # fmt: skip
+    parser.add_argument(
+        "--shard", type=parse_shard, metavar="I/N",
+        help="Process the I-th of N parts of the takes, which is the same on all machines",
+    )  # fmt: skip
+    parser.add_argument(
+        "--after", type=parse_hook, metavar="COMMAND",
+        help="Run COMMAND after each take, without a shell; {input}, {output} and {record} are"
+        " replaced by the take's files",
+    )  # fmt: skip
 
 
 def arguments_from(parser: argparse._ActionsContainer, *classes: type[Settings]) -> None:

@@ -1,18 +1,15 @@
 """Write the report of a batch: `report.html` for people, `report.json` for programs."""
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from html import escape
 from pathlib import Path, PurePosixPath
 from string import Template
 from typing import Any, NamedTuple
 
 from ..faults import Failure, attempt
-from ..files import write_atomically
-from ..pictures import StickFigureSettings, draw_stick_figures
-from ..progress import unwatched
-from ..recordings import is_depth_recording, read_motion_or_tracks
-from .files import read
+from ..files import remove_leftovers, write_atomically
+from .sharing import Record, Records, claimed
 from .verb import Task
 
 PAGE, FIGURES, PICTURES = "report.html", "report.json", Path("report")
@@ -34,18 +31,37 @@ $picture</section>
 
 
 class Entry(NamedTuple):
-    """The result of one file."""
+    """What a report says of one file."""
 
-    task: Task
-    figures: Mapping[str, Any] | None
+    source: str
+    target: str
+    picture: Path
+    """Relative to the output folder; it may be missing."""
+    figures: Mapping[str, Any] | None = None
     """None if it failed or was not processed."""
     failure: str = ""
+    remarks: tuple[str, ...] = ()
+    identifier: str = ""
+
+    def with_record(self, record: Record) -> "Entry":
+        """Return the entry of a processed file."""
+        return self._replace(
+            figures=None if record.error else record.figures,
+            failure=record.error,
+            remarks=tuple(record.remarks),
+            identifier=record.identifier,
+        )
+
+    @property
+    def name(self) -> str:
+        """Name of the input."""
+        return Path(self.source).name
 
 
 def picture_file(task: Task) -> Path:
     """Return the path of the picture of a task with an output folder."""
     folder: Path = task.arguments.output_folder
-    return folder / _picture(task)
+    return folder / picture_of(output_of(task))
 
 
 def has_picture(task: Task) -> bool:
@@ -58,37 +74,21 @@ def remove_picture(task: Task) -> None:
     picture_file(task).unlink(missing_ok=True)
 
 
-def draw_task(task: Task) -> str:
-    """Draw input and result over each other, as stick figures.
-
-    If drawing fails there is no picture: a report must not fail after the work is done.
-
-    Returns
-    -------
-    str
-        The message of a bug in Mocap Assist; empty if there was none.
-    """
-    outcome = attempt(task.subject, _draw, task)
-    if not isinstance(outcome, Failure):
-        return ""
-    remove_picture(task)
-    return outcome.sentence if outcome.is_fault else ""
-
-
-def _draw(task: Task) -> None:
+def output_of(task: Task) -> str:
+    """Return the output relative to the output folder, as records name it."""
     assert task.target is not None
-    picture = picture_file(task)
-    result = read_motion_or_tracks(task.target)
-    motions = {"result": result}
-    if not is_depth_recording(task.source):
-        given = read(task.source, task.arguments, unwatched)
-        motions = {"given": given, **motions} if given.n_frames == result.n_frames else motions
-    picture.parent.mkdir(parents=True, exist_ok=True)
-    draw_stick_figures(motions, StickFigureSettings(n_figures=9, height=150)).save(picture)
+    return task.target.relative_to(task.arguments.output_folder).as_posix()
 
 
-def write_report(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str, ...]:
-    """Write both reports, each atomically.
+def picture_of(output: str) -> Path:
+    """Return the path of the picture of an output, relative to the output folder."""
+    return PICTURES / f"{output}{PICTURE}"
+
+
+def write_report(
+    folder: Path, verb: str, collect: Callable[[], list[Entry]]
+) -> tuple[str, ...]:
+    """Write both reports, each atomically, until no other machine has added a record.
 
     An entry whose figures cannot be shown is a failure in the report.
 
@@ -97,25 +97,43 @@ def write_report(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str
     folder : Path
         The output folder. Existing pictures are shown.
     verb : str
-    entries : sequence of Entry
-        One per input file, in their order.
+    collect : callable
+        Reads the records; returns one entry per input file, in their order.
 
     Returns
     -------
     tuple of str
         A sentence for each entry that could not be shown.
     """
-    checked = [attempt(entry.task.subject, _checked, entry) for entry in entries]
+    with claimed(Records(folder).claim(PAGE)) as claim:
+        if claim.taken_over:
+            remove_leftovers([folder / FIGURES, folder / PAGE])
+        entries = collect()
+        while True:
+            faults = _write(folder, verb, entries)
+            written, entries = entries, collect()
+            if _stamps(written) == _stamps(entries):
+                return faults
+
+
+def _stamps(entries: Sequence[Entry]) -> list[tuple[str, tuple[str, ...]]]:
+    return [(entry.identifier, entry.remarks) for entry in entries]
+
+
+def _write(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str, ...]:
+    checked = [attempt(entry.source, _checked, folder, entry) for entry in entries]
     faults = tuple(each.sentence for each in checked if isinstance(each, Failure))
     entries = [
-        Entry(entry.task, None, found.sentence) if isinstance(found, Failure) else entry
+        entry._replace(figures=None, failure=found.sentence)
+        if isinstance(found, Failure)
+        else entry
         for entry, found in zip(entries, checked, strict=True)
     ]
     failed = [entry for entry in entries if entry.failure]
     pending = [entry for entry in entries if entry.figures is None and not entry.failure]
     done = len(entries) - len(failed) - len(pending)
     counts = {"done": done, "failed": len(failed), "not come to": len(pending)}
-    listed = [_listed(entry) for entry in entries]
+    listed = [_listed(folder, entry) for entry in entries]
     with write_atomically(folder / FIGURES) as part:
         content = {"verb": verb, **counts, "files": listed}
         part.write_text(json.dumps(content, indent=1, allow_nan=False), encoding="utf-8")
@@ -124,35 +142,31 @@ def write_report(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str
         verb=escape(verb),
         summary=", ".join(f"{count} {kind}" for kind, count in counts.items() if count),
         overview=_overview(ordered),
-        sections="".join(_section(entry, number) for number, entry in enumerate(ordered)),
+        sections="".join(
+            _section(folder, entry, number) for number, entry in enumerate(ordered)
+        ),
     )
     with write_atomically(folder / PAGE) as part:
         part.write_text(page, encoding="utf-8", errors="backslashreplace")
     return faults
 
 
-def _checked(entry: Entry) -> None:
+def _checked(folder: Path, entry: Entry) -> None:
     """Format an entry as both reports do, to detect failures before writing."""
-    json.dumps(_listed(entry), allow_nan=False)
+    json.dumps(_listed(folder, entry), allow_nan=False)
     _severity(entry)
     _overview([entry])
-    _section(entry, 0)
+    _section(folder, entry, 0)
 
 
-def _picture(task: Task) -> Path:
-    """Return the path of the picture of a task, relative to the output folder."""
-    assert task.target is not None
-    path = task.target.relative_to(task.arguments.output_folder)
-    return PICTURES / path.with_name(path.name + PICTURE)
-
-
-def _listed(entry: Entry) -> dict[str, Any]:
-    task = entry.task
-    listed: dict[str, Any] = {"input": str(task.source), "output": str(task.target)}
+def _listed(folder: Path, entry: Entry) -> dict[str, Any]:
+    listed: dict[str, Any] = {"input": entry.source, "output": entry.target}
     if entry.failure:
         listed["error"] = entry.failure
-    elif entry.figures is not None and has_picture(task):
-        listed["picture"] = _picture(task).as_posix()
+    elif entry.figures is not None and (folder / entry.picture).exists():
+        listed["picture"] = entry.picture.as_posix()
+    if entry.remarks:
+        listed["remarks"] = entry.remarks
     return {**listed, **(entry.figures or {})}
 
 
@@ -171,7 +185,7 @@ def _overview(entries: Sequence[Entry]) -> str:
     columns = list(dict.fromkeys(name for numbers in compared for name in numbers))
     heads = "".join(f"<th>{_label(name)}</th>" for name in columns)
     lines = [
-        f'<tr><td><a href="#file-{number}">{escape(entry.task.source.name)}</a></td>'
+        f'<tr><td><a href="#file-{number}">{escape(entry.name)}</a></td>'
         + "".join(f"<td>{numbers.get(name, '')}</td>" for name in columns)
         + "</tr>"
         for number, (entry, numbers) in enumerate(zip(entries, compared, strict=True), start=1)
@@ -196,20 +210,20 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _section(entry: Entry, number: int) -> str:
-    task = entry.task
+def _section(folder: Path, entry: Entry, number: int) -> str:
     image = ""
-    if entry.figures is not None and has_picture(task):
-        path = escape(_relative_url(_picture(task)))
+    if entry.figures is not None and (folder / entry.picture).exists():
+        path = escape(_relative_url(entry.picture))
         image = f'<img loading="lazy" src="{path}" alt="Given and result, from the side">'
     message = entry.failure or ("" if entry.figures is not None else "Not processed yet.")
+    paragraphs = [escape(text) for text in (message, *entry.remarks) if text]
     return SECTION.substitute(
         kind="done" if entry.figures is not None else "failed",
         anchor=f"file-{number + 1}",
-        title=escape(task.source.name),
-        source=escape(str(task.source)),
-        target=escape(str(task.target)),
-        message=f"<p>{escape(message)}</p>\n" if message else "",
+        title=escape(entry.name),
+        source=escape(entry.source),
+        target=escape(entry.target),
+        message="".join(f"<p>{text}</p>\n" for text in paragraphs),
         cells="".join(_rows(entry.figures or {})),
         picture=image,
     )

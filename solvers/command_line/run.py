@@ -5,19 +5,30 @@ import json
 import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ..errors import InvalidSettingError, MocapAssistError
 from ..faults import Failure, attempt, escaped
-from ..files import reason_of
+from ..files import is_missing, reason_of
 from ..processes import add_threads_option
-from .batch import RECORD, FinishedTask, OutputRecord, run_tasks
-from .options import SentenceParser
-from .report import PAGE, Entry, draw_task, has_picture, write_report
+from .batch import (
+    FinishedTask,
+    already_made,
+    draw_task,
+    has_called_hook,
+    made_record,
+    record_end,
+    run_tasks,
+    task_entries,
+    verb_name,
+)
+from .options import SentenceParser, add_sharing_options
+from .report import PAGE, has_picture, write_report
 from .screen import Screen, escape_undecodable_names, printable
-from .tasks import tasks_of
-from .verb import Outcome, OutputKind, Task, Verb
+from .tasks import check_output_folder, shared_tasks, tasks_of
+from .verb import OutputKind, Task, Verb
 
 FILES = {
     OutputKind.WORDS: "Recordings to read, or folders of them",
@@ -25,6 +36,7 @@ FILES = {
     " folders of them",
     OutputKind.ONE_FILE: "Recordings to read, or folders of them",
     OutputKind.MANY_FILES: "Recordings to read, or folders of them",
+    OutputKind.REPORT: "Output folders of batches",
     OutputKind.LIBRARY: "The library, and then recordings to add, or folders of them",
     OutputKind.MATCHES: "The recording to search with, and then the library",
 }
@@ -83,20 +95,27 @@ def _parser(verbs: Mapping[str, Verb], prog: str) -> SentenceParser:
 
 
 def _add_common_options(parser: argparse.ArgumentParser, makes: OutputKind) -> None:
-    parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help=FILES[makes])
-    if makes is OutputKind.FILES:
+    has_manifest = makes is OutputKind.FILES
+    parser.add_argument(
+        "files", nargs="*" if has_manifest else "+", type=Path, metavar="FILE",
+        help=FILES[makes],
+    )  # fmt: skip
+    if has_manifest:
         parser.add_argument(
             "--output-folder", type=Path, metavar="DIR",
             help="Folder for the results, named like the inputs. A second run resumes the"
-            " first: it skips results made from the same file with the same options, as"
-            f" recorded in DIR/{RECORD}",
+            " first: it skips results made from the same file with the same options. Many"
+            " machines may write to one folder at once",
         )  # fmt: skip
         parser.add_argument("--again", action="store_true", help="Redo existing results")
         parser.add_argument(
             "--report", action="store_true",
             help=f"Write DIR/{PAGE} and report.json about the whole batch, with pictures",
         )  # fmt: skip
-    if makes not in {OutputKind.ONE_FILE, OutputKind.MANY_FILES, OutputKind.MATCHES}:
+        add_sharing_options(parser)
+    if makes not in {
+        OutputKind.ONE_FILE, OutputKind.MANY_FILES, OutputKind.MATCHES, OutputKind.REPORT,
+    }:  # fmt: skip
         parser.add_argument(
             "--jobs", type=int, default=1, metavar="N",
             help="Number of files to process in parallel [default 1]",
@@ -117,51 +136,54 @@ def _run_verb(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
     reporting = getattr(arguments, "report", False)
     if folder is None and reporting:
         raise InvalidSettingError("A report needs a folder: name it with --output-folder DIR.")
-    tasks = tasks_of(verb, arguments)
-    record = None if folder is None else OutputRecord(folder)
-    entries = {task.key: Entry(task, None) for task in tasks}
+    every = tasks_of(verb, arguments)
+    tasks = every if folder is None else shared_tasks(every, arguments)
     has_failures = False
     try:
-        for finished in _run_tasks(verb, tasks, record, n_jobs, screen):
-            figures = finished.outcome.figures if finished.outcome else None
-            entry = Entry(finished.task, figures, finished.failure)
-            entries[finished.task.key] = entry
+        for finished in _run_tasks(verb, tasks, n_jobs, screen):
             has_failures |= _report(finished, len(tasks) > 1, screen)
+            has_failures |= finished.outcome is None
+            if folder is not None:
+                check_output_folder(folder)
     finally:
-        if folder is not None and reporting:
-            for fault in write_report(folder, arguments.verb, list(entries.values())):
+        if folder is not None and reporting and not is_missing(folder):
+            name = verb_name(every[0])
+            for fault in write_report(folder, name, lambda: task_entries(every)):
                 screen.write_line(fault)
                 has_failures = True
-    return FAILED if has_failures or any(entry.failure for entry in entries.values()) else 0
+    return FAILED if has_failures else 0
 
 
 def _run_tasks(
-    verb: Verb, tasks: Sequence[Task], record: OutputRecord | None, n_jobs: int, screen: Screen
+    verb: Verb, tasks: Sequence[Task], n_jobs: int, screen: Screen
 ) -> Iterator[FinishedTask]:
-    """Yield existing results, then each task when it finishes, and record it."""
-    arguments = tasks[0].arguments
-    if record is not None:
-        record.clear_up(tasks)
-    existing = [] if record is None or arguments.again else [t for t in tasks if record.has(t)]
-    for task in existing:
-        draw = arguments.report and not has_picture(task)
-        failures = tuple(filter(None, [draw_task(task)])) if draw else ()
-        figures = {} if record is None else record.figures(task)
-        figures = {**figures, "already_made": True}
-        yield FinishedTask(task, Outcome("Already made.", figures, failures))
-    refused = [task for task in tasks if task.refusal]
-    for task in refused:
-        screen.write_line(task.refusal)
-        yield FinishedTask(task, None, task.refusal)
-    tasks = [task for task in tasks if task not in [*existing, *refused]]
-    prepared = verb.prepare(arguments, screen.progress) if tasks else None
-    for finished in run_tasks(verb, tasks, prepared, n_jobs, screen):
+    """Yield existing results, then each task when it finishes."""
+    remaining = []
+    for task in tasks:
+        record = None if _folder(task) is None else made_record(task)
+        if record is not None and task.arguments.again:
+            remaining.append(task._replace(replaced=record.identifier))
+        elif record is not None and has_called_hook(task, record):
+            draw = task.arguments.report and not has_picture(task)
+            failures = tuple(filter(None, [draw_task(task)])) if draw else ()
+            outcome = already_made(record)
+            yield FinishedTask(task, replace(outcome, failures=failures))
+        elif task.refusal:
+            screen.write_line(task.refusal)
+            yield record_end(FinishedTask(task, None, task.refusal))
+        else:
+            remaining.append(task)
+    prepared = verb.prepare(tasks[0].arguments, screen.progress) if remaining else None
+    for finished in run_tasks(verb, remaining, prepared, n_jobs, screen):
         screen.clear()
-        if finished.outcome is None:
+        if finished.outcome is None and not is_missing(_folder(finished.task) or "."):
             screen.write_line(finished.failure)
-        elif record is not None:
-            record.add(finished.task, finished.outcome.figures)
         yield finished
+
+
+def _folder(task: Task) -> Path | None:
+    folder: Path | None = getattr(task.arguments, "output_folder", None)
+    return folder
 
 
 def _report(finished: FinishedTask, one_of_many: bool, screen: Screen) -> bool:

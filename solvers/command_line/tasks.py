@@ -2,12 +2,12 @@
 
 import argparse
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from ..errors import InvalidSettingError
+from ..errors import InvalidFileError, InvalidSettingError
 from ..faults import Failure, attempt
-from ..files import real_path
+from ..files import is_missing, real_path
 from .files import (
     FOR_JOINTS,
     FOR_MOTIONS,
@@ -24,10 +24,13 @@ from .files import (
     with_body,
 )
 from .report import PICTURE
+from .sharing import Listed, Records, claimed, read_manifest
 from .verb import OutputKind, Task, Verb
 
 MAX_NAME_LETTERS = 40
 """Letters of the name of a body in the name of a file."""
+SHARING = ("manifest", "shard", "after")
+"""Options for batches."""
 
 
 def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
@@ -47,6 +50,8 @@ def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
             for path, _ in find_recordings(files)
             for of_body, _ in _bodies(path, arguments)
         ]
+    if verb.makes is OutputKind.REPORT:
+        return [Task((folder,), None, arguments) for folder in files]
     if verb.makes in {OutputKind.LIBRARY, OutputKind.MATCHES}:
         return [_task_with_library(verb.makes, files, arguments)]
     if verb.makes is OutputKind.MANY_FILES:
@@ -83,44 +88,109 @@ def _task_with_library(
 
 def _file_tasks(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
     """Return one task for each input file."""
-    files: list[Path] = arguments.files
     folder: Path | None = arguments.output_folder
     if folder is None:
-        if len(files) != 2:
-            raise InvalidSettingError(
-                f"{len(files)} files are named: name one to read and one to write, or name"
-                " a folder for the results with --output-folder DIR."
-            )
-        source, target = files
-        _check_overwriting([source], [target])
-        check_target(target, _allowed_extensions(verb))
-        return [
-            Task((source,), target.with_stem(target.stem + ending), of_body)
-            for of_body, ending in _bodies(source, arguments)
-        ]
+        return _tasks_without_folder(verb, arguments)
     if folder.exists() and not folder.is_dir():
         raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
+    listed = find_inputs(arguments, folder, verb.list_recordings)
     found = [
-        (path, below.with_stem(below.stem + ending), of_body)
-        for path, below in find_recordings(files, folder, verb.list_recordings)
-        for of_body, ending in _bodies(path, arguments)
+        (each, of_body, ending)
+        for each in listed
+        for of_body, ending in _bodies(each.path, arguments)
     ]
-    sources = [path for path, _, _ in found]
-    extensions = [_extension(verb, path, arguments) for path in sources]
-    targets = [
-        folder / path for path in unique_targets([path for _, path, _ in found], extensions)
+    names = [_with_ending(each.output or each.name, ending) for each, _, ending in found]
+    sources = [each.path for each, _, _ in found]
+    extensions = [
+        each.output.suffix if each.output else _extension(verb, each.path, arguments)
+        for each, _, _ in found
     ]
+    targets = [folder / path for path in unique_targets(names, extensions)]
     _check_overwriting(sources, targets)
     folder.mkdir(parents=True, exist_ok=True)
     return [
         Task(
-            (source,),
+            (each.path,),
             target,
             of_body,
-            _prepare_failure(source, target, _allowed_extensions(verb)),
+            _prepare_failure(each.path, target, _allowed_extensions(verb)),
+            _with_ending(each.name, ending).as_posix(),
         )
-        for (source, _, of_body), target in zip(found, targets, strict=True)
+        for (each, of_body, ending), target in zip(found, targets, strict=True)
     ]
+
+
+def _tasks_without_folder(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
+    files: list[Path] = arguments.files
+    shared = [name for name in SHARING if getattr(arguments, name) is not None]
+    if shared:
+        raise InvalidSettingError(
+            f"--{shared[0]} needs a folder: name it with --output-folder DIR."
+        )
+    if len(files) != 2:
+        raise InvalidSettingError(
+            f"{len(files)} files are named: name one to read and one to write, or name"
+            " a folder for the results with --output-folder DIR."
+        )
+    source, target = files
+    _check_overwriting([source], [target])
+    check_target(target, _allowed_extensions(verb))
+    return [
+        Task((source,), _with_ending(target, ending), of_body)
+        for of_body, ending in _bodies(source, arguments)
+    ]
+
+
+def _with_ending(path: Path, ending: str) -> Path:
+    return path.with_stem(path.stem + ending)
+
+
+def find_inputs(
+    arguments: argparse.Namespace,
+    excluded: Path,
+    list_recordings: Callable[[Path], list[Path]],
+) -> list[Listed]:
+    """Return the inputs of a batch: those on the command line, and those in its manifest.
+
+    Raises
+    ------
+    InvalidFileError
+        A folder has no recordings, or the manifest is invalid.
+    InvalidSettingError
+        There are no inputs.
+    """
+    listed = [] if arguments.manifest is None else read_manifest(arguments.manifest)
+    if not listed and not arguments.files:
+        raise InvalidSettingError(
+            "Name recordings to read, or folders of them, or a list of them with --manifest"
+            " FILE."
+        )
+    found = [
+        Listed(path, name, None)
+        for path, name in find_recordings(arguments.files, excluded, list_recordings)
+    ]
+    for each in listed:
+        inside = find_recordings([each.path], excluded, list_recordings)
+        in_folder = inside != [(each.path, Path(each.path.name))]
+        found += [
+            Listed(path, each.name / below if in_folder else each.name, each.output)
+            for path, below in inside
+        ]
+    return found
+
+
+def shared_tasks(tasks: Sequence[Task], arguments: argparse.Namespace) -> list[Task]:
+    """Return the tasks of this machine's shard, and make their records possible.
+
+    What the one record of an earlier version says becomes a record of each output.
+    """
+    records = Records(arguments.output_folder)
+    records.prepare()
+    for former in records.former():
+        with claimed(records.claim(former.output)) as claim:
+            if not claim.holder and records.read(former.output) is None:
+                records.write(former)
+    return [task for task in tasks if not arguments.shard or arguments.shard.has(task.name)]
 
 
 def _bodies(
@@ -174,4 +244,12 @@ def _check_overwriting(sources: Sequence[Path], targets: Sequence[Path]) -> None
         duplicate = next(path for path in real_targets if real_targets.count(path) > 1)
         raise InvalidSettingError(
             f"Two inputs would both be written to {duplicate}. Rename one."
+        )
+
+
+def check_output_folder(folder: Path) -> None:
+    """Raise InvalidFileError if the output folder has vanished, such as with its share."""
+    if is_missing(folder):
+        raise InvalidFileError(
+            f"The output folder {folder} is gone; the batch stops. Run it again to continue."
         )

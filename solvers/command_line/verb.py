@@ -21,6 +21,8 @@ class Outcome:
     """For programs: what `--json` prints."""
     failures: tuple[str, ...] = ()
     """A sentence for each part that failed."""
+    remarks: tuple[str, ...] = ()
+    """Sentences of the text that the record keeps."""
 
 
 class Task(NamedTuple):
@@ -33,6 +35,10 @@ class Task(NamedTuple):
     arguments: argparse.Namespace
     refusal: str = ""
     """Why the task cannot run, if that is known in advance."""
+    name: str = ""
+    """Path of the input below the named folder; it decides the shard."""
+    replaced: str = ""
+    """Identifier of the record that `--again` replaces."""
 
     @property
     def source(self) -> Path:
@@ -56,6 +62,7 @@ class OutputKind(Enum):
     WORDS = "figures of each file"
     FILES = "a file of each file"
     ONE_FILE = "one file of all files"
+    REPORT = "a report on folders"
     LIBRARY = "a library, which is named first, of all other files"
     MATCHES = "matches of a file in a library, which is named last"
     MANY_FILES = "a folder of files of all files"

@@ -11,6 +11,7 @@ from ..denoising import (
 )
 from ..progress import Progress, within
 from ..recordings import FloorPlacementSettings, depth_takes_in
+from .batch import report_folder
 from .capture_verb import add_capture_options, perform_capture, read_body
 from .convert import convert
 from .denoise_verb import add_denoise_options, learn_prior, perform_denoise
@@ -84,6 +85,10 @@ def _convert(task: Task, prepared: None, progress: Progress) -> Outcome:
     floor = settings_from_arguments(task.arguments, FloorPlacementSettings).place_on_floor
     recording = read(task.source, task.arguments, reading, floor)
     return convert(recording, task.target, within(progress, 0.7, 1.0))
+
+
+def _report_options(parser: argparse.ArgumentParser) -> None:
+    """Add no options."""
 
 
 VERBS = {
@@ -185,6 +190,12 @@ VERBS = {
         add_replay_options,
         perform_replay,
         OutputKind.WORDS,
+    ),
+    "report": Verb(
+        "Collect the records of a batch, from all machines, into one report.",
+        _report_options,
+        report_folder,
+        OutputKind.REPORT,
     ),
     "unbake": Verb(
         "Replace a key on every frame with a few keys with handles.",

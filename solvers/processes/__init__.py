@@ -4,6 +4,7 @@ Nothing here imports numpy: `threads` must act before that is imported.
 """
 
 from .locks import try_lock
+from .machine import host_name, is_running, this_machine
 from .parent import end_with_stdin
 from .scratch import ScratchFolder, lock_for_work_on
 from .threads import add_threads_option, thread_environment, threads_from, threads_of_words
@@ -13,7 +14,10 @@ __all__ = [
     "ScratchFolder",
     "add_threads_option",
     "end_with_stdin",
+    "host_name",
+    "is_running",
     "lock_for_work_on",
+    "this_machine",
     "thread_environment",
     "threads_from",
     "threads_of_words",

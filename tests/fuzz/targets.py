@@ -31,7 +31,7 @@ from fuzz_seeds import (
 from learned_files import LEARNED, npz
 from mkv_files import k4a
 
-from solvers.command_line.batch import OutputRecord
+from solvers.command_line.sharing import Records
 from solvers.depth_scene.recording import DepthRecording
 from solvers.errors import MocapAssistError
 from solvers.json_text import parse_json
@@ -157,7 +157,7 @@ def targets() -> dict[str, Target]:
     )
     found["batch_record"] = Target(
         b'{"walk.bvh": {"version": "0.1.0", "options": {}, "figures": {"a": 1}}}',
-        lambda path: OutputRecord(path.parent).notes,
+        lambda path: [*Records(path.parent).former()],
         JOINT_TOKENS,
         "mocap_assist.json",
     )

@@ -43,7 +43,9 @@ def test_output_is_made_again_when_the_result_would_differ(
     if change == "again":
         words += ["--again"]
     if change == "version":
-        monkeypatch.setattr("solvers.command_line.batch.version", lambda: "99.0.0")
+        monkeypatch.setattr(
+            "solvers.command_line.sharing.fingerprints.version", lambda: "99.0.0"
+        )
 
     _, printed, _ = call(*words)
 
@@ -60,7 +62,7 @@ def test_one_bad_file_does_not_stop_the_others(call, leg_file, tmp_path):
     )
 
     assert status == 2
-    assert sorted(path.name for path in folder.iterdir()) == ["leg.bvh", "mocap_assist.json"]
+    assert sorted(path.name for path in folder.iterdir()) == [".mocap_assist", "leg.bvh"]
     lines = [json.loads(line) for line in printed.splitlines()]
     assert [("error" in line) for line in lines] == [True, False, True]
     assert error_output.count("\n") == 2

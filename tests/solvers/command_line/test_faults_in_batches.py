@@ -77,10 +77,9 @@ def test_report_names_the_file_when_its_stored_figures_are_invalid(
 ):
     words = [*legs, "--output-folder", tmp_path / "out", "--report"]
     perform(copy, *words)
-    record = tmp_path / "out" / "mocap_assist.json"
-    notes = json.loads(record.read_text())
-    notes["odd.bvh"]["figures"] = json.loads(figures)
-    record.write_text(json.dumps(notes))
+    (file,) = tmp_path.glob("out/.mocap_assist/odd.bvh.*.json")
+    record = json.loads(file.read_text())
+    file.write_text(json.dumps({**record, "figures": json.loads(figures)}))
 
     status, out, err = perform(copy, *words)
 
@@ -95,25 +94,32 @@ def test_take_is_written_and_the_picture_is_named_when_drawing_raises(
     def fail(*_):
         raise IndexError
 
-    monkeypatch.setattr("solvers.command_line.report.draw_stick_figures", fail)
+    monkeypatch.setattr("solvers.command_line.batch.draw_stick_figures", fail)
     words = [legs[0], "--output-folder", tmp_path / "out", "--report"]
 
     first, again = perform(copy, *words), perform(copy, *words)
 
     for status, out, err in (first, again):
         assert (status, out.count("\n"), err.count("\n")) == (2, 1, 1)
-        assert f"leg.bvh: {FAULT} (IndexError at solvers/command_line/report.py:" in err
+        assert f"leg.bvh: {FAULT} (IndexError at solvers/command_line/batch.py:" in err
     assert read_bvh(tmp_path / "out" / "leg.bvh").n_frames == 120
     assert "Already made." in again[1]
 
 
 @pytest.mark.parametrize("depth", [70, 900, 100_000])
 def test_files_are_made_again_when_the_record_is_nested_deeply(call, legs, tmp_path, depth):
-    record = tmp_path / "out" / "mocap_assist.json"
-    record.parent.mkdir()
-    record.write_text('{"leg.bvh": ' + '{"a":' * depth + "1" + "}" * depth + "}")
+    words = ["convert", *legs, "--output-folder", tmp_path / "out"]
+    call(*words)
+    (tmp_path / "out" / "mocap_assist.json").write_text(nested(depth))
+    records = list(tmp_path.glob("out/.mocap_assist/*.json"))
+    for record in records:
+        record.write_text(nested(depth))
 
-    status, out, err = call("convert", *legs, "--output-folder", tmp_path / "out")
+    status, out, err = call(*words)
 
     assert (status, err, out.count("120 frames")) == (0, "", 3)
-    assert set(json.loads(record.read_text())) == {"leg.bvh", "odd.bvh", "twin.bvh"}
+    assert all(json.loads(record.read_text())["status"] == "done" for record in records)
+
+
+def nested(depth):
+    return '{"leg.bvh": ' + '{"a":' * depth + "1" + "}" * depth + "}"

@@ -1,0 +1,28 @@
+"""`report`: collect the records of a batch, from all machines, into one report."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from ...solvers.command_line.batch import report_folder
+from ...solvers.command_line.screen import Screen, printable
+from ...solvers.command_line.verb import Task
+from ...solvers.errors import InvalidFileError
+
+HELP = "Write the report on the output folder of each, from the records of all machines."
+
+
+def add_report_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `report`."""
+    parser.add_argument(
+        "folder", type=Path, metavar="DIR", help="the output folder of the batch"
+    )
+
+
+def perform_report(arguments: argparse.Namespace, screen: Screen) -> None:
+    """Write the report; raise InvalidFileError if a file failed."""
+    outcome = report_folder(Task((arguments.folder,), None, arguments), None, screen.progress)
+    sys.stdout.write(f"{printable(outcome.text)}\n")
+    sys.stdout.flush()
+    if outcome.failures:
+        raise InvalidFileError(f"{len(outcome.failures)} files failed. {outcome.failures[0]}")

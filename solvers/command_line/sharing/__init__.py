@@ -1,0 +1,22 @@
+"""Share a batch among machines: records, claims, shards, manifests and hooks."""
+
+from .claims import claimed
+from .fingerprints import fingerprint
+from .hooks import hook_remark, parse_hook, run_hook
+from .manifest import Listed, read_manifest
+from .records import Record, Records
+from .shards import Shard, parse_shard
+
+__all__ = [
+    "Listed",
+    "Record",
+    "Records",
+    "Shard",
+    "claimed",
+    "fingerprint",
+    "hook_remark",
+    "parse_hook",
+    "parse_shard",
+    "read_manifest",
+    "run_hook",
+]

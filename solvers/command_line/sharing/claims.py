@@ -1,0 +1,133 @@
+"""Claims on outputs, so that no two processes or machines make the same one.
+
+A claim is a file with the host and process of its holder, created exclusively: this also works
+on network shares, where locks often do not. Its holder renews its date. A claim that is not
+renewed is abandoned, at once if its holder was a process of this machine that has ended.
+"""
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from secrets import token_hex
+from threading import Event, Thread
+from typing import Any, NamedTuple
+
+from ...json_text import parse_json
+from ...processes import host_name, is_running, this_machine
+
+RENEWAL_INTERVAL_S = 15.0
+ABANDONED_AFTER_S = 300.0
+"""Seconds after which a claim that is not renewed is taken over."""
+UNKNOWN_HOST = "another process"
+
+
+class Claim(NamedTuple):
+    """A claim on an output: held by this process, or by another one."""
+
+    holder: str = ""
+    """Host of the other process; empty if this process holds the claim."""
+    taken_over: bool = False
+    """Whether an abandoned claim was taken over: its holder may have left temporary files."""
+
+
+@contextmanager
+def claimed(path: Path) -> Iterator[Claim]:
+    """Claim an output, and release it at the end.
+
+    Parameters
+    ----------
+    path : Path
+        The claim's file, without its number: an abandoned claim stays until the next one with a
+        higher number is released, so that no two processes can take it over.
+
+    Raises
+    ------
+    OSError
+        The folder of the claim has vanished, or may not be written to.
+    """
+    files, holder = _claim(path)
+    if holder:
+        yield Claim(holder)
+        return
+    ended = Event()
+    renewal = Thread(target=_renew, args=(files[-1], ended), daemon=True, name="renew claim")
+    renewal.start()
+    try:
+        yield Claim("", len(files) > 1)
+    finally:
+        ended.set()
+        renewal.join()
+        for file in files:  # The own one last: until then it keeps others from its number.
+            with suppress(OSError):
+                file.unlink()
+
+
+def _claim(path: Path) -> tuple[list[Path], str]:
+    """Return the files of a new claim, the own one last, or the host that has claimed it."""
+    abandoned: list[Path] = []
+    while True:
+        file = path.with_name(f"{path.name}.{len(abandoned) + 1}.claim")
+        if _created(file):
+            if not abandoned or _content(abandoned[-1]) is not None:
+                return [*abandoned, file], ""
+            file.unlink()  # The output was released meanwhile, with all numbers.
+            abandoned = []
+            continue
+        holder = _content(file)
+        if holder is None:  # It was released meanwhile.
+            abandoned = []
+        elif _is_abandoned(file, holder):
+            abandoned.append(file)
+        else:
+            return [], str(holder.get("host", UNKNOWN_HOST))
+
+
+def _created(file: Path) -> bool:
+    try:
+        descriptor = os.open(file, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
+    except FileExistsError:
+        return False
+    with os.fdopen(descriptor, "w", encoding="utf-8") as stream:
+        own = {"host": host_name(), "machine": this_machine(), "pid": os.getpid()}
+        json.dump(own, stream)
+    return True
+
+
+def _content(file: Path) -> dict[str, Any] | None:
+    """Return what a claim says; None if it does not exist, empty while it is written."""
+    try:
+        found = parse_json(file.read_bytes())
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def _is_abandoned(file: Path, holder: dict[str, Any]) -> bool:
+    pid = holder.get("pid")
+    if holder.get("machine") == this_machine() and isinstance(pid, int) and not is_running(pid):
+        return True
+    try:
+        renewed = file.stat().st_mtime
+    except FileNotFoundError:
+        return False
+    return _now_on_disk(file) - renewed > ABANDONED_AFTER_S
+
+
+def _now_on_disk(file: Path) -> float:
+    """Return the time by the clock that dates files there; that of a share is the server's."""
+    probe = file.with_name(f"{token_hex(8)}.time")
+    try:
+        probe.touch(exist_ok=False)
+        return probe.stat().st_mtime
+    finally:
+        probe.unlink(missing_ok=True)
+
+
+def _renew(file: Path, ended: Event) -> None:
+    while not ended.wait(RENEWAL_INTERVAL_S):
+        with suppress(OSError):  # The share may come back.
+            os.utime(file)

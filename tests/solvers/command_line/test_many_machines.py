@@ -1,0 +1,260 @@
+"""Any number of processes share one batch: no take is lost, and none is made twice."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from solvers.command_line.report import Entry, write_report
+from solvers.command_line.sharing import Records, claimed
+
+N_TAKES = 24
+ROOT = Path(__file__).parents[3]
+N_PROCESSES = 12
+NOTING = "import sys; open(sys.argv[1], 'a').write(sys.argv[2] + chr(10))"
+HOLDER = """
+import os, sys
+from pathlib import Path
+from solvers.command_line.report import Entry, write_report
+from solvers.command_line.sharing import Records, claimed
+with claimed(Path(sys.argv[1])):
+    print("held", flush=True)
+    sys.stdin.read(1)
+    os._exit(9)
+"""
+
+
+def run_together(command_lines):
+    """Run command lines at once in processes of their own; return their standard outputs."""
+    running = [
+        subprocess.Popen(
+            [sys.executable, "-B", "-m", "solvers", *map(str, words)],
+            cwd=ROOT, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        )
+        for words in command_lines
+    ]  # fmt: skip
+    printed = [each.communicate() for each in running]
+    assert [each.returncode for each in running] == [0] * len(running), printed
+    return [out for out, _ in printed]
+
+
+def test_twelve_processes_lose_no_take_and_make_none_twice(small_batch, tmp_path, records_in):
+    out, notes = tmp_path / "out", tmp_path / "notes"
+    hook = f'{sys.executable} -c "{NOTING}" {notes} {{output}}'
+    words = ["convert", small_batch, "--output-folder", out, "--after", hook]
+
+    printed = run_together([words] * N_PROCESSES)
+
+    names = {path.name for path in small_batch.iterdir()}
+    assert {path.name for path in out.glob("*.bvh")} == names
+    assert {name for name, each in records_in(out).items() if each["status"] == "done"} == names
+    made = Counter(Path(line).name for line in notes.read_text().splitlines())
+    assert made == dict.fromkeys(names, 1)
+    assert sum(text.count("5 frames at 10 Hz") for text in printed) == N_TAKES
+    assert not list(out.rglob("*.claim"))
+
+
+def test_processes_on_different_takes_keep_all_records(small_batch, tmp_path, records_in):
+    out, sources = tmp_path / "out", sorted(small_batch.iterdir())
+
+    run_together(
+        ["convert", *sources[first : first + 4], "--output-folder", out]
+        for first in range(0, N_TAKES, 4)
+    )
+
+    assert set(records_in(out)) == {path.name for path in sources}
+
+
+def test_take_of_another_process_is_skipped_and_that_of_a_dead_one_is_made(
+    call, leg_file, tmp_path
+):
+    out = tmp_path / "out"
+    words = ["convert", leg_file, "--output-folder", out]
+    call(*words)
+    (record,) = out.glob(".mocap_assist/*.json")
+    (out / "leg.bvh").unlink()
+    with subprocess.Popen(
+        [sys.executable, "-c", HOLDER, str(record.with_suffix(""))],
+        cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+    ) as holder:  # fmt: skip
+        assert holder.stdout.readline() == "held\n"
+        own = out / ".leg.0123456789ab.bvh"
+        own.write_text("half")
+
+        status, printed, _ = call(*words)
+
+        assert (status, printed) == (0, f"Skipped: taken by {os.uname().nodename}.\n")
+        assert own.exists()
+        assert not (out / "leg.bvh").exists()
+        holder.kill()
+        holder.wait()
+
+    status, printed, _ = call(*words)
+
+    assert (status, printed.count("120 frames")) == (0, 1)
+    assert {path.name for path in out.iterdir()} == {".mocap_assist", "leg.bvh"}
+    assert [path.name for path in (out / ".mocap_assist").iterdir()] == [record.name]
+
+
+@pytest.mark.parametrize(("seconds", "holder"), [(290.0, "render03"), (310.0, "")])
+def test_claim_of_another_machine_lasts_while_it_is_renewed(tmp_path, seconds, holder):
+    claim = tmp_path / "take.1.claim"
+    claim.write_text(json.dumps({"host": "render03", "machine": "render03", "pid": 1}))
+    now = claim.stat().st_mtime
+    os.utime(claim, (now - seconds, now - seconds))
+
+    with claimed(tmp_path / "take") as first, claimed(tmp_path / "take") as second:
+        assert first.holder == holder
+        assert first.taken_over == (holder == "")
+        assert second.holder
+
+    assert [path.name for path in tmp_path.iterdir()] == (["take.1.claim"] if holder else [])
+
+
+@pytest.mark.parametrize(
+    "content", ["", "[]", '{"pid": "x"}', '{"host": 3, "pid": -1}', "\xff"]
+)
+def test_unreadable_claim_is_held(tmp_path, content):
+    (tmp_path / "take.1.claim").write_text(content, encoding="latin-1")
+
+    with claimed(tmp_path / "take") as claim:
+        assert claim.holder
+
+    assert (tmp_path / "take.1.claim").exists()
+
+
+def test_report_of_two_shards_equals_that_of_one_run(call, small_batch, tmp_path):
+    for number in range(4, N_TAKES):
+        (small_batch / f"take{number:02}.bvh").unlink()
+    (small_batch / "bad.bvh").write_text("HIERARCHY\nMOTION\n")
+    out = tmp_path / "out"
+    call("convert", small_batch, "--output-folder", out, "--report")
+    expected = [(out / name).read_bytes() for name in ("report.json", "report.html")]
+    whole = call("report", out)
+    assert [(out / name).read_bytes() for name in ("report.json", "report.html")] == expected
+    shutil.rmtree(out)
+    for number in (1, 2):
+        call(
+            "convert", small_batch, "--output-folder", out, "--shard", f"{number}/2", "--report"
+        )
+
+    status, printed, err = call("report", out)
+
+    assert (status, printed, err) == whole
+    assert (status, err.count("\n")) == (2, 1)
+    assert "4 done, 1 failed" in printed
+    assert [(out / name).read_bytes() for name in ("report.json", "report.html")] == expected
+
+
+def test_reports_at_once_are_complete(small_batch, tmp_path):
+    out = tmp_path / "out"
+    words = ["convert", small_batch, "--output-folder", out, "--report"]
+
+    run_together([[*words, "--shard", f"{number}/3"] for number in (1, 2, 3)])
+
+    report = json.loads((out / "report.json").read_text())
+    assert (report["done"], len(report["files"])) == (N_TAKES, N_TAKES)
+    assert not [path for path in out.iterdir() if path.name.startswith(".report")]
+
+
+def test_report_needs_records(call, tmp_path):
+    for folder in (tmp_path, tmp_path / "gone"):
+        status, _, err = call("report", folder)
+        assert (status, err) == (
+            2, f"There are no records of a batch in the folder {folder}.\n",
+        )  # fmt: skip
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "change", [{"output": "../x.bvh"}, {"output": "/x.bvh"}, {"error": 1}, {"figures": []}]
+)
+def test_records_that_point_elsewhere_or_are_damaged_are_ignored(
+    call, leg_file, tmp_path, change
+):
+    out = tmp_path / "out"
+    call("convert", leg_file, "--output-folder", out)
+    (file,) = out.glob(".mocap_assist/*.json")
+    record = {**json.loads(file.read_text()), "output": "x.bvh", **change}
+    Records(out).file(record["output"]).write_text(json.dumps(record))
+    file.with_name("leg.bvh.json").write_text(file.read_text())
+
+    status, printed, _ = call("report", out)
+
+    assert (status, printed) == (0, f"done    {out / 'leg.bvh'}\n1 done, 0 failed\n")
+
+
+def test_report_is_written_again_when_a_record_is_added_meanwhile(tmp_path):
+    Records(tmp_path).prepare()
+    one, two = (
+        Entry(f"{name}.bvh", f"{name}.bvh", Path(f"{name}.png"), {}, identifier=name)
+        for name in ("one", "two")
+    )
+    found = iter([[one], [one, two], [one, two]])
+
+    assert write_report(tmp_path, "convert", lambda: next(found)) == ()
+
+    assert json.loads((tmp_path / "report.json").read_text())["done"] == 2
+
+
+def test_files_of_others_in_the_output_folder_stay(call, leg_file, tmp_path):
+    out = tmp_path / "out"
+    words = ["convert", leg_file, "--output-folder", out, "--report"]
+    call(*words)
+    (file,) = out.glob(".mocap_assist/*.json")
+    others = [
+        out / ".leg.0123456789ab.bvh", out / ".leg.bvh", out / "notes.txt",
+        out / ".report.0123456789ab.html", file.with_name("notes.txt"),
+        file.with_name("other.0123456789abcdef.json"), file.with_name("other.1.claim"),
+    ]  # fmt: skip
+    for other in others:
+        other.write_text("of another process or person")
+
+    for extra in ([], ["--again"], ["--scale", "0.5"]):
+        assert call(*words, *extra)[0] == 0
+    call("report", out)
+
+    assert {other.read_text() for other in others} == {"of another process or person"}
+
+
+def test_output_folder_that_vanishes_is_one_sentence(
+    call, small_batch, tmp_path, monkeypatch, records_in
+):
+    out, aside = tmp_path / "out", tmp_path / "aside"
+    hook = f"{sys.executable} -c 'import os, sys; os.rename(*sys.argv[1:])' {out} {aside}"
+
+    words = ["convert", small_batch, "--output-folder", out]
+    status, _, err = call(*words, "--report", "--after", hook)
+
+    assert status == 2
+    assert err == (
+        f"The output folder {out} is gone; the batch stops. Run it again to continue.\n"
+    )
+    assert not out.exists()
+    aside.rename(out)
+    status, _, _ = call(*words)
+    assert (status, len(records_in(out))) == (0, N_TAKES)
+
+
+def test_record_of_an_earlier_version_is_taken_up(call, small_batch, tmp_path, records_in):
+    """It was one file for the folder, with the paths of the inputs."""
+    out, words = tmp_path / "out", ["convert", small_batch, "--output-folder", tmp_path / "out"]
+    call(*words)
+    former = {}
+    for name, record in records_in(out).items():
+        note = {**record["fingerprint"], "figures": {"n_frames": 5}}
+        note["source"][0] = str(small_batch / name)
+        former[name] = note
+    shutil.rmtree(out / ".mocap_assist")
+    (out / "mocap_assist.json").write_text(json.dumps(former))
+
+    status, printed, _ = call(*words)
+
+    assert (status, printed.count("Already made.")) == (0, N_TAKES)
+    assert records_in(out)["take07.bvh"]["figures"] == {"n_frames": 5}
+    assert json.loads((out / "mocap_assist.json").read_text()) == former
