@@ -25,7 +25,17 @@ SHIPPED = {
 }
 OURS = {"solvers", "mocap_assist", "operators"}
 # What Blender brings itself, and the import names of our wheels where they differ.
-BLENDER = {"bpy", "bpy_extras", "mathutils", "bmesh", "gpu", "gpu_extras", "blf", "addon_utils"}
+BLENDER = {
+    "bpy",
+    "bpy_extras",
+    "mathutils",
+    "bmesh",
+    "gpu",
+    "gpu_extras",
+    "blf",
+    "addon_utils",
+    "rna_keymap_ui",
+}
 BUNDLED = BLENDER | {"bl_ui", "numpy"}
 IMPORT_NAMES = {"pillow": "PIL"}
 ON_LOOPBACK = {"receiver.py", "replay_verb.py"}
