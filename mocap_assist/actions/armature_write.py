@@ -134,9 +134,15 @@ def check_writable(armature: bpy.types.Object) -> None:
         )
 
 
+FIX_CARD = "mocap_assist_fix"
+"""Custom property of an action: the card of Fix My Take, which is about that action alone."""
+
+
 def copy_of(original: bpy.types.Action, suffix: str = SUFFIX) -> bpy.types.Action:
     """Return a copy, named like the original with an ending, and kept by a fake user."""
     action = original.copy()
+    if FIX_CARD in action:
+        del action[FIX_CARD]
     action.name = NUMBERED.sub("", original.name) + suffix
     action.use_fake_user = True
     return action

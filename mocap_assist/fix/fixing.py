@@ -1,5 +1,6 @@
 """Fix My Take: read the scene and write the result."""
 
+from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -93,13 +94,15 @@ def write_fixed(
     Raises InvalidMotionError if the subject plays another motion than the one that was solved.
     """
     here = Subject.of(scene, subject)
-    written = fixed.written
+    written, plant_feet = fixed.written, settings.fixing.plant_feet
     if isinstance(written, Cleaned):
-        yield from write_cleaned.steps(scene, subject, CLEAN, written, solved_digest)
+        choices = CLEAN._replace(choices=replace(CLEAN.choices, plant_feet=plant_feet))
+        yield from write_cleaned.steps(scene, subject, choices, written, solved_digest)
     elif isinstance(written, Rebuilt):
-        yield from write_reconstructed.steps(
-            scene, subject, RECONSTRUCT, written, solved_digest
+        rebuilding = RECONSTRUCT._replace(
+            choices=replace(RECONSTRUCT.choices, plant_feet=plant_feet)
         )
+        yield from write_reconstructed.steps(scene, subject, rebuilding, written, solved_digest)
     else:
         yield from write_solved.steps(scene, subject, SOLVE, written, solved_digest)
     scene, subject = here.find()

@@ -4,7 +4,7 @@ from typing import Any
 
 import bpy
 
-from ...solvers.workflows import figure_texts
+from ...solvers.workflows import TakeOrigin, figure_texts
 from ..blender.mixins import PanelMixin
 from ..check.reverting import why_not_revert
 from ..panels.drawing import draw_job, draw_sentence, exists
@@ -64,5 +64,5 @@ def _draw_card(
     if getattr(context.window_manager, DETAILS):
         for step in card["steps"]:
             draw_sentence(box, context, str(step))
-    if not is_revertible:
+    if card.get("origin") == TakeOrigin.MARKERS.value:
         draw_sentence(box, context, UNDO)

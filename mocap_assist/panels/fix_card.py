@@ -5,22 +5,20 @@ from typing import Any
 import bpy
 
 from ...solvers.errors import InvalidMotionError
+from ..actions.armature_write import FIX_CARD
 from ..blender.stored_json import load_json, store_json
 from ..runtime.selection import played_source, selected_subject
 
-CARD = "mocap_assist_fix"
-"""Custom property of the action: origin, steps and figures, as JSON."""
-
 
 def keep_card(action: bpy.types.Action, report: dict[str, Any]) -> None:
-    """Store the card in an action."""
-    store_json(action, CARD, report)
+    """Store the card, which is origin, steps and figures, in an action."""
+    store_json(action, FIX_CARD, report)
 
 
 def shown_card(context: bpy.types.Context) -> dict[str, Any]:
     """Return the card of what the selection plays; empty if it has none."""
     action = _played_action(context)
-    card = {} if action is None else load_json(action, CARD, dict)
+    card = {} if action is None else load_json(action, FIX_CARD, dict)
     is_complete = all(
         isinstance(card.get(name), kind)
         for name, kind in (("before", dict), ("after", dict), ("steps", list))
@@ -30,15 +28,20 @@ def shown_card(context: bpy.types.Context) -> dict[str, Any]:
 
 def why_not_accept(context: bpy.types.Context) -> str:
     """Return why there is no result to accept, or an empty text."""
-    return "" if shown_card(context) else "Press Fix My Take first."
+    if not shown_card(context):
+        return "Press Fix My Take first."
+    action = _played_action(context)
+    is_linked = action is not None and action.library is not None
+    return "The action is linked from another file." if is_linked else ""
 
 
 def accept(context: bpy.types.Context) -> str:
     """Close the card; the result stays."""
     action = _played_action(context)
-    if action is None or CARD not in action:
-        raise InvalidMotionError(why_not_accept(context))
-    del action[CARD]
+    if reason := why_not_accept(context):
+        raise InvalidMotionError(reason)
+    assert action is not None
+    del action[FIX_CARD]
     return f"Accepted {action.name}."
 
 

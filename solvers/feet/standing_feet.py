@@ -23,6 +23,9 @@ MIN_HIP_HEIGHT = 0.2
 """Height of the lowest joint of the pelvis above the feet, as a ratio to the length of a leg,
 below which the body sits or lies. Chosen by hand: the pelvis of four HDM05 takes that lie down
 comes to rest at 0.05, that of the deepest squat at 0.28."""
+MAX_PELVIS_SIZE = 0.3
+"""Distance of the hips from the hip joints, as a ratio to the length of a leg, up to which they
+are a joint of the pelvis. It guards rigs whose hips are at the floor."""
 GROUND_PERCENTILE = 5.0
 """Percentile of the height of the lower foot that is the ground; lower ones are noise. Chosen
 by hand, as for the detection of contacts."""
@@ -63,10 +66,12 @@ def _rests_on_hips(
     feet = foot_points(motion.skeleton, humanoid_map).ravel()
     ground = np.percentile(heights[:, feet].min(axis=1), GROUND_PERCENTILE)
     pelvis = [leg.hip for leg in legs]
-    if (hips := humanoid_map.indices(motion.skeleton).get("hips")) is not None:
+    length = np.mean([leg.length(motion.skeleton) for leg in legs])
+    rest = motion.skeleton.rest_positions
+    hips = humanoid_map.indices(motion.skeleton).get("hips", pelvis[0])
+    if np.linalg.norm(rest[hips] - rest[pelvis].mean(axis=0)) < MAX_PELVIS_SIZE * length:
         pelvis.append(hips)
     lowest = heights[:, pelvis].min(axis=1)
-    length = np.mean([leg.length(motion.skeleton) for leg in legs])
     return np.asarray(lowest - ground < MIN_HIP_HEIGHT * length)[:, None]
 
 

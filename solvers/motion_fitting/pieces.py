@@ -10,7 +10,8 @@ from ..progress import Progress, unwatched, within
 from ..rotations import slerp
 
 MAX_FRAMES = 4000
-"""Frames that are fitted at once. It bounds the memory: about 50 kB for a frame of two legs."""
+"""Frames that are fitted at once. It bounds the memory: about 50 kB for a frame of two legs,
+240 kB for one of a body."""
 OVERLAP_S = 2.0
 """Seconds in which two pieces overlap, and over which one passes into the next. It guards
 contacts at the end of a piece."""

@@ -280,6 +280,8 @@ def _planted(planting_result: PlantingResult) -> list[str]:
     planted, remarks = planting_result.planted, planting_result.remarks
     if planted is None:
         return remarks
+    if not planted.contacts.any():
+        return ["No foot stands in this take, so Plant Feet changed nothing.", *remarks]
     return ["Plant Feet holds standing feet in place by legs and hips.", *remarks]
 
 

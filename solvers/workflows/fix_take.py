@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ..arrays import Flags
 from ..denoising import PlantSettings
 from ..motion import JointLimits, JointRecording, Motion, Tracks
@@ -25,7 +27,8 @@ from .take_figures import TakeFigures, measure_take
 
 FIXED, COMPARED, MEASURED = 0.7, 0.8, 0.9
 """Fractions of the time until the take is fixed, until there is what to compare it with, and
-until that is measured. Chosen by hand on a walk of 8 s; they only move the progress bar."""
+until the result is measured. Chosen by hand on a walk of 8 s; they only move the progress
+bar."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,14 +126,12 @@ def fix_take(
     start = take_before(recording, chain, within(progress, FIXED, COMPARED))
     if chain.planted is not None:
         contacts = chain.planted.contacts
-    before, after = (
-        measure_take(
-            each, contacts=contacts, limits=limits, progress=within(progress, begin, end)
-        )
-        for each, begin, end in (
-            (start, COMPARED, MEASURED), (chain.recording, MEASURED, 1.0),
-        )
-    )  # fmt: skip
+    step = within(progress, COMPARED, MEASURED)
+    after = measure_take(chain.recording, contacts=contacts, limits=limits, progress=step)
+    if contacts is None and after.quality.feet:
+        contacts = np.stack([foot.contact for foot in after.quality.feet], axis=1)
+    step = within(progress, MEASURED, 1.0)
+    before = measure_take(start, contacts=contacts, limits=limits, progress=step)
     return FixedTake(find_origin(recording), chain, before, after)
 
 

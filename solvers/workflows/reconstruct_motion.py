@@ -139,13 +139,13 @@ def reconstruct_motion(
     check_tracked(recording)
     check_size(recording)
     rebuilt = reconstruct(
-        recording, postures, prior, settings=settings, progress=within(progress, 0.0, 0.9)
+        recording, postures, prior, settings=settings, progress=within(progress, 0.0, 0.7)
     )
     if tracked:
         skeleton, combined = motion.skeleton, rebuilt.reliability.combined
         if resize and rebuilt.shift is not None:
             skeleton = resize_skeleton(skeleton, rebuilt.tracks, recording.parents, combined)
-        result = rebuilt.motion_of(skeleton)
+        result = rebuilt.motion_of(skeleton, within(progress, 0.7, 0.95))
     else:
         result = fit_motion_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
     reliability_terms, confidence, changed = _for_skeleton_joints(

@@ -78,9 +78,13 @@ def reconstruct_recording(
     standardized = standardize_joint_names(recording)
     check_size(standardized)
     rebuilt = reconstruct(
-        standardized, postures, prior, settings=settings, progress=within(progress, 0.0, 0.8)
+        standardized, postures, prior, settings=settings, progress=within(progress, 0.0, 0.6)
     )
-    motion = rebuilt.motion if skeleton is None else rebuilt.motion_of(skeleton)
+    motion = (
+        rebuilt.motion
+        if skeleton is None
+        else rebuilt.motion_of(skeleton, within(progress, 0.6, 0.8))
+    )
     planting_result = plant_feet_if_possible(
         motion,
         planting,

@@ -203,6 +203,9 @@ def revert_and_compare(armature):
     yield from press("mocap_assist_overlay")
     yield from settle(pointer=AWAY)
     bgui.shot("5-overlay.png")
+    bpy.context.window_manager.mocap_assist_strip = False  # to make room for the buttons
+    yield from settle(pointer=AWAY)
+    yield from bgui.scan()
     yield from press("mocap_assist.revert_to_raw")
     assert armature.animation_data.action.name == "walk"
     yield from settle(pointer=AWAY)

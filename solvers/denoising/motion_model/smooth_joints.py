@@ -71,10 +71,11 @@ class MixtureSmoother:
         windows = Windows(len(samples), self._length, self._density, N_OVERLAPS)
         total, leverage = np.zeros_like(samples), np.zeros_like(samples)
         weight, average = np.zeros((len(samples), 1)), samples.mean(axis=0)
+        centered = samples - average
         windows.add(weight, np.ones((windows.length, 1)), windows.starts)
         for first in range(0, len(windows.starts), MAX_BLOCK_WINDOWS):
             starts = windows.starts[first : first + MAX_BLOCK_WINDOWS]
-            frames = windows.extract(samples - average, starts).transpose(0, 2, 1)
+            frames = windows.extract(centered, starts).transpose(0, 2, 1)
             coefficients = frames @ self._basis / self._density
             joints = coefficients.reshape(len(starts), len(self._filters), -1)
             leverages = np.empty_like(frames)

@@ -47,12 +47,12 @@ class FootSlide:
 
     @property
     def longest(self) -> float:
-        """Longest displacement in one contact, meters; 0 without contact."""
+        """Longest displacement from the start to the end of one contact, meters."""
         slides = (
-            float(np.linalg.norm(np.nansum(self.steps[start:stop], axis=0)))
-            for start, stop in find_runs(self.contact)
+            np.linalg.norm(self.steps[start:stop].sum(axis=0))
+            for start, stop in find_runs(np.isfinite(self.steps).all(axis=1))
         )
-        return max(slides, default=0.0)
+        return float(max(slides, default=0.0))
 
     @property
     def distance(self) -> float:

@@ -123,7 +123,7 @@ class Quality:
 
     @property
     def longest_foot_slide(self) -> float:
-        """Longest horizontal displacement of a foot in one contact, meters; NaN without any."""
+        """Longest displacement of a foot in one contact, meters; NaN without contact."""
         return max((foot.longest for foot in self.feet if foot.contact.any()), default=np.nan)
 
     def report(self) -> str:

@@ -184,7 +184,7 @@ def compute_gains(slow: Array, fast: Array, noise: Array, density: float) -> Gai
         return Gains(gain.reshape(slow.shape), fast_gains, noise_per_coefficient, own)
     scale = np.tile(noise_per_coefficient, n_slow)
     size = len(scale)
-    whitened = slow / scale
+    whitened = np.ascontiguousarray(slow) / scale
     whitened /= scale[:, None]
     whitened[np.diag_indices(size)] += 1.0
     # LAPACK's inverse takes a third of the time of solving for the identity. It is in place,

@@ -64,6 +64,8 @@ def fit_to_positions(
 def _fit_piece(motion: Motion, positions: Array, weights: Array, progress: Progress) -> Motion:
     followed = [joint for joint in range(motion.n_joints) if weights[:, joint].any()]
     turning = _turning_joints(motion, followed)
+    if not turning:
+        return motion
     start = FittedMotion(motion, motion, tuple(turning))
     goals: list[Goal] = [
         FollowPosition(

@@ -12,6 +12,7 @@ from ...motion.humanoid import (
     MIN_RELIABLE_FRAMES,
     posture_positions,
 )
+from ...progress import Progress, unwatched
 from ...rotations import IDENTITY, fit_rotations, rotate
 from .clavicles import add_clavicle_joints
 from .fit_to_positions import fit_to_positions
@@ -30,6 +31,7 @@ def motion_from_positions(
     *,
     skeleton: Skeleton | None = None,
     twists: LimbTwists | None = None,
+    progress: Progress = unwatched,
 ) -> Motion:
     """Fit the motion of a skeleton of constant bone lengths to joint positions.
 
@@ -57,6 +59,7 @@ def motion_from_positions(
     twists : LimbTwists, optional
         Axial rotations from similar library poses, weighted against the flexion planes; the
         only source if `ignore_flexion` is set.
+    progress : Progress
 
     Returns
     -------
@@ -68,6 +71,8 @@ def motion_from_positions(
     InvalidMotionError
         The points do not form a single tree with observed positions, or the skeleton has
         joints that are not among them.
+    SolveCancelled
+        Raised by `progress`.
     """
     reliability = np.ones(tracks.positions.shape[:2]) if reliability is None else reliability
     if reliability.shape != tracks.positions.shape[:2]:
@@ -87,7 +92,7 @@ def motion_from_positions(
     rotations = local_rotations(fitted, body.world)
     rotations[:, [not children for children in fitted.children]] = IDENTITY
     motion = Motion(fitted, rotations, body.observed[:, 0], tracks.frame_rate)
-    return fit_to_positions(motion, body.observed, _position_weights(body))
+    return fit_to_positions(motion, body.observed, _position_weights(body), progress)
 
 
 def _position_weights(body: RotationSolver) -> Array:

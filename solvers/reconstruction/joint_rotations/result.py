@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...motion import Motion, Skeleton, Tracks, joint_parents
+from ...progress import Progress, unwatched
 from ..reliability import Reliability
 from .motion_from_positions import motion_from_positions
 from .trunk_twist import LimbTwists
@@ -45,7 +46,7 @@ class Reconstruction:
         """Motion of a skeleton with constant bone lengths, fitted to these joints."""
         return self.motion_of(None)
 
-    def motion_of(self, skeleton: Skeleton | None) -> Motion:
+    def motion_of(self, skeleton: Skeleton | None, progress: Progress = unwatched) -> Motion:
         """Return the motion of a given skeleton, fitted to these joints.
 
         The skeleton and the errors are those of `motion_from_positions`.
@@ -56,4 +57,5 @@ class Reconstruction:
             self.reliability.combined,
             skeleton=skeleton,
             twists=self.twists,
+            progress=progress,
         )

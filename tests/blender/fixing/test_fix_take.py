@@ -59,12 +59,12 @@ def test_skeleton_take_gets_a_clean_action_with_planted_feet(sample, fix):
 
 
 def test_fix_does_what_clean_does(sample, fix, blank):
-    fixed, _ = fix()
+    assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
+    cleaned = values_of(sample.animation_data.action)
     assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
 
-    assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
+    fixed, _ = fix()
 
-    cleaned = values_of(sample.animation_data.action)
     for path, keys in values_of(fixed).items():
         np.testing.assert_allclose(cleaned[path], keys, atol=1e-5, err_msg=str(path))
 
@@ -95,11 +95,11 @@ def test_revert_plays_the_recorded_action_and_closes_the_card(sample, fix, blank
 def test_accept_keeps_the_result_and_closes_the_card(sample, fix, blank, draw):
     action, _ = fix()
 
-    assert "Jitter (m/s³)" not in draw("MOCAP_PT_check")
+    assert "Jitter (°)" not in draw("MOCAP_PT_check")
 
     assert blank.ops.mocap_assist.accept_fix() == {"FINISHED"}
 
-    assert "Jitter (m/s³)" in draw("MOCAP_PT_check")
+    assert "Jitter (°)" in draw("MOCAP_PT_check")
     assert sample.animation_data.action == action and CARD not in action
     assert draw("MOCAP_PT_fix") == ["mocap_assist.fix_take"]
     assert not blank.ops.mocap_assist.accept_fix.poll()
@@ -234,3 +234,19 @@ def test_command_fixes_and_saves(sample, blank, command, tmp_path):
     assert result["before"]["issues"] > 10 > result["after"]["issues"]
     blank.ops.wm.open_mainfile(filepath=str(target))
     assert CARD in blank.data.objects["Sample Walk"].animation_data.action
+
+
+def test_card_does_not_follow_to_the_result_of_another_button(sample, fix, blank):
+    action, _ = fix()
+
+    assert blank.ops.mocap_assist.plant_feet() == {"FINISHED"}
+
+    assert "mocap_assist_fix" in action
+    assert sample.animation_data.action != action
+    assert "mocap_assist_fix" not in sample.animation_data.action
+
+
+def test_history_says_whether_feet_were_planted(sample, fix):
+    action, _ = fix(plant_feet=False)
+
+    assert not json.loads(action["mocap_assist_history"])[-1]["settings"]["plant_feet"]

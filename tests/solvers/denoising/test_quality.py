@@ -110,6 +110,19 @@ def test_slide_is_the_distance_in_contact():
     assert_allclose(slide.longest, 0.3, rtol=1e-9)
 
 
+def test_longest_slide_ends_at_a_cut():
+    """A foot slips by 40 cm, 10 and 30 cm of it in two segments of a joined take."""
+    points = np.zeros((41, 2, 3))
+    points[:, :, 0] = 0.01 * np.arange(41)[:, None]
+    foot = FootPath("left", "foot", points)
+
+    whole = measure_foot_slide(foot, np.ones(41, dtype=bool), 60.0)
+    parts = measure_foot_slide(foot, np.ones(41, dtype=bool), 60.0, cuts=(11,))
+
+    assert_allclose(whole.longest, 0.4, rtol=1e-9)
+    assert_allclose(parts.longest, 0.29, rtol=1e-9)
+
+
 def test_foot_that_rolls_over_its_toe_does_not_slide():
     points = np.zeros((50, 2, 3))
     points[:, 0, 1] = -0.01 * np.arange(50)

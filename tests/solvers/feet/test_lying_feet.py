@@ -7,7 +7,7 @@ from solvers.denoising import plant_feet
 from solvers.feet import standing_feet
 from solvers.feet.legs import LegJoints, find_legs
 from solvers.feet.standing_feet import detect_standing_feet
-from solvers.motion import Motion, detect_contacts, forward_kinematics, reach
+from solvers.motion import Motion, Skeleton, detect_contacts, forward_kinematics, reach
 from solvers.motion.humanoid import find_humanoid_map
 from solvers.recordings import read_acclaim
 from solvers.rotations import IDENTITY, inverse, multiply, quaternion_from_rotation_vector
@@ -93,3 +93,25 @@ def test_no_contact_is_shorter_because_the_actor_lies_down(monkeypatch):
     rests[20:40] = False
     standing = detect_standing_feet(lying, find_humanoid_map(lying.skeleton), legs)
     assert (standing == ~rests).all()
+
+
+def test_hips_at_the_floor_say_nothing_about_lying():
+    """Some rigs have their root, which is named hips, between the feet."""
+    walk = walking_gait(GaitSettings(duration=2.0, frame_rate=60.0))
+    skeleton = walk.skeleton
+    offsets = skeleton.offsets.copy()
+    height = float(walk.root_positions[:, 2].mean())
+    for child in skeleton.children[0]:
+        offsets[child] += (0.0, 0.0, height)
+    low = Motion(
+        Skeleton(skeleton.names, skeleton.parents, offsets),
+        walk.rotations,
+        walk.root_positions - (0.0, 0.0, height),
+        walk.frame_rate,
+    )
+    humanoid = find_humanoid_map(low.skeleton)
+
+    standing = detect_standing_feet(low, humanoid, find_legs(low.skeleton))
+
+    assert humanoid.indices(low.skeleton)["hips"] == 0
+    assert standing.any() and (standing == detect_contacts(low)).all()

@@ -166,3 +166,11 @@ def test_missing_joints_and_frames_are_ignored(gait):
     assert np.isfinite(found.rotations[5]).all()
     known = [0, 1, 2, 4, 6]
     assert errors(found, positions)[known].mean() < 0.2 * errors(near, positions)[known].mean()
+
+
+def test_take_without_any_known_joint_stays(gait):
+    positions = np.full((gait.n_frames, gait.n_joints, 3), np.nan)
+
+    found = fit_to_positions(gait, positions, np.ones(gait.n_joints))
+
+    np.testing.assert_array_equal(found.rotations, gait.rotations)
