@@ -15,7 +15,7 @@ from urllib.parse import unquote, urlparse
 
 import bgui
 import bpy
-from driver_scene import empty_scene, settle
+from driver_scene import WHEEL_DOWN, empty_scene, scroll, settle
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
 AWAY = (500, 500)
@@ -24,10 +24,6 @@ MISSING = ("RightArm", range(120, 180))
 ROW = 23  # pixels from one row of a panel to the next
 EDITORS = {"FCURVES": "GRAPH_EDITOR", "DOPESHEET": "DOPESHEET_EDITOR"}
 UNTIL_DONE = 600  # half seconds
-
-WHEEL_DOWN = 5
-TOP = (1152, 872)
-"""Of the panels."""
 
 
 def import_noisy_walk():
@@ -202,21 +198,12 @@ def clean_again_with_other_settings(armature):
     settings.strength, settings.plant_feet = 1.0, True
 
 
-def scroll_sidebar():
-    """Show the end of the panels."""
-    bgui.move(*TOP)
-    for _ in range(40):
-        bgui.x("click", WHEEL_DOWN)
-        yield 0.05
-    yield from settle()
-
-
 def revert_and_compare(armature):
     """Back to the recorded action; the overlay still shows both."""
     yield from press("mocap_assist_overlay")
     yield from settle(pointer=AWAY)
     bgui.shot("5-overlay.png")
-    yield from scroll_sidebar()
+    yield from scroll(WHEEL_DOWN)
     yield from settle(pointer=AWAY)
     yield from press("mocap_assist.revert_to_raw")
     assert armature.animation_data.action.name == "walk"

@@ -12,16 +12,13 @@ from time import monotonic
 
 import bgui
 import bpy
-from driver_scene import empty_scene, settle, unfold_alone
+from driver_scene import WHEEL_DOWN, WHEEL_UP, empty_scene, scroll, settle, unfold_alone
 
 FOLDER = Path(__file__).parent
 KICKS = FOLDER / "kicks"
 UNTIL_DONE = 2400  # looks
 LOOKS_AFTER = 10
 N_CROWD, N_MANY = 8, 200
-WHEEL_UP, WHEEL_DOWN = 4, 5
-TOP = (1152, 872)
-"""Of the panel: scrolled from there, no list comes under the mouse, which it would scroll."""
 
 
 def bring():
@@ -52,15 +49,6 @@ def press(text):
     yield 0.5
     yield from bgui.scan()
     yield from bgui.click(*bgui.at(text))
-
-
-def scroll(wheel):
-    """Show the end of the panel, or its beginning."""
-    bgui.move(*TOP)
-    for _ in range(40):
-        bgui.x("click", wheel)
-        yield 0.05
-    yield from settle()
 
 
 def job():

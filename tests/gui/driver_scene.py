@@ -5,6 +5,9 @@ import bpy
 
 PANELS = "MOCAP_PT_"
 UNTIL_DONE = 1800  # tenths of a second
+WHEEL_UP, WHEEL_DOWN = 4, 5
+TOP = (1152, 872)
+"""Of the tab: scrolled from there, no list comes under the mouse, which it would scroll."""
 
 
 def empty_scene():
@@ -32,6 +35,15 @@ def settle(times=3, pointer=None):
     for _ in range(times):
         bgui.redraw()
         yield 0.5
+
+
+def scroll(wheel):
+    """Show the end of the tab, or its beginning."""
+    bgui.move(*TOP)
+    for _ in range(40):
+        bgui.x("click", wheel)
+        yield 0.05
+    yield from settle()
 
 
 def until_done():
