@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from long_takes import write_long_bvh
 
+from solvers.command_line.sharing.records import FOLDER
 from solvers.denoising import learn_filter_bases, load_filter_bases
 from solvers.errors import InvalidFileError
 from solvers.recordings import read_bvh, write_bvh
@@ -242,7 +243,8 @@ def test_interrupt_leaves_only_complete_files(swinging_leg, tmp_path):
     assert running.returncode == 130
     assert error_output == "Interrupted. Finished files are kept.\n"
     written = list(out.iterdir())
-    assert not [path for path in written if path.name.startswith(".")]
+    assert [path.name for path in written if path.name.startswith(".")] == [FOLDER]
+    assert all(path.suffix == ".json" for path in (out / FOLDER).iterdir())
     for file in finished:
         assert read_bvh(file).n_frames == swinging_leg.n_frames
 
