@@ -8,6 +8,9 @@ from threading import Event
 import pytest
 from process_checks import descendants_of, wait_until_gone
 
+RECORDS = ".mocap_assist"
+"""Folder of what is kept about each take."""
+
 
 @pytest.fixture(autouse=True)
 def scratch(tmp_path, monkeypatch):
@@ -76,7 +79,9 @@ def test_no_blender_continues_when_each_is_killed(each, tmp_path, scratch):
     assert message.count("Already made.") <= n_made
     assert len(list(tmp_path.glob("out/*.blend"))) == 4
     assert not list(scratch.glob("mocap_assist_*"))
-    assert not [path for path in tmp_path.rglob("out/*") if path.name.startswith(".")]
+    hidden = [path.name for path in tmp_path.glob("out/*") if path.name.startswith(".")]
+    assert hidden == [RECORDS]
+    assert all(path.suffix == ".json" for path in tmp_path.glob(f"out/{RECORDS}/*"))
 
 
 def test_second_blender_does_not_start_while_one_writes_the_file(module, load, tmp_path):

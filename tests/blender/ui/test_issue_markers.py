@@ -38,6 +38,7 @@ def test_markers_of_issues_are_removed_and_others_stay(blank, draw, scene):
     assert not blank.ops.mocap_assist.mark_issues.poll()
 
 
+@pytest.mark.usefixtures("all_panels")
 def test_panel_offers_to_remove_what_is_there(blank, draw, scene):
     assert draw("MOCAP_PT_check").count("mocap_assist.mark_issues") == 1
     blank.ops.mocap_assist.mark_issues()
