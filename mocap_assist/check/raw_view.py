@@ -25,7 +25,7 @@ TWEAKED = "Leave Tweak Mode in the NLA Editor first."
 
 
 class _Shown(NamedTuple):
-    """An object that plays its recorded action for now; references outlive undo."""
+    """An object that shows its recorded action; the references stay valid after undo."""
 
     player: BlockReference
     raw: SourceReference
@@ -64,7 +64,7 @@ def show_raw(context: bpy.types.Context) -> str:
 
 
 def is_shown() -> bool:
-    """Whether a recorded action plays for now."""
+    """Whether the recorded action is shown in place of the result."""
     return bool(_shown)
 
 
@@ -114,7 +114,7 @@ _BEFORE = ("load_pre", "save_pre", "undo_pre", "redo_pre", "render_init")
 
 
 def register() -> None:
-    """Restore before anything that would keep what is shown only for now."""
+    """Restore the result before anything that would store the recorded action in its place."""
     for name in _BEFORE:
         getattr(handlers, name).append(restore)
 

@@ -42,7 +42,7 @@ class LowessFit:
         """Return the frames of transient outliers larger than `threshold`, shape (n_frames,).
 
         A fast but genuine movement, such as a foot strike, leaves the fit gradually, and a
-        fast turn within a few frames continues in the frames beside it. A spike begins and
+        fast turn within a few frames continues in the frames around it. A spike begins and
         ends with steps of half its height or more, and is as high above the cubic through two
         frames on either side.
         """

@@ -18,8 +18,11 @@ from ...json_text import parse_json
 from ...processes import host_name, is_running, this_machine
 
 RENEWAL_INTERVAL_S = 15.0
+"""Seconds between two renewals of a claim. It guards claims of slow takes: twenty renewals may
+fail before one is taken over."""
 ABANDONED_AFTER_S = 300.0
-"""Seconds after which a claim that is not renewed is taken over."""
+"""Seconds after which a claim that is not renewed is taken over. It guards takes whose holder
+was on another machine that has stopped."""
 UNKNOWN_HOST = "another process"
 
 

@@ -19,7 +19,10 @@ FOLDER = ".mocap_assist"
 FORMER_RECORD = "mocap_assist.json"
 """The one record of all outputs that earlier versions wrote; still read."""
 MAX_NAME_LETTERS = 40
+"""Letters of an output's name in that of its record. It bounds the length of file names."""
 N_DIGITS = 16
+"""Hexadecimal digits of a hash that tell records of equal names apart. It guards against equal
+hashes: of a million outputs, two share one with a chance of 1 in 30 million."""
 
 
 @dataclass(frozen=True, kw_only=True)

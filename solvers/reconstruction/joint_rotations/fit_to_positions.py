@@ -47,12 +47,12 @@ def fit_to_positions(
     )
     is_known = np.isfinite(positions).all(axis=2) & is_complete[:, None]
     positions = np.where(is_known[..., None], positions, 0.0)
-    root_weights = np.sqrt(weights) * is_known
+    residual_weights = np.sqrt(weights) * is_known
 
     def fit_piece(start: int, stop: int, progress: Progress) -> Motion:
         piece = gap_free.slice(start, stop)
         frames = slice(start, stop)
-        return _fit_piece(piece, positions[frames], root_weights[frames], progress)
+        return _fit_piece(piece, positions[frames], residual_weights[frames], progress)
 
     fitted = fit_in_pieces(gap_free, fit_piece, progress)
     return motion.with_poses(

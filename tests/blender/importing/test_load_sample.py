@@ -1,4 +1,4 @@
-"""Load Sample Take: a take for somebody who has none yet, by the road of Import."""
+"""Load Sample Take adds a take to the scene in the way that Import does."""
 
 import json
 
