@@ -46,13 +46,20 @@ class FootSlide:
         return float(observed.mean()) if len(observed) else float("nan")
 
     @property
-    def longest(self) -> float:
-        """Longest displacement from the start to the end of one contact, meters."""
-        slides = (
-            np.linalg.norm(self.steps[start:stop].sum(axis=0))
+    def slides(self) -> tuple[tuple[int, int, float], ...]:
+        """First frame, frame after the last one and displacement (m) of each contact.
+
+        Contacts end where the foot is not observed, and at cuts.
+        """
+        return tuple(
+            (start - 1, stop, float(np.linalg.norm(self.steps[start:stop].sum(axis=0))))
             for start, stop in find_runs(np.isfinite(self.steps).all(axis=1))
         )
-        return float(max(slides, default=0.0))
+
+    @property
+    def longest(self) -> float:
+        """Longest displacement from the start to the end of one contact, meters."""
+        return max((slide for *_, slide in self.slides), default=0.0)
 
     @property
     def distance(self) -> float:

@@ -200,8 +200,7 @@ def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[I
 
 def _slides(quality: Quality, settings: IssueSettings) -> Iterator[Issue]:
     for foot in quality.feet:
-        for start, stop in find_runs(foot.contact):
-            slide = float(np.linalg.norm(np.nansum(foot.steps[start:stop], axis=0)))
+        for start, stop, slide in foot.slides:
             if slide >= settings.min_slide:
                 yield Issue(
                     foot.joint,
