@@ -88,13 +88,27 @@ def _claim(path: Path) -> tuple[list[Path], str]:
 
 
 def _created(file: Path) -> bool:
+    """Create a claim unless it exists; where the disk has links, at once with its content."""
+    own = json.dumps({"host": host_name(), "machine": this_machine(), "pid": os.getpid()})
+    part = file.with_name(f".{token_hex(8)}.claim.part")
     try:
-        descriptor = os.open(file, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
+        part.write_text(own, encoding="utf-8")
+        os.link(part, file)
     except FileExistsError:
         return False
-    with os.fdopen(descriptor, "w", encoding="utf-8") as stream:
-        own = {"host": host_name(), "machine": this_machine(), "pid": os.getpid()}
-        json.dump(own, stream)
+    except OSError:  # Some shares have no links: a process killed just here leaves it empty.
+        return _created_empty(file, own)
+    finally:
+        part.unlink(missing_ok=True)
+    return True
+
+
+def _created_empty(file: Path, content: str) -> bool:
+    try:
+        with file.open("x", encoding="utf-8") as stream:
+            stream.write(content)
+    except FileExistsError:
+        return False
     return True
 
 

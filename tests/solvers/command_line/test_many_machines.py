@@ -1,5 +1,6 @@
 """Any number of processes share one batch: no take is lost, and none is made twice."""
 
+import errno
 import json
 import os
 import shutil
@@ -114,6 +115,36 @@ def test_claim_of_another_machine_lasts_while_it_is_renewed(tmp_path, seconds, h
         assert second.holder
 
     assert [path.name for path in tmp_path.iterdir()] == (["take.1.claim"] if holder else [])
+
+
+def test_claim_never_stands_without_its_holder(tmp_path, monkeypatch):
+    """A process killed at any moment leaves no claim that nobody can be asked about."""
+    claim, link, seen = tmp_path / "take.1.claim", os.link, []
+
+    def look(source, target):
+        seen.append(claim.exists())
+        link(source, target)
+        seen.append(json.loads(claim.read_text())["pid"])
+
+    monkeypatch.setattr(os, "link", look)
+    with claimed(tmp_path / "take") as first:
+        assert first.holder == ""
+
+    assert seen == [False, os.getpid()]
+    assert not list(tmp_path.iterdir())
+
+
+def test_claims_on_a_share_without_links(tmp_path, monkeypatch):
+    def refuse(source, target):
+        raise OSError(errno.EOPNOTSUPP, "Operation not supported")
+
+    monkeypatch.setattr(os, "link", refuse)
+
+    with claimed(tmp_path / "take") as first, claimed(tmp_path / "take") as second:
+        assert first.holder == ""
+        assert second.holder == os.uname().nodename
+
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(
