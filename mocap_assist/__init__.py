@@ -41,11 +41,13 @@ def unregister() -> None:
     from .depth import depth_preview
     from .library import auto_update, background
     from .live import listening
+    from .panels import solver_ready
     from .runtime import watch
     from .search import ghost_drawing, previews, properties
     from .track import body_overlay
 
     ui.unregister()
+    solver_ready.unregister()
     batch.unregister()
     listening.unregister()
     raw_view.unregister()

@@ -8,8 +8,9 @@ from typing import Any
 
 from ...solvers.processes import ScratchFolder
 from ...solvers.progress import Progress, unwatched
+from ..jobs.child_process import EXTENSION
 from ..jobs.in_blender import BackgroundBlender
-from ..jobs.job import EXTENSION, run
+from ..jobs.job import run
 from .export_formats import ExportedBones, FileFormat
 
 WRITER = "mocap_assist.exporting.write_file"

@@ -8,6 +8,7 @@ from ..blender.mixins import PanelMixin
 from ..depth.depth_preview import NOT_ALLOWED, problem_of
 from ..panels.drawing import draw_job, draw_sentence, exists
 from ..panels.manual_page import MANUAL
+from ..panels.solver_ready import note_drawing
 from ..panels.visibility import ALL_PANELS
 from ..runtime.selection import selected_subject
 from ..scene.origin import noted_conventions, origin_of
@@ -34,6 +35,7 @@ class ImportPanel(PanelMixin):
         )
 
     def draw(self, context: bpy.types.Context) -> None:
+        note_drawing()
         layout = self.layout
         draw_job(layout, context, "import")
         layout.operator(IMPORT, text="Import Motion Capture", icon="IMPORT")

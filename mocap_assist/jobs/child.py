@@ -2,6 +2,7 @@
 
 import gc
 import importlib
+import os
 import pickle
 import sys
 import traceback
@@ -14,6 +15,10 @@ from types import ModuleType
 from typing import Any
 
 REPORT_INTERVAL_S = 0.1
+OURS = Path(__file__).parents[1]
+"""The folder `mocap_assist`, whose modules `solve_…` hold all that is called here."""
+IMPORTED_LATE = ("scipy.signal", "scipy.sparse.csgraph")
+"""What the solvers import only when they need it."""
 
 
 def main(folder: Path, extension: str) -> int:
@@ -42,7 +47,6 @@ def main(folder: Path, extension: str) -> int:
 
 def outcome_of(folder: Path, protocol: ModuleType) -> Any:
     """Return the solver's result in a tuple, or the exception that it raises."""
-    gc.disable()  # Imports leave no garbage; collecting takes a tenth of the time.
     solve = pickle.loads((folder / protocol.REQUEST).read_bytes())
     gc.enable()
     try:
@@ -97,15 +101,34 @@ def preview_argument(
     return {"show": partial(protocol.append_preview, (folder / protocol.PREVIEWS).open("wb"))}
 
 
-def solve_and_exit(folder: Path, extension: str) -> None:
+def import_ahead(extension: str) -> None:
+    """Import what solves need: their modules, and what these import only when called."""
+    names = [
+        ".".join([extension, "mocap_assist", *path.relative_to(OURS).with_suffix("").parts])
+        for path in sorted(OURS.glob("*/solve_*.py"))
+    ]
+    for name in (*names, *IMPORTED_LATE):
+        with suppress(ImportError):
+            importlib.import_module(name)
+    gc.freeze()  # What stays is not searched for garbage in each collection.
+
+
+def solve_and_exit(folder: Path, extension: str, *, waits: bool) -> None:
     """Solve, and exit with the result, or as soon as Blender exits."""
-    make_importable(extension, Path(__file__).parents[2])
+    gc.disable()  # Imports leave no garbage; collecting takes a tenth of the time.
+    make_importable(extension, OURS.parent)
     processes = f"{extension}.solvers.processes"
     parent = importlib.import_module(f"{processes}.parent")
     scratch = importlib.import_module(f"{processes}.scratch")
+    if waits:
+        import_ahead(extension)
+        if not os.read(parent.STDIN, 1):
+            scratch.remove_orphaned(folder)
+            parent.leave(parent.ORPHANED)
     parent.end_with_stdin(partial(scratch.remove_orphaned, folder))
     parent.leave(main(folder, extension))
 
 
 if __name__ == "__main__":
-    solve_and_exit(Path(sys.argv[1]), sys.argv[2])
+    # The word of `protocol`, which cannot be imported yet.
+    solve_and_exit(Path(sys.argv[1]), sys.argv[2], waits="wait" in sys.argv[3:])

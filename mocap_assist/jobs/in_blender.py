@@ -12,7 +12,8 @@ from ...solvers.faults import attempt
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import is_scene_file
-from .job import EXTENSION, isolated_command, run
+from .child_process import EXTENSION, isolated_command
+from .job import run
 
 BLEND_CHILD = Path(__file__).with_name("blend_child.py")
 READER = "mocap_assist.library.blend_clips"

@@ -1,33 +1,25 @@
 """Run a solve in a subprocess; independent of Blender."""
 
-import os
 import pickle
 import signal
 import subprocess
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
-from pathlib import Path
 from time import sleep
 from typing import Any, Generic, TypeVar
 
 from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
 from ...solvers.files import reason_of
-from ...solvers.processes import ScratchFolder, thread_environment
 from ...solvers.progress import Progress, unwatched
-from .protocol import LOG, REQUEST, RESULT, Ending, last_output, last_progress, read_previews
+from .child_process import ChildProcess
+from .protocol import REQUEST, RESULT, Ending, last_output, last_progress, read_previews
+from .waiting_child import take_waiting
 
 Result = TypeVar("Result")
-EXTENSION = __name__.rsplit(".", 3)[0]
-CHILD = Path(__file__).with_name("child.py")
 POLL_INTERVAL_S = 0.05  # seconds
 EXIT_TIMEOUT_S = 0.25
 """Seconds that a process may take to exit after it wrote its result."""
-CHILD_ENVIRONMENT = {"PYTHONUTF8": "1", "PYTHONNOUSERSITE": "1"}
-# Ignores user site-packages and the folder of the script.
-ISOLATION_FLAGS = ("-s", "-P")
-NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # no console flashes up on Windows
 
 
 class ProcessDied(MocapAssistError):
@@ -115,35 +107,23 @@ class Job(Generic[Result]):
     ) -> None:
         self.cancelled = False
         self._preview_offset = 0
-        self._scratch = ScratchFolder()
-        self._path = self._scratch.path
+        is_usual = not program and n_threads == 1
+        self._child = (take_waiting() if is_usual else None) or ChildProcess()
+        self._path = self._child.path
         try:
             with _convert_memory_errors():
                 (self._path / REQUEST).write_bytes(pickle.dumps(solve))
-            self._process = self._start(program or isolated_command(CHILD), n_threads)
+            if not self._child.wake():
+                self._child.start(program, n_threads)
         except OSError as error:
-            self._scratch.remove()
+            self._child.abandon()
             raise MocapAssistError(
                 f"The solver process cannot be started: {reason_of(error)}"
                 f" ({error.filename or self._path})."
             ) from None
         except BaseException:
-            self._scratch.remove()
+            self._child.abandon()
             raise
-
-    def _start(self, program: Sequence[str], n_threads: int) -> "subprocess.Popen[bytes]":
-        environment = (
-            thread_environment(n_threads) | CHILD_ENVIRONMENT | {"PYTHONPATH": _search_path()}
-        )
-        with (self._path / LOG).open("wb") as log:
-            return subprocess.Popen(
-                [*program, str(self._path), EXTENSION],
-                stdin=subprocess.PIPE,  # stays empty, and closes when this process ends
-                stdout=log,
-                stderr=subprocess.STDOUT,
-                creationflags=NO_WINDOW,
-                env=os.environ | environment,
-            )
 
     def progress(self) -> tuple[float, str]:
         """Return the last fraction, 0 to 1, and message of the solver."""
@@ -156,24 +136,21 @@ class Job(Generic[Result]):
 
     def all_previews(self) -> list[Any]:
         """Wait for the end, and return all previews of a `PreviewSolve`."""
-        self._process.wait()
+        self._child.process.wait()
         return read_previews(self._path, 0)[0]
 
     def done(self) -> bool:
         """Return whether the result exists, or the process ended without one."""
-        return (self._path / RESULT).exists() or self._process.poll() is not None
+        return (self._path / RESULT).exists() or self._child.process.poll() is not None
 
     def cancel(self) -> None:
         """End the process at once; `result` then raises SolveCancelled."""
         self.cancelled = True
-        self._process.kill()
+        self._child.process.kill()
 
     def tidy_up(self) -> None:
         """Remove the job's folder once its process has ended."""
-        self._process.wait()
-        if self._process.stdin is not None:
-            self._process.stdin.close()
-        self._scratch.remove()
+        self._child.tidy_up()
 
     def result(self) -> Result:
         """Wait for the end, remove the folder, and return the solver's result.
@@ -207,10 +184,10 @@ class Job(Generic[Result]):
         while not self.done():
             sleep(POLL_INTERVAL_S)
         try:
-            return self._process.wait(EXIT_TIMEOUT_S)
+            return self._child.process.wait(EXIT_TIMEOUT_S)
         except subprocess.TimeoutExpired:
-            self._process.kill()
-            return self._process.wait()
+            self._child.process.kill()
+            return self._child.process.wait()
 
     def _outcome(self, status: int) -> Any:
         """Return the outcome of the process: an exception, or the result in a tuple."""
@@ -236,27 +213,6 @@ def _convert_memory_errors() -> Iterator[None]:
         yield
     except MemoryError:
         raise OutOfMemoryError from None
-
-
-def isolated_command(script: Path) -> tuple[str, ...]:
-    """Return the command that runs a script in an isolated Python."""
-    return (_python(), *ISOLATION_FLAGS, str(script))
-
-
-def _python() -> str:
-    if not sys.executable:
-        raise MocapAssistError("Blender's Python executable was not found. Reinstall Blender.")
-    return sys.executable
-
-
-def _search_path() -> str:
-    """Return the module path of this process, with the extension's wheels.
-
-    The current folder is left out. Blender's scripts come last: they would hide a Blender that
-    is a Python module.
-    """
-    paths = sorted(filter(None, sys.path), key=lambda path: "scripts" in Path(path).parts)
-    return os.pathsep.join(paths)
 
 
 def _cause(status: int) -> str:

@@ -11,6 +11,8 @@ from typing import Any, BinaryIO, TypeVar
 from ...solvers.faults import escaped
 
 REQUEST, RESULT, LOG, PREVIEWS = "request", "result", "log", "previews"
+WAIT = "wait"
+"""Argument of child.py: the request is written later."""
 TAIL_BYTES = 4096
 LENGTH_BYTES = 8  # of the length before each pickle
 DISK_FULL = {errno.ENOSPC, errno.EDQUOT}

@@ -53,6 +53,11 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         min=1024,
         max=65535,
     )
+    keep_solver_ready: bpy.props.BoolProperty(
+        name="Keep Solver Ready",
+        description="Start the next solver ahead, so that a press answers faster (0.13 GB)",
+        default=True,
+    )
     raw_color: bpy.props.FloatVectorProperty(
         name="Raw Color",
         description="Color of the recorded action in the overlay",
@@ -87,7 +92,7 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in ("tab", "result_as", "live_port"):
+        for name in ("tab", "result_as", "live_port", "keep_solver_ready"):
             layout.prop(self, name)
         overlay = layout.column(heading="Overlay")
         for name in ("raw_color", "clean_color", "line_width"):

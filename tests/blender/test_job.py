@@ -81,7 +81,7 @@ def test_crashed_process_is_reported_in_one_sentence(job, load, problem):
     before = folders()
     running = job(partial(load("solvers.denoising").denoise, problem(20_000)))
 
-    os.kill(running._process.pid, signal.SIGKILL)
+    os.kill(running._child.process.pid, signal.SIGKILL)
 
     with pytest.raises(
         load("solvers.errors").MocapAssistError, match="early: signal SIGKILL, which"
@@ -139,7 +139,7 @@ class Expression:
         return eval, ("lambda progress: __import__('time').sleep(100)",)
 
 running = Job(Expression())
-print(running._process.pid, flush=True)
+print(running._child.process.pid, flush=True)
 time.sleep(100)
 """
 

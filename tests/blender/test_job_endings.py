@@ -63,7 +63,7 @@ def test_process_ends_with_status_0_after_its_answer(module, load, programs, pro
         solve = load("mocap_assist.jobs.protocol").PreviewSolve(Expression(text))
     job = module.Job(solve, programs[program])
 
-    status = job._process.wait()
+    status = job._child.process.wait()
 
     assert (status, job.new_previews()) == (0, ["a pose"] if showing else [])
     assert job.result() == "the answer"
@@ -73,7 +73,7 @@ def test_process_ends_with_status_0_after_its_answer(module, load, programs, pro
 def test_process_ends_with_status_0_after_an_error_of_the_solver(module, programs, program):
     job = module.Job(Expression("lambda progress: 1 / 0"), programs[program])
 
-    assert job._process.wait() == 0
+    assert job._child.process.wait() == 0
     with pytest.raises(ZeroDivisionError) as caught:
         job.result()
     assert "Traceback" in caught.value.__notes__[0]
@@ -85,7 +85,7 @@ def test_hanging_process_is_ended_after_its_result_is_read(module):
         pass
 
     assert job.result() == "the answer"
-    assert job._process.returncode not in {None, 0}
+    assert job._child.process.returncode not in {None, 0}
     assert not job._path.exists()
 
 
@@ -105,7 +105,12 @@ def test_out_of_memory_is_one_sentence(module, load, call):
 
 
 def test_full_disk_is_one_sentence_when_the_answer_does_not_fit(module, load, tmp_path):
-    program = (sys.executable, "-c", FULL_DISK, str(module.CHILD))
+    program = (
+        sys.executable,
+        "-c",
+        FULL_DISK,
+        str(load("mocap_assist.jobs.child_process").CHILD),
+    )
 
     with pytest.raises(load("solvers.errors").MocapAssistError, match="disk is full") as caught:
         module.Job(Expression("lambda progress: 1"), program).result()

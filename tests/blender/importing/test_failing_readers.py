@@ -42,7 +42,7 @@ def dying(load, monkeypatch):
 def test_a_reader_that_dies_once_takes_no_file_along(press, window, blank):
     operator = press("first.bvh", "second.bvh")
 
-    operator._job.job._process.kill()
+    operator._job.job._child.process.kill()
 
     assert wait(operator, window) == {"FINISHED"}
     assert sorted(blank.data.objects.keys()) == ["first", "second"]
