@@ -4,6 +4,7 @@ import bpy
 
 from .accept_fix import MOCAP_OT_accept_fix
 from .assign_variants import MOCAP_OT_assign_variants
+from .cancel_solve import MOCAP_OT_cancel_solve
 from .change_axes import MOCAP_OT_change_axes
 from .denoise import MOCAP_OT_denoise
 from .draw_variants import MOCAP_OT_draw_variants
@@ -44,6 +45,7 @@ from .vary import MOCAP_OT_vary
 OPERATORS = (
     MOCAP_OT_import_recording,
     MOCAP_OT_import_job,
+    MOCAP_OT_cancel_solve,
     MOCAP_OT_load_sample,
     MOCAP_OT_fix_take,
     MOCAP_OT_accept_fix,

@@ -108,7 +108,8 @@ class WaitingImport(FilesOperator):
         job = self._job
         if not job.watch.is_on:
             return {"CANCELLED"}
-        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+        escaped = event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS"
+        if escaped or job.watch.is_cancelled:
             job.cancel(context)
             self.report({"INFO"}, "Cancelled.")
             return {"CANCELLED"}

@@ -12,6 +12,7 @@ from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
 from ..blender.mixins import SettingsMixin
 from ..blender.time_slices import Work
 from ..jobs.job import Job, ShortSolve, run
+from .navigation import may_pass
 from .redo import fingerprint
 from .selection import selected_subject
 from .subject import Subject
@@ -33,12 +34,14 @@ class SolverOperator(SettingsMixin):
 
     Both run in Blender, and `Sliced` ones take turns with its window. The solve that
     `read_scene` returns is called with `progress=` in a subprocess: it must be picklable and
-    cannot use bpy. After a press of the button the window ignores all input except Esc and the
-    right mouse button. Changes in another window do not redirect the result: it goes to the
-    subject that was read, or is discarded. A script waits.
+    cannot use bpy. After a press of the button the window ignores all input except Esc, the
+    right mouse button and, while another process solves, what only moves a view or the frame.
+    Changes in another window do not redirect the result: it goes to the subject that was read,
+    or is discarded. A script waits.
     """
 
     bl_options: ClassVar = {"REGISTER", "UNDO"}
+    _is_solving = False
     settings_group: ClassVar[str]
     """Property of `scene.mocap_assist` with the settings of the sidebar."""
     selected: ClassVar[Callable[..., bpy.types.Object | None]] = selected_subject
@@ -99,8 +102,10 @@ class SolverOperator(SettingsMixin):
         if not watch.is_on:
             return {"CANCELLED"}
         escaped = event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS"
+        escaped = escaped or watch.is_cancelled
         if not escaped and event.type != "TIMER":
-            return {"RUNNING_MODAL"}
+            looks = self._is_solving and may_pass(context, event)
+            return {"PASS_THROUGH"} if looks else {"RUNNING_MODAL"}
         try:
             acts = self._acts
             progress = acts.throw(SolveCancelled("Cancelled.")) if escaped else next(acts)
@@ -157,6 +162,7 @@ class SolverOperator(SettingsMixin):
 
     def _solve(self, solve: "partial[Any]") -> Generator[tuple[float, str], None, Any]:
         self._job = job = Job(solve)
+        self._is_solving = True
         try:
             while not job.done():
                 self.show_previews(job)
@@ -167,6 +173,8 @@ class SolverOperator(SettingsMixin):
             job.cancel()
             job.tidy_up()
             raise
+        finally:
+            self._is_solving = False
         return self.result_from_job(job)
 
     def _read_arguments(self) -> tuple[Any, ...]:

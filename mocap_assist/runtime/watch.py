@@ -1,6 +1,7 @@
 """Display of the running solve; it ends with its file."""
 
 from collections.abc import Callable
+from time import monotonic
 
 import bpy
 
@@ -8,6 +9,15 @@ from ..drawing.view_drawing import redraw
 from .file_change_handlers import ends_with_file
 
 TIMER_INTERVAL_S = 0.05
+CANCEL = "mocap_assist.cancel_solve"
+MIN_FRACTION = 0.05
+"""Fraction of a solve from which the time left is shown. It guards estimates from a few
+frames."""
+MIN_ELAPSED_S = 2.0
+"""Seconds from which the time left is shown. It guards short solves: theirs cannot be read."""
+SECONDS_UP_TO_S = 90.0
+"""Seconds up to which the time left is in seconds, and in minutes from there. It guards against
+figures more exact than the estimate."""
 BUSY = "Another solve is running. Wait until it is done, or press Esc in its window."
 
 _on: list["Watch"] = []
@@ -30,6 +40,8 @@ class Watch:
         self, context: bpy.types.Context, owner: str, stop: Callable[[], None]
     ) -> None:
         self._stop = stop
+        self._began = monotonic()
+        self.is_cancelled = False
         manager = context.window_manager
         manager.mocap_assist_job.owner = owner
         self._timer = manager.event_timer_add(TIMER_INTERVAL_S, window=context.window)
@@ -44,7 +56,15 @@ class Watch:
         """Show the progress."""
         state = context.window_manager.mocap_assist_job
         state.running, state.fraction, state.message = True, fraction, message
-        context.workspace.status_text_set(f"{message} {fraction:.0%}   Esc: cancel")
+        left = time_left(fraction, monotonic() - self._began)
+        shown = f"{message} {fraction:.0%}{f', {left}' if left else ''}   Esc: cancel"
+
+        def draw(header: bpy.types.Header, context: bpy.types.Context) -> None:
+            row = header.layout.row(align=True)
+            row.label(text=shown, translate=False)
+            row.operator(CANCEL, text="Cancel", icon="X")
+
+        context.workspace.status_text_set(draw)
         redraw(context)
 
     def end(self, context: bpy.types.Context) -> None:
@@ -61,6 +81,27 @@ class Watch:
             self._stop()
         finally:
             self.end(context)
+
+
+def why_not_cancel(context: bpy.types.Context) -> str:
+    """Return why there is nothing to cancel, or an empty text."""
+    return "" if _on else "No solve is running."
+
+
+def cancel_running() -> None:
+    """Let the running solve end as Esc does."""
+    for watch in _on:
+        watch.is_cancelled = True
+
+
+def time_left(fraction: float, elapsed_s: float) -> str:
+    """Return how long a solve will still take, or an empty text while that is not known."""
+    if fraction < MIN_FRACTION or elapsed_s < MIN_ELAPSED_S:
+        return ""
+    left_s = elapsed_s * (1.0 - fraction) / fraction
+    if left_s < SECONDS_UP_TO_S:
+        return f"{max(round(left_s), 1)} s left"
+    return f"{round(left_s / 60.0)} min left"
 
 
 def why_busy() -> str:

@@ -29,7 +29,7 @@ def press_clean(make_button, window, load):
         )
         button = make_button("denoise", settings)
         assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
-        assert wait(button, window, until=lambda: window.job.running) is None
+        assert wait(button, window, until=lambda: button._is_solving) is None
         return button
 
     return press
@@ -41,7 +41,7 @@ def test_escape_cancels_the_solve_and_writes_nothing(noisy, press_clean, window,
 
     button = press_clean()
 
-    assert window.status[-1].endswith("%   Esc: cancel")
+    assert window.status[-1].endswith("%   Esc: cancel [mocap_assist.cancel_solve]")
     assert window.job.owner == "clean"
     for other in (event("TIMER"), event("LEFTMOUSE", "PRESS")):
         assert button.modal(window.context, other) == {"RUNNING_MODAL"}
@@ -50,6 +50,27 @@ def test_escape_cancels_the_solve_and_writes_nothing(noisy, press_clean, window,
     assert window.timers == [] and window.status[-1] is None
     assert not window.job.running and folders() == set()
     assert window.reports == [({"INFO"}, "Cancelled.")]
+
+
+def test_cancel_button_ends_the_solve(noisy, press_clean, window, blank):
+    button = press_clean()
+
+    assert blank.ops.mocap_assist.cancel_solve() == {"FINISHED"}
+    assert wait(button, window) == {"CANCELLED"}
+    assert window.timers == [] and folders() == set()
+    assert window.reports == [({"INFO"}, "Cancelled.")]
+
+
+def test_view_can_be_moved_only_while_another_process_solves(noisy, make_button, window):
+    orbit = event("MIDDLEMOUSE", "PRESS")
+    button = make_button("denoise", None)
+    button._watch = SimpleNamespace(is_on=True, is_cancelled=False)
+
+    answers = []
+    for button._is_solving in (False, True):
+        answers.append(button.modal(window.context, orbit))
+
+    assert answers == [{"RUNNING_MODAL"}, {"PASS_THROUGH"}]
 
 
 class TooLarge:
