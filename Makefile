@@ -9,6 +9,7 @@ SHELL := /bin/bash
 
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' blender_manifest.toml)
 ZIP := dist/mocap_assist-$(VERSION)-linux_x64.zip
+WHEEL := dist/mocap_assist-$(VERSION)-py3-none-any.whl
 PYTHON_4.5 := .venv-4.5/bin/python
 PYTHON_5.2 := .venv-5.2/bin/python
 TYPED := build/types/mocap_assist_extension
@@ -30,9 +31,10 @@ help:  ## this list
 # --- Tests ---
 
 .PHONY: test lint test-source-4.5 test-source-5.2 test-blender test-blender-4.5 test-blender-5.2
+.PHONY: test-wheel
 test: environments  ## every check and test below, on Blender 4.5 and 5.2, two at a time
 	@$(SUBMAKE) --output-sync=target --keep-going \
-	    lint test-blender-4.5 test-blender-5.2 test-source-4.5 test-source-5.2
+	    lint test-blender-4.5 test-blender-5.2 test-source-4.5 test-source-5.2 test-wheel
 	@if [ -e .venv-5.2/ready ]; then echo "All is well, on Blender 4.5 and 5.2."; \
 	else echo "$(NO_5.2)"; echo "All is well, on Blender 4.5."; fi
 
@@ -60,6 +62,11 @@ test-blender-4.5: .venv-4.5/ready zip  ## the installed zip, in Blender 4.5
 test-blender-5.2: optional-5.2 zip  ## the installed zip, in Blender 5.2
 	@[ ! -e .venv-5.2/ready ] || { set -x; \
 	    MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_5.2) -m pytest tests/blender; }
+
+test-wheel: .venv-4.5/ready optional-5.2 wheel  ## the installed wheel, on Python 3.11 and 3.13
+	MOCAP_ASSIST_WHEEL=$(WHEEL) $(AT_MOST) $(PYTHON_4.5) -m pytest tests/wheel
+	@[ ! -e .venv-5.2/ready ] || { set -x; \
+	    MOCAP_ASSIST_WHEEL=$(WHEEL) $(AT_MOST) $(PYTHON_5.2) -m pytest tests/wheel; }
 
 .PHONY: test-gui
 test-gui: extension-plain  ## press buttons in a Blender with a window; DRIVERS="clean vary"
@@ -206,11 +213,17 @@ extension-plain: .venv-4.5/ready  ## a zip without wheels, for a Blender of anot
 zip: .venv-4.5/ready  ## the zip for Linux, which the tests install
 	@$(PYTHON_4.5) .ci/build_extension.py --platform linux-x64
 
+# --- The Python package ---
+
+.PHONY: wheel
+wheel: .venv-wheel/ready  ## the solvers as a package for pip: dist
+	@.venv-wheel/bin/python -m hatchling build --target wheel --directory dist
+
 # --- Environments ---
 
 .PHONY: environments libraries optional-5.2 clean
-environments: libraries  ## .venv-4.5 and, where there is a Python 3.13, .venv-5.2
-	@$(SUBMAKE) .venv-4.5/ready optional-5.2
+environments: libraries  ## .venv-4.5, .venv-wheel and, where there is a Python 3.13, .venv-5.2
+	@$(SUBMAKE) .venv-4.5/ready .venv-wheel/ready optional-5.2
 
 optional-5.2:
 	@if .ci/find_python 3.13 >/dev/null; then $(MAKE) --no-print-directory .venv-5.2/ready; \
@@ -223,7 +236,7 @@ libraries:
 
 .venv-4.5/ready: PYTHON := 3.11
 .venv-5.2/ready: PYTHON := 3.13
-.venv-fuzz/ready: PYTHON := 3.11
+.venv-fuzz/ready .venv-wheel/ready: PYTHON := 3.11
 .venv-%/ready: .ci/requirements-%.txt .ci/requirements.txt | libraries
 	@if [ -L $(@D) ]; then echo "$(@D) is a link, and left as it is."; else \
 	    echo "Setting up $(@D), once: a minute and up to 1.5 GB."; \
@@ -232,4 +245,4 @@ libraries:
 	@touch $@
 
 clean:  ## remove what make made, the environments too
-	rm -rf .venv-4.5 .venv-5.2 .venv-fuzz build dist wheels
+	rm -rf .venv-4.5 .venv-5.2 .venv-fuzz .venv-wheel build dist wheels

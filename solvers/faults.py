@@ -10,8 +10,8 @@ from typing import ParamSpec, TypeVar
 from .errors import FileAccessError, InvalidFileError, MocapAssistError, SolveCancelled
 from .files import reason_of
 
-OWN_FOLDERS = {"solvers", "mocap_assist", "operators"}
-"""Folders of this project, relative to the folder of this extension."""
+OWN_FOLDERS = {Path(__file__).parent.name, "mocap_assist", "operators"}
+"""Folders of this project, relative to the folder of the extension or of all packages."""
 
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")

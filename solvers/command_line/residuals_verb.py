@@ -96,7 +96,7 @@ def _joints(reference: Any, path: Path) -> Tracks:
     if isinstance(reference, JointRecording):
         return reference.tracks
     raise InvalidMotionError(
-        f"{path} holds markers; solve a skeleton from them first (python -m solvers solve)."
+        f"{path} holds markers; solve a skeleton from them first, with the verb solve."
     )
 
 

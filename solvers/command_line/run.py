@@ -13,6 +13,7 @@ from ..errors import InvalidSettingError, MocapAssistError
 from ..faults import Failure, attempt, escaped
 from ..files import is_missing, reason_of
 from ..processes import add_threads_option
+from ..version import version
 from .batch import (
     FinishedTask,
     already_made,
@@ -86,6 +87,7 @@ def _parser(verbs: Mapping[str, Verb], prog: str) -> SentenceParser:
         description="Clean up captured motion: BVH, Acclaim (AMC with ASF), C3D and TRC files.",
         epilog=f"For the options of a verb: {prog} VERB --help",
     )
+    parser.add_argument("--version", action="version", version=f"Mocap Assist {version()}")
     choices = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
     for name, verb in verbs.items():
         described = choices.add_parser(name, help=verb.help, description=verb.help)
