@@ -49,9 +49,9 @@ def test_tests_use_the_shipped_library_versions(blender):
         assert pins.get(name.replace("_", "-")) == version
 
 
-@pytest.mark.parametrize("blender", ["4.5", "5.2"])
-def test_environments_pin_every_package(blender):
-    assert all(requirements(ROOT / ".ci" / f"requirements-{blender}.txt").values())
+@pytest.mark.parametrize("environment", ["4.5", "5.2", "fuzz", "wheel"])
+def test_environments_pin_every_package(environment):
+    assert all(requirements(ROOT / ".ci" / f"requirements-{environment}.txt").values())
 
 
 def test_changelog_has_this_version():
