@@ -3,12 +3,14 @@
     make docs
 
 A table of settings stands between `<!-- settings solvers.denoising.DenoiseSettings -->` and
-`<!-- end -->`, the table of buttons between `<!-- buttons -->` and `<!-- end -->`.
+`<!-- end -->`, the table of buttons between `<!-- buttons -->` and `<!-- end -->`, and what a
+package exports between `<!-- names of solvers.denoising -->` and `<!-- end -->`.
 """
 
 import ast
+import inspect
 import re
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from enum import Enum
 from importlib import import_module
 from pathlib import Path
@@ -21,6 +23,7 @@ DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 ENDLESS = 1e6
 SETTINGS = re.compile(r"(<!-- settings ([\w.]+)\.(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 BUTTONS = re.compile(r"(<!-- buttons -->\n).*?(<!-- end -->)", re.DOTALL)
+NAMES = re.compile(r"(<!-- names of ([\w.]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 NOT_BUTTONS = {"import_job"}
 """Operators that another operator starts: no user sees them."""
 PAGES = {
@@ -48,6 +51,7 @@ def renewed(text: str) -> str:
     text = SETTINGS.sub(
         lambda found: found[1] + settings_table(found[2], found[3]) + found[4], text
     )
+    text = NAMES.sub(lambda found: found[1] + names_table(found[2]) + found[3], text)
     return BUTTONS.sub(lambda found: found[1] + buttons_table() + found[2], text)
 
 
@@ -100,6 +104,51 @@ def settings_table(module: str, name: str) -> str:
             f" | {allowed} | {help_text}. |"
         )
     return "\n".join(rows) + "\n"
+
+
+def names_table(package: str) -> str:
+    """Return a Markdown table of the functions and classes that a package exports."""
+    module = import_module(package)
+    exported = {name: getattr(module, name) for name in module.__all__}
+    rows = ["| name | what it is |", "|---|---|"]
+    for is_kind in (inspect.isfunction, inspect.isclass):
+        for name, value in exported.items():
+            if is_kind(value):
+                rows.append(
+                    f"| `{name}{_inputs(value)}` | {_first_sentence(value)}{_parts(value)} |"
+                )
+    return "\n".join(rows) + "\n"
+
+
+def _inputs(value: Any) -> str:
+    """Return the arguments of a function, with the defaults that fit into a table."""
+    if inspect.isclass(value):
+        return ""
+    shown, is_after_star = [], False
+    for name, argument in inspect.signature(value).parameters.items():
+        if argument.kind is argument.KEYWORD_ONLY and not is_after_star:
+            shown.append("*")
+            is_after_star = True
+        default = argument.default
+        if default is argument.empty:
+            shown.append(name)
+        elif default is None or type(default) in {str, int, float, bool}:
+            shown.append(f"{name}={default!r}")
+        else:
+            shown.append(f"{name}=...")
+    return f"({', '.join(shown)})"
+
+
+def _first_sentence(value: Any) -> str:
+    paragraph = " ".join((inspect.getdoc(value) or "").partition("\n\n")[0].split())
+    return paragraph.replace("|", "\\|")
+
+
+def _parts(value: Any) -> str:
+    """Return the fields of a class of values; settings have tables of their own."""
+    if not is_dataclass(value) or value.__name__.endswith("Settings"):
+        return ""
+    return f" Fields: {', '.join(f'`{item.name}`' for item in fields(value))}."
 
 
 def _allowed(default: Any, described: Any) -> str:
