@@ -203,9 +203,12 @@ sensitivity: .venv-4.5/ready  ## halve and double each tuned constant; ARGUMENTS
 
 # --- The extension ---
 
-.PHONY: extension extension-plain zip
+.PHONY: extension extension-per-python extension-plain zip
 extension: .venv-4.5/ready  ## the zips of all platforms, with their wheels: dist
 	$(PYTHON_4.5) .ci/build_extension.py
+
+extension-per-python: .venv-4.5/ready  ## zips of half the size, for each platform and Python
+	$(PYTHON_4.5) .ci/build_extension.py --per-python
 
 extension-plain: .venv-4.5/ready  ## a zip without wheels, for a Blender of another Python
 	$(PYTHON_4.5) .ci/build_extension.py --plain

@@ -2,6 +2,7 @@
 
     python .ci/build_extension.py                         every platform of the manifest
     python .ci/build_extension.py --platform linux-x64    one of them
+    python .ci/build_extension.py --per-python            a zip of half the size for each Python
     python .ci/build_extension.py --plain                 without wheels
 
 Needs an installed `bpy`, because Blender's own build tool travels in it; imports nothing of it.
@@ -26,6 +27,11 @@ WHEELS = ROOT / "wheels"
 # What is shipped is for the manifest to say; these are only slow to copy.
 NOT_COPIED = shutil.ignore_patterns(".*", "__pycache__", "build", "dist", "wheels")
 OPERATING_SYSTEMS = {"linux": "linux", "windows": "win", "macos": "macosx"}
+BLENDERS = {
+    "3.11": 'blender_version_min = "4.5.0"\nblender_version_max = "5.1.0"',
+    "3.13": 'blender_version_min = "5.1.0"',
+}
+"""By Python, the lines of a manifest for the Blenders that have it; the maximum is excluded."""
 PROCESSORS = {"x64": ("x86_64", "amd64"), "arm64": ("arm64", "aarch64")}
 
 
@@ -33,7 +39,7 @@ class Wheel(NamedTuple):
     """What the name of a wheel says: `name-version-python-abi-platform.whl`."""
 
     python: str
-    """Such as cp311, or py3 for any."""
+    """Such as cp311, or py3 for every Python."""
     platform: str
     """Such as win_amd64, or several with dots between; any for pure Python."""
     name: str
@@ -45,6 +51,10 @@ class Wheel(NamedTuple):
         """Read a name such as ./wheels/scipy-1.15.3-cp311-cp311-win_amd64.whl."""
         name, version, python, _, platform = Path(path).stem.split("-")
         return cls(python, platform, name, version, Path(path).name)
+
+    def fits(self, python: str) -> bool:
+        """Whether a Python, such as 3.11, can use it."""
+        return self.python in {"py3", f"cp{python.replace('.', '')}"}
 
     def serves(self, blender_platform: str) -> bool:
         """Whether a Blender platform, such as linux-x64, can use it."""
@@ -60,7 +70,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--platform", action="append", choices=manifest["platforms"])
-    parser.add_argument("--plain", action="store_true", help="leave the wheels out")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--plain", action="store_true", help="leave the wheels out")
+    kind.add_argument("--per-python", action="store_true", help="one zip for each Python")
     parser.add_argument("--output", type=Path, default=ROOT / "dist")
     options = parser.parse_args(arguments)
 
@@ -72,10 +84,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     ]
     fetch(wheels)
     options.output.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder:
-        staging = Path(folder) / "source"
-        stage(staging, platforms, wheels)
-        build(staging, options.output, f"{manifest['id']}-{manifest['version']}", platforms)
+    stem = f"{manifest['id']}-{manifest['version']}"
+    for python in BLENDERS if options.per_python else (None,):
+        fitting = [wheel for wheel in wheels if python is None or wheel.fits(python)]
+        ending = ".zip" if python is None else f"-python{python}.zip"
+        with tempfile.TemporaryDirectory(dir=options.output) as folder:
+            staging = Path(folder) / "source"
+            stage(staging, platforms, fitting, python)
+            for path in build(staging, Path(folder), stem, platforms):
+                print(path.replace(options.output / f"{path.stem}{ending}"))
 
 
 def fetch(wheels: Sequence[Wheel]) -> None:
@@ -98,24 +115,36 @@ def fetch(wheels: Sequence[Wheel]) -> None:
         )
 
 
-def stage(staging: Path, platforms: Sequence[str], wheels: Sequence[Wheel]) -> None:
+def stage(
+    staging: Path, platforms: Sequence[str], wheels: Sequence[Wheel], python: str | None
+) -> None:
     """Copy the checkout, with a manifest that names only these platforms and wheels."""
     shutil.copytree(ROOT, staging, ignore=NOT_COPIED)
     (staging / "wheels").mkdir()
     for wheel in wheels:
         (staging / "wheels" / wheel.file).symlink_to(WHEELS / wheel.file)
     text = (ROOT / "blender_manifest.toml").read_text(encoding="utf-8")
+    text = restricted(text, platforms, wheels, python)
+    (staging / "blender_manifest.toml").write_text(text, encoding="utf-8")
+
+
+def restricted(
+    manifest: str, platforms: Sequence[str], wheels: Sequence[Wheel], python: str | None
+) -> str:
+    """Return the manifest with these platforms and wheels, for the Blenders of a Python."""
     for key, values in (
         ("platforms", list(platforms)),
         ("wheels", [f"./wheels/{wheel.file}" for wheel in wheels]),
     ):
         line = f"{key} = {json.dumps(values)}" if values else ""
-        text = re.sub(rf"^{key} = \[.*?\]$", line, text, flags=re.MULTILINE | re.DOTALL)
-    (staging / "blender_manifest.toml").write_text(text, encoding="utf-8")
+        manifest = re.sub(rf"^{key} = \[.*?\]$", line, manifest, flags=re.MULTILINE | re.DOTALL)
+    if python is None:
+        return manifest
+    return re.sub(r"^blender_version_min = .*$", BLENDERS[python], manifest, flags=re.MULTILINE)
 
 
-def build(staging: Path, output: Path, stem: str, platforms: Sequence[str]) -> None:
-    """Run Blender's own tool over the staged copy, then over each zip that it made."""
+def build(staging: Path, output: Path, stem: str, platforms: Sequence[str]) -> list[Path]:
+    """Run Blender's own tool over the staged copy, then over each zip; return the zips."""
     tool = [sys.executable, str(build_tool())]
     if platforms:
         names = [f"{stem}-{platform.replace('-', '_')}.zip" for platform in platforms]
@@ -130,8 +159,7 @@ def build(staging: Path, output: Path, stem: str, platforms: Sequence[str]) -> N
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode:
             sys.exit(f"{done.stdout}{done.stderr}")
-    for name in names:
-        print(output / name)
+    return [output / name for name in names]
 
 
 def build_tool() -> Path:

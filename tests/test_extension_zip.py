@@ -5,7 +5,7 @@ import re
 import subprocess
 import sys
 import tomllib
-from importlib.util import find_spec
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 from zipfile import ZipFile
 
@@ -16,6 +16,7 @@ SHIPPED = {
     "blender_manifest.toml",
     "__init__.py",
     "LICENSE",
+    "NOTICE.md",
     "README.md",
     "CHANGELOG.md",
     "SECURITY.md",
@@ -23,6 +24,8 @@ SHIPPED = {
     "mocap_assist",
     "operators",
 }
+TEXTS = {"", ".html", ".md", ".py", ".toml", ".typed"}
+"""Endings of files that people write; all others hold learned numbers."""
 OURS = {"solvers", "mocap_assist", "operators"}
 # What Blender brings itself, and the import names of our wheels where they differ.
 BLENDER = {
@@ -40,6 +43,14 @@ BUNDLED = BLENDER | {"bl_ui", "numpy"}
 IMPORT_NAMES = {"pillow": "PIL"}
 ON_LOOPBACK = {"receiver.py", "replay_verb.py"}
 NETWORK = {"urllib", "http", "socket", "requests", "ftplib"}
+
+
+@pytest.fixture(scope="module")
+def build_extension():
+    spec = spec_from_file_location("build_extension", ROOT / ".ci" / "build_extension.py")
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 @pytest.fixture(scope="module")
@@ -87,6 +98,42 @@ def test_zip_version_equals_the_manifest(shipped):
 
     assert inside["version"] == manifest["version"]
     assert f"mocap_assist-{manifest['version']}-" in Path(shipped.filename).name
+
+
+def test_notice_names_every_learned_file_and_library(shipped):
+    notice = shipped.read("NOTICE.md").decode()
+    rows = dict(re.findall(r"^\| `(\S+)` \| `(\S+)` \|", notice, re.MULTILINE))
+    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
+    libraries = {Path(wheel).name.split("-")[0] for wheel in manifest["wheels"]}
+
+    assert set(rows) == {name for name in shipped.namelist() if Path(name).suffix not in TEXTS}
+    assert all((ROOT / "tests" / "training" / script).is_file() for script in rows.values())
+    assert libraries == set(re.findall(r"^\| (\w+) \|", notice.lower(), re.MULTILINE)) - {
+        "file", "library",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("python", ["3.11", "3.13"])
+def test_zip_for_one_python_has_its_wheels_and_blenders(build_extension, python):
+    text = (ROOT / "blender_manifest.toml").read_text(encoding="utf-8")
+    both = tomllib.loads(text)
+    wheels = [build_extension.Wheel.from_path(wheel) for wheel in both["wheels"]]
+    chosen = [wheel for wheel in wheels if wheel.fits(python) and wheel.serves("linux-x64")]
+
+    restricted = build_extension.restricted(text, ["linux-x64"], chosen, python)
+
+    manifest = tomllib.loads(restricted)
+    tag = f"-cp{python.replace('.', '')}-"
+    assert len(manifest["wheels"]) == 4
+    assert all(tag in wheel or "-py3-" in wheel for wheel in manifest["wheels"])
+    assert all("manylinux" in wheel or "-py3-" in wheel for wheel in manifest["wheels"])
+    blenders = manifest["blender_version_min"], manifest.get("blender_version_max")
+    assert blenders == {"3.11": ("4.5.0", "5.1.0"), "3.13": ("5.1.0", None)}[python]
+    changed = ("platforms", "wheels", "blender_version_min", "blender_version_max")
+    for kept in (manifest, both):
+        for key in changed:
+            kept.pop(key, None)
+    assert manifest == both
 
 
 def test_zip_imports_only_blender_and_wheels(shipped):
