@@ -1,6 +1,7 @@
 """On a machine that lacks something, the set-up says what, and how to get it."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -139,6 +140,19 @@ def test_set_up_continues_without_python_313(machine, tmp_path):
     ready.parent.mkdir()
     ready.touch()
     assert machine.run(*fresh).stdout == "", "what is there already is not skipped"
+
+
+def test_workflow_runs_what_make_test_runs():
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    workflow = (ROOT / ".github" / "workflows" / "test.yml").read_text(encoding="utf-8")
+    parts = re.search(r"--keep-going \\\n\t +(.+)$", makefile, re.MULTILINE)[1].split()
+
+    jobs = re.search(r"target: \[(.+)\]$", workflow, re.MULTILINE)[1].split(", ")
+    run = " ".join(re.findall(r"run: make ([a-z -]+)$", workflow, re.MULTILINE)).split()
+
+    assert sorted(jobs) == sorted(parts)
+    assert run
+    assert all(f"\n{target}:" in makefile for target in [*jobs, *run])
 
 
 @pytest.fixture
