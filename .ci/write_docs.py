@@ -3,8 +3,7 @@
     make docs
 
 A table of settings stands between `<!-- settings solvers.denoising.DenoiseSettings -->` and
-`<!-- end -->`, the table of buttons between `<!-- buttons -->` and `<!-- end -->`, and what a
-package exports between `<!-- names of solvers.denoising -->` and `<!-- end -->`.
+`<!-- end -->`, the table of buttons between `<!-- buttons -->` and `<!-- end -->`.
 """
 
 import ast
@@ -23,7 +22,6 @@ DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 ENDLESS = 1e6
 SETTINGS = re.compile(r"(<!-- settings ([\w.]+)\.(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 BUTTONS = re.compile(r"(<!-- buttons -->\n).*?(<!-- end -->)", re.DOTALL)
-NAMES = re.compile(r"(<!-- names of ([\w.]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 NOT_BUTTONS = {"import_job"}
 """Operators that another operator starts: no user sees them."""
 PAGES = {
@@ -44,14 +42,16 @@ PAGES = {
     " mark_variants",
 }
 """By page of docs/manual, the buttons that it describes, in the order of the work."""
+NAMES = re.compile(r"(<!-- names of ([\w.]+) -->\n).*?(<!-- end -->)", re.DOTALL)
+"""Where the table of what a package exports stands."""
 
 
 def renewed(text: str) -> str:
     """Return the text of a document with all its tables as the code now says."""
+    text = NAMES.sub(lambda found: found[1] + names_table(found[2]) + found[3], text)
     text = SETTINGS.sub(
         lambda found: found[1] + settings_table(found[2], found[3]) + found[4], text
     )
-    text = NAMES.sub(lambda found: found[1] + names_table(found[2]) + found[3], text)
     return BUTTONS.sub(lambda found: found[1] + buttons_table() + found[2], text)
 
 
