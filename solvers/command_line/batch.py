@@ -1,9 +1,7 @@
-"""Process many files, sequentially or in parallel, and resume after a stop."""
+"""Process and record one file of many, so that a batch resumes after a stop."""
 
 import json
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -14,12 +12,10 @@ from ..errors import InvalidFileError
 from ..faults import Failure, attempt
 from ..files import is_missing
 from ..pictures import StickFigureSettings, draw_stick_figures
-from ..processes import threads_from, worker_pool
 from ..progress import Progress, Remark, collect_remarks, unwatched
 from ..recordings import is_depth_recording, read_motion_or_tracks
 from .files import read
 from .report import Entry, output_of, picture_file, picture_of, remove_picture, write_report
-from .screen import Screen
 from .sharing import Record, Records, claimed, fingerprint, hook_remark, run_hook
 from .verb import Outcome, Task, Verb
 
@@ -33,66 +29,12 @@ class FinishedTask(NamedTuple):
     failure: str = ""
     crashed: bool = False
     """Whether the process of the task crashed."""
+    is_held: bool = False
+    """Whether the claim of a lost worker of this batch keeps the task from being done yet."""
 
 
-def run_tasks(
-    verb: Verb, tasks: Sequence[Task], prepared: Any, n_jobs: int, screen: Screen
-) -> Iterator[FinishedTask]:
-    """Yield each task when it finishes; a failure does not stop the others."""
-    if n_jobs == 1 or len(tasks) <= 1:
-        for number, task in enumerate(tasks, start=1):
-            screen.title = f"[{number}/{len(tasks)}] {task.source.name}"
-            yield _attempt(verb, task, prepared, screen.progress)
-        return
-    crashed: list[Task] = []
-    for finished in _run_in_pool(verb, tasks, prepared, n_jobs):
-        if finished.crashed:
-            crashed.append(finished.task)
-        else:
-            yield finished
-    suspects: list[Task] = []
-    for finished in _run_in_pool(verb, crashed, prepared, n_jobs) if crashed else ():
-        if finished.crashed:
-            suspects.append(finished.task)
-        else:
-            yield finished
-    for task in suspects:  # A crash ends all tasks of the pool; run alone, the cause is known.
-        yield from map(record_end, _run_in_pool(verb, [task], prepared, 1))
-
-
-def _run_in_pool(
-    verb: Verb, tasks: Sequence[Task], prepared: Any, n_jobs: int
-) -> Iterator[FinishedTask]:
-    n_workers, n_threads = min(n_jobs, len(tasks)), threads_from(tasks[0].arguments)
-    with worker_pool(n_workers, n_threads) as pool:
-        pending = {_submit(pool, verb, task, prepared): task for task in tasks}
-        try:
-            for done in as_completed(pending):
-                task = pending[done]
-                try:
-                    yield done.result()
-                except BrokenProcessPool:
-                    sentence = (
-                        f"{task.subject}: its process crashed, perhaps for lack of memory."
-                        " Process a part of the take, or use fewer --jobs."
-                    )
-                    yield FinishedTask(task, None, sentence, crashed=True)
-        finally:
-            pool.shutdown(cancel_futures=True)
-
-
-def _submit(
-    pool: ProcessPoolExecutor, verb: Verb, task: Task, prepared: Any
-) -> "Future[FinishedTask]":
-    try:
-        return pool.submit(_attempt, verb, task, prepared, unwatched)
-    except BrokenProcessPool as error:  # A process crashed while other tasks were submitted.
-        failed: Future[FinishedTask] = Future()
-        failed.set_exception(error)
-        return failed
-
-
-def _attempt(verb: Verb, task: Task, prepared: Any, progress: Progress) -> FinishedTask:
+def attempt_task(verb: Verb, task: Task, progress: Progress, prepared: Any) -> FinishedTask:
+    """Do the work on a task, in whichever process, and record it; see `share`."""
     return share(task, partial(_work, verb, task, prepared, progress))
 
 
@@ -161,14 +103,22 @@ def share(task: Task, work: Callable[[], FinishedTask]) -> FinishedTask:
 
 
 def record_end(finished: FinishedTask) -> FinishedTask:
-    """Record a task that failed before or after its work, such as a crashed one."""
-    return finished if finished.outcome else share(finished.task, lambda: finished)
+    """Record a task that failed before or after its work, such as a crashed one.
+
+    While another process holds its claim, there is no record.
+    """
+    if finished.outcome is not None:
+        return finished
+    shared = share(finished.task, lambda: finished)
+    return finished if shared.is_held else shared
 
 
 def _share(task: Task, work: Callable[[], FinishedTask]) -> FinishedTask:
     assert task.target is not None
     records, output = Records(task.arguments.output_folder), output_of(task)
-    with claimed(records.claim(output)) as claim:
+    with claimed(records.claim(output), task.batch) as claim:
+        if claim.is_own_batch:
+            return FinishedTask(task, None, is_held=True)
         if claim.holder:
             text = f"taken by {claim.holder}"
             return FinishedTask(task, Outcome(f"Skipped: {text}.", {"skipped": text}))

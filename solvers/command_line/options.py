@@ -43,6 +43,14 @@ def add_sharing_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def add_cluster_option(parser: argparse._ActionsContainer) -> None:
+    """Add the option for the workers of a cluster."""
+    parser.add_argument(
+        "--cluster", metavar="ADDRESS",
+        help="Process the files on the workers of a Dask cluster, such as tcp://farm01:8786",
+    )  # fmt: skip
+
+
 def arguments_from(parser: argparse._ActionsContainer, *classes: type[Settings]) -> None:
     """Add an option for each setting: `foot_speed` becomes `--foot-speed`.
 

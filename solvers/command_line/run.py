@@ -21,11 +21,11 @@ from .batch import (
     has_called_hook,
     made_record,
     record_end,
-    run_tasks,
     task_entries,
     verb_name,
 )
-from .options import SentenceParser, add_sharing_options
+from .options import SentenceParser, add_cluster_option, add_sharing_options
+from .parallel import run_tasks, workers_for
 from .report import PAGE, has_picture, write_report
 from .screen import Screen, escape_undecodable_names, printable
 from .tasks import check_output_folder, shared_tasks, tasks_of
@@ -118,10 +118,13 @@ def _add_common_options(parser: argparse.ArgumentParser, makes: OutputKind) -> N
     if makes not in {
         OutputKind.ONE_FILE, OutputKind.MANY_FILES, OutputKind.MATCHES, OutputKind.REPORT,
     }:  # fmt: skip
-        parser.add_argument(
+        workers = parser.add_mutually_exclusive_group()
+        workers.add_argument(
             "--jobs", type=int, default=1, metavar="N",
             help="Number of files to process in parallel [default 1]",
         )  # fmt: skip
+        if has_manifest:
+            add_cluster_option(workers)
     add_threads_option(parser)
     parser.add_argument(
         "--json", action="store_true",
@@ -134,6 +137,11 @@ def _run_verb(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
     n_jobs = getattr(arguments, "jobs", 1)
     if n_jobs < 1:
         raise InvalidSettingError(f"jobs is {n_jobs}; it must be at least 1.")
+    if getattr(arguments, "cluster", None) and hasattr(arguments, "threads"):
+        raise InvalidSettingError(
+            "The workers of a cluster choose their threads: leave out --threads, and set"
+            " OMP_NUM_THREADS where they start."
+        )
     folder: Path | None = getattr(arguments, "output_folder", None)
     reporting = getattr(arguments, "report", False)
     if folder is None and reporting:
@@ -142,7 +150,7 @@ def _run_verb(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
     tasks = every if folder is None else shared_tasks(every, arguments)
     has_failures = False
     try:
-        for finished in _run_tasks(verb, tasks, n_jobs, screen):
+        for finished in _run_tasks(verb, tasks, screen):
             has_failures |= _report(finished, len(tasks) > 1, screen)
             has_failures |= finished.outcome is None
             if folder is not None:
@@ -156,9 +164,7 @@ def _run_verb(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
     return FAILED if has_failures else 0
 
 
-def _run_tasks(
-    verb: Verb, tasks: Sequence[Task], n_jobs: int, screen: Screen
-) -> Iterator[FinishedTask]:
+def _run_tasks(verb: Verb, tasks: Sequence[Task], screen: Screen) -> Iterator[FinishedTask]:
     """Yield existing results, then each task when it finishes."""
     remaining = []
     for task in tasks:
@@ -175,12 +181,15 @@ def _run_tasks(
             yield record_end(FinishedTask(task, None, task.refusal))
         else:
             remaining.append(task)
-    prepared = verb.prepare(tasks[0].arguments, screen.progress) if remaining else None
-    for finished in run_tasks(verb, remaining, prepared, n_jobs, screen):
-        screen.clear()
-        if finished.outcome is None and not is_missing(_folder(finished.task) or "."):
-            screen.write_line(finished.failure)
-        yield finished
+    if not remaining:
+        return
+    with workers_for(remaining) as workers:
+        prepared = verb.prepare(tasks[0].arguments, screen.progress)
+        for finished in run_tasks(verb, remaining, prepared, workers, screen):
+            screen.clear()
+            if finished.outcome is None and not is_missing(_folder(finished.task) or "."):
+                screen.write_line(finished.failure)
+            yield finished
 
 
 def _folder(task: Task) -> Path | None:

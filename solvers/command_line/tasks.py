@@ -29,7 +29,7 @@ from .verb import OutputKind, Task, Verb
 
 MAX_NAME_LETTERS = 40
 """Letters of the name of a body in the name of a file."""
-SHARING = ("manifest", "shard", "after")
+SHARING = ("manifest", "shard", "after", "cluster")
 """Options for batches."""
 
 

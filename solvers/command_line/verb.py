@@ -39,6 +39,8 @@ class Task(NamedTuple):
     """Path of the input below the named folder; it decides the shard."""
     replaced: str = ""
     """Identifier of the record that `--again` replaces."""
+    batch: str = ""
+    """Identifier that all workers of a cluster know, see `Workers`."""
 
     @property
     def source(self) -> Path:

@@ -1,6 +1,6 @@
 """Share a batch among machines: records, claims, shards, manifests and hooks."""
 
-from .claims import claimed
+from .claims import RENEWAL_INTERVAL_S, claimed
 from .fingerprints import fingerprint
 from .hooks import hook_remark, parse_hook, run_hook
 from .manifest import Listed, read_manifest
@@ -8,6 +8,7 @@ from .records import Record, Records
 from .shards import Shard, parse_shard
 
 __all__ = [
+    "RENEWAL_INTERVAL_S",
     "Listed",
     "Record",
     "Records",

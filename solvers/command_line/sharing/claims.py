@@ -33,10 +33,13 @@ class Claim(NamedTuple):
     """Host of the other process; empty if this process holds the claim."""
     taken_over: bool = False
     """Whether an abandoned claim was taken over: its holder may have left temporary files."""
+    is_own_batch: bool = False
+    """Whether the other process has worked for the same batch: it was lost, as the batch gives
+    each output to one process."""
 
 
 @contextmanager
-def claimed(path: Path) -> Iterator[Claim]:
+def claimed(path: Path, batch: str = "") -> Iterator[Claim]:
     """Claim an output, and release it at the end.
 
     Parameters
@@ -44,15 +47,18 @@ def claimed(path: Path) -> Iterator[Claim]:
     path : Path
         The claim's file, without its number: an abandoned claim stays until the next one with a
         higher number is released, so that no two processes can take it over.
+    batch : str
+        Identifier of the batch of a cluster; empty for all others.
 
     Raises
     ------
     OSError
         The folder of the claim has vanished, or may not be written to.
     """
-    files, holder = _claim(path)
-    if holder:
-        yield Claim(holder)
+    files, holder = _claim(path, batch)
+    if holder is not None:
+        is_own_batch = bool(batch) and holder.get("batch") == batch
+        yield Claim(str(holder.get("host", UNKNOWN_HOST)), is_own_batch=is_own_batch)
         return
     ended = Event()
     renewal = Thread(target=_renew, args=(files[-1], ended), daemon=True, name="renew claim")
@@ -67,14 +73,14 @@ def claimed(path: Path) -> Iterator[Claim]:
                 file.unlink()
 
 
-def _claim(path: Path) -> tuple[list[Path], str]:
-    """Return the files of a new claim, the own one last, or the host that has claimed it."""
+def _claim(path: Path, batch: str) -> tuple[list[Path], dict[str, Any] | None]:
+    """Return the files of a new claim, the own one last, or the content of another one."""
     abandoned: list[Path] = []
     while True:
         file = path.with_name(f"{path.name}.{len(abandoned) + 1}.claim")
-        if _created(file):
+        if _created(file, batch):
             if not abandoned or _content(abandoned[-1]) is not None:
-                return [*abandoned, file], ""
+                return [*abandoned, file], None
             file.unlink()  # The output was released meanwhile, with all numbers.
             abandoned = []
             continue
@@ -84,12 +90,13 @@ def _claim(path: Path) -> tuple[list[Path], str]:
         elif _is_abandoned(file, holder):
             abandoned.append(file)
         else:
-            return [], str(holder.get("host", UNKNOWN_HOST))
+            return [], holder
 
 
-def _created(file: Path) -> bool:
+def _created(file: Path, batch: str) -> bool:
     """Create a claim unless it exists; where the disk has links, at once with its content."""
-    own = json.dumps({"host": host_name(), "machine": this_machine(), "pid": os.getpid()})
+    holder = {"host": host_name(), "machine": this_machine(), "pid": os.getpid()}
+    own = json.dumps(holder | ({"batch": batch} if batch else {}))
     part = file.with_name(f".{token_hex(8)}.claim.part")
     try:
         part.write_text(own, encoding="utf-8")

@@ -7,8 +7,8 @@ from typing import Any
 from ...version import version
 
 IRRELEVANT_OPTIONS = {
-    "after", "again", "files", "jobs", "json", "manifest", "output_folder", "report", "shard",
-    "work",
+    "after", "again", "cluster", "files", "jobs", "json", "manifest", "output_folder", "report",
+    "shard", "work",
 }  # fmt: skip
 """Options that do not change the result."""
 STAMP_LENGTH = 3

@@ -1,0 +1,178 @@
+"""Run the tasks of a batch on the workers of a Dask cluster.
+
+This is the only module that knows Dask, which is optional and imported when a cluster is named.
+"""
+
+import logging
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from secrets import token_hex
+from typing import TYPE_CHECKING, Any
+
+from ...errors import InvalidSettingError, MocapAssistError
+from ...files import is_missing
+from ...processes import host_name
+from ...version import version
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+CONNECTION_TIMEOUT_S = 5.0
+"""Seconds to wait for a scheduler. It bounds the wait for one that does not run."""
+PROJECT = __package__.split(".", maxsplit=1)[0]
+"""Name by which a worker imports this code."""
+
+
+class Cluster:
+    """The workers of a cluster."""
+
+    max_crashes = 2
+    """Dask runs a task on further workers itself: each crash here is the end of several."""
+    advice = "Process a part of the take, or start workers with more memory."
+
+    def __init__(self, client: "Client", address: str) -> None:
+        self.batch = token_hex(8)
+        self._client, self._address = client, address
+
+    @contextmanager
+    def open(self, n_tasks: int) -> Iterator[Executor]:
+        """Yield an executor on all workers, also those that join later."""
+        yield ClusterExecutor(self._client, self._address)
+
+    def share(self, value: Any) -> Any:
+        """Return a value that each worker receives once, also one that joins later."""
+        from dask import config
+
+        # A function whose result is the value: Dask calls it again when its holders have ended.
+        with config.set({"distributed.admin.large-graph-warning-threshold": "1TB"}):
+            return self._client.submit(partial(_identity, value), pure=False)
+
+
+class ClusterExecutor(Executor):
+    """An executor on the workers of a cluster."""
+
+    def __init__(self, client: "Client", address: str) -> None:
+        self._client, self._address = client, address
+        self._pending: set[Any] = set()
+
+    def submit(
+        self, function: Callable[..., Any], /, *args: Any, **kwargs: Any
+    ) -> "Future[Any]":
+        """Submit a call; arguments from `Cluster.share` arrive as their values."""
+        future: Future[Any] = Future()
+        call = partial(_call_if_same_version, version(), function)
+        remote = self._client.submit(call, *args, **kwargs, pure=False)
+        self._pending.add(remote)
+        remote.add_done_callback(partial(self._finish, future))
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Cancel what has not started, if requested."""
+        if cancel_futures and self._pending:
+            self._client.cancel([*self._pending])
+
+    def _finish(self, future: "Future[Any]", remote: Any) -> None:
+        """Pass on the end of a call; errors of Dask become those of an executor."""
+        from distributed import KilledWorker
+
+        self._pending.discard(remote)
+        try:
+            result = None if remote.cancelled() else remote.result()
+        except KilledWorker as error:
+            future.set_exception(BrokenExecutor(str(error)))
+        except ImportError:
+            future.set_exception(InvalidSettingError(_has_no_package("A worker")))
+        except Exception as error:
+            future.set_exception(error)
+        else:
+            if remote.cancelled():
+                future.set_exception(MocapAssistError(_is_gone(self._address)))
+            else:
+                future.set_result(result)
+
+
+@contextmanager
+def cluster_workers(address: str, folder: Path) -> Iterator[Cluster]:
+    """Connect to the scheduler of a cluster and check its workers.
+
+    Parameters
+    ----------
+    address : str
+        Address of the scheduler, such as tcp://farm01:8786.
+    folder : Path
+        The output folder, which all workers must have.
+
+    Raises
+    ------
+    InvalidSettingError
+        Dask is missing, the scheduler cannot be reached, or a worker has no or another version
+        of Mocap Assist, or does not see the folder.
+    """
+    try:
+        from distributed import Client
+    except ImportError:
+        raise InvalidSettingError(
+            "--cluster needs the Python package distributed, which is not installed here."
+            " Install it: python -m pip install distributed."
+        ) from None
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # One sentence is enough.
+    try:
+        client = Client(address, timeout=CONNECTION_TIMEOUT_S, set_as_default=False)
+    except (OSError, ValueError):
+        raise InvalidSettingError(
+            f"There is no scheduler at {address}, or it cannot be reached. Start one with dask"
+            " scheduler, or correct the address."
+        ) from None
+    with client:
+        _check_workers(client, folder)
+        yield Cluster(client, address)
+
+
+def _check_workers(client: "Client", folder: Path) -> None:
+    answers = client.run(_check_worker, version(), folder, on_error="return")
+    for worker, answer in sorted(answers.items()):
+        if isinstance(answer, ImportError):
+            raise InvalidSettingError(_has_no_package(f"The worker {worker}"))
+        if isinstance(answer, Exception):
+            raise answer
+
+
+def _check_worker(expected: str, folder: Path) -> None:
+    """Check a worker, in its process."""
+    _check_version(expected)
+    if is_missing(folder):
+        raise InvalidSettingError(
+            f"A worker on {host_name()} does not see the output folder {folder}. Mount it there"
+            " at the same path."
+        )
+
+
+def _check_version(expected: str) -> None:
+    if version() != expected:
+        raise InvalidSettingError(
+            f"A worker on {host_name()} has Mocap Assist {version()}, and this process"
+            f" {expected}. Install the same version on both."
+        )
+
+
+def _call_if_same_version(expected: str, function: Callable[..., Any], *args: Any) -> Any:
+    _check_version(expected)
+    return function(*args)
+
+
+def _identity(value: Any) -> Any:
+    return value
+
+
+def _has_no_package(worker: str) -> str:
+    return (
+        f"{worker} cannot import Mocap Assist (the package {PROJECT}). Install the same version"
+        " there as here."
+    )
+
+
+def _is_gone(address: str) -> str:
+    return f"The scheduler {address} is gone; the batch stops. Run it again to continue."

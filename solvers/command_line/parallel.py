@@ -1,0 +1,126 @@
+"""Run the tasks of a batch one after another, in several processes, or on a cluster."""
+
+import argparse
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future, as_completed
+from contextlib import AbstractContextManager, nullcontext
+from functools import partial
+from pathlib import Path
+from time import sleep
+from typing import Any
+
+from ..processes import threads_from
+from ..progress import unwatched
+from .batch import FinishedTask, attempt_task, record_end
+from .farm import LocalWorkers, Workers, cluster_workers
+from .screen import Screen
+from .sharing import RENEWAL_INTERVAL_S
+from .verb import Task, Verb
+
+
+def workers_for(tasks: Sequence[Task]) -> AbstractContextManager[Workers | None]:
+    """Return the workers that the command line requests; None for this process.
+
+    Raises
+    ------
+    InvalidSettingError
+        The workers of a cluster cannot be used.
+    """
+    arguments = tasks[0].arguments
+    cluster: str | None = getattr(arguments, "cluster", None)
+    if cluster is not None:
+        return cluster_workers(cluster, arguments.output_folder.absolute())
+    n_jobs: int = getattr(arguments, "jobs", 1)
+    if n_jobs == 1 or len(tasks) == 1:
+        return nullcontext()
+    return nullcontext(LocalWorkers(n_jobs, threads_from(arguments)))
+
+
+def run_tasks(
+    verb: Verb, tasks: Sequence[Task], prepared: Any, workers: Workers | None, screen: Screen
+) -> Iterator[FinishedTask]:
+    """Yield each task when it finishes; a failure does not stop the others."""
+    if workers is None:
+        for number, task in enumerate(tasks, start=1):
+            screen.title = f"[{number}/{len(tasks)}] {task.source.name}"
+            yield attempt_task(verb, task, screen.progress, prepared)
+        return
+    shared = workers.share(prepared)
+    crashes: Counter[tuple[Any, ...]] = Counter()
+    remaining = [*tasks]
+    while remaining:
+        again: list[Task] = []
+        n_held = 0
+        for group in _groups(remaining, crashes, workers.max_crashes):
+            for finished in _run_group(verb, group, shared, workers):
+                key = finished.task.key
+                crashes[key] += finished.crashed
+                n_held += finished.is_held
+                has_failed = crashes[key] == workers.max_crashes
+                if finished.is_held or (finished.crashed and not has_failed):
+                    again.append(finished.task)
+                else:
+                    yield record_end(finished) if finished.crashed else finished
+        if n_held:
+            sleep(RENEWAL_INTERVAL_S)
+        remaining = again
+
+
+def _groups(
+    tasks: Sequence[Task], crashes: Counter[tuple[Any, ...]], max_crashes: int
+) -> list[list[Task]]:
+    """Return the tasks that run together, and those that run alone for the last time."""
+    alone = [task for task in tasks if crashes[task.key] == max_crashes - 1]
+    together = [task for task in tasks if task not in alone]
+    return [*([together] if together else []), *([task] for task in alone)]
+
+
+def _run_group(
+    verb: Verb, tasks: Sequence[Task], shared: Any, workers: Workers
+) -> Iterator[FinishedTask]:
+    with workers.open(len(tasks)) as executor:
+        pending = {}
+        for task in tasks:
+            sent = _for_other_machines(task, workers.batch) if workers.batch else task
+            pending[_submit(executor, verb, sent, shared)] = task
+        try:
+            for done in as_completed(pending):
+                task = pending[done]
+                try:
+                    yield done.result()._replace(task=task)
+                except BrokenExecutor:
+                    sentence = (
+                        f"{task.subject}: its process crashed, perhaps for lack of memory."
+                        f" {workers.advice}"
+                    )
+                    yield FinishedTask(task, None, sentence, crashed=True)
+        finally:
+            executor.shutdown(cancel_futures=True)
+
+
+def _submit(executor: Executor, verb: Verb, task: Task, shared: Any) -> "Future[FinishedTask]":
+    try:
+        return executor.submit(partial(attempt_task, verb, task, unwatched), shared)
+    except BrokenExecutor as error:  # A process crashed while other tasks were submitted.
+        failed: Future[FinishedTask] = Future()
+        failed.set_exception(error)
+        return failed
+
+
+def _for_other_machines(task: Task, batch: str) -> Task:
+    """Return a task with absolute paths: workers have other working folders."""
+    arguments = {name: _absolute(value) for name, value in vars(task.arguments).items()}
+    return task._replace(
+        sources=tuple(map(_absolute, task.sources)),
+        target=_absolute(task.target),
+        arguments=argparse.Namespace(**arguments),
+        batch=batch,
+    )
+
+
+def _absolute(value: Any) -> Any:
+    """Return a path, or a list of them, as absolute; anything else as it is."""
+    if isinstance(value, list):
+        return [_absolute(each) for each in value]
+    return value.absolute() if isinstance(value, Path) else value
