@@ -3,6 +3,7 @@
 This is the only module that knows Dask, which is optional and imported when a cluster is named.
 """
 
+import asyncio
 import logging
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
@@ -120,6 +121,7 @@ def cluster_workers(address: str, folder: Path) -> Iterator[Cluster]:
         ) from None
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # One sentence is enough.
     try:
+        asyncio.run(_try_connection(address))
         client = Client(address, timeout=CONNECTION_TIMEOUT_S, set_as_default=False)
     except (OSError, ValueError):
         raise InvalidSettingError(
@@ -129,6 +131,15 @@ def cluster_workers(address: str, folder: Path) -> Iterator[Cluster]:
     with client:
         _check_workers(client, folder)
         yield Cluster(client, address)
+
+
+async def _try_connection(address: str) -> None:
+    """Raise an OSError or ValueError at once where a client would wait for ever."""
+    from distributed.comm import connect
+
+    async with asyncio.timeout(CONNECTION_TIMEOUT_S):
+        connection = await connect(address, timeout=CONNECTION_TIMEOUT_S)
+    await connection.close()
 
 
 def _check_workers(client: "Client", folder: Path) -> None:

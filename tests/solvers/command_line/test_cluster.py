@@ -1,0 +1,205 @@
+"""A batch on the workers of a Dask cluster: none of it is lost, and no take is made twice."""
+
+import json
+import os
+import sys
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, nullcontext
+from importlib.util import find_spec
+
+import pytest
+from dask_cluster import DEADLY_VERBS, local_cluster
+
+from solvers.command_line import parallel
+from solvers.command_line.farm import cluster as cluster_module
+from solvers.command_line.farm import cluster_workers
+from solvers.command_line.run import run
+from solvers.command_line.sharing import Records
+from solvers.errors import InvalidSettingError
+
+NEEDS_DASK = pytest.mark.skipif(
+    find_spec("distributed") is None, reason="needs the package distributed"
+)
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """The address of a cluster of two worker processes."""
+    with local_cluster(2) as address:
+        yield address
+
+
+@pytest.fixture
+def deadly(capsys):
+    """Run the verb that ends workers; returns exit status, stdout, stderr."""
+
+    def command(*words) -> tuple[int, str, str]:
+        status = run(DEADLY_VERBS, ["deadly", *map(str, words)], "solvers")
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return command
+
+
+@NEEDS_DASK
+def test_killed_workers_lose_no_take_and_none_is_made_twice(
+    deadly, cluster, small_batch, tmp_path, records_in, monkeypatch
+):
+    (small_batch / "take03.bvh").rename(small_batch / "kills_once.bvh")
+    (small_batch / "take07.bvh").rename(small_batch / "kills.bvh")
+    names = {path.name for path in small_batch.iterdir()}
+    monkeypatch.chdir(tmp_path)  # Workers have another working folder.
+
+    status, printed, err = deadly("takes", "--output-folder", "out", "--cluster", cluster)
+
+    assert (status, printed.count("learned\n")) == (2, len(names) - 1)
+    assert err == (
+        "takes/kills.bvh: its process crashed, perhaps for lack of memory. Process a part of"
+        " the take, or start workers with more memory.\n"
+    )
+    made = Counter((tmp_path / "made").read_text().split())
+    assert made == {name.removesuffix(".bvh"): 1 for name in names - {"kills.bvh"}}
+    records = records_in(tmp_path / "out")
+    assert {name for name, each in records.items() if each["error"]} == {"kills.bvh"}
+    assert set(records) == names
+    assert not list((tmp_path / "out").rglob("*.claim"))
+
+
+@NEEDS_DASK
+def test_scheduler_that_ends_is_one_sentence(deadly, small_batch, tmp_path):
+    (small_batch / "take23.bvh").rename(small_batch / "ends.bvh")
+    words = [small_batch, "--output-folder", tmp_path / "out"]
+
+    with local_cluster(1) as address:
+        status, _, err = deadly(*words, "--cluster", address)
+
+    assert (status, err) == (
+        2, f"The scheduler {address} is gone; the batch stops. Run it again to continue.\n",
+    )  # fmt: skip
+
+
+@NEEDS_DASK
+def test_workers_of_another_version_are_refused(cluster, tmp_path, monkeypatch):
+    monkeypatch.setattr(cluster_module, "version", lambda: "99.0.0")
+    message = "A worker on .* has Mocap Assist .*, and this process 99.0.0. Install"
+
+    with (
+        pytest.raises(InvalidSettingError, match=message),
+        cluster_workers(cluster, tmp_path),
+    ):
+        pytest.fail("connected")
+
+
+@NEEDS_DASK
+def test_worker_of_another_version_that_joins_later_gets_no_task(
+    cluster, tmp_path, monkeypatch
+):
+    with cluster_workers(cluster, tmp_path) as workers, workers.open(1) as executor:
+        assert executor.submit(len, workers.share((1, 2))).result() == 2
+        monkeypatch.setattr(cluster_module, "version", lambda: "99.0.0")
+
+        with pytest.raises(InvalidSettingError, match=r"and this process 99\.0\.0"):
+            executor.submit(len, ()).result()
+
+
+@NEEDS_DASK
+def test_worker_without_the_output_folder_is_refused(cluster, tmp_path):
+    with (
+        pytest.raises(InvalidSettingError, match=r"does not see the output folder .*gone"),
+        cluster_workers(cluster, tmp_path / "gone"),
+    ):
+        pytest.fail("connected")
+
+
+def test_worker_without_the_package_is_refused(tmp_path):
+    class Client:
+        def run(self, *arguments, on_error):
+            return {"tcp://farm02:1": None, "tcp://farm03:1": ImportError()}
+
+    with pytest.raises(InvalidSettingError, match="The worker tcp://farm03:1 cannot import"):
+        cluster_module._check_workers(Client(), tmp_path)
+
+
+@NEEDS_DASK
+def test_scheduler_that_cannot_be_reached_is_one_sentence(
+    call, leg_file, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(cluster_module, "CONNECTION_TIMEOUT_S", 0.2)
+    words = ["convert", leg_file, "--output-folder", tmp_path / "out", "--cluster"]
+
+    for address in ("tcp://127.0.0.1:9", "farm"):
+        status, _, err = call(*words, address)
+
+        assert (status, err) == (
+            2,
+            f"There is no scheduler at {address}, or it cannot be reached. Start one with dask"
+            " scheduler, or correct the address.\n",
+        )
+
+
+def test_missing_dask_is_one_sentence(call, leg_file, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+
+    status, _, err = call(
+        "convert", leg_file, "--output-folder", tmp_path / "out", "--cluster", "tcp://farm:1"
+    )
+
+    assert (status, err) == (
+        2,
+        "--cluster needs the Python package distributed, which is not installed here. Install"
+        " it: python -m pip install distributed.\n",
+    )
+
+
+def test_threads_of_a_cluster_are_refused(call, leg_file, tmp_path):
+    words = ["convert", leg_file, "--output-folder", tmp_path / "out", "--cluster", "tcp://x:1"]
+
+    status, _, err = call(*words, "--threads", "2")
+
+    assert (status, err.count("\n")) == (2, 1)
+    assert err.startswith("The workers of a cluster choose their threads")
+
+
+class OneThread:
+    """Workers in this process, which act as those of other machines."""
+
+    batch, max_crashes, advice = "batch", 1, ""
+
+    @contextmanager
+    def open(self, n_tasks):
+        with ThreadPoolExecutor(1) as executor:
+            yield executor
+
+    def share(self, value):
+        return value
+
+
+@pytest.mark.parametrize("batch", ["batch", "another"])
+def test_take_of_a_lost_worker_waits_for_its_claim(
+    call, leg_file, tmp_path, monkeypatch, batch
+):
+    """A worker on another machine was killed; its claim ends after five minutes."""
+    out = tmp_path / "out"
+    Records(out).prepare()
+    claim = Records(out).claim("leg.bvh")
+    claim = claim.with_name(f"{claim.name}.1.claim")
+    claim.write_text(json.dumps({"host": "farm", "machine": "farm", "pid": 1, "batch": batch}))
+    waited = []
+
+    def age(seconds):
+        waited.append(seconds)
+        now = claim.stat().st_mtime
+        os.utime(claim, (now - 200.0, now - 200.0))
+
+    monkeypatch.setattr(parallel, "sleep", age)
+    monkeypatch.setattr(parallel, "workers_for", lambda tasks: nullcontext(OneThread()))
+    monkeypatch.setattr("solvers.command_line.run.workers_for", parallel.workers_for)
+
+    status, printed, _ = call("convert", leg_file, "--output-folder", out)
+
+    assert status == 0
+    if batch == "batch":
+        assert ("120 frames" in printed, len(waited)) == (True, 2)
+    else:
+        assert (printed, waited) == ("Skipped: taken by farm.\n", [])
