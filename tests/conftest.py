@@ -24,6 +24,7 @@ ON_ONE_PYTHON = {
     "command_line/test_capture_verb.py": (3, 11),
     "command_line/test_cluster.py": (3, 11),
     "command_line/test_command_line.py": (3, 11),
+    "command_line/test_farm_jobs.py": (3, 11),
     "command_line/test_library_verbs.py": (3, 11),
     "command_line/test_many_machines.py": (3, 11),
     "command_line/test_reconstruct_verb.py": (3, 11),
