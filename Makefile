@@ -124,7 +124,7 @@ failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the 
 	$(PYTHON_4.5) -m tests.training.learn_failures
 
 BENCHMARKS := denoise first-press contacts markers bvh press scene import import-corpus roles video \
-  reliability reconstruct postures retrieval retarget variation depth physics gestures retarget-rig
+  reliability reconstruct postures retrieval retarget variation depth physics gestures retarget-rig farm
 .PHONY: benchmarks $(BENCHMARKS:%=bench-%)
 benchmarks: .venv-4.5/ready  ## run every benchmark, one after another (hours); prints how each ended
 	@mkdir -p build/benchmarks; failed=0; for name in $(BENCHMARKS); do \
@@ -197,6 +197,9 @@ bench-gestures: .venv-4.5/ready  ## measure detected, missed and false gestures
 
 bench-retarget-rig: .venv-4.5/ready  ## measure Retarget in Blender against baking controls
 	$(PYTHON_4.5) -m tests.benchmarks.retarget.bench_retarget_rig $(ARGUMENTS)
+
+bench-farm: .venv-4.5/ready  ## measure batches on a Dask cluster against processes of this machine
+	PYTHONPATH=.:tests/fixtures $(PYTHON_4.5) -m tests.benchmarks.farm.bench_farm $(ARGUMENTS)
 
 sensitivity: .venv-4.5/ready  ## halve and double each tuned constant; ARGUMENTS="--family feet"
 	nice $(PYTHON_4.5) -m tests.benchmarks.sensitivity.run_sensitivity $(ARGUMENTS)

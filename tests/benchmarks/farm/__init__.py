@@ -1,0 +1,1 @@
+"""Measure batches on a cluster."""
