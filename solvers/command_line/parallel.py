@@ -63,6 +63,7 @@ def run_tasks(
                 else:
                     yield record_end(finished) if finished.crashed else finished
         if n_held:
+            screen.note(f"Waiting for takes that lost workers have claimed: {n_held}.")
             sleep(RENEWAL_INTERVAL_S)
         remaining = again
 

@@ -70,11 +70,10 @@ def _kill(folder: Path, n_takes: int) -> str:
     takes, out, notes = _write_takes(folder, n_takes), folder / "killed", folder / "notes"
     hook = f'{sys.executable} -c "{NOTING}" {notes} {{output}}'
     with local_cluster(2) as address:
-        with subprocess.Popen(
-            _command(takes, out, "--cluster", address, "--after", hook)
-        ) as run:
-            _kill_a_holder(out)
-            run.wait()
+        command = _command(takes, out, "--cluster", address, "--after", hook)
+        run = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+        _kill_a_holder(out)
+        run.wait()
     made = Counter(Path(line).name for line in notes.read_text().splitlines())
     records = [json.loads(path.read_text()) for path in out.glob(".mocap_assist/*.json")]
     rows = {
