@@ -27,7 +27,7 @@ class Workers(Protocol):
         """Return what a task receives in place of a value that all tasks use."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class LocalWorkers:
     """Processes of this machine."""
 
