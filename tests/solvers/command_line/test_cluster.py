@@ -80,6 +80,23 @@ def test_scheduler_that_ends_is_one_sentence(deadly, small_batch, tmp_path):
 
 
 @NEEDS_DASK
+def test_output_folder_that_vanishes_is_one_sentence(
+    call, cluster, small_batch, tmp_path, records_in
+):
+    out, aside = tmp_path / "out", tmp_path / "aside"
+    hook = f"{sys.executable} -c 'import os, sys; os.rename(*sys.argv[1:])' {out} {aside}"
+    words = ["convert", small_batch, "--output-folder", out, "--cluster", cluster]
+
+    status, _, err = call(*words, "--report", "--after", hook)
+
+    assert (status, out.exists()) == (2, False)
+    assert err == (
+        f"The output folder {out} is gone; the batch stops. Run it again to continue.\n"
+    )
+    assert records_in(aside)
+
+
+@NEEDS_DASK
 def test_workers_of_another_version_are_refused(cluster, tmp_path, monkeypatch):
     monkeypatch.setattr(cluster_module, "version", lambda: "99.0.0")
     message = "A worker on .* has Mocap Assist .*, and this process 99.0.0. Install"
