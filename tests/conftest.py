@@ -19,12 +19,11 @@ settings.register_profile("steady", deadline=None, derandomize=True, database=No
 settings.load_profile("steady")
 
 ON_ONE_PYTHON = {
+    "command_line/farm": (3, 11),
     "command_line/test_bad_files.py": (3, 13),
     "command_line/test_batch.py": (3, 13),
     "command_line/test_capture_verb.py": (3, 11),
-    "command_line/test_cluster.py": (3, 11),
     "command_line/test_command_line.py": (3, 11),
-    "command_line/test_farm_jobs.py": (3, 11),
     "command_line/test_library_verbs.py": (3, 11),
     "command_line/test_many_machines.py": (3, 11),
     "command_line/test_reconstruct_verb.py": (3, 11),

@@ -8,8 +8,7 @@ from typing import Any
 
 import bpy
 
-from ...solvers.command_line.convert import convert
-from ...solvers.command_line.files import MOTIONS, POINTS_BY_DEFAULT, check_target
+from ...solvers.command_line.files import MOTIONS, POINTS_BY_DEFAULT, check_target, convert
 from ...solvers.errors import InvalidSettingError
 from ...solvers.progress import Progress
 from ..actions.armature_read import read_take

@@ -3,6 +3,7 @@
 import argparse
 import os
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 from ..errors import InvalidFileError
@@ -22,7 +23,9 @@ from ..recordings import (
     write_trc,
 )
 from ..recordings.containers import is_folder, shown
+from ..recordings.conventions import conventions_of
 from .options import arguments_from, settings_from_arguments
+from .verb import Outcome
 
 MOTIONS = ".bvh"
 POINTS = {".c3d": write_c3d, ".trc": write_trc}
@@ -241,3 +244,22 @@ def output_extension(source: Path) -> str:
     if format_found is None or isinstance(format_found, Failure):  # The reader reports why.
         return MOTIONS
     return MOTIONS if format_found.has_skeleton else POINTS_BY_DEFAULT
+
+
+def convert(recording: Motion | Tracks, target: Path | None, progress: Progress) -> Outcome:
+    """Write a recording in the format of the target's extension; return its outcome."""
+    write(recording, target, progress)
+    names = recording.skeleton.names if isinstance(recording, Motion) else recording.names
+    kind = "joints" if isinstance(recording, Motion) else "points"
+    conventions = conventions_of(recording)
+    figures = {
+        "n_frames": recording.n_frames,
+        "frame_rate_hz": recording.frame_rate,
+        kind: list(names),
+        "conventions": asdict(conventions),
+    }
+    text = (
+        f"{recording.n_frames} frames at {recording.frame_rate:g} Hz, {len(names)} {kind};"
+        f" {conventions.sentence()}."
+    )
+    return Outcome(text, figures)

@@ -13,9 +13,8 @@ from ..progress import Progress, within
 from ..recordings import FloorPlacementSettings, depth_takes_in
 from .batch import report_folder
 from .capture_verb import add_capture_options, perform_capture, read_body
-from .convert import convert
 from .denoise_verb import add_denoise_options, learn_prior, perform_denoise
-from .files import add_reading_options, read, read_all
+from .files import add_reading_options, convert, read, read_all
 from .fix_verb import add_fix_options, perform_fix
 from .library_verbs import add_find_options, add_index_options, perform_find, perform_index
 from .options import arguments_from, settings_from_arguments

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 JOBS = ROOT / "docs" / "technical" / "farm"
 COMMAND = f"env PYTHONPATH={ROOT} {sys.executable} -m solvers"
 OPENJD = [sys.executable, "-m", "openjd"]
