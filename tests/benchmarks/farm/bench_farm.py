@@ -19,7 +19,7 @@ from collections import Counter
 from pathlib import Path
 from time import perf_counter, sleep
 
-from dask_cluster import local_cluster
+from clusters.dask_cluster import local_cluster
 
 from solvers.recordings import write_bvh
 from solvers.samples import GaitSettings, walking_gait

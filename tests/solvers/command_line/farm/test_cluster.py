@@ -9,7 +9,7 @@ from contextlib import contextmanager, nullcontext
 from importlib.util import find_spec
 
 import pytest
-from dask_cluster import DEADLY_VERBS, local_cluster
+from clusters.dask_cluster import DEADLY_VERBS, local_cluster
 
 from solvers.command_line import parallel
 from solvers.command_line.farm import cluster as cluster_module

@@ -1,0 +1,93 @@
+"""The job type for Flamenco makes tasks that run a batch in parts."""
+
+import json
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[4]
+JOB_TYPE = ROOT / "docs" / "technical" / "farm" / "flamenco.js"
+MANAGER = """
+const vm = require("vm"), fs = require("fs");
+const [file, settings] = process.argv.slice(1), tasks = [];
+const globals = {
+  print() {},
+  shellSplit: text => JSON.parse(settings).words[text],
+  author: {
+    Task(name, type) {
+      const commands = [];
+      return {name, type, commands, addCommand: one => commands.push(one)};
+    },
+    Command: (name, parameters) => ({name, parameters}),
+  },
+};
+vm.createContext(globals);
+vm.runInContext(fs.readFileSync(file, "utf8") + "; this.JOB_TYPE = JOB_TYPE;", globals);
+try {
+  globals.compileJob({settings: JSON.parse(settings), addTask: one => tasks.push(one)});
+} catch (error) {
+  tasks.push(String(error));
+}
+console.log(JSON.stringify({settings: globals.JOB_TYPE.settings, tasks}));
+"""
+"""The documented names that a Flamenco Manager gives to a job type."""
+
+pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="needs node")
+
+
+@pytest.fixture
+def compiled():
+    """Compile a job with these settings; returns the settings' definitions and the tasks."""
+
+    def compile_job(**settings):
+        words = {text: shlex.split(text) for text in (settings["command"], settings["options"])}
+        given = json.dumps(settings | {"words": words})
+        done = subprocess.run(
+            ["node", "-e", MANAGER, str(JOB_TYPE), given],
+            capture_output=True, text=True, check=True, timeout=60,
+        )  # fmt: skip
+        return json.loads(done.stdout)
+
+    return compile_job
+
+
+def test_tasks_run_all_parts(compiled, small_batch, tmp_path, records_in):
+    manifest, out = small_batch / "takes.txt", tmp_path / "out"
+    manifest.write_text("take00.bvh\ntake01.bvh\ntake02.bvh\n")
+    job = compiled(
+        verb="convert", manifest=str(manifest), output_folder=str(out), shards=2,
+        options="--scale 0.5", command=f"{sys.executable} -m solvers",
+    )  # fmt: skip
+
+    for task in job["tasks"]:
+        (command,) = task["commands"]
+        words = [command["parameters"]["exe"], *command["parameters"]["args"]]
+        subprocess.run(words, cwd=ROOT, check=True, capture_output=True, timeout=120)
+
+    assert [(task["name"], task["type"]) for task in job["tasks"]] == [
+        ("part 1/2", "misc"), ("part 2/2", "misc"),
+    ]  # fmt: skip
+    assert words == [
+        sys.executable, "-m", "solvers", "convert", "--manifest", str(manifest),
+        "--output-folder", str(out), "--shard", "2/2", "--report", "--scale", "0.5",
+    ]  # fmt: skip
+    assert set(records_in(out)) == {"take00.bvh", "take01.bvh", "take02.bvh"}
+
+
+def test_settings_are_complete_and_checked(compiled):
+    given = {
+        "verb": "fix",
+        "manifest": "m",
+        "output_folder": "o",
+        "options": "",
+        "command": "c",
+    }
+
+    job = compiled(**given, shards=0)
+
+    assert {setting["key"] for setting in job["settings"]} == {*given, "shards"}
+    assert job["tasks"] == ["shards is 0; it must be at least 1."]
