@@ -58,12 +58,7 @@ def _speeds(folder: Path, n_takes: int) -> str:
             f"{60 * n_takes / on_cluster:.1f}",
             f"{on_cluster - local:+.1f}",
         ]
-    head = [
-        "workers",
-        "--jobs, takes per minute",
-        "--cluster, takes per minute",
-        "difference, s",
-    ]
+    head = ["workers", "--jobs, takes/min", "--cluster, takes/min", "--cluster takes longer, s"]
     return f"**{n_takes} takes of 4 s at 30 Hz**\n\n{table(head, rows)}\n"
 
 
