@@ -84,13 +84,16 @@ kills: .venv-4.5/ready zip  ## kill commands at random moments; ARGUMENTS="--kil
 
 # --- What there is to see ---
 
-.PHONY: demo docs pictures pictures-origins sensitivity
+.PHONY: demo docs catalogs pictures pictures-origins sensitivity
 demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
 
 docs: .venv-4.5/ready  ## the tables of settings and of buttons in docs
 	PYTHONPATH=. $(PYTHON_4.5) .ci/write_docs.py
+
+catalogs: .venv-4.5/ready zip  ## texts of other languages; ARGUMENTS=--untranslated prints what lacks one
+	$(PYTHON_4.5) .ci/catalogs.py --zip $(ZIP) $(ARGUMENTS)
 
 pictures: .venv-4.5/ready  ## the pictures of docs/formats and of Reconstruct, from ../shared/data
 	PYTHONPATH=. $(PYTHON_4.5) .ci/draw_formats.py ../shared/data

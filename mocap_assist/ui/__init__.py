@@ -4,16 +4,17 @@ from ..check import raw_key
 from ..clean import example_list
 from ..drawing import confidence_switch, overlay_switch, strip_switch
 from ..exporting import export_menu
+from .. import languages
 from ..importing import import_menu
 from ..retarget import bone_list
 from ..retarget import panel as retarget_panel
 from ..search import panel as library_panel
 from ..search import source_list
 from ..variants import panel as vary_panel
-from . import manual, menus, preferences, sidebar, translations
+from . import manual, menus, preferences, sidebar
 
 PARTS = (
-    translations,
+    languages,
     preferences,
     example_list,
     bone_list,

@@ -1,0 +1,46 @@
+"""Texts of the window in other languages: Blender's own settings choose the language."""
+
+import bpy
+
+from .catalog import LANGUAGES, catalog_path, read_catalog, write_catalog
+from .sentences import placeholders, translate_sentence, translated, words_of
+
+__all__ = [
+    "LANGUAGES",
+    "catalog_path",
+    "placeholders",
+    "read_catalog",
+    "register",
+    "translate_sentence",
+    "translated",
+    "unregister",
+    "words_of",
+    "write_catalog",
+]
+
+CONTEXTS = ("*", "Operator")
+"""Where Blender looks up texts: labels, tooltips and messages in the first, buttons in the
+second."""
+
+
+def dictionary() -> dict[str, dict[tuple[str, str], str]]:
+    """Return the texts as Blender needs them: by language, then by context and English text."""
+    return {
+        language: {
+            (context, english): text
+            for english, text in read_catalog(catalog_path(language)).items()
+            if text
+            for context in CONTEXTS
+        }
+        for language in LANGUAGES
+    }
+
+
+def register() -> None:
+    """Give Blender the texts."""
+    bpy.app.translations.register(__package__, dictionary())
+
+
+def unregister() -> None:
+    """Remove the texts."""
+    bpy.app.translations.unregister(__package__)

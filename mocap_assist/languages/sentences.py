@@ -1,0 +1,108 @@
+"""Translate sentences that already contain names and figures.
+
+Messages come from solvers, which know no languages, and from other processes. So a sentence is
+compared with the English texts of the catalogs, where {placeholders} stand for what it contains.
+"""
+
+import re
+from collections.abc import Callable, Mapping
+from functools import cache, lru_cache
+from string import Formatter
+
+import bpy
+
+from .catalog import LANGUAGES, catalog_path, read_catalog
+
+Translate = Callable[[str], str]
+
+MAX_CACHED = 256
+"""Number of sentences that are kept translated. It only bounds memory: a redraw of the tab shows
+about ten."""
+SENTENCE_END = re.compile(r"(?<=[.!?]) (?=\S)")
+
+
+def translated(text: str) -> str:
+    """Return a text in the language of the window; English if it has no translation."""
+    language = bpy.app.translations.locale
+    if not text or language not in LANGUAGES:
+        return text
+    return _remembered(text, language)
+
+
+@lru_cache(MAX_CACHED)
+def _remembered(text: str, language: str) -> str:
+    """Return a translation; the language is a key of the cache."""
+    return translate_sentence(text, bpy.app.translations.pgettext_iface)
+
+
+def translate_sentence(text: str, translate: Translate) -> str:
+    """Translate a text as a whole, as a text with placeholders, or one sentence after another.
+
+    Parameters
+    ----------
+    text : str
+    translate : callable
+        Returns the translation of a text of the catalogs, or the text itself.
+    """
+    whole = translate(text)
+    if whole != text:
+        return whole
+    for pattern in _patterns():
+        if (values := pattern.values_in(text)) is not None:
+            return translate(pattern.template).format_map(_translated_parts(values, translate))
+    parts = SENTENCE_END.split(text, maxsplit=1)
+    if len(parts) == 1:
+        return text
+    return " ".join(translate_sentence(part, translate) for part in parts)
+
+
+def placeholders(text: str) -> set[str]:
+    """Return the names of the placeholders of a text."""
+    return {name for _, name, _, _ in Formatter().parse(text) if name}
+
+
+def words_of(text: str) -> str:
+    """Return a text without placeholders."""
+    return "".join(literal for literal, *_ in Formatter().parse(text))
+
+
+def _translated_parts(values: Mapping[str, str], translate: Translate) -> dict[str, str]:
+    """Return what a sentence contains; whole sentences in it are translated, names are not."""
+    return {
+        name: translate_sentence(value, translate) if value.endswith(".") else value
+        for name, value in values.items()
+    }
+
+
+class Pattern:
+    """Recognizes a text with placeholders once they are filled in."""
+
+    def __init__(self, template: str) -> None:
+        self.template = template
+        self._longest = max((part for part, *_ in Formatter().parse(template)), key=len)
+        self._compiled: re.Pattern[str] | None = None
+
+    def values_in(self, text: str) -> dict[str, str] | None:
+        """Return what stands for the placeholders; None if this is another text."""
+        if self._longest not in text:
+            return None
+        if self._compiled is None:
+            self._compiled = re.compile(_expression(self.template), re.DOTALL)
+        found = self._compiled.fullmatch(text)
+        return found and found.groupdict()
+
+
+def _expression(template: str) -> str:
+    """Return a regular expression with a group for each placeholder."""
+    return "".join(
+        re.escape(part) + (f"(?P<{name}>.+?)" if name else "")
+        for part, name, _, _ in Formatter().parse(template)
+    )
+
+
+@cache
+def _patterns() -> tuple["Pattern", ...]:
+    """Return the texts with placeholders, those with the most words first."""
+    texts = read_catalog(catalog_path(next(iter(LANGUAGES))))
+    filled = [text for text in texts if placeholders(text)]
+    return tuple(map(Pattern, sorted(filled, key=lambda text: -len(words_of(text)))))
