@@ -83,7 +83,7 @@ def class_texts(bpy: ModuleType) -> Iterator[str]:
         for kind in _registered(base):
             yield from filter(None, (getattr(kind, name, "") for name in
                                      ("bl_label", "bl_description")))  # fmt: skip
-            for each in kind.bl_rna.properties:
+            for each in _described(bpy, kind).properties:
                 if each.identifier not in inherited:
                     yield from _property_texts(each)
     for holder in HOLDERS:
@@ -97,6 +97,14 @@ def _registered(base: type) -> Iterator[type]:
         if kind.__module__.startswith(PACKAGE) and getattr(kind, "is_registered", False):
             yield kind
         yield from _registered(kind)
+
+
+def _described(bpy: ModuleType, kind: Any) -> Any:
+    """Return what has the properties: for an operator not its class."""
+    if not issubclass(kind, bpy.types.Operator):
+        return kind.bl_rna
+    family, name = kind.bl_idname.split(".") if "." in kind.bl_idname else kind.bl_idname.lower().split("_ot_")
+    return getattr(getattr(bpy.ops, family), name).get_rna_type()
 
 
 def _property_texts(item: Any) -> Iterator[str]:
