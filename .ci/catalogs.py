@@ -103,7 +103,7 @@ def _described(bpy: ModuleType, kind: Any) -> Any:
     """Return what has the properties: for an operator not its class."""
     if not issubclass(kind, bpy.types.Operator):
         return kind.bl_rna
-    family, name = kind.bl_idname.split(".") if "." in kind.bl_idname else kind.bl_idname.lower().split("_ot_")
+    family, _, name = kind.bl_idname.replace("_OT_", ".").lower().partition(".")
     return getattr(getattr(bpy.ops, family), name).get_rna_type()
 
 

@@ -8,59 +8,81 @@ from string import Formatter
 
 FOLDERS = ("mocap_assist", "operators")
 NOT_SHOWN = ("mocap_assist/batch/", "mocap_assist/languages/")
-"""Verbs of the command line, whose texts are English, and what this is about."""
-CONSTANTS = {
+"""Verbs of the command line, which are in English, and what translates."""
+LABELED = {
+    "mocap_assist/check/checking.py": {"_summary"},
     "mocap_assist/check/compare_panel.py": {"HOLD"},
     "mocap_assist/check/held_operator.py": {"HELD", "CLICKED"},
+    "mocap_assist/clean/report.py": {"clean_report"},
     "mocap_assist/drawing/strip_ranges.py": {"Row", "Mark"},
     "mocap_assist/exporting/export_menu.py": {"ENTRY"},
     "mocap_assist/importing/import_menu.py": {"ENTRY"},
+    "mocap_assist/library/background.py": {"message_of"},
     "mocap_assist/live/listening.py": {"MODES"},
     "mocap_assist/panels/figure_rows.py": {"FIGURES"},
-}
-"""By file: constants and enums whose texts are labels, but no sentences."""
-TAKES_TEXT = {"translated": 0, "pgettext_iface": 0, "draw_sentence": 2, "progress": 1,
-              "poll_message_set": 0, "_in_slices": 0}  # fmt: skip
+    "mocap_assist/retarget/bone_list.py": {"PRESETS"},
+    "solvers/denoising/quality/worst_issues.py": {"_spikes", "_gaps", "_jitter", "_slides",
+                                                  "_beyond_limits", "_cuts"},
+    "solvers/workflows/take_figures.py": {"_texts"},
+}  # fmt: skip
+"""By file: constants, enums and functions with texts that are no full sentences."""
+TAKES_TEXT = {
+    "translated": 0, "pgettext_iface": 0, "poll_message_set": 0, "_in_slices": 0,
+    "progress": 1, "draw_sentence": 2,
+}  # fmt: skip
 """By function: the argument that is a text of the window."""
-SENTENCE = re.compile(r"[A-Z{\"'(].* .*(\.|\.\.\.|!)", re.DOTALL)
-LABEL = re.compile(r"[A-Z{].*")
-MIN_LETTERS = 6
-"""Letters outside of placeholders from which a text can be recognized once these are filled
-in."""
-NAME = re.compile(r"\b[a-z_]\w*")
-NO_NAMES = re.compile(r"'[^']*'|\"[^\"]*\"|\[.*?\]|\b(if|else|or|and|not|for|in)\b")
-VAGUE = {"name", "path", "self", "len", "join", "str", "parent", "value", "action", "shown",
-         "strip", "resolve", "capitalize", "max", "min", "round"}  # fmt: skip
+SENTENCE = re.compile(r"[A-Z0-9{\"'(].* .*(\.|!)", re.DOTALL)
+LABEL = re.compile(r"[A-Z].*|.*\{.*|[0-9]+ .*|.* .*", re.DOTALL)
+MIN_LETTERS = 4
+"""Letters outside of placeholders from which a text is recognized once these are filled in."""
+WORDS = re.compile(r"'[^']*'|\"[^\"]*\"|\[.*?\]|\b(if|else|or|and|not|for|in)\b|\b([a-z_]\w*)")
+VAGUE = {
+    "action", "capitalize", "join", "len", "max", "min", "name", "parent", "path", "resolve",
+    "round", "self", "shown", "str", "strip", "value",
+}  # fmt: skip
 """Words of an expression that do not describe a placeholder where another word does."""
 
 
 def source_texts(root: Path) -> set[str]:
     """Return the texts in the source below a folder."""
     found: set[str] = set()
-    for folder in FOLDERS:
-        for path in sorted((root / folder).rglob("*.py")):
-            name = path.relative_to(root).as_posix()
-            if not name.startswith(NOT_SHOWN):
-                tree = ast.parse(path.read_text(encoding="utf-8"))
-                found |= set(_texts(tree, CONSTANTS.get(name, set())))
-    return {text for text in found if _n_letters(text) >= _min_letters(text)}
+    for path in _files(root):
+        name = path.relative_to(root).as_posix()
+        if not name.startswith(NOT_SHOWN):
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            hidden = {id(node) for node in _not_shown(tree)}
+            shown = [node for node in ast.walk(tree) if id(node) not in hidden]
+            if name.startswith(FOLDERS):
+                found |= set(_arguments(shown)) | set(_sentences(shown))
+            found |= set(_labels(tree, hidden, LABELED.get(name, set())))
+    return {text for text in found if _can_be_recognized(text)}
 
 
-def _texts(tree: ast.Module, constants: set[str]) -> Iterator[str]:
-    ignored = {id(node) for node in _not_shown(tree)}
-    for node in ast.walk(tree):
+def _files(root: Path) -> list[Path]:
+    own = [path for folder in FOLDERS for path in sorted((root / folder).rglob("*.py"))]
+    return own + [root / name for name in LABELED if not name.startswith(FOLDERS)]
+
+
+def _arguments(nodes: list[ast.AST]) -> Iterator[str]:
+    """Yield what is given to functions that show it."""
+    for node in nodes:
         if isinstance(node, ast.Call):
             for argument in _text_arguments(node):
                 yield from _strings(argument)
-        elif isinstance(node, ast.JoinedStr | ast.Constant) and id(node) not in ignored:
-            text = _text(node)
-            if SENTENCE.fullmatch(text):
-                yield text
-    for node in tree.body:
-        if _name_of(node) in constants:
-            for each in ast.walk(node):
-                if isinstance(each, ast.Constant) and id(each) not in ignored:
-                    yield from LABEL.findall(_text(each))
+
+
+def _sentences(nodes: list[ast.AST]) -> Iterator[str]:
+    for node in nodes:
+        if isinstance(node, ast.JoinedStr | ast.Constant) and SENTENCE.fullmatch(_text(node)):
+            yield _text(node)
+
+
+def _labels(tree: ast.Module, hidden: set[int], names: set[str]) -> Iterator[str]:
+    """Yield all texts of these constants, classes and functions."""
+    for place in ast.walk(tree):
+        for node in ast.walk(place) if _name_of(place) in names else ():
+            if isinstance(node, ast.JoinedStr | ast.Constant) and id(node) not in hidden:
+                yield from LABEL.findall(_text(node))
 
 
 def _not_shown(tree: ast.Module) -> Iterator[ast.AST]:
@@ -69,17 +91,20 @@ def _not_shown(tree: ast.Module) -> Iterator[ast.AST]:
         if isinstance(node, ast.Expr):
             yield node.value
         elif isinstance(node, ast.JoinedStr):
-            yield from node.values
-        elif isinstance(node, ast.keyword) and node.arg in {"description", "name"}:
-            yield from ast.walk(node.value)
-        elif isinstance(node, ast.Assign) and _name_of(node).startswith("bl_"):
-            yield from ast.walk(node.value)
+            yield from (each for value in node.values for each in ast.walk(value))
+        elif _describes_class(node):
+            yield from ast.walk(node)
+
+
+def _describes_class(node: ast.AST) -> bool:
+    """Whether this is bl_description, or a name or description of a property."""
+    if isinstance(node, ast.keyword):
+        return node.arg in {"description", "name"}
+    return isinstance(node, ast.Assign) and _name_of(node).startswith("bl_")
 
 
 def _text_arguments(call: ast.Call) -> Iterator[ast.expr]:
-    for keyword in call.keywords:
-        if keyword.arg == "text":
-            yield keyword.value
+    yield from (keyword.value for keyword in call.keywords if keyword.arg == "text")
     function = call.func
     name = function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
     position = TAKES_TEXT.get(name)
@@ -92,22 +117,20 @@ def _strings(node: ast.expr) -> Iterator[str]:
     if isinstance(node, ast.IfExp):
         yield from _strings(node.body)
         yield from _strings(node.orelse)
-    elif isinstance(node, ast.JoinedStr | ast.Constant) and (text := _text(node)):
-        yield text
+    elif isinstance(node, ast.JoinedStr | ast.Constant):
+        yield _text(node)
 
 
-def _name_of(node: ast.stmt) -> str:
-    if isinstance(node, ast.ClassDef):
+def _name_of(node: ast.AST) -> str:
+    if isinstance(node, ast.ClassDef | ast.FunctionDef):
         return node.name
-    if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
-        return node.targets[0].id
-    if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
-        return node.target.id
-    return ""
+    targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+    names = targets[0].elts if isinstance(targets[0], ast.Tuple) else targets
+    return next((each.id for each in names if isinstance(each, ast.Name)), "")
 
 
 def _text(node: ast.Constant | ast.JoinedStr) -> str:
-    """Return a text, with a named placeholder for each expression; empty for other constants."""
+    """Return a text, with a named placeholder for each expression; empty for other values."""
     if isinstance(node, ast.Constant):
         return node.value if isinstance(node.value, str) else ""
     parts, used = [], []
@@ -121,17 +144,14 @@ def _text(node: ast.Constant | ast.JoinedStr) -> str:
 
 
 def _placeholder(expression: ast.expr, used: list[str]) -> str:
-    words = NAME.findall(NO_NAMES.sub("", ast.unparse(expression)))
-    clear = [word for word in words if word not in VAGUE] or words or ["value"]
+    words = [word for _, word in WORDS.findall(ast.unparse(expression)) if word] or ["value"]
+    clear = [word for word in words if word not in VAGUE] or words
     name = clear[-1].strip("_")
-    n_before = sum(1 for each in used if each.rstrip("0123456789") == name)
+    n_before = sum(each.rstrip("0123456789") == name for each in used)
     return f"{name}{n_before + 1}" if n_before else name
 
 
-def _n_letters(text: str) -> int:
+def _can_be_recognized(text: str) -> bool:
     literal = "".join(part for part, *_ in Formatter().parse(text))
-    return sum(letter.isalpha() for letter in literal)
-
-
-def _min_letters(text: str) -> int:
-    return MIN_LETTERS if "{" in text else 1
+    n_letters = sum(letter.isalpha() for letter in literal)
+    return n_letters >= (MIN_LETTERS if "{" in text else 1)

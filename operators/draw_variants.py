@@ -6,6 +6,7 @@ import bpy
 
 from ..mocap_assist.blender.act_operator import ActOperator
 from ..mocap_assist.blender.path_properties import file_to_write, path_property
+from ..mocap_assist.languages import translated
 from ..mocap_assist.variants.crowd import why_not_stack
 from ..mocap_assist.variants.sheet import write_sheet
 from ..solvers.errors import MocapAssistError
@@ -33,8 +34,8 @@ class MOCAP_OT_draw_variants(ActOperator, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:
             path = file_to_write(self.filepath, PNG)
-            self.report({"INFO"}, write_sheet(context.scene, path))
+            self.report({"INFO"}, translated(write_sheet(context.scene, path)))
         except (MocapAssistError, OSError) as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         return {"FINISHED"}

@@ -3,6 +3,7 @@
 import bpy
 
 from ..mocap_assist.check.checking import jump_to
+from ..mocap_assist.languages import translated
 
 
 class MOCAP_OT_jump_to_issue(bpy.types.Operator):
@@ -27,7 +28,7 @@ class MOCAP_OT_jump_to_issue(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if not context.scene.mocap_assist.issues:
-            cls.poll_message_set("No issues are listed. Press Check first")
+            cls.poll_message_set(translated("No issues are listed. Press Check first"))
             return False
         return True
 

@@ -5,6 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ..mocap_assist.depth.depth_preview import show_on_request
+from ..mocap_assist.languages import translated
 from ..mocap_assist.track.tracking import selected_preview
 from ..solvers.errors import MocapAssistError
 
@@ -20,7 +21,7 @@ class MOCAP_OT_show_depth(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if selected_preview(context) is None:
-            cls.poll_message_set("Select the points of a depth recording.")
+            cls.poll_message_set(translated("Select the points of a depth recording."))
             return False
         return True
 
@@ -31,7 +32,7 @@ class MOCAP_OT_show_depth(bpy.types.Operator):
         try:
             message = show_on_request(preview.data, context.scene.frame_current_final)
         except MocapAssistError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
-        self.report({"INFO"}, message)
+        self.report({"INFO"}, translated(message))
         return {"FINISHED"}

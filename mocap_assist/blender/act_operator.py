@@ -6,6 +6,7 @@ from typing import ClassVar
 import bpy
 
 from ...solvers.errors import MocapAssistError
+from ..languages import translated
 from .mixins import OperatorMixin
 
 
@@ -25,7 +26,7 @@ class ActOperator(OperatorMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if reason := cls.why_not(context):
-            cls.poll_message_set(reason)
+            cls.poll_message_set(translated(reason))
         return not reason
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -33,7 +34,7 @@ class ActOperator(OperatorMixin):
         try:
             message = self.act(context)
         except MocapAssistError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
-        self.report({"INFO"}, message)
+        self.report({"INFO"}, translated(message))
         return {"FINISHED"}

@@ -4,6 +4,7 @@ import bpy
 
 from ..blender.mixins import PanelMixin
 from ..exporting.export_menu import EXPORT, draw_export
+from ..languages import translated
 from ..panels.drawing import exists
 from ..panels.preference_values import preferences
 from ..runtime.selection import played_result, selected_subject
@@ -37,7 +38,7 @@ def _draw_key(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Name the key that shows the recorded action, where a result plays."""
     key = key_text()
     if key and played_result(selected_subject(context)):
-        text = bpy.app.translations.pgettext_iface(HOLD).format(key=key)
+        text = translated(HOLD).format(key=key)
         layout.label(text=text, icon="HIDE_OFF", translate=False)
 
 
@@ -60,5 +61,5 @@ def _draw_actions(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
     raw, _ = recorded
     column = layout.column(align=True)
     column.label(text=played[0].name, icon="ACTION", translate=False)
-    made_from = bpy.app.translations.pgettext_iface("Made from {raw}").format(raw=raw.name)
+    made_from = translated("Made from {raw}").format(raw=raw.name)
     column.label(text=made_from, icon="BLANK1", translate=False)

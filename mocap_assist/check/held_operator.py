@@ -5,6 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ..blender.mixins import OperatorMixin
+from ..languages import translated
 from . import raw_view
 
 PASSED = {
@@ -32,7 +33,7 @@ class HeldOperator(OperatorMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if reason := raw_view.why_not_show_raw(context):
-            cls.poll_message_set(reason)
+            cls.poll_message_set(translated(reason))
         return not reason
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -40,7 +41,8 @@ class HeldOperator(OperatorMixin):
         is_key = event.value == "PRESS" and event.type not in NOT_HELD
         self._key = event.type if is_key else ""
         action = raw_view.show_raw(context)
-        text = (HELD if self._key else CLICKED).format(action=action, key=self._key)
+        template = translated(HELD if self._key else CLICKED)
+        text = template.format(action=action, key=self._key)
         context.workspace.status_text_set(text)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}

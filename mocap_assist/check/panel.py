@@ -7,6 +7,7 @@ import bpy
 from ...solvers.errors import InvalidMotionError
 from ..blender.mixins import PanelMixin
 from ..drawing.strip_switch import draw_strip_switch
+from ..languages import translated
 from ..panels.drawing import draw_job, draw_sentence, exists, is_wide
 from ..panels.figure_rows import figure_rows, frames_text
 from ..panels.fix_card import shown_card
@@ -104,7 +105,7 @@ def _draw_issues(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
         draw_sentence(layout, context, shown.issues[shown.active_issue].sentence)
     subject = selected_subject(context)
     if subject is not None and is_stale(shown.checked, subject):
-        message = bpy.app.translations.pgettext_iface(STALE).format(action=shown.checked)
+        message = translated(STALE).format(action=shown.checked)
         draw_sentence(layout, context, message, icon="INFO")
 
 

@@ -31,5 +31,5 @@ class FeetPanel(PanelMixin):
             column = layout.column(align=True)
             for name, text in zip(PROPERTIES, SIDES, strict=True):
                 column.prop(armature, f'["{name}"]', text=text)
-            draw_sentence(layout, context, bpy.app.translations.pgettext_iface(HINT))
+            draw_sentence(layout, context, HINT)
         layout.operator(PLANT, icon="CON_FLOOR")

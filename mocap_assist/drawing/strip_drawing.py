@@ -9,6 +9,7 @@ import gpu
 import numpy as np
 
 from ...solvers.arrays import Single
+from ..languages import translated
 from . import strip_reading
 from .strip_ranges import COLORS, Range, Row
 from .strip_reading import Strip
@@ -111,7 +112,7 @@ def _draw_batch(batch: Any, corner: tuple[float, float], unit: tuple[float, floa
 def _draw_labels(strip: Strip, plate: Any, bottom: float, height: float, scale: float) -> None:
     """Name the rows at the left border, on a plate over the ranges."""
     font, margin = 0, 2 * GAP_PX * scale
-    texts = [bpy.app.translations.pgettext_iface(row.value) for row in strip.rows]
+    texts = [translated(row.value) for row in strip.rows]
     blf.size(font, LABEL_PX * scale)
     blf.color(font, *LABEL_COLOR)
     width = max(blf.dimensions(font, text)[0] for text in texts) + 2 * margin

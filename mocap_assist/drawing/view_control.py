@@ -16,7 +16,8 @@ def zoom_views(window: bpy.types.Window, factor: float) -> str:
     for view in _free_views(window):
         view.view_distance = min(max(view.view_distance / factor, MIN_DISTANCE), MAX_DISTANCE)
         n_views += 1
-    return f"Zoom: hands {'apart' if factor > 1.0 else 'together'}." if n_views else NO_VIEW
+    zoomed = "Zoom: hands apart." if factor > 1.0 else "Zoom: hands together."
+    return zoomed if n_views else NO_VIEW
 
 
 def rotate_views(window: bpy.types.Window, angle: float) -> str:

@@ -8,6 +8,7 @@ from bpy.props import CollectionProperty, EnumProperty, StringProperty
 from ...solvers.errors import MocapAssistError
 from ..blender.mixins import SettingsMixin
 from ..blender.path_properties import FILE, FOLDER, HIDDEN, path_property
+from ..languages import translated
 from ..panels.drawing import draw_lines
 from ..runtime.solver_operator import in_background
 from ..runtime.watch import why_busy
@@ -42,7 +43,7 @@ class FilesOperator(SettingsMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if reason := why_busy():
-            cls.poll_message_set(reason)
+            cls.poll_message_set(translated(reason))
         return not reason
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -54,7 +55,7 @@ class FilesOperator(SettingsMixin):
     def end(self, context: bpy.types.Context, imported: Imported) -> set[str]:
         """Report what became of the files."""
         self.note = imported.note
-        self.report({"ERROR"} if imported.failed else {"INFO"}, imported.sentence)
+        self.report({"ERROR"} if imported.failed else {"INFO"}, translated(imported.sentence))
         return {"FINISHED"} if imported.made else {"CANCELLED"}
 
     def given(self) -> dict[str, Any]:
@@ -99,7 +100,7 @@ class WaitingImport(FilesOperator):
         try:
             self._job = ImportJob(context, paths, self.settings().choices)
         except MocapAssistError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
@@ -111,7 +112,7 @@ class WaitingImport(FilesOperator):
         escaped = event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS"
         if escaped or job.watch.is_cancelled:
             job.cancel(context)
-            self.report({"INFO"}, "Cancelled.")
+            self.report({"INFO"}, translated("Cancelled."))
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}

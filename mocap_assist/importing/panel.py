@@ -6,6 +6,7 @@ import bpy
 
 from ..blender.mixins import PanelMixin
 from ..depth.depth_preview import NOT_ALLOWED, problem_of
+from ..languages import translated
 from ..panels.drawing import draw_job, draw_sentence, exists
 from ..panels.manual_page import MANUAL
 from ..panels.solver_ready import note_drawing
@@ -67,7 +68,8 @@ def _draw_first_steps(layout: bpy.types.UILayout) -> None:
 
 def _figures(origin: dict[str, object]) -> str:
     """Return length, rate and sensor of a recording as text."""
-    parts = [f"{origin.get('n_frames', 0)} frames", f"{origin.get('frame_rate', 0):.4g} Hz"]
+    n_frames = origin.get("n_frames", 0)
+    parts = [translated(f"{n_frames} frames"), f"{origin.get('frame_rate', 0):.4g} Hz"]
     if "sensor" in origin:
         parts.append(str(origin["sensor"]).replace("_", " "))
     return ", ".join(parts)

@@ -14,8 +14,8 @@ LANGUAGES = {
 """Languages by the names that Blender gives them."""
 ENTRY = re.compile(r'^msgid "(.*)"\nmsgstr "(.*)"$', re.MULTILINE)
 HEADER = (
-    '# {name} texts of Mocap Assist. "make catalogs" sorts the file, and adds and removes entries.'
-    '\nmsgid ""\nmsgstr "Content-Type: text/plain; charset=UTF-8\\nLanguage: {language}\\n"\n'
+    '# {name} texts of Mocap Assist. "make catalogs" sorts, adds and removes entries.\n'
+    'msgid ""\nmsgstr "Content-Type: text/plain; charset=UTF-8\\nLanguage: {language}\\n"\n'
 )
 ESCAPED = re.compile(r"\\(.)")
 

@@ -1,7 +1,8 @@
 """Translate sentences that already contain names and figures.
 
 Messages come from solvers, which know no languages, and from other processes. So a sentence is
-compared with the English texts of the catalogs, where {placeholders} stand for what it contains.
+compared with the English texts of the catalogs, where {placeholders} stand for what it
+contains.
 """
 
 import re
@@ -16,8 +17,8 @@ from .catalog import LANGUAGES, catalog_path, read_catalog
 Translate = Callable[[str], str]
 
 MAX_CACHED = 256
-"""Number of sentences that are kept translated. It only bounds memory: a redraw of the tab shows
-about ten."""
+"""Number of sentences that are kept translated. It only bounds memory: a redraw shows about
+ten."""
 SENTENCE_END = re.compile(r"(?<=[.!?]) (?=\S)")
 
 
@@ -67,11 +68,22 @@ def words_of(text: str) -> str:
 
 
 def _translated_parts(values: Mapping[str, str], translate: Translate) -> dict[str, str]:
-    """Return what a sentence contains; whole sentences in it are translated, names are not."""
-    return {
-        name: translate_sentence(value, translate) if value.endswith(".") else value
-        for name, value in values.items()
-    }
+    """Return what a sentence contains, with sentences and figures in it translated.
+
+    Figures are lists such as "3 spikes, 2 gaps". Names of bones and files stay as they are.
+    """
+    return {name: _translated_part(value, translate) for name, value in values.items()}
+
+
+def _translated_part(value: str, translate: Translate) -> str:
+    if value.endswith("."):
+        return translate_sentence(value, translate)
+    parts = value.split(", ")
+    is_figure = [any(letter.isdigit() for letter in part) and " " in part for part in parts]
+    return ", ".join(
+        translate_sentence(part, translate) if is_one else part
+        for part, is_one in zip(parts, is_figure, strict=True)
+    )
 
 
 class Pattern:

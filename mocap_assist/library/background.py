@@ -57,18 +57,16 @@ def why_indexing() -> str:
 
 def message_of(indexed: Indexed) -> str:
     """Return a sentence about what was done."""
+    n_refused = len(indexed.refused)
     parts = [
-        f"{count} {what}"
-        for count, what in (
-            (indexed.n_added, "read"),
-            (indexed.n_kept, "unchanged"),
-            (indexed.n_removed, "removed"),
-            (len(indexed.refused), "unusable"),
-        )
-        if count
+        *[f"{indexed.n_added} read"] * bool(indexed.n_added),
+        *[f"{indexed.n_kept} unchanged"] * bool(indexed.n_kept),
+        *[f"{indexed.n_removed} removed"] * bool(indexed.n_removed),
+        *[f"{n_refused} unusable"] * bool(n_refused),
     ]
     clips = "1 clip" if indexed.n_clips == 1 else f"{indexed.n_clips} clips"
-    return f"The library has {clips}: {', '.join(parts) or 'nothing to do'}."
+    done = ", ".join(parts) or "nothing to do"
+    return f"The library has {clips}: {done}."
 
 
 register, unregister = ends_with_file(_on, "mocap_assist_indexing")

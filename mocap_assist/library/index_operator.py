@@ -8,6 +8,7 @@ import bpy
 from ...solvers.errors import MocapAssistError, SolveCancelled
 from ..blender.mixins import SettingsMixin
 from ..jobs.job import run
+from ..languages import translated
 from ..runtime.solver_operator import in_background
 from .background import Indexing, message_of, why_indexing
 from .solve_indexing import Indexed, index_sources
@@ -31,7 +32,7 @@ class WaitingIndex(SettingsMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if reason := why_indexing():
-            cls.poll_message_set(reason)
+            cls.poll_message_set(translated(reason))
         return not reason
 
     def prepare(self, context: bpy.types.Context) -> None:
@@ -101,10 +102,10 @@ class WaitingIndex(SettingsMixin):
         more = len(indexed.refused) - MAX_NAMED_FILES
         named = [*indexed.refused[:MAX_NAMED_FILES], *[f"And {more} more."] * (more > 0)]
         level = {"WARNING"} if indexed.refused else {"INFO"}
-        self.report(level, " ".join([message_of(indexed), *named]))
+        self.report(level, translated(" ".join([message_of(indexed), *named])))
         return {"FINISHED"}
 
     def _give_up(self, error: MocapAssistError) -> set[str]:
         cancelled = isinstance(error, SolveCancelled)
-        self.report({"INFO"} if cancelled else {"ERROR"}, str(error))
+        self.report({"INFO"} if cancelled else {"ERROR"}, translated(str(error)))
         return {"CANCELLED"}

@@ -6,6 +6,7 @@ import bpy
 
 from ...solvers.errors import MocapAssistError
 from ..blender.mixins import OperatorMixin
+from ..languages import translated
 from ..panels.preference_values import preferred
 from . import listening
 
@@ -20,7 +21,7 @@ class ListenButton(OperatorMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if bpy.app.background:
-            cls.poll_message_set(NO_WINDOW)
+            cls.poll_message_set(translated(NO_WINDOW))
             return False
         return True
 
@@ -37,7 +38,7 @@ class ListenButton(OperatorMixin):
                 preferred("line_width"),
             )
         except MocapAssistError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}

@@ -12,6 +12,7 @@ from ...solvers.workflows import LiveSession
 from ..drawing.live_figure import LiveFigure
 from ..drawing.overlay_drawing import Color
 from ..drawing.view_drawing import redraw
+from ..languages import translated
 from .commands import obey_all, search_for
 
 logger = logging.getLogger(__name__)
@@ -90,8 +91,9 @@ class Listening:
         redraw(context, "VIEW_3D")
 
     def _show(self, context: bpy.types.Context) -> None:
-        message = f"{self.message}   " if self.message else ""
-        context.workspace.status_text_set(f"{message}{self.state()}   Esc: stop listening")
+        texts = [self.message] * bool(self.message) + [self.state()]
+        shown = [*map(translated, texts), translated("Esc: stop listening")]
+        context.workspace.status_text_set("   ".join(shown))
         redraw(context, "VIEW_3D")
 
 

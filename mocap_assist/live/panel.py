@@ -37,6 +37,6 @@ class PerformPanel(PanelMixin):
         if listening.message:
             draw_sentence(layout, context, listening.message, icon="INFO")
         heard = listening.heard
-        layout.label(text=f"{heard.frames} frames, {heard.dropped} dropped", translate=False)
+        draw_sentence(layout, context, f"{heard.frames} frames, {heard.dropped} dropped")
         if heard.why:
             draw_sentence(layout, context, heard.why, icon="ERROR")

@@ -6,6 +6,7 @@ from textwrap import wrap
 import bpy
 
 from ...solvers.settings import Settings
+from ..languages import translated
 
 LETTER_WIDTH_PX = 6.2
 """Mean width of a letter of the interface, in pixels at scale 1."""
@@ -32,7 +33,7 @@ def draw_sentence(
 
 def draw_lines(layout: bpy.types.UILayout, text: str, width: float, icon: str = "NONE") -> None:
     """Draw a sentence, wrapped to a width in pixels at scale 1."""
-    lines = column_lines(text, width)
+    lines = column_lines(translated(text), width)
     column = layout.column(align=True)
     column.scale_y = 0.8
     for index, line in enumerate(lines):
@@ -67,7 +68,7 @@ def draw_job(layout: bpy.types.UILayout, context: bpy.types.Context, *owners: st
     job = context.window_manager.mocap_assist_job
     if job.running and job.owner in owners:
         column = layout.column(align=True)
-        text = f"{job.message} {job.fraction:.0%}"
+        text = f"{translated(job.message)} {job.fraction:.0%}"
         column.progress(factor=job.fraction, type="BAR", text=text, translate=False)
         column.label(text="Esc cancels")
     return bool(job.running)

@@ -11,6 +11,7 @@ from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.motion import read_humanoid_map, write_humanoid_map
 from ..blender.mixins import OperatorMixin
 from ..blender.path_properties import absolute, path_property
+from ..languages import translated
 from ..panels.drawing import draw_sentence
 from ..runtime.selection import selected_armature, why_not_retarget
 from .bone_map import (
@@ -28,6 +29,12 @@ FIND, SAVE, LOAD = (
     f"mocap_assist.{name}" for name in ("find_bones", "save_bone_map", "load_bone_map")
 )
 ROLE_COLUMN = 0.38  # of the list's width
+PRESETS = {
+    (SAVE, "source"): "Save Source Map",
+    (SAVE, "target"): "Save Target Map",
+    (LOAD, "source"): "Load Source Map",
+    (LOAD, "target"): "Load Target Map",
+}
 PACKAGE = __package__.rpartition(".mocap_assist.")[0]
 
 
@@ -75,7 +82,7 @@ class _BoneButton(OperatorMixin):
         if not reason and not context.scene.mocap_assist.retarget.target:
             reason = "Choose the target armature first."
         if reason:
-            cls.poll_message_set(reason)
+            cls.poll_message_set(translated(reason))
         return not reason
 
     def done(self, act: Callable[[], None]) -> set[str]:
@@ -83,7 +90,7 @@ class _BoneButton(OperatorMixin):
         try:
             act()
         except MocapAssistError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         return {"FINISHED"}
 
@@ -185,8 +192,12 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     layout.template_list("MOCAP_UL_bones", "", listed, "rows", listed, "active_row", rows=8)
     row = listed.rows[min(listed.active_row, len(listed.rows) - 1)]
     if n_marked := count_low_confidence(listed):
-        bones = "1 bone has" if n_marked == 1 else f"{n_marked} bones have"
-        draw_sentence(layout, context, f"{bones} low confidence; click a row.", icon="ERROR")
+        marked = (
+            "1 bone has low confidence; click a row."
+            if n_marked == 1
+            else f"{n_marked} bones have low confidence; click a row."
+        )
+        draw_sentence(layout, context, marked, icon="ERROR")
     _draw_reasons(layout, context, row)
     column = layout.column(align=True)
     for side in SIDES:
@@ -194,11 +205,10 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
             column.prop_search(
                 row, side, armature.data, "bones", text=side.capitalize(), icon="BONE_DATA"
             )
-    for verb, idname, icon in (("Save", SAVE, "FILE_TICK"), ("Load", LOAD, "FILE_FOLDER")):
+    for idname, icon in ((SAVE, "FILE_TICK"), (LOAD, "FILE_FOLDER")):
         row = layout.row(align=True)
         for side in SIDES:
-            text = f"{verb} {side.capitalize()} Map"
-            row.operator(idname, text=text, icon=icon).side = side
+            row.operator(idname, text=PRESETS[idname, side], icon=icon).side = side
 
 
 def _draw_reasons(

@@ -8,6 +8,7 @@ from ...solvers.errors import MocapAssistError
 from ...solvers.retargeting import RetargetSettings, RootMotion
 from ..blender.mixins import PanelMixin
 from ..blender.name_lists import SEPARATOR, join_names, split_names
+from ..languages import translated
 from ..panels.drawing import draw_sentence, exists, folded, settings_column
 from ..panels.visibility import shows_armature
 from ..rigs.rigify import is_rigify
@@ -130,7 +131,10 @@ class MOCAP_OT_tick_action(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         if SEPARATOR in self.action:
-            self.report({"ERROR"}, f"Rename {self.action}: a name cannot contain {SEPARATOR}.")
+            self.report(
+                {"ERROR"},
+                translated(f"Rename {self.action}: a name cannot contain {SEPARATOR}."),
+            )
             return {"CANCELLED"}
         shown = getattr(context.scene.mocap_assist, self.group)
         names = split_names(shown.actions)

@@ -12,6 +12,7 @@ from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
 from ..blender.mixins import SettingsMixin
 from ..blender.time_slices import Work
 from ..jobs.job import Job, ShortSolve, run
+from ..languages import translated
 from .navigation import may_pass
 from .redo import fingerprint
 from .selection import selected_subject
@@ -59,7 +60,7 @@ class SolverOperator(SettingsMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if reason := why_busy() or cls.why_not(context):
-            cls.poll_message_set(reason)
+            cls.poll_message_set(translated(reason))
         return not reason
 
     def prepare(self, context: bpy.types.Context) -> None:
@@ -181,12 +182,12 @@ class SolverOperator(SettingsMixin):
         return (*self._subject.find(), self.settings())
 
     def _finish(self, message: str) -> set[str]:
-        self.report({"INFO"}, message)
+        self.report({"INFO"}, translated(message))
         return {"FINISHED"}
 
     def _give_up(self, error: MocapAssistError | MemoryError) -> set[str]:
         if isinstance(error, MemoryError):
             error = OutOfMemoryError()
         cancelled = isinstance(error, SolveCancelled)
-        self.report({"INFO"} if cancelled else {"ERROR"}, str(error))
+        self.report({"INFO"} if cancelled else {"ERROR"}, translated(str(error)))
         return {"CANCELLED"}

@@ -6,6 +6,7 @@ from time import monotonic
 import bpy
 
 from ..drawing.view_drawing import redraw
+from ..languages import translated
 from .file_change_handlers import ends_with_file
 
 TIMER_INTERVAL_S = 0.05
@@ -57,7 +58,8 @@ class Watch:
         state = context.window_manager.mocap_assist_job
         state.running, state.fraction, state.message = True, fraction, message
         left = time_left(fraction, monotonic() - self._began)
-        shown = f"{message} {fraction:.0%}{f', {left}' if left else ''}   Esc: cancel"
+        parts = [f"{translated(message)} {fraction:.0%}", translated(left)]
+        shown = "   ".join([*filter(None, parts), translated("Esc cancels")])
 
         def draw(header: bpy.types.Header, context: bpy.types.Context) -> None:
             row = header.layout.row(align=True)

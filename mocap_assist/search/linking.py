@@ -37,12 +37,15 @@ def take_chosen(context: bpy.types.Context, link: bool) -> str:
     _, found = searches.chosen(context)
     action = take_action(found, link)
     armature = selected_armature(context)
-    how = "linked" if link else "appended"
     slots = fitting_slots(armature, action) if armature is not None else []
     if armature is None or not slots or armature.library is not None:
-        return f"{action.name} was {how}; no selected armature has its bones."
+        if link:
+            return f"{action.name} was linked; no selected armature has its bones."
+        return f"{action.name} was appended; no selected armature has its bones."
     compat.assign(armature, action, slots[0])
-    return f"{action.name} was {how} and assigned to {armature.name}."
+    if link:
+        return f"{action.name} was linked and assigned to {armature.name}."
+    return f"{action.name} was appended and assigned to {armature.name}."
 
 
 def take_action(found: Found, link: bool) -> bpy.types.Action:

@@ -45,7 +45,9 @@ def mark_played(context: bpy.types.Context, tags: str, catalog: str) -> str:
     action, slot = played_source(armature)
     mark(action, [*clip_tags(action), *tags.split(",")], catalog_number(catalog))
     pictured = _picture(armature, action, slot, context.scene)
-    return f"{action.name} is an asset{'' if pictured else ', without a preview image'}."
+    if pictured:
+        return f"{action.name} is an asset."
+    return f"{action.name} is an asset, without a preview image."
 
 
 def mark(action: bpy.types.Action, tags: Iterable[str], number: str) -> None:

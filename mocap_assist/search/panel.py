@@ -6,6 +6,7 @@ import bpy
 
 from ...solvers.retrieval import FindSettings
 from ..blender.mixins import PanelMixin
+from ..languages import translated
 from ..library.auto_update_list import choices_are_kept
 from ..panels.drawing import draw_sentence, exists, folded, is_wide, settings_column
 from ..panels.figure_rows import frames_text
@@ -91,7 +92,7 @@ def _draw_library(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
         kept = choices_are_kept(library.settings().choices)
         row.operator(KEEP, icon="RECOVER_LAST", depress=kept)
     if state.running:
-        text = f"{state.message} {state.fraction:.0%}"
+        text = f"{translated(state.message)} {state.fraction:.0%}"
         layout.progress(factor=state.fraction, type="BAR", text=text, translate=False)
     elif state.said:
         draw_sentence(layout, context, state.said)

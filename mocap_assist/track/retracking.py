@@ -191,9 +191,10 @@ def _report(take: TrackedTake, result: Retracked) -> str:
     open_ends = [side for side, met in zip(SIDES, result.met, strict=True) if not met]
     if not open_ends:
         return f"{message} It meets the old motion on both sides."
+    where = "before and after" if len(open_ends) > 1 else open_ends[0]
     return (
-        f"{message} The new motion does not meet the old one {' and '.join(open_ends)} this"
-        " range: the take or the time range ends, or the old motion fits better."
+        f"{message} The new motion does not meet the old one {where} this range: the take or"
+        " the time range ends, or the old motion fits better."
     )
 
 

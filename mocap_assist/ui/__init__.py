@@ -1,10 +1,10 @@
 """User interface: panels in the sidebar, menus, preferences and the overlay."""
 
+from .. import languages
 from ..check import raw_key
 from ..clean import example_list
 from ..drawing import confidence_switch, overlay_switch, strip_switch
 from ..exporting import export_menu
-from .. import languages
 from ..importing import import_menu
 from ..retarget import bone_list
 from ..retarget import panel as retarget_panel

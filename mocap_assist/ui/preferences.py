@@ -10,6 +10,7 @@ from ...solvers.recordings.live import PORT
 from ..actions.armature_write import Output
 from ..check.raw_key import draw_keys
 from ..drawing import overlay_drawing
+from ..languages import translated
 from ..library.auto_update_list import auto_updated_libraries, stop_keeping
 from ..panels.preference_values import EXTENSION, preferences, preferred
 
@@ -130,7 +131,7 @@ class MOCAP_OT_stop_keeping(bpy.types.Operator):
         try:
             stop_keeping(self.library)
         except MocapAssistError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
         return {"FINISHED"}
 
@@ -144,7 +145,7 @@ class MOCAP_OT_reset_preferences(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if preferences() is None:
-            cls.poll_message_set("Switch the extension on in the preferences first")
+            cls.poll_message_set(translated("Switch the extension on in the preferences first"))
             return False
         return True
 

@@ -146,8 +146,11 @@ def _draw_variants(column: bpy.types.UILayout, context: bpy.types.Context) -> No
             column.template_icon(picture_of(action), scale=LARGE)
     picked = any(row.picked for row in variants.rows)
     n_chosen = len(chosen(context.scene))
-    which = f"{n_chosen} picked" if picked else f"all {n_chosen}"
-    draw_sentence(column, context, f"Apply to {which}:")
+    draw_sentence(
+        column,
+        context,
+        f"Apply to {n_chosen} picked:" if picked else f"Apply to all {n_chosen}:",
+    )
     column.operator(KEEP, icon="SOLO_ON")
     row = column.row(align=True)
     row.operator(STACK, icon="NLA")

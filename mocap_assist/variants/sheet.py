@@ -34,9 +34,6 @@ def write_sheet(scene: bpy.types.Scene, path: Path) -> str:
         for action in actions[:MAX_DRAWN_VARIANTS]
     ]
     n_drawn = run(partial(draw_sheet, motions, str(path)))
-    rest = (
-        f"; the first {MAX_DRAWN_VARIANTS} of {len(actions)}"
-        if len(actions) > MAX_DRAWN_VARIANTS
-        else ""
-    )
-    return f"{n_drawn} variants in {path.name}{rest}."
+    if len(actions) > MAX_DRAWN_VARIANTS:
+        return f"{n_drawn} of {len(actions)} variants in {path.name}."
+    return f"{n_drawn} variants in {path.name}."

@@ -150,14 +150,19 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
                 np.nanmax(np.where(signal.spikes, signal.deviation, 0.0)[start:stop])
             )
             n_spikes = len(find_runs(signal.spikes[start:stop]))
-            count = f" {n_spikes} times, by up to" if n_spikes > 1 else " by"
+            amount = _amount(signal, height)
+            sentence = (
+                f"{signal.joint} jumps {n_spikes} times, by up to {amount}."
+                if n_spikes > 1
+                else f"{signal.joint} jumps by {amount}."
+            )
             yield Issue(
                 signal.joint,
                 start,
                 stop,
                 "spike",
                 height / signal.spike_threshold,
-                f"{signal.joint} jumps{count} {_amount(signal, height)}.",
+                sentence,
             )
 
 
