@@ -3,10 +3,12 @@
 import bpy
 
 from .catalog import LANGUAGES, catalog_path, read_catalog, write_catalog
+from .line_breaks import broken_lines
 from .sentences import placeholders, translate_sentence, translated, words_of
 
 __all__ = [
     "LANGUAGES",
+    "broken_lines",
     "catalog_path",
     "placeholders",
     "read_catalog",

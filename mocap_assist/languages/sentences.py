@@ -20,6 +20,8 @@ MAX_CACHED = 256
 """Number of sentences that are kept translated. It only bounds memory: a redraw shows about
 ten."""
 SENTENCE_END = re.compile(r"(?<=[.!?]) (?=\S)")
+GROUP = r"(?P<{name}>(?:(?!\. [A-Z]).)+?\.?)"
+"""What stands for a placeholder: a name, a figure or one sentence, but not several."""
 
 
 def translated(text: str) -> str:
@@ -37,7 +39,7 @@ def _remembered(text: str, language: str) -> str:
 
 
 def translate_sentence(text: str, translate: Translate) -> str:
-    """Translate a text as a whole, as a text with placeholders, or one sentence after another.
+    """Translate as many sentences as possible at once, and then those that follow.
 
     Parameters
     ----------
@@ -45,16 +47,26 @@ def translate_sentence(text: str, translate: Translate) -> str:
     translate : callable
         Returns the translation of a text of the catalogs, or the text itself.
     """
+    sentences = SENTENCE_END.split(text)
+    for n_first in range(len(sentences), 0, -1):
+        first = _translated_whole(" ".join(sentences[:n_first]), translate)
+        if first is not None:
+            break
+    else:
+        first, n_first = sentences[0], 1
+    rest = " ".join(sentences[n_first:])
+    return f"{first} {translate_sentence(rest, translate)}" if rest else first
+
+
+def _translated_whole(text: str, translate: Translate) -> str | None:
+    """Return the translation of a text; None if it has none as a whole."""
     whole = translate(text)
     if whole != text:
         return whole
     for pattern in _patterns():
         if (values := pattern.values_in(text)) is not None:
             return translate(pattern.template).format_map(_translated_parts(values, translate))
-    parts = SENTENCE_END.split(text, maxsplit=1)
-    if len(parts) == 1:
-        return text
-    return " ".join(translate_sentence(part, translate) for part in parts)
+    return None
 
 
 def placeholders(text: str) -> set[str]:
@@ -107,7 +119,7 @@ class Pattern:
 def _expression(template: str) -> str:
     """Return a regular expression with a group for each placeholder."""
     return "".join(
-        re.escape(part) + (f"(?P<{name}>.+?)" if name else "")
+        re.escape(part) + (GROUP.format(name=name) if name else "")
         for part, name, _, _ in Formatter().parse(template)
     )
 

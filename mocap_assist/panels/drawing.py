@@ -1,12 +1,11 @@
 """Pieces that several panels draw."""
 
 from dataclasses import fields
-from textwrap import wrap
 
 import bpy
 
 from ...solvers.settings import Settings
-from ..languages import translated
+from ..languages import broken_lines, translated
 
 LETTER_WIDTH_PX = 6.2
 """Mean width of a letter of the interface, in pixels at scale 1."""
@@ -46,7 +45,9 @@ def draw_lines(layout: bpy.types.UILayout, text: str, width: float, icon: str = 
 
 def column_lines(text: str, width: float) -> list[str]:
     """Break a sentence into lines for a panel of that width."""
-    return wrap(text, max(int((width - BORDER_WIDTH_PX) / LETTER_WIDTH_PX), MIN_LINE_LETTERS))
+    return broken_lines(
+        text, max(int((width - BORDER_WIDTH_PX) / LETTER_WIDTH_PX), MIN_LINE_LETTERS)
+    )
 
 
 def is_wide(context: bpy.types.Context) -> bool:

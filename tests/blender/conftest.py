@@ -88,6 +88,7 @@ IN_ONE_BLENDER = {
     "retargeting/test_rigify_from_file.py": (5, 2),
     "retargeting/test_unbake.py": (5, 2),
     "test_bad_input.py": (4, 5),
+    "ui/test_catalogs.py": (4, 5),
     "test_job_endings.py": (5, 2),
     "tracking/test_body.py": (5, 2),
     "tracking/test_capture_command.py": (5, 2),

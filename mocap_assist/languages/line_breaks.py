@@ -1,0 +1,32 @@
+"""Break sentences into lines, in languages without spaces between words, too."""
+
+import re
+from unicodedata import east_asian_width
+
+NO_START = "、。，．：；！？）」』】〕》”’ー々ぁぃぅぇぉっゃゅょァィゥェォッャュョ"
+"""Characters that Japanese and Chinese do not put at the start of a line."""
+NO_END = "（「『【〔《“‘"
+"""Characters that they do not put at the end of a line."""
+WIDE = "WF"
+"""Classes of Unicode whose characters are twice as wide as a letter."""
+PIECE = re.compile(
+    rf"\s+"
+    rf"|[{NO_END}]*[^\s\u0000-\u2fff][{NO_START}]*"
+    rf"|[^\s\u3000-\uffff]+[{NO_START}]*"
+)
+"""What stays together: spaces, one wide character, or a word, each with its punctuation."""
+
+
+def broken_lines(text: str, max_letters: int) -> list[str]:
+    """Return lines that are at most so many letters wide, except for longer words."""
+    lines = [""]
+    for piece in PIECE.findall(text):
+        if lines[-1] and text_width(lines[-1] + piece.rstrip()) > max_letters:
+            lines.append("")
+        lines[-1] += piece.lstrip() if not lines[-1] else piece
+    return [line.rstrip() for line in lines if line.strip()]
+
+
+def text_width(text: str) -> int:
+    """Return the width of a text in letters."""
+    return sum(2 if east_asian_width(letter) in WIDE else 1 for letter in text)
