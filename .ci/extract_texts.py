@@ -88,7 +88,7 @@ def _labels(tree: ast.Module, hidden: set[int], names: set[str]) -> Iterator[str
 def _not_shown(tree: ast.Module) -> Iterator[ast.AST]:
     """Yield docstrings, texts of classes, which Blender knows, and parts of other texts."""
     for node in ast.walk(tree):
-        if isinstance(node, ast.Expr):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
             yield node.value
         elif isinstance(node, ast.JoinedStr):
             yield from (each for value in node.values for each in ast.walk(value))

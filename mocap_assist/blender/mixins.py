@@ -5,10 +5,13 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ...solvers.settings import Settings
+from ..languages import CONTEXT
 
 
 class OperatorMixin:
     """Mixed in before bpy.types.Operator."""
+
+    bl_translation_context = CONTEXT
 
     if TYPE_CHECKING:
         bl_idname: str
@@ -38,6 +41,8 @@ class SettingsMixin(OperatorMixin):
 
 class PanelMixin:
     """Mixed in before bpy.types.Panel."""
+
+    bl_translation_context = CONTEXT
 
     if TYPE_CHECKING:
         layout: bpy.types.UILayout

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ...solvers.settings import Choice, Described, Settings, former_names, label_of
+from ..languages import CONTEXT
 from .path_properties import path_property
 
 Class = TypeVar("Class", bound=type)
@@ -72,6 +73,7 @@ def _property(item: "Field[Any]", options: set[str]) -> Any:
         "description": described.help,
         "default": default,
         "options": {"ANIMATABLE"} | options,
+        "translation_context": CONTEXT,
     }
     if issubclass(kind, Choice):
         choices = [(each.name, each.label, each.help, index)

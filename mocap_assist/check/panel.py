@@ -86,10 +86,10 @@ def _draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
     table.scale_y = 0.9
     for label, before, after in (("", "Before", "After"), *rows):
         names = table.split(factor=0.52)
-        names.label(text=label)
+        names.label(text=translated(label), translate=False)
         values = names.split(factor=0.5)
-        values.label(text=before)
-        values.label(text=after)
+        values.label(text=translated(before), translate=False)
+        values.label(text=translated(after), translate=False)
 
 
 def _draw_issues(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -7,6 +7,7 @@ import bpy
 from ...solvers.workflows import TakeOrigin, figure_texts
 from ..blender.mixins import PanelMixin
 from ..check.reverting import why_not_revert
+from ..languages import translated
 from ..panels.drawing import draw_job, draw_sentence, exists
 from ..panels.fix_card import shown_card
 from ..panels.visibility import shows_take
@@ -51,10 +52,10 @@ def _draw_card(
     rows = figure_texts(card["before"], card["after"])
     for label, before, after in (("", "Before", "After"), *rows):
         names = table.split(factor=0.46)
-        names.label(text=label)
+        names.label(text=translated(label), translate=False)
         values = names.split(factor=0.5)
-        values.label(text=before)
-        values.label(text=after)
+        values.label(text=translated(before), translate=False)
+        values.label(text=translated(after), translate=False)
     row = box.row(align=True)
     row.operator(ACCEPT)
     row.prop(context.window_manager, DETAILS, text="Details", toggle=True)

@@ -2,11 +2,12 @@
 
 import bpy
 
-from .catalog import LANGUAGES, catalog_path, read_catalog, write_catalog
+from .catalog import CONTEXT, LANGUAGES, catalog_path, read_catalog, write_catalog
 from .line_breaks import broken_lines
 from .sentences import placeholders, translate_sentence, translated, words_of
 
 __all__ = [
+    "CONTEXT",
     "LANGUAGES",
     "broken_lines",
     "catalog_path",
@@ -20,9 +21,8 @@ __all__ = [
     "write_catalog",
 ]
 
-CONTEXTS = ("*", "Operator")
-"""Where Blender looks up texts: labels, tooltips and messages in the first, buttons in the
-second."""
+CONTEXTS = (CONTEXT, "*", "Operator")
+"""Where Blender looks up texts: ours, and those that it uses without one, for buttons too."""
 
 
 def dictionary() -> dict[str, dict[tuple[str, str], str]]:

@@ -12,6 +12,9 @@ LANGUAGES = {
     "de_DE": "German",
 }
 """Languages by the names that Blender gives them."""
+CONTEXT = "Mocap Assist"
+"""Context of our texts. Without one, Blender's own catalogs come first, in which *Feet* are the
+unit and *Track* is a noun."""
 ENTRY = re.compile(r'^msgid "(.*)"\nmsgstr "(.*)"$', re.MULTILINE)
 HEADER = (
     '# {name} texts of Mocap Assist. "make catalogs" sorts, adds and removes entries.\n'

@@ -12,7 +12,7 @@ from string import Formatter
 
 import bpy
 
-from .catalog import LANGUAGES, catalog_path, read_catalog
+from .catalog import CONTEXT, LANGUAGES, catalog_path, read_catalog
 
 Translate = Callable[[str], str]
 
@@ -20,8 +20,8 @@ MAX_CACHED = 256
 """Number of sentences that are kept translated. It only bounds memory: a redraw shows about
 ten."""
 SENTENCE_END = re.compile(r"(?<=[.!?]) (?=\S)")
-GROUP = r"(?P<{name}>(?:(?!\. [A-Z]).)+?\.?)"
-"""What stands for a placeholder: a name, a figure or one sentence, but not several."""
+GROUP = r"(?P<{name}>(?:(?!\. [A-Z]).)*?\.?)"
+"""What stands for a placeholder: nothing, a name, a figure or one sentence, but not several."""
 
 
 def translated(text: str) -> str:
@@ -35,7 +35,8 @@ def translated(text: str) -> str:
 @lru_cache(MAX_CACHED)
 def _remembered(text: str, language: str) -> str:
     """Return a translation; the language is a key of the cache."""
-    return translate_sentence(text, bpy.app.translations.pgettext_iface)
+    look_up = bpy.app.translations.pgettext_iface
+    return translate_sentence(text, lambda english: str(look_up(english, CONTEXT)))
 
 
 def translate_sentence(text: str, translate: Translate) -> str:

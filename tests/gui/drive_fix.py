@@ -10,6 +10,8 @@ import bpy
 from driver_scene import empty_scene, settle, until_done
 
 AWAY = (500, 500)
+LANGUAGES = {"ja_JP": "クリーン", "de_DE": "Bereinigen"}
+"""Wide characters and long words: by language the word for Clean."""
 FIRST_STEPS = ("mocap_assist.import_recording", "mocap_assist.load_sample", "wm.url_open")
 
 
@@ -111,6 +113,21 @@ def accept(armature):
     bgui.shot("7-accepted.png")
 
 
+def other_languages():
+    """Picture the card where this Blender has its own languages; look for cut words."""
+    view = bpy.context.preferences.view
+    for language, clean in LANGUAGES.items():
+        try:
+            view.language = language
+        except TypeError:  # Some builds have English alone.
+            return
+        translate = bpy.app.translations.pgettext_iface
+        assert translate("Clean", "Mocap Assist") == clean
+        yield from settle(pointer=AWAY)
+        bgui.shot(f"8-{language}.png")
+    view.language = "en_US"
+
+
 def steps():
     empty_scene()
     yield from bgui.open_sidebar("Mocap")
@@ -122,6 +139,7 @@ def steps():
     armature = yield from undo_is_one_step(armature)
     yield from revert(armature)
     yield from accept(armature)
+    yield from other_languages()
 
 
 bgui.run(steps, timeout=600)

@@ -49,7 +49,6 @@ RECORDINGS = {
         f"clips/{name}.bvh": f"mocap/cmu_walk/{name}.bvh"
         for name in ("05_01", "07_01", "07_02", "10_04", "35_01", "35_02")
     },
-    "languages": {},
     "listen": {},
     "marker_overlay": {"markers.trc": "formats/trc/subject02_running.trc"},
     "markers": {"markers.c3d": "markers/85_02.c3d"},
