@@ -41,7 +41,7 @@ def test_escape_while_files_are_read_leaves_all_as_it_was(
     before = everything()
     operator = press("first.bvh", "second.bvh")
 
-    assert window.job.running and window.status[-1].startswith("Starting 0%   Esc: cancel")
+    assert window.job.running and window.status[-1].startswith("Starting 0%   Esc cancels")
     assert window.job.owner == "import"
     assert operator.modal(window.context, event("LEFTMOUSE", "PRESS")) == {"RUNNING_MODAL"}
     assert operator.modal(window.context, event(key, "PRESS")) == {"CANCELLED"}

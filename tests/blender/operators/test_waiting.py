@@ -41,7 +41,7 @@ def test_escape_cancels_the_solve_and_writes_nothing(noisy, press_clean, window,
 
     button = press_clean()
 
-    assert window.status[-1].endswith("%   Esc: cancel [mocap_assist.cancel_solve]")
+    assert window.status[-1].endswith("%   Esc cancels [mocap_assist.cancel_solve]")
     assert window.job.owner == "clean"
     for other in (event("TIMER"), event("LEFTMOUSE", "PRESS")):
         assert button.modal(window.context, other) == {"RUNNING_MODAL"}
