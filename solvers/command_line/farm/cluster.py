@@ -56,8 +56,7 @@ class ClusterExecutor(Executor):
     """An executor on the workers of a cluster."""
 
     def __init__(self, client: "Client", address: str) -> None:
-        self._client, self._address = client, address
-        self._pending: set[Any] = set()
+        self._executor, self._address = client.get_executor(pure=False), address
 
     def submit(
         self, function: Callable[..., Any], /, *args: Any, **kwargs: Any
@@ -65,34 +64,31 @@ class ClusterExecutor(Executor):
         """Submit a call; arguments from `Cluster.share` arrive as their values."""
         future: Future[Any] = Future()
         call = partial(_call_if_same_version, version(), function)
-        remote = self._client.submit(call, *args, **kwargs, pure=False)
-        self._pending.add(remote)
-        remote.add_done_callback(partial(self._finish, future))
+        remote = self._executor.submit(call, *args, **kwargs)
+        remote.add_done_callback(partial(self._pass_on, future))
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Cancel what has not started, if requested."""
-        if cancel_futures and self._pending:
-            self._client.cancel([*self._pending])
+        if cancel_futures:
+            self._executor.shutdown(wait=False)
 
-    def _finish(self, future: "Future[Any]", remote: Any) -> None:
+    def _pass_on(self, future: "Future[Any]", remote: "Future[Any]") -> None:
         """Pass on the end of a call; errors of Dask become those of an executor."""
         from distributed import KilledWorker
 
-        self._pending.discard(remote)
-        try:
-            result = None if remote.cancelled() else remote.result()
-        except KilledWorker as error:
-            future.set_exception(BrokenExecutor(str(error)))
-        except ImportError:
-            future.set_exception(InvalidSettingError(_has_no_package("A worker")))
-        except Exception as error:
-            future.set_exception(error)
+        if remote.cancelled():
+            future.set_exception(MocapAssistError(_is_gone(self._address)))
+            return
+        error = remote.exception()
+        if isinstance(error, KilledWorker):
+            error = BrokenExecutor(str(error))
+        if isinstance(error, ImportError):
+            error = InvalidSettingError(_has_no_package("A worker"))
+        if error is None:
+            future.set_result(remote.result())
         else:
-            if remote.cancelled():
-                future.set_exception(MocapAssistError(_is_gone(self._address)))
-            else:
-                future.set_result(result)
+            future.set_exception(error)
 
 
 @contextmanager
