@@ -24,7 +24,7 @@ SHIPPED = {
     "mocap_assist",
     "operators",
 }
-TEXTS = {"", ".html", ".md", ".py", ".toml", ".typed"}
+TEXTS = {"", ".html", ".md", ".po", ".py", ".toml", ".typed"}
 """Endings of files that people write; all others hold learned numbers."""
 OURS = {"solvers", "mocap_assist", "operators"}
 # What Blender brings itself, and the import names of our wheels where they differ.
