@@ -23,6 +23,7 @@ from .curve_modifiers import act_on_keys
 from .curves import Channel, write_values
 from .rotation_modes import channels_from_quaternions
 from .take import ArmatureTake
+from .unchanged_samples import RecordedChannels, UnchangedSamples
 
 KeyTypes = Mapping[str, NDArray[np.uint8]]
 SUFFIX = ".clean"
@@ -49,6 +50,7 @@ def write_take(
     key_types: KeyTypes,
     *,
     suffix: str = SUFFIX,
+    recorded: RecordedChannels | None = None,
 ) -> Source:
     """Copy an action and replace the rotation and location keys of some of its bones.
 
@@ -64,6 +66,8 @@ def write_take(
     key_types : per bone name, shape (n_frames,)
         Blender's type of each key.
     suffix : ending of the result's name
+    recorded : RecordedChannels, optional
+        Samples that are the recording's get its values to the last bit.
 
     Returns
     -------
@@ -74,6 +78,7 @@ def write_take(
     slot = same_slot(action, source[1])
     curves = animated_curves(action, slot)
     rotations, locations = take.bone_rotations(), take.bone_locations()
+    unchanged = UnchangedSamples(recorded, take) if recorded else None
     for index, name in enumerate(take.rig.bones):
         if name not in bones:
             continue
@@ -82,9 +87,14 @@ def write_take(
             rotation_channels = rotation_curves(bone, curves)
             near = sampled_rotation(bone, rotation_channels, take.frames[:1])
             values = channels_from_quaternions(rotations[index], bone.rotation_mode, near)
+            if unchanged is not None:
+                values = unchanged.rotations(bone, index, values)
             _write(rotation_channels, take.frames, values, types)
         if take.channels[index].location_keyed and index in locations:
-            _write(location_curves(bone, curves), take.frames, locations[index], types)
+            values = locations[index]
+            if unchanged is not None:
+                values = unchanged.locations(bone, index, values)
+            _write(location_curves(bone, curves), take.frames, values, types)
     return action, slot
 
 

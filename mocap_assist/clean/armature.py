@@ -12,6 +12,7 @@ from ..actions.armature_write import check_writable, count_modified, put_to_use,
 from ..actions.contact_keys import animators_contacts, write_contacts
 from ..actions.limits import read_limits
 from ..actions.take import ArmatureTake
+from ..actions.unchanged_samples import RecordedChannels
 from ..blender.compat import Source
 from ..blender.time_slices import Steps
 from ..runtime.selection import played_source
@@ -77,7 +78,14 @@ class ArmatureReading(NamedTuple):
         """Write a new action and play it; return its name and how many curves were modified."""
         take = self.raw.with_recordings(cleaned.recordings)
         n_modified = count_modified(self.played, cleaned.moved)
-        action, slot = write_take(self.armature, self.played, take, cleaned.moved, types)
+        action, slot = write_take(
+            self.armature,
+            self.played,
+            take,
+            cleaned.moved,
+            types,
+            recorded=RecordedChannels(self.raw, self.recorded),
+        )
         if cleaned.planted is not None:
             contacts, detected = cleaned.planted.contacts, self.contacts() is None
             write_contacts(

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, fields
 from typing import NamedTuple
 
-from ...solvers.denoising import DenoiseSettings, PlantSettings
+from ...solvers.denoising import PART_STRENGTHS, DenoiseSettings, PlantSettings
 from ...solvers.settings import Choice, Settings, setting
 from ..actions.armature_write import Output
 from ..actions.frames import FrameRange
@@ -71,6 +71,11 @@ class CleanChoices(Settings):
     plant_feet: bool = setting(
         True, "Keep planted feet from sliding by moving legs and hips slightly"
     )
+    keyed_strength: bool = setting(
+        True,
+        "Where Strength or a body part has keys in the scene, use their value at each frame",
+        label="Use Keys",
+    )
     joint_limits: Limits = setting(
         Limits.NONE,
         "Keep joint rotations within soft limits",
@@ -92,6 +97,8 @@ class CleanBundle(NamedTuple):
 
 FINISHING_SETTINGS = (
     "strength",
+    *PART_STRENGTHS.values(),
+    "keyed_strength",
     "bones",
     "result_as",
     "plant_feet",

@@ -1,6 +1,5 @@
 """Clean: read the scene and write the result."""
 
-from dataclasses import replace
 from functools import partial
 
 import bpy
@@ -24,6 +23,7 @@ from .armature import ArmatureReading
 from .button_settings import CleanBundle, CleanChoices, Limits, Prior
 from .example_source import ExampleSource
 from .examples import read_prior
+from .keyed_strengths import read_strengths
 from .markers import MarkerReading
 from .report import clean_report, entry_of
 from .solve_cleaning import Cleaned, Finish, Problem, Recordings, clean, names_of
@@ -51,7 +51,7 @@ def read_cleaning(
     plants = choices.plant_feet and isinstance(found.raw, ArmatureTake)
     limits, contacts = found.limits(choices, chosen), found.contacts()
     finish = Finish(
-        strength=settings.denoising.strength,
+        strengths=read_strengths(found.scene, settings, found.raw.grid.frames),
         ease=ease_of(found.raw.grid),
         chosen=chosen,
         present=(yield from found.present(chosen)),
@@ -125,7 +125,7 @@ def _problem(
         )
     return Problem(
         recordings=raw.recordings,
-        settings=replace(settings.denoising, strength=1.0),
+        settings=settings.denoising.at_full_strength(),
         examples=examples,
         learn_limits=learn_limits,
         unswap=choices.unswap and choices.bones is Bones.ALL and isinstance(raw, MarkerTake),

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...solvers.denoising import DenoiseSettings, PlantSettings
+from ...solvers.denoising import PART_STRENGTHS, DenoiseSettings, PlantSettings
 from ..blender.mixins import PanelMixin
 from ..panels.drawing import draw_sentence, exists, folded, settings_column
 from ..panels.visibility import shows_take
@@ -10,6 +10,7 @@ from ..runtime.selection import selected_subject, why_not_clean
 from .button_settings import Prior
 from .example_list import draw_examples
 
+PARTS = tuple(PART_STRENGTHS.values())
 LEARN = "mocap_assist.learn_patterns"
 OF_JOINTS = {"joint_limits"}
 MAIN = ("strength", "frame_range", "joint_limits", "result_as")
@@ -31,6 +32,8 @@ class CleanPanel(PanelMixin):
         subject = selected_subject(context)
         joints = subject is None or subject.type == "ARMATURE"
         _draw_main(column, clean, joints)
+        if joints:
+            _draw_parts(column, clean)
         _draw_folded(column, clean, joints)
         button = layout.row()
         button.scale_y = 1.6
@@ -51,8 +54,23 @@ def _draw_main(
         _draw_learned(column, clean)
     for name in MAIN:
         if joints or name not in OF_JOINTS:
-            column.prop(clean, name)
+            row = column.row()
+            row.use_property_decorate = name == "strength"  # it can have keys
+            row.prop(clean, name)
     column.prop(clean, "plant_feet" if joints else "unswap")
+
+
+def _draw_parts(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:
+    """Draw the strength of each part of the body, with dots for keys."""
+    header, body = column.panel("mocap_assist_clean_parts", default_closed=True)
+    header.label(text="Body Parts")
+    if body is None:
+        return
+    for name in PARTS:
+        row = body.row()
+        row.use_property_decorate = True
+        row.prop(clean, name, slider=True)
+    body.prop(clean, "keyed_strength")
 
 
 def _draw_learned(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:
@@ -71,7 +89,7 @@ def _draw_folded(
     header.label(text="Advanced")
     if body is None:
         return
-    for name in folded(DenoiseSettings, MAIN):
+    for name in folded(DenoiseSettings, (*MAIN, *PARTS)):
         body.prop(clean, name)
     if not joints:
         return

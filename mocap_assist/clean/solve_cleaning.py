@@ -4,6 +4,7 @@ The slow part, `solve`, depends neither on how strongly the result is applied no
 what it returns is kept, so that the redo panel has only `finish` to repeat.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from ...solvers.arrays import Array
 from ...solvers.denoising import (
+    PART_STRENGTHS,
     Denoised,
     DenoiseSettings,
     Planted,
@@ -31,6 +33,7 @@ from ...solvers.motion import (
     describe_low_confidence,
     explain_roles,
     find_humanoid_map,
+    joint_parts,
 )
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.rotations import angle_between, slerp
@@ -60,8 +63,10 @@ class Problem:
 class Finish:
     """Settings that apply a solution to the take."""
 
-    strength: float
-    """Share of the estimate, 0 to 1; gaps are filled with it all the same."""
+    strengths: Mapping[str, Array]
+    """Fraction of the estimate at each frame, shape (n_frames,), 0 to 1: of all joints and
+    points (`strength`), and the factor of each part of the body, by the names of the settings.
+    Gaps are filled at any strength."""
     ease: Array
     """Blend weights, shape (n_frames,): below 1 only next to frames outside the range."""
     chosen: frozenset[str]
@@ -117,7 +122,7 @@ def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
         unswapped = unswap_markers(body, progress=within(progress, 0.0, 0.2))
         body, swaps = unswapped.tracks, unswapped.swaps
     learned = problem.examples.learned(body, problem.learn_limits, within(progress, 0.2, 0.3))
-    settings = replace(problem.settings, strength=1.0)
+    settings = problem.settings.at_full_strength()
     result = denoise(
         body,
         learned.bases,
@@ -153,7 +158,7 @@ def clean(
         solution = solve(problem, progress=within(progress, 0.0, 0.8))
     estimates = [each.recording for each in solution.denoised]
     body, *other_trees = map(
-        partial(_mixed, finish=finish),
+        partial(_mixed, finish=finish, part_of=_bone_parts(solution.recordings[0], finish)),
         solution.recordings,
         finish.present or solution.recordings,
         estimates,
@@ -204,12 +209,39 @@ def _chosen_legs(body: Motion, finish: Finish) -> set[str]:
     return joints & finish.chosen
 
 
+def _bone_parts(body: Motion | Tracks, finish: Finish) -> dict[str, str]:
+    """Return the part of the body of each bone, if any part has a strength of its own.
+
+    Bones outside the body, such as props, have none.
+    """
+    if isinstance(body, Tracks) or all(
+        (finish.strengths[name] == 1.0).all() for name in PART_STRENGTHS.values()
+    ):
+        return {}
+    return dict(zip(body.skeleton.names, joint_parts(body.skeleton), strict=True))
+
+
+def _strengths(names: Sequence[str], finish: Finish, part_of: Mapping[str, str]) -> Array:
+    """Return the strength of each joint or point at each frame, shape (n_frames, n_joints)."""
+    strengths = np.tile(finish.strengths["strength"][:, None], len(names))
+    for index, name in enumerate(names):
+        if name in part_of:
+            strengths[:, index] *= finish.strengths[PART_STRENGTHS[part_of[name]]]
+    return strengths
+
+
 def _mixed(
-    raw: Motion | Tracks, present: Motion | Tracks, clean: Motion | Tracks, finish: Finish
+    raw: Motion | Tracks,
+    present: Motion | Tracks,
+    clean: Motion | Tracks,
+    *,
+    finish: Finish,
+    part_of: Mapping[str, str],
 ) -> Motion | Tracks:
     """Blend from the recording to the estimate; gaps take the estimate alone."""
-    chosen = np.array([name in finish.chosen for name in names_of(raw)])
-    weight = finish.strength * finish.ease[:, None] * chosen
+    names = names_of(raw)
+    chosen = np.array([name in finish.chosen for name in names])
+    weight = _strengths(names, finish, part_of) * finish.ease[:, None] * chosen
     match raw, present, clean:
         case Tracks(), Tracks(), Tracks():
             start = np.where(chosen[:, None], raw.positions, present.positions)

@@ -14,7 +14,8 @@ True
 """
 
 from ..feet import Planted, PlantSettings, plant_feet
-from .denoise import Denoised, DenoiseMethod, DenoiseSettings, denoise
+from .denoise import Denoised, denoise
+from .denoise_settings import PART_STRENGTHS, DenoiseMethod, DenoiseSettings
 from .limits import JointLimitsSettings, clamp_to_limits, learn_joint_limits, limit_excess
 from .quality import (
     Issue,
@@ -33,6 +34,7 @@ from .window_priors import (
 )
 
 __all__ = [
+    "PART_STRENGTHS",
     "DenoiseMethod",
     "DenoiseSettings",
     "Denoised",

@@ -11,9 +11,14 @@ from ..errors import InvalidMotionError
 from ..motion import JointLimits, Motion, Tracks
 from ..motion.skeletons import describe_shots, find_shot_boundaries, is_short_shot, shot_ranges
 from ..progress import Progress, unwatched, within
-from ..settings import Choice, Settings, setting
 from .channels import CENTIMETERS, Channels, Estimate, decode, encode
 from .default_method import OUTLIER_THRESHOLD, apply_default_method
+from .denoise_settings import (
+    DEFAULT_SETTINGS,
+    DenoiseMethod,
+    DenoiseSettings,
+    joint_factors,
+)
 from .edge_poses import (
     describe_edge_poses,
     find_edge_poses,
@@ -32,28 +37,6 @@ by hand: x0.5 costs nothing, x2 gains 1.3 %."""
 HALF_CONFIDENCE_DEVIATION = 5.0
 """Standard deviation, degrees or centimeters, at which confidence is one half. By definition of
 the confidence."""
-
-
-class DenoiseMethod(Choice):
-    """Methods of denoising."""
-
-    DEFAULT = "default", "Estimate the noise of the take and weight all patterns"
-    PUBLISHED = "published", "Filter as printed by Lou and Chai (2010)", "Lou and Chai 2010"
-
-
-@dataclass(frozen=True, kw_only=True)
-class DenoiseSettings(Settings):
-    """Settings of `denoise`."""
-
-    method: DenoiseMethod = setting(
-        DenoiseMethod.DEFAULT,
-        "Denoising method; the default performed best in tests",
-        advanced=True,
-    )
-    strength: float = setting(
-        1.0, "Blend from recorded to cleaned motion; gaps are filled at any strength",
-        minimum=0.0, maximum=1.0,
-    )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +64,7 @@ def denoise(
     bases: FilterBases | None = None,
     *,
     limits: JointLimits | None = None,
-    settings: DenoiseSettings = DenoiseSettings(),
+    settings: DenoiseSettings = DEFAULT_SETTINGS,
     progress: Progress = unwatched,
 ) -> Denoised:
     """Estimate the true movement from a noisy recording with spikes and gaps.
@@ -117,8 +100,8 @@ def denoise(
     Raises
     ------
     InvalidMotionError
-        The bases were learned from tracks and the recording is a motion, or the reverse; or
-        no frame was observed.
+        The bases were learned from tracks and the recording is a motion, or the reverse; no
+        frame was observed; or points are to be cleaned with strengths of body parts.
     SolveCancelled
         Raised by `progress`.
 
@@ -129,6 +112,10 @@ def denoise(
     if bases is not None and bool(bases.of_points) != isinstance(recording, Tracks):
         learned = "points" if bases.of_points else "joints"
         raise InvalidMotionError(f"The examples are of {learned}, the recording is not.")
+    if isinstance(recording, Tracks) and set(settings.part_strengths().values()) != {1.0}:
+        raise InvalidMotionError(
+            "Points have no body parts. Leave their strengths at 1, and use Strength alone."
+        )
     progress(0.0, "Reading")
     if not observed_mask(recording).any():
         raise InvalidMotionError(
@@ -191,14 +178,11 @@ def _denoise_segment(
             estimate, prior_used = _estimate(
                 possible_channels, segment.frame_rate, bases, settings, second_progress
             )
-    noisy, observed = channels.flat, np.isfinite(channels.flat)
+    noisy = channels.flat
     spikes = (estimate.inliers < OUTLIER_THRESHOLD) & (
         np.abs(noisy - estimate.values) > MIN_REPORTED_SPIKE
     )
-    blended = noisy + settings.strength * (estimate.values - noisy)
-    values = np.where(observed, blended, estimate.values)
-    cleaned = decode(complete, channels, values.reshape(channels.values.shape))
-    cleaned = cleaned if settings.strength > 0.0 else restore_observed(segment, cleaned)
+    cleaned = _blend(segment, complete, channels, estimate.values, settings)
     if limits is not None and isinstance(cleaned, Motion):
         cleaned = clamp_to_limits(cleaned, limits)
     confidence = _confidence(max_per_joint(segment, channels, estimate.deviation), filled)
@@ -216,6 +200,31 @@ def _denoise_segment(
         estimate.converged,
         prior_used,
     )
+
+
+def _blend(
+    segment: Motion | Tracks,
+    complete: Motion | Tracks,
+    channels: Channels,
+    estimate: Array,
+    settings: DenoiseSettings,
+) -> Motion | Tracks:
+    """Blend from the recorded to the estimated channels, by the strength of each joint."""
+    strengths = _strengths(segment, settings)
+    weights = np.repeat(strengths[channels.joints], channels.values.shape[2])
+    noisy = channels.flat
+    blended = noisy + weights * (estimate - noisy)
+    values = np.where(np.isfinite(noisy), blended, estimate)
+    cleaned = decode(complete, channels, values.reshape(channels.values.shape))
+    return restore_observed(segment, cleaned, strengths == 0.0)
+
+
+def _strengths(segment: Motion | Tracks, settings: DenoiseSettings) -> Array:
+    """Return the strength of each joint or point, shape (n_joints,)."""
+    if isinstance(segment, Motion):
+        factors = joint_factors(segment.skeleton, settings.part_strengths())
+        return np.asarray(settings.strength * factors)
+    return np.full(segment.n_points, settings.strength)
 
 
 def _unknown_points(

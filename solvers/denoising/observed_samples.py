@@ -13,19 +13,27 @@ def observed_mask(recording: Motion | Tracks) -> NDArray[np.bool_]:
     return recording.observed if isinstance(recording, Motion) else recording.visible
 
 
-def restore_observed(recording: Motion | Tracks, cleaned: Motion | Tracks) -> Motion | Tracks:
-    """Return the cleaned recording with the observed samples unchanged, to the last bit."""
+def restore_observed(
+    recording: Motion | Tracks, cleaned: Motion | Tracks, joints: NDArray[np.bool_]
+) -> Motion | Tracks:
+    """Return the cleaned recording with the observed samples of some joints or points.
+
+    They are the recording's to the last bit. `joints` has the shape (n_joints,); the path of
+    the root belongs to the first joint.
+    """
+    if not joints.any():
+        return cleaned
     if isinstance(recording, Motion) and isinstance(cleaned, Motion):
         rotations, roots = recording.rotations, recording.root_positions
         return recording.with_poses(
-            np.where(np.isfinite(rotations), rotations, cleaned.rotations),
-            np.where(np.isfinite(roots), roots, cleaned.root_positions),
+            np.where(np.isfinite(rotations) & joints[:, None], rotations, cleaned.rotations),
+            np.where(np.isfinite(roots) & joints[0], roots, cleaned.root_positions),
         )
     assert isinstance(recording, Tracks)
     assert isinstance(cleaned, Tracks)
     positions = recording.positions
     return recording.with_positions(
-        np.where(np.isfinite(positions), positions, cleaned.positions)
+        np.where(np.isfinite(positions) & joints[:, None], positions, cleaned.positions)
     )
 
 

@@ -9,6 +9,7 @@
 """
 
 from .humanoid import (
+    BODY_PARTS,
     HUMANOID_ROLES,
     ContactSettings,
     HumanoidMap,
@@ -24,6 +25,7 @@ from .humanoid import (
     fit_bone_lengths,
     foot_points,
     from_canonical,
+    joint_parts,
     leg_length,
     motion_from_points,
     read_humanoid_map,
@@ -58,6 +60,7 @@ from .skeletons import (
 )
 
 __all__ = [
+    "BODY_PARTS",
     "HUMANOID_ROLES",
     "SENSOR_JOINTS",
     "Alignment",
@@ -87,6 +90,7 @@ __all__ = [
     "forward_kinematics",
     "from_canonical",
     "joint_parents",
+    "joint_parts",
     "leg_length",
     "linear_velocities",
     "local_rotations",

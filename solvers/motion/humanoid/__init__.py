@@ -1,5 +1,6 @@
 """The human body on any skeleton: humanoid roles, rest poses, postures and foot contacts."""
 
+from .body_parts import BODY_PARTS, joint_parts
 from .body_size import (
     ADULT_BONE_LENGTHS_M,
     ADULT_STATURE_M,
@@ -69,6 +70,7 @@ from .standing_rest import with_standing_rest
 __all__ = [
     "ADULT_BONE_LENGTHS_M",
     "ADULT_STATURE_M",
+    "BODY_PARTS",
     "CHEST",
     "ESSENTIAL_ROLES",
     "FORWARD",
@@ -110,6 +112,7 @@ __all__ = [
     "fit_bone_lengths",
     "foot_points",
     "from_canonical",
+    "joint_parts",
     "leg_length",
     "mirror_postures",
     "motion_from_points",
